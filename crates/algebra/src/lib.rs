@@ -1,0 +1,14 @@
+//! The interfaces of the engine: rings whose *value* owns the context (precision, names) and
+//! whose elements are bare data, and algebras of functions of the fast phase.
+//!
+//! The laws that an implementation must satisfy are shipped beside the traits in [`laws`];
+//! every ring of the workspace runs them with one call.
+#![warn(missing_docs)]
+
+pub mod laws;
+mod phase;
+mod products;
+mod ring;
+
+pub use phase::{PhaseAlgebra, PhaseError, Resolution};
+pub use ring::{Products, Rationals, RationalAlgebra, Ring};

@@ -1,0 +1,86 @@
+//! Algebras of functions of the fast phase.
+
+use crate::RationalAlgebra;
+
+/// Shorthand for the constants of a phase algebra.
+type Constant<A> = <<A as PhaseAlgebra>::Constants as crate::Ring>::Element;
+
+/// What the equation u'' + u = f asks of an algebra of functions of the phase psi.
+///
+/// Laws (see [`laws::phase_algebra`](crate::laws::phase_algebra)): the derivation satisfies
+/// Leibniz' rule and kills exactly the constants; `resolve` splits f without loss,
+///
+///   f = c cos psi + s sin psi + (u'' + u),   u(0) = u'(0) = 0,
+///
+/// where c = 2<f cos> and s = 2<f sin> are the resonant amplitudes (means over a period).
+pub trait PhaseAlgebra: RationalAlgebra {
+    /// The ring of constants: functions that do not depend on the phase.
+    type Constants: RationalAlgebra;
+
+    /// The ring of constants.
+    fn constants(&self) -> &Self::Constants;
+    /// A constant as a function of the phase.
+    fn embed(&self, c: &Constant<Self>) -> Self::Element;
+    /// c f.
+    fn scale_by(&self, f: &Self::Element, c: &Constant<Self>) -> Self::Element;
+    /// cos psi.
+    fn cosine(&self) -> Self::Element;
+    /// sin psi.
+    fn sine(&self) -> Self::Element;
+    /// The constant that f is, if it is one.
+    fn as_constant(&self, f: &Self::Element) -> Option<Constant<Self>>;
+    /// df/dpsi.
+    fn derivative(&self, f: &Self::Element) -> Self::Element;
+    /// The value f(0), where the algebra can give it.
+    fn at_zero(&self, f: &Self::Element) -> Option<Constant<Self>>;
+    /// ln |f|, where it lies in the algebra (in the Lobachevsky ring: f = cos psi).
+    fn log_abs(&self, f: &Self::Element) -> Option<Self::Element>;
+    /// The first harmonic (2<f cos>, 2<f sin>) of f.
+    ///
+    /// # Errors
+    /// [`PhaseError`] when the mean values are not constants of this algebra.
+    fn first_harmonic(
+        &self,
+        f: &Self::Element,
+    ) -> Result<(Constant<Self>, Constant<Self>), PhaseError>;
+    /// Splits off the resonant part of f and solves u'' + u = rest with u(0) = u'(0) = 0.
+    ///
+    /// # Errors
+    /// [`PhaseError`] when the solution does not lie in this algebra.
+    fn resolve(&self, f: &Self::Element) -> Result<Resolution<Self>, PhaseError>;
+}
+
+/// f = cos_amplitude cos psi + sin_amplitude sin psi + (response'' + response).
+#[derive(Clone, Debug)]
+pub struct Resolution<A: PhaseAlgebra + ?Sized> {
+    /// 2<f cos psi>.
+    pub cos_amplitude: Constant<A>,
+    /// 2<f sin psi>.
+    pub sin_amplitude: Constant<A>,
+    /// The solution u with u(0) = u'(0) = 0.
+    pub response: A::Element,
+}
+
+/// Why an algebra could not split or solve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PhaseError {
+    /// The antiderivative needed is not an element of the algebra: could not decide.
+    NotIntegrable {
+        /// The power of cos psi at which the elimination leaves a remainder.
+        power: i32,
+    },
+}
+
+impl std::fmt::Display for PhaseError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NotIntegrable { power } => write!(
+                f,
+                "the antiderivative is not in the algebra (remainder at cos^{power})"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for PhaseError {}

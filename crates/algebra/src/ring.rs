@@ -1,0 +1,153 @@
+//! Rings and algebras over the rational numbers.
+
+use rug::Rational;
+use std::fmt::Debug;
+
+/// A commutative ring with one. The value owns the context, elements are bare data.
+///
+/// Elements are canonical: two elements are equal in the ring exactly when `==` says so.
+pub trait Ring: Sync {
+    /// A bare element; it means nothing without its ring.
+    type Element: Clone + PartialEq + Debug + Send + Sync;
+
+    /// The neutral element of addition.
+    fn zero(&self) -> Self::Element;
+    /// The neutral element of multiplication.
+    fn one(&self) -> Self::Element;
+    /// Whether `a` is the zero of the ring.
+    fn is_zero(&self, a: &Self::Element) -> bool;
+    /// a <- a + b.
+    fn add_assign(&self, a: &mut Self::Element, b: &Self::Element);
+    /// -a.
+    fn neg(&self, a: &Self::Element) -> Self::Element;
+    /// a b.
+    fn mul(&self, a: &Self::Element, b: &Self::Element) -> Self::Element;
+
+    /// a + b.
+    fn add(&self, a: &Self::Element, b: &Self::Element) -> Self::Element {
+        let mut sum = a.clone();
+        self.add_assign(&mut sum, b);
+        sum
+    }
+    /// a - b.
+    fn sub(&self, a: &Self::Element, b: &Self::Element) -> Self::Element {
+        self.add(a, &self.neg(b))
+    }
+    /// a_1 b_1 + ... + a_m b_m. The inner loop of every order of an expansion: rings override
+    /// it where the sum costs less than its products one by one.
+    fn sum_of_products(&self, pairs: &[(&Self::Element, &Self::Element)]) -> Self::Element {
+        let mut sum = self.zero();
+        for (a, b) in pairs {
+            self.add_assign(&mut sum, &self.mul(a, b));
+        }
+        sum
+    }
+}
+
+/// A ring that contains the rational numbers.
+pub trait RationalAlgebra: Ring {
+    /// The image of a rational number.
+    fn rational(&self, q: &Rational) -> Self::Element;
+    /// q a.
+    fn scale(&self, a: &Self::Element, q: &Rational) -> Self::Element;
+    /// 1/a when `a` is a unit that this ring can invert, else nothing.
+    fn reciprocal(&self, a: &Self::Element) -> Option<Self::Element>;
+    /// The rational number that `a` is, if it is one.
+    fn as_rational(&self, a: &Self::Element) -> Option<Rational>;
+
+    /// All products of the coefficients of pairs of polynomials, collected by the sum and by
+    /// the difference of their indices; see [`Products`]. The inner loop of trigonometric
+    /// polynomials: cos a cos b = (cos(a+b) + cos(a-b))/2.
+    fn products(
+        &self,
+        pairs: &[(&[Self::Element], &[Self::Element])],
+    ) -> Products<Self::Element> {
+        let mut products = Products::zeros(pairs, &self.zero());
+        let offset = products.offset;
+        for (a, b) in pairs {
+            for (i, x) in a.iter().enumerate() {
+                if self.is_zero(x) {
+                    continue;
+                }
+                for (j, y) in b.iter().enumerate() {
+                    if !self.is_zero(y) {
+                        let xy = self.mul(x, y);
+                        self.add_assign(&mut products.by_sum[i + j], &xy);
+                        self.add_assign(&mut products.by_difference[i + offset - j], &xy);
+                    }
+                }
+            }
+        }
+        products
+    }
+}
+
+/// The products a_i b_j of the coefficients of pairs of polynomials, added up over the pairs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Products<E> {
+    /// `by_sum[k]` is the sum of a_i b_j over i + j = k.
+    pub by_sum: Vec<E>,
+    /// `by_difference[k]` is the sum of a_i b_j over i - j = k - `offset`.
+    pub by_difference: Vec<E>,
+    /// The index of difference zero.
+    pub offset: usize,
+}
+
+impl<E: Clone> Products<E> {
+    /// Zeros of the right length for the pairs (none when there is nothing to multiply).
+    pub(crate) fn zeros<T>(pairs: &[(&[T], &[T])], zero: &E) -> Self {
+        let longest = |side: fn(&(&[T], &[T])) -> usize| pairs.iter().map(side).max().unwrap_or(0);
+        let (first, second) = (longest(|p| p.0.len()), longest(|p| p.1.len()));
+        let length = if first * second == 0 { 0 } else { first + second - 1 };
+        Self {
+            by_sum: vec![zero.clone(); length],
+            by_difference: vec![zero.clone(); length],
+            offset: second.saturating_sub(1),
+        }
+    }
+}
+
+/// The field Q, on GMP's rationals (always in lowest terms).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rationals;
+
+impl Ring for Rationals {
+    type Element = Rational;
+
+    fn zero(&self) -> Rational {
+        Rational::new()
+    }
+    fn one(&self) -> Rational {
+        Rational::from(1)
+    }
+    fn is_zero(&self, a: &Rational) -> bool {
+        a.is_zero()
+    }
+    fn add_assign(&self, a: &mut Rational, b: &Rational) {
+        *a += b;
+    }
+    fn neg(&self, a: &Rational) -> Rational {
+        Rational::from(-a)
+    }
+    fn mul(&self, a: &Rational, b: &Rational) -> Rational {
+        Rational::from(a * b)
+    }
+}
+
+impl RationalAlgebra for Rationals {
+    fn rational(&self, q: &Rational) -> Rational {
+        q.clone()
+    }
+    fn scale(&self, a: &Rational, q: &Rational) -> Rational {
+        Rational::from(a * q)
+    }
+    fn reciprocal(&self, a: &Rational) -> Option<Rational> {
+        (!a.is_zero()).then(|| Rational::from(a.recip_ref()))
+    }
+    fn as_rational(&self, a: &Rational) -> Option<Rational> {
+        Some(a.clone())
+    }
+    fn products(&self, pairs: &[(&[Rational], &[Rational])]) -> Products<Rational> {
+        crate::products::rational(pairs)
+    }
+}

@@ -1,0 +1,8 @@
+//! Coefficients of expansions: polynomials in named constants over Q, their closed forms, and
+//! real balls (midpoint and rigorous radius) that evaluate them to any number of digits.
+
+pub mod ball;
+pub mod polynomial;
+pub mod sparse;
+
+pub use polynomial::{Polynomial, PolynomialRing, PowerProduct, Symbol};
