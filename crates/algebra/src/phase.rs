@@ -35,6 +35,8 @@ pub trait PhaseAlgebra: RationalAlgebra {
     fn at_zero(&self, f: &Self::Element) -> Option<Constant<Self>>;
     /// ln |f|, where it lies in the algebra (in the Lobachevsky ring: f = cos psi).
     fn log_abs(&self, f: &Self::Element) -> Option<Self::Element>;
+    /// The number of terms of f, for the work counters.
+    fn terms(&self, f: &Self::Element) -> usize;
     /// The first harmonic (2<f cos>, 2<f sin>) of f.
     ///
     /// # Errors

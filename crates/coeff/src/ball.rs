@@ -222,7 +222,7 @@ impl Balls {
 
     /// Rounds `value` to the precision and adds the rounding error to the propagated radius.
     /// A result that is not finite tells nothing.
-    fn enclose<T>(self, value: T, propagated: Float) -> Ball
+    pub(crate) fn enclose<T>(self, value: T, propagated: Float) -> Ball
     where
         Float: AssignRound<T, Round = Round, Ordering = Ordering>,
     {

@@ -2,7 +2,9 @@
 //! real balls (midpoint and rigorous radius) that evaluate them to any number of digits.
 
 pub mod ball;
+pub mod digits;
 pub mod polynomial;
+pub mod print;
 pub mod sparse;
 
 pub use polynomial::{Polynomial, PolynomialRing, PowerProduct, Symbol};

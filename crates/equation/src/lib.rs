@@ -1,1 +1,8 @@
-//! TODO
+//! Problems as data: an oscillator is an expression tree, a small parameter, a condition that
+//! fixes the amplitude, and a data card.
+
+mod expression;
+mod problem;
+
+pub use expression::{Expression, Function};
+pub use problem::{Condition, ParameterCard, Problem};

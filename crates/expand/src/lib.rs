@@ -1,1 +1,14 @@
-//! TODO
+//! The driver and its judge within the algebra: expansions to any order, written once over
+//! [`lindstedt_algebra::PhaseAlgebra`], and the residual check that shares no code with it.
+
+mod compile;
+mod driver;
+mod error;
+mod evaluator;
+mod limit_cycle;
+mod residual;
+
+pub use compile::{Binding, Equation, compile};
+pub use driver::{Expansion, OrderWork, expand};
+pub use error::ExpandError;
+pub use residual::check;

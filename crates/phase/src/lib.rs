@@ -2,6 +2,7 @@
 //! the Lobachevsky functions as numbers.
 
 pub mod lobachevsky;
+pub mod print;
 pub mod trigonometric;
 
 pub use lobachevsky::Lobachevsky;

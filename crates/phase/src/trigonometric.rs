@@ -281,6 +281,9 @@ impl<C: RationalAlgebra> PhaseAlgebra for Trigonometric<C> {
     fn log_abs(&self, f: &Self::Element) -> Option<Self::Element> {
         (*f == self.one()).then(|| self.zero())
     }
+    fn terms(&self, f: &Self::Element) -> usize {
+        f.cos.iter().chain(&f.sin).filter(|c| !self.constants.is_zero(c)).count()
+    }
     fn first_harmonic(&self, f: &Self::Element) -> Result<(C::Element, C::Element), PhaseError> {
         let first =
             |list: &[C::Element]| list.get(1).cloned().unwrap_or_else(|| self.constants.zero());

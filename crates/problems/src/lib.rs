@@ -1,1 +1,19 @@
-//! TODO
+//! The built-in oscillators: each a page with its equation, its small parameter, its condition
+//! and its data card. Nothing here knows a coefficient of any expansion.
+
+mod duffing;
+mod pendulum;
+mod power_law;
+mod van_der_pol;
+
+use lindstedt_equation::Problem;
+
+/// All built-in problems, in the order of the command line's list.
+pub fn all() -> Vec<Problem> {
+    vec![power_law::problem(), pendulum::problem(), duffing::problem(), van_der_pol::problem()]
+}
+
+/// The built-in problem of that name.
+pub fn find(name: &str) -> Option<Problem> {
+    all().into_iter().find(|problem| problem.name == name)
+}

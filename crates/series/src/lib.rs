@@ -1,1 +1,142 @@
-//! TODO
+//! R[[eps]]/eps^(N+1): truncated power series over a ring, multiplied in full.
+//!
+//! The driver does not use this crate for its own step (it computes one coefficient at a time);
+//! it serves the residual check, which must share no code with the driver, and the series of
+//! the results: the frequency from its square, the period from the frequency.
+
+use lindstedt_algebra::{RationalAlgebra, Ring};
+use rayon::prelude::*;
+use rug::Rational;
+
+/// Coefficients from order 0; everything beyond the list is unknown, unless the series is a
+/// polynomial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series<E> {
+    /// The coefficients from order 0.
+    pub coefficients: Vec<E>,
+    /// Whether all further coefficients are known to vanish.
+    pub is_polynomial: bool,
+}
+
+impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
+    /// A series known up to the order of its last coefficient.
+    pub fn truncated(coefficients: Vec<E>) -> Self {
+        Self { coefficients, is_polynomial: false }
+    }
+
+    /// A polynomial in the small parameter.
+    pub fn polynomial(coefficients: Vec<E>) -> Self {
+        Self { coefficients, is_polynomial: true }
+    }
+
+    /// The number of known coefficients.
+    pub fn known(&self) -> usize {
+        if self.is_polynomial { usize::MAX } else { self.coefficients.len() }
+    }
+
+    /// The number of leading coefficients known to vanish.
+    fn valuation<R: Ring<Element = E>>(&self, ring: &R) -> usize {
+        let leading = self.coefficients.iter().take_while(|c| ring.is_zero(c)).count();
+        if leading == self.coefficients.len() { self.known() } else { leading }
+    }
+
+    /// self + other, known as far as both are.
+    #[must_use]
+    pub fn add<R: Ring<Element = E>>(&self, ring: &R, other: &Self) -> Self {
+        let known = self.known().min(other.known());
+        let length = self.coefficients.len().max(other.coefficients.len()).min(known);
+        let get = |s: &Self, n: usize| s.coefficients.get(n).cloned();
+        let coefficient = |n| match (get(self, n), get(other, n)) {
+            (Some(a), Some(b)) => ring.add(&a, &b),
+            (Some(a), None) | (None, Some(a)) => a,
+            (None, None) => ring.zero(),
+        };
+        Self {
+            coefficients: (0..length).map(coefficient).collect(),
+            is_polynomial: known == usize::MAX,
+        }
+    }
+
+    /// self * other up to `order`, known as far as the factors and their valuations allow. The
+    /// coefficients are independent of each other and computed on all cores.
+    #[must_use]
+    pub fn mul<R: Ring<Element = E>>(&self, ring: &R, other: &Self, order: usize) -> Self {
+        let (u, v) = (self.valuation(ring), other.valuation(ring));
+        let known = self.known().saturating_add(v).min(other.known().saturating_add(u));
+        let length = known.min(order + 1);
+        let (a, b) = (&self.coefficients, &other.coefficients);
+        let coefficient = |n: usize| {
+            let range = n.saturating_sub(b.len().saturating_sub(1))..a.len().min(n + 1);
+            let pairs: Vec<(&E, &E)> =
+                range.filter_map(|k| Some((a.get(k)?, b.get(n - k)?))).collect();
+            ring.sum_of_products(&pairs)
+        };
+        // Late coefficients cost most: hand them out first.
+        let mut coefficients: Vec<E> = (0..length).into_par_iter().rev().map(coefficient).collect();
+        coefficients.reverse();
+        Self::truncated(coefficients)
+    }
+
+    /// Applies a map to every coefficient.
+    #[must_use]
+    pub fn map(&self, f: impl Fn(&E) -> E) -> Self {
+        Self {
+            coefficients: self.coefficients.iter().map(f).collect(),
+            is_polynomial: self.is_polynomial,
+        }
+    }
+
+    /// self^exponent for a series with leading coefficient one:
+    ///
+    ///   n y_n = sum_{k=1}^n ((r + 1) k - n) x_k y_{n-k},   y = x^r,
+    ///
+    /// from x y' = r x' y. Exact; O(N^2) products. Nothing unless the leading coefficient is one.
+    pub fn power<R: RationalAlgebra<Element = E>>(
+        &self,
+        ring: &R,
+        exponent: &Rational,
+    ) -> Option<Self> {
+        let x = &self.coefficients;
+        if *x.first()? != ring.one() {
+            return None;
+        }
+        let mut y = vec![ring.one()];
+        for n in 1..x.len() {
+            let factor = |k: usize| {
+                Rational::from(exponent + 1u32) * Rational::from(k) - Rational::from(n)
+            };
+            let weighted: Vec<E> = (1..=n).map(|k| ring.scale(&x[k], &factor(k))).collect();
+            let pairs: Vec<_> = weighted.iter().zip(y.iter().rev()).collect();
+            y.push(ring.scale(&ring.sum_of_products(&pairs), &Rational::from((1, n))));
+        }
+        Some(Self::truncated(y))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lindstedt_algebra::Rationals;
+
+    fn series(values: &[(i32, u32)]) -> Series<Rational> {
+        Series::truncated(values.iter().map(|&v| Rational::from(v)).collect())
+    }
+
+    #[test]
+    fn powers_multiply() {
+        let x = series(&[(1, 1), (2, 3), (-1, 5), (7, 2), (0, 1), (1, 9)]);
+        let third = Rational::from((1, 3));
+        let Some(root) = x.power(&Rationals, &third) else { panic!("leading one") };
+        let cube = root.mul(&Rationals, &root, 5).mul(&Rationals, &root, 5);
+        assert_eq!(cube, x);
+        assert_eq!(series(&[(2, 1), (1, 1)]).power(&Rationals, &third), None);
+    }
+
+    #[test]
+    fn products_know_what_the_factors_allow() {
+        let x = series(&[(0, 1), (1, 1), (1, 1)]);
+        let small = Series::polynomial(vec![Rational::new(), Rational::from(1)]);
+        assert_eq!(small.mul(&Rationals, &x, 9).coefficients.len(), 4);
+        assert_eq!(x.mul(&Rationals, &x, 9), series(&[(0, 1), (0, 1), (1, 1), (2, 1)]));
+    }
+}

@@ -315,6 +315,10 @@ impl<C: Moments> PhaseAlgebra for Lobachevsky<C> {
             .then(|| self.scale(&self.log_secant(), &Rational::from(-power)))
     }
 
+    fn terms(&self, f: &Self::Element) -> usize {
+        f.len()
+    }
+
     fn first_harmonic(&self, f: &Self::Element) -> Result<(C::Element, C::Element), PhaseError> {
         let twice_mean = |g: &Self::Element| -> Result<C::Element, PhaseError> {
             let (_, mean) = self.antiderivative(&self.mul(f, g))?;

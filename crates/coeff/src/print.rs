@@ -1,0 +1,381 @@
+//! Coefficients as text and as LaTeX.
+//!
+//! # Layout
+//!
+//! A value is printed as a sum of terms, a term as a rational number times named factors:
+//!
+//! ```text
+//! 1 - 2*ln(2)        -2*ln(2)^2 + 1/12*pi^2 - 4/3*ln(2)^3 + 1/6*pi^2*ln(2) - 1/2*zeta(3)
+//! ```
+//!
+//! Terms stand in the order of increasing weight (so that 1 - 2 ln 2 reads as in a book and a
+//! long constant reads like a series), within a weight by increasing degree in the parameters,
+//! then with the higher power of the first symbol first: mu_1^3, mu_1 mu_2, mu_3. The rational
+//! number is a prefix and 1 is left out. Logarithms come last in a term: in LaTeX `\ln 2\,\pi`
+//! would read as ln(2 pi). A sum that is a factor of something stands in parentheses, a single
+//! term never does, and its sign moves to the sum that it belongs to.
+//!
+//! Text is read back by any computer algebra system that knows `*`, `/`, `^`, `ln`, `zeta`.
+
+use crate::polynomial::{Polynomial, PolynomialRing, PowerProduct, Symbol};
+use lindstedt_algebra::{Rationals, Ring};
+use rug::Rational;
+use std::cmp::{Ordering, Reverse};
+
+/// How to write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    /// One line of ASCII, `3/8*mu_1^2`.
+    Text,
+    /// Mathematics for LaTeX, `\frac{3}{8}\,\mu_1^{2}`.
+    Latex,
+}
+
+/// One term of a printed sum: a rational number times factors that are already written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// The rational number, with the sign of the term.
+    pub coefficient: Rational,
+    /// The factors in the order of printing.
+    pub factors: Vec<String>,
+}
+
+impl Term {
+    /// The term with more factors behind the present ones.
+    #[must_use]
+    pub fn times(mut self, factors: impl IntoIterator<Item = String>) -> Self {
+        self.factors.extend(factors);
+        self
+    }
+
+    /// The term without its sign.
+    fn magnitude(&self, style: Style) -> String {
+        let number = Rational::from(self.coefficient.abs_ref());
+        let mut parts = Vec::with_capacity(self.factors.len() + 1);
+        if self.factors.is_empty() || number != 1 {
+            parts.push(print_rational(&number, style));
+        }
+        parts.extend(self.factors.iter().cloned());
+        product(parts, style)
+    }
+}
+
+/// Factors side by side. In LaTeX a named function brings its own space, and a logarithm that is
+/// not the last factor is put into parentheses, since \ln 2\cos t would read as ln(2 cos t).
+fn product(factors: Vec<String>, style: Style) -> String {
+    if style == Style::Text {
+        return factors.join("*");
+    }
+    let last = factors.len().saturating_sub(1);
+    let mut line = String::new();
+    for (index, factor) in factors.into_iter().enumerate() {
+        let is_log = factor.starts_with(r"\ln");
+        let is_function = [r"\cos", r"\sin", r"\sec"].iter().any(|f| factor.starts_with(f));
+        if is_log && index < last {
+            line.push_str(&parenthesize(&factor, style));
+            continue;
+        }
+        if index > 0 && !is_log && !is_function {
+            line.push_str(r"\,");
+        }
+        line.push_str(&factor);
+    }
+    line
+}
+
+/// The terms as one line; the empty sum is `0`.
+#[must_use]
+pub fn print_sum(terms: &[Term], style: Style) -> String {
+    let mut line = String::new();
+    for (index, term) in terms.iter().enumerate() {
+        line.push_str(match (index, term.coefficient.cmp0()) {
+            (0, Ordering::Less) => "-",
+            (0, _) => "",
+            (_, Ordering::Less) => " - ",
+            _ => " + ",
+        });
+        line.push_str(&term.magnitude(style));
+    }
+    if line.is_empty() { "0".to_owned() } else { line }
+}
+
+/// A sum in parentheses, growing ones around fractions in LaTeX.
+#[must_use]
+pub fn parenthesize(sum: &str, style: Style) -> String {
+    if style == Style::Latex && sum.contains(r"\frac") {
+        format!(r"\left({sum}\right)")
+    } else {
+        format!("({sum})")
+    }
+}
+
+/// A ring whose elements can be printed; the phase algebras print over any of them.
+///
+/// ```
+/// use lindstedt_algebra::{RationalAlgebra, Ring};
+/// use lindstedt_coeff::print::{Print, Style};
+/// use lindstedt_coeff::{PolynomialRing, Symbol};
+/// use rug::Rational;
+///
+/// let ring = PolynomialRing::default();
+/// let twice = ring.scale(&ring.symbol(Symbol::LogTwo), &Rational::from(-2));
+/// let alpha_1 = ring.add(&ring.one(), &twice);
+/// assert_eq!(ring.print(&alpha_1, Style::Text), "1 - 2*ln(2)");
+/// assert_eq!(ring.print(&alpha_1, Style::Latex), r"1 - 2\ln 2");
+/// ```
+pub trait Print: Ring {
+    /// The terms of the printed sum in order; none for zero.
+    fn print_terms(&self, a: &Self::Element, style: Style) -> Vec<Term>;
+
+    /// The element as one line.
+    fn print(&self, a: &Self::Element, style: Style) -> String {
+        print_sum(&self.print_terms(a, style), style)
+    }
+
+    /// The element as a factor of a larger term: a single term is itself, a sum becomes one
+    /// factor in parentheses.
+    fn factor(&self, a: &Self::Element, style: Style) -> Term {
+        let mut terms = self.print_terms(a, style);
+        match terms.pop() {
+            None => Term { coefficient: Rational::new(), factors: Vec::new() },
+            Some(only) if terms.is_empty() => only,
+            Some(last) => {
+                terms.push(last);
+                let sum = print_sum(&terms, style);
+                Term { coefficient: Rational::from(1), factors: vec![parenthesize(&sum, style)] }
+            }
+        }
+    }
+}
+
+impl Print for Rationals {
+    fn print_terms(&self, a: &Rational, _: Style) -> Vec<Term> {
+        if a.is_zero() {
+            return Vec::new();
+        }
+        vec![Term { coefficient: a.clone(), factors: Vec::new() }]
+    }
+}
+
+impl Print for PolynomialRing {
+    fn print_terms(&self, a: &Polynomial, style: Style) -> Vec<Term> {
+        let mut terms: Vec<&(PowerProduct, Rational)> = a.terms().iter().collect();
+        terms.sort_by_cached_key(|(monomial, _)| order_of_terms(monomial));
+        let print = |(monomial, coefficient): &&(PowerProduct, Rational)| Term {
+            coefficient: coefficient.clone(),
+            factors: self.factors(monomial, style),
+        };
+        terms.iter().map(print).collect()
+    }
+}
+
+/// Weight, degree in the parameters, then the higher power of the first differing symbol first
+/// (a symbol that does not occur sorts by the symbol that stands in its place).
+fn order_of_terms(monomial: &PowerProduct) -> (i64, i64, Vec<(Symbol, Reverse<i16>)>) {
+    let in_parameters = |&&(s, _): &&(Symbol, i16)| matches!(s, Symbol::Parameter(_));
+    let degrees = monomial.factors().iter().filter(in_parameters).map(|&(_, e)| i64::from(e));
+    let factors = monomial.factors().iter().map(|&(s, e)| (s, Reverse(e))).collect();
+    (monomial.weight(), degrees.sum(), factors)
+}
+
+impl PolynomialRing {
+    /// The factors of a monomial: parameters, S_n, mu_m, pi, zeta(k), then the logarithms.
+    fn factors(&self, monomial: &PowerProduct, style: Style) -> Vec<String> {
+        let mut factors = monomial.factors().to_vec();
+        factors.sort_by_key(|&(symbol, _)| self.is_logarithm(symbol));
+        factors.iter().map(|&(symbol, exponent)| self.power_of(symbol, exponent, style)).collect()
+    }
+
+    fn is_logarithm(&self, symbol: Symbol) -> bool {
+        symbol == Symbol::LogTwo || self.name(symbol, Style::Text).starts_with("ln(")
+    }
+
+    /// The name of a symbol; a parameter without a name is `parameter_n`.
+    fn name(&self, symbol: Symbol, style: Style) -> String {
+        let latex = style == Style::Latex;
+        match symbol {
+            Symbol::Parameter(index) => {
+                let name = self.parameters.get(usize::from(index)).cloned();
+                let name = name.unwrap_or_else(|| format!("parameter_{index}"));
+                if latex { latex_name(&name) } else { name }
+            }
+            Symbol::Sum(n) if latex => latex_name(&format!("S_{n}")),
+            Symbol::Moment(m) if latex => latex_name(&format!("mu_{m}")),
+            Symbol::LogTwo if latex => r"\ln 2".to_owned(),
+            Symbol::Pi if latex => r"\pi".to_owned(),
+            Symbol::Zeta(k) if latex => format!(r"\zeta({k})"),
+            Symbol::Sum(n) => format!("S_{n}"),
+            Symbol::Moment(m) => format!("mu_{m}"),
+            Symbol::LogTwo => "ln(2)".to_owned(),
+            Symbol::Pi => "pi".to_owned(),
+            Symbol::Zeta(k) => format!("zeta({k})"),
+        }
+    }
+
+    fn power_of(&self, symbol: Symbol, exponent: i16, style: Style) -> String {
+        let name = self.name(symbol, style);
+        power(&name, exponent.into(), style)
+    }
+}
+
+/// base^exponent for a base that is a name or a function value: `S_0^(-2)`, `\ln^{2} 2`.
+#[must_use]
+pub fn power(base: &str, exponent: i64, style: Style) -> String {
+    match (style, exponent, base.strip_prefix(r"\ln")) {
+        (_, 1, _) => base.to_owned(),
+        (Style::Text, 0.., _) => format!("{base}^{exponent}"),
+        (Style::Text, ..) => format!("{base}^({exponent})"),
+        (Style::Latex, 0.., Some(argument)) => format!(r"\ln^{{{exponent}}}{argument}"),
+        (Style::Latex, _, Some(_)) => format!("({base})^{{{exponent}}}"),
+        (Style::Latex, ..) => format!("{base}^{{{exponent}}}"),
+    }
+}
+
+/// `-3/8`, in LaTeX `-\frac{3}{8}`; integers without denominator.
+#[must_use]
+pub fn print_rational(q: &Rational, style: Style) -> String {
+    if style == Style::Text || q.is_integer() {
+        return q.to_string();
+    }
+    let sign = if q.cmp0() == Ordering::Less { "-" } else { "" };
+    let numerator = q.numer().clone().abs();
+    format!(r"{sign}\frac{{{numerator}}}{{{}}}", q.denom())
+}
+
+/// Names that are Greek letters; `eps` and `epsilon` are \varepsilon.
+const GREEK: &str = " alpha beta gamma delta zeta eta theta iota kappa lambda mu nu xi pi rho \
+    sigma tau upsilon phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ";
+
+/// A name of ASCII letters in LaTeX: `mu_1` and `mu1` are `\mu_1`, `R_in` is `R_{\mathrm{in}}`, `ln(a)` is
+/// `\ln a`. Anything that is no name is left as it is.
+#[must_use]
+pub fn latex_name(name: &str) -> String {
+    if let Some(argument) = name.strip_prefix("ln(").and_then(|rest| rest.strip_suffix(')')) {
+        let simple = argument.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        let argument = latex_name(argument);
+        let space = if argument.starts_with('\\') { "" } else { " " };
+        return if simple { format!(r"\ln{space}{argument}") } else { format!(r"\ln({argument})") };
+    }
+    if let Some((letter, index)) = name.split_once('_') {
+        let index = latex_name(index);
+        let single = index.chars().count() == 1;
+        let index = if single { index } else { format!("{{{index}}}") };
+        return format!("{}_{index}", latex_name(letter));
+    }
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    if !stem.is_empty() && stem.len() < name.len() {
+        return latex_name(&format!("{stem}_{}", &name[stem.len()..]));
+    }
+    if name == "eps" || name == "epsilon" {
+        r"\varepsilon".to_owned()
+    } else if GREEK.contains(&format!(" {name} ")) {
+        format!(r"\{name}")
+    } else if name.len() > 1 && name.chars().all(|c| c.is_ascii_alphabetic()) {
+        format!(r"\mathrm{{{name}}}")
+    } else {
+        name.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lindstedt_algebra::RationalAlgebra;
+
+    fn sum(ring: &PolynomialRing, terms: &[(i64, i64, &[(Symbol, i16)])]) -> Polynomial {
+        let mut sum = ring.zero();
+        for (numerator, denominator, factors) in terms {
+            let mut term = ring.rational(&Rational::from((*numerator, *denominator)));
+            for &(symbol, exponent) in *factors {
+                term = ring.mul(&term, &ring.power(symbol, exponent));
+            }
+            ring.add_assign(&mut sum, &term);
+        }
+        sum
+    }
+
+    #[test]
+    fn closed_form_of_alpha_3() {
+        use Symbol::{LogTwo, Pi, Zeta};
+        let ring = PolynomialRing::default();
+        let terms: [(i64, i64, &[(Symbol, i16)]); 5] = [
+            (-1, 2, &[(Zeta(3), 1)]),
+            (1, 6, &[(LogTwo, 1), (Pi, 2)]),
+            (-4, 3, &[(LogTwo, 3)]),
+            (1, 12, &[(Pi, 2)]),
+            (-2, 1, &[(LogTwo, 2)]),
+        ];
+        let alpha = sum(&ring, &terms);
+        let text = "-2*ln(2)^2 + 1/12*pi^2 - 4/3*ln(2)^3 + 1/6*pi^2*ln(2) - 1/2*zeta(3)";
+        assert_eq!(ring.print(&alpha, Style::Text), text);
+        let latex = r"-2\ln^{2} 2 + \frac{1}{12}\,\pi^{2} - \frac{4}{3}\ln^{3} 2 + \frac{1}{6}\,\pi^{2}\ln 2 - \frac{1}{2}\,\zeta(3)";
+        assert_eq!(ring.print(&alpha, Style::Latex), latex);
+    }
+
+    #[test]
+    fn text_evaluates_to_the_value() {
+        // By hand at mu_1 = 2, mu_2 = 3, S_0 = 1/2:
+        // 1 - 2 4/4 + (3/8) 4 - 5 2 3 = 1 - 8 + 3/2 - 30; the layout is fixed here.
+        use Symbol::{Moment, Sum};
+        let ring = PolynomialRing::default();
+        let terms: [(i64, i64, &[(Symbol, i16)]); 4] = [
+            (1, 1, &[]),
+            (-2, 1, &[(Sum(0), -2)]),
+            (3, 8, &[(Moment(1), 2)]),
+            (-5, 1, &[(Moment(1), 1), (Moment(2), 1)]),
+        ];
+        let p = sum(&ring, &terms);
+        let text = "1 - 2*S_0^(-2) + 3/8*mu_1^2 - 5*mu_1*mu_2";
+        assert_eq!(ring.print(&p, Style::Text), text);
+        let latex = r"1 - 2\,S_0^{-2} + \frac{3}{8}\,\mu_1^{2} - 5\,\mu_1\,\mu_2";
+        assert_eq!(ring.print(&p, Style::Latex), latex);
+    }
+
+    #[test]
+    fn parameters_by_degree_and_logarithms_last() {
+        use Symbol::{LogTwo, Parameter};
+        let ring = PolynomialRing { parameters: vec!["ln(a)".into(), "omega".into()] };
+        let terms: [(i64, i64, &[(Symbol, i16)]); 3] = [
+            (1, 1, &[(Parameter(0), 2), (Parameter(1), 1)]),
+            (-1, 1, &[(Parameter(1), 1)]),
+            (1, 1, &[(Parameter(0), 1), (LogTwo, 1)]),
+        ];
+        let p = sum(&ring, &terms);
+        assert_eq!(ring.print(&p, Style::Text), "-omega + omega*ln(a)^2 + ln(a)*ln(2)");
+        let latex = r"-\omega + \omega\ln^{2} a + (\ln a)\ln 2";
+        assert_eq!(ring.print(&p, Style::Latex), latex);
+        let unnamed = ring.symbol(Parameter(2));
+        assert_eq!(ring.print(&unnamed, Style::Text), "parameter_2");
+    }
+
+    #[test]
+    fn factors_take_parentheses_only_around_sums() {
+        let ring = PolynomialRing::default();
+        let (one, mu) = (ring.one(), ring.symbol(Symbol::Moment(1)));
+        let half = ring.scale(&mu, &Rational::from((-1, 2)));
+        let shown = |p: &Polynomial, style| {
+            print_sum(&[ring.factor(p, style).times(["x".to_owned()])], style)
+        };
+        assert_eq!(shown(&half, Style::Text), "-1/2*mu_1*x");
+        assert_eq!(shown(&one, Style::Text), "x");
+        assert_eq!(shown(&ring.add(&one, &half), Style::Text), "(1 - 1/2*mu_1)*x");
+        let latex = r"\left(1 - \frac{1}{2}\,\mu_1\right)\,x";
+        assert_eq!(shown(&ring.add(&one, &half), Style::Latex), latex);
+        assert_eq!(ring.print(&ring.zero(), Style::Text), "0");
+    }
+
+    #[test]
+    fn rationals_and_names() {
+        let q = Rational::from((-3, 8));
+        assert_eq!(Rationals.print(&q, Style::Text), "-3/8");
+        assert_eq!(print_rational(&q, Style::Latex), r"-\frac{3}{8}");
+        assert_eq!(Rationals.print(&Rational::from(5), Style::Latex), "5");
+        assert_eq!(Rationals.print(&Rational::new(), Style::Text), "0");
+        let names = ["mu_12", "R_in", "omega0", "eps", "S_1", "ln(eta)", "ln(a+b)", "a"];
+        let latex = [
+            r"\mu_{12}", r"R_{\mathrm{in}}", r"\omega_0", r"\varepsilon", "S_1", r"\ln\eta",
+            r"\ln(a+b)", "a",
+        ];
+        assert_eq!(names.map(latex_name), latex);
+    }
+}

@@ -1,0 +1,250 @@
+//! From an expression tree to a graph of recurrences.
+//!
+//! The equation x'' + F(x, x'; eps) = 0 becomes a list of nodes, each of which can compute its
+//! coefficient of eps^n from coefficients of the nodes before it. Equal subexpressions share a
+//! node, so that x^3 costs x*x and (x*x)*x, and x^2 + x^4 costs no square twice.
+
+use crate::ExpandError;
+use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use lindstedt_equation::{Expression, Function};
+use rug::Rational;
+
+/// The position of a node in the graph.
+pub(crate) type NodeId = usize;
+
+/// One operation on power series in the small parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Node<E> {
+    /// A constant at order zero.
+    Constant(E),
+    /// The small parameter.
+    Small,
+    /// x.
+    Displacement,
+    /// x' (with respect to physical time).
+    Velocity,
+    /// sum q_i node_i.
+    Sum(Vec<(Rational, NodeId)>),
+    /// The product of two nodes.
+    Product(NodeId, NodeId),
+    /// ln|node|.
+    Logarithm(NodeId),
+    /// exp(node), node without a term of order zero.
+    Exponential(NodeId),
+    /// The j-th derivative F^(j)(node) = sum_n F_{n+j} node^n/n!, node without a term of order
+    /// zero, and the constant F_j.
+    Formal {
+        /// The node of F^(j+1), one position further.
+        derivative: NodeId,
+        /// The argument.
+        argument: NodeId,
+        /// F_j.
+        leading: E,
+    },
+}
+
+/// Values for the names that occur in an equation.
+pub trait Binding<C: Ring> {
+    /// The constant that a parameter stands for.
+    fn parameter(&self, name: &str) -> Option<C::Element>;
+    /// F_n of a formal function F.
+    fn formal(&self, name: &str, n: usize) -> Option<C::Element>;
+}
+
+/// x'' + F(x, x'; eps) = 0 as a graph; `root` is F.
+#[derive(Clone, Debug)]
+pub struct Equation<A: PhaseAlgebra> {
+    pub(crate) nodes: Vec<Node<<A::Constants as Ring>::Element>>,
+    pub(crate) root: NodeId,
+}
+
+impl<A: PhaseAlgebra> Equation<A> {
+    /// Whether the velocity occurs.
+    pub fn has_velocity(&self) -> bool {
+        self.nodes.contains(&Node::Velocity)
+    }
+}
+
+/// Compiles the left side of `equation = 0` for expansion up to `order`.
+///
+/// # Errors
+/// [`ExpandError`] naming the term that cannot be taken or the name without a value.
+pub fn compile<A: PhaseAlgebra>(
+    algebra: &A,
+    equation: &Expression,
+    binding: &dyn Binding<A::Constants>,
+    order: usize,
+) -> Result<Equation<A>, ExpandError> {
+    let mut compiler = Compiler { algebra, binding, order, nodes: Vec::new() };
+    let terms = match equation {
+        Expression::Sum(terms) => terms.as_slice(),
+        single => std::slice::from_ref(single),
+    };
+    let is_acceleration = |term: &&Expression| **term == Expression::Acceleration;
+    if terms.iter().filter(is_acceleration).count() != 1 {
+        return Err(ExpandError::AccelerationNotIsolated { term: format!("{equation:?}") });
+    }
+    let rest: Vec<_> = terms.iter().filter(|t| !is_acceleration(t)).cloned().collect();
+    let root = compiler.node(&Expression::Sum(rest))?;
+    Ok(Equation { nodes: compiler.nodes, root })
+}
+
+struct Compiler<'a, A: PhaseAlgebra> {
+    algebra: &'a A,
+    binding: &'a dyn Binding<A::Constants>,
+    order: usize,
+    nodes: Vec<Node<<A::Constants as Ring>::Element>>,
+}
+
+impl<A: PhaseAlgebra> Compiler<'_, A> {
+    fn push(&mut self, node: Node<<A::Constants as Ring>::Element>) -> NodeId {
+        if let Some(found) = self.nodes.iter().position(|known| *known == node) {
+            return found;
+        }
+        self.nodes.push(node);
+        self.nodes.len() - 1
+    }
+
+    fn node(&mut self, expression: &Expression) -> Result<NodeId, ExpandError> {
+        let constants = self.algebra.constants();
+        let unsupported = || ExpandError::UnsupportedTerm { term: format!("{expression:?}") };
+        let node = match expression {
+            Expression::Number(q) => Node::Constant(constants.rational(q)),
+            Expression::Parameter(name) => Node::Constant(
+                self.binding
+                    .parameter(name)
+                    .ok_or_else(|| ExpandError::UnknownName { name: name.clone() })?,
+            ),
+            Expression::Small => Node::Small,
+            Expression::Displacement => Node::Displacement,
+            Expression::Velocity => Node::Velocity,
+            Expression::Acceleration => {
+                return Err(ExpandError::AccelerationNotIsolated { term: "x''".into() });
+            }
+            Expression::Sum(terms) => return self.sum(terms),
+            Expression::Product(factors) => return self.product(factors),
+            Expression::Power(base, exponent) => return self.power(base, exponent),
+            Expression::Function(Function::Ln, argument) => return self.logarithm(argument),
+            Expression::Function(Function::Exp, argument) => {
+                Node::Exponential(self.node(argument)?)
+            }
+            Expression::Function(..) => return Err(unsupported()),
+            Expression::Formal(name, argument) => return self.formal(name, argument),
+        };
+        Ok(self.push(node))
+    }
+
+    fn sum(&mut self, terms: &[Expression]) -> Result<NodeId, ExpandError> {
+        let mut list = Vec::new();
+        for term in terms {
+            let (factor, rest) = split_number(term);
+            list.push((factor, self.node(&rest)?));
+        }
+        if let [(factor, node)] = &list[..]
+            && *factor == 1
+        {
+            return Ok(*node);
+        }
+        Ok(self.push(Node::Sum(list)))
+    }
+
+    /// Products are taken from the right, so that eps (1 - x^2) x' multiplies the functions
+    /// first and shifts the order last.
+    fn product(&mut self, factors: &[Expression]) -> Result<NodeId, ExpandError> {
+        let (last, rest) = match factors {
+            [] => return self.node(&Expression::integer(1)),
+            [rest @ .., last] => (last, rest),
+        };
+        let mut product = self.node(last)?;
+        for factor in rest.iter().rev() {
+            let node = self.node(factor)?;
+            product = self.push(Node::Product(node, product));
+        }
+        Ok(product)
+    }
+
+    /// Integer powers by multiplication; otherwise base^exponent = exp(exponent ln base).
+    fn power(&mut self, base: &Expression, exponent: &Expression) -> Result<NodeId, ExpandError> {
+        if let Expression::Number(q) = exponent {
+            let integer = q.is_integer().then(|| q.numer().to_u32()).flatten();
+            let unsupported =
+                || ExpandError::UnsupportedTerm { term: format!("{base:?}^{exponent:?}") };
+            // Multiplying repeatedly: a power as long as the expansion is a different problem.
+            let n = integer.filter(|&n| n <= 1000).ok_or_else(unsupported)?;
+            if n == 0 {
+                return self.node(&Expression::integer(1));
+            }
+            let base = self.node(base)?;
+            let mut result = None;
+            let (mut square, mut n) = (base, n);
+            loop {
+                if n & 1 == 1 {
+                    result = Some(match result {
+                        None => square,
+                        Some(r) => self.push(Node::Product(r, square)),
+                    });
+                }
+                n >>= 1;
+                if n == 0 {
+                    break;
+                }
+                square = self.push(Node::Product(square, square));
+            }
+            return result.ok_or_else(unsupported);
+        }
+        let logarithm = self.logarithm(base)?;
+        let exponent = self.node(exponent)?;
+        let argument = self.push(Node::Product(exponent, logarithm));
+        Ok(self.push(Node::Exponential(argument)))
+    }
+
+    /// ln y^(2n) = 2n ln|y|, so that the logarithm of the displacement itself is expanded.
+    fn logarithm(&mut self, argument: &Expression) -> Result<NodeId, ExpandError> {
+        if let Expression::Power(base, exponent) = argument
+            && let Expression::Number(q) = &**exponent
+            && Rational::from(q / 2u32).is_integer()
+        {
+            let base = self.node(base)?;
+            let logarithm = self.push(Node::Logarithm(base));
+            return Ok(self.push(Node::Sum(vec![(q.clone(), logarithm)])));
+        }
+        let argument = self.node(argument)?;
+        Ok(self.push(Node::Logarithm(argument)))
+    }
+
+    /// F(z) and its derivatives up to the order of the expansion: F^(j) at order n needs
+    /// F^(j+1) at order n - 1.
+    fn formal(&mut self, name: &str, argument: &Expression) -> Result<NodeId, ExpandError> {
+        let argument = self.node(argument)?;
+        let value = |n| {
+            let unknown = || ExpandError::UnknownName { name: format!("{name}_{n}") };
+            self.binding.formal(name, n).ok_or_else(unknown)
+        };
+        let leading: Vec<_> = (0..=self.order + 2).map(value).collect::<Result<_, _>>()?;
+        // The highest derivative is only ever asked for its constant.
+        let mut derivative = None;
+        for constant in leading.into_iter().rev() {
+            derivative = Some(match derivative {
+                None => self.push(Node::Constant(constant)),
+                Some(derivative) => {
+                    self.push(Node::Formal { derivative, argument, leading: constant })
+                }
+            });
+        }
+        derivative.ok_or_else(|| ExpandError::UnknownName { name: name.to_owned() })
+    }
+}
+
+/// q and the rest of q * rest.
+fn split_number(term: &Expression) -> (Rational, Expression) {
+    if let Expression::Product(factors) = term
+        && let [Expression::Number(q), rest @ ..] = &factors[..]
+    {
+        let rest = match rest {
+            [single] => single.clone(),
+            many => Expression::Product(many.to_vec()),
+        };
+        return (q.clone(), rest);
+    }
+    (Rational::from(1), term.clone())
+}

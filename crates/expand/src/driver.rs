@@ -1,0 +1,355 @@
+//! The driver: one loop that derives expansions of x'' + F(x, x'; eps) = 0 to any order.
+//!
+//! In the phase psi = omega t, with omega^2 = kappa (W_0 + W_1 eps + ...), W_0 = 1 and kappa the
+//! linear stiffness, order n of the equation reads
+//!
+//!   x_n'' + x_n = f_n - W_n x_0'',   f_n = -[F]_n/kappa - sum_{k=1}^{n-1} W_k x_{n-k}''
+//!
+//! where [F]_n is formed with x_n = 0 (order zero of F is kappa x, checked). The resonant part
+//! of f_n in cos psi fixes W_n, the part in sin psi fixes the amplitude of order n - 1 of a
+//! limit cycle or must vanish; the rest is solved by the algebra. No branch on the order number.
+
+use crate::ExpandError;
+use crate::compile::{Equation, Node};
+use crate::evaluator::Evaluator;
+use crate::limit_cycle;
+use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use lindstedt_equation::Condition;
+use rug::Rational;
+
+type Constant<A> = <<A as PhaseAlgebra>::Constants as Ring>::Element;
+
+/// What one order cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OrderWork {
+    /// The order n.
+    pub order: usize,
+    /// Products of phase functions formed for it.
+    pub products: u64,
+    /// Terms of x_n.
+    pub terms: usize,
+}
+
+/// An expansion with its normalisation.
+#[derive(Clone, Debug)]
+pub struct Expansion<A: PhaseAlgebra> {
+    /// What fixes the amplitude, and so the meaning of every coefficient.
+    pub condition: Condition,
+    /// kappa, the factor of x at order zero.
+    pub stiffness: Constant<A>,
+    /// W_0 = 1, W_1, ...: omega^2 = kappa sum W_n eps^n.
+    pub frequency_squared: Vec<Constant<A>>,
+    /// x(0), order by order.
+    pub amplitude: Vec<Constant<A>>,
+    /// x_0, x_1, ... as functions of psi = omega t.
+    pub solution: Vec<A::Element>,
+    /// f_1, f_2, ... (at index n - 1), when asked for.
+    pub forcing: Vec<A::Element>,
+    /// The work, order by order.
+    pub work: Vec<OrderWork>,
+    /// Coefficients of the logarithms, exponentials and formal functions of the equation: the
+    /// residual check verifies them by their differential equations.
+    pub(crate) certificates: Vec<Vec<A::Element>>,
+}
+
+impl<A: PhaseAlgebra> Expansion<A> {
+    /// The highest order derived.
+    pub fn order(&self) -> usize {
+        self.solution.len() - 1
+    }
+}
+
+/// Derives the expansion up to `order`; `record` keeps the right sides f_n.
+///
+/// After each order `observer` is told the work; when it returns `false` the driver stops and
+/// returns the orders that are finished.
+///
+/// # Errors
+/// [`ExpandError`] says at which order and why no expansion of the asked form exists or could
+/// be found in this algebra.
+pub fn expand<A: PhaseAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    condition: Condition,
+    order: usize,
+    record: bool,
+    observer: &mut dyn FnMut(&OrderWork) -> bool,
+) -> Result<Expansion<A>, ExpandError> {
+    let mut driver = Driver::start(algebra, equation, condition)?;
+    for n in 1..=order {
+        let before = driver.evaluator.products;
+        driver.step(n, record)?;
+        let work = OrderWork {
+            order: n,
+            products: driver.evaluator.products - before,
+            terms: driver.x.last().map_or(0, |x| algebra.terms(x)),
+        };
+        driver.work.push(work);
+        if !observer(&work) {
+            break;
+        }
+    }
+    driver.finish()
+}
+
+struct Driver<'a, A: PhaseAlgebra> {
+    algebra: &'a A,
+    condition: Condition,
+    evaluator: Evaluator<'a, A>,
+    stiffness: Constant<A>,
+    /// 1/kappa and 1/a_0.
+    inverse_stiffness: Constant<A>,
+    inverse_amplitude: Constant<A>,
+    frequency_squared: Vec<Constant<A>>,
+    /// omega/sqrt(kappa); used only where the velocity occurs, and then kappa = 1.
+    frequency: Vec<Constant<A>>,
+    x: Vec<A::Element>,
+    /// x_n'' with respect to psi.
+    second_derivatives: Vec<A::Element>,
+    /// Whether coefficient n of a node depends on x_n.
+    sensitive: Vec<bool>,
+    limit_cycle: Option<LimitCycleResponse<A>>,
+    forcing: Vec<A::Element>,
+    work: Vec<OrderWork>,
+}
+
+/// How order n reacts to a change of the amplitude of order n - 1.
+struct LimitCycleResponse<A: PhaseAlgebra> {
+    /// The change of coefficient n - 1 of every node.
+    of_nodes: Vec<A::Element>,
+    /// The change of f_n, split: resonant amplitudes and response.
+    cos: Constant<A>,
+    inverse_sin: Constant<A>,
+    response: A::Element,
+}
+
+impl<'a, A: PhaseAlgebra> Driver<'a, A> {
+    fn start(
+        algebra: &'a A,
+        equation: &'a Equation<A>,
+        condition: Condition,
+    ) -> Result<Self, ExpandError> {
+        let constants = algebra.constants();
+        let mut evaluator = Evaluator::new(algebra, equation);
+        let leading_amplitude = match condition {
+            Condition::LimitCycle => limit_cycle::leading_amplitude(algebra, equation)?,
+            _ => Rational::from(1),
+        };
+        let x0 = algebra.scale(&algebra.cosine(), &leading_amplitude);
+        evaluator.assign(&Node::Displacement, 0, x0.clone());
+        evaluator.assign(&Node::Velocity, 0, algebra.derivative(&x0));
+
+        let still = [algebra.zero(), algebra.zero()];
+        let moving = [algebra.one(), algebra.zero()];
+        let by_x = evaluator.tangents(&algebra.one(), &still)?;
+        let by_v = evaluator.tangents(&algebra.zero(), &moving)?;
+        let sensitive: Vec<bool> = by_x
+            .iter()
+            .zip(&by_v)
+            .map(|(x, v)| !algebra.is_zero(&x[0]) || !algebra.is_zero(&v[0]))
+            .collect();
+        let root = equation.root;
+        let stiffness = algebra
+            .as_constant(&by_x[root][0])
+            .filter(|_| algebra.is_zero(&by_v[root][0]))
+            .ok_or(ExpandError::NotWeaklyNonlinear)?;
+        let order_zero = evaluator.coefficient(root, 0)?;
+        if order_zero != algebra.scale_by(&x0, &stiffness) {
+            return Err(ExpandError::NotWeaklyNonlinear);
+        }
+        if equation.has_velocity() && stiffness != constants.one() {
+            return Err(ExpandError::StiffnessNotOne);
+        }
+        let inverse_stiffness =
+            constants.reciprocal(&stiffness).ok_or(ExpandError::SingularStiffness)?;
+        let inverse_amplitude = constants.rational(&Rational::from(leading_amplitude.recip_ref()));
+        let mut driver = Self {
+            algebra,
+            condition,
+            evaluator,
+            stiffness,
+            inverse_stiffness,
+            inverse_amplitude,
+            frequency_squared: vec![constants.one()],
+            frequency: vec![constants.one()],
+            second_derivatives: vec![algebra.neg(&x0)],
+            x: vec![x0],
+            sensitive,
+            limit_cycle: None,
+            forcing: Vec::new(),
+            work: Vec::new(),
+        };
+        driver.forget(1);
+        Ok(driver)
+    }
+
+    /// Forgets provisional coefficients: those of order n and above that depend on x_n.
+    fn forget(&mut self, n: usize) {
+        self.evaluator.forget_from(n, &self.sensitive);
+    }
+
+    /// f_n.
+    fn right_side(&mut self, n: usize) -> Result<A::Element, ExpandError> {
+        let force = self.evaluator.coefficient(self.evaluator.equation.root, n)?;
+        let mut f = self.algebra.scale_by(&force, &self.inverse_stiffness);
+        for k in 1..n {
+            let term =
+                self.algebra.scale_by(&self.second_derivatives[n - k], &self.frequency_squared[k]);
+            self.algebra.add_assign(&mut f, &term);
+        }
+        Ok(self.algebra.neg(&f))
+    }
+
+    fn step(&mut self, n: usize, record: bool) -> Result<(), ExpandError> {
+        let (algebra, constants) = (self.algebra, self.algebra.constants());
+        let f = self.right_side(n)?;
+        let phase = |source| ExpandError::Phase { order: n, source };
+        let mut split = algebra.resolve(&f).map_err(phase)?;
+        if record {
+            self.forcing.push(f);
+        }
+        if let Some(shift) = self.amplitude_shift(&split.sin_amplitude, n)? {
+            if let Some(reaction) = &self.limit_cycle {
+                let change = constants.mul(&reaction.cos, &shift);
+                constants.add_assign(&mut split.cos_amplitude, &change);
+                let change = algebra.scale_by(&reaction.response, &shift);
+                algebra.add_assign(&mut split.response, &change);
+            }
+            self.shift_amplitude(&shift, n - 1);
+        }
+        // f_n - W_n x_0'' = f_n + W_n a_0 cos psi has no cos psi left:
+        let secular = constants.mul(&split.cos_amplitude, &self.inverse_amplitude);
+        self.frequency_squared.push(constants.neg(&secular));
+        self.extend_frequency(n);
+
+        let mut x = split.response;
+        if self.condition == Condition::FundamentalAmplitude {
+            let (c, s) = algebra.first_harmonic(&x).map_err(phase)?;
+            x = algebra.sub(&x, &algebra.scale_by(&algebra.cosine(), &c));
+            x = algebra.sub(&x, &algebra.scale_by(&algebra.sine(), &s));
+        }
+        self.second_derivatives.push(algebra.derivative(&algebra.derivative(&x)));
+        self.forget(n);
+        self.evaluator.assign(&Node::Displacement, n, x.clone());
+        self.x.push(x);
+        if self.evaluator.equation.has_velocity() {
+            let velocity = self.velocity(n);
+            self.evaluator.assign(&Node::Velocity, n, velocity);
+        }
+        if self.condition == Condition::LimitCycle && self.limit_cycle.is_none() {
+            self.limit_cycle = Some(self.prepare_limit_cycle()?);
+        }
+        Ok(())
+    }
+
+    /// The amplitude of order n - 1 that removes the secular term in sin psi from order n.
+    fn amplitude_shift(
+        &self,
+        sin_amplitude: &Constant<A>,
+        n: usize,
+    ) -> Result<Option<Constant<A>>, ExpandError> {
+        let constants = self.algebra.constants();
+        match &self.limit_cycle {
+            Some(reaction) => {
+                let shift = constants.mul(sin_amplitude, &reaction.inverse_sin);
+                Ok(Some(constants.neg(&shift)))
+            }
+            None if constants.is_zero(sin_amplitude) => Ok(None),
+            None => Err(ExpandError::AmplitudeDrifts { order: n }),
+        }
+    }
+
+    /// Adds shift * cos psi to x_n, the last order known, and to all that was computed from it.
+    fn shift_amplitude(&mut self, shift: &Constant<A>, n: usize) {
+        let algebra = self.algebra;
+        let Some(reaction) = &self.limit_cycle else { return };
+        if algebra.constants().is_zero(shift) {
+            return;
+        }
+        let change = algebra.scale_by(&algebra.cosine(), shift);
+        algebra.add_assign(&mut self.x[n], &change);
+        algebra.add_assign(&mut self.second_derivatives[n], &algebra.neg(&change));
+        let corrections: Vec<A::Element> =
+            reaction.of_nodes.iter().map(|change| algebra.scale_by(change, shift)).collect();
+        self.evaluator.correct(n, &corrections);
+    }
+
+    /// omega_n from 2 omega_n = W_n - sum_{k=1}^{n-1} omega_k omega_{n-k}.
+    fn extend_frequency(&mut self, n: usize) {
+        let constants = self.algebra.constants();
+        let pairs: Vec<_> = (1..n).map(|k| (&self.frequency[k], &self.frequency[n - k])).collect();
+        let rest =
+            constants.sub(&self.frequency_squared[n], &constants.sum_of_products(&pairs));
+        self.frequency.push(constants.scale(&rest, &Rational::from((1, 2))));
+    }
+
+    /// [x']_n = sum_k omega_k dx_{n-k}/dpsi.
+    fn velocity(&self, n: usize) -> A::Element {
+        let algebra = self.algebra;
+        let mut sum = algebra.zero();
+        for k in 0..=n {
+            if !algebra.constants().is_zero(&self.frequency[k]) {
+                let slope = algebra.derivative(&self.x[n - k]);
+                algebra.add_assign(&mut sum, &algebra.scale_by(&slope, &self.frequency[k]));
+            }
+        }
+        sum
+    }
+
+    /// f_n changes by -[dF]_1/kappa + W_1 cos psi when x_{n-1} changes by cos psi, because F is
+    /// linear at order zero.
+    fn prepare_limit_cycle(&mut self) -> Result<LimitCycleResponse<A>, ExpandError> {
+        let (algebra, constants) = (self.algebra, self.algebra.constants());
+        let direction = algebra.cosine();
+        let slope = algebra.derivative(&direction);
+        let slopes = [slope.clone(), algebra.scale_by(&slope, &self.frequency[1])];
+        // At x_1 = 0, where order 1 of F is its explicit dependence on eps.
+        let mut alone = Evaluator::new(algebra, self.evaluator.equation);
+        alone.assign(&Node::Displacement, 0, self.x[0].clone());
+        alone.assign(&Node::Velocity, 0, algebra.derivative(&self.x[0]));
+        let velocity = algebra.scale_by(&algebra.derivative(&self.x[0]), &self.frequency[1]);
+        alone.assign(&Node::Velocity, 1, velocity);
+        let tangents = alone.tangents(&direction, &slopes)?;
+        let force = &tangents[self.evaluator.equation.root][1];
+        let mut change = algebra.neg(&algebra.scale_by(force, &self.inverse_stiffness));
+        let inertia = algebra.scale_by(&direction, &self.frequency_squared[1]);
+        algebra.add_assign(&mut change, &inertia);
+        let split = algebra
+            .resolve(&change)
+            .map_err(|source| ExpandError::Phase { order: 1, source })?;
+        let inverse_sin = constants
+            .reciprocal(&split.sin_amplitude)
+            .ok_or(ExpandError::DegenerateLimitCycle)?;
+        Ok(LimitCycleResponse {
+            of_nodes: tangents.into_iter().map(|[zero, _]| zero).collect(),
+            cos: split.cos_amplitude,
+            inverse_sin,
+            response: split.response,
+        })
+    }
+
+    /// The amplitude of the last order of a limit cycle is fixed by the order after it.
+    fn finish(mut self) -> Result<Expansion<A>, ExpandError> {
+        let algebra = self.algebra;
+        let order = self.x.len() - 1;
+        if self.limit_cycle.is_some() {
+            let f = self.right_side(order + 1)?;
+            let phase = |source| ExpandError::Phase { order: order + 1, source };
+            let (_, sin_amplitude) = algebra.first_harmonic(&f).map_err(phase)?;
+            if let Some(shift) = self.amplitude_shift(&sin_amplitude, order + 1)? {
+                self.shift_amplitude(&shift, order);
+            }
+        }
+        let amplitude = self.x.iter().filter_map(|x| algebra.at_zero(x)).collect();
+        Ok(Expansion {
+            condition: self.condition,
+            stiffness: self.stiffness,
+            frequency_squared: self.frequency_squared,
+            amplitude,
+            solution: self.x,
+            forcing: self.forcing,
+            work: self.work,
+            certificates: self.evaluator.certificates(order),
+        })
+    }
+}

@@ -1,0 +1,79 @@
+//! Why an expansion was refused.
+
+use lindstedt_algebra::PhaseError;
+use thiserror::Error;
+
+/// Why an equation could not be expanded. Positions are printed forms of the offending term.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum ExpandError {
+    /// The equation is not x'' + F(x, x') with x'' alone.
+    #[error("x'' must stand alone with a constant factor, but the equation contains {term}")]
+    AccelerationNotIsolated {
+        /// The offending term.
+        term: String,
+    },
+    /// A term that no algebra of the engine takes.
+    #[error("the term {term} is not taken by this method")]
+    UnsupportedTerm {
+        /// The offending term.
+        term: String,
+    },
+    /// A name without a value.
+    #[error("the name {name} has no value")]
+    UnknownName {
+        /// The name.
+        name: String,
+    },
+    /// At order zero the equation is not a linear oscillator.
+    #[error("without the small parameter the equation is not linear in x alone")]
+    NotWeaklyNonlinear,
+    /// The factor of x at order zero cannot be divided by.
+    #[error("the linear stiffness vanishes or cannot be inverted")]
+    SingularStiffness,
+    /// The stiffness is not 1 although the velocity occurs: omega_0 would be needed.
+    #[error("the equation contains x': scale time so that the linear stiffness is 1")]
+    StiffnessNotOne,
+    /// The resonant part in sin psi does not vanish: the amplitude is not constant.
+    #[error("order {order}: the secular term in sin psi does not vanish, so no solution of \
+             constant amplitude exists; a limit cycle or slow drift must be allowed")]
+    AmplitudeDrifts {
+        /// The order at which it appears.
+        order: usize,
+    },
+    /// No limit cycle: the first-order averaged equation has no positive root.
+    #[error("no limit cycle: the averaged amplitude equation of order 1 has no positive root")]
+    NoLimitCycle,
+    /// The leading amplitude is not a rational number.
+    #[error("the leading amplitude of the limit cycle is irrational; scale x")]
+    IrrationalAmplitude,
+    /// More than one limit cycle bifurcates.
+    #[error("{count} limit cycles exist at order 1; only one can be expanded at a time")]
+    SeveralLimitCycles {
+        /// How many positive roots there are.
+        count: usize,
+    },
+    /// The amplitude equation is degenerate, a double root.
+    #[error("the limit cycle is not hyperbolic at order 1: its amplitude equation has a double root")]
+    DegenerateLimitCycle,
+    /// The algebra could not solve at some order.
+    #[error("order {order}: {source}")]
+    Phase {
+        /// The order.
+        order: usize,
+        /// What the algebra said.
+        source: PhaseError,
+    },
+    /// The caller asked to stop.
+    #[error("interrupted at order {order}")]
+    Interrupted {
+        /// The order being computed.
+        order: usize,
+    },
+    /// The residual of a computed expansion does not vanish (a defect of the engine).
+    #[error("the residual does not vanish at order {order}")]
+    Residual {
+        /// The first order at which it does not vanish.
+        order: usize,
+    },
+}

@@ -1,0 +1,292 @@
+//! Coefficients of nodes, one order at a time, each computed once.
+
+use crate::ExpandError;
+use crate::compile::{Equation, Node, NodeId};
+use lindstedt_algebra::{PhaseAlgebra, Ring};
+use rug::Rational;
+
+/// The memory of the driver: coefficient n of every node, as far as it was asked for.
+pub(crate) struct Evaluator<'a, A: PhaseAlgebra> {
+    pub(crate) algebra: &'a A,
+    pub(crate) equation: &'a Equation<A>,
+    values: Vec<Vec<Option<A::Element>>>,
+    /// Products of elements formed so far: the work counter.
+    pub(crate) products: u64,
+}
+
+/// The highest order at which a node can be different from zero, if there is one.
+fn degree<E>(node: &Node<E>) -> Option<usize> {
+    match node {
+        Node::Constant(_) => Some(0),
+        Node::Small => Some(1),
+        _ => None,
+    }
+}
+
+impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
+    pub(crate) fn new(algebra: &'a A, equation: &'a Equation<A>) -> Self {
+        let values = equation.nodes.iter().map(|_| Vec::new()).collect();
+        Self { algebra, equation, values, products: 0 }
+    }
+
+    /// The coefficient computed before, if any.
+    pub(crate) fn known(&self, node: NodeId, n: usize) -> Option<&A::Element> {
+        self.values.get(node)?.get(n)?.as_ref()
+    }
+
+    fn store(&mut self, node: NodeId, n: usize, value: A::Element) {
+        let list = &mut self.values[node];
+        if list.len() <= n {
+            list.resize(n + 1, None);
+        }
+        list[n] = Some(value);
+    }
+
+    /// Sets the coefficient of the displacement or the velocity, if it occurs.
+    pub(crate) fn assign(
+        &mut self,
+        variable: &Node<<A::Constants as Ring>::Element>,
+        n: usize,
+        value: A::Element,
+    ) {
+        if let Some(node) = self.equation.nodes.iter().position(|known| known == variable) {
+            self.store(node, n, value);
+        }
+    }
+
+    /// Forgets coefficient n and above of the nodes that are sensitive: those whose coefficient
+    /// n depends on x_n. (x and x' themselves are, and are assigned anew.)
+    pub(crate) fn forget_from(&mut self, n: usize, sensitive: &[bool]) {
+        for (list, _) in self.values.iter_mut().zip(sensitive).filter(|(_, s)| **s) {
+            list.truncate(n);
+        }
+    }
+
+    /// The coefficients up to `order` of the nodes that are not polynomial.
+    pub(crate) fn certificates(self, order: usize) -> Vec<Vec<A::Element>> {
+        let is_transcendental = |node: &Node<_>| {
+            matches!(node, Node::Logarithm(_) | Node::Exponential(_) | Node::Formal { .. })
+        };
+        let prefix = |list: Vec<Option<A::Element>>| {
+            list.into_iter().take(order + 1).map_while(|value| value).collect()
+        };
+        let nodes = self.equation.nodes.iter().zip(self.values);
+        nodes.map(|(node, list)| if is_transcendental(node) { prefix(list) } else { Vec::new() }).collect()
+    }
+
+    /// Adds the corrections, one per node, to the coefficients of order n that are known, and
+    /// forgets the orders above.
+    pub(crate) fn correct(&mut self, n: usize, corrections: &[A::Element]) {
+        for (list, correction) in self.values.iter_mut().zip(corrections) {
+            list.truncate(n + 1);
+            if let Some(Some(value)) = list.get_mut(n) {
+                self.algebra.add_assign(value, correction);
+            }
+        }
+    }
+
+    /// The coefficient of eps^n of a node.
+    pub(crate) fn coefficient(&mut self, node: NodeId, n: usize) -> Result<A::Element, ExpandError> {
+        if let Some(value) = self.known(node, n) {
+            return Ok(value.clone());
+        }
+        let value = self.compute(node, n)?;
+        self.store(node, n, value.clone());
+        Ok(value)
+    }
+
+    /// Computes and remembers, without handing out a copy.
+    fn ensure(&mut self, node: NodeId, n: usize) -> Result<(), ExpandError> {
+        if self.known(node, n).is_none() {
+            let value = self.compute(node, n)?;
+            self.store(node, n, value);
+        }
+        Ok(())
+    }
+
+    fn compute(&mut self, node: NodeId, n: usize) -> Result<A::Element, ExpandError> {
+        let algebra = self.algebra;
+        let equation = self.equation;
+        let unsupported = |what: &str| ExpandError::UnsupportedTerm { term: what.to_owned() };
+        match &equation.nodes[node] {
+            Node::Constant(c) if n == 0 => Ok(algebra.embed(c)),
+            Node::Small if n == 1 => Ok(algebra.one()),
+            // Orders of x and x' beyond those assigned are the provisional zero.
+            Node::Constant(_) | Node::Small | Node::Displacement | Node::Velocity => {
+                Ok(algebra.zero())
+            }
+            Node::Sum(terms) => {
+                let mut sum = algebra.zero();
+                for (q, term) in terms {
+                    let value = self.coefficient(*term, n)?;
+                    algebra.add_assign(&mut sum, &algebra.scale(&value, q));
+                }
+                Ok(sum)
+            }
+            &Node::Product(a, b) => self.cauchy(a, b, n),
+            &Node::Logarithm(y) if n == 0 => {
+                let leading = self.coefficient(y, 0)?;
+                algebra.log_abs(&leading).ok_or_else(|| unsupported("ln"))
+            }
+            // n y_0 L_n = n y_n - sum_{k=1}^{n-1} k L_k y_{n-k}, from y L' = y'.
+            &Node::Logarithm(y) => {
+                let leading = self.coefficient(y, 0)?;
+                let inverse = algebra.reciprocal(&leading).ok_or_else(|| unsupported("ln"))?;
+                let sum = self.weighted(node, y, 1..n, n)?;
+                let value = self.coefficient(y, n)?;
+                let rest = algebra.sub(&value, &algebra.scale(&sum, &Rational::from((1, n))));
+                self.products += 1;
+                Ok(algebra.mul(&rest, &inverse))
+            }
+            &Node::Exponential(g) if n == 0 => {
+                let leading = self.coefficient(g, 0)?;
+                let vanishes = algebra.is_zero(&leading);
+                vanishes.then(|| algebra.one()).ok_or_else(|| unsupported("exp"))
+            }
+            // n E_n = sum_{k=1}^n k g_k E_{n-k}, from E' = g' E.
+            &Node::Exponential(g) => {
+                let sum = self.weighted(g, node, 1..n + 1, n)?;
+                Ok(algebra.scale(&sum, &Rational::from((1, n))))
+            }
+            Node::Formal { argument, leading, .. } if n == 0 => {
+                let value = self.coefficient(*argument, 0)?;
+                let vanishes = algebra.is_zero(&value);
+                vanishes.then(|| algebra.embed(leading)).ok_or_else(|| unsupported("F"))
+            }
+            // F' = g' F^(1).
+            &Node::Formal { derivative, argument, .. } => {
+                let sum = self.weighted(argument, derivative, 1..n + 1, n)?;
+                Ok(algebra.scale(&sum, &Rational::from((1, n))))
+            }
+        }
+    }
+
+    /// sum_k a_k b_{n-k}; of a square, each product once.
+    fn cauchy(&mut self, a: NodeId, b: NodeId, n: usize) -> Result<A::Element, ExpandError> {
+        let algebra = self.algebra;
+        let nodes = &self.equation.nodes;
+        let last = degree(&nodes[a]).unwrap_or(n).min(n);
+        let first = n.saturating_sub(degree(&nodes[b]).unwrap_or(n));
+        let mut range: Vec<usize> = Vec::new();
+        for k in first..=last {
+            // A factor that is not needed because the other vanishes is not computed: below
+            // the small parameter nothing of order n is asked for.
+            let (cheap, k_cheap, dear, k_dear) =
+                if degree(&nodes[b]).is_some() { (b, n - k, a, k) } else { (a, k, b, n - k) };
+            self.ensure(cheap, k_cheap)?;
+            if self.known(cheap, k_cheap).is_some_and(|value| algebra.is_zero(value)) {
+                continue;
+            }
+            self.ensure(dear, k_dear)?;
+            range.push(k);
+        }
+        let pair = |k: usize| Some((self.known(a, k)?, self.known(b, n - k)?));
+        if a == b {
+            let half: Vec<_> =
+                range.iter().filter(|&&k| 2 * k < n).filter_map(|&k| pair(k)).collect();
+            let mut sum = algebra.scale(&algebra.sum_of_products(&half), &Rational::from(2));
+            let mut count = half.len() as u64;
+            if let Some((x, y)) = (n % 2 == 0).then(|| pair(n / 2)).flatten() {
+                algebra.add_assign(&mut sum, &algebra.mul(x, y));
+                count += 1;
+            }
+            self.products += count;
+            return Ok(sum);
+        }
+        let pairs: Vec<_> = range.iter().filter_map(|&k| pair(k)).collect();
+        let sum = algebra.sum_of_products(&pairs);
+        let count = pairs.len() as u64;
+        self.products += count;
+        Ok(sum)
+    }
+
+    /// sum_k k a_k b_{n-k} over the range.
+    fn weighted(
+        &mut self,
+        a: NodeId,
+        b: NodeId,
+        range: std::ops::Range<usize>,
+        n: usize,
+    ) -> Result<A::Element, ExpandError> {
+        let algebra = self.algebra;
+        for k in range.clone() {
+            self.ensure(a, k)?;
+            if self.known(a, k).is_some_and(|value| !algebra.is_zero(value)) {
+                self.ensure(b, n - k)?;
+            }
+        }
+        let weights: Vec<A::Element> = range
+            .clone()
+            .filter_map(|k| Some(algebra.scale(self.known(a, k)?, &Rational::from(k))))
+            .collect();
+        let zero = algebra.zero();
+        let pairs: Vec<_> = weights
+            .iter()
+            .zip(range)
+            .map(|(weight, k)| (weight, self.known(b, n - k).unwrap_or(&zero)))
+            .filter(|(weight, _)| !algebra.is_zero(weight))
+            .collect();
+        let sum = algebra.sum_of_products(&pairs);
+        let count = pairs.len() as u64;
+        self.products += count;
+        Ok(sum)
+    }
+
+    /// The derivative of the coefficients of order 0 and 1 of every node with respect to x and
+    /// x' in the direction (dx, dv_0 + eps dv_1).
+    pub(crate) fn tangents(
+        &mut self,
+        dx: &A::Element,
+        dv: &[A::Element; 2],
+    ) -> Result<Vec<[A::Element; 2]>, ExpandError> {
+        let algebra = self.algebra;
+        let equation = self.equation;
+        let mut tangents: Vec<[A::Element; 2]> = Vec::new();
+        for (id, node) in equation.nodes.iter().enumerate() {
+            let product = |this: &mut Self, factor: NodeId, tangent: &[A::Element; 2]| {
+                let f = [this.coefficient(factor, 0)?, this.coefficient(factor, 1)?];
+                let first = algebra.sum_of_products(&[(&f[0], &tangent[1]), (&f[1], &tangent[0])]);
+                Ok::<_, ExpandError>([algebra.mul(&f[0], &tangent[0]), first])
+            };
+            let tangent = match node {
+                Node::Constant(_) | Node::Small => [algebra.zero(), algebra.zero()],
+                Node::Displacement => [dx.clone(), algebra.zero()],
+                Node::Velocity => dv.clone(),
+                Node::Sum(terms) => {
+                    let mut sum = [algebra.zero(), algebra.zero()];
+                    for (q, term) in terms {
+                        for (s, t) in sum.iter_mut().zip(&tangents[*term]) {
+                            algebra.add_assign(s, &algebra.scale(t, q));
+                        }
+                    }
+                    sum
+                }
+                &Node::Product(a, b) => {
+                    let (ta, tb) = (tangents[a].clone(), tangents[b].clone());
+                    let [x, y] = [product(self, a, &tb)?, product(self, b, &ta)?];
+                    [algebra.add(&x[0], &y[0]), algebra.add(&x[1], &y[1])]
+                }
+                // d ln y = dy/y: z_0 = t_0/y_0, z_1 = (t_1 - z_0 y_1)/y_0.
+                &Node::Logarithm(y) => {
+                    let (y0, y1) = (self.coefficient(y, 0)?, self.coefficient(y, 1)?);
+                    let inverse = algebra
+                        .reciprocal(&y0)
+                        .ok_or_else(|| ExpandError::UnsupportedTerm { term: "ln".into() })?;
+                    let z0 = algebra.mul(&tangents[y][0], &inverse);
+                    let rest = algebra.sub(&tangents[y][1], &algebra.mul(&z0, &y1));
+                    [z0, algebra.mul(&rest, &inverse)]
+                }
+                &Node::Exponential(g) => {
+                    let tangent = tangents[g].clone();
+                    product(self, id, &tangent)?
+                }
+                &Node::Formal { derivative, argument, .. } => {
+                    let tangent = tangents[argument].clone();
+                    product(self, derivative, &tangent)?
+                }
+            };
+            tangents.push(tangent);
+        }
+        Ok(tangents)
+    }
+}

@@ -1,0 +1,197 @@
+//! The residual check: the finished expansion goes back into the equation.
+//!
+//! It shares no code with the driver's step: truncated power series are multiplied in full, the
+//! time derivatives are taken of the whole series, and logarithms, exponentials and formal
+//! functions are not recomputed by their recurrences in the small parameter but recognised by
+//! their differential equations in the *phase*, with their values at psi = 0:
+//!
+//!   L = ln|y|:  L' y = y',   exp L(0) = y(0);      E = exp g:  E' = g' E,  E(0) = exp g(0);
+//!   F^(j)(g):   its derivative is g' F^(j+1)(g),   its value at psi = 0 is F_j when g(0) = 0.
+//!
+//! What must vanish is every coefficient of omega^2 d^2x/dpsi^2 + F, an element of the algebra:
+//! identically, not at sample points.
+
+use crate::ExpandError;
+use crate::compile::{Equation, Node, NodeId};
+use crate::driver::Expansion;
+use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use lindstedt_series::Series;
+use rug::Rational;
+
+/// Substitutes the expansion into the equation; every order must vanish identically. Returns
+/// the number of the highest order checked.
+///
+/// # Errors
+/// [`ExpandError::Residual`] with the first order that does not vanish.
+pub fn check<A: PhaseAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    expansion: &Expansion<A>,
+) -> Result<usize, ExpandError> {
+    let judge = Judge { algebra, equation, expansion, order: expansion.order() };
+    let mut values: Vec<Series<A::Element>> = Vec::new();
+    for id in 0..equation.nodes.len() {
+        let value = judge.value(id, &values);
+        values.push(value);
+    }
+    judge.transcendental_nodes(&values)?;
+    let inertia = judge.over_frequency(
+        &Series::truncated(expansion.frequency_squared.clone())
+            .map(|w| algebra.constants().mul(w, &expansion.stiffness)),
+        &judge.displacement().map(|x| algebra.derivative(&algebra.derivative(x))),
+    );
+    let residual = inertia.add(algebra, &values[equation.root]);
+    judge.must_vanish(&residual, judge.order + 1)?;
+    Ok(judge.order)
+}
+
+struct Judge<'a, A: PhaseAlgebra> {
+    algebra: &'a A,
+    equation: &'a Equation<A>,
+    expansion: &'a Expansion<A>,
+    order: usize,
+}
+
+impl<A: PhaseAlgebra> Judge<'_, A> {
+    fn displacement(&self) -> Series<A::Element> {
+        Series::truncated(self.expansion.solution.clone())
+    }
+
+    /// A series of constants times a series of functions.
+    fn over_frequency(
+        &self,
+        constants: &Series<<A::Constants as Ring>::Element>,
+        f: &Series<A::Element>,
+    ) -> Series<A::Element> {
+        let coefficient = |n: usize| {
+            let mut sum = self.algebra.zero();
+            for (k, c) in constants.coefficients.iter().enumerate().take(n + 1) {
+                self.algebra.add_assign(&mut sum, &self.algebra.scale_by(&f.coefficients[n - k], c));
+            }
+            sum
+        };
+        Series::truncated((0..f.coefficients.len()).map(coefficient).collect())
+    }
+
+    fn value(&self, id: NodeId, values: &[Series<A::Element>]) -> Series<A::Element> {
+        let algebra = self.algebra;
+        match &self.equation.nodes[id] {
+            Node::Constant(c) => Series::polynomial(vec![algebra.embed(c)]),
+            Node::Small => Series::polynomial(vec![algebra.zero(), algebra.one()]),
+            Node::Displacement => self.displacement(),
+            Node::Velocity => {
+                let squared = Series::truncated(self.expansion.frequency_squared.clone());
+                let half = Rational::from((1, 2));
+                let frequency = squared.power(algebra.constants(), &half);
+                let frequency = frequency.unwrap_or(Series::truncated(Vec::new()));
+                self.over_frequency(&frequency, &self.displacement().map(|x| algebra.derivative(x)))
+            }
+            Node::Sum(terms) => {
+                let mut sum = Series::polynomial(Vec::new());
+                for (q, term) in terms {
+                    sum = sum.add(algebra, &values[*term].map(|c| algebra.scale(c, q)));
+                }
+                sum
+            }
+            &Node::Product(a, b) => values[a].mul(algebra, &values[b], self.order),
+            Node::Logarithm(_) | Node::Exponential(_) | Node::Formal { .. } => {
+                Series::truncated(self.expansion.certificates[id].clone())
+            }
+        }
+    }
+
+    fn must_vanish(&self, series: &Series<A::Element>, needed: usize) -> Result<(), ExpandError> {
+        let broken = |c: &A::Element| !self.algebra.is_zero(c);
+        match series.coefficients.iter().position(broken) {
+            Some(order) => Err(ExpandError::Residual { order }),
+            None if series.known() < needed => Err(ExpandError::Residual { order: series.known() }),
+            None => Ok(()),
+        }
+    }
+
+    fn transcendental_nodes(&self, values: &[Series<A::Element>]) -> Result<(), ExpandError> {
+        let algebra = self.algebra;
+        let slope = |id: NodeId| values[id].map(|c| algebra.derivative(c));
+        let product = |a: &Series<A::Element>, b: &Series<A::Element>| a.mul(algebra, b, self.order);
+        for (id, node) in self.equation.nodes.iter().enumerate() {
+            if !values[id].is_polynomial && values[id].coefficients.is_empty() {
+                continue;
+            }
+            let (left, right) = match node {
+                &Node::Logarithm(y) => (product(&slope(id), &values[y]), slope(y)),
+                &Node::Exponential(g) => (slope(id), product(&slope(g), &values[id])),
+                &Node::Formal { derivative, argument, .. } => {
+                    (slope(id), product(&slope(argument), &values[derivative]))
+                }
+                _ => continue,
+            };
+            let minus_one = Rational::from(-1);
+            let difference = left.add(algebra, &right.map(|c| algebra.scale(c, &minus_one)));
+            self.must_vanish(&difference, values[id].known().min(right.known()))?;
+            self.initial_value(id, node, values)?;
+        }
+        Ok(())
+    }
+
+    /// The values at psi = 0.
+    fn initial_value(
+        &self,
+        id: NodeId,
+        node: &Node<<A::Constants as Ring>::Element>,
+        values: &[Series<A::Element>],
+    ) -> Result<(), ExpandError> {
+        let constants = self.algebra.constants();
+        let at_zero = |id: NodeId| {
+            let list = values[id].coefficients.iter();
+            Series::truncated(list.filter_map(|c| self.algebra.at_zero(c)).collect())
+        };
+        let own = at_zero(id);
+        let expected = match node {
+            &Node::Logarithm(y) => {
+                return self.same(&self.exponential(&own), &at_zero(y), own.known());
+            }
+            &Node::Exponential(g) => self.exponential(&at_zero(g)),
+            Node::Formal { leading, argument, .. } => {
+                let argument = at_zero(*argument);
+                if argument.coefficients.iter().any(|c| !constants.is_zero(c)) {
+                    return Err(ExpandError::UnsupportedTerm {
+                        term: "a formal function whose argument does not vanish at psi = 0".into(),
+                    });
+                }
+                let zeros = own.map(|_| constants.zero());
+                zeros.add(constants, &Series::polynomial(vec![leading.clone()]))
+            }
+            _ => return Ok(()),
+        };
+        self.same(&own, &expected, own.known())
+    }
+
+    /// sum_j g^j/j! for a series of constants without a term of order zero.
+    fn exponential(
+        &self,
+        g: &Series<<A::Constants as Ring>::Element>,
+    ) -> Series<<A::Constants as Ring>::Element> {
+        let constants = self.algebra.constants();
+        let mut term = Series::polynomial(vec![constants.one()]);
+        let mut sum = g.map(|_| constants.zero()).add(constants, &term);
+        for j in 1..g.coefficients.len() {
+            term = term.mul(constants, g, self.order);
+            term = term.map(|c| constants.scale(c, &Rational::from((1, j))));
+            sum = sum.add(constants, &term);
+        }
+        sum
+    }
+
+    fn same<E: PartialEq>(
+        &self,
+        a: &Series<E>,
+        b: &Series<E>,
+        length: usize,
+    ) -> Result<(), ExpandError> {
+        let pairs = a.coefficients.iter().zip(&b.coefficients).take(length);
+        match pairs.into_iter().position(|(x, y)| x != y) {
+            Some(order) => Err(ExpandError::Residual { order }),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! x'' + x + rho x^3 = 0.
+
+use lindstedt_equation::{Condition, Expression, ParameterCard, Problem};
+
+pub(crate) fn problem() -> Problem {
+    let x = Expression::Displacement;
+    Problem {
+        name: "duffing",
+        title: "Duffing oscillator x'' + x + eps x^3 = 0, in rho = eps A^2",
+        equation: Expression::Acceleration + x.clone() + Expression::Small * x.pow(3),
+        small: "rho",
+        conditions: vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude],
+        parameters: vec![
+            ParameterCard {
+                name: "eps",
+                meaning: "coefficient of the cubic force, any sign",
+                default: "1",
+            },
+            ParameterCard {
+                name: "amplitude",
+                meaning: "A: x(0), or the first harmonic with --normalisation fundamental",
+                default: "1",
+            },
+        ],
+        notes: "m x'' + k x + k_3 x^3 = 0 with time in sqrt(m/k) and eps = k_3/k; x = A y gives \
+                y'' + y + rho y^3 = 0 with rho = eps A^2. The coefficients depend on what A is.",
+        source: "classical; initial-amplitude series converges for |rho| < 1",
+    }
+}

@@ -1,0 +1,35 @@
+//! x'' + x (x^2)^delta = 0.
+
+use lindstedt_equation::{Condition, Expression, ParameterCard, Problem};
+
+pub(crate) fn problem() -> Problem {
+    let x = Expression::Displacement;
+    let stiffness = x.clone().pow(2).pow(Expression::Small);
+    Problem {
+        name: "power-law",
+        title: "oscillator with a restoring force |x|^n of any exponent n = 1 + 2 delta",
+        equation: Expression::Acceleration + x * stiffness,
+        small: "delta",
+        conditions: vec![Condition::InitialAmplitude],
+        parameters: vec![
+            ParameterCard {
+                name: "n",
+                meaning: "exponent of the force, n = 1 + 2 delta, n > -1",
+                default: "3",
+            },
+            ParameterCard {
+                name: "delta",
+                meaning: "small parameter, delta = (n - 1)/2",
+                default: "1",
+            },
+            ParameterCard {
+                name: "amplitude",
+                meaning: "x(0) = a > 0, x'(0) = 0; x = a y multiplies omega^2 by a^(2 delta)",
+                default: "1",
+            },
+        ],
+        notes: "m x'' + k x |x/d|^(2 delta) = 0 with time in sqrt(m/k) and length in d. \
+                Even for odd forces: x (x^2)^delta is x^n for odd n and x |x|^(n-1) in general.",
+        source: "Awrejcewicz and Andrianov, section 4, equations (28)-(42)",
+    }
+}
