@@ -7,8 +7,7 @@
 
 pub mod laws;
 mod phase;
-mod products;
 mod ring;
 
 pub use phase::{PhaseAlgebra, PhaseError, Resolution};
-pub use ring::{Products, Rationals, RationalAlgebra, Ring};
+pub use ring::{Rationals, RationalAlgebra, Ring};

@@ -23,6 +23,14 @@ pub trait PhaseAlgebra: RationalAlgebra {
     fn embed(&self, c: &Constant<Self>) -> Self::Element;
     /// c f.
     fn scale_by(&self, f: &Self::Element, c: &Constant<Self>) -> Self::Element;
+    /// c_1 f_1 + ... + c_m f_m; algebras override it where the sum costs less than its terms.
+    fn linear_combination(&self, terms: &[(&Self::Element, &Constant<Self>)]) -> Self::Element {
+        let mut sum = self.zero();
+        for (f, c) in terms {
+            self.add_assign(&mut sum, &self.scale_by(f, c));
+        }
+        sum
+    }
     /// cos psi.
     fn cosine(&self) -> Self::Element;
     /// sin psi.

@@ -54,57 +54,6 @@ pub trait RationalAlgebra: Ring {
     fn reciprocal(&self, a: &Self::Element) -> Option<Self::Element>;
     /// The rational number that `a` is, if it is one.
     fn as_rational(&self, a: &Self::Element) -> Option<Rational>;
-
-    /// All products of the coefficients of pairs of polynomials, collected by the sum and by
-    /// the difference of their indices; see [`Products`]. The inner loop of trigonometric
-    /// polynomials: cos a cos b = (cos(a+b) + cos(a-b))/2.
-    fn products(
-        &self,
-        pairs: &[(&[Self::Element], &[Self::Element])],
-    ) -> Products<Self::Element> {
-        let mut products = Products::zeros(pairs, &self.zero());
-        let offset = products.offset;
-        for (a, b) in pairs {
-            for (i, x) in a.iter().enumerate() {
-                if self.is_zero(x) {
-                    continue;
-                }
-                for (j, y) in b.iter().enumerate() {
-                    if !self.is_zero(y) {
-                        let xy = self.mul(x, y);
-                        self.add_assign(&mut products.by_sum[i + j], &xy);
-                        self.add_assign(&mut products.by_difference[i + offset - j], &xy);
-                    }
-                }
-            }
-        }
-        products
-    }
-}
-
-/// The products a_i b_j of the coefficients of pairs of polynomials, added up over the pairs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Products<E> {
-    /// `by_sum[k]` is the sum of a_i b_j over i + j = k.
-    pub by_sum: Vec<E>,
-    /// `by_difference[k]` is the sum of a_i b_j over i - j = k - `offset`.
-    pub by_difference: Vec<E>,
-    /// The index of difference zero.
-    pub offset: usize,
-}
-
-impl<E: Clone> Products<E> {
-    /// Zeros of the right length for the pairs (none when there is nothing to multiply).
-    pub(crate) fn zeros<T>(pairs: &[(&[T], &[T])], zero: &E) -> Self {
-        let longest = |side: fn(&(&[T], &[T])) -> usize| pairs.iter().map(side).max().unwrap_or(0);
-        let (first, second) = (longest(|p| p.0.len()), longest(|p| p.1.len()));
-        let length = if first * second == 0 { 0 } else { first + second - 1 };
-        Self {
-            by_sum: vec![zero.clone(); length],
-            by_difference: vec![zero.clone(); length],
-            offset: second.saturating_sub(1),
-        }
-    }
 }
 
 /// The field Q, on GMP's rationals (always in lowest terms).
@@ -146,8 +95,5 @@ impl RationalAlgebra for Rationals {
     }
     fn as_rational(&self, a: &Rational) -> Option<Rational> {
         Some(a.clone())
-    }
-    fn products(&self, pairs: &[(&[Rational], &[Rational])]) -> Products<Rational> {
-        crate::products::rational(pairs)
     }
 }

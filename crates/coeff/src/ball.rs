@@ -15,7 +15,7 @@
 
 mod elementary;
 
-use rug::float::{Constant, Round};
+use rug::float::{Constant, Round, Special};
 use rug::ops::{AssignRound, Pow};
 use rug::{Float, Integer, Rational};
 use std::cmp::Ordering;
@@ -192,13 +192,6 @@ impl Ball {
             _ => i64::MIN,
         }
     }
-    /// Everything: the answer where nothing is known.
-    fn whole_line(bits: u32) -> Self {
-        Self {
-            midpoint: Float::new(bits),
-            radius: Float::with_val(RADIUS_BITS, rug::float::Special::Infinity),
-        }
-    }
 }
 
 impl Balls {
@@ -228,7 +221,7 @@ impl Balls {
     {
         let (midpoint, order) = Float::with_val_round(self.bits, value, Round::Nearest);
         if !midpoint.is_finite() || !propagated.is_finite() {
-            return Ball::whole_line(self.bits);
+            return self.indeterminate();
         }
         let radius = match order {
             Ordering::Equal => propagated,
@@ -237,10 +230,18 @@ impl Balls {
         if radius.is_finite() {
             Ball { midpoint, radius }
         } else {
-            Ball::whole_line(self.bits)
+            self.indeterminate()
         }
     }
 
+    /// The ball of all real numbers: the answer where nothing is known.
+    #[must_use]
+    pub fn indeterminate(self) -> Ball {
+        Ball {
+            midpoint: Float::new(self.bits),
+            radius: Float::with_val(RADIUS_BITS, Special::Infinity),
+        }
+    }
     /// 0, exactly.
     #[must_use]
     pub fn zero(self) -> Ball {
@@ -324,12 +325,22 @@ impl Balls {
         let size = Rational::from(q.abs_ref());
         self.enclose(&a.midpoint * q, up(&a.radius * &size))
     }
+    /// a n for a small integer n: the radius is r |n|.
+    #[must_use]
+    pub fn mul_i64(self, a: &Ball, n: i64) -> Ball {
+        self.enclose(&a.midpoint * n, up(&a.radius * n.unsigned_abs()))
+    }
+    /// a / n for a small integer n: the radius is r / |n|. `None` for n = 0.
+    #[must_use]
+    pub fn div_i64(self, a: &Ball, n: i64) -> Option<Ball> {
+        (n != 0).then(|| self.enclose(&a.midpoint / n, up(&a.radius / n.unsigned_abs())))
+    }
     /// a 2^k, exact up to overflow and underflow.
     #[must_use]
     pub fn mul_power_of_two(self, a: &Ball, k: i32) -> Ball {
         let factor = Float::with_val(MIN_BITS, Float::i_exp(1, k));
         if factor.is_zero() || !factor.is_finite() {
-            return Ball::whole_line(self.bits);
+            return self.indeterminate();
         }
         self.enclose(&a.midpoint * &factor, up(&a.radius * &factor))
     }

@@ -2,6 +2,7 @@
 //! real balls (midpoint and rigorous radius) that evaluate them to any number of digits.
 
 pub mod ball;
+pub mod closed_forms;
 pub mod digits;
 pub mod polynomial;
 pub mod print;

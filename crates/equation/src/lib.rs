@@ -2,6 +2,7 @@
 //! fixes the amplitude, and a data card.
 
 mod expression;
+pub mod print;
 mod problem;
 
 pub use expression::{Expression, Function};

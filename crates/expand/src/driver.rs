@@ -47,9 +47,9 @@ pub struct Expansion<A: PhaseAlgebra> {
     pub forcing: Vec<A::Element>,
     /// The work, order by order.
     pub work: Vec<OrderWork>,
-    /// Coefficients of the logarithms, exponentials and formal functions of the equation: the
-    /// residual check verifies them by their differential equations.
-    pub(crate) certificates: Vec<Vec<A::Element>>,
+    /// Coefficients of the logarithms, exponentials and formal functions of the equation, by
+    /// node: the residual check verifies them by their differential equations.
+    pub certificates: Vec<Vec<A::Element>>,
 }
 
 impl<A: PhaseAlgebra> Expansion<A> {
@@ -59,7 +59,35 @@ impl<A: PhaseAlgebra> Expansion<A> {
     }
 }
 
-/// Derives the expansion up to `order`; `record` keeps the right sides f_n.
+/// What to derive.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// What fixes the amplitude.
+    pub condition: Condition,
+    /// The highest order.
+    pub order: usize,
+    /// Whether to keep the right sides f_n.
+    pub record: bool,
+    /// a_0; see [`leading_amplitude`].
+    pub leading_amplitude: Rational,
+}
+
+/// The amplitude at order zero: 1, or the root of the averaged equation for a limit cycle.
+///
+/// # Errors
+/// [`ExpandError`] when there is no limit cycle with a unique rational leading amplitude.
+pub fn leading_amplitude<A: PhaseAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    condition: Condition,
+) -> Result<Rational, ExpandError> {
+    match condition {
+        Condition::LimitCycle => limit_cycle::leading_amplitude(algebra, equation),
+        Condition::InitialAmplitude | Condition::FundamentalAmplitude => Ok(Rational::from(1)),
+    }
+}
+
+/// Derives the expansion up to the order of the request.
 ///
 /// After each order `observer` is told the work; when it returns `false` the driver stops and
 /// returns the orders that are finished.
@@ -70,15 +98,13 @@ impl<A: PhaseAlgebra> Expansion<A> {
 pub fn expand<A: PhaseAlgebra>(
     algebra: &A,
     equation: &Equation<A>,
-    condition: Condition,
-    order: usize,
-    record: bool,
+    request: &Request,
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<Expansion<A>, ExpandError> {
-    let mut driver = Driver::start(algebra, equation, condition)?;
-    for n in 1..=order {
+    let mut driver = Driver::start(algebra, equation, request)?;
+    for n in 1..=request.order {
         let before = driver.evaluator.products;
-        driver.step(n, record)?;
+        driver.step(n, request.record)?;
         let work = OrderWork {
             order: n,
             products: driver.evaluator.products - before,
@@ -104,7 +130,8 @@ struct Driver<'a, A: PhaseAlgebra> {
     /// omega/sqrt(kappa); used only where the velocity occurs, and then kappa = 1.
     frequency: Vec<Constant<A>>,
     x: Vec<A::Element>,
-    /// x_n'' with respect to psi.
+    /// x_n' and x_n'' with respect to psi.
+    slopes: Vec<A::Element>,
     second_derivatives: Vec<A::Element>,
     /// Whether coefficient n of a node depends on x_n.
     sensitive: Vec<bool>,
@@ -127,15 +154,14 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     fn start(
         algebra: &'a A,
         equation: &'a Equation<A>,
-        condition: Condition,
+        request: &Request,
     ) -> Result<Self, ExpandError> {
         let constants = algebra.constants();
         let mut evaluator = Evaluator::new(algebra, equation);
-        let leading_amplitude = match condition {
-            Condition::LimitCycle => limit_cycle::leading_amplitude(algebra, equation)?,
-            _ => Rational::from(1),
-        };
-        let x0 = algebra.scale(&algebra.cosine(), &leading_amplitude);
+        let amplitude = constants.rational(&request.leading_amplitude);
+        let inverse_amplitude =
+            constants.reciprocal(&amplitude).ok_or(ExpandError::NoLimitCycle)?;
+        let x0 = algebra.scale_by(&algebra.cosine(), &amplitude);
         evaluator.assign(&Node::Displacement, 0, x0.clone());
         evaluator.assign(&Node::Velocity, 0, algebra.derivative(&x0));
 
@@ -162,16 +188,16 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         }
         let inverse_stiffness =
             constants.reciprocal(&stiffness).ok_or(ExpandError::SingularStiffness)?;
-        let inverse_amplitude = constants.rational(&Rational::from(leading_amplitude.recip_ref()));
         let mut driver = Self {
             algebra,
-            condition,
+            condition: request.condition,
             evaluator,
             stiffness,
             inverse_stiffness,
             inverse_amplitude,
             frequency_squared: vec![constants.one()],
             frequency: vec![constants.one()],
+            slopes: vec![algebra.derivative(&x0)],
             second_derivatives: vec![algebra.neg(&x0)],
             x: vec![x0],
             sensitive,
@@ -191,12 +217,9 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     /// f_n.
     fn right_side(&mut self, n: usize) -> Result<A::Element, ExpandError> {
         let force = self.evaluator.coefficient(self.evaluator.equation.root, n)?;
-        let mut f = self.algebra.scale_by(&force, &self.inverse_stiffness);
-        for k in 1..n {
-            let term =
-                self.algebra.scale_by(&self.second_derivatives[n - k], &self.frequency_squared[k]);
-            self.algebra.add_assign(&mut f, &term);
-        }
+        let mut terms = vec![(&force, &self.inverse_stiffness)];
+        terms.extend(self.convolution(&self.frequency_squared[1..], &self.second_derivatives, n));
+        let f = self.algebra.linear_combination(&terms);
         Ok(self.algebra.neg(&f))
     }
 
@@ -228,7 +251,9 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
             x = algebra.sub(&x, &algebra.scale_by(&algebra.cosine(), &c));
             x = algebra.sub(&x, &algebra.scale_by(&algebra.sine(), &s));
         }
-        self.second_derivatives.push(algebra.derivative(&algebra.derivative(&x)));
+        let slope = algebra.derivative(&x);
+        self.second_derivatives.push(algebra.derivative(&slope));
+        self.slopes.push(slope);
         self.forget(n);
         self.evaluator.assign(&Node::Displacement, n, x.clone());
         self.x.push(x);
@@ -268,6 +293,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         }
         let change = algebra.scale_by(&algebra.cosine(), shift);
         algebra.add_assign(&mut self.x[n], &change);
+        algebra.add_assign(&mut self.slopes[n], &algebra.derivative(&change));
         algebra.add_assign(&mut self.second_derivatives[n], &algebra.neg(&change));
         let corrections: Vec<A::Element> =
             reaction.of_nodes.iter().map(|change| algebra.scale_by(change, shift)).collect();
@@ -285,15 +311,22 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
 
     /// [x']_n = sum_k omega_k dx_{n-k}/dpsi.
     fn velocity(&self, n: usize) -> A::Element {
-        let algebra = self.algebra;
-        let mut sum = algebra.zero();
-        for k in 0..=n {
-            if !algebra.constants().is_zero(&self.frequency[k]) {
-                let slope = algebra.derivative(&self.x[n - k]);
-                algebra.add_assign(&mut sum, &algebra.scale_by(&slope, &self.frequency[k]));
-            }
-        }
-        sum
+        let leading = [(&self.slopes[n], &self.frequency[0])];
+        let rest = self.convolution(&self.frequency[1..], &self.slopes, n);
+        let terms: Vec<_> = leading.into_iter().chain(rest).collect();
+        self.algebra.linear_combination(&terms)
+    }
+
+    /// The terms c_k f_{n-k}, k = 1..n, that do not vanish; c_1 is the first of the list.
+    fn convolution<'b>(
+        &self,
+        constants: &'b [Constant<A>],
+        f: &'b [A::Element],
+        n: usize,
+    ) -> Vec<(&'b A::Element, &'b Constant<A>)> {
+        let nonzero = |(_, c): &(usize, &Constant<A>)| !self.algebra.constants().is_zero(c);
+        let terms = (1..=n).zip(constants).filter(nonzero);
+        terms.filter_map(|(k, c)| Some((f.get(n - k)?, c))).collect()
     }
 
     /// f_n changes by -[dF]_1/kappa + W_1 cos psi when x_{n-1} changes by cos psi, because F is

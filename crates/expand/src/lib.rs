@@ -1,6 +1,7 @@
 //! The driver and its judge within the algebra: expansions to any order, written once over
 //! [`lindstedt_algebra::PhaseAlgebra`], and the residual check that shares no code with it.
 
+mod bound;
 mod compile;
 mod driver;
 mod error;
@@ -9,6 +10,7 @@ mod limit_cycle;
 mod residual;
 
 pub use compile::{Binding, Equation, compile};
-pub use driver::{Expansion, OrderWork, expand};
+pub use bound::{degrees, residual_bits};
+pub use driver::{Expansion, OrderWork, Request, expand, leading_amplitude};
 pub use error::ExpandError;
 pub use residual::check;

@@ -6,3 +6,6 @@ pub use lindstedt_expand as expand;
 pub use lindstedt_phase as phase;
 pub use lindstedt_problems as problems;
 pub use lindstedt_series as series;
+pub mod multimodular;
+mod error;
+pub use error::Error;

@@ -1,9 +1,13 @@
 //! Algebras of functions of the fast phase: trigonometric polynomials, the Lobachevsky ring, and
 //! the Lobachevsky functions as numbers.
 
+pub mod fourier;
 pub mod lobachevsky;
+pub mod lobachevsky_function;
+pub mod modular;
 pub mod print;
 pub mod trigonometric;
 
 pub use lobachevsky::Lobachevsky;
+pub use modular::Modular;
 pub use trigonometric::Trigonometric;

@@ -10,15 +10,15 @@
 //! the order of their weight; a block with one term is that term. In LaTeX the trigonometric
 //! factors stand behind the others (`\ell\cos\tau`), where nothing can be read as their argument.
 
+use crate::Lobachevsky;
 use crate::lobachevsky::{Factor, LobachevskyElement, Moments, Word};
 use crate::trigonometric::{Trigonometric, TrigonometricPolynomial, harmonics};
-use crate::Lobachevsky;
 use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra};
 use lindstedt_coeff::print::{Print, Style, Term, latex_name, parenthesize, power, print_sum};
 use rug::Rational;
 
 /// A phase algebra whose elements can be printed.
-pub trait PrintPhase: PhaseAlgebra {
+pub trait PrintPhase: PhaseAlgebra<Constants: Print> {
     /// The terms of the printed sum in order, for a phase of the given name; none for zero.
     fn print_terms(&self, f: &Self::Element, phase: &str, style: Style) -> Vec<Term>;
 
@@ -90,7 +90,9 @@ impl<C: Moments + Print> PrintPhase for Lobachevsky<C> {
                         terms.extend(self.constants().print_terms(c, style));
                     }
                 }
-                [(constant, word)] => terms.push(combine(constant.clone(), word.clone(), outer, style)),
+                [(constant, word)] => {
+                    terms.push(combine(constant.clone(), word.clone(), outer, style))
+                }
                 _ if outer.is_empty() => {
                     terms.extend(inner.into_iter().map(|(constant, word)| constant.times(word)));
                 }
@@ -217,9 +219,8 @@ mod tests {
     #[test]
     fn second_correction_of_the_power_law() {
         let a = Lobachevsky::new(PolynomialRing::default());
-        let term = |power, sine, word, n, d| {
-            a.term(power, sine, word, a.constants().rational(&q(n, d)))
-        };
+        let term =
+            |power, sine, word, n, d| a.term(power, sine, word, a.constants().rational(&q(n, d)));
         let square = |word: Word| word.times(&word);
         let mut x2 = a.zero();
         for t in [
@@ -250,7 +251,8 @@ mod tests {
         ] {
             a.add_assign(&mut f, &t);
         }
-        let text = "(1 - mu_1)*sec(t)^3 + 1 - mu_1 + sec(t)*sin(t)*Lambda_2 - 1/2*cos(t)^2*sin(t)*l";
+        let text =
+            "(1 - mu_1)*sec(t)^3 + 1 - mu_1 + sec(t)*sin(t)*Lambda_2 - 1/2*cos(t)^2*sin(t)*l";
         assert_eq!(a.print(&f, "t", Style::Text), text);
         let latex = r"(1 - \mu_1)\sec^{3} t + 1 - \mu_1 + \Lambda_2\sec t\sin t - \frac{1}{2}\,\ell\cos^{2} t\sin t";
         assert_eq!(a.print(&f, "t", Style::Latex), latex);

@@ -1,6 +1,6 @@
 //! Trigonometric polynomials over any ring of constants.
 
-use lindstedt_algebra::{PhaseAlgebra, PhaseError, Products, RationalAlgebra, Resolution, Ring};
+use lindstedt_algebra::{PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring};
 use rug::Rational;
 use std::collections::BTreeMap;
 
@@ -15,8 +15,9 @@ pub struct TrigonometricPolynomial<E> {
 
 /// The algebra of trigonometric polynomials with coefficients in a ring of constants.
 ///
-/// Products cost O(n^2) coefficient products (over Q: one Kronecker product of integers, see
-/// [`RationalAlgebra::products`]); everything else is linear in the number of harmonics.
+/// Products cost O(n^2) coefficient products; everything else is linear in the number of
+/// harmonics. Over Q high orders
+/// are computed by [`crate::Modular`] instead, modulo many primes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Trigonometric<C> {
     constants: C,
@@ -74,53 +75,6 @@ impl<C: RationalAlgebra> Trigonometric<C> {
         let image = |list: &[C::Element]| list.iter().map(&g).collect();
         self.trim(TrigonometricPolynomial { cos: image(&f.cos), sin: image(&f.sin) })
     }
-
-    /// The common parity of the harmonics, when there is one.
-    fn parity(&self, f: &TrigonometricPolynomial<C::Element>) -> Option<usize> {
-        let occurs = |parity: usize| {
-            [&f.cos, &f.sin].into_iter().any(|list| {
-                list.iter().skip(parity).step_by(2).any(|c| !self.constants.is_zero(c))
-            })
-        };
-        match (occurs(0), occurs(1)) {
-            (_, false) => Some(0),
-            (false, true) => Some(1),
-            (true, true) => None,
-        }
-    }
-
-    /// Sum and difference products of the lists chosen by the two selectors.
-    fn list_products(
-        &self,
-        pairs: &[(Thinned<'_, C::Element>, Thinned<'_, C::Element>)],
-        first: usize,
-        second: usize,
-    ) -> Products<C::Element> {
-        let lists: Vec<(&[C::Element], &[C::Element])> = pairs
-            .iter()
-            .map(|(a, b)| (&a.lists[first][..], &b.lists[second][..]))
-            .filter(|(a, b)| !a.is_empty() && !b.is_empty())
-            .collect();
-        self.constants.products(&lists)
-    }
-}
-
-/// The lists of one factor, reduced to the harmonics `start + step * index`.
-struct Thinned<'a, E: Clone> {
-    lists: [std::borrow::Cow<'a, [E]>; 2],
-}
-
-impl<'a, E: Clone> Thinned<'a, E> {
-    fn new(f: &'a TrigonometricPolynomial<E>, start: usize, step: usize) -> Self {
-        let thin = |list: &'a Vec<E>| {
-            if step == 1 {
-                std::borrow::Cow::Borrowed(&list[..])
-            } else {
-                list.iter().skip(start).step_by(step).cloned().collect::<Vec<E>>().into()
-            }
-        };
-        Self { lists: [thin(&f.cos), thin(&f.sin)] }
-    }
 }
 
 impl<C: RationalAlgebra> Ring for Trigonometric<C> {
@@ -147,51 +101,46 @@ impl<C: RationalAlgebra> Ring for Trigonometric<C> {
         self.sum_of_products(&[(f, g)])
     }
 
-    /// The product formulas cos a cos b = (cos(a+b) + cos(a-b))/2 and so on, for all pairs at
-    /// once. When all first factors have harmonics of one parity and all second factors too
-    /// (odd forces do that), the vanishing harmonics are left out: a quarter of the products.
+    /// The product formulas cos a cos b = (cos(a+b) + cos(a-b))/2 and so on.
     fn sum_of_products(&self, pairs: &[(&Self::Element, &Self::Element)]) -> Self::Element {
-        let parities = |factors: Vec<&Self::Element>| -> Option<usize> {
-            let mut nonzero = factors.into_iter().filter(|f| !self.is_zero(f));
-            let Some(first) = nonzero.next() else { return Some(0) };
-            let parity = self.parity(first)?;
-            nonzero.all(|f| self.parity(f) == Some(parity)).then_some(parity)
+        let ring = &self.constants;
+        let mut sum = Harmonics { ring, cos: Vec::new(), sin: Vec::new() };
+        let nonzero = |list: &[C::Element]| -> Vec<(isize, C::Element)> {
+            let entries = (0isize..).zip(list.iter().cloned());
+            entries.filter(|(_, c)| !ring.is_zero(c)).collect()
         };
-        let first = parities(pairs.iter().map(|p| p.0).collect());
-        let second = parities(pairs.iter().map(|p| p.1).collect());
-        let (step, p, q) = match (first, second) {
-            (Some(p), Some(q)) => (2, p, q),
-            _ => (1, 0, 0),
-        };
-        let thinned: Vec<_> = pairs
-            .iter()
-            .map(|(f, g)| (Thinned::new(f, p, step), Thinned::new(g, q, step)))
-            .collect();
-        let mut product = Harmonics { ring: &self.constants, cos: Vec::new(), sin: Vec::new() };
-        for (first, second) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-            let products = self.list_products(&thinned, first, second);
-            let ring = &self.constants;
-            for (index, c) in products.by_sum.iter().enumerate() {
-                let harmonic = (step * index + p + q) as isize;
-                match (first, second) {
-                    (0, 0) => product.add_cos(harmonic, c.clone()),
-                    (1, 1) => product.add_cos(harmonic, ring.neg(c)),
-                    _ => product.add_sin(harmonic, c.clone()),
-                }
-            }
-            for (index, c) in products.by_difference.iter().enumerate() {
-                let difference = index as isize - products.offset as isize;
-                let harmonic = step as isize * difference + p as isize - q as isize;
-                match (first, second) {
-                    (0, 0) | (1, 1) => product.add_cos(harmonic, c.clone()),
-                    (0, 1) => product.add_sin(harmonic, ring.neg(c)),
-                    _ => product.add_sin(harmonic, c.clone()),
+        for (f, g) in pairs {
+            let first = [nonzero(&f.cos), nonzero(&f.sin)];
+            let second = [nonzero(&g.cos), nonzero(&g.sin)];
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                for (k, x) in &first[i] {
+                    for (m, y) in &second[j] {
+                        let xy = ring.mul(x, y);
+                        match (i, j) {
+                            (0, 0) => {
+                                sum.add_cos(k + m, xy.clone());
+                                sum.add_cos(k - m, xy);
+                            }
+                            (1, 1) => {
+                                sum.add_cos(k + m, ring.neg(&xy));
+                                sum.add_cos(k - m, xy);
+                            }
+                            (0, _) => {
+                                sum.add_sin(k + m, xy.clone());
+                                sum.add_sin(k - m, ring.neg(&xy));
+                            }
+                            _ => {
+                                sum.add_sin(k + m, xy.clone());
+                                sum.add_sin(k - m, xy);
+                            }
+                        }
+                    }
                 }
             }
         }
         let half = Rational::from((1, 2));
-        let Harmonics { cos, sin, .. } = product;
-        self.map(&TrigonometricPolynomial { cos, sin }, |c| self.constants.scale(c, &half))
+        let Harmonics { cos, sin, .. } = sum;
+        self.map(&TrigonometricPolynomial { cos, sin }, |c| ring.scale(c, &half))
     }
 }
 

@@ -40,6 +40,18 @@ impl Balls {
         Some(self.enclose(a.midpoint.ln_ref(), up(&a.radius / &lower)))
     }
 
+    /// ln(1 + x), accurate for small x; `None` unless x > -1 in all of a.
+    ///
+    /// |ln(1+m+d) - ln(1+m)| <= r / (1 + m - r), as for the logarithm.
+    #[must_use]
+    pub fn ln_1p(self, a: &Ball) -> Option<Ball> {
+        let lower = down(&down(&a.midpoint - &a.radius) + 1u32);
+        if !a.is_finite() || lower.is_zero() || lower.is_sign_negative() {
+            return None;
+        }
+        Some(self.enclose(a.midpoint.ln_1p_ref(), up(&a.radius / &lower)))
+    }
+
     /// The exponential function.
     ///
     /// |e^(m+d) - e^m| <= e^m (e^r - 1) <= e^(m+r). The last form is used for r > 1: for m near
