@@ -92,7 +92,7 @@ pub fn derive(
         if let Some(values) = reconstruct(&images, job.probe()) {
             break values;
         }
-        batch = (images.len() / 4).max(2);
+        batch = (images.len() / 6).max(2);
     };
     let expansion = job.assemble(&plain, &values)?;
     let last = images.last().map_or(1 << 61, |(field, _)| field.prime());
@@ -125,7 +125,7 @@ impl Job<'_> {
         for ((w, x), &degree) in
             expansion.frequency_squared.iter().zip(&expansion.solution).zip(&self.degrees)
         {
-            let (cos, sin) = algebra.harmonics(x);
+            let [cos, sin] = algebra.harmonics(x);
             list.push(*w);
             list.extend(&cos[..=degree]);
             list.extend(&sin[..=degree]);
@@ -314,7 +314,7 @@ fn reduce(algebra: &Modular, expansion: &Expansion<RationalAlgebraOfPhase>) -> E
     let numbers =
         |list: &[Rational]| -> Vec<u64> { list.iter().map(|q| field.rational(q)).collect() };
     let function = |x: &TrigonometricPolynomial<Rational>| -> ModularElement {
-        algebra.from_harmonics(&numbers(&x.cos), &numbers(&x.sin))
+        algebra.from_harmonics([numbers(&x.cos), numbers(&x.sin)])
     };
     Expansion {
         condition: expansion.condition,
@@ -324,6 +324,6 @@ fn reduce(algebra: &Modular, expansion: &Expansion<RationalAlgebraOfPhase>) -> E
         solution: expansion.solution.iter().map(function).collect(),
         forcing: Vec::new(),
         work: Vec::new(),
-        certificates: vec![Vec::new(); 0],
+        certificates: Vec::new(),
     }
 }

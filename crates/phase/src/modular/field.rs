@@ -1,10 +1,15 @@
-//! Z/p for primes below 2^61, in Montgomery form.
+//! Z/p for primes just below 2^61, in Montgomery form.
 
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::integer::IsPrime;
 use rug::{Integer, Rational};
 
-/// The field Z/p, 2^60 < p < 2^61. Elements are x 2^64 mod p.
+/// No prime is taken below this: the bounds of the sums rely on p being close to 2^61.
+const SMALLEST: u64 = (1 << 61) - (1 << 57);
+/// Products that are added up before a sum is brought below p 2^64 again.
+const CHUNK: usize = 4;
+
+/// The field Z/p, 2^61 - 2^57 < p < 2^61. Elements are x 2^64 mod p.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PrimeField {
     prime: u64,
@@ -15,7 +20,7 @@ pub struct PrimeField {
 }
 
 impl PrimeField {
-    /// Z/p for a prime between 2^60 and 2^61; the caller vouches for primality.
+    /// Z/p for a prime in that range; the caller vouches for primality.
     fn new(prime: u64) -> Self {
         // Newton's iteration doubles the correct bits of 1/p mod 2^64.
         let mut inverse = prime;
@@ -30,7 +35,7 @@ impl PrimeField {
     /// The largest primes below `below` (at most 2^61) that are 1 modulo `modulus`, descending.
     pub fn with_roots_of_unity(modulus: u64, below: u64) -> impl Iterator<Item = Self> {
         let start = (below.min(1 << 61) - 2) / modulus * modulus + 1;
-        let candidates = (1u64 << 60..=start).rev().step_by(modulus as usize);
+        let candidates = (SMALLEST..=start).rev().step_by(modulus as usize);
         candidates
             .filter(|&n| Integer::from(n).is_probably_prime(40) != IsPrime::No)
             .map(Self::new)
@@ -50,29 +55,44 @@ impl PrimeField {
         if reduced >= self.prime { reduced - self.prime } else { reduced }
     }
 
-    /// sum + a b, kept below p 2^64: products are below p^2 < p 2^61.
+    /// sum + at most four products, again below p 2^64: the sum of four products is below
+    /// 4 p^2 < 2^124, so with p > 2^61 - 2^57 one subtraction of p 2^64 is enough.
     #[inline]
-    fn accumulate(&self, sum: u128, a: u64, b: u64) -> u128 {
-        let total = sum + u128::from(a) * u128::from(b);
+    fn accumulate(&self, sum: u128, products: impl Iterator<Item = (u64, u64)>) -> u128 {
+        let total = products.fold(sum, |sum, (a, b)| sum + u128::from(a) * u128::from(b));
         let bound = u128::from(self.prime) << 64;
         if total >= bound { total - bound } else { total }
     }
 
-    /// sum_i a_i b_i with one reduction.
-    pub(super) fn dot(&self, pairs: impl Iterator<Item = (u64, u64)>) -> u64 {
-        self.reduce(pairs.fold(0, |sum, (a, b)| self.accumulate(sum, a, b)))
+    /// sum_i a_i b_i with one reduction, over the shorter length.
+    pub(super) fn dot(&self, a: &[u64], b: &[u64]) -> u64 {
+        let chunks = a.chunks(CHUNK).zip(b.chunks(CHUNK));
+        let sum = chunks.fold(0, |sum, (a, b)| {
+            self.accumulate(sum, a.iter().copied().zip(b.iter().copied()))
+        });
+        self.reduce(sum)
     }
 
-    /// sums[j] += a[j] b[j] without reduction; see [`Self::settle`].
-    pub(super) fn accumulate_pointwise(&self, sums: &mut [u128], a: &[u64], b: &[u64]) {
-        for ((sum, &x), &y) in sums.iter_mut().zip(a).zip(b) {
-            *sum = self.accumulate(*sum, x, y);
+    /// sum_i a_i[j] b_i[j] for every j.
+    pub(super) fn pointwise(&self, pairs: &[(&[u64], &[u64])]) -> Vec<u64> {
+        let length = pairs.iter().map(|(a, b)| a.len().min(b.len())).max().unwrap_or(0);
+        let mut sums = vec![0u128; length];
+        for chunk in pairs.chunks(CHUNK) {
+            if let [(a, b), (c, d), (e, f), (g, h)] = chunk {
+                // The same as below with the loops exchanged: one pass over the sums.
+                for (j, sum) in sums.iter_mut().enumerate() {
+                    let products = [(a[j], b[j]), (c[j], d[j]), (e[j], f[j]), (g[j], h[j])];
+                    *sum = self.accumulate(*sum, products.into_iter());
+                }
+            } else {
+                for (a, b) in chunk {
+                    for ((sum, &x), &y) in sums.iter_mut().zip(*a).zip(*b) {
+                        *sum = self.accumulate(*sum, std::iter::once((x, y)));
+                    }
+                }
+            }
         }
-    }
-
-    /// The reduced sums.
-    pub(super) fn settle(&self, sums: &[u128]) -> Vec<u64> {
-        sums.iter().map(|&sum| self.reduce(sum)).collect()
+        sums.into_iter().map(|sum| self.reduce(sum)).collect()
     }
 
     /// The image of an integer.

@@ -46,10 +46,18 @@ impl Part {
     }
 }
 
-/// A function: per part, nothing if it vanishes, or values at the points and coefficients.
-#[derive(Clone, Debug, PartialEq)]
+/// A function: per part, nothing if it vanishes, or its values at the points.
+#[derive(Clone, Debug)]
 pub struct ModularElement {
     values: [Option<Vec<u64>>; 4],
+    /// Fourier coefficients (cos_k, sin_k), where the element was made from them.
+    harmonics: Option<[Vec<u64>; 2]>,
+}
+
+impl PartialEq for ModularElement {
+    fn eq(&self, other: &Self) -> bool {
+        self.values == other.values
+    }
 }
 
 /// Trigonometric polynomials of bounded degree over Z/p.
@@ -115,15 +123,15 @@ impl Modular {
     /// sum_i c_i b(first + i step) for a basis function b, indices modulo its period.
     fn transform(&self, basis: &[u64], c: &[u64], first: usize, step: usize) -> u64 {
         let (step, mut index) = (step % basis.len(), first % basis.len());
-        let terms = c.iter().map(|&c| {
-            let value = basis[index];
+        let mut values = Vec::with_capacity(c.len());
+        for _ in c {
+            values.push(basis[index]);
             index += step;
             if index >= basis.len() {
                 index -= basis.len();
             }
-            (c, value)
-        });
-        self.field.dot(terms)
+        }
+        self.field.dot(c, &values)
     }
 
     /// The field.
@@ -165,11 +173,14 @@ impl Modular {
     }
 
     /// The Fourier coefficients (cos_k, sin_k) of an element, up to the highest harmonic.
-    pub fn harmonics(&self, f: &ModularElement) -> (Vec<u64>, Vec<u64>) {
-        let mut lists = (vec![0; 2 * self.points + 1], vec![0; 2 * self.points + 1]);
+    pub fn harmonics(&self, f: &ModularElement) -> [Vec<u64>; 2] {
+        if let Some(known) = &f.harmonics {
+            return known.clone();
+        }
+        let mut lists = [vec![0; 2 * self.points + 1], vec![0; 2 * self.points + 1]];
         for part in PARTS {
             let Some(values) = &f.values[part.index()] else { continue };
-            let list = if part.sine { &mut lists.1 } else { &mut lists.0 };
+            let list = &mut lists[usize::from(part.sine)];
             for (k, c) in self.forward(part, values).into_iter().enumerate() {
                 list[part.harmonic(k)] = c;
             }
@@ -178,19 +189,25 @@ impl Modular {
     }
 
     /// The element with given Fourier coefficients.
-    pub fn from_harmonics(&self, cos: &[u64], sin: &[u64]) -> ModularElement {
+    pub fn from_harmonics(&self, mut harmonics: [Vec<u64>; 2]) -> ModularElement {
+        for list in &mut harmonics {
+            list.resize(2 * self.points + 1, 0);
+        }
         let values = PARTS.map(|part| {
-            let list = if part.sine { sin } else { cos };
-            let pick = |k| list.get(part.harmonic(k)).copied().unwrap_or(0);
-            let coefficients: Vec<u64> = (0..self.points).map(pick).collect();
+            let list = &harmonics[usize::from(part.sine)];
+            let coefficients: Vec<u64> =
+                (0..self.points).map(|k| list[part.harmonic(k)]).collect();
             self.backward(part, &coefficients)
         });
-        ModularElement { values }
+        ModularElement { values, harmonics: Some(harmonics) }
     }
 
     fn map(&self, f: &ModularElement, g: impl Fn(u64) -> u64) -> ModularElement {
-        let image = |values: &Option<Vec<u64>>| values.as_ref().map(|v| v.iter().map(|&x| g(x)).collect());
-        self.canonical(ModularElement { values: f.values.each_ref().map(image) })
+        let image = |list: &Vec<u64>| -> Vec<u64> { list.iter().map(|&x| g(x)).collect() };
+        self.canonical(ModularElement {
+            values: f.values.each_ref().map(|values| values.as_ref().map(image)),
+            harmonics: f.harmonics.as_ref().map(|lists| lists.each_ref().map(image)),
+        })
     }
 
     /// A part whose values all vanish is absent.
@@ -202,13 +219,19 @@ impl Modular {
         }
         f
     }
+
+    fn add_lists(&self, a: &mut [u64], b: &[u64]) {
+        for (x, y) in a.iter_mut().zip(b) {
+            self.field.add_assign(x, y);
+        }
+    }
 }
 
 impl Ring for Modular {
     type Element = ModularElement;
 
     fn zero(&self) -> ModularElement {
-        ModularElement { values: [const { None }; 4] }
+        ModularElement { values: [const { None }; 4], harmonics: None }
     }
     fn one(&self) -> ModularElement {
         self.embed(&self.field.one())
@@ -217,16 +240,27 @@ impl Ring for Modular {
         f.values.iter().all(Option::is_none)
     }
     fn add_assign(&self, f: &mut ModularElement, g: &ModularElement) {
+        if self.is_zero(f) {
+            f.clone_from(g);
+            return;
+        }
+        if self.is_zero(g) {
+            return;
+        }
         for (x, y) in f.values.iter_mut().zip(&g.values) {
             match (x.as_mut(), y) {
                 (_, None) => {}
                 (None, Some(y)) => *x = Some(y.clone()),
-                (Some(x), Some(y)) => {
-                    for (a, b) in x.iter_mut().zip(y) {
-                        self.field.add_assign(a, b);
-                    }
+                (Some(x), Some(y)) => self.add_lists(x, y),
+            }
+        }
+        match (f.harmonics.as_mut(), &g.harmonics) {
+            (Some(own), Some(other)) => {
+                for (x, y) in own.iter_mut().zip(other) {
+                    self.add_lists(x, y);
                 }
             }
+            _ => f.harmonics = None,
         }
         *f = self.canonical(std::mem::replace(f, self.zero()));
     }
@@ -237,21 +271,20 @@ impl Ring for Modular {
         self.sum_of_products(&[(f, g)])
     }
     fn sum_of_products(&self, pairs: &[(&ModularElement, &ModularElement)]) -> ModularElement {
-        let mut sums: [Option<Vec<u128>>; 4] = [const { None }; 4];
+        let mut factors: [Vec<(&[u64], &[u64])>; 4] = [const { Vec::new() }; 4];
         for (f, g) in pairs {
             for p in PARTS {
                 for q in PARTS {
-                    let (Some(a), Some(b)) = (&f.values[p.index()], &g.values[q.index()]) else {
-                        continue;
-                    };
-                    let part = Part { sine: p.sine ^ q.sine, odd: p.odd ^ q.odd };
-                    let sum = sums[part.index()].get_or_insert_with(|| vec![0; self.points]);
-                    self.field.accumulate_pointwise(sum, a, b);
+                    if let (Some(a), Some(b)) = (&f.values[p.index()], &g.values[q.index()]) {
+                        let part = Part { sine: p.sine ^ q.sine, odd: p.odd ^ q.odd };
+                        factors[part.index()].push((a, b));
+                    }
                 }
             }
         }
-        let values = sums.map(|sum| sum.map(|sum| self.field.settle(&sum)));
-        self.canonical(ModularElement { values })
+        let values = factors
+            .map(|pairs| (!pairs.is_empty()).then(|| self.field.pointwise(&pairs)));
+        self.canonical(ModularElement { values, harmonics: None })
     }
 }
 
@@ -291,10 +324,10 @@ impl PhaseAlgebra for Modular {
         self.sum_of_products(&pairs)
     }
     fn cosine(&self) -> ModularElement {
-        self.from_harmonics(&[0, self.field.one()], &[])
+        self.from_harmonics([vec![0, self.field.one()], Vec::new()])
     }
     fn sine(&self) -> ModularElement {
-        self.from_harmonics(&[], &[0, self.field.one()])
+        self.from_harmonics([Vec::new(), vec![0, self.field.one()]])
     }
     fn as_constant(&self, f: &ModularElement) -> Option<u64> {
         match &f.values {
@@ -307,15 +340,15 @@ impl PhaseAlgebra for Modular {
         }
     }
     fn derivative(&self, f: &ModularElement) -> ModularElement {
-        let (cos, sin) = self.harmonics(f);
+        let [cos, sin] = self.harmonics(f);
         let times = |list: Vec<u64>| -> Vec<u64> {
             list.iter().zip(&self.multiples).map(|(c, k)| self.field.mul(c, k)).collect()
         };
         let cos: Vec<u64> = times(cos).iter().map(|c| self.field.neg(c)).collect();
-        self.from_harmonics(&times(sin), &cos)
+        self.from_harmonics([times(sin), cos])
     }
     fn at_zero(&self, f: &ModularElement) -> Option<u64> {
-        let (cos, _) = self.harmonics(f);
+        let [cos, _] = self.harmonics(f);
         Some(cos.iter().fold(0, |sum, c| self.field.add(&sum, c)))
     }
     /// ln 1 = 0; no other logarithm is a trigonometric polynomial.
@@ -323,15 +356,15 @@ impl PhaseAlgebra for Modular {
         (*f == self.one()).then(|| self.zero())
     }
     fn terms(&self, f: &ModularElement) -> usize {
-        let (cos, sin) = self.harmonics(f);
+        let [cos, sin] = self.harmonics(f);
         cos.iter().chain(&sin).filter(|&&c| c != 0).count()
     }
     fn first_harmonic(&self, f: &ModularElement) -> Result<(u64, u64), PhaseError> {
-        let (cos, sin) = self.harmonics(f);
+        let [cos, sin] = self.harmonics(f);
         Ok((cos[1], sin[1]))
     }
     fn resolve(&self, f: &ModularElement) -> Result<Resolution<Self>, PhaseError> {
-        let (mut cos, mut sin) = self.harmonics(f);
+        let [mut cos, mut sin] = self.harmonics(f);
         let (cos_amplitude, sin_amplitude) = (cos[1], sin[1]);
         let (mut value, mut slope) = (0, 0);
         for k in 0..cos.len() {
@@ -342,7 +375,7 @@ impl PhaseAlgebra for Modular {
         }
         cos[1] = self.field.neg(&value);
         sin[1] = self.field.neg(&slope);
-        let response = self.from_harmonics(&cos, &sin);
+        let response = self.from_harmonics([cos, sin]);
         Ok(Resolution { cos_amplitude, sin_amplitude, response })
     }
 }
@@ -360,8 +393,8 @@ mod tests {
             panic!("an algebra")
         };
         let n = |k: i64| a.field.integer(&Integer::from(k));
-        let mixed = a.from_harmonics(&[n(3), n(-1), n(4), 0, n(7)], &[0, n(5), n(9), n(-2)]);
-        let odd = a.from_harmonics(&[0, n(2), 0, n(-6)], &[]);
+        let mixed = a.from_harmonics([vec![n(3), n(-1), n(4), 0, n(7)], vec![0, n(5), n(9), n(-2)]]);
+        let odd = a.from_harmonics([vec![0, n(2), 0, n(-6)], Vec::new()]);
         let samples = [a.zero(), a.one(), a.cosine(), a.sine(), mixed, odd];
         // `as_rational` does not apply to a finite field; the other laws do.
         assert_eq!(laws::ring(&a, &samples), Ok(()));
