@@ -63,12 +63,12 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
         constants: &Series<<A::Constants as Ring>::Element>,
         f: &Series<A::Element>,
     ) -> Series<A::Element> {
+        let is_zero = |c| self.algebra.constants().is_zero(c);
         let coefficient = |n: usize| {
-            let mut sum = self.algebra.zero();
-            for (k, c) in constants.coefficients.iter().enumerate().take(n + 1) {
-                self.algebra.add_assign(&mut sum, &self.algebra.scale_by(&f.coefficients[n - k], c));
-            }
-            sum
+            let pairs = constants.coefficients.iter().zip(f.coefficients[..=n].iter().rev());
+            let terms: Vec<_> =
+                pairs.filter(|(c, _)| !is_zero(c)).map(|(c, f)| (f, c)).collect();
+            self.algebra.linear_combination(&terms)
         };
         Series::truncated((0..f.coefficients.len()).map(coefficient).collect())
     }

@@ -9,7 +9,7 @@
 //! ([`residual_bits`]). So the residual vanishes over Q.
 
 use crate::Error;
-use lindstedt_algebra::{PhaseAlgebra, Rationals, Ring};
+use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_equation::Expression;
 use lindstedt_expand::{
     Binding, Equation, ExpandError, Expansion, Request, check, compile, degrees, expand,
@@ -32,7 +32,7 @@ pub trait RationalBinding: Sync {
 
 struct Over<'a, C>(&'a dyn RationalBinding, &'a C);
 
-impl<C: lindstedt_algebra::RationalAlgebra> Binding<C> for Over<'_, C> {
+impl<C: RationalAlgebra> Binding<C> for Over<'_, C> {
     fn parameter(&self, name: &str) -> Option<C::Element> {
         self.0.parameter(name).map(|q| self.1.rational(&q))
     }
@@ -214,7 +214,6 @@ impl<'a> Remaindering<'a> {
             modulus *= field.prime();
         }
         let cofactor = |(field, _): &(PrimeField, Vec<u64>)| {
-            use lindstedt_algebra::RationalAlgebra;
             let cofactor = Integer::from(modulus.div_exact_ref(&Integer::from(field.prime())));
             let inverse = field.reciprocal(&field.integer(&cofactor)).unwrap_or(0);
             (cofactor, inverse)
@@ -300,28 +299,60 @@ fn prove(
     if fields.len() < count {
         return Err(Error::OutOfPrimes);
     }
+    let cleared: Vec<[Cleared; 2]> = expansion
+        .solution
+        .iter()
+        .map(|x| [Cleared::new(&x.cos), Cleared::new(&x.sin)])
+        .collect();
     fields.into_par_iter().try_for_each(|field| {
         let (algebra, equation) = job.over(field)?;
-        let image = reduce(&algebra, expansion);
+        let image = reduce(&algebra, expansion, &cleared);
         check(&algebra, &equation, &image).map(|_| ()).map_err(Error::from)
     })?;
     Ok(count)
 }
 
-fn reduce(algebra: &Modular, expansion: &Expansion<RationalAlgebraOfPhase>) -> Expansion<Modular> {
-    use lindstedt_algebra::RationalAlgebra;
+/// Rational numbers over one common denominator: one inverse modulo p serves all of them.
+struct Cleared {
+    numerators: Vec<Integer>,
+    denominator: Integer,
+}
+
+impl Cleared {
+    fn new(values: &[Rational]) -> Self {
+        let mut denominator = Integer::from(1);
+        for value in values {
+            denominator.lcm_mut(value.denom());
+        }
+        let over = |value: &Rational| {
+            Integer::from(denominator.div_exact_ref(value.denom())) * value.numer()
+        };
+        Self { numerators: values.iter().map(over).collect(), denominator }
+    }
+
+    fn modulo(&self, field: &PrimeField) -> Vec<u64> {
+        let inverse = field.rational(&Rational::from((Integer::from(1), self.denominator.clone())));
+        self.numerators.iter().map(|n| field.mul(&field.integer(n), &inverse)).collect()
+    }
+}
+
+fn reduce(
+    algebra: &Modular,
+    expansion: &Expansion<RationalAlgebraOfPhase>,
+    solution: &[[Cleared; 2]],
+) -> Expansion<Modular> {
     let field = *algebra.field();
     let numbers =
         |list: &[Rational]| -> Vec<u64> { list.iter().map(|q| field.rational(q)).collect() };
-    let function = |x: &TrigonometricPolynomial<Rational>| -> ModularElement {
-        algebra.from_harmonics([numbers(&x.cos), numbers(&x.sin)])
+    let function = |[cos, sin]: &[Cleared; 2]| -> ModularElement {
+        algebra.from_harmonics([cos.modulo(&field), sin.modulo(&field)])
     };
     Expansion {
         condition: expansion.condition,
         stiffness: field.rational(&expansion.stiffness),
         frequency_squared: numbers(&expansion.frequency_squared),
         amplitude: numbers(&expansion.amplitude),
-        solution: expansion.solution.iter().map(function).collect(),
+        solution: solution.iter().map(function).collect(),
         forcing: Vec::new(),
         work: Vec::new(),
         certificates: Vec::new(),

@@ -16,6 +16,7 @@ pub use field::PrimeField;
 
 use lindstedt_algebra::{PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring};
 use rug::{Integer, Rational};
+use std::sync::OnceLock;
 
 /// The four symmetry parts, in this order.
 const PARTS: [Part; 4] = [
@@ -76,6 +77,14 @@ pub struct Modular {
     /// k and 1/(1 - k^2) for every harmonic k (zero for k = 1).
     multiples: Vec<u64>,
     inverse_divisors: Vec<u64>,
+    tables: [OnceLock<BasisTable>; 4],
+}
+
+/// Q x Q values of basis functions, in the two orders in which transforms run through them.
+#[derive(Clone, Debug)]
+struct BasisTable {
+    by_harmonic: Vec<u64>,
+    by_point: Vec<u64>,
 }
 
 impl Modular {
@@ -117,21 +126,21 @@ impl Modular {
             two_over_points,
             multiples: harmonics.clone().map(integer).collect(),
             inverse_divisors: harmonics.map(inverse).collect(),
+            tables: [const { OnceLock::new() }; 4],
         })
     }
 
-    /// sum_i c_i b(first + i step) for a basis function b, indices modulo its period.
-    fn transform(&self, basis: &[u64], c: &[u64], first: usize, step: usize) -> u64 {
-        let (step, mut index) = (step % basis.len(), first % basis.len());
-        let mut values = Vec::with_capacity(c.len());
-        for _ in c {
-            values.push(basis[index]);
-            index += step;
-            if index >= basis.len() {
-                index -= basis.len();
-            }
-        }
-        self.field.dot(c, &values)
+    /// The values of the basis functions of a part at the points, made when first needed.
+    fn table(&self, part: Part) -> &BasisTable {
+        self.tables[part.index()].get_or_init(|| {
+            let basis = if part.sine { &self.sin } else { &self.cos };
+            let value = |k: usize, j: usize| basis[part.harmonic(k) * (2 * j + 1) % basis.len()];
+            let table = |entry: &dyn Fn(usize, usize) -> u64| {
+                let row = |i| (0..self.points).map(move |j| (i, j));
+                (0..self.points).flat_map(row).map(|(i, j)| entry(i, j)).collect()
+            };
+            BasisTable { by_harmonic: table(&value), by_point: table(&|j, k| value(k, j)) }
+        })
     }
 
     /// The field.
@@ -139,18 +148,13 @@ impl Modular {
         &self.field
     }
 
-    fn basis(&self, part: Part) -> &[u64] {
-        if part.sine { &self.sin } else { &self.cos }
-    }
-
     /// Fourier coefficients of a part from its values: by discrete orthogonality at the points
     /// (2j+1) pi/(4Q), sum_j cos k psi_j cos m psi_j = Q/2 delta_km for 0 < k < 2Q.
     fn forward(&self, part: Part, values: &[u64]) -> Vec<u64> {
-        let basis = self.basis(part);
-        let coefficient = |k: usize| {
+        let rows = self.table(part).by_harmonic.chunks(self.points);
+        let coefficient = |(k, row): (usize, &[u64])| {
             let harmonic = part.harmonic(k);
-            let sum = self.transform(basis, values, harmonic, 2 * harmonic);
-            let sum = self.field.mul(&sum, &self.two_over_points);
+            let sum = self.field.mul(&self.field.dot(row, values), &self.two_over_points);
             // The constant and sin 2Q psi have twice the norm.
             if harmonic == 0 || harmonic == 2 * self.points {
                 self.field.scale(&sum, &Rational::from((1, 2)))
@@ -158,18 +162,14 @@ impl Modular {
                 sum
             }
         };
-        (0..self.points).map(coefficient).collect()
+        rows.enumerate().map(coefficient).collect()
     }
 
     /// Values of a part from its coefficients.
     fn backward(&self, part: Part, coefficients: &[u64]) -> Option<Vec<u64>> {
         let used = coefficients.iter().rposition(|&c| c != 0)? + 1;
-        let basis = self.basis(part);
-        let value = |j: usize| {
-            let odd = 2 * j + 1;
-            self.transform(basis, &coefficients[..used], part.harmonic(0) * odd, 2 * odd)
-        };
-        Some((0..self.points).map(value).collect())
+        let rows = self.table(part).by_point.chunks(self.points);
+        Some(rows.map(|row| self.field.dot(row, &coefficients[..used])).collect())
     }
 
     /// The Fourier coefficients (cos_k, sin_k) of an element, up to the highest harmonic.
