@@ -10,4 +10,4 @@ mod phase;
 mod ring;
 
 pub use phase::{PhaseAlgebra, PhaseError, Resolution};
-pub use ring::{Rationals, RationalAlgebra, Ring};
+pub use ring::{RationalAlgebra, Rationals, Ring};

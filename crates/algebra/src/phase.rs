@@ -85,10 +85,9 @@ pub enum PhaseError {
 impl std::fmt::Display for PhaseError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::NotIntegrable { power } => write!(
-                f,
-                "the antiderivative is not in the algebra (remainder at cos^{power})"
-            ),
+            Self::NotIntegrable { power } => {
+                write!(f, "the antiderivative is not in the algebra (remainder at cos^{power})")
+            }
         }
     }
 }

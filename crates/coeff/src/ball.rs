@@ -198,9 +198,7 @@ impl Balls {
     /// The context with midpoints of `bits` bits, clamped to 2..=2^26.
     #[must_use]
     pub fn new(bits: u32) -> Self {
-        Self {
-            bits: bits.clamp(MIN_BITS, MAX_BITS),
-        }
+        Self { bits: bits.clamp(MIN_BITS, MAX_BITS) }
     }
     /// The precision of the midpoints.
     #[must_use]
@@ -227,11 +225,7 @@ impl Balls {
             Ordering::Equal => propagated,
             _ => add_up(&propagated, &half_ulp(&midpoint)),
         };
-        if radius.is_finite() {
-            Ball { midpoint, radius }
-        } else {
-            self.indeterminate()
-        }
+        if radius.is_finite() { Ball { midpoint, radius } } else { self.indeterminate() }
     }
 
     /// The ball of all real numbers: the answer where nothing is known.

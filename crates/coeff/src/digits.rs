@@ -80,9 +80,7 @@ pub fn error_string(ball: &Ball, printed: &str) -> String {
         return inf();
     };
     // Four bits per character hold every digit, so the rounding of the decimal is negligible.
-    let length = u32::try_from(printed.len())
-        .unwrap_or(u32::MAX)
-        .saturating_mul(4);
+    let length = u32::try_from(printed.len()).unwrap_or(u32::MAX).saturating_mul(4);
     let balls = Balls::new(length.max(ball.midpoint().prec())).with_guard(64);
     let printed = balls.enclose(parsed, Float::new(53));
     short_bound(&balls.sub(&printed, ball).abs_upper()).unwrap_or_else(inf)
@@ -113,10 +111,7 @@ pub fn certify(
     evaluate: impl Fn(Balls) -> Option<Ball>,
 ) -> Result<(String, String), CertifyError> {
     if digits > MAX_DIGITS {
-        return Err(CertifyError::NotEnoughBits {
-            bits: 0,
-            best: None,
-        });
+        return Err(CertifyError::NotEnoughBits { bits: 0, best: None });
     }
     let wanted = bits_for(digits);
     let max_bits = Balls::new(max_bits).bits();
@@ -133,10 +128,7 @@ pub fn certify(
             let Some(ball) = ball else {
                 return Err(CertifyError::Undefined);
             };
-            return Err(CertifyError::NotEnoughBits {
-                bits,
-                best: enclosure(&ball, digits),
-            });
+            return Err(CertifyError::NotEnoughBits { bits, best: enclosure(&ball, digits) });
         }
         let known = ball.map_or(0, |ball| ball.relative_accuracy_bits());
         // A quarter more at least, so that the number of attempts stays logarithmic.
@@ -144,9 +136,7 @@ pub fn certify(
             missing if known > 0 => missing.saturating_add(i64::from(GUARD_BITS)),
             _ => i64::from(bits),
         };
-        let more = u32::try_from(more.max(0))
-            .unwrap_or(u32::MAX)
-            .max(bits / 4 + 1);
+        let more = u32::try_from(more.max(0)).unwrap_or(u32::MAX).max(bits / 4 + 1);
         bits = bits.saturating_add(more).min(max_bits);
     }
 }
@@ -188,18 +178,11 @@ impl Scientific {
         let (negative, digits, exponent) = x.to_sign_string_exp_round(10, Some(digits), round);
         // MPFR's exponent belongs to 0.ddd, ours to d.dd.
         let exponent = i64::from(exponent?) - 1;
-        Some(Self {
-            negative,
-            digits,
-            exponent,
-        })
+        Some(Self { negative, digits, exponent })
     }
     fn scientific(&self) -> String {
         let sign = if self.negative { "-" } else { "" };
-        let (first, rest) = self
-            .digits
-            .split_at_checked(1)
-            .unwrap_or((&self.digits, ""));
+        let (first, rest) = self.digits.split_at_checked(1).unwrap_or((&self.digits, ""));
         let point = if rest.is_empty() { "" } else { "." };
         format!("{sign}{first}{point}{rest}e{}", self.exponent)
     }
@@ -214,10 +197,7 @@ impl Scientific {
             let zeros = usize::try_from(-1 - self.exponent).unwrap_or(0);
             return format!("{sign}0.{}{}", "0".repeat(zeros), self.digits);
         };
-        let (before, after) = self
-            .digits
-            .split_at_checked(whole)
-            .unwrap_or((&self.digits, ""));
+        let (before, after) = self.digits.split_at_checked(whole).unwrap_or((&self.digits, ""));
         let before = if before.is_empty() { "0" } else { before };
         let point = if after.is_empty() { "" } else { "." };
         format!("{sign}{before}{point}{after}")
@@ -241,10 +221,7 @@ mod tests {
 
     fn ball(text: &str, error: f64) -> Ball {
         let balls = Balls::new(200);
-        balls.add_error(
-            &balls.from_rational(&rational(text)),
-            &Float::with_val(53, error),
-        )
+        balls.add_error(&balls.from_rational(&rational(text)), &Float::with_val(53, error))
     }
 
     #[test]
@@ -266,10 +243,7 @@ mod tests {
             ("0.3", 1, "0.3"),
         ];
         for (value, digits, expected) in table {
-            assert_eq!(
-                decimal(&ball(value, 0.0), digits).as_deref(),
-                Some(expected)
-            );
+            assert_eq!(decimal(&ball(value, 0.0), digits).as_deref(), Some(expected));
         }
         assert_eq!(decimal(&Balls::new(60).zero(), 5).as_deref(), Some("0"));
     }
@@ -278,14 +252,8 @@ mod tests {
     /// bounds them: exact rational arithmetic on the printed string.
     #[test]
     fn printed_digits_are_known() {
-        let values = [
-            "1.2345678901234567",
-            "9.9999995",
-            "-0.00099999949999",
-            "2.5",
-            "1e-300",
-            "3e40",
-        ];
+        let values =
+            ["1.2345678901234567", "9.9999995", "-0.00099999949999", "2.5", "1e-300", "3e40"];
         let mut printed = 0;
         for value in values {
             for exponent in -30..1 {
@@ -297,12 +265,8 @@ mod tests {
                     };
                     printed += 1;
                     let shown = rational(&text);
-                    let last = text
-                        .split('e')
-                        .next()
-                        .unwrap()
-                        .split_once('.')
-                        .map_or(0, |p| p.1.len());
+                    let last =
+                        text.split('e').next().unwrap().split_once('.').map_or(0, |p| p.1.len());
                     let power = text.split_once('e').map_or(0, |p| p.1.parse().unwrap());
                     let unit = Rational::from(10).pow(power - last as i32);
                     let bound = rational(&error_string(&ball, &text));

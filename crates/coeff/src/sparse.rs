@@ -163,8 +163,7 @@ impl<M: Monomial, E: Clone + PartialEq + Debug + Send + Sync> Accumulator<M, E> 
 
     /// The sorted polynomial.
     pub fn finish<R: Ring<Element = E>>(self, ring: &R) -> Sparse<M, E> {
-        let mut terms: Vec<_> =
-            self.terms.into_iter().filter(|(_, c)| !ring.is_zero(c)).collect();
+        let mut terms: Vec<_> = self.terms.into_iter().filter(|(_, c)| !ring.is_zero(c)).collect();
         terms.sort_unstable_by(|(m, _), (n, _)| m.cmp(n));
         Sparse { terms }
     }

@@ -13,6 +13,22 @@ pub enum Condition {
     LimitCycle,
 }
 
+/// How the amplitude of the user's solution enters an equation written for amplitude one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AmplitudeRole {
+    /// omega^2 is multiplied by a^(exponent * small parameter), a > 0.
+    ScalesFrequency {
+        /// The exponent in units of the small parameter.
+        exponent: i32,
+    },
+    /// The coefficients S_n of the formal function depend on it, 0 < a < pi.
+    InSums,
+    /// It is part of the small parameter; a is not zero.
+    InSmallParameter,
+    /// The equation determines it.
+    Determined,
+}
+
 /// One line of a data card.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterCard {
@@ -37,6 +53,8 @@ pub struct Problem {
     pub small: &'static str,
     /// The conditions that make sense, the default first.
     pub conditions: Vec<Condition>,
+    /// How an amplitude other than one enters.
+    pub amplitude: AmplitudeRole,
     /// The parameters.
     pub parameters: Vec<ParameterCard>,
     /// How the dimensionless equation follows from the physical one, and what is known.

@@ -17,7 +17,10 @@ use std::collections::BTreeMap;
 
 /// The degree of x_n for n = 0..=order, and of everything formed on the way to order + 1;
 /// nothing when the equation is not polynomial.
-pub fn degrees<A: PhaseAlgebra>(equation: &Equation<A>, order: usize) -> Option<(Vec<usize>, usize)> {
+pub fn degrees<A: PhaseAlgebra>(
+    equation: &Equation<A>,
+    order: usize,
+) -> Option<(Vec<usize>, usize)> {
     let mut of_nodes: Vec<Vec<Option<usize>>> = vec![Vec::new(); equation.nodes.len()];
     let mut of_x: Vec<usize> = Vec::new();
     let mut largest = 1;
@@ -31,9 +34,9 @@ pub fn degrees<A: PhaseAlgebra>(equation: &Equation<A>, order: usize) -> Option<
                     // x' = sum omega_k dx_{n-k}/dpsi has the degree of the highest x_k.
                     Node::Displacement | Node::Velocity => of_x.get(n).copied(),
                     Node::Sum(terms) => terms.iter().filter_map(|(_, t)| of_nodes[*t][n]).max(),
-                    &Node::Product(a, b) => (0..=n)
-                        .filter_map(|k| Some(of_nodes[a][k]? + of_nodes[b][n - k]?))
-                        .max(),
+                    &Node::Product(a, b) => {
+                        (0..=n).filter_map(|k| Some(of_nodes[a][k]? + of_nodes[b][n - k]?)).max()
+                    }
                     _ => return None,
                 };
                 of_nodes[id].truncate(n);
@@ -71,7 +74,6 @@ type List = Vec<Option<Size>>;
 ///
 /// `coefficients` lists the Fourier coefficients of an element with their harmonics.
 pub fn residual_bits<A>(
-    algebra: &A,
     equation: &Equation<A>,
     expansion: &Expansion<A>,
     coefficients: impl Fn(&A::Element) -> Vec<(usize, Rational)>,
@@ -151,7 +153,6 @@ where
     let inertia = sizes.product(&series(&squared), &curvature);
     let residual = sizes.sum(&inertia, &of_nodes[equation.root]);
     let bits = residual.iter().flatten().map(|size| sizes.bits(size)).max();
-    let _ = algebra;
     Some(bits.unwrap_or(0))
 }
 

@@ -43,8 +43,6 @@ pub struct Expansion<A: PhaseAlgebra> {
     pub amplitude: Vec<Constant<A>>,
     /// x_0, x_1, ... as functions of psi = omega t.
     pub solution: Vec<A::Element>,
-    /// f_1, f_2, ... (at index n - 1), when asked for.
-    pub forcing: Vec<A::Element>,
     /// The work, order by order.
     pub work: Vec<OrderWork>,
     /// Coefficients of the logarithms, exponentials and formal functions of the equation, by
@@ -57,6 +55,15 @@ impl<A: PhaseAlgebra> Expansion<A> {
     pub fn order(&self) -> usize {
         self.solution.len() - 1
     }
+
+    /// f_n, the right side of x_n'' + x_n = f_n - W_n x_0'' (zero at order zero).
+    pub fn right_side(&self, algebra: &A, n: usize) -> A::Element {
+        let (x, w) = (&self.solution[n], &self.frequency_squared[n]);
+        let sum = algebra.add(&algebra.derivative(&algebra.derivative(x)), x);
+        let Some(leading) = self.solution.first().filter(|_| n > 0) else { return sum };
+        let inertia = algebra.derivative(&algebra.derivative(leading));
+        algebra.add(&sum, &algebra.scale_by(&inertia, w))
+    }
 }
 
 /// What to derive.
@@ -66,8 +73,6 @@ pub struct Request {
     pub condition: Condition,
     /// The highest order.
     pub order: usize,
-    /// Whether to keep the right sides f_n.
-    pub record: bool,
     /// a_0; see [`leading_amplitude`].
     pub leading_amplitude: Rational,
 }
@@ -104,7 +109,7 @@ pub fn expand<A: PhaseAlgebra>(
     let mut driver = Driver::start(algebra, equation, request)?;
     for n in 1..=request.order {
         let before = driver.evaluator.products;
-        driver.step(n, request.record)?;
+        driver.step(n)?;
         let work = OrderWork {
             order: n,
             products: driver.evaluator.products - before,
@@ -136,7 +141,6 @@ struct Driver<'a, A: PhaseAlgebra> {
     /// Whether coefficient n of a node depends on x_n.
     sensitive: Vec<bool>,
     limit_cycle: Option<LimitCycleResponse<A>>,
-    forcing: Vec<A::Element>,
     work: Vec<OrderWork>,
 }
 
@@ -202,7 +206,6 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
             x: vec![x0],
             sensitive,
             limit_cycle: None,
-            forcing: Vec::new(),
             work: Vec::new(),
         };
         driver.forget(1);
@@ -223,14 +226,11 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         Ok(self.algebra.neg(&f))
     }
 
-    fn step(&mut self, n: usize, record: bool) -> Result<(), ExpandError> {
+    fn step(&mut self, n: usize) -> Result<(), ExpandError> {
         let (algebra, constants) = (self.algebra, self.algebra.constants());
         let f = self.right_side(n)?;
         let phase = |source| ExpandError::Phase { order: n, source };
         let mut split = algebra.resolve(&f).map_err(phase)?;
-        if record {
-            self.forcing.push(f);
-        }
         if let Some(shift) = self.amplitude_shift(&split.sin_amplitude, n)? {
             if let Some(reaction) = &self.limit_cycle {
                 let change = constants.mul(&reaction.cos, &shift);
@@ -304,8 +304,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     fn extend_frequency(&mut self, n: usize) {
         let constants = self.algebra.constants();
         let pairs: Vec<_> = (1..n).map(|k| (&self.frequency[k], &self.frequency[n - k])).collect();
-        let rest =
-            constants.sub(&self.frequency_squared[n], &constants.sum_of_products(&pairs));
+        let rest = constants.sub(&self.frequency_squared[n], &constants.sum_of_products(&pairs));
         self.frequency.push(constants.scale(&rest, &Rational::from((1, 2))));
     }
 
@@ -347,12 +346,10 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         let mut change = algebra.neg(&algebra.scale_by(force, &self.inverse_stiffness));
         let inertia = algebra.scale_by(&direction, &self.frequency_squared[1]);
         algebra.add_assign(&mut change, &inertia);
-        let split = algebra
-            .resolve(&change)
-            .map_err(|source| ExpandError::Phase { order: 1, source })?;
-        let inverse_sin = constants
-            .reciprocal(&split.sin_amplitude)
-            .ok_or(ExpandError::DegenerateLimitCycle)?;
+        let split =
+            algebra.resolve(&change).map_err(|source| ExpandError::Phase { order: 1, source })?;
+        let inverse_sin =
+            constants.reciprocal(&split.sin_amplitude).ok_or(ExpandError::DegenerateLimitCycle)?;
         Ok(LimitCycleResponse {
             of_nodes: tangents.into_iter().map(|[zero, _]| zero).collect(),
             cos: split.cos_amplitude,
@@ -380,7 +377,6 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
             frequency_squared: self.frequency_squared,
             amplitude,
             solution: self.x,
-            forcing: self.forcing,
             work: self.work,
             certificates: self.evaluator.certificates(order),
         })

@@ -35,8 +35,10 @@ pub enum ExpandError {
     #[error("the equation contains x': scale time so that the linear stiffness is 1")]
     StiffnessNotOne,
     /// The resonant part in sin psi does not vanish: the amplitude is not constant.
-    #[error("order {order}: the secular term in sin psi does not vanish, so no solution of \
-             constant amplitude exists; a limit cycle or slow drift must be allowed")]
+    #[error(
+        "order {order}: the secular term in sin psi does not vanish, so no solution of \
+             constant amplitude exists; a limit cycle or slow drift must be allowed"
+    )]
     AmplitudeDrifts {
         /// The order at which it appears.
         order: usize,
@@ -54,7 +56,9 @@ pub enum ExpandError {
         count: usize,
     },
     /// The amplitude equation is degenerate, a double root.
-    #[error("the limit cycle is not hyperbolic at order 1: its amplitude equation has a double root")]
+    #[error(
+        "the limit cycle is not hyperbolic at order 1: its amplitude equation has a double root"
+    )]
     DegenerateLimitCycle,
     /// The algebra could not solve at some order.
     #[error("order {order}: {source}")]

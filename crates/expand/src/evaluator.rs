@@ -71,7 +71,9 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
             list.into_iter().take(order + 1).map_while(|value| value).collect()
         };
         let nodes = self.equation.nodes.iter().zip(self.values);
-        nodes.map(|(node, list)| if is_transcendental(node) { prefix(list) } else { Vec::new() }).collect()
+        nodes
+            .map(|(node, list)| if is_transcendental(node) { prefix(list) } else { Vec::new() })
+            .collect()
     }
 
     /// Adds the corrections, one per node, to the coefficients of order n that are known, and
@@ -86,7 +88,11 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
     }
 
     /// The coefficient of eps^n of a node.
-    pub(crate) fn coefficient(&mut self, node: NodeId, n: usize) -> Result<A::Element, ExpandError> {
+    pub(crate) fn coefficient(
+        &mut self,
+        node: NodeId,
+        n: usize,
+    ) -> Result<A::Element, ExpandError> {
         if let Some(value) = self.known(node, n) {
             return Ok(value.clone());
         }

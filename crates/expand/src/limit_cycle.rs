@@ -60,9 +60,8 @@ fn secular_term<A: PhaseAlgebra>(
     evaluator.assign(&Node::Velocity, 0, algebra.derivative(&x0));
     evaluator.assign(&Node::Displacement, 0, x0);
     let force = evaluator.coefficient(equation.root, 1)?;
-    let (_, sine) = algebra
-        .first_harmonic(&force)
-        .map_err(|source| ExpandError::Phase { order: 1, source })?;
+    let (_, sine) =
+        algebra.first_harmonic(&force).map_err(|source| ExpandError::Phase { order: 1, source })?;
     algebra.constants().as_rational(&sine).ok_or(ExpandError::IrrationalAmplitude)
 }
 
@@ -97,10 +96,8 @@ fn trim(mut polynomial: Vec<Rational>) -> Vec<Rational> {
 /// The number of distinct positive roots of a polynomial without root at zero (Sturm's theorem
 /// on (0, infinity)).
 fn count_positive_roots(polynomial: &[Rational]) -> usize {
-    let derivative: Vec<Rational> = (1u32..)
-        .zip(polynomial.iter().skip(1))
-        .map(|(k, c)| Rational::from(c * k))
-        .collect();
+    let derivative: Vec<Rational> =
+        (1u32..).zip(polynomial.iter().skip(1)).map(|(k, c)| Rational::from(c * k)).collect();
     let mut chain = vec![polynomial.to_vec(), trim(derivative)];
     while let [.., a, b] = &chain[..]
         && !b.is_empty()
@@ -146,9 +143,7 @@ fn rational_root(polynomial: &[Rational]) -> Option<Rational> {
     let integral = |c: &Rational| Rational::from(c * &denominator).numer().clone().abs();
     let numerators = divisors(&integral(polynomial.first()?));
     let denominators = divisors(&integral(polynomial.last()?));
-    let value = |a: &Rational| {
-        polynomial.iter().rev().fold(Rational::new(), |sum, c| sum * a + c)
-    };
+    let value = |a: &Rational| polynomial.iter().rev().fold(Rational::new(), |sum, c| sum * a + c);
     let candidates = numerators
         .iter()
         .flat_map(|p| denominators.iter().map(move |q| Rational::from((p.clone(), q.clone()))));

@@ -66,8 +66,7 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
         let is_zero = |c| self.algebra.constants().is_zero(c);
         let coefficient = |n: usize| {
             let pairs = constants.coefficients.iter().zip(f.coefficients[..=n].iter().rev());
-            let terms: Vec<_> =
-                pairs.filter(|(c, _)| !is_zero(c)).map(|(c, f)| (f, c)).collect();
+            let terms: Vec<_> = pairs.filter(|(c, _)| !is_zero(c)).map(|(c, f)| (f, c)).collect();
             self.algebra.linear_combination(&terms)
         };
         Series::truncated((0..f.coefficients.len()).map(coefficient).collect())
@@ -112,7 +111,8 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
     fn transcendental_nodes(&self, values: &[Series<A::Element>]) -> Result<(), ExpandError> {
         let algebra = self.algebra;
         let slope = |id: NodeId| values[id].map(|c| algebra.derivative(c));
-        let product = |a: &Series<A::Element>, b: &Series<A::Element>| a.mul(algebra, b, self.order);
+        let product =
+            |a: &Series<A::Element>, b: &Series<A::Element>| a.mul(algebra, b, self.order);
         for (id, node) in self.equation.nodes.iter().enumerate() {
             if !values[id].is_polynomial && values[id].coefficients.is_empty() {
                 continue;

@@ -3,7 +3,7 @@
 use lindstedt_expand::ExpandError;
 use thiserror::Error;
 
-/// Why the engine has no answer.
+/// Why the engine has no answer. Each kind maps to one exit code of the command line.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -11,6 +11,59 @@ pub enum Error {
     #[error(transparent)]
     Expand(#[from] ExpandError),
     /// No more primes of 61 bits with the roots of unity that the order needs.
-    #[error("no more primes for this order")]
+    #[error("no more 61-bit primes for this order")]
     OutOfPrimes,
+    /// A value that cannot be read.
+    #[error("cannot read the value {text:?}")]
+    BadValue {
+        /// The text, shortened.
+        text: String,
+    },
+    /// A parameter the problem does not have.
+    #[error("{problem} has no parameter {name:?}; it has {known}")]
+    UnknownParameter {
+        /// The problem.
+        problem: String,
+        /// The name.
+        name: String,
+        /// The parameters it has.
+        known: String,
+    },
+    /// A value outside the domain of a parameter.
+    #[error("{name} = {value} is outside its domain {domain}")]
+    OutsideDomain {
+        /// The parameter.
+        name: String,
+        /// The value.
+        value: String,
+        /// The domain.
+        domain: &'static str,
+    },
+    /// A condition that the problem does not offer.
+    #[error("{problem} does not offer this normalisation")]
+    UnknownCondition {
+        /// The problem.
+        problem: String,
+    },
+    /// The work would need more memory than allowed.
+    #[error("order {order} is predicted to need {needed} MiB, more than the limit of {limit} MiB")]
+    TooLarge {
+        /// The order.
+        order: usize,
+        /// The prediction in MiB.
+        needed: u64,
+        /// The limit in MiB.
+        limit: u64,
+    },
+    /// The digits were not reached.
+    #[error("the digits asked for were not reached with {bits} bits")]
+    NotEnoughBits {
+        /// The largest precision tried.
+        bits: u32,
+        /// The best enclosure.
+        best: Option<String>,
+    },
+    /// The value does not exist.
+    #[error("the value does not exist")]
+    NoValue,
 }

@@ -1,4 +1,26 @@
-//! x
+//! Perturbation expansions of strongly nonlinear and non-smooth oscillators, to any order, in
+//! exact arithmetic, each substituted back into its equation.
+//!
+//! ```
+//! use lindstedt::{Settings, derive, problems};
+//! let problem = problems::find("power-law").ok_or("no such problem")?;
+//! let result = derive(&problem, &Settings { order: 2, ..Settings::default() }, &mut |_| true)?;
+//! assert_eq!(result.exact("frequency_squared", 1).as_deref(), Some("1 - 2*ln(2)"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod derivation;
+pub mod energy;
+mod error;
+pub mod multimodular;
+pub mod number;
+mod value;
+
+pub use derivation::{Derivation, NamedSeries, Progress, Settings, Solution, derive};
+pub use error::Error;
+pub use number::{Number, Status};
+pub use value::Value;
+
 pub use lindstedt_algebra as algebra;
 pub use lindstedt_coeff as coeff;
 pub use lindstedt_equation as equation;
@@ -6,6 +28,3 @@ pub use lindstedt_expand as expand;
 pub use lindstedt_phase as phase;
 pub use lindstedt_problems as problems;
 pub use lindstedt_series as series;
-pub mod multimodular;
-mod error;
-pub use error::Error;

@@ -68,9 +68,10 @@ pub fn derive(
     let plain = Trigonometric::new(Rationals);
     let compiled = compile(&plain, equation, &Over(binding, &Rationals), order)?;
     let amplitude = leading_amplitude(&plain, &compiled, condition)?;
-    let request = Request { condition, order, record: false, leading_amplitude: amplitude };
-    let (degrees, degree) = degrees(&compiled, order)
-        .ok_or_else(|| ExpandError::UnsupportedTerm { term: "a term that is not polynomial".into() })?;
+    let request = Request { condition, order, leading_amplitude: amplitude };
+    let (degrees, degree) = degrees(&compiled, order).ok_or_else(|| {
+        ExpandError::UnsupportedTerm { term: "a term that is not polynomial".into() }
+    })?;
     let (points, roots) = Modular::points_for_degree(degree);
     let job = Job { equation, binding, request, degrees, points };
 
@@ -96,7 +97,7 @@ pub fn derive(
     };
     let expansion = job.assemble(&plain, &values)?;
     let last = images.last().map_or(1 << 61, |(field, _)| field.prime());
-    let proof_primes = prove(&job, &plain, &compiled, &expansion, roots, last)?;
+    let proof_primes = prove(&job, &compiled, &expansion, roots, last)?;
     Ok(Proved { expansion, primes: images.len(), proof_primes })
 }
 
@@ -166,7 +167,6 @@ impl Job<'_> {
             frequency_squared,
             amplitude,
             solution,
-            forcing: Vec::new(),
             work: Vec::new(),
             certificates: Vec::new(),
         })
@@ -281,7 +281,6 @@ impl<'a> Remaindering<'a> {
 /// Proves that the residual vanishes; returns the number of primes used.
 fn prove(
     job: &Job<'_>,
-    plain: &RationalAlgebraOfPhase,
     compiled: &Equation<RationalAlgebraOfPhase>,
     expansion: &Expansion<RationalAlgebraOfPhase>,
     roots: u64,
@@ -291,7 +290,7 @@ fn prove(
         let lists = x.cos.iter().enumerate().chain(x.sin.iter().enumerate());
         lists.filter(|(_, c)| !c.is_zero()).map(|(k, c)| (k, c.clone())).collect()
     };
-    let bits = residual_bits(plain, compiled, expansion, coefficients).unwrap_or(0);
+    let bits = residual_bits(compiled, expansion, coefficients).unwrap_or(0);
     // Every prime exceeds 2^60.
     let count = usize::try_from(bits / 60 + 1).unwrap_or(usize::MAX);
     let fields: Vec<PrimeField> =
@@ -299,11 +298,8 @@ fn prove(
     if fields.len() < count {
         return Err(Error::OutOfPrimes);
     }
-    let cleared: Vec<[Cleared; 2]> = expansion
-        .solution
-        .iter()
-        .map(|x| [Cleared::new(&x.cos), Cleared::new(&x.sin)])
-        .collect();
+    let cleared: Vec<[Cleared; 2]> =
+        expansion.solution.iter().map(|x| [Cleared::new(&x.cos), Cleared::new(&x.sin)]).collect();
     fields.into_par_iter().try_for_each(|field| {
         let (algebra, equation) = job.over(field)?;
         let image = reduce(&algebra, expansion, &cleared);
@@ -353,7 +349,6 @@ fn reduce(
         frequency_squared: numbers(&expansion.frequency_squared),
         amplitude: numbers(&expansion.amplitude),
         solution: solution.iter().map(function).collect(),
-        forcing: Vec::new(),
         work: Vec::new(),
         certificates: Vec::new(),
     }

@@ -1,6 +1,6 @@
 //! x'' + x + rho x^3 = 0.
 
-use lindstedt_equation::{Condition, Expression, ParameterCard, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
 
 pub(crate) fn problem() -> Problem {
     let x = Expression::Displacement;
@@ -10,6 +10,7 @@ pub(crate) fn problem() -> Problem {
         equation: Expression::Acceleration + x.clone() + Expression::Small * x.pow(3),
         small: "rho",
         conditions: vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude],
+        amplitude: AmplitudeRole::InSmallParameter,
         parameters: vec![
             ParameterCard {
                 name: "eps",

@@ -1,6 +1,6 @@
 //! x'' + sin x = 0, embedded in the small-delta method.
 
-use lindstedt_equation::{Condition, Expression, ParameterCard, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
 
 pub(crate) fn problem() -> Problem {
     let x = Expression::Displacement;
@@ -11,6 +11,7 @@ pub(crate) fn problem() -> Problem {
         equation: Expression::Acceleration + x * exponent.formal("S"),
         small: "delta",
         conditions: vec![Condition::InitialAmplitude],
+        amplitude: AmplitudeRole::InSums,
         parameters: vec![
             ParameterCard {
                 name: "amplitude",

@@ -1,6 +1,6 @@
 //! x'' + x (x^2)^delta = 0.
 
-use lindstedt_equation::{Condition, Expression, ParameterCard, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
 
 pub(crate) fn problem() -> Problem {
     let x = Expression::Displacement;
@@ -11,6 +11,7 @@ pub(crate) fn problem() -> Problem {
         equation: Expression::Acceleration + x * stiffness,
         small: "delta",
         conditions: vec![Condition::InitialAmplitude],
+        amplitude: AmplitudeRole::ScalesFrequency { exponent: 2 },
         parameters: vec![
             ParameterCard {
                 name: "n",

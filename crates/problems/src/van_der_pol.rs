@@ -1,6 +1,6 @@
 //! x'' - eps (1 - x^2) x' + x = 0.
 
-use lindstedt_equation::{Condition, Expression, ParameterCard, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
 
 pub(crate) fn problem() -> Problem {
     let x = Expression::Displacement;
@@ -11,6 +11,7 @@ pub(crate) fn problem() -> Problem {
         equation: Expression::Acceleration + x - Expression::Small * gain * Expression::Velocity,
         small: "eps",
         conditions: vec![Condition::LimitCycle],
+        amplitude: AmplitudeRole::Determined,
         parameters: vec![ParameterCard {
             name: "eps",
             meaning: "strength of the nonlinear damping, any sign",

@@ -102,9 +102,8 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
         }
         let mut y = vec![ring.one()];
         for n in 1..x.len() {
-            let factor = |k: usize| {
-                Rational::from(exponent + 1u32) * Rational::from(k) - Rational::from(n)
-            };
+            let factor =
+                |k: usize| Rational::from(exponent + 1u32) * Rational::from(k) - Rational::from(n);
             let weighted: Vec<E> = (1..=n).map(|k| ring.scale(&x[k], &factor(k))).collect();
             let pairs: Vec<_> = weighted.iter().zip(y.iter().rev()).collect();
             y.push(ring.scale(&ring.sum_of_products(&pairs), &Rational::from((1, n))));

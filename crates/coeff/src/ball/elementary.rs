@@ -113,10 +113,7 @@ impl Balls {
         if !a.is_finite() || undetermined_phase(a) {
             return None;
         }
-        let cosine = self.cos(&Ball {
-            midpoint: a.midpoint.clone(),
-            radius: radius_zero(),
-        });
+        let cosine = self.cos(&Ball { midpoint: a.midpoint.clone(), radius: radius_zero() });
         let near = cosine.abs_lower();
         let far = down(&near - &a.radius);
         if far.is_zero() || far.is_sign_negative() {

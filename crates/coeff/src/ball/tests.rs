@@ -10,19 +10,15 @@ struct Random(u64);
 
 impl Random {
     fn below(&mut self, n: u64) -> u64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) % n
     }
     /// An odd numerator over a power of two or of ten, of either sign and many sizes.
     fn rational(&mut self) -> Rational {
         let numerator = Integer::from(self.below(1 << 30)) - (1 << 29);
-        let denominator = Integer::from(Integer::u_pow_u(
-            [2, 10][self.below(2) as usize],
-            self.below(28) as u32,
-        ));
+        let denominator =
+            Integer::from(Integer::u_pow_u([2, 10][self.below(2) as usize], self.below(28) as u32));
         Rational::from((numerator * 2 + 1, denominator))
     }
     /// A ball and a point that certainly lies in it: centre, rim or between, radius 0 or not.
@@ -31,10 +27,8 @@ impl Random {
         let shift = -(self.below(2 * u64::from(balls.bits())) as i32);
         let error = Float::with_val(53, Float::i_exp([0, 1, 3][self.below(3) as usize], shift));
         let ball = balls.add_error(&ball, &error);
-        let (centre, radius) = (
-            ball.midpoint().to_rational().unwrap(),
-            ball.radius().to_rational().unwrap(),
-        );
+        let (centre, radius) =
+            (ball.midpoint().to_rational().unwrap(), ball.radius().to_rational().unwrap());
         let theta = Rational::from((self.below(5) as i64 - 2, 2));
         (ball, centre + theta * radius)
     }
@@ -48,11 +42,7 @@ fn encloses(ball: &Ball, truth: &Float) -> bool {
     distance <= reach
 }
 
-type Unary = (
-    &'static str,
-    fn(Balls, &Ball) -> Option<Ball>,
-    fn(Float) -> Float,
-);
+type Unary = (&'static str, fn(Balls, &Ball) -> Option<Ball>, fn(Float) -> Float);
 
 const UNARY: &[Unary] = &[
     ("exp", |b, a| Some(b.exp(a)), Float::exp),
@@ -81,11 +71,7 @@ const UNARY: &[Unary] = &[
     ),
 ];
 
-type Binary = (
-    &'static str,
-    fn(Balls, &Ball, &Ball) -> Option<Ball>,
-    fn(Float, Float) -> Float,
-);
+type Binary = (&'static str, fn(Balls, &Ball, &Ball) -> Option<Ball>, fn(Float, Float) -> Float);
 
 const BINARY: &[Binary] = &[
     ("add", |c, a, b| Some(c.add(a, b)), |x, y| x + y),
@@ -98,21 +84,10 @@ const BINARY: &[Binary] = &[
 
 /// Points where cancellation or a pole is near: 0, +-1, pi/2 to 60 digits, tiny and large.
 fn hard_points() -> Vec<Rational> {
-    let texts = [
-        "0/1",
-        "1/1",
-        "-1/1",
-        "1000000007/1000000006",
-        "-710/113",
-        "355/226",
-        "12345/1",
-    ];
+    let texts = ["0/1", "1/1", "-1/1", "1000000007/1000000006", "-710/113", "355/226", "12345/1"];
     let mut points: Vec<Rational> = texts.iter().map(|t| t.parse().unwrap()).collect();
     points.push(Float::with_val(200, Constant::Pi).to_rational().unwrap() / 2);
-    points.push(Rational::from((
-        1,
-        Integer::from(Integer::u_pow_u(10, 300)),
-    )));
+    points.push(Rational::from((1, Integer::from(Integer::u_pow_u(10, 300)))));
     points.push(Rational::from(Integer::u_pow_u(10, 100)));
     points
 }
@@ -157,10 +132,7 @@ fn binary_operations_contain_the_truth() {
                 };
                 let wide = |q: &Rational| Float::with_val(4 * bits + 1200, q);
                 let truth = reference(wide(&x), wide(&y));
-                assert!(
-                    encloses(&result, &truth),
-                    "{name} at {x}, {y}: {result:?} misses {truth}"
-                );
+                assert!(encloses(&result, &truth), "{name} at {x}, {y}: {result:?} misses {truth}");
             }
         }
     }
@@ -191,11 +163,7 @@ fn partial_operations_refuse() {
             && balls.ln(&minus).is_none()
     );
     assert!(balls.sqrt(&around_zero).is_none() && balls.sqrt(&minus).is_none());
-    assert!(
-        balls
-            .sqrt(&balls.zero())
-            .is_some_and(|root| root.is_exact())
-    );
+    assert!(balls.sqrt(&balls.zero()).is_some_and(|root| root.is_exact()));
     assert!(balls.powi(&around_zero, -1).is_none() && balls.zeta(1).is_none());
     let half_pi = balls.mul_power_of_two(&balls.pi(), -1);
     assert!(balls.tan(&half_pi).is_none());
@@ -215,10 +183,7 @@ fn overflow_and_underflow_are_never_wrong() {
     assert!(small.is_some_and(|ball| !ball.contains_zero() && ball.relative_accuracy_bits() > 58));
     let nothing = balls.exp(&huge);
     for (name, operation, _) in UNARY {
-        assert!(
-            operation(balls, &nothing).is_none_or(|ball| !ball.is_finite()),
-            "{name}"
-        );
+        assert!(operation(balls, &nothing).is_none_or(|ball| !ball.is_finite()), "{name}");
     }
     // The phase of 2^(10^8) is not reduced: that would take 10^8 bits of pi.
     let far = balls.mul_power_of_two(&balls.one(), 100_000_000);

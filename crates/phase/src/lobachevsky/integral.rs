@@ -37,7 +37,8 @@ pub(super) fn antiderivative<C: Moments>(
         if part.is_empty() {
             continue;
         }
-        let mut elimination = Elimination { constants, f: part, a: BTreeMap::new(), b: BTreeMap::new() };
+        let mut elimination =
+            Elimination { constants, f: part, a: BTreeMap::new(), b: BTreeMap::new() };
         elimination.positive_powers(class);
         elimination.negative_powers(class);
         if class == 0 {

@@ -311,8 +311,7 @@ impl<C: Moments> PhaseAlgebra for Lobachevsky<C> {
     /// ln|cos^k| = -k l.
     fn log_abs(&self, f: &Self::Element) -> Option<Self::Element> {
         let (power, c) = single_power(f)?;
-        (c == self.constants.one())
-            .then(|| self.scale(&self.log_secant(), &Rational::from(-power)))
+        (c == self.constants.one()).then(|| self.scale(&self.log_secant(), &Rational::from(-power)))
     }
 
     fn terms(&self, f: &Self::Element) -> usize {
@@ -345,8 +344,7 @@ impl<C: Moments> PhaseAlgebra for Lobachevsky<C> {
         subtract(&mut with_cos, &sin_sin, &q);
         subtract(&mut with_sin, &sin_sin, &p);
         subtract(&mut with_sin, &sin_cos, &self.constants.neg(&q));
-        let response =
-            self.sum_of_products(&[(&sin, &with_cos), (&self.neg(&cos), &with_sin)]);
+        let response = self.sum_of_products(&[(&sin, &with_cos), (&self.neg(&cos), &with_sin)]);
         let two = Rational::from(2);
         Ok(Resolution {
             cos_amplitude: self.constants.scale(&p, &two),
@@ -385,10 +383,7 @@ mod tests {
         let solved = a.resolve(&force).ok();
         let c = a.constants();
         let resonance = c.sub(&c.scale(&c.moment(1), &Rational::from(2)), &c.one());
-        let x1 = a.sum_of_products(&[
-            (&a.cosine(), &a.log_secant()),
-            (&a.sine(), &a.lambda(1)),
-        ]);
+        let x1 = a.sum_of_products(&[(&a.cosine(), &a.log_secant()), (&a.sine(), &a.lambda(1))]);
         let found = solved.map(|s| (s.cos_amplitude, s.response));
         assert_eq!(found, Some((resonance, x1)));
     }

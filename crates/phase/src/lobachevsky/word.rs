@@ -75,7 +75,8 @@ impl Monomial for Word {
         Self::default()
     }
     fn times(&self, other: &Self) -> Self {
-        let (long, short) = if self.0.len() >= other.0.len() { (self, other) } else { (other, self) };
+        let (long, short) =
+            if self.0.len() >= other.0.len() { (self, other) } else { (other, self) };
         let mut product = long.clone();
         for (x, y) in product.0.iter_mut().zip(&short.0) {
             *x = x.saturating_add(*y);
@@ -135,7 +136,8 @@ pub(super) fn along_lambdas<C: Moments>(
             let Some((lowered, exponent)) = word.lowered(index) else { continue };
             let m = index as u32;
             let power = Word::log(u8::try_from(m).unwrap_or(u8::MAX));
-            let coefficient = Rational::from((u32::from(exponent), Integer::from(Integer::factorial(m))));
+            let coefficient =
+                Rational::from((u32::from(exponent), Integer::from(Integer::factorial(m))));
             sum.add(constants, lowered.times(&power), constants.scale(c, &coefficient));
             let moment = constants.mul(&constants.moment(index as u16), c);
             let coefficient = Rational::from(-i32::from(exponent));

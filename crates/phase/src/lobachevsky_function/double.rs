@@ -20,11 +20,7 @@ const FAST_LIMIT: f64 = 3.0e6;
 const FALL_BACK_BITS: u32 = 80;
 
 /// pi in three parts; the first two have 33 bits, so their products with n < 2^20 are exact.
-const PI_PARTS: [f64; 3] = [
-    3.1415926534682512,
-    1.2154201012607932e-10,
-    4.044532497591901e-21,
-];
+const PI_PARTS: [f64; 3] = [3.1415926534682512, 1.2154201012607932e-10, 4.044532497591901e-21];
 /// pi ln 2 in two parts, the first of 32 bits.
 const PERIOD_PARTS: [f64; 2] = [2.1775860898196697, 4.839324069899467e-10];
 /// (pi/2) ln 2 in two parts.
@@ -52,11 +48,7 @@ pub fn lobachevsky_f64(x: f64) -> f64 {
     if size > FAST_LIMIT {
         return fall_back(x);
     }
-    let value = if size <= FRAC_PI_2 {
-        on_quarter(size, 0.0)
-    } else {
-        beyond_quarter(size)
-    };
+    let value = if size <= FRAC_PI_2 { on_quarter(size, 0.0) } else { beyond_quarter(size) };
     value.copysign(x)
 }
 
@@ -215,10 +207,7 @@ mod tests {
     /// The distance of `value` from L(x) in units of the last place of L(x).
     fn error_in_ulps(x: f64, value: f64) -> f64 {
         let truth = lobachevsky(&point(x), Balls::new(130));
-        let ulp = Float::with_val(
-            53,
-            Float::i_exp(1, truth.midpoint().get_exp().unwrap() - 53),
-        );
+        let ulp = Float::with_val(53, Float::i_exp(1, truth.midpoint().get_exp().unwrap() - 53));
         let difference = Float::with_val(53, truth.midpoint() - Float::with_val(53, value));
         (difference / ulp).to_f64().abs()
     }
@@ -230,9 +219,7 @@ mod tests {
         let even_zeta = |k: u32, scale: &Ball| {
             let zeta = balls.zeta(2 * k).unwrap();
             let power = balls.powi(scale, 2 * i64::from(k)).unwrap();
-            balls
-                .div_i64(&balls.mul(&zeta, &power), i64::from(k * (2 * k + 1)))
-                .unwrap()
+            balls.div_i64(&balls.mul(&zeta, &power), i64::from(k * (2 * k + 1))).unwrap()
         };
         let inverse_pi = balls.div(&balls.one(), &balls.pi()).unwrap();
         for (k, entry) in (1..).zip(FROM_POLE) {
@@ -260,10 +247,7 @@ mod tests {
                 let order = k as i64 + 1;
                 log.push(balls.div_i64(&tangent[k], order).unwrap());
                 tangent.push(balls.div_i64(&square, order).unwrap());
-                assert_eq!(
-                    nearest(&balls.div_i64(&log[k], order).unwrap()),
-                    panel.taylor[k]
-                );
+                assert_eq!(nearest(&balls.div_i64(&log[k], order).unwrap()), panel.taylor[k]);
             }
         }
     }
@@ -296,9 +280,7 @@ mod tests {
                 .wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
-        let mut arguments = vec![
-            0.6, 0.9, 1.1, 1.2, 1.33, 0.75, 1.0, 1.15625, 3.0e6, 2999999.5,
-        ];
+        let mut arguments = vec![0.6, 0.9, 1.1, 1.2, 1.33, 0.75, 1.0, 1.15625, 3.0e6, 2999999.5];
         for n in 1..2000 {
             // The multiples of pi/2, their neighbours, and distances 10^-16 ... 1 from them.
             let near = f64::from(n) * FRAC_PI_2;

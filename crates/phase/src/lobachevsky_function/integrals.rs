@@ -66,9 +66,7 @@ pub(super) fn from_zero(sine: &Ball, max_m: usize, balls: Balls) -> Vec<Ball> {
             before = std::mem::replace(entry, next.unwrap_or_else(|| work.indeterminate()));
         }
     }
-    sums.iter()
-        .map(|sum| balls.add_error(sum, &series.tail))
-        .collect()
+    sums.iter().map(|sum| balls.add_error(sum, &series.tail)).collect()
 }
 
 /// int_0^y (-ln sin v)^m/m! dv for m = 0..=max_m, where 0 < y <= pi/4 is known by its sine.
@@ -87,20 +85,13 @@ pub(super) fn from_pole(sine: &Ball, max_m: usize, balls: Balls) -> Vec<Ball> {
         let odd = 2 * n + 1;
         let mut term = work.round(&power);
         for weight in &mut weights {
-            term = work
-                .div_i64(&term, odd)
-                .unwrap_or_else(|| work.indeterminate());
+            term = work.div_i64(&term, odd).unwrap_or_else(|| work.indeterminate());
             *weight = balls.add(weight, &term);
         }
         let grown = work.mul_i64(&work.mul(&power, &work.round(&series.ratio)), odd);
-        power = work
-            .div_i64(&grown, odd + 1)
-            .unwrap_or_else(|| work.indeterminate());
+        power = work.div_i64(&grown, odd + 1).unwrap_or_else(|| work.indeterminate());
     }
-    let weights: Vec<Ball> = weights
-        .iter()
-        .map(|d| balls.add_error(d, &series.tail))
-        .collect();
+    let weights: Vec<Ball> = weights.iter().map(|d| balls.add_error(d, &series.tail)).collect();
     combine(&weights, &balls.neg(&log), balls)
 }
 
@@ -116,9 +107,7 @@ fn combine(weights: &[Ball], log: &Ball, balls: Balls) -> Vec<Ball> {
     (1..=weights.len())
         .map(|count| {
             let pairs = powers.iter().zip(weights.iter().take(count).rev());
-            pairs.fold(balls.zero(), |sum, (l, d)| {
-                balls.add(&sum, &balls.mul(l, d))
-            })
+            pairs.fold(balls.zero(), |sum, (l, d)| balls.add(&sum, &balls.mul(l, d)))
         })
         .collect()
 }
@@ -152,17 +141,8 @@ impl Series {
         // S W^N / (1 - W), a bound for both tails; W < 0.6.
         let coarse = Balls::new(COARSE_BITS);
         let power = coarse.mul(&coarse.powi(&ratio, terms)?, sine);
-        let tail = coarse
-            .div(&power, &coarse.sub(&coarse.one(), &ratio))?
-            .abs_upper();
-        Some(Self {
-            ratio,
-            terms,
-            bits_per_term,
-            leading,
-            tail,
-            balls,
-        })
+        let tail = coarse.div(&power, &coarse.sub(&coarse.one(), &ratio))?.abs_upper();
+        Some(Self { ratio, terms, bits_per_term, leading, tail, balls })
     }
     /// The term n is W^(n - leading) times smaller than the sum: it needs that many bits less.
     fn context(&self, n: i64) -> Balls {

@@ -53,9 +53,7 @@ pub fn means(max_m: usize, balls: Balls) -> Vec<Ball> {
         let sum = eta
             .iter()
             .zip(means.iter().rev())
-            .fold(work.zero(), |sum, (e, mean)| {
-                work.add(&sum, &work.mul(e, mean))
-            });
+            .fold(work.zero(), |sum, (e, mean)| work.add(&sum, &work.mul(e, mean)));
         let mean = work.div_i64(&sum, i64::from(index));
         means.push(mean.unwrap_or_else(|| work.indeterminate()));
     }
@@ -99,10 +97,7 @@ pub fn lobachevsky(x: &Point, balls: Balls) -> Ball {
         last(integrals::from_zero(&sine, 1, work), work)
     } else {
         let sine = work.sin(&reduced.complement);
-        work.sub(
-            &half_period,
-            &last(integrals::from_pole(&sine, 1, work), work),
-        )
+        work.sub(&half_period, &last(integrals::from_pole(&sine, 1, work), work))
     };
     let value = with_sign(on_quarter, &reduced, work);
     let turns = work.mul_power_of_two(&half_period, 1);
@@ -117,11 +112,7 @@ fn last(mut values: Vec<Ball>, balls: Balls) -> Ball {
 
 /// An odd function of the offset from its value at |offset|.
 fn with_sign(value: Ball, reduced: &Reduced, balls: Balls) -> Ball {
-    if reduced.is_negative() {
-        balls.neg(&value)
-    } else {
-        value
-    }
+    if reduced.is_negative() { balls.neg(&value) } else { value }
 }
 
 /// The functions Lambda_1, ..., Lambda_max_m at many points: owns the means mu_m.
@@ -145,10 +136,7 @@ impl LambdaTable {
     /// The table for m = 1..=max_m at the precision of `balls`. Cost: that of [`means`].
     #[must_use]
     pub fn new(max_m: usize, balls: Balls) -> Self {
-        Self {
-            balls,
-            means: means(max_m, working(balls)),
-        }
+        Self { balls, means: means(max_m, working(balls)) }
     }
     /// The precision of the values.
     #[must_use]
@@ -181,10 +169,7 @@ impl LambdaTable {
             (distance, integrals)
         } else {
             let sine = work.sin(&reduced.complement);
-            (
-                reduced.complement.clone(),
-                integrals::from_pole(&sine, max_m, work),
-            )
+            (reduced.complement.clone(), integrals::from_pole(&sine, max_m, work))
         };
         let mut values: Vec<Ball> = (self.means.iter().zip(&integrals))
             .map(|(mean, integral)| {
@@ -213,10 +198,7 @@ pub fn lambda(m: usize, x: &Point, balls: Balls) -> Ball {
 
 /// Where the certified functions give up: twice what the digits need and some more.
 fn most_bits(digits: usize) -> u32 {
-    u32::try_from(digits)
-        .unwrap_or(u32::MAX)
-        .saturating_mul(8)
-        .saturating_add(1000)
+    u32::try_from(digits).unwrap_or(u32::MAX).saturating_mul(8).saturating_add(1000)
 }
 
 /// L(x) with `digits` certified significant digits, and a bound of their error.
@@ -224,9 +206,7 @@ fn most_bits(digits: usize) -> u32 {
 /// # Errors
 /// [`CertifyError`] if the digits could not be decided.
 pub fn lobachevsky_digits(x: &Point, digits: usize) -> Result<(String, String), CertifyError> {
-    certify(digits, most_bits(digits), |balls| {
-        Some(lobachevsky(x, balls))
-    })
+    certify(digits, most_bits(digits), |balls| Some(lobachevsky(x, balls)))
 }
 
 /// Lambda_m(x) with `digits` certified significant digits, and a bound of their error.

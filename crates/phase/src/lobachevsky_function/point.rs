@@ -63,11 +63,7 @@ impl Reduced {
     }
     /// |cos x|, with full relative accuracy.
     pub fn abs_cosine(&self, balls: Balls) -> Ball {
-        if self.is_near_zero() {
-            balls.cos(&self.offset)
-        } else {
-            balls.sin(&self.complement)
-        }
+        if self.is_near_zero() { balls.cos(&self.offset) } else { balls.sin(&self.complement) }
     }
 }
 
@@ -78,17 +74,9 @@ fn reduce_turns(q: &Rational, balls: Balls) -> Reduced {
     let complement = Rational::from((1, 2)) - Rational::from(offset.abs_ref());
     let pi = balls.pi();
     let times_pi = |f: &Rational| {
-        if f.is_zero() {
-            balls.zero()
-        } else {
-            balls.mul_rational(&pi, f)
-        }
+        if f.is_zero() { balls.zero() } else { balls.mul_rational(&pi, f) }
     };
-    Reduced {
-        offset: times_pi(&offset),
-        complement: times_pi(&complement),
-        turns,
-    }
+    Reduced { offset: times_pi(&offset), complement: times_pi(&complement), turns }
 }
 
 /// q - n pi. The integer part costs as many bits as it has, and a point near a multiple of pi/2
@@ -104,42 +92,26 @@ fn reduce_rational(q: &Rational, balls: Balls) -> Reduced {
     if q.is_zero() {
         return zero;
     }
-    let size = q
-        .numer()
-        .significant_bits()
-        .saturating_sub(q.denom().significant_bits());
+    let size = q.numer().significant_bits().saturating_sub(q.denom().significant_bits());
     let mut work = balls.with_guard(GUARD_BITS.saturating_add(size));
     loop {
         let x = work.from_rational(q);
         let pi = work.pi();
-        let Some(turns) = work
-            .div(&x, &pi)
-            .and_then(|ratio| nearest(ratio.midpoint()))
-        else {
+        let Some(turns) = work.div(&x, &pi).and_then(|ratio| nearest(ratio.midpoint())) else {
             return zero_knowledge(balls);
         };
         let offset = work.sub(&x, &work.mul(&pi, &work.from_integer(&turns)));
         let half_pi = work.mul_power_of_two(&pi, -1);
         let complement = work.sub(&half_pi, &work.abs(&offset));
-        let accuracy = offset
-            .relative_accuracy_bits()
-            .min(complement.relative_accuracy_bits());
-        let missing = i64::from(balls.bits())
-            .saturating_add(2)
-            .saturating_sub(accuracy);
+        let accuracy = offset.relative_accuracy_bits().min(complement.relative_accuracy_bits());
+        let missing = i64::from(balls.bits()).saturating_add(2).saturating_sub(accuracy);
         let wider = work.with_guard(if accuracy <= 0 {
             work.bits()
         } else {
-            u32::try_from(missing)
-                .unwrap_or(0)
-                .saturating_add(GUARD_BITS)
+            u32::try_from(missing).unwrap_or(0).saturating_add(GUARD_BITS)
         });
         if missing <= 0 || wider == work {
-            return Reduced {
-                turns,
-                offset,
-                complement,
-            };
+            return Reduced { turns, offset, complement };
         }
         work = wider;
     }
@@ -152,11 +124,7 @@ fn nearest(x: &Float) -> Option<Integer> {
 /// Reached only if a quotient by pi is not finite, that is beyond MPFR's exponents.
 fn zero_knowledge(balls: Balls) -> Reduced {
     let nothing = balls.indeterminate();
-    Reduced {
-        turns: Integer::new(),
-        offset: nothing.clone(),
-        complement: nothing,
-    }
+    Reduced { turns: Integer::new(), offset: nothing.clone(), complement: nothing }
 }
 
 /// cos x, correct to about the precision of `balls` relative to |cos x|; exactly 0, 1 or -1 at
@@ -165,11 +133,7 @@ fn zero_knowledge(balls: Balls) -> Reduced {
 pub fn cosine(x: &Point, balls: Balls) -> Ball {
     let reduced = Reduced::new(x, balls);
     let value = reduced.abs_cosine(balls);
-    if reduced.turns.is_odd() {
-        balls.neg(&value)
-    } else {
-        balls.round(&value)
-    }
+    if reduced.turns.is_odd() { balls.neg(&value) } else { balls.round(&value) }
 }
 
 /// sin x, with the same properties as [`cosine`].

@@ -36,9 +36,7 @@ impl PrimeField {
     pub fn with_roots_of_unity(modulus: u64, below: u64) -> impl Iterator<Item = Self> {
         let start = (below.min(1 << 61) - 2) / modulus * modulus + 1;
         let candidates = (SMALLEST..=start).rev().step_by(modulus as usize);
-        candidates
-            .filter(|&n| Integer::from(n).is_probably_prime(40) != IsPrime::No)
-            .map(Self::new)
+        candidates.filter(|&n| Integer::from(n).is_probably_prime(40) != IsPrime::No).map(Self::new)
     }
 
     /// p.
@@ -67,9 +65,8 @@ impl PrimeField {
     /// sum_i a_i b_i with one reduction, over the shorter length.
     pub(super) fn dot(&self, a: &[u64], b: &[u64]) -> u64 {
         let chunks = a.chunks(CHUNK).zip(b.chunks(CHUNK));
-        let sum = chunks.fold(0, |sum, (a, b)| {
-            self.accumulate(sum, a.iter().copied().zip(b.iter().copied()))
-        });
+        let sum = chunks
+            .fold(0, |sum, (a, b)| self.accumulate(sum, a.iter().copied().zip(b.iter().copied())));
         self.reduce(sum)
     }
 
@@ -125,9 +122,9 @@ impl PrimeField {
         let cofactor = (self.prime - 1) / n;
         let prime_factors: Vec<u64> =
             (2..=n).filter(|q| n % q == 0 && (2..*q).all(|r| q % r != 0)).collect();
-        (2u64..1000).map(|base| self.power(self.integer(&Integer::from(base)), cofactor)).find(
-            |&root| prime_factors.iter().all(|q| self.power(root, n / q) != self.one()),
-        )
+        (2u64..1000)
+            .map(|base| self.power(self.integer(&Integer::from(base)), cofactor))
+            .find(|&root| prime_factors.iter().all(|q| self.power(root, n / q) != self.one()))
     }
 }
 

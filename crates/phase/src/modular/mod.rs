@@ -195,8 +195,7 @@ impl Modular {
         }
         let values = PARTS.map(|part| {
             let list = &harmonics[usize::from(part.sine)];
-            let coefficients: Vec<u64> =
-                (0..self.points).map(|k| list[part.harmonic(k)]).collect();
+            let coefficients: Vec<u64> = (0..self.points).map(|k| list[part.harmonic(k)]).collect();
             self.backward(part, &coefficients)
         });
         ModularElement { values, harmonics: Some(harmonics) }
@@ -282,8 +281,7 @@ impl Ring for Modular {
                 }
             }
         }
-        let values = factors
-            .map(|pairs| (!pairs.is_empty()).then(|| self.field.pointwise(&pairs)));
+        let values = factors.map(|pairs| (!pairs.is_empty()).then(|| self.field.pointwise(&pairs)));
         self.canonical(ModularElement { values, harmonics: None })
     }
 }
@@ -393,7 +391,8 @@ mod tests {
             panic!("an algebra")
         };
         let n = |k: i64| a.field.integer(&Integer::from(k));
-        let mixed = a.from_harmonics([vec![n(3), n(-1), n(4), 0, n(7)], vec![0, n(5), n(9), n(-2)]]);
+        let mixed =
+            a.from_harmonics([vec![n(3), n(-1), n(4), 0, n(7)], vec![0, n(5), n(9), n(-2)]]);
         let odd = a.from_harmonics([vec![0, n(2), 0, n(-6)], Vec::new()]);
         let samples = [a.zero(), a.one(), a.cosine(), a.sine(), mixed, odd];
         // `as_rational` does not apply to a finite field; the other laws do.

@@ -1,0 +1,139 @@
+//! The second exact route to the frequency: the energy integral, without any expansion of x(t).
+//!
+//! For x'' + x F(delta ln x^2) = 0, F(z) = sum_n F_n z^n/n!, x(0) = 1, x'(0) = 0 energy gives
+//!
+//!   T sqrt(F_0)/(2 pi) = < (1 + sum_{j>=1} (F_j/F_0) delta^j w_j/sin^2)^(-1/2) >,  x = cos theta,
+//!   w_j = (2^(j+1)/j!) I_j,   I_j = int_x^1 y ln^j y dy = -x^2 ln^j x/2 - (j/2) I_{j-1},
+//!
+//! so w_j/sin^2 is a polynomial in K = cot^2 theta and l = -ln|cos theta|. Its powers have the
+//! mean values (finite parts; only regular combinations occur)
+//!
+//!   <K^i l^m>/m! = [z^m] prod_{r<i} -(1 + 2r - z)/(1 + 2r) * sum_m mu_m z^m,
+//!
+//! from B((1 - z)/2 + i, 1/2 - i) = B((1 - z)/2, 1/2) ((1 - z)/2)_i (-1)^i/(1/2)_i. The period is
+//! linear in the mu_m at every order.
+
+use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_coeff::sparse::Sparse;
+use lindstedt_coeff::{Polynomial, PolynomialRing, PowerProduct, Symbol};
+use lindstedt_series::Series;
+use rug::{Integer, Rational};
+
+/// K and l as formal parameters; the constants of the caller must not use these.
+const COTANGENT_SQUARED: Symbol = Symbol::Parameter(u16::MAX - 1);
+const LOG_SECANT: Symbol = Symbol::Parameter(u16::MAX);
+
+/// T sqrt(F_0)/(2 pi) to the given order, for the Taylor coefficients F_0, F_1, ... (at least
+/// `order + 1` of them, F_0 a single term). Nothing when F_0 is not invertible.
+pub fn period_over_2pi(
+    ring: &PolynomialRing,
+    sums: &[Polynomial],
+    order: usize,
+) -> Option<Vec<Polynomial>> {
+    let inverse = ring.reciprocal(sums.first()?)?;
+    let (k, l) = (ring.symbol(COTANGENT_SQUARED), ring.symbol(LOG_SECANT));
+    // I_j/sin^2, starting from I_0/sin^2 = 1/2; ln x = -l.
+    let mut integral = ring.rational(&Rational::from((1, 2)));
+    let mut log_power = ring.one();
+    let mut factor = Rational::from(2);
+    let mut radicand = vec![ring.one()];
+    for (j, sum) in sums.iter().enumerate().take(order + 1).skip(1) {
+        log_power = ring.neg(&ring.mul(&log_power, &l));
+        let boundary = ring.scale(&ring.mul(&k, &log_power), &Rational::from((-1, 2)));
+        let previous = ring.scale(&integral, &Rational::from((-(j as i64), 2)));
+        integral = ring.add(&boundary, &previous);
+        factor *= Rational::from((2, j));
+        let ratio = ring.mul(sum, &inverse);
+        radicand.push(ring.mul(&ratio, &ring.scale(&integral, &factor)));
+    }
+    let root = Series::truncated(radicand).power(ring, &Rational::from((-1, 2)))?;
+    Some(root.coefficients.iter().map(|p| mean(ring, p)).collect())
+}
+
+/// The mean of a polynomial in K and l.
+fn mean(ring: &PolynomialRing, p: &Polynomial) -> Polynomial {
+    let mut sum = ring.zero();
+    for (monomial, coefficient) in p.terms() {
+        let (mut i, mut m) = (0, 0);
+        let mut rest = ring.rational(coefficient);
+        for &(symbol, exponent) in monomial.factors() {
+            match symbol {
+                COTANGENT_SQUARED => i = exponent.unsigned_abs(),
+                LOG_SECANT => m = exponent.unsigned_abs(),
+                _ => rest = ring.mul(&rest, &ring.power(symbol, exponent)),
+            }
+        }
+        sum = ring.add(&sum, &ring.mul(&rest, &mean_of_powers(ring, i, m)));
+    }
+    sum
+}
+
+/// <K^i l^m>.
+fn mean_of_powers(ring: &PolynomialRing, i: u16, m: u16) -> Polynomial {
+    // The product over r as a polynomial in z, truncated after z^m.
+    let mut product = vec![Rational::new(); usize::from(m) + 1];
+    product[0] += 1;
+    for r in 0..i {
+        let scale = Rational::from((-1, 1 + 2 * i32::from(r)));
+        let constant = Rational::from(1 + 2 * i32::from(r));
+        for index in (0..product.len()).rev() {
+            let mut value = Rational::from(&product[index] * &constant);
+            if index > 0 {
+                value -= &product[index - 1];
+            }
+            product[index] = value * &scale;
+        }
+    }
+    let factorial = Rational::from(Integer::from(Integer::factorial(m.into())));
+    let terms = (0..=m).zip(&product).map(|(j, c)| {
+        let mu = if j == m {
+            PowerProduct::default()
+        } else {
+            PowerProduct::power(Symbol::Moment(m - j), 1)
+        };
+        (mu, Rational::from(c * &factorial))
+    });
+    Sparse::collect(&lindstedt_algebra::Rationals, terms)
+}
+
+/// omega^2 of the power law x'' + x (x^2)^delta = 0 to the given order, from the same energy
+/// integral in closed form: x = cos^(1/(1 + delta)) theta gives
+///
+///   omega^2 = (1 + delta)/M(u)^2,  M(u) = sum_m mu_m u^m,  u = delta/(1 + delta).
+///
+/// Cost: about 7 10^4 products at order 30, where omega^2 has 28 629 terms in the mu_m.
+pub fn power_law_frequency_squared(ring: &PolynomialRing, order: u16) -> Vec<Polynomial> {
+    let moments =
+        (0..=order).map(|m| if m == 0 { ring.one() } else { ring.symbol(Symbol::Moment(m)) });
+    let Some(inverse_square) =
+        Series::truncated(moments.collect()).power(ring, &Rational::from(-2))
+    else {
+        return Vec::new();
+    };
+    let coefficient = |n: u32| {
+        // [delta^n] (1 + delta) u^j = [delta^(n-j)] (1 + delta)^(1-j)
+        //                           = (-1)^(n-j) binomial(n-2, n-j) for j >= 2.
+        let mut sum = ring.zero();
+        for (j, y) in (0u32..).zip(&inverse_square.coefficients).take(n as usize + 1) {
+            let binomial = Integer::from(1 - i64::from(j)).binomial(n - j);
+            ring.add_assign(&mut sum, &ring.scale(y, &Rational::from(binomial)));
+        }
+        sum
+    };
+    (0..=u32::from(order)).map(coefficient).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_two_forms_agree() {
+        let ring = PolynomialRing::default();
+        let ones = vec![ring.one(); 9];
+        let period = period_over_2pi(&ring, &ones, 8);
+        let squared = period.and_then(|p| Series::truncated(p).power(&ring, &Rational::from(-2)));
+        let direct = power_law_frequency_squared(&ring, 8);
+        assert_eq!(squared.map(|s| s.coefficients), Some(direct));
+    }
+}

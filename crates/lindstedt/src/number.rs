@@ -1,0 +1,201 @@
+//! Numbers with their class, and the evaluation of exact constants.
+
+use crate::{Error, Value};
+use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_coeff::digits::{CertifyError, certify};
+use lindstedt_coeff::{Polynomial, Symbol};
+use lindstedt_phase::lobachevsky_function::means;
+use rug::Rational;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+/// Precision is escalated up to this before "not enough bits" is answered: 10 000 digits and a
+/// generous cancellation.
+const MOST_BITS: u32 = 1 << 18;
+
+/// What is known about a number; the class only ever weakens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// Known in closed form.
+    Exact,
+    /// Enclosed rigorously.
+    Certified,
+    /// Estimated; how is said beside it.
+    Estimated,
+}
+
+/// A number as it leaves the program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Number {
+    /// The closed form, if there is one.
+    pub exact: Option<String>,
+    /// Its decimal value.
+    pub decimal: String,
+    /// A bound on |decimal - true value|; nothing when they are equal.
+    pub error: Option<String>,
+    /// The class.
+    pub status: Status,
+}
+
+/// The values of named constants at any precision, each computed once per precision.
+#[derive(Debug, Default)]
+pub struct Constants {
+    /// The amplitude a: formal parameter 0 is ln a, and S_n = sum_k (-1)^k a^(2k) k^n/(2k+1)!.
+    amplitude: Option<Value>,
+    known: Mutex<BTreeMap<(u32, Symbol), Ball>>,
+}
+
+impl Constants {
+    /// The constants that do not depend on an amplitude, and those that do if one is given.
+    pub fn new(amplitude: Option<Value>) -> Self {
+        Self { amplitude, known: Mutex::default() }
+    }
+
+    fn value(&self, symbol: Symbol, balls: Balls) -> Option<Ball> {
+        let lock = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(value) = lock().get(&(balls.bits(), symbol)) {
+            return Some(value.clone());
+        }
+        let amplitude = || Some(self.amplitude.as_ref()?.ball(balls));
+        let value = match symbol {
+            Symbol::Moment(m) => {
+                let mut table = lock();
+                for (k, mu) in (0u16..).zip(means(usize::from(m), balls)) {
+                    table.insert((balls.bits(), Symbol::Moment(k)), mu);
+                }
+                return table.get(&(balls.bits(), symbol)).cloned();
+            }
+            Symbol::LogTwo => balls.ln_2(),
+            Symbol::Pi => balls.pi(),
+            Symbol::Zeta(k) => balls.zeta(u32::from(k))?,
+            Symbol::Sum(n) => sine_sum(n, &amplitude()?, balls),
+            Symbol::Parameter(0) => balls.ln(&amplitude()?)?,
+            Symbol::Parameter(_) => return None,
+        };
+        lock().insert((balls.bits(), symbol), value.clone());
+        Some(value)
+    }
+
+    /// The polynomial's value as a ball at the precision of the context.
+    pub fn evaluate(&self, p: &Polynomial, balls: Balls) -> Option<Ball> {
+        let symbols = p.terms().iter().flat_map(|(m, _)| m.factors()).map(|(s, _)| *s);
+        let moment = |s| if let Symbol::Moment(m) = s { Some(m) } else { None };
+        if let Some(largest) = symbols.filter_map(moment).max() {
+            self.value(Symbol::Moment(largest), balls)?;
+        }
+        let mut powers: BTreeMap<(Symbol, i16), Ball> = BTreeMap::new();
+        let mut sum = balls.zero();
+        for (monomial, coefficient) in p.terms() {
+            let mut product = balls.from_rational(coefficient);
+            for &(symbol, exponent) in monomial.factors() {
+                if !powers.contains_key(&(symbol, exponent)) {
+                    let base = self.value(symbol, balls)?;
+                    powers.insert((symbol, exponent), balls.powi(&base, exponent.into())?);
+                }
+                product = balls.mul(&product, &powers[&(symbol, exponent)]);
+            }
+            sum = balls.add(&sum, &product);
+        }
+        Some(sum)
+    }
+}
+
+/// S_n(a) = sum_k (-1)^k a^(2k) k^n/(2k+1)!, 0^0 = 1: S_0 = sin(a)/a. The terms are summed until
+/// they decrease by more than a half each; then the rest is below the last term.
+pub fn sine_sum(n: u16, amplitude: &Ball, balls: Balls) -> Ball {
+    let square = balls.square(amplitude);
+    let mut weight = balls.one();
+    let mut sum = if n == 0 { balls.one() } else { balls.zero() };
+    for k in 1i64.. {
+        weight = balls.mul(&weight, &square);
+        // (2k)(2k + 1) is never zero.
+        weight =
+            balls.div_i64(&weight, 2 * k * (2 * k + 1)).unwrap_or_else(|| balls.indeterminate());
+        let power = rug::Integer::from(k);
+        let power = rug::ops::Pow::pow(power, u32::from(n));
+        let mut term = balls.mul_rational(&weight, &Rational::from(power));
+        if k % 2 == 1 {
+            term = balls.neg(&term);
+        }
+        // Ratio of consecutive terms: a^2 (1 + 1/k)^n/((2k+2)(2k+3)) < 1/2 once k > n and
+        // 2 e a^2 < (2k+2)^2.
+        let decreasing = k > i64::from(n)
+            && balls.mul_i64(&square, 6).abs_upper() < (2 * k + 2).saturating_mul(2 * k + 2);
+        let size = term.abs_upper();
+        if !size.is_finite() {
+            return balls.indeterminate();
+        }
+        let negligible = size.is_zero()
+            || sum.midpoint().get_exp().unwrap_or(0) - size.get_exp().unwrap_or(0)
+                > balls.bits() as i32 + 8;
+        if decreasing && negligible {
+            // term + rest <= 2 size.
+            let rest = balls.from_parts(&size, &rug::Float::new(53));
+            return balls.add_error(&sum, &balls.mul_i64(&rest, 2).abs_upper());
+        }
+        sum = balls.add(&sum, &term);
+    }
+    sum
+}
+
+/// A number by certified evaluation.
+///
+/// # Errors
+/// [`Error::NotEnoughBits`] when the digits cannot be reached, [`Error::NoValue`] when the value
+/// does not exist.
+pub fn certified(
+    exact: Option<String>,
+    digits: usize,
+    evaluate: impl Fn(Balls) -> Option<Ball>,
+) -> Result<Number, Error> {
+    let status = if exact.is_some() { Status::Exact } else { Status::Certified };
+    match certify(digits, MOST_BITS, evaluate) {
+        Ok((decimal, error)) => {
+            let error = (error != "0").then_some(error);
+            Ok(Number { exact, decimal, error, status })
+        }
+        Err(CertifyError::NotEnoughBits { bits, best }) => Err(Error::NotEnoughBits { bits, best }),
+        Err(_) => Err(Error::NoValue),
+    }
+}
+
+/// A rational number.
+///
+/// # Errors
+/// As [`certified`].
+pub fn rational(q: &Rational, digits: usize) -> Result<Number, Error> {
+    certified(Some(q.to_string()), digits, |balls| Some(balls.from_rational(q)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sine_sums() {
+        let balls = Balls::new(200);
+        let a = Rational::from((7, 5));
+        let amplitude = balls.from_rational(&a);
+        let sin_over_a = balls.div(&balls.sin(&amplitude), &amplitude);
+        let s0 = sine_sum(0, &amplitude, balls);
+        assert!(sin_over_a.is_some_and(|q| q.overlaps(&s0)));
+        // S_1 = a/2 d/da (sin a/a) = (cos a - sin a/a)/2.
+        let s1 = sine_sum(1, &amplitude, balls);
+        let expected = balls.mul_power_of_two(&balls.sub(&balls.cos(&amplitude), &s0), -1);
+        assert!(s1.overlaps(&expected) && s1.relative_accuracy_bits() > 180);
+        // S_9 at amplitude 1: mpmath 1.3.0, nsum((-1)^k k^9/(2k+1)!).
+        let s9 = certified(None, 30, |balls| Some(sine_sum(9, &balls.one(), balls)));
+        let decimal = s9.map(|n| n.decimal);
+        assert_eq!(decimal.as_deref(), Ok("0.869699443754233368698929266402"));
+    }
+
+    #[test]
+    fn digits_of_constants() {
+        let ring = lindstedt_coeff::PolynomialRing::default();
+        let mu = ring.symbol(Symbol::Moment(2));
+        let constants = Constants::default();
+        let number = certified(None, 20, |balls| constants.evaluate(&mu, balls));
+        // mu_2 = (ln^2 2 + pi^2/12)/2, mpmath 1.3.0.
+        assert_eq!(number.map(|n| n.decimal).as_deref(), Ok("0.65146002367115732145"));
+    }
+}

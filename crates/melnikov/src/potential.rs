@@ -1,0 +1,371 @@
+//! Potentials with a known homoclinic or heteroclinic orbit.
+
+use crate::hyperbolic::{Hyperbolic, HyperbolicRing, beta};
+use crate::orbit::{check_pendulum, check_phi_six};
+use crate::quadrature::{Strip, trapezoid};
+use crate::root::sqrt_positive_part;
+use crate::{MelnikovError, Monomial, OrbitDescription, Real};
+use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_coeff::ball::{Ball, Balls};
+use rug::Rational;
+
+/// Which of the two mirror-image orbits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Branch {
+    /// The right loop (x > 0), the kink, the upper separatrix.
+    Positive,
+    /// Its mirror image x -> -x.
+    Negative,
+}
+
+impl Branch {
+    /// +1 or -1.
+    #[must_use]
+    pub fn sign(self) -> i64 {
+        match self {
+            Self::Positive => 1,
+            Self::Negative => -1,
+        }
+    }
+}
+
+/// A conservative oscillator x'' = f(x) with its orbit x0(t); t = 0 is the time of symmetry.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Potential {
+    /// x'' = a x - b x^3, x0 = sqrt(2a/b) sech(sqrt(a) t): the paper's (20), corrected (23).
+    DoubleWell {
+        /// a > 0.
+        a: Real,
+        /// b > 0.
+        b: Real,
+    },
+    /// x'' = -a x + b x^3, x0 = sqrt(a/b) tanh(sqrt(a/2) t): softening Duffing, heteroclinic.
+    SoftDuffing {
+        /// a > 0.
+        a: Real,
+        /// b > 0.
+        b: Real,
+    },
+    /// x'' = a x - b x^2, x0 = (3a/2b) sech^2(sqrt(a) t/2): one loop only.
+    Helmholtz {
+        /// a > 0.
+        a: Real,
+        /// b > 0.
+        b: Real,
+    },
+    /// x'' = -w0^2 sin x, x0 = 2 gd(w0 t), x0' = 2 w0 sech(w0 t): heteroclinic.
+    Pendulum {
+        /// w0 > 0.
+        w0: Real,
+    },
+    /// x'' = kappa^2 x (1 - x^2)(1 - 3 x^2), x0 = (1 + e^{-2 kappa t})^{-1/2}, from the saddle 0
+    /// to the saddle 1.
+    PhiSix {
+        /// kappa > 0.
+        kappa: Real,
+    },
+}
+
+impl Potential {
+    /// The orbit in the hyperbolic algebra, where the potential is a polynomial and it lies there.
+    #[must_use]
+    pub fn description(&self) -> Option<OrbitDescription> {
+        let zero = || Monomial::new(0, 1, 0, 0);
+        let m = Monomial::new;
+        match self {
+            Self::DoubleWell { .. } => Some(OrbitDescription {
+                force: vec![zero(), m(1, 1, 1, 0), zero(), m(-1, 1, 0, 1)],
+                rate_squared: m(1, 1, 1, 0),
+                amplitude_squared: m(2, 1, 1, -1),
+                shape: Hyperbolic::sech(1),
+            }),
+            Self::SoftDuffing { .. } => Some(OrbitDescription {
+                force: vec![zero(), m(-1, 1, 1, 0), zero(), m(1, 1, 0, 1)],
+                rate_squared: m(1, 2, 1, 0),
+                amplitude_squared: m(1, 1, 1, -1),
+                shape: Hyperbolic::tanh(),
+            }),
+            Self::Helmholtz { .. } => Some(OrbitDescription {
+                force: vec![zero(), m(1, 1, 1, 0), m(-1, 1, 0, 1)],
+                rate_squared: m(1, 4, 1, 0),
+                amplitude_squared: m(9, 4, 2, -2),
+                shape: Hyperbolic::sech(2),
+            }),
+            Self::Pendulum { .. } | Self::PhiSix { .. } => None,
+        }
+    }
+
+    /// The parameters with their names.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<(&'static str, &Real)> {
+        match self {
+            Self::DoubleWell { a, b } | Self::SoftDuffing { a, b } | Self::Helmholtz { a, b } => {
+                vec![("a", a), ("b", b)]
+            }
+            Self::Pendulum { w0 } => vec![("w0", w0)],
+            Self::PhiSix { kappa } => vec![("kappa", kappa)],
+        }
+    }
+
+    /// Positive parameters, and the orbit satisfies the equation of motion (in the algebra).
+    ///
+    /// # Errors
+    /// [`MelnikovError::NotPositive`] or [`MelnikovError::WrongOrbit`].
+    pub fn check(&self) -> Result<(), MelnikovError> {
+        for (name, value) in self.parameters() {
+            value.positive(name)?;
+        }
+        if let Some(description) = self.description() {
+            return description.check();
+        }
+        let ring = HyperbolicRing;
+        match self {
+            Self::Pendulum { .. } => {
+                // x = 2 gd z: sin x = 2 sech tanh, cos x = 2 sech^2 - 1.
+                let v = ring.scale(&Hyperbolic::sech(1), &Rational::from(2));
+                let s = ring.mul(&v, &Hyperbolic::tanh());
+                let c = ring.scale(&Hyperbolic::sech(2), &Rational::from(2));
+                check_pendulum(&v, &s, &ring.sub(&c, &ring.one()))
+            }
+            // x^2 = 1/(1 + e^{-2z}) = (1 + tanh z)/2.
+            _ => check_phi_six(&ring.scale(&ring.add(&ring.one(), &Hyperbolic::tanh()), &Rational::from((1, 2)))),
+        }
+    }
+
+    /// Whether x -> -x maps the equation to itself, so that both branches exist.
+    #[must_use]
+    pub fn has_mirror_image(&self) -> bool {
+        !matches!(self, Self::Helmholtz { .. })
+    }
+
+    /// Whether x0 returns to the saddle where it came from.
+    #[must_use]
+    pub fn is_homoclinic(&self) -> bool {
+        matches!(self, Self::DoubleWell { .. } | Self::Helmholtz { .. })
+    }
+
+    /// kappa, the rate in z = kappa t.
+    #[must_use]
+    pub fn rate(&self, balls: Balls) -> Option<Ball> {
+        match self {
+            Self::DoubleWell { a, .. } => balls.sqrt(&a.ball(balls)),
+            Self::SoftDuffing { a, .. } => balls.sqrt(&balls.mul_power_of_two(&a.ball(balls), -1)),
+            Self::Helmholtz { a, .. } => {
+                Some(balls.mul_power_of_two(&balls.sqrt(&a.ball(balls))?, -1))
+            }
+            Self::Pendulum { w0: rate } | Self::PhiSix { kappa: rate } => Some(rate.ball(balls)),
+        }
+    }
+
+    /// X, the scale of x; 1 for the pendulum and phi^6.
+    #[must_use]
+    pub fn amplitude(&self, balls: Balls) -> Option<Ball> {
+        match self {
+            Self::DoubleWell { a, b } => {
+                let ratio = balls.div(&a.ball(balls), &b.ball(balls))?;
+                balls.sqrt(&balls.mul_power_of_two(&ratio, 1))
+            }
+            Self::SoftDuffing { a, b } => balls.sqrt(&balls.div(&a.ball(balls), &b.ball(balls))?),
+            Self::Helmholtz { a, b } => {
+                let ratio = balls.div(&a.ball(balls), &b.ball(balls))?;
+                Some(balls.mul_rational(&ratio, &Rational::from((3, 2))))
+            }
+            Self::Pendulum { .. } | Self::PhiSix { .. } => Some(balls.one()),
+        }
+    }
+
+    /// dxi/dz, so that v0 = X kappa dxi/dz; `None` for phi^6, which leaves the algebra.
+    #[must_use]
+    pub fn velocity_shape(&self) -> Option<Hyperbolic> {
+        let ring = HyperbolicRing;
+        match self {
+            Self::Pendulum { .. } => Some(ring.scale(&Hyperbolic::sech(1), &Rational::from(2))),
+            Self::PhiSix { .. } => None,
+            _ => Some(ring.derivative(&self.description()?.shape)),
+        }
+    }
+
+    /// X kappa.
+    pub(crate) fn velocity_scale(&self, balls: Balls) -> Option<Ball> {
+        Some(balls.mul(&self.amplitude(balls)?, &self.rate(balls)?))
+    }
+
+    /// V = max |v0|, the largest speed on the orbit.
+    #[must_use]
+    pub fn largest_speed(&self, balls: Balls) -> Option<Ball> {
+        let scale = self.velocity_scale(balls)?;
+        match self {
+            // max sech tanh = 1/2.
+            Self::DoubleWell { .. } => Some(balls.mul_power_of_two(&scale, -1)),
+            Self::SoftDuffing { .. } => Some(scale),
+            // max 2 s (1 - s^2) = 4/(3 sqrt 3) at s = tanh z = 1/sqrt 3.
+            Self::Helmholtz { .. } => over_sqrt_three(balls, &scale, (4, 3)),
+            Self::Pendulum { .. } => Some(balls.mul_power_of_two(&scale, 1)),
+            Self::PhiSix { .. } => over_sqrt_three(balls, &scale, (2, 3)),
+        }
+    }
+
+    /// m_n = int v0^n dt on the positive branch, n >= 1.
+    ///
+    /// From the algebra: (X kappa)^n/kappa int (dxi/dz)^n dz, exact up to the scale. phi^6:
+    /// kappa^(n-1) B(n/2, n)/2. Cost O(n^2) rational operations.
+    #[must_use]
+    pub fn velocity_moment(&self, balls: Balls, n: u32) -> Option<Ball> {
+        if n == 0 {
+            return None;
+        }
+        let rate = self.rate(balls)?;
+        let Some(shape) = self.velocity_shape() else {
+            let b = beta(balls, &Rational::from((n, 2)), &Rational::from(n))?;
+            let power = balls.powi(&rate, i64::from(n) - 1)?;
+            return Some(balls.mul_power_of_two(&balls.mul(&power, &b), -1));
+        };
+        let integral = HyperbolicRing.power(&shape, n).integrate()?.ball(balls);
+        let power = balls.powi(&self.velocity_scale(balls)?, i64::from(n))?;
+        balls.div(&balls.mul(&power, &integral), &rate)
+    }
+
+    /// (C, S) with C + iS = int v0(t) e^{i omega t} dt on the positive branch.
+    ///
+    /// In the algebra by exact J_{p,q}; for phi^6, where C + iS =
+    /// Gamma(1 - i nu) Gamma(1/2 + i nu)/sqrt(pi), nu = omega/(2 kappa), by a certified
+    /// trapezoidal rule.
+    #[must_use]
+    pub fn velocity_transform(&self, balls: Balls, omega: &Ball) -> Option<(Ball, Ball)> {
+        let rate = self.rate(balls)?;
+        let w = balls.div(omega, &rate)?;
+        let Some(shape) = self.velocity_shape() else {
+            return phi_six_transform(balls, &w);
+        };
+        let transform = shape.fourier()?;
+        let amplitude = self.amplitude(balls)?;
+        let scaled = |form: &crate::hyperbolic::FourierForm| {
+            Some(balls.mul(&amplitude, &form.ball(balls, &w)?))
+        };
+        Some((scaled(&transform.cosine)?, scaled(&transform.sine)?))
+    }
+
+    /// (C, S) of int x0(t) v0(t) e^{i omega t} dt, for parametric forcing gamma x cos(omega t);
+    /// `None` for the pendulum, phi^6 and where x0 v0 does not decay.
+    #[must_use]
+    pub fn parametric_transform(&self, balls: Balls, omega: &Ball) -> Option<(Ball, Ball)> {
+        let description = self.description()?;
+        let ring = HyperbolicRing;
+        let product = ring.mul(&description.shape, &ring.derivative(&description.shape));
+        let transform = product.fourier()?;
+        let w = balls.div(omega, &self.rate(balls)?)?;
+        let square = balls.square(&self.amplitude(balls)?);
+        let scaled = |form: &crate::hyperbolic::FourierForm| {
+            Some(balls.mul(&square, &form.ball(balls, &w)?))
+        };
+        Some((scaled(&transform.cosine)?, scaled(&transform.sine)?))
+    }
+
+    /// 1 - |v|/V without cancellation for the double well: with V = a/sqrt(2b),
+    /// (a^2 - 2 b v^2) / (a (a + sqrt(2b) |v|)).
+    pub(crate) fn speed_gap(&self, balls: Balls, v: &Real) -> Option<Ball> {
+        if let Self::DoubleWell { a, b } = self {
+            let numerator = match (a.as_rational(), b.as_rational(), v.as_rational()) {
+                (Some(a), Some(b), Some(v)) => {
+                    let (a2, bv2) = (Rational::from(a.square_ref()), Rational::from(v.square_ref()) * b);
+                    balls.from_rational(&(a2 - bv2 * 2u32))
+                }
+                _ => {
+                    let square = balls.mul(&balls.square(&v.ball(balls)), &b.ball(balls));
+                    balls.sub(&balls.square(&a.ball(balls)), &balls.mul_power_of_two(&square, 1))
+                }
+            };
+            let a = a.ball(balls);
+            let root = balls.sqrt(&balls.mul_power_of_two(&b.ball(balls), 1))?;
+            let sum = balls.add(&a, &balls.mul(&root, &v.abs().ball(balls)));
+            return balls.div(&numerator, &balls.mul(&a, &sum));
+        }
+        let y = balls.div(&v.abs().ball(balls), &self.largest_speed(balls)?)?;
+        Some(balls.sub(&balls.one(), &y))
+    }
+
+    /// int v0 sgn(v0 - v) dt on the positive branch: twice the distance travelled faster than v,
+    /// minus the whole displacement.
+    ///
+    /// Double well: 2 sqrt(2a/b) sqrt(1 - |v|/V)_+, the short form of the bracket of (26). The
+    /// others: the table of section 4.6 of `mathematics/stick-slip.md`.
+    #[must_use]
+    pub fn sign_integral(&self, balls: Balls, v: &Real) -> Option<Ball> {
+        let gap = self.speed_gap(balls, v)?;
+        let amplitude = self.amplitude(balls)?;
+        if self.is_homoclinic() {
+            let fast = match self {
+                Self::DoubleWell { .. } => sqrt_positive_part(balls, &gap)?,
+                _ => helmholtz_distance(balls, &gap)?,
+            };
+            return Some(balls.mul_power_of_two(&balls.mul(&amplitude, &fast), 1));
+        }
+        // The displacement, and the distance faster than v for 0 <= v <= V, in units of X.
+        let (whole, fast) = match self {
+            Self::SoftDuffing { .. } => {
+                let root = sqrt_positive_part(balls, &gap)?;
+                (balls.from_i64(2), balls.mul_power_of_two(&root, 1))
+            }
+            Self::Pendulum { .. } => {
+                let angle = arc_cosine_of_gap(balls, &gap)?;
+                (balls.mul_power_of_two(&balls.pi(), 1), balls.mul_power_of_two(&angle, 2))
+            }
+            _ => (balls.one(), phi_six_distance(balls, &gap)?),
+        };
+        let fast = if v.sign().is_lt() { whole.clone() } else { fast };
+        let value = balls.sub(&balls.mul_power_of_two(&fast, 1), &whole);
+        Some(balls.mul(&amplitude, &value))
+    }
+}
+
+/// q scale/sqrt 3.
+fn over_sqrt_three(balls: Balls, scale: &Ball, q: (u32, u32)) -> Option<Ball> {
+    balls.div(&balls.mul_rational(scale, &Rational::from(q)), &balls.sqrt(&balls.from_i64(3))?)
+}
+
+/// acos(1 - g) = 2 atan(sqrt(g/(2 - g))) for g = 1 - |v|/V in [0, 1], 0 for g < 0.
+fn arc_cosine_of_gap(balls: Balls, gap: &Ball) -> Option<Ball> {
+    let ratio = balls.div(gap, &balls.sub(&balls.from_i64(2), gap))?;
+    let angle = balls.atan(&sqrt_positive_part(balls, &ratio)?);
+    Some(balls.mul_power_of_two(&angle, 1))
+}
+
+/// phi^6: x^3 - x = -y/(3 sqrt 3/2) has the roots x = (2/sqrt 3) cos p, cos 3p = -y; their
+/// distance is 2 sin(pi/3 - p) = 2 sin(acos(y)/3).
+fn phi_six_distance(balls: Balls, gap: &Ball) -> Option<Ball> {
+    let third = balls.div_i64(&arc_cosine_of_gap(balls, gap)?, 3)?;
+    Some(balls.mul_power_of_two(&balls.sin(&third), 1))
+}
+
+/// Helmholtz: x = X (1 - s^2) with s - s^3 = 2y/(3 sqrt 3). The two roots s = (2/sqrt 3) cos p
+/// have cos 3p = -y, so s_b^2 - s_a^2 = (2/3)(cos 2p - cos 2(2pi/3 - p)) =
+/// (4/3) sin(2pi/3) sin(2pi/3 - 2p) = (2/sqrt 3) sin(2 acos(y)/3).
+fn helmholtz_distance(balls: Balls, gap: &Ball) -> Option<Ball> {
+    let angle = balls.mul_rational(&arc_cosine_of_gap(balls, gap)?, &Rational::from((2, 3)));
+    over_sqrt_three(balls, &balls.sin(&angle), (2, 1))
+}
+
+/// int e^{-2s} (1 + e^{-2s})^{-3/2} e^{iws} ds: on |Im s| <= c, |1 + e^{-2s}| >= cos c (1 + u)
+/// with u = e^{-2 Re s}, and the integrand is at most e^{-|s|} on the line, with integral 1.
+fn phi_six_transform(balls: Balls, w: &Ball) -> Option<(Ball, Ball)> {
+    let half_width = Rational::from(1);
+    let edge = balls.cos(&balls.from_rational(&half_width));
+    let power = balls.mul(&edge, &balls.sqrt(&edge)?);
+    let strip = Strip {
+        edge_integral: balls.div(&balls.cosh(&balls.mul_rational(w, &half_width)), &power)?,
+        half_width,
+        decay: Rational::from(1),
+        amplitude: balls.one(),
+    };
+    let speed = |balls: Balls, s: &Ball| {
+        let u = balls.exp(&balls.mul_i64(s, -2));
+        let sum = balls.add(&balls.one(), &u);
+        balls.div(&u, &balls.mul(&sum, &balls.sqrt(&sum)?))
+    };
+    let part = |trig: fn(Balls, &Ball) -> Ball| {
+        trapezoid(balls, &strip, |balls, s| {
+            Some(balls.mul(&speed(balls, s)?, &trig(balls, &balls.mul(w, s))))
+        })
+    };
+    Some((part(Balls::cos)?, part(Balls::sin)?))
+}
