@@ -1,2 +1,34 @@
-//! The command line.
-fn main() {}
+//! The command line `lindstedt`: reads arguments, calls the library, prints. The only place
+//! with files and a terminal.
+
+mod arguments;
+mod derive;
+mod failure;
+mod output;
+mod problems;
+mod session;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use failure::Failure;
+use session::Session;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return failure::usage(&error),
+    };
+    let session = Session::start(&arguments.common);
+    let outcome = match &arguments.command {
+        Command::Problems(options) => problems::run(options, &session),
+        Command::Derive(options) => derive::run(options, &session),
+    };
+    match outcome {
+        Ok(code) => ExitCode::from(code),
+        Err(failure) => failure.report(session.format()),
+    }
+}
+
+/// The exit code of a command, or why it failed.
+type Outcome = Result<u8, Failure>;

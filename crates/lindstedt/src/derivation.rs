@@ -387,6 +387,16 @@ impl Derivation {
         }
     }
 
+    /// kappa, the factor of x at order zero, printed.
+    pub fn ring_print(&self, style: Style) -> String {
+        self.ring.print(&self.stiffness, style)
+    }
+
+    /// Coefficient n of a series without its prefactor, printed.
+    pub fn ring_coefficient(&self, series: &NamedSeries, n: usize, style: Style) -> String {
+        series.coefficients.get(n).map_or_else(|| "0".to_owned(), |c| self.ring.print(c, style))
+    }
+
     /// Coefficient n of a series as a number with `digits` digits.
     ///
     /// # Errors

@@ -63,13 +63,13 @@ fn mean(ring: &PolynomialRing, p: &Polynomial) -> Polynomial {
                 _ => rest = ring.mul(&rest, &ring.power(symbol, exponent)),
             }
         }
-        sum = ring.add(&sum, &ring.mul(&rest, &mean_of_powers(ring, i, m)));
+        sum = ring.add(&sum, &ring.mul(&rest, &mean_of_powers(i, m)));
     }
     sum
 }
 
 /// <K^i l^m>.
-fn mean_of_powers(ring: &PolynomialRing, i: u16, m: u16) -> Polynomial {
+fn mean_of_powers(i: u16, m: u16) -> Polynomial {
     // The product over r as a polynomial in z, truncated after z^m.
     let mut product = vec![Rational::new(); usize::from(m) + 1];
     product[0] += 1;

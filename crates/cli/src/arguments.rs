@@ -1,0 +1,103 @@
+//! The arguments. Names are part of the public interface: add, do not rename.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Perturbation expansions of strongly nonlinear and non-smooth oscillators, to any order.
+#[derive(Debug, Parser)]
+#[command(name = "lindstedt", version, about, max_term_width = 100)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// What is built in, with equation, parameters and defaults.
+    Problems(ProblemsOptions),
+    /// Derive the expansion of a problem, order by order, and check it.
+    Derive(DeriveOptions),
+}
+
+/// How results are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    Text,
+    Json,
+    Latex,
+    Markdown,
+}
+
+#[derive(Debug, Args)]
+pub struct Common {
+    /// The form of the result.
+    #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+    /// Write the result to this file instead of standard output.
+    #[arg(long, global = true, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// No progress on standard error.
+    #[arg(long, global = true)]
+    pub quiet: bool,
+    /// Stop after so many seconds with what is finished (exit code 4).
+    #[arg(long, global = true, value_name = "S")]
+    pub limit_seconds: Option<f64>,
+    /// Refuse work that is predicted to need more memory (512M, 8G; default 8G).
+    #[arg(long, global = true, value_name = "SIZE", default_value = "8G", value_parser = memory_size)]
+    pub limit_memory: u64,
+}
+
+#[derive(Debug, Args)]
+pub struct ProblemsOptions {
+    /// Show one problem in full.
+    #[arg(long, value_name = "NAME")]
+    pub show: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct DeriveOptions {
+    /// power-law, pendulum, duffing or van-der-pol.
+    pub problem: String,
+    /// The highest order.
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
+    pub order: u32,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// What the amplitude is: x(0), or the first harmonic.
+    #[arg(long, value_enum)]
+    pub normalisation: Option<Normalisation>,
+    #[command(flatten)]
+    pub precision: Precision,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Normalisation {
+    /// x(0) = A, x'(0) = 0.
+    Initial,
+    /// The first harmonic of x is A cos.
+    Fundamental,
+}
+
+#[derive(Debug, Args)]
+pub struct Precision {
+    /// Correct digits of every decimal.
+    #[arg(long, default_value_t = 30, value_name = "D", conflicts_with = "f64")]
+    pub digits: u64,
+    /// 17 digits, the precision of a double.
+    #[arg(long)]
+    pub f64: bool,
+}
+
+fn memory_size(text: &str) -> Result<u64, String> {
+    let (number, shift) = match text.trim_end_matches(['b', 'B']).split_at_checked(text.len() - 1) {
+        Some((number, "K" | "k")) => (number, 10),
+        Some((number, "M" | "m")) => (number, 20),
+        Some((number, "G" | "g")) => (number, 30),
+        _ => (text, 0),
+    };
+    let value: u64 = number.trim().parse().map_err(|_| format!("not a size: {text}"))?;
+    value.checked_shl(shift).filter(|v| v >> shift == value).ok_or_else(|| "too large".to_owned())
+}

@@ -1,0 +1,282 @@
+//! `lindstedt derive`: the expansion, order by order, as one would write it on the board.
+
+use crate::Outcome;
+use crate::arguments::{DeriveOptions, Format, Normalisation};
+use crate::failure::{INTERRUPTED, UNDECIDED};
+use crate::output;
+use crate::problems::{condition_name, condition_text};
+use crate::session::{Session, digits, parameters, problem};
+use lindstedt::coeff::print::Style;
+use lindstedt::equation::{Condition, print};
+use lindstedt::{Derivation, Error, Number, Progress, Settings, Solution, Status};
+use serde_json::{Value as Json, json};
+use std::fmt::Write;
+
+/// Right sides and solutions with more terms are counted, not printed, in the text formats; the
+/// JSON format has them all.
+const PRINTED_TERMS: usize = 60;
+
+pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
+    let problem = problem(&options.problem)?;
+    let digits = digits(&options.precision)?;
+    let settings = Settings {
+        order: options.order as usize,
+        condition: options.normalisation.map(|normalisation| match normalisation {
+            Normalisation::Initial => Condition::InitialAmplitude,
+            Normalisation::Fundamental => Condition::FundamentalAmplitude,
+        }),
+        parameters: parameters(&options.set)?,
+        memory: session.memory(),
+    };
+    output::check_writable(session)?;
+    let mut observer = |progress: Progress| {
+        session.say(match progress {
+            Progress::Order(n, terms) => format!("order {n} of {}: {terms} terms", settings.order),
+            Progress::Primes(n) => format!("{n} primes done"),
+            Progress::Checking => "substituting into the equation".to_owned(),
+        });
+        session.goes_on()
+    };
+    let result = lindstedt::derive(&problem, &settings, &mut observer)?;
+    let report = Report::new(&result, digits)?;
+    session.done();
+    let text = match session.format() {
+        Format::Json => format!("{:#}\n", report.json(session)),
+        Format::Text => report.board(Style::Text, &Frame::TEXT),
+        Format::Latex => report.board(Style::Latex, &Frame::LATEX),
+        Format::Markdown => report.board(Style::Latex, &Frame::MARKDOWN),
+    };
+    output::write(session, &text)?;
+    if result.order < settings.order {
+        let reason = if session.interrupted() { "interrupted" } else { "time limit" };
+        eprintln!("lindstedt: {reason}: orders 0 to {} are finished and checked", result.order);
+        return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
+    }
+    Ok(0)
+}
+
+/// A number of the JSON contract.
+pub fn number_json(number: &Number) -> Json {
+    json!({
+        "exact": number.exact,
+        "decimal": number.decimal,
+        "error": number.error,
+        "status": match number.status {
+            Status::Exact => "exact",
+            Status::Certified => "certified",
+            Status::Estimated => "estimated",
+        },
+    })
+}
+
+/// How a formula and a heading are set.
+struct Frame {
+    heading: &'static str,
+    open: &'static str,
+    close: &'static str,
+}
+
+impl Frame {
+    const TEXT: Self = Self { heading: "", open: "  ", close: "" };
+    const LATEX: Self = Self { heading: "\\paragraph*", open: "\\[ ", close: " \\]" };
+    const MARKDOWN: Self = Self { heading: "### ", open: "$$ ", close: " $$" };
+
+    fn title(&self, text: &str) -> String {
+        if self.heading.starts_with('\\') {
+            format!("{}{{{text}}}\n", self.heading)
+        } else {
+            format!("{}{text}\n", self.heading)
+        }
+    }
+
+    fn formula(&self, text: &str) -> String {
+        format!("{}{text}{}\n", self.open, self.close)
+    }
+}
+
+struct Report<'a> {
+    result: &'a Derivation,
+    /// The numbers of every series.
+    numbers: Vec<Vec<Number>>,
+}
+
+impl<'a> Report<'a> {
+    fn new(result: &'a Derivation, digits: usize) -> Result<Self, Error> {
+        let of_series = |series: &lindstedt::NamedSeries| {
+            (0..series.coefficients.len()).map(|n| result.number(series, n, digits)).collect()
+        };
+        let numbers = result.series.iter().map(of_series).collect::<Result<_, _>>()?;
+        Ok(Self { result, numbers })
+    }
+
+    fn json(&self, session: &Session<'_>) -> Json {
+        let result = self.result;
+        let mut series = serde_json::Map::new();
+        for (named, numbers) in result.series.iter().zip(&self.numbers) {
+            series.insert(named.name.to_owned(), numbers.iter().map(number_json).collect());
+        }
+        let solution: Vec<String> =
+            (0..=result.order).map(|n| result.print_solution(n, Style::Text)).collect();
+        let method = match &result.solution {
+            Solution::Rational(proved) => json!({
+                "name": "multi-modular, proved",
+                "primes": proved.primes,
+                "proof_primes": proved.proof_primes,
+            }),
+            _ => json!({"name": "Lobachevsky ring over Q[mu_m]"}),
+        };
+        json!({
+            "problem": result.problem.name,
+            "equation": format!("{} = 0", result.problem.equation.print(result.problem.small, print::Style::Text)),
+            "parameter": result.problem.small,
+            "order": result.order,
+            "tier": "exact",
+            "normalisation": condition_name(result.condition),
+            "series": series,
+            "solution": solution,
+            "terms": (0..=result.order).map(|n| result.terms(n)).collect::<Vec<_>>(),
+            "residual": {"checked_orders": result.checked_orders, "zero": true},
+            "method": method,
+            "seconds": session.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// The derivation: equation, secular condition, solution of every order.
+    fn board(&self, style: Style, frame: &Frame) -> String {
+        let result = self.result;
+        let mut text = String::new();
+        let small = match style {
+            Style::Text => result.problem.small.to_owned(),
+            Style::Latex => lindstedt::coeff::print::latex_name(result.problem.small),
+        };
+        let print_style = match style {
+            Style::Text => print::Style::Text,
+            Style::Latex => print::Style::Latex,
+        };
+        let equation = result.problem.equation.print(result.problem.small, print_style);
+        text += &frame.title(&format!("{}: {}", result.problem.name, result.problem.title));
+        text += &frame.formula(&format!("{equation} = 0"));
+        let names = Names::new(style);
+        let kappa = result.ring_print(style);
+        let leading = if kappa == "1" { String::new() } else { format!("{kappa}{}", names.times) };
+        text += &frame.formula(&format!(
+            "{tau} = {omega}{times}t,{gap}{omega}^2 = {leading}(1 + {w}_1{times}{small} + {w}_2{times}{small}^2 + ...),{gap}x = x_0({tau}) + x_1({tau}){times}{small} + ...",
+            tau = names.tau, omega = names.omega, times = names.times, gap = names.gap, w = names.w,
+        ));
+        let _ = writeln!(text, "Normalisation: {}.\n", condition_text(result.condition));
+        for n in 0..=result.order {
+            text += &self.order(n, style, frame, &names);
+        }
+        text += &frame.title("Result");
+        for (named, numbers) in result.series.iter().zip(&self.numbers) {
+            let _ = writeln!(text, "{} in powers of {}:", named.name, result.problem.small);
+            for (n, number) in numbers.iter().enumerate() {
+                let exact = result.print_coefficient(named, n, style);
+                let shown = match number.error {
+                    // Terminating decimals and integers need no second form.
+                    None if number.decimal == exact => String::new(),
+                    _ => format!("  {}", number.decimal),
+                };
+                let _ = match (frame.heading, style) {
+                    (_, Style::Text) => writeln!(
+                        text,
+                        "  {n}: {exact}{}",
+                        if shown.is_empty() { shown } else { format!("\n     ={shown}") }
+                    ),
+                    _ => write!(text, "{}", frame.formula(&format!("{n}:\\quad {exact} ={shown}"))),
+                };
+            }
+        }
+        let _ = writeln!(
+            text,
+            "\nResidual: the expansion substituted into the equation vanishes identically at orders 0 to {}{}.",
+            result.checked_orders,
+            match &result.solution {
+                Solution::Rational(proved) => format!(
+                    " (proved modulo {} primes of 61 bits, more than its numbers can hold)",
+                    proved.proof_primes
+                ),
+                _ => String::new(),
+            }
+        );
+        text
+    }
+
+    fn order(&self, n: usize, style: Style, frame: &Frame, names: &Names) -> String {
+        let result = self.result;
+        let mut text = frame.title(&format!("Order {n}"));
+        let Names { tau, times, gap, w, prime, .. } = names;
+        if n == 0 {
+            text += &frame.formula(&format!("x_0{prime} + x_0 = 0"));
+        } else {
+            let (right_side, terms) = result.print_right_side(n, style);
+            let right_side = if terms > PRINTED_TERMS {
+                counted(terms, style)
+            } else if terms == 0 {
+                String::new()
+            } else {
+                right_side
+            };
+            let inertia = format!("- {w}_{{{n}}}{times}x_0{prime}");
+            let inertia =
+                if style == Style::Text { inertia.replace(['{', '}'], "") } else { inertia };
+            let lower = if style == Style::Text { format!("x_{n}") } else { format!("x_{{{n}}}") };
+            text += &frame.formula(&format!("{lower}{prime} + {lower} = {right_side} {inertia}"));
+            if let Some(series) = result.named("frequency_squared") {
+                let value = result.ring_coefficient(series, n, style);
+                let w_n =
+                    if style == Style::Text { format!("{w}_{n}") } else { format!("{w}_{{{n}}}") };
+                text += &frame.formula(&match style {
+                    Style::Text => format!("no secular term: {w_n} = {value}"),
+                    Style::Latex => format!("\\text{{no secular term: }}{gap}{w_n} = {value}"),
+                });
+            }
+        }
+        let terms = result.terms(n);
+        let solution = if terms > PRINTED_TERMS {
+            counted(terms, style)
+        } else {
+            result.print_solution(n, style)
+        };
+        let lower = if style == Style::Text { format!("x_{n}") } else { format!("x_{{{n}}}") };
+        let _ = tau;
+        text += &frame.formula(&format!("{lower} = {solution}"));
+        text.push('\n');
+        text
+    }
+}
+
+fn counted(terms: usize, style: Style) -> String {
+    match style {
+        Style::Text => format!("[{terms} terms; all of them with --format json]"),
+        Style::Latex => format!("\\text{{[{terms} terms; all of them with --format json]}}"),
+    }
+}
+
+/// Notation in the two styles.
+struct Names {
+    tau: &'static str,
+    omega: &'static str,
+    times: &'static str,
+    gap: &'static str,
+    w: &'static str,
+    prime: &'static str,
+}
+
+impl Names {
+    fn new(style: Style) -> Self {
+        match style {
+            Style::Text => {
+                Self { tau: "tau", omega: "omega", times: "*", gap: "   ", w: "W", prime: "''" }
+            }
+            Style::Latex => Self {
+                tau: "\\tau",
+                omega: "\\omega",
+                times: "\\,",
+                gap: "\\quad ",
+                w: "W",
+                prime: "''",
+            },
+        }
+    }
+}

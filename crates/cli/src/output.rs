@@ -1,0 +1,43 @@
+//! Writing results.
+
+use crate::failure::{FILE, Failure};
+use crate::session::Session;
+use std::io::Write;
+
+/// Writes a result to the file asked for or to standard output.
+///
+/// A reader that closes the pipe early (`| head`) is no failure.
+pub fn write(session: &Session, text: &str) -> Result<(), Failure> {
+    let Some(path) = session.out() else {
+        let mut stdout = std::io::stdout().lock();
+        return match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+                Err(trouble("standard output", &error))
+            }
+            _ => Ok(()),
+        };
+    };
+    std::fs::write(path, text).map_err(|error| trouble(&path.display().to_string(), &error))
+}
+
+/// Fails now rather than after the work if the output cannot be written.
+pub fn check_writable(session: &Session) -> Result<(), Failure> {
+    let Some(path) = session.out() else { return Ok(()) };
+    let existed = path.exists();
+    let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
+    opened.map_err(|error| trouble(&path.display().to_string(), &error))?;
+    if !existed {
+        let _ = std::fs::remove_file(path);
+    }
+    Ok(())
+}
+
+/// A failure of the file system.
+pub fn trouble(what: &str, error: &std::io::Error) -> Failure {
+    Failure {
+        exit: FILE,
+        code: "file",
+        message: format!("cannot write {what}: {error}"),
+        hint: String::new(),
+    }
+}
