@@ -42,7 +42,7 @@ pub struct Common {
     #[arg(long, global = true)]
     pub quiet: bool,
     /// Stop after so many seconds with what is finished (exit code 4).
-    #[arg(long, global = true, value_name = "S")]
+    #[arg(long, global = true, value_name = "S", value_parser = seconds)]
     pub limit_seconds: Option<f64>,
     /// Refuse work that is predicted to need more memory (512M, 8G; default 8G).
     #[arg(long, global = true, value_name = "SIZE", default_value = "8G", value_parser = memory_size)]
@@ -61,7 +61,7 @@ pub struct DeriveOptions {
     /// power-law, pendulum, duffing or van-der-pol.
     pub problem: String,
     /// The highest order.
-    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
+    #[arg(long, default_value_t = 4, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
     pub order: u32,
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
@@ -84,11 +84,17 @@ pub enum Normalisation {
 #[derive(Debug, Args)]
 pub struct Precision {
     /// Correct digits of every decimal.
-    #[arg(long, default_value_t = 30, value_name = "D", conflicts_with = "f64")]
+    #[arg(long, default_value_t = 30, value_name = "D", allow_negative_numbers = true)]
+    #[arg(conflicts_with = "f64")]
     pub digits: u64,
     /// 17 digits, the precision of a double.
     #[arg(long)]
     pub f64: bool,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("not a number: {text}"))?;
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("not a positive time".to_owned()) }
 }
 
 fn memory_size(text: &str) -> Result<u64, String> {

@@ -144,7 +144,7 @@ pub fn derive(
         condition.ok_or_else(|| Error::UnknownCondition { problem: problem.name.to_owned() })?;
     let amplitude = settings.parameters.get("amplitude").cloned();
     let has_logarithms = has_logarithms(&problem.equation);
-    limit_memory(settings, has_logarithms)?;
+    limit_memory(problem, settings)?;
     let ring = PolynomialRing { parameters: vec!["ln(a)".to_owned()] };
     let (solution, squared, amplitudes, stiffness, checked_orders) = if has_logarithms {
         let algebra = Lobachevsky::new(ring.clone());
@@ -332,19 +332,22 @@ fn has_logarithms(expression: &Expression) -> bool {
 }
 
 /// Refuses before allocating. Measured: the Lobachevsky ring takes 0.7 GiB at order 20 and 1.5
-/// times more per order; van der Pol's series over Q 0.42 GiB at order 164, growing like the
-/// fourth power of the order.
-fn limit_memory(settings: &Settings, has_logarithms: bool) -> Result<(), Error> {
+/// times more per order; with formal sums 0.1 GiB at order 10 and twice as much per order; van
+/// der Pol's series over Q 0.42 GiB at order 164, growing like the fourth power of the order.
+fn limit_memory(problem: &Problem, settings: &Settings) -> Result<(), Error> {
     let order = settings.order as f64;
-    let bytes = if has_logarithms {
-        0.7 * 2f64.powi(30) * 1.5f64.powf(order - 20.0)
+    let gibibytes = if matches!(problem.amplitude, AmplitudeRole::InSums) {
+        0.1f64.log2() + (order - 10.0)
+    } else if has_logarithms(&problem.equation) {
+        0.7f64.log2() + (order - 20.0) * 1.5f64.log2()
     } else {
-        0.42 * 2f64.powi(30) * (order / 164.0).powi(4)
+        0.42f64.log2() + 4.0 * (order / 164.0).log2()
     };
-    if bytes > settings.memory as f64 {
+    let bits = gibibytes + 30.0;
+    if bits > (settings.memory.max(1) as f64).log2() {
         return Err(Error::TooLarge {
             order: settings.order,
-            needed: (bytes / 2f64.powi(20)) as u64,
+            exponent: (bits * 2f64.log10()).round() as u64,
             limit: settings.memory >> 20,
         });
     }

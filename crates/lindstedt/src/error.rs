@@ -46,12 +46,14 @@ pub enum Error {
         problem: String,
     },
     /// The work would need more memory than allowed.
-    #[error("order {order} is predicted to need {needed} MiB, more than the limit of {limit} MiB")]
+    #[error(
+        "order {order} is predicted to need 10^{exponent} bytes, above the limit of {limit} MiB"
+    )]
     TooLarge {
         /// The order.
         order: usize,
-        /// The prediction in MiB.
-        needed: u64,
+        /// The prediction: the exponent of ten of the bytes, rounded.
+        exponent: u64,
         /// The limit in MiB.
         limit: u64,
     },

@@ -1,1 +1,33 @@
-//! Stub.
+//! Melnikov's method with dry friction: from a potential with a known homoclinic or heteroclinic
+//! orbit, a friction law and a forcing to the threshold of transversal homoclinic points.
+//!
+//! With x'' = f(x) + eps (gamma f(t) - T(x' - v*)) the Melnikov function of the orbit x0 is
+//! M(t0) = gamma F(omega t0) - D, and M has simple zeros if and only if gamma exceeds
+//! gamma_c = D/max F (D > 0) or D/min F (D < 0). Everything exact is computed in the algebra
+//! Q[sech, tanh] or in closed form and evaluated in balls with proved radii; everything else
+//! carries an estimated error. Sources: the paper's section 3, corrected, and
+//! `mathematics/stick-slip.md`.
+
+mod dissipation;
+mod error;
+mod forcing;
+mod friction;
+pub mod hyperbolic;
+mod orbit;
+mod potential;
+pub mod quadrature;
+mod real;
+mod root;
+mod stick_slip;
+mod system;
+
+pub use dissipation::{polynomial_dissipation, quadrature_dissipation};
+pub use error::MelnikovError;
+pub use forcing::{Forcing, ForcingWork, Harmonic};
+pub use friction::{Friction, LARGEST_DEGREE, Law, PolynomialFriction};
+pub use orbit::{Monomial, OrbitDescription, check_pendulum, check_phi_six};
+pub use potential::{Branch, Potential};
+pub use real::Real;
+pub use root::enclose_root;
+pub use stick_slip::StickSlip;
+pub use system::{Class, System, Threshold, Validity, Verdict, midpoint_and_radius};

@@ -1,6 +1,7 @@
 //! Algebras of functions of the fast phase: trigonometric polynomials, the Lobachevsky ring, and
 //! the Lobachevsky functions as numbers.
 
+pub mod evaluate;
 pub mod fourier;
 pub mod lobachevsky;
 pub mod lobachevsky_function;

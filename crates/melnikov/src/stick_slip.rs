@@ -1,0 +1,272 @@
+//! The paper's oscillator in closed form: G, the threshold, the cusp, the zeros.
+
+use crate::root::{enclose_root, sqrt_positive_part};
+use crate::{Forcing, Friction, MelnikovError, PolynomialFriction, Potential, Real, System};
+use lindstedt_coeff::ball::{Ball, Balls};
+use rug::{Float, Rational};
+
+/// x'' = a x - b x^3 + eps (gamma cos(omega t) - T(x' - v*)),
+/// T(w) = T0 sgn w - alpha w + beta w^3: (19), (20) of the paper. All dimensionless.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StickSlip {
+    /// a > 0.
+    pub a: Real,
+    /// b > 0.
+    pub b: Real,
+    /// T0, the dry friction.
+    pub dry: Real,
+    /// alpha.
+    pub alpha: Real,
+    /// beta.
+    pub beta: Real,
+    /// omega > 0.
+    pub omega: Real,
+    /// v*, the belt speed.
+    pub belt_speed: Real,
+}
+
+impl StickSlip {
+    /// a = b = 1, alpha = beta = T0 = 0.3, omega = 2, v* = 0.4: the point of section 3.
+    #[must_use]
+    pub fn paper() -> Self {
+        let three_tenths = || Real::from((3, 10));
+        Self {
+            a: Real::from(1),
+            b: Real::from(1),
+            dry: three_tenths(),
+            alpha: three_tenths(),
+            beta: three_tenths(),
+            omega: Real::from(2),
+            belt_speed: Real::from((2, 5)),
+        }
+    }
+
+    /// Domain: a, b, omega > 0.
+    ///
+    /// # Errors
+    /// [`MelnikovError::NotPositive`] with the name.
+    pub fn check(&self) -> Result<(), MelnikovError> {
+        self.a.positive("a")?;
+        self.b.positive("b")?;
+        self.omega.positive("omega")
+    }
+
+    /// The same oscillator as a description for the general driver.
+    ///
+    /// # Errors
+    /// Those of [`System::new`].
+    pub fn system(&self) -> Result<System, MelnikovError> {
+        let law = PolynomialFriction::paper(self.dry.clone(), &self.alpha, self.beta.clone());
+        System::new(
+            self.potential(),
+            Friction::Polynomial(law),
+            Forcing::single(self.omega.clone()),
+            self.belt_speed.clone(),
+        )
+    }
+
+    /// The double well.
+    #[must_use]
+    pub fn potential(&self) -> Potential {
+        Potential::DoubleWell { a: self.a.clone(), b: self.b.clone() }
+    }
+
+    /// V = a/sqrt(2b): the largest speed on the loop and the place of the cusp.
+    #[must_use]
+    pub fn loop_speed(&self, balls: Balls) -> Option<Ball> {
+        let root = balls.sqrt(&balls.mul_power_of_two(&self.b.ball(balls), 1))?;
+        balls.div(&self.a.ball(balls), &root)
+    }
+
+    /// G = 2 T0 sqrt(1 - |v*|/V)_+ - (4/3) V (alpha - 3 beta v*^2) + (32/35) beta V^3; the work of
+    /// friction is D = sqrt(2a/b) G.
+    ///
+    /// 1 - |v*|/V is formed without cancellation, so at |v*| = V the digits stay.
+    #[must_use]
+    pub fn g(&self, balls: Balls) -> Option<Ball> {
+        let v = self.loop_speed(balls)?;
+        let gap = self.potential().speed_gap(balls, &self.belt_speed)?;
+        let dry = balls.mul(&self.dry.ball(balls), &sqrt_positive_part(balls, &gap)?);
+        let square = balls.square(&self.belt_speed.ball(balls));
+        let beta = self.beta.ball(balls);
+        let slope = balls.sub(&self.alpha.ball(balls), &balls.mul_i64(&balls.mul(&beta, &square), 3));
+        let linear = balls.mul_rational(&balls.mul(&v, &slope), &Rational::from((4, 3)));
+        let cubic = balls.mul(&beta, &balls.powi(&v, 3)?);
+        let cubic = balls.mul_rational(&cubic, &Rational::from((32, 35)));
+        Some(balls.add(&balls.sub(&balls.mul_power_of_two(&dry, 1), &linear), &cubic))
+    }
+
+    /// The right side of (27), corrected, divided by the factor of gamma:
+    /// G cosh(z)/(2z) with z = pi omega/(2 sqrt a). gamma_c is its absolute value.
+    #[must_use]
+    pub fn signed_threshold(&self, balls: Balls) -> Option<Ball> {
+        let root = balls.sqrt(&self.a.ball(balls))?;
+        let twice = balls.div(&balls.mul(&balls.pi(), &self.omega.ball(balls)), &root)?;
+        let cosh = balls.cosh(&balls.mul_power_of_two(&twice, -1));
+        balls.div(&balls.mul(&self.g(balls)?, &cosh), &twice)
+    }
+
+    /// The threshold as a formula with the numbers of this point, where the parameters are
+    /// rational.
+    #[must_use]
+    pub fn exact_threshold(&self) -> Option<String> {
+        let rational = Real::as_rational;
+        let (a, b) = (rational(&self.a)?, rational(&self.b)?);
+        let (alpha, beta) = (rational(&self.alpha)?, rational(&self.beta)?);
+        let v = rational(&self.belt_speed)?;
+        let square = Rational::from(a.square_ref()) / Rational::from(b * 2u32);
+        let speed = Rational::from(v.square_ref());
+        let inside = speed < square;
+        // G/V = (32/35) beta V^2 - (4/3)(alpha - 3 beta v*^2).
+        let smooth = Rational::from(beta * &square) * Rational::from((32, 35))
+            - Rational::from((4, 3)) * Rational::from(alpha - Rational::from(beta * &speed) * 3u32);
+        let v_abs = Rational::from(v.abs_ref());
+        let mut g = format!("({smooth})*sqrt({square})");
+        if inside && self.dry.sign().is_ne() {
+            g = format!("2*({})*sqrt(1 - ({v_abs})/sqrt({square})) + {g}", self.dry);
+        }
+        let omega = &self.omega;
+        Some(format!("abs({g})*sqrt({a})*cosh(pi*({omega})/(2*sqrt({a})))/(pi*({omega}))"))
+    }
+
+    /// b* = 129 a^2 beta/(70 alpha), where the cusp at |v*| = V touches gamma = 0 (V^2 =
+    /// 35 alpha/(129 beta)): exact. `None` unless a, alpha, beta are rational and b* > 0.
+    ///
+    /// Derived: at |v*| = V, G/V = (32/35 + 4) beta V^2 - (4/3) alpha = (172/35) beta V^2 - (4/3) alpha.
+    #[must_use]
+    pub fn touching_b(&self) -> Option<Rational> {
+        let (a, alpha, beta) = (self.a.as_rational()?, self.alpha.as_rational()?, self.beta.as_rational()?);
+        if alpha.is_zero() {
+            return None;
+        }
+        // The coefficient of beta V^2 and that of alpha, from G at v*^2 = V^2.
+        let cubic = Rational::from((32, 35)) + Rational::from((4, 3)) * 3u32;
+        let linear = Rational::from((4, 3));
+        // beta V^2 cubic = alpha linear with V^2 = a^2/(2b).
+        let b = Rational::from(a.square_ref()) * beta * cubic / (linear * alpha * 2u32);
+        (b > 0).then_some(b)
+    }
+
+    /// All zeros of G in v* >= 0, ascending, certified and complete.
+    ///
+    /// Inside |v*| < V: with z = sqrt(1 - |v*|/V) the roots in (0, 1) of
+    /// 4 beta V^3 z^4 - 8 beta V^3 z^2 + 2 T0 z + (172/35) beta V^3 - (4/3) alpha V,
+    /// isolated by the monotone pieces between the roots of its derivatives. Outside:
+    /// v*^2 = alpha/(3 beta) - (8/35) V^2 where that is at least V^2. G is even in v*.
+    ///
+    /// # Errors
+    /// [`MelnikovError::Undecided`] where a sign at the end of a monotone piece is not decided at
+    /// this precision (a double zero, a zero at 0 or at V).
+    pub fn zeros(&self, balls: Balls) -> Result<Vec<Ball>, MelnikovError> {
+        self.check()?;
+        self.try_zeros(balls).ok_or(MelnikovError::Undecided { bits: balls.bits() })
+    }
+
+    fn try_zeros(&self, balls: Balls) -> Option<Vec<Ball>> {
+        let v = self.loop_speed(balls)?;
+        let quartic = self.quartic(balls)?;
+        let mut zeros = Vec::new();
+        // z falls as |v*| rises.
+        for z in unit_roots(balls, &quartic)?.iter().rev() {
+            let fraction = balls.sub(&balls.one(), &balls.square(z));
+            zeros.push(balls.mul(&v, &fraction));
+        }
+        if self.beta.sign().is_ne() {
+            let ratio = balls.div(&self.alpha.ball(balls), &balls.mul_i64(&self.beta.ball(balls), 3))?;
+            let square = balls.square(&v);
+            let outer = balls.sub(&ratio, &balls.mul_rational(&square, &Rational::from((8, 35))));
+            let beyond = balls.sub(&outer, &square);
+            if beyond.is_positive() {
+                zeros.push(balls.sqrt(&outer)?);
+            } else if !beyond.is_negative() {
+                return None;
+            }
+        }
+        Some(zeros)
+    }
+
+    /// The coefficients of z^0 ... z^4 of the quartic of [`StickSlip::zeros`].
+    fn quartic(&self, balls: Balls) -> Option<[Ball; 5]> {
+        let v = self.loop_speed(balls)?;
+        let cubic = balls.mul(&self.beta.ball(balls), &balls.powi(&v, 3)?);
+        let linear = balls.mul(&self.alpha.ball(balls), &v);
+        let constant = balls.sub(
+            &balls.mul_rational(&cubic, &Rational::from((172, 35))),
+            &balls.mul_rational(&linear, &Rational::from((4, 3))),
+        );
+        let dry = balls.mul_power_of_two(&self.dry.ball(balls), 1);
+        Some([constant, dry, balls.mul_i64(&cubic, -8), balls.zero(), balls.mul_i64(&cubic, 4)])
+    }
+
+    /// The smooth stationary points of G in 0 < v* < V: y^2 (1 - y) = (T0/(8 beta V^3))^2, where
+    /// T0/beta > 0. Ascending; none, or two where V^3 > sqrt(27) T0/(16 beta).
+    ///
+    /// # Errors
+    /// As for [`StickSlip::zeros`].
+    pub fn stationary_points(&self, balls: Balls) -> Result<Vec<Ball>, MelnikovError> {
+        self.check()?;
+        let roots = || -> Option<Vec<Ball>> {
+            let v = self.loop_speed(balls)?;
+            if self.beta.sign() != self.dry.sign() || self.beta.sign().is_eq() {
+                return Some(Vec::new());
+            }
+            let cubic = balls.mul(&self.beta.ball(balls), &balls.powi(&v, 3)?);
+            let ratio = balls.div(&self.dry.ball(balls), &balls.mul_i64(&cubic, 8))?;
+            let right = balls.neg(&balls.square(&ratio));
+            let minus = balls.from_i64(-1);
+            let roots = unit_roots(balls, &[right, balls.zero(), balls.one(), minus])?;
+            Some(roots.iter().map(|y| balls.mul(&v, y)).collect())
+        };
+        roots().ok_or(MelnikovError::Undecided { bits: balls.bits() })
+    }
+}
+
+/// All roots in the open interval (0, 1), ascending, of a polynomial with ball coefficients;
+/// complete: between two neighbouring roots of the derivative the polynomial is monotone.
+/// `None` where a sign at the end of such a piece is not decided.
+fn unit_roots(balls: Balls, coefficients: &[Ball]) -> Option<Vec<Ball>> {
+    let exactly_zero = |c: &Ball| c.is_exact() && c.contains_zero();
+    let mut degree = coefficients.len();
+    while degree > 0 && exactly_zero(&coefficients[degree - 1]) {
+        degree -= 1;
+    }
+    let coefficients = &coefficients[..degree];
+    if degree <= 1 {
+        return Some(Vec::new());
+    }
+    let value = |balls: Balls, z: &Ball| {
+        Some(coefficients.iter().rev().fold(balls.zero(), |sum, c| {
+            balls.add(&balls.mul(&sum, z), c)
+        }))
+    };
+    let powers = (1i64..).zip(&coefficients[1..]);
+    let derivative: Vec<Ball> = powers.map(|(k, c)| balls.mul_i64(c, k)).collect();
+    let float = |x: i64| Float::with_val(balls.bits(), x);
+    let exact = |x: &Float| balls.from_parts(x, &Float::new(53));
+    let mut roots = Vec::new();
+    // A factor z: its root 0 is not in the open interval; go on with the quotient.
+    if exactly_zero(&coefficients[0]) {
+        return unit_roots(balls, &coefficients[1..]);
+    }
+    let mut pieces = vec![(float(0), float(0))];
+    for critical in unit_roots(balls, &derivative)? {
+        pieces.push((critical.lower(), critical.upper()));
+    }
+    pieces.push((float(1), float(1)));
+    for pair in pieces.windows(2) {
+        let [left, right] = pair else { continue };
+        // The sign must not change within the enclosure of a stationary point.
+        let at = |(low, high): &(Float, Float)| -> Option<bool> {
+            let hull = value(balls, &balls.hull(&exact(low), &exact(high)))?;
+            match (hull.is_positive(), hull.is_negative()) {
+                (true, _) => Some(true),
+                (_, true) => Some(false),
+                _ => None,
+            }
+        };
+        if at(left)? != at(right)? {
+            roots.push(enclose_root(balls, &left.1, &right.0, value)?);
+        }
+    }
+    Some(roots)
+}
