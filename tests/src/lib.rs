@@ -1,1 +1,38 @@
 //! Shared helpers of the integration tests.
+
+use lindstedt::{Derivation, Settings, derive, problems};
+
+/// The checked expansion of a built-in problem with its default settings, to an order.
+///
+/// # Panics
+/// When the derivation fails: a test without its expansion has nothing to test.
+#[allow(clippy::panic)]
+pub fn expansion(name: &str, order: usize) -> Derivation {
+    with(name, Settings { order, ..Settings::default() })
+}
+
+/// The checked expansion of a built-in problem.
+///
+/// # Panics
+/// When the derivation fails.
+#[allow(clippy::panic)]
+pub fn with(name: &str, settings: Settings) -> Derivation {
+    let Some(problem) = problems::find(name) else { panic!("no problem {name}") };
+    match derive(&problem, &settings, &mut |_| true) {
+        Ok(result) => result,
+        Err(error) => panic!("{name}: {error}"),
+    }
+}
+
+/// Coefficient n of a series as a decimal.
+///
+/// # Panics
+/// When the series or the digits do not exist.
+#[allow(clippy::panic)]
+pub fn decimal(result: &Derivation, series: &str, n: usize, digits: usize) -> String {
+    let Some(named) = result.named(series) else { panic!("no series {series}") };
+    match result.number(named, n, digits) {
+        Ok(number) => number.decimal,
+        Err(error) => panic!("{series} {n}: {error}"),
+    }
+}

@@ -10,6 +10,7 @@
 
 mod dissipation;
 mod error;
+mod fast;
 mod forcing;
 mod friction;
 pub mod hyperbolic;
@@ -23,6 +24,7 @@ mod system;
 
 pub use dissipation::{polynomial_dissipation, quadrature_dissipation};
 pub use error::MelnikovError;
+pub use fast::{Axis, FastPoint, FastThreshold, surface};
 pub use forcing::{Forcing, ForcingWork, Harmonic};
 pub use friction::{Friction, LARGEST_DEGREE, Law, PolynomialFriction};
 pub use orbit::{Monomial, OrbitDescription, check_pendulum, check_phi_six};

@@ -22,7 +22,7 @@ pub fn gamma(balls: Balls, x: &Rational) -> Option<Ball> {
         return None;
     }
     let weight = Float::with_val(53, argument.ln_ref()).abs() * &argument + 2u32;
-    let error = weight * Float::with_val(53, value.abs_ref()) >> (bits - 2);
+    let error = (weight * Float::with_val(53, value.abs_ref())) >> (bits - 2);
     Some(balls.from_parts(&value, &error))
 }
 

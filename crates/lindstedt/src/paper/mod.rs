@@ -1,0 +1,196 @@
+//! The paper, re-read by machine: what is printed, what the engine derives, what an independent
+//! route says, and a verdict that is computed from the three.
+//!
+//! The paper is J. Awrejcewicz and I. Andrianov's survey of asymptotic approaches to strongly
+//! nonlinear and non-smooth systems. Only what it prints is written down here; everything beside
+//! it is computed. A further section of the paper adds one module with a function that pushes
+//! [`Row`]s and [`Table`]s, and one line in [`read`].
+
+mod compare;
+mod lobachevsky;
+mod numbers;
+mod orders;
+mod pendulum;
+mod periods;
+mod power_law;
+mod tables;
+
+pub use compare::{Decimal, Findings};
+
+use crate::Error;
+use lindstedt_coeff::ball::Balls;
+
+/// What the comparison of a printed statement with the truth came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// It holds as printed.
+    Agrees,
+    /// One term, sign, factor or digit must change, and nothing in the paper rests on the error.
+    Misprint,
+    /// It does not hold, and no single change repairs it, or later statements rest on the error.
+    Wrong,
+    /// A number that follows from no formula, printed or corrected.
+    NotReproducible,
+}
+
+impl Verdict {
+    /// The verdict in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Agrees => "agrees",
+            Self::Misprint => "misprint",
+            Self::Wrong => "wrong",
+            Self::NotReproducible => "not reproducible",
+        }
+    }
+}
+
+/// One formula or number of the paper.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The number of the formula, or where the statement stands.
+    pub label: String,
+    /// What is printed.
+    pub printed: String,
+    /// What the engine derives.
+    pub derived: String,
+    /// What a route that shares nothing with the derivation says.
+    pub independent: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why.
+    pub evidence: String,
+}
+
+/// A table of numbers. Numbers are certified to the printed digits unless a note says otherwise.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// A short name for files.
+    pub name: String,
+    /// What it shows.
+    pub title: String,
+    /// The heads of the columns.
+    pub columns: Vec<String>,
+    /// The cells, row by row.
+    pub rows: Vec<Vec<String>>,
+    /// What must be said beside the numbers.
+    pub notes: Vec<String>,
+}
+
+/// A section of the paper.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// Its number.
+    pub number: u32,
+    /// Its title.
+    pub title: &'static str,
+    /// Its formulas and numbers, in the order of the paper.
+    pub rows: Vec<Row>,
+    /// What the method really gives.
+    pub tables: Vec<Table>,
+}
+
+impl Section {
+    /// The row with this label.
+    pub fn row(&self, label: &str) -> Option<&Row> {
+        self.rows.iter().find(|row| row.label == label)
+    }
+
+    /// How many rows have this verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.rows.iter().filter(|row| row.verdict == verdict).count()
+    }
+}
+
+/// What was read.
+#[derive(Clone, Debug)]
+pub struct Paper {
+    /// The sections, in the order in which they were asked for.
+    pub sections: Vec<Section>,
+    /// Whether everything is there (false when the observer stopped the work).
+    pub complete: bool,
+}
+
+/// How far to go.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// The order to which the expansions are derived and checked, at least 2.
+    pub order: usize,
+    /// The order up to which the tables go, at least 6.
+    pub table_order: usize,
+}
+
+impl Options {
+    /// A minute of work at most.
+    pub const FULL: Self = Self { order: 8, table_order: 20 };
+    /// A few seconds.
+    pub const QUICK: Self = Self { order: 4, table_order: 14 };
+}
+
+/// The precision of every comparison. Two numbers of the size of a period that differ are told
+/// apart by some 50 digits, all decimals shown have fewer than 30.
+const BITS: u32 = 256;
+
+/// What the parts of a section share.
+struct Reader<'a> {
+    options: Options,
+    balls: Balls,
+    observer: &'a mut dyn FnMut(&str) -> bool,
+}
+
+impl Reader<'_> {
+    /// Says what comes next; false when the work must stop.
+    fn goes_on(&mut self, what: &str) -> bool {
+        (self.observer)(what)
+    }
+}
+
+/// Reads the paper (section 4): derives, compares, tabulates.
+///
+/// `observer` is told what comes next; when it returns `false` the work stops with the rows
+/// finished so far.
+///
+/// # Errors
+/// [`Error`] when the engine cannot derive what the paper claims, or cannot reach the digits.
+///
+/// # Example
+/// ```
+/// use lindstedt::paper::{Options, Verdict, read};
+/// let paper = read(Options::QUICK, &mut |_| true)?;
+/// let row = paper.sections[0].row("(42)").ok_or("no such row")?;
+/// assert_eq!(row.verdict, Verdict::Wrong);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<Paper, Error> {
+    let mut reader = Reader { options, balls: Balls::new(BITS), observer };
+    let mut section = Section {
+        number: 4,
+        title: "Strongly nonlinear systems",
+        rows: Vec::new(),
+        tables: Vec::new(),
+    };
+    let parts: [(&str, Part); 4] = [
+        ("the power law, (28)-(42)", power_law::read),
+        ("its numbers", numbers::read),
+        ("the pendulum, (43)-(51)", pendulum::read),
+        ("the tables", tables::read),
+    ];
+    let mut complete = true;
+    for (what, part) in parts {
+        if !reader.goes_on(what) {
+            complete = false;
+            break;
+        }
+        complete = part(&mut reader, &mut section)?;
+        if !complete {
+            break;
+        }
+    }
+    Ok(Paper { sections: vec![section], complete })
+}
+
+/// A part of a section: adds to it; false when it was stopped.
+type Part = fn(&mut Reader<'_>, &mut Section) -> Result<bool, Error>;
+
+#[cfg(test)]
+mod tests;

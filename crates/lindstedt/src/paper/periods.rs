@@ -1,0 +1,153 @@
+//! Periods and forces by routes that share nothing with the expansions.
+
+use lindstedt_coeff::ball::{Ball, Balls};
+use rug::{Float, Rational};
+
+/// The exact period of x'' + x^n = 0, x(0) = 1, x'(0) = 0, for odd n >= 1, by the beta integral:
+///
+///   T = 4 sqrt((n + 1)/2) int_0^1 dx/sqrt(1 - x^(n+1))
+///     = 4 sqrt(pi (n + 1)/2) Gamma(1 + 1/(n + 1))/Gamma(1/2 + 1/(n + 1)).
+pub(super) fn power_law_period(n: u32, balls: Balls) -> Option<Ball> {
+    let shift = Rational::from((1, i64::from(n) + 1));
+    let above = gamma(&Rational::from(&shift + 1u32), balls)?;
+    let below = gamma(&(shift + Rational::from((1, 2))), balls)?;
+    let half = Rational::from((i64::from(n) + 1, 2));
+    let root = balls.sqrt(&balls.mul_rational(&balls.pi(), &half))?;
+    balls.div(&balls.mul_i64(&balls.mul(&root, &above), 4), &below)
+}
+
+/// Gamma(q) for 1/2 <= q <= 2: MPFR rounds correctly; Gamma is convex, so there |Gamma'| is at
+/// most max(|Gamma'(1/2)|, Gamma'(2)) < 4.
+fn gamma(q: &Rational, balls: Balls) -> Option<Ball> {
+    if *q < Rational::from((1, 2)) || *q > 2 {
+        return None;
+    }
+    let bits = balls.bits();
+    let value = Float::with_val(bits, q).gamma();
+    // The argument is off by less than 2^(1 - bits), the value by as much again.
+    let error = Float::with_val(53, 10) >> bits - 1;
+    Some(balls.from_parts(&value, &error))
+}
+
+/// The arithmetic-geometric mean of 1 and b, 0 < b < 1: it lies between the two means at every
+/// step, and their distance is squared each time.
+fn arithmetic_geometric_mean(b: &Ball, balls: Balls) -> Option<Ball> {
+    let (mut a, mut b) = (balls.one(), b.clone());
+    for _ in 0..balls.bits().ilog2() + 6 {
+        let mean = balls.mul_power_of_two(&balls.add(&a, &b), -1);
+        b = balls.sqrt(&balls.mul(&a, &b))?;
+        a = mean;
+    }
+    Some(balls.hull(&a, &b))
+}
+
+/// The exact period of the pendulum with amplitude a: T = 4 K(sin(a/2)) = 2 pi/agm(1, cos(a/2)).
+pub(super) fn pendulum_period(amplitude: &Rational, balls: Balls) -> Option<Ball> {
+    let half = balls.from_rational(&Rational::from(amplitude / 2u32));
+    let mean = arithmetic_geometric_mean(&balls.cos(&half), balls)?;
+    balls.div(&balls.mul_i64(&balls.pi(), 2), &mean)
+}
+
+/// The exact period for n = 3 by the same mean: int_0^1 dx/sqrt(1 - x^4) is lemniscatic,
+/// T = 2 pi/agm(1, 1/sqrt 2).
+pub(super) fn cubic_period(balls: Balls) -> Option<Ball> {
+    let root = balls.sqrt(&balls.from_rational(&Rational::from((1, 2))))?;
+    let mean = arithmetic_geometric_mean(&root, balls)?;
+    balls.div(&balls.mul_i64(&balls.pi(), 2), &mean)
+}
+
+/// int_low^high -ln|cos t| dt by tanh-sinh quadrature in MPFR, split at the odd multiples of
+/// pi/2 inside: no theory of the integrand beyond its definition. Estimated, not certified:
+/// about 30 digits.
+pub(super) fn integral_of_log_secant(low: &Float, high: &Float) -> Float {
+    const BITS: u32 = 160;
+    let half_pi = Float::with_val(BITS, rug::float::Constant::Pi) / 2u32;
+    let mut nodes = vec![low.clone()];
+    let turns = 8;
+    for k in (-turns..=turns).filter(|k| k % 2 != 0) {
+        let pole = Float::with_val(BITS, &half_pi * k);
+        if pole > *low && pole < *high {
+            nodes.push(pole);
+        }
+    }
+    nodes.push(high.clone());
+    let mut sum = Float::new(BITS);
+    for pair in nodes.windows(2) {
+        if let [from, to] = pair {
+            sum += tanh_sinh(from, to, BITS);
+        }
+    }
+    sum
+}
+
+/// The rule x = (from + to)/2 + (to - from)/2 tanh(pi/2 sinh t) with step 2^-5 for |t| <= 5.
+fn tanh_sinh(from: &Float, to: &Float, bits: u32) -> Float {
+    let half_pi = Float::with_val(bits, rug::float::Constant::Pi) / 2u32;
+    let radius = Float::with_val(bits, to - from) / 2u32;
+    let mut sum = Float::new(bits);
+    for i in -140i32..=140 {
+        let t = Float::with_val(bits, i) >> 5;
+        let inner = Float::with_val(bits, &half_pi * t.clone().sinh());
+        let cosh = Float::with_val(bits, inner.cosh_ref());
+        let weight = Float::with_val(bits, &half_pi * t.cosh()) / cosh.square();
+        // The distance to the nearer end, without cancellation: radius (1 - |tanh u|)
+        // = 2 radius/(1 + e^(2 |u|)).
+        let inner_abs = inner.clone().abs();
+        let gap = Float::with_val(bits, &radius * 2u32) / ((inner_abs * 2u32).exp() + 1u32);
+        let value = if inner.is_sign_negative() {
+            log_secant(from, &gap, bits)
+        } else {
+            log_secant(to, &(-gap), bits)
+        };
+        if value.is_finite() {
+            sum += weight * value;
+        }
+    }
+    (sum * radius) >> 5
+}
+
+/// -ln|cos(end + gap)|, by sin(gap) where the end is an odd multiple of pi/2.
+fn log_secant(end: &Float, gap: &Float, bits: u32) -> Float {
+    let cosine = end.clone().cos();
+    let near_pole = cosine.clone().abs() < Float::with_val(53, 1e-40);
+    let value = if near_pole {
+        gap.clone().sin()
+    } else {
+        Float::with_val(bits, end + gap).cos()
+    };
+    -value.abs().ln()
+}
+
+/// [delta^order] of force(delta), order 1 or 2, by a central difference with step 2^-(bits/4):
+/// the error is of the size 2^-(bits/2). Estimated, not certified.
+pub(super) fn difference(
+    order: usize,
+    balls: Balls,
+    force: impl Fn(&Ball) -> Option<Ball>,
+) -> Option<Ball> {
+    let shift = i32::try_from(balls.bits() / 4).ok()?;
+    let step = balls.mul_power_of_two(&balls.one(), -shift);
+    let (right, left) = (force(&step)?, force(&balls.neg(&step))?);
+    if order == 1 {
+        return Some(balls.mul_power_of_two(&balls.sub(&right, &left), shift - 1));
+    }
+    let middle = balls.mul_i64(&force(&balls.zero())?, 2);
+    let second = balls.sub(&balls.add(&right, &left), &middle);
+    Some(balls.mul_power_of_two(&second, 2 * shift - 1))
+}
+
+/// The coefficients of y^exponent for a series y with leading coefficient one, as in
+/// [`lindstedt_series::Series::power`], in balls.
+pub(super) fn power(y: &[Ball], exponent: &Rational, balls: Balls) -> Option<Vec<Ball>> {
+    let mut z = vec![balls.one()];
+    for n in 1..y.len() {
+        let mut sum = balls.zero();
+        for k in 1..=n {
+            let factor = Rational::from(exponent + 1u32) * Rational::from(k) - Rational::from(n);
+            let term = balls.mul(y.get(k)?, z.get(n - k)?);
+            sum = balls.add(&sum, &balls.mul_rational(&term, &factor));
+        }
+        z.push(balls.div_i64(&sum, i64::try_from(n).ok()?)?);
+    }
+    Some(z)
+}

@@ -1,0 +1,377 @@
+//! The threshold in f64: stable forms, no allocation per point, surfaces on all cores.
+//!
+//! gamma = G cosh(z)/(2z), z = pi omega/(2 sqrt a), G as in [`crate::StickSlip::g`]. What the
+//! naive forms lose, and the form used instead, is measured in section 5 of
+//! `mathematics/stick-slip.md`.
+
+use crate::MelnikovError;
+use crate::hyperbolic::FRAC_PI_2_LOW;
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, LN_2};
+
+/// The parameters in f64; names as in [`crate::StickSlip`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FastPoint {
+    /// a > 0.
+    pub a: f64,
+    /// b > 0.
+    pub b: f64,
+    /// T0.
+    pub dry: f64,
+    /// alpha.
+    pub alpha: f64,
+    /// beta.
+    pub beta: f64,
+    /// omega > 0.
+    pub omega: f64,
+    /// v*.
+    pub belt_speed: f64,
+}
+
+/// A parameter to sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// a.
+    A,
+    /// b.
+    B,
+    /// T0.
+    Dry,
+    /// alpha.
+    Alpha,
+    /// beta.
+    Beta,
+    /// omega.
+    Omega,
+    /// v*.
+    BeltSpeed,
+}
+
+/// A threshold in f64.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FastThreshold {
+    /// D/F with its sign; infinite or 0 where it leaves the range of f64 (then use `ln_abs`).
+    pub signed: f64,
+    /// ln |signed|, finite wherever G != 0; absolute error about eps max(1, |ln_abs|).
+    pub ln_abs: f64,
+    /// An estimate of the absolute error of `signed` by rounding: 8 eps sum |terms of G| factor.
+    /// Near a zero of G the relative error is not small, this one is.
+    pub error: f64,
+}
+
+/// m 2^e with an exponent that does not overflow.
+#[derive(Clone, Copy)]
+struct Scaled {
+    mantissa: f64,
+    exponent: i64,
+}
+
+const SPLIT: i32 = 1 << 10;
+
+/// x = m 2^e, 1 <= |m| < 2, for finite x != 0 (by powers of two only: exact).
+fn split(x: f64) -> (f64, i64) {
+    if x == 0.0 || !x.is_finite() {
+        return (x, 0);
+    }
+    let (x, shift) = if x.abs() < f64::MIN_POSITIVE { (x * 2f64.powi(60), -60) } else { (x, 0) };
+    let bits = x.to_bits();
+    let exponent = ((bits >> 52) & 0x7ff) as i64 - 1023;
+    let mantissa = f64::from_bits((bits & !(0x7ff << 52)) | (1023 << 52));
+    (mantissa, exponent + shift)
+}
+
+/// m 2^e rounded once (0 or infinite outside the range).
+fn join(mantissa: f64, exponent: i64) -> f64 {
+    let mut rest = exponent.clamp(-4200, 4200) as i32;
+    let mut value = mantissa;
+    while rest > SPLIT - 24 {
+        value *= 2f64.powi(SPLIT - 24);
+        rest -= SPLIT - 24;
+    }
+    // Downwards, all steps but the last are exact: 2^-1000 keeps m in [1, 2) normal.
+    if rest < -1000 {
+        let last = (rest + 1000).max(-1070);
+        return value * 2f64.powi(-1000) * 2f64.powi(last);
+    }
+    value * 2f64.powi(rest)
+}
+
+impl Scaled {
+    fn new(x: f64) -> Self {
+        let (mantissa, exponent) = split(x);
+        Self { mantissa, exponent }
+    }
+    fn mul(self, other: Self) -> Self {
+        let product = Self::new(self.mantissa * other.mantissa);
+        Self { exponent: product.exponent + self.exponent + other.exponent, ..product }
+    }
+    fn add(self, other: Self) -> Self {
+        let (large, small) = match (self.mantissa == 0.0, other.mantissa == 0.0) {
+            (true, _) => return other,
+            (_, true) => return self,
+            _ if self.exponent >= other.exponent => (self, other),
+            _ => (other, self),
+        };
+        let sum = large.mantissa + join(small.mantissa, small.exponent - large.exponent);
+        let sum = Self::new(sum);
+        Self { exponent: sum.exponent + large.exponent, ..sum }
+    }
+    fn ln_abs(self) -> f64 {
+        (self.exponent as f64).mul_add(LN_2, self.mantissa.abs().ln())
+    }
+}
+
+/// 1 - |v|/V without cancellation: (a^2 - 2 b v^2)/(a (a + sqrt(2b)|v|)), the numerator by
+/// two-products. a and v are scaled to [1, 2) by powers of two, which is exact. The sign is that of
+/// the exact value.
+fn speed_gap(a: f64, b: f64, v: f64) -> f64 {
+    if v == 0.0 {
+        return 1.0;
+    }
+    let (ma, ea) = split(a);
+    let (mv, ev) = split(v.abs());
+    let (mb, eb) = split(b);
+    // y^2 = 2 b v^2/a^2 = 2 mb mv^2/ma^2 2^(eb + 2 ev - 2 ea).
+    let exponent = eb + 2 * ev - 2 * ea;
+    if exponent > 8 {
+        return -1.0;
+    }
+    if exponent < -240 {
+        return 1.0;
+    }
+    let twice_b = mb * 2f64.powi(exponent as i32 + 1);
+    let p = twice_b * mv;
+    let p_low = twice_b.mul_add(mv, -p);
+    let q = p * mv;
+    let q_low = p.mul_add(mv, -q);
+    let square = ma * ma;
+    let square_low = ma.mul_add(ma, -square);
+    let numerator = (square - q) + ((square_low - q_low) - p_low * mv);
+    numerator / (ma * (ma + twice_b.sqrt() * mv))
+}
+
+/// The factor cosh(z)/(2z) of gamma, with ln cosh(z) - ln(2z).
+#[derive(Clone, Copy)]
+struct ForcingFactor {
+    /// e^{z/2}/2-like half of the factor, so that neither half overflows for z < 1400.
+    first: f64,
+    second: f64,
+    ln: f64,
+}
+
+/// z = pi omega/(2 sqrt a) as a double-double, cosh(zh + zl) = cosh zh + zl sinh zh.
+fn forcing_factor(a: f64, omega: f64) -> ForcingFactor {
+    let root = a.sqrt();
+    let root_low = (-root).mul_add(root, a) / (2.0 * root);
+    let u = omega / root;
+    let u_low = ((-u).mul_add(root, omega) - u * root_low) / root;
+    let u_low = if u_low.is_finite() { u_low } else { 0.0 };
+    let high = u * FRAC_PI_2;
+    let low = u.mul_add(FRAC_PI_2, -high) + u * FRAC_PI_2_LOW + u_low * FRAC_PI_2;
+    let low = if low.is_finite() { low } else { 0.0 };
+    let twice = 2.0 * high;
+    if high < 350.0 {
+        let e = high.exp();
+        let inverse = 1.0 / e;
+        let cosh = 0.5 * (e + inverse) + low * (0.5 * (e - inverse));
+        // 2z = 2 zh + 2 zl: the low word is below half an ulp.
+        let second = cosh / twice;
+        return ForcingFactor { first: 1.0, second, ln: f64::NAN };
+    }
+    let half = (high / 2.0).exp();
+    ForcingFactor { first: half, second: half * (1.0 + low) / (2.0 * twice), ln: f64::NAN }
+}
+
+impl ForcingFactor {
+    /// ln of the factor, formed only on demand: ln cosh z = z + ln(1 + e^{-2z}) - ln 2.
+    fn ln(self, a: f64, omega: f64) -> f64 {
+        if self.ln.is_finite() {
+            return self.ln;
+        }
+        let z = omega / a.sqrt() * FRAC_PI_2;
+        let ln_z = if z > 0.0 && z >= f64::MIN_POSITIVE && z.is_finite() {
+            z.ln()
+        } else {
+            omega.ln() - 0.5 * a.ln() + FRAC_PI_2.ln()
+        };
+        z + (-2.0 * z).exp().ln_1p() - 2.0 * LN_2 - ln_z
+    }
+}
+
+/// (G, sum of the |terms|) in plain f64.
+#[inline]
+fn g_plain(p: &FastPoint) -> (f64, f64) {
+    let speed = p.a / (2.0 * p.b).sqrt();
+    let gap = speed_gap_quick(p.a, p.b, p.belt_speed);
+    let dry = if gap > 0.0 { 2.0 * p.dry * gap.sqrt() } else { 0.0 };
+    let linear = 4.0 / 3.0 * speed * p.alpha;
+    let mixed = 4.0 * speed * p.beta * (p.belt_speed * p.belt_speed);
+    let cubic = 32.0 / 35.0 * p.beta * (speed * speed * speed);
+    let sum = (dry - linear) + (mixed + cubic);
+    (sum, dry.abs() + linear.abs() + mixed.abs() + cubic.abs())
+}
+
+/// [`speed_gap`] without rescaling where the squares are far from the ends of the range.
+#[inline]
+fn speed_gap_quick(a: f64, b: f64, v: f64) -> f64 {
+    let twice_b = 2.0 * b;
+    let p = twice_b * v;
+    let q = p * v;
+    let square = a * a;
+    if !(square > 1e-200 && square < 1e200 && q < 1e200 && (q > 1e-200 || v == 0.0)) {
+        return speed_gap(a, b, v);
+    }
+    let p_low = twice_b.mul_add(v, -p);
+    let q_low = p.mul_add(v, -q);
+    let square_low = a.mul_add(a, -square);
+    let numerator = (square - q) + ((square_low - q_low) - p_low * v);
+    numerator / (a * (a + twice_b.sqrt() * v.abs()))
+}
+
+/// G with exponents that cannot overflow.
+fn g_scaled(p: &FastPoint) -> (Scaled, Scaled) {
+    let (mb, eb) = split(p.b);
+    // sqrt(2b) with an even exponent.
+    let even = (eb + 1) & !1;
+    let root = (mb * 2f64.powi((eb + 1 - even) as i32)).sqrt();
+    let a = Scaled::new(p.a);
+    let quotient = Scaled::new(a.mantissa / root);
+    let speed = Scaled { exponent: quotient.exponent + a.exponent - even / 2, ..quotient };
+    let gap = speed_gap(p.a, p.b, p.belt_speed);
+    let dry = if gap > 0.0 { Scaled::new(2.0 * gap.sqrt()).mul(Scaled::new(p.dry)) } else { Scaled::new(0.0) };
+    let linear = Scaled::new(-4.0 / 3.0).mul(speed).mul(Scaled::new(p.alpha));
+    let belt = Scaled::new(p.belt_speed);
+    let beta = Scaled::new(p.beta).mul(speed);
+    let mixed = Scaled::new(4.0).mul(beta).mul(belt).mul(belt);
+    let cubic = Scaled::new(32.0 / 35.0).mul(beta).mul(speed).mul(speed);
+    let size = [dry, linear, mixed, cubic].into_iter().fold(Scaled::new(0.0), |sum, term| {
+        sum.add(Scaled { mantissa: term.mantissa.abs(), ..term })
+    });
+    (dry.add(linear).add(mixed.add(cubic)), size)
+}
+
+impl FastPoint {
+    /// Finite parameters, positive a, b, omega.
+    ///
+    /// # Errors
+    /// [`MelnikovError::NotFinite`] or [`MelnikovError::NotPositive`] with the name.
+    pub fn check(&self) -> Result<(), MelnikovError> {
+        let all = [
+            ("a", self.a, true),
+            ("b", self.b, true),
+            ("T0", self.dry, false),
+            ("alpha", self.alpha, false),
+            ("beta", self.beta, false),
+            ("omega", self.omega, true),
+            ("vstar", self.belt_speed, false),
+        ];
+        for (name, value, positive) in all {
+            if !value.is_finite() {
+                return Err(MelnikovError::NotFinite { name });
+            }
+            if positive && value <= 0.0 {
+                return Err(MelnikovError::NotPositive { name });
+            }
+        }
+        Ok(())
+    }
+
+    /// The threshold with its logarithm and error. Relative error at most 4e-15 (measured: see
+    /// the tests) away from zeros of G, for every omega and every range of the parameters.
+    ///
+    /// # Errors
+    /// Those of [`FastPoint::check`].
+    ///
+    /// ```
+    /// use lindstedt_melnikov::FastPoint;
+    /// let paper = FastPoint { a: 1.0, b: 1.0, dry: 0.3, alpha: 0.3, beta: 0.3, omega: 2.0, belt_speed: 0.4 };
+    /// let threshold = paper.threshold()?;
+    /// assert!((threshold.signed - 0.6370713428481636).abs() < 1e-15);
+    /// assert!((threshold.ln_abs - threshold.signed.ln()).abs() < 1e-15);
+    /// # Ok::<(), lindstedt_melnikov::MelnikovError>(())
+    /// ```
+    pub fn threshold(&self) -> Result<FastThreshold, MelnikovError> {
+        self.check()?;
+        let factor = forcing_factor(self.a, self.omega);
+        let (g, size) = g_scaled(self);
+        let ln_abs = g.ln_abs() + factor.ln(self.a, self.omega);
+        let signed = value(self, &factor);
+        let relative = join(size.mantissa / g.mantissa.abs(), size.exponent - g.exponent);
+        let error = if g.mantissa == 0.0 { 0.0 } else { 8.0 * f64::EPSILON * relative * signed.abs() };
+        Ok(FastThreshold { signed, ln_abs, error })
+    }
+
+    /// The point with one parameter changed.
+    #[must_use]
+    #[inline]
+    pub fn with(mut self, axis: Axis, value: f64) -> Self {
+        match axis {
+            Axis::A => self.a = value,
+            Axis::B => self.b = value,
+            Axis::Dry => self.dry = value,
+            Axis::Alpha => self.alpha = value,
+            Axis::Beta => self.beta = value,
+            Axis::Omega => self.omega = value,
+            Axis::BeltSpeed => self.belt_speed = value,
+        }
+        self
+    }
+}
+
+/// G times the factor; the scaled path where the plain one leaves the range.
+#[inline]
+fn value(p: &FastPoint, factor: &ForcingFactor) -> f64 {
+    let (g, size) = g_plain(p);
+    let plain = g * factor.first * factor.second;
+    let small = plain.abs();
+    if size < 1e290 && size > 1e-290 && small < 1e290 && small > 1e-290 {
+        return plain;
+    }
+    let (g, _) = g_scaled(p);
+    let (first, second) = (Scaled::new(factor.first), Scaled::new(factor.second));
+    if factor.first.is_finite() && factor.second.is_finite() {
+        let product = g.mul(first).mul(second);
+        return join(product.mantissa, product.exponent);
+    }
+    let ln = g.ln_abs() + factor.ln(p.a, p.omega);
+    if g.mantissa == 0.0 { 0.0 } else { ln.exp().copysign(g.mantissa) }
+}
+
+/// The signed thresholds over a grid: `table[i * columns.len() + j]` at rows[i], columns[j].
+///
+/// NaN where a swept parameter leaves its domain (not finite, or a, b, omega <= 0). The rows run
+/// on all cores of the current rayon pool; nothing is allocated per point.
+///
+/// # Errors
+/// [`MelnikovError::WrongTableSize`] where `table` does not have rows x columns entries.
+pub fn surface(
+    point: &FastPoint,
+    rows: (Axis, &[f64]),
+    columns: (Axis, &[f64]),
+    table: &mut [f64],
+) -> Result<(), MelnikovError> {
+    let expected = rows.1.len().saturating_mul(columns.1.len());
+    if table.len() != expected {
+        return Err(MelnikovError::WrongTableSize { expected, found: table.len() });
+    }
+    if columns.1.is_empty() {
+        return Ok(());
+    }
+    let factor_changes = matches!(columns.0, Axis::A | Axis::Omega);
+    let lines = table.par_chunks_mut(columns.1.len()).zip(rows.1.par_iter());
+    lines.for_each(|(line, &row)| {
+        let base = point.with(rows.0, row);
+        let shared = forcing_factor(base.a, base.omega);
+        for (entry, &column) in line.iter_mut().zip(columns.1) {
+            let at = base.with(columns.0, column);
+            *entry = if at.check().is_err() {
+                f64::NAN
+            } else if factor_changes {
+                value(&at, &forcing_factor(at.a, at.omega))
+            } else {
+                value(&at, &shared)
+            };
+        }
+    });
+    Ok(())
+}

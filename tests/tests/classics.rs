@@ -1,0 +1,183 @@
+//! Duffing and van der Pol: published coefficients, both normalisations, two routes.
+#![allow(clippy::unwrap_used)]
+
+use lindstedt::algebra::Rationals;
+use lindstedt::equation::{Condition, Expression};
+use lindstedt::expand::{Binding, ExpandError, Request, check, compile, expand, leading_amplitude};
+use lindstedt::phase::Trigonometric;
+use lindstedt::{Settings, Solution, problems};
+use lindstedt_tests::{expansion, with};
+use rug::Rational;
+
+fn coefficients(result: &lindstedt::Derivation, series: &str) -> Vec<String> {
+    (0..=result.order).map(|n| result.exact(series, n).unwrap()).collect()
+}
+
+#[test]
+fn duffing_in_the_initial_amplitude_normalisation() {
+    let result = expansion("duffing", 6);
+    let expected = ["1", "3/8", "-21/256", "81/2048", "-6549/262144", "37737/2097152", "-936183/67108864"];
+    assert_eq!(coefficients(&result, "frequency"), expected);
+    let expected = ["1", "3/4", "-3/128", "9/512", "-1779/131072", "5643/524288", "-146661/16777216"];
+    assert_eq!(coefficients(&result, "frequency_squared"), expected);
+}
+
+#[test]
+fn duffing_in_the_fundamental_amplitude_normalisation() {
+    let condition = Some(Condition::FundamentalAmplitude);
+    let result = with("duffing", Settings { order: 5, condition, ..Settings::default() });
+    let expected = ["1", "3/8", "-15/256", "123/8192", "-921/262144", "579/2097152"];
+    assert_eq!(coefficients(&result, "frequency"), expected);
+    // The corrections have no first harmonic, by definition.
+    let Solution::Rational(proved) = &result.solution else { panic!("over Q") };
+    for x in &proved.expansion.solution[1..] {
+        assert!(x.cos[1].is_zero() && x.sin.is_empty());
+    }
+}
+
+#[test]
+fn van_der_pol_limit_cycle() {
+    // C. M. Andersen and J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678.
+    let result = expansion("van-der-pol", 10);
+    let expected = [
+        "1", "0", "-1/16", "0", "17/3072", "0", "35/884736", "0", "-678899/5096079360", "0",
+        "28160413/2293235712000",
+    ];
+    assert_eq!(coefficients(&result, "frequency"), expected);
+    let amplitude = coefficients(&result, "amplitude");
+    let expected = ["2", "0", "1/96", "0", "-1033/552960", "0", "1019689/55738368000"];
+    assert_eq!(amplitude[..7], expected);
+    let period = coefficients(&result, "period_over_2pi");
+    let expected = ["1", "0", "1/16", "0", "-5/3072", "0", "-431/884736", "0", "557039/5096079360"];
+    assert_eq!(period[..9], expected);
+}
+
+struct NoNames;
+impl Binding<Rationals> for NoNames {
+    fn parameter(&self, _: &str) -> Option<Rational> {
+        None
+    }
+    fn formal(&self, _: &str, _: usize) -> Option<Rational> {
+        None
+    }
+}
+
+type Plain = Trigonometric<Rationals>;
+
+fn directly(
+    equation: &Expression,
+    condition: Condition,
+    order: usize,
+) -> Result<lindstedt::expand::Expansion<Plain>, ExpandError> {
+    let algebra = Trigonometric::new(Rationals);
+    let compiled = compile(&algebra, equation, &NoNames, order)?;
+    let leading_amplitude = leading_amplitude(&algebra, &compiled, condition)?;
+    let request = Request { condition, order, leading_amplitude };
+    let expansion = expand(&algebra, &compiled, &request, &mut |_| true)?;
+    check(&algebra, &compiled, &expansion)?;
+    Ok(expansion)
+}
+
+#[test]
+fn the_multi_modular_route_agrees_with_rational_arithmetic() {
+    for (name, condition) in [
+        ("duffing", Condition::InitialAmplitude),
+        ("duffing", Condition::FundamentalAmplitude),
+        ("van-der-pol", Condition::LimitCycle),
+    ] {
+        for order in [0, 1, 2, 7, 24] {
+            let settings = Settings { order, condition: Some(condition), ..Settings::default() };
+            let modular = with(name, settings);
+            let Solution::Rational(proved) = &modular.solution else { panic!("over Q") };
+            let equation = problems::find(name).unwrap().equation;
+            let direct = directly(&equation, condition, order).unwrap();
+            assert_eq!(proved.expansion.solution, direct.solution);
+            assert_eq!(proved.expansion.frequency_squared, direct.frequency_squared);
+            assert_eq!(proved.expansion.amplitude, direct.amplitude);
+        }
+    }
+}
+
+#[test]
+fn the_residual_check_finds_a_wrong_digit() {
+    let algebra = Trigonometric::new(Rationals);
+    let equation = problems::find("van-der-pol").unwrap().equation;
+    let compiled = compile(&algebra, &equation, &NoNames, 6).unwrap();
+    let right = directly(&equation, Condition::LimitCycle, 6).unwrap();
+    let mut wrong = right.clone();
+    wrong.solution[4].cos[3] += Rational::from((1, 1_000_000));
+    assert_eq!(check(&algebra, &compiled, &wrong), Err(ExpandError::Residual { order: 4 }));
+    let mut wrong = right.clone();
+    wrong.frequency_squared[6] += Rational::from((1, 1_000_000));
+    assert_eq!(check(&algebra, &compiled, &wrong), Err(ExpandError::Residual { order: 6 }));
+    assert_eq!(check(&algebra, &compiled, &right), Ok(6));
+}
+
+#[test]
+fn other_oscillators_of_the_same_driver() {
+    let x = || Expression::Displacement;
+    let v = || Expression::Velocity;
+    // Helmholtz-Duffing: harmonics of both parities.
+    let helmholtz = Expression::Acceleration + x() + Expression::Small * (x().pow(2) + x().pow(3));
+    let result = directly(&helmholtz, Condition::InitialAmplitude, 6);
+    assert!(result.is_ok());
+    // Rayleigh's x'' + x = eps (x' - x'^3/3) has the frequency of van der Pol's equation, whose
+    // derivative it is.
+    let third = Expression::Number(Rational::from((1, 3)));
+    let rayleigh = Expression::Acceleration + x() - Expression::Small * (v() - third * v().pow(3));
+    let rayleigh = directly(&rayleigh, Condition::LimitCycle, 8).unwrap();
+    let pol = problems::find("van-der-pol").unwrap().equation;
+    let pol = directly(&pol, Condition::LimitCycle, 8).unwrap();
+    assert_eq!(rayleigh.frequency_squared, pol.frequency_squared);
+    // Duffing-van der Pol: omega_1 and the amplitude couple.
+    let gain = 1 - x().pow(2);
+    let mixed = Expression::Acceleration + x() + Expression::Small * x().pow(3)
+        - Expression::Small * gain * v();
+    let mixed = directly(&mixed, Condition::LimitCycle, 6).unwrap();
+    assert_eq!(mixed.frequency_squared[1], 3);
+}
+
+#[test]
+fn what_cannot_be_expanded_is_refused_by_name() {
+    let x = || Expression::Displacement;
+    let v = || Expression::Velocity;
+    let refused = |equation: Expression, condition| directly(&equation, condition, 3).unwrap_err();
+    let damped = Expression::Acceleration + x() + Expression::Small * v();
+    assert_eq!(
+        refused(damped.clone(), Condition::InitialAmplitude),
+        ExpandError::AmplitudeDrifts { order: 1 }
+    );
+    assert_eq!(refused(damped, Condition::LimitCycle), ExpandError::NoLimitCycle);
+    let strong = Expression::Acceleration + x() + x().pow(3);
+    assert_eq!(refused(strong, Condition::InitialAmplitude), ExpandError::NotWeaklyNonlinear);
+    let irrational = Expression::Acceleration + x() - Expression::Small * (v() - v().pow(3));
+    assert_eq!(refused(irrational, Condition::LimitCycle), ExpandError::IrrationalAmplitude);
+    // Averaged: a/2 (1 - a^2)(4 - a^2) up to a factor, two limit cycles.
+    let two = 4 - 5 * (4 * x().pow(2)) + 8 * x().pow(4);
+    let two = Expression::Acceleration + x() - Expression::Small * two * v();
+    assert_eq!(
+        refused(two, Condition::LimitCycle),
+        ExpandError::SeveralLimitCycles { count: 2 }
+    );
+    let unknown = Expression::Acceleration + x() + Expression::parameter("k") * Expression::Small;
+    assert_eq!(
+        refused(unknown, Condition::InitialAmplitude),
+        ExpandError::UnknownName { name: "k".into() }
+    );
+    let logarithm = Expression::Acceleration + x() + Expression::Small * x() * x().pow(2).ln();
+    assert!(matches!(
+        refused(logarithm, Condition::InitialAmplitude),
+        ExpandError::UnsupportedTerm { .. }
+    ));
+}
+
+#[test]
+fn order_n_computes_only_what_order_n_needs() {
+    // Products of phase functions at order n: x^2 needs n/2 and x x^2 needs n of them.
+    let equation = problems::find("duffing").unwrap().equation;
+    let result = directly(&equation, Condition::InitialAmplitude, 30).unwrap();
+    for work in &result.work[1..] {
+        assert!(work.products <= (3 * work.order as u64) / 2 + 2, "{work:?}");
+        assert_eq!(work.terms, work.order + 1);
+    }
+}

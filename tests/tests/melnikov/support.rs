@@ -1,0 +1,91 @@
+//! Reading the oracles and comparing with them.
+
+use lindstedt::coeff::ball::Ball;
+use lindstedt_melnikov::{Real, StickSlip};
+use rug::{Integer, Rational, ops::Pow};
+use serde_json::Value;
+
+/// A file of `tests/data/stick-slip`.
+pub fn oracle(name: &str) -> Value {
+    let path = format!("{}/data/stick-slip/{name}", env!("CARGO_MANIFEST_DIR"));
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// The exact value of a decimal.
+pub fn decimal(text: &str) -> Rational {
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let numerator: Integer = format!("{whole}{fraction}").parse().unwrap();
+    let shift = exponent.parse::<i32>().unwrap() - fraction.len() as i32;
+    Rational::from(numerator) * Rational::from(10).pow(shift)
+}
+
+/// A field of an object, as an exact parameter.
+pub fn real(row: &Value, name: &str) -> Real {
+    Real::Rational(number(row, name))
+}
+
+/// A field of an object, as an exact number.
+pub fn number(row: &Value, name: &str) -> Rational {
+    decimal(row[name].as_str().unwrap_or_else(|| panic!("{name} in {row}")))
+}
+
+/// Significant digits in a printed number.
+fn printed_digits(text: &str) -> i32 {
+    let mantissa = text.split('e').next().unwrap();
+    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+    digits.trim_start_matches('0').len() as i32
+}
+
+/// The ball agrees with the printed number to `digits` digits, or as many as are printed, and is
+/// itself that narrow.
+pub fn assert_agrees(ball: &Ball, expected: &Value, digits: i32, what: &str) {
+    let text = expected.as_str().unwrap();
+    let expected = decimal(text);
+    let digits = digits.min(printed_digits(text) - 1).max(1);
+    let scale = if expected.is_zero() { Rational::from(1) } else { expected.clone().abs() };
+    // An oracle 0.0 is an exact zero: compared absolutely, to the digits asked for.
+    let digits = if expected.is_zero() { 25 } else { digits };
+    let tolerance = scale * Rational::from(10).pow(-digits);
+    assert!(ball.is_finite(), "{what}: nothing known");
+    let middle = ball.midpoint().to_rational().unwrap();
+    let radius = ball.radius().to_rational().unwrap();
+    let error = Rational::from(&middle - &expected).abs() + radius;
+    assert!(error <= tolerance, "{what}: {} instead of {text}, error {}", ball.midpoint(), error.to_f64());
+}
+
+/// The oscillator of a row with a, b, T0, alpha, beta, omega, vstar (omega may be missing).
+pub fn stick_slip(row: &Value) -> StickSlip {
+    let omega = if row["omega"].is_null() { Real::from(1) } else { real(row, "omega") };
+    StickSlip {
+        a: real(row, "a"),
+        b: real(row, "b"),
+        dry: real(row, "T0"),
+        alpha: real(row, "alpha"),
+        beta: real(row, "beta"),
+        omega,
+        belt_speed: if row["vstar"].is_null() { Real::from(0) } else { real(row, "vstar") },
+    }
+}
+
+/// A reproducible stream of numbers in (0, 1) (SplitMix64).
+pub struct Random(pub u64);
+
+impl Random {
+    /// The next number.
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+    /// The next number in (low, high).
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+    /// The next number in (low, high) with three decimals, exactly.
+    pub fn rational(&mut self, low: f64, high: f64) -> Rational {
+        Rational::from(((self.between(low, high) * 1000.0).round() as i64, 1000))
+    }
+}
