@@ -16,9 +16,11 @@ fn coefficients(result: &lindstedt::Derivation, series: &str) -> Vec<String> {
 #[test]
 fn duffing_in_the_initial_amplitude_normalisation() {
     let result = expansion("duffing", 6);
-    let expected = ["1", "3/8", "-21/256", "81/2048", "-6549/262144", "37737/2097152", "-936183/67108864"];
+    let expected =
+        ["1", "3/8", "-21/256", "81/2048", "-6549/262144", "37737/2097152", "-936183/67108864"];
     assert_eq!(coefficients(&result, "frequency"), expected);
-    let expected = ["1", "3/4", "-3/128", "9/512", "-1779/131072", "5643/524288", "-146661/16777216"];
+    let expected =
+        ["1", "3/4", "-3/128", "9/512", "-1779/131072", "5643/524288", "-146661/16777216"];
     assert_eq!(coefficients(&result, "frequency_squared"), expected);
 }
 
@@ -40,7 +42,16 @@ fn van_der_pol_limit_cycle() {
     // C. M. Andersen and J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678.
     let result = expansion("van-der-pol", 10);
     let expected = [
-        "1", "0", "-1/16", "0", "17/3072", "0", "35/884736", "0", "-678899/5096079360", "0",
+        "1",
+        "0",
+        "-1/16",
+        "0",
+        "17/3072",
+        "0",
+        "35/884736",
+        "0",
+        "-678899/5096079360",
+        "0",
         "28160413/2293235712000",
     ];
     assert_eq!(coefficients(&result, "frequency"), expected);
@@ -155,10 +166,7 @@ fn what_cannot_be_expanded_is_refused_by_name() {
     // Averaged: a/2 (1 - a^2)(4 - a^2) up to a factor, two limit cycles.
     let two = 4 - 5 * (4 * x().pow(2)) + 8 * x().pow(4);
     let two = Expression::Acceleration + x() - Expression::Small * two * v();
-    assert_eq!(
-        refused(two, Condition::LimitCycle),
-        ExpandError::SeveralLimitCycles { count: 2 }
-    );
+    assert_eq!(refused(two, Condition::LimitCycle), ExpandError::SeveralLimitCycles { count: 2 });
     let unknown = Expression::Acceleration + x() + Expression::parameter("k") * Expression::Small;
     assert_eq!(
         refused(unknown, Condition::InitialAmplitude),

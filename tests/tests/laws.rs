@@ -1,7 +1,9 @@
 //! Every law of the algebras can fail: an algebra with one defect is caught by the law named
 //! after it.
 
-use lindstedt::algebra::{PhaseAlgebra, PhaseError, RationalAlgebra, Rationals, Resolution, Ring, laws};
+use lindstedt::algebra::{
+    PhaseAlgebra, PhaseError, RationalAlgebra, Rationals, Resolution, Ring, laws,
+};
 use lindstedt::phase::Trigonometric;
 use lindstedt::phase::trigonometric::TrigonometricPolynomial;
 use rug::Rational;
@@ -77,7 +79,9 @@ impl Ring for Broken {
         let product = self.sound.mul(a, b);
         let trivial = *a == self.sound.one() || *b == self.sound.one();
         match self.defect {
-            "multiplication commutes" if !trivial && a.cos.len() > b.cos.len() => self.sound.neg(&product),
+            "multiplication commutes" if !trivial && a.cos.len() > b.cos.len() => {
+                self.sound.neg(&product)
+            }
             // Bilinear and with the right unit: a b + (first harmonics of a and b) cos 2 psi.
             "multiplication associates" => {
                 let first = |f: &Element| f.cos.get(1).cloned().unwrap_or_default();
@@ -151,7 +155,9 @@ impl PhaseAlgebra for Broken {
         let slope = self.sound.derivative(f);
         match self.defect {
             "cos' = -sin" if *f == self.sound.cosine() => self.sound.sine(),
-            "constants have derivative zero" if self.sound.as_constant(f).is_some() => self.sound.one(),
+            "constants have derivative zero" if self.sound.as_constant(f).is_some() => {
+                self.sound.one()
+            }
             "Leibniz" if f.cos.len() > 2 => self.sound.zero(),
             _ => slope,
         }
@@ -187,13 +193,33 @@ fn every_law_can_fail() {
     let samples = [sound.zero(), sound.one(), two, sound.cosine(), sound.sine(), mixed];
     assert_eq!(laws::phase_algebra(&sound, &samples), Ok(()));
     for defect in [
-        "zero is zero", "one is not zero", "zero is canonical", "zero is neutral", "one is neutral",
-        "negation", "addition commutes", "multiplication commutes", "subtraction",
-        "addition associates", "multiplication associates", "distributivity", "sum of products",
-        "rational sums", "rational products", "rational numbers are recognised", "scaling",
-        "reciprocal", "sin' = cos", "cos' = -sin", "cos^2 + sin^2 = 1",
-        "constants have derivative zero", "Leibniz", "linear combination", "the split rebuilds",
-        "the response starts at rest", "the resonant part is the first harmonic",
+        "zero is zero",
+        "one is not zero",
+        "zero is canonical",
+        "zero is neutral",
+        "one is neutral",
+        "negation",
+        "addition commutes",
+        "multiplication commutes",
+        "subtraction",
+        "addition associates",
+        "multiplication associates",
+        "distributivity",
+        "sum of products",
+        "rational sums",
+        "rational products",
+        "rational numbers are recognised",
+        "scaling",
+        "reciprocal",
+        "sin' = cos",
+        "cos' = -sin",
+        "cos^2 + sin^2 = 1",
+        "constants have derivative zero",
+        "Leibniz",
+        "linear combination",
+        "the split rebuilds",
+        "the response starts at rest",
+        "the resonant part is the first harmonic",
     ] {
         let broken = Broken { sound: sound.clone(), defect };
         assert_eq!(laws::phase_algebra(&broken, &samples), Err(defect), "defect: {defect}");

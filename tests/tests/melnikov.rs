@@ -9,5 +9,9 @@ mod double;
 mod general;
 #[path = "melnikov/hyperbolic.rs"]
 mod hyperbolic;
+#[path = "melnikov/paper.rs"]
+mod paper;
+#[path = "melnikov/subharmonic.rs"]
+mod subharmonic;
 #[path = "melnikov/support.rs"]
 mod support;

@@ -19,6 +19,8 @@ pub enum Command {
     Problems(ProblemsOptions),
     /// Derive the expansion of a problem, order by order, and check it.
     Derive(DeriveOptions),
+    /// Read the paper: derive it, compare it with the print, tabulate what is true.
+    Paper(PaperOptions),
 }
 
 /// How results are written.
@@ -69,8 +71,27 @@ pub struct DeriveOptions {
     /// What the amplitude is: x(0), or the first harmonic.
     #[arg(long, value_enum)]
     pub normalisation: Option<Normalisation>,
+    /// The driver, or the energy integral (frequency alone; power-law and pendulum).
+    #[arg(long, value_enum, default_value_t = Route::Driver)]
+    pub route: Route,
     #[command(flatten)]
     pub precision: Precision,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Route {
+    /// Solution and frequency, checked by substitution.
+    Driver,
+    /// The frequency alone, exact and to much higher order.
+    Energy,
+}
+
+/// With --out DIR the report and its data are written into that directory.
+#[derive(Debug, Args)]
+pub struct PaperOptions {
+    /// Lower orders, a few seconds.
+    #[arg(long)]
+    pub quick: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -1,14 +1,14 @@
 //! `lindstedt derive`: the expansion, order by order, as one would write it on the board.
 
 use crate::Outcome;
-use crate::arguments::{DeriveOptions, Format, Normalisation};
+use crate::arguments::{self, DeriveOptions, Format, Normalisation};
 use crate::failure::{INTERRUPTED, UNDECIDED};
 use crate::output;
 use crate::problems::{condition_name, condition_text};
 use crate::session::{Session, digits, parameters, problem};
 use lindstedt::coeff::print::Style;
 use lindstedt::equation::{Condition, print};
-use lindstedt::{Derivation, Error, Number, Progress, Settings, Solution, Status};
+use lindstedt::{Derivation, Error, Number, Progress, Route, Settings, Solution, Status};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
@@ -27,6 +27,10 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         }),
         parameters: parameters(&options.set)?,
         memory: session.memory(),
+        route: match options.route {
+            arguments::Route::Driver => Route::Driver,
+            arguments::Route::Energy => Route::EnergyIntegral,
+        },
     };
     output::check_writable(session)?;
     let mut observer = |progress: Progress| {
@@ -102,10 +106,8 @@ struct Report<'a> {
 
 impl<'a> Report<'a> {
     fn new(result: &'a Derivation, digits: usize) -> Result<Self, Error> {
-        let of_series = |series: &lindstedt::NamedSeries| {
-            (0..series.coefficients.len()).map(|n| result.number(series, n, digits)).collect()
-        };
-        let numbers = result.series.iter().map(of_series).collect::<Result<_, _>>()?;
+        let numbers = result.series.iter().map(|series| result.numbers(series, digits));
+        let numbers = numbers.collect::<Result<_, _>>()?;
         Ok(Self { result, numbers })
     }
 
@@ -115,14 +117,16 @@ impl<'a> Report<'a> {
         for (named, numbers) in result.series.iter().zip(&self.numbers) {
             series.insert(named.name.to_owned(), numbers.iter().map(number_json).collect());
         }
+        let orders = result.checked_orders.map_or(0, |last| last + 1);
         let solution: Vec<String> =
-            (0..=result.order).map(|n| result.print_solution(n, Style::Text)).collect();
+            (0..orders).map(|n| result.print_solution(n, Style::Text)).collect();
         let method = match &result.solution {
             Solution::Rational(proved) => json!({
                 "name": "multi-modular, proved",
                 "primes": proved.primes,
                 "proof_primes": proved.proof_primes,
             }),
+            Solution::FrequencyOnly => json!({"name": "energy integral"}),
             _ => json!({"name": "Lobachevsky ring over Q[mu_m]"}),
         };
         json!({
@@ -134,8 +138,11 @@ impl<'a> Report<'a> {
             "normalisation": condition_name(result.condition),
             "series": series,
             "solution": solution,
-            "terms": (0..=result.order).map(|n| result.terms(n)).collect::<Vec<_>>(),
-            "residual": {"checked_orders": result.checked_orders, "zero": true},
+            "terms": (0..orders).map(|n| result.terms(n)).collect::<Vec<_>>(),
+            "residual": {
+                "checked_orders": result.checked_orders,
+                "zero": result.checked_orders.map(|_| true),
+            },
             "method": method,
             "seconds": session.elapsed().as_secs_f64(),
         })
@@ -164,12 +171,23 @@ impl<'a> Report<'a> {
             tau = names.tau, omega = names.omega, times = names.times, gap = names.gap, w = names.w,
         ));
         let _ = writeln!(text, "Normalisation: {}.\n", condition_text(result.condition));
-        for n in 0..=result.order {
+        if matches!(result.solution, Solution::Lobachevsky(_)) {
+            text += names.ring;
+        }
+        for n in 0..result.checked_orders.map_or(0, |last| last + 1) {
             text += &self.order(n, style, frame, &names);
         }
         text += &frame.title("Result");
         for (named, numbers) in result.series.iter().zip(&self.numbers) {
-            let _ = writeln!(text, "{} in powers of {}:", named.name, result.problem.small);
+            let _ = writeln!(
+                text,
+                "{} in powers of {small}:",
+                named.name.replace('_', " "),
+                small = match style {
+                    Style::Text => small.clone(),
+                    Style::Latex => format!("${small}$"),
+                }
+            );
             for (n, number) in numbers.iter().enumerate() {
                 let exact = result.print_coefficient(named, n, style);
                 let shown = match number.error {
@@ -187,25 +205,32 @@ impl<'a> Report<'a> {
                 };
             }
         }
-        let _ = writeln!(
-            text,
-            "\nResidual: the expansion substituted into the equation vanishes identically at orders 0 to {}{}.",
-            result.checked_orders,
-            match &result.solution {
-                Solution::Rational(proved) => format!(
-                    " (proved modulo {} primes of 61 bits, more than its numbers can hold)",
+        match (&result.solution, result.checked_orders) {
+            (Solution::Rational(proved), Some(last)) => {
+                let _ = writeln!(
+                    text,
+                    "\nResidual: the expansion substituted into the equation vanishes identically \
+                     at orders 0 to {last}\n(proved modulo {} primes of 61 bits, more than its \
+                     numbers can hold).",
                     proved.proof_primes
-                ),
-                _ => String::new(),
+                );
             }
-        );
+            (_, Some(last)) => {
+                let _ = writeln!(
+                    text,
+                    "\nResidual: the expansion substituted into the equation vanishes identically \
+                     at orders 0 to {last}."
+                );
+            }
+            _ => text += "\nBy the energy integral; no solution, so nothing to substitute.\n",
+        }
         text
     }
 
     fn order(&self, n: usize, style: Style, frame: &Frame, names: &Names) -> String {
         let result = self.result;
         let mut text = frame.title(&format!("Order {n}"));
-        let Names { tau, times, gap, w, prime, .. } = names;
+        let Names { times, w, prime, .. } = names;
         if n == 0 {
             text += &frame.formula(&format!("x_0{prime} + x_0 = 0"));
         } else {
@@ -222,13 +247,27 @@ impl<'a> Report<'a> {
                 if style == Style::Text { inertia.replace(['{', '}'], "") } else { inertia };
             let lower = if style == Style::Text { format!("x_{n}") } else { format!("x_{{{n}}}") };
             text += &frame.formula(&format!("{lower}{prime} + {lower} = {right_side} {inertia}"));
-            if let Some(series) = result.named("frequency_squared") {
-                let value = result.ring_coefficient(series, n, style);
-                let w_n =
-                    if style == Style::Text { format!("{w}_{n}") } else { format!("{w}_{{{n}}}") };
+            let index = |name: &str| match style {
+                Style::Text => format!("{name}_{n}"),
+                Style::Latex => format!("{name}_{{{n}}}"),
+            };
+            let value = result.frequency_correction(n, style);
+            text += &frame.formula(&match style {
+                Style::Text => format!(
+                    "no secular term: 2*mean(f_{n}*cos(tau)) + {a}{} = 0, so {} = {value}",
+                    index(w), index(w), a = names.leading(result),
+                ),
+                Style::Latex => format!(
+                    "2\\langle f_{{{n}}}\\cos\\tau\\rangle + {a}{} = 0 \\;\\Rightarrow\\; {} = {value}",
+                    index(w), index(w), a = names.leading(result),
+                ),
+            });
+            if result.condition == Condition::LimitCycle && n > 1 {
+                let before = n - 1;
+                let value = result.amplitude_correction(before, style);
                 text += &frame.formula(&match style {
-                    Style::Text => format!("no secular term: {w_n} = {value}"),
-                    Style::Latex => format!("\\text{{no secular term: }}{gap}{w_n} = {value}"),
+                    Style::Text => format!("2*mean(f_{n}*sin(tau)) = 0 fixes the amplitude a_{before} = {value}"),
+                    Style::Latex => format!("2\\langle f_{{{n}}}\\sin\\tau\\rangle = 0 \\;\\Rightarrow\\; a_{{{before}}} = {value}"),
                 });
             }
         }
@@ -239,7 +278,6 @@ impl<'a> Report<'a> {
             result.print_solution(n, style)
         };
         let lower = if style == Style::Text { format!("x_{n}") } else { format!("x_{{{n}}}") };
-        let _ = tau;
         text += &frame.formula(&format!("{lower} = {solution}"));
         text.push('\n');
         text
@@ -261,14 +299,30 @@ struct Names {
     gap: &'static str,
     w: &'static str,
     prime: &'static str,
+    /// What stands for what in the Lobachevsky ring.
+    ring: &'static str,
 }
 
 impl Names {
+    /// The leading amplitude as a factor, when it is not one.
+    fn leading(&self, result: &Derivation) -> String {
+        match result.amplitude_correction(0, Style::Text).as_str() {
+            "1" => String::new(),
+            amplitude => format!("{amplitude}{}", self.times),
+        }
+    }
+
     fn new(style: Style) -> Self {
         match style {
-            Style::Text => {
-                Self { tau: "tau", omega: "omega", times: "*", gap: "   ", w: "W", prime: "''" }
-            }
+            Style::Text => Self {
+                tau: "tau",
+                omega: "omega",
+                times: "*",
+                gap: "   ",
+                w: "W",
+                prime: "''",
+                ring: "l = -ln|cos(tau)|, Lambda_m = integral of l^m/m! - mu_m from 0 to tau (periodic),\nmu_m = mean of l^m/m!, f_n = right side without W_n x_0''.\n\n",
+            },
             Style::Latex => Self {
                 tau: "\\tau",
                 omega: "\\omega",
@@ -276,6 +330,10 @@ impl Names {
                 gap: "\\quad ",
                 w: "W",
                 prime: "''",
+                ring: "$\\ell = -\\ln|\\cos\\tau|$, \
+                       $\\Lambda_m = \\int_0^\\tau(\\ell^m/m! - \\mu_m)$ (periodic), \
+                       $\\mu_m = \\langle\\ell^m/m!\\rangle$, \
+                       $f_n$ is the right side without $W_n\\,x_0''$.\n\n",
             },
         }
     }

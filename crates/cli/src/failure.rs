@@ -62,6 +62,7 @@ impl From<Error> for Failure {
             Error::UnknownCondition { .. } => {
                 (USAGE, "unknown-normalisation", "see `lindstedt problems --show NAME`")
             }
+            Error::NoSuchRoute { .. } => (NO_ANSWER, "no-such-route", "use --route driver"),
             Error::OutsideDomain { .. } => (NO_ANSWER, "outside-domain", ""),
             Error::TooLarge { .. } => {
                 (UNDECIDED, "too-large", "lower --order or raise --limit-memory")

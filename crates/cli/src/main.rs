@@ -5,6 +5,7 @@ mod arguments;
 mod derive;
 mod failure;
 mod output;
+mod paper;
 mod problems;
 mod session;
 
@@ -23,6 +24,7 @@ fn main() -> ExitCode {
     let outcome = match &arguments.command {
         Command::Problems(options) => problems::run(options, &session),
         Command::Derive(options) => derive::run(options, &session),
+        Command::Paper(options) => paper::run(options, &session),
     };
     match outcome {
         Ok(code) => ExitCode::from(code),

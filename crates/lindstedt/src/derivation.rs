@@ -1,5 +1,6 @@
 //! From a problem to a checked expansion: the call behind `lindstedt derive`.
 
+use crate::energy::{period_over_2pi, power_law_frequency};
 use crate::multimodular::{self, RationalBinding};
 use crate::number::{Constants, Number, certified};
 use crate::{Error, Value};
@@ -28,12 +29,20 @@ pub struct Settings {
     pub parameters: BTreeMap<String, Value>,
     /// The memory that may be used, in bytes.
     pub memory: u64,
+    /// How the series are derived.
+    pub route: Route,
 }
 
 impl Default for Settings {
     /// Order 4, the problem's own normalisation and parameters, 8 GiB.
     fn default() -> Self {
-        Self { order: 4, condition: None, parameters: BTreeMap::new(), memory: 8 << 30 }
+        Self {
+            order: 4,
+            condition: None,
+            parameters: BTreeMap::new(),
+            memory: 8 << 30,
+            route: Route::default(),
+        }
     }
 }
 
@@ -51,7 +60,8 @@ pub enum Progress {
 /// A power series that belongs to the result: prefactor * sum c_n eps^n.
 #[derive(Clone, Debug)]
 pub struct NamedSeries {
-    /// `frequency_squared`, `frequency`, `period_over_2pi` or `amplitude`.
+    /// `frequency_squared`, `frequency`, `period_over_2pi`; `amplitude` (x(0) of a limit cycle),
+    /// `initial_displacement` (x(0) when the first harmonic is fixed).
     pub name: &'static str,
     /// A factor kappa^(half_power/2) in front, kappa the linear stiffness; 0 when kappa = 1.
     pub half_power: i32,
@@ -59,10 +69,23 @@ pub struct NamedSeries {
     pub coefficients: Vec<Polynomial>,
 }
 
+/// How the series are derived.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Route {
+    /// By the driver: solution and frequency, checked by the residual.
+    #[default]
+    Driver,
+    /// By the energy integral: the frequency alone, to much higher order; for forces
+    /// x F(small ln x^2).
+    EnergyIntegral,
+}
+
 /// The solution, in the algebra that the equation needed.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Solution {
+    /// None: the energy integral gives the frequency alone.
+    FrequencyOnly,
     /// In the Lobachevsky ring.
     Lobachevsky(Box<Expansion<Lobachevsky<PolynomialRing>>>),
     /// Trigonometric polynomials over Q.
@@ -78,8 +101,8 @@ pub struct Derivation {
     pub condition: Condition,
     /// The highest order derived (lower than asked for when interrupted).
     pub order: usize,
-    /// Orders whose residual vanishes identically: 0..=this.
-    pub checked_orders: usize,
+    /// Orders whose residual vanishes identically: 0..=this; nothing without a solution.
+    pub checked_orders: Option<usize>,
     /// The ring of the coefficients.
     pub ring: PolynomialRing,
     /// kappa, the factor of x at order zero.
@@ -127,7 +150,7 @@ impl RationalBinding for NoParameters {
 /// let problem = problems::find("duffing").ok_or("no such problem")?;
 /// let result = derive(&problem, &Settings { order: 3, ..Settings::default() }, &mut |_| true)?;
 /// assert_eq!(result.exact("frequency", 2).as_deref(), Some("-21/256"));
-/// assert_eq!(result.checked_orders, 3);
+/// assert_eq!(result.checked_orders, Some(3));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive(
@@ -146,7 +169,12 @@ pub fn derive(
     let has_logarithms = has_logarithms(&problem.equation);
     limit_memory(problem, settings)?;
     let ring = PolynomialRing { parameters: vec!["ln(a)".to_owned()] };
-    let (solution, squared, amplitudes, stiffness, checked_orders) = if has_logarithms {
+    let (solution, powers, amplitudes, stiffness, checked_orders) = if settings.route
+        == Route::EnergyIntegral
+    {
+        let (powers, stiffness) = energy_integral(problem, &ring, settings.order)?;
+        (Solution::FrequencyOnly, powers, Vec::new(), stiffness, None)
+    } else if has_logarithms {
         let algebra = Lobachevsky::new(ring.clone());
         let equation =
             compile(&algebra, &problem.equation, &Bound { ring: ring.clone() }, settings.order)?;
@@ -159,7 +187,13 @@ pub fn derive(
         let checked = check(&algebra, &equation, &expansion)?;
         let squared = expansion.frequency_squared.clone();
         let (amplitudes, stiffness) = (expansion.amplitude.clone(), expansion.stiffness.clone());
-        (Solution::Lobachevsky(Box::new(expansion)), squared, amplitudes, stiffness, checked)
+        (
+            Solution::Lobachevsky(Box::new(expansion)),
+            Powers::of_square(&ring, squared)?,
+            amplitudes,
+            stiffness,
+            Some(checked),
+        )
     } else {
         let mut on_primes = |primes| observer(Progress::Primes(primes));
         let proved = multimodular::derive(
@@ -175,10 +209,16 @@ pub fn derive(
         let amplitudes = constants(&proved.expansion.amplitude);
         let stiffness = ring.rational(&proved.expansion.stiffness);
         let order = proved.expansion.order();
-        (Solution::Rational(Box::new(proved)), squared, amplitudes, stiffness, order)
+        (
+            Solution::Rational(Box::new(proved)),
+            Powers::of_square(&ring, squared)?,
+            amplitudes,
+            stiffness,
+            Some(order),
+        )
     };
     let series =
-        series(problem, &ring, condition, squared, amplitudes, amplitude.as_ref(), &stiffness)?;
+        series(problem, &ring, condition, powers, amplitudes, amplitude.as_ref(), &stiffness)?;
     let default = problem.parameters.iter().find(|p| p.name == "amplitude");
     let amplitude = match amplitude {
         Some(value) => Some(value),
@@ -197,77 +237,119 @@ pub fn derive(
     })
 }
 
-/// The series of the result from omega^2/kappa.
+/// omega^2/kappa, its square root, and the reciprocal of that.
+struct Powers {
+    squared: Vec<Polynomial>,
+    first: Vec<Polynomial>,
+    inverse: Vec<Polynomial>,
+}
+
+impl Powers {
+    fn of_square(ring: &PolynomialRing, squared: Vec<Polynomial>) -> Result<Self, Error> {
+        let series = Series::truncated(squared);
+        let power = |exponent: (i32, u32)| {
+            let power = series.power(ring, &Rational::from(exponent));
+            power.map(|s| s.coefficients).ok_or(Error::NoValue)
+        };
+        let (first, inverse) = (power((1, 2))?, power((-1, 2))?);
+        Ok(Self { squared: series.coefficients, first, inverse })
+    }
+}
+
+/// The series of the result.
 fn series(
     problem: &Problem,
     ring: &PolynomialRing,
     condition: Condition,
-    squared: Vec<Polynomial>,
+    powers: Powers,
     amplitudes: Vec<Polynomial>,
     amplitude: Option<&Value>,
     stiffness: &Polynomial,
 ) -> Result<Vec<NamedSeries>, Error> {
+    let order = powers.squared.len() - 1;
     // What is printed is the closed form where there is one; mu_m stay where S_n stand beside.
-    let order = squared.len() - 1;
-    let has_sums = matches!(problem.amplitude, AmplitudeRole::InSums);
-    let squared: Vec<Polynomial> = if has_sums {
-        squared
-    } else {
-        let forms = ClosedForms::new(u16::try_from(order).unwrap_or(u16::MAX));
-        let close = |p: &Polynomial| forms.closed_form(ring, p).ok_or(Error::NoValue);
-        squared.par_iter().map(close).collect::<Result<_, _>>()?
-    };
-    let squared = Series::truncated(squared);
-    let power = |p: (i32, u32)| {
-        let exponent = Rational::from(p);
-        squared.power(ring, &exponent).ok_or(Error::NoValue)
+    // Without logarithms there is nothing to close (and tables to order 100 take minutes).
+    let closes =
+        has_logarithms(&problem.equation) && !matches!(problem.amplitude, AmplitudeRole::InSums);
+    let forms = closes.then(|| ClosedForms::new(u16::try_from(order).unwrap_or(u16::MAX)));
+    let close = |list: Vec<Polynomial>| -> Result<Vec<Polynomial>, Error> {
+        let Some(forms) = &forms else { return Ok(list) };
+        let closed = |p: &Polynomial| forms.closed_form(ring, p).ok_or(Error::NoValue);
+        list.par_iter().map(closed).collect()
     };
     // a^(exponent eps) = exp(exponent eps ln a) for an amplitude other than one.
-    let scale = match (problem.amplitude, amplitude) {
-        (AmplitudeRole::ScalesFrequency { exponent }, Some(a))
-            if a.as_rational() != Some(&Rational::from(1)) =>
-        {
+    let one = Rational::from(1);
+    let rate = match (problem.amplitude, amplitude) {
+        (AmplitudeRole::ScalesFrequency { exponent }, Some(a)) if a.as_rational() != Some(&one) => {
             exponent
         }
         _ => 0,
     };
-    let scaled = |series: Series<Polynomial>, power: (i32, u32)| {
-        if scale == 0 {
-            return series;
+    let half_power = |power: i32| if *stiffness == ring.one() { 0 } else { power };
+    let named = |name, list, power: i32| -> Result<NamedSeries, Error> {
+        let log = ring.symbol(Symbol::Parameter(0));
+        let log = ring.scale(&log, &Rational::from((rate * power, 2)));
+        let mut coefficients = close(list)?;
+        if rate != 0 {
+            let factor = Series::truncated(exponential(ring, &log, order));
+            coefficients = Series::truncated(coefficients).mul(ring, &factor, order).coefficients;
         }
-        let rate = Rational::from(scale) * Rational::from(power);
-        let log = ring.scale(&ring.symbol(Symbol::Parameter(0)), &rate);
-        let mut term = ring.one();
-        let mut factor = vec![term.clone()];
-        for n in 1..=order {
-            term = ring.scale(&ring.mul(&term, &log), &Rational::from((1, n)));
-            factor.push(term.clone());
-        }
-        series.mul(ring, &Series::truncated(factor), order)
+        Ok(NamedSeries { name, half_power: half_power(power), coefficients })
     };
-    let is_one = *stiffness == ring.one();
-    let half_power = |p: i32| if is_one { 0 } else { p };
     let mut list = vec![
-        NamedSeries {
-            name: "frequency_squared",
-            half_power: half_power(2),
-            coefficients: scaled(squared.clone(), (1, 1)).coefficients,
-        },
-        NamedSeries {
-            name: "frequency",
-            half_power: half_power(1),
-            coefficients: scaled(power((1, 2))?, (1, 2)).coefficients,
-        },
-        NamedSeries {
-            name: "period_over_2pi",
-            half_power: half_power(-1),
-            coefficients: scaled(power((-1, 2))?, (-1, 2)).coefficients,
-        },
+        named("frequency_squared", powers.squared, 2)?,
+        named("frequency", powers.first, 1)?,
+        named("period_over_2pi", powers.inverse, -1)?,
     ];
-    if condition != Condition::InitialAmplitude {
-        list.push(NamedSeries { name: "amplitude", half_power: 0, coefficients: amplitudes });
+    // x(0), where the condition does not fix it.
+    let name = match condition {
+        Condition::InitialAmplitude => None,
+        Condition::FundamentalAmplitude => Some("initial_displacement"),
+        Condition::LimitCycle => Some("amplitude"),
+    };
+    if let Some(name) = name {
+        list.push(NamedSeries { name, half_power: 0, coefficients: amplitudes });
     }
     Ok(list)
+}
+
+/// The Taylor coefficients of exp(rate eps).
+fn exponential(ring: &PolynomialRing, rate: &Polynomial, order: usize) -> Vec<Polynomial> {
+    let mut list = vec![ring.one()];
+    for n in 1..=order {
+        let term = ring.mul(&list[n - 1], rate);
+        list.push(ring.scale(&term, &Rational::from((1, n))));
+    }
+    list
+}
+
+/// The powers of the frequency and kappa by the energy integral.
+fn energy_integral(
+    problem: &Problem,
+    ring: &PolynomialRing,
+    order: usize,
+) -> Result<(Powers, Polynomial), Error> {
+    let unavailable = || Error::NoSuchRoute { problem: problem.name.to_owned() };
+    let size = u16::try_from(order).map_err(|_| unavailable())?;
+    match problem.amplitude {
+        AmplitudeRole::ScalesFrequency { exponent: 2 } => {
+            let power = |p| power_law_frequency(ring, p, size);
+            Ok((Powers { squared: power(2), first: power(1), inverse: power(-1) }, ring.one()))
+        }
+        AmplitudeRole::InSums => {
+            let sums: Vec<Polynomial> = (0..=size).map(|n| ring.symbol(Symbol::Sum(n))).collect();
+            let inverse = period_over_2pi(ring, &sums, order).ok_or_else(unavailable)?;
+            let period = Series::truncated(inverse);
+            let power = |p: i32| {
+                let power = period.power(ring, &Rational::from(p));
+                power.map(|s| s.coefficients).ok_or_else(unavailable)
+            };
+            let (squared, first) = (power(-2)?, power(-1)?);
+            let powers = Powers { squared, first, inverse: period.coefficients };
+            Ok((powers, ring.symbol(Symbol::Sum(0))))
+        }
+        _ => Err(unavailable()),
+    }
 }
 
 fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> Result<(), Error> {
@@ -336,7 +418,16 @@ fn has_logarithms(expression: &Expression) -> bool {
 /// der Pol's series over Q 0.42 GiB at order 164, growing like the fourth power of the order.
 fn limit_memory(problem: &Problem, settings: &Settings) -> Result<(), Error> {
     let order = settings.order as f64;
-    let gibibytes = if matches!(problem.amplitude, AmplitudeRole::InSums) {
+    let gibibytes = if settings.route == Route::EnergyIntegral {
+        // 28 629 terms in 0.1 GiB at order 30; the number of partitions grows by 1.2 per order,
+        // with formal sums by 1.5.
+        let sums = matches!(problem.amplitude, AmplitudeRole::InSums);
+        if sums {
+            0.1f64.log2() + (order - 14.0) * 0.6
+        } else {
+            0.1f64.log2() + (order - 30.0) * 0.27
+        }
+    } else if matches!(problem.amplitude, AmplitudeRole::InSums) {
         0.1f64.log2() + (order - 10.0)
     } else if has_logarithms(&problem.equation) {
         0.7f64.log2() + (order - 20.0) * 1.5f64.log2()
@@ -395,9 +486,26 @@ impl Derivation {
         self.ring.print(&self.stiffness, style)
     }
 
-    /// Coefficient n of a series without its prefactor, printed.
-    pub fn ring_coefficient(&self, series: &NamedSeries, n: usize, style: Style) -> String {
-        series.coefficients.get(n).map_or_else(|| "0".to_owned(), |c| self.ring.print(c, style))
+    /// W_n of omega^2 = kappa sum W_n eps^n for amplitude one, in the moments mu_m, printed.
+    pub fn frequency_correction(&self, n: usize, style: Style) -> String {
+        match &self.solution {
+            Solution::FrequencyOnly => String::new(),
+            Solution::Lobachevsky(expansion) => {
+                self.ring.print(&expansion.frequency_squared[n], style)
+            }
+            Solution::Rational(proved) => {
+                Rationals.print(&proved.expansion.frequency_squared[n], style)
+            }
+        }
+    }
+
+    /// x_n(0), printed.
+    pub fn amplitude_correction(&self, n: usize, style: Style) -> String {
+        match &self.solution {
+            Solution::FrequencyOnly => String::new(),
+            Solution::Lobachevsky(expansion) => self.ring.print(&expansion.amplitude[n], style),
+            Solution::Rational(proved) => Rationals.print(&proved.expansion.amplitude[n], style),
+        }
     }
 
     /// Coefficient n of a series as a number with `digits` digits.
@@ -407,6 +515,15 @@ impl Derivation {
     pub fn number(&self, series: &NamedSeries, n: usize, digits: usize) -> Result<Number, Error> {
         let exact = self.print_coefficient(series, n, Style::Text);
         certified(Some(exact), digits, |balls| self.ball(series, n, balls))
+    }
+
+    /// All coefficients of a series as numbers.
+    ///
+    /// # Errors
+    /// As [`Self::number`].
+    pub fn numbers(&self, series: &NamedSeries, digits: usize) -> Result<Vec<Number>, Error> {
+        let orders = (0..series.coefficients.len()).into_par_iter();
+        orders.map(|n| self.number(series, n, digits)).collect()
     }
 
     /// Coefficient n of a series as a ball.
@@ -422,6 +539,7 @@ impl Derivation {
     /// x_n printed, as a function of the phase `tau` = omega t.
     pub fn print_solution(&self, n: usize, style: Style) -> String {
         match &self.solution {
+            Solution::FrequencyOnly => String::new(),
             Solution::Lobachevsky(expansion) => {
                 Lobachevsky::new(self.ring.clone()).print(&expansion.solution[n], "tau", style)
             }
@@ -439,6 +557,7 @@ impl Derivation {
                 let f = expansion.right_side(&algebra, n);
                 (algebra.print(&f, "tau", style), algebra.terms(&f))
             }
+            Solution::FrequencyOnly => (String::new(), 0),
             Solution::Rational(proved) => {
                 let algebra = Trigonometric::new(Rationals);
                 let f = proved.expansion.right_side(&algebra, n);
@@ -450,6 +569,7 @@ impl Derivation {
     /// The number of terms of x_n.
     pub fn terms(&self, n: usize) -> usize {
         match &self.solution {
+            Solution::FrequencyOnly => 0,
             Solution::Lobachevsky(expansion) => expansion.solution[n].len(),
             Solution::Rational(proved) => {
                 Trigonometric::new(Rationals).terms(&proved.expansion.solution[n])

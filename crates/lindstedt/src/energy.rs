@@ -96,31 +96,35 @@ fn mean_of_powers(i: u16, m: u16) -> Polynomial {
     Sparse::collect(&lindstedt_algebra::Rationals, terms)
 }
 
-/// omega^2 of the power law x'' + x (x^2)^delta = 0 to the given order, from the same energy
-/// integral in closed form: x = cos^(1/(1 + delta)) theta gives
+/// A power of the frequency of the power law x'' + x (x^2)^delta = 0 to the given order, from the
+/// same energy integral in closed form: x = cos^(1/(1 + delta)) theta gives
 ///
-///   omega^2 = (1 + delta)/M(u)^2,  M(u) = sum_m mu_m u^m,  u = delta/(1 + delta).
+///   omega^p = (1 + delta)^(p/2) M(u)^(-p),  M(u) = sum_m mu_m u^m,  u = delta/(1 + delta).
 ///
-/// Cost: about 7 10^4 products at order 30, where omega^2 has 28 629 terms in the mu_m.
-pub fn power_law_frequency_squared(ring: &PolynomialRing, order: u16) -> Vec<Polynomial> {
-    let moments =
-        (0..=order).map(|m| if m == 0 { ring.one() } else { ring.symbol(Symbol::Moment(m)) });
-    let Some(inverse_square) =
-        Series::truncated(moments.collect()).power(ring, &Rational::from(-2))
-    else {
-        return Vec::new();
-    };
-    let coefficient = |n: u32| {
-        // [delta^n] (1 + delta) u^j = [delta^(n-j)] (1 + delta)^(1-j)
-        //                           = (-1)^(n-j) binomial(n-2, n-j) for j >= 2.
+/// p = 2 is omega^2, p = -1 is T/2pi (linear in the mu_m). Cost: about 10^4 products at order
+/// 30, where omega^2 has 28 627 terms.
+pub fn power_law_frequency(ring: &PolynomialRing, power: i32, order: u16) -> Vec<Polynomial> {
+    let moment = |m: u16| if m == 0 { ring.one() } else { ring.symbol(Symbol::Moment(m)) };
+    let moments = Series::truncated((0..=order).map(moment).collect());
+    let Some(of_u) = moments.power(ring, &Rational::from(-power)) else { return Vec::new() };
+    let half = Rational::from((power, 2));
+    let coefficient = |n: usize| {
+        // [delta^n] (1 + delta)^(p/2) u^j = binomial(p/2 - j, n - j).
         let mut sum = ring.zero();
-        for (j, y) in (0u32..).zip(&inverse_square.coefficients).take(n as usize + 1) {
-            let binomial = Integer::from(1 - i64::from(j)).binomial(n - j);
-            ring.add_assign(&mut sum, &ring.scale(y, &Rational::from(binomial)));
+        for (j, y) in of_u.coefficients.iter().enumerate().take(n + 1) {
+            let top = Rational::from(&half - Rational::from(j));
+            ring.add_assign(&mut sum, &ring.scale(y, &binomial(&top, n - j)));
         }
         sum
     };
-    (0..=u32::from(order)).map(coefficient).collect()
+    (0..=usize::from(order)).map(coefficient).collect()
+}
+
+/// binomial(top, k) = top (top - 1) ... (top - k + 1)/k!.
+fn binomial(top: &Rational, k: usize) -> Rational {
+    (0..k).fold(Rational::from(1), |product, i| {
+        product * Rational::from(top - Rational::from(i)) / Rational::from(i + 1)
+    })
 }
 
 #[cfg(test)]
@@ -133,7 +137,11 @@ mod tests {
         let ones = vec![ring.one(); 9];
         let period = period_over_2pi(&ring, &ones, 8);
         let squared = period.and_then(|p| Series::truncated(p).power(&ring, &Rational::from(-2)));
-        let direct = power_law_frequency_squared(&ring, 8);
+        let direct = power_law_frequency(&ring, 2, 8);
         assert_eq!(squared.map(|s| s.coefficients), Some(direct));
+        let frequency = Series::truncated(power_law_frequency(&ring, 1, 8));
+        let period = Series::truncated(power_law_frequency(&ring, -1, 8));
+        let one = frequency.mul(&ring, &period, 8).coefficients;
+        assert!(one[0] == ring.one() && one[1..].iter().all(|c| ring.is_zero(c)));
     }
 }

@@ -45,6 +45,12 @@ pub enum Error {
         /// The problem.
         problem: String,
     },
+    /// The energy integral does not apply.
+    #[error("{problem}: the energy integral applies to conservative forces x F(delta ln x^2) only")]
+    NoSuchRoute {
+        /// The problem.
+        problem: String,
+    },
     /// The work would need more memory than allowed.
     #[error(
         "order {order} is predicted to need 10^{exponent} bytes, above the limit of {limit} MiB"

@@ -14,9 +14,10 @@ pub mod energy;
 mod error;
 pub mod multimodular;
 pub mod number;
+pub mod paper;
 mod value;
 
-pub use derivation::{Derivation, NamedSeries, Progress, Settings, Solution, derive};
+pub use derivation::{Derivation, NamedSeries, Progress, Route, Settings, Solution, derive};
 pub use error::Error;
 pub use number::{Number, Status};
 pub use value::Value;

@@ -48,7 +48,8 @@ pub fn polynomial_dissipation(
             }
             let binomial = Integer::from(k).binomial(u32::try_from(j).ok()?);
             let power = balls.powi(&minus, i64::try_from(k - j).ok()?)?;
-            let mut term = balls.mul_rational(&balls.mul(&power, moment), &Rational::from(binomial));
+            let mut term =
+                balls.mul_rational(&balls.mul(&power, moment), &Rational::from(binomial));
             if sigma < 0 && j % 2 == 0 {
                 term = balls.neg(&term);
             }

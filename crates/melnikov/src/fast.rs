@@ -52,7 +52,8 @@ pub enum Axis {
 pub struct FastThreshold {
     /// D/F with its sign; infinite or 0 where it leaves the range of f64 (then use `ln_abs`).
     pub signed: f64,
-    /// ln |signed|, finite wherever G != 0; absolute error about eps max(1, |ln_abs|).
+    /// ln |signed|, finite wherever G != 0; absolute error at most 4e-15 + 4 eps |ln_abs| away
+    /// from zeros of G.
     pub ln_abs: f64,
     /// An estimate of the absolute error of `signed` by rounding: 8 eps sum |terms of G| factor.
     /// Near a zero of G the relative error is not small, this one is.
@@ -150,13 +151,12 @@ fn speed_gap(a: f64, b: f64, v: f64) -> f64 {
     numerator / (ma * (ma + twice_b.sqrt() * mv))
 }
 
-/// The factor cosh(z)/(2z) of gamma, with ln cosh(z) - ln(2z).
+/// The factor cosh(z)/(2z) of gamma as a product.
 #[derive(Clone, Copy)]
 struct ForcingFactor {
-    /// e^{z/2}/2-like half of the factor, so that neither half overflows for z < 1400.
+    // 1, or e^{z/2}: neither half overflows for z < 1400.
     first: f64,
     second: f64,
-    ln: f64,
 }
 
 /// z = pi omega/(2 sqrt a) as a double-double, cosh(zh + zl) = cosh zh + zl sinh zh.
@@ -176,20 +176,17 @@ fn forcing_factor(a: f64, omega: f64) -> ForcingFactor {
         let cosh = 0.5 * (e + inverse) + low * (0.5 * (e - inverse));
         // 2z = 2 zh + 2 zl: the low word is below half an ulp.
         let second = cosh / twice;
-        return ForcingFactor { first: 1.0, second, ln: f64::NAN };
+        return ForcingFactor { first: 1.0, second };
     }
     let half = (high / 2.0).exp();
-    ForcingFactor { first: half, second: half * (1.0 + low) / (2.0 * twice), ln: f64::NAN }
+    ForcingFactor { first: half, second: half * (1.0 + low) / (2.0 * twice) }
 }
 
 impl ForcingFactor {
     /// ln of the factor, formed only on demand: ln cosh z = z + ln(1 + e^{-2z}) - ln 2.
-    fn ln(self, a: f64, omega: f64) -> f64 {
-        if self.ln.is_finite() {
-            return self.ln;
-        }
+    fn ln(a: f64, omega: f64) -> f64 {
         let z = omega / a.sqrt() * FRAC_PI_2;
-        let ln_z = if z > 0.0 && z >= f64::MIN_POSITIVE && z.is_finite() {
+        let ln_z = if z >= f64::MIN_POSITIVE && z.is_finite() {
             z.ln()
         } else {
             omega.ln() - 0.5 * a.ln() + FRAC_PI_2.ln()
@@ -238,7 +235,11 @@ fn g_scaled(p: &FastPoint) -> (Scaled, Scaled) {
     let quotient = Scaled::new(a.mantissa / root);
     let speed = Scaled { exponent: quotient.exponent + a.exponent - even / 2, ..quotient };
     let gap = speed_gap(p.a, p.b, p.belt_speed);
-    let dry = if gap > 0.0 { Scaled::new(2.0 * gap.sqrt()).mul(Scaled::new(p.dry)) } else { Scaled::new(0.0) };
+    let dry = if gap > 0.0 {
+        Scaled::new(2.0 * gap.sqrt()).mul(Scaled::new(p.dry))
+    } else {
+        Scaled::new(0.0)
+    };
     let linear = Scaled::new(-4.0 / 3.0).mul(speed).mul(Scaled::new(p.alpha));
     let belt = Scaled::new(p.belt_speed);
     let beta = Scaled::new(p.beta).mul(speed);
@@ -294,10 +295,11 @@ impl FastPoint {
         self.check()?;
         let factor = forcing_factor(self.a, self.omega);
         let (g, size) = g_scaled(self);
-        let ln_abs = g.ln_abs() + factor.ln(self.a, self.omega);
+        let ln_abs = g.ln_abs() + ForcingFactor::ln(self.a, self.omega);
         let signed = value(self, &factor);
         let relative = join(size.mantissa / g.mantissa.abs(), size.exponent - g.exponent);
-        let error = if g.mantissa == 0.0 { 0.0 } else { 8.0 * f64::EPSILON * relative * signed.abs() };
+        let error =
+            if g.mantissa == 0.0 { 0.0 } else { 8.0 * f64::EPSILON * relative * signed.abs() };
         Ok(FastThreshold { signed, ln_abs, error })
     }
 
@@ -318,10 +320,15 @@ impl FastPoint {
     }
 }
 
-/// G times the factor; the scaled path where the plain one leaves the range.
+/// G times the factor.
 #[inline]
 fn value(p: &FastPoint, factor: &ForcingFactor) -> f64 {
-    let (g, size) = g_plain(p);
+    combine(p, g_plain(p), factor)
+}
+
+/// G times the factor; the scaled path where the plain one leaves the range.
+#[inline]
+fn combine(p: &FastPoint, (g, size): (f64, f64), factor: &ForcingFactor) -> f64 {
     let plain = g * factor.first * factor.second;
     let small = plain.abs();
     if size < 1e290 && size > 1e-290 && small < 1e290 && small > 1e-290 {
@@ -333,14 +340,15 @@ fn value(p: &FastPoint, factor: &ForcingFactor) -> f64 {
         let product = g.mul(first).mul(second);
         return join(product.mantissa, product.exponent);
     }
-    let ln = g.ln_abs() + factor.ln(p.a, p.omega);
+    let ln = g.ln_abs() + ForcingFactor::ln(p.a, p.omega);
     if g.mantissa == 0.0 { 0.0 } else { ln.exp().copysign(g.mantissa) }
 }
 
 /// The signed thresholds over a grid: `table[i * columns.len() + j]` at rows[i], columns[j].
 ///
-/// NaN where a swept parameter leaves its domain (not finite, or a, b, omega <= 0). The rows run
-/// on all cores of the current rayon pool; nothing is allocated per point.
+/// NaN where a parameter leaves its domain (not finite, or a, b, omega <= 0). The rows run on all
+/// cores of the current rayon pool; nothing is allocated per point. What depends on one axis only
+/// is computed once: the factor cosh(z)/(2z) on a and omega, G on everything but omega.
 ///
 /// # Errors
 /// [`MelnikovError::WrongTableSize`] where `table` does not have rows x columns entries.
@@ -357,19 +365,30 @@ pub fn surface(
     if columns.1.is_empty() {
         return Ok(());
     }
-    let factor_changes = matches!(columns.0, Axis::A | Axis::Omega);
+    let in_factor = |axis| matches!(axis, Axis::A | Axis::Omega);
+    let per_column = in_factor(columns.0) && !in_factor(rows.0);
+    let column_factor = |&column: &f64| {
+        let at = point.with(columns.0, column);
+        forcing_factor(at.a, at.omega)
+    };
+    let factors: Vec<ForcingFactor> =
+        if per_column { columns.1.iter().map(column_factor).collect() } else { Vec::new() };
     let lines = table.par_chunks_mut(columns.1.len()).zip(rows.1.par_iter());
     lines.for_each(|(line, &row)| {
         let base = point.with(rows.0, row);
         let shared = forcing_factor(base.a, base.omega);
-        for (entry, &column) in line.iter_mut().zip(columns.1) {
+        let shared_g = g_plain(&base);
+        for (j, (entry, &column)) in line.iter_mut().zip(columns.1).enumerate() {
             let at = base.with(columns.0, column);
-            *entry = if at.check().is_err() {
-                f64::NAN
-            } else if factor_changes {
-                value(&at, &forcing_factor(at.a, at.omega))
-            } else {
-                value(&at, &shared)
+            if at.check().is_err() {
+                *entry = f64::NAN;
+                continue;
+            }
+            let g = if columns.0 == Axis::Omega { shared_g } else { g_plain(&at) };
+            *entry = match factors.get(j) {
+                Some(factor) => combine(&at, g, factor),
+                None if in_factor(columns.0) => combine(&at, g, &forcing_factor(at.a, at.omega)),
+                None => combine(&at, g, &shared),
             };
         }
     });

@@ -78,7 +78,12 @@ impl ForcingWork {
     ///
     /// `None` for a forcing without this form (incommensurate, or parametric off the algebra).
     #[must_use]
-    pub fn new(balls: Balls, potential: &Potential, branch: Branch, forcing: &Forcing) -> Option<Self> {
+    pub fn new(
+        balls: Balls,
+        potential: &Potential,
+        branch: Branch,
+        forcing: &Forcing,
+    ) -> Option<Self> {
         let oriented = |ball: &Ball| if branch.sign() < 0 { balls.neg(ball) } else { ball.clone() };
         match forcing {
             Forcing::Harmonics { omega, harmonics } => {
@@ -93,7 +98,11 @@ impl ForcingWork {
                     let even = balls.sub(&balls.mul(&c, &cos), &balls.mul(&s, &sin));
                     let odd = balls.add(&balls.mul(&c, &sin), &balls.mul(&s, &cos));
                     let odd = balls.neg(&odd);
-                    terms.push((harmonic.order, balls.mul(&weight, &even), balls.mul(&weight, &odd)));
+                    terms.push((
+                        harmonic.order,
+                        balls.mul(&weight, &even),
+                        balls.mul(&weight, &odd),
+                    ));
                 }
                 Some(Self { terms })
             }
@@ -187,7 +196,8 @@ impl ForcingWork {
             let (value, slope) = (at(i, 0)?, at(i, 1)?);
             best = best.max(value.lower().to_f64());
             let slope = slope.abs_upper().to_f64();
-            values.push(value.upper().to_f64() + slope * width / 2.0 + second * width * width / 8.0);
+            values
+                .push(value.upper().to_f64() + slope * width / 2.0 + second * width * width / 8.0);
         }
         let mut largest: Option<Ball> = None;
         for (i, upper) in (0..cells).zip(values) {

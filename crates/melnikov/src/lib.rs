@@ -9,27 +9,35 @@
 //! `mathematics/stick-slip.md`.
 
 mod dissipation;
+mod elliptic;
 mod error;
 mod fast;
 mod forcing;
 mod friction;
 pub mod hyperbolic;
 mod orbit;
+mod paper;
 mod potential;
 pub mod quadrature;
 mod real;
 mod root;
 mod stick_slip;
+mod subharmonic;
 mod system;
+mod zeros;
 
 pub use dissipation::{polynomial_dissipation, quadrature_dissipation};
+pub use elliptic::Elliptic;
 pub use error::MelnikovError;
 pub use fast::{Axis, FastPoint, FastThreshold, surface};
 pub use forcing::{Forcing, ForcingWork, Harmonic};
 pub use friction::{Friction, LARGEST_DEGREE, Law, PolynomialFriction};
 pub use orbit::{Monomial, OrbitDescription, check_pendulum, check_phi_six};
+pub use paper::{Comparison, PaperVerdict, paper_comparison};
 pub use potential::{Branch, Potential};
 pub use real::Real;
 pub use root::enclose_root;
 pub use stick_slip::StickSlip;
+pub use subharmonic::{Region, Subharmonic, subharmonic};
 pub use system::{Class, System, Threshold, Validity, Verdict, midpoint_and_radius};
+pub use zeros::ParameterZeros;

@@ -36,7 +36,8 @@ impl Monomial {
     /// The positive square root, if it is a monomial over Q.
     fn sqrt(&self) -> Option<Self> {
         let (n, d) = (self.coefficient.numer(), self.coefficient.denom());
-        let square = !self.coefficient.is_negative() && n.is_perfect_square() && d.is_perfect_square();
+        let square =
+            !self.coefficient.is_negative() && n.is_perfect_square() && d.is_perfect_square();
         (square && self.a % 2 == 0 && self.b % 2 == 0).then(|| Self {
             coefficient: Rational::from((n.clone().sqrt(), d.clone().sqrt())),
             a: self.a / 2,

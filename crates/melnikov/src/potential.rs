@@ -128,7 +128,9 @@ impl Potential {
                 check_pendulum(&v, &s, &ring.sub(&c, &ring.one()))
             }
             // x^2 = 1/(1 + e^{-2z}) = (1 + tanh z)/2.
-            _ => check_phi_six(&ring.scale(&ring.add(&ring.one(), &Hyperbolic::tanh()), &Rational::from((1, 2)))),
+            _ => check_phi_six(
+                &ring.scale(&ring.add(&ring.one(), &Hyperbolic::tanh()), &Rational::from((1, 2))),
+            ),
         }
     }
 
@@ -267,7 +269,8 @@ impl Potential {
         if let Self::DoubleWell { a, b } = self {
             let numerator = match (a.as_rational(), b.as_rational(), v.as_rational()) {
                 (Some(a), Some(b), Some(v)) => {
-                    let (a2, bv2) = (Rational::from(a.square_ref()), Rational::from(v.square_ref()) * b);
+                    let (a2, bv2) =
+                        (Rational::from(a.square_ref()), Rational::from(v.square_ref()) * b);
                     balls.from_rational(&(a2 - bv2 * 2u32))
                 }
                 _ => {

@@ -37,7 +37,8 @@ pub fn trapezoid(
         let bound = b.abs_upper();
         if bound.is_zero() { 0.0 } else { f64::from(bound.get_exp().unwrap_or(0)) }
     };
-    let nats = |b: &Ball| (f64::from(balls.bits()) + 4.0 + log(b).max(0.0)) * std::f64::consts::LN_2;
+    let nats =
+        |b: &Ball| (f64::from(balls.bits()) + 4.0 + log(b).max(0.0)) * std::f64::consts::LN_2;
     let h = 2.0 * std::f64::consts::PI * width / nats(&strip.edge_integral);
     let count = (nats(&strip.amplitude) / (decay * h)).ceil() + 1.0;
     if !(h > 0.0 && count.is_finite() && count < MOST_NODES) {

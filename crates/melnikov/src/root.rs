@@ -27,7 +27,8 @@ pub fn enclose_root(
     if sign(high)? == at_low {
         return None;
     }
-    let (mut low, mut high) = (Float::with_val(balls.bits(), low), Float::with_val(balls.bits(), high));
+    let (mut low, mut high) =
+        (Float::with_val(balls.bits(), low), Float::with_val(balls.bits(), high));
     loop {
         let middle = Float::with_val(balls.bits(), &low + &high) / 2u32;
         if middle <= low || middle >= high {

@@ -89,7 +89,8 @@ impl StickSlip {
         let dry = balls.mul(&self.dry.ball(balls), &sqrt_positive_part(balls, &gap)?);
         let square = balls.square(&self.belt_speed.ball(balls));
         let beta = self.beta.ball(balls);
-        let slope = balls.sub(&self.alpha.ball(balls), &balls.mul_i64(&balls.mul(&beta, &square), 3));
+        let slope =
+            balls.sub(&self.alpha.ball(balls), &balls.mul_i64(&balls.mul(&beta, &square), 3));
         let linear = balls.mul_rational(&balls.mul(&v, &slope), &Rational::from((4, 3)));
         let cubic = balls.mul(&beta, &balls.powi(&v, 3)?);
         let cubic = balls.mul_rational(&cubic, &Rational::from((32, 35)));
@@ -119,7 +120,7 @@ impl StickSlip {
         let inside = speed < square;
         // G/V = (32/35) beta V^2 - (4/3)(alpha - 3 beta v*^2).
         let smooth = Rational::from(beta * &square) * Rational::from((32, 35))
-            - Rational::from((4, 3)) * Rational::from(alpha - Rational::from(beta * &speed) * 3u32);
+            - Rational::from((4, 3)) * (alpha - Rational::from(beta * &speed) * 3u32);
         let v_abs = Rational::from(v.abs_ref());
         let mut g = format!("({smooth})*sqrt({square})");
         if inside && self.dry.sign().is_ne() {
@@ -135,7 +136,8 @@ impl StickSlip {
     /// Derived: at |v*| = V, G/V = (32/35 + 4) beta V^2 - (4/3) alpha = (172/35) beta V^2 - (4/3) alpha.
     #[must_use]
     pub fn touching_b(&self) -> Option<Rational> {
-        let (a, alpha, beta) = (self.a.as_rational()?, self.alpha.as_rational()?, self.beta.as_rational()?);
+        let (a, alpha, beta) =
+            (self.a.as_rational()?, self.alpha.as_rational()?, self.beta.as_rational()?);
         if alpha.is_zero() {
             return None;
         }
@@ -172,7 +174,8 @@ impl StickSlip {
             zeros.push(balls.mul(&v, &fraction));
         }
         if self.beta.sign().is_ne() {
-            let ratio = balls.div(&self.alpha.ball(balls), &balls.mul_i64(&self.beta.ball(balls), 3))?;
+            let ratio =
+                balls.div(&self.alpha.ball(balls), &balls.mul_i64(&self.beta.ball(balls), 3))?;
             let square = balls.square(&v);
             let outer = balls.sub(&ratio, &balls.mul_rational(&square, &Rational::from((8, 35))));
             let beyond = balls.sub(&outer, &square);
@@ -235,9 +238,12 @@ fn unit_roots(balls: Balls, coefficients: &[Ball]) -> Option<Vec<Ball>> {
         return Some(Vec::new());
     }
     let value = |balls: Balls, z: &Ball| {
-        Some(coefficients.iter().rev().fold(balls.zero(), |sum, c| {
-            balls.add(&balls.mul(&sum, z), c)
-        }))
+        Some(
+            coefficients
+                .iter()
+                .rev()
+                .fold(balls.zero(), |sum, c| balls.add(&balls.mul(&sum, z), c)),
+        )
     };
     let powers = (1i64..).zip(&coefficients[1..]);
     let derivative: Vec<Ball> = powers.map(|(k, c)| balls.mul_i64(c, k)).collect();

@@ -129,7 +129,11 @@ impl System {
     ///
     /// # Errors
     /// [`MelnikovError::NoMirrorImage`], [`MelnikovError::Undecided`], or those of the quadrature.
-    pub fn dissipation(&self, balls: Balls, branch: Branch) -> Result<(Ball, Class), MelnikovError> {
+    pub fn dissipation(
+        &self,
+        balls: Balls,
+        branch: Branch,
+    ) -> Result<(Ball, Class), MelnikovError> {
         self.check_branch(branch)?;
         let undecided = MelnikovError::Undecided { bits: balls.bits() };
         if let Friction::Polynomial(law) = &self.friction {
@@ -137,7 +141,13 @@ impl System {
             return Ok((d.ok_or(undecided)?, Class::Certified));
         }
         let bits = balls.bits();
-        let d = quadrature_dissipation(bits, &self.potential, &self.friction, branch, &self.belt_speed)?;
+        let d = quadrature_dissipation(
+            bits,
+            &self.potential,
+            &self.friction,
+            branch,
+            &self.belt_speed,
+        )?;
         Ok((balls.from_parts(&d.value, &d.error), Class::Estimated))
     }
 
@@ -170,7 +180,8 @@ impl System {
     /// [`MelnikovError::NoForcing`] where the forcing has no such form.
     pub fn work(&self, balls: Balls, branch: Branch) -> Result<ForcingWork, MelnikovError> {
         self.check_branch(branch)?;
-        ForcingWork::new(balls, &self.potential, branch, &self.forcing).ok_or(MelnikovError::NoForcing)
+        ForcingWork::new(balls, &self.potential, branch, &self.forcing)
+            .ok_or(MelnikovError::NoForcing)
     }
 
     /// (max F, -min F).

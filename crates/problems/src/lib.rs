@@ -4,6 +4,7 @@
 mod duffing;
 mod pendulum;
 mod power_law;
+pub mod stick_slip;
 mod van_der_pol;
 
 use lindstedt_equation::Problem;

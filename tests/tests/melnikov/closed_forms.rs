@@ -3,7 +3,9 @@
 use crate::support::{Random, assert_agrees, number, oracle, real, stick_slip};
 use lindstedt::coeff::ball::Balls;
 use lindstedt::coeff::digits::{certify, decimal};
-use lindstedt_melnikov::{Branch, Friction, PolynomialFriction, Real, StickSlip, quadrature_dissipation};
+use lindstedt_melnikov::{
+    Branch, Friction, PolynomialFriction, Real, StickSlip, quadrature_dissipation,
+};
 use rug::Rational;
 use serde_json::Value;
 
@@ -16,7 +18,12 @@ fn paper_point_to_forty_digits() {
     assert_eq!(digits, "0.6370713428481635829717089604409953683799");
     assert!(error.ends_with("e-41") || error.ends_with("e-42"), "{error}");
     let row = &oracle("thresholds.json")["paper_point"];
-    assert_agrees(&paper.signed_threshold(Balls::new(BALLS)).unwrap(), &row["gamma_c"], 44, "paper point");
+    assert_agrees(
+        &paper.signed_threshold(Balls::new(BALLS)).unwrap(),
+        &row["gamma_c"],
+        44,
+        "paper point",
+    );
 }
 
 #[test]
@@ -29,7 +36,8 @@ fn zeros_at_b_five() {
         assert_agrees(zero, expected, 44, "zero at b = 5");
     }
     assert_agrees(&five.loop_speed(Balls::new(BALLS)).unwrap(), &table["V"], 44, "V");
-    let nth = |digits, n: usize| certify(digits, 20_000, |balls| five.zeros(balls).ok()?.get(n).cloned());
+    let nth =
+        |digits, n: usize| certify(digits, 20_000, |balls| five.zeros(balls).ok()?.get(n).cloned());
     assert_eq!(nth(40, 0).unwrap().0, "0.3104290218799228277350389082806589197186");
     assert_eq!(nth(40, 1).unwrap().0, "0.5572039038594314049984802875461271027828");
     // G vanishes at the printed zero to about a thousand digits, and changes its sign around it.
@@ -56,7 +64,10 @@ fn cusp_touches_zero() {
     let speed = touching.loop_speed(Balls::new(BALLS)).unwrap();
     assert_agrees(&speed, &row["vstar"], 44, "cusp at zero");
     // G at v* = V is 0 there: v*^2 = 35/129 exactly, so G/V = (172/35) beta V^2 - (4/3) alpha.
-    assert!(speed.is_finite() && touching.zeros(Balls::new(BALLS)).is_err(), "a zero at V is undecidable by signs");
+    assert!(
+        speed.is_finite() && touching.zeros(Balls::new(BALLS)).is_err(),
+        "a zero at V is undecidable by signs"
+    );
 }
 
 #[test]
@@ -111,7 +122,8 @@ fn melnikov_function() {
     let balls = Balls::new(BALLS);
     for row in oracle("melnikov_function.json").as_array().unwrap() {
         let system = stick_slip(row).system().unwrap();
-        let branch = if row["loop"].as_i64() == Some(1) { Branch::Positive } else { Branch::Negative };
+        let branch =
+            if row["loop"].as_i64() == Some(1) { Branch::Positive } else { Branch::Negative };
         let (m, _) = system.melnikov(balls, branch, &real(row, "gamma"), &real(row, "t0")).unwrap();
         // The file prints v* and M to 25 digits; M is a difference, so 23 of them are determined.
         assert_agrees(&m, &row["M"], 23, "M");
@@ -126,14 +138,34 @@ fn dissipation_by_quadrature() {
     let balls = Balls::new(120);
     for round in 0..25 {
         let mut q = |low, high| Real::Rational(random.rational(low, high));
-        let law = PolynomialFriction { dry: q(-1.0, 1.0), coefficients: (0..6).map(|_| q(-1.0, 1.0)).collect() };
-        let point = StickSlip { a: q(0.3, 3.0), b: q(0.3, 6.0), belt_speed: q(-1.5, 1.5), ..StickSlip::paper() };
+        let law = PolynomialFriction {
+            dry: q(-1.0, 1.0),
+            coefficients: (0..6).map(|_| q(-1.0, 1.0)).collect(),
+        };
+        let point = StickSlip {
+            a: q(0.3, 3.0),
+            b: q(0.3, 6.0),
+            belt_speed: q(-1.5, 1.5),
+            ..StickSlip::paper()
+        };
         let potential = point.potential();
-        let exact = lindstedt_melnikov::polynomial_dissipation(balls, &potential, &law, Branch::Positive, &point.belt_speed).unwrap();
+        let exact = lindstedt_melnikov::polynomial_dissipation(
+            balls,
+            &potential,
+            &law,
+            Branch::Positive,
+            &point.belt_speed,
+        )
+        .unwrap();
         let friction = Friction::Polynomial(law);
-        let estimate = quadrature_dissipation(90, &potential, &friction, Branch::Positive, &point.belt_speed).unwrap();
+        let estimate =
+            quadrature_dissipation(90, &potential, &friction, Branch::Positive, &point.belt_speed)
+                .unwrap();
         let difference = (exact.midpoint().clone() - &estimate.value).abs().to_f64();
-        assert!(difference < 1e-24 * exact.abs_upper().to_f64().max(1.0), "round {round}: {difference:e}");
+        assert!(
+            difference < 1e-24 * exact.abs_upper().to_f64().max(1.0),
+            "round {round}: {difference:e}"
+        );
     }
 }
 
@@ -141,15 +173,57 @@ fn dissipation_by_quadrature() {
 fn no_panic_and_typed_refusals() {
     let balls = Balls::new(64);
     for (a, b, omega) in [(0, 1, 1), (-1, 1, 1), (1, 0, 1), (1, -2, 1), (1, 1, 0), (1, 1, -1)] {
-        let point = StickSlip { a: Real::from(a), b: Real::from(b), omega: Real::from(omega), ..StickSlip::paper() };
+        let point = StickSlip {
+            a: Real::from(a),
+            b: Real::from(b),
+            omega: Real::from(omega),
+            ..StickSlip::paper()
+        };
         assert!(point.check().is_err() && point.system().is_err() && point.zeros(balls).is_err());
         let _ = point.signed_threshold(balls);
         let _ = point.touching_b();
     }
     assert!(Real::from_f64(f64::NAN, "a").is_err() && Real::from_f64(f64::INFINITY, "a").is_err());
     // v* exactly at V (a = 2, b = 2: V = 1) keeps all its digits.
-    let tangent = StickSlip { a: Real::from(2), b: Real::from(2), belt_speed: Real::from(1), ..StickSlip::paper() };
+    let tangent = StickSlip {
+        a: Real::from(2),
+        b: Real::from(2),
+        belt_speed: Real::from(1),
+        ..StickSlip::paper()
+    };
     let g = tangent.g(Balls::new(200)).unwrap();
-    let expected = number(&serde_json::json!({"g": "0.3"}), "g") * Rational::from((172, 35)) - Rational::from((4, 10));
+    let expected = number(&serde_json::json!({"g": "0.3"}), "g") * Rational::from((172, 35))
+        - Rational::from((4, 10));
     assert!(g.contains(&expected) && decimal(&g, 50).is_some());
+}
+
+/// Zeros in every parameter: a zero found in one is confirmed by the zeros in v*.
+#[test]
+fn zeros_in_any_parameter() {
+    use lindstedt_melnikov::Axis;
+    let balls = Balls::new(200);
+    let five = StickSlip { b: Real::from(5), ..StickSlip::paper() };
+    let both = five.zeros_in(balls, Axis::BeltSpeed, &Real::from(-1), &Real::from(1)).unwrap();
+    assert!(both.complete && both.zeros.len() == 4);
+    let right = five.zeros_in(balls, Axis::BeltSpeed, &Real::from((2, 5)), &Real::from(1)).unwrap();
+    assert_eq!(right.zeros.len(), 1);
+    // The same curve crossed in the other directions, at v* = 0.4 (inside or outside of V).
+    let expected = [
+        (Axis::B, 1),
+        (Axis::A, 1),
+        (Axis::Dry, 0),
+        (Axis::Alpha, 1),
+        (Axis::Beta, 1),
+        (Axis::Omega, 0),
+    ];
+    for (axis, count) in expected {
+        let found = five.zeros_in(balls, axis, &Real::from((1, 100)), &Real::from(6)).unwrap();
+        assert_eq!(found.zeros.len(), count, "{axis:?}: {:?}", found.zeros);
+        for zero in found.zeros {
+            let value = Real::Rational(zero.midpoint().to_rational().unwrap());
+            let g = five.clone().with(axis, value).g(Balls::new(400)).unwrap();
+            assert!(g.abs_upper().to_f64() < 1e-50, "{axis:?}");
+        }
+    }
+    assert!(five.zeros_in(balls, Axis::B, &Real::from(0), &Real::from(6)).is_err());
 }

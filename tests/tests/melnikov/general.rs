@@ -3,8 +3,8 @@
 use crate::support::{Random, assert_agrees, decimal, oracle, real};
 use lindstedt::coeff::ball::Balls;
 use lindstedt_melnikov::{
-    Branch, Class, Forcing, Friction, Harmonic, MelnikovError, Monomial, PolynomialFriction, Potential, Real,
-    System, polynomial_dissipation, quadrature_dissipation,
+    Branch, Class, Forcing, Friction, Harmonic, MelnikovError, Monomial, PolynomialFriction,
+    Potential, Real, System, polynomial_dissipation, quadrature_dissipation,
 };
 use serde_json::Value;
 
@@ -19,10 +19,13 @@ fn polynomial_friction() {
     let balls = Balls::new(BALLS);
     for row in oracle("general.json")["polynomial_friction"].as_array().unwrap() {
         let coefficients = row["t"].as_array().unwrap();
-        let coefficients = coefficients.iter().map(|t| Real::Rational(decimal(t.as_str().unwrap()))).collect();
+        let coefficients =
+            coefficients.iter().map(|t| Real::Rational(decimal(t.as_str().unwrap()))).collect();
         let law = PolynomialFriction { dry: real(row, "T0"), coefficients };
         for branch in [Branch::Positive, Branch::Negative] {
-            let d = polynomial_dissipation(balls, &double_well(row), &law, branch, &real(row, "vstar")).unwrap();
+            let d =
+                polynomial_dissipation(balls, &double_well(row), &law, branch, &real(row, "vstar"))
+                    .unwrap();
             assert_agrees(&d, &row["D"], 29, "D");
         }
     }
@@ -31,7 +34,12 @@ fn polynomial_friction() {
 fn law(name: &str) -> Friction {
     let q = |n, d| Real::from((n, d));
     match name {
-        "stribeck1" => Friction::Stribeck { coulomb: q(1, 5), stiction: q(7, 20), speed: q(1, 4), viscous: q(1, 20) },
+        "stribeck1" => Friction::Stribeck {
+            coulomb: q(1, 5),
+            stiction: q(7, 20),
+            speed: q(1, 4),
+            viscous: q(1, 20),
+        },
         "rational" => Friction::Rational { dry: q(3, 10), slope: q(3, 1) },
         "tanh" => Friction::HyperbolicTangent { dry: q(3, 10), speed: q(1, 20) },
         "softsign" => Friction::SoftSign,
@@ -44,8 +52,14 @@ fn law(name: &str) -> Friction {
 fn friction_laws() {
     for row in oracle("general.json")["friction_laws"]["table"].as_array().unwrap() {
         let name = row["law"].as_str().unwrap();
-        let estimate =
-            quadrature_dissipation(90, &double_well(row), &law(name), Branch::Positive, &real(row, "vstar")).unwrap();
+        let estimate = quadrature_dissipation(
+            90,
+            &double_well(row),
+            &law(name),
+            Branch::Positive,
+            &real(row, "vstar"),
+        )
+        .unwrap();
         let value = Balls::new(120).from_parts(&estimate.value, &estimate.error);
         assert_agrees(&value, &row["D"], 23, &format!("{name} {row}"));
     }
@@ -60,14 +74,23 @@ fn several_harmonics() {
             weight: real(h, "g"),
             phase: real(h, "phase"),
         });
-        let friction = PolynomialFriction::paper(real(row, "T0"), &real(row, "alpha"), real(row, "beta"));
-        let forcing = Forcing::Harmonics { omega: real(row, "omega"), harmonics: harmonics.collect() };
-        let system =
-            System::new(double_well(row), Friction::Polynomial(friction), forcing, real(row, "vstar")).unwrap();
+        let friction =
+            PolynomialFriction::paper(real(row, "T0"), &real(row, "alpha"), real(row, "beta"));
+        let forcing =
+            Forcing::Harmonics { omega: real(row, "omega"), harmonics: harmonics.collect() };
+        let system = System::new(
+            double_well(row),
+            Friction::Polynomial(friction),
+            forcing,
+            real(row, "vstar"),
+        )
+        .unwrap();
         let work = system.work(balls, Branch::Positive).unwrap();
         assert_agrees(&work.extreme(balls, false).unwrap(), &row["Fmax"], 29, "max F");
         assert_agrees(&work.extreme(balls, true).unwrap(), &row["Fmin"], 29, "min F");
-        for (branch, name) in [(Branch::Positive, "gamma_c_right"), (Branch::Negative, "gamma_c_left")] {
+        for (branch, name) in
+            [(Branch::Positive, "gamma_c_right"), (Branch::Negative, "gamma_c_left")]
+        {
             let threshold = system.threshold(balls, branch).unwrap();
             assert_eq!(threshold.class, Class::Certified);
             assert_agrees(&threshold.dissipation, &row["D"], 29, "D");
@@ -100,7 +123,9 @@ fn potentials() {
             assert!(c.is_positive());
             assert_agrees(&phase, &row["phase"], 29, "phase");
             // |C + iS|^2 = 2 pi nu/sinh(2 pi nu), nu = omega/(2 kappa).
-            let x = balls.div(&balls.mul(&balls.pi(), &omega), &potential.rate(balls).unwrap()).unwrap();
+            let x = balls
+                .div(&balls.mul(&balls.pi(), &omega), &potential.rate(balls).unwrap())
+                .unwrap();
             let closed = balls.div(&x, &balls.sinh(&x)).unwrap();
             assert!(closed.overlaps(&balls.square(&size)));
         }
@@ -122,7 +147,10 @@ fn potentials_by_quadrature() {
             3 => Potential::Pendulum { w0: a },
             _ => Potential::PhiSix { kappa: a },
         };
-        let law = PolynomialFriction { dry: q(-1.0, 1.0), coefficients: (0..5).map(|_| q(-1.0, 1.0)).collect() };
+        let law = PolynomialFriction {
+            dry: q(-1.0, 1.0),
+            coefficients: (0..5).map(|_| q(-1.0, 1.0)).collect(),
+        };
         let friction = Friction::Polynomial(law.clone());
         let speed = potential.largest_speed(balls).unwrap().midpoint().to_f64();
         let fraction = q(-1.3, 1.3).to_f64();
@@ -132,10 +160,14 @@ fn potentials_by_quadrature() {
                 continue;
             }
             let exact = polynomial_dissipation(balls, &potential, &law, branch, &belt).unwrap();
-            let estimate = quadrature_dissipation(90, &potential, &friction, branch, &belt).unwrap();
+            let estimate =
+                quadrature_dissipation(90, &potential, &friction, branch, &belt).unwrap();
             let difference = (exact.midpoint().clone() - &estimate.value).abs().to_f64();
             let scale = exact.abs_upper().to_f64().max(1.0);
-            assert!(difference < 1e-24 * scale, "round {round} {potential:?} {branch:?}: {difference:e}");
+            assert!(
+                difference < 1e-24 * scale,
+                "round {round} {potential:?} {branch:?}: {difference:e}"
+            );
         }
     }
 }
@@ -145,8 +177,14 @@ fn incommensurate_and_parametric() {
     let balls = Balls::new(BALLS);
     let (a, b) = (Real::from((17, 10)), Real::from((23, 10)));
     let potential = Potential::DoubleWell { a, b };
-    let law = || Friction::Polynomial(PolynomialFriction { dry: Real::from((3, 10)), coefficients: Vec::new() });
-    let system = |forcing| System::new(potential.clone(), law(), forcing, Real::from((1, 5))).unwrap();
+    let law = || {
+        Friction::Polynomial(PolynomialFriction {
+            dry: Real::from((3, 10)),
+            coefficients: Vec::new(),
+        })
+    };
+    let system =
+        |forcing| System::new(potential.clone(), law(), forcing, Real::from((1, 5))).unwrap();
     let omega = || Real::from((13, 10));
     // Amplitude pi omega^2/b csch(pi omega/(2 sqrt a)), the same sign on both loops.
     let parametric = system(Forcing::Parametric { omega: omega() });
@@ -154,15 +192,21 @@ fn incommensurate_and_parametric() {
     let w = omega().ball(balls);
     let pi_w = balls.mul(&balls.pi(), &w);
     let x = balls.div(&pi_w, &balls.mul_i64(&potential.rate(balls).unwrap(), 2)).unwrap();
-    let closed = balls.div(&balls.mul(&pi_w, &w), &balls.mul(&balls.from_rational(&decimal("2.3")), &balls.sinh(&x)));
+    let closed = balls.div(
+        &balls.mul(&pi_w, &w),
+        &balls.mul(&balls.from_rational(&decimal("2.3")), &balls.sinh(&x)),
+    );
     assert!(closed.unwrap().overlaps(&right.forcing));
-    let (m, _) = parametric.melnikov(balls, Branch::Positive, &Real::from(1), &Real::from((1, 2))).unwrap();
-    let (n, _) = parametric.melnikov(balls, Branch::Negative, &Real::from(1), &Real::from((1, 2))).unwrap();
+    let (m, _) =
+        parametric.melnikov(balls, Branch::Positive, &Real::from(1), &Real::from((1, 2))).unwrap();
+    let (n, _) =
+        parametric.melnikov(balls, Branch::Negative, &Real::from(1), &Real::from((1, 2))).unwrap();
     assert!(m.overlaps(&n) && m.relative_accuracy_bits() > 100);
     // Two incommensurate frequencies: the amplitudes add.
     let one = system(Forcing::single(omega())).threshold(balls, Branch::Positive).unwrap();
     let other = system(Forcing::single(Real::from(2))).threshold(balls, Branch::Positive).unwrap();
-    let both = Forcing::Incommensurate(vec![(omega(), Real::from(1)), (Real::from(2), Real::from(-1))]);
+    let both =
+        Forcing::Incommensurate(vec![(omega(), Real::from(1)), (Real::from(2), Real::from(-1))]);
     let both = system(both).threshold(balls, Branch::Negative).unwrap();
     assert!(both.forcing.overlaps(&balls.add(&one.forcing, &other.forcing)));
 }
@@ -174,12 +218,16 @@ fn wrong_orbits_are_refused() {
     assert_eq!(good.check(), Ok(()));
     let mut wrong = good.clone();
     wrong.force[2] = Monomial::new(-2, 1, 0, 1);
-    assert!(matches!(wrong.check(), Err(MelnikovError::WrongOrbit { residual }) if residual == "6 sech^4"));
+    assert!(
+        matches!(wrong.check(), Err(MelnikovError::WrongOrbit { residual }) if residual == "6 sech^4")
+    );
     let mut unscaled = good;
     unscaled.rate_squared = Monomial::new(1, 4, 0, 0);
     assert_eq!(unscaled.check(), Err(MelnikovError::NotScaled { power: 1 }));
-    let friction = Friction::Polynomial(PolynomialFriction { dry: Real::from(1), coefficients: Vec::new() });
-    let system = System::new(helmholtz, friction, Forcing::single(Real::from(1)), Real::from(0)).unwrap();
+    let friction =
+        Friction::Polynomial(PolynomialFriction { dry: Real::from(1), coefficients: Vec::new() });
+    let system =
+        System::new(helmholtz, friction, Forcing::single(Real::from(1)), Real::from(0)).unwrap();
     let mirror = system.threshold(Balls::new(80), Branch::Negative);
     assert!(matches!(mirror, Err(MelnikovError::NoMirrorImage)));
 }

@@ -16,13 +16,15 @@ const BALLS: u32 = 200;
 fn laws_of_the_ring() {
     let term = |n: i32, d: u32, p, tanh| Hyperbolic::term(Rational::from((n, d)), p, tanh);
     let ring = HyperbolicRing;
-    let mut samples = vec![Hyperbolic::sech(1), Hyperbolic::tanh(), ring.zero(), term(3, 2, 0, false)];
+    let mut samples =
+        vec![Hyperbolic::sech(1), Hyperbolic::tanh(), ring.zero(), term(3, 2, 0, false)];
     samples.push(ring.add(&term(-5, 7, 3, true), &term(1, 3, 2, false)));
     assert_eq!(laws::rational_algebra(&ring, &samples), Ok(()));
     for f in &samples {
         for g in &samples {
             let left = ring.derivative(&ring.mul(f, g));
-            let right = ring.add(&ring.mul(&ring.derivative(f), g), &ring.mul(f, &ring.derivative(g)));
+            let right =
+                ring.add(&ring.mul(&ring.derivative(f), g), &ring.mul(f, &ring.derivative(g)));
             assert_eq!(left, right, "Leibniz for {f} and {g}");
         }
     }
@@ -47,7 +49,9 @@ fn table_of_integrals() {
             assert!((double - reference).abs() <= 2e-14 * reference);
         }
     }
-    assert!(line_integral(0, 2).is_none() && line_integral_real(balls, &Rational::new(), 0).is_none());
+    assert!(
+        line_integral(0, 2).is_none() && line_integral_real(balls, &Rational::new(), 0).is_none()
+    );
 }
 
 #[test]
@@ -86,9 +90,10 @@ fn by_quadrature(balls: Balls, p: u32, q: u32, w: &Rational) -> Ball {
     trapezoid(balls, &strip, |balls, z| {
         let cosh = balls.cosh(z);
         let tanh = balls.div(&balls.sinh(z), &cosh)?;
-        let shape = balls.mul(&balls.powi(&cosh, -i64::from(p))?, &balls.powi(&tanh, i64::from(q))?);
+        let shape =
+            balls.mul(&balls.powi(&cosh, -i64::from(p))?, &balls.powi(&tanh, i64::from(q))?);
         let angle = balls.mul(&frequency, z);
-        let trig = if q % 2 == 0 { balls.cos(&angle) } else { balls.sin(&angle) };
+        let trig = if q.is_multiple_of(2) { balls.cos(&angle) } else { balls.sin(&angle) };
         Some(balls.mul(&shape, &trig))
     })
     .unwrap()
@@ -107,7 +112,10 @@ fn fourier_integrals_by_quadrature() {
         let what = format!("round {round}: J_({p}, {q})({w})");
         let value = line_fourier_ball(balls, p, q, &ball).unwrap();
         assert!(value.overlaps(&reference), "{what}: {value:?} {reference:?}");
-        assert!(value.relative_accuracy_bits() > 90 && reference.radius().to_f64() < 1e-38, "{what}");
+        assert!(
+            value.relative_accuracy_bits() > 90 && reference.radius().to_f64() < 1e-38,
+            "{what}"
+        );
         let exact = line_fourier(p, q).unwrap().ball(balls, &ball).unwrap();
         assert!(exact.overlaps(&reference), "{what}");
         let general = line_fourier_real(balls, &Rational::from(p), q, &ball).unwrap();
@@ -127,7 +135,10 @@ fn no_cancellation_in_f64() {
         let exact = line_fourier_ball(balls, p, q, &balls.from_f64(w).unwrap()).unwrap();
         let reference = exact.midpoint().to_f64();
         let double = line_fourier_f64(p, q, w).unwrap();
-        assert!((double - reference).abs() <= 2e-14 * reference.abs(), "J_({p}, {q}): {double} {reference}");
+        assert!(
+            (double - reference).abs() <= 2e-14 * reference.abs(),
+            "J_({p}, {q}): {double} {reference}"
+        );
     }
     // Large frequencies: the exponent in double-double.
     for w in [100.0, 263.0, 400.0, 450.0] {

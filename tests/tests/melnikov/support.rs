@@ -51,7 +51,12 @@ pub fn assert_agrees(ball: &Ball, expected: &Value, digits: i32, what: &str) {
     let middle = ball.midpoint().to_rational().unwrap();
     let radius = ball.radius().to_rational().unwrap();
     let error = Rational::from(&middle - &expected).abs() + radius;
-    assert!(error <= tolerance, "{what}: {} instead of {text}, error {}", ball.midpoint(), error.to_f64());
+    assert!(
+        error <= tolerance,
+        "{what}: {} instead of {text}, error {}",
+        ball.midpoint(),
+        error.to_f64()
+    );
 }
 
 /// The oscillator of a row with a, b, T0, alpha, beta, omega, vstar (omega may be missing).

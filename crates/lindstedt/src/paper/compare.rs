@@ -112,8 +112,7 @@ pub(super) fn compare_sums<R: Ratio>(
         })
     };
     let left_out = || {
-        let (v, q) =
-            vocabulary.iter().find_map(|v| Some((v, ring.ratio(&v.value, &missing)?)))?;
+        let (v, q) = vocabulary.iter().find_map(|v| Some((v, ring.ratio(&v.value, &missing)?)))?;
         Some(format!("the term {} is missing", product(&q, &v.name)))
     };
     let correction = own.or_else(unneeded).or_else(left_out).or_else(other);

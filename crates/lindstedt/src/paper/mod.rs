@@ -11,6 +11,7 @@ mod lobachevsky;
 mod numbers;
 mod orders;
 mod pendulum;
+mod pendulum_numbers;
 mod periods;
 mod power_law;
 mod tables;
@@ -191,6 +192,3 @@ pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<
 
 /// A part of a section: adds to it; false when it was stopped.
 type Part = fn(&mut Reader<'_>, &mut Section) -> Result<bool, Error>;
-
-#[cfg(test)]
-mod tests;

@@ -1,19 +1,37 @@
 //! Periods and forces by routes that share nothing with the expansions.
 
 use lindstedt_coeff::ball::{Ball, Balls};
-use rug::{Float, Rational};
+use rug::{Float, Integer, Rational};
 
-/// The exact period of x'' + x^n = 0, x(0) = 1, x'(0) = 0, for odd n >= 1, by the beta integral:
+/// The exact period of x'' + x^n = 0, x(0) = 1, x'(0) = 0, for the exponent
+/// n > 0 of x |x|^(n-1), by the beta integral:
 ///
 ///   T = 4 sqrt((n + 1)/2) int_0^1 dx/sqrt(1 - x^(n+1))
 ///     = 4 sqrt(pi (n + 1)/2) Gamma(1 + 1/(n + 1))/Gamma(1/2 + 1/(n + 1)).
-pub(super) fn power_law_period(n: u32, balls: Balls) -> Option<Ball> {
-    let shift = Rational::from((1, i64::from(n) + 1));
+pub(super) fn power_law_period(n: &Rational, balls: Balls) -> Option<Ball> {
+    if *n <= 0 {
+        return None;
+    }
+    let next = Rational::from(n + 1u32);
+    let shift = Rational::from(next.recip_ref());
     let above = gamma(&Rational::from(&shift + 1u32), balls)?;
     let below = gamma(&(shift + Rational::from((1, 2))), balls)?;
-    let half = Rational::from((i64::from(n) + 1, 2));
-    let root = balls.sqrt(&balls.mul_rational(&balls.pi(), &half))?;
+    let root = balls.sqrt(&balls.mul_rational(&balls.pi(), &(next / 2u32)))?;
     balls.div(&balls.mul_i64(&balls.mul(&root, &above), 4), &below)
+}
+
+/// d(omega^2)/d(delta) at delta = 0, omega^2 = (2 pi/T)^2, of that closed form by a central
+/// difference. Estimated.
+pub(super) fn frequency_squared_slope(balls: Balls) -> Option<Ball> {
+    let shift = balls.bits() / 4;
+    let step = Rational::from((1, Integer::from(1) << shift));
+    let squared = |delta: Rational| {
+        let period = power_law_period(&(delta * 2u32 + 1u32), balls)?;
+        let omega = balls.div(&balls.mul_i64(&balls.pi(), 2), &period)?;
+        Some(balls.square(&omega))
+    };
+    let difference = balls.sub(&squared(step.clone())?, &squared(-step)?);
+    Some(balls.mul_power_of_two(&difference, i32::try_from(shift).ok()? - 1))
 }
 
 /// Gamma(q) for 1/2 <= q <= 2: MPFR rounds correctly; Gamma is convex, so there |Gamma'| is at
@@ -25,7 +43,7 @@ fn gamma(q: &Rational, balls: Balls) -> Option<Ball> {
     let bits = balls.bits();
     let value = Float::with_val(bits, q).gamma();
     // The argument is off by less than 2^(1 - bits), the value by as much again.
-    let error = Float::with_val(53, 10) >> bits - 1;
+    let error = Float::with_val(53, 10) >> (bits - 1);
     Some(balls.from_parts(&value, &error))
 }
 
@@ -46,6 +64,23 @@ pub(super) fn pendulum_period(amplitude: &Rational, balls: Balls) -> Option<Ball
     let half = balls.from_rational(&Rational::from(amplitude / 2u32));
     let mean = arithmetic_geometric_mean(&balls.cos(&half), balls)?;
     balls.div(&balls.mul_i64(&balls.pi(), 2), &mean)
+}
+
+/// The same period by the hypergeometric series T = 2 pi sum_k ((1/2)_k/k!)^2 sin^(2k)(a/2); the
+/// terms decrease at least like powers of sin^2(a/2), which bounds the rest.
+pub(super) fn pendulum_period_by_series(amplitude: &Rational, balls: Balls) -> Option<Ball> {
+    let half = balls.from_rational(&Rational::from(amplitude / 2u32));
+    let square = balls.square(&balls.sin(&half));
+    let (mut term, mut sum) = (balls.one(), balls.zero());
+    for k in 1..=4 * i64::from(balls.bits()) {
+        sum = balls.add(&sum, &term);
+        let factor = Rational::from((2 * k - 1, 2 * k));
+        let ratio = balls.mul_rational(&square, &factor.square());
+        term = balls.mul(&term, &ratio);
+    }
+    let rest = balls.div(&term, &balls.sub(&balls.one(), &square))?;
+    let sum = balls.add_error(&sum, &rest.abs_upper());
+    Some(balls.mul_i64(&balls.mul(&balls.pi(), &sum), 2))
 }
 
 /// The exact period for n = 3 by the same mean: int_0^1 dx/sqrt(1 - x^4) is lemniscatic,
@@ -86,7 +121,7 @@ fn tanh_sinh(from: &Float, to: &Float, bits: u32) -> Float {
     let radius = Float::with_val(bits, to - from) / 2u32;
     let mut sum = Float::new(bits);
     for i in -140i32..=140 {
-        let t = Float::with_val(bits, i) >> 5;
+        let t: Float = Float::with_val(bits, i) >> 5;
         let inner = Float::with_val(bits, &half_pi * t.clone().sinh());
         let cosh = Float::with_val(bits, inner.cosh_ref());
         let weight = Float::with_val(bits, &half_pi * t.cosh()) / cosh.square();
@@ -110,11 +145,7 @@ fn tanh_sinh(from: &Float, to: &Float, bits: u32) -> Float {
 fn log_secant(end: &Float, gap: &Float, bits: u32) -> Float {
     let cosine = end.clone().cos();
     let near_pole = cosine.clone().abs() < Float::with_val(53, 1e-40);
-    let value = if near_pole {
-        gap.clone().sin()
-    } else {
-        Float::with_val(bits, end + gap).cos()
-    };
+    let value = if near_pole { gap.clone().sin() } else { Float::with_val(bits, end + gap).cos() };
     -value.abs().ln()
 }
 

@@ -182,7 +182,7 @@ pub(super) fn tanh_recurrence(
     let (mut before, mut value) = (balls.zero(), c_p);
     for j in 1..=i64::from(q) {
         let step = balls.sub(&balls.mul(w, &value), &balls.mul_i64(&before, j - 1));
-        let divisor = Rational::from(p + Rational::from(j - 1)).recip();
+        let divisor = (p + Rational::from(j - 1)).recip();
         before = std::mem::replace(&mut value, balls.mul_rational(&step, &divisor));
     }
     Some(if (q / 2) % 2 == 1 { balls.neg(&value) } else { value })

@@ -90,10 +90,10 @@ impl HyperbolicRing {
         for (c, p, tanh) in a.terms() {
             if tanh {
                 // (sech^p tanh)' = -p sech^p tanh^2 + sech^(p+2) = -p sech^p + (p+1) sech^(p+2).
-                result.add_term((p, false), &-Rational::from(c * Rational::from(p)));
+                result.add_term((p, false), &-(c * Rational::from(p)));
                 result.add_term((p.saturating_add(2), false), &(c * (Rational::from(p) + 1u32)));
             } else {
-                result.add_term((p, true), &-Rational::from(c * Rational::from(p)));
+                result.add_term((p, true), &-(c * Rational::from(p)));
             }
         }
         result

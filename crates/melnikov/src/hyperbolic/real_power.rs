@@ -47,7 +47,7 @@ pub fn line_integral_real(balls: Balls, p: &Rational, q: u32) -> Option<Ball> {
     let half = Rational::from((1, 2));
     let mut value = beta(balls, &half, &Rational::from(p * &half))?;
     for n in (2..=q).step_by(2) {
-        let ratio = Rational::from(n - 1) / Rational::from(p + Rational::from(n - 1));
+        let ratio = Rational::from(n - 1) / (p + Rational::from(n - 1));
         value = balls.mul_rational(&value, &ratio);
     }
     Some(value)

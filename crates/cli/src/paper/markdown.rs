@@ -1,0 +1,55 @@
+//! The report as Markdown.
+
+use super::summary;
+use lindstedt::paper::Paper;
+use std::fmt::Write;
+
+pub fn report(paper: &Paper) -> String {
+    let mut text = String::new();
+    for section in &paper.sections {
+        let _ = writeln!(text, "# Section {}: {}\n", section.number, section.title);
+        let _ = writeln!(text, "{}.\n", summary(section));
+        text += "| | printed | derived | independent | verdict | evidence |\n";
+        text += "|---|---|---|---|---|---|\n";
+        for row in &section.rows {
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} | {} | **{}** | {} |",
+                cell(&row.label),
+                code(&row.printed),
+                code(&row.derived),
+                cell(&row.independent),
+                row.verdict.name(),
+                cell(&row.evidence),
+            );
+        }
+        for table in &section.tables {
+            let _ = writeln!(text, "\n## {}\n", cell(&table.title));
+            for note in &table.notes {
+                let _ = writeln!(text, "- {}", cell(note));
+            }
+            let _ = writeln!(text, "\n| {} |", table.columns.join(" | "));
+            let _ = writeln!(text, "|{}", "---:|".repeat(table.columns.len()));
+            for row in &table.rows {
+                let _ = writeln!(text, "| {} |", row.join(" | "));
+            }
+        }
+    }
+    text
+}
+
+fn code(text: &str) -> String {
+    format!("`{}`", text.replace('|', "\\|"))
+}
+
+/// Plain text: what Markdown would read as emphasis, a link, a column or HTML is escaped.
+fn cell(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        if matches!(c, '|' | '*' | '_' | '<' | '[' | ']' | '`' | '\\') {
+            escaped.push('\\');
+        }
+        escaped.push(c);
+    }
+    escaped
+}

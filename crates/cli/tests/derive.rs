@@ -1,0 +1,165 @@
+//! The command line as a user sees it: snapshots of derivations, and every kind of bad input.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::process::{Command, Output};
+
+fn lindstedt(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
+}
+
+fn text(arguments: &[&str]) -> String {
+    let output = lindstedt(arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&text(&[arguments, &["--format", "json"]].concat())).unwrap()
+}
+
+#[test]
+fn derivations_as_text() {
+    insta::assert_snapshot!(text(&["derive", "power-law", "--order", "3", "--digits", "40"]));
+    insta::assert_snapshot!(text(&["derive", "van-der-pol", "--order", "4", "--digits", "12"]));
+    let pendulum = ["derive", "pendulum", "--order", "2", "--digits", "20", "--set", "amplitude=2"];
+    insta::assert_snapshot!(text(&pendulum));
+    let duffing =
+        ["derive", "duffing", "--order", "3", "--digits", "12", "--normalisation", "fundamental"];
+    insta::assert_snapshot!(text(&duffing));
+}
+
+#[test]
+fn derivations_as_latex_and_markdown() {
+    let power_law = ["derive", "power-law", "--order", "2", "--digits", "20"];
+    insta::assert_snapshot!(text(&[&power_law[..], &["--format", "latex"]].concat()));
+    insta::assert_snapshot!(text(&[&power_law[..], &["--format", "markdown"]].concat()));
+}
+
+#[test]
+fn derivation_as_json() {
+    let mut value = json(&["derive", "duffing", "--order", "4", "--digits", "20"]);
+    assert!(value["seconds"].as_f64().unwrap() >= 0.0);
+    value["seconds"] = 0.into();
+    insta::assert_snapshot!(format!("{value:#}"));
+}
+
+#[test]
+fn the_json_contract_holds() {
+    for (problem, parameter, series) in [
+        ("power-law", "delta", vec!["frequency_squared", "frequency", "period_over_2pi"]),
+        ("pendulum", "delta", vec!["frequency_squared", "frequency", "period_over_2pi"]),
+        ("duffing", "rho", vec!["frequency", "frequency_squared", "period_over_2pi"]),
+        ("van-der-pol", "eps", vec!["frequency", "amplitude", "period_over_2pi"]),
+    ] {
+        for order in [0usize, 3] {
+            let value = json(&["derive", problem, "--order", &order.to_string(), "--digits", "25"]);
+            assert_eq!(value["problem"], problem);
+            assert_eq!(value["parameter"], parameter);
+            assert_eq!(value["order"], order);
+            assert_eq!(value["tier"], "exact");
+            assert_eq!(value["residual"]["checked_orders"], order);
+            assert_eq!(value["residual"]["zero"], true);
+            assert_eq!(value["solution"].as_array().unwrap().len(), order + 1);
+            for name in &series {
+                let list = value["series"][name].as_array().unwrap();
+                assert_eq!(list.len(), order + 1, "{problem} {name}");
+                for number in list {
+                    assert!(number["exact"].is_string() && number["decimal"].is_string());
+                    assert_eq!(number["status"], "exact");
+                    let digits = number["decimal"].as_str().unwrap();
+                    let digits = digits.chars().filter(char::is_ascii_digit).count();
+                    assert!(digits >= 25 || number["decimal"] == "0");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn high_orders_within_their_memory() {
+    // Work, not time: the proof covers every order, and the record order of 1982 is exact here.
+    let value = json(&["derive", "van-der-pol", "--order", "60", "--quiet"]);
+    assert_eq!(value["residual"]["checked_orders"], 60);
+    let value = json(&["derive", "duffing", "--order", "100", "--quiet"]);
+    assert_eq!(value["residual"]["checked_orders"], 100);
+    let value = json(&["derive", "power-law", "--order", "10", "--quiet"]);
+    assert_eq!(value["terms"].as_array().unwrap()[..5], [1, 2, 5, 10, 19].map(Value::from));
+}
+
+#[test]
+fn the_energy_integral_gives_the_same_numbers() {
+    for problem in ["power-law", "pendulum"] {
+        let options = ["derive", problem, "--order", "6", "--digits", "40"];
+        let driver = json(&options);
+        let energy = json(&[&options[..], &["--route", "energy"]].concat());
+        assert_eq!(driver["series"], energy["series"]);
+        assert_eq!(energy["residual"]["zero"], Value::Null);
+        assert_eq!(energy["solution"], Value::Array(Vec::new()));
+    }
+}
+
+#[test]
+fn ten_thousand_digits() {
+    let value = json(&["derive", "power-law", "--order", "1", "--digits", "10000"]);
+    let decimal = value["series"]["frequency_squared"][1]["decimal"].as_str().unwrap();
+    // 1 - 2 ln 2; the last digits from mpmath 1.3.0 at 10 020 digits.
+    assert!(decimal.starts_with("-0.38629436111989061883446424291635313615100026872051"));
+    assert_eq!(decimal.len(), "-0.".len() + 10_000);
+}
+
+/// Arguments, exit code, code in JSON.
+const BAD: [(&[&str], i32, &str); 24] = [
+    (&["derive", "nope"], 2, "unknown-problem"),
+    (&["derive", "../../x"], 2, "unknown-problem"),
+    (&["frobnicate"], 2, "usage"),
+    (&["derive"], 2, "usage"),
+    (&["derive", "duffing", "--order", "-1"], 2, "usage"),
+    (&["derive", "duffing", "--order", "1.5"], 2, "usage"),
+    (&["derive", "duffing", "--order", "1000000000"], 4, "too-large"),
+    (&["derive", "power-law", "--order", "1000000000"], 4, "too-large"),
+    (&["derive", "pendulum", "--order", "1000000000", "--route", "energy"], 4, "too-large"),
+    (&["derive", "power-law", "--order", "40"], 4, "too-large"),
+    (&["derive", "duffing", "--digits", "0"], 2, "digits"),
+    (&["derive", "duffing", "--digits", "1000000000000"], 4, "digits"),
+    (&["derive", "duffing", "--digits", "-3"], 2, "usage"),
+    (&["derive", "pendulum", "--set", "amplitude=0"], 3, "outside-domain"),
+    (&["derive", "pendulum", "--set", "amplitude=pi"], 3, "outside-domain"),
+    (&["derive", "pendulum", "--set", "amplitude=4"], 3, "outside-domain"),
+    (&["derive", "power-law", "--set", "amplitude=0"], 3, "outside-domain"),
+    (&["derive", "power-law", "--set", "n=-1"], 3, "outside-domain"),
+    (&["derive", "pendulum", "--set", "amplitude=nan"], 2, "bad-value"),
+    (&["derive", "pendulum", "--set", "amplitude"], 2, "set"),
+    (&["derive", "duffing", "--set", "gamma=1"], 2, "unknown-parameter"),
+    (&["derive", "van-der-pol", "--normalisation", "initial"], 2, "unknown-normalisation"),
+    (&["derive", "duffing", "--route", "energy"], 3, "no-such-route"),
+    (&["derive", "duffing", "--out", "/nonexistent/directory/file"], 5, "file"),
+];
+
+#[test]
+fn bad_input_gets_one_clear_line_and_its_exit_code() {
+    for (arguments, exit, code) in BAD {
+        let output = lindstedt(arguments);
+        assert_eq!(output.status.code(), Some(exit), "{arguments:?}");
+        assert!(output.stdout.is_empty(), "{arguments:?}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(message.lines().count(), 1, "{arguments:?}: {message}");
+        assert!(message.len() < 300 && !message.contains("panicked"), "{message}");
+
+        let output = lindstedt(&[arguments, &["--format", "json"]].concat());
+        assert_eq!(output.status.code(), Some(exit), "{arguments:?}");
+        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(value["error"]["code"], code, "{arguments:?}");
+    }
+}
+
+#[test]
+fn problems_lists_what_is_built_in() {
+    insta::assert_snapshot!(text(&["problems", "--show", "power-law"]));
+    let value = json(&["problems"]);
+    let names: Vec<&str> =
+        value["problems"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap()).collect();
+    for name in ["power-law", "pendulum", "duffing", "van-der-pol"] {
+        assert!(names.contains(&name));
+    }
+}

@@ -1,0 +1,138 @@
+//! Zeros of the threshold in any parameter, and a parameter changed by name.
+
+use crate::root::enclose_root;
+use crate::{Axis, MelnikovError, Real, StickSlip};
+use lindstedt_coeff::ball::{Ball, Balls};
+use rug::Float;
+use std::cmp::Ordering;
+
+/// Cells of the sign scan in parameters other than v*.
+const CELLS: i64 = 512;
+
+/// Zeros of the signed threshold in one parameter.
+#[derive(Clone, Debug)]
+pub struct ParameterZeros {
+    /// The zeros, ascending; each enclosed by a proved change of sign.
+    pub zeros: Vec<Ball>,
+    /// Whether there are provably no others in the range. In v* the zeros are those of a quartic
+    /// and of a square root; in the other parameters they are the sign changes on a grid.
+    pub complete: bool,
+}
+
+impl StickSlip {
+    /// The same oscillator with one parameter changed.
+    #[must_use]
+    pub fn with(mut self, axis: Axis, value: Real) -> Self {
+        match axis {
+            Axis::A => self.a = value,
+            Axis::B => self.b = value,
+            Axis::Dry => self.dry = value,
+            Axis::Alpha => self.alpha = value,
+            Axis::Beta => self.beta = value,
+            Axis::Omega => self.omega = value,
+            Axis::BeltSpeed => self.belt_speed = value,
+        }
+        self
+    }
+
+    /// The value of one parameter.
+    #[must_use]
+    pub fn get(&self, axis: Axis) -> &Real {
+        match axis {
+            Axis::A => &self.a,
+            Axis::B => &self.b,
+            Axis::Dry => &self.dry,
+            Axis::Alpha => &self.alpha,
+            Axis::Beta => &self.beta,
+            Axis::Omega => &self.omega,
+            Axis::BeltSpeed => &self.belt_speed,
+        }
+    }
+
+    /// Zeros of the signed threshold for `axis` in [low, high].
+    ///
+    /// omega has none: G does not depend on it, and the factor cosh(z)/(2z) is positive.
+    ///
+    /// # Errors
+    /// [`MelnikovError::NotPositive`] where a, b or omega would leave its domain,
+    /// [`MelnikovError::Undecided`] where a sign or an order is not decided at this precision.
+    pub fn zeros_in(
+        &self,
+        balls: Balls,
+        axis: Axis,
+        low: &Real,
+        high: &Real,
+    ) -> Result<ParameterZeros, MelnikovError> {
+        let undecided = MelnikovError::Undecided { bits: balls.bits() };
+        let mut changed = self.clone();
+        if matches!(axis, Axis::A | Axis::B | Axis::Omega) {
+            // Valid at the lower end, valid everywhere.
+            changed = changed.with(axis, low.clone());
+        }
+        changed.check()?;
+        if axis == Axis::Omega {
+            return Ok(ParameterZeros { zeros: Vec::new(), complete: true });
+        }
+        if axis == Axis::BeltSpeed {
+            let positive = self.zeros(balls)?;
+            let mirrored = positive.iter().rev().map(|zero| balls.neg(zero));
+            let (low, high) = (low.ball(balls), high.ball(balls));
+            let mut zeros = Vec::new();
+            for zero in mirrored.chain(positive.iter().cloned()) {
+                let (above, below) = (balls.sub(&zero, &low), balls.sub(&high, &zero));
+                if above.is_negative() || below.is_negative() {
+                    continue;
+                }
+                if !above.is_positive() || !below.is_positive() {
+                    return Err(undecided);
+                }
+                zeros.push(zero);
+            }
+            return Ok(ParameterZeros { zeros, complete: true });
+        }
+        let zeros = self.scan(balls, axis, low, high).ok_or(undecided)?;
+        Ok(ParameterZeros { zeros, complete: false })
+    }
+
+    fn scan(&self, balls: Balls, axis: Axis, low: &Real, high: &Real) -> Option<Vec<Ball>> {
+        let (low, high) = (low.ball(balls), high.ball(balls));
+        let step = balls.div_i64(&balls.sub(&high, &low), CELLS)?;
+        if !step.is_positive() {
+            return Some(Vec::new());
+        }
+        let at = |x: &Float| -> Option<Ball> {
+            let value = Real::Rational(x.to_rational()?);
+            self.clone().with(axis, value).g(balls)
+        };
+        // The ends are rounded inwards, so the domain is not left.
+        let node = |i: i64| match i {
+            0 => low.upper(),
+            CELLS => high.lower(),
+            _ => balls.add(&low, &balls.mul_i64(&step, i)).midpoint().clone(),
+        };
+        let sign = |x: &Float| {
+            let g = at(x)?;
+            Some(match (g.is_positive(), g.is_negative()) {
+                (true, _) => Ordering::Greater,
+                (_, true) => Ordering::Less,
+                _ => Ordering::Equal,
+            })
+        };
+        let mut zeros = Vec::new();
+        let mut before = (node(0), sign(&node(0))?);
+        for i in 1..=CELLS {
+            let x = node(i);
+            let here = sign(&x)?;
+            if here == Ordering::Equal {
+                // A node on a zero, as far as this precision tells: go on to the next node.
+                continue;
+            }
+            if before.1 != Ordering::Equal && here != before.1 {
+                let function = |_: Balls, x: &Ball| at(x.midpoint());
+                zeros.push(enclose_root(balls, &before.0, &x, function)?);
+            }
+            before = (x, here);
+        }
+        Some(zeros)
+    }
+}

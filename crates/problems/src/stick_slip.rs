@@ -1,0 +1,51 @@
+//! The stick-slip oscillator of section 3: a data card. Its equation has a sign and a forcing in
+//! t, so it is no problem of the expansion driver; Melnikov's method and the simulation take it.
+
+use lindstedt_equation::ParameterCard;
+
+/// What is to be said about a problem that is not expanded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Card {
+    /// The name on the command line.
+    pub name: &'static str,
+    /// One line.
+    pub title: &'static str,
+    /// The equation in print.
+    pub equation: &'static str,
+    /// The parameters, with the paper's values as defaults.
+    pub parameters: Vec<ParameterCard>,
+    /// How the dimensionless equation follows from the physical one, and what is known.
+    pub notes: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+}
+
+/// The card of the paper's (18)-(20).
+pub fn card() -> Card {
+    let line = |name, meaning, default| ParameterCard { name, meaning, default };
+    Card {
+        name: "stick-slip",
+        title: "mass on a moving belt in a double well",
+        equation: "x'' = a*x - b*x^3 + eps*(gamma*cos(omega*t) - T(x' - vstar)), \
+                   T(w) = T0*sign(w) - alpha*w + beta*w^3",
+        parameters: vec![
+            line("a", "k_1/m > 0: the saddle's rate squared", "1"),
+            line("b", "k_2/m > 0: stiffening, wells at +-sqrt(a/b)", "1"),
+            line("T0", "theta_0/m: dry friction", "0.3"),
+            line("alpha", "A/m: falling part of the friction", "0.3"),
+            line("beta", "B/m: rising part of the friction", "0.3"),
+            line("omega", "frequency of the forcing, > 0", "2"),
+            line("vstar", "speed of the belt, any sign", "0.4"),
+            line("gamma", "Gamma/m: amplitude of the forcing", "0.65"),
+            line(
+                "eps",
+                "perturbation parameter; thresholds do not depend on it, validity does",
+                "1",
+            ),
+        ],
+        notes: "(18) divided by m. All parameters are dimensionless once time and length are \
+                scaled; homoclinic orbit x0 = +-sqrt(2a/b) sech(sqrt(a) t), largest speed \
+                V = a/sqrt(2b). Valid for |v*| and ||v*| - V| large against eps.",
+        source: "section 3 of the paper, (18)-(27), with its misprints corrected",
+    }
+}

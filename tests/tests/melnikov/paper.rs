@@ -1,0 +1,53 @@
+//! The misprints of section 3 are found by comparison.
+
+use lindstedt_melnikov::{PaperVerdict, paper_comparison};
+
+/// Independent values of `mathematics/stick-slip.md`, section 2 (quadrature to 26 digits there).
+#[test]
+fn printed_forms_and_their_values() {
+    let list = paper_comparison().unwrap();
+    let value = |printed: &str| {
+        let line = list.iter().find(|c| c.printed.contains(printed)).unwrap();
+        (line.printed_value, line.derived_value, line.verdict)
+    };
+    let close = |x: Option<f64>, y: f64| (x.unwrap() - y).abs() < 6e-6;
+    let (printed, derived, verdict) = value("gamma sin t0");
+    assert!((derived + 1.395_291_980_329_284_8).abs() < 1e-14);
+    assert!(close(printed, -1.18385) && verdict == PaperVerdict::Misprint);
+    let (printed, _, verdict) = value("no term beta");
+    assert!(close(printed, -1.25690) && verdict == PaperVerdict::Misprint);
+    for (form, expected) in
+        [("a^4/sqrt", -1.57520), ("a^2/sqrt", -1.28743), ("both fractions", -1.46734)]
+    {
+        let (printed, _, verdict) = value(form);
+        assert!(close(printed, expected), "{form}: {printed:?}");
+        assert_eq!(verdict, PaperVerdict::Misprint);
+    }
+    for form in ["second root", "first branch for all"] {
+        let (printed, _, verdict) = value(form);
+        assert!(printed.is_none() && verdict == PaperVerdict::Misprint, "{form}");
+    }
+    let (printed, derived, verdict) = value("2 T0 a");
+    assert!(
+        close(printed, 0.750838)
+            && (derived - 0.558270457).abs() < 1e-9
+            && verdict == PaperVerdict::Misprint
+    );
+    let verdicts = |form: &str| value(form).2;
+    for form in [
+        "with v0 = +a",
+        "all of the above",
+        "corrected",
+        "0.310429 (b",
+        "0.557204 (b",
+        "at t = -0.7",
+    ] {
+        assert_eq!(verdicts(form), PaperVerdict::Agrees, "{form}");
+    }
+    for form in ["LHS > RHS", "gamma_c = 0.65", "two cusps"] {
+        assert_eq!(verdicts(form), PaperVerdict::Wrong, "{form}");
+    }
+    for form in ["at t = 0.7", "sech(sqrt a) tanh"] {
+        assert_eq!(verdicts(form), PaperVerdict::Misprint, "{form}");
+    }
+}
