@@ -19,6 +19,8 @@ pub enum Command {
     Problems(ProblemsOptions),
     /// Derive the expansion of a problem, order by order, and check it.
     Derive(DeriveOptions),
+    /// The Melnikov threshold of homoclinic chaos: value, zeros, cusps, curves, surfaces.
+    Threshold(ThresholdOptions),
     /// Read the paper: derive it, compare it with the print, tabulate what is true.
     Paper(PaperOptions),
 }
@@ -74,6 +76,26 @@ pub struct DeriveOptions {
     /// The driver, or the energy integral (frequency alone; power-law and pendulum).
     #[arg(long, value_enum, default_value_t = Route::Driver)]
     pub route: Route,
+    #[command(flatten)]
+    pub precision: Precision,
+}
+
+#[derive(Debug, Args)]
+pub struct ThresholdOptions {
+    /// stick-slip.
+    pub problem: String,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// NAME=LO..HI:COUNT or NAME=V1,V2,...; at most two, the first along the horizontal axis.
+    #[arg(long, value_name = "NAME=LO..HI:COUNT")]
+    pub sweep: Vec<String>,
+    /// All zeros of the signed threshold in this range of a parameter.
+    #[arg(long, value_name = "NAME=LO..HI")]
+    pub zeros: Option<String>,
+    /// A figure (.svg) or a table (.csv) of the sweep; may be given twice.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Vec<PathBuf>,
     #[command(flatten)]
     pub precision: Precision,
 }

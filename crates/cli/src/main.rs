@@ -8,6 +8,7 @@ mod output;
 mod paper;
 mod problems;
 mod session;
+mod threshold;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -24,6 +25,7 @@ fn main() -> ExitCode {
     let outcome = match &arguments.command {
         Command::Problems(options) => problems::run(options, &session),
         Command::Derive(options) => derive::run(options, &session),
+        Command::Threshold(options) => threshold::run(options, &session),
         Command::Paper(options) => paper::run(options, &session),
     };
     match outcome {

@@ -6,6 +6,8 @@ use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
 use rug::Rational;
 use smallvec::SmallVec;
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// A constant that has a name. Nothing is assumed about its value: identities between constants
 /// (zeta(2) = pi^2/6, the closed forms of mu_m) are theorems applied by name elsewhere.
@@ -141,19 +143,18 @@ impl PolynomialRing {
         a: &Polynomial,
         mut image: impl FnMut(Symbol) -> R::Element,
     ) -> Option<R::Element> {
-        let mut powers: std::collections::BTreeMap<(Symbol, i16), R::Element> =
-            std::collections::BTreeMap::new();
+        let mut powers: BTreeMap<(Symbol, i16), R::Element> = BTreeMap::new();
         let mut sum = target.zero();
         for (monomial, coefficient) in a.terms() {
             let mut product = target.rational(coefficient);
             for &(symbol, exponent) in monomial.factors() {
-                if !powers.contains_key(&(symbol, exponent)) {
+                if let Entry::Vacant(entry) = powers.entry((symbol, exponent)) {
                     let mut base = image(symbol);
                     if exponent < 0 {
                         base = target.reciprocal(&base)?;
                     }
                     let power = power(target, &base, exponent.unsigned_abs().into());
-                    powers.insert((symbol, exponent), power);
+                    entry.insert(power);
                 }
                 product = target.mul(&product, &powers[&(symbol, exponent)]);
             }

@@ -192,7 +192,7 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
                 range.iter().filter(|&&k| 2 * k < n).filter_map(|&k| pair(k)).collect();
             let mut sum = algebra.scale(&algebra.sum_of_products(&half), &Rational::from(2));
             let mut count = half.len() as u64;
-            if let Some((x, y)) = (n % 2 == 0).then(|| pair(n / 2)).flatten() {
+            if let Some((x, y)) = n.is_multiple_of(2).then(|| pair(n / 2)).flatten() {
                 algebra.add_assign(&mut sum, &algebra.mul(x, y));
                 count += 1;
             }

@@ -78,7 +78,7 @@ fn interpolate(values: &[Rational]) -> Vec<Rational> {
         let mut next = vec![Rational::new(); basis.len() + 1];
         for (k, b) in basis.iter().enumerate() {
             next[k + 1] += b;
-            next[k] -= Rational::from(b * Rational::from(step));
+            next[k] -= b * Rational::from(step);
         }
         basis = next.into_iter().map(|b| b / Rational::from(step + 1)).collect();
         differences = differences.windows(2).map(|w| Rational::from(&w[1] - &w[0])).collect();

@@ -118,10 +118,10 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
                 continue;
             }
             let (left, right) = match node {
-                &Node::Logarithm(y) => (product(&slope(id), &values[y]), slope(y)),
-                &Node::Exponential(g) => (slope(id), product(&slope(g), &values[id])),
-                &Node::Formal { derivative, argument, .. } => {
-                    (slope(id), product(&slope(argument), &values[derivative]))
+                Node::Logarithm(y) => (product(&slope(id), &values[*y]), slope(*y)),
+                Node::Exponential(g) => (slope(id), product(&slope(*g), &values[id])),
+                Node::Formal { derivative, argument, .. } => {
+                    (slope(id), product(&slope(*argument), &values[*derivative]))
                 }
                 _ => continue,
             };

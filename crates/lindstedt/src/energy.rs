@@ -112,7 +112,7 @@ pub fn power_law_frequency(ring: &PolynomialRing, power: i32, order: u16) -> Vec
         // [delta^n] (1 + delta)^(p/2) u^j = binomial(p/2 - j, n - j).
         let mut sum = ring.zero();
         for (j, y) in of_u.coefficients.iter().enumerate().take(n + 1) {
-            let top = Rational::from(&half - Rational::from(j));
+            let top = &half - Rational::from(j);
             ring.add_assign(&mut sum, &ring.scale(y, &binomial(&top, n - j)));
         }
         sum
@@ -123,7 +123,7 @@ pub fn power_law_frequency(ring: &PolynomialRing, power: i32, order: u16) -> Vec
 /// binomial(top, k) = top (top - 1) ... (top - k + 1)/k!.
 fn binomial(top: &Rational, k: usize) -> Rational {
     (0..k).fold(Rational::from(1), |product, i| {
-        product * Rational::from(top - Rational::from(i)) / Rational::from(i + 1)
+        product * (top - Rational::from(i)) / Rational::from(i + 1)
     })
 }
 

@@ -7,6 +7,7 @@ use lindstedt_coeff::{Polynomial, Symbol};
 use lindstedt_phase::lobachevsky_function::means;
 use rug::Rational;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::{Mutex, PoisonError};
 
 /// Precision is escalated up to this before "not enough bits" is answered: 10 000 digits and a
@@ -88,9 +89,9 @@ impl Constants {
         for (monomial, coefficient) in p.terms() {
             let mut product = balls.from_rational(coefficient);
             for &(symbol, exponent) in monomial.factors() {
-                if !powers.contains_key(&(symbol, exponent)) {
+                if let Entry::Vacant(entry) = powers.entry((symbol, exponent)) {
                     let base = self.value(symbol, balls)?;
-                    powers.insert((symbol, exponent), balls.powi(&base, exponent.into())?);
+                    entry.insert(balls.powi(&base, exponent.into())?);
                 }
                 product = balls.mul(&product, &powers[&(symbol, exponent)]);
             }

@@ -101,10 +101,27 @@ impl StickSlip {
     /// G cosh(z)/(2z) with z = pi omega/(2 sqrt a). gamma_c is its absolute value.
     #[must_use]
     pub fn signed_threshold(&self, balls: Balls) -> Option<Ball> {
+        self.forced(balls, &self.g(balls)?)
+    }
+
+    /// g cosh(z)/(2z).
+    fn forced(&self, balls: Balls, g: &Ball) -> Option<Ball> {
         let root = balls.sqrt(&self.a.ball(balls))?;
         let twice = balls.div(&balls.mul(&balls.pi(), &self.omega.ball(balls)), &root)?;
         let cosh = balls.cosh(&balls.mul_power_of_two(&twice, -1));
-        balls.div(&balls.mul(&self.g(balls)?, &cosh), &twice)
+        balls.div(&balls.mul(g, &cosh), &twice)
+    }
+
+    /// The signed threshold at the cusp |v*| = V, where the dry term has just vanished:
+    /// ((172/35) beta V^2 - (4/3) alpha) V cosh(z)/(2z).
+    #[must_use]
+    pub fn threshold_at_cusp(&self, balls: Balls) -> Option<Ball> {
+        let v = self.loop_speed(balls)?;
+        let cubic = balls.mul(&self.beta.ball(balls), &balls.square(&v));
+        let cubic = balls.mul_rational(&cubic, &Rational::from((172, 35)));
+        let linear = balls.mul_rational(&self.alpha.ball(balls), &Rational::from((4, 3)));
+        let g = balls.mul(&v, &balls.sub(&cubic, &linear));
+        self.forced(balls, &g)
     }
 
     /// The threshold as a formula with the numbers of this point, where the parameters are

@@ -102,6 +102,8 @@ fn curves() {
             assert_agrees(&at(&row["vstar"]), &row["gamma_signed"], 28, &what);
         }
         assert_agrees(&at(&Value::from("0")), &curve["gamma_at_0"], 29, "at 0");
+        let cusp = point.threshold_at_cusp(balls).unwrap();
+        assert_agrees(&cusp, &curve["gamma_at_V"], 29, "at the cusp");
         let zeros = point.zeros(balls).unwrap();
         let expected = curve["zeros"].as_array().unwrap();
         assert_eq!(zeros.len(), expected.len(), "zeros at b = {name}");

@@ -11,8 +11,8 @@ use rug::{Integer, Rational};
 ///
 /// The rules, in this order:
 ///
-/// 1. It holds as printed (exactly, or the printed decimals are the value rounded or cut off):
-///    it agrees.
+/// 1. It holds as printed (exactly, or the printed decimals are the value rounded or cut off) and
+///    no other statement of the paper rests on what was cut off: it agrees.
 /// 2. One change of one term (its factor, what it multiplies, a term left out) or of one digit
 ///    makes it hold, and no other statement of the paper holds only with the error: a misprint.
 /// 3. It is a number that no formula of the paper gives, neither as printed nor as derived here
@@ -24,7 +24,8 @@ pub struct Findings {
     pub holds: bool,
     /// The one change that makes it hold.
     pub correction: Option<String>,
-    /// Another statement of the paper holds only if this one is taken as printed.
+    /// Another statement of the paper holds only if this one is taken as printed, not with the
+    /// true value.
     pub propagates: bool,
     /// For a number: whether some formula gives it.
     pub reproduced: Option<bool>,
@@ -38,7 +39,7 @@ impl Findings {
 
     /// The verdict, by the rules above.
     pub fn verdict(&self) -> Verdict {
-        if self.holds {
+        if self.holds && !self.propagates {
             Verdict::Agrees
         } else if self.correction.is_some() && !self.propagates {
             Verdict::Misprint

@@ -149,7 +149,7 @@ fn series_row(reader: &Reader<'_>) -> Row {
         independent: format!(
             "L(pi/4) = {}; {HARMONICS} terms of the series give {}",
             show(&value, 15),
-            show(&partial, 5)
+            show(&partial, 4)
         ),
         verdict: Findings::holds(holds && partial.overlaps(&value)).verdict(),
         evidence: format!(

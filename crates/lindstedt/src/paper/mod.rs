@@ -12,6 +12,7 @@ mod numbers;
 mod orders;
 mod pendulum;
 mod pendulum_numbers;
+mod pendulum_results;
 mod periods;
 mod power_law;
 mod tables;
@@ -19,7 +20,8 @@ mod tables;
 pub use compare::{Decimal, Findings};
 
 use crate::Error;
-use lindstedt_coeff::ball::Balls;
+use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_coeff::digits::decimal;
 
 /// What the comparison of a printed statement with the truth came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -123,7 +125,7 @@ pub struct Options {
 
 impl Options {
     /// A minute of work at most.
-    pub const FULL: Self = Self { order: 8, table_order: 20 };
+    pub const FULL: Self = Self { order: 10, table_order: 20 };
     /// A few seconds.
     pub const QUICK: Self = Self { order: 4, table_order: 14 };
 }
@@ -192,3 +194,27 @@ pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<
 
 /// A part of a section: adds to it; false when it was stopped.
 type Part = fn(&mut Reader<'_>, &mut Section) -> Result<bool, Error>;
+
+/// A row whose statement holds or does not.
+fn plain(
+    label: &str,
+    printed: &str,
+    derived: String,
+    independent: String,
+    holds: bool,
+    evidence: &str,
+) -> Row {
+    Row {
+        label: label.to_owned(),
+        printed: printed.to_owned(),
+        derived,
+        independent,
+        verdict: Findings::holds(holds).verdict(),
+        evidence: evidence.to_owned(),
+    }
+}
+
+/// A number with so many certified digits, if it has them.
+fn show(ball: &Ball, digits: usize) -> String {
+    decimal(ball, digits).unwrap_or_else(|| "?".to_owned())
+}

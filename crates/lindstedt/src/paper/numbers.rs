@@ -1,8 +1,7 @@
 //! The numbers for n = 3 and n = 5 in the text below (42).
 
-use super::power_law::show;
 use super::tables::{QUANTITIES, Truncations};
-use super::{Decimal, Findings, Reader, Row, Section, periods};
+use super::{Decimal, Findings, Reader, Row, Section, periods, show};
 use crate::Error;
 use lindstedt_coeff::ball::{Ball, Balls};
 use rug::Rational;

@@ -123,11 +123,14 @@ impl Case {
         let slope = self.algebra.at_zero(&self.algebra.derivative(self.x(n)));
         let expected = if n == 0 { ring.one() } else { ring.zero() };
         let holds = start.as_ref() == Some(&expected) && slope == Some(ring.zero());
-        let shown = start.and_then(|s| ring.as_rational(&s)).map_or("?".into(), |s| s.to_string());
+        let shown = |value: Option<Polynomial>| {
+            let rational = value.and_then(|v| ring.as_rational(&v));
+            rational.map_or("?".to_owned(), |q| q.to_string())
+        };
         Row {
             label: label.to_owned(),
             printed: printed.to_owned(),
-            derived: format!("x_{n}(0) = {shown}, x_{n}'(0) = 0"),
+            derived: format!("x_{n}(0) = {}, x_{n}'(0) = {}", shown(start), shown(slope)),
             independent: self.residual_text(),
             verdict: Findings::holds(holds).verdict(),
             evidence: "value and slope of the derived x_n at 0, exactly".to_owned(),

@@ -1,9 +1,8 @@
 //! The numbers below (51).
 
 use super::numbers::{approximation, percent, times_two_pi, truncations};
-use super::power_law::{plain, show};
 use super::tables::{QUANTITIES, Truncations};
-use super::{Decimal, Row, periods};
+use super::{Decimal, Row, periods, plain, show};
 use lindstedt_coeff::ball::{Ball, Balls};
 use rug::Rational;
 

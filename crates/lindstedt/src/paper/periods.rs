@@ -96,6 +96,9 @@ pub(super) fn cubic_period(balls: Balls) -> Option<Ball> {
 /// about 30 digits.
 pub(super) fn integral_of_log_secant(low: &Float, high: &Float) -> Float {
     const BITS: u32 = 160;
+    if low > high {
+        return -integral_of_log_secant(high, low);
+    }
     let half_pi = Float::with_val(BITS, rug::float::Constant::Pi) / 2u32;
     let mut nodes = vec![low.clone()];
     let turns = 8;

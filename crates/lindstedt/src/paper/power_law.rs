@@ -2,11 +2,10 @@
 
 use super::compare::{Term, compare_sums};
 use super::orders::Case;
-use super::{Findings, Reader, Row, Section, lobachevsky, periods};
+use super::{Reader, Row, Section, lobachevsky, periods, plain, show};
 use crate::{Error, energy};
 use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::digits::decimal;
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_series::Series;
@@ -22,29 +21,6 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
     rows.extend(lobachevsky::rows(reader)?);
     rows.extend(result_rows(&case, reader.balls).ok_or(Error::NoValue)?);
     Ok(true)
-}
-
-/// A row whose statement holds or does not.
-pub(super) fn plain(
-    label: &str,
-    printed: &str,
-    derived: String,
-    independent: String,
-    holds: bool,
-    evidence: &str,
-) -> Row {
-    Row {
-        label: label.to_owned(),
-        printed: printed.to_owned(),
-        derived,
-        independent,
-        verdict: Findings::holds(holds).verdict(),
-        evidence: evidence.to_owned(),
-    }
-}
-
-pub(super) fn show(ball: &Ball, digits: usize) -> String {
-    decimal(ball, digits).unwrap_or_else(|| "?".to_owned())
 }
 
 /// x (x^2)^delta, for x > 0.

@@ -83,13 +83,14 @@ impl Truncations {
     }
 
     /// The period that the series of a quantity gives when cut off after `order`; nothing where
-    /// omega^2 is not positive.
+    /// omega or omega^2 is not positive.
     pub fn period(&self, quantity: Quantity, order: usize, delta: &Rational) -> Option<Ball> {
         let balls = self.balls;
         let terms = self.terms(quantity, delta);
         let sum = terms.get(..=order)?.iter().fold(balls.zero(), |s, t| balls.add(&s, t));
         let over_2pi = match quantity {
             Quantity::Period => sum,
+            Quantity::Frequency if !sum.is_positive() => return None,
             Quantity::Frequency => balls.div(&balls.one(), &sum)?,
             Quantity::FrequencySquared => balls.div(&balls.one(), &balls.sqrt(&sum)?)?,
         };
@@ -195,6 +196,8 @@ fn table(
             quantity.name()
         ));
     }
-    notes.push("\"none\": the truncated omega^2 is not positive, there is no period".to_owned());
+    notes.push(
+        "\"none\": the truncated omega or omega^2 is not positive, there is no period".to_owned(),
+    );
     Some(Table { name: name.to_owned(), title, columns, rows, notes })
 }

@@ -230,9 +230,9 @@ impl<C: Moments> RationalAlgebra for Lobachevsky<C> {
 }
 
 /// (k, c) when f = c cos^k with c not zero.
-fn single_power<E: Clone>(f: &LobachevskyElement<E>) -> Option<(i32, E)>
+fn single_power<E>(f: &LobachevskyElement<E>) -> Option<(i32, E)>
 where
-    E: PartialEq + std::fmt::Debug + Send + Sync,
+    E: Clone + PartialEq + std::fmt::Debug + Send + Sync,
 {
     let mut blocks = f.blocks.iter();
     let (factor, polynomial) = blocks.next()?;

@@ -121,7 +121,7 @@ impl PrimeField {
     pub fn root_of_unity(&self, n: u64) -> Option<u64> {
         let cofactor = (self.prime - 1) / n;
         let prime_factors: Vec<u64> =
-            (2..=n).filter(|q| n % q == 0 && (2..*q).all(|r| q % r != 0)).collect();
+            (2..=n).filter(|q| n.is_multiple_of(*q) && (2..*q).all(|r| q % r != 0)).collect();
         (2u64..1000)
             .map(|base| self.power(self.integer(&Integer::from(base)), cofactor))
             .find(|&root| prime_factors.iter().all(|q| self.power(root, n / q) != self.one()))
@@ -158,8 +158,12 @@ impl RationalAlgebra for PrimeField {
     /// A denominator divisible by p has no image; zero is returned. A result computed with it
     /// is wrong modulo p, which the proof of the reconstructed expansion detects.
     fn rational(&self, q: &Rational) -> u64 {
+        let numerator = self.integer(q.numer());
+        if *q.denom() == 1 {
+            return numerator;
+        }
         let denominator = self.reciprocal(&self.integer(q.denom())).unwrap_or(0);
-        self.mul(&self.integer(q.numer()), &denominator)
+        self.mul(&numerator, &denominator)
     }
     fn scale(&self, a: &u64, q: &Rational) -> u64 {
         self.mul(a, &self.rational(q))

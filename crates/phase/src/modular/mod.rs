@@ -74,6 +74,7 @@ pub struct Modular {
     sin: Vec<u64>,
     /// 2/Q, the normalisation of the forward transform.
     two_over_points: u64,
+    half: u64,
     /// k and 1/(1 - k^2) for every harmonic k (zero for k = 1).
     multiples: Vec<u64>,
     inverse_divisors: Vec<u64>,
@@ -124,6 +125,7 @@ impl Modular {
             cos,
             sin,
             two_over_points,
+            half,
             multiples: harmonics.clone().map(integer).collect(),
             inverse_divisors: harmonics.map(inverse).collect(),
             tables: [const { OnceLock::new() }; 4],
@@ -157,7 +159,7 @@ impl Modular {
             let sum = self.field.mul(&self.field.dot(row, values), &self.two_over_points);
             // The constant and sin 2Q psi have twice the norm.
             if harmonic == 0 || harmonic == 2 * self.points {
-                self.field.scale(&sum, &Rational::from((1, 2)))
+                self.field.mul(&sum, &self.half)
             } else {
                 sum
             }

@@ -1,21 +1,23 @@
 //! From a problem to a checked expansion: the call behind `lindstedt derive`.
 
-use crate::energy::{period_over_2pi, power_law_frequency};
+mod limits;
+mod series;
+
 use crate::multimodular::{self, RationalBinding};
 use crate::number::{Constants, Number, certified};
 use crate::{Error, Value};
+use limits::{check_parameters, has_logarithms, limit_memory};
 use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::closed_forms::ClosedForms;
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
-use lindstedt_equation::{AmplitudeRole, Condition, Expression, Function, Problem};
+use lindstedt_equation::{Condition, Problem};
 use lindstedt_expand::{Binding, Expansion, Request, check, compile, expand, leading_amplitude};
 use lindstedt_phase::print::PrintPhase;
 use lindstedt_phase::{Lobachevsky, Trigonometric};
-use lindstedt_series::Series;
 use rayon::prelude::*;
 use rug::Rational;
+use series::{Powers, energy_integral, series};
 use std::collections::BTreeMap;
 
 /// What to derive.
@@ -235,214 +237,6 @@ pub fn derive(
         solution,
         constants: Constants::new(amplitude),
     })
-}
-
-/// omega^2/kappa, its square root, and the reciprocal of that.
-struct Powers {
-    squared: Vec<Polynomial>,
-    first: Vec<Polynomial>,
-    inverse: Vec<Polynomial>,
-}
-
-impl Powers {
-    fn of_square(ring: &PolynomialRing, squared: Vec<Polynomial>) -> Result<Self, Error> {
-        let series = Series::truncated(squared);
-        let power = |exponent: (i32, u32)| {
-            let power = series.power(ring, &Rational::from(exponent));
-            power.map(|s| s.coefficients).ok_or(Error::NoValue)
-        };
-        let (first, inverse) = (power((1, 2))?, power((-1, 2))?);
-        Ok(Self { squared: series.coefficients, first, inverse })
-    }
-}
-
-/// The series of the result.
-fn series(
-    problem: &Problem,
-    ring: &PolynomialRing,
-    condition: Condition,
-    powers: Powers,
-    amplitudes: Vec<Polynomial>,
-    amplitude: Option<&Value>,
-    stiffness: &Polynomial,
-) -> Result<Vec<NamedSeries>, Error> {
-    let order = powers.squared.len() - 1;
-    // What is printed is the closed form where there is one; mu_m stay where S_n stand beside.
-    // Without logarithms there is nothing to close (and tables to order 100 take minutes).
-    let closes =
-        has_logarithms(&problem.equation) && !matches!(problem.amplitude, AmplitudeRole::InSums);
-    let forms = closes.then(|| ClosedForms::new(u16::try_from(order).unwrap_or(u16::MAX)));
-    let close = |list: Vec<Polynomial>| -> Result<Vec<Polynomial>, Error> {
-        let Some(forms) = &forms else { return Ok(list) };
-        let closed = |p: &Polynomial| forms.closed_form(ring, p).ok_or(Error::NoValue);
-        list.par_iter().map(closed).collect()
-    };
-    // a^(exponent eps) = exp(exponent eps ln a) for an amplitude other than one.
-    let one = Rational::from(1);
-    let rate = match (problem.amplitude, amplitude) {
-        (AmplitudeRole::ScalesFrequency { exponent }, Some(a)) if a.as_rational() != Some(&one) => {
-            exponent
-        }
-        _ => 0,
-    };
-    let half_power = |power: i32| if *stiffness == ring.one() { 0 } else { power };
-    let named = |name, list, power: i32| -> Result<NamedSeries, Error> {
-        let log = ring.symbol(Symbol::Parameter(0));
-        let log = ring.scale(&log, &Rational::from((rate * power, 2)));
-        let mut coefficients = close(list)?;
-        if rate != 0 {
-            let factor = Series::truncated(exponential(ring, &log, order));
-            coefficients = Series::truncated(coefficients).mul(ring, &factor, order).coefficients;
-        }
-        Ok(NamedSeries { name, half_power: half_power(power), coefficients })
-    };
-    let mut list = vec![
-        named("frequency_squared", powers.squared, 2)?,
-        named("frequency", powers.first, 1)?,
-        named("period_over_2pi", powers.inverse, -1)?,
-    ];
-    // x(0), where the condition does not fix it.
-    let name = match condition {
-        Condition::InitialAmplitude => None,
-        Condition::FundamentalAmplitude => Some("initial_displacement"),
-        Condition::LimitCycle => Some("amplitude"),
-    };
-    if let Some(name) = name {
-        list.push(NamedSeries { name, half_power: 0, coefficients: amplitudes });
-    }
-    Ok(list)
-}
-
-/// The Taylor coefficients of exp(rate eps).
-fn exponential(ring: &PolynomialRing, rate: &Polynomial, order: usize) -> Vec<Polynomial> {
-    let mut list = vec![ring.one()];
-    for n in 1..=order {
-        let term = ring.mul(&list[n - 1], rate);
-        list.push(ring.scale(&term, &Rational::from((1, n))));
-    }
-    list
-}
-
-/// The powers of the frequency and kappa by the energy integral.
-fn energy_integral(
-    problem: &Problem,
-    ring: &PolynomialRing,
-    order: usize,
-) -> Result<(Powers, Polynomial), Error> {
-    let unavailable = || Error::NoSuchRoute { problem: problem.name.to_owned() };
-    let size = u16::try_from(order).map_err(|_| unavailable())?;
-    match problem.amplitude {
-        AmplitudeRole::ScalesFrequency { exponent: 2 } => {
-            let power = |p| power_law_frequency(ring, p, size);
-            Ok((Powers { squared: power(2), first: power(1), inverse: power(-1) }, ring.one()))
-        }
-        AmplitudeRole::InSums => {
-            let sums: Vec<Polynomial> = (0..=size).map(|n| ring.symbol(Symbol::Sum(n))).collect();
-            let inverse = period_over_2pi(ring, &sums, order).ok_or_else(unavailable)?;
-            let period = Series::truncated(inverse);
-            let power = |p: i32| {
-                let power = period.power(ring, &Rational::from(p));
-                power.map(|s| s.coefficients).ok_or_else(unavailable)
-            };
-            let (squared, first) = (power(-2)?, power(-1)?);
-            let powers = Powers { squared, first, inverse: period.coefficients };
-            Ok((powers, ring.symbol(Symbol::Sum(0))))
-        }
-        _ => Err(unavailable()),
-    }
-}
-
-fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> Result<(), Error> {
-    for (name, value) in given {
-        if !problem.parameters.iter().any(|card| card.name == name) {
-            let known: Vec<&str> = problem.parameters.iter().map(|card| card.name).collect();
-            return Err(Error::UnknownParameter {
-                problem: problem.name.to_owned(),
-                name: name.clone(),
-                known: known.join(", "),
-            });
-        }
-        let outside =
-            |domain| Error::OutsideDomain { name: name.clone(), value: value.to_string(), domain };
-        let ball = value.ball(Balls::new(64));
-        let balls = Balls::new(256);
-        let exact = value.ball(balls);
-        match name.as_str() {
-            "amplitude" => match problem.amplitude {
-                AmplitudeRole::ScalesFrequency { .. } if !ball.is_positive() => {
-                    return Err(outside("amplitude > 0 (there is no oscillation at amplitude 0)"));
-                }
-                AmplitudeRole::InSums => {
-                    // pi itself is the separatrix; a rational multiple of pi is compared exactly.
-                    let below = match value {
-                        Value::PiTimes(q) => *q < 1,
-                        Value::Rational(_) => balls.sub(&balls.pi(), &exact).is_positive(),
-                    };
-                    if !ball.is_positive() || !below {
-                        return Err(outside("0 < amplitude < pi (at pi the period is infinite)"));
-                    }
-                }
-                AmplitudeRole::InSmallParameter if !exact.is_positive() => {
-                    return Err(outside("amplitude > 0 (there is no oscillation at amplitude 0)"));
-                }
-                _ => {}
-            },
-            "n" | "delta"
-                if problem.amplitude == (AmplitudeRole::ScalesFrequency { exponent: 2 }) =>
-            {
-                if !balls.add(&exact, &balls.one()).is_positive() {
-                    return Err(outside("greater than -1"));
-                }
-            }
-            _ => {}
-        }
-    }
-    Ok(())
-}
-
-/// Whether the equation needs the Lobachevsky ring.
-fn has_logarithms(expression: &Expression) -> bool {
-    match expression {
-        Expression::Sum(list) | Expression::Product(list) => list.iter().any(has_logarithms),
-        Expression::Power(base, exponent) => {
-            !matches!(**exponent, Expression::Number(_)) || has_logarithms(base)
-        }
-        Expression::Function(Function::Ln, _) | Expression::Formal(..) => true,
-        Expression::Function(_, argument) => has_logarithms(argument),
-        _ => false,
-    }
-}
-
-/// Refuses before allocating. Measured: the Lobachevsky ring takes 0.7 GiB at order 20 and 1.5
-/// times more per order; with formal sums 0.1 GiB at order 10 and twice as much per order; van
-/// der Pol's series over Q 0.42 GiB at order 164, growing like the fourth power of the order.
-fn limit_memory(problem: &Problem, settings: &Settings) -> Result<(), Error> {
-    let order = settings.order as f64;
-    let gibibytes = if settings.route == Route::EnergyIntegral {
-        // 28 629 terms in 0.1 GiB at order 30; the number of partitions grows by 1.2 per order,
-        // with formal sums by 1.5.
-        let sums = matches!(problem.amplitude, AmplitudeRole::InSums);
-        if sums {
-            0.1f64.log2() + (order - 14.0) * 0.6
-        } else {
-            0.1f64.log2() + (order - 30.0) * 0.27
-        }
-    } else if matches!(problem.amplitude, AmplitudeRole::InSums) {
-        0.1f64.log2() + (order - 10.0)
-    } else if has_logarithms(&problem.equation) {
-        0.7f64.log2() + (order - 20.0) * 1.5f64.log2()
-    } else {
-        0.42f64.log2() + 4.0 * (order / 164.0).log2()
-    };
-    let bits = gibibytes + 30.0;
-    if bits > (settings.memory.max(1) as f64).log2() {
-        return Err(Error::TooLarge {
-            order: settings.order,
-            exponent: (bits * 2f64.log10()).round() as u64,
-            limit: settings.memory >> 20,
-        });
-    }
-    Ok(())
 }
 
 impl Derivation {

@@ -1,0 +1,61 @@
+//! `lindstedt threshold`: the Melnikov threshold of homoclinic chaos, its zeros, curves, surfaces.
+
+mod figure;
+mod report;
+mod request;
+mod sweep;
+
+use crate::Outcome;
+use crate::arguments::{Format, ThresholdOptions};
+use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
+use crate::output;
+use crate::session::{Session, digits};
+use lindstedt_melnikov::MelnikovError;
+use request::Request;
+
+pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
+    let digits = digits(&options.precision)?;
+    let request = Request::read(options)?;
+    output::check_writable(session)?;
+    let answer = report::Answer::new(&request, digits)?;
+    let table = sweep::Table::compute(&request, options.precision.f64, session)?;
+    session.done();
+    let text = match session.format() {
+        Format::Json => format!("{:#}\n", answer.json(table.as_ref(), session)),
+        Format::Text => answer.text(table.as_ref()),
+        Format::Latex => answer.latex(),
+        Format::Markdown => answer.markdown(),
+    };
+    for path in &options.plot {
+        let contents = if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+            sweep::csv(&request, table.as_ref(), &answer)
+        } else {
+            figure::draw(&request, table.as_ref())?
+        };
+        std::fs::write(path, contents)
+            .map_err(|error| output::trouble(&path.display().to_string(), &error))?;
+    }
+    output::write(session, &text)?;
+    if table.as_ref().is_some_and(|table| !table.finished) {
+        eprintln!("lindstedt: stopped; the rows not reached are empty");
+        return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
+    }
+    Ok(0)
+}
+
+impl From<MelnikovError> for Failure {
+    fn from(error: MelnikovError) -> Self {
+        let (exit, code, hint) = match &error {
+            MelnikovError::NotFinite { .. } | MelnikovError::NotPositive { .. } => {
+                (NO_ANSWER, "outside-domain", "see `lindstedt threshold --help`")
+            }
+            MelnikovError::Undecided { .. } | MelnikovError::Digits(_) => (
+                UNDECIDED,
+                "could-not-decide",
+                "ask for fewer digits, or move off the degenerate point",
+            ),
+            _ => (NO_ANSWER, "no-answer", ""),
+        };
+        Self { exit, code, message: error.to_string(), hint: hint.to_owned() }
+    }
+}

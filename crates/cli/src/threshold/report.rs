@@ -1,0 +1,238 @@
+//! The numbers at one point, and their presentation.
+
+use super::request::Request;
+use super::sweep::Table;
+use crate::derive::number_json;
+use crate::failure::Failure;
+use crate::session::Session;
+use lindstedt::coeff::ball::{Ball, Balls};
+use lindstedt::number::{Number, certified};
+use lindstedt_melnikov::{Branch, MelnikovError, Verdict};
+use serde_json::{Value as Json, json};
+use std::fmt::Write;
+
+/// The widest table printed in text.
+const PRINTED_POINTS: usize = 1000;
+/// Bits that decide how many zeros there are.
+const COUNTING_BITS: u32 = 400;
+
+/// The answer at the point of the request.
+pub struct Answer {
+    at: Vec<(&'static str, String)>,
+    numbers: Vec<(&'static str, Number)>,
+    zeros: Vec<Number>,
+    zeros_of: Option<(String, bool)>,
+    touching_b: Option<String>,
+    validity: String,
+    distances: [Number; 2],
+    tangle: String,
+}
+
+impl Answer {
+    pub fn new(request: &Request, digits: usize) -> Result<Self, Failure> {
+        let point = &request.point;
+        let system = point.system()?;
+        let threshold = |balls: Balls| system.threshold(balls, Branch::Positive);
+        // An error of the problem is said as such; only precision is asked for again below.
+        match threshold(Balls::new(200)) {
+            Err(MelnikovError::Undecided { .. }) | Ok(_) => {}
+            Err(error) => return Err(error.into()),
+        }
+        let signed = |balls: Balls| point.signed_threshold(balls);
+        let gamma = |balls: Balls| Some(balls.abs(&signed(balls)?));
+        let d = |balls: Balls| Some(threshold(balls).ok()?.dissipation);
+        let f = |balls: Balls| Some(threshold(balls).ok()?.forcing);
+        let at_cusp = |balls: Balls| -> Option<Ball> {
+            // G at |v*| = V: the dry term is gone, v*^2 = V^2.
+            point.threshold_at_cusp(balls)
+        };
+        let numbers = vec![
+            ("gamma_c", certified(point.exact_threshold(), digits, gamma)?),
+            ("signed", certified(None, digits, signed)?),
+            ("D", certified(None, digits, d)?),
+            ("F", certified(None, digits, f)?),
+            ("V", certified(None, digits, |balls| point.loop_speed(balls))?),
+            ("cusp", certified(None, digits, at_cusp)?),
+        ];
+        let (zeros, zeros_of) = match &request.zeros {
+            None => (Vec::new(), None),
+            Some((axis, name, low, high)) => {
+                let found = point.zeros_in(Balls::new(COUNTING_BITS), *axis, low, high)?;
+                let nth = |n: usize| {
+                    certified(None, digits, |balls| {
+                        point.zeros_in(balls, *axis, low, high).ok()?.zeros.get(n).cloned()
+                    })
+                };
+                let zeros = (0..found.zeros.len()).map(nth).collect::<Result<_, _>>()?;
+                (zeros, Some((name.clone(), found.complete)))
+            }
+        };
+        let few = digits.min(17);
+        let distance = |n: usize| {
+            certified(None, few, |balls| {
+                let validity = system.validity(balls)?;
+                Some(if n == 0 { validity.belt_speed } else { validity.tangency_distance })
+            })
+        };
+        let eps = request.eps.to_f64();
+        let verdict = system.validity(Balls::new(200)).map(|validity| validity.verdict(eps));
+        let validity = match verdict {
+            Some(Verdict::Holds) => "holds: |v*| and ||v*| - V| exceed 10 eps",
+            Some(Verdict::Doubtful) => {
+                "doubtful: |v*| or ||v*| - V| is below 10 eps, corrections of order eps count"
+            }
+            _ => "fails: v* = 0 or |v*| = V, for every eps",
+        };
+        let excess = |balls: Balls| {
+            let size = request.gamma.abs().ball(balls);
+            Some(balls.sub(&size, &gamma(balls)?))
+        };
+        let tangle = match excess(Balls::new(400)) {
+            Some(ball) if ball.is_positive() => "crossing",
+            Some(ball) if ball.is_negative() => "none",
+            _ => "undecided",
+        };
+        Ok(Self {
+            at: request.at.iter().map(|(name, value)| (*name, value.to_string())).collect(),
+            numbers,
+            zeros,
+            zeros_of,
+            touching_b: point.touching_b().map(|b| b.to_string()),
+            validity: validity.to_owned(),
+            distances: [distance(0)?, distance(1)?],
+            tangle: tangle.to_owned(),
+        })
+    }
+
+    /// `a = 1, b = 1, ...`.
+    pub fn parameters(&self) -> String {
+        let parts: Vec<String> = self.at.iter().map(|(n, v)| format!("{n} = {v}")).collect();
+        parts.join(", ")
+    }
+
+    pub fn json(&self, table: Option<&Table>, session: &Session<'_>) -> Json {
+        let mut result = serde_json::Map::new();
+        result.insert("problem".into(), "stick-slip".into());
+        let at: serde_json::Map<_, _> =
+            self.at.iter().map(|(n, v)| ((*n).to_owned(), Json::from(v.clone()))).collect();
+        result.insert("at".into(), at.into());
+        for (name, number) in &self.numbers {
+            if *name != "cusp" {
+                result.insert((*name).into(), number_json(number));
+            }
+        }
+        result.insert("zeros".into(), self.zeros.iter().map(number_json).collect());
+        if let Some((name, complete)) = &self.zeros_of {
+            result.insert("zeros_of".into(), json!({"parameter": name, "complete": complete}));
+        }
+        let cusp = self.numbers.iter().find(|(name, _)| *name == "cusp");
+        let speed = self.numbers.iter().find(|(name, _)| *name == "V");
+        if let (Some((_, cusp)), Some((_, speed))) = (cusp, speed) {
+            result.insert(
+                "cusp".into(),
+                json!({
+                    "vstar": number_json(speed),
+                    "signed": number_json(cusp),
+                    "touches_zero_at_b": self.touching_b,
+                }),
+            );
+        }
+        result.insert("homoclinic_points".into(), self.tangle.clone().into());
+        let [saddle, tangency] = &self.distances;
+        result.insert(
+            "validity".into(),
+            json!({
+                "verdict": self.validity,
+                "distance_to_saddle": number_json(saddle),
+                "distance_to_tangency": number_json(tangency),
+            }),
+        );
+        let curve = |pick: fn(f64) -> f64| -> Json {
+            let entries = table.into_iter().flat_map(Table::entries);
+            entries.map(|(_, column, signed)| json!([column, pick(signed)])).collect()
+        };
+        let one = table.filter(|table| table.rows.len() == 1 && table.rows[0].is_nan());
+        let empty = Json::Array(Vec::new());
+        result.insert("curve".into(), if one.is_some() { curve(f64::abs) } else { empty });
+        if let Some(table) = table {
+            let status = if table.certified { "certified" } else { "estimated" };
+            result.insert("curve_status".into(), status.into());
+            if one.is_some() {
+                result.insert("curve_signed".into(), curve(|signed| signed));
+            } else {
+                let signed: Vec<&[f64]> = table.signed.chunks(table.columns.len().max(1)).collect();
+                let grid = json!({"columns": table.columns, "rows": table.rows, "signed": signed});
+                result.insert("grid".into(), grid);
+            }
+        }
+        result.insert("seconds".into(), session.elapsed().as_secs_f64().into());
+        Json::Object(result)
+    }
+
+    fn lines(&self) -> Vec<(String, String)> {
+        let shown = |number: &Number| number.decimal.clone();
+        let mut lines = Vec::new();
+        for (name, number) in &self.numbers {
+            let label = match *name {
+                "signed" => "gamma_c with the sign of D",
+                "D" => "D, work of friction",
+                "F" => "F, work of the forcing",
+                "V" => "V, largest speed, cusp at |v*| = V",
+                "cusp" => "signed threshold at the cusp",
+                other => other,
+            };
+            lines.push((label.to_owned(), shown(number)));
+        }
+        if let Some(b) = &self.touching_b {
+            lines.push(("cusp touches zero at b =".to_owned(), b.clone()));
+        }
+        if let Some((name, complete)) = &self.zeros_of {
+            let label = format!("zero in {name}");
+            lines.extend(self.zeros.iter().map(|zero| (label.clone(), shown(zero))));
+            let note = if *complete { "complete" } else { "sign changes on a grid" };
+            lines.push((format!("zeros in {name}"), format!("{} ({note})", self.zeros.len())));
+        }
+        lines.push(("transversal homoclinic points at gamma".to_owned(), self.tangle.clone()));
+        lines.push(("validity".to_owned(), self.validity.clone()));
+        lines
+    }
+
+    pub fn text(&self, table: Option<&Table>) -> String {
+        let mut text = format!("stick-slip: {}\n\n", self.parameters());
+        for (label, value) in self.lines() {
+            let _ = writeln!(text, "  {label:<40} {value}");
+        }
+        if let Some(exact) = self.numbers.first().and_then(|(_, number)| number.exact.as_ref()) {
+            let _ = writeln!(text, "\n  gamma_c = {exact}");
+        }
+        let Some(table) = table else { return text };
+        let status = if table.certified { "certified" } else { "f64" };
+        let _ = writeln!(text, "\n  {} points ({status})", table.signed.len());
+        for (row, column, signed) in table.entries().take(PRINTED_POINTS) {
+            let row = if row.is_nan() { String::new() } else { format!("{row:<12} ") };
+            let _ = writeln!(text, "  {row}{column:<20} {signed:?}");
+        }
+        if table.signed.len() > PRINTED_POINTS {
+            let _ = writeln!(text, "  ... (--plot FILE.csv has all of them)");
+        }
+        text
+    }
+
+    pub fn markdown(&self) -> String {
+        let mut text = format!("### stick-slip\n\n{}\n\n| | |\n|---|---|\n", self.parameters());
+        for (label, value) in self.lines() {
+            let _ = writeln!(text, "| {} | {value} |", label.replace('|', "\\|"));
+        }
+        text
+    }
+
+    pub fn latex(&self) -> String {
+        let mut text = String::from("\\begin{tabular}{ll}\n");
+        for (label, value) in self.lines() {
+            let escape = |s: &str| s.replace('_', "\\_").replace('|', "$|$");
+            let _ = writeln!(text, "{} & {} \\\\", escape(&label), escape(&value));
+        }
+        text.push_str("\\end{tabular}\n");
+        text
+    }
+}

@@ -1,0 +1,157 @@
+//! Curves and surfaces.
+
+use super::report::Answer;
+use super::request::Request;
+use crate::failure::{Failure, UNDECIDED};
+use crate::session::Session;
+use lindstedt::coeff::ball::Balls;
+use lindstedt_melnikov::{FastPoint, surface};
+use rayon::prelude::*;
+use std::fmt::Write;
+
+/// Curves of up to so many points are certified point by point.
+const CERTIFIED_POINTS: usize = 20_000;
+/// Rows between two looks at the clock.
+const BLOCK: usize = 64;
+/// Bits of a certified point: its midpoint is the nearest double but for ties.
+const BITS: u32 = 140;
+
+/// Signed thresholds on a grid; the first sweep runs along the columns.
+pub struct Table {
+    pub columns: Vec<f64>,
+    /// A single row with value NaN where there is one sweep.
+    pub rows: Vec<f64>,
+    /// rows x columns; NaN outside the domain and in rows not reached.
+    pub signed: Vec<f64>,
+    pub certified: bool,
+    pub finished: bool,
+}
+
+impl Table {
+    pub fn compute(
+        request: &Request,
+        f64_only: bool,
+        session: &Session<'_>,
+    ) -> Result<Option<Self>, Failure> {
+        let Some(first) = request.sweeps.first() else { return Ok(None) };
+        let doubles = |values: &[lindstedt_melnikov::Real]| -> Vec<f64> {
+            values.par_iter().map(lindstedt_melnikov::Real::to_f64).collect()
+        };
+        let columns = doubles(&first.values);
+        let rows = request.sweeps.get(1).map_or_else(|| vec![f64::NAN], |s| doubles(&s.values));
+        let points = rows.len().saturating_mul(columns.len());
+        let bytes = points.saturating_mul(8) as u64;
+        if bytes > session.memory() {
+            return Err(Failure {
+                exit: UNDECIDED,
+                code: "too-large",
+                message: format!("{points} points need {bytes} bytes"),
+                hint: "fewer values, or raise --limit-memory".into(),
+            });
+        }
+        let mut table = Self {
+            signed: vec![f64::NAN; points],
+            certified: !f64_only && points <= CERTIFIED_POINTS,
+            finished: true,
+            columns,
+            rows,
+        };
+        if table.certified {
+            table.certify(request, session)
+        } else {
+            table.fast(request, session)?
+        }
+        Ok(Some(table))
+    }
+
+    fn certify(&mut self, request: &Request, session: &Session<'_>) {
+        let Some(first) = request.sweeps.first() else { return };
+        let width = first.values.len();
+        for (i, row) in self.signed.chunks_mut(width).enumerate() {
+            if !session.goes_on() {
+                self.finished = false;
+                return;
+            }
+            let mut base = request.point.clone();
+            if let Some(second) = request.sweeps.get(1)
+                && let Some(value) = second.values.get(i)
+            {
+                base = base.with(second.axis, value.clone());
+            }
+            row.par_iter_mut().zip(&first.values).for_each(|(entry, value)| {
+                let at = base.clone().with(first.axis, value.clone());
+                let ball = at.check().ok().and_then(|()| at.signed_threshold(Balls::new(BITS)));
+                *entry = ball.filter(|b| b.is_finite()).map_or(f64::NAN, |b| b.midpoint().to_f64());
+            });
+        }
+    }
+
+    fn fast(&mut self, request: &Request, session: &Session<'_>) -> Result<(), Failure> {
+        let Some(first) = request.sweeps.first() else { return Ok(()) };
+        let point = &request.point;
+        let base = FastPoint {
+            a: point.a.to_f64(),
+            b: point.b.to_f64(),
+            dry: point.dry.to_f64(),
+            alpha: point.alpha.to_f64(),
+            beta: point.beta.to_f64(),
+            omega: point.omega.to_f64(),
+            belt_speed: point.belt_speed.to_f64(),
+        };
+        let width = self.columns.len();
+        let Some(second) = request.sweeps.get(1) else {
+            let here = [first_value(&base, first.axis)];
+            surface(&base, (first.axis, &here), (first.axis, &self.columns), &mut self.signed)?;
+            return Ok(());
+        };
+        let blocks = self.signed.chunks_mut(BLOCK * width).zip(self.rows.chunks(BLOCK));
+        for (block, rows) in blocks {
+            if !session.goes_on() {
+                self.finished = false;
+                break;
+            }
+            surface(&base, (second.axis, rows), (first.axis, &self.columns), block)?;
+        }
+        Ok(())
+    }
+
+    /// (row, column, signed) in order.
+    pub fn entries(&self) -> impl Iterator<Item = (f64, f64, f64)> {
+        let width = self.columns.len().max(1);
+        let rows = self.signed.chunks(width).zip(&self.rows);
+        rows.flat_map(|(line, &row)| {
+            line.iter().zip(&self.columns).map(move |(&signed, &column)| (row, column, signed))
+        })
+    }
+}
+
+/// A surface with one row needs a value for it: the base value of the same axis, overwritten by
+/// the columns.
+fn first_value(base: &FastPoint, axis: lindstedt_melnikov::Axis) -> f64 {
+    use lindstedt_melnikov::Axis;
+    match axis {
+        Axis::A => base.a,
+        Axis::B => base.b,
+        Axis::Dry => base.dry,
+        Axis::Alpha => base.alpha,
+        Axis::Beta => base.beta,
+        Axis::Omega => base.omega,
+        Axis::BeltSpeed => base.belt_speed,
+    }
+}
+
+/// Comma-separated values with a heading; every number with 17 digits.
+pub fn csv(request: &Request, table: Option<&Table>, answer: &Answer) -> String {
+    let mut text = String::new();
+    let Some(table) = table else { return text };
+    let _ = writeln!(text, "# stick-slip, {}", answer.parameters());
+    let names: Vec<&str> = request.sweeps.iter().rev().map(|s| s.name.as_str()).collect();
+    let _ = writeln!(text, "{},gamma_c,signed", names.join(","));
+    for (row, column, signed) in table.entries() {
+        if names.len() == 2 {
+            let _ = write!(text, "{row:?},");
+        }
+        let _ = writeln!(text, "{column:?},{:?},{signed:?}", signed.abs());
+    }
+    text
+}

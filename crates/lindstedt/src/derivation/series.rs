@@ -1,0 +1,131 @@
+//! The series of a result: powers of the frequency, in closed form, scaled to the amplitude.
+
+use super::NamedSeries;
+use super::limits::has_logarithms;
+use crate::energy::{period_over_2pi, power_law_frequency};
+use crate::{Error, Value};
+use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_coeff::closed_forms::ClosedForms;
+use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
+use lindstedt_equation::{AmplitudeRole, Condition, Problem};
+use lindstedt_series::Series;
+use rayon::prelude::*;
+use rug::Rational;
+
+/// omega^2/kappa, its square root, and the reciprocal of that.
+pub(super) struct Powers {
+    squared: Vec<Polynomial>,
+    first: Vec<Polynomial>,
+    inverse: Vec<Polynomial>,
+}
+
+impl Powers {
+    pub(super) fn of_square(
+        ring: &PolynomialRing,
+        squared: Vec<Polynomial>,
+    ) -> Result<Self, Error> {
+        let series = Series::truncated(squared);
+        let power = |exponent: (i32, u32)| {
+            let power = series.power(ring, &Rational::from(exponent));
+            power.map(|s| s.coefficients).ok_or(Error::NoValue)
+        };
+        let (first, inverse) = (power((1, 2))?, power((-1, 2))?);
+        Ok(Self { squared: series.coefficients, first, inverse })
+    }
+}
+
+/// The series of the result.
+pub(super) fn series(
+    problem: &Problem,
+    ring: &PolynomialRing,
+    condition: Condition,
+    powers: Powers,
+    amplitudes: Vec<Polynomial>,
+    amplitude: Option<&Value>,
+    stiffness: &Polynomial,
+) -> Result<Vec<NamedSeries>, Error> {
+    let order = powers.squared.len() - 1;
+    // What is printed is the closed form where there is one; mu_m stay where S_n stand beside.
+    // Without logarithms there is nothing to close (and tables to order 100 take minutes).
+    let closes =
+        has_logarithms(&problem.equation) && !matches!(problem.amplitude, AmplitudeRole::InSums);
+    let forms = closes.then(|| ClosedForms::new(u16::try_from(order).unwrap_or(u16::MAX)));
+    let close = |list: Vec<Polynomial>| -> Result<Vec<Polynomial>, Error> {
+        let Some(forms) = &forms else { return Ok(list) };
+        let closed = |p: &Polynomial| forms.closed_form(ring, p).ok_or(Error::NoValue);
+        list.par_iter().map(closed).collect()
+    };
+    // a^(exponent eps) = exp(exponent eps ln a) for an amplitude other than one.
+    let one = Rational::from(1);
+    let rate = match (problem.amplitude, amplitude) {
+        (AmplitudeRole::ScalesFrequency { exponent }, Some(a)) if a.as_rational() != Some(&one) => {
+            exponent
+        }
+        _ => 0,
+    };
+    let half_power = |power: i32| if *stiffness == ring.one() { 0 } else { power };
+    let named = |name, list, power: i32| -> Result<NamedSeries, Error> {
+        let log = ring.symbol(Symbol::Parameter(0));
+        let log = ring.scale(&log, &Rational::from((rate * power, 2)));
+        let mut coefficients = close(list)?;
+        if rate != 0 {
+            let factor = Series::truncated(exponential(ring, &log, order));
+            coefficients = Series::truncated(coefficients).mul(ring, &factor, order).coefficients;
+        }
+        Ok(NamedSeries { name, half_power: half_power(power), coefficients })
+    };
+    let mut list = vec![
+        named("frequency_squared", powers.squared, 2)?,
+        named("frequency", powers.first, 1)?,
+        named("period_over_2pi", powers.inverse, -1)?,
+    ];
+    // x(0), where the condition does not fix it.
+    let name = match condition {
+        Condition::InitialAmplitude => None,
+        Condition::FundamentalAmplitude => Some("initial_displacement"),
+        Condition::LimitCycle => Some("amplitude"),
+    };
+    if let Some(name) = name {
+        list.push(NamedSeries { name, half_power: 0, coefficients: amplitudes });
+    }
+    Ok(list)
+}
+
+/// The Taylor coefficients of exp(rate eps).
+fn exponential(ring: &PolynomialRing, rate: &Polynomial, order: usize) -> Vec<Polynomial> {
+    let mut list = vec![ring.one()];
+    for n in 1..=order {
+        let term = ring.mul(&list[n - 1], rate);
+        list.push(ring.scale(&term, &Rational::from((1, n))));
+    }
+    list
+}
+
+/// The powers of the frequency and kappa by the energy integral.
+pub(super) fn energy_integral(
+    problem: &Problem,
+    ring: &PolynomialRing,
+    order: usize,
+) -> Result<(Powers, Polynomial), Error> {
+    let unavailable = || Error::NoSuchRoute { problem: problem.name.to_owned() };
+    let size = u16::try_from(order).map_err(|_| unavailable())?;
+    match problem.amplitude {
+        AmplitudeRole::ScalesFrequency { exponent: 2 } => {
+            let power = |p| power_law_frequency(ring, p, size);
+            Ok((Powers { squared: power(2), first: power(1), inverse: power(-1) }, ring.one()))
+        }
+        AmplitudeRole::InSums => {
+            let sums: Vec<Polynomial> = (0..=size).map(|n| ring.symbol(Symbol::Sum(n))).collect();
+            let inverse = period_over_2pi(ring, &sums, order).ok_or_else(unavailable)?;
+            let period = Series::truncated(inverse);
+            let power = |p: i32| {
+                let power = period.power(ring, &Rational::from(p));
+                power.map(|s| s.coefficients).ok_or_else(unavailable)
+            };
+            let (squared, first) = (power(-2)?, power(-1)?);
+            let powers = Powers { squared, first, inverse: period.coefficients };
+            Ok((powers, ring.symbol(Symbol::Sum(0))))
+        }
+        _ => Err(unavailable()),
+    }
+}
