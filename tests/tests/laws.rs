@@ -221,7 +221,7 @@ fn every_law_can_fail() {
         "the response starts at rest",
         "the resonant part is the first harmonic",
     ] {
-        let broken = Broken { sound: sound.clone(), defect };
+        let broken = Broken { sound, defect };
         assert_eq!(laws::phase_algebra(&broken, &samples), Err(defect), "defect: {defect}");
     }
 }

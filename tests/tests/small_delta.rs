@@ -3,10 +3,13 @@
 #![allow(clippy::unwrap_used)]
 
 use lindstedt::algebra::{PhaseAlgebra, Ring};
+use lindstedt::coeff::ball::Balls;
 use lindstedt::coeff::closed_forms::ClosedForms;
 use lindstedt::coeff::{PolynomialRing, Symbol};
 use lindstedt::phase::Lobachevsky;
+use lindstedt::phase::evaluate;
 use lindstedt::phase::lobachevsky::Word;
+use lindstedt::phase::lobachevsky_function::{LambdaTable, Point};
 use lindstedt::{Settings, Solution, Value, energy};
 use lindstedt_tests::{decimal, expansion, with};
 use rug::float::Constant;
@@ -278,4 +281,71 @@ fn an_amplitude_of_the_power_law_scales_the_frequency() {
         + log.powi(3) / 6.0;
     assert!((value(&scaled, 3) - expected).abs() < 1e-14);
     assert_eq!(scaled.exact("frequency_squared", 1).as_deref(), Some("1 + 2*ln(a) - 2*ln(2)"));
+}
+
+/// x(tau; delta) of the power law in scaled time, without any expansion in delta of x: energy
+/// gives x = cos^(1-u) theta with tau = sum_m u^m int_0^theta l^m/m! / sum_m u^m mu_m and
+/// u = delta/(1+delta); theta by Newton's method. u is about 10^-60, so ten moments suffice.
+fn exact_solution(tau: &Float, delta: &Float, bits: u32) -> Float {
+    let u = Float::with_val(bits, delta / Float::with_val(bits, 1 + delta));
+    let table = LambdaTable::new(10, Balls::new(bits));
+    let mean: Float = polynomial(table.means().iter().map(|b| b.midpoint().clone()), &u, bits);
+    let mut theta = tau.clone();
+    for _ in 0..8 {
+        let point = Point::Rational(theta.to_rational().unwrap());
+        // int_0^theta l^m/m! = Lambda_m + mu_m theta, and theta itself for m = 0.
+        let integrals = table.values(&point).into_iter().zip(table.means()).enumerate();
+        let integrals = integrals.map(|(m, (lambda, mu))| {
+            let secular = Float::with_val(bits, mu.midpoint() * &theta);
+            if m == 0 { theta.clone() } else { secular + lambda.midpoint() }
+        });
+        let value = polynomial(integrals, &u, bits) / &mean;
+        let cos = Float::with_val(bits, theta.cos_ref());
+        let slope = Float::with_val(bits, (&cos).pow(-u.clone())) / &mean;
+        theta -= (value - tau) / slope;
+    }
+    let exponent = Float::with_val(bits, 1 - &u);
+    Float::with_val(bits, theta.cos()).pow(exponent)
+}
+
+fn polynomial(coefficients: impl Iterator<Item = Float>, u: &Float, bits: u32) -> Float {
+    let mut power = Float::with_val(bits, 1);
+    let mut sum = Float::new(bits);
+    for c in coefficients {
+        sum += c * &power;
+        power *= u;
+    }
+    sum
+}
+
+#[test]
+fn the_solution_agrees_with_the_inverted_energy_integral() {
+    let bits = 2600;
+    let order = 7;
+    let result = expansion("power-law", order);
+    let Solution::Lobachevsky(solution) = &result.solution else { panic!("Lobachevsky ring") };
+    let constants = lindstedt::number::Constants::default();
+    for (numerator, denominator) in [(7, 10), (19, 7)] {
+        let tau = Rational::from((numerator, denominator));
+        let at = Float::with_val(bits, &tau);
+        // Beyond pi/2 the solution is odd about the zero crossing: x(pi - tau) = -x(tau).
+        let pi = Float::with_val(bits, Constant::Pi);
+        let beyond = at > Float::with_val(bits, &pi / 2);
+        let reflected = if beyond { Float::with_val(bits, &pi - &at) } else { at };
+        let expected = taylor(|delta| exact_solution(&reflected, delta, bits), order, bits);
+        let balls = Balls::new(400);
+        let table = LambdaTable::new(order, balls);
+        for n in 0..=order {
+            let value = evaluate::lobachevsky(
+                &solution.solution[n],
+                &Point::Rational(tau.clone()),
+                &table,
+                |c| constants.evaluate(c, balls),
+            );
+            let derived = value.unwrap().midpoint().clone();
+            let expected = if beyond { -expected[n].clone() } else { expected[n].clone() };
+            let error = Float::with_val(bits, &derived - &expected).abs();
+            assert!(error < 1e-45, "x_{n}({tau}): {derived} against {expected}");
+        }
+    }
 }

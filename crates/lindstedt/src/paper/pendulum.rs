@@ -11,7 +11,7 @@ use crate::number::sine_sum;
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::print::{Print, Style};
-use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
+use lindstedt_coeff::{PolynomialRing, Symbol};
 use rug::{Integer, Rational};
 
 /// Terms of the sine series: 1/121! is below 10^-200.

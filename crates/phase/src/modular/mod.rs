@@ -389,9 +389,7 @@ mod tests {
     fn laws_hold() {
         let (points, modulus) = Modular::points_for_degree(24);
         let field = PrimeField::with_roots_of_unity(modulus, 1 << 61).next();
-        let Some(a) = field.and_then(|field| Modular::new(field, points)) else {
-            panic!("an algebra")
-        };
+        let a = field.and_then(|field| Modular::new(field, points)).expect("an algebra");
         let n = |k: i64| a.field.integer(&Integer::from(k));
         let mixed =
             a.from_harmonics([vec![n(3), n(-1), n(4), 0, n(7)], vec![0, n(5), n(9), n(-2)]]);
