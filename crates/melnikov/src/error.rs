@@ -37,6 +37,9 @@ pub enum MelnikovError {
     /// The forcing vanishes on the orbit, so no amplitude reaches the threshold.
     #[error("the forcing vanishes on the orbit")]
     NoForcing,
+    /// The friction does no work at any belt speed: every v* is a zero.
+    #[error("the friction does no work at any belt speed")]
+    IdenticallyZero,
     /// No periodic orbit in resonance with the forcing.
     #[error("no orbit of period 2 pi {m}/omega in this region")]
     NoResonance {

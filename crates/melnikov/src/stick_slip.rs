@@ -87,14 +87,42 @@ impl StickSlip {
         let v = self.loop_speed(balls)?;
         let gap = self.potential().speed_gap(balls, &self.belt_speed)?;
         let dry = balls.mul(&self.dry.ball(balls), &sqrt_positive_part(balls, &gap)?);
-        let square = balls.square(&self.belt_speed.ball(balls));
+        let smooth = self.smooth(balls, &v, &self.belt_speed_squared(balls))?;
+        Some(balls.add(&balls.mul_power_of_two(&dry, 1), &balls.mul(&v, &smooth)))
+    }
+
+    /// v*^2, and the rational number that it is.
+    fn belt_speed_squared(&self, balls: Balls) -> (Ball, Option<Rational>) {
+        let exact = self.belt_speed.as_rational().map(|v| Rational::from(v.square_ref()));
+        (balls.square(&self.belt_speed.ball(balls)), exact)
+    }
+
+    /// V^2 = a^2/(2b) where it is rational.
+    fn loop_speed_squared(&self) -> Option<Rational> {
+        let (a, b) = (self.a.as_rational()?, self.b.as_rational()?);
+        let twice = Rational::from(b * 2u32);
+        (!twice.is_zero()).then(|| Rational::from(a.square_ref()) / twice)
+    }
+
+    /// (32/35) beta V^2 - (4/3)(alpha - 3 beta s) at s = v*^2, the smooth part of G/V. Formed over
+    /// Q where the parameters are rational, so that an exact zero is one.
+    fn smooth(&self, balls: Balls, v: &Ball, s: &(Ball, Option<Rational>)) -> Option<Ball> {
+        let (cubic, linear) = (Rational::from((32, 35)), Rational::from((4, 3)));
+        if let (Some(square), Some(s)) = (self.loop_speed_squared(), &s.1)
+            && let (Some(alpha), Some(beta)) = (self.alpha.as_rational(), self.beta.as_rational())
+        {
+            let slope = alpha - Rational::from(beta * s) * 3u32;
+            return Some(balls.from_rational(&(square * beta * cubic - slope * linear)));
+        }
         let beta = self.beta.ball(balls);
-        let slope =
-            balls.sub(&self.alpha.ball(balls), &balls.mul_i64(&balls.mul(&beta, &square), 3));
-        let linear = balls.mul_rational(&balls.mul(&v, &slope), &Rational::from((4, 3)));
-        let cubic = balls.mul(&beta, &balls.powi(&v, 3)?);
-        let cubic = balls.mul_rational(&cubic, &Rational::from((32, 35)));
-        Some(balls.add(&balls.sub(&balls.mul_power_of_two(&dry, 1), &linear), &cubic))
+        let slope = balls.sub(&self.alpha.ball(balls), &balls.mul_i64(&balls.mul(&beta, &s.0), 3));
+        let cubic = balls.mul_rational(&balls.mul(&beta, &balls.square(v)), &cubic);
+        Some(balls.sub(&cubic, &balls.mul_rational(&slope, &linear)))
+    }
+
+    /// The smooth part of G/V at |v*| = V.
+    fn smooth_at_cusp(&self, balls: Balls, v: &Ball) -> Option<Ball> {
+        self.smooth(balls, v, &(balls.square(v), self.loop_speed_squared()))
     }
 
     /// The right side of (27), corrected, divided by the factor of gamma:
@@ -117,10 +145,7 @@ impl StickSlip {
     #[must_use]
     pub fn threshold_at_cusp(&self, balls: Balls) -> Option<Ball> {
         let v = self.loop_speed(balls)?;
-        let cubic = balls.mul(&self.beta.ball(balls), &balls.square(&v));
-        let cubic = balls.mul_rational(&cubic, &Rational::from((172, 35)));
-        let linear = balls.mul_rational(&self.alpha.ball(balls), &Rational::from((4, 3)));
-        let g = balls.mul(&v, &balls.sub(&cubic, &linear));
+        let g = balls.mul(&v, &self.smooth_at_cusp(balls, &v)?);
         self.forced(balls, &g)
     }
 
@@ -173,48 +198,56 @@ impl StickSlip {
     /// isolated by the monotone pieces between the roots of its derivatives. Outside:
     /// v*^2 = alpha/(3 beta) - (8/35) V^2 where that is at least V^2. G is even in v*.
     ///
+    /// For alpha = beta = 0 (dry friction alone) G vanishes for all |v*| >= V; V is returned.
+    ///
     /// # Errors
+    /// [`MelnikovError::IdenticallyZero`] without friction,
     /// [`MelnikovError::Undecided`] where a sign at the end of a monotone piece is not decided at
-    /// this precision (a double zero, a zero at 0 or at V).
+    /// this precision (a double zero, a zero at 0; a zero at V unless a, b, alpha, beta are
+    /// rational).
     pub fn zeros(&self, balls: Balls) -> Result<Vec<Ball>, MelnikovError> {
         self.check()?;
+        if [&self.dry, &self.alpha, &self.beta].iter().all(|x| x.sign().is_eq()) {
+            return Err(MelnikovError::IdenticallyZero);
+        }
         self.try_zeros(balls).ok_or(MelnikovError::Undecided { bits: balls.bits() })
     }
 
     fn try_zeros(&self, balls: Balls) -> Option<Vec<Ball>> {
         let v = self.loop_speed(balls)?;
-        let quartic = self.quartic(balls)?;
+        let quartic = self.quartic(balls, &v)?;
         let mut zeros = Vec::new();
         // z falls as |v*| rises.
         for z in unit_roots(balls, &quartic)?.iter().rev() {
             let fraction = balls.sub(&balls.one(), &balls.square(z));
             zeros.push(balls.mul(&v, &fraction));
         }
+        let [constant, ..] = quartic;
+        if constant.is_exact() && constant.contains_zero() {
+            // The cusp lies on gamma = 0, and so does the end of the outer branch.
+            if self.beta.sign().is_ne() || self.dry.sign().is_ne() {
+                zeros.push(v);
+            }
+            return Some(zeros);
+        }
         if self.beta.sign().is_ne() {
-            let ratio =
-                balls.div(&self.alpha.ball(balls), &balls.mul_i64(&self.beta.ball(balls), 3))?;
-            let square = balls.square(&v);
-            let outer = balls.sub(&ratio, &balls.mul_rational(&square, &Rational::from((8, 35))));
-            let beyond = balls.sub(&outer, &square);
-            if beyond.is_positive() {
-                zeros.push(balls.sqrt(&outer)?);
-            } else if !beyond.is_negative() {
+            // G/V = 4 beta (v*^2 - V^2) + constant outside: v*^2 = V^2 - constant/(4 beta) =
+            // alpha/(3 beta) - (8/35) V^2.
+            let excess = balls.div(&constant, &balls.mul_i64(&self.beta.ball(balls), -4))?;
+            if excess.is_positive() {
+                zeros.push(balls.sqrt(&balls.add(&balls.square(&v), &excess))?);
+            } else if !excess.is_negative() {
                 return None;
             }
         }
         Some(zeros)
     }
 
-    /// The coefficients of z^0 ... z^4 of the quartic of [`StickSlip::zeros`].
-    fn quartic(&self, balls: Balls) -> Option<[Ball; 5]> {
-        let v = self.loop_speed(balls)?;
-        let cubic = balls.mul(&self.beta.ball(balls), &balls.powi(&v, 3)?);
-        let linear = balls.mul(&self.alpha.ball(balls), &v);
-        let constant = balls.sub(
-            &balls.mul_rational(&cubic, &Rational::from((172, 35))),
-            &balls.mul_rational(&linear, &Rational::from((4, 3))),
-        );
-        let dry = balls.mul_power_of_two(&self.dry.ball(balls), 1);
+    /// The coefficients of z^0 ... z^4 of the quartic of [`StickSlip::zeros`], divided by V.
+    fn quartic(&self, balls: Balls, v: &Ball) -> Option<[Ball; 5]> {
+        let cubic = balls.mul(&self.beta.ball(balls), &balls.square(v));
+        let constant = self.smooth_at_cusp(balls, v)?;
+        let dry = balls.div(&balls.mul_power_of_two(&self.dry.ball(balls), 1), v)?;
         Some([constant, dry, balls.mul_i64(&cubic, -8), balls.zero(), balls.mul_i64(&cubic, 4)])
     }
 

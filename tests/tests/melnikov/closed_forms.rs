@@ -64,10 +64,15 @@ fn cusp_touches_zero() {
     let speed = touching.loop_speed(Balls::new(BALLS)).unwrap();
     assert_agrees(&speed, &row["vstar"], 44, "cusp at zero");
     // G at v* = V is 0 there: v*^2 = 35/129 exactly, so G/V = (172/35) beta V^2 - (4/3) alpha.
-    assert!(
-        speed.is_finite() && touching.zeros(Balls::new(BALLS)).is_err(),
-        "a zero at V is undecidable by signs"
-    );
+    // So V itself is the one zero of the curve, decided over Q; and the threshold there is 0.
+    let zeros = touching.zeros(Balls::new(BALLS)).unwrap();
+    assert!(zeros.len() == 1 && zeros[0].overlaps(&speed));
+    let value = touching.threshold_at_cusp(Balls::new(BALLS)).unwrap();
+    assert!(value.is_exact() && value.contains_zero());
+    // A little above b* there are two zeros v1 < V < v2, a little below none.
+    let near = |n: i32| StickSlip { b: Real::from((129_000 + n, 70_000)), ..StickSlip::paper() };
+    assert_eq!(near(1).zeros(Balls::new(BALLS)).unwrap().len(), 2);
+    assert_eq!(near(-1).zeros(Balls::new(BALLS)).unwrap().len(), 0);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use plotters::prelude::*;
 /// Up to so many rows are drawn as curves.
 const MOST_CURVES: usize = 12;
 /// Cells per axis of a map.
-const CELLS: usize = 200;
+const CELLS: usize = 120;
 const SIZE: (u32, u32) = (960, 640);
 
 /// The SVG text.
