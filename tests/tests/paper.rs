@@ -1,5 +1,7 @@
 //! The paper, re-read: verdicts, and the tables against numbers computed outside this project.
 
+#![allow(clippy::panic, reason = "a test that panics has failed")]
+
 use lindstedt::coeff::ball::Balls;
 use lindstedt::paper::{Decimal, Findings, Options, Paper, Row, Section, Verdict, read};
 use rug::Rational;

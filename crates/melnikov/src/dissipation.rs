@@ -1,7 +1,11 @@
 //! D, the work of the friction force along the orbit: D_sigma = int v0 T(v0 - v*) dt.
 
+use crate::crossing::level_crossings;
+use crate::hyperbolic::HyperbolicRing;
 use crate::quadrature::{Estimate, tanh_sinh};
-use crate::{Branch, Friction, MelnikovError, PolynomialFriction, Potential, Real};
+use crate::{
+    Branch, Friction, MelnikovError, OrbitDescription, PolynomialFriction, Potential, Real,
+};
 use lindstedt_coeff::ball::{Ball, Balls};
 use rug::float::Constant;
 use rug::{Float, Integer, Rational};
@@ -82,6 +86,8 @@ fn chart(potential: &Potential, bits: u32) -> Option<Chart> {
     let one_minus_square = move |u: &Float| 1u32 - Float::with_val(bits, u.square_ref());
     let third = Float::with_val(bits, 3u32).sqrt().recip();
     Some(match potential {
+        // In time, by its own cuts.
+        Potential::Described { .. } => return None,
         Potential::DoubleWell { .. } => Chart {
             ends: (number(0.0), Float::with_val(bits, &pi / 2u32)),
             peak: Float::with_val(bits, &pi / 4u32),
@@ -132,6 +138,9 @@ pub fn quadrature_dissipation(
     belt_speed: &Real,
 ) -> Result<Estimate, MelnikovError> {
     let undecided = MelnikovError::Undecided { bits };
+    if let Potential::Described { orbit, .. } = potential {
+        return in_time(bits, potential, orbit, friction, branch, belt_speed);
+    }
     let work = bits.saturating_mul(2).saturating_add(64);
     let chart = chart(potential, work).ok_or(undecided)?;
     let law = friction.law(work);
@@ -155,6 +164,54 @@ pub fn quadrature_dissipation(
             sum += law(&sliding) * *sign;
         }
         Some(sum * (chart.slope)(u))
+    };
+    let mut total = Estimate::zero(bits);
+    for pair in cuts.windows(2) {
+        if let [a, b] = pair
+            && a < b
+        {
+            let part = tanh_sinh(bits, a, b, integrand)?;
+            total.value += part.value;
+            total.error += part.error;
+        }
+    }
+    Ok(total)
+}
+
+/// D = int v0 T(v0 - v*) dt in the scaled time z for a described orbit: cut where sigma v0 - v*
+/// passes a kink, and at |z| where v0 falls below 2^-bits.
+fn in_time(
+    bits: u32,
+    potential: &Potential,
+    orbit: &OrbitDescription,
+    friction: &Friction,
+    branch: Branch,
+    belt_speed: &Real,
+) -> Result<Estimate, MelnikovError> {
+    let undecided = || MelnikovError::Undecided { bits };
+    let work = bits.saturating_mul(2).saturating_add(64);
+    let balls = Balls::new(work);
+    let law = friction.law(work);
+    let shape = HyperbolicRing.derivative(&orbit.shape);
+    let scale = potential.velocity_scale(balls).ok_or_else(undecided)?;
+    let amplitude = potential.amplitude(balls).ok_or_else(undecided)?;
+    let belt = belt_speed.ball(balls);
+    let far = f64::from(bits) * std::f64::consts::LN_2 + 8.0;
+    let mut cuts = vec![Float::with_val(work, -far), Float::with_val(work, far), Float::new(work)];
+    for kink in friction.kinks() {
+        let kink = balls.from_f64(kink).ok_or(MelnikovError::NotFinite { name: "kink" })?;
+        let speed = balls.mul_i64(&balls.add(&belt, &kink), branch.sign());
+        let level = balls.div(&speed, &scale).ok_or_else(undecided)?;
+        let crossings = level_crossings(balls, &shape, &level).ok_or_else(undecided)?;
+        cuts.extend(crossings.iter().map(|z| z.midpoint().clone()));
+    }
+    cuts.sort_by(Float::total_cmp);
+    let sigma = branch.sign();
+    let integrand = |z: &Float| {
+        let z = balls.from_parts(z, &Float::new(53));
+        let shape = shape.evaluate(balls, &z)?.midpoint().clone() * sigma;
+        let sliding = Float::with_val(work, &shape * scale.midpoint()) - belt.midpoint();
+        Some(law(&sliding) * shape * amplitude.midpoint())
     };
     let mut total = Estimate::zero(bits);
     for pair in cuts.windows(2) {

@@ -8,6 +8,7 @@
 //! carries an estimated error. Sources: the paper's section 3, corrected, and
 //! `mathematics/stick-slip.md`.
 
+mod crossing;
 mod dissipation;
 mod elliptic;
 mod error;

@@ -1,8 +1,9 @@
 //! Orbits in the hyperbolic algebra, checked against their equation of motion.
 
-use crate::MelnikovError;
 use crate::hyperbolic::{Hyperbolic, HyperbolicRing};
+use crate::{MelnikovError, Real};
 use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_coeff::ball::{Ball, Balls};
 use rug::Rational;
 
 /// c a^i b^j: how a force coefficient or a scale depends on the two parameters of a potential.
@@ -21,6 +22,13 @@ impl Monomial {
     #[must_use]
     pub fn new(n: i32, d: u32, a: i32, b: i32) -> Self {
         Self { coefficient: Rational::from((n, d.max(1))), a, b }
+    }
+    /// The value at the given parameters, for coefficient and powers as they are.
+    #[must_use]
+    pub fn ball(&self, balls: Balls, a: &Real, b: &Real) -> Option<Ball> {
+        let a = balls.powi(&a.ball(balls), i64::from(self.a))?;
+        let b = balls.powi(&b.ball(balls), i64::from(self.b))?;
+        Some(balls.mul_rational(&balls.mul(&a, &b), &self.coefficient))
     }
     fn mul(&self, other: &Self) -> Self {
         let coefficient = Rational::from(&self.coefficient * &other.coefficient);

@@ -1,5 +1,6 @@
 //! Potentials with a known homoclinic or heteroclinic orbit.
 
+use crate::crossing::{self, largest_value};
 use crate::hyperbolic::{Hyperbolic, HyperbolicRing, beta};
 use crate::orbit::{check_pendulum, check_phi_six};
 use crate::quadrature::{Strip, trapezoid};
@@ -58,6 +59,16 @@ pub enum Potential {
         /// w0 > 0.
         w0: Real,
     },
+    /// Any polynomial force with an orbit in the hyperbolic algebra; what the others have in closed
+    /// form is found by certified crossings here.
+    Described {
+        /// Force, scales and shape, checked against each other.
+        orbit: Box<OrbitDescription>,
+        /// a > 0 (1 where the description does not use it).
+        a: Real,
+        /// b > 0 (1 where the description does not use it).
+        b: Real,
+    },
     /// x'' = kappa^2 x (1 - x^2)(1 - 3 x^2), x0 = (1 + e^{-2 kappa t})^{-1/2}, from the saddle 0
     /// to the saddle 1.
     PhiSix {
@@ -91,6 +102,7 @@ impl Potential {
                 amplitude_squared: m(9, 4, 2, -2),
                 shape: Hyperbolic::sech(2),
             }),
+            Self::Described { orbit, .. } => Some((**orbit).clone()),
             Self::Pendulum { .. } | Self::PhiSix { .. } => None,
         }
     }
@@ -99,7 +111,10 @@ impl Potential {
     #[must_use]
     pub fn parameters(&self) -> Vec<(&'static str, &Real)> {
         match self {
-            Self::DoubleWell { a, b } | Self::SoftDuffing { a, b } | Self::Helmholtz { a, b } => {
+            Self::DoubleWell { a, b }
+            | Self::SoftDuffing { a, b }
+            | Self::Helmholtz { a, b }
+            | Self::Described { a, b, .. } => {
                 vec![("a", a), ("b", b)]
             }
             Self::Pendulum { w0 } => vec![("w0", w0)],
@@ -137,13 +152,24 @@ impl Potential {
     /// Whether x -> -x maps the equation to itself, so that both branches exist.
     #[must_use]
     pub fn has_mirror_image(&self) -> bool {
-        !matches!(self, Self::Helmholtz { .. })
+        match self {
+            Self::Helmholtz { .. } => false,
+            Self::Described { orbit, .. } => {
+                orbit.force.iter().step_by(2).all(|f| f.coefficient.is_zero())
+            }
+            _ => true,
+        }
     }
 
     /// Whether x0 returns to the saddle where it came from.
     #[must_use]
     pub fn is_homoclinic(&self) -> bool {
-        matches!(self, Self::DoubleWell { .. } | Self::Helmholtz { .. })
+        match self {
+            // An even shape returns; an odd part makes a step or an asymmetric loop, for which
+            // nothing is assumed.
+            Self::Described { orbit, .. } => orbit.shape.terms().all(|(_, _, odd)| !odd),
+            _ => matches!(self, Self::DoubleWell { .. } | Self::Helmholtz { .. }),
+        }
     }
 
     /// kappa, the rate in z = kappa t.
@@ -155,6 +181,7 @@ impl Potential {
             Self::Helmholtz { a, .. } => {
                 Some(balls.mul_power_of_two(&balls.sqrt(&a.ball(balls))?, -1))
             }
+            Self::Described { orbit, a, b } => balls.sqrt(&orbit.rate_squared.ball(balls, a, b)?),
             Self::Pendulum { w0: rate } | Self::PhiSix { kappa: rate } => Some(rate.ball(balls)),
         }
     }
@@ -171,6 +198,9 @@ impl Potential {
             Self::Helmholtz { a, b } => {
                 let ratio = balls.div(&a.ball(balls), &b.ball(balls))?;
                 Some(balls.mul_rational(&ratio, &Rational::from((3, 2))))
+            }
+            Self::Described { orbit, a, b } => {
+                balls.sqrt(&orbit.amplitude_squared.ball(balls, a, b)?)
             }
             Self::Pendulum { .. } | Self::PhiSix { .. } => Some(balls.one()),
         }
@@ -197,6 +227,9 @@ impl Potential {
     pub fn largest_speed(&self, balls: Balls) -> Option<Ball> {
         let scale = self.velocity_scale(balls)?;
         match self {
+            Self::Described { .. } => {
+                Some(balls.mul(&scale, &largest_value(balls, &self.velocity_shape()?)?))
+            }
             // max sech tanh = 1/2.
             Self::DoubleWell { .. } => Some(balls.mul_power_of_two(&scale, -1)),
             Self::SoftDuffing { .. } => Some(scale),
@@ -294,8 +327,13 @@ impl Potential {
     /// others: the table of section 4.6 of `mathematics/stick-slip.md`.
     #[must_use]
     pub fn sign_integral(&self, balls: Balls, v: &Real) -> Option<Ball> {
-        let gap = self.speed_gap(balls, v)?;
         let amplitude = self.amplitude(balls)?;
+        if let Self::Described { orbit, .. } = self {
+            let level = balls.div(&v.ball(balls), &self.velocity_scale(balls)?)?;
+            let value = crossing::sign_integral(balls, &orbit.shape, &level)?;
+            return Some(balls.mul(&amplitude, &value));
+        }
+        let gap = self.speed_gap(balls, v)?;
         if self.is_homoclinic() {
             let fast = match self {
                 Self::DoubleWell { .. } => sqrt_positive_part(balls, &gap)?,

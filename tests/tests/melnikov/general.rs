@@ -231,3 +231,76 @@ fn wrong_orbits_are_refused() {
     let mirror = system.threshold(Balls::new(80), Branch::Negative);
     assert!(matches!(mirror, Err(MelnikovError::NoMirrorImage)));
 }
+
+/// A described orbit runs through certified crossings; the built-in potentials, which have the
+/// same things in closed form, are the check: two routes.
+#[test]
+fn described_orbits() {
+    let balls = Balls::new(160);
+    let mut random = Random(17);
+    for round in 0..12 {
+        let mut q = |low, high| Real::Rational(random.rational(low, high));
+        let (a, b) = (q(0.3, 3.0), q(0.3, 3.0));
+        let known = match round % 3 {
+            0 => Potential::DoubleWell { a: a.clone(), b: b.clone() },
+            1 => Potential::SoftDuffing { a: a.clone(), b: b.clone() },
+            _ => Potential::Helmholtz { a: a.clone(), b: b.clone() },
+        };
+        let orbit = Box::new(known.description().unwrap());
+        let described = Potential::Described { orbit, a, b };
+        described.check().unwrap();
+        let speed = known.largest_speed(balls).unwrap();
+        let found = described.largest_speed(balls).unwrap();
+        assert!(found.overlaps(&speed) && found.relative_accuracy_bits() > 100, "{known:?}");
+        let law = PolynomialFriction {
+            dry: q(0.1, 1.0),
+            coefficients: vec![q(-1.0, 1.0), q(-1.0, 1.0), q(-1.0, 1.0)],
+        };
+        let fraction = q(-1.3, 1.3).to_f64() * speed.midpoint().to_f64();
+        let belt = Real::from_f64((fraction * 1e6).round() / 1e6, "v").unwrap();
+        for branch in [Branch::Positive, Branch::Negative] {
+            assert_eq!(known.has_mirror_image(), described.has_mirror_image());
+            let closed = polynomial_dissipation(balls, &known, &law, branch, &belt).unwrap();
+            let general = polynomial_dissipation(balls, &described, &law, branch, &belt).unwrap();
+            assert!(
+                general.overlaps(&closed) && general.relative_accuracy_bits() > 80,
+                "{known:?} {belt}"
+            );
+        }
+        let friction = Friction::Stribeck {
+            coulomb: q(0.1, 0.3),
+            stiction: q(0.3, 0.6),
+            speed: q(0.1, 1.0),
+            viscous: q(0.0, 0.2),
+        };
+        let one = quadrature_dissipation(60, &known, &friction, Branch::Positive, &belt).unwrap();
+        let two =
+            quadrature_dissipation(60, &described, &friction, Branch::Positive, &belt).unwrap();
+        assert!((one.value.to_f64() - two.value.to_f64()).abs() < 1e-14, "{known:?} {belt}");
+    }
+    // An oscillator that is not built in: x = X sech^2 tanh z has no polynomial equation, and the
+    // description says so; x = 1 - 2 tanh^2 (= 2 sech^2 - 1) is a shifted Helmholtz loop.
+    let zero = || Monomial::new(0, 1, 0, 0);
+    let one = || Monomial::new(1, 1, 0, 0);
+    let shape = lindstedt_melnikov::hyperbolic::Hyperbolic::term((2).into(), 2, false);
+    let ring = lindstedt_melnikov::hyperbolic::HyperbolicRing;
+    let shape = lindstedt::algebra::Ring::sub(&ring, &shape, &lindstedt::algebra::Ring::one(&ring));
+    // xi = 2u - 1, u'' = 4u - 6u^2 gives xi'' = 1 - 2 xi - 3 xi^2.
+    let force = vec![one(), Monomial::new(-2, 1, 0, 0), Monomial::new(-3, 1, 0, 0)];
+    let orbit = lindstedt_melnikov::OrbitDescription {
+        force,
+        rate_squared: one(),
+        amplitude_squared: one(),
+        shape,
+    };
+    assert_eq!(orbit.check(), Ok(()));
+    let wrong = lindstedt_melnikov::OrbitDescription { amplitude_squared: zero(), ..orbit.clone() };
+    assert!(wrong.check().is_err());
+    let shifted =
+        Potential::Described { orbit: Box::new(orbit), a: Real::from(1), b: Real::from(1) };
+    let helmholtz = Potential::Helmholtz { a: Real::from(4), b: Real::from(3) };
+    let belt = Real::from((1, 3));
+    let (left, right) =
+        (shifted.sign_integral(balls, &belt), helmholtz.sign_integral(balls, &belt));
+    assert!(left.unwrap().overlaps(&right.unwrap()));
+}

@@ -1,6 +1,6 @@
 //! The report as LaTeX, to be included in a document.
 
-use super::summary;
+use super::{CLASSES, summary};
 use lindstedt::paper::Paper;
 use std::fmt::Write;
 
@@ -8,7 +8,8 @@ pub fn report(paper: &Paper) -> String {
     let mut text = String::new();
     for section in &paper.sections {
         let _ = writeln!(text, "\\section*{{Section {}: {}}}", section.number, section.title);
-        let _ = writeln!(text, "{}.\n\n\\begin{{description}}", escape(&summary(section)));
+        let _ =
+            writeln!(text, "{}. {CLASSES}\n\n\\begin{{description}}", escape(&summary(section)));
         for row in &section.rows {
             let _ = writeln!(
                 text,

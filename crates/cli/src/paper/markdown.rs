@@ -1,6 +1,6 @@
 //! The report as Markdown.
 
-use super::summary;
+use super::{CLASSES, summary};
 use lindstedt::paper::Paper;
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ pub fn report(paper: &Paper) -> String {
     let mut text = String::new();
     for section in &paper.sections {
         let _ = writeln!(text, "# Section {}: {}\n", section.number, section.title);
-        let _ = writeln!(text, "{}.\n", summary(section));
+        let _ = writeln!(text, "{}. {CLASSES}\n", summary(section));
         text += "| | printed | derived | independent | verdict | evidence |\n";
         text += "|---|---|---|---|---|---|\n";
         for row in &section.rows {

@@ -114,7 +114,11 @@ fn as_json(paper: &Paper, seconds: f64) -> Json {
     })
 }
 
-/// "44 statements: 30 agree, ..." in one line.
+/// What the numbers of the report are worth.
+const CLASSES: &str =
+    "Every decimal is certified to the last digit shown, except where it says (estimated).";
+
+/// "44 statements: 30 agrees, ..." in one line.
 fn summary(section: &Section) -> String {
     let counts: Vec<String> =
         VERDICTS.iter().map(|v| format!("{} {}", section.count(*v), v.name())).collect();

@@ -1,6 +1,6 @@
 //! The report as text, at most 100 columns wide.
 
-use super::summary;
+use super::{CLASSES, summary};
 use lindstedt::paper::{Paper, Row, Table};
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ pub fn report(paper: &Paper) -> String {
     let mut text = String::new();
     for section in &paper.sections {
         let _ = writeln!(text, "Section {}: {}", section.number, section.title);
-        let _ = writeln!(text, "{}\n", summary(section));
+        let _ = writeln!(text, "{}\n{CLASSES}\n", summary(section));
         for row in &section.rows {
             text += &entry(row);
         }

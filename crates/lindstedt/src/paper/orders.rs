@@ -191,7 +191,7 @@ impl Case {
             printed: printed.to_owned(),
             derived: format!("x_{n}'' + x_{n} = {text}"),
             independent: format!(
-                "at tau = 1, force differentiated numerically: {} (derived {})",
+                "at tau = 1, force differentiated numerically: {} (estimated; derived {})",
                 show(&numerical),
                 show(&ours)
             ),

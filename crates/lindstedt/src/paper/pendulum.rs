@@ -173,7 +173,7 @@ fn omega_row(balls: Balls) -> Option<Row> {
             derived.get(1)?
         ),
         independent: format!(
-            "dOmega/d(delta)/(x ln x^2) at x = 1/2, delta = 0, numerically: {}; omega_1^2 = {}",
+            "dOmega/d(delta)/(x ln x^2) at x = 1/2, delta = 0, numerically: {} (estimated); omega_1^2 = {}",
             show(&measured, 12),
             show(&printed, 12)
         ),
