@@ -122,6 +122,14 @@ fn the_residual_check_finds_a_wrong_digit() {
     wrong.frequency_squared[6] += Rational::from((1, 1_000_000));
     assert_eq!(check(&algebra, &compiled, &wrong), Err(ExpandError::Residual { order: 6 }));
     assert_eq!(check(&algebra, &compiled, &right), Ok(6));
+    // The amplitude of the last order shows only in the secular condition of the order after it.
+    let mut wrong = right.clone();
+    wrong.solution[6].cos[1] += Rational::from((1, 1_000_000));
+    assert_eq!(check(&algebra, &compiled, &wrong), Err(ExpandError::Residual { order: 7 }));
+    // Another phase solves the equation as well: the normalisation is what it violates.
+    let mut wrong = right.clone();
+    wrong.solution[6].sin = vec![Rational::new(), Rational::from(1)];
+    assert_eq!(check(&algebra, &compiled, &wrong), Err(ExpandError::Normalisation { order: 6 }));
 }
 
 #[test]

@@ -53,6 +53,35 @@ pub fn degrees<A: PhaseAlgebra>(
     Some((of_x, largest))
 }
 
+/// The rational numbers that occur in an equation.
+fn equation_numbers<A>(equation: &Equation<A>) -> Vec<Rational>
+where
+    A: PhaseAlgebra,
+    A::Constants: Ring<Element = Rational>,
+{
+    let of_node = |node: &Node<Rational>| -> Vec<Rational> {
+        match node {
+            Node::Constant(c) => vec![c.clone()],
+            Node::Sum(terms) => terms.iter().map(|(q, _)| q.clone()).collect(),
+            _ => Vec::new(),
+        }
+    };
+    equation.nodes.iter().flat_map(of_node).collect()
+}
+
+/// A common denominator of the rational numbers that occur in an equation.
+pub fn equation_denominator<A>(equation: &Equation<A>) -> Integer
+where
+    A: PhaseAlgebra,
+    A::Constants: Ring<Element = Rational>,
+{
+    let mut denominator = Integer::from(1);
+    for number in equation_numbers(equation) {
+        denominator.lcm_mut(number.denom());
+    }
+    denominator
+}
+
 /// A bound on a list of rational Fourier coefficients: a denominator as a product of powers of
 /// generators (primes, or whatever is left after the small ones), and a norm.
 #[derive(Clone)]
@@ -83,22 +112,17 @@ where
     A::Constants: Ring<Element = Rational>,
 {
     let lists: Vec<Vec<(usize, Rational)>> = expansion.solution.iter().map(coefficients).collect();
+    // One order more, for the last condition of a limit cycle.
+    let mut squared = expansion.frequency_squared.clone();
+    squared.push(Rational::new());
     let mut frequency = vec![Rational::from(1)];
-    for n in 1..expansion.frequency_squared.len() {
-        let mut rest = expansion.frequency_squared[n].clone();
+    for n in 1..squared.len() {
+        let mut rest = squared[n].clone();
         for k in 1..n {
             rest -= Rational::from(&frequency[k] * &frequency[n - k]);
         }
         frequency.push(rest / 2u32);
     }
-    let constants = equation.nodes.iter().filter_map(|node| match node {
-        Node::Constant(c) => Some(c.clone()),
-        _ => None,
-    });
-    let factors = equation.nodes.iter().filter_map(|node| match node {
-        Node::Sum(terms) => Some(terms.iter().map(|(q, _)| q.clone())),
-        _ => None,
-    });
     let numbers: Vec<Rational> = lists
         .iter()
         .flatten()
@@ -106,10 +130,9 @@ where
         .chain(frequency.iter().cloned())
         .chain(expansion.frequency_squared.iter().cloned())
         .chain([expansion.stiffness.clone()])
-        .chain(constants)
-        .chain(factors.flatten())
+        .chain(equation_numbers(equation))
         .collect();
-    let sizes = Sizes::new(&numbers, expansion.order());
+    let sizes = Sizes::new(&numbers, expansion.order() + 1);
     let harmonics = |derivatives: u32| -> List {
         let norm_of = |list: &Vec<(usize, Rational)>| {
             let weigh = |(k, c): &(usize, Rational)| {

@@ -74,6 +74,12 @@ pub enum ExpandError {
         /// The order being computed.
         order: usize,
     },
+    /// The normalisation is violated (a defect of the engine).
+    #[error("the normalisation does not hold at order {order}")]
+    Normalisation {
+        /// The first order at which it does not hold.
+        order: usize,
+    },
     /// The residual of a computed expansion does not vanish (a defect of the engine).
     #[error("the residual does not vanish at order {order}")]
     Residual {

@@ -9,8 +9,8 @@ mod evaluator;
 mod limit_cycle;
 mod residual;
 
-pub use bound::{degrees, residual_bits};
+pub use bound::{degrees, equation_denominator, residual_bits};
 pub use compile::{Binding, Equation, compile};
 pub use driver::{Expansion, OrderWork, Request, expand, leading_amplitude};
 pub use error::ExpandError;
-pub use residual::check;
+pub use residual::{check, check_normalisation};

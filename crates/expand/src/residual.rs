@@ -15,20 +15,41 @@ use crate::ExpandError;
 use crate::compile::{Equation, Node, NodeId};
 use crate::driver::Expansion;
 use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use lindstedt_equation::Condition;
 use lindstedt_series::Series;
 use rug::Rational;
 
-/// Substitutes the expansion into the equation; every order must vanish identically. Returns
-/// the number of the highest order checked.
+/// Substitutes the expansion into the equation; every order must vanish identically, and the
+/// normalisation must hold. Returns the number of the highest order checked.
+///
+/// The amplitude of the last order of a limit cycle shows only in the order after it: there the
+/// secular term in sin psi must vanish, which is checked too.
 ///
 /// # Errors
-/// [`ExpandError::Residual`] with the first order that does not vanish.
+/// [`ExpandError::Residual`] or [`ExpandError::Normalisation`] with the first order that fails.
 pub fn check<A: PhaseAlgebra>(
     algebra: &A,
     equation: &Equation<A>,
     expansion: &Expansion<A>,
 ) -> Result<usize, ExpandError> {
-    let judge = Judge { algebra, equation, expansion, order: expansion.order() };
+    check_normalisation(algebra, expansion)?;
+    let constants = algebra.constants();
+    let mut solution = expansion.solution.clone();
+    let mut squared = expansion.frequency_squared.clone();
+    let order = expansion.order();
+    if expansion.condition == Condition::LimitCycle {
+        // x_{N+1} and W_{N+1} have no part in sin psi in the residual of order N + 1.
+        solution.push(algebra.zero());
+        squared.push(constants.zero());
+    }
+    let judge = Judge {
+        algebra,
+        equation,
+        expansion,
+        order: solution.len() - 1,
+        solution: Series::truncated(solution),
+        squared: Series::truncated(squared),
+    };
     let mut values: Vec<Series<A::Element>> = Vec::new();
     for id in 0..equation.nodes.len() {
         let value = judge.value(id, &values);
@@ -36,13 +57,52 @@ pub fn check<A: PhaseAlgebra>(
     }
     judge.transcendental_nodes(&values)?;
     let inertia = judge.over_frequency(
-        &Series::truncated(expansion.frequency_squared.clone())
-            .map(|w| algebra.constants().mul(w, &expansion.stiffness)),
-        &judge.displacement().map(|x| algebra.derivative(&algebra.derivative(x))),
+        &judge.squared.map(|w| constants.mul(w, &expansion.stiffness)),
+        &judge.solution.map(|x| algebra.derivative(&algebra.derivative(x))),
     );
-    let residual = inertia.add(algebra, &values[equation.root]);
-    judge.must_vanish(&residual, judge.order + 1)?;
-    Ok(judge.order)
+    let mut residual = inertia.add(algebra, &values[equation.root]);
+    let after = residual.coefficients.split_off(residual.coefficients.len().min(order + 1));
+    judge.must_vanish(&residual, order + 1)?;
+    if judge.order > order {
+        let broken = ExpandError::Residual { order: judge.order };
+        let (_, sine) = algebra
+            .first_harmonic(after.first().ok_or(broken.clone())?)
+            .map_err(|source| ExpandError::Phase { order: judge.order, source })?;
+        if !constants.is_zero(&sine) {
+            return Err(broken);
+        }
+    }
+    Ok(order)
+}
+
+/// x_0 = a_0 cos psi; then, for n >= 1, x_n(0) = x_n'(0) = 0, or no first harmonic, or x_n'(0) = 0,
+/// as the condition of the expansion says. Together with the equation this determines it.
+///
+/// # Errors
+/// [`ExpandError::Normalisation`] with the first order that fails.
+pub fn check_normalisation<A: PhaseAlgebra>(
+    algebra: &A,
+    expansion: &Expansion<A>,
+) -> Result<(), ExpandError> {
+    let constants = algebra.constants();
+    let vanishes = |f: &A::Element| algebra.at_zero(f).is_some_and(|c| constants.is_zero(&c));
+    for (order, x) in expansion.solution.iter().enumerate() {
+        let holds = match expansion.condition {
+            _ if order == 0 => expansion
+                .amplitude
+                .first()
+                .is_some_and(|a| *x == algebra.scale_by(&algebra.cosine(), a)),
+            Condition::InitialAmplitude => vanishes(x) && vanishes(&algebra.derivative(x)),
+            Condition::LimitCycle => vanishes(&algebra.derivative(x)),
+            Condition::FundamentalAmplitude => algebra
+                .first_harmonic(x)
+                .is_ok_and(|(c, s)| constants.is_zero(&c) && constants.is_zero(&s)),
+        };
+        if !holds {
+            return Err(ExpandError::Normalisation { order });
+        }
+    }
+    Ok(())
 }
 
 struct Judge<'a, A: PhaseAlgebra> {
@@ -50,13 +110,11 @@ struct Judge<'a, A: PhaseAlgebra> {
     equation: &'a Equation<A>,
     expansion: &'a Expansion<A>,
     order: usize,
+    solution: Series<A::Element>,
+    squared: Series<<A::Constants as Ring>::Element>,
 }
 
 impl<A: PhaseAlgebra> Judge<'_, A> {
-    fn displacement(&self) -> Series<A::Element> {
-        Series::truncated(self.expansion.solution.clone())
-    }
-
     /// A series of constants times a series of functions.
     fn over_frequency(
         &self,
@@ -77,13 +135,12 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
         match &self.equation.nodes[id] {
             Node::Constant(c) => Series::polynomial(vec![algebra.embed(c)]),
             Node::Small => Series::polynomial(vec![algebra.zero(), algebra.one()]),
-            Node::Displacement => self.displacement(),
+            Node::Displacement => self.solution.clone(),
             Node::Velocity => {
-                let squared = Series::truncated(self.expansion.frequency_squared.clone());
                 let half = Rational::from((1, 2));
-                let frequency = squared.power(algebra.constants(), &half);
+                let frequency = self.squared.power(algebra.constants(), &half);
                 let frequency = frequency.unwrap_or(Series::truncated(Vec::new()));
-                self.over_frequency(&frequency, &self.displacement().map(|x| algebra.derivative(x)))
+                self.over_frequency(&frequency, &self.solution.map(|x| algebra.derivative(x)))
             }
             Node::Sum(terms) => {
                 let mut sum = Series::polynomial(Vec::new());

@@ -12,8 +12,8 @@ use crate::Error;
 use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_equation::Expression;
 use lindstedt_expand::{
-    Binding, Equation, ExpandError, Expansion, Request, check, compile, degrees, expand,
-    leading_amplitude, residual_bits,
+    Binding, Equation, ExpandError, Expansion, Request, check, check_normalisation, compile,
+    degrees, equation_denominator, expand, leading_amplitude, residual_bits,
 };
 use lindstedt_phase::modular::{ModularElement, PrimeField};
 use lindstedt_phase::trigonometric::TrigonometricPolynomial;
@@ -97,7 +97,7 @@ pub fn derive(
     };
     let expansion = job.assemble(&plain, &values)?;
     let last = images.last().map_or(1 << 61, |(field, _)| field.prime());
-    let proof_primes = prove(&job, &compiled, &expansion, roots, last)?;
+    let proof_primes = prove(&job, &plain, &compiled, &expansion, roots, last)?;
     Ok(Proved { expansion, primes: images.len(), proof_primes })
 }
 
@@ -281,6 +281,7 @@ impl<'a> Remaindering<'a> {
 /// Proves that the residual vanishes; returns the number of primes used.
 fn prove(
     job: &Job<'_>,
+    plain: &RationalAlgebraOfPhase,
     compiled: &Equation<RationalAlgebraOfPhase>,
     expansion: &Expansion<RationalAlgebraOfPhase>,
     roots: u64,
@@ -290,16 +291,24 @@ fn prove(
         let lists = x.cos.iter().enumerate().chain(x.sin.iter().enumerate());
         lists.filter(|(_, c)| !c.is_zero()).map(|(k, c)| (k, c.clone())).collect()
     };
-    let bits = residual_bits(compiled, expansion, coefficients).unwrap_or(0);
+    check_normalisation(plain, expansion)?;
+    let bits = residual_bits(compiled, expansion, coefficients).ok_or(Error::OutOfPrimes)?;
     // Every prime exceeds 2^60.
     let count = usize::try_from(bits / 60 + 1).unwrap_or(usize::MAX);
-    let fields: Vec<PrimeField> =
-        PrimeField::with_roots_of_unity(roots, below).take(count).collect();
+    let cleared: Vec<[Cleared; 2]> =
+        expansion.solution.iter().map(|x| [Cleared::new(&x.cos), Cleared::new(&x.sin)]).collect();
+    let squared = Cleared::new(&expansion.frequency_squared);
+    let numbers = equation_denominator(compiled);
+    // Reduction is a homomorphism only where no denominator vanishes.
+    let is_good = |field: &PrimeField| {
+        let denominators = cleared.iter().flatten().chain([&squared]).map(|c| &c.denominator);
+        denominators.chain([&numbers]).all(|d| field.integer(d) != 0)
+    };
+    let primes = PrimeField::with_roots_of_unity(roots, below);
+    let fields: Vec<PrimeField> = primes.filter(is_good).take(count).collect();
     if fields.len() < count {
         return Err(Error::OutOfPrimes);
     }
-    let cleared: Vec<[Cleared; 2]> =
-        expansion.solution.iter().map(|x| [Cleared::new(&x.cos), Cleared::new(&x.sin)]).collect();
     fields.into_par_iter().try_for_each(|field| {
         let (algebra, equation) = job.over(field)?;
         let image = reduce(&algebra, expansion, &cleared);
