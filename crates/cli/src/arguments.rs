@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 /// Perturbation expansions of strongly nonlinear and non-smooth oscillators, to any order.
 #[derive(Debug, Parser)]
-#[command(name = "lindstedt", version, about, max_term_width = 100)]
+#[command(name = "lindstedt", version, max_term_width = 100)]
+#[command(about = "Perturbation expansions of strongly nonlinear and non-smooth oscillators")]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -48,7 +49,7 @@ pub struct Common {
     /// Stop after so many seconds with what is finished (exit code 4).
     #[arg(long, global = true, value_name = "S", value_parser = seconds)]
     pub limit_seconds: Option<f64>,
-    /// Refuse work that is predicted to need more memory (512M, 8G; default 8G).
+    /// Refuse work that is predicted to need more memory (512M, 8G).
     #[arg(long, global = true, value_name = "SIZE", default_value = "8G", value_parser = memory_size)]
     pub limit_memory: u64,
 }

@@ -2,12 +2,13 @@
 
 use crate::Outcome;
 use crate::arguments::{self, DeriveOptions, Format, Normalisation};
-use crate::failure::{INTERRUPTED, UNDECIDED};
+use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
 use crate::output;
 use crate::problems::{condition_name, condition_text};
 use crate::session::{Session, digits, parameters, problem};
 use lindstedt::coeff::print::Style;
 use lindstedt::equation::{Condition, print};
+use lindstedt::expand::ExpandError;
 use lindstedt::{Derivation, Error, Number, Progress, Route, Settings, Solution, Status};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
@@ -41,7 +42,17 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         });
         session.goes_on()
     };
-    let result = lindstedt::derive(&problem, &settings, &mut observer)?;
+    let result = lindstedt::derive(&problem, &settings, &mut observer);
+    let result = result.map_err(|error| match error {
+        // Over Q all orders are finished together, so there is nothing to show.
+        Error::Expand(ExpandError::Interrupted { .. }) if !session.interrupted() => Failure {
+            exit: UNDECIDED,
+            code: "time-limit",
+            message: "the time limit was reached before the expansion was finished".to_owned(),
+            hint: "raise --limit-seconds or lower --order".to_owned(),
+        },
+        other => other.into(),
+    })?;
     let report = Report::new(&result, digits)?;
     session.done();
     let text = match session.format() {
@@ -91,6 +102,11 @@ impl Frame {
         } else {
             format!("{}{text}\n", self.heading)
         }
+    }
+
+    /// What sets a line of words off from the formulas around it.
+    fn gap(&self) -> &'static str {
+        if self.heading.starts_with('#') { "\n" } else { "" }
     }
 
     fn formula(&self, text: &str) -> String {
@@ -165,10 +181,12 @@ impl<'a> Report<'a> {
         text += &frame.formula(&format!("{equation} = 0"));
         let names = Names::new(style);
         let kappa = result.ring_print(style);
-        let leading = if kappa == "1" { String::new() } else { format!("{kappa}{}", names.times) };
+        let Names { tau, omega, times, gap, w, dots, .. } = &names;
+        let sum = format!("1 + {w}_1{times}{small} + {w}_2{times}{small}^2 + {dots}");
+        let sum = if kappa == "1" { sum } else { format!("{kappa}{times}({sum})") };
         text += &frame.formula(&format!(
-            "{tau} = {omega}{times}t,{gap}{omega}^2 = {leading}(1 + {w}_1{times}{small} + {w}_2{times}{small}^2 + ...),{gap}x = x_0({tau}) + x_1({tau}){times}{small} + ...",
-            tau = names.tau, omega = names.omega, times = names.times, gap = names.gap, w = names.w,
+            "{tau} = {omega}{times}t,{gap}{omega}^2 = {sum},{gap}\
+             x = x_0({tau}) + x_1({tau}){times}{small} + {dots}"
         ));
         let _ = writeln!(text, "Normalisation: {}.\n", condition_text(result.condition));
         if matches!(result.solution, Solution::Lobachevsky(_)) {
@@ -181,12 +199,14 @@ impl<'a> Report<'a> {
         for (named, numbers) in result.series.iter().zip(&self.numbers) {
             let _ = writeln!(
                 text,
-                "{} in powers of {small}:",
+                "{}{} in powers of {small}:{}",
+                frame.gap(),
                 named.name.replace('_', " "),
+                frame.gap(),
                 small = match style {
                     Style::Text => small.clone(),
                     Style::Latex => format!("${small}$"),
-                }
+                },
             );
             for (n, number) in numbers.iter().enumerate() {
                 let exact = result.print_coefficient(named, n, style);
@@ -299,6 +319,7 @@ struct Names {
     gap: &'static str,
     w: &'static str,
     prime: &'static str,
+    dots: &'static str,
     /// What stands for what in the Lobachevsky ring.
     ring: &'static str,
 }
@@ -321,6 +342,7 @@ impl Names {
                 gap: "   ",
                 w: "W",
                 prime: "''",
+                dots: "...",
                 ring: "l = -ln|cos(tau)|, Lambda_m = integral of l^m/m! - mu_m from 0 to tau (periodic),\nmu_m = mean of l^m/m!, f_n = right side without W_n x_0''.\n\n",
             },
             Style::Latex => Self {
@@ -330,6 +352,7 @@ impl Names {
                 gap: "\\quad ",
                 w: "W",
                 prime: "''",
+                dots: "\\dots",
                 ring: "$\\ell = -\\ln|\\cos\\tau|$, \
                        $\\Lambda_m = \\int_0^\\tau(\\ell^m/m! - \\mu_m)$ (periodic), \
                        $\\mu_m = \\langle\\ell^m/m!\\rangle$, \

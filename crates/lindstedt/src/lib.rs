@@ -9,6 +9,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[doc = include_str!("../../../README.md")]
+#[cfg(doctest)]
+struct Readme;
+
 mod derivation;
 pub mod energy;
 mod error;

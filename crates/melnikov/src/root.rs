@@ -7,7 +7,7 @@ use rug::Float;
 /// intermediate value theorem; `None` unless f has decided, opposite signs at the ends.
 ///
 /// Bisection until the sign at the midpoint is not decided at this precision or the interval is
-/// two neighbouring numbers: at most p steps, each one evaluation at p bits.
+/// two neighbouring numbers or 2^-2p of its first width: about p steps, each one evaluation.
 pub fn enclose_root(
     balls: Balls,
     low: &Float,
@@ -29,7 +29,8 @@ pub fn enclose_root(
     }
     let (mut low, mut high) =
         (Float::with_val(balls.bits(), low), Float::with_val(balls.bits(), high));
-    loop {
+    // A root at 0 itself would be approached through all exponents: 2^-2p of the interval is enough.
+    for _ in 0..balls.bits().saturating_mul(2).saturating_add(256) {
         let middle = Float::with_val(balls.bits(), &low + &high) / 2u32;
         if middle <= low || middle >= high {
             break;
