@@ -69,7 +69,9 @@ fn figure_and_table() {
 
 #[test]
 fn refusals_have_their_exit_code() {
-    let cases: [(&[&str], i32); 9] = [
+    let cases: [(&[&str], i32); 10] = [
+        // Beyond every exponent: not decided, and not called zero.
+        (&["--set", "omega=1e12"], 4),
         (&["--set", "a=0"], 3),
         (&["--set", "omega=-1"], 3),
         (&["--set", "x=1"], 2),

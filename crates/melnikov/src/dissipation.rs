@@ -10,7 +10,7 @@ use lindstedt_coeff::ball::{Ball, Balls};
 use rug::float::Constant;
 use rug::{Float, Integer, Rational};
 
-/// D for dry and polynomial friction, in balls, by section 4.1 of `mathematics/stick-slip.md`:
+/// D for dry and polynomial friction, in balls:
 ///
 /// D_sigma = T0 S(sigma v*) + sum_k t_k sum_j C(k,j) (-v*)^(k-j) sigma^(j+1) m_{j+1}
 ///
@@ -121,7 +121,7 @@ fn chart(potential: &Potential, bits: u32) -> Option<Chart> {
     })
 }
 
-/// D for any friction law by the finite integral of section 4.2, split where the sliding speed
+/// D for any friction law by the finite integral below, split where the sliding speed
 /// passes a kink of the law; the error is estimated (tanh-sinh), not proved.
 ///
 /// Homoclinic: D = int (T(v - v*) - T(-v - v*)) dx over one half of the loop; heteroclinic:

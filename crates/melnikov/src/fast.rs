@@ -1,8 +1,7 @@
 //! The threshold in f64: stable forms, no allocation per point, surfaces on all cores.
 //!
-//! gamma = G cosh(z)/(2z), z = pi omega/(2 sqrt a), G as in [`crate::StickSlip::g`]. What the
-//! naive forms lose, and the form used instead, is measured in section 5 of
-//! `mathematics/stick-slip.md`.
+//! gamma = G cosh(z)/(2z), z = pi omega/(2 sqrt a), G as in [`crate::StickSlip::g`]. Why
+//! 1 - |v*|/V is not formed as it stands: `docs/src/melnikov.md`.
 
 use crate::MelnikovError;
 use crate::hyperbolic::FRAC_PI_2_LOW;

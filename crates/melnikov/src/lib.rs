@@ -5,8 +5,7 @@
 //! M(t0) = gamma F(omega t0) - D, and M has simple zeros if and only if gamma exceeds
 //! gamma_c = D/max F (D > 0) or D/min F (D < 0). Everything exact is computed in the algebra
 //! Q[sech, tanh] or in closed form and evaluated in balls with proved radii; everything else
-//! carries an estimated error. Sources: the paper's section 3, corrected, and
-//! `mathematics/stick-slip.md`.
+//! carries an estimated error. The mathematics is in `docs/src/melnikov.md`.
 
 mod crossing;
 mod dissipation;

@@ -324,7 +324,7 @@ impl Potential {
     /// minus the whole displacement.
     ///
     /// Double well: 2 sqrt(2a/b) sqrt(1 - |v|/V)_+, the short form of the bracket of (26). The
-    /// others: the table of section 4.6 of `mathematics/stick-slip.md`.
+    /// others: the distance in closed form, potential by potential.
     #[must_use]
     pub fn sign_integral(&self, balls: Balls, v: &Real) -> Option<Ball> {
         let amplitude = self.amplitude(balls)?;

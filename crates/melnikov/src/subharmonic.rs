@@ -1,6 +1,5 @@
 //! Subharmonic Melnikov functions of the double well: periodic orbits in resonance with
-//! cos(omega t), period 2 pi m/omega, inside one well or around both
-//! (section 4.5 of `mathematics/stick-slip.md`).
+//! cos(omega t), period 2 pi m/omega, inside one well or around both.
 
 use crate::elliptic::Elliptic;
 use crate::root::{enclose_root, sqrt_positive_part};

@@ -2,7 +2,9 @@
 
 use crate::dissipation::{polynomial_dissipation, quadrature_dissipation};
 use crate::forcing::ForcingWork;
+use crate::hyperbolic::HyperbolicRing;
 use crate::{Branch, Forcing, Friction, MelnikovError, Potential, Real};
+use lindstedt_algebra::Ring;
 use lindstedt_coeff::ball::{Ball, Balls};
 use rug::Float;
 
@@ -43,7 +45,7 @@ pub struct System {
 }
 
 /// The threshold on one branch, for gamma > 0: simple zeros of M exist if and only if
-/// gamma > `gamma` (section 1 of `mathematics/stick-slip.md`, with the absolute value).
+/// gamma > `gamma` (|gamma| F > |D|, see `docs/src/melnikov.md`).
 #[derive(Clone, Debug)]
 pub struct Threshold {
     /// gamma_c >= 0.
@@ -154,8 +156,8 @@ impl System {
     /// M(t0) = gamma F(omega t0) - D at one t0 (not for incommensurate forcing).
     ///
     /// # Errors
-    /// Those of [`System::dissipation`]; [`MelnikovError::NoForcing`] for a forcing without a
-    /// single frequency.
+    /// Those of [`System::dissipation`]; [`MelnikovError::NoClosedForm`] for a forcing
+    /// without a single frequency.
     pub fn melnikov(
         &self,
         balls: Balls,
@@ -166,7 +168,7 @@ impl System {
         let (d, class) = self.dissipation(balls, branch)?;
         let omega = match &self.forcing {
             Forcing::Harmonics { omega, .. } | Forcing::Parametric { omega } => omega,
-            Forcing::Incommensurate(_) => return Err(MelnikovError::NoForcing),
+            Forcing::Incommensurate(_) => return Err(MelnikovError::NoClosedForm),
         };
         let work = self.work(balls, branch)?;
         let theta = balls.mul(&omega.ball(balls), &t0.ball(balls));
@@ -177,11 +179,23 @@ impl System {
     /// F(theta), the work of the forcing at unit gamma.
     ///
     /// # Errors
-    /// [`MelnikovError::NoForcing`] where the forcing has no such form.
+    /// [`MelnikovError::NoClosedForm`] where the forcing has no such form,
+    /// [`MelnikovError::Undecided`] where its size leaves the range of the exponents.
     pub fn work(&self, balls: Balls, branch: Branch) -> Result<ForcingWork, MelnikovError> {
         self.check_branch(branch)?;
+        let closed = match &self.forcing {
+            Forcing::Harmonics { .. } => true,
+            Forcing::Parametric { .. } => self.potential.description().is_some_and(|orbit| {
+                let ring = HyperbolicRing;
+                ring.mul(&orbit.shape, &ring.derivative(&orbit.shape)).decays()
+            }),
+            Forcing::Incommensurate(_) => false,
+        };
+        if !closed {
+            return Err(MelnikovError::NoClosedForm);
+        }
         ForcingWork::new(balls, &self.potential, branch, &self.forcing)
-            .ok_or(MelnikovError::NoForcing)
+            .ok_or(MelnikovError::Undecided { bits: balls.bits() })
     }
 
     /// (max F, -min F).

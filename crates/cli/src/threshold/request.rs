@@ -10,7 +10,7 @@ use rug::Rational;
 use std::path::Path;
 
 /// The most values of one axis.
-const MOST_VALUES: u64 = 10_000_000;
+const MOST_VALUES: u64 = 1_000_000;
 
 /// A swept parameter.
 pub struct Sweep {
