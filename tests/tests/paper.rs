@@ -8,31 +8,46 @@ use rug::Rational;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-fn section() -> &'static Section {
+fn paper() -> &'static Paper {
     static PAPER: OnceLock<Paper> = OnceLock::new();
     let paper = PAPER.get_or_init(|| match read(Options::QUICK, &mut |_| true) {
         Ok(paper) => paper,
         Err(error) => panic!("{error}"),
     });
     assert!(paper.complete);
-    &paper.sections[0]
+    paper
+}
+
+fn numbered(number: u32) -> &'static Section {
+    paper().section(number).unwrap_or_else(|| panic!("no section {number}"))
+}
+
+fn section() -> &'static Section {
+    numbered(4)
 }
 
 fn row(label: &str) -> &'static Row {
     section().row(label).unwrap_or_else(|| panic!("no row {label}"))
 }
 
-/// Every formula number of the section has a row.
+/// Every formula number of the sections has a row.
 #[test]
 fn every_formula_has_a_row() {
     for number in 28..=51 {
         row(&format!("({number})"));
     }
-    let mut labels: Vec<&str> = section().rows.iter().map(|r| r.label.as_str()).collect();
-    labels.sort_unstable();
-    let all = labels.len();
-    labels.dedup();
-    assert_eq!(labels.len(), all, "labels are unique");
+    for number in 18..=27 {
+        let label = format!("({number})");
+        let found = numbered(3).rows.iter().any(|row| row.label.starts_with(&label));
+        assert!(found, "no row {label}");
+    }
+    for section in &paper().sections {
+        let mut labels: Vec<&str> = section.rows.iter().map(|r| r.label.as_str()).collect();
+        labels.sort_unstable();
+        let all = labels.len();
+        labels.dedup();
+        assert_eq!(labels.len(), all, "labels are unique");
+    }
 }
 
 /// The verdicts that are not "agrees"; every disagreement was found before by hand
@@ -186,9 +201,121 @@ fn interruption() {
         calls += 1;
         !what.contains("pendulum")
     });
-    let rows = stop.as_ref().ok().and_then(|p| p.sections.first()).map(|s| s.rows.len());
+    let rows = stop.as_ref().ok().and_then(|p| p.section(4)).map(|s| s.rows.len());
     assert!(stop.is_ok_and(|paper| !paper.complete));
     assert!(rows.is_some_and(|n| n > 25 && n < section().rows.len()), "{rows:?}");
     let at_once = read(Options::QUICK, &mut |_| false);
-    assert!(at_once.is_ok_and(|paper| !paper.complete && paper.sections[0].rows.is_empty()));
+    assert!(at_once.is_ok_and(|paper| {
+        !paper.complete && paper.sections.len() == 1 && paper.sections[0].rows.is_empty()
+    }));
+}
+
+fn melnikov(label: &str) -> &'static Row {
+    numbered(3).row(label).unwrap_or_else(|| panic!("no row {label}"))
+}
+
+/// The sections come in the order of the paper.
+#[test]
+fn order_of_the_sections() {
+    let numbers: Vec<u32> = paper().sections.iter().map(|s| s.number).collect();
+    assert_eq!(numbers, [3, 4]);
+    assert!(paper().section(5).is_none());
+}
+
+/// Section 3: the verdicts that are not "agrees", each found by hand before.
+#[test]
+fn verdicts_of_section_3() {
+    // What the row must say is printed, the verdict, and what its evidence must contain.
+    let expected = [
+        ("dx/dt = x sqrt(a - b x^2/2) at t = 0.7", Verdict::Misprint, "-x sqrt"),
+        ("sech(sqrt a) tanh", Verdict::Misprint, "sech(sqrt(a) t)"),
+        ("gamma sin t0", Verdict::Misprint, "-1.18385"),
+        ("no term beta int sech^4 tanh^4", Verdict::Misprint, "-1.25690"),
+        ("16/35 beta a^4/sqrt(a b^2)", Verdict::Misprint, "-1.57520"),
+        ("a^2/sqrt(a b)", Verdict::Misprint, "-1.28743"),
+        ("both fractions as printed", Verdict::Misprint, "-1.46734"),
+        ("second root", Verdict::Misprint, "no real value"),
+        ("first branch for all", Verdict::Misprint, "no real value"),
+        ("2 T0 a [...]", Verdict::Misprint, "0.750838"),
+        ("LHS > RHS", Verdict::Wrong, "gamma F > |D|"),
+        ("gamma_c = 0.65", Verdict::NotReproducible, "none of the 5 formulas"),
+        ("two cusps", Verdict::Wrong, "corners"),
+    ];
+    let rows = &numbered(3).rows;
+    for (printed, verdict, evidence) in expected {
+        let found: Vec<&Row> = rows.iter().filter(|r| r.printed.contains(printed)).collect();
+        let [row] = found[..] else { panic!("{printed}: {} rows", found.len()) };
+        assert_eq!(row.verdict, verdict, "{}: {}", row.label, row.evidence);
+        assert!(row.evidence.contains(evidence), "{}: {}", row.label, row.evidence);
+    }
+    assert_eq!(rows.len() - expected.len(), numbered(3).count(Verdict::Agrees));
+    for label in ["(18)", "(19)", "(20)", "(21)", "critical points", "x_0", "(22), 1", "(24)"] {
+        assert_eq!(melnikov(label).verdict, Verdict::Agrees, "{label}");
+    }
+}
+
+/// The numbers of section 3: mpmath 1.3.0 at 60 digits.
+#[test]
+fn numbers_of_section_3() {
+    let threshold = melnikov("gamma_c");
+    assert!(threshold.derived.ends_with("0.63707134284816358297"), "{}", threshold.derived);
+    assert!(threshold.independent.contains("0.637071342848163582"), "{}", threshold.independent);
+    assert!(
+        threshold.evidence.contains("0.653148 and") || threshold.evidence.contains("and 0.653148")
+    );
+    for (label, value) in
+        [("v* = 0.310429", "0.31042902187992282773"), ("v* = 0.557204", "0.55720390385943140500")]
+    {
+        let zero = melnikov(label);
+        assert_eq!(zero.verdict, Verdict::Agrees, "{label}: {}", zero.evidence);
+        assert!(zero.derived.ends_with(value), "{label}: {}", zero.derived);
+    }
+    assert!(melnikov("two cusps").derived.contains("0.316227766016837933"));
+    let touching = melnikov("the cusp touches");
+    assert_eq!(touching.verdict, Verdict::Agrees);
+    assert!(touching.derived.ends_with("129/70") && touching.evidence.contains("-0.14735367"));
+}
+
+/// The table of thresholds, against the same numbers computed with mpmath 1.3.0.
+#[test]
+fn thresholds() {
+    let [table] = &numbered(3).tables[..] else { panic!("one table") };
+    let expected = [
+        ["1", "0.70710678", "0.7640389020310007", "0.4398207539534909", "none", "none"],
+        [
+            "2",
+            "0.5",
+            "0.8012209511748848",
+            "-0.02899154757540702",
+            "0.49964774500409317",
+            "0.52553827281224361",
+        ],
+        [
+            "5",
+            "0.31622776",
+            "0.8895866574359596",
+            "-0.1473536758846797",
+            "0.31042902187992282",
+            "0.55720390385943140",
+        ],
+        [
+            "10",
+            "0.22360679",
+            "0.9475932707030540",
+            "-0.1346045731909936",
+            "0.22026426856003061",
+            "0.56736651461358019",
+        ],
+    ];
+    assert_eq!(table.rows.len(), expected.len());
+    for (row, expected) in table.rows.iter().zip(expected) {
+        assert_eq!(row.len(), table.columns.len());
+        for (cell, expected) in row.iter().zip(expected) {
+            // The reference is rounded in its last digit.
+            let kept = expected.len() - usize::from(expected.len() > 8);
+            assert!(cell.starts_with(&expected[..kept]), "{cell} is not {expected}");
+        }
+    }
+    let notes = table.notes.join("\n");
+    assert!(notes.contains("129/70") && notes.contains("no time domain yet"));
 }

@@ -12,7 +12,7 @@ type Constant<A> = <<A as PhaseAlgebra>::Constants as crate::Ring>::Element;
 ///
 ///   f = c cos psi + s sin psi + (u'' + u),   u(0) = u'(0) = 0,
 ///
-/// where c = 2<f cos> and s = 2<f sin> are the resonant amplitudes (means over a period).
+/// where `c = 2<f cos>` and `s = 2<f sin>` are the resonant amplitudes (means over a period).
 pub trait PhaseAlgebra: RationalAlgebra {
     /// The ring of constants: functions that do not depend on the phase.
     type Constants: RationalAlgebra;
@@ -45,7 +45,7 @@ pub trait PhaseAlgebra: RationalAlgebra {
     fn log_abs(&self, f: &Self::Element) -> Option<Self::Element>;
     /// The number of terms of f, for the work counters.
     fn terms(&self, f: &Self::Element) -> usize;
-    /// The first harmonic (2<f cos>, 2<f sin>) of f.
+    /// The first harmonic `(2<f cos>, 2<f sin>)` of f.
     ///
     /// # Errors
     /// [`PhaseError`] when the mean values are not constants of this algebra.
@@ -63,9 +63,9 @@ pub trait PhaseAlgebra: RationalAlgebra {
 /// f = cos_amplitude cos psi + sin_amplitude sin psi + (response'' + response).
 #[derive(Clone, Debug)]
 pub struct Resolution<A: PhaseAlgebra + ?Sized> {
-    /// 2<f cos psi>.
+    /// `2<f cos psi>`.
     pub cos_amplitude: Constant<A>,
-    /// 2<f sin psi>.
+    /// `2<f sin psi>`.
     pub sin_amplitude: Constant<A>,
     /// The solution u with u(0) = u'(0) = 0.
     pub response: A::Element,

@@ -5,22 +5,29 @@ use crate::arguments::{Format, ProblemsOptions};
 use crate::output;
 use crate::session::{Session, problem};
 use lindstedt::equation::print::Style;
-use lindstedt::equation::{Condition, Problem};
+use lindstedt::equation::{Condition, ParameterCard, Problem};
+use lindstedt::problems::stick_slip;
 use serde_json::json;
 use std::fmt::Write;
 
 pub fn run(options: &ProblemsOptions, session: &Session<'_>) -> Outcome {
-    let list = match &options.show {
-        Some(name) => vec![problem(name)?],
-        None => lindstedt::problems::all(),
+    let belt = stick_slip::card();
+    let (list, belt) = match options.show.as_deref() {
+        Some(name) if name == belt.name => (Vec::new(), Some(belt)),
+        Some(name) => (vec![problem(name)?], None),
+        None => (lindstedt::problems::all(), Some(belt)),
     };
     let text = match session.format() {
         Format::Json => {
-            let list: Vec<_> = list.iter().map(as_json).collect();
+            let list: Vec<_> =
+                list.iter().map(as_json).chain(belt.as_ref().map(card_as_json)).collect();
             format!("{:#}\n", json!({ "problems": list }))
         }
-        Format::Text => list.iter().map(|p| card(p, Style::Text)).collect(),
-        Format::Latex | Format::Markdown => list.iter().map(|p| card(p, Style::Latex)).collect(),
+        format => {
+            let style = if format == Format::Text { Style::Text } else { Style::Latex };
+            let cards: String = list.iter().map(|p| card(p, style)).collect();
+            cards + &belt.as_ref().map(belt_card).unwrap_or_default()
+        }
     };
     output::write(session, &text)?;
     Ok(0)
@@ -59,19 +66,44 @@ fn card(problem: &Problem, style: Style) -> String {
         let name = condition_name(*condition);
         let _ = writeln!(text, "  normalisation {name}: {}", condition_text(*condition));
     }
-    for card in &problem.parameters {
-        let _ = writeln!(text, "  {} = {} by default: {}", card.name, card.default, card.meaning);
-    }
-    let _ = writeln!(text, "  {}\n  source: {}\n", problem.notes, problem.source);
+    closing(&mut text, &problem.parameters, problem.notes, problem.source);
     text
 }
 
+/// The card of a problem that Melnikov's method takes instead of the driver.
+fn belt_card(card: &stick_slip::Card) -> String {
+    let mut text = format!("{}\n  {}\n  {}\n", card.name, card.title, card.equation);
+    let _ = writeln!(text, "  small parameter eps; see `lindstedt threshold`");
+    closing(&mut text, &card.parameters, card.notes, card.source);
+    text
+}
+
+fn closing(text: &mut String, parameters: &[ParameterCard], notes: &str, source: &str) {
+    for card in parameters {
+        let _ = writeln!(text, "  {} = {} by default: {}", card.name, card.default, card.meaning);
+    }
+    let _ = writeln!(text, "  {notes}\n  source: {source}\n");
+}
+
+fn parameters_as_json(parameters: &[ParameterCard]) -> Vec<serde_json::Value> {
+    let json = |card: &ParameterCard| json!({"name": card.name, "default": card.default, "meaning": card.meaning});
+    parameters.iter().map(json).collect()
+}
+
+fn card_as_json(card: &stick_slip::Card) -> serde_json::Value {
+    json!({
+        "name": card.name,
+        "title": card.title,
+        "equation": card.equation,
+        "parameter": "eps",
+        "parameters": parameters_as_json(&card.parameters),
+        "notes": card.notes,
+        "source": card.source,
+    })
+}
+
 fn as_json(problem: &Problem) -> serde_json::Value {
-    let parameters: Vec<_> = problem
-        .parameters
-        .iter()
-        .map(|card| json!({"name": card.name, "default": card.default, "meaning": card.meaning}))
-        .collect();
+    let parameters = parameters_as_json(&problem.parameters);
     let conditions: Vec<_> = problem.conditions.iter().map(|c| condition_name(*c)).collect();
     json!({
         "name": problem.name,

@@ -1,7 +1,7 @@
 //! What all commands share: format, output, progress, limits, Ctrl-C.
 
 use crate::arguments::{Common, Format, Precision};
-use crate::failure::{Failure, UNDECIDED};
+use crate::failure::{Failure, NO_ANSWER, UNDECIDED};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::Value;
 use std::collections::BTreeMap;
@@ -119,6 +119,14 @@ pub fn parameters(list: &[String]) -> Result<BTreeMap<String, Value>, Failure> {
 /// The built-in problem of that name.
 pub fn problem(name: &str) -> Result<lindstedt::equation::Problem, Failure> {
     lindstedt::problems::find(name).ok_or_else(|| {
+        if name == lindstedt::problems::stick_slip::card().name {
+            return Failure {
+                exit: NO_ANSWER,
+                code: "no-expansion",
+                message: "stick-slip has no expansion by Lindstedt and Poincare".into(),
+                hint: "Melnikov's method takes it: lindstedt threshold stick-slip".into(),
+            };
+        }
         let names: Vec<&str> = lindstedt::problems::all().iter().map(|p| p.name).collect();
         let shown: String = name.chars().take(60).collect();
         let message = format!("there is no problem {shown:?}");

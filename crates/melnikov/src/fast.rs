@@ -343,7 +343,7 @@ fn combine(p: &FastPoint, (g, size): (f64, f64), factor: &ForcingFactor) -> f64 
     if g.mantissa == 0.0 { 0.0 } else { ln.exp().copysign(g.mantissa) }
 }
 
-/// The signed thresholds over a grid: `table[i * columns.len() + j]` at rows[i], columns[j].
+/// The signed thresholds over a grid: `table[i * columns.len() + j]` at row i and column j.
 ///
 /// NaN where a parameter leaves its domain (not finite, or a, b, omega <= 0). The rows run on all
 /// cores of the current rayon pool; nothing is allocated per point. What depends on one axis only

@@ -1,4 +1,4 @@
-//! R[[eps]]/eps^(N+1): truncated power series over a ring, multiplied in full.
+//! `R[[eps]]/eps^(N+1)`: truncated power series over a ring, multiplied in full.
 //!
 //! The driver does not use this crate for its own step (it computes one coefficient at a time);
 //! it serves the residual check, which must share no code with the driver, and the series of

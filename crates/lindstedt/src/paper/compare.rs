@@ -15,6 +15,8 @@ use rug::{Integer, Rational};
 ///    no other statement of the paper rests on what was cut off: it agrees.
 /// 2. One change of one term (its factor, what it multiplies, a term left out) or of one digit
 ///    makes it hold, and no other statement of the paper holds only with the error: a misprint.
+///    Where several terms of a formula have such a slip, each has a row of its own. A number that
+///    is printed again with the same digits is no slip of a digit.
 /// 3. It is a number that no formula of the paper gives, neither as printed nor as derived here
 ///    nor through another quantity at that order: not reproducible.
 /// 4. Everything else is wrong.

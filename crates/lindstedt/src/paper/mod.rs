@@ -3,11 +3,12 @@
 //!
 //! The paper is J. Awrejcewicz and I. Andrianov's survey of asymptotic approaches to strongly
 //! nonlinear and non-smooth systems. Only what it prints is written down here; everything beside
-//! it is computed. A further section of the paper adds one module with a function that pushes
-//! [`Row`]s and [`Table`]s, and one line in [`read`].
+//! it is computed. A further section of the paper adds modules with functions that push [`Row`]s
+//! and [`Table`]s, and an entry in `SECTIONS`.
 
 mod compare;
 mod lobachevsky;
+mod melnikov;
 mod numbers;
 mod orders;
 mod pendulum;
@@ -15,6 +16,7 @@ mod pendulum_numbers;
 mod pendulum_results;
 mod periods;
 mod power_law;
+mod stick_slip;
 mod tables;
 
 pub use compare::{Decimal, Findings};
@@ -108,10 +110,17 @@ impl Section {
 /// What was read.
 #[derive(Clone, Debug)]
 pub struct Paper {
-    /// The sections, in the order in which they were asked for.
+    /// The sections, in the order of the paper; those begun, when the observer stopped the work.
     pub sections: Vec<Section>,
     /// Whether everything is there (false when the observer stopped the work).
     pub complete: bool,
+}
+
+impl Paper {
+    /// The section with this number, if it was begun.
+    pub fn section(&self, number: u32) -> Option<&Section> {
+        self.sections.iter().find(|section| section.number == number)
+    }
 }
 
 /// How far to go.
@@ -148,7 +157,7 @@ impl Reader<'_> {
     }
 }
 
-/// Reads the paper (section 4): derives, compares, tabulates.
+/// Reads the paper (sections 3 and 4): derives, compares, tabulates.
 ///
 /// `observer` is told what comes next; when it returns `false` the work stops with the rows
 /// finished so far.
@@ -160,40 +169,59 @@ impl Reader<'_> {
 /// ```
 /// use lindstedt::paper::{Options, Verdict, read};
 /// let paper = read(Options::QUICK, &mut |_| true)?;
-/// let row = paper.sections[0].row("(42)").ok_or("no such row")?;
+/// let section = paper.section(4).ok_or("no such section")?;
+/// let row = section.row("(42)").ok_or("no such row")?;
 /// assert_eq!(row.verdict, Verdict::Wrong);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<Paper, Error> {
     let mut reader = Reader { options, balls: Balls::new(BITS), observer };
-    let mut section = Section {
-        number: 4,
-        title: "Strongly nonlinear systems",
-        rows: Vec::new(),
-        tables: Vec::new(),
-    };
-    let parts: [(&str, Part); 4] = [
-        ("the power law, (28)-(42)", power_law::read),
-        ("its numbers", numbers::read),
-        ("the pendulum, (43)-(51)", pendulum::read),
-        ("the tables", tables::read),
-    ];
-    let mut complete = true;
-    for (what, part) in parts {
-        if !reader.goes_on(what) {
-            complete = false;
-            break;
+    let mut paper = Paper { sections: Vec::new(), complete: true };
+    for (number, title, parts) in SECTIONS {
+        let mut section = Section { number: *number, title, rows: Vec::new(), tables: Vec::new() };
+        for (what, part) in *parts {
+            paper.complete = reader.goes_on(what) && part(&mut reader, &mut section)?;
+            if !paper.complete {
+                break;
+            }
         }
-        complete = part(&mut reader, &mut section)?;
-        if !complete {
+        paper.sections.push(section);
+        if !paper.complete {
             break;
         }
     }
-    Ok(Paper { sections: vec![section], complete })
+    Ok(paper)
 }
+
+/// What is read: number and title of a section, and its parts with their names.
+const SECTIONS: &[(u32, &str, &[NamedPart])] = &[
+    (
+        3,
+        "Prediction of stick-slip chaos",
+        &[
+            ("the stick-slip oscillator, (18)-(21)", stick_slip::read_equation),
+            ("Melnikov's function, (22)-(27)", melnikov::read_formulas),
+            ("its numbers", melnikov::read_numbers),
+            ("the thresholds", stick_slip::read_table),
+        ],
+    ),
+    (
+        4,
+        "Strongly nonlinear systems",
+        &[
+            ("the power law, (28)-(42)", power_law::read),
+            ("its numbers", numbers::read),
+            ("the pendulum, (43)-(51)", pendulum::read),
+            ("the tables", tables::read),
+        ],
+    ),
+];
 
 /// A part of a section: adds to it; false when it was stopped.
 type Part = fn(&mut Reader<'_>, &mut Section) -> Result<bool, Error>;
+
+/// A part with what the observer is told.
+type NamedPart = (&'static str, Part);
 
 /// A row whose statement holds or does not.
 fn plain(
