@@ -319,7 +319,8 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
             "sqrt(1/2+q) - sqrt(1/2-q) = sqrt(1 - |v*|/V)",
         ),
     ]);
-    let fast = Point { v: -1.3 * a / (2.0 * b).sqrt(), ..POINT };
+    // To 6 places, as `exact` takes it.
+    let fast = Point { v: (-1.3e6 * a / (2.0 * b).sqrt()).round() / 1e6, ..POINT };
     let (m_fast, _) = fast.stick_slip().system()?.melnikov(
         balls,
         Branch::Negative,

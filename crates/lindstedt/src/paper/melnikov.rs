@@ -155,7 +155,7 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
         derived: format!("gamma_c = {}", show(&value, DIGITS)),
         independent: format!(
             "D by quadrature: {} (estimated)",
-            second.to_string_radix(10, Some(DIGITS))
+            show(&balls.from_parts(&second, &rug::Float::new(53)), DIGITS)
         ),
         verdict: findings.verdict(),
         evidence: format!(
@@ -164,7 +164,10 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
                 || format!("given by none of the {} formulas tried", sources.len()),
                 |(name, _)| name.clone()
             ),
-            digit.unwrap_or_else(|| "more than one digit differs".to_owned()),
+            digit.map_or_else(
+                || "more than one digit differs".to_owned(),
+                |digit| format!("{digit}, but such a slip is not made twice")
+            ),
             extremes.ok_or(Error::NoValue)?.join(" and ")
         ),
     })

@@ -162,7 +162,7 @@ pub(super) fn difference(
     let shift = i32::try_from(balls.bits() / 4).ok()?;
     let step = balls.mul_power_of_two(&balls.one(), -shift);
     let (right, left) = (force(&step)?, force(&balls.neg(&step))?);
-    if order == 1 {
+    if matches!(order, 1) {
         return Some(balls.mul_power_of_two(&balls.sub(&right, &left), shift - 1));
     }
     let middle = balls.mul_i64(&force(&balls.zero())?, 2);

@@ -251,8 +251,8 @@ fn table(balls: Balls) -> Result<Table, Error> {
                 .to_owned(),
             "V = a/sqrt(2b) is the largest speed on the loop: there gamma has its cusp".to_owned(),
             format!(
-                "the cusp touches gamma = 0 at b = {touching}; below it there are no zeros, above \
-                 it two, one on each side of V"
+                "the cusp touches gamma = 0 at b* = {touching}; the rows with b > b* have two zeros, \
+                 one on each side of V"
             ),
             "at v* = 0 and v* = V themselves the theory does not hold: these are limits".to_owned(),
             "what the paper observes in simulations (gamma = 0.6, 0.65 and 1.2, Fig. 1) is not \
