@@ -152,17 +152,17 @@ fn log_secant(end: &Float, gap: &Float, bits: u32) -> Float {
     -value.abs().ln()
 }
 
-/// [delta^order] of force(delta), order 1 or 2, by a central difference with step 2^-(bits/4):
+/// Taylor coefficient 1 or 2 of force(delta) at 0, by a central difference with step 2^-(bits/4):
 /// the error is of the size 2^-(bits/2). Estimated, not certified.
 pub(super) fn difference(
-    order: usize,
+    power: usize,
     balls: Balls,
     force: impl Fn(&Ball) -> Option<Ball>,
 ) -> Option<Ball> {
     let shift = i32::try_from(balls.bits() / 4).ok()?;
     let step = balls.mul_power_of_two(&balls.one(), -shift);
     let (right, left) = (force(&step)?, force(&balls.neg(&step))?);
-    if matches!(order, 1) {
+    if power == 1 {
         return Some(balls.mul_power_of_two(&balls.sub(&right, &left), shift - 1));
     }
     let middle = balls.mul_i64(&force(&balls.zero())?, 2);
