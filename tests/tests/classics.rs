@@ -197,3 +197,70 @@ fn order_n_computes_only_what_order_n_needs() {
         assert_eq!(work.terms, work.order + 1);
     }
 }
+
+#[test]
+fn the_residual_check_reads_constants_inside_exp() {
+    // exp(eps) satisfies E' = 0 in the phase whatever its coefficients are: its value at psi = 0
+    // is what tells 1 + eps + eps^2/2 + ... from anything else.
+    let x = || Expression::Displacement;
+    let exponential =
+        Expression::Function(lindstedt::equation::Function::Exp, Box::new(Expression::Small));
+    let equation = Expression::Acceleration + x() + Expression::Small * exponential * x().pow(3);
+    let algebra = Trigonometric::new(Rationals);
+    let compiled = compile(&algebra, &equation, &NoNames, 4).unwrap();
+    let right = directly(&equation, Condition::InitialAmplitude, 4).unwrap();
+    assert_eq!(check(&algebra, &compiled, &right), Ok(4));
+    let mut wrong = right.clone();
+    let certificate = wrong.certificates.iter_mut().find(|list| !list.is_empty()).unwrap();
+    certificate[2].cos[0] = Rational::from(777);
+    assert_eq!(check(&algebra, &compiled, &wrong), Err(ExpandError::Residual { order: 2 }));
+}
+
+#[test]
+fn an_unlucky_prime_is_no_verdict() {
+    // The engine's own primes as coefficients: modulo one of them the stiffness vanishes.
+    let (_, roots) = lindstedt::phase::Modular::points_for_degree(5);
+    let fields = lindstedt::phase::modular::PrimeField::with_roots_of_unity(roots, 1 << 61);
+    for field in fields.take(3) {
+        let stiffness = Expression::Number(Rational::from(field.prime()));
+        let mut problem = problems::find("duffing").unwrap();
+        problem.equation = Expression::Acceleration
+            + stiffness * Expression::Displacement
+            + Expression::Small * Expression::Displacement.pow(3);
+        let settings = Settings { order: 1, ..Settings::default() };
+        let result = lindstedt::derive(&problem, &settings, &mut |_| true).unwrap();
+        assert_eq!(result.exact("frequency_squared", 1).as_deref(), Some("3/4"));
+    }
+}
+
+#[test]
+fn labels_do_not_stand_for_equations() {
+    let derive = |name: &str, equation: Expression, route| {
+        let mut problem = problems::find(name).unwrap();
+        problem.equation = equation;
+        let settings = Settings { order: 2, route, ..Settings::default() };
+        lindstedt::derive(&problem, &settings, &mut |_| true)
+    };
+    let x = || Expression::Displacement;
+    let four = Expression::Acceleration + 4 * (x() * x().pow(2).pow(Expression::Small));
+    assert!(derive("power-law", four.clone(), lindstedt::Route::EnergyIntegral).is_err());
+    let driver = derive("power-law", four, lindstedt::Route::Driver).unwrap();
+    assert_eq!(driver.exact("frequency_squared", 1).as_deref(), Some("4 - 8*ln(2)"));
+    // A second formal function has no coefficients of its own.
+    let argument = || Expression::Small * x().pow(2).ln();
+    let two = Expression::Acceleration
+        + x() * argument().formal("S")
+        + Expression::Small * x() * argument().formal("G");
+    assert!(derive("pendulum", two, lindstedt::Route::Driver).is_err());
+    // A repulsive force is no oscillator.
+    let repulsive = Expression::Acceleration - x() + Expression::Small * x().pow(3);
+    assert!(derive("duffing", repulsive, lindstedt::Route::Driver).is_err());
+    // Degrees beyond what the algebras are made for are refused, not wrapped around.
+    let steep =
+        Expression::Acceleration + x() + Expression::Small * x() * x().pow(2).ln().pow(1000);
+    assert!(derive("power-law", steep, lindstedt::Route::Driver).is_err());
+    // Orders that were not derived are not zero.
+    let result = expansion("duffing", 2);
+    assert_eq!(result.exact("frequency", 3), None);
+    assert_eq!(result.terms(3), 0);
+}

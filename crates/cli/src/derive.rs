@@ -7,7 +7,7 @@ use crate::output;
 use crate::problems::{condition_name, condition_text};
 use crate::session::{Session, digits, parameters, problem};
 use lindstedt::coeff::print::Style;
-use lindstedt::equation::{Condition, print};
+use lindstedt::equation::{AmplitudeRole, Condition, print};
 use lindstedt::expand::ExpandError;
 use lindstedt::{Derivation, Error, Number, Progress, Route, Settings, Solution, Status};
 use serde_json::{Value as Json, json};
@@ -64,7 +64,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     output::write(session, &text)?;
     if result.order < settings.order {
         let reason = if session.interrupted() { "interrupted" } else { "time limit" };
-        eprintln!("lindstedt: {reason}: orders 0 to {} are finished and checked", result.order);
+        output::warn(&format!("{reason}: orders 0 to {} are finished and checked", result.order));
         return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
     }
     Ok(0)
@@ -149,6 +149,7 @@ impl<'a> Report<'a> {
             "problem": result.problem.name,
             "equation": format!("{} = 0", result.problem.equation.print(result.problem.small, print::Style::Text)),
             "parameter": result.problem.small,
+            "at": self.at(),
             "order": result.order,
             "tier": "exact",
             "normalisation": condition_name(result.condition),
@@ -162,6 +163,34 @@ impl<'a> Report<'a> {
             "method": method,
             "seconds": session.elapsed().as_secs_f64(),
         })
+    }
+
+    /// The parameters that the numbers depend on.
+    fn at(&self) -> Json {
+        let enters = matches!(
+            self.result.problem.amplitude,
+            AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::InSums
+        );
+        match &self.result.amplitude {
+            Some(value) if enters => json!({"amplitude": value.to_string()}),
+            _ => json!({}),
+        }
+    }
+
+    /// What x stands for when the amplitude is not one.
+    fn scaling(&self) -> String {
+        let Some(value) = &self.result.amplitude else { return String::new() };
+        match self.result.problem.amplitude {
+            AmplitudeRole::ScalesFrequency { .. } if value.to_string() != "1" => format!(
+                "Amplitude a = {value}: x/a is expanded below, W_n belongs to amplitude one; the \
+                 result contains the factor a^(2 {}) of omega^2.\n",
+                self.result.problem.small
+            ),
+            AmplitudeRole::InSums => {
+                format!("Amplitude a = {value} (in the S_n): x/a is expanded below.\n")
+            }
+            _ => String::new(),
+        }
     }
 
     /// The derivation: equation, secular condition, solution of every order.
@@ -188,7 +217,9 @@ impl<'a> Report<'a> {
             "{tau} = {omega}{times}t,{gap}{omega}^2 = {sum},{gap}\
              x = x_0({tau}) + x_1({tau}){times}{small} + {dots}"
         ));
-        let _ = writeln!(text, "Normalisation: {}.\n", condition_text(result.condition));
+        let _ = writeln!(text, "Normalisation: {}.", condition_text(result.condition));
+        text += &self.scaling();
+        text.push('\n');
         if matches!(result.solution, Solution::Lobachevsky(_)) {
             text += names.ring;
         }
@@ -211,7 +242,7 @@ impl<'a> Report<'a> {
             for (n, number) in numbers.iter().enumerate() {
                 let exact = result.print_coefficient(named, n, style);
                 let shown = match number.error {
-                    // Terminating decimals and integers need no second form.
+                    // Zero and small integers need no second form.
                     None if number.decimal == exact => String::new(),
                     _ => format!("  {}", number.decimal),
                 };

@@ -1,9 +1,11 @@
 //! Failures: one clear line, a hint, and the exit code of the contract.
 
 use crate::arguments::Format;
+use crate::output::warn;
 use lindstedt::Error;
 use lindstedt::expand::ExpandError;
 use serde_json::json;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Usage: the arguments do not make sense.
@@ -40,11 +42,11 @@ impl Failure {
         if format == Format::Json {
             let error =
                 json!({"error": {"code": self.code, "message": self.message, "hint": self.hint}});
-            println!("{error}");
+            let _ = writeln!(std::io::stdout(), "{error}");
         } else if self.hint.is_empty() {
-            eprintln!("lindstedt: {}", self.message);
+            warn(&self.message);
         } else {
-            eprintln!("lindstedt: {} ({})", self.message, self.hint);
+            warn(&format!("{} ({})", self.message, self.hint));
         }
         ExitCode::from(self.exit)
     }

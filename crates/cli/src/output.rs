@@ -41,3 +41,8 @@ pub fn trouble(what: &str, error: &std::io::Error) -> Failure {
         hint: String::new(),
     }
 }
+
+/// One line on standard error; a stream that is closed or full is no reason to fail.
+pub fn warn(message: &str) {
+    let _ = writeln!(std::io::stderr(), "lindstedt: {message}");
+}

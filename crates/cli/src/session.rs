@@ -31,7 +31,9 @@ impl<'a> Session<'a> {
             if counter.fetch_add(1, Ordering::SeqCst) > 0 {
                 std::process::exit(i32::from(crate::failure::INTERRUPTED));
             }
-            eprintln!("\nstopping after the step in progress; Ctrl-C again to stop at once");
+            crate::output::warn(
+                "stopping after the step in progress; Ctrl-C again to stop at once",
+            );
         });
         let bar = if common.quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
         if let Ok(style) = ProgressStyle::with_template("{spinner} [{elapsed}] {msg}") {

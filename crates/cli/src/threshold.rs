@@ -37,7 +37,7 @@ pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
     }
     output::write(session, &text)?;
     if table.as_ref().is_some_and(|table| !table.finished) {
-        eprintln!("lindstedt: stopped; the rows not reached are empty");
+        output::warn("stopped; the rows not reached are empty");
         return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
     }
     Ok(0)

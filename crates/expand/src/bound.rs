@@ -13,7 +13,6 @@ use lindstedt_algebra::{PhaseAlgebra, Ring};
 use rug::float::Round;
 use rug::ops::{AddAssignRound, MulAssignRound};
 use rug::{Float, Integer, Rational};
-use std::collections::BTreeMap;
 
 /// The degree of x_n for n = 0..=order, and of everything formed on the way to order + 1;
 /// nothing when the equation is not polynomial.
@@ -180,21 +179,22 @@ where
 }
 
 impl Sizes {
-    /// Generators of all denominators: primes up to 2^10 and what is left without them.
+    /// Generators of all denominators: primes up to 2^10, and a pairwise coprime basis of what is
+    /// left of the denominators without them.
     fn new(numbers: &[Rational], order: usize) -> Self {
         let primes = (2u32..1024).filter(|n| (2..*n).all(|d| n % d != 0));
         let mut generators: Vec<Integer> = primes.map(Integer::from).collect();
-        let mut rests: BTreeMap<Integer, ()> = BTreeMap::new();
+        let mut rests: Vec<Integer> = Vec::new();
         for number in numbers {
             let mut rest = number.denom().clone();
             for prime in &generators {
                 rest.remove_factor_mut(prime);
             }
             if rest != 1 {
-                rests.insert(rest, ());
+                refine(&mut rests, rest);
             }
         }
-        generators.extend(rests.into_keys());
+        generators.extend(rests);
         Self { generators, order }
     }
 
@@ -211,6 +211,10 @@ impl Sizes {
             exponents.push(denominator.remove_factor_mut(generator));
         }
         exponents[0] += extra;
+        if denominator != 1 {
+            // Not a product of generators: no bound, and none is pretended.
+            norm = Float::with_val(64, rug::float::Special::Infinity);
+        }
         (!norm.is_zero()).then_some(Size { exponents, norm })
     }
 
@@ -249,6 +253,9 @@ impl Sizes {
 
     /// The bits of denominator times norm, rounded up generously.
     fn bits(&self, size: &Size) -> u64 {
+        if !size.norm.is_finite() {
+            return u64::MAX;
+        }
         let denominator: u64 = self
             .generators
             .iter()
@@ -263,11 +270,61 @@ impl Sizes {
     }
 }
 
+/// Adds a number to a basis of pairwise coprime numbers, splitting at common factors, so that it
+/// becomes a product of powers of members.
+fn refine(basis: &mut Vec<Integer>, number: Integer) {
+    let mut pending = vec![number];
+    while let Some(n) = pending.pop() {
+        if n == 1 || basis.contains(&n) {
+            continue;
+        }
+        let shares = |b: &Integer| Integer::from(b.gcd_ref(&n)) != 1;
+        match basis.iter().position(shares) {
+            None => basis.push(n),
+            Some(index) => {
+                let member = basis.swap_remove(index);
+                let common = Integer::from(member.gcd_ref(&n));
+                pending.push(Integer::from(member.div_exact_ref(&common)));
+                pending.push(Integer::from(n.div_exact_ref(&common)));
+                pending.push(common);
+            }
+        }
+    }
+}
+
 impl Size {
     fn absorb(&mut self, other: &Self) {
         for (e, f) in self.exponents.iter_mut().zip(&other.exponents) {
             *e = (*e).max(*f);
         }
         self.norm.add_assign_round(&other.norm, Round::Up);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn denominators_that_share_large_factors_are_not_lost() {
+        // lcm(pq, qr) = pqr is a product of powers of the generators only if pq and qr are split.
+        let [p, q, r] = [1_000_003, 1_000_033, 1_000_037].map(Integer::from);
+        let numbers = [
+            Rational::from((Integer::from(1), Integer::from(&p * &q))),
+            Rational::from((Integer::from(1), Integer::from(&q * &r))),
+        ];
+        let sizes = Sizes::new(&numbers, 1);
+        let size = sizes.of_list(numbers.iter().cloned(), 0).unwrap();
+        let mut product = Integer::from(1);
+        for (g, &e) in sizes.generators.iter().zip(&size.exponents) {
+            for _ in 0..e {
+                product *= g;
+            }
+        }
+        assert_eq!(product, p * q * r);
+        assert!(size.norm.is_finite());
+        // A denominator unknown to the generators gives no bound.
+        let stranger = sizes.of_list([Rational::from((1, 2_000_003))].into_iter(), 0).unwrap();
+        assert_eq!(sizes.bits(&stranger), u64::MAX);
     }
 }

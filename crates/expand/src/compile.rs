@@ -6,6 +6,7 @@
 
 use crate::ExpandError;
 use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
 use rug::Rational;
 
@@ -82,11 +83,37 @@ pub fn compile<A: PhaseAlgebra>(
     };
     let is_acceleration = |term: &&Expression| **term == Expression::Acceleration;
     if terms.iter().filter(is_acceleration).count() != 1 {
-        return Err(ExpandError::AccelerationNotIsolated { term: format!("{equation:?}") });
+        return Err(ExpandError::AccelerationNotIsolated {
+            term: equation.print("eps", Style::Text),
+        });
     }
     let rest: Vec<_> = terms.iter().filter(|t| !is_acceleration(t)).cloned().collect();
     let root = compiler.node(&Expression::Sum(rest))?;
+    let equation_degree = degree(&compiler.nodes, root);
+    if equation_degree > LARGEST_DEGREE {
+        let term = format!("a term of degree {equation_degree}, above {LARGEST_DEGREE},");
+        return Err(ExpandError::UnsupportedTerm { term });
+    }
     Ok(Equation { nodes: compiler.nodes, root })
+}
+
+/// A larger degree is a different problem, and exponents of the algebras are bounded by it.
+const LARGEST_DEGREE: usize = 1000;
+
+/// The degree of a node in x, x' and ln|x|.
+fn degree<E>(nodes: &[Node<E>], root: NodeId) -> usize {
+    let mut degrees: Vec<usize> = Vec::new();
+    for node in nodes {
+        degrees.push(match node {
+            Node::Constant(_) | Node::Small => 0,
+            Node::Displacement | Node::Velocity => 1,
+            Node::Sum(terms) => terms.iter().map(|(_, t)| degrees[*t]).max().unwrap_or(0),
+            Node::Product(a, b) => degrees[*a].saturating_add(degrees[*b]),
+            Node::Logarithm(a) | Node::Exponential(a) => degrees[*a],
+            Node::Formal { argument, .. } => degrees[*argument],
+        });
+    }
+    degrees.get(root).copied().unwrap_or(0)
 }
 
 struct Compiler<'a, A: PhaseAlgebra> {
@@ -107,7 +134,8 @@ impl<A: PhaseAlgebra> Compiler<'_, A> {
 
     fn node(&mut self, expression: &Expression) -> Result<NodeId, ExpandError> {
         let constants = self.algebra.constants();
-        let unsupported = || ExpandError::UnsupportedTerm { term: format!("{expression:?}") };
+        let unsupported =
+            || ExpandError::UnsupportedTerm { term: expression.print("eps", Style::Text) };
         let node = match expression {
             Expression::Number(q) => Node::Constant(constants.rational(q)),
             Expression::Parameter(name) => Node::Constant(
@@ -167,8 +195,10 @@ impl<A: PhaseAlgebra> Compiler<'_, A> {
     fn power(&mut self, base: &Expression, exponent: &Expression) -> Result<NodeId, ExpandError> {
         if let Expression::Number(q) = exponent {
             let integer = q.is_integer().then(|| q.numer().to_u32()).flatten();
-            let unsupported =
-                || ExpandError::UnsupportedTerm { term: format!("{base:?}^{exponent:?}") };
+            let unsupported = || {
+                let whole = Expression::Power(Box::new(base.clone()), Box::new(exponent.clone()));
+                ExpandError::UnsupportedTerm { term: whole.print("eps", Style::Text) }
+            };
             // Multiplying repeatedly: a power as long as the expansion is a different problem.
             let n = integer.filter(|&n| n <= 1000).ok_or_else(unsupported)?;
             if n == 0 {

@@ -56,9 +56,12 @@ impl<A: PhaseAlgebra> Expansion<A> {
         self.solution.len() - 1
     }
 
-    /// f_n, the right side of x_n'' + x_n = f_n - W_n x_0'' (zero at order zero).
+    /// f_n, the right side of x_n'' + x_n = f_n - W_n x_0'' (zero at order zero and beyond the
+    /// orders derived).
     pub fn right_side(&self, algebra: &A, n: usize) -> A::Element {
-        let (x, w) = (&self.solution[n], &self.frequency_squared[n]);
+        let (Some(x), Some(w)) = (self.solution.get(n), self.frequency_squared.get(n)) else {
+            return algebra.zero();
+        };
         let sum = algebra.add(&algebra.derivative(&algebra.derivative(x)), x);
         let Some(leading) = self.solution.first().filter(|_| n > 0) else { return sum };
         let inertia = algebra.derivative(&algebra.derivative(leading));

@@ -31,6 +31,9 @@ pub enum ExpandError {
     /// The factor of x at order zero cannot be divided by.
     #[error("the linear stiffness vanishes or cannot be inverted")]
     SingularStiffness,
+    /// x'' - k x is no oscillator.
+    #[error("the linear stiffness is negative: no oscillation about x = 0")]
+    NegativeStiffness,
     /// The stiffness is not 1 although the velocity occurs: omega_0 would be needed.
     #[error("the equation contains x': scale time so that the linear stiffness is 1")]
     StiffnessNotOne,

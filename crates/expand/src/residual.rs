@@ -200,16 +200,24 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
         let constants = self.algebra.constants();
         let at_zero = |id: NodeId| {
             let list = values[id].coefficients.iter();
-            Series::truncated(list.filter_map(|c| self.algebra.at_zero(c)).collect())
+            let coefficients: Option<_> = list.map(|c| self.algebra.at_zero(c)).collect();
+            coefficients.map(|coefficients| Series {
+                coefficients,
+                is_polynomial: values[id].is_polynomial,
+            })
         };
-        let own = at_zero(id);
+        let undecided = || ExpandError::UnsupportedTerm {
+            term: "a value at psi = 0 that the algebra cannot give".into(),
+        };
+        let own = at_zero(id).ok_or_else(undecided)?;
         let expected = match node {
             &Node::Logarithm(y) => {
-                return self.same(&self.exponential(&own), &at_zero(y), own.known());
+                let value = at_zero(y).ok_or_else(undecided)?;
+                return self.same(&self.exponential(&own), &value, own.known());
             }
-            &Node::Exponential(g) => self.exponential(&at_zero(g)),
+            &Node::Exponential(g) => self.exponential(&at_zero(g).ok_or_else(undecided)?),
             Node::Formal { leading, argument, .. } => {
-                let argument = at_zero(*argument);
+                let argument = at_zero(*argument).ok_or_else(undecided)?;
                 if argument.coefficients.iter().any(|c| !constants.is_zero(c)) {
                     return Err(ExpandError::UnsupportedTerm {
                         term: "a formal function whose argument does not vanish at psi = 0".into(),
@@ -230,8 +238,9 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
     ) -> Series<<A::Constants as Ring>::Element> {
         let constants = self.algebra.constants();
         let mut term = Series::polynomial(vec![constants.one()]);
-        let mut sum = g.map(|_| constants.zero()).add(constants, &term);
-        for j in 1..g.coefficients.len() {
+        let mut sum = term.clone();
+        // g has no term of order zero, so g^j starts at order j.
+        for j in 1..=self.order {
             term = term.mul(constants, g, self.order);
             term = term.map(|c| constants.scale(c, &Rational::from((1, j))));
             sum = sum.add(constants, &term);
@@ -239,14 +248,20 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
         sum
     }
 
-    fn same<E: PartialEq>(
+    /// Whether two series of constants agree in their first `length` coefficients, both known.
+    fn same(
         &self,
-        a: &Series<E>,
-        b: &Series<E>,
+        a: &Series<<A::Constants as Ring>::Element>,
+        b: &Series<<A::Constants as Ring>::Element>,
         length: usize,
     ) -> Result<(), ExpandError> {
-        let pairs = a.coefficients.iter().zip(&b.coefficients).take(length);
-        match pairs.into_iter().position(|(x, y)| x != y) {
+        let zero = self.algebra.constants().zero();
+        let get = |s: &Series<_>, n: usize| match s.coefficients.get(n) {
+            None if s.is_polynomial => Some(zero.clone()),
+            other => other.cloned(),
+        };
+        let differs = |&n: &usize| get(a, n).is_none() || get(a, n) != get(b, n);
+        match (0..length.min(self.order + 1)).find(differs) {
             Some(order) => Err(ExpandError::Residual { order }),
             None => Ok(()),
         }

@@ -84,8 +84,17 @@ pub fn derive(
             return Err(Error::OutOfPrimes);
         }
         let new: Vec<_> = fields.into_par_iter().map(|field| job.image(field)).collect();
+        // A prime can be unlucky (a denominator or a pivot vanishes modulo it): it is skipped. What
+        // fails modulo all of them fails over Q.
+        let mut failure = None;
         for image in new {
-            images.push(image?);
+            match image {
+                Ok(image) => images.push(image),
+                Err(error) => failure = Some(error),
+            }
+        }
+        if let (true, Some(error)) = (images.is_empty(), failure) {
+            return Err(error);
         }
         if !observer(images.len()) {
             return Err(ExpandError::Interrupted { order }.into());

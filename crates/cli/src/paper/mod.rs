@@ -47,7 +47,7 @@ pub fn run(options: &PaperOptions, session: &Session<'_>) -> Outcome {
     }
     let reason = if session.interrupted() { "interrupted" } else { "time limit" };
     let rows: usize = paper.sections.iter().map(|s| s.rows.len()).sum();
-    eprintln!("lindstedt: {reason}: {rows} rows are finished");
+    crate::output::warn(&format!("{reason}: {rows} rows are finished"));
     Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED })
 }
 

@@ -4,6 +4,7 @@ use super::{Route, Settings};
 use crate::{Error, Value};
 use lindstedt_coeff::ball::Balls;
 use lindstedt_equation::{AmplitudeRole, Expression, Function, Problem};
+use rug::Rational;
 use std::collections::BTreeMap;
 
 /// Names and domains of the parameters given.
@@ -22,39 +23,68 @@ pub(super) fn check_parameters(
         }
         let outside =
             |domain| Error::OutsideDomain { name: name.clone(), value: value.to_string(), domain };
-        let ball = value.ball(Balls::new(64));
-        let balls = Balls::new(256);
-        let exact = value.ball(balls);
+        let scales = matches!(problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
         match name.as_str() {
             "amplitude" => match problem.amplitude {
-                AmplitudeRole::ScalesFrequency { .. } if !ball.is_positive() => {
-                    return Err(outside("amplitude > 0 (there is no oscillation at amplitude 0)"));
+                AmplitudeRole::InSums
+                    if !exceeds(value, &Value::Rational(Rational::new()))
+                        || !exceeds(&Value::PiTimes(Rational::from(1)), value) =>
+                {
+                    return Err(outside("0 < amplitude < pi (at pi the period is infinite)"));
                 }
-                AmplitudeRole::InSums => {
-                    // pi itself is the separatrix; a rational multiple of pi is compared exactly.
-                    let below = match value {
-                        Value::PiTimes(q) => *q < 1,
-                        Value::Rational(_) => balls.sub(&balls.pi(), &exact).is_positive(),
-                    };
-                    if !ball.is_positive() || !below {
-                        return Err(outside("0 < amplitude < pi (at pi the period is infinite)"));
-                    }
-                }
-                AmplitudeRole::InSmallParameter if !exact.is_positive() => {
+                AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::InSmallParameter
+                    if !exceeds(value, &Value::Rational(Rational::new())) =>
+                {
                     return Err(outside("amplitude > 0 (there is no oscillation at amplitude 0)"));
                 }
                 _ => {}
             },
-            "n" | "delta"
-                if problem.amplitude == (AmplitudeRole::ScalesFrequency { exponent: 2 })
-                    && !balls.add(&exact, &balls.one()).is_positive() =>
-            {
+            "n" | "delta" if scales && !exceeds(value, &Value::Rational(Rational::from(-1))) => {
                 return Err(outside("greater than -1"));
             }
             _ => {}
         }
     }
+    let both = given.get("n").zip(given.get("delta"));
+    if let Some((n, delta)) = both.and_then(|(n, d)| n.as_rational().zip(d.as_rational()))
+        && *n != Rational::from(delta * 2u32) + 1u32
+    {
+        return Err(Error::OutsideDomain {
+            name: "n".to_owned(),
+            value: n.to_string(),
+            domain: "n = 1 + 2 delta with the delta given",
+        });
+    }
     Ok(())
+}
+
+/// Whether a > b, decided: rational numbers and multiples of pi are compared exactly, and a
+/// rational number differs from a multiple of pi (which is irrational) at some precision.
+fn exceeds(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Rational(p), Value::Rational(q)) | (Value::PiTimes(p), Value::PiTimes(q)) => p > q,
+        (Value::Rational(p), Value::PiTimes(q)) | (Value::PiTimes(q), Value::Rational(p))
+            if q.is_zero() =>
+        {
+            // The multiple of pi is zero: p > 0, or 0 > p.
+            if matches!(a, Value::Rational(_)) { *p > 0 } else { *p < 0 }
+        }
+        _ => {
+            let mut bits = 64u32;
+            loop {
+                let balls = Balls::new(bits);
+                let difference = balls.sub(&a.ball(balls), &b.ball(balls));
+                if difference.is_positive() || difference.is_negative() {
+                    return difference.is_positive();
+                }
+                bits = bits.saturating_mul(2);
+                if balls.bits() < bits / 2 {
+                    // The largest precision there is; no number that can be typed needs it.
+                    return false;
+                }
+            }
+        }
+    }
 }
 
 /// Whether the equation needs the Lobachevsky ring.

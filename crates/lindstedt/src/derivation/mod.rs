@@ -12,7 +12,9 @@ use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_equation::{Condition, Problem};
-use lindstedt_expand::{Binding, Expansion, Request, check, compile, expand, leading_amplitude};
+use lindstedt_expand::{
+    Binding, ExpandError, Expansion, Request, check, compile, expand, leading_amplitude,
+};
 use lindstedt_phase::print::PrintPhase;
 use lindstedt_phase::{Lobachevsky, Trigonometric};
 use rayon::prelude::*;
@@ -113,28 +115,33 @@ pub struct Derivation {
     pub series: Vec<NamedSeries>,
     /// The solution.
     pub solution: Solution,
+    /// The amplitude that was asked for or is the default; nothing where there is none.
+    pub amplitude: Option<Value>,
     constants: Constants,
 }
 
-/// The constants of a problem whose parameters stay formal, except the rational ones given.
-struct Bound {
-    ring: PolynomialRing,
+/// The name of the formal function whose Taylor coefficients are the sums S_n.
+const FORMAL: &str = "S";
+
+/// Rational values given for parameters of the equation, and the formal sums.
+struct Given<'a> {
+    ring: &'a PolynomialRing,
+    parameters: &'a BTreeMap<String, Value>,
 }
 
-impl Binding<PolynomialRing> for Bound {
-    fn parameter(&self, _: &str) -> Option<Polynomial> {
-        None
+impl Binding<PolynomialRing> for Given<'_> {
+    fn parameter(&self, name: &str) -> Option<Polynomial> {
+        Some(self.ring.rational(&RationalBinding::parameter(self, name)?))
     }
-    fn formal(&self, _: &str, n: usize) -> Option<Polynomial> {
-        Some(self.ring.symbol(Symbol::Sum(u16::try_from(n).ok()?)))
+    fn formal(&self, name: &str, n: usize) -> Option<Polynomial> {
+        let sum = Symbol::Sum(u16::try_from(n).ok()?);
+        (name == FORMAL).then(|| self.ring.symbol(sum))
     }
 }
 
-struct NoParameters;
-
-impl RationalBinding for NoParameters {
-    fn parameter(&self, _: &str) -> Option<Rational> {
-        None
+impl RationalBinding for Given<'_> {
+    fn parameter(&self, name: &str) -> Option<Rational> {
+        self.parameters.get(name)?.as_rational().cloned()
     }
 }
 
@@ -171,15 +178,18 @@ pub fn derive(
     let has_logarithms = has_logarithms(&problem.equation);
     limit_memory(problem, settings)?;
     let ring = PolynomialRing { parameters: vec!["ln(a)".to_owned()] };
+    let given = Given { ring: &ring, parameters: &settings.parameters };
     let (solution, powers, amplitudes, stiffness, checked_orders) = if settings.route
         == Route::EnergyIntegral
     {
         let (powers, stiffness) = energy_integral(problem, &ring, settings.order)?;
+        if !observer(Progress::Checking) {
+            return Err(ExpandError::Interrupted { order: settings.order }.into());
+        }
         (Solution::FrequencyOnly, powers, Vec::new(), stiffness, None)
     } else if has_logarithms {
         let algebra = Lobachevsky::new(ring.clone());
-        let equation =
-            compile(&algebra, &problem.equation, &Bound { ring: ring.clone() }, settings.order)?;
+        let equation = compile(&algebra, &problem.equation, &given, settings.order)?;
         let leading_amplitude = leading_amplitude(&algebra, &equation, condition)?;
         let request = Request { condition, order: settings.order, leading_amplitude };
         let mut on_order =
@@ -200,7 +210,7 @@ pub fn derive(
         let mut on_primes = |primes| observer(Progress::Primes(primes));
         let proved = multimodular::derive(
             &problem.equation,
-            &NoParameters,
+            &given,
             condition,
             settings.order,
             &mut on_primes,
@@ -219,6 +229,9 @@ pub fn derive(
             Some(order),
         )
     };
+    if ring.as_rational(&stiffness).is_some_and(|kappa| kappa < 0) {
+        return Err(ExpandError::NegativeStiffness.into());
+    }
     let series =
         series(problem, &ring, condition, powers, amplitudes, amplitude.as_ref(), &stiffness)?;
     let default = problem.parameters.iter().find(|p| p.name == "amplitude");
@@ -235,6 +248,7 @@ pub fn derive(
         stiffness,
         series,
         solution,
+        amplitude: amplitude.clone(),
         constants: Constants::new(amplitude),
     })
 }
@@ -248,6 +262,7 @@ impl Derivation {
     /// Coefficient n of a series as an exact expression.
     pub fn exact(&self, name: &str, n: usize) -> Option<String> {
         let series = self.named(name)?;
+        series.coefficients.get(n)?;
         Some(self.print_coefficient(series, n, Style::Text))
     }
 
@@ -280,8 +295,12 @@ impl Derivation {
         self.ring.print(&self.stiffness, style)
     }
 
-    /// W_n of omega^2 = kappa sum W_n eps^n for amplitude one, in the moments mu_m, printed.
+    /// W_n of omega^2 = kappa sum W_n eps^n for amplitude one, in the moments mu_m, printed; empty
+    /// beyond the orders derived.
     pub fn frequency_correction(&self, n: usize, style: Style) -> String {
+        if n > self.order {
+            return String::new();
+        }
         match &self.solution {
             Solution::FrequencyOnly => String::new(),
             Solution::Lobachevsky(expansion) => {
@@ -295,6 +314,9 @@ impl Derivation {
 
     /// x_n(0), printed.
     pub fn amplitude_correction(&self, n: usize, style: Style) -> String {
+        if n > self.order {
+            return String::new();
+        }
         match &self.solution {
             Solution::FrequencyOnly => String::new(),
             Solution::Lobachevsky(expansion) => self.ring.print(&expansion.amplitude[n], style),
@@ -330,8 +352,11 @@ impl Derivation {
         Some(balls.mul(&value, &balls.powi(&root, series.half_power.into())?))
     }
 
-    /// x_n printed, as a function of the phase `tau` = omega t.
+    /// x_n printed, as a function of the phase `tau` = omega t; empty beyond the orders derived.
     pub fn print_solution(&self, n: usize, style: Style) -> String {
+        if n > self.order {
+            return String::new();
+        }
         match &self.solution {
             Solution::FrequencyOnly => String::new(),
             Solution::Lobachevsky(expansion) => {
@@ -343,8 +368,12 @@ impl Derivation {
         }
     }
 
-    /// The right side f_n of x_n'' + x_n = f_n - W_n x_0'', printed, and its number of terms.
+    /// The right side f_n of x_n'' + x_n = f_n - W_n x_0'', printed, and its number of terms; empty
+    /// beyond the orders derived.
     pub fn print_right_side(&self, n: usize, style: Style) -> (String, usize) {
+        if n > self.order {
+            return (String::new(), 0);
+        }
         match &self.solution {
             Solution::Lobachevsky(expansion) => {
                 let algebra = Lobachevsky::new(self.ring.clone());
@@ -360,8 +389,11 @@ impl Derivation {
         }
     }
 
-    /// The number of terms of x_n.
+    /// The number of terms of x_n; 0 beyond the orders derived.
     pub fn terms(&self, n: usize) -> usize {
+        if n > self.order {
+            return 0;
+        }
         match &self.solution {
             Solution::FrequencyOnly => 0,
             Solution::Lobachevsky(expansion) => expansion.solution[n].len(),

@@ -1,13 +1,13 @@
 //! The series of a result: powers of the frequency, in closed form, scaled to the amplitude.
 
-use super::NamedSeries;
 use super::limits::has_logarithms;
+use super::{FORMAL, NamedSeries};
 use crate::energy::{period_over_2pi, power_law_frequency};
 use crate::{Error, Value};
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::closed_forms::ClosedForms;
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
-use lindstedt_equation::{AmplitudeRole, Condition, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
 use lindstedt_series::Series;
 use rayon::prelude::*;
 use rug::Rational;
@@ -49,7 +49,11 @@ pub(super) fn series(
     // Without logarithms there is nothing to close (and tables to order 100 take minutes).
     let closes =
         has_logarithms(&problem.equation) && !matches!(problem.amplitude, AmplitudeRole::InSums);
-    let forms = closes.then(|| ClosedForms::new(u16::try_from(order).unwrap_or(u16::MAX)));
+    let lists = [&powers.squared, &powers.first, &powers.inverse];
+    let monomials = lists.into_iter().flatten().flat_map(|p| p.terms());
+    let symbols = monomials.flat_map(|(m, _)| m.factors()).map(|(symbol, _)| *symbol);
+    let moments = symbols.filter_map(|s| if let Symbol::Moment(m) = s { Some(m) } else { None });
+    let forms = closes.then(|| ClosedForms::new(moments.max().unwrap_or(0)));
     let close = |list: Vec<Polynomial>| -> Result<Vec<Polynomial>, Error> {
         let Some(forms) = &forms else { return Ok(list) };
         let closed = |p: &Polynomial| forms.closed_form(ring, p).ok_or(Error::NoValue);
@@ -108,6 +112,18 @@ pub(super) fn energy_integral(
     order: usize,
 ) -> Result<(Powers, Polynomial), Error> {
     let unavailable = || Error::NoSuchRoute { problem: problem.name.to_owned() };
+    // The formulas hold for these two equations, whatever the problem is called.
+    let x = || Expression::Displacement;
+    let square = || x().pow(2);
+    let power_law = Expression::Acceleration + x() * square().pow(Expression::Small);
+    let formal = (Expression::Small * square().ln()).formal(FORMAL);
+    let expected = match problem.amplitude {
+        AmplitudeRole::ScalesFrequency { .. } => power_law,
+        _ => Expression::Acceleration + x() * formal,
+    };
+    if problem.equation != expected {
+        return Err(unavailable());
+    }
     let size = u16::try_from(order).map_err(|_| unavailable())?;
     match problem.amplitude {
         AmplitudeRole::ScalesFrequency { exponent: 2 } => {

@@ -7,12 +7,12 @@ use smallvec::SmallVec;
 
 /// l^e_0 Lambda_1^e_1 Lambda_2^e_2 ...: the exponents, without trailing zeros.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Default)]
-pub struct Word(SmallVec<[u8; 16]>);
+pub struct Word(SmallVec<[u16; 8]>);
 
 impl Word {
-    /// l^exponent. Exponents above 255 do not occur: the weight of an expansion's terms is at
-    /// most its order, which the driver bounds.
-    pub fn log(exponent: u8) -> Self {
+    /// l^exponent. Exponents stay far below 2^16: the compiler of equations refuses degrees above
+    /// 1000, and the weight of order n is at most n + 1 times the degree.
+    pub fn log(exponent: u16) -> Self {
         let mut word = Self::default();
         if exponent > 0 {
             word.0.push(exponent);
@@ -30,7 +30,7 @@ impl Word {
     }
 
     /// The exponents of l, Lambda_1, Lambda_2, ...
-    pub fn exponents(&self) -> &[u8] {
+    pub fn exponents(&self) -> &[u16] {
         &self.0
     }
 
@@ -46,7 +46,7 @@ impl Word {
     }
 
     /// The word with the exponent at `index` lowered by one, and that exponent.
-    fn lowered(&self, index: usize) -> Option<(Self, u8)> {
+    fn lowered(&self, index: usize) -> Option<(Self, u16)> {
         let exponent = *self.0.get(index).filter(|&&e| e > 0)?;
         let mut word = self.clone();
         word.0[index] -= 1;
@@ -135,7 +135,7 @@ pub(super) fn along_lambdas<C: Moments>(
         for index in 1..word.exponents().len() {
             let Some((lowered, exponent)) = word.lowered(index) else { continue };
             let m = index as u32;
-            let power = Word::log(u8::try_from(m).unwrap_or(u8::MAX));
+            let power = Word::log(index as u16);
             let coefficient =
                 Rational::from((u32::from(exponent), Integer::from(Integer::factorial(m))));
             sum.add(constants, lowered.times(&power), constants.scale(c, &coefficient));
@@ -159,7 +159,7 @@ pub(super) fn from_gradient<C: Moments>(
         rest.0[0] = 0;
         let degree = rest.lambda_degree() + 1;
         let factor = Rational::from((Integer::from(Integer::factorial(m.into())), degree));
-        let raised = rest.times(&Word::lambda(m.into()));
+        let raised = rest.times(&Word::lambda(m));
         Some((raised, constants.scale(c, &factor)))
     });
     Sparse::collect(constants, terms)
