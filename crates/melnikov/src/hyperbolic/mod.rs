@@ -9,12 +9,14 @@
 mod double;
 mod fourier;
 mod integral;
+mod moment;
 mod real_power;
 
 pub(crate) use double::FRAC_PI_2_LOW;
 pub use double::{integral_f64, line_fourier_f64, sech_half_pi};
 pub use fourier::{FourierForm, FourierTransform, line_fourier, line_fourier_ball};
 pub use integral::{LineIntegral, line_integral};
+pub use moment::{PiPolynomial, line_moment};
 pub use real_power::{beta, gamma, line_fourier_real, line_integral_real};
 
 use lindstedt_algebra::{RationalAlgebra, Ring};
