@@ -327,4 +327,14 @@ mod tests {
         let stranger = sizes.of_list([Rational::from((1, 2_000_003))].into_iter(), 0).unwrap();
         assert_eq!(sizes.bits(&stranger), u64::MAX);
     }
+
+    #[test]
+    fn a_cosine_has_denominator_two_in_powers_of_z() {
+        // cos^2 psi = (z^2 + 2 + z^-2)/4: denominator 4, norm 1.
+        let sizes = Sizes::new(&[], 0);
+        let cosine = vec![sizes.of_list([Rational::from(1)].into_iter(), 1)];
+        let square = sizes.product(&cosine, &cosine).remove(0).unwrap();
+        assert_eq!(square.exponents[0], 2);
+        assert_eq!(square.norm, 1);
+    }
 }
