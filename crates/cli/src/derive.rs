@@ -147,7 +147,7 @@ impl<'a> Report<'a> {
         };
         json!({
             "problem": result.problem.name,
-            "equation": format!("{} = 0", result.problem.equation.print(result.problem.small, print::Style::Text)),
+            "equation": format!("{} = 0", result.problem.equation.print(&result.problem.small, print::Style::Text)),
             "parameter": result.problem.small,
             "at": self.at(),
             "order": result.order,
@@ -198,14 +198,14 @@ impl<'a> Report<'a> {
         let result = self.result;
         let mut text = String::new();
         let small = match style {
-            Style::Text => result.problem.small.to_owned(),
-            Style::Latex => lindstedt::coeff::print::latex_name(result.problem.small),
+            Style::Text => result.problem.small.to_string(),
+            Style::Latex => lindstedt::coeff::print::latex_name(&result.problem.small),
         };
         let print_style = match style {
             Style::Text => print::Style::Text,
             Style::Latex => print::Style::Latex,
         };
-        let equation = result.problem.equation.print(result.problem.small, print_style);
+        let equation = result.problem.equation.print(&result.problem.small, print_style);
         text += &frame.title(&format!("{}: {}", result.problem.name, result.problem.title));
         text += &frame.formula(&format!("{equation} = 0"));
         let names = Names::new(style);

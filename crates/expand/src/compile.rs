@@ -156,7 +156,9 @@ impl<A: PhaseAlgebra> Compiler<'_, A> {
             Expression::Function(Function::Exp, argument) => {
                 Node::Exponential(self.node(argument)?)
             }
-            Expression::Function(..) => return Err(unsupported()),
+            Expression::Function(..) | Expression::Time | Expression::Delayed(..) => {
+                return Err(unsupported());
+            }
             Expression::Formal(name, argument) => return self.formal(name, argument),
         };
         Ok(self.push(node))

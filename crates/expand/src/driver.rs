@@ -92,6 +92,7 @@ pub fn leading_amplitude<A: PhaseAlgebra>(
     match condition {
         Condition::LimitCycle => limit_cycle::leading_amplitude(algebra, equation),
         Condition::InitialAmplitude | Condition::FundamentalAmplitude => Ok(Rational::from(1)),
+        Condition::FreeAmplitude => Err(ExpandError::AmplitudeIsFree),
     }
 }
 

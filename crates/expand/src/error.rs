@@ -46,6 +46,9 @@ pub enum ExpandError {
         /// The order at which it appears.
         order: usize,
     },
+    /// A free amplitude was asked of the expansion at fixed amplitude.
+    #[error("a free amplitude drifts: it is taken by the averaging expansion")]
+    AmplitudeIsFree,
     /// No limit cycle: the first-order averaged equation has no positive root.
     #[error("no limit cycle: the averaged amplitude equation of order 1 has no positive root")]
     NoLimitCycle,

@@ -94,7 +94,7 @@ pub fn check_normalisation<A: PhaseAlgebra>(
                 .is_some_and(|a| *x == algebra.scale_by(&algebra.cosine(), a)),
             Condition::InitialAmplitude => vanishes(x) && vanishes(&algebra.derivative(x)),
             Condition::LimitCycle => vanishes(&algebra.derivative(x)),
-            Condition::FundamentalAmplitude => algebra
+            Condition::FundamentalAmplitude | Condition::FreeAmplitude => algebra
                 .first_harmonic(x)
                 .is_ok_and(|(c, s)| constants.is_zero(&c) && constants.is_zero(&s)),
         };

@@ -6,6 +6,7 @@ mod pendulum;
 mod power_law;
 pub mod stick_slip;
 mod van_der_pol;
+pub mod vibro_impact;
 
 use lindstedt_equation::Problem;
 

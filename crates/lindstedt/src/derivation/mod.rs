@@ -173,7 +173,7 @@ pub fn derive(
         Some(asked) => problem.conditions.iter().copied().find(|c| *c == asked),
     };
     let condition =
-        condition.ok_or_else(|| Error::UnknownCondition { problem: problem.name.to_owned() })?;
+        condition.ok_or_else(|| Error::UnknownCondition { problem: problem.name.to_string() })?;
     let amplitude = settings.parameters.get("amplitude").cloned();
     let has_logarithms = has_logarithms(&problem.equation);
     limit_memory(problem, settings)?;
@@ -237,7 +237,7 @@ pub fn derive(
     let default = problem.parameters.iter().find(|p| p.name == "amplitude");
     let amplitude = match amplitude {
         Some(value) => Some(value),
-        None => default.map(|card| Value::parse(card.default)).transpose()?,
+        None => default.map(|card| Value::parse(&card.default)).transpose()?,
     };
     Ok(Derivation {
         problem: problem.clone(),
