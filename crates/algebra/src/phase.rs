@@ -31,6 +31,10 @@ pub trait FunctionAlgebra: RationalAlgebra {
     fn log_abs(&self, f: &Self::Element) -> Option<Self::Element>;
     /// The number of terms of f, for the work counters.
     fn terms(&self, f: &Self::Element) -> usize;
+    /// The number of delays that the algebra knows; 0 where time is the phase alone.
+    fn delays(&self) -> usize {
+        0
+    }
     /// (cos m eta, sin m eta) of a forcing phase eta; nothing in algebras without one.
     fn forcing(&self, _multiple: u32) -> Option<(Self::Element, Self::Element)> {
         None
@@ -89,6 +93,20 @@ pub enum PhaseError {
         /// The power of cos psi at which the elimination leaves a remainder.
         power: i32,
     },
+    /// The harmonic cos(k psi + m eta) is resonant: the linear part has no bounded response.
+    Resonance {
+        /// k.
+        free: i32,
+        /// m.
+        forced: i32,
+    },
+    /// The ring of coefficients cannot divide by what the harmonic needs: could not decide.
+    Indivisible {
+        /// k in cos(k psi + m eta).
+        free: i32,
+        /// m.
+        forced: i32,
+    },
 }
 
 impl std::fmt::Display for PhaseError {
@@ -96,6 +114,17 @@ impl std::fmt::Display for PhaseError {
         match self {
             Self::NotIntegrable { power } => {
                 write!(f, "the antiderivative is not in the algebra (remainder at cos^{power})")
+            }
+            Self::Resonance { free, forced } => {
+                let harmonic = "resonance with the harmonic";
+                write!(f, "{harmonic} cos({free} psi + {forced} eta) of the response and the force")
+            }
+            Self::Indivisible { free, forced } => {
+                let harmonic = "could not divide by the response of the harmonic";
+                write!(
+                    f,
+                    "{harmonic} cos({free} psi + {forced} eta): zero is not excluded, or the parameters must be numbers"
+                )
             }
         }
     }

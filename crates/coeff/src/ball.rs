@@ -14,6 +14,7 @@
 //! ordinary number; underflow is counted as an error, and an overflow gives the whole line.
 
 mod elementary;
+pub mod ring;
 
 use rug::float::{Constant, Round, Special};
 use rug::ops::{AssignRound, Pow};

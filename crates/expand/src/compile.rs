@@ -5,6 +5,7 @@
 //! node, so that x^3 costs x*x and (x*x)*x, and x^2 + x^4 costs no square twice.
 
 use crate::ExpandError;
+use crate::excitation::Excitation;
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
@@ -24,6 +25,20 @@ pub(crate) enum Node<E> {
     Displacement,
     /// x' (with respect to physical time).
     Velocity,
+    /// x (or x') at t - T_delay.
+    Delayed {
+        /// Whether it is the velocity.
+        velocity: bool,
+        /// The position of the delay in [`Excitation::delays`].
+        delay: usize,
+    },
+    /// cos(m eta) or sin(m eta) of the forcing phase eta = omega t.
+    Forcing {
+        /// m.
+        multiple: u32,
+        /// Whether it is the sine.
+        sine: bool,
+    },
     /// sum q_i node_i.
     Sum(Vec<(Rational, NodeId)>),
     /// The product of two nodes.
@@ -76,7 +91,8 @@ pub fn compile<A: FunctionAlgebra>(
     binding: &dyn Binding<A::Constants>,
     order: usize,
 ) -> Result<Equation<A>, ExpandError> {
-    let mut compiler = Compiler { algebra, binding, order, nodes: Vec::new() };
+    let excitation = Excitation::of(equation)?;
+    let mut compiler = Compiler { algebra, binding, order, excitation, nodes: Vec::new() };
     let terms = match equation {
         Expression::Sum(terms) => terms.as_slice(),
         single => std::slice::from_ref(single),
@@ -105,8 +121,8 @@ fn degree<E>(nodes: &[Node<E>], root: NodeId) -> usize {
     let mut degrees: Vec<usize> = Vec::new();
     for node in nodes {
         degrees.push(match node {
-            Node::Constant(_) | Node::Small => 0,
-            Node::Displacement | Node::Velocity => 1,
+            Node::Constant(_) | Node::Small | Node::Forcing { .. } => 0,
+            Node::Displacement | Node::Velocity | Node::Delayed { .. } => 1,
             Node::Sum(terms) => terms.iter().map(|(_, t)| degrees[*t]).max().unwrap_or(0),
             Node::Product(a, b) => degrees[*a].saturating_add(degrees[*b]),
             Node::Logarithm(a) | Node::Exponential(a) => degrees[*a],
@@ -120,6 +136,7 @@ struct Compiler<'a, A: FunctionAlgebra> {
     algebra: &'a A,
     binding: &'a dyn Binding<A::Constants>,
     order: usize,
+    excitation: Excitation,
     nodes: Vec<Node<<A::Constants as Ring>::Element>>,
 }
 
@@ -156,12 +173,30 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
             Expression::Function(Function::Exp, argument) => {
                 Node::Exponential(self.node(argument)?)
             }
-            Expression::Function(..) | Expression::Time | Expression::Delayed(..) => {
-                return Err(unsupported());
+            Expression::Function(function @ (Function::Cos | Function::Sin), argument) => {
+                return self.forcing(*function, argument).ok_or_else(unsupported);
             }
+            Expression::Delayed(inner, delay) => {
+                let position = self.excitation.delays.iter().position(|known| known == &**delay);
+                let delay = position.filter(|&delay| delay < self.algebra.delays());
+                let delay = delay.ok_or_else(unsupported)?;
+                Node::Delayed { velocity: **inner == Expression::Velocity, delay }
+            }
+            Expression::Function(..) | Expression::Time => return Err(unsupported()),
             Expression::Formal(name, argument) => return self.formal(name, argument),
         };
         Ok(self.push(node))
+    }
+
+    /// cos(m eta), and sin(-m eta) = -sin(m eta).
+    fn forcing(&mut self, function: Function, argument: &Expression) -> Option<NodeId> {
+        let signed = self.excitation.multiple(argument)?;
+        let multiple = u32::try_from(signed.unsigned_abs()).ok()?;
+        self.algebra.forcing(multiple)?;
+        let sine = function == Function::Sin;
+        let node = self.push(Node::Forcing { multiple, sine });
+        let sign = Rational::from(if sine && signed < 0 { -1 } else { 1 });
+        Some(self.push(Node::Sum(vec![(sign, node)])))
     }
 
     fn sum(&mut self, terms: &[Expression]) -> Result<NodeId, ExpandError> {

@@ -173,10 +173,11 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         evaluator.assign(&Node::Displacement, 0, x0.clone());
         evaluator.assign(&Node::Velocity, 0, algebra.derivative(&x0));
 
-        let still = [algebra.zero(), algebra.zero()];
-        let moving = [algebra.one(), algebra.zero()];
-        let by_x = evaluator.tangents(&algebra.one(), &still)?;
-        let by_v = evaluator.tangents(&algebra.zero(), &moving)?;
+        let unit = |variable| {
+            move |node: &Node<_>| (*node == variable).then(|| [algebra.one(), algebra.zero()])
+        };
+        let by_x = evaluator.tangents(&unit(Node::Displacement))?;
+        let by_v = evaluator.tangents(&unit(Node::Velocity))?;
         let sensitive: Vec<bool> = by_x
             .iter()
             .zip(&by_v)
@@ -345,7 +346,12 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         alone.assign(&Node::Velocity, 0, algebra.derivative(&self.x[0]));
         let velocity = algebra.scale_by(&algebra.derivative(&self.x[0]), &self.frequency[1]);
         alone.assign(&Node::Velocity, 1, velocity);
-        let tangents = alone.tangents(&direction, &slopes)?;
+        let change = |node: &Node<_>| match node {
+            Node::Displacement => Some([direction.clone(), algebra.zero()]),
+            Node::Velocity => Some(slopes.clone()),
+            _ => None,
+        };
+        let tangents = alone.tangents(&change)?;
         let force = &tangents[self.evaluator.equation.root][1];
         let mut change = algebra.neg(&algebra.scale_by(force, &self.inverse_stiffness));
         let inertia = algebra.scale_by(&direction, &self.frequency_squared[1]);

@@ -5,6 +5,8 @@ use crate::compile::{Equation, Node, NodeId};
 use lindstedt_algebra::{FunctionAlgebra, Ring};
 use rug::Rational;
 
+type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
+
 /// The memory of the driver: coefficient n of every node, as far as it was asked for.
 pub(crate) struct Evaluator<'a, A: FunctionAlgebra> {
     pub(crate) algebra: &'a A,
@@ -17,7 +19,7 @@ pub(crate) struct Evaluator<'a, A: FunctionAlgebra> {
 /// The highest order at which a node can be different from zero, if there is one.
 fn degree<E>(node: &Node<E>) -> Option<usize> {
     match node {
-        Node::Constant(_) => Some(0),
+        Node::Constant(_) | Node::Forcing { .. } => Some(0),
         Node::Small => Some(1),
         _ => None,
     }
@@ -43,12 +45,7 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
     }
 
     /// Sets the coefficient of the displacement or the velocity, if it occurs.
-    pub(crate) fn assign(
-        &mut self,
-        variable: &Node<<A::Constants as Ring>::Element>,
-        n: usize,
-        value: A::Element,
-    ) {
+    pub(crate) fn assign(&mut self, variable: &Node<Constant<A>>, n: usize, value: A::Element) {
         if let Some(node) = self.equation.nodes.iter().position(|known| known == variable) {
             self.store(node, n, value);
         }
@@ -117,10 +114,17 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
         match &equation.nodes[node] {
             Node::Constant(c) if n == 0 => Ok(algebra.embed(c)),
             Node::Small if n == 1 => Ok(algebra.one()),
-            // Orders of x and x' beyond those assigned are the provisional zero.
-            Node::Constant(_) | Node::Small | Node::Displacement | Node::Velocity => {
-                Ok(algebra.zero())
+            Node::Forcing { multiple, sine } if n == 0 => {
+                let (cos, sin) = algebra.forcing(*multiple).ok_or_else(|| unsupported("t"))?;
+                Ok(if *sine { sin } else { cos })
             }
+            // Orders of x and x' beyond those assigned are the provisional zero.
+            Node::Constant(_)
+            | Node::Small
+            | Node::Forcing { .. }
+            | Node::Displacement
+            | Node::Velocity
+            | Node::Delayed { .. } => Ok(algebra.zero()),
             Node::Sum(terms) => {
                 let mut sum = algebra.zero();
                 for (q, term) in terms {
@@ -238,15 +242,15 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
         Ok(sum)
     }
 
-    /// The derivative of the coefficients of order 0 and 1 of every node with respect to x and
-    /// x' in the direction (dx, dv_0 + eps dv_1).
+    /// The derivative of the coefficients of order 0 and 1 of every node when x, x' and their
+    /// delayed values change by `direction`; nothing for a variable that does not change.
     pub(crate) fn tangents(
         &mut self,
-        dx: &A::Element,
-        dv: &[A::Element; 2],
+        direction: &dyn Fn(&Node<Constant<A>>) -> Option<[A::Element; 2]>,
     ) -> Result<Vec<[A::Element; 2]>, ExpandError> {
         let algebra = self.algebra;
         let equation = self.equation;
+        let still = || [algebra.zero(), algebra.zero()];
         let mut tangents: Vec<[A::Element; 2]> = Vec::new();
         for (id, node) in equation.nodes.iter().enumerate() {
             let product = |this: &mut Self, factor: NodeId, tangent: &[A::Element; 2]| {
@@ -255,9 +259,10 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
                 Ok::<_, ExpandError>([algebra.mul(&f[0], &tangent[0]), first])
             };
             let tangent = match node {
-                Node::Constant(_) | Node::Small => [algebra.zero(), algebra.zero()],
-                Node::Displacement => [dx.clone(), algebra.zero()],
-                Node::Velocity => dv.clone(),
+                Node::Constant(_) | Node::Small | Node::Forcing { .. } => still(),
+                Node::Displacement | Node::Velocity | Node::Delayed { .. } => {
+                    direction(node).unwrap_or_else(still)
+                }
                 Node::Sum(terms) => {
                     let mut sum = [algebra.zero(), algebra.zero()];
                     for (q, term) in terms {

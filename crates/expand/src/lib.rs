@@ -6,6 +6,7 @@ mod compile;
 mod driver;
 mod error;
 mod evaluator;
+mod excitation;
 mod limit_cycle;
 mod residual;
 
@@ -13,4 +14,5 @@ pub use bound::{degrees, equation_denominator, residual_bits};
 pub use compile::{Binding, Equation, compile};
 pub use driver::{Expansion, OrderWork, Request, expand, leading_amplitude};
 pub use error::ExpandError;
+pub use excitation::Excitation;
 pub use residual::{check, check_normalisation};

@@ -7,8 +7,10 @@ pub mod lobachevsky;
 pub mod lobachevsky_function;
 pub mod modular;
 pub mod print;
+pub mod torus;
 pub mod trigonometric;
 
 pub use lobachevsky::Lobachevsky;
 pub use modular::Modular;
+pub use torus::{Delay, Torus};
 pub use trigonometric::Trigonometric;
