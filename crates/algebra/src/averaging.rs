@@ -13,6 +13,8 @@ type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
 pub trait AveragingAlgebra: FunctionAlgebra {
     /// a cos psi.
     fn generating_solution(&self) -> Self::Element;
+    /// The amplitudes of cos psi and sin psi in f, functions of a.
+    fn first_harmonic_of(&self, f: &Self::Element) -> [Constant<Self>; 2];
     /// df/da.
     fn by_amplitude(&self, f: &Self::Element) -> Self::Element;
     /// df/dpsi.

@@ -111,20 +111,39 @@ pub fn expand<A: PhaseAlgebra>(
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<Expansion<A>, ExpandError> {
     let mut driver = Driver::start(algebra, equation, request)?;
-    for n in 1..=request.order {
-        let before = driver.evaluator.products;
-        driver.step(n)?;
-        let work = OrderWork {
-            order: n,
-            products: driver.evaluator.products - before,
-            terms: driver.x.last().map_or(0, |x| algebra.terms(x)),
-        };
-        driver.work.push(work);
+    let work = run(&mut driver, request.order, observer)?;
+    driver.finish(work)
+}
+
+/// How the amplitude is treated: fixed or a limit cycle's (`Driver` below), or free and drifting
+/// ([`crate::average`]). The loop over the orders is the same.
+pub(crate) trait Scheme {
+    /// Derives order n: residual, resonant part, response.
+    fn step(&mut self, n: usize) -> Result<(), ExpandError>;
+    /// Products formed so far.
+    fn products(&self) -> u64;
+    /// Terms of the last order of the solution.
+    fn terms(&self) -> usize;
+}
+
+/// The loop over the orders; stops early when the observer says so.
+pub(crate) fn run(
+    scheme: &mut dyn Scheme,
+    order: usize,
+    observer: &mut dyn FnMut(&OrderWork) -> bool,
+) -> Result<Vec<OrderWork>, ExpandError> {
+    let mut list = Vec::new();
+    for n in 1..=order {
+        let before = scheme.products();
+        scheme.step(n)?;
+        let products = scheme.products() - before;
+        let work = OrderWork { order: n, products, terms: scheme.terms() };
+        list.push(work);
         if !observer(&work) {
             break;
         }
     }
-    driver.finish()
+    Ok(list)
 }
 
 struct Driver<'a, A: PhaseAlgebra> {
@@ -145,7 +164,6 @@ struct Driver<'a, A: PhaseAlgebra> {
     /// Whether coefficient n of a node depends on x_n.
     sensitive: Vec<bool>,
     limit_cycle: Option<LimitCycleResponse<A>>,
-    work: Vec<OrderWork>,
 }
 
 /// How order n reacts to a change of the amplitude of order n - 1.
@@ -156,6 +174,57 @@ struct LimitCycleResponse<A: PhaseAlgebra> {
     cos: Constant<A>,
     inverse_sin: Constant<A>,
     response: A::Element,
+}
+
+impl<A: PhaseAlgebra> Scheme for Driver<'_, A> {
+    fn products(&self) -> u64 {
+        self.evaluator.products
+    }
+
+    fn terms(&self) -> usize {
+        self.x.last().map_or(0, |x| self.algebra.terms(x))
+    }
+
+    fn step(&mut self, n: usize) -> Result<(), ExpandError> {
+        let (algebra, constants) = (self.algebra, self.algebra.constants());
+        let f = self.right_side(n)?;
+        let phase = |source| ExpandError::Phase { order: n, source };
+        let mut split = algebra.resolve(&f).map_err(phase)?;
+        if let Some(shift) = self.amplitude_shift(&split.sin_amplitude, n)? {
+            if let Some(reaction) = &self.limit_cycle {
+                let change = constants.mul(&reaction.cos, &shift);
+                constants.add_assign(&mut split.cos_amplitude, &change);
+                let change = algebra.scale_by(&reaction.response, &shift);
+                algebra.add_assign(&mut split.response, &change);
+            }
+            self.shift_amplitude(&shift, n - 1);
+        }
+        // f_n - W_n x_0'' = f_n + W_n a_0 cos psi has no cos psi left:
+        let secular = constants.mul(&split.cos_amplitude, &self.inverse_amplitude);
+        self.frequency_squared.push(constants.neg(&secular));
+        self.extend_frequency(n);
+
+        let mut x = split.response;
+        if self.condition == Condition::FundamentalAmplitude {
+            let (c, s) = algebra.first_harmonic(&x).map_err(phase)?;
+            x = algebra.sub(&x, &algebra.scale_by(&algebra.cosine(), &c));
+            x = algebra.sub(&x, &algebra.scale_by(&algebra.sine(), &s));
+        }
+        let slope = algebra.derivative(&x);
+        self.second_derivatives.push(algebra.derivative(&slope));
+        self.slopes.push(slope);
+        self.forget(n);
+        self.evaluator.assign(&Node::Displacement, n, x.clone());
+        self.x.push(x);
+        if self.evaluator.equation.has_velocity() {
+            let velocity = self.velocity(n);
+            self.evaluator.assign(&Node::Velocity, n, velocity);
+        }
+        if self.condition == Condition::LimitCycle && self.limit_cycle.is_none() {
+            self.limit_cycle = Some(self.prepare_limit_cycle()?);
+        }
+        Ok(())
+    }
 }
 
 impl<'a, A: PhaseAlgebra> Driver<'a, A> {
@@ -211,7 +280,6 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
             x: vec![x0],
             sensitive,
             limit_cycle: None,
-            work: Vec::new(),
         };
         driver.forget(1);
         Ok(driver)
@@ -229,47 +297,6 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         terms.extend(self.convolution(&self.frequency_squared[1..], &self.second_derivatives, n));
         let f = self.algebra.linear_combination(&terms);
         Ok(self.algebra.neg(&f))
-    }
-
-    fn step(&mut self, n: usize) -> Result<(), ExpandError> {
-        let (algebra, constants) = (self.algebra, self.algebra.constants());
-        let f = self.right_side(n)?;
-        let phase = |source| ExpandError::Phase { order: n, source };
-        let mut split = algebra.resolve(&f).map_err(phase)?;
-        if let Some(shift) = self.amplitude_shift(&split.sin_amplitude, n)? {
-            if let Some(reaction) = &self.limit_cycle {
-                let change = constants.mul(&reaction.cos, &shift);
-                constants.add_assign(&mut split.cos_amplitude, &change);
-                let change = algebra.scale_by(&reaction.response, &shift);
-                algebra.add_assign(&mut split.response, &change);
-            }
-            self.shift_amplitude(&shift, n - 1);
-        }
-        // f_n - W_n x_0'' = f_n + W_n a_0 cos psi has no cos psi left:
-        let secular = constants.mul(&split.cos_amplitude, &self.inverse_amplitude);
-        self.frequency_squared.push(constants.neg(&secular));
-        self.extend_frequency(n);
-
-        let mut x = split.response;
-        if self.condition == Condition::FundamentalAmplitude {
-            let (c, s) = algebra.first_harmonic(&x).map_err(phase)?;
-            x = algebra.sub(&x, &algebra.scale_by(&algebra.cosine(), &c));
-            x = algebra.sub(&x, &algebra.scale_by(&algebra.sine(), &s));
-        }
-        let slope = algebra.derivative(&x);
-        self.second_derivatives.push(algebra.derivative(&slope));
-        self.slopes.push(slope);
-        self.forget(n);
-        self.evaluator.assign(&Node::Displacement, n, x.clone());
-        self.x.push(x);
-        if self.evaluator.equation.has_velocity() {
-            let velocity = self.velocity(n);
-            self.evaluator.assign(&Node::Velocity, n, velocity);
-        }
-        if self.condition == Condition::LimitCycle && self.limit_cycle.is_none() {
-            self.limit_cycle = Some(self.prepare_limit_cycle()?);
-        }
-        Ok(())
     }
 
     /// The amplitude of order n - 1 that removes the secular term in sin psi from order n.
@@ -369,7 +396,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     }
 
     /// The amplitude of the last order of a limit cycle is fixed by the order after it.
-    fn finish(mut self) -> Result<Expansion<A>, ExpandError> {
+    fn finish(mut self, work: Vec<OrderWork>) -> Result<Expansion<A>, ExpandError> {
         let algebra = self.algebra;
         let order = self.x.len() - 1;
         if self.limit_cycle.is_some() {
@@ -387,7 +414,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
             frequency_squared: self.frequency_squared,
             amplitude,
             solution: self.x,
-            work: self.work,
+            work,
             certificates: self.evaluator.certificates(order),
         })
     }

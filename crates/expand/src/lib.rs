@@ -1,6 +1,7 @@
 //! The driver and its judge within the algebra: expansions to any order, written once over
 //! [`lindstedt_algebra::PhaseAlgebra`], and the residual check that shares no code with it.
 
+mod averaging;
 mod bound;
 mod compile;
 mod driver;
@@ -10,6 +11,7 @@ mod excitation;
 mod limit_cycle;
 mod residual;
 
+pub use averaging::{AveragedExpansion, average, check_averaged};
 pub use bound::{degrees, equation_denominator, residual_bits};
 pub use compile::{Binding, Equation, compile};
 pub use driver::{Expansion, OrderWork, Request, expand, leading_amplitude};

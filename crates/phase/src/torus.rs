@@ -348,6 +348,10 @@ impl<K: RationalAlgebra> AveragingAlgebra for Torus<K> {
         let amplitude = self.constants.power(1, self.coefficients().one());
         self.harmonic((1, 0), [amplitude, self.constants.zero()])
     }
+    fn first_harmonic_of(&self, f: &Self::Element) -> [AmplitudePolynomial<K::Element>; 2] {
+        let zero = || [self.constants.zero(), self.constants.zero()];
+        f.harmonics.get(&(1, 0)).cloned().unwrap_or_else(zero)
+    }
     fn by_amplitude(&self, f: &Self::Element) -> Self::Element {
         self.map(f, |_, [c, s]| [self.constants.derivative(c), self.constants.derivative(s)])
     }
