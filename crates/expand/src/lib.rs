@@ -11,7 +11,7 @@ mod excitation;
 mod limit_cycle;
 mod residual;
 
-pub use averaging::{AveragedExpansion, average, check_averaged};
+pub use averaging::{AveragedExpansion, average, check_averaged, linear_part};
 pub use bound::{degrees, equation_denominator, residual_bits};
 pub use compile::{Binding, Equation, compile};
 pub use driver::{Expansion, OrderWork, Request, expand, leading_amplitude};

@@ -13,6 +13,7 @@
 #[cfg(doctest)]
 struct Readme;
 
+pub mod averaging;
 mod derivation;
 pub mod energy;
 mod error;

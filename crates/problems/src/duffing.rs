@@ -10,6 +10,7 @@ pub(crate) fn problem() -> Problem {
         equation: Expression::Acceleration + x.clone() + Expression::Small * x.pow(3),
         time_domain: None,
         impact: None,
+        synchronous: None,
         small: "rho".into(),
         conditions: vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude],
         amplitude: AmplitudeRole::InSmallParameter,

@@ -11,6 +11,7 @@ pub(crate) fn problem() -> Problem {
         equation: Expression::Acceleration + x - Expression::Small * gain * Expression::Velocity,
         time_domain: None,
         impact: None,
+        synchronous: None,
         small: "eps".into(),
         conditions: vec![Condition::LimitCycle],
         amplitude: AmplitudeRole::Determined,

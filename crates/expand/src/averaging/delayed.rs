@@ -47,7 +47,7 @@ impl<A: AveragingAlgebra> Tower<A> {
         &self.values
     }
 
-    /// Computes order n, again if it is known: the rates and x of order n may have changed.
+    /// Computes order n as far as x, A_n and B_n of order n are known (or zero).
     pub(super) fn extend(
         &mut self,
         algebra: &A,
@@ -64,12 +64,27 @@ impl<A: AveragingAlgebra> Tower<A> {
             let change = drift(algebra, rates, below, n);
             let change = algebra.scale_by(&change, &step_back(algebra, self.delay, i)?);
             algebra.add_assign(&mut sum, &change);
-            let power = &mut self.powers[i - 1];
-            power.truncate(n);
-            power.push(change);
+            self.powers[i - 1].push(change);
         }
-        self.values.truncate(n);
         self.values.push(algebra.shift(&sum, self.delay)?);
+        Some(())
+    }
+
+    /// Adds to order n what a change of x_n and a change D_n x_0 of the drift bring: only the
+    /// first power feels them.
+    pub(super) fn amend(
+        &mut self,
+        algebra: &A,
+        n: usize,
+        x: &A::Element,
+        drift: &A::Element,
+    ) -> Option<()> {
+        let first = algebra.scale_by(drift, &step_back(algebra, self.delay, 1)?);
+        if let Some(known) = self.powers.first_mut().and_then(|power| power.get_mut(n)) {
+            algebra.add_assign(known, &first);
+        }
+        let change = algebra.shift(&algebra.add(x, &first), self.delay)?;
+        algebra.add_assign(self.values.get_mut(n)?, &change);
         Some(())
     }
 }

@@ -115,48 +115,21 @@ impl<A: AveragingAlgebra> Scheme for Averaging<'_, A> {
         let phase = |source| ExpandError::Phase { order: n, source };
         let Averaged { amplitude_rate, phase_rate, response } =
             algebra.average(&self.linear, &f).map_err(phase)?;
+        let leading = &self.x[0];
+        let drift = algebra.add(
+            &algebra.scale_by(&algebra.by_amplitude(leading), &amplitude_rate),
+            &algebra.scale_by(&algebra.by_phase(leading), &phase_rate),
+        );
         self.amplitude_rate[n] = amplitude_rate;
         self.phase_rate[n] = phase_rate;
-        self.x[n] = response;
-        self.velocity[n] = self.rate_of_change(&self.x, n);
-        self.extend_delayed(n)?;
-        self.assign(n);
-        Ok(())
+        self.amend(n, response, &drift)
     }
 }
 
 impl<'a, A: AveragingAlgebra> Averaging<'a, A> {
     fn start(algebra: &'a A, equation: &'a Equation<A>) -> Result<Self, ExpandError> {
-        let mut evaluator = Evaluator::new(algebra, equation);
+        let (evaluator, linear, sensitive) = linearise(algebra, equation)?;
         let generating = algebra.generating_solution();
-        evaluator.assign(&Node::Displacement, 0, generating.clone());
-        evaluator.assign(&Node::Velocity, 0, algebra.by_time(&generating));
-        for delay in 0..algebra.delays() {
-            let late = algebra.shift(&generating, delay).ok_or(ExpandError::NotWeaklyNonlinear)?;
-            let late_velocity = algebra.by_time(&late);
-            evaluator.assign(&Node::Delayed { velocity: false, delay }, 0, late);
-            evaluator.assign(&Node::Delayed { velocity: true, delay }, 0, late_velocity);
-        }
-        let mut sensitive = vec![false; equation.nodes.len()];
-        let mut factor = |variable: Node<Constant<A>>| {
-            let unit =
-                |node: &Node<_>| (*node == variable).then(|| [algebra.one(), algebra.zero()]);
-            let tangents = evaluator.tangents(&unit)?;
-            for (flag, tangent) in sensitive.iter_mut().zip(&tangents) {
-                *flag |= !algebra.is_zero(&tangent[0]);
-            }
-            algebra.as_constant(&tangents[equation.root][0]).ok_or(ExpandError::NotWeaklyNonlinear)
-        };
-        let linear = LinearPart {
-            stiffness: factor(Node::Displacement)?,
-            damping: factor(Node::Velocity)?,
-            delayed: (0..algebra.delays())
-                .map(|delay| {
-                    let displacement = factor(Node::Delayed { velocity: false, delay })?;
-                    Ok((displacement, factor(Node::Delayed { velocity: true, delay })?))
-                })
-                .collect::<Result<_, ExpandError>>()?,
-        };
         let zero = || vec![algebra.constants().zero()];
         let mut averaging = Self {
             algebra,
@@ -188,10 +161,7 @@ impl<'a, A: AveragingAlgebra> Averaging<'a, A> {
                 // linear part damps or excites it.
                 return Err(ExpandError::NotWeaklyNonlinear);
             }
-            algebra.add_assign(&mut self.x[0], &forced.response);
-            self.velocity[0] = algebra.by_time(&self.x[0]);
-            self.extend_delayed(0)?;
-            self.assign(0);
+            self.amend(0, forced.response, &algebra.zero())?;
             if !algebra.may_vanish(&self.right_side(0)?) {
                 return Err(ExpandError::NotWeaklyNonlinear);
             }
@@ -222,6 +192,19 @@ impl<'a, A: AveragingAlgebra> Averaging<'a, A> {
         Ok(())
     }
 
+    /// Adds u to x_n, and D_n x_0 = `drift` to x_n', with what follows for the delayed values.
+    fn amend(&mut self, n: usize, u: A::Element, drift: &A::Element) -> Result<(), ExpandError> {
+        let algebra = self.algebra;
+        let rate = algebra.add(&algebra.by_time(&u), drift);
+        algebra.add_assign(&mut self.velocity[n], &rate);
+        for tower in &mut self.towers {
+            tower.amend(algebra, n, &u, drift).ok_or(ExpandError::NotWeaklyNonlinear)?;
+        }
+        algebra.add_assign(&mut self.x[n], &u);
+        self.assign(n);
+        Ok(())
+    }
+
     /// Hands order n of x, x' and their delayed values to the evaluator.
     fn assign(&mut self, n: usize) {
         self.evaluator.forget_from(n, &self.sensitive);
@@ -238,6 +221,56 @@ impl<'a, A: AveragingAlgebra> Averaging<'a, A> {
             set(Node::Delayed { velocity: true, delay }, late);
         }
     }
+}
+
+/// The evaluator at a cos psi, the linear part there, and the nodes that depend on order n of x.
+type Linearised<'a, A> = (Evaluator<'a, A>, LinearPart<Constant<A>>, Vec<bool>);
+
+fn linearise<'a, A: AveragingAlgebra>(
+    algebra: &'a A,
+    equation: &'a Equation<A>,
+) -> Result<Linearised<'a, A>, ExpandError> {
+    let mut evaluator = Evaluator::new(algebra, equation);
+    let generating = algebra.generating_solution();
+    evaluator.assign(&Node::Displacement, 0, generating.clone());
+    evaluator.assign(&Node::Velocity, 0, algebra.by_time(&generating));
+    for delay in 0..algebra.delays() {
+        let late = algebra.shift(&generating, delay).ok_or(ExpandError::NotWeaklyNonlinear)?;
+        let late_velocity = algebra.by_time(&late);
+        evaluator.assign(&Node::Delayed { velocity: false, delay }, 0, late);
+        evaluator.assign(&Node::Delayed { velocity: true, delay }, 0, late_velocity);
+    }
+    let mut sensitive = vec![false; equation.nodes.len()];
+    let mut factor = |variable: Node<Constant<A>>| {
+        let unit = |node: &Node<_>| (*node == variable).then(|| [algebra.one(), algebra.zero()]);
+        let tangents = evaluator.tangents(&unit)?;
+        for (flag, tangent) in sensitive.iter_mut().zip(&tangents) {
+            *flag |= !algebra.is_zero(&tangent[0]);
+        }
+        algebra.as_constant(&tangents[equation.root][0]).ok_or(ExpandError::NotWeaklyNonlinear)
+    };
+    let linear = LinearPart {
+        stiffness: factor(Node::Displacement)?,
+        damping: factor(Node::Velocity)?,
+        delayed: (0..algebra.delays())
+            .map(|delay| {
+                let displacement = factor(Node::Delayed { velocity: false, delay })?;
+                Ok((displacement, factor(Node::Delayed { velocity: true, delay })?))
+            })
+            .collect::<Result<_, ExpandError>>()?,
+    };
+    Ok((evaluator, linear, sensitive))
+}
+
+/// The linear part of an equation at order zero; needs no frequency.
+///
+/// # Errors
+/// [`ExpandError::NotWeaklyNonlinear`] when it is not linear with constant factors.
+pub fn linear_part<A: AveragingAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+) -> Result<LinearPart<Constant<A>>, ExpandError> {
+    linearise(algebra, equation).map(|(_, linear, _)| linear)
 }
 
 /// -T/i as a constant of the algebra.
