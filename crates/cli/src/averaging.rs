@@ -95,6 +95,7 @@ fn report(result: &Averaging, settings: &Settings, session: &Session<'_>) -> Jso
         "tier": if result.exact { "exact" } else { "certified" },
         "normalisation": condition_name(Condition::FreeAmplitude),
         "series": series,
+        "solution": result.solution.iter().map(|[text, _]| text).collect::<Vec<_>>(),
         "terms": result.terms,
         "residual": {
             "checked_orders": result.checked_orders,
@@ -140,11 +141,18 @@ impl Board<'_> {
             Style::Latex => latex_name(&problem.small),
         };
         text += &self.formula(&match self.style {
-            Style::Text => format!("x = a*cos(psi) + u_0 + u_1*{small} + ...   a' = A_1(a)*{small} + A_2(a)*{small}^2 + ...   psi' = B_0 + B_1(a)*{small} + ..."),
-            Style::Latex => format!("x = a\\cos\\psi + u_0 + u_1\\,{small} + \\dots,\\quad \\dot a = A_1(a)\\,{small} + A_2(a)\\,{small}^2 + \\dots,\\quad \\dot\\psi = B_0 + B_1(a)\\,{small} + \\dots"),
+            Style::Text => format!("x = u_0 + u_1*{small} + ...   a' = A_1(a)*{small} + A_2(a)*{small}^2 + ...   psi' = B_0 + B_1(a)*{small} + ..."),
+            Style::Latex => format!("x = u_0 + u_1\\,{small} + \\dots,\\quad \\dot a = A_1(a)\\,{small} + A_2(a)\\,{small}^2 + \\dots,\\quad \\dot\\psi = B_0 + B_1(a)\\,{small} + \\dots"),
         });
         let _ = writeln!(text, "Normalisation: {}.\n", condition_text(Condition::FreeAmplitude));
         for n in 0..=result.order {
+            let position = usize::from(self.style == Style::Latex);
+            let solution = result.solution.get(n).map_or("0", |pair| pair[position].as_str());
+            let index = match self.style {
+                Style::Text => format!("u_{n}"),
+                Style::Latex => format!("u_{{{n}}}"),
+            };
+            text += &self.formula(&format!("{index} = {}", self.shortened(solution.to_owned())));
             for (name, rates) in [("A", &result.amplitude_rate), ("B", &result.phase_rate)] {
                 if n == 0 && name == "A" {
                     continue;
@@ -208,15 +216,15 @@ impl Board<'_> {
         if line.is_empty() {
             return "0".to_owned();
         }
-        if line.len() > PRINTED_CHARACTERS {
-            let count = line.len();
-            return match self.style {
-                Style::Text => format!("[{count} characters; in full with --format json]"),
-                Style::Latex => {
-                    format!("\\text{{[{count} characters; in full with --format json]}}")
-                }
-            };
+        self.shortened(line)
+    }
+
+    fn shortened(&self, line: String) -> String {
+        let count = line.len();
+        match self.style {
+            _ if count <= PRINTED_CHARACTERS => line,
+            Style::Text => format!("[{count} characters; in full with --format json]"),
+            Style::Latex => format!("\\text{{[{count} characters; in full with --format json]}}"),
         }
-        line
     }
 }

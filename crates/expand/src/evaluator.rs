@@ -7,6 +7,9 @@ use rug::Rational;
 
 type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
 
+/// The change of a variable: orders 0 and 1, or nothing where it does not change.
+type Direction<'a, A> = dyn Fn(&Node<Constant<A>>) -> Option<[<A as Ring>::Element; 2]> + 'a;
+
 /// The memory of the driver: coefficient n of every node, as far as it was asked for.
 pub(crate) struct Evaluator<'a, A: FunctionAlgebra> {
     pub(crate) algebra: &'a A,
@@ -246,7 +249,7 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
     /// delayed values change by `direction`; nothing for a variable that does not change.
     pub(crate) fn tangents(
         &mut self,
-        direction: &dyn Fn(&Node<Constant<A>>) -> Option<[A::Element; 2]>,
+        direction: &Direction<'_, A>,
     ) -> Result<Vec<[A::Element; 2]>, ExpandError> {
         let algebra = self.algebra;
         let equation = self.equation;
