@@ -8,7 +8,6 @@ pub mod lobachevsky_function;
 pub mod modular;
 pub mod print;
 pub mod torus;
-mod torus_print;
 pub mod trigonometric;
 
 pub use lobachevsky::Lobachevsky;

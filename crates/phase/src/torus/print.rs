@@ -1,6 +1,6 @@
 //! Functions of two phases as text and as LaTeX: `a*cos(psi) - 1/32*a^3*cos(3*psi) + p*cos(eta)`.
 
-use crate::torus::{Harmonic, Torus, TorusElement};
+use super::{Harmonic, Torus, TorusElement};
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Ring};
 use lindstedt_coeff::print::{Print, Style, Term, latex_name, print_sum};
 
