@@ -9,5 +9,5 @@ pub mod laws;
 mod phase;
 mod ring;
 
-pub use phase::{PhaseAlgebra, PhaseError, Resolution};
+pub use phase::{Elementary, PhaseAlgebra, PhaseError, Resolution};
 pub use ring::{RationalAlgebra, Rationals, Ring};

@@ -4,6 +4,7 @@
 pub mod ball;
 pub mod closed_forms;
 pub mod digits;
+pub mod floats;
 pub mod polynomial;
 pub mod print;
 pub mod sparse;

@@ -1,6 +1,7 @@
 //! Algebras of functions of the fast phase: trigonometric polynomials, the Lobachevsky ring, and
 //! the Lobachevsky functions as numbers.
 
+pub mod collocation;
 pub mod evaluate;
 pub mod fourier;
 pub mod lobachevsky;
@@ -9,6 +10,7 @@ pub mod modular;
 pub mod print;
 pub mod trigonometric;
 
+pub use collocation::Collocation;
 pub use lobachevsky::Lobachevsky;
 pub use modular::Modular;
 pub use trigonometric::Trigonometric;
