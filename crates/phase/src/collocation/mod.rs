@@ -14,16 +14,22 @@
 //!
 //!   int_(-infinity)^(kh) g dt = h sum_j g(jh) (1/2 + Si(pi (k - j))/pi),
 //!
-//! whose error is exp(-pi^2/(2h)). Numbers are estimates: compare two grids. The derivative of an
+//! whose error is exp(-pi^2/(2h)). The cheap alternative are equidistant points and truncated
+//! Fourier series ([`Collocation::fourier`]). Numbers are estimates: compare two grids. The derivative of an
 //! element is known for solutions (u', and u'' = f - u), for cos, sin and constants, and for linear
 //! combinations of such; of anything else it is NaN, never a wrong number.
 //!
 //! Cost: a product K multiplications, a solution 8 K^2, K the number of nodes.
 
+mod fourier;
 mod grid;
 mod phase;
+mod sinc;
 
 pub use grid::Grid;
+
+use fourier::Fourier;
+use sinc::Sinc;
 
 use lindstedt_coeff::floats::Reals;
 use std::sync::Arc;
@@ -72,41 +78,39 @@ impl<E: PartialEq> PartialEq for Sampled<E> {
 #[derive(Clone, Debug)]
 pub struct Collocation<R: Reals> {
     reals: R,
-    grid: Grid,
+    nodes: usize,
     cos: Arc<Vec<R::Element>>,
     sin: Arc<Vec<R::Element>>,
-    /// h dpsi/dt.
-    weights: Vec<R::Element>,
-    /// Si(pi m)/pi for m = -(K-1)..=2(K-1), and the same backwards.
-    forward: Vec<R::Element>,
-    backward: Vec<R::Element>,
+    rule: Rule<R::Element>,
 }
 
 impl<R: Reals> Collocation<R> {
     /// The algebra on a grid. Cost: a Si value per node, about 10 ms at 100 digits.
     pub fn new(reals: R, grid: Grid) -> Self {
-        let bits = reals.bits();
-        let (mut cos, mut sin, mut weights) = (Vec::new(), Vec::new(), Vec::new());
-        for k in 0..grid.nodes {
-            let [c, s, slope] = grid::node(k as f64 * grid.step, bits);
-            cos.push(reals.from_float(&c));
-            sin.push(reals.from_float(&s));
-            weights.push(reals.from_float(&(slope * grid.step)));
+        let (sinc, [cos, sin]) = Sinc::new(&reals, grid);
+        Self {
+            reals,
+            nodes: grid.nodes,
+            cos: Arc::new(cos),
+            sin: Arc::new(sin),
+            rule: Rule::Sinc(sinc),
         }
-        let table = grid::sine_integrals(2 * grid.nodes, bits);
-        let positive: Vec<_> = table.iter().map(|x| reals.from_float(x)).collect();
-        let negative = positive.iter().take(grid.nodes).skip(1).rev().map(|x| reals.neg(x));
-        let forward: Vec<_> = negative.chain(positive.iter().cloned()).collect();
-        let backward = forward.iter().rev().cloned().collect();
-        Self { reals, grid, cos: Arc::new(cos), sin: Arc::new(sin), weights, forward, backward }
     }
 
-    /// The nodes.
-    pub fn grid(&self) -> Grid {
-        self.grid
+    /// Truncated Fourier series: `harmonics` of them (at least one) in each symmetry class.
+    pub fn fourier(reals: R, harmonics: usize) -> Self {
+        let fourier = Fourier::new(&reals, harmonics.max(1));
+        let [cos, sin] = fourier.nodes();
+        let rule = Rule::Fourier(fourier);
+        Self { reals, nodes: cos.len(), cos: Arc::new(cos), sin: Arc::new(sin), rule }
     }
 
-    /// The values of f at psi_k, k = 0, 1, ..., in the first quarter.
+    /// The number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.nodes
+    }
+
+    /// The values of f at the nodes in the first quarter, from psi = 0 to pi/2.
     pub fn values(&self, f: &Sampled<R::Element>) -> Vec<R::Element> {
         let [values, ..] = self.images(f);
         values
@@ -129,7 +133,7 @@ impl<R: Reals> Collocation<R> {
     /// The function with a NaN for every value.
     fn unknown(&self) -> Sampled<R::Element> {
         let nan = self.reals.from_float(&rug::Float::with_val(2, rug::float::Special::Nan));
-        self.of_part(COS_EVEN, Arc::new(vec![nan; self.grid.nodes]))
+        self.of_part(COS_EVEN, Arc::new(vec![nan; self.nodes]))
     }
 
     /// The values at psi, pi - psi, -psi and pi + psi.
@@ -141,7 +145,7 @@ impl<R: Reals> Collocation<R> {
             [true, false, true, false],
         ];
         signs.map(|signs| {
-            let mut sum = vec![self.reals.zero(); self.grid.nodes];
+            let mut sum = vec![self.reals.zero(); self.nodes];
             for (part, sign) in f.values.iter().zip(signs) {
                 for (s, v) in sum.iter_mut().zip(part.iter().flat_map(|list| list.iter())) {
                     let term = if sign { v.clone() } else { self.reals.neg(v) };
@@ -202,61 +206,31 @@ impl<R: Reals> Collocation<R> {
         finite.then(|| self.from_images(&result))
     }
 
-    /// int_0^infinity g dt h^-1 for even g.
-    fn total(&self, g: &[R::Element]) -> R::Element {
-        let Some((first, rest)) = g.split_first() else { return self.reals.zero() };
-        let mut sum = self.reals.scale(first, &rug::Rational::from((1, 2)));
-        for value in rest {
-            self.reals.add_assign(&mut sum, value);
-        }
-        sum
-    }
-
-    /// int_0^(kh) g dt h^-1 for k = 0, 1, ..., with S(m) = Si(pi m)/pi: for even g
-    ///
-    ///   g_0 S(k) + sum_(j>=1) g_j (S(k - j) + S(k + j)),
-    ///
-    /// for odd g, g_0 = 0: sum_(j>=1) g_j (S(k - j) - S(k + j) + 2 S(j)).
-    fn cumulative(&self, g: &[R::Element], even: bool) -> Vec<R::Element>
-    where
-        R::Element: Send + Sync,
-    {
-        let nodes = self.grid.nodes;
-        let Some(tail) = g.get(1..) else { return Vec::new() };
-        // forward[nodes - 1 + m] = S(m), backward[2 nodes - 1 - m] = S(m).
-        let dot = |start: Option<&[R::Element]>| {
-            start.map_or_else(|| self.reals.zero(), |list| self.reals.dot(tail, list))
-        };
-        let base = dot(self.forward.get(nodes..));
-        let value = |k: usize| {
-            let below = dot(self.backward.get(2 * nodes - k..));
-            let above = dot(self.forward.get(nodes + k..));
-            if even {
-                let first = self.forward.get(nodes - 1 + k);
-                let first = first.zip(g.first()).map(|(s, g)| self.reals.mul(s, g));
-                let sum = self.reals.add(&below, &above);
-                first.map_or(sum.clone(), |first| self.reals.add(&sum, &first))
-            } else {
-                let sum = self.reals.sub(&below, &above);
-                self.reals.add(&sum, &self.reals.add(&base, &base))
-            }
-        };
-        let mut values = self.map_nodes(value);
-        // Exactly zero, up to the rounding of an antisymmetric sum.
-        if let Some(first) = values.first_mut() {
-            *first = self.reals.zero();
-        }
-        values
-    }
-
     /// One value per node, on both cores where a value is long work.
     fn map_nodes(&self, value: impl Fn(usize) -> R::Element + Send + Sync) -> Vec<R::Element> {
         use rayon::prelude::*;
         if self.reals.bits() <= 64 {
-            return (0..self.grid.nodes).map(value).collect();
+            return (0..self.nodes).map(value).collect();
         }
-        (0..self.grid.nodes).into_par_iter().map(value).collect()
+        (0..self.nodes).into_par_iter().map(value).collect()
     }
+}
+
+/// How mean values and solutions are found.
+#[derive(Clone, Debug)]
+enum Rule<E> {
+    /// Sinc indefinite integration.
+    Sinc(Sinc<E>),
+    /// Fourier coefficients.
+    Fourier(Fourier<E>),
+}
+
+/// A solution of u'' + u = f in the symmetry class of f.
+struct Particular<E> {
+    u: Vec<E>,
+    slope: Vec<E>,
+    /// A0: u - A0 cos psi (even cosines) or u + A0 sin psi (even sines) starts at rest.
+    free: E,
 }
 
 /// Where a pointwise function is defined.

@@ -1,6 +1,8 @@
 //! The laws of rings and phase algebras for sampled functions.
 
-use super::{COS_EVEN, COS_ODD, Collocation, Domain, PARTS, SIN_EVEN, SIN_ODD, Sampled};
+use super::{
+    COS_EVEN, COS_ODD, Collocation, Domain, PARTS, Particular, Rule, SIN_EVEN, SIN_ODD, Sampled,
+};
 use lindstedt_algebra::{Elementary, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring};
 use lindstedt_coeff::floats::Reals;
 use rug::Rational;
@@ -55,63 +57,45 @@ impl<R: Reals> Collocation<R> {
         f
     }
 
-    /// f times a function of the nodes, point by point.
-    fn weighted(&self, f: &[R::Element], g: &[R::Element]) -> Vec<R::Element> {
-        f.iter().zip(g).map(|(x, y)| self.reals.mul(x, y)).collect()
-    }
-
-    /// 2<f cos> for odd cosines, 2<f sin> for odd sines: (4/pi) times the integral over a quarter.
-    fn amplitude(&self, f: Option<&Arc<Vec<R::Element>>>, basis: &[R::Element]) -> R::Element {
+    /// 2<f cos> for odd cosines, 2<f sin> for odd sines.
+    fn amplitude(&self, part: usize, f: Option<&Arc<Vec<R::Element>>>) -> R::Element {
         let Some(f) = f else { return self.reals.zero() };
-        let integrand = self.weighted(&self.weighted(f, basis), &self.weights);
-        let sum = self.reals.to_float(&self.total(&integrand));
-        let bits = self.reals.bits() + 8;
-        let pi = rug::Float::with_val(bits, rug::float::Constant::Pi);
-        self.reals.from_float(&(sum * 4u32 / pi))
-    }
-
-    /// u and u' for one part without resonance, and the amplitude A0 of the free oscillation by
-    /// which u differs from the particular solution with u(0) = u'(0) = 0.
-    fn particular(&self, part: usize, f: &[R::Element]) -> [Vec<R::Element>; 3] {
-        let r = &self.reals;
-        let weighted = self.weighted(f, &self.weights);
-        let by_cos = self.weighted(&weighted, &self.cos);
-        let by_sin = self.weighted(&weighted, &self.sin);
-        let even = part == COS_EVEN || part == COS_ODD;
-        let mut cos_integral = self.cumulative(&by_cos, even);
-        let mut sin_integral = self.cumulative(&by_sin, !even);
-        // The class asks u'(pi/2) = 0 (even cosines), u(pi/2) = 0 (even sines).
-        let mut free = r.zero();
-        let shift = |list: &mut Vec<R::Element>, by: &R::Element| {
-            for value in list {
-                r.add_assign(value, &r.neg(by));
+        match &self.rule {
+            // (4/pi) times the integral over the quarter period.
+            Rule::Sinc(sinc) => {
+                let sum = sinc.quarter(&self.reals, f, part == COS_ODD);
+                let bits = self.reals.bits() + 8;
+                let pi = rug::Float::with_val(bits, rug::float::Constant::Pi);
+                let sum = rug::Float::with_val(bits, self.reals.to_float(&sum) * 4u32);
+                self.reals.from_float(&(sum / pi))
             }
-        };
-        match part {
-            COS_EVEN => {
-                free = self.odd_total(&by_sin);
-                shift(&mut sin_integral, &free);
+            Rule::Fourier(fourier) => {
+                let list = fourier.coefficients(&self.reals, part, f);
+                list.first().map_or_else(|| self.reals.zero(), |(_, c)| c.clone())
             }
-            SIN_EVEN => {
-                free = self.odd_total(&by_cos);
-                shift(&mut cos_integral, &free);
-            }
-            _ => {}
         }
-        let rows =
-            || (cos_integral.iter().zip(&sin_integral)).zip(self.cos.iter().zip(self.sin.iter()));
-        let u = rows().map(|((a, b), (c, s))| r.sub(&r.mul(s, a), &r.mul(c, b))).collect();
-        let slope = rows().map(|((a, b), (c, s))| r.add(&r.mul(c, a), &r.mul(s, b))).collect();
-        [u, slope, vec![free]]
     }
 
-    /// int_0^infinity g dt h^-1 for odd g: the limit of the cumulative integral, S -> 1/2:
-    /// sum_j 2 g_j S(j).
-    fn odd_total(&self, g: &[R::Element]) -> R::Element {
-        let nodes = self.grid.nodes;
-        let sum = self.forward.get(nodes - 1..).map(|table| self.reals.dot(g, table));
-        let sum = sum.unwrap_or_else(|| self.reals.zero());
-        self.reals.add(&sum, &sum)
+    fn particular(&self, part: usize, f: &[R::Element]) -> Particular<R::Element> {
+        match &self.rule {
+            Rule::Sinc(sinc) => sinc.particular(&self.reals, part, f),
+            Rule::Fourier(fourier) => fourier.particular(&self.reals, part, f),
+        }
+    }
+
+    /// The value at psi = 0 of a part.
+    fn initial(&self, part: usize, f: Option<&Arc<Vec<R::Element>>>) -> R::Element {
+        let mut sum = self.reals.zero();
+        let Some(f) = f else { return sum };
+        match &self.rule {
+            Rule::Sinc(_) => f.first().cloned().unwrap_or(sum),
+            Rule::Fourier(fourier) => {
+                for (_, c) in fourier.coefficients(&self.reals, part, f) {
+                    self.reals.add_assign(&mut sum, &c);
+                }
+                sum
+            }
+        }
     }
 }
 
@@ -219,7 +203,7 @@ impl<R: Reals> PhaseAlgebra for Collocation<R> {
         &self.reals
     }
     fn embed(&self, c: &R::Element) -> Self::Element {
-        let mut f = self.from_parts([Some(vec![c.clone(); self.grid.nodes]), None, None, None]);
+        let mut f = self.from_parts([Some(vec![c.clone(); self.nodes]), None, None, None]);
         f.derivative = Some(Arc::new(self.zero()));
         f
     }
@@ -232,7 +216,7 @@ impl<R: Reals> PhaseAlgebra for Collocation<R> {
     fn sine(&self) -> Self::Element {
         self.circular(3, 4)
     }
-    /// The value at psi = 0, if all others agree with it up to rounding.
+    /// The first value, if all others agree with it up to rounding.
     fn as_constant(&self, f: &Self::Element) -> Option<R::Element> {
         let Some(first) = f.values[COS_EVEN].as_ref().and_then(|list| list.first()) else {
             return self.is_zero(f).then(|| self.reals.zero());
@@ -248,12 +232,8 @@ impl<R: Reals> PhaseAlgebra for Collocation<R> {
         }
     }
     fn at_zero(&self, f: &Self::Element) -> Option<R::Element> {
-        let [even, odd, ..] = &f.values;
-        let first = |part: &Option<Arc<Vec<R::Element>>>| {
-            part.as_ref().and_then(|list| list.first().cloned())
-        };
-        let [even, odd] = [even, odd].map(|p| first(p).unwrap_or_else(|| self.reals.zero()));
-        Some(self.reals.add(&even, &odd))
+        let even = self.initial(COS_EVEN, f.values[COS_EVEN].as_ref());
+        Some(self.reals.add(&even, &self.initial(COS_ODD, f.values[COS_ODD].as_ref())))
     }
     /// Nothing where f has a zero inside the quarter period.
     fn log_abs(&self, f: &Self::Element) -> Option<Self::Element> {
@@ -277,11 +257,11 @@ impl<R: Reals> PhaseAlgebra for Collocation<R> {
     }
     /// The number of values.
     fn terms(&self, f: &Self::Element) -> usize {
-        f.values.iter().flatten().count() * self.grid.nodes
+        f.values.iter().flatten().count() * self.nodes
     }
     fn first_harmonic(&self, f: &Self::Element) -> Result<(R::Element, R::Element), PhaseError> {
-        let cos = self.amplitude(f.values[COS_ODD].as_ref(), &self.cos);
-        let sin = self.amplitude(f.values[SIN_ODD].as_ref(), &self.sin);
+        let cos = self.amplitude(COS_ODD, f.values[COS_ODD].as_ref());
+        let sin = self.amplitude(SIN_ODD, f.values[SIN_ODD].as_ref());
         Ok((cos, sin))
     }
     fn resolve(&self, f: &Self::Element) -> Result<Resolution<Self>, PhaseError> {
@@ -292,21 +272,17 @@ impl<R: Reals> PhaseAlgebra for Collocation<R> {
         let mut free = self.zero();
         for (part, values) in rest.values.iter().enumerate() {
             let Some(values) = values else { continue };
-            let [u, slope, amplitude] = self.particular(part, values);
+            let found = self.particular(part, values);
             // A derivative exchanges cosines and sines.
-            parts[0][part] = Some(u);
-            parts[1][part ^ SIN_EVEN] = Some(slope);
+            parts[0][part] = Some(found.u);
+            parts[1][part ^ SIN_EVEN] = Some(found.slope);
             // u(0) = A0 for even cosines: take A0 cos psi off; u'(0) = -A0 for even sines.
-            let (basis, sign) = match part {
-                COS_EVEN => (self.cosine(), true),
-                SIN_EVEN => (self.sine(), false),
+            let term = match part {
+                COS_EVEN => self.scale_by(&self.cosine(), &self.reals.neg(&found.free)),
+                SIN_EVEN => self.scale_by(&self.sine(), &found.free),
                 _ => continue,
             };
-            for amplitude in &amplitude {
-                let term = self.scale_by(&basis, amplitude);
-                let term = if sign { self.neg(&term) } else { term };
-                self.add_assign(&mut free, &term);
-            }
+            self.add_assign(&mut free, &term);
         }
         let [u, slope] = parts.map(|values| self.from_parts(values));
         let (mut u, mut slope) = (u, slope);
