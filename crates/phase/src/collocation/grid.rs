@@ -32,7 +32,7 @@ impl Grid {
     /// the integrand falls like e^(-2l)), or bounded (then e^(-l)). It must not end where cos psi is
     /// below the error of a solution, for powers of x_n/x_0 would be noise.
     ///
-    /// With A = -ln(error of one integral), poles of order k of cos^k psi at w = i pi/2 cost a factor
+    /// With A = -ln(error of one integral), which must exceed the end by what is lost: poles of order k of cos^k psi at w = i pi/2 cost a factor
     /// (pi/h)^(k-1)/(k-1)!, of which k = 5 is allowed for (forces of higher degree need a larger A),
     /// and order n costs (0.3 A)^n/n!, as measured on the power law for A = 90 to 250, n <= 30.
     #[must_use]
@@ -48,9 +48,8 @@ impl Grid {
                 Some(*sum)
             });
             let loss = losses.fold(0.0, f64::max);
-            accuracy = wanted + loss + 4.0 * (2.0 * accuracy / PI).ln();
+            accuracy = end + loss + 4.0 * (2.0 * accuracy / PI).ln();
         }
-        let accuracy = accuracy.max(end + 12.0);
         (Self::new(accuracy, end), (accuracy / LN_2).ceil() as u32 + 20)
     }
 

@@ -19,10 +19,12 @@
 //! element is known for solutions (u', and u'' = f - u), for cos, sin and constants, and for linear
 //! combinations of such; of anything else it is NaN, never a wrong number.
 //!
-//! Cost: a product K multiplications, a solution 8 K^2, K the number of nodes.
+//! Cost: a product K multiplications, a solution 8 K^2 in
+//! doubles and two products of integers of K numbers at higher precision, K the number of nodes.
 
 mod fourier;
 mod grid;
+mod packed;
 mod phase;
 mod sinc;
 

@@ -1,10 +1,13 @@
 //! The exact rule: sinc indefinite integration at double-exponential nodes.
 
 use super::grid::{Grid, node, sine_integrals};
+use super::packed::Packed;
 use super::{COS_EVEN, COS_ODD, Particular, SIN_EVEN};
 use lindstedt_coeff::floats::Reals;
-use rayon::prelude::*;
-use rug::Rational;
+use rug::{Float, Rational};
+
+/// Above so many bits sums of products go through long integers.
+const LONG: u32 = 64;
 
 /// Weights and values of Si.
 #[derive(Clone, Debug)]
@@ -17,6 +20,8 @@ pub(super) struct Sinc<E> {
     /// Si(pi m)/pi for m = -(K-1)..=2K-1, and the same backwards.
     forward: Vec<E>,
     backward: Vec<E>,
+    /// The same table for long numbers.
+    packed: Option<Packed>,
 }
 
 impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Sinc<E> {
@@ -35,8 +40,12 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Sinc<E> {
         let negative = positive.iter().take(grid.nodes).skip(1).rev().map(|x| reals.neg(x));
         let forward: Vec<_> = negative.chain(positive.iter().cloned()).collect();
         let backward = forward.iter().rev().cloned().collect();
+        let packed = (bits > LONG).then(|| {
+            let table: Vec<Float> = forward.iter().map(|s| reals.to_float(s)).collect();
+            Packed::new(&table, grid.nodes, bits)
+        });
         let nodes = [cos.clone(), sin.clone()];
-        (Self { nodes: grid.nodes, cos, sin, weights, forward, backward }, nodes)
+        (Self { nodes: grid.nodes, cos, sin, weights, forward, backward, packed }, nodes)
     }
 
     fn weighted<R: Reals<Element = E>>(reals: &R, f: &[E], g: &[E]) -> Vec<E> {
@@ -72,12 +81,21 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Sinc<E> {
     fn cumulative<R: Reals<Element = E>>(&self, reals: &R, g: &[E], even: bool) -> Vec<E> {
         let nodes = self.nodes;
         let Some((first, tail)) = g.split_first() else { return Vec::new() };
-        // forward[nodes - 1 + m] = S(m), backward[2 nodes - 1 - m] = S(m).
+        // C(n) = sum_j g_j S(j + n); S is odd. forward[nodes - 1 + m] = S(m),
+        // backward[2 nodes - 1 - m] = S(m).
         let dot = |list: &[E], from: usize| reals.dot(tail, list.get(from..).unwrap_or_default());
         let base = dot(&self.forward, nodes);
+        let correlation = self.packed.as_ref().map(|packed| {
+            let g: Vec<Float> = g.iter().map(|g| reals.to_float(g)).collect();
+            let list = packed.correlation(&g);
+            list.iter().map(|c| reals.from_float(c)).collect::<Vec<E>>()
+        });
+        let known = |index: usize| correlation.as_ref().and_then(|list| list.get(index));
         let value = |k: usize| {
-            let below = dot(&self.backward, 2 * nodes - k);
-            let above = dot(&self.forward, nodes + k);
+            let (below, above) = match (known(nodes - 1 - k), known(nodes - 1 + k)) {
+                (Some(below), Some(above)) => (reals.neg(below), above.clone()),
+                _ => (dot(&self.backward, 2 * nodes - k), dot(&self.forward, nodes + k)),
+            };
             let (sum, rest) = if even {
                 let s = self.forward.get(nodes - 1 + k);
                 let s = s.map_or_else(|| reals.zero(), |s| reals.mul(s, first));
@@ -87,12 +105,7 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Sinc<E> {
             };
             reals.add(&sum, &rest)
         };
-        // Both cores where one value is long work.
-        let mut values: Vec<E> = if reals.bits() <= 64 {
-            (0..nodes).map(value).collect()
-        } else {
-            (0..nodes).into_par_iter().map(value).collect()
-        };
+        let mut values: Vec<E> = (0..nodes).map(value).collect();
         // Exactly zero, up to the rounding of an antisymmetric sum.
         if let Some(first) = values.first_mut() {
             *first = reals.zero();
@@ -111,8 +124,14 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Sinc<E> {
         let by_cos = Self::weighted(reals, &weighted, &self.cos);
         let by_sin = Self::weighted(reals, &weighted, &self.sin);
         let even = part == COS_EVEN || part == COS_ODD;
-        let mut cos_integral = self.cumulative(reals, &by_cos, even);
-        let mut sin_integral = self.cumulative(reals, &by_sin, !even);
+        let (mut cos_integral, mut sin_integral) = if self.packed.is_some() {
+            rayon::join(
+                || self.cumulative(reals, &by_cos, even),
+                || self.cumulative(reals, &by_sin, !even),
+            )
+        } else {
+            (self.cumulative(reals, &by_cos, even), self.cumulative(reals, &by_sin, !even))
+        };
         let shift = |list: &mut Vec<E>, by: &E| {
             let by = reals.neg(by);
             list.iter_mut().for_each(|value| reals.add_assign(value, &by));
