@@ -19,6 +19,7 @@ pub mod energy;
 mod error;
 pub mod multimodular;
 pub mod number;
+pub mod numeric;
 pub mod paper;
 mod value;
 
