@@ -1,0 +1,4 @@
+//! Cost of charts.
+fn main() {
+    divan::main();
+}
