@@ -1,11 +1,14 @@
 //! work in progress
+pub mod aware;
 pub mod characteristic;
 pub mod complex;
 pub mod convergence;
 pub mod equivalent;
 pub mod error;
 pub mod flight;
+pub mod flip;
 pub mod flow;
+pub mod kick;
 pub mod map;
 pub mod orbit;
 pub mod parameters;
@@ -14,3 +17,4 @@ pub mod real;
 pub mod prediction;
 mod velocity;
 pub mod winding;
+pub mod zeros;

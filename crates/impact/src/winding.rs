@@ -75,8 +75,8 @@ pub fn zero_count<S: Real>(g: &Characteristic<S>, radius: f64) -> Option<ZeroCou
 fn safe_step<S: Real>(g: &Characteristic<S>, w: &Complex<f64>, floor: f64, slope: f64) -> f64 {
     let mut reach = g.scale(w);
     loop {
-        let bound = g.bound(w, reach);
-        // The centre's rounding error is absorbed by the margin of the safety factor.
+        // The centre is rounded to doubles.
+        let bound = g.bound(w, reach * (1.0 + 1e-12) + 1e-14 * w.modulus());
         let budget = SAFETY * floor / 2.0;
         let step = (budget / slope).min(reach * (budget / (2.0 * bound)).sqrt()).min(reach / 2.0);
         if bound.is_finite() || reach < 1e-12 {
