@@ -173,6 +173,7 @@ fn maximum<S: Real>(
     let width = (high.clone() - low).magnitude_above();
     let least = steepness.magnitude_below() - third * width;
     let (mut t, mut last) = (start.clone(), f64::INFINITY);
+    let (mut low, mut high) = (low.to_f64(), high.to_f64());
     for _ in 0..200 {
         let (margin, velocity, acceleration) = flight.state(&t);
         let step = velocity.clone() / &acceleration;
@@ -189,10 +190,15 @@ fn maximum<S: Real>(
             return Some(Clearance { margin, time: t.widened(&error) });
         }
         last = size;
+        // x' falls through its zero: keep the bracket, bisect where Newton leaves it.
+        if velocity.to_f64() > 0.0 {
+            low = low.max(t.to_f64());
+        } else {
+            high = high.min(t.to_f64());
+        }
         t = (t - step.centre()).centre();
-        let inside = t.to_f64() >= low.to_f64() && t.to_f64() <= high.to_f64();
-        if !inside {
-            t = (low.clone() + high).halved().centre();
+        if t.to_f64() < low || t.to_f64() > high {
+            t = t.number(f64::midpoint(low, high));
         }
     }
     None

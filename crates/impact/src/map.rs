@@ -90,6 +90,13 @@ pub(crate) fn polynomial<S: Real>(
     Polynomial { quadratic, linear: linear * growth, constant }
 }
 
+impl<S: Real> EquivalentOrbit<S> {
+    /// b_2, b_1, b_0 of (16) for this orbit and its own flow.
+    pub fn polynomial(&self, flow: &Flow<S>, drive: &Drive<S>) -> Polynomial<S> {
+        polynomial(flow, drive, &Amplitudes::of(self))
+    }
+}
+
 impl<S: Real> Polynomial<S> {
     /// The map with this characteristic polynomial; not finite where b_2 may be zero.
     pub fn map(&self) -> ImpactMap<S> {

@@ -1,0 +1,5 @@
+//! Periodic impact orbits and their stability against independent numbers and methods.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod oracles;
+mod support;
