@@ -1,6 +1,7 @@
 //! work in progress
 pub mod aware;
 pub mod characteristic;
+pub mod chart;
 pub mod complex;
 pub mod convergence;
 pub mod equivalent;
@@ -16,5 +17,6 @@ pub mod propagator;
 pub mod real;
 pub mod prediction;
 mod velocity;
+pub mod report;
 pub mod winding;
 pub mod zeros;

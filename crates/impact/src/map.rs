@@ -131,11 +131,17 @@ impl<S: Real> ImpactMap<S> {
     /// The multipliers, larger modulus first; a complex pair with the positive imaginary part
     /// first. The smaller real root is determinant/larger, without cancellation.
     ///
-    /// Not finite where the ball of the discriminant trace^2/4 - determinant contains zero.
+    /// Where the ball of the discriminant trace^2/4 - determinant contains zero both are the
+    /// rectangle around trace/2 that holds either case.
     pub fn multipliers(&self) -> [Complex<S>; 2] {
         let half = self.trace.halved();
         let discriminant = half.square() - &self.determinant;
         let zero = half.integer(0);
+        if discriminant.sign().is_none() {
+            let reach = undecided_root(&discriminant);
+            let either = Complex::new(half.widened(&reach), zero.widened(&reach));
+            return [either.clone(), either];
+        }
         if discriminant.is_negative() {
             let im = (-discriminant).sqrt();
             return [Complex::new(half.clone(), im.clone()), Complex::new(half, -im)];
@@ -154,6 +160,10 @@ impl<S: Real> ImpactMap<S> {
         let discriminant = half.square() - &self.determinant;
         if discriminant.is_negative() {
             return self.determinant.sqrt();
+        }
+        if discriminant.sign().is_none() {
+            let size = if half.to_f64() < 0.0 { -half } else { half };
+            return size.widened(&undecided_root(&discriminant));
         }
         let size = if half.to_f64() < 0.0 { -half } else { half };
         size + discriminant.sqrt()
@@ -181,4 +191,9 @@ impl<S: Real> ImpactMap<S> {
         }
         verdict
     }
+}
+
+/// A bound of sqrt|x| for a ball x that contains zero (NaN for a NaN).
+fn undecided_root<S: Real>(x: &S) -> S {
+    x.number(x.magnitude_above()).sqrt().doubled()
 }

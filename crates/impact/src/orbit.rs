@@ -167,6 +167,20 @@ pub(crate) fn refuse_sticking<S: Real>(restitution: &S, after: &S) -> Result<(),
 }
 
 impl<S: Real> Orbit<S> {
+    /// The midpoints.
+    pub fn to_f64(&self) -> Orbit<f64> {
+        let pair = |(a, b): &(S, S)| (a.to_f64(), b.to_f64());
+        Orbit {
+            period: self.period.to_f64(),
+            velocity: self.velocity.to_f64(),
+            force_phase: pair(&self.force_phase),
+            acceleration_before: self.acceleration_before.to_f64(),
+            acceleration_after: self.acceleration_after.to_f64(),
+            saltation: self.saltation.to_f64(),
+            discriminant: self.discriminant.to_f64(),
+            response: pair(&self.response),
+        }
+    }
     /// psi in (-pi, pi].
     pub fn force_angle(&self) -> S {
         self.force_phase.1.atan2(&self.force_phase.0)

@@ -66,6 +66,21 @@ impl<S: Real> Parameters<S> {
         let difference = self.alpha.clone() - &self.omega;
         (sum * difference, self.damping.clone() * &self.omega)
     }
+    /// The midpoints.
+    pub fn to_f64(&self) -> Parameters<f64> {
+        Parameters {
+            alpha: self.alpha.to_f64(),
+            omega: self.omega.to_f64(),
+            periods: self.periods,
+            restitution: self.restitution.to_f64(),
+            wall: self.wall.to_f64(),
+            damping: self.damping.to_f64(),
+            force: self.force.to_f64(),
+            displacement_gain: self.displacement_gain.to_f64(),
+            velocity_gain: self.velocity_gain.to_f64(),
+            branch: self.branch,
+        }
+    }
     /// Checks the domain of every parameter.
     ///
     /// # Errors

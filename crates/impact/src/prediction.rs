@@ -10,7 +10,7 @@ use crate::equivalent::{Drive, EquivalentOrbit, equivalent_orbit};
 use crate::error::ImpactError;
 use crate::flow::{Flow, Rates};
 use crate::map::{Amplitudes, ImpactMap, Polynomial, polynomial};
-use crate::orbit::Orbit;
+use crate::orbit::{Orbit, orbit};
 use crate::parameters::Parameters;
 use crate::real::Real;
 
@@ -56,7 +56,7 @@ pub fn predicted_flow<S: Real>(
 /// The prediction of a variant with the flow of some order.
 ///
 /// For variant E the determinant is formed as (R_r E)^2 and the trace from the saltation, which
-/// stays accurate where b_2 vanishes (grazing).
+/// stays accurate where b_2 vanishes (grazing). Variant S computes the true orbit unless given.
 ///
 /// # Errors
 /// The errors of the orbit that the variant needs; [`ImpactError::Resonance`] for E and P at
@@ -65,24 +65,27 @@ pub fn predict<S: Real>(
     variant: Variant,
     parameters: &Parameters<S>,
     flow: &Flow<S>,
-    true_orbit: &Orbit<S>,
+    true_orbit: Option<&Orbit<S>>,
 ) -> Result<Prediction<S>, ImpactError> {
     flow.validate()?;
     if variant == Variant::S {
-        let map = saltation_map(parameters, flow, true_orbit);
+        let map = match true_orbit {
+            Some(orbit) => saltation_map(parameters, flow, orbit),
+            None => saltation_map(parameters, flow, &orbit(parameters)?),
+        };
         return Ok(Prediction { flow: flow.clone(), orbit: None, polynomial: None, map });
     }
     let drive = Drive::new(parameters)?;
-    let orbit = match variant {
+    let form = match variant {
         Variant::E => equivalent_orbit(flow, &drive)?,
         _ => equivalent_orbit(&Flow::uncontrolled(parameters)?, &drive)?,
     };
-    let polynomial = polynomial(flow, &drive, &Amplitudes::of(&orbit));
+    let polynomial = polynomial(flow, &drive, &Amplitudes::of(&form));
     let map = match variant {
-        Variant::E => ImpactMap::from_saltation(flow, &drive, &orbit.saltation),
+        Variant::E => ImpactMap::from_saltation(flow, &drive, &form.saltation),
         _ => polynomial.map(),
     };
-    Ok(Prediction { flow: flow.clone(), orbit: Some(orbit), polynomial: Some(polynomial), map })
+    Ok(Prediction { flow: flow.clone(), orbit: Some(form), polynomial: Some(polynomial), map })
 }
 
 fn saltation_map<S: Real>(

@@ -207,3 +207,45 @@ fn refine<S: Real>(g: &Characteristic<S>, start: &Complex<f64>) -> Option<(Compl
     let im = if real { w.im.clone() } else { w.im.widened(&radius) };
     Some((Complex::new(w.re.widened(&radius), im), h))
 }
+
+/// max |gamma| in doubles: the zero of least modulus reached from the seeds (the zeros of a
+/// neighbouring point), confirmed by the winding number of the circle just inside it.
+///
+/// The seeds are replaced by the zeros found. `None` if G has no zero or none is confirmed.
+pub(crate) fn leading_modulus(
+    g: &Characteristic<f64>,
+    seeds: &mut Vec<Complex<f64>>,
+) -> Option<f64> {
+    let mut zeros = Vec::new();
+    let reach = 1e3;
+    for seed in seeds.iter() {
+        search(g, seed, reach, &mut zeros);
+    }
+    let start = Complex::real(0.0);
+    let (value, slope) = g.value_and_slope(&start);
+    let first = -value.over(&slope);
+    search(g, &first, reach, &mut zeros);
+    if zeros.len() < 3 {
+        search(g, &Complex::new(first.re, 0.7 * first.modulus()), reach, &mut zeros);
+    }
+    let least = |zeros: &[Complex<f64>]| {
+        zeros.iter().map(|w| w.modulus()).fold(f64::INFINITY, f64::min)
+    };
+    let mut modulus = least(&zeros);
+    if !modulus.is_finite() {
+        modulus = 1e3;
+    }
+    let inner = modulus * (1.0 - 1e-4);
+    match zero_count(g, inner)?.zeros {
+        0 if zeros.is_empty() => return None,
+        0 => {}
+        count => {
+            zeros = find_zeros(g, inner, count as usize)?;
+            modulus = least(&zeros);
+        }
+    }
+    zeros.sort_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+    zeros.truncate(3);
+    seeds.clone_from(&zeros);
+    Some(1.0 / modulus)
+}
