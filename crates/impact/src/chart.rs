@@ -211,7 +211,7 @@ fn predicted_map(
         // Without the polynomial, which the verdict does not need.
         let drive = Drive::new(parameters)?;
         let orbit = equivalent_orbit(&flow, &drive)?;
-        return Ok(ImpactMap::from_saltation(&flow, &drive, &orbit.saltation));
+        return Ok(ImpactMap::of_orbit(&flow, &drive, &orbit));
     }
     Ok(predict(variant, parameters, &flow, None)?.map)
 }

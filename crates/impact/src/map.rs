@@ -119,13 +119,27 @@ impl<S: Real> ImpactMap<S> {
     /// The map of a free flow between impacts with saltation sigma:
     /// trace = E (sigma sin(theta)/Omega - 2 R_r cos theta), determinant = (R_r E)^2.
     pub fn from_saltation(flow: &Flow<S>, drive: &Drive<S>, saltation: &S) -> Self {
-        let (sin, cos) = (flow.frequency.clone() * &drive.period).sin_cos();
+        let angle = (flow.frequency.clone() * &drive.period).sin_cos();
         let growth = (flow.growth_rate.clone() * &drive.period).exp();
-        let shear = saltation.clone() * sin / &flow.frequency;
-        let bounce = (drive.restitution.clone() * cos).doubled();
+        Self::compose(&angle, &growth, &flow.frequency, &drive.restitution, saltation)
+    }
+    /// The map of an orbit with the flow it belongs to.
+    pub fn of_orbit(flow: &Flow<S>, drive: &Drive<S>, orbit: &EquivalentOrbit<S>) -> Self {
+        let angle = &orbit.theta_sin_cos;
+        Self::compose(angle, &orbit.growth, &flow.frequency, &drive.restitution, &orbit.saltation)
+    }
+    fn compose(
+        (sin, cos): &(S, S),
+        growth: &S,
+        frequency: &S,
+        restitution: &S,
+        saltation: &S,
+    ) -> Self {
+        let shear = saltation.clone() * sin / frequency;
+        let bounce = (restitution.clone() * cos).doubled();
         Self {
-            trace: growth.clone() * (shear - bounce),
-            determinant: (drive.restitution.clone() * growth).square(),
+            trace: (shear - bounce) * growth,
+            determinant: (restitution.clone() * growth).square(),
         }
     }
     /// The multipliers, larger modulus first; a complex pair with the positive imaginary part
