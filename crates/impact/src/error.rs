@@ -34,7 +34,7 @@ pub enum ImpactError {
     /// (the impact velocity would be 0).
     #[error("the free flow is T-periodic (Delta = {delta:e}): no impact orbit")]
     PeriodicFreeFlow {
-        /// Delta.
+        /// Delta, or E Delta omega^2 (F/(P0 T))^2 from the regular form.
         delta: f64,
     },
     /// kappa = q = 0 (theta an odd multiple of pi and R_r E = 1): the impact velocity is infinite.

@@ -20,3 +20,5 @@ mod velocity;
 pub mod report;
 pub mod winding;
 pub mod zeros;
+
+pub use error::ImpactError;

@@ -4,5 +4,6 @@
 mod agreement;
 mod collocation;
 mod doubles;
+mod extremes;
 mod oracles;
 mod support;
