@@ -170,13 +170,10 @@ pub fn impact_aware<S: Real>(
         }
         let start = gamma.inverse().centre();
         let lost = ImpactError::NoConvergence { what: "the impact-aware multiplier" };
-        let w = [0.0, 0.3, -0.7]
-            .iter()
-            .find_map(|&bend| truncated.follow(&start, bend))
-            .ok_or(lost)?;
+        let w =
+            [0.0, 0.3, -0.7].iter().find_map(|&bend| truncated.follow(&start, bend)).ok_or(lost)?;
         multipliers.push(w.inverse());
     }
-    multipliers
-        .sort_by(|a, b| b.to_f64().norm_squared().total_cmp(&a.to_f64().norm_squared()));
+    multipliers.sort_by(|a, b| b.to_f64().norm_squared().total_cmp(&a.to_f64().norm_squared()));
     Ok(AwarePrediction { multipliers })
 }

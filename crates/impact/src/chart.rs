@@ -257,8 +257,7 @@ impl Chart {
                     agreement.compared += 1;
                     agreement.equal += usize::from(predicted == exact);
                     let wrong = predicted != exact;
-                    agreement.false_stable +=
-                        usize::from(wrong && predicted == Verdict::Stable);
+                    agreement.false_stable += usize::from(wrong && predicted == Verdict::Stable);
                     agreement.false_unstable += usize::from(wrong && exact == Verdict::Stable);
                 }
                 _ => {}

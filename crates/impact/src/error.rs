@@ -64,7 +64,9 @@ pub enum ImpactError {
         threshold: f64,
     },
     /// R_r = 0 and the mass is pressed to the wall after the impact.
-    #[error("the mass sticks to the wall after the impact (acceleration {acceleration}): no such orbit")]
+    #[error(
+        "the mass sticks to the wall after the impact (acceleration {acceleration}): no such orbit"
+    )]
     Sticking {
         /// The acceleration after the impact, which must be negative.
         acceleration: f64,
@@ -73,7 +75,9 @@ pub enum ImpactError {
     #[error("alpha = omega without damping: the forced amplitude F is infinite")]
     Resonance,
     /// c >= 2 alpha: the damping is not small, the free flow does not oscillate.
-    #[error("c = {damping} is not below 2 alpha = {limit}: the prediction needs an oscillating flow")]
+    #[error(
+        "c = {damping} is not below 2 alpha = {limit}: the prediction needs an oscillating flow"
+    )]
     Overdamped {
         /// c.
         damping: f64,

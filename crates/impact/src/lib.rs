@@ -13,11 +13,11 @@ pub mod kick;
 pub mod map;
 pub mod orbit;
 pub mod parameters;
+pub mod prediction;
 pub mod propagator;
 pub mod real;
-pub mod prediction;
-mod velocity;
 pub mod report;
+mod velocity;
 pub mod winding;
 pub mod zeros;
 

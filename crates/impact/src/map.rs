@@ -85,8 +85,7 @@ pub(crate) fn polynomial<S: Real>(
     let bounced = p.clone() * (cos.clone() - restitution.clone() * &growth) + r * &sin;
     let held = less * frequency * &cos + more.clone() * rate * &sin;
     let linear = ratio * bounced - more * omega * force_cos * &sin + held * force_sin;
-    let constant =
-        restitution.clone() * frequency * growth.square() * (p / omega - force_sin);
+    let constant = restitution.clone() * frequency * growth.square() * (p / omega - force_sin);
     Polynomial { quadratic, linear: linear * growth, constant }
 }
 
@@ -188,12 +187,8 @@ impl<S: Real> ImpactMap<S> {
     pub fn verdict(&self) -> Verdict {
         let one = self.trace.integer(1);
         let sum = one.clone() + &self.determinant;
-        let conditions = [
-            one - &self.determinant,
-            sum.clone(),
-            sum.clone() - &self.trace,
-            sum + &self.trace,
-        ];
+        let conditions =
+            [one - &self.determinant, sum.clone(), sum.clone() - &self.trace, sum + &self.trace];
         let mut verdict = Verdict::Stable;
         for condition in conditions {
             let clear = condition.to_f64().abs() > condition.neutral_width();

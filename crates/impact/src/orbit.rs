@@ -97,10 +97,7 @@ pub fn orbit<S: Real>(parameters: &Parameters<S>) -> Result<Orbit<S>, ImpactErro
     let period = parameters.period();
     let Response { h, slope, integral } = response(parameters, &period, true);
     let j = integral.scaled(force);
-    let j_slope = Complex::new(
-        force.clone() * &h - omega.clone() * &j.im,
-        omega.clone() * &j.re,
-    );
+    let j_slope = Complex::new(force.clone() * &h - omega.clone() * &j.im, omega.clone() * &j.re);
     // det [J.re, -J.im; J'.re, -J'.im] = +-E Delta omega F^2, finite at alpha = omega.
     let one = alpha.integer(1);
     let determinant = -(j.re.clone() * &j_slope.im) + j.im.clone() * &j_slope.re;
@@ -115,10 +112,8 @@ pub fn orbit<S: Real>(parameters: &Parameters<S>) -> Result<Orbit<S>, ImpactErro
         let sin = second.clone() * &j.re - first.clone() * &j_slope.re;
         (cos / &determinant, sin / &determinant)
     };
-    let (p_cos, p_sin) = solve(
-        &((one.clone() - &slope - c.clone() * &h) * s),
-        &(alpha.square() * &h * s),
-    );
+    let (p_cos, p_sin) =
+        solve(&((one.clone() - &slope - c.clone() * &h) * s), &(alpha.square() * &h * s));
     let (w_cos, w_sin) =
         solve(&(restitution.clone() * &h), &(one.clone() + restitution.clone() * &slope));
     let quadratic = w_cos.square() + w_sin.square();

@@ -116,9 +116,8 @@ fn search(
     for _ in 0..50 {
         let (value, slope) = g.value_and_slope(&w);
         let newton = value.over(&slope);
-        let pull = zeros.iter().fold(Complex::real(0.0), |sum, zero| {
-            sum + (w.clone() - zero).inverse()
-        });
+        let pull =
+            zeros.iter().fold(Complex::real(0.0), |sum, zero| sum + (w.clone() - zero).inverse());
         let mut step = newton.over(&(Complex::real(1.0) - newton.clone() * &pull));
         let size = step.modulus();
         if !size.is_finite() {
@@ -228,9 +227,8 @@ pub(crate) fn leading_modulus(
     if zeros.len() < 3 {
         search(g, &Complex::new(first.re, 0.7 * first.modulus()), reach, &mut zeros);
     }
-    let least = |zeros: &[Complex<f64>]| {
-        zeros.iter().map(|w| w.modulus()).fold(f64::INFINITY, f64::min)
-    };
+    let least =
+        |zeros: &[Complex<f64>]| zeros.iter().map(|w| w.modulus()).fold(f64::INFINITY, f64::min);
     let mut modulus = least(&zeros);
     if !modulus.is_finite() {
         modulus = 1e3;

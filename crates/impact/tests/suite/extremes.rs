@@ -260,15 +260,19 @@ fn long_delays_neither_overflow_nor_pass_without_a_warning() {
 
 #[test]
 fn radius_of_convergence_agrees_with_the_growth_of_the_terms() {
-    for (a, b, c, omega) in
-        [(0.3, 0.0, 0.05, 0.8), (0.1, 0.1, 0.05, 2.6), (0.0, -0.2, 0.0, 1.7), (-0.27, 0.1, 0.1, 2.0)]
-    {
+    for (a, b, c, omega) in [
+        (0.3, 0.0, 0.05, 0.8),
+        (0.1, 0.1, 0.05, 2.6),
+        (0.0, -0.2, 0.0, 1.7),
+        (-0.27, 0.1, 0.1, 2.0),
+    ] {
         let p = Parameters { displacement_gain: a, velocity_gain: b, damping: c, omega, ..base() };
         let series = rates(&p, 150);
         let terms: Vec<_> = series.terms.iter().map(|term| term.to_f64()).collect();
         let estimate = convergence(&p, &terms);
         // |lambda_n| ~ n^(-3/2) radius^-n: a root test over the last terms.
-        let root = |n: usize| (terms[n].norm_squared().sqrt() * (n as f64).powf(1.5)).ln() / n as f64;
+        let root =
+            |n: usize| (terms[n].norm_squared().sqrt() * (n as f64).powf(1.5)).ln() / n as f64;
         let tail = (130..=150).map(root).fold(f64::NEG_INFINITY, f64::max);
         near(estimate.radius, (-tail).exp(), 0.05);
     }

@@ -7,3 +7,4 @@ mod doubles;
 mod extremes;
 mod oracles;
 mod support;
+mod truth;
