@@ -93,6 +93,14 @@ pub struct ExactReport<S> {
     pub growth: Option<Growth>,
 }
 
+impl<S> ExactReport<S> {
+    /// The definite verdict: of the piecewise linear return map for B != 0 where it was measured,
+    /// of G otherwise.
+    pub fn definite(&self) -> Verdict {
+        self.growth.as_ref().map_or(self.verdict, Growth::verdict)
+    }
+}
+
 /// Everything about one point.
 #[derive(Clone, Debug)]
 pub struct StabilityReport<S> {

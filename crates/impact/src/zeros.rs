@@ -36,6 +36,7 @@ pub fn exact_verdict<S: Real>(g: &Characteristic<S>) -> (Verdict, Option<u32>) {
 /// real by the symmetry of G.
 ///
 /// # Errors
+/// [`ImpactError::NotPositive`] unless `least_modulus` > 0,
 /// [`ImpactError::NoConvergence`] if the search ends before the count is reached,
 /// [`ImpactError::Undecided`] if the count or a disc cannot be proved at this precision (multiple
 /// or clustered zeros).
@@ -43,6 +44,9 @@ pub fn multipliers<S: Real>(
     g: &Characteristic<S>,
     least_modulus: f64,
 ) -> Result<Multipliers<S>, ImpactError> {
+    if least_modulus.is_nan() || least_modulus <= 0.0 {
+        return Err(ImpactError::NotPositive { name: "least modulus", value: least_modulus });
+    }
     let bits = g.period().precision();
     let undecided = |what| ImpactError::Undecided { what, bits };
     // A zero on the very circle would leave the count open: step outwards past it.

@@ -9,6 +9,7 @@ use lindstedt_impact::chart::{Axis, Plan, Predictor, Swept, chart};
 use lindstedt_impact::flight::clearance;
 use lindstedt_impact::flip::flip_boundary;
 use lindstedt_impact::flow::{Flow, characteristic_root, rates};
+use lindstedt_impact::kick::ReturnMap;
 use lindstedt_impact::map::Verdict;
 use lindstedt_impact::orbit::orbit;
 use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
@@ -61,6 +62,31 @@ fn flip_boundary_is_where_the_simulation_flips() {
     println!("O2 flips at A = {flips:?}");
     assert!(flips.iter().any(|a| (a + 0.270).abs() < 1e-3));
     assert!(flips.iter().any(|a| (a - 0.176).abs() < 1e-3));
+}
+
+/// The nonlinear simulation of the delayed system, done elsewhere, against the linear return map:
+/// impact times T l + delta_l after a perturbed start.
+#[test]
+fn return_map_reproduces_the_nonlinear_simulation() {
+    let file = data("delay_simulations");
+    for case in file.as_array().unwrap() {
+        let name = case["name"].as_str().unwrap();
+        let p = parameters(&data(name)).to_f64();
+        let found = orbit(&p).unwrap();
+        let perturbation = case["velocity_perturbation_over_v"].as_f64().unwrap();
+        let mut map = ReturnMap::new(&p, &found).unwrap();
+        map.start([0.0, perturbation * found.velocity]);
+        let (mut largest, mut worst) = (0.0_f64, 0.0_f64);
+        for (l, time) in case["impact_times"].as_array().unwrap().iter().enumerate() {
+            let time: f64 = time.as_str().unwrap().parse().unwrap();
+            let simulated = time - found.period * (l + 1) as f64;
+            largest = largest.max(simulated.abs());
+            worst = worst.max((map.fly() - simulated).abs());
+        }
+        println!("{name}: delays up to {largest:.2e}, linear map off by {worst:.2e}");
+        // Second order in the perturbation.
+        assert!(worst < 0.05 * largest.max(perturbation), "{name}: {worst:e} of {largest:e}");
+    }
 }
 
 #[test]
