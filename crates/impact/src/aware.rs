@@ -130,7 +130,7 @@ impl<S: Real> Truncated<'_, S> {
     fn follow(&self, start: &Complex<S>, bend: f64) -> Option<Complex<S>> {
         let unit = &self.orbit.period;
         let at = |t: f64| Complex::new(unit.number(t), unit.number(bend * t * (1.0 - t)));
-        let (mut w, mut t, mut step) = (start.clone(), 0.0, 0.125_f64);
+        let (mut w, mut t, mut step) = (start.clone(), 0.0, 0.5_f64);
         while t < 1.0 {
             let target = (t + step).min(1.0);
             let rounds = if target < 1.0 { 30 } else { 60 };
