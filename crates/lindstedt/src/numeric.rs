@@ -189,11 +189,15 @@ impl Job<'_> {
             let Some(fine) = coarse.take() else { break };
             let estimate = self.compare(tier, &[before], fine, bits);
             let tolerance = Float::with_val(53, Float::i_pow_u(10, digits)).recip();
-            let reached = |(value, error): &(Float, Float)| {
+            let missing = |(value, error): &(Float, Float)| {
                 let size = Float::with_val(53, value.abs_ref());
-                *error <= tolerance || *error <= size * &tolerance
+                let allowed = if size > 1 { size * &tolerance } else { tolerance.clone() };
+                let ratio = Float::with_val(53, error / &allowed);
+                if ratio.is_finite() { ratio.log10().to_f64().ceil() } else { f64::INFINITY }
             };
-            if estimate.series.iter().flat_map(|s| &s.coefficients).all(reached) {
+            let coefficients = estimate.series.iter().flat_map(|s| &s.coefficients);
+            let missing = coefficients.map(missing).fold(f64::NEG_INFINITY, f64::max);
+            if missing <= 0.0 {
                 return Ok(estimate);
             }
             let values = |s: &EstimatedSeries| {
@@ -201,7 +205,7 @@ impl Job<'_> {
             };
             let series = estimate.series.iter().map(values).collect();
             coarse = Some(Run { nodes: estimate.nodes, products: estimate.products, series });
-            guard += digits / 2 + 10;
+            guard += (missing as u32).clamp(6, digits + 20);
         }
         Err(Error::NotEnoughBits { bits, best: None })
     }
