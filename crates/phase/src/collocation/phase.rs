@@ -36,8 +36,16 @@ impl<R: Reals> Collocation<R> {
 
     /// Whether f vanishes against `scale`, within rounding errors.
     fn is_negligible(&self, f: &Sampled<R::Element>, scale: &rug::Float) -> bool {
-        let tolerance =
-            rug::Float::with_val(53, scale) >> (self.reals.bits() as i32 - ROUNDING_BITS);
+        let mut tolerance =
+            rug::Float::with_val(53, 1) >> (self.reals.bits() as i32 - ROUNDING_BITS);
+        // What lies beyond the last node is missing from an integral.
+        if let (Rule::Sinc(_), Some(last)) = (&self.rule, self.cos.last()) {
+            let missing = rug::Float::with_val(53, self.reals.to_float(last) * 64u32);
+            if missing > tolerance {
+                tolerance = missing;
+            }
+        }
+        tolerance *= scale;
         self.size(f) <= tolerance
     }
 
@@ -250,7 +258,7 @@ impl<R: Reals> PhaseAlgebra for Collocation<R> {
         };
         self.pointwise(f, domain, |v| self.reals.elementary(function, v))
     }
-    /// Up to rounding: `ROUNDING_BITS` bits of the larger one.
+    /// Up to rounding (`ROUNDING_BITS` bits of the larger one) and the rest beyond the last node.
     fn agrees(&self, f: &Self::Element, g: &Self::Element) -> bool {
         let (a, b) = (self.size(f), self.size(g));
         self.is_negligible(&self.sub(f, g), if a > b { &a } else { &b })
