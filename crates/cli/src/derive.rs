@@ -34,6 +34,9 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         },
     };
     output::check_writable(session)?;
+    if options.tier != arguments::TierName::Exact {
+        return crate::derive_numeric::run(options, &problem, &settings, digits, session);
+    }
     let mut observer = |progress: Progress| {
         session.say(match progress {
             Progress::Order(n, terms) => format!("order {n} of {}: {terms} terms", settings.order),

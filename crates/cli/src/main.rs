@@ -3,6 +3,7 @@
 
 mod arguments;
 mod derive;
+mod derive_numeric;
 mod failure;
 mod output;
 mod paper;
