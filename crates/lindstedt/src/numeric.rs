@@ -338,7 +338,7 @@ impl Job<'_> {
 
 /// The middle of a ball in a context of floats.
 fn real<R: Reals>(reals: &R, ball: &Ball) -> R::Element {
-    reals.from_float(ball.midpoint())
+    reals.nearest(ball.midpoint())
 }
 
 /// Values of parameters and of the formal sums S_n.

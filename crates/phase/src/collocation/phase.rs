@@ -8,6 +8,9 @@ use lindstedt_coeff::floats::Reals;
 use rug::Rational;
 use std::sync::Arc;
 
+/// Pairs of lists to be multiplied point by point.
+type Factors<'a, E> = Vec<(&'a [E], &'a [E])>;
+
 /// Bits by which two ways to the same function may differ.
 const ROUNDING_BITS: i32 = 12;
 
@@ -20,7 +23,7 @@ impl<R: Reals> Collocation<R> {
     ) -> Sampled<R::Element> {
         let list = |list: &Arc<Vec<R::Element>>| list.iter().map(g).collect::<Vec<_>>();
         let values = f.values.each_ref().map(|part| part.as_ref().map(list));
-        let mut image = self.from_parts(values);
+        let mut image = self.with_parts(values);
         image.derivative = f.derivative.as_ref().map(|d| Arc::new(self.linear(d, g)));
         image
     }
@@ -75,7 +78,7 @@ impl<R: Reals> Collocation<R> {
                 let bits = self.reals.bits() + 8;
                 let pi = rug::Float::with_val(bits, rug::float::Constant::Pi);
                 let sum = rug::Float::with_val(bits, self.reals.to_float(&sum) * 4u32);
-                self.reals.from_float(&(sum / pi))
+                self.reals.nearest(&(sum / pi))
             }
             Rule::Fourier(fourier) => {
                 let list = fourier.coefficients(&self.reals, part, f);
@@ -155,8 +158,7 @@ impl<R: Reals> Ring for Collocation<R> {
         self.sum_of_products(&[(f, g)])
     }
     fn sum_of_products(&self, pairs: &[(&Self::Element, &Self::Element)]) -> Self::Element {
-        let mut factors: [Vec<(&[R::Element], &[R::Element])>; PARTS] =
-            [const { Vec::new() }; PARTS];
+        let mut factors: [Factors<'_, R::Element>; PARTS] = [const { Vec::new() }; PARTS];
         for (f, g) in pairs {
             for (p, a) in f.values.iter().enumerate() {
                 for (q, b) in g.values.iter().enumerate() {
@@ -180,7 +182,7 @@ impl<R: Reals> Ring for Collocation<R> {
                 })
             })
         });
-        self.from_parts(values)
+        self.with_parts(values)
     }
 }
 
@@ -196,7 +198,7 @@ impl<R: Reals> RationalAlgebra for Collocation<R> {
     }
     /// Nothing where f has a zero.
     fn reciprocal(&self, f: &Self::Element) -> Option<Self::Element> {
-        let nan = || self.reals.from_float(&rug::Float::with_val(2, rug::float::Special::Nan));
+        let nan = || self.reals.nearest(&rug::Float::with_val(2, rug::float::Special::Nan));
         self.pointwise(f, Domain::NoZeros, |v| self.reals.reciprocal(v).unwrap_or_else(nan))
     }
     fn as_rational(&self, f: &Self::Element) -> Option<Rational> {
@@ -211,7 +213,7 @@ impl<R: Reals> PhaseAlgebra for Collocation<R> {
         &self.reals
     }
     fn embed(&self, c: &R::Element) -> Self::Element {
-        let mut f = self.from_parts([Some(vec![c.clone(); self.nodes]), None, None, None]);
+        let mut f = self.with_parts([Some(vec![c.clone(); self.nodes]), None, None, None]);
         f.derivative = Some(Arc::new(self.zero()));
         f
     }
@@ -292,7 +294,7 @@ impl<R: Reals> PhaseAlgebra for Collocation<R> {
             };
             self.add_assign(&mut free, &term);
         }
-        let [u, slope] = parts.map(|values| self.from_parts(values));
+        let [u, slope] = parts.map(|values| self.with_parts(values));
         let (mut u, mut slope) = (u, slope);
         slope.derivative = Some(Arc::new(self.sub(&rest, &u)));
         u.derivative = Some(Arc::new(slope));
