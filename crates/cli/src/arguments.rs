@@ -79,8 +79,25 @@ pub struct DeriveOptions {
     /// The driver, or the energy integral (frequency alone; power-law and pendulum).
     #[arg(long, value_enum, default_value_t = Route::Driver)]
     pub route: Route,
+    /// Exact, or numbers with an estimated error: collocation (--digits or --f64) or a truncated
+    /// Fourier series in doubles (--harmonics).
+    #[arg(long, value_enum, default_value_t = TierName::Exact)]
+    pub tier: TierName,
+    /// Harmonics of each symmetry class in the Fourier tier.
+    #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=16384))]
+    pub harmonics: u32,
     #[command(flatten)]
     pub precision: Precision,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TierName {
+    /// Exact rings; every order substituted back.
+    Exact,
+    /// Values at double-exponential nodes.
+    Collocation,
+    /// A truncated Fourier series.
+    Fourier,
 }
 
 #[derive(Debug, Args)]

@@ -4,6 +4,7 @@
 mod arguments;
 mod averaging;
 mod derive;
+mod derive_numeric;
 mod failure;
 mod output;
 mod paper;
