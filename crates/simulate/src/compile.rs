@@ -1,0 +1,404 @@
+//! From the expression tree to the tape.
+
+use crate::error::SimulateError;
+use crate::quantity::Parameters;
+use crate::real::Real;
+use crate::tape::{Op, Tape};
+use lindstedt_equation::{Expression, Function};
+use rug::{Float, Rational};
+
+/// An expression, compiled: constants are folded at 64 bits more than the precision and rounded
+/// once.
+#[derive(Clone, Debug)]
+pub(crate) enum Value {
+    Constant(Float),
+    Row(usize),
+}
+
+/// The argument of a sign or absolute value.
+#[derive(Clone, Debug)]
+pub(crate) struct Switch {
+    pub(crate) row: usize,
+    /// Its derivative in each direction of the linearisation.
+    pub(crate) tangents: Vec<Option<usize>>,
+    /// Whether a power that is no integer makes its zero a branch point.
+    pub(crate) branch: bool,
+    /// Whether the right side jumps with it (a sign, no absolute value).
+    pub(crate) jumps: bool,
+    /// The operations that its row (and tangents) need, in order.
+    pub(crate) cone: Vec<usize>,
+}
+
+/// A tape in the making.
+pub(crate) struct Compiler<'a, R: Real> {
+    pub(crate) real: &'a R,
+    pub(crate) tape: Tape<R::Element>,
+    pub(crate) switches: Vec<Switch>,
+    pub(crate) delays: Vec<Float>,
+    affine: Vec<bool>,
+    parameters: &'a Parameters,
+    small: Option<&'a str>,
+    /// Names of the states; x is state 0 and x' state 1.
+    names: &'a [String],
+    variables: usize,
+}
+
+impl<'a, R: Real> Compiler<'a, R> {
+    /// `variables` states that expressions may name, `states` rows in all.
+    pub(crate) fn new(
+        real: &'a R,
+        (variables, states): (usize, usize),
+        names: &'a [String],
+        (parameters, small): (&'a Parameters, Option<&'a str>),
+    ) -> Self {
+        Self {
+            real,
+            tape: Tape { states, ops: Vec::new(), constants: Vec::new() },
+            switches: Vec::new(),
+            delays: Vec::new(),
+            affine: Vec::new(),
+            parameters,
+            small,
+            names,
+            variables,
+        }
+    }
+
+    pub(crate) fn bits(&self) -> u32 {
+        self.real.bits() + 64
+    }
+
+    pub(crate) fn float(&self, n: impl Into<Rational>) -> Float {
+        Float::with_val(self.bits(), n.into())
+    }
+
+    /// The row of an operation, an existing one if there is one.
+    pub(crate) fn push(&mut self, op: Op) -> usize {
+        let states = self.tape.states;
+        if let Some(index) = self.tape.ops.iter().position(|known| *known == op) {
+            return states + index;
+        }
+        let affine = match op {
+            Op::Constant(_) | Op::Time => true,
+            Op::Add(a, b) | Op::Subtract(a, b) => self.is_affine(a) && self.is_affine(b),
+            Op::Scale(a, _) => self.is_affine(a),
+            _ => false,
+        };
+        self.tape.ops.push(op);
+        self.affine.push(affine);
+        states + self.tape.ops.len() - 1
+    }
+
+    fn is_affine(&self, row: usize) -> bool {
+        let index = row.checked_sub(self.tape.states);
+        index.and_then(|index| self.affine.get(index)).copied().unwrap_or(false)
+    }
+
+    /// The place of a constant in the table.
+    pub(crate) fn constant(&mut self, value: &Float) -> usize {
+        let element = self.real.from_float(value);
+        let constants = &mut self.tape.constants;
+        constants.iter().position(|known| *known == element).unwrap_or_else(|| {
+            constants.push(element);
+            constants.len() - 1
+        })
+    }
+
+    /// The value as a row.
+    pub(crate) fn row(&mut self, value: Value) -> usize {
+        match value {
+            Value::Row(row) => row,
+            Value::Constant(c) => {
+                let c = self.constant(&c);
+                self.push(Op::Constant(c))
+            }
+        }
+    }
+
+    /// The index of the switch with this argument.
+    fn switch(&mut self, row: usize, branch: bool) -> usize {
+        let known = self.switches.iter().position(|switch| switch.row == row);
+        let index = known.unwrap_or_else(|| {
+            let (tangents, cone) = (Vec::new(), Vec::new());
+            self.switches.push(Switch { row, tangents, branch: false, jumps: false, cone });
+            self.switches.len() - 1
+        });
+        self.switches[index].branch |= branch;
+        index
+    }
+
+    /// Compiles an expression; `delay` is the delay that it stands under.
+    pub(crate) fn expression(
+        &mut self,
+        expression: &Expression,
+        delay: Option<&Float>,
+    ) -> Result<Value, SimulateError> {
+        Ok(match expression {
+            Expression::Number(q) => Value::Constant(self.float(q.clone())),
+            Expression::Parameter(name) => {
+                match self.names.iter().position(|state| state == name) {
+                    Some(state) => self.state(state, delay)?,
+                    None => Value::Constant(self.parameter(name)?),
+                }
+            }
+            Expression::Small => {
+                let name = self.small.unwrap_or("the small parameter").to_owned();
+                Value::Constant(self.parameter(&name)?)
+            }
+            Expression::Displacement => self.state(0, delay)?,
+            Expression::Velocity => self.state(1, delay)?,
+            Expression::Acceleration => return Err(SimulateError::UnexpectedState),
+            Expression::Time => {
+                let time = Value::Row(self.push(Op::Time));
+                match delay {
+                    None => time,
+                    Some(delay) => {
+                        self.sum(time, Value::Constant(Float::with_val(delay.prec(), -delay)))
+                    }
+                }
+            }
+            Expression::Delayed(inner, by) => {
+                let Value::Constant(by) = self.expression(by, None)? else {
+                    return Err(SimulateError::UnexpectedState);
+                };
+                if !(by.is_finite() && by > 0) {
+                    return Err(SimulateError::BadDelay { delay: by.to_f64() });
+                }
+                let total = delay.map_or_else(|| by.clone(), |outer| by.clone() + outer);
+                self.expression(inner, Some(&total))?
+            }
+            Expression::Sum(terms) => {
+                let mut total = Value::Constant(self.float(0));
+                for term in terms {
+                    let term = self.expression(term, delay)?;
+                    total = self.sum(total, term);
+                }
+                total
+            }
+            Expression::Product(factors) => {
+                let mut constant = Value::Constant(self.float(1));
+                let mut total = constant.clone();
+                for factor in factors {
+                    match self.expression(factor, delay)? {
+                        row @ Value::Row(_) => total = self.product(total, row),
+                        known => constant = self.product(constant, known),
+                    }
+                }
+                self.product(constant, total)
+            }
+            Expression::Power(base, exponent) => self.power(base, exponent, delay)?,
+            Expression::Function(function, argument) => {
+                let argument = self.expression(argument, delay)?;
+                self.function(*function, argument)
+            }
+            Expression::Formal(name, _) => {
+                return Err(SimulateError::FormalFunction { name: name.clone() });
+            }
+        })
+    }
+
+    fn parameter(&self, name: &str) -> Result<Float, SimulateError> {
+        let value = self.parameters.get(name);
+        let value = value.ok_or_else(|| SimulateError::MissingParameter { name: name.to_owned() });
+        Ok(value?.float(self.bits()))
+    }
+
+    fn state(&mut self, state: usize, delay: Option<&Float>) -> Result<Value, SimulateError> {
+        if state >= self.variables {
+            return Err(SimulateError::UnexpectedState);
+        }
+        let Some(delay) = delay else { return Ok(Value::Row(state)) };
+        let known = self.delays.iter().position(|known| known == delay);
+        let delay = known.unwrap_or_else(|| {
+            self.delays.push(delay.clone());
+            self.delays.len() - 1
+        });
+        Ok(Value::Row(self.push(Op::Delayed { state, delay })))
+    }
+
+    pub(crate) fn sum(&mut self, a: Value, b: Value) -> Value {
+        match (a, b) {
+            (Value::Constant(a), Value::Constant(b)) => Value::Constant(a + b),
+            (Value::Constant(zero), other) | (other, Value::Constant(zero)) if zero.is_zero() => {
+                other
+            }
+            (a, b) => {
+                let (a, b) = (self.row(a), self.row(b));
+                Value::Row(self.push(Op::Add(a, b)))
+            }
+        }
+    }
+
+    pub(crate) fn product(&mut self, a: Value, b: Value) -> Value {
+        match (a, b) {
+            (Value::Constant(a), Value::Constant(b)) => Value::Constant(a * b),
+            (Value::Constant(c), Value::Row(row)) | (Value::Row(row), Value::Constant(c)) => {
+                if c == 1 {
+                    return Value::Row(row);
+                }
+                if c.is_zero() {
+                    return Value::Constant(c);
+                }
+                let c = self.constant(&c);
+                Value::Row(self.push(Op::Scale(row, c)))
+            }
+            (Value::Row(a), Value::Row(b)) if a == b => Value::Row(self.push(Op::Square(a))),
+            (Value::Row(a), Value::Row(b)) => Value::Row(self.push(Op::Multiply(a, b))),
+        }
+    }
+
+    fn function(&mut self, function: Function, argument: Value) -> Value {
+        let row = match argument {
+            Value::Row(row) => row,
+            Value::Constant(x) => {
+                return Value::Constant(match function {
+                    Function::Ln => x.ln(),
+                    Function::Exp => x.exp(),
+                    Function::Sin => x.sin(),
+                    Function::Cos => x.cos(),
+                    Function::Abs => x.abs(),
+                    Function::Sign if x.is_zero() => x,
+                    Function::Sign => x.signum(),
+                });
+            }
+        };
+        Value::Row(match function {
+            Function::Ln => self.push(Op::Ln(row)),
+            Function::Exp => self.push(Op::Exp(row)),
+            Function::Sin => self.sine(row),
+            Function::Cos => self.sine(row) + 1,
+            Function::Abs => {
+                let switch = self.switch(row, false);
+                self.push(Op::Signed(row, switch))
+            }
+            Function::Sign => {
+                let switch = self.switch(row, false);
+                self.switches[switch].jumps = true;
+                self.push(Op::Control { switch, part: 0 })
+            }
+        })
+    }
+
+    /// The row of the sine; the cosine is the next one.
+    fn sine(&mut self, argument: usize) -> usize {
+        let affine = self.is_affine(argument);
+        let row = self.push(Op::Sin { argument, affine });
+        self.push(Op::Cos { argument, affine });
+        row
+    }
+
+    /// base^exponent. |w|^p and (w^(2k))^q are written with |w|: an integer power in all is exact
+    /// at w = 0, any other one has a branch point there.
+    fn power(
+        &mut self,
+        base: &Expression,
+        exponent: &Expression,
+        delay: Option<&Float>,
+    ) -> Result<Value, SimulateError> {
+        let exact = self.rational(exponent);
+        let power = match self.expression(exponent, None) {
+            Ok(Value::Constant(power)) => power,
+            _ => {
+                // exp(exponent ln base).
+                let exponent = self.expression(exponent, delay)?;
+                let base = self.expression(base, delay)?;
+                let ln = self.function(Function::Ln, base);
+                let product = self.product(exponent, ln);
+                return Ok(self.function(Function::Exp, product));
+            }
+        };
+        if let Some(n) = exact.as_ref().and_then(small_integer) {
+            let base = self.expression(base, delay)?;
+            return Ok(self.integer_power(base, n));
+        }
+        let (inner, factor) = match base {
+            Expression::Power(inner, k) => {
+                match self.rational(k).as_ref().and_then(small_integer) {
+                    Some(k) if k % 2 == 0 => (inner, k),
+                    _ => (inner, 0),
+                }
+            }
+            Expression::Function(Function::Abs, inner) => (inner, 1),
+            _ => (&Box::new(Expression::Time), 0),
+        };
+        if factor == 0 {
+            let base = self.expression(base, delay)?;
+            return Ok(self.real_power(base, &power));
+        }
+        let inner = self.expression(inner, delay)?;
+        let total = exact.map(|q| q * factor);
+        if let Some(n) = total.as_ref().and_then(small_integer) {
+            let even = self.integer_power(inner.clone(), n - n.rem_euclid(2));
+            if n % 2 == 0 {
+                return Ok(even);
+            }
+            let modulus = self.function(Function::Abs, inner);
+            return Ok(self.product(even, modulus));
+        }
+        if let Value::Row(row) = inner {
+            self.switch(row, true);
+        }
+        let modulus = self.function(Function::Abs, inner);
+        Ok(self.real_power(modulus, &(power * factor)))
+    }
+
+    fn real_power(&mut self, base: Value, power: &Float) -> Value {
+        match base {
+            Value::Constant(base) => Value::Constant(rug::ops::Pow::pow(base, power)),
+            Value::Row(row) => {
+                let power = self.constant(power);
+                Value::Row(self.push(Op::Power(row, power)))
+            }
+        }
+    }
+
+    /// By squarings: exact at zero, at most 2 log2 n products.
+    pub(crate) fn integer_power(&mut self, base: Value, n: i32) -> Value {
+        let one = Value::Constant(self.float(1));
+        let (mut square, mut rest, mut total) = (base, n.unsigned_abs(), one.clone());
+        while rest > 0 {
+            if rest % 2 == 1 {
+                total = self.product(total, square.clone());
+            }
+            rest /= 2;
+            if rest > 0 {
+                square = self.product(square.clone(), square);
+            }
+        }
+        if n >= 0 { total } else { self.quotient(one, total) }
+    }
+
+    pub(crate) fn quotient(&mut self, a: Value, b: Value) -> Value {
+        match (a, b) {
+            (a, Value::Constant(b)) => self.product(a, Value::Constant(b.recip())),
+            (a, b) => {
+                let (a, b) = (self.row(a), self.row(b));
+                Value::Row(self.push(Op::Divide(a, b)))
+            }
+        }
+    }
+
+    /// The value of a constant expression, if it is rational.
+    fn rational(&self, expression: &Expression) -> Option<Rational> {
+        match expression {
+            Expression::Number(q) => Some(q.clone()),
+            Expression::Parameter(name) if !self.names.contains(name) => {
+                self.parameters.get(name)?.rational()
+            }
+            Expression::Small => self.parameters.get(self.small?)?.rational(),
+            Expression::Sum(terms) => terms.iter().map(|term| self.rational(term)).sum(),
+            Expression::Product(factors) => factors.iter().map(|f| self.rational(f)).product(),
+            Expression::Power(base, exponent) => {
+                let n = small_integer(&self.rational(exponent)?)?;
+                let base = self.rational(base)?;
+                (n >= 0 || base.cmp0().is_ne()).then(|| rug::ops::Pow::pow(base, n))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// An integer exponent of at most 10^6.
+fn small_integer(q: &Rational) -> Option<i32> {
+    q.is_integer().then(|| q.numer().to_i32()).flatten().filter(|n| n.abs() <= 1_000_000)
+}

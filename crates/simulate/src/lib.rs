@@ -1,0 +1,30 @@
+//! The independent judge in the time domain: Taylor series of any order in f64 or at any
+//! precision, events on the series to the last digits, impacts, sticking, constant delays and the
+//! linearisation through all of them.
+//!
+//! It shares nothing with the expansions that it judges but the expression tree of the problem.
+
+mod compile;
+mod error;
+mod events;
+mod impact;
+mod integrator;
+mod linear;
+mod past;
+mod quantity;
+mod real;
+mod report;
+mod roots;
+mod series;
+mod switching;
+mod system;
+mod tangent;
+mod tape;
+
+pub use error::{SimulateError, Surface};
+pub use integrator::{Integrator, Observer, Settings};
+pub use linear::{Monodromy, monodromy};
+pub use quantity::{Parameters, Quantity};
+pub use real::{Digits, Doubles, Real};
+pub use report::{Event, EventKind, Outcome, Report, Segment, Work};
+pub use system::{Model, System};
