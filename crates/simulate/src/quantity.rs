@@ -80,7 +80,8 @@ impl From<Float> for Quantity {
 fn fraction(text: &str) -> Option<Rational> {
     let Some((above, below)) = text.split_once('/') else { return decimal(text) };
     let below = decimal(below)?;
-    (below.cmp0().is_ne()).then_some(decimal(above)? / below)
+    let above = decimal(above)?;
+    (below.cmp0().is_ne()).then(|| above / below)
 }
 
 /// A decimal number with an optional exponent (at most 10 000), exactly.
