@@ -162,6 +162,22 @@ impl<'s, R: Real> Integrator<'s, R> {
         self.work
     }
 
+    /// Replaces the states by the given ones (one per dimension) at the present time: a jump from
+    /// outside. Directions of the linearisation stay as they are; a body at rest at a wall is
+    /// free again (and at rest in the next moment, if the new state and the force say so).
+    pub fn set_state(&mut self, state: &[R::Element]) -> Result<(), SimulateError> {
+        let (n, given) = (self.system.variables, state.len());
+        if given != n {
+            return Err(SimulateError::WrongDimension { states: n, given });
+        }
+        self.state[..n].clone_from_slice(state);
+        self.smooth = false;
+        self.rebound = None;
+        self.phase.contact = None;
+        self.vanishing.iter_mut().for_each(|skip| *skip = 0);
+        self.begin()
+    }
+
     pub(crate) fn seconds(&self) -> f64 {
         self.system.real.to_f64(&self.clock.high)
     }
