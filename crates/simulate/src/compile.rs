@@ -177,12 +177,20 @@ impl<'a, R: Real> Compiler<'a, R> {
             }
             Expression::Product(factors) => {
                 let mut constant = Value::Constant(self.float(1));
-                let mut total = constant.clone();
-                for factor in factors {
-                    match self.expression(factor, delay)? {
-                        row @ Value::Row(_) => total = self.product(total, row),
-                        known => constant = self.product(constant, known),
-                    }
+                let split = factors.iter().partition(|factor| self.is_constant(factor));
+                let (constants, others): (Vec<_>, Vec<_>) = split;
+                for factor in constants {
+                    let factor = self.expression(factor, None)?;
+                    constant = self.product(constant, factor);
+                }
+                // A gain of zero: what it multiplies (a delayed term) is not there.
+                if matches!(&constant, Value::Constant(zero) if zero.is_zero()) {
+                    return Ok(constant);
+                }
+                let mut total = Value::Constant(self.float(1));
+                for factor in others {
+                    let factor = self.expression(factor, delay)?;
+                    total = self.product(total, factor);
                 }
                 self.product(constant, total)
             }
@@ -195,6 +203,20 @@ impl<'a, R: Real> Compiler<'a, R> {
                 return Err(SimulateError::FormalFunction { name: name.clone() });
             }
         })
+    }
+
+    /// Whether neither states nor the time stand in the expression.
+    fn is_constant(&self, expression: &Expression) -> bool {
+        match expression {
+            Expression::Number(_) | Expression::Small => true,
+            Expression::Parameter(name) => !self.names.contains(name),
+            Expression::Sum(list) | Expression::Product(list) => {
+                list.iter().all(|e| self.is_constant(e))
+            }
+            Expression::Power(a, b) => self.is_constant(a) && self.is_constant(b),
+            Expression::Function(_, a) => self.is_constant(a),
+            _ => false,
+        }
     }
 
     fn parameter(&self, name: &str) -> Result<Float, SimulateError> {
