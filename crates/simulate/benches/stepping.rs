@@ -1,5 +1,7 @@
 //! What a period of the stick-slip oscillator costs, in f64 and at 30 digits.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use lindstedt_simulate::{
     Digits, Doubles, Integrator, Model, Parameters, Quantity, Real, Settings, System,
 };
@@ -32,7 +34,7 @@ fn system<R: Real>(real: R, linearised: bool) -> System<R> {
 
 fn periods<R: Real>(system: &System<R>, digits: u32, count: u32) -> u64 {
     let real = system.real();
-    let start = [real.from_f64(0.5), real.from_f64(0.1)];
+    let start = [real.double(0.5), real.double(0.1)];
     let settings = Settings::for_digits(digits);
     let mut flow = Integrator::new(system, &real.zero(), &start, settings).unwrap();
     for n in 1..=count {

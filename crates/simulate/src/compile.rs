@@ -36,10 +36,10 @@ pub(crate) struct Compiler<'a, R: Real> {
     pub(crate) switches: Vec<Switch>,
     pub(crate) delays: Vec<Float>,
     affine: Vec<bool>,
-    parameters: &'a Parameters,
-    small: Option<&'a str>,
+    pub(crate) parameters: &'a Parameters,
+    pub(crate) small: Option<&'a str>,
     /// Names of the states; x is state 0 and x' state 1.
-    names: &'a [String],
+    pub(crate) names: &'a [String],
     variables: usize,
 }
 
@@ -96,7 +96,7 @@ impl<'a, R: Real> Compiler<'a, R> {
 
     /// The place of a constant in the table.
     pub(crate) fn constant(&mut self, value: &Float) -> usize {
-        let element = self.real.from_float(value);
+        let element = self.real.float(value);
         let constants = &mut self.tape.constants;
         constants.iter().position(|known| *known == element).unwrap_or_else(|| {
             constants.push(element);
@@ -116,7 +116,7 @@ impl<'a, R: Real> Compiler<'a, R> {
     }
 
     /// The index of the switch with this argument.
-    fn switch(&mut self, row: usize, branch: bool) -> usize {
+    pub(crate) fn switch(&mut self, row: usize, branch: bool) -> usize {
         let known = self.switches.iter().position(|switch| switch.row == row);
         let index = known.unwrap_or_else(|| {
             let (tangents, cone) = (Vec::new(), Vec::new());
@@ -269,7 +269,7 @@ impl<'a, R: Real> Compiler<'a, R> {
         }
     }
 
-    fn function(&mut self, function: Function, argument: Value) -> Value {
+    pub(crate) fn function(&mut self, function: Function, argument: Value) -> Value {
         let row = match argument {
             Value::Row(row) => row,
             Value::Constant(x) => {
@@ -309,87 +309,6 @@ impl<'a, R: Real> Compiler<'a, R> {
         row
     }
 
-    /// base^exponent. |w|^p and (w^(2k))^q are written with |w|: an integer power in all is exact
-    /// at w = 0, any other one has a branch point there.
-    fn power(
-        &mut self,
-        base: &Expression,
-        exponent: &Expression,
-        delay: Option<&Float>,
-    ) -> Result<Value, SimulateError> {
-        let exact = self.rational(exponent);
-        let power = match self.expression(exponent, None) {
-            Ok(Value::Constant(power)) => power,
-            _ => {
-                // exp(exponent ln base).
-                let exponent = self.expression(exponent, delay)?;
-                let base = self.expression(base, delay)?;
-                let ln = self.function(Function::Ln, base);
-                let product = self.product(exponent, ln);
-                return Ok(self.function(Function::Exp, product));
-            }
-        };
-        if let Some(n) = exact.as_ref().and_then(small_integer) {
-            let base = self.expression(base, delay)?;
-            return Ok(self.integer_power(base, n));
-        }
-        let (inner, factor) = match base {
-            Expression::Power(inner, k) => {
-                match self.rational(k).as_ref().and_then(small_integer) {
-                    Some(k) if k % 2 == 0 => (inner, k),
-                    _ => (inner, 0),
-                }
-            }
-            Expression::Function(Function::Abs, inner) => (inner, 1),
-            _ => (&Box::new(Expression::Time), 0),
-        };
-        if factor == 0 {
-            let base = self.expression(base, delay)?;
-            return Ok(self.real_power(base, &power));
-        }
-        let inner = self.expression(inner, delay)?;
-        let total = exact.map(|q| q * factor);
-        if let Some(n) = total.as_ref().and_then(small_integer) {
-            let even = self.integer_power(inner.clone(), n - n.rem_euclid(2));
-            if n % 2 == 0 {
-                return Ok(even);
-            }
-            let modulus = self.function(Function::Abs, inner);
-            return Ok(self.product(even, modulus));
-        }
-        if let Value::Row(row) = inner {
-            self.switch(row, true);
-        }
-        let modulus = self.function(Function::Abs, inner);
-        Ok(self.real_power(modulus, &(power * factor)))
-    }
-
-    fn real_power(&mut self, base: Value, power: &Float) -> Value {
-        match base {
-            Value::Constant(base) => Value::Constant(rug::ops::Pow::pow(base, power)),
-            Value::Row(row) => {
-                let power = self.constant(power);
-                Value::Row(self.push(Op::Power(row, power)))
-            }
-        }
-    }
-
-    /// By squarings: exact at zero, at most 2 log2 n products.
-    pub(crate) fn integer_power(&mut self, base: Value, n: i32) -> Value {
-        let one = Value::Constant(self.float(1));
-        let (mut square, mut rest, mut total) = (base, n.unsigned_abs(), one.clone());
-        while rest > 0 {
-            if rest % 2 == 1 {
-                total = self.product(total, square.clone());
-            }
-            rest /= 2;
-            if rest > 0 {
-                square = self.product(square.clone(), square);
-            }
-        }
-        if n >= 0 { total } else { self.quotient(one, total) }
-    }
-
     pub(crate) fn quotient(&mut self, a: Value, b: Value) -> Value {
         match (a, b) {
             (a, Value::Constant(b)) => self.product(a, Value::Constant(b.recip())),
@@ -399,28 +318,4 @@ impl<'a, R: Real> Compiler<'a, R> {
             }
         }
     }
-
-    /// The value of a constant expression, if it is rational.
-    fn rational(&self, expression: &Expression) -> Option<Rational> {
-        match expression {
-            Expression::Number(q) => Some(q.clone()),
-            Expression::Parameter(name) if !self.names.contains(name) => {
-                self.parameters.get(name)?.rational()
-            }
-            Expression::Small => self.parameters.get(self.small?)?.rational(),
-            Expression::Sum(terms) => terms.iter().map(|term| self.rational(term)).sum(),
-            Expression::Product(factors) => factors.iter().map(|f| self.rational(f)).product(),
-            Expression::Power(base, exponent) => {
-                let n = small_integer(&self.rational(exponent)?)?;
-                let base = self.rational(base)?;
-                (n >= 0 || base.cmp0().is_ne()).then(|| rug::ops::Pow::pow(base, n))
-            }
-            _ => None,
-        }
-    }
-}
-
-/// An integer exponent of at most 10^6.
-fn small_integer(q: &Rational) -> Option<i32> {
-    q.is_integer().then(|| q.numer().to_i32()).flatten().filter(|n| n.abs() <= 1_000_000)
 }

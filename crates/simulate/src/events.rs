@@ -169,7 +169,7 @@ impl<R: Real> Integrator<'_, R> {
                 self.polynomial.clear();
                 self.polynomial.extend_from_slice(&self.series.rows.row(row)[..known]);
                 let shifted =
-                    system.real.difference(&self.polynomial[0], &system.real.from_f64(limit));
+                    system.real.difference(&self.polynomial[0], &system.real.double(limit));
                 // Released when it grows beyond the limit; exactly on it: skip the zero.
                 let start = usize::from(system.real.sign(&shifted) == 0);
                 self.polynomial[0] = shifted;

@@ -83,8 +83,8 @@ impl<R: Real> Integrator<'_, R> {
         let real = &self.system.real;
         let wall = &self.system.walls[self.rebound?];
         let row = self.series.rows.row(0);
-        let mut loss = real.from_f64(1.0);
-        real.subtract(&mut loss, &real.from_f64(1.0), &wall.restitution);
+        let mut loss = real.double(1.0);
+        real.subtract(&mut loss, &real.double(1.0), &wall.restitution);
         let jumps = self.system.switches.iter().any(|switch| switch.jumps);
         if real.sign(&row[2]) != wall.direction || real.sign(&loss) <= 0 {
             return None;

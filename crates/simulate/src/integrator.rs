@@ -3,8 +3,8 @@
 use crate::error::{SimulateError, Surface};
 use crate::past::{Clock, Past};
 use crate::real::Real;
-use crate::report::{Event, EventKind, Outcome, Report, Segment, Work};
-use crate::roots::{Cluster, RootFinder};
+use crate::report::{Outcome, Report, Work};
+use crate::roots::RootFinder;
 use crate::series::{Phase, Series};
 use crate::system::System;
 use std::ops::ControlFlow;
@@ -69,8 +69,8 @@ pub struct Integrator<'s, R: Real> {
     pub(crate) polynomial: Vec<R::Element>,
     /// The wall of the impact that began the step.
     pub(crate) rebound: Option<usize>,
-    smooth: bool,
-    work: Work,
+    pub(crate) smooth: bool,
+    pub(crate) work: Work,
 }
 
 /// The observer of an integration: told of every segment and event; breaks it off if it likes.
@@ -104,7 +104,7 @@ impl<'s, R: Real> Integrator<'s, R> {
         }
         let mut all = state.to_vec();
         for direction in 0..system.directions() {
-            all.extend((0..n).map(|k| real.from_f64(if k == direction { 1.0 } else { 0.0 })));
+            all.extend((0..n).map(|k| real.double(if k == direction { 1.0 } else { 0.0 })));
         }
         let order = settings.order();
         let clock = Clock::new(real, time);
@@ -221,7 +221,7 @@ impl<'s, R: Real> Integrator<'s, R> {
         let time = self.seconds();
         let step = self.series.step(self.system, self.log2_tolerance);
         let step = step.ok_or(SimulateError::NotFinite { time })?;
-        let mut h = real.from_f64(step.min(f64::MAX));
+        let mut h = real.double(step.min(f64::MAX));
         let mut last = false;
         if let Some(limit) = limit.filter(|limit| *limit < h) {
             h = limit;
@@ -244,7 +244,7 @@ impl<'s, R: Real> Integrator<'s, R> {
             if defect <= (self.log2_tolerance + factor).max(noise) {
                 break;
             }
-            real.scale(&mut h, &real.from_f64(0.5));
+            real.scale(&mut h, &real.double(0.5));
             last = false;
             self.work.rejected += 1;
         }
@@ -306,89 +306,6 @@ impl<'s, R: Real> Integrator<'s, R> {
         }
         self.series.expand(system, &self.clock.high, &self.phase, levels)?;
         Ok(limit)
-    }
-
-    /// Reports the segment [0, h] and the crossings of sections in it, keeps it for delays.
-    fn segment(
-        &mut self,
-        h: &R::Element,
-        observer: &mut Observer<'_, R>,
-    ) -> Result<ControlFlow<()>, SimulateError> {
-        let system = self.system;
-        if let Some(past) = &mut self.past {
-            let how = (self.smooth, self.log2_tolerance);
-            past.push(system, &self.clock, &self.series.rows, h, how);
-        }
-        self.smooth = true;
-        let stride = self.series.rows.stride;
-        let segment = Segment {
-            real: &system.real,
-            start: &self.clock.high,
-            length: h,
-            modes: &self.phase.modes,
-            contact: self.phase.contact,
-            coefficients: &self.series.rows.data[..system.tape.states * stride],
-            stride,
-        };
-        let told = observer(&Report::Segment(segment));
-        let crossed = self.cross_sections(h, observer)?;
-        Ok(if told.is_break() { told } else { crossed })
-    }
-
-    /// Crossings of the user's sections in (0, h].
-    fn cross_sections(
-        &mut self,
-        h: &R::Element,
-        observer: &mut Observer<'_, R>,
-    ) -> Result<ControlFlow<()>, SimulateError> {
-        let system = self.system;
-        let offset = system.walls.len() + system.switches.len();
-        let mut told = ControlFlow::Continue(());
-        for (section, row) in system.sections.iter().enumerate() {
-            self.search(*row, offset + section, h, usize::MAX)
-                .map_err(|cluster| self.grazing(Surface::Section(section), &cluster.at))?;
-            self.vanishing[offset + section] = 0;
-            for index in 0..self.finder.found.len() {
-                let root = self.finder.found[index].clone();
-                // Within rounding errors of the end: the next step starts on the section.
-                let rest = system.real.log2(&system.real.difference(h, &root.at));
-                if rest < system.real.log2(h) - f64::from(system.real.bits()) + 8.0 {
-                    self.vanishing[offset + section] = 1;
-                }
-                let mut time = self.clock.clone();
-                time.advance(&system.real, &root.at);
-                self.before.clear();
-                for state in 0..system.tape.states {
-                    self.before.push(self.series.value(&system.real, state, &root.at));
-                }
-                self.sides[section] = root.after;
-                let kind = EventKind::Section { section, rising: root.after > 0 };
-                let (before, after) = (&self.before[..], &self.before[..]);
-                let log2_error = f64::NEG_INFINITY;
-                let event = Event { time: &time.high, kind, before, after, log2_error };
-                if observer(&Report::Event(event)).is_break() {
-                    told = ControlFlow::Break(());
-                }
-            }
-        }
-        Ok(told)
-    }
-
-    /// Roots of a surface in (0, h], without those at the start.
-    pub(crate) fn search(
-        &mut self,
-        row: usize,
-        surface: usize,
-        h: &R::Element,
-        most: usize,
-    ) -> Result<(), Cluster<R::Element>> {
-        self.finder.found.clear();
-        let skip = self.vanishing[surface];
-        let row = self.series.rows.row(row);
-        if row.iter().skip(skip).all(|c| self.system.real.sign(c) == 0) {
-            return Ok(());
-        }
-        self.finder.search(&self.system.real, row.get(skip..).unwrap_or_default(), h, most)
     }
 
     pub(crate) fn grazing(&self, surface: Surface, at: &R::Element) -> SimulateError {

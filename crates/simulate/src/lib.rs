@@ -5,26 +5,31 @@
 //! It shares nothing with the expansions that it judges but the expression tree of the problem.
 
 mod compile;
+mod digits;
 mod error;
 mod events;
 mod impact;
 mod integrator;
 mod linear;
 mod past;
+mod power;
 mod quantity;
 mod real;
 mod report;
 mod roots;
+mod second_order;
+mod segment;
 mod series;
 mod switching;
 mod system;
 mod tangent;
 mod tape;
 
+pub use digits::Digits;
 pub use error::{SimulateError, Surface};
 pub use integrator::{Integrator, Observer, Settings};
 pub use linear::{Monodromy, monodromy};
 pub use quantity::{Parameters, Quantity};
-pub use real::{Digits, Doubles, Real};
+pub use real::{Doubles, Real};
 pub use report::{Event, EventKind, Outcome, Report, Segment, Work};
 pub use system::{Model, System};

@@ -43,9 +43,9 @@ impl<R: Real> Integrator<'_, R> {
         self.expand_to(1)?;
         for (direction, gradient) in gradient.iter().enumerate() {
             let weight = real.quotient(gradient, rate);
-            for k in 0..n {
+            for (k, before) in incoming.iter().enumerate().take(n) {
                 let place = n * (direction + 1) + k;
-                let mut before = incoming[k].clone();
+                let mut before = before.clone();
                 if let (1, Some(restitution)) = (k, restitution) {
                     real.times_integer(&mut before, -1);
                     real.scale(&mut before, restitution);

@@ -99,7 +99,7 @@ impl<R: Real> Past<R> {
             // Breakpoints are met to rounding errors; within them the later piece counts.
             let mut slack = real.absolute(&now.high);
             real.increase(&mut slack, &self.longest);
-            real.scale(&mut slack, &real.from_f64((8.0 - f64::from(real.bits())).exp2()));
+            real.scale(&mut slack, &real.double((8.0 - f64::from(real.bits())).exp2()));
             let length = if before > slack {
                 let own = self.fill_history(system, delay, &then, rows, log2_tolerance)?;
                 if own < before { own } else { before }
@@ -149,7 +149,7 @@ impl<R: Real> Past<R> {
                 *rows.at_mut(system.tape.states + index, n) = value;
             }
         }
-        Some(real.from_f64(log.min(1000.0).exp2()))
+        Some(real.double(log.min(1000.0).exp2()))
     }
 
     fn fill_piece(

@@ -18,11 +18,11 @@ pub trait Real: Clone + Debug + Send + Sync {
     /// Zero.
     fn zero(&self) -> Self::Element;
     /// A number of 53 bits, rounded if the precision is less.
-    fn from_f64(&self, x: f64) -> Self::Element;
+    fn double(&self, x: f64) -> Self::Element;
     /// A rational, rounded to nearest.
-    fn from_rational(&self, q: &Rational) -> Self::Element;
+    fn rational(&self, q: &Rational) -> Self::Element;
     /// A float of any precision, rounded to nearest.
-    fn from_float(&self, x: &Float) -> Self::Element;
+    fn float(&self, x: &Float) -> Self::Element;
     /// The nearest f64.
     fn to_f64(&self, x: &Self::Element) -> f64;
     /// The number as a float of `bits()` bits; exact.
@@ -126,7 +126,7 @@ pub trait Real: Clone + Debug + Send + Sync {
     }
     /// pi.
     fn pi(&self) -> Self::Element {
-        self.from_float(&Float::with_val(self.bits() + 8, Constant::Pi))
+        self.float(&Float::with_val(self.bits() + 8, Constant::Pi))
     }
 }
 
@@ -143,14 +143,14 @@ impl Real for Doubles {
     fn zero(&self) -> f64 {
         0.0
     }
-    fn from_f64(&self, x: f64) -> f64 {
+    fn double(&self, x: f64) -> f64 {
         x
     }
-    fn from_rational(&self, q: &Rational) -> f64 {
+    fn rational(&self, q: &Rational) -> f64 {
         // to_f64 of a rational truncates.
         Float::with_val(53, q).to_f64()
     }
-    fn from_float(&self, x: &Float) -> f64 {
+    fn float(&self, x: &Float) -> f64 {
         x.to_f64()
     }
     fn to_f64(&self, x: &f64) -> f64 {
@@ -246,117 +246,10 @@ impl Real for Doubles {
     }
 }
 
-/// The arithmetic of MPFR floats with a fixed number of bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Digits {
-    bits: u32,
-}
-
-impl Digits {
-    /// Floats of `bits` bits (at least 2).
-    #[must_use]
-    pub fn with_bits(bits: u32) -> Self {
-        Self { bits: bits.max(2) }
-    }
-
-    /// Floats for a result of `digits` decimal digits: 40 guard bits take the rounding errors of
-    /// about 10^12 operations.
-    #[must_use]
-    pub fn for_digits(digits: u32) -> Self {
-        Self::with_bits((f64::from(digits) * std::f64::consts::LOG2_10).ceil() as u32 + 40)
-    }
-}
-
-impl Real for Digits {
-    type Element = Float;
-
-    fn bits(&self) -> u32 {
-        self.bits
-    }
-    fn zero(&self) -> Float {
-        Float::new(self.bits)
-    }
-    fn from_f64(&self, x: f64) -> Float {
-        Float::with_val(self.bits, x)
-    }
-    fn from_rational(&self, q: &Rational) -> Float {
-        Float::with_val(self.bits, q)
-    }
-    fn from_float(&self, x: &Float) -> Float {
-        Float::with_val(self.bits, x)
-    }
-    fn to_f64(&self, x: &Float) -> f64 {
-        x.to_f64()
-    }
-    fn to_float(&self, x: &Float) -> Float {
-        x.clone()
-    }
-    fn sign(&self, x: &Float) -> i8 {
-        x.cmp0().map_or(0, |order| order as i8)
-    }
-    fn log2(&self, x: &Float) -> f64 {
-        if x.is_zero() {
-            return f64::NEG_INFINITY;
-        }
-        // |x| = m 2^e with 1/2 <= m < 1; the exponent may be far outside of f64.
-        x.get_exp().map_or(f64::NAN, |e| {
-            let (mantissa, _) = x.to_f64_exp();
-            mantissa.abs().log2() + f64::from(e)
-        })
-    }
-    fn set(&self, to: &mut Float, x: &Float) {
-        to.clone_from(x);
-    }
-    fn set_zero(&self, to: &mut Float) {
-        rug::Assign::assign(to, 0);
-    }
-    fn add(&self, to: &mut Float, a: &Float, b: &Float) {
-        rug::Assign::assign(to, a + b);
-    }
-    fn subtract(&self, to: &mut Float, a: &Float, b: &Float) {
-        rug::Assign::assign(to, a - b);
-    }
-    fn multiply(&self, to: &mut Float, a: &Float, b: &Float) {
-        rug::Assign::assign(to, a * b);
-    }
-    fn divide(&self, to: &mut Float, a: &Float, b: &Float) {
-        rug::Assign::assign(to, a / b);
-    }
-    fn increase(&self, to: &mut Float, a: &Float) {
-        *to += a;
-    }
-    fn accumulate(&self, to: &mut Float, a: &Float, b: &Float) {
-        *to += a * b;
-    }
-    fn scale(&self, to: &mut Float, a: &Float) {
-        *to *= a;
-    }
-    fn times_integer(&self, to: &mut Float, n: i32) {
-        *to *= n;
-    }
-    fn over_integer(&self, to: &mut Float, n: u32) {
-        *to /= n;
-    }
-    fn exp(&self, to: &mut Float, x: &Float) {
-        rug::Assign::assign(to, x.exp_ref());
-    }
-    fn ln(&self, to: &mut Float, x: &Float) {
-        rug::Assign::assign(to, x.ln_ref());
-    }
-    fn sin(&self, to: &mut Float, x: &Float) {
-        rug::Assign::assign(to, x.sin_ref());
-    }
-    fn cos(&self, to: &mut Float, x: &Float) {
-        rug::Assign::assign(to, x.cos_ref());
-    }
-    fn power(&self, to: &mut Float, x: &Float, p: &Float) {
-        rug::Assign::assign(to, rug::ops::Pow::pow(x, p));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::digits::Digits;
 
     /// f64 and floats of 53 bits agree to rounding on sums of products of every length.
     #[test]
@@ -366,7 +259,7 @@ mod tests {
             let a: Vec<f64> = (0..n).map(|k| f64::from(k * k % 11) - 3.5).collect();
             let b: Vec<f64> = (0..n).map(|k| f64::from(k * 7 % 13) / 3.0).collect();
             let (mut fast, mut exact, mut scratch) = (0.0, digits.zero(), digits.zero());
-            let lift = |v: &[f64]| v.iter().map(|x| digits.from_f64(*x)).collect::<Vec<_>>();
+            let lift = |v: &[f64]| v.iter().map(|x| digits.double(*x)).collect::<Vec<_>>();
             Doubles.convolve(&mut fast, &a, &b);
             digits.convolve(&mut exact, &lift(&a), &lift(&b));
             assert!((fast - exact.to_f64()).abs() < 1e-11);

@@ -73,7 +73,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
             self.pool.push(piece.bernstein);
         }
         let bernstein = self.bernstein(real);
-        let (left, width) = (real.zero(), real.from_f64(1.0));
+        let (left, width) = (real.zero(), real.double(1.0));
         self.stack.push(Piece { left, width, depth: 0, bernstein });
         while let Some(piece) = self.stack.pop() {
             let outcome = self.piece(real, piece, length);
@@ -89,7 +89,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
     /// c_k length^k into `scaled`; whether |c_0| outweighs all other terms.
     fn excluded<R: Real<Element = E>>(&mut self, real: &R, c: &[E], length: &E) -> bool {
         self.scaled.resize_with(c.len(), || real.zero());
-        let mut power = real.from_f64(1.0);
+        let mut power = real.double(1.0);
         let mut rest = real.zero();
         for (k, (scaled, c)) in self.scaled.iter_mut().zip(c).enumerate() {
             real.multiply(scaled, c, &power);
@@ -114,7 +114,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
             let mut binomial = rug::Integer::from(1);
             self.binomials.clear();
             for k in 0..=n {
-                self.binomials.push(real.from_rational(&rug::Rational::from(&binomial)));
+                self.binomials.push(real.rational(&rug::Rational::from(&binomial)));
                 binomial = binomial * (n - k) as u64 / (k + 1) as u64;
             }
         }
@@ -163,7 +163,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
                 self.pool.push(bernstein);
                 return Err(Cluster { at: real.product(&left, length) });
             }
-            let half = real.product(&width, &real.from_f64(0.5));
+            let half = real.product(&width, &real.double(0.5));
             let mut right = self.pool.pop().unwrap_or_default();
             right.resize_with(n + 1, || real.zero());
             // De Casteljau in place: `bernstein` becomes the left half.
@@ -172,7 +172,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
                 for i in ((j + 1)..=n).rev() {
                     let (before, from) = bernstein.split_at_mut(i);
                     real.increase(&mut from[0], &before[i - 1]);
-                    real.scale(&mut from[0], &real.from_f64(0.5));
+                    real.scale(&mut from[0], &real.double(0.5));
                 }
             }
             let middle = real.sum(&left, &half);
@@ -183,7 +183,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
         } else if end == 0 && first != 0 {
             // A root at the right end counts only if it is the end of the whole interval.
             let right = real.sum(&left, &width);
-            if right == real.from_f64(1.0) {
+            if right == real.double(1.0) {
                 self.found.push(Root { at: length.clone(), after: -first });
             }
         }
@@ -201,7 +201,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
             self.derivative.push(d);
         }
         let (mut low, mut high) = (left.clone(), real.sum(left, width));
-        let half = real.from_f64(0.5);
+        let half = real.double(0.5);
         let mut u = real.sum(left, &real.product(width, &half));
         let (mut value, mut slope) = (real.zero(), real.zero());
         let mut smallest = f64::INFINITY;
@@ -240,7 +240,8 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::real::{Digits, Doubles};
+    use crate::digits::Digits;
+    use crate::real::Doubles;
 
     fn polynomial(roots: &[f64]) -> Vec<f64> {
         let mut c = vec![1.0];
@@ -300,8 +301,8 @@ mod tests {
         let real = Digits::for_digits(60);
         let mut finder = RootFinder::new();
         // s^3 - 2 s - 1/4 on (0, 2].
-        let c: Vec<_> = [-0.25, -2.0, 0.0, 1.0].map(|x| real.from_f64(x)).to_vec();
-        finder.search(&real, &c, &real.from_f64(2.0), 9).unwrap();
+        let c: Vec<_> = [-0.25, -2.0, 0.0, 1.0].map(|x| real.double(x)).to_vec();
+        finder.search(&real, &c, &real.double(2.0), 9).unwrap();
         let s = finder.found[0].at.clone();
         let mut value = real.zero();
         horner(&real, &mut value, &c, &s);

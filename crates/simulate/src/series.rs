@@ -143,7 +143,7 @@ impl<R: Real> Series<R> {
         let real = &system.real;
         let mut h = [0.0, 1.0, -1.0].map(|u| {
             self.set_control(system, switch, None, 0, &real.zero());
-            self.set_control(system, switch, Some(0), 0, &real.from_f64(u));
+            self.set_control(system, switch, Some(0), 0, &real.double(u));
             self.constraint(system, time, phase, (switch, 0, 0))
         });
         let slope = real.difference(&h[1], &h[0]);

@@ -156,14 +156,14 @@ impl<E: Clone> Tape<E> {
             Op::Delayed { .. } => return,
             Op::Control { switch, part } => match (moment.modes[switch], part, n) {
                 (0, ..) => return,
-                (mode, 0, 0) => real.set(sum, &real.from_f64(f64::from(mode))),
+                (mode, 0, 0) => real.set(sum, &real.double(f64::from(mode))),
                 _ => real.set_zero(sum),
             },
             Op::Constant(c) if n == 0 => real.set(sum, &self.constants[c]),
             Op::Constant(_) => real.set_zero(sum),
             Op::Time => match n {
                 0 => real.set(sum, moment.time),
-                1 => real.set(sum, &real.from_f64(1.0)),
+                1 => real.set(sum, &real.double(1.0)),
                 _ => real.set_zero(sum),
             },
             Op::Add(a, b) => real.add(sum, rows.at(a, n), rows.at(b, n)),
@@ -175,7 +175,7 @@ impl<E: Clone> Tape<E> {
                 let row = rows.row(a);
                 real.convolve(sum, &row[..half], &row[n + 1 - half..=n]);
                 real.times_integer(sum, 2);
-                if n % 2 == 0 {
+                if n.is_multiple_of(2) {
                     real.accumulate(sum, &row[n / 2], &row[n / 2]);
                 }
             }

@@ -1,6 +1,8 @@
 //! Impacts: the bouncing oscillator against its exact impact times, and chattering against the
 //! exact geometric series.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use lindstedt_equation::{Crossing, Expression, Impact};
 use lindstedt_simulate::{
     Digits, Doubles, EventKind, Integrator, Model, Parameters, Real, Report, Settings, System,
@@ -27,14 +29,14 @@ fn bouncing() -> Model {
 /// bits: t_1 = 2 pi/3, speeds R^n sin(2 pi/3), flights 2 atan2(v_n, -1/2).
 fn largest_error<R: Real>(system: &System<R>, settings: Settings, impacts: usize) -> f64 {
     let real = system.real().clone();
-    let start = [real.from_f64(1.0), real.zero()];
+    let start = [real.double(1.0), real.zero()];
     let mut flow = Integrator::new(system, &real.zero(), &start, settings).unwrap();
     let bits = 300;
     let mut time = Float::with_val(bits, Constant::Pi) * 2u32 / 3u32;
     let mut speed = time.clone().sin();
     let restitution = Float::with_val(bits, Rational::from((999, 1000)));
     let (mut count, mut worst) = (0, 0f64);
-    let end = real.from_f64(1e6);
+    let end = real.double(1e6);
     flow.advance(&end, &mut |report| {
         let Report::Event(event) = report else { return ControlFlow::Continue(()) };
         assert_eq!(event.kind, EventKind::Impact { wall: 0 });
@@ -76,11 +78,11 @@ fn chattering_under_constant_force() {
     let model = Model::second_order(&equation).unwrap().with_wall(floor);
     let real = Digits::for_digits(40);
     let system = model.compile(real, &Parameters::new()).unwrap();
-    let start = [real.from_f64(1.0), real.zero()];
+    let start = [real.double(1.0), real.zero()];
     let settings = Settings::for_digits(40);
     let mut flow = Integrator::new(&system, &real.zero(), &start, settings).unwrap();
     let mut kinds = Vec::new();
-    let end = real.from_f64(10.0);
+    let end = real.double(10.0);
     flow.advance(&end, &mut |report| {
         if let Report::Event(event) = report {
             kinds.push((event.kind, event.time.clone()));
@@ -125,11 +127,11 @@ fn chattering_under_a_varying_force_and_departure() {
 
 fn events<R: Real>(model: &Model, real: R, digits: u32) -> Vec<(EventKind, f64)> {
     let system = model.compile(real.clone(), &Parameters::new()).unwrap();
-    let start = [real.from_f64(0.03125), real.zero()];
+    let start = [real.double(0.03125), real.zero()];
     let settings = Settings::for_digits(digits);
     let mut flow = Integrator::new(&system, &real.zero(), &start, settings).unwrap();
     let mut list = Vec::new();
-    flow.advance(&real.from_f64(3.0), &mut |report| {
+    flow.advance(&real.double(3.0), &mut |report| {
         if let Report::Event(event) = report {
             list.push((event.kind, real.to_f64(event.time)));
         }

@@ -1,6 +1,8 @@
 //! Constant delays: y' = -y(t-1) against its exact piecewise polynomial, and the delayed
 //! vibro-impact oscillator against an independent simulation.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use lindstedt_equation::Expression;
 use lindstedt_simulate::{
     Digits, Doubles, Integrator, Model, Parameters, Quantity, Real, Report, Settings,
@@ -44,7 +46,7 @@ fn run<R: Real>(real: &R, digits: u32, jump: i64) -> (f64, R::Element) {
     let model = Model::first_order(&["y"], &[-y.delayed(1)]).unwrap();
     let model = model.with_history(&[Expression::integer(1)]);
     let system = model.compile(real.clone(), &Parameters::new()).unwrap();
-    let one = real.from_f64(1.0);
+    let one = real.double(1.0);
     let settings = Settings::for_digits(digits);
     let mut flow =
         Integrator::new(&system, &real.zero(), std::slice::from_ref(&one), settings).unwrap();
@@ -54,7 +56,7 @@ fn run<R: Real>(real: &R, digits: u32, jump: i64) -> (f64, R::Element) {
         let Report::Segment(segment) = report else { return ControlFlow::Continue(()) };
         for n in 0..80 {
             let t = Rational::from((n, 8));
-            let s = real.difference(&real.from_rational(&t), segment.start);
+            let s = real.difference(&real.rational(&t), segment.start);
             if real.sign(&s) >= 0 && s < *segment.length {
                 let (start, c) = &pieces[(n / 4 + 2) as usize];
                 let known = evaluate(c, &(t - start));
@@ -64,10 +66,10 @@ fn run<R: Real>(real: &R, digits: u32, jump: i64) -> (f64, R::Element) {
         }
         ControlFlow::Continue(())
     };
-    flow.advance(&real.from_f64(2.5), &mut observe).unwrap();
-    let after = real.sum(&flow.state()[0], &real.from_f64(jump as f64));
+    flow.advance(&real.double(2.5), &mut observe).unwrap();
+    let after = real.sum(&flow.state()[0], &real.double(jump as f64));
     flow.set_state(&[after]).unwrap();
-    flow.advance(&real.from_f64(10.0), &mut observe).unwrap();
+    flow.advance(&real.double(10.0), &mut observe).unwrap();
     (worst, flow.state()[0].clone())
 }
 
@@ -202,11 +204,11 @@ fn impacts<R: Real>(
     let value = |name: &str| orbit.parameters.get(name).unwrap().float(200);
     let rebound = Float::with_val(200, perturbation) - value("R_r");
     let speed = Float::with_val(200, &orbit.velocity * &rebound);
-    let start = [real.from_float(&value("s")), real.from_float(&speed)];
+    let start = [real.float(&value("s")), real.float(&speed)];
     let settings = Settings::for_digits(digits);
     let mut flow = Integrator::new(&system, &real.zero(), &start, settings).unwrap();
     let mut list = Vec::new();
-    flow.advance(&real.from_f64(1e3), &mut |report| {
+    flow.advance(&real.double(1e3), &mut |report| {
         if let Report::Event(event) = report {
             list.push((event.time.clone(), event.before[1].clone()));
         }

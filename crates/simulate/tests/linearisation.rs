@@ -1,6 +1,8 @@
 //! Saltation, monodromy and multipliers: against the exact impact map, and against differences of
 //! nonlinear solutions at high precision.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use lindstedt_equation::{Crossing, Expression, Function, Impact};
 use lindstedt_simulate::{
     Digits, Doubles, EventKind, Integrator, Model, Parameters, Quantity, Real, Report, Settings,
@@ -33,16 +35,16 @@ fn multipliers_of_the_uncontrolled_impact_orbit() {
     let model = Model::of_problem(&problem).unwrap().linearised();
     let real = Digits::for_digits(30);
     let system = model.compile(real, &parameters).unwrap();
-    let start = real.from_float(&impact);
+    let start = real.float(&impact);
     let rebound = get(&orbit["vplus_check"]);
-    let state = [real.from_float(&get(&data["params"]["s"])), real.from_float(&rebound)];
+    let state = [real.float(&get(&data["params"]["s"])), real.float(&rebound)];
     let settings = Settings::for_digits(30);
     // The impact at the end of the period decides: stop just behind it, and come from there.
-    let middle = real.from_float(&Float::with_val(200, &impact + period.clone() / 2u32));
+    let middle = real.float(&Float::with_val(200, &impact + period.clone() / 2u32));
     let mut flow = Integrator::new(&system, &start, &state, settings).unwrap();
     flow.advance(&middle, &mut |_| ControlFlow::Continue(())).unwrap();
     let halfway = flow.state()[..2].to_vec();
-    let end = real.from_float(&Float::with_val(200, &middle + &period));
+    let end = real.float(&Float::with_val(200, &middle + &period));
     let result = monodromy(&system, (&middle, &end), &halfway, settings).unwrap();
     let closing = Float::with_val(200, &result.end[0] - &halfway[0]).abs().to_f64();
     assert!(closing < 1e-25, "{closing:e}");
@@ -79,7 +81,7 @@ fn end_of(system: &System<Digits>, state: &[Float], end: f64) -> (Vec<Float>, Ve
     let real = *system.real();
     let mut flow = Integrator::new(system, &real.zero(), state, Settings::for_digits(50)).unwrap();
     let mut kinds = Vec::new();
-    flow.advance(&real.from_f64(end), &mut |report| {
+    flow.advance(&real.double(end), &mut |report| {
         if let Report::Event(event) = report
             && let EventKind::Switching { from, to, .. } = event.kind
         {
@@ -101,11 +103,11 @@ fn check_differences(
     let real = Digits::for_digits(50);
     let system = model.compile(real, parameters).unwrap();
     let linear = model.clone().linearised().compile(real, parameters).unwrap();
-    let state = start.map(|x| real.from_f64(x));
+    let state = start.map(|x| real.double(x));
     let settings = Settings::for_digits(50);
-    let times = (real.zero(), real.from_f64(end));
+    let times = (real.zero(), real.double(end));
     let result = monodromy(&linear, (&times.0, &times.1), &state, settings).unwrap();
-    let step = real.from_rational(&Quantity::parse("1e-16").unwrap().rational().unwrap());
+    let step = real.rational(&Quantity::parse("1e-16").unwrap().rational().unwrap());
     let (_, kinds) = end_of(&system, &state, end);
     for i in 0..2 {
         let shifted = |sign: i32| {

@@ -1,5 +1,7 @@
 //! Periods of section 4 against closed forms, and the linearisation against differences.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use lindstedt_equation::{Expression, Function};
 use lindstedt_simulate::{
     Digits, Doubles, EventKind, Integrator, Model, Parameters, Quantity, Real, Report, Settings,
@@ -20,10 +22,10 @@ fn period<R: Real>(
 ) -> Result<R::Element, SimulateError> {
     let model = model.clone().with_section(Expression::Velocity);
     let system = model.compile(real.clone(), parameters)?;
-    let start = [real.from_float(&amplitude.float(BITS)), real.zero()];
+    let start = [real.float(&amplitude.float(BITS)), real.zero()];
     let mut flow = Integrator::new(&system, &real.zero(), &start, Settings::for_digits(digits))?;
     let mut found = None;
-    flow.advance(&real.from_f64(1e3), &mut |report| match report {
+    flow.advance(&real.double(1e3), &mut |report| match report {
         Report::Event(event)
             if event.kind == (EventKind::Section { section: 0, rising: false }) =>
         {

@@ -1,6 +1,8 @@
 //! The recurrences against the expression tree, which the test evaluates by itself at random
 //! points of random equations.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use lindstedt_equation::{Expression, Function};
 use lindstedt_simulate::{Digits, Doubles, Integrator, Model, Parameters, Real, Report, Settings};
 use rug::ops::Pow;
@@ -115,15 +117,15 @@ fn defect<R: Real>(real: &R, digits: u32, tree: &Expression) -> Option<f64> {
         Parameters::new().with("p", Rational::from((2, 3))).with("eps", Rational::from((1, 5)));
     let model = Model::second_order(&equation).unwrap().with_small("eps").with_history(&[past]);
     let system = model.compile(real.clone(), &parameters).unwrap();
-    let start = [real.from_f64(0.8125), real.from_f64(-0.28125)];
-    let time = real.from_f64(0.375);
+    let start = [real.double(0.8125), real.double(-0.28125)];
+    let time = real.double(0.375);
     let settings = Settings::for_digits(digits);
     let mut flow = Integrator::new(&system, &time, &start, settings).ok()?;
     let mut worst: Option<f64> = None;
-    let outcome = flow.advance(&real.from_f64(1.0), &mut |report| {
+    let outcome = flow.advance(&real.double(1.0), &mut |report| {
         let Report::Segment(segment) = report else { return ControlFlow::Continue(()) };
         for share in [0.0, 0.37, 0.81] {
-            let s = real.product(segment.length, &real.from_f64(share));
+            let s = real.product(segment.length, &real.double(share));
             let lift = |x: &R::Element| Float::with_val(BITS, real.to_float(x));
             let value = |state| lift(&segment.value(state, &s));
             let t = Float::with_val(BITS, lift(segment.start) + lift(&s));

@@ -1,6 +1,8 @@
 //! The stick-slip oscillator of section 3 against event-by-event solutions at 28 digits
 //! (tests/data/stick-slip/trajectories.json: an independent 45-digit event code).
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use lindstedt_simulate::{
     Digits, Doubles, EventKind, Integrator, Model, Parameters, Quantity, Real, Report, Settings,
 };
@@ -12,7 +14,7 @@ const DATA: &str =
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/stick-slip/trajectories.json");
 
 fn float<R: Real>(real: &R, text: &Value) -> R::Element {
-    real.from_float(&Quantity::parse(text.as_str().unwrap()).unwrap().float(200))
+    real.float(&Quantity::parse(text.as_str().unwrap()).unwrap().float(200))
 }
 
 /// The largest difference of event times and places and of the final state.
