@@ -236,12 +236,7 @@ impl<'s, R: Real> Integrator<'s, R> {
                 return Err(self.stuck(time));
             }
             let end = real.sum(&self.clock.high, &h);
-            let defect = self.series.defect(self.system, &end, &self.phase, &h);
-            // The derivative's tail is p times that of the series; rounding errors of some ten
-            // operations are no defect either.
-            let factor = (self.series.order as f64).log2() + 3.0;
-            let noise = 7.0 - f64::from(real.bits());
-            if defect <= (self.log2_tolerance + factor).max(noise) {
+            if self.series.holds(self.system, &end, &self.phase, &h, self.log2_tolerance) {
                 break;
             }
             real.scale(&mut h, &real.double(0.5));
