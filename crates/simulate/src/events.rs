@@ -4,7 +4,7 @@ use crate::error::{SimulateError, Surface};
 use crate::integrator::{Hit, Integrator, Observer};
 use crate::real::Real;
 use crate::report::{Event, EventKind, Report};
-use crate::tape::Op;
+use crate::tape::{LEAP, Op};
 use std::ops::ControlFlow;
 
 impl<R: Real> Integrator<'_, R> {
@@ -31,6 +31,11 @@ impl<R: Real> Integrator<'_, R> {
         let mut open: Vec<usize> = Vec::new();
         for (index, switch) in system.switches.iter().enumerate() {
             let h = self.series.rows.at(switch.row, 0);
+            if real.sign(h) == 0 && switch.branch {
+                // It is carried away from zero by a leap.
+                self.phase.modes[index] = 1;
+                continue;
+            }
             if real.sign(h) == 0 || real.log2(h) <= scale + noise {
                 if let Some(first) =
                     open.iter().find(|i| switch.jumps && system.switches[**i].jumps)
@@ -105,7 +110,8 @@ impl<R: Real> Integrator<'_, R> {
                 continue;
             }
             let sign = real.sign(self.series.rows.at(switch.row, 0));
-            if self.vanishing[system.walls.len() + index] == 0 && sign != mode {
+            let leaps = switch.branch && sign == 0;
+            if self.vanishing[system.walls.len() + index] == 0 && sign != mode && !leaps {
                 let row = self.series.rows.row(switch.row);
                 if leading(row).is_some() {
                     return hit(Surface::Switch(index), -mode);
@@ -154,6 +160,9 @@ impl<R: Real> Integrator<'_, R> {
             }
         }
         for switch in 0..system.switches.len() {
+            if self.phase.modes[switch] == LEAP {
+                continue;
+            }
             if self.phase.modes[switch] != 0 {
                 let row = system.switches[switch].row;
                 let outcome = self.search(row, walls + switch, h, 1);

@@ -217,14 +217,31 @@ impl<'s, R: Real> Integrator<'s, R> {
             return self.accumulate(&duration, log2_error, observer);
         }
         self.rebound = None;
+        let branch = self.branch_ahead();
+        if let Some(branch) = &branch
+            && let Some(told) = self.leap(branch, remaining, observer)?
+        {
+            return Ok(told);
+        }
         let real = &self.system.real;
         let time = self.seconds();
         let step = self.series.step(self.system, self.log2_tolerance);
-        let step = step.ok_or(SimulateError::NotFinite { time })?;
+        let step = step.ok_or_else(|| match &branch {
+            // Coefficients near the branch point overflow before it can be leapt over.
+            Some(_) => self.stuck(time),
+            None => SimulateError::NotFinite { time },
+        })?;
         let mut h = real.double(step.min(f64::MAX));
         let mut last = false;
         if let Some(limit) = limit.filter(|limit| *limit < h) {
             h = limit;
+        }
+        if let Some(branch) = branch {
+            // No closer than half the way: the root itself is no place to expand about.
+            let half = real.product(&branch.after, &real.double(0.5));
+            if half < h {
+                h = half;
+            }
         }
         if h >= *remaining {
             h = remaining.clone();

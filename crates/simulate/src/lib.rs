@@ -4,6 +4,7 @@
 //!
 //! It shares nothing with the expansions that it judges but the expression tree of the problem.
 
+mod branch;
 mod compile;
 mod digits;
 mod error;

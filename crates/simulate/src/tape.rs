@@ -74,6 +74,10 @@ impl Op {
     }
 }
 
+/// The mode of a switch whose argument w is being carried through zero: |w| and sign w are zero,
+/// and what is raised to a power or divided by there.
+pub(crate) const LEAP: i8 = 2;
+
 /// States, operations, constants.
 #[derive(Clone, Debug)]
 pub(crate) struct Tape<E> {
@@ -156,6 +160,7 @@ impl<E: Clone> Tape<E> {
             Op::Delayed { .. } => return,
             Op::Control { switch, part } => match (moment.modes[switch], part, n) {
                 (0, ..) => return,
+                (LEAP, ..) => real.set_zero(sum),
                 (mode, 0, 0) => real.set(sum, &real.double(f64::from(mode))),
                 _ => real.set_zero(sum),
             },
@@ -178,6 +183,11 @@ impl<E: Clone> Tape<E> {
                 if n.is_multiple_of(2) {
                     real.accumulate(sum, &row[n / 2], &row[n / 2]);
                 }
+            }
+            Op::Divide(_, a) | Op::Power(a, _)
+                if real.sign(rows.at(a, 0)) == 0 && moment.modes.contains(&LEAP) =>
+            {
+                real.set_zero(sum);
             }
             // q b = a: q_n b_0 = a_n - sum_{j<n} q_j b_{n-j}.
             Op::Divide(a, b) => {
@@ -229,7 +239,7 @@ impl<E: Clone> Tape<E> {
                 real.times_integer(sum, -1);
             }
             Op::Signed(a, switch) => match moment.modes[switch] {
-                0 => real.set_zero(sum),
+                0 | LEAP => real.set_zero(sum),
                 mode => {
                     real.set(sum, rows.at(a, n));
                     real.times_integer(sum, i32::from(mode));

@@ -90,3 +90,36 @@ fn pendulum() {
         check(&model, &Parameters::new(), &amplitude, (&exact, condition));
     }
 }
+
+/// Exponents that are no odd integers and no 2: the solution has a branch point at every zero.
+#[test]
+fn fractional_powers_have_branch_points() {
+    let x = || Expression::Displacement;
+    let stiffness = x().pow(2).pow(Expression::Small);
+    let model = Model::second_order(&(Expression::Acceleration + x() * stiffness)).unwrap();
+    let model = model.with_small("delta");
+    for (p, q) in [(3, 2), (1, 2), (5, 2), (17, 5)] {
+        let n = Rational::from((p, q));
+        let delta = (n.clone() - 1i32) / 2i32;
+        let parameters = Parameters::new().with("delta", delta);
+        let share = Float::with_val(BITS, (n + 1i32).recip());
+        let root = (Float::with_val(BITS, Constant::Pi) * &share / 2u32).sqrt();
+        let half = Float::with_val(BITS, &share + 0.5f64);
+        let exact = root * 4u32 * share.gamma() / half.gamma();
+        println!("n = {p}/{q}");
+        check(&model, &parameters, &Quantity::from(1), (&exact, 1.0));
+    }
+    // For n = 1/5 the distance would be 1e-14, where coefficients of order 22 overflow in f64.
+    let parameters = Parameters::new().with("delta", Rational::from((-2, 5)));
+    let outcome = period(&model, (Doubles, 16), &parameters, &Quantity::from(1));
+    assert!(matches!(outcome, Err(SimulateError::BranchPoint { switch: 0, .. })));
+    // From x = 0: half a period to the next zero of x.
+    let parameters = Parameters::new().with("delta", Rational::from((1, 4)));
+    let system = model.with_section(x()).compile(Doubles, &parameters).unwrap();
+    let settings = Settings::for_digits(16);
+    let mut flow = Integrator::new(&system, &0.0, &[0.0, 0.9f64.sqrt()], settings).unwrap();
+    flow.advance(&1.0, &mut |_| ControlFlow::Continue(())).unwrap();
+    // Energy v^2/2 + x^(5/2)/(5/2).
+    let [x, v] = [flow.state()[0], flow.state()[1]];
+    assert!((v * v / 2.0 + x.powf(2.5) / 2.5 - 0.45).abs() < 1e-14);
+}
