@@ -35,7 +35,7 @@ pub(crate) struct Compiler<'a, R: Real> {
     pub(crate) tape: Tape<R::Element>,
     pub(crate) switches: Vec<Switch>,
     pub(crate) delays: Vec<Float>,
-    affine: Vec<bool>,
+    pub(crate) affine: Vec<bool>,
     pub(crate) parameters: &'a Parameters,
     pub(crate) small: Option<&'a str>,
     /// Names of the states; x is state 0 and x' state 1.
@@ -178,7 +178,7 @@ impl<'a, R: Real> Compiler<'a, R> {
             Expression::Product(factors) => {
                 let mut constant = Value::Constant(self.float(1));
                 let split = factors.iter().partition(|factor| self.is_constant(factor));
-                let (constants, others): (Vec<_>, Vec<_>) = split;
+                let (constants, mut others): (Vec<_>, Vec<_>) = split;
                 for factor in constants {
                     let factor = self.expression(factor, None)?;
                     constant = self.product(constant, factor);
@@ -187,7 +187,7 @@ impl<'a, R: Real> Compiler<'a, R> {
                 if matches!(&constant, Value::Constant(zero) if zero.is_zero()) {
                     return Ok(constant);
                 }
-                let mut total = Value::Constant(self.float(1));
+                let mut total = self.removable_quotient(&mut others, delay)?;
                 for factor in others {
                     let factor = self.expression(factor, delay)?;
                     total = self.product(total, factor);
@@ -302,7 +302,7 @@ impl<'a, R: Real> Compiler<'a, R> {
     }
 
     /// The row of the sine; the cosine is the next one.
-    fn sine(&mut self, argument: usize) -> usize {
+    pub(crate) fn sine(&mut self, argument: usize) -> usize {
         let affine = self.is_affine(argument);
         let row = self.push(Op::Sin { argument, affine });
         self.push(Op::Cos { argument, affine });

@@ -90,6 +90,62 @@ impl<R: Real> Compiler<'_, R> {
         if n >= 0 { total } else { self.quotient(one, total) }
     }
 
+    /// x sin(c |x|)/(c |x|) = sin(c x)/c, which has neither a switch nor a quotient 0/0 at x = 0:
+    /// takes such factors out of the list and returns their product, 1 if there are none.
+    pub(crate) fn removable_quotient(
+        &mut self,
+        factors: &mut Vec<&Expression>,
+        delay: Option<&Float>,
+    ) -> Result<Value, SimulateError> {
+        let one = Value::Constant(self.float(1));
+        let minus_one = Some(Rational::from(-1));
+        let sine = |e: &&Expression| match *e {
+            Expression::Function(Function::Sin, argument) => Some(argument.clone()),
+            _ => None,
+        };
+        for (first, argument) in factors.iter().enumerate().filter_map(|(i, e)| Some((i, sine(e)?)))
+        {
+            let reciprocal = |e: &&Expression| match e {
+                Expression::Power(base, exponent) => {
+                    *base == argument && self.rational(exponent) == minus_one
+                }
+                _ => false,
+            };
+            let Some(second) = factors.iter().position(reciprocal) else { continue };
+            let known = (self.tape.ops.len(), self.switches.len());
+            let Value::Row(row) = self.expression(&argument, delay)? else { continue };
+            let op = |row: usize| row.checked_sub(self.tape.states).map(|i| self.tape.ops[i]);
+            let (scale, row) = match op(row) {
+                Some(Op::Scale(inner, c)) => (self.tape.constants[c].clone(), inner),
+                _ => (self.real.double(1.0), row),
+            };
+            let Some(Op::Signed(inner, _)) = op(row) else { continue };
+            for third in (0..factors.len()).filter(|third| *third != first && *third != second) {
+                let Value::Row(other) = self.expression(factors[third], delay)? else { continue };
+                if other != inner {
+                    continue;
+                }
+                // |x| itself is not needed any more.
+                if inner < self.tape.states + known.0 {
+                    self.tape.ops.truncate(known.0);
+                    self.affine.truncate(known.0);
+                    self.switches.truncate(known.1);
+                }
+                let scale = self.real.to_float(&scale);
+                let angle = self.product(Value::Constant(scale.clone()), Value::Row(inner));
+                let angle = self.row(angle);
+                let sine = Value::Row(self.sine(angle));
+                let mut gone = [first, second, third];
+                gone.sort_unstable();
+                for index in gone.into_iter().rev() {
+                    factors.remove(index);
+                }
+                return Ok(self.product(sine, Value::Constant(scale.recip())));
+            }
+        }
+        Ok(one)
+    }
+
     /// The value of a constant expression, if it is rational.
     fn rational(&self, expression: &Expression) -> Option<Rational> {
         match expression {

@@ -91,6 +91,24 @@ fn pendulum() {
     }
 }
 
+/// The built-in pendulum in its own form y'' + y sin(a |y|^delta)/(a |y|^delta) = 0 at delta = 1,
+/// where the quotient at y = 0 is removable.
+#[test]
+fn pendulum_of_the_small_delta_method() {
+    let problem = lindstedt_problems::find("pendulum").unwrap();
+    let model = Model::of_problem(&problem).unwrap();
+    for amplitude in ["1", "3", "3.1415"] {
+        let quantity = Quantity::parse(amplitude).unwrap();
+        let half = (quantity.float(BITS) / 2u32).cos();
+        let condition = half.to_f64().powi(-2);
+        let mean = half.agm(&Float::with_val(BITS, 1));
+        let exact = Float::with_val(BITS, Constant::Pi) * 2u32 / mean;
+        let parameters = Parameters::new().with("delta", 1).with("amplitude", quantity);
+        assert_eq!(model.compile(Doubles, &parameters).unwrap().switches(), 0);
+        check(&model, &parameters, &Quantity::from(1), (&exact, condition));
+    }
+}
+
 /// Exponents that are no odd integers and no 2: the solution has a branch point at every zero.
 #[test]
 fn fractional_powers_have_branch_points() {
