@@ -125,8 +125,9 @@ impl<R: Real> Integrator<'_, R> {
             let change =
                 change.fold(f64::NEG_INFINITY, |a, b| if b.is_nan() { b } else { a.max(b) });
             let scale = largest(&mut self.state[group].iter().map(|x| real.log2(x)));
-            let nothing = change == f64::NEG_INFINITY;
-            if !nothing && !(change + real.log2(length) <= self.log2_tolerance + scale) {
+            let size = change + real.log2(length);
+            let small = change == f64::NEG_INFINITY || size <= self.log2_tolerance + scale;
+            if !small {
                 return Ok(false);
             }
         }
