@@ -1,0 +1,355 @@
+//! The integrator: steps, and the loop over them.
+
+use crate::error::{SimulateError, Surface};
+use crate::past::{Clock, Past};
+use crate::real::Real;
+use crate::report::{Outcome, Report, Work};
+use crate::roots::RootFinder;
+use crate::series::{Phase, Series};
+use crate::system::System;
+use std::ops::ControlFlow;
+
+/// How precisely to integrate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Decimal digits of one step, relative to the largest state; the arithmetic needs some
+    /// digits more (see [`crate::Digits::for_digits`]); 16 in f64.
+    pub digits: u32,
+    /// The order of the Taylor series; by default 1.15 digits + 3, where a result costs least
+    /// (Jorba and Zou 2005).
+    pub order: Option<usize>,
+    /// More impacts than this are an error.
+    pub most_impacts: u64,
+}
+
+impl Settings {
+    /// For a number of decimal digits.
+    #[must_use]
+    pub fn for_digits(digits: u32) -> Self {
+        Self { digits, order: None, most_impacts: u64::MAX }
+    }
+
+    fn order(&self) -> usize {
+        let automatic = || (1.151_293 * f64::from(self.digits) + 3.0).ceil() as usize;
+        self.order.unwrap_or_else(automatic).max(3)
+    }
+}
+
+/// A running integration.
+///
+/// ```
+/// use lindstedt_equation::Expression;
+/// use lindstedt_simulate::{Doubles, Integrator, Model, Parameters, Settings};
+/// use std::ops::ControlFlow;
+///
+/// let x = Expression::Displacement;
+/// let model = Model::second_order(&(Expression::Acceleration + x))?;
+/// let system = model.compile(Doubles, &Parameters::new())?;
+/// let mut flow = Integrator::new(&system, &0.0, &[1.0, 0.0], Settings::for_digits(16))?;
+/// flow.advance(&10.0, &mut |_| ControlFlow::Continue(()))?;
+/// assert!((flow.state()[0] - 10f64.cos()).abs() < 1e-14);
+/// # Ok::<(), lindstedt_simulate::SimulateError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Integrator<'s, R: Real> {
+    pub(crate) system: &'s System<R>,
+    pub(crate) settings: Settings,
+    pub(crate) log2_tolerance: f64,
+    pub(crate) series: Series<R>,
+    pub(crate) state: Vec<R::Element>,
+    pub(crate) before: Vec<R::Element>,
+    pub(crate) clock: Clock<R::Element>,
+    pub(crate) phase: Phase,
+    /// How many leading coefficients of each surface vanish at the start of the step: walls,
+    /// switches, sections.
+    pub(crate) vanishing: Vec<usize>,
+    pub(crate) sides: Vec<i8>,
+    pub(crate) past: Option<Past<R>>,
+    pub(crate) finder: RootFinder<R::Element>,
+    pub(crate) polynomial: Vec<R::Element>,
+    /// The wall of the impact that began the step.
+    pub(crate) rebound: Option<usize>,
+    pub(crate) smooth: bool,
+    stalled: u32,
+    pub(crate) work: Work,
+}
+
+/// The observer of an integration: told of every segment and event; breaks it off if it likes.
+pub type Observer<'o, R> = dyn FnMut(&Report<'_, R>) -> ControlFlow<()> + 'o;
+
+/// An event ahead: after which part of the step, on which surface.
+pub(crate) struct Hit<E> {
+    pub(crate) at: E,
+    pub(crate) surface: Surface,
+    /// The sign of the surface's function after it.
+    pub(crate) after: i8,
+}
+
+impl<'s, R: Real> Integrator<'s, R> {
+    /// Starts at `time` with the given states (one per dimension; the directions of the
+    /// linearisation start at the identity). A state exactly on a switch is classified by the
+    /// fields on both sides, a state at a wall by its velocity and the force.
+    pub fn new(
+        system: &'s System<R>,
+        time: &R::Element,
+        state: &[R::Element],
+        settings: Settings,
+    ) -> Result<Self, SimulateError> {
+        let real = &system.real;
+        let (n, given) = (system.variables, state.len());
+        if given != n {
+            return Err(SimulateError::WrongDimension { states: n, given });
+        }
+        if !system.delays.is_empty() && system.history.is_none() {
+            return Err(SimulateError::MissingHistory);
+        }
+        let mut all = state.to_vec();
+        for direction in 0..system.directions() {
+            all.extend((0..n).map(|k| real.double(if k == direction { 1.0 } else { 0.0 })));
+        }
+        let order = settings.order();
+        let clock = Clock::new(real, time);
+        let past = (!system.delays.is_empty()).then(|| Past::new(system, &clock, order));
+        let surfaces = system.walls.len() + system.switches.len() + system.sections.len();
+        let mut flow = Self {
+            system,
+            settings,
+            log2_tolerance: -f64::from(settings.digits + 1) * std::f64::consts::LOG2_10,
+            series: Series::new(system, order),
+            before: all.clone(),
+            state: all,
+            clock,
+            phase: Phase { modes: vec![1; system.switches.len()], contact: None },
+            vanishing: vec![0; surfaces],
+            sides: vec![0; system.sections.len()],
+            past,
+            finder: RootFinder::new(),
+            polynomial: Vec::new(),
+            rebound: None,
+            smooth: false,
+            stalled: 0,
+            work: Work::default(),
+        };
+        flow.begin()?;
+        Ok(flow)
+    }
+
+    /// The time.
+    #[must_use]
+    pub fn time(&self) -> &R::Element {
+        &self.clock.high
+    }
+
+    /// The states; those of the linearisation, direction by direction, behind them.
+    #[must_use]
+    pub fn state(&self) -> &[R::Element] {
+        &self.state
+    }
+
+    /// The signs of the switches; 0: sliding (sticking).
+    #[must_use]
+    pub fn modes(&self) -> &[i8] {
+        &self.phase.modes
+    }
+
+    /// The wall that the body rests at.
+    #[must_use]
+    pub fn contact(&self) -> Option<usize> {
+        self.phase.contact
+    }
+
+    /// The work so far.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// Replaces the states by the given ones (one per dimension) at the present time: a jump from
+    /// outside. Directions of the linearisation stay as they are; a body at rest at a wall is
+    /// free again (and at rest in the next moment, if the new state and the force say so).
+    pub fn set_state(&mut self, state: &[R::Element]) -> Result<(), SimulateError> {
+        let (n, given) = (self.system.variables, state.len());
+        if given != n {
+            return Err(SimulateError::WrongDimension { states: n, given });
+        }
+        self.state[..n].clone_from_slice(state);
+        self.smooth = false;
+        self.rebound = None;
+        self.phase.contact = None;
+        self.vanishing.iter_mut().for_each(|skip| *skip = 0);
+        self.begin()
+    }
+
+    pub(crate) fn seconds(&self) -> f64 {
+        self.system.real.to_f64(&self.clock.high)
+    }
+
+    /// Integrates up to `target` (which is met exactly; nothing happens if it is past) or until
+    /// the observer breaks it off, after which the state is that at the end of the step. May be
+    /// called again with a later target: stroboscopic sections are a loop over targets. Cost: per step O(operations order^2).
+    pub fn advance(
+        &mut self,
+        target: &R::Element,
+        observer: &mut Observer<'_, R>,
+    ) -> Result<Outcome, SimulateError> {
+        let target = Clock::new(&self.system.real, target);
+        loop {
+            let remaining = target.since(&self.system.real, &self.clock);
+            if self.system.real.sign(&remaining) <= 0 {
+                return Ok(Outcome::Reached);
+            }
+            if self.step(&remaining, &target, observer)?.is_break() {
+                return Ok(Outcome::Stopped);
+            }
+        }
+    }
+
+    fn step(
+        &mut self,
+        remaining: &R::Element,
+        target: &Clock<R::Element>,
+        observer: &mut Observer<'_, R>,
+    ) -> Result<ControlFlow<()>, SimulateError> {
+        let limit = self.expand()?;
+        if let Some(hit) = self.hit_at_start() {
+            // Events without a step between them: a sequence that does not end is no motion.
+            self.stalled += 1;
+            if self.stalled > 100 {
+                return Err(SimulateError::StepTooSmall { time: self.seconds() });
+            }
+            return self.arrive(&hit, observer);
+        }
+        self.stalled = 0;
+        if self.rebound.is_some()
+            && let Some((duration, log2_error)) = self.accumulation(remaining)
+        {
+            return self.accumulate(&duration, log2_error, observer);
+        }
+        self.rebound = None;
+        let branch = self.branch_ahead();
+        if let Some(branch) = &branch
+            && let Some(told) = self.leap(branch, remaining, observer)?
+        {
+            return Ok(told);
+        }
+        let real = &self.system.real;
+        let time = self.seconds();
+        let step = self.series.step(self.system, self.log2_tolerance);
+        let step = step.ok_or_else(|| match &branch {
+            // Coefficients near the branch point overflow before it can be leapt over.
+            Some(_) => self.stuck(time),
+            None => SimulateError::NotFinite { time },
+        })?;
+        let mut h = real.double(step.min(f64::MAX));
+        let mut last = false;
+        if let Some(limit) = limit.filter(|limit| *limit < h) {
+            h = limit;
+        }
+        if let Some(branch) = branch {
+            // No closer than half the way: the root itself is no place to expand about.
+            let half = real.product(&branch.after, &real.double(0.5));
+            if half < h {
+                h = half;
+            }
+        }
+        if h >= *remaining {
+            h = remaining.clone();
+            last = true;
+        }
+        let shortest = real.log2(&self.clock.high).max(-1000.0) - f64::from(real.bits());
+        loop {
+            if real.log2(&h) < shortest || real.log2(&h).is_nan() {
+                return Err(self.stuck(time));
+            }
+            let end = real.sum(&self.clock.high, &h);
+            if self.series.holds(self.system, &end, &self.phase, &h, self.log2_tolerance) {
+                break;
+            }
+            real.scale(&mut h, &real.double(0.5));
+            last = false;
+            self.work.rejected += 1;
+        }
+        let hit = self.next_hit(&h)?;
+        if let Some(hit) = &hit {
+            real.set(&mut h, &hit.at);
+            last = last && h == *remaining;
+        }
+        self.work.steps += 1;
+        // The state is consistent whenever the observer breaks off: the step is finished first.
+        let told = self.segment(&h, observer)?;
+        self.move_by(&h);
+        if last {
+            self.clock = target.clone();
+        }
+        let flat = self.system.walls.len() + self.system.switches.len();
+        self.vanishing.iter_mut().take(flat).for_each(|skip| *skip = 0);
+        let event = match hit {
+            Some(hit) => self.arrive(&hit, observer)?,
+            None => ControlFlow::Continue(()),
+        };
+        Ok(if told.is_break() { told } else { event })
+    }
+
+    /// |w|^p near w = 0 or another singularity.
+    fn stuck(&self, time: f64) -> SimulateError {
+        let real = &self.system.real;
+        let near = |row: usize| real.log2(self.series.rows.at(row, 0));
+        let nearest = (0..self.system.switches.len())
+            .filter(|index| self.system.switches[*index].branch)
+            .min_by(|a, b| {
+                let rows = (self.system.switches[*a].row, self.system.switches[*b].row);
+                near(rows.0).total_cmp(&near(rows.1))
+            });
+        match nearest {
+            Some(switch) => SimulateError::BranchPoint { switch, time },
+            None => SimulateError::StepTooSmall { time },
+        }
+    }
+
+    /// The series about the present state; returns how long the delayed rows hold.
+    pub(crate) fn expand(&mut self) -> Result<Option<R::Element>, SimulateError> {
+        let order = self.series.order;
+        self.expand_to(order)
+    }
+
+    pub(crate) fn expand_to(&mut self, levels: usize) -> Result<Option<R::Element>, SimulateError> {
+        let system = self.system;
+        for (state, value) in self.state.iter().enumerate() {
+            system.real.set(self.series.rows.at_mut(state, 0), value);
+        }
+        let mut limit = None;
+        if let Some(past) = &mut self.past {
+            let rows = &mut self.series.rows;
+            limit = past.fill(system, &self.clock, rows, self.log2_tolerance);
+            if limit.is_none() {
+                return Err(SimulateError::StepTooSmall { time: self.seconds() });
+            }
+        }
+        self.series.expand(system, &self.clock.high, &self.phase, levels)?;
+        Ok(limit)
+    }
+
+    pub(crate) fn grazing(&self, surface: Surface, at: &R::Element) -> SimulateError {
+        SimulateError::Grazing { surface, time: self.seconds() + self.system.real.to_f64(at) }
+    }
+
+    /// Moves the state to start + h.
+    pub(crate) fn move_by(&mut self, h: &R::Element) {
+        let real = &self.system.real;
+        for state in 0..self.state.len() {
+            self.state[state] = self.series.value(real, state, h);
+        }
+        self.clock.advance(real, h);
+    }
+
+    /// An event happened: the states jump or the right side does; `impacts` more impacts.
+    pub(crate) fn interrupted(&mut self, impacts: u64, jump: bool) -> Result<(), SimulateError> {
+        self.work.impacts += impacts;
+        self.smooth &= !jump;
+        if self.work.impacts > self.settings.most_impacts {
+            let (impacts, time) = (self.work.impacts, self.seconds());
+            return Err(SimulateError::TooManyImpacts { impacts, time });
+        }
+        Ok(())
+    }
+}

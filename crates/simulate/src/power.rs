@@ -1,0 +1,172 @@
+//! Powers: integer ones by products, |w|^p with the sign of w as a switch, others by their own
+//! recurrence.
+
+use crate::compile::{Compiler, Value};
+use crate::error::SimulateError;
+use crate::real::Real;
+use crate::tape::Op;
+use lindstedt_equation::{Expression, Function};
+use rug::{Float, Rational};
+
+impl<R: Real> Compiler<'_, R> {
+    /// base^exponent. |w|^p and (w^(2k))^q are written with |w|: an integer power in all is exact
+    /// at w = 0, any other one has a branch point there.
+    pub(crate) fn power(
+        &mut self,
+        base: &Expression,
+        exponent: &Expression,
+        delay: Option<&Float>,
+    ) -> Result<Value, SimulateError> {
+        let exact = self.rational(exponent);
+        let power = match self.expression(exponent, None) {
+            Ok(Value::Constant(power)) => power,
+            _ => {
+                // exp(exponent ln base).
+                let exponent = self.expression(exponent, delay)?;
+                let base = self.expression(base, delay)?;
+                let ln = self.function(Function::Ln, base);
+                let product = self.product(exponent, ln);
+                return Ok(self.function(Function::Exp, product));
+            }
+        };
+        if let Some(n) = exact.as_ref().and_then(small_integer) {
+            let base = self.expression(base, delay)?;
+            return Ok(self.integer_power(base, n));
+        }
+        let (inner, factor) = match base {
+            Expression::Power(inner, k) => {
+                match self.rational(k).as_ref().and_then(small_integer) {
+                    Some(k) if k % 2 == 0 => (inner, k),
+                    _ => (inner, 0),
+                }
+            }
+            Expression::Function(Function::Abs, inner) => (inner, 1),
+            _ => (&Box::new(Expression::Time), 0),
+        };
+        if factor == 0 {
+            let base = self.expression(base, delay)?;
+            return Ok(self.real_power(base, &power));
+        }
+        let inner = self.expression(inner, delay)?;
+        let total = exact.map(|q| q * factor);
+        if let Some(n) = total.as_ref().and_then(small_integer) {
+            let even = self.integer_power(inner.clone(), n - n.rem_euclid(2));
+            if n % 2 == 0 {
+                return Ok(even);
+            }
+            let modulus = self.function(Function::Abs, inner);
+            return Ok(self.product(even, modulus));
+        }
+        if let Value::Row(row) = inner {
+            self.switch(row, true);
+        }
+        let modulus = self.function(Function::Abs, inner);
+        Ok(self.real_power(modulus, &(power * factor)))
+    }
+
+    fn real_power(&mut self, base: Value, power: &Float) -> Value {
+        match base {
+            Value::Constant(base) => Value::Constant(rug::ops::Pow::pow(base, power)),
+            Value::Row(row) => {
+                let power = self.constant(power);
+                Value::Row(self.push(Op::Power(row, power)))
+            }
+        }
+    }
+
+    /// By squarings: exact at zero, at most 2 log2 n products.
+    pub(crate) fn integer_power(&mut self, base: Value, n: i32) -> Value {
+        let one = Value::Constant(self.float(1));
+        let (mut square, mut rest, mut total) = (base, n.unsigned_abs(), one.clone());
+        while rest > 0 {
+            if rest % 2 == 1 {
+                total = self.product(total, square.clone());
+            }
+            rest /= 2;
+            if rest > 0 {
+                square = self.product(square.clone(), square);
+            }
+        }
+        if n >= 0 { total } else { self.quotient(one, total) }
+    }
+
+    /// x sin(c |x|)/(c |x|) = sin(c x)/c, which has neither a switch nor a quotient 0/0 at x = 0:
+    /// takes such factors out of the list and returns their product, 1 if there are none.
+    pub(crate) fn removable_quotient(
+        &mut self,
+        factors: &mut Vec<&Expression>,
+        delay: Option<&Float>,
+    ) -> Result<Value, SimulateError> {
+        let one = Value::Constant(self.float(1));
+        let minus_one = Some(Rational::from(-1));
+        let sine = |e: &&Expression| match *e {
+            Expression::Function(Function::Sin, argument) => Some(argument.clone()),
+            _ => None,
+        };
+        for (first, argument) in factors.iter().enumerate().filter_map(|(i, e)| Some((i, sine(e)?)))
+        {
+            let reciprocal = |e: &&Expression| match e {
+                Expression::Power(base, exponent) => {
+                    *base == argument && self.rational(exponent) == minus_one
+                }
+                _ => false,
+            };
+            let Some(second) = factors.iter().position(reciprocal) else { continue };
+            let known = (self.tape.ops.len(), self.switches.len());
+            let Value::Row(row) = self.expression(&argument, delay)? else { continue };
+            let op = |row: usize| row.checked_sub(self.tape.states).map(|i| self.tape.ops[i]);
+            let (scale, row) = match op(row) {
+                Some(Op::Scale(inner, c)) => (self.tape.constants[c].clone(), inner),
+                _ => (self.real.double(1.0), row),
+            };
+            let Some(Op::Signed(inner, _)) = op(row) else { continue };
+            for third in (0..factors.len()).filter(|third| *third != first && *third != second) {
+                let Value::Row(other) = self.expression(factors[third], delay)? else { continue };
+                if other != inner {
+                    continue;
+                }
+                // |x| itself is not needed any more.
+                if inner < self.tape.states + known.0 {
+                    self.tape.ops.truncate(known.0);
+                    self.tape.affine.truncate(known.0);
+                    self.switches.truncate(known.1);
+                }
+                let scale = self.real.to_float(&scale);
+                let angle = self.product(Value::Constant(scale.clone()), Value::Row(inner));
+                let angle = self.row(angle);
+                let sine = Value::Row(self.sine(angle));
+                let mut gone = [first, second, third];
+                gone.sort_unstable();
+                for index in gone.into_iter().rev() {
+                    factors.remove(index);
+                }
+                return Ok(self.product(sine, Value::Constant(scale.recip())));
+            }
+        }
+        Ok(one)
+    }
+
+    /// The value of a constant expression, if it is rational.
+    fn rational(&self, expression: &Expression) -> Option<Rational> {
+        match expression {
+            Expression::Number(q) => Some(q.clone()),
+            Expression::Parameter(name) if !self.names.contains(name) => {
+                self.parameters.get(name)?.rational()
+            }
+            Expression::Small => self.parameters.get(self.small?)?.rational(),
+            Expression::Sum(terms) => terms.iter().map(|term| self.rational(term)).sum(),
+            Expression::Product(factors) => factors.iter().map(|f| self.rational(f)).product(),
+            Expression::Power(base, exponent) => {
+                let n = small_integer(&self.rational(exponent)?)?;
+                let base = self.rational(base)?;
+                (n >= 0 || base.cmp0().is_ne()).then(|| rug::ops::Pow::pow(base, n))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// An integer exponent of at most 10^6.
+fn small_integer(q: &Rational) -> Option<i32> {
+    q.is_integer().then(|| q.numer().to_i32()).flatten().filter(|n| n.abs() <= 1_000_000)
+}

@@ -1,0 +1,308 @@
+//! The Taylor series of all states about the start of a step, its length, and a check of both.
+
+use crate::error::SimulateError;
+use crate::real::Real;
+use crate::system::System;
+use crate::tape::{Moment, Op, Rows, horner};
+
+/// What the right side is at this moment.
+#[derive(Clone, Debug)]
+pub(crate) struct Phase {
+    /// The sign of every switch; 0: it slides.
+    pub(crate) modes: Vec<i8>,
+    /// The wall that the body rests at: x and x' are constant.
+    pub(crate) contact: Option<usize>,
+}
+
+/// Taylor coefficients and the places to compute them in.
+#[derive(Clone, Debug)]
+pub(crate) struct Series<R: Real> {
+    pub(crate) rows: Rows<R::Element>,
+    pub(crate) order: usize,
+    probe: Rows<R::Element>,
+    sum: R::Element,
+    scratch: R::Element,
+}
+
+impl<R: Real> Series<R> {
+    pub(crate) fn new(system: &System<R>, order: usize) -> Self {
+        let zero = system.real.zero();
+        Self {
+            rows: Rows::new(system.tape.rows(), order + 1, &zero),
+            order,
+            probe: Rows::new(system.tape.rows(), 1, &zero),
+            sum: zero.clone(),
+            scratch: zero,
+        }
+    }
+
+    /// Levels 1..=levels of the states and 0..=levels of all other rows, from level 0 of the
+    /// states and the delayed rows.
+    pub(crate) fn expand(
+        &mut self,
+        system: &System<R>,
+        time: &R::Element,
+        phase: &Phase,
+        levels: usize,
+    ) -> Result<(), SimulateError> {
+        let sliding = phase.modes.iter().position(|mode| *mode == 0);
+        let mut sensitivity = None;
+        for n in 0..=levels {
+            self.level(system, time, phase, n);
+            if n == levels {
+                break;
+            }
+            self.states(system, phase, n);
+            if let Some(switch) = sliding.filter(|_| phase.contact.is_none()) {
+                let s = match sensitivity.take() {
+                    Some(s) => s,
+                    None => self.sensitivity(system, time, phase, switch)?,
+                };
+                self.slide(system, time, phase, (switch, n), &s);
+                sensitivity = Some(s);
+            }
+        }
+        if let Some(switch) = sliding {
+            self.set_control(system, switch, None, levels, &system.real.zero());
+        }
+        Ok(())
+    }
+
+    fn level(&mut self, system: &System<R>, time: &R::Element, phase: &Phase, n: usize) {
+        let (sum, scratch) = (&mut self.sum, &mut self.scratch);
+        let mut moment = Moment { time, modes: &phase.modes, sum, scratch };
+        system.tape.level(&system.real, &mut self.rows, n, &mut moment);
+    }
+
+    /// x_{n+1} = f_n/(n+1).
+    fn states(&mut self, system: &System<R>, phase: &Phase, n: usize) {
+        let real = &system.real;
+        for (state, right) in system.right_sides.iter().enumerate() {
+            if phase.contact.is_some() {
+                real.set_zero(&mut self.sum);
+            } else {
+                real.set(&mut self.sum, self.rows.at(*right, n));
+                real.over_integer(&mut self.sum, n as u32 + 1);
+            }
+            std::mem::swap(self.rows.at_mut(state, n + 1), &mut self.sum);
+        }
+    }
+
+    /// Sets coefficient `n` of the control of a switch: of one part, or of all.
+    fn set_control(
+        &mut self,
+        system: &System<R>,
+        switch: usize,
+        part: Option<usize>,
+        n: usize,
+        value: &R::Element,
+    ) {
+        for (index, op) in system.tape.ops.iter().enumerate() {
+            if let Op::Control { switch: s, part: p } = *op
+                && s == switch
+                && part.is_none_or(|part| part == p)
+            {
+                let row = system.tape.states + index;
+                system.real.set(self.rows.at_mut(row, n), value);
+            }
+        }
+    }
+
+    /// h_{n+1} of the switch (part 0) or of its derivative in a direction, for the controls set.
+    fn constraint(
+        &mut self,
+        system: &System<R>,
+        time: &R::Element,
+        phase: &Phase,
+        (switch, part, n): (usize, usize, usize),
+    ) -> R::Element {
+        self.level(system, time, phase, n);
+        self.states(system, phase, n);
+        let switch = &system.switches[switch];
+        let row = match part.checked_sub(1) {
+            None => Some(switch.row),
+            Some(direction) => switch.tangents[direction],
+        };
+        let (sum, scratch) = (&mut self.sum, &mut self.scratch);
+        let mut moment = Moment { time, modes: &phase.modes, sum, scratch };
+        for index in &switch.cone {
+            let (tape, real) = (&system.tape, &system.real);
+            tape.operation(real, &mut self.rows, *index, n + 1, &mut moment);
+        }
+        row.map_or_else(|| system.real.zero(), |row| self.rows.at(row, n + 1).clone())
+    }
+
+    /// dh_1/du where u stands for the sign; checks that h_1 is affine in u.
+    fn sensitivity(
+        &mut self,
+        system: &System<R>,
+        time: &R::Element,
+        phase: &Phase,
+        switch: usize,
+    ) -> Result<R::Element, SimulateError> {
+        let real = &system.real;
+        let mut h = [0.0, 1.0, -1.0].map(|u| {
+            self.set_control(system, switch, None, 0, &real.zero());
+            self.set_control(system, switch, Some(0), 0, &real.double(u));
+            self.constraint(system, time, phase, (switch, 0, 0))
+        });
+        let slope = real.difference(&h[1], &h[0]);
+        let other = real.difference(&h[0], &h[2]);
+        let defect = real.log2(&real.difference(&slope, &other));
+        real.times_integer(&mut h[0], 2);
+        let size = real.log2(&slope).max(real.log2(&h[0]));
+        let affine = defect <= size - f64::from(real.bits()) / 2.0 || defect == f64::NEG_INFINITY;
+        if !affine || real.sign(&slope) == 0 {
+            return Err(SimulateError::NotAffine { switch });
+        }
+        Ok(slope)
+    }
+
+    /// Coefficient n of the control (and of its derivatives) that keeps the switch at zero: the
+    /// coefficient enters h_{n+1} with the factor sensitivity/(n+1).
+    fn slide(
+        &mut self,
+        system: &System<R>,
+        time: &R::Element,
+        phase: &Phase,
+        (switch, n): (usize, usize),
+        sensitivity: &R::Element,
+    ) {
+        let real = &system.real;
+        self.set_control(system, switch, None, n, &real.zero());
+        for part in 0..=system.directions() {
+            let h = self.constraint(system, time, phase, (switch, part, n));
+            let mut u = real.quotient(&h, sensitivity);
+            real.times_integer(&mut u, -(n as i32 + 1));
+            self.set_control(system, switch, Some(part), n, &u);
+        }
+        self.level(system, time, phase, n);
+        self.states(system, phase, n);
+    }
+
+    /// log2 of the largest coefficient of level `n` of the states in `range`.
+    fn norm(&self, real: &R, range: std::ops::Range<usize>, n: usize) -> f64 {
+        let logs = range.map(|state| real.log2(self.rows.at(state, n)));
+        logs.fold(
+            f64::NEG_INFINITY,
+            |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) },
+        )
+    }
+
+    /// The longest step h with |x_m| h^m <= tolerance max_{k<3} |x_k| h^k for m = p - 1, p, in
+    /// the largest norm; the linearisation is measured by itself. Nothing if a coefficient is
+    /// not finite.
+    pub(crate) fn step(&self, system: &System<R>, log2_tolerance: f64) -> Option<f64> {
+        let n = system.variables;
+        let mut log = f64::INFINITY;
+        for group in [0..n, n..system.tape.states] {
+            if group.is_empty() {
+                continue;
+            }
+            log = log.min(log2_step(self.order, log2_tolerance, |level| {
+                self.norm(&system.real, group.clone(), level)
+            })?);
+        }
+        Some(log.min(1000.0).exp2())
+    }
+
+    /// Whether h |x'(h) - f(x(h))| is within the tolerance (relative to |x_0| + h |x_1|) or within
+    /// rounding errors. It sees what the last coefficients do not tell: x'' = x^101 at x = 0 has
+    /// none below order 103.
+    pub(crate) fn holds(
+        &mut self,
+        system: &System<R>,
+        end: &R::Element,
+        phase: &Phase,
+        h: &R::Element,
+        log2_tolerance: f64,
+    ) -> bool {
+        if phase.contact.is_some() {
+            return true;
+        }
+        let real = &system.real;
+        let used: usize = system.tape.states;
+        for state in 0..used {
+            horner(real, self.probe.at_mut(state, 0), self.rows.row(state), h);
+        }
+        for (index, op) in system.tape.ops.iter().enumerate() {
+            if matches!(op, Op::Delayed { .. } | Op::Control { .. }) {
+                let row = used + index;
+                horner(real, self.probe.at_mut(row, 0), self.rows.row(row), h);
+            }
+        }
+        let (sum, scratch) = (&mut self.sum, &mut self.scratch);
+        let mut moment = Moment { time: end, modes: &phase.modes, sum, scratch };
+        system.tape.level(real, &mut self.probe, 0, &mut moment);
+        let (mut worst, mut scale) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        for state in 0..system.variables {
+            self.derivative(real, state, h);
+            let f = self.probe.at(system.right_sides[state], 0);
+            real.subtract(&mut self.scratch, &self.sum, f);
+            let defect = real.log2(&self.scratch);
+            if defect.is_nan() {
+                return false;
+            }
+            worst = worst.max(defect);
+            scale = scale.max(real.log2(self.rows.at(state, 0)));
+            scale = scale.max(real.log2(self.rows.at(state, 1)) + real.log2(h));
+        }
+        // The derivative's tail is p times that of the series.
+        let factor = (self.order as f64).log2() + 3.0;
+        if worst + real.log2(h) <= log2_tolerance + factor + scale {
+            return true;
+        }
+        // Rounding errors of some hundred operations on the largest term are no defect either.
+        let terms = system.tape.ops.iter().zip(system.tape.states..);
+        let terms = terms.filter(|(op, _)| !matches!(op, Op::Constant(_) | Op::Time));
+        let largest = terms.map(|(_, row)| real.log2(self.probe.at(row, 0)));
+        let largest = largest.fold(scale - real.log2(h), f64::max);
+        worst <= largest + 7.0 - f64::from(real.bits())
+    }
+
+    /// sum = x'(s) of a state.
+    fn derivative(&mut self, real: &R, row: usize, s: &R::Element) {
+        real.set_zero(&mut self.sum);
+        for (k, c) in self.rows.row(row).iter().enumerate().skip(1).rev() {
+            real.scale(&mut self.sum, s);
+            real.set(&mut self.scratch, c);
+            real.times_integer(&mut self.scratch, k as i32);
+            real.increase(&mut self.sum, &self.scratch);
+        }
+    }
+
+    /// The derivative of a row at s.
+    pub(crate) fn slope(&mut self, real: &R, row: usize, s: &R::Element) -> R::Element {
+        self.derivative(real, row, s);
+        self.sum.clone()
+    }
+
+    /// The value of a row at s.
+    pub(crate) fn value(&self, real: &R, row: usize, s: &R::Element) -> R::Element {
+        let mut value = real.zero();
+        horner(real, &mut value, self.rows.row(row), s);
+        value
+    }
+}
+
+/// log2 of the step length from the norms (as log2) of the levels; infinite for polynomials.
+pub(crate) fn log2_step(
+    order: usize,
+    log2_tolerance: f64,
+    norm: impl Fn(usize) -> f64,
+) -> Option<f64> {
+    let first = [norm(0), norm(1), norm(2)];
+    let mut log = f64::INFINITY;
+    for m in [order - 1, order] {
+        let last = norm(m);
+        if last.is_nan() || first.iter().any(|x| x.is_nan()) {
+            return None;
+        }
+        if last == f64::NEG_INFINITY {
+            continue;
+        }
+        let longest = (0..3).map(|k| (log2_tolerance + first[k] - last) / (m - k) as f64);
+        log = log.min(longest.fold(f64::NEG_INFINITY, f64::max));
+    }
+    Some(log)
+}

@@ -1,0 +1,312 @@
+//! The right sides as a flat list of recurrences for Taylor coefficients.
+//!
+//! Row r holds the coefficients of one quantity about the start of the step: first the states,
+//! then one row per operation, operands before results. Level n of all rows follows from levels
+//! 0..n of the operands, O(n) per row, so a step of order p costs O(rows p^2). The recurrences
+//! are those of a = b c, a' = b' a (exponential) and so on (Moore, Interval Analysis, 1966;
+//! Jorba and Zou, Experimental Mathematics 14, 2005, section 2).
+
+use crate::real::Real;
+
+/// One operation; the numbers are rows unless the name says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Op {
+    /// A constant of the table.
+    Constant(usize),
+    /// t.
+    Time,
+    /// State `state` at t - T, T of the table of delays; the integrator fills the row.
+    Delayed {
+        state: usize,
+        delay: usize,
+    },
+    Add(usize, usize),
+    Subtract(usize, usize),
+    /// Row times constant.
+    Scale(usize, usize),
+    Multiply(usize, usize),
+    Square(usize),
+    Divide(usize, usize),
+    /// Row to the power of a constant; the row is positive.
+    Power(usize, usize),
+    Exp(usize),
+    Ln(usize),
+    /// The sine; the next row is the cosine of the same argument. `affine`: the argument is
+    /// a + b t.
+    Sin {
+        argument: usize,
+        affine: bool,
+    },
+    /// The cosine; the row before is the sine.
+    Cos {
+        argument: usize,
+        affine: bool,
+    },
+    /// Row times the sign of a switch.
+    Signed(usize, usize),
+    /// The sign of a switch (part 0) or its derivative in a direction (part 1, 2, ...). While the
+    /// switch slides the integrator determines the row.
+    Control {
+        switch: usize,
+        part: usize,
+    },
+}
+
+impl Op {
+    /// The rows that the operation reads at its own level.
+    pub(crate) fn operands(self) -> [Option<usize>; 2] {
+        match self {
+            Self::Constant(_) | Self::Time | Self::Delayed { .. } | Self::Control { .. } => {
+                [None, None]
+            }
+            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => {
+                [Some(a), Some(b)]
+            }
+            Self::Scale(a, _)
+            | Self::Square(a)
+            | Self::Power(a, _)
+            | Self::Exp(a)
+            | Self::Ln(a)
+            | Self::Sin { argument: a, .. }
+            | Self::Cos { argument: a, .. }
+            | Self::Signed(a, _) => [Some(a), None],
+        }
+    }
+}
+
+/// The mode of a switch whose argument w is being carried through zero: |w| and sign w are zero,
+/// and what is raised to a power or divided by there.
+pub(crate) const LEAP: i8 = 2;
+
+/// States, operations, constants.
+#[derive(Clone, Debug)]
+pub(crate) struct Tape<E> {
+    pub(crate) states: usize,
+    pub(crate) ops: Vec<Op>,
+    /// The rows that are a + b t: zero from level 2 on.
+    pub(crate) affine: Vec<bool>,
+    /// The operations that are needed, and those of them that are needed from level 2 on.
+    pub(crate) live: Vec<usize>,
+    pub(crate) curved: Vec<usize>,
+    pub(crate) constants: Vec<E>,
+}
+
+/// Taylor coefficients: `stride` numbers per row.
+#[derive(Clone, Debug)]
+pub(crate) struct Rows<E> {
+    pub(crate) stride: usize,
+    pub(crate) data: Vec<E>,
+}
+
+impl<E: Clone> Rows<E> {
+    pub(crate) fn new(rows: usize, stride: usize, zero: &E) -> Self {
+        Self { stride, data: vec![zero.clone(); rows * stride] }
+    }
+
+    pub(crate) fn row(&self, row: usize) -> &[E] {
+        &self.data[row * self.stride..(row + 1) * self.stride]
+    }
+
+    pub(crate) fn row_mut(&mut self, row: usize) -> &mut [E] {
+        &mut self.data[row * self.stride..(row + 1) * self.stride]
+    }
+
+    pub(crate) fn at(&self, row: usize, level: usize) -> &E {
+        &self.data[row * self.stride + level]
+    }
+
+    pub(crate) fn at_mut(&mut self, row: usize, level: usize) -> &mut E {
+        &mut self.data[row * self.stride + level]
+    }
+}
+
+/// What the recurrences need beside the rows: the time at the start of the step, the sign of
+/// every switch (0: sliding), and two places to compute in.
+pub(crate) struct Moment<'a, E> {
+    pub(crate) time: &'a E,
+    pub(crate) modes: &'a [i8],
+    pub(crate) sum: &'a mut E,
+    pub(crate) scratch: &'a mut E,
+}
+
+impl<E: Clone> Tape<E> {
+    pub(crate) fn rows(&self) -> usize {
+        self.states + self.ops.len()
+    }
+
+    /// Level `n` of all operations.
+    pub(crate) fn level<R: Real<Element = E>>(
+        &self,
+        real: &R,
+        rows: &mut Rows<E>,
+        n: usize,
+        moment: &mut Moment<'_, E>,
+    ) {
+        // Rows start as zeros: where nothing is written they remain so.
+        for index in if n < 2 { &self.live } else { &self.curved } {
+            self.operation(real, rows, *index, n, moment);
+        }
+    }
+
+    /// Restricts the work to what the given rows need.
+    pub(crate) fn restrict(&mut self, needed: Vec<usize>) {
+        self.live = self.cone(needed);
+        self.curved = self.live.iter().copied().filter(|index| !self.affine[*index]).collect();
+    }
+
+    /// The operations that some rows need, in order.
+    pub(crate) fn cone(&self, mut open: Vec<usize>) -> Vec<usize> {
+        let mut needed = vec![false; self.ops.len()];
+        while let Some(row) = open.pop() {
+            let Some(index) = row.checked_sub(self.states) else { continue };
+            if std::mem::replace(&mut needed[index], true) {
+                continue;
+            }
+            open.extend(self.ops[index].operands().into_iter().flatten());
+            // Sine and cosine read each other.
+            match self.ops[index] {
+                Op::Sin { .. } => open.push(row + 1),
+                Op::Cos { .. } => open.push(row - 1),
+                _ => {}
+            }
+        }
+        (0..needed.len()).filter(|index| needed[*index]).collect()
+    }
+
+    /// Level `n` of operation `index`.
+    #[inline]
+    pub(crate) fn operation<R: Real<Element = E>>(
+        &self,
+        real: &R,
+        rows: &mut Rows<E>,
+        index: usize,
+        n: usize,
+        moment: &mut Moment<'_, E>,
+    ) {
+        let target = self.states + index;
+        let sum = &mut *moment.sum;
+        let scratch = &mut *moment.scratch;
+        let order = n as u32;
+        match self.ops[index] {
+            Op::Delayed { .. } => return,
+            Op::Control { switch, part } => match (moment.modes[switch], part, n) {
+                (0, ..) => return,
+                (LEAP, ..) => real.set_zero(sum),
+                (mode, 0, 0) => real.set(sum, &real.double(f64::from(mode))),
+                _ => real.set_zero(sum),
+            },
+            Op::Constant(c) if n == 0 => real.set(sum, &self.constants[c]),
+            Op::Constant(_) => real.set_zero(sum),
+            Op::Time => match n {
+                0 => real.set(sum, moment.time),
+                1 => real.set(sum, &real.double(1.0)),
+                _ => real.set_zero(sum),
+            },
+            Op::Add(a, b) => real.add(sum, rows.at(a, n), rows.at(b, n)),
+            Op::Subtract(a, b) => real.subtract(sum, rows.at(a, n), rows.at(b, n)),
+            Op::Scale(a, c) => real.multiply(sum, rows.at(a, n), &self.constants[c]),
+            Op::Multiply(a, b) => real.convolve(sum, &rows.row(a)[..=n], &rows.row(b)[..=n]),
+            Op::Square(a) => {
+                let half = n.div_ceil(2);
+                let row = rows.row(a);
+                real.convolve(sum, &row[..half], &row[n + 1 - half..=n]);
+                real.times_integer(sum, 2);
+                if n.is_multiple_of(2) {
+                    real.accumulate(sum, &row[n / 2], &row[n / 2]);
+                }
+            }
+            Op::Divide(_, a) | Op::Power(a, _)
+                if real.sign(rows.at(a, 0)) == 0 && moment.modes.contains(&LEAP) =>
+            {
+                real.set_zero(sum);
+            }
+            // q b = a: q_n b_0 = a_n - sum_{j<n} q_j b_{n-j}.
+            Op::Divide(a, b) => {
+                real.convolve(scratch, &rows.row(target)[..n], &rows.row(b)[1..=n]);
+                real.subtract(sum, rows.at(a, n), scratch);
+                real.set(scratch, sum);
+                real.divide(sum, scratch, rows.at(b, 0));
+            }
+            Op::Exp(a) if n == 0 => real.exp(sum, rows.at(a, 0)),
+            // e' = a' e.
+            Op::Exp(a) => {
+                let (a, e) = (&rows.row(a)[..=n], &rows.row(target)[..n]);
+                real.convolve_derivative(sum, scratch, a, e);
+                real.over_integer(sum, order);
+            }
+            Op::Ln(a) if n == 0 => real.ln(sum, rows.at(a, 0)),
+            // a l' = a': n a_0 l_n = n a_n - sum_{0<k<n} k l_k a_{n-k}.
+            Op::Ln(a) => {
+                let (a, l) = (&rows.row(a)[..=n], &rows.row(target)[..n]);
+                real.convolve_derivative(sum, scratch, l, &a[1..]);
+                real.over_integer(sum, order);
+                real.subtract(scratch, &a[n], sum);
+                real.divide(sum, scratch, &a[0]);
+            }
+            Op::Power(a, p) if n == 0 => real.power(sum, rows.at(a, 0), &self.constants[p]),
+            // a b' = p a' b: n a_0 b_n = p sum_{j>0} j a_j b_{n-j} - sum_{0<k<n} k b_k a_{n-k}.
+            Op::Power(a, p) => {
+                let (a, b) = (&rows.row(a)[..=n], &rows.row(target)[..n]);
+                real.convolve_derivative(sum, scratch, a, b);
+                real.scale(sum, &self.constants[p]);
+                let mut rest = real.zero();
+                real.convolve_derivative(&mut rest, scratch, b, &a[1..]);
+                real.subtract(scratch, sum, &rest);
+                real.over_integer(scratch, order);
+                real.divide(sum, scratch, &a[0]);
+            }
+            Op::Sin { argument, .. } if n == 0 => real.sin(sum, rows.at(argument, 0)),
+            Op::Cos { argument, .. } if n == 0 => real.cos(sum, rows.at(argument, 0)),
+            // s' = a' c, c' = -a' s.
+            Op::Sin { argument, affine } => {
+                let (a, c) = (rows.row(argument), rows.row(target + 1));
+                chain(real, sum, scratch, (&a[..=n], &c[..n]), affine);
+                real.over_integer(sum, order);
+            }
+            Op::Cos { argument, affine } => {
+                let (a, s) = (rows.row(argument), rows.row(target - 1));
+                chain(real, sum, scratch, (&a[..=n], &s[..n]), affine);
+                real.over_integer(sum, order);
+                real.times_integer(sum, -1);
+            }
+            Op::Signed(a, switch) => match moment.modes[switch] {
+                0 | LEAP => real.set_zero(sum),
+                mode => {
+                    real.set(sum, rows.at(a, n));
+                    real.times_integer(sum, i32::from(mode));
+                }
+            },
+        }
+        std::mem::swap(rows.at_mut(target, n), sum);
+    }
+}
+
+/// sum_{j>0} j a_j b_{n-j}; one term if a is affine.
+#[inline]
+fn chain<R: Real>(
+    real: &R,
+    sum: &mut R::Element,
+    scratch: &mut R::Element,
+    (a, b): (&[R::Element], &[R::Element]),
+    affine: bool,
+) {
+    match (affine, a, b) {
+        (true, [_, slope, ..], [.., last]) => real.multiply(sum, slope, last),
+        _ => real.convolve_derivative(sum, scratch, a, b),
+    }
+}
+
+/// to = sum_k c_k s^k (Horner).
+#[inline]
+pub(crate) fn horner<R: Real>(
+    real: &R,
+    to: &mut R::Element,
+    coefficients: &[R::Element],
+    s: &R::Element,
+) {
+    real.set_zero(to);
+    for c in coefficients.iter().rev() {
+        real.scale(to, s);
+        real.increase(to, c);
+    }
+}

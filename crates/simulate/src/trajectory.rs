@@ -1,0 +1,114 @@
+//! A solution that is kept.
+
+use crate::real::Real;
+use crate::report::{EventKind, Report};
+use crate::tape::horner;
+
+/// An event, kept.
+#[derive(Clone, Debug)]
+pub struct Occurrence<E> {
+    /// When.
+    pub time: E,
+    /// What.
+    pub kind: EventKind,
+    /// The states just before.
+    pub before: Vec<E>,
+    /// The states just after.
+    pub after: Vec<E>,
+}
+
+#[derive(Clone, Debug)]
+struct Piece<E> {
+    start: E,
+    length: E,
+    coefficients: Vec<E>,
+    stride: usize,
+    modes: Vec<i8>,
+}
+
+/// Dense output: the Taylor polynomials of all steps, and all events.
+///
+/// ```
+/// use lindstedt_equation::Expression;
+/// use lindstedt_simulate::{Doubles, Integrator, Model, Parameters, Settings, Trajectory};
+///
+/// let x = Expression::Displacement;
+/// let model = Model::second_order(&(Expression::Acceleration + x))?;
+/// let system = model.compile(Doubles, &Parameters::new())?;
+/// let mut flow = Integrator::new(&system, &0.0, &[1.0, 0.0], Settings::for_digits(16))?;
+/// let mut trajectory = Trajectory::new(Doubles);
+/// flow.advance(&10.0, &mut |report| trajectory.record(report))?;
+/// let x = trajectory.value(0, &7.5).unwrap_or(f64::NAN);
+/// assert!((x - 7.5f64.cos()).abs() < 1e-14);
+/// # Ok::<(), lindstedt_simulate::SimulateError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Trajectory<R: Real> {
+    real: R,
+    pieces: Vec<Piece<R::Element>>,
+    /// The events, in order.
+    pub events: Vec<Occurrence<R::Element>>,
+}
+
+impl<R: Real> Trajectory<R> {
+    /// An empty one.
+    pub fn new(real: R) -> Self {
+        Self { real, pieces: Vec::new(), events: Vec::new() }
+    }
+
+    /// Keeps a report; for use as an observer, never breaks off.
+    pub fn record(&mut self, report: &Report<'_, R>) -> std::ops::ControlFlow<()> {
+        match report {
+            Report::Segment(segment) => self.pieces.push(Piece {
+                start: segment.start.clone(),
+                length: segment.length.clone(),
+                coefficients: segment.coefficients.to_vec(),
+                stride: segment.stride,
+                modes: segment.modes.to_vec(),
+            }),
+            Report::Event(event) => self.events.push(Occurrence {
+                time: event.time.clone(),
+                kind: event.kind,
+                before: event.before.to_vec(),
+                after: event.after.to_vec(),
+            }),
+        }
+        std::ops::ControlFlow::Continue(())
+    }
+
+    fn piece(&self, time: &R::Element) -> Option<&Piece<R::Element>> {
+        let next = self.pieces.partition_point(|piece| piece.start <= *time);
+        let piece = self.pieces.get(next.checked_sub(1)?)?;
+        // The last piece includes its end; so does one before the gap of an accumulation.
+        let end = self.real.sum(&piece.start, &piece.length);
+        (*time <= end || next < self.pieces.len()).then_some(piece)
+    }
+
+    /// A state at a time (after the jump, at a jump); nothing outside of what was kept or for a
+    /// state that does not exist. During an accumulation of impacts, which is jumped over, the
+    /// value at the impact before. Cost: a binary search and one evaluation.
+    #[must_use]
+    pub fn value(&self, state: usize, time: &R::Element) -> Option<R::Element> {
+        let piece = self.piece(time)?;
+        let coefficients = piece.coefficients.chunks_exact(piece.stride).nth(state)?;
+        let mut s = self.real.difference(time, &piece.start);
+        if s > piece.length {
+            s = piece.length.clone();
+        }
+        let mut value = self.real.zero();
+        horner(&self.real, &mut value, coefficients, &s);
+        Some(value)
+    }
+
+    /// The signs of the switches at a time; 0: sliding.
+    #[must_use]
+    pub fn modes(&self, time: &R::Element) -> Option<&[i8]> {
+        Some(&self.piece(time)?.modes)
+    }
+
+    /// The number of segments.
+    #[must_use]
+    pub fn segments(&self) -> usize {
+        self.pieces.len()
+    }
+}

@@ -1,0 +1,225 @@
+//! Events that are easy to get wrong: two roots in one step, touching, starts on surfaces,
+//! sliding in general systems, and what is refused by name.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use lindstedt_equation::{Crossing, Expression, Function, Impact};
+use lindstedt_simulate::{
+    Digits, Doubles, EventKind, Integrator, Model, Outcome, Parameters, Quantity, Real, Report,
+    Settings, SimulateError, Surface,
+};
+use rug::Rational;
+use std::ops::ControlFlow;
+
+fn number(p: i64, q: i64) -> Expression {
+    Expression::Number(Rational::from((p, q)))
+}
+
+fn oscillator() -> Model {
+    Model::second_order(&(Expression::Acceleration + Expression::Displacement)).unwrap()
+}
+
+fn wall(position: Expression, restitution: Expression, crossing: Crossing) -> Impact {
+    Impact { position, crossing, restitution }
+}
+
+type Log = Vec<(EventKind, f64)>;
+
+fn run(model: &Model, start: &[f64], end: f64) -> Result<(Log, Vec<f64>), SimulateError> {
+    let system = model.compile(Doubles, &Parameters::new())?;
+    let settings = Settings { most_impacts: 1000, ..Settings::for_digits(16) };
+    let mut flow = Integrator::new(&system, &0.0, start, settings)?;
+    let mut log = Vec::new();
+    flow.advance(&end, &mut |report| {
+        if let Report::Event(event) = report {
+            log.push((event.kind, *event.time));
+        }
+        ControlFlow::Continue(())
+    })?;
+    Ok((log, flow.state().to_vec()))
+}
+
+/// Beyond the wall for a time of 2 sqrt(2 delta) only: both ends of the step lie before it.
+#[test]
+fn a_wall_crossed_and_left_inside_one_step() {
+    for exponent in 2..12 {
+        let delta = Rational::from((1, 10i64.pow(exponent)));
+        let position = Expression::Number(Rational::from(1) - delta.clone());
+        let model = oscillator().with_wall(wall(position, number(1, 2), Crossing::Rising));
+        let (log, _) = run(&model, &[-1.0, 0.0], 4.0).unwrap();
+        let exact = std::f64::consts::PI - (1.0 - delta.to_f64()).acos();
+        assert_eq!(log[0].0, EventKind::Impact { wall: 0 }, "{exponent}");
+        // d(acos)/dx = 1e8 sqrt(..): the time of a nearly grazing impact is ill-conditioned.
+        let condition = (2.0 * delta.to_f64()).sqrt().recip();
+        assert!((log[0].1 - exact).abs() < 4e-15 * condition, "{exponent}");
+    }
+}
+
+#[test]
+fn grazing_is_refused_and_a_near_miss_is_none() {
+    let at = |position: Expression| {
+        run(
+            &oscillator().with_wall(wall(position, number(1, 2), Crossing::Rising)),
+            &[-1.0, 0.0],
+            4.0,
+        )
+    };
+    let Err(SimulateError::Grazing { surface, time }) = at(Expression::integer(1)) else {
+        panic!()
+    };
+    assert_eq!(surface, Surface::Wall(0));
+    assert!((time - std::f64::consts::PI).abs() < 1e-5);
+    assert!(at(number(1_000_001, 1_000_000)).unwrap().0.is_empty());
+}
+
+/// Every zero of x' and of x - cos t, with its direction, and none at the start.
+#[test]
+fn sections_in_order() {
+    let model = oscillator()
+        .with_section(Expression::Velocity)
+        .with_section(Expression::Displacement - number(1, 2));
+    let (log, _) = run(&model, &[1.0, 0.0], 20.0).unwrap();
+    let pi = std::f64::consts::PI;
+    let turning: Vec<_> = log
+        .iter()
+        .filter(|(kind, _)| matches!(kind, EventKind::Section { section: 0, .. }))
+        .collect();
+    assert_eq!(turning.len(), 6);
+    for (n, (kind, time)) in (1..).zip(turning) {
+        assert!((time - f64::from(n) * pi).abs() < 1e-14);
+        assert_eq!(*kind, EventKind::Section { section: 0, rising: n % 2 == 1 });
+    }
+    let half: Vec<f64> = log
+        .iter()
+        .filter(|(kind, _)| *kind == EventKind::Section { section: 1, rising: true })
+        .map(|(_, time)| *time)
+        .collect();
+    assert_eq!(half.len(), 3);
+    for (n, time) in (0..).zip(half) {
+        assert!((time - (f64::from(n) + 5.0 / 6.0) * 2.0 * pi + 0.0).abs() < 1e-13);
+    }
+}
+
+#[test]
+fn starts_at_a_wall() {
+    let floor = |restitution| wall(Expression::integer(0), restitution, Crossing::Falling);
+    let heavy = Model::second_order(&(Expression::Acceleration + 1)).unwrap();
+    let model = heavy.clone().with_wall(floor(number(1, 2)));
+    // At rest, pushed down.
+    let (log, state) = run(&model, &[0.0, 0.0], 5.0).unwrap();
+    assert_eq!(log, [(EventKind::Rest { wall: 0 }, 0.0)]);
+    assert_eq!(state, [0.0, 0.0]);
+    // On the way in: the impact is now. On the way out: a flight of 2 v.
+    let (log, _) = run(&model, &[0.0, -1.0], 0.5).unwrap();
+    assert_eq!(log, [(EventKind::Impact { wall: 0 }, 0.0)]);
+    let (log, _) = run(&model, &[0.0, 1.0], 2.5).unwrap();
+    assert_eq!(log.len(), 1);
+    assert!((log[0].1 - 2.0).abs() < 1e-15);
+    // Behind.
+    let outcome = run(&model, &[-0.1, 0.0], 1.0);
+    assert_eq!(outcome.err(), Some(SimulateError::BehindWall { wall: 0 }));
+    // No rebound at all: rest at once.
+    let (log, _) =
+        run(&heavy.clone().with_wall(floor(Expression::integer(0))), &[1.0, 0.0], 5.0).unwrap();
+    assert_eq!(log.len(), 1);
+    assert_eq!(log[0].0, EventKind::Rest { wall: 0 });
+    // Elastic: no accumulation, flights of 2 sqrt 2 for ever.
+    let (log, _) =
+        run(&heavy.with_wall(floor(Expression::integer(1))), &[1.0, 0.0], 200.0).unwrap();
+    assert_eq!(log.len(), 71);
+    let exact = 2f64.sqrt() * 141.0;
+    assert!((log[70].1 - exact).abs() < 1e-12);
+}
+
+/// y' = 1/2 - sign(y): slides at zero; y' = 1/2 + sign(y) has no unique future there; with
+/// y' = t/2 - sign y the sliding ends at t = 2, upwards.
+#[test]
+fn sliding_in_one_dimension() {
+    let sign = || Expression::Displacement.apply(Function::Sign);
+    let model = |right| Model::first_order(&["y"], &[right]).unwrap();
+    let switching = |from, to| EventKind::Switching { switch: 0, from, to };
+    let (log, state) = run(&model(number(1, 2) - sign()), &[1.0], 5.0).unwrap();
+    assert_eq!(log, [(switching(1, 0), 2.0)]);
+    assert!(state[0].abs() < 1e-15);
+    let outcome = run(&model(number(1, 2) + sign()), &[0.0], 5.0);
+    assert!(matches!(outcome, Err(SimulateError::NotUnique { switch: 0, .. })));
+    let (log, state) = run(&model(Expression::Time * number(1, 2) - sign()), &[0.0], 4.0).unwrap();
+    assert_eq!(log.len(), 1);
+    assert_eq!(log[0].0, switching(0, 1));
+    assert!((log[0].1 - 2.0).abs() < 1e-14);
+    assert!((state[0] - 1.0).abs() < 1e-14);
+    // The limit is touched and not exceeded: u = sin t. No release; touching is not decided.
+    let touching = Expression::Time.apply(Function::Sin) - sign();
+    let outcome = run(&model(touching), &[0.0], 4.0);
+    assert!(matches!(outcome, Err(SimulateError::Grazing { surface: Surface::Limit(0), .. })));
+    // The square of a sign is not affine.
+    let squared = number(1, 2) - sign() - sign() * sign() * number(1, 4);
+    let outcome = run(&model(squared), &[1.0], 5.0);
+    assert_eq!(outcome.err(), Some(SimulateError::NotAffine { switch: 0 }));
+}
+
+#[test]
+fn simultaneous_switches_are_refused() {
+    let (x, y) = (Expression::parameter("x"), Expression::parameter("y"));
+    let right = [-x.apply(Function::Sign), -y.apply(Function::Sign)];
+    let model = Model::first_order(&["x", "y"], &right).unwrap();
+    let outcome = run(&model, &[1.0, 1.0], 5.0);
+    assert!(matches!(outcome, Err(SimulateError::SimultaneousSwitches { .. })), "{outcome:?}");
+    // One after the other both slide.
+    let outcome = run(&model, &[1.0, 2.0], 5.0);
+    assert!(matches!(outcome, Err(SimulateError::SimultaneousSwitches { .. })), "{outcome:?}");
+}
+
+#[test]
+fn dry_friction_stops_an_oscillator() {
+    // x'' + x + sign(x')/4 = 0 from x = 1: amplitude falls by 1/2 per half period, then sticks.
+    let friction = Expression::Velocity.apply(Function::Sign) * number(1, 4);
+    let equation = Expression::Acceleration + Expression::Displacement + friction;
+    let model = Model::second_order(&equation).unwrap();
+    let (log, state) = run(&model, &[1.125, 0.0], 20.0).unwrap();
+    let pi = std::f64::consts::PI;
+    assert_eq!(log.len(), 2);
+    assert!((log[0].1 - pi).abs() < 1e-14 && (log[1].1 - 2.0 * pi).abs() < 1e-14);
+    assert_eq!(log[1].0, EventKind::Switching { switch: 0, from: 1, to: 0 });
+    assert!((state[0] - 0.125).abs() < 1e-14 && state[1].abs() < 1e-15);
+}
+
+#[test]
+fn a_pole_and_missing_values_are_named() {
+    // y' = y^2 from 1 has a pole at t = 1.
+    let y = Expression::Displacement;
+    let model = Model::first_order(&["y"], &[y.clone().pow(2)]).unwrap();
+    let outcome = run(&model, &[1.0], 2.0);
+    assert!(
+        matches!(
+            outcome,
+            Err(SimulateError::StepTooSmall { .. } | SimulateError::NotFinite { .. })
+        ),
+        "{outcome:?}"
+    );
+    let model = Model::first_order(&["y"], &[y.clone() * Expression::parameter("k")]).unwrap();
+    let missing = SimulateError::MissingParameter { name: "k".into() };
+    assert_eq!(run(&model, &[1.0], 2.0).err(), Some(missing));
+    let model = Model::first_order(&["y"], &[y.clone().delayed(1)]).unwrap();
+    assert_eq!(run(&model, &[1.0], 2.0).err(), Some(SimulateError::MissingHistory));
+    let model = Model::first_order(&["y"], &[y.clone().delayed(-1)]).unwrap();
+    assert_eq!(run(&model, &[1.0], 2.0).err(), Some(SimulateError::BadDelay { delay: -1.0 }));
+    assert_eq!(Model::second_order(&y).err(), Some(SimulateError::NotSecondOrder));
+}
+
+/// The observer stops the integration in the middle; going on gives the same result.
+#[test]
+fn stopping_and_going_on() {
+    let model = oscillator().with_wall(wall(number(-1, 2), number(9, 10), Crossing::Falling));
+    let real = Digits::for_digits(30);
+    let system = model.compile(real, &Parameters::new()).unwrap();
+    let settings = Settings::for_digits(30);
+    let start = [real.double(1.0), real.zero()];
+    let end = real.float(&Quantity::parse("50").unwrap().float(200));
+    let mut whole = Integrator::new(&system, &real.zero(), &start, settings).unwrap();
+    whole.advance(&end, &mut |_| ControlFlow::Continue(())).unwrap();
+    let mut parts = Integrator::new(&system, &real.zero(), &start, settings).unwrap();
+    while parts.advance(&end, &mut |_| ControlFlow::Break(())).unwrap() == Outcome::Stopped {}
+    assert_eq!(whole.state(), parts.state());
+    assert_eq!(whole.work(), parts.work());
+}
