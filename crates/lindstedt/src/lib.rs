@@ -21,6 +21,7 @@ pub mod multimodular;
 pub mod number;
 pub mod numeric;
 pub mod paper;
+pub mod trade;
 mod value;
 
 pub use derivation::{Derivation, NamedSeries, Progress, Route, Settings, Solution, derive};
@@ -36,3 +37,4 @@ pub use lindstedt_melnikov as melnikov;
 pub use lindstedt_phase as phase;
 pub use lindstedt_problems as problems;
 pub use lindstedt_series as series;
+pub use lindstedt_simulate as simulate;
