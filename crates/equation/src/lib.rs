@@ -1,9 +1,11 @@
 //! Problems as data: an oscillator is an expression tree, a small parameter, a condition that
 //! fixes the amplitude, and a data card.
 
+mod canonical;
 mod expression;
 pub mod print;
 mod problem;
 
+pub use canonical::AccelerationFault;
 pub use expression::{Expression, Function};
 pub use problem::{AmplitudeRole, Condition, Crossing, Impact, ParameterCard, Problem, Text};
