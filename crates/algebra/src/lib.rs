@@ -9,5 +9,5 @@ pub mod laws;
 mod phase;
 mod ring;
 
-pub use phase::{PhaseAlgebra, PhaseError, Resolution};
+pub use phase::{FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution};
 pub use ring::{RationalAlgebra, Rationals, Ring};

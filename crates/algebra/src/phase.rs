@@ -2,18 +2,12 @@
 
 use crate::RationalAlgebra;
 
-/// Shorthand for the constants of a phase algebra.
-type Constant<A> = <<A as PhaseAlgebra>::Constants as crate::Ring>::Element;
+/// Shorthand for the constants of an algebra of functions.
+type Constant<A> = <<A as FunctionAlgebra>::Constants as crate::Ring>::Element;
 
-/// What the equation u'' + u = f asks of an algebra of functions of the phase psi.
-///
-/// Laws (see [`laws::phase_algebra`](crate::laws::phase_algebra)): the derivation satisfies
-/// Leibniz' rule and kills exactly the constants; `resolve` splits f without loss,
-///
-///   f = c cos psi + s sin psi + (u'' + u),   u(0) = u'(0) = 0,
-///
-/// where `c = 2<f cos>` and `s = 2<f sin>` are the resonant amplitudes (means over a period).
-pub trait PhaseAlgebra: RationalAlgebra {
+/// An algebra of functions over a ring of constants: what it takes to expand an equation in its
+/// small parameter.
+pub trait FunctionAlgebra: RationalAlgebra {
     /// The ring of constants: functions that do not depend on the phase.
     type Constants: RationalAlgebra;
 
@@ -31,20 +25,35 @@ pub trait PhaseAlgebra: RationalAlgebra {
         }
         sum
     }
-    /// cos psi.
-    fn cosine(&self) -> Self::Element;
-    /// sin psi.
-    fn sine(&self) -> Self::Element;
     /// The constant that f is, if it is one.
     fn as_constant(&self, f: &Self::Element) -> Option<Constant<Self>>;
-    /// df/dpsi.
-    fn derivative(&self, f: &Self::Element) -> Self::Element;
-    /// The value f(0), where the algebra can give it.
-    fn at_zero(&self, f: &Self::Element) -> Option<Constant<Self>>;
     /// ln |f|, where it lies in the algebra (in the Lobachevsky ring: f = cos psi).
     fn log_abs(&self, f: &Self::Element) -> Option<Self::Element>;
     /// The number of terms of f, for the work counters.
     fn terms(&self, f: &Self::Element) -> usize;
+    /// (cos m eta, sin m eta) of a forcing phase eta; nothing in algebras without one.
+    fn forcing(&self, _multiple: u32) -> Option<(Self::Element, Self::Element)> {
+        None
+    }
+}
+
+/// What the equation u'' + u = f asks of an algebra of functions of the phase psi.
+///
+/// Laws (see [`laws::phase_algebra`](crate::laws::phase_algebra)): the derivation satisfies
+/// Leibniz' rule and kills exactly the constants; `resolve` splits f without loss,
+///
+///   f = c cos psi + s sin psi + (u'' + u),   u(0) = u'(0) = 0,
+///
+/// where `c = 2<f cos>` and `s = 2<f sin>` are the resonant amplitudes (means over a period).
+pub trait PhaseAlgebra: FunctionAlgebra {
+    /// cos psi.
+    fn cosine(&self) -> Self::Element;
+    /// sin psi.
+    fn sine(&self) -> Self::Element;
+    /// df/dpsi.
+    fn derivative(&self, f: &Self::Element) -> Self::Element;
+    /// The value f(0), where the algebra can give it.
+    fn at_zero(&self, f: &Self::Element) -> Option<Constant<Self>>;
     /// The first harmonic `(2<f cos>, 2<f sin>)` of f.
     ///
     /// # Errors

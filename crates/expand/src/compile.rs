@@ -5,7 +5,7 @@
 //! node, so that x^3 costs x*x and (x*x)*x, and x^2 + x^4 costs no square twice.
 
 use crate::ExpandError;
-use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
 use rug::Rational;
@@ -54,12 +54,12 @@ pub trait Binding<C: Ring> {
 
 /// x'' + F(x, x'; eps) = 0 as a graph; `root` is F.
 #[derive(Clone, Debug)]
-pub struct Equation<A: PhaseAlgebra> {
+pub struct Equation<A: FunctionAlgebra> {
     pub(crate) nodes: Vec<Node<<A::Constants as Ring>::Element>>,
     pub(crate) root: NodeId,
 }
 
-impl<A: PhaseAlgebra> Equation<A> {
+impl<A: FunctionAlgebra> Equation<A> {
     /// Whether the velocity occurs.
     pub fn has_velocity(&self) -> bool {
         self.nodes.contains(&Node::Velocity)
@@ -70,7 +70,7 @@ impl<A: PhaseAlgebra> Equation<A> {
 ///
 /// # Errors
 /// [`ExpandError`] naming the term that cannot be taken or the name without a value.
-pub fn compile<A: PhaseAlgebra>(
+pub fn compile<A: FunctionAlgebra>(
     algebra: &A,
     equation: &Expression,
     binding: &dyn Binding<A::Constants>,
@@ -116,14 +116,14 @@ fn degree<E>(nodes: &[Node<E>], root: NodeId) -> usize {
     degrees.get(root).copied().unwrap_or(0)
 }
 
-struct Compiler<'a, A: PhaseAlgebra> {
+struct Compiler<'a, A: FunctionAlgebra> {
     algebra: &'a A,
     binding: &'a dyn Binding<A::Constants>,
     order: usize,
     nodes: Vec<Node<<A::Constants as Ring>::Element>>,
 }
 
-impl<A: PhaseAlgebra> Compiler<'_, A> {
+impl<A: FunctionAlgebra> Compiler<'_, A> {
     fn push(&mut self, node: Node<<A::Constants as Ring>::Element>) -> NodeId {
         if let Some(found) = self.nodes.iter().position(|known| *known == node) {
             return found;

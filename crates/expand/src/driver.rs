@@ -13,11 +13,11 @@ use crate::ExpandError;
 use crate::compile::{Equation, Node};
 use crate::evaluator::Evaluator;
 use crate::limit_cycle;
-use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::Condition;
 use rug::Rational;
 
-type Constant<A> = <<A as PhaseAlgebra>::Constants as Ring>::Element;
+type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
 
 /// What one order cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

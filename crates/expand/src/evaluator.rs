@@ -2,11 +2,11 @@
 
 use crate::ExpandError;
 use crate::compile::{Equation, Node, NodeId};
-use lindstedt_algebra::{PhaseAlgebra, Ring};
+use lindstedt_algebra::{FunctionAlgebra, Ring};
 use rug::Rational;
 
 /// The memory of the driver: coefficient n of every node, as far as it was asked for.
-pub(crate) struct Evaluator<'a, A: PhaseAlgebra> {
+pub(crate) struct Evaluator<'a, A: FunctionAlgebra> {
     pub(crate) algebra: &'a A,
     pub(crate) equation: &'a Equation<A>,
     values: Vec<Vec<Option<A::Element>>>,
@@ -23,7 +23,7 @@ fn degree<E>(node: &Node<E>) -> Option<usize> {
     }
 }
 
-impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
+impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
     pub(crate) fn new(algebra: &'a A, equation: &'a Equation<A>) -> Self {
         let values = equation.nodes.iter().map(|_| Vec::new()).collect();
         Self { algebra, equation, values, products: 0 }

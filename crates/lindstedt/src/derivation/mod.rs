@@ -7,7 +7,7 @@ use crate::multimodular::{self, RationalBinding};
 use crate::number::{Constants, Number, certified};
 use crate::{Error, Value};
 use limits::{check_parameters, has_logarithms, limit_memory};
-use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Rationals, Ring};
+use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
