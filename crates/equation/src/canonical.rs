@@ -228,6 +228,7 @@ fn canonical_sum(terms: &[Expression]) -> Expression {
     }) {
         match (term, &mut number) {
             (Expression::Number(q), Some((_, sum))) => *sum += q,
+            (Expression::Number(q), None) if q.is_zero() => {}
             (Expression::Number(q), None) => number = Some((list.len(), q)),
             (other, _) => list.push(other),
         }

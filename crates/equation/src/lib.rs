@@ -2,7 +2,10 @@
 //! fixes the amplitude, and a data card.
 
 mod canonical;
+pub mod classify;
 mod expression;
+mod methods;
+mod monomials;
 pub mod print;
 mod problem;
 

@@ -1,0 +1,116 @@
+//! A problem as the text of a problem file.
+
+use crate::file::{AMPLITUDES, CONDITIONS};
+use lindstedt_equation::print::Style;
+use lindstedt_equation::{Crossing, Expression, Problem};
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+/// The file of a problem, which [`ProblemFile::parse`] reads back as an equal problem.
+///
+/// ```
+/// use lindstedt_problem_file::{ProblemFile, write};
+/// let file = ProblemFile::parse("name = 'a'\nequation = \"x'' + x + eps*x^3 = 0\"")?;
+/// assert_eq!(ProblemFile::parse(&write(&file.problem))?.problem, file.problem);
+/// # Ok::<(), lindstedt_problem_file::FileError>(())
+/// ```
+pub fn write(problem: &Problem) -> String {
+    let mut text = String::new();
+    let mut line = |key: &str, value: &str| {
+        let _ = writeln!(text, "{key} = {}", quoted(value));
+    };
+    let side = |e: &Expression| format!("{} = 0", e.print(&problem.small, Style::Text));
+    line("name", &problem.name);
+    line("title", &problem.title);
+    line("equation", &side(&problem.equation));
+    if let Some(equation) = &problem.time_domain {
+        line("time_domain", &side(equation));
+    }
+    line("small", &problem.small);
+    let conditions: Vec<String> = problem
+        .conditions
+        .iter()
+        .filter_map(|c| CONDITIONS.iter().find(|(_, known)| known == c))
+        .map(|(name, _)| quoted(name))
+        .collect();
+    let conditions = match &conditions[..] {
+        [one] => one.clone(),
+        list => format!("[{}]", list.join(", ")),
+    };
+    let _ = writeln!(text, "condition = {conditions}");
+    let role = AMPLITUDES.iter().find(|(_, known)| *known == problem.amplitude);
+    if let Some((name, _)) = role {
+        let _ = writeln!(text, "amplitude = {}", quoted(name));
+    }
+    let formal = formal_names(problem);
+    if !formal.is_empty() {
+        let list: Vec<String> = formal.iter().map(|name| quoted(name)).collect();
+        let _ = writeln!(text, "formal = [{}]", list.join(", "));
+    }
+    let _ = writeln!(text, "notes = {}", quoted(&problem.notes));
+    let _ = writeln!(text, "source = {}", quoted(&problem.source));
+    let undeclared = undeclared(problem);
+    if !problem.parameters.is_empty() || !undeclared.is_empty() {
+        text.push_str("\n[parameters]\n");
+    }
+    for card in &problem.parameters {
+        let (value, meaning) = (quoted(&card.default), quoted(&card.meaning));
+        let value =
+            if card.default.is_empty() { String::new() } else { format!("value = {value}, ") };
+        let _ = writeln!(text, "{} = {{ {value}meaning = {meaning} }}", card.name);
+    }
+    for name in undeclared {
+        let _ = writeln!(text, "{name} = {{ follows = \"see the notes\" }}");
+    }
+    if let Some(impact) = &problem.impact {
+        let print = |e: &Expression| quoted(&e.print(&problem.small, Style::Text));
+        let crossing = match impact.crossing {
+            Crossing::Rising => "rising",
+            Crossing::Falling => "falling",
+        };
+        let _ = write!(
+            text,
+            "\n[impact]\nposition = {}\ncrossing = \"{crossing}\"\nrestitution = {}\n",
+            print(&impact.position),
+            print(&impact.restitution)
+        );
+    }
+    text
+}
+
+/// A string of TOML.
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+fn expressions(problem: &Problem) -> Vec<&Expression> {
+    let impact = problem.impact.iter().flat_map(|i| [&i.position, &i.restitution]);
+    [&problem.equation].into_iter().chain(&problem.time_domain).chain(impact).collect()
+}
+
+fn formal_names(problem: &Problem) -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    for e in expressions(problem) {
+        loop {
+            let is_new =
+                |e: &Expression| matches!(e, Expression::Formal(name, _) if !names.contains(name));
+            let Some(Expression::Formal(name, _)) = e.find(&is_new).cloned() else { break };
+            names.insert(name);
+        }
+    }
+    names
+}
+
+/// Parameters of the equations that have no card: others determine them.
+fn undeclared(problem: &Problem) -> Vec<String> {
+    let mut list: Vec<String> = Vec::new();
+    for e in expressions(problem) {
+        for name in e.parameters() {
+            let known = problem.parameters.iter().any(|card| card.name == name);
+            if !known && !list.contains(&name) {
+                list.push(name);
+            }
+        }
+    }
+    list
+}
