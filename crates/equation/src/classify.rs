@@ -135,7 +135,7 @@ pub struct Classification {
     pub impact: bool,
     /// The symmetry, forces apart.
     pub symmetry: Symmetry,
-    /// Whether no term is odd in x': then the solution can be run backwards in time.
+    /// Whether solutions can be run backwards in time ([`is_reversible`]).
     pub reversible: bool,
     /// What a derivation computes with.
     pub algebra: Algebra,
@@ -226,7 +226,7 @@ pub fn classify(
 ) -> Result<Classification, ClassifyError> {
     let equation = problem.equation.acceleration_alone().map_err(ClassifyError::Acceleration)?;
     let rest = equation.terms().iter().filter(|t| **t != Expression::Acceleration).cloned();
-    let rest = Expression::Sum(rest.collect());
+    let rest = Expression::Sum(rest.collect()).smooth_powers();
     let all = expand(&rest).ok_or(ClassifyError::TooManyTerms { limit: MOST_TERMS })?;
     let is_linear = |m: &Monomial| m.order == 0 && m.is_power(1, 0);
     let stiffness = all.coefficient(is_linear);
@@ -258,9 +258,6 @@ pub fn classify(
         if parity(&term, true) != Some(Parity::Odd) {
             parts.symmetry = Symmetry::None;
         }
-        if parity(&term, false) != Some(Parity::Even) {
-            parts.reversible = false;
-        }
         if is_linear(monomial) {
             continue;
         }
@@ -273,6 +270,7 @@ pub fn classify(
         let list = if order > 0 || hidden { &mut parts.weak } else { &mut parts.strong };
         list.push(Term { term, order });
     }
+    parts.reversible = parts.forcing.is_empty() && is_reversible(&equation);
     // x (x^2)^delta and x S(delta ln x^2) carry the linear part.
     if parts.stiffness == Expression::integer(0)
         && let Some(at_zero) = linear_at_zero(&rest)
@@ -395,9 +393,24 @@ pub(crate) enum Parity {
     Odd,
 }
 
-/// Whether the form of an expression shows that it does not change under x' -> -x'.
-pub fn is_even_in_velocity(e: &Expression) -> bool {
-    e.terms().iter().all(|term| parity(term, false) == Some(Parity::Even))
+/// Whether the form of an equation shows that its solutions can be run backwards: it does not
+/// change under t -> -t, or changes its sign under t -> -t, x -> -x. Then no amplitude drifts.
+pub fn is_reversible(equation: &Expression) -> bool {
+    let even = |t: &Expression| parity(t, false) == Some(Parity::Even);
+    let terms = || equation.terms().iter();
+    terms().all(even) || terms().all(|t| parity_in_x(t) == Some(Parity::Odd))
+}
+
+/// How an expression changes under x -> -x, t -> -t.
+pub(crate) fn parity_in_x(e: &Expression) -> Option<Parity> {
+    let same = parity(e, true)? == parity(e, false)?;
+    Some(if same { Parity::Even } else { Parity::Odd })
+}
+
+/// kappa of x'' + kappa x at order zero; nothing when the equation is too long to multiply out.
+pub fn linear_stiffness(equation: &Expression) -> Option<Expression> {
+    let all = expand(equation)?;
+    Some(all.coefficient(|m| m.order == 0 && m.is_power(1, 0)))
 }
 
 /// How an expression changes under (x, x') -> (-x, -x'), or under x' -> -x' alone.

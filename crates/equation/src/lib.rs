@@ -8,6 +8,7 @@ mod methods;
 mod monomials;
 pub mod print;
 mod problem;
+mod smooth;
 
 pub use canonical::AccelerationFault;
 pub use expression::{Expression, Function};

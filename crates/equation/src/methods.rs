@@ -1,6 +1,6 @@
 //! Which methods take an equation, and what is against the others.
 
-use crate::classify::{Algebra, Classification, Method, Parity, Reason, parity};
+use crate::classify::{Algebra, Classification, Method, Parity, Reason, parity, parity_in_x};
 use crate::{Condition, Expression, Function, Problem};
 use rug::Rational;
 use std::cmp::Ordering;
@@ -105,9 +105,14 @@ fn lindstedt(
     if matches!(condition, None | Some(Condition::FreeAmplitude)) {
         against.push(Reason::Condition);
     } else if !cycle && against.is_empty() {
-        let odd = |e: &Expression| parity(e, false) != Some(Parity::Even);
-        let drift = parts.weak.iter().find(|t| odd(&t.term));
-        against.extend(drift.map(|t| Reason::Drift(t.term.clone())));
+        // The only term that works on x' has nothing to cancel against.
+        let works = |e: &Expression| {
+            parity(e, false) == Some(Parity::Odd) && parity_in_x(e) == Some(Parity::Even)
+        };
+        let mut drift = parts.weak.iter().filter(|t| works(&t.term));
+        if let (Some(only), None) = (drift.next(), drift.next()) {
+            against.push(Reason::Drift(only.term.clone()));
+        }
     }
     let has_velocity = rest.contains(&Expression::Velocity);
     let irrational = stiffness.is_none_or(|kappa| crate::classify::rational_root(kappa).is_none());

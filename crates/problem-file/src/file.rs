@@ -174,13 +174,13 @@ pub const AMPLITUDES: [(&str, AmplitudeRole); 6] = [
 const ASKED: &str = "frequency, frequency_squared, period_over_2pi, amplitude, \
                      initial_displacement, growth_rate, solution";
 
-/// The condition that suits an equation: a free amplitude with t or a delay, a limit cycle with a
-/// term odd in x', a given amplitude otherwise.
+/// The condition that suits an equation: a free amplitude with t or a delay, a given amplitude
+/// where the form shows that none drifts, a limit cycle otherwise.
 pub fn usual_condition(equation: &Expression) -> Condition {
     let outside = |e: &Expression| matches!(e, Expression::Time | Expression::Delayed(..));
     if equation.find(&outside).is_some() {
         Condition::FreeAmplitude
-    } else if lindstedt_equation::classify::is_even_in_velocity(equation) {
+    } else if lindstedt_equation::classify::is_reversible(equation) {
         Condition::InitialAmplitude
     } else {
         Condition::LimitCycle

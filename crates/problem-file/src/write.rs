@@ -1,6 +1,6 @@
 //! A problem as the text of a problem file.
 
-use crate::file::{AMPLITUDES, CONDITIONS};
+use crate::file::{AMPLITUDES, CONDITIONS, ProblemFile};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Crossing, Expression, Problem};
 use std::collections::BTreeSet;
@@ -15,6 +15,18 @@ use std::fmt::Write;
 /// # Ok::<(), lindstedt_problem_file::FileError>(())
 /// ```
 pub fn write(problem: &Problem) -> String {
+    render(problem, None)
+}
+
+impl ProblemFile {
+    /// The file with everything that it says; parameters with an order have the small parameter
+    /// in the equation.
+    pub fn to_text(&self) -> String {
+        render(&self.problem, Some(self))
+    }
+}
+
+fn render(problem: &Problem, file: Option<&ProblemFile>) -> String {
     let mut text = String::new();
     let mut line = |key: &str, value: &str| {
         let _ = writeln!(text, "{key} = {}", quoted(value));
@@ -49,6 +61,15 @@ pub fn write(problem: &Problem) -> String {
     }
     let _ = writeln!(text, "notes = {}", quoted(&problem.notes));
     let _ = writeln!(text, "source = {}", quoted(&problem.source));
+    for (key, list) in file
+        .into_iter()
+        .flat_map(|f| [("fixed", &f.fixed), ("swept", &f.swept), ("asked", &f.asked)])
+    {
+        if !list.is_empty() {
+            let list: Vec<String> = list.iter().map(|name| quoted(name)).collect();
+            let _ = writeln!(text, "{key} = [{}]", list.join(", "));
+        }
+    }
     let undeclared = undeclared(problem);
     if !problem.parameters.is_empty() || !undeclared.is_empty() {
         text.push_str("\n[parameters]\n");
@@ -57,10 +78,17 @@ pub fn write(problem: &Problem) -> String {
         let (value, meaning) = (quoted(&card.default), quoted(&card.meaning));
         let value =
             if card.default.is_empty() { String::new() } else { format!("value = {value}, ") };
-        let _ = writeln!(text, "{} = {{ {value}meaning = {meaning} }}", card.name);
+        let unit = file.and_then(|f| f.units.get(&*card.name));
+        let unit = unit.map_or(String::new(), |unit| format!("unit = {}, ", quoted(unit)));
+        let _ = writeln!(text, "{} = {{ {value}{unit}meaning = {meaning} }}", card.name);
     }
     for name in undeclared {
-        let _ = writeln!(text, "{name} = {{ follows = \"see the notes\" }}");
+        let how = file.and_then(|f| f.follows.get(&name)).map_or("see the notes", String::as_str);
+        let _ = writeln!(text, "{name} = {{ follows = {} }}", quoted(how));
+    }
+    if let Some([x, velocity]) = file.and_then(|f| f.initial.as_ref()) {
+        let (x, velocity) = (quoted(x), quoted(velocity));
+        let _ = write!(text, "\n[initial]\nx = {x}\nvelocity = {velocity}\n");
     }
     if let Some(impact) = &problem.impact {
         let print = |e: &Expression| quoted(&e.print(&problem.small, Style::Text));

@@ -32,7 +32,9 @@ pub(super) fn check_parameters(
                 {
                     return Err(outside("0 < amplitude < pi (at pi the period is infinite)"));
                 }
-                AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::InSmallParameter
+                AmplitudeRole::ScalesFrequency { .. }
+                | AmplitudeRole::InSmallParameter
+                | AmplitudeRole::Scaled
                     if !exceeds(value, &Value::Rational(Rational::new())) =>
                 {
                     return Err(outside("amplitude > 0 (there is no oscillation at amplitude 0)"));

@@ -1,0 +1,81 @@
+//! Powers of |x| as powers of x^2: identities that turn non-smooth notation into what the
+//! Lobachevsky ring contains.
+
+use crate::{Expression, Function};
+use rug::Rational;
+
+impl Expression {
+    /// The same expression with |x|^q as (x^2)^(q/2) and sign(x) |x|^q as x (x^2)^((q - 1)/2), the
+    /// latter equal for x other than zero and in the limit for q > 0. Other uses of abs and sign
+    /// stay.
+    ///
+    /// ```
+    /// use lindstedt_equation::{Expression, Function};
+    /// let x = || Expression::Displacement;
+    /// let force = x().apply(Function::Sign) * x().apply(Function::Abs).pow(3);
+    /// assert_eq!(force.smooth_powers(), x() * x().pow(2));
+    /// ```
+    #[must_use]
+    pub fn smooth_powers(&self) -> Self {
+        if self.find(&|e| matches!(e, Self::Function(Function::Abs, _))).is_none() {
+            return self.clone();
+        }
+        match self {
+            Self::Sum(terms) => Self::Sum(terms.iter().map(Self::smooth_powers).collect()),
+            Self::Product(factors) => product(factors),
+            Self::Power(base, exponent) => match absolute_power(self) {
+                Some(q) => square_to(&q, None),
+                None => base.smooth_powers().pow(exponent.smooth_powers()),
+            },
+            // |x| alone has no form in x^2 that a ring contains.
+            Self::Function(Function::Abs, _) => self.clone(),
+            Self::Function(function, z) => z.smooth_powers().apply(*function),
+            Self::Formal(name, z) => z.smooth_powers().formal(name),
+            other => other.clone(),
+        }
+    }
+}
+
+/// q of |x|^q.
+fn absolute_power(e: &Expression) -> Option<Expression> {
+    let is_absolute = |e: &Expression| *e == Expression::Displacement.apply(Function::Abs);
+    match e {
+        e if is_absolute(e) => Some(Expression::integer(1)),
+        Expression::Power(base, exponent) if is_absolute(base) => Some((**exponent).clone()),
+        _ => None,
+    }
+}
+
+/// (x^2)^((q - less)/2); nothing is left of an exponent zero.
+fn square_to(q: &Expression, less: Option<i64>) -> Expression {
+    let half = Rational::from((1, 2));
+    let mut terms: Vec<Expression> = q.canonical().terms().to_vec();
+    terms.extend(less.map(|n| Expression::integer(-n)));
+    let halved = terms.into_iter().map(|t| Expression::Number(half.clone()) * t);
+    let exponent = Expression::Sum(halved.collect()).canonical();
+    let square = Expression::Displacement.pow(2);
+    match exponent {
+        Expression::Number(n) if n.is_zero() => Expression::integer(1),
+        Expression::Number(n) if n == 1 => square,
+        exponent => square.pow(exponent),
+    }
+}
+
+fn product(factors: &[Expression]) -> Expression {
+    let sign = Expression::Displacement.apply(Function::Sign);
+    let signs = factors.iter().filter(|f| **f == sign).count();
+    let powers: Vec<Expression> = factors.iter().filter_map(absolute_power).collect();
+    if powers.is_empty() || signs > 1 {
+        return Expression::Product(factors.iter().map(Expression::smooth_powers).collect());
+    }
+    let others = factors.iter().filter(|f| **f != sign && absolute_power(f).is_none());
+    let mut list: Vec<Expression> = others.map(Expression::smooth_powers).collect();
+    let q = Expression::Sum(powers);
+    if signs == 1 {
+        list.push(Expression::Displacement);
+        list.push(square_to(&q, Some(1)));
+    } else {
+        list.push(square_to(&q, None));
+    }
+    Expression::Product(list).canonical()
+}
