@@ -96,7 +96,7 @@ pub fn text(parts: &Classification, small: &str) -> String {
     let show = |e: &Expression| shortened(&e.print(small, Style::Text));
     let mut text = String::new();
     let mut line = |name: &str, what: String| {
-        let _ = writeln!(text, "{name:<16}{what}");
+        let _ = writeln!(text, "{name:<20}{what}");
     };
     let zero = Expression::integer(0);
     line(
@@ -104,12 +104,10 @@ pub fn text(parts: &Classification, small: &str) -> String {
         if parts.stiffness == zero {
             "none".into()
         } else {
-            let stiffness = match show(&parts.stiffness) {
-                one if one == "1" => "x".to_owned(),
-                kappa if matches!(parts.stiffness, Expression::Sum(_)) => format!("({kappa})*x"),
-                kappa => format!("{kappa}*x"),
-            };
-            format!("x'' + {stiffness}, frequency omega_0 = {}", show(&parts.frequency))
+            // As a product with x in a sum: signs and parentheses come out as in an equation.
+            let force = parts.stiffness.clone() * Expression::Displacement;
+            let linear = (Expression::Acceleration + force).canonical();
+            format!("{}, frequency omega_0 = {}", show(&linear), show(&parts.frequency))
         },
     );
     for term in parts.strong.iter().take(20) {
@@ -152,6 +150,7 @@ pub fn text(parts: &Classification, small: &str) -> String {
         line("impact", "a rigid wall".into());
     }
     let symmetry = match parts.symmetry {
+        Symmetry::Odd if !parts.forcing.is_empty() => "odd under x -> -x, the forcing apart",
         Symmetry::Odd => "odd under x -> -x: odd harmonics only",
         Symmetry::None => "none: harmonics of both parities",
     };
@@ -239,6 +238,10 @@ pub fn check(
         exit: NO_ANSWER,
         code: "no-method",
         message: format!("{path}{place}: {}", reason_text(reason, &file.problem.small)),
-        hint: "`lindstedt problems --show FILE` lists the methods".into(),
+        hint: if parts.takes(Method::Melnikov) {
+            "Melnikov's method takes equations of this kind: lindstedt threshold stick-slip".into()
+        } else {
+            "`lindstedt problems --show FILE` lists the methods".into()
+        },
     })
 }

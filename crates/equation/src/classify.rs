@@ -226,10 +226,11 @@ pub fn classify(
 ) -> Result<Classification, ClassifyError> {
     let equation = problem.equation.acceleration_alone().map_err(ClassifyError::Acceleration)?;
     let rest = equation.terms().iter().filter(|t| **t != Expression::Acceleration).cloned();
-    let rest = Expression::Sum(rest.collect()).smooth_powers();
+    let rest = Expression::Sum(rest.collect()).smooth_powers().canonical();
     let all = expand(&rest).ok_or(ClassifyError::TooManyTerms { limit: MOST_TERMS })?;
     let is_linear = |m: &Monomial| m.order == 0 && m.is_power(1, 0);
-    let stiffness = all.coefficient(is_linear);
+    // x (x^2)^delta and x S(delta ln x^2) carry a linear part too.
+    let stiffness = linear_at_zero(&rest).unwrap_or_else(|| all.coefficient(is_linear));
     let value = |e: &Expression| evaluate(e, values);
     let mut parts = Classification {
         frequency: root(&stiffness),
@@ -243,7 +244,7 @@ pub fn classify(
             &|e| matches!(e, Expression::Function(Function::Abs | Function::Sign, z) if !z.is_constant()),
         ),
         impact: problem.impact.is_some(),
-        symmetry: Symmetry::Odd,
+        symmetry: if problem.impact.is_some() { Symmetry::None } else { Symmetry::Odd },
         reversible: true,
         algebra: Algebra::Numeric,
         methods: Vec::new(),
@@ -270,14 +271,8 @@ pub fn classify(
         let list = if order > 0 || hidden { &mut parts.weak } else { &mut parts.strong };
         list.push(Term { term, order });
     }
-    parts.reversible = parts.forcing.is_empty() && is_reversible(&equation);
-    // x (x^2)^delta and x S(delta ln x^2) carry the linear part.
-    if parts.stiffness == Expression::integer(0)
-        && let Some(at_zero) = linear_at_zero(&rest)
-    {
-        parts.frequency = root(&at_zero);
-        parts.stiffness = at_zero;
-    }
+    parts.reversible =
+        parts.forcing.is_empty() && problem.impact.is_none() && is_reversible(&equation);
     let stiffness_value = value(&parts.stiffness);
     crate::methods::decide(problem, &rest, values, stiffness_value, &mut parts);
     Ok(parts)
@@ -301,6 +296,9 @@ fn without_trivial_powers(e: &Expression) -> Expression {
         Expression::Power(_, n) if n.as_number().is_some_and(|n| n.is_zero()) => {
             Expression::integer(1)
         }
+        Expression::Function(Function::Exp, z) if z.as_number().is_some_and(|z| z.is_zero()) => {
+            Expression::integer(1)
+        }
         Expression::Formal(name, z) if z.as_number().is_some_and(|z| z.is_zero()) => {
             Expression::parameter(&format!("{name}_0"))
         }
@@ -319,7 +317,9 @@ fn forcing(
     let harmonic = atoms().find(|atom| atom.contains(&Expression::Time));
     let frequency = harmonic.and_then(frequency_of);
     let squared = frequency.as_ref().and_then(|f| evaluate(f, values)).map(|f| f.clone() * f);
-    let resonance = squared.zip(stiffness).and_then(|(s, kappa)| ratio(&(s / kappa)));
+    let resonance = squared
+        .zip(stiffness.filter(|kappa| !kappa.is_zero()))
+        .and_then(|(s, kappa)| ratio(&(s / kappa)));
     let delayed = atoms().any(|atom| matches!(atom, Expression::Delayed(..)));
     let parametric = monomial.x + monomial.velocity > 0 || delayed;
     Forcing { order: monomial.order, frequency, parametric, resonance, term }

@@ -163,10 +163,12 @@ fn is_energy_form(rest: &Expression) -> bool {
     }
 }
 
-/// ln, formal functions, powers with the small parameter in the exponent.
+/// ln, exp, formal functions, powers with the small parameter in the exponent.
 fn is_logarithmic(e: &Expression) -> bool {
     match e {
-        Expression::Function(Function::Ln, z) => !z.is_constant(),
+        Expression::Function(Function::Ln | Function::Exp, z) => {
+            !z.is_constant() && !z.contains(&Expression::Time)
+        }
         Expression::Formal(..) => true,
         Expression::Power(base, exponent) => {
             !base.is_constant() && exponent.contains(&Expression::Small)
@@ -183,16 +185,20 @@ fn is_not_polynomial(e: &Expression) -> bool {
         })
         .is_some()
     };
+    let in_time = |z: &Expression| z.contains(&Expression::Time) && !varies(z);
     match e {
-        Expression::Function(Function::Sin | Function::Cos | Function::Exp, z) => varies(z),
-        Expression::Function(Function::Ln, z) => varies(z) && !is_square_of_x(z),
+        Expression::Function(Function::Sin | Function::Cos, z) => !in_time(z),
+        Expression::Function(Function::Abs | Function::Sign, _) => true,
+        Expression::Function(Function::Exp, z) => !in_time(z) && !is_multiple_of_small(z),
+        Expression::Function(Function::Ln, z) => !in_time(z) && !is_square_of_x(z),
         Expression::Power(base, exponent) if varies(base) || varies(exponent) => {
             let whole = exponent.as_number().is_some_and(|n| n.is_integer() && n >= 0);
             let vanishing = is_multiple_of_small(exponent) && is_square_of_x(base);
             !(whole || vanishing)
         }
-        // (-1)^x and the like.
-        Expression::Power(_, exponent) => varies(exponent),
+        Expression::Power(_, exponent) if !in_time(e) => {
+            !exponent.as_number().is_some_and(|n| n.is_integer())
+        }
         _ => false,
     }
 }

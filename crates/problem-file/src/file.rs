@@ -528,6 +528,5 @@ fn equation(
     if orders.is_empty() {
         return Ok(alone);
     }
-    // 0 * t and the like are left to the classification.
-    Ok(alone.substitute(&order))
+    Ok(alone.substitute(&order).canonical())
 }

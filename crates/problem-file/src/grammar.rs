@@ -13,10 +13,9 @@
 
 use crate::error::{Expectation, Limit, ParseError, ParseErrorKind, excerpt};
 use crate::lexer::{Kind, Token, tokens};
-use crate::names::{Names, foreign, function, is_parameter_name};
-use crate::taylor::taylor;
-use lindstedt_equation::print::Style;
-use lindstedt_equation::{Expression, Function};
+use crate::names::Names;
+use crate::trees::{degree, multiply, negated, unordered};
+use lindstedt_equation::Expression;
 use rug::Rational;
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -24,15 +23,15 @@ use std::ops::Range;
 /// Parentheses, powers and functions inside each other.
 const DEEPEST: usize = 64;
 /// The largest whole exponent, and the largest degree in x and x' that powers may lead to.
-const LARGEST_EXPONENT: u64 = 1000;
+pub(crate) const LARGEST_EXPONENT: u64 = 1000;
 
-type Parsed = Result<Expression, ParseError>;
+pub(crate) type Parsed = Result<Expression, ParseError>;
 
 pub(crate) struct Parser<'a> {
     text: &'a str,
-    names: &'a Names,
-    tokens: Vec<Token>,
-    next: usize,
+    pub(crate) names: &'a Names,
+    pub(crate) tokens: Vec<Token>,
+    pub(crate) next: usize,
     depth: usize,
     /// Whether a `|` here closes.
     in_bars: bool,
@@ -110,23 +109,23 @@ impl<'a> Parser<'a> {
 
     // Tokens.
 
-    fn token(&self) -> &Token {
+    pub(crate) fn token(&self) -> &Token {
         // The last token is the end, which is never passed.
         &self.tokens[self.next.min(self.tokens.len() - 1)]
     }
 
-    fn advance(&mut self) {
+    pub(crate) fn advance(&mut self) {
         self.next = (self.next + 1).min(self.tokens.len() - 1);
     }
 
-    fn sign(&self) -> Option<char> {
+    pub(crate) fn sign(&self) -> Option<char> {
         match self.token().kind {
             Kind::Sign(c) => Some(c),
             _ => None,
         }
     }
 
-    fn accept(&mut self, c: char) -> bool {
+    pub(crate) fn accept(&mut self, c: char) -> bool {
         let found = self.sign() == Some(c);
         if found {
             self.advance();
@@ -134,20 +133,20 @@ impl<'a> Parser<'a> {
         found
     }
 
-    fn start(&self) -> usize {
+    pub(crate) fn start(&self) -> usize {
         self.token().at.start
     }
 
     /// The end of the token before this one.
-    fn behind(&self) -> usize {
+    pub(crate) fn behind(&self) -> usize {
         self.next.checked_sub(1).and_then(|i| self.tokens.get(i)).map_or(0, |t| t.at.end)
     }
 
-    fn error(&self, kind: ParseErrorKind) -> ParseError {
+    pub(crate) fn error(&self, kind: ParseErrorKind) -> ParseError {
         ParseError::new(kind, self.token().at.clone())
     }
 
-    fn expected(&self, expected: Expectation) -> ParseError {
+    pub(crate) fn expected(&self, expected: Expectation) -> ParseError {
         let found = match &self.token().kind {
             Kind::End => "the end".to_owned(),
             _ => format!("`{}`", self.excerpt(self.token().at.clone())),
@@ -155,11 +154,11 @@ impl<'a> Parser<'a> {
         self.error(ParseErrorKind::Expected { expected, found })
     }
 
-    fn excerpt(&self, at: Range<usize>) -> String {
+    pub(crate) fn excerpt(&self, at: Range<usize>) -> String {
         excerpt(self.text.get(at).unwrap_or_default())
     }
 
-    fn close(&mut self, c: char) -> Result<(), ParseError> {
+    pub(crate) fn close(&mut self, c: char) -> Result<(), ParseError> {
         if self.accept(c) { Ok(()) } else { Err(self.expected(Expectation::Closing(c))) }
     }
 
@@ -172,7 +171,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Runs a rule one level deeper.
-    fn deeper(&mut self, rule: impl FnOnce(&mut Self) -> Parsed) -> Parsed {
+    pub(crate) fn deeper(&mut self, rule: impl FnOnce(&mut Self) -> Parsed) -> Parsed {
         if self.depth == DEEPEST {
             let kind = ParseErrorKind::TooLarge { what: Limit::Depth, limit: DEEPEST as u64 };
             return Err(self.error(kind));
@@ -184,7 +183,7 @@ impl<'a> Parser<'a> {
     }
 
     /// A sum between signs that open and close, where bars mean what they mean outside.
-    fn enclosed(&mut self, close: char) -> Parsed {
+    pub(crate) fn enclosed(&mut self, close: char) -> Parsed {
         let before = std::mem::replace(&mut self.in_bars, close == '|');
         let inner = self.deeper(Self::sum)?;
         self.in_bars = before;
@@ -193,7 +192,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Notes where the part that is looked for stands.
-    fn seen(&mut self, expression: Expression, start: usize) -> Expression {
+    pub(crate) fn seen(&mut self, expression: Expression, start: usize) -> Expression {
         let end = self.behind();
         if let Some((part, found @ None)) = &mut self.wanted
             && unordered(&expression) == **part
@@ -205,7 +204,7 @@ impl<'a> Parser<'a> {
 
     // Rules.
 
-    fn sum(&mut self) -> Parsed {
+    pub(crate) fn sum(&mut self) -> Parsed {
         let start = self.start();
         let mut terms = Vec::new();
         let mut negative = self.leading_sign();
@@ -297,7 +296,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    fn operand_follows(&self) -> bool {
+    pub(crate) fn operand_follows(&self) -> bool {
         match &self.token().kind {
             Kind::Number(_) | Kind::Name(_) => true,
             Kind::Sign('|') => !self.in_bars,
@@ -385,271 +384,5 @@ impl<'a> Parser<'a> {
             return Err(ParseError::new(kind, at));
         }
         Ok(())
-    }
-
-    fn operand(&mut self) -> Parsed {
-        let token = self.token().clone();
-        match token.kind {
-            Kind::Number(q) => {
-                self.advance();
-                Ok(Expression::Number(q))
-            }
-            Kind::Name(name) => {
-                self.advance();
-                self.name(&name, &token.at)
-            }
-            Kind::Sign('(') => {
-                self.advance();
-                self.enclosed(')')
-            }
-            Kind::Sign('|') => {
-                self.advance();
-                Ok(self.enclosed('|')?.apply(Function::Abs))
-            }
-            Kind::Sign('[') => {
-                self.advance();
-                let inner = self.enclosed(']')?;
-                self.at_a_time(inner, token.at.start)
-            }
-            _ => Err(self.expected(Expectation::Operand)),
-        }
-    }
-
-    fn name(&mut self, name: &str, at: &Range<usize>) -> Parsed {
-        if let Kind::Primes(order) = self.token().kind {
-            if name != "x" {
-                let kind = ParseErrorKind::NotDifferentiable { name: excerpt(name) };
-                return Err(self.error(kind));
-            }
-            let derivative = match order {
-                1 => Expression::Velocity,
-                2 => Expression::Acceleration,
-                order => return Err(self.error(ParseErrorKind::Derivative { order })),
-            };
-            self.advance();
-            return self.at_a_time(derivative, at.start);
-        }
-        match name {
-            "x" => return self.at_a_time(Expression::Displacement, at.start),
-            "t" => return Ok(Expression::Time),
-            "taylor" => return self.taylor(),
-            "sqrt" => {
-                let argument = self.argument()?;
-                return Ok(argument.pow(Expression::Number(Rational::from((1, 2)))));
-            }
-            _ => {}
-        }
-        if let Some(function) = function(name) {
-            return Ok(self.argument()?.apply(function));
-        }
-        let opens = self.sign() == Some('(');
-        if self.names.formal.contains(name) && opens {
-            return Ok(self.argument()?.formal(name));
-        }
-        if name == self.names.small {
-            return Ok(Expression::Small);
-        }
-        let declared = match &self.names.parameters {
-            Some(list) => list.contains(name),
-            None => is_parameter_name(name),
-        };
-        if declared {
-            return Ok(Expression::parameter(name));
-        }
-        let kind = match foreign(name) {
-            Some(instead) => ParseErrorKind::UnknownFunction { name: excerpt(name), instead },
-            None if opens
-                && self.names.parameters.is_some()
-                && self.names.nearest(name).is_none() =>
-            {
-                let instead = "sin, cos, exp, ln, abs, sign, sqrt; a product needs `*`";
-                ParseErrorKind::UnknownFunction { name: excerpt(name), instead }
-            }
-            None => ParseErrorKind::UnknownName {
-                name: excerpt(name),
-                nearest: self.names.nearest(name),
-            },
-        };
-        Err(ParseError::new(kind, at.clone()))
-    }
-
-    /// The argument of a function: in parentheses, or one name that nothing follows which could
-    /// belong to it.
-    fn argument(&mut self) -> Parsed {
-        if self.accept('(') {
-            return self.enclosed(')');
-        }
-        let token = self.token().clone();
-        if !matches!(token.kind, Kind::Name(_) | Kind::Sign('|')) {
-            return Err(self.expected(Expectation::Parenthesis));
-        }
-        let argument = self.deeper(Self::operand)?;
-        let continues = matches!(self.token().kind, Kind::Sign('^') | Kind::Superscript(_))
-            || self.operand_follows() && self.token().kind != Kind::Name("to".into());
-        if continues {
-            return Err(self.expected(Expectation::Parenthesis));
-        }
-        Ok(argument)
-    }
-
-    /// What stands behind x, x' or `[...]`: (t - T) delays it.
-    fn at_a_time(&mut self, what: Expression, start: usize) -> Parsed {
-        // x (1 - x) is a product, x(t - T) is not. Looked up, not tried: trying twice at every
-        // level would take 2^depth steps.
-        if self.sign() != Some('(') || !self.time_in_parentheses() {
-            return Ok(what);
-        }
-        self.advance();
-        let time = self.enclosed(')')?;
-        let at = start..self.behind();
-        let found = self.excerpt(at.clone());
-        let refused = || ParseError::new(ParseErrorKind::NotADelay { found }, at);
-        let mut delay = time.terms().to_vec();
-        let Some(now) = delay.iter().position(|term| *term == Expression::Time) else {
-            return Err(refused());
-        };
-        delay.remove(now);
-        let delay: Vec<Expression> = delay.into_iter().map(negated).collect();
-        let delay = match <[Expression; 1]>::try_from(delay) {
-            Ok([single]) => single,
-            Err(terms) => Expression::Sum(terms),
-        };
-        match delay.as_number() {
-            Some(q) if q.is_zero() => return Ok(what),
-            Some(q) if q.cmp0() == Ordering::Less => return Err(refused()),
-            _ => {}
-        }
-        let later = matches!(
-            delay.canonical(),
-            Expression::Product(factors)
-                if matches!(factors.first(), Some(Expression::Number(q)) if q.cmp0() == Ordering::Less)
-        );
-        let inner_varies = what.find(&|e| matches!(e, Expression::Acceleration | Expression::Time));
-        if later || !delay.is_constant() || inner_varies.is_some() {
-            return Err(refused());
-        }
-        Ok(what.delayed(delay))
-    }
-
-    /// Whether t occurs between the parenthesis that opens here and the one that closes it.
-    fn time_in_parentheses(&self) -> bool {
-        let mut open = 0usize;
-        for token in self.tokens.iter().skip(self.next) {
-            match &token.kind {
-                Kind::Sign('(') => open += 1,
-                Kind::Sign(')') => open = open.saturating_sub(1),
-                Kind::Name(name) if name == "t" => return true,
-                _ => {}
-            }
-            if open == 0 {
-                break;
-            }
-        }
-        false
-    }
-
-    /// taylor(f(z), n) or taylor f z to n.
-    fn taylor(&mut self) -> Parsed {
-        let start = self.start();
-        let enclosed = self.accept('(');
-        let from = self.next;
-        let expression = match self.token().kind.clone() {
-            // Functions that exist only here.
-            Kind::Name(name) if foreign(&name).is_some() => {
-                self.advance();
-                let argument = self.argument()?;
-                Err((name, argument))
-            }
-            _ if enclosed => Ok(self.deeper(Self::sum)?),
-            _ => Ok(self.deeper(Self::operand)?),
-        };
-        let at = self.tokens.get(from).map_or(start, |t| t.at.start)..self.behind();
-        if enclosed {
-            if !self.accept(',') {
-                return Err(self.expected(Expectation::Comma));
-            }
-        } else if self.token().kind == Kind::Name("to".into()) {
-            self.advance();
-        } else {
-            return Err(self.expected(Expectation::To));
-        }
-        let order = match &self.token().kind {
-            Kind::Number(n) if n.is_integer() && *n >= 1 && *n < 100 => n.numer().to_usize(),
-            _ => None,
-        };
-        let Some(order) = order else { return Err(self.expected(Expectation::Order)) };
-        self.advance();
-        if enclosed {
-            self.close(')')?;
-        }
-        let polynomial = match &expression {
-            Ok(expression) => taylor(None, expression, order),
-            Err((name, argument)) => taylor(Some(name), argument, order),
-        };
-        let polynomial = polynomial.map_err(|kind| ParseError::new(kind, at))?;
-        if degree(&polynomial) > LARGEST_EXPONENT as f64 {
-            let kind = ParseErrorKind::TooLarge { what: Limit::Exponent, limit: LARGEST_EXPONENT };
-            return Err(ParseError::new(kind, start..self.behind()));
-        }
-        Ok(polynomial)
-    }
-}
-
-fn multiply(factors: &mut Vec<Expression>, factor: Expression) {
-    match factor {
-        Expression::Product(inner) => factors.extend(inner),
-        single => factors.push(single),
-    }
-}
-
-/// The canonical form without the number of a product and with its factors and terms in the order
-/// of their text: what a term is recognised by.
-fn unordered(e: &Expression) -> Expression {
-    match e.canonical() {
-        Expression::Product(mut factors) => {
-            factors.retain(|f| !matches!(f, Expression::Number(_)));
-            factors.sort_by_cached_key(|f| f.print("", Style::Text));
-            if factors.len() == 1 { factors.remove(0) } else { Expression::Product(factors) }
-        }
-        Expression::Sum(mut terms) => {
-            terms.sort_by_cached_key(|t| t.print("", Style::Text));
-            Expression::Sum(terms)
-        }
-        other => other,
-    }
-}
-
-/// -e, with the sign in a number in front.
-fn negated(e: Expression) -> Expression {
-    match e {
-        Expression::Product(mut factors) => {
-            let more = factors.len() > 1;
-            match factors.first_mut() {
-                Some(Expression::Number(q)) if *q == -1 && more => {
-                    factors.remove(0);
-                    if factors.len() == 1 {
-                        return factors.remove(0);
-                    }
-                }
-                Some(Expression::Number(q)) => *q = Rational::from(-&*q),
-                _ => factors.insert(0, Expression::integer(-1)),
-            }
-            Expression::Product(factors)
-        }
-        other => -other,
-    }
-}
-
-/// A bound on the degree in x and x' and in what depends on them, with whole exponents only.
-fn degree(e: &Expression) -> f64 {
-    match e {
-        Expression::Number(_) | Expression::Parameter(_) | Expression::Time => 0.0,
-        Expression::Sum(list) => list.iter().map(degree).fold(0.0, f64::max),
-        Expression::Product(list) => list.iter().map(degree).sum(),
-        Expression::Power(base, exponent) => {
-            let n = exponent.as_number().map_or(1.0, |q| q.to_f64().abs());
-            degree(base) * n
-        }
-        _ => 1.0,
     }
 }

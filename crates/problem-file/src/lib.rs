@@ -9,8 +9,10 @@ mod file;
 mod grammar;
 mod lexer;
 mod names;
+mod operands;
 mod schema;
 mod taylor;
+mod trees;
 mod write;
 
 pub use error::{Expectation, Limit, ParseError, ParseErrorKind, position};

@@ -89,14 +89,15 @@ fn exceeds(a: &Value, b: &Value) -> bool {
     }
 }
 
-/// Whether the equation needs the Lobachevsky ring.
+/// Whether the equation needs the Lobachevsky ring, or exp, which the route over many primes does
+/// not take.
 pub(super) fn has_logarithms(expression: &Expression) -> bool {
     match expression {
         Expression::Sum(list) | Expression::Product(list) => list.iter().any(has_logarithms),
         Expression::Power(base, exponent) => {
             !matches!(**exponent, Expression::Number(_)) || has_logarithms(base)
         }
-        Expression::Function(Function::Ln, _) | Expression::Formal(..) => true,
+        Expression::Function(Function::Ln | Function::Exp, _) | Expression::Formal(..) => true,
         Expression::Function(_, argument) => has_logarithms(argument),
         _ => false,
     }

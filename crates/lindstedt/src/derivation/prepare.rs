@@ -44,7 +44,7 @@ pub(super) fn prepare(problem: &Problem, settings: &Settings) -> Result<Prepared
         let irrational = || Error::Irrational { name: name.to_owned(), value: value.to_string() };
         value.as_rational().cloned().map(Some).ok_or_else(irrational)
     };
-    let mut equation = problem.equation.smooth_powers();
+    let mut equation = problem.equation.smooth_powers().canonical();
     for name in equation.parameters() {
         if let Some(q) = value(&name)? {
             prepared.bound.insert(name, q);
