@@ -194,7 +194,6 @@ pub fn problem(name: &str) -> Result<Problem, Failure> {
         let names: Vec<_> = lindstedt::problems::all().into_iter().map(|p| p.name).collect();
         let shown: String = name.chars().take(60).collect();
         let message = format!("there is no problem {shown:?}");
-        let hint = format!("known: {}, or the path of a file .toml", names.join(", "));
-        Failure::usage("unknown-problem", message, &hint)
+        Failure::usage("unknown-problem", message, &format!("known: {}", names.join(", ")))
     })
 }

@@ -23,10 +23,10 @@ impl Expression {
         match self {
             Self::Sum(terms) => Self::Sum(terms.iter().map(Self::smooth_powers).collect()),
             Self::Product(factors) => product(factors),
-            Self::Power(base, exponent) => match absolute_power(self) {
-                Some(q) => square_to(&q, None),
-                None => base.smooth_powers().pow(exponent.smooth_powers()),
-            },
+            Self::Power(base, exponent) => {
+                let square = absolute_power(self).and_then(|q| square_to(&q, None));
+                square.unwrap_or_else(|| base.smooth_powers().pow(exponent.smooth_powers()))
+            }
             // |x| alone has no form in x^2 that a ring contains.
             Self::Function(Function::Abs, _) => self.clone(),
             Self::Function(function, z) => z.smooth_powers().apply(*function),
@@ -46,8 +46,8 @@ fn absolute_power(e: &Expression) -> Option<Expression> {
     }
 }
 
-/// (x^2)^((q - less)/2); nothing is left of an exponent zero.
-fn square_to(q: &Expression, less: Option<i64>) -> Expression {
+/// (x^2)^((q - less)/2); nothing when that is no integer but a number, which no ring contains.
+fn square_to(q: &Expression, less: Option<i64>) -> Option<Expression> {
     let half = Rational::from((1, 2));
     let mut terms: Vec<Expression> = q.canonical().terms().to_vec();
     terms.extend(less.map(|n| Expression::integer(-n)));
@@ -55,9 +55,10 @@ fn square_to(q: &Expression, less: Option<i64>) -> Expression {
     let exponent = Expression::Sum(halved.collect()).canonical();
     let square = Expression::Displacement.pow(2);
     match exponent {
-        Expression::Number(n) if n.is_zero() => Expression::integer(1),
-        Expression::Number(n) if n == 1 => square,
-        exponent => square.pow(exponent),
+        Expression::Number(n) if !n.is_integer() => None,
+        Expression::Number(n) if n.is_zero() => Some(Expression::integer(1)),
+        Expression::Number(n) if n == 1 => Some(square),
+        exponent => Some(square.pow(exponent)),
     }
 }
 
@@ -65,17 +66,19 @@ fn product(factors: &[Expression]) -> Expression {
     let sign = Expression::Displacement.apply(Function::Sign);
     let signs = factors.iter().filter(|f| **f == sign).count();
     let powers: Vec<Expression> = factors.iter().filter_map(absolute_power).collect();
-    if powers.is_empty() || signs > 1 {
+    let q = Expression::Sum(powers.clone());
+    let square = match (powers.len(), signs) {
+        (0, _) => None,
+        (_, 0) => square_to(&q, None),
+        (_, 1) => square_to(&q, Some(1)),
+        _ => None,
+    };
+    let Some(square) = square else {
         return Expression::Product(factors.iter().map(Expression::smooth_powers).collect());
-    }
+    };
     let others = factors.iter().filter(|f| **f != sign && absolute_power(f).is_none());
     let mut list: Vec<Expression> = others.map(Expression::smooth_powers).collect();
-    let q = Expression::Sum(powers);
-    if signs == 1 {
-        list.push(Expression::Displacement);
-        list.push(square_to(&q, Some(1)));
-    } else {
-        list.push(square_to(&q, None));
-    }
+    list.extend((signs == 1).then_some(Expression::Displacement));
+    list.push(square);
     Expression::Product(list).canonical()
 }

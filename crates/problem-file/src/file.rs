@@ -1,130 +1,21 @@
 //! From the text of a problem file to a problem.
 
 use crate::error::{ParseError, ParseErrorKind, excerpt, position};
+use crate::file_error::{FileError, FileErrorKind};
 use crate::grammar::{locate, parse_equation, parse_expression};
-use crate::lexer::exact;
 use crate::names::{Names, canonical_name, is_parameter_name};
-use crate::schema::{Exact, Schema};
+use crate::reader::Reader;
+use crate::schema::Schema;
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{
     AccelerationFault, AmplitudeRole, Condition, Crossing, Expression, Impact, ParameterCard,
     Problem,
 };
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
-use thiserror::Error;
 use toml::Spanned;
 
 /// Bytes of a problem file; look at the size of a file before reading it.
 pub const LARGEST_FILE: u64 = 256 * 1024;
-
-/// What is wrong with a problem file.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum FileErrorKind {
-    /// The text is no TOML of this schema; the message is the TOML reader's.
-    #[error("{message}")]
-    Toml {
-        /// What the TOML reader said.
-        message: String,
-    },
-    /// An equation or expression cannot be read.
-    #[error("{0}")]
-    Equation(ParseError),
-    /// The file is too large.
-    #[error("more than {limit} bytes in a problem file")]
-    TooLarge {
-        /// The limit.
-        limit: u64,
-    },
-    /// A word that a key does not take.
-    #[error("{key} cannot be {found:?}")]
-    Word {
-        /// The key.
-        key: &'static str,
-        /// What stands there.
-        found: String,
-        /// What it takes.
-        known: &'static str,
-    },
-    /// A name that no parameter can have.
-    #[error("{name:?} is not a name for a {what}")]
-    Name {
-        /// The name.
-        name: String,
-        /// What it should name.
-        what: &'static str,
-    },
-    /// A value that is not exact.
-    #[error("cannot read the value {text:?}")]
-    Value {
-        /// The text.
-        text: String,
-    },
-    /// Two spellings of one name.
-    #[error("{name} is declared twice")]
-    Twice {
-        /// The name.
-        name: String,
-    },
-    /// A quantity that the problem does not have.
-    #[error("{key} mentions {name}, which is not declared")]
-    Undeclared {
-        /// The key.
-        key: &'static str,
-        /// The name.
-        name: String,
-    },
-    /// The small parameter does not occur in the equation.
-    #[error("the small parameter {name} does not occur in the equation")]
-    NoSmallParameter {
-        /// Its name.
-        name: String,
-    },
-}
-
-/// What is wrong with a problem file, and where.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("line {line}, column {column}: {kind}")]
-pub struct FileError {
-    /// What.
-    pub kind: FileErrorKind,
-    /// The line, from 1.
-    pub line: usize,
-    /// The column in characters, from 1.
-    pub column: usize,
-}
-
-impl FileError {
-    /// What would be right.
-    pub fn hint(&self) -> String {
-        match &self.kind {
-            FileErrorKind::Equation(error) => error.hint(),
-            FileErrorKind::Word { known, .. } => format!("known: {known}"),
-            FileErrorKind::Name { .. } => {
-                "letters, digits, `_` (problems: a-z, 0-9, `-`), at most 40, not reserved".into()
-            }
-            FileErrorKind::Value { .. } => {
-                "values are exact: \"3\", \"-1/3\", \"0.1\", \"2.5e-3\", \"pi/4\", \"2*pi/3\""
-                    .into()
-            }
-            FileErrorKind::NoSmallParameter { .. } => {
-                "small = \"...\" names it; [orders] can give parameters an order".into()
-            }
-            FileErrorKind::Undeclared { .. } => "declare it under [parameters]".into(),
-            _ => "see `lindstedt problems --show duffing` for a complete file".into(),
-        }
-    }
-
-    /// Whether a limit of size was exceeded.
-    pub fn is_limit(&self) -> bool {
-        match &self.kind {
-            FileErrorKind::TooLarge { .. } => true,
-            FileErrorKind::Equation(e) => matches!(e.kind, ParseErrorKind::TooLarge { .. }),
-            _ => false,
-        }
-    }
-}
 
 /// A problem with everything that its file says.
 #[derive(Clone, Debug, PartialEq)]
@@ -194,75 +85,6 @@ pub fn usual_amplitude(condition: Option<&Condition>) -> AmplitudeRole {
         Some(Condition::FreeAmplitude) | None => AmplitudeRole::Free,
         Some(_) => AmplitudeRole::Scaled,
     }
-}
-
-struct Reader<'a> {
-    text: &'a str,
-}
-
-impl Reader<'_> {
-    fn error(&self, kind: FileErrorKind, at: usize) -> FileError {
-        let (line, column) = position(self.text, at);
-        FileError { kind, line, column }
-    }
-
-    /// Where the content of a string starts, if it stands in the file as it is.
-    fn content(&self, string: &Spanned<String>) -> Option<usize> {
-        let raw = self.text.get(string.span())?;
-        let inside = raw.find(string.get_ref().as_str())?;
-        Some(string.span().start + inside)
-    }
-
-    /// An error inside a string.
-    fn inside(&self, string: &Spanned<String>, error: ParseError) -> FileError {
-        let start = self.content(string);
-        let at = start.map_or(string.span().start, |start| start + error.at.start);
-        self.error(FileErrorKind::Equation(error), at)
-    }
-
-    fn value(&self, value: &Spanned<Exact>) -> Result<String, FileError> {
-        let text = value.get_ref().0.trim();
-        let sign = matches!(text, "+" | "-");
-        if sign || is_exact(text) {
-            return Ok(text.to_owned());
-        }
-        let kind = FileErrorKind::Value { text: excerpt(text) };
-        Err(self.error(kind, value.span().start))
-    }
-
-    fn word<T: Clone>(
-        &self,
-        key: &'static str,
-        word: &str,
-        at: Range<usize>,
-        list: &[(&str, T)],
-        known: &'static str,
-    ) -> Result<T, FileError> {
-        let found = list.iter().find(|(name, _)| *name == word).map(|(_, value)| value.clone());
-        let kind = || FileErrorKind::Word { key, found: excerpt(word), known };
-        found.ok_or_else(|| self.error(kind(), at.start))
-    }
-}
-
-/// Whether a value reads as a rational number times at most one pi.
-fn is_exact(text: &str) -> bool {
-    let body = text.strip_prefix('-').unwrap_or(text);
-    let (mut pi, mut divide) = (0, false);
-    for token in body.split_inclusive(['*', '/']) {
-        let number = token.trim_end_matches(['*', '/']).trim();
-        let digits = number.starts_with(|c: char| c.is_ascii_digit() || c == '.')
-            && number.chars().all(|c| c.is_ascii_digit() || ".eE+-".contains(c));
-        match (number, divide) {
-            ("pi", false) => pi += 1,
-            _ if !digits => return false,
-            _ => match exact(number) {
-                Some(q) if !(divide && q.is_zero()) => {}
-                _ => return false,
-            },
-        }
-        divide = token.ends_with('/');
-    }
-    pi <= 1 && !body.is_empty() && !body.ends_with(['*', '/'])
 }
 
 impl ProblemFile {

@@ -6,10 +6,12 @@
 
 mod error;
 mod file;
+mod file_error;
 mod grammar;
 mod lexer;
 mod names;
 mod operands;
+mod reader;
 mod schema;
 mod taylor;
 mod trees;
@@ -17,9 +19,9 @@ mod write;
 
 pub use error::{Expectation, Limit, ParseError, ParseErrorKind, position};
 pub use file::{
-    AMPLITUDES, CONDITIONS, FileError, FileErrorKind, LARGEST_FILE, ProblemFile, usual_amplitude,
-    usual_condition,
+    AMPLITUDES, CONDITIONS, LARGEST_FILE, ProblemFile, usual_amplitude, usual_condition,
 };
+pub use file_error::{FileError, FileErrorKind};
 pub use grammar::{locate, parse_equation, parse_expression};
 pub use names::{Names, canonical_name, is_parameter_name};
 pub use write::write;
