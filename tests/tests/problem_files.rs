@@ -221,7 +221,7 @@ fn classification_finds_forces_delays_and_resonances() {
     let damped = parts("x'' + x + eps x' = 0", &[]);
     let condition = Oscillator::parse("x'' + x + eps x' = 0").unwrap();
     assert_eq!(condition.problem.conditions, [Condition::LimitCycle]);
-    assert!(damped.reversible == false && damped.takes(Method::LindstedtPoincare));
+    assert!(!damped.reversible && damped.takes(Method::LindstedtPoincare));
     let fixed = condition.under(Condition::InitialAmplitude).classify().unwrap();
     assert!(matches!(fixed.methods[0].1[..], [Reason::Drift(_)]));
     // x x' changes its sign with x -> -x, t -> -t: no drift.

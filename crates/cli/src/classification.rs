@@ -225,8 +225,8 @@ pub fn check(
 ) -> Result<(), Failure> {
     let condition = condition.or(file.problem.conditions.first().copied());
     let lindstedt = parts.methods.iter().find(|(m, _)| *m == Method::LindstedtPoincare);
-    let reason = lindstedt.into_iter().flat_map(|(_, against)| against);
-    let Some(reason) = reason.filter(|r| !matches!(r, Reason::Condition)).next() else {
+    let mut against = lindstedt.into_iter().flat_map(|(_, against)| against);
+    let Some(reason) = against.find(|r| !matches!(r, Reason::Condition)) else {
         return Ok(());
     };
     if condition == Some(Condition::FreeAmplitude) {

@@ -100,7 +100,7 @@ fn parity(order: usize, parity: usize, sign: i32) -> Vec<Rational> {
 fn binomial(q: &Rational, order: usize) -> Vec<Rational> {
     let mut list = vec![Rational::from(1)];
     for n in 1..=order {
-        let factor = (Rational::from(q - Rational::from(n)) + 1u32) / Rational::from(n);
+        let factor = (q - Rational::from(n) + 1u32) / Rational::from(n);
         let next = list.last().map(|c| Rational::from(c * &factor));
         list.extend(next);
     }

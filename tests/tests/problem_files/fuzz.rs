@@ -3,12 +3,14 @@
 //! The ordinary run is short. A long one: `LINDSTEDT_FUZZ=<cases> cargo test --release -p
 //! lindstedt-tests --test problem_files -- --ignored fuzz`. What it finds is added to `CORPUS`.
 
+use lindstedt::equation::classify::Reason;
 use lindstedt::{Error, ProblemFile, Progress, Settings, derive, known_values};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
 /// Inputs that were once interesting: each must end in an answer or an error.
-const CORPUS: [&str; 15] = [
+const CORPUS: [&str; 16] = [
+    "x'' + x + eps*x'*eps*eps + eps*x",
     "x'' + x + eps*x*x*exp(eps*x) + eps*k",
     "x'' + x + eps*x*x*cos(k*t) - x",
     "x'' + x + eps*0*x*x^(-1) - 1/3*eps*taylor(sin(x), 3)",
@@ -49,9 +51,10 @@ fn run(text: &str) -> Result<(), Error> {
     })?;
     assert!(result.checked_orders.is_some() || result.order == 0);
     if let Ok(parts) = parts {
-        // What the driver derives, the classification did not refuse.
-        let lindstedt = &parts.methods[0];
-        assert!(lindstedt.1.is_empty(), "{text}: {:?}", lindstedt.1);
+        // What the driver derives, the classification did not refuse; a drift may come later than
+        // at order 2.
+        let mut against = parts.methods[0].1.iter().filter(|r| !matches!(r, Reason::Drift(_)));
+        assert!(against.next().is_none(), "{text}: {:?}", parts.methods[0]);
     }
     Ok(())
 }

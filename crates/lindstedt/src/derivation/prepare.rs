@@ -90,7 +90,7 @@ fn scale(equation: Expression, a: &Rational, w: &Rational) -> Expression {
         Expression::Velocity => Some(number(Rational::from(a * w)) * e.clone()),
         _ => None,
     };
-    let inverse = Rational::from(1) / Rational::from(a * Rational::from(w * w));
+    let inverse = (a * Rational::from(w * w)).recip();
     let term = |term: &Expression| match term {
         Expression::Acceleration => Expression::Acceleration,
         other => number(inverse.clone()) * other.substitute(&change),
