@@ -91,9 +91,19 @@ impl Expander {
         if let Expression::Number(q) = e {
             return Terms::from([(Monomial::default(), q)]);
         }
+        if e.is_constant() {
+            return self.constant(&e, 1);
+        }
         let key = e.print("eps", Style::Text);
         self.atoms.insert(key.clone(), e);
         single(Monomial { atoms: BTreeMap::from([(key, 1)]), ..Monomial::default() })
+    }
+
+    /// A constant that is no polynomial in the parameters, as one more parameter.
+    fn constant(&mut self, e: &Expression, n: i32) -> Terms {
+        let key = e.print("eps", Style::Text);
+        self.atoms.insert(key.clone(), e.clone());
+        single(Monomial { parameters: BTreeMap::from([(key, n)]), ..Monomial::default() })
     }
 
     fn power(
@@ -122,7 +132,13 @@ impl Expander {
                 }
                 return Some(Terms::from([(inverse, value)]));
             }
-            return Some(self.atom(whole));
+            let base = base.canonical();
+            let is_number = matches!(base, Expression::Number(_));
+            return Some(if base.is_constant() && !is_number {
+                self.constant(&base, n)
+            } else {
+                self.atom(whole)
+            });
         }
         let mut power = single(Monomial::default());
         for _ in 0..n {
@@ -201,7 +217,8 @@ impl Monomials {
         };
         push(Expression::Small, monomial.order.into());
         for (name, n) in &monomial.parameters {
-            push(Expression::parameter(name), i64::from(*n));
+            let stands_for = self.atoms.get(name).cloned();
+            push(stands_for.unwrap_or_else(|| Expression::parameter(name)), i64::from(*n));
         }
         push(Expression::Displacement, monomial.x.into());
         push(Expression::Velocity, monomial.velocity.into());
