@@ -20,12 +20,15 @@ mod error;
 pub mod multimodular;
 pub mod number;
 pub mod numeric;
+mod oscillator;
 pub mod paper;
 mod value;
 
 pub use derivation::{Derivation, NamedSeries, Progress, Route, Settings, Solution, derive};
 pub use error::Error;
+pub use lindstedt_problem_file::ProblemFile;
 pub use number::{Number, Status};
+pub use oscillator::{Oscillator, known_values};
 pub use value::Value;
 
 pub use lindstedt_algebra as algebra;
@@ -34,5 +37,6 @@ pub use lindstedt_equation as equation;
 pub use lindstedt_expand as expand;
 pub use lindstedt_melnikov as melnikov;
 pub use lindstedt_phase as phase;
+pub use lindstedt_problem_file as problem_file;
 pub use lindstedt_problems as problems;
 pub use lindstedt_series as series;
