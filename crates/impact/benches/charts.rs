@@ -2,8 +2,11 @@
 
 use lindstedt_impact::characteristic::Kick;
 use lindstedt_impact::chart::{Axis, Chart, Plan, Predictor, Swept, chart};
-use lindstedt_impact::parameters::{Branch, Parameters};
+use lindstedt_impact::flow::{Rates, rates};
+use lindstedt_impact::parameters::{Branch, Exact, ExactParameters, Parameters};
 use lindstedt_impact::prediction::Variant;
+use lindstedt_impact::real::Certified;
+use lindstedt_impact::report::{Request, StabilityReport, certified_stability};
 
 fn main() {
     divan::main();
@@ -52,4 +55,31 @@ fn exact_forty_thousand() -> Chart {
 #[divan::bench(sample_count = 3, sample_size = 1)]
 fn impact_aware_forty_thousand() -> Chart {
     sweep(201, Some((Predictor::ImpactAware(Kick::Mean), 1)), None)
+}
+
+fn exact_point() -> ExactParameters {
+    let number = |n, d| Exact::from((n, d));
+    ExactParameters {
+        alpha: number(1, 1),
+        omega: number(33, 10),
+        periods: 2,
+        restitution: number(4, 5),
+        wall: number(0, 1),
+        damping: number(1, 20),
+        force: number(1, 1),
+        displacement_gain: number(1, 5),
+        velocity_gain: number(1, 10),
+        branch: Branch::Plus,
+    }
+}
+
+#[divan::bench(sample_count = 5)]
+fn order_fifty_at_fifty_digits() -> Rates<Certified> {
+    rates(&exact_point().certified(240), 50)
+}
+
+#[divan::bench(args = [30, 100], sample_count = 5, sample_size = 1)]
+fn certified_point(digits: u32) -> StabilityReport<Certified> {
+    #[allow(clippy::unwrap_used)]
+    certified_stability(&exact_point(), &Request::default(), digits).unwrap()
 }

@@ -130,7 +130,7 @@ impl<S: Real> Truncated<'_, S> {
     fn follow(&self, start: &Complex<S>, bend: f64) -> Option<Complex<S>> {
         let unit = &self.orbit.period;
         let at = |t: f64| Complex::new(unit.number(t), unit.number(bend * t * (1.0 - t)));
-        let (mut w, mut t, mut step) = (start.clone(), 0.0, 0.125_f64);
+        let (mut w, mut t, mut step) = (start.clone(), 0.0, 0.5_f64);
         while t < 1.0 {
             let target = (t + step).min(1.0);
             let rounds = if target < 1.0 { 30 } else { 60 };
@@ -170,13 +170,10 @@ pub fn impact_aware<S: Real>(
         }
         let start = gamma.inverse().centre();
         let lost = ImpactError::NoConvergence { what: "the impact-aware multiplier" };
-        let w = [0.0, 0.3, -0.7]
-            .iter()
-            .find_map(|&bend| truncated.follow(&start, bend))
-            .ok_or(lost)?;
+        let w =
+            [0.0, 0.3, -0.7].iter().find_map(|&bend| truncated.follow(&start, bend)).ok_or(lost)?;
         multipliers.push(w.inverse());
     }
-    multipliers
-        .sort_by(|a, b| b.to_f64().norm_squared().total_cmp(&a.to_f64().norm_squared()));
+    multipliers.sort_by(|a, b| b.to_f64().norm_squared().total_cmp(&a.to_f64().norm_squared()));
     Ok(AwarePrediction { multipliers })
 }

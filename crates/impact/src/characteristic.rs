@@ -111,8 +111,8 @@ impl<S: Real> Characteristic<S> {
         let sigma = real(&self.saltation) - kappa.scaled(&self.kick);
         // H = -2 R_r Ch + sigma Sc (with the factor e in it); derivatives by w
         let h = sigma.clone() * &flow.sinh - flow.cosh.scaled(&two_r);
-        let by_z = sigma * &flow.sinh_slope
-            - flow.sinh.scaled(&(self.restitution.clone() * &self.period));
+        let by_z =
+            sigma * &flow.sinh_slope - flow.sinh.scaled(&(self.restitution.clone() * &self.period));
         // d e/dw = -(B T/2) e
         let decay = b.clone() * &self.period;
         let h_slope = by_z * &z_slope + flow.sinh.scaled(&self.kick) - h.scaled(&decay.halved());

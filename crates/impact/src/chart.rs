@@ -211,7 +211,7 @@ fn predicted_map(
         // Without the polynomial, which the verdict does not need.
         let drive = Drive::new(parameters)?;
         let orbit = equivalent_orbit(&flow, &drive)?;
-        return Ok(ImpactMap::from_saltation(&flow, &drive, &orbit.saltation));
+        return Ok(ImpactMap::of_orbit(&flow, &drive, &orbit));
     }
     Ok(predict(variant, parameters, &flow, None)?.map)
 }
@@ -257,8 +257,7 @@ impl Chart {
                     agreement.compared += 1;
                     agreement.equal += usize::from(predicted == exact);
                     let wrong = predicted != exact;
-                    agreement.false_stable +=
-                        usize::from(wrong && predicted == Verdict::Stable);
+                    agreement.false_stable += usize::from(wrong && predicted == Verdict::Stable);
                     agreement.false_unstable += usize::from(wrong && exact == Verdict::Stable);
                 }
                 _ => {}

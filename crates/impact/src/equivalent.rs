@@ -55,6 +55,8 @@ pub struct EquivalentOrbit<S> {
     pub acceleration_after: S,
     /// sigma = (x''(0) + R_r x''(T))/v.
     pub saltation: S,
+    /// (sin theta, cos theta).
+    pub(crate) theta_sin_cos: (S, S),
 }
 
 /// The data besides the flow that the orbit needs: omega, k, R_r, s, F and the branch.
@@ -111,15 +113,23 @@ pub fn equivalent_orbit<S: Real>(
     let Flow { growth_rate: rate, frequency } = flow;
     let Drive { omega, period, restitution, wall: s, forced_amplitude, branch } = drive;
     let theta = frequency.clone() * period;
-    let (sin, _) = theta.sin_cos();
-    let (half_sin, _) = theta.halved().sin_cos();
+    let (half_sin, half_cos) = theta.halved().sin_cos();
+    let sin = (half_sin.clone() * half_cos).doubled();
+    let versed_angle = half_sin.square().doubled(); // 1 - cos theta
     let exponent = rate.clone() * period;
     let growing = exponent.to_f64() > 0.0;
     let decay = if growing { -exponent.clone() } else { exponent.clone() };
     // All of E, 1/E, cos times e = min(E, 1/E).
-    let e = decay.exp();
-    let gap = -decay.exp_m1(); // 1 - e
-    let versed = (e.clone() * half_sin.square()).doubled(); // e (1 - cos theta)
+    // One of e and 1 - e is small; it is the one computed.
+    let one = s.integer(1);
+    let (e, gap) = if decay.to_f64() > -0.5 {
+        let gap = -decay.exp_m1();
+        (one.clone() - &gap, gap)
+    } else {
+        let e = decay.exp();
+        (e.clone(), one.clone() - &e)
+    };
+    let versed = e.clone() * &versed_angle; // e (1 - cos theta)
     let delta = gap.square() + versed.doubled();
     let large = gap.clone() + &versed; // 1 - e cos
     let small = versed - e.clone() * &gap; // e^2 - e cos
@@ -138,7 +148,6 @@ pub fn equivalent_orbit<S: Real>(
     let f2 = forced_amplitude.square();
     let discriminant = f2.clone() * &square - (s.clone() * &q).square();
     let scale = omega.to_f64() * forced_amplitude.to_f64();
-    let one = s.integer(1);
     let equation = VelocityEquation {
         quadratic: square,
         half_linear: s.clone() * &kappa,
@@ -161,7 +170,7 @@ pub fn equivalent_orbit<S: Real>(
     let acceleration_after = held.clone() - drift * restitution;
     refuse_sticking(restitution, &acceleration_after)?;
     let saltation = jump * held / &velocity;
-    let growth = if growing { one / &e } else { e.clone() };
+    let growth = if growing { one.clone() / &e } else { e.clone() };
     Ok(EquivalentOrbit {
         period: period.clone(),
         theta,
@@ -178,6 +187,7 @@ pub fn equivalent_orbit<S: Real>(
         acceleration_before,
         acceleration_after,
         saltation,
+        theta_sin_cos: (sin, one - versed_angle),
     })
 }
 

@@ -34,7 +34,7 @@ pub enum ImpactError {
     /// (the impact velocity would be 0).
     #[error("the free flow is T-periodic (Delta = {delta:e}): no impact orbit")]
     PeriodicFreeFlow {
-        /// Delta.
+        /// Delta, or E Delta omega^2 (F/(P0 T))^2 from the regular form.
         delta: f64,
     },
     /// kappa = q = 0 (theta an odd multiple of pi and R_r E = 1): the impact velocity is infinite.
@@ -64,7 +64,9 @@ pub enum ImpactError {
         threshold: f64,
     },
     /// R_r = 0 and the mass is pressed to the wall after the impact.
-    #[error("the mass sticks to the wall after the impact (acceleration {acceleration}): no such orbit")]
+    #[error(
+        "the mass sticks to the wall after the impact (acceleration {acceleration}): no such orbit"
+    )]
     Sticking {
         /// The acceleration after the impact, which must be negative.
         acceleration: f64,
@@ -73,7 +75,9 @@ pub enum ImpactError {
     #[error("alpha = omega without damping: the forced amplitude F is infinite")]
     Resonance,
     /// c >= 2 alpha: the damping is not small, the free flow does not oscillate.
-    #[error("c = {damping} is not below 2 alpha = {limit}: the prediction needs an oscillating flow")]
+    #[error(
+        "c = {damping} is not below 2 alpha = {limit}: the prediction needs an oscillating flow"
+    )]
     Overdamped {
         /// c.
         damping: f64,

@@ -48,7 +48,8 @@ impl<S: Real> Flight<S> for TrueFlight<'_, S> {
         let energy = start + force * orbit.period.magnitude_above();
         let c = parameters.damping.magnitude_above();
         let second = (c + alpha) * energy + force;
-        let third = c * second + alpha * alpha * energy + force * parameters.omega.magnitude_above();
+        let third =
+            c * second + alpha * alpha * energy + force * parameters.omega.magnitude_above();
         (second * (1.0 + 1e-12), third * (1.0 + 1e-12))
     }
 }

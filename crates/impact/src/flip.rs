@@ -35,16 +35,15 @@ pub fn flip_boundary(
     let one = b.integer(1);
     let d = certified.damping.clone() - b.doubled();
     let jump = r.clone() + &one;
-    let sigma =
-        Complex::real(orbit.saltation.clone() - (kick.factor(r) * b * jump).doubled());
+    let sigma = Complex::real(orbit.saltation.clone() - (kick.factor(r) * b * jump).doubled());
     let base = (d.halved() - &certified.alpha) * (d.halved() + &certified.alpha);
     let evaluate = |a: &Certified| {
         let z = Complex::real(base.clone() + a.doubled());
         let flow = propagator(&Complex::real(d.clone()), &z, &orbit.period);
         let bounce = flow.cosh.scaled(&r.doubled());
         let value = sigma.clone() * &flow.sinh - bounce + flow.contraction.scaled(&r.square());
-        let by_z = sigma.clone() * &flow.sinh_slope
-            - flow.sinh.scaled(&(r.clone() * &orbit.period));
+        let by_z =
+            sigma.clone() * &flow.sinh_slope - flow.sinh.scaled(&(r.clone() * &orbit.period));
         (value.re + &one, by_z.re.doubled())
     };
     let mut roots = Vec::new();
@@ -61,8 +60,12 @@ pub fn flip_boundary(
             match (at(low), at(high)) {
                 (Some(left), Some(right)) if left == right => continue,
                 (Some(_), Some(_)) => {
-                    roots.push(contract(&evaluate, wide));
-                    continue;
+                    // Narrow enough for the interval Newton step to map it into itself?
+                    let step = evaluate(&one.number(middle)).0 / slope;
+                    if step.magnitude_above() < half / 2.0 {
+                        roots.push(contract(&evaluate, wide));
+                        continue;
+                    }
                 }
                 _ => {}
             }

@@ -155,8 +155,8 @@ fn characteristic<S: Real>(
     let loop_gain = Complex::real(a.clone()) + lambda.scaled(b);
     let difference = Complex::real(alpha.integer(1)) - &delayed;
     let g = loop_gain.clone() * &difference - lambda.scaled(damping);
-    let slope = difference.scaled(b) + (loop_gain * &delayed).scaled(time)
-        - Complex::real(damping.clone());
+    let slope =
+        difference.scaled(b) + (loop_gain * &delayed).scaled(time) - Complex::real(damping.clone());
     let value = lambda.clone() * lambda + Complex::real(alpha.square()) - g;
     (value, lambda.scaled(&alpha.integer(2)) - slope)
 }

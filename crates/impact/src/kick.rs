@@ -19,6 +19,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// Half width of the band around 1 in which a growth rate counts as neutral.
 const BAND: f64 = 1e-3;
+/// Chebyshev points of a flight at most.
+const LARGEST: f64 = 500.0;
 
 /// Growth per flight of the piecewise linear return map.
 #[derive(Clone, Copy, Debug)]
@@ -41,46 +43,56 @@ impl Growth {
     }
 }
 
-/// One flight as a matrix: (y, y') at the nodes from (y, y') of the flight before and the start.
-struct Flight {
-    /// 2 n x 2 n
+/// The piecewise linear return map with its state: one perturbed flight after the other.
+///
+/// ```
+/// use lindstedt_impact::kick::ReturnMap;
+/// use lindstedt_impact::orbit::orbit;
+/// use lindstedt_impact::parameters::{Branch, Parameters};
+///
+/// let parameters = Parameters {
+///     alpha: 1.0, omega: 2.6, periods: 1, restitution: 0.8, wall: 0.0, damping: 0.05,
+///     force: 1.0, displacement_gain: 0.08, velocity_gain: 0.0, branch: Branch::Plus,
+/// };
+/// let orbit = orbit(&parameters).unwrap();
+/// let mut map = ReturnMap::new(&parameters, &orbit).unwrap();
+/// map.start([0.0, 1e-3 * orbit.velocity]);
+/// let delays: Vec<f64> = (0..20).map(|_| map.fly()).collect();
+/// // An unstable flip: every impact is off by -1.455 times the error of the one before.
+/// assert!((delays[19] / delays[18] + 1.4555).abs() < 1e-3);
+/// ```
+pub struct ReturnMap {
+    restitution: f64,
+    velocity_gain: f64,
+    velocity: f64,
+    saltation: f64,
+    /// (y, y') at the nodes from those of the flight before: 2 n x 2 n.
     memory: DMatrix<f64>,
-    /// 2 n x 2, columns for y(0), y'(0)
-    start: DMatrix<f64>,
+    /// (y, y') at the nodes from y(0), y'(0): 2 n x 2.
+    entry_response: DMatrix<f64>,
+    flight: DVector<f64>,
+    scratch: DVector<f64>,
+    entry: DVector<f64>,
+    late: f64,
 }
 
-/// Iterates the return map over `flights` flights from four starts and measures its growth.
-///
-/// Flights are Chebyshev polynomials (degree by alpha T), accurate to some 10^-12. Estimated: a
-/// finite run; different cones may have different rates, the largest found is returned.
-///
-/// # Errors
-/// [`ImpactError::NoConvergence`] if the linear system of the flight is singular.
-pub fn piecewise_growth(
-    parameters: &Parameters<f64>,
-    orbit: &Orbit<f64>,
-    flights: usize,
-) -> Result<Growth, ImpactError> {
-    let flight = Flight::new(parameters, orbit.period)
-        .ok_or(ImpactError::NoConvergence { what: "the flight between two impacts" })?;
-    let v = orbit.velocity;
-    let mut growth = Growth { rate: 0.0, spread: 0.0 };
-    for start in [[1.0, 0.3], [-1.0, -0.3], [0.2, 1.0], [-0.2, -1.0]] {
-        let found = flight.growth(parameters, orbit, [start[0] * v, start[1] * v], flights);
-        if found.rate > growth.rate {
-            growth = found;
-        }
-    }
-    Ok(growth)
-}
-
-impl Flight {
-    /// y' = v, v' = -(c - B) v - (alpha^2 - A) y - A y_before - B v_before at Chebyshev points.
-    fn new(parameters: &Parameters<f64>, period: f64) -> Option<Self> {
+impl ReturnMap {
+    /// y' = u, u' = -(c - B) u - (alpha^2 - A) y - A y_before - B u_before, at Chebyshev points of
+    /// the flight (20 + rate T of them, accurate to some 10^-12).
+    ///
+    /// # Errors
+    /// [`ImpactError::OutOfRange`] for a period that needs more than 500 points,
+    /// [`ImpactError::NoConvergence`] if the linear system of the flight is singular.
+    pub fn new(parameters: &Parameters<f64>, orbit: &Orbit<f64>) -> Result<Self, ImpactError> {
         let &Parameters { alpha, damping, displacement_gain: a, velocity_gain: b, .. } = parameters;
         let rate = (alpha * alpha + a.abs()).sqrt() + damping + b.abs();
-        let n = 20 + (rate * period) as usize;
-        let d = differentiation(n) * (2.0 / period);
+        let points = 20.0 + rate * orbit.period;
+        if points.is_nan() || points > LARGEST {
+            let (value, high) = (orbit.period, (LARGEST - 20.0) / rate);
+            return Err(ImpactError::OutOfRange { name: "T", value, low: 0.0, high });
+        }
+        let n = points as usize;
+        let d = differentiation(n) * (2.0 / orbit.period);
         let mut system = DMatrix::zeros(2 * n, 2 * n);
         let mut memory = DMatrix::zeros(2 * n, 2 * n);
         let mut start = DMatrix::zeros(2 * n, 2);
@@ -101,51 +113,99 @@ impl Flight {
             start[(row, column)] = 1.0;
         }
         let factors = system.lu();
-        Some(Self { memory: factors.solve(&memory)?, start: factors.solve(&start)? })
+        let singular = ImpactError::NoConvergence { what: "the flight between two impacts" };
+        let solved = factors.solve(&memory).zip(factors.solve(&start));
+        let (memory, entry_response) = solved.ok_or(singular)?;
+        Ok(Self {
+            restitution: parameters.restitution,
+            velocity_gain: b,
+            velocity: orbit.velocity,
+            saltation: orbit.saltation,
+            memory,
+            entry_response,
+            flight: DVector::zeros(2 * n),
+            scratch: DVector::zeros(2 * n),
+            entry: DVector::zeros(2),
+            late: 0.0,
+        })
     }
-
-    fn growth(
-        &self,
-        parameters: &Parameters<f64>,
-        orbit: &Orbit<f64>,
-        start: [f64; 2],
-        flights: usize,
-    ) -> Growth {
-        let &Parameters { restitution: r, velocity_gain: b, .. } = parameters;
-        let n = self.memory.nrows() / 2;
-        let v = orbit.velocity;
-        let mut state = DVector::zeros(2 * n);
-        let mut next = DVector::zeros(2 * n);
-        let (mut entry, mut late_before) = (DVector::from_row_slice(&start), 0.0);
-        let skip = flights / 4;
-        let mut logarithms = [0.0, 0.0];
-        for l in 0..flights {
-            next.gemv(1.0, &self.memory, &state, 0.0);
-            next.gemv(1.0, &self.start, &entry, 1.0);
-            std::mem::swap(&mut state, &mut next);
-            let (y, y_slope) = (state[n - 1], state[2 * n - 1]);
-            let late = -y / v;
-            let chi = if late > late_before { -r } else { 1.0 };
-            let kick = chi * b * (1.0 + r) * v * (late - late_before);
-            entry[0] = -r * y;
-            entry[1] = orbit.saltation * y - r * y_slope + kick;
-            late_before = late;
-            let size = state.amax().max(entry.amax());
-            if size == 0.0 || !size.is_finite() {
-                return Growth { rate: if size == 0.0 { 0.0 } else { size }, spread: 0.0 };
-            }
-            state /= size;
-            entry /= size;
-            late_before /= size;
-            if l >= skip {
-                logarithms[usize::from(l >= skip + (flights - skip) / 2)] += size.ln();
-            }
+    /// Starts with an unperturbed past and the perturbation (y(0), y'(0)).
+    pub fn start(&mut self, entry: [f64; 2]) {
+        self.flight.fill(0.0);
+        self.entry.copy_from_slice(&entry);
+        self.late = 0.0;
+    }
+    /// One flight and impact: returns by how much the impact comes late, delta_l.
+    pub fn fly(&mut self) -> f64 {
+        let n = self.flight.nrows() / 2;
+        self.scratch.gemv(1.0, &self.memory, &self.flight, 0.0);
+        self.scratch.gemv(1.0, &self.entry_response, &self.entry, 1.0);
+        std::mem::swap(&mut self.flight, &mut self.scratch);
+        let (y, y_slope) = (self.flight[n - 1], self.flight[2 * n - 1]);
+        let (r, v) = (self.restitution, self.velocity);
+        let late = -y / v;
+        let chi = if late > self.late { -r } else { 1.0 };
+        let kick = chi * self.velocity_gain * (1.0 + r) * v * (late - self.late);
+        self.entry[0] = -r * y;
+        self.entry[1] = self.saltation * y - r * y_slope + kick;
+        self.late = late;
+        late
+    }
+    /// The size of the state; divides the state by it.
+    fn normalise(&mut self) -> f64 {
+        let size = self.flight.amax().max(self.entry.amax());
+        if size > 0.0 && size.is_finite() {
+            self.flight /= size;
+            self.entry /= size;
+            self.late /= size;
         }
-        let count = (flights - skip).max(2) as f64;
-        let rate = ((logarithms[0] + logarithms[1]) / count).exp();
-        let halves = logarithms.map(|sum| (2.0 * sum / count).exp());
-        Growth { rate, spread: (halves[0] - halves[1]).abs() }
+        size
     }
+}
+
+/// Iterates the return map over `flights` flights from four starts and measures its growth.
+///
+/// Estimated: a finite run; different cones of perturbations may have different rates, the largest
+/// found is returned.
+///
+/// # Errors
+/// As [`ReturnMap::new`].
+pub fn piecewise_growth(
+    parameters: &Parameters<f64>,
+    orbit: &Orbit<f64>,
+    flights: usize,
+) -> Result<Growth, ImpactError> {
+    let mut map = ReturnMap::new(parameters, orbit)?;
+    let v = orbit.velocity;
+    let mut growth = Growth { rate: 0.0, spread: 0.0 };
+    for start in [[1.0, 0.3], [-1.0, -0.3], [0.2, 1.0], [-0.2, -1.0]] {
+        map.start(start.map(|part| part * v));
+        let found = growth_of_run(&mut map, flights);
+        if found.rate > growth.rate {
+            growth = found;
+        }
+    }
+    Ok(growth)
+}
+
+/// The first quarter of the run is left out.
+fn growth_of_run(map: &mut ReturnMap, flights: usize) -> Growth {
+    let skip = flights / 4;
+    let mut logarithms = [0.0, 0.0];
+    for l in 0..flights {
+        map.fly();
+        let size = map.normalise();
+        if size == 0.0 || !size.is_finite() {
+            return Growth { rate: size, spread: 0.0 };
+        }
+        if l >= skip {
+            logarithms[usize::from(l >= skip + (flights - skip) / 2)] += size.ln();
+        }
+    }
+    let count = (flights - skip).max(2) as f64;
+    let rate = ((logarithms[0] + logarithms[1]) / count).exp();
+    let halves = logarithms.map(|sum: f64| (2.0 * sum / count).exp());
+    Growth { rate, spread: (halves[0] - halves[1]).abs() }
 }
 
 /// The derivative of the interpolating polynomial at the Chebyshev points -cos(pi j/(n-1)).

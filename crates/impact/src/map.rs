@@ -85,8 +85,7 @@ pub(crate) fn polynomial<S: Real>(
     let bounced = p.clone() * (cos.clone() - restitution.clone() * &growth) + r * &sin;
     let held = less * frequency * &cos + more.clone() * rate * &sin;
     let linear = ratio * bounced - more * omega * force_cos * &sin + held * force_sin;
-    let constant =
-        restitution.clone() * frequency * growth.square() * (p / omega - force_sin);
+    let constant = restitution.clone() * frequency * growth.square() * (p / omega - force_sin);
     Polynomial { quadratic, linear: linear * growth, constant }
 }
 
@@ -119,13 +118,27 @@ impl<S: Real> ImpactMap<S> {
     /// The map of a free flow between impacts with saltation sigma:
     /// trace = E (sigma sin(theta)/Omega - 2 R_r cos theta), determinant = (R_r E)^2.
     pub fn from_saltation(flow: &Flow<S>, drive: &Drive<S>, saltation: &S) -> Self {
-        let (sin, cos) = (flow.frequency.clone() * &drive.period).sin_cos();
+        let angle = (flow.frequency.clone() * &drive.period).sin_cos();
         let growth = (flow.growth_rate.clone() * &drive.period).exp();
-        let shear = saltation.clone() * sin / &flow.frequency;
-        let bounce = (drive.restitution.clone() * cos).doubled();
+        Self::compose(&angle, &growth, &flow.frequency, &drive.restitution, saltation)
+    }
+    /// The map of an orbit with the flow it belongs to.
+    pub fn of_orbit(flow: &Flow<S>, drive: &Drive<S>, orbit: &EquivalentOrbit<S>) -> Self {
+        let angle = &orbit.theta_sin_cos;
+        Self::compose(angle, &orbit.growth, &flow.frequency, &drive.restitution, &orbit.saltation)
+    }
+    fn compose(
+        (sin, cos): &(S, S),
+        growth: &S,
+        frequency: &S,
+        restitution: &S,
+        saltation: &S,
+    ) -> Self {
+        let shear = saltation.clone() * sin / frequency;
+        let bounce = (restitution.clone() * cos).doubled();
         Self {
-            trace: growth.clone() * (shear - bounce),
-            determinant: (drive.restitution.clone() * growth).square(),
+            trace: (shear - bounce) * growth,
+            determinant: (restitution.clone() * growth).square(),
         }
     }
     /// The multipliers, larger modulus first; a complex pair with the positive imaginary part
@@ -174,12 +187,8 @@ impl<S: Real> ImpactMap<S> {
     pub fn verdict(&self) -> Verdict {
         let one = self.trace.integer(1);
         let sum = one.clone() + &self.determinant;
-        let conditions = [
-            one - &self.determinant,
-            sum.clone(),
-            sum.clone() - &self.trace,
-            sum + &self.trace,
-        ];
+        let conditions =
+            [one - &self.determinant, sum.clone(), sum.clone() - &self.trace, sum + &self.trace];
         let mut verdict = Verdict::Stable;
         for condition in conditions {
             let clear = condition.to_f64().abs() > condition.neutral_width();

@@ -20,7 +20,7 @@ use crate::propagator::{Propagator, phi1, propagator};
 use crate::real::Real;
 use crate::velocity::{VelocityEquation, impact_velocity};
 
-/// Delta below which the free flow counts as T-periodic in doubles.
+/// Delta (or the determinant over (P0 T)^2/omega) below which the free flow counts as T-periodic in doubles.
 pub(crate) const PERIODIC: f64 = 1e-24;
 
 /// Values of a periodic impact orbit that every variant shares.
@@ -97,19 +97,14 @@ pub fn orbit<S: Real>(parameters: &Parameters<S>) -> Result<Orbit<S>, ImpactErro
     let period = parameters.period();
     let Response { h, slope, integral } = response(parameters, &period, true);
     let j = integral.scaled(force);
-    let j_slope = Complex::new(
-        force.clone() * &h - omega.clone() * &j.im,
-        omega.clone() * &j.re,
-    );
-    // det(1 - Phi) = E Delta with E = e^(-cT/2).
+    let j_slope = Complex::new(force.clone() * &h - omega.clone() * &j.im, omega.clone() * &j.re);
+    // det [J.re, -J.im; J'.re, -J'.im] = +-E Delta omega F^2, finite at alpha = omega.
     let one = alpha.integer(1);
-    let free_trace = slope.doubled() + c.clone() * &h;
-    let contraction = (-(c.clone() * &period)).exp();
-    let gap = one.clone() - free_trace + &contraction;
-    let delta = gap.to_f64() / contraction.to_f64().sqrt();
     let determinant = -(j.re.clone() * &j_slope.im) + j.im.clone() * &j_slope.re;
-    if delta.abs() < PERIODIC || determinant.sign().is_none_or(|sign| sign.is_eq()) {
-        return Err(ImpactError::PeriodicFreeFlow { delta });
+    let thrust = force.to_f64() * period.to_f64();
+    let relative = determinant.to_f64().abs() * omega.to_f64() / (thrust * thrust);
+    if relative < PERIODIC || determinant.sign().is_none_or(|sign| sign.is_eq()) {
+        return Err(ImpactError::PeriodicFreeFlow { delta: relative });
     }
     // Solve [J.re, -J.im; J'.re, -J'.im](cos, sin) = right for the parts without and with v.
     let solve = |first: &S, second: &S| {
@@ -117,10 +112,8 @@ pub fn orbit<S: Real>(parameters: &Parameters<S>) -> Result<Orbit<S>, ImpactErro
         let sin = second.clone() * &j.re - first.clone() * &j_slope.re;
         (cos / &determinant, sin / &determinant)
     };
-    let (p_cos, p_sin) = solve(
-        &((one.clone() - &slope - c.clone() * &h) * s),
-        &(alpha.square() * &h * s),
-    );
+    let (p_cos, p_sin) =
+        solve(&((one.clone() - &slope - c.clone() * &h) * s), &(alpha.square() * &h * s));
     let (w_cos, w_sin) =
         solve(&(restitution.clone() * &h), &(one.clone() + restitution.clone() * &slope));
     let quadratic = w_cos.square() + w_sin.square();
@@ -128,7 +121,6 @@ pub fn orbit<S: Real>(parameters: &Parameters<S>) -> Result<Orbit<S>, ImpactErro
     // |p.w|^2 - |w|^2(|p|^2 - 1) = |w|^2 - (p x w)^2
     let cross = p_cos.clone() * &w_sin - p_sin.clone() * &w_cos;
     let amplitude = parameters.forced_amplitude().to_f64();
-    let thrust = force.to_f64() * period.to_f64();
     let swing = omega.to_f64() * amplitude;
     let velocity_scale = if swing.is_finite() { swing.min(thrust) } else { thrust };
     let equation = VelocityEquation {

@@ -82,7 +82,7 @@ pub fn predict<S: Real>(
     };
     let polynomial = polynomial(flow, &drive, &Amplitudes::of(&form));
     let map = match variant {
-        Variant::E => ImpactMap::from_saltation(flow, &drive, &form.saltation),
+        Variant::E => ImpactMap::of_orbit(flow, &drive, &form),
         _ => polynomial.map(),
     };
     Ok(Prediction { flow: flow.clone(), orbit: Some(form), polynomial: Some(polynomial), map })

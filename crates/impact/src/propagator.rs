@@ -72,9 +72,8 @@ fn by_series<S: Real>(decay: &Complex<S>, q: &Complex<S>, time: &S) -> Propagato
     // |q| < 1/4: every later term of the three sums is below half its predecessor, the first below
     // |q^(n-1)|/(2n)!/32.
     let error = before.modulus() / time.integer(16);
-    let widen = |value: &Complex<S>| {
-        Complex::new(value.re.widened(&error), value.im.widened(&error))
-    };
+    let widen =
+        |value: &Complex<S>| Complex::new(value.re.widened(&error), value.im.widened(&error));
     let size = decay.exp();
     Propagator {
         cosh: widen(&cosh) * &size,

@@ -93,6 +93,14 @@ pub struct ExactReport<S> {
     pub growth: Option<Growth>,
 }
 
+impl<S> ExactReport<S> {
+    /// The definite verdict: of the piecewise linear return map for B != 0 where it was measured,
+    /// of G otherwise.
+    pub fn definite(&self) -> Verdict {
+        self.growth.as_ref().map_or(self.verdict, Growth::verdict)
+    }
+}
+
 /// Everything about one point.
 #[derive(Clone, Debug)]
 pub struct StabilityReport<S> {
@@ -172,11 +180,7 @@ fn orbit_report<S: Real>(
     let form = Flow::uncontrolled(parameters)
         .and_then(|flow| equivalent_orbit(&flow, &Drive::new(parameters)?))
         .ok()
-        .map(|form| FormReport {
-            phase: form.phase_angle(),
-            cosine: form.cosine,
-            sine: form.sine,
-        });
+        .map(|form| FormReport { phase: form.phase_angle(), cosine: form.cosine, sine: form.sine });
     let clearance = clearance(parameters, &orbit);
     let penetrates = match &clearance {
         Ok(None) => Some(false),
@@ -237,22 +241,26 @@ impl StabilityReport<Certified> {
     fn has_bits(&self, bits: i64) -> bool {
         let good = |x: &Certified| x.ball().relative_accuracy_bits() >= bits;
         let orbit = self.orbit.as_ref().is_ok_and(|found| {
-            let form = found.form.as_ref().is_none_or(|form| {
-                good(&form.phase) && good(&form.cosine) && good(&form.sine)
-            });
+            let form = found
+                .form
+                .as_ref()
+                .is_none_or(|form| good(&form.phase) && good(&form.cosine) && good(&form.sine));
             good(&found.orbit.velocity) && found.penetrates.is_some() && form
         });
         let kbm = self.kbm.as_ref().is_ok_and(|found| {
-            let polynomial = found.prediction.polynomial.as_ref().is_none_or(|b| {
-                good(&b.quadratic) && good(&b.linear) && good(&b.constant)
-            });
+            let polynomial = found
+                .prediction
+                .polynomial
+                .as_ref()
+                .is_none_or(|b| good(&b.quadratic) && good(&b.linear) && good(&b.constant));
             polynomial && good(&found.prediction.map.trace) && found.verdict != Verdict::Neutral
         });
         let exact = self.exact.as_ref().is_none_or(|found| {
             found.verdict != Verdict::Neutral
-                && found.multipliers.as_ref().is_ok_and(|list| {
-                    list.values.iter().all(|gamma| good(&gamma.modulus()))
-                })
+                && found
+                    .multipliers
+                    .as_ref()
+                    .is_ok_and(|list| list.values.iter().all(|gamma| good(&gamma.modulus())))
         });
         orbit && kbm && exact
     }

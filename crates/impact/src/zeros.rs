@@ -36,6 +36,7 @@ pub fn exact_verdict<S: Real>(g: &Characteristic<S>) -> (Verdict, Option<u32>) {
 /// real by the symmetry of G.
 ///
 /// # Errors
+/// [`ImpactError::NotPositive`] unless `least_modulus` > 0,
 /// [`ImpactError::NoConvergence`] if the search ends before the count is reached,
 /// [`ImpactError::Undecided`] if the count or a disc cannot be proved at this precision (multiple
 /// or clustered zeros).
@@ -43,6 +44,9 @@ pub fn multipliers<S: Real>(
     g: &Characteristic<S>,
     least_modulus: f64,
 ) -> Result<Multipliers<S>, ImpactError> {
+    if least_modulus.is_nan() || least_modulus <= 0.0 {
+        return Err(ImpactError::NotPositive { name: "least modulus", value: least_modulus });
+    }
     let bits = g.period().precision();
     let undecided = |what| ImpactError::Undecided { what, bits };
     // A zero on the very circle would leave the count open: step outwards past it.
@@ -116,9 +120,8 @@ fn search(
     for _ in 0..50 {
         let (value, slope) = g.value_and_slope(&w);
         let newton = value.over(&slope);
-        let pull = zeros.iter().fold(Complex::real(0.0), |sum, zero| {
-            sum + (w.clone() - zero).inverse()
-        });
+        let pull =
+            zeros.iter().fold(Complex::real(0.0), |sum, zero| sum + (w.clone() - zero).inverse());
         let mut step = newton.over(&(Complex::real(1.0) - newton.clone() * &pull));
         let size = step.modulus();
         if !size.is_finite() {
@@ -228,9 +231,8 @@ pub(crate) fn leading_modulus(
     if zeros.len() < 3 {
         search(g, &Complex::new(first.re, 0.7 * first.modulus()), reach, &mut zeros);
     }
-    let least = |zeros: &[Complex<f64>]| {
-        zeros.iter().map(|w| w.modulus()).fold(f64::INFINITY, f64::min)
-    };
+    let least =
+        |zeros: &[Complex<f64>]| zeros.iter().map(|w| w.modulus()).fold(f64::INFINITY, f64::min);
     let mut modulus = least(&zeros);
     if !modulus.is_finite() {
         modulus = 1e3;

@@ -41,9 +41,14 @@ fn differentiation(n: usize) -> DMatrix<f64> {
     let weights: Vec<f64> = (0..n)
         .map(|i| (0..n).filter(|&j| j != i).map(|j| 2.0 * (x[i] - x[j])).product::<f64>().recip())
         .collect();
-    let mut d = DMatrix::from_fn(n, n, |i, j| {
-        if i == j { 0.0 } else { weights[j] / weights[i] / (x[i] - x[j]) }
-    });
+    let mut d =
+        DMatrix::from_fn(
+            n,
+            n,
+            |i, j| {
+                if i == j { 0.0 } else { weights[j] / weights[i] / (x[i] - x[j]) }
+            },
+        );
     for i in 0..n {
         d[(i, i)] = -d.row(i).sum();
     }

@@ -4,5 +4,7 @@
 mod agreement;
 mod collocation;
 mod doubles;
+mod extremes;
 mod oracles;
 mod support;
+mod truth;

@@ -1,8 +1,6 @@
 //! Every field of the reference files.
 
-use crate::support::{
-    BITS, agrees, agrees_complex, certified, data, number, parameters,
-};
+use crate::support::{BITS, agrees, agrees_complex, certified, data, number, parameters};
 use lindstedt_impact::characteristic::{Characteristic, Kick};
 use lindstedt_impact::equivalent::{Drive, EquivalentOrbit, equivalent_orbit};
 use lindstedt_impact::flight::{Clearance, clearance, equivalent_clearance};

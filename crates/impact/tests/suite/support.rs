@@ -67,7 +67,7 @@ pub fn agrees(what: &str, found: &Certified, reference: &Value) {
     let radius = found.ball().radius().to_rational().unwrap();
     assert!(radius <= allowed, "{what}: radius {:e}", radius.to_f64());
     let middle = found.ball().midpoint().to_rational().unwrap();
-    let distance = Rational::from(middle - &reference).abs();
+    let distance = (middle - &reference).abs();
     assert!(
         distance <= allowed,
         "{what}: {} instead of {}, off by {:e}",
@@ -90,7 +90,7 @@ pub fn agrees_complex(what: &str, found: &Complex<Certified>, reference: &Value)
         assert!(part.is_finite(), "{what}: nothing known");
         let radius = part.ball().radius().to_f64();
         let middle = part.ball().midpoint().to_rational().unwrap();
-        let distance = Rational::from(middle - &expected).abs().to_f64();
+        let distance = (middle - &expected).abs().to_f64();
         let allowed = size * 10.0_f64.powi(-DIGITS);
         assert!(radius <= allowed, "{what}: radius {radius:e}");
         assert!(distance <= allowed, "{what}: off by {distance:e} at {}", expected.to_f64());
