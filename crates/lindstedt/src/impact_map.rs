@@ -12,19 +12,21 @@
 //! assumed about C, D, phi but that x(0) = x(T) = s.
 
 use crate::quotient::{Quotient, Quotients};
-use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_algebra::Ring;
 use lindstedt_coeff::Symbol;
 use lindstedt_coeff::parameters::ParameterFraction;
-use lindstedt_coeff::polynomial::{PowerProduct, power};
+use lindstedt_coeff::polynomial::PowerProduct;
 use lindstedt_coeff::sparse::{Monomial, Sparse};
 use rug::Rational;
 
 /// Parameters; E = e^(R T), theta = alpha0 T. `exp(R*tau)` and the cosines and sines with tau are
-/// functions of the time tau since the impact. A prime marks the next flight.
-const NAMES: [&str; 25] = [
+/// functions of the time tau since the impact. A prime marks the next flight. The wall s and the
+/// impact velocity v do not occur in the map; they serve the conditions of a periodic orbit.
+const NAMES: [&str; 27] = [
     "R", "alpha0", "omega", "R_r", "C", "D", "a", "E", "cos(theta)", "sin(theta)", "cos(phi)",
     "sin(phi)", "exp(R*tau)", "cos(alpha0*tau)", "sin(alpha0*tau)", "cos(omega*tau + phi)",
     "sin(omega*tau + phi)", "dC", "dD", "dphi", "dtau", "dC'", "dD'", "dphi'", "gamma",
+    "s", "v",
 ];
 
 /// The cosines and sines among them.
@@ -48,6 +50,10 @@ pub struct ImpactMap {
     pub displacement_variation: Quotient,
     /// dx' = x'_C dC + x'_D dD + x'_phi dphi + x'' dtau.
     pub velocity_variation: Quotient,
+    /// x(0).
+    pub displacement_after: Quotient,
+    /// x(T).
+    pub displacement_before: Quotient,
     /// x'(0), after an impact.
     pub velocity_after: Quotient,
     /// x'(T), before the next one.
@@ -116,6 +122,8 @@ impl ImpactMap {
         ];
         let (trace, determinant) = jacobian(&q, &start, &end)?;
         Some(Self {
+            displacement_after: at_start(&q, &x, false)?,
+            displacement_before: at_end(&q, &x)?,
             velocity_after: at_start(&q, &v, false)?,
             velocity_before: at_end(&q, &v)?,
             characteristic: characteristic(&q, &equations)?,
@@ -135,7 +143,8 @@ impl ImpactMap {
     }
 }
 
-/// The derivation that sends every parameter to `image` of its name.
+/// The derivation of polynomials f that sends a parameter to `image` of its name (nothing: zero).
+#[must_use]
 pub fn derivation(
     q: &Quotients,
     f: &Quotient,
@@ -174,7 +183,9 @@ fn substitute(
     })
 }
 
-/// f with other elements in the place of some parameters.
+/// f with other elements in the place of some parameters; nothing where a name is unknown, an
+/// image has a denominator or one of f becomes zero.
+#[must_use]
 pub fn replace(q: &Quotients, f: &Quotient, images: &[(&str, Quotient)]) -> Option<Quotient> {
     let whole = |(name, image): &(&str, Quotient)| {
         let is_whole = image.denominator == q.field.one();
@@ -242,8 +253,9 @@ fn at_end(q: &Quotients, f: &Quotient) -> Option<Quotient> {
     replace(q, f, &images.map(|(from, to)| (from, q.parameter(to))))
 }
 
-/// The coefficient of a parameter in a linear form.
-fn coefficient(q: &Quotients, form: &Quotient, name: &str) -> Quotient {
+/// The coefficient of a parameter in a form that is linear in it: the derivative.
+#[must_use]
+pub fn coefficient(q: &Quotients, form: &Quotient, name: &str) -> Quotient {
     derivation(q, form, &|known| (known == name).then(|| q.integer(1)))
 }
 
@@ -316,19 +328,57 @@ fn jacobian(
     Some((q.add(&a, &d), q.sub(&q.mul(&a, &d), &q.mul(&b, &c))))
 }
 
-/// base^n, for formulas beside these.
-#[must_use]
-pub fn nth_power(q: &Quotients, base: &Quotient, n: u32) -> Quotient {
-    let k = &q.field;
-    Quotient {
-        numerator: power(k, &base.numerator, n),
-        denominator: power(k, &base.denominator, n),
+impl ImpactMap {
+    /// The periodic orbit with impact velocity v: \[C, D, a cos phi, a sin phi\] from
+    /// x(0) = x(T) = s, x'(0) = -R_r v, x'(T) = v, which are linear in them (Cramer's rule).
+    #[must_use]
+    pub fn periodic_orbit(&self) -> Option<[Quotient; 4]> {
+        let q = &self.field;
+        let p = |name: &str| q.parameter(name);
+        let sides = [
+            (&self.displacement_after, p("s")),
+            (&self.displacement_before, p("s")),
+            (&self.velocity_after, q.neg(&q.mul(&p("R_r"), &p("v")))),
+            (&self.velocity_before, p("v")),
+        ];
+        let unknowns = ["C", "D", "cos(phi)", "sin(phi)"];
+        let mut matrix = Vec::new();
+        for (form, _) in &sides {
+            let row: Vec<Quotient> = unknowns.iter().map(|u| coefficient(q, form, u)).collect();
+            matrix.push(row);
+        }
+        let whole = determinant(q, &matrix);
+        let mut solution = Vec::new();
+        for column in 0..unknowns.len() {
+            let mut replaced = matrix.clone();
+            for (row, (_, side)) in replaced.iter_mut().zip(&sides) {
+                if let Some(entry) = row.get_mut(column) {
+                    *entry = side.clone();
+                }
+            }
+            solution.push(q.div(&determinant(q, &replaced), &whole)?);
+        }
+        for amplitude in solution.iter_mut().skip(2) {
+            *amplitude = q.mul(amplitude, &p("a"));
+        }
+        solution.try_into().ok()
     }
 }
 
-/// 1/2 of an element.
-#[must_use]
-pub fn half(q: &Quotients, f: &Quotient) -> Quotient {
-    let numerator = q.field.scale(&f.numerator, &Rational::from((1, 2)));
-    Quotient { numerator, denominator: f.denominator.clone() }
+/// By expansion along the first row.
+fn determinant(q: &Quotients, matrix: &[Vec<Quotient>]) -> Quotient {
+    let Some((first, rest)) = matrix.split_first() else { return q.integer(1) };
+    let mut sum = q.integer(0);
+    for (n, entry) in first.iter().enumerate() {
+        if q.is_zero(entry) {
+            continue;
+        }
+        let mut minor = rest.to_vec();
+        for row in &mut minor {
+            row.remove(n);
+        }
+        let term = q.mul(entry, &determinant(q, &minor));
+        sum = q.add(&sum, &if n % 2 == 0 { term } else { q.neg(&term) });
+    }
+    sum
 }

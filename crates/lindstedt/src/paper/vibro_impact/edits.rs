@@ -23,9 +23,6 @@ pub(super) fn edits(tree: &Tree, vocabulary: &[String]) -> Vec<Edit> {
                 });
             }
         }
-        if list.is_empty() {
-            continue;
-        }
     }
     exchanges(tree, &paths, &mut list);
     list

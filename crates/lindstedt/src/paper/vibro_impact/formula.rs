@@ -16,8 +16,12 @@ pub(super) enum Tree {
 }
 
 /// Reads a formula: + - * / ^ with integer exponents, names, functions of one argument, round and
-/// square brackets. Nothing for what is none.
+/// square brackets; an equation is its left side less its right side. Nothing for what is none.
 pub(super) fn parse(text: &str) -> Option<Tree> {
+    if let Some((left, right)) = text.split_once('=') {
+        let right = Tree::Negative(Box::new(parse(right)?));
+        return Some(Tree::Sum(vec![parse(left)?, right]));
+    }
     let mut parser = Parser { rest: text };
     let tree = parser.sum()?;
     parser.rest.trim().is_empty().then_some(tree)

@@ -57,7 +57,7 @@ impl Arithmetic for Rationals {
 }
 
 /// The words, the angles with cosine and sine, the exponents with their exponential.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Meaning<V> {
     pub words: BTreeMap<String, V>,
     pub angles: Vec<[V; 3]>,
@@ -142,8 +142,16 @@ impl Setting {
             let value = field.parameter(&name);
             (name, value)
         });
-        let meaning = Meaning { words: words.collect(), ..Meaning::default() };
+        let meaning =
+            Meaning { words: words.collect(), angles: Vec::new(), exponentials: Vec::new() };
         Self { field, meaning }
+    }
+
+    /// Only these words; the others are not looked for.
+    #[must_use]
+    pub fn only(mut self, names: &[&str]) -> Self {
+        self.meaning.words.retain(|name, _| names.contains(&name.as_str()));
+        self
     }
 
     /// Adds a word that means a formula in the words known so far.
@@ -159,24 +167,6 @@ impl Setting {
     #[must_use]
     pub fn means(mut self, name: &str, value: Quotient) -> Self {
         self.meaning.words.insert(name.to_owned(), value);
-        self
-    }
-
-    /// Adds an angle with the formulas of its cosine and sine.
-    #[must_use]
-    pub fn angle(mut self, angle: &str, cos: &str, sin: &str) -> Self {
-        if let [Some(angle), Some(cos), Some(sin)] = [angle, cos, sin].map(|f| self.read(f)) {
-            self.meaning.angles.push([angle, cos, sin]);
-        }
-        self
-    }
-
-    /// Adds an exponent with the formula of its exponential.
-    #[must_use]
-    pub fn exponential(mut self, exponent: &str, value: &str) -> Self {
-        if let [Some(exponent), Some(value)] = [exponent, value].map(|f| self.read(f)) {
-            self.meaning.exponentials.push([exponent, value]);
-        }
         self
     }
 
