@@ -23,10 +23,33 @@ use rug::Rational;
 /// functions of the time tau since the impact. A prime marks the next flight. The wall s and the
 /// impact velocity v do not occur in the map; they serve the conditions of a periodic orbit.
 const NAMES: [&str; 27] = [
-    "R", "alpha0", "omega", "R_r", "C", "D", "a", "E", "cos(theta)", "sin(theta)", "cos(phi)",
-    "sin(phi)", "exp(R*tau)", "cos(alpha0*tau)", "sin(alpha0*tau)", "cos(omega*tau + phi)",
-    "sin(omega*tau + phi)", "dC", "dD", "dphi", "dtau", "dC'", "dD'", "dphi'", "gamma",
-    "s", "v",
+    "R",
+    "alpha0",
+    "omega",
+    "R_r",
+    "C",
+    "D",
+    "a",
+    "E",
+    "cos(theta)",
+    "sin(theta)",
+    "cos(phi)",
+    "sin(phi)",
+    "exp(R*tau)",
+    "cos(alpha0*tau)",
+    "sin(alpha0*tau)",
+    "cos(omega*tau + phi)",
+    "sin(omega*tau + phi)",
+    "dC",
+    "dD",
+    "dphi",
+    "dtau",
+    "dC'",
+    "dD'",
+    "dphi'",
+    "gamma",
+    "s",
+    "v",
 ];
 
 /// The cosines and sines among them.
@@ -97,10 +120,8 @@ impl ImpactMap {
     pub fn derive() -> Option<Self> {
         let q = Quotients::new(&NAMES, &PAIRS);
         let p = |name: &str| q.parameter(name);
-        let free = q.add(
-            &q.mul(&p("C"), &p("cos(alpha0*tau)")),
-            &q.mul(&p("D"), &p("sin(alpha0*tau)")),
-        );
+        let free =
+            q.add(&q.mul(&p("C"), &p("cos(alpha0*tau)")), &q.mul(&p("D"), &p("sin(alpha0*tau)")));
         let forced = q.mul(&p("a"), &p("cos(omega*tau + phi)"));
         let x = q.add(&q.mul(&p("exp(R*tau)"), &free), &forced);
         let v = time_derivative(&q, &x);
@@ -300,10 +321,7 @@ fn jacobian(
     let column = |dphi: i64, dv: i64| {
         let dphi = q.integer(dphi);
         let part = |form: &Quotient, name: &str| coefficient(q, form, name);
-        let d_c = q.div(
-            &q.neg(&q.mul(&part(&start[0], "dphi"), &dphi)),
-            &part(&start[0], "dC"),
-        )?;
+        let d_c = q.div(&q.neg(&q.mul(&part(&start[0], "dphi"), &dphi)), &part(&start[0], "dC"))?;
         let rest = q.sub(
             &q.integer(dv),
             &q.add(&q.mul(&part(&start[1], "dC"), &d_c), &q.mul(&part(&start[1], "dphi"), &dphi)),
@@ -318,10 +336,7 @@ fn jacobian(
         };
         let d_t = q.neg(&q.div(&held(&end[0]), &part(&end[0], "dtau"))?);
         let before = q.add(&held(&end[1]), &q.mul(&part(&end[1], "dtau"), &d_t));
-        Some([
-            q.add(&dphi, &q.mul(&p("omega"), &d_t)),
-            q.neg(&q.mul(&p("R_r"), &before)),
-        ])
+        Some([q.add(&dphi, &q.mul(&p("omega"), &d_t)), q.neg(&q.mul(&p("R_r"), &before))])
     };
     let [a, c] = column(1, 0)?;
     let [b, d] = column(0, 1)?;
@@ -334,24 +349,12 @@ impl ImpactMap {
     #[must_use]
     pub fn periodic_orbit(&self) -> Option<[Quotient; 4]> {
         let q = &self.field;
-        let p = |name: &str| q.parameter(name);
-        let sides = [
-            (&self.displacement_after, p("s")),
-            (&self.displacement_before, p("s")),
-            (&self.velocity_after, q.neg(&q.mul(&p("R_r"), &p("v")))),
-            (&self.velocity_before, p("v")),
-        ];
-        let unknowns = ["C", "D", "cos(phi)", "sin(phi)"];
-        let mut matrix = Vec::new();
-        for (form, _) in &sides {
-            let row: Vec<Quotient> = unknowns.iter().map(|u| coefficient(q, form, u)).collect();
-            matrix.push(row);
-        }
+        let (matrix, sides) = self.end_conditions();
         let whole = determinant(q, &matrix);
         let mut solution = Vec::new();
-        for column in 0..unknowns.len() {
+        for column in 0..UNKNOWNS.len() {
             let mut replaced = matrix.clone();
-            for (row, (_, side)) in replaced.iter_mut().zip(&sides) {
+            for (row, side) in replaced.iter_mut().zip(&sides) {
                 if let Some(entry) = row.get_mut(column) {
                     *entry = side.clone();
                 }
@@ -359,11 +362,48 @@ impl ImpactMap {
             solution.push(q.div(&determinant(q, &replaced), &whole)?);
         }
         for amplitude in solution.iter_mut().skip(2) {
-            *amplitude = q.mul(amplitude, &p("a"));
+            *amplitude = q.mul(amplitude, &q.parameter("a"));
         }
         solution.try_into().ok()
     }
+
+    /// Whether \[C, D, a cos phi, a sin phi\] meet the four end conditions, exactly.
+    #[must_use]
+    pub fn is_periodic(&self, orbit: &[Quotient; 4]) -> bool {
+        let q = &self.field;
+        let (matrix, sides) = self.end_conditions();
+        matrix.iter().zip(&sides).all(|(row, side)| {
+            let mut left = q.integer(0);
+            for (n, (entry, value)) in row.iter().zip(orbit).enumerate() {
+                let product = q.mul(entry, value);
+                // The columns of cos phi and sin phi have the factor a.
+                let term = if n < 2 { Some(product) } else { q.div(&product, &q.parameter("a")) };
+                let Some(term) = term else { return false };
+                left = q.add(&left, &term);
+            }
+            q.equal(&left, side)
+        })
+    }
+
+    /// The coefficients of C, D, cos phi, sin phi in x(0), x(T), x'(0), x'(T), and the values of
+    /// these on the orbit.
+    fn end_conditions(&self) -> (Vec<Vec<Quotient>>, Vec<Quotient>) {
+        let q = &self.field;
+        let p = |name: &str| q.parameter(name);
+        let forms = [
+            &self.displacement_after,
+            &self.displacement_before,
+            &self.velocity_after,
+            &self.velocity_before,
+        ];
+        let row = |form: &&Quotient| UNKNOWNS.iter().map(|u| coefficient(q, form, u)).collect();
+        let sides = vec![p("s"), p("s"), q.neg(&q.mul(&p("R_r"), &p("v"))), p("v")];
+        (forms.iter().map(row).collect(), sides)
+    }
 }
+
+/// What a periodic orbit determines.
+const UNKNOWNS: [&str; 4] = ["C", "D", "cos(phi)", "sin(phi)"];
 
 /// By expansion along the first row.
 fn determinant(q: &Quotients, matrix: &[Vec<Quotient>]) -> Quotient {

@@ -34,7 +34,8 @@ impl Quotients {
         let ring =
             PolynomialRing { parameters: names.iter().map(|name| (*name).to_owned()).collect() };
         let plain = ParameterField { ring, pairs: Vec::new() };
-        let position = |&(cos, sin): &(&str, &str)| Some((plain.position(cos)?, plain.position(sin)?));
+        let position =
+            |&(cos, sin): &(&str, &str)| Some((plain.position(cos)?, plain.position(sin)?));
         let pairs = pairs.iter().filter_map(position).collect();
         Self { field: ParameterField { pairs, ..plain } }
     }
@@ -80,7 +81,10 @@ impl Quotients {
         }
         let left = k.mul(&a.numerator, &b.denominator);
         let right = k.mul(&b.numerator, &a.denominator);
-        Quotient { numerator: k.add(&left, &right), denominator: k.mul(&a.denominator, &b.denominator) }
+        Quotient {
+            numerator: k.add(&left, &right),
+            denominator: k.mul(&a.denominator, &b.denominator),
+        }
     }
 
     /// -a.

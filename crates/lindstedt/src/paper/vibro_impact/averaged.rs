@@ -3,11 +3,11 @@
 use super::FAILED;
 use super::judge::Statement;
 use super::setting::Setting;
+use crate::Error;
 use crate::averaging::formulas;
 use crate::impact_map::{coefficient, replace};
 use crate::paper::{Row, plain};
 use crate::quotient::{Quotient, Quotients};
-use crate::Error;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePower};
 use lindstedt_coeff::parameters::ParameterFraction;
 use lindstedt_problems::vibro_impact;
@@ -125,17 +125,14 @@ pub(super) fn rows(order: usize) -> Result<Vec<Row>, Error> {
     let found = averaged(order)?;
     let q = &found.setting.field;
     let mut statements = statements()?.into_iter();
-    let mut rows = vec![
-        plain(
-            "(5)",
-            "z = a(t) cos psi(t)",
-            format!("no other free harmonic in x up to order {order}"),
-            "residual zero at every order".to_owned(),
-            found.single_harmonic,
-            "the equation is linear: the rates are R_n a and constants, at every order derived",
-        ),
-        loop_switched_off(&found, order),
-    ];
+    let mut rows = vec![plain(
+        "(5)",
+        "z = a(t) cos psi(t)",
+        format!("no other free harmonic in x up to order {order}"),
+        "residual zero at every order".to_owned(),
+        found.single_harmonic,
+        "the equation is linear: the rates are R_n a and constants, at every order derived",
+    )];
     rows.extend(statements.by_ref().take(2).flat_map(|s| s.rows()));
     rows.push(uncontrolled(&found, order)?);
     // a = C_0 e^(R t): da/dt = R a, linear in a; psi' constant.
@@ -154,25 +151,22 @@ pub(super) fn rows(order: usize) -> Result<Vec<Row>, Error> {
 }
 
 /// The forced response does not see the loop.
-fn loop_switched_off(found: &Averaged, order: usize) -> Row {
+pub(super) fn loop_switched_off(order: usize) -> Result<Row, Error> {
+    let found = averaged(order)?;
     let q = &found.setting.field;
     let free = |f: &Quotient| {
-        ["A", "B", "T"].iter().all(|name| q.is_zero(&coefficient_of(q, f, name)))
+        let parts = [&f.numerator, &f.denominator].map(|part| q.whole(part.clone()));
+        let names = ["A", "B", "T", "cos(alpha*T)", "sin(alpha*T)"];
+        names.iter().all(|name| parts.iter().all(|part| q.is_zero(&coefficient(q, part, name))))
     };
-    plain(
+    Ok(plain(
         "loop switched off",
         "the delay loop is switched off where no perturbations are present",
         "the forced response contains neither A nor B nor T".to_owned(),
         "delayed terms vanish on every T-periodic motion".to_owned(),
         found.response.iter().flatten().all(free),
         &format!("every order up to {order}"),
-    )
-}
-
-/// The derivative by a parameter that may stand in sines: whether it occurs at all.
-fn coefficient_of(q: &Quotients, f: &Quotient, name: &str) -> Quotient {
-    let in_numerator = coefficient(q, f, name);
-    if q.is_zero(&in_numerator) { coefficient(q, &q.whole(f.denominator.clone()), name) } else { in_numerator }
+    ))
 }
 
 /// "For A = B = 0 we get the uncontrolled solution": the rates then, against the roots of
@@ -213,7 +207,9 @@ fn uncontrolled(found: &Averaged, order: usize) -> Result<Row, Error> {
         "A = B = 0",
         "for A = B = 0 we get the uncontrolled solution",
         format!("{rates} to O(eps); at order 2 the frequency changes by {}", q.print(second)),
-        format!("the orders up to {order} {roots} the expansion of the roots of l^2 + c l + alpha^2"),
+        format!(
+            "the orders up to {order} {roots} the expansion of the roots of l^2 + c l + alpha^2"
+        ),
         exact && is_root,
         "(6) is the uncontrolled solution to O(eps) only: alpha in the place of \
          sqrt(alpha^2 - c^2/4)",

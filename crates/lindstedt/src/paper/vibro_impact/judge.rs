@@ -140,8 +140,7 @@ impl Statement {
             let holds = judgement.holds;
             let bracket = judgement.bracket.as_deref().filter(|_| correction.is_none());
             let repaired = correction.cloned().or(bracket.map(str::to_owned));
-            let findings =
-                Findings { holds, correction: repaired.clone(), ..Findings::default() };
+            let findings = Findings { holds, correction: repaired.clone(), ..Findings::default() };
             let mut evidence: Vec<String> = repaired.into_iter().collect();
             evidence.extend(judgement.bracket.clone().filter(|_| correction.is_some()));
             if !holds && evidence.is_empty() {
@@ -173,11 +172,9 @@ impl Statement {
 fn strip(tree: &Tree) -> &Tree {
     match tree {
         Tree::Negative(inner) => strip(inner),
-        Tree::Product(list) => list
-            .iter()
-            .map(strip)
-            .find(|part| matches!(part, Tree::Sum(_)))
-            .unwrap_or(tree),
+        Tree::Product(list) => {
+            list.iter().map(strip).find(|part| matches!(part, Tree::Sum(_))).unwrap_or(tree)
+        }
         other => other,
     }
 }

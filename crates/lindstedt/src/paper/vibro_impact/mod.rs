@@ -22,6 +22,9 @@ use judge::Statement;
 /// The words of a derivation that failed where it cannot.
 const FAILED: Error = Error::NoValue;
 
+/// Orders of the symbolic averaging beyond which nothing new is seen.
+const ORDERS: usize = 6;
+
 /// All formulas that are compared as expressions, in the order of the paper.
 fn statements() -> Result<Vec<Statement>, Error> {
     let mut list = equation::statements()?;
@@ -51,14 +54,22 @@ pub fn reread(label: &str, printed: &str) -> Result<Option<Vec<Row>>, Error> {
 }
 
 /// (1)-(4).
-pub(super) fn read_equation(_: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
-    section.rows.extend(equation::statements()?.iter().flat_map(Statement::rows));
+pub(super) fn read_equation(reader: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
+    for statement in equation::statements()? {
+        if statement.label == "(2)" {
+            section.rows.push(averaged::loop_switched_off(reader.options.order.min(ORDERS))?);
+        }
+        section.rows.extend(statement.rows());
+    }
     Ok(true)
 }
 
 /// (5)-(7).
-pub(super) fn read_averaging(reader: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
-    section.rows.extend(averaged::rows(reader.options.order.min(4))?);
+pub(super) fn read_averaging(
+    reader: &mut Reader<'_>,
+    section: &mut Section,
+) -> Result<bool, Error> {
+    section.rows.extend(averaged::rows(reader.options.order.min(ORDERS))?);
     Ok(true)
 }
 

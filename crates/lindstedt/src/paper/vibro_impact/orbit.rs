@@ -15,8 +15,25 @@ use std::sync::Arc;
 pub(super) fn extended(map: &ImpactMap) -> Quotients {
     let mut field = map.field.clone();
     let more = [
-        "alpha", "c", "lambda", "beta", "P0", "F", "pi", "k", "l", "T", "t", "tau", "phi", "C0",
-        "theta0", "cos(theta0)", "sin(theta0)", "dT", "R_tau",
+        "alpha",
+        "c",
+        "lambda",
+        "beta",
+        "P0",
+        "F",
+        "pi",
+        "k",
+        "l",
+        "T",
+        "t",
+        "tau",
+        "phi",
+        "C0",
+        "theta0",
+        "cos(theta0)",
+        "sin(theta0)",
+        "dT",
+        "R_tau",
     ];
     field.field.ring.parameters.extend(more.map(str::to_owned));
     let [cos, sin] = ["cos(theta0)", "sin(theta0)"].map(|name| field.field.position(name));
@@ -42,6 +59,8 @@ struct Derived {
     any: [Quotient; 4],
     /// The same for R = -c/2, alpha0 = lambda.
     uncontrolled: [Quotient; 4],
+    /// Whether the orbit meets the end conditions.
+    closes: bool,
     /// lambda^2.
     lambda_squared: Quotient,
     /// F^2 by the equation with damping.
@@ -52,7 +71,9 @@ fn derive() -> Option<Derived> {
     let map = ImpactMap::derive()?;
     let q = extended(&map);
     let p = |name: &str| q.parameter(name);
-    let [c, d, cos, sin] = map.periodic_orbit()?;
+    let found = map.periodic_orbit()?;
+    let closes = map.is_periodic(&found);
+    let [c, d, cos, sin] = found;
     let over = |f: &Quotient| q.div(f, &p("a"));
     let named = |f: &Quotient| replace(&q, f, &[("a", p("F"))]);
     let any = [named(&c)?, named(&d)?, named(&over(&cos)?)?, named(&over(&sin)?)?];
@@ -76,7 +97,7 @@ fn derive() -> Option<Derived> {
     let [x, y] = [q.mul(&p("P0"), &detuning), q.mul(&p("P0"), &loss)];
     let sum = q.add(&q.mul(&x, &x), &q.mul(&y, &y));
     let amplitude_squared = q.div(&q.div(&sum, &norm)?, &norm)?;
-    Some(Derived { q, any, uncontrolled, lambda_squared, amplitude_squared })
+    Some(Derived { q, closes, any, uncontrolled, lambda_squared, amplitude_squared })
 }
 
 /// The words of the formulas after (8) for a flight with these C, D, cos phi, sin phi.
@@ -102,9 +123,13 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     let derived = derive().ok_or(FAILED)?;
     let q = &derived.q;
     let p = |name: &str| q.parameter(name);
-    let residuals = "the solution put into the four end conditions: exact";
-    let statement = |label: &str, left: &str, printed: &str, setting: &Arc<Setting>, value| {
-        Statement {
+    let residuals = if derived.closes {
+        "the solution put into the four end conditions: exact"
+    } else {
+        "the solution does not meet the end conditions"
+    };
+    let statement =
+        |label: &str, left: &str, printed: &str, setting: &Arc<Setting>, value| Statement {
             label: label.to_owned(),
             left: left.to_owned(),
             printed: printed.to_owned(),
@@ -114,8 +139,7 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
             squared: false,
             independent: String::new(),
             remark: String::new(),
-        }
-    };
+        };
     // The polar form: C_0 cos(alpha0 t + theta_0) by the product of two rotations.
     let polar = Arc::new(
         with_pair(Setting::new(q.clone()), "theta0", "cos(theta0)", "sin(theta0)")
@@ -142,16 +166,18 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
         mixed.meaning.exponentials.push([base, p("C0")]);
     }
     let mixed = Arc::new(mixed);
-    let literal = Arc::new(Setting::new(q.clone()).only(&[
-        "P0", "alpha", "alpha0", "omega", "c", "pi", "k", "R_r", "s",
-    ]));
+    let literal = Arc::new(
+        Setting::new(q.clone())
+            .only(&["P0", "alpha", "alpha0", "omega", "c", "pi", "k", "R_r", "s"]),
+    );
     let [c, d, cos, sin] = derived.uncontrolled.clone();
     let delta = "Delta = E + 1/E - 2 cos(theta), E = e^(-beta c), theta = 2 beta lambda";
     let mut list = vec![
         Statement {
             squared: true,
             shown: "F = P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)".to_owned(),
-            independent: "squares compared; linear equations for the cosine and the sine".to_owned(),
+            independent: "squares compared; linear equations for the cosine and the sine"
+                .to_owned(),
             ..statement(
                 "(8)",
                 "amplitude ",
@@ -194,9 +220,10 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
             )
         },
         Statement {
-            shown: "{lambda [R_r (E - cos theta) - (1/E - cos theta)] + (1 + R_r) (c/2) sin theta} \
+            shown:
+                "{lambda [R_r (E - cos theta) - (1/E - cos theta)] + (1 + R_r) (c/2) sin theta} \
                     v/(omega lambda F Delta)"
-                .to_owned(),
+                    .to_owned(),
             independent: residuals.to_owned(),
             remark: "equal only for c = 0 as printed".to_owned(),
             ..statement(
@@ -245,6 +272,11 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
         ),
     ];
     let [_, d, _, _] = derived.any.clone();
+    for statement in &mut list {
+        if statement.independent.is_empty() {
+            "exact, as polynomials".clone_into(&mut statement.independent);
+        }
+    }
     list.push(Statement {
         shown: "D with alpha0 and -2 R in the places of lambda and c".to_owned(),
         remark: "the amplitudes printed with (c, lambda) meet the end conditions of the flight \

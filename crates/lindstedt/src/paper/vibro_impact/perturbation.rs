@@ -5,7 +5,7 @@ use super::judge::Statement;
 use super::orbit::{extended, with_pair};
 use super::setting::Setting;
 use crate::Error;
-use crate::impact_map::{ImpactMap, characteristic, replace};
+use crate::impact_map::{ImpactMap, characteristic, coefficient, replace};
 use crate::paper::{Findings, Row, plain};
 use crate::quotient::{Quotient, Quotients};
 use std::sync::Arc;
@@ -20,8 +20,7 @@ const WORDS: [&str; 16] = [
 fn in_flight(q: &Quotients) -> Setting {
     let mut setting = Setting::new(q.clone());
     setting = with_pair(setting, "alpha0*tau", "cos(alpha0*tau)", "sin(alpha0*tau)");
-    setting =
-        with_pair(setting, "omega*tau + phi", "cos(omega*tau + phi)", "sin(omega*tau + phi)");
+    setting = with_pair(setting, "omega*tau + phi", "cos(omega*tau + phi)", "sin(omega*tau + phi)");
     setting = with_exponential(setting, "R*tau", "exp(R*tau)");
     setting.word("R*tau", "R*tau")
 }
@@ -110,12 +109,10 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     let map = ImpactMap::derive().ok_or(FAILED)?;
     let q = extended(&map);
     let flight = Arc::new(in_flight(&q).only(&[&WORDS[..], &["R*tau"]].concat()));
-    let ends = Arc::new(
-        at_ends(&q).only(&[&WORDS[..], &["beta", "pi", "k", "dT"]].concat()),
-    );
+    let ends = Arc::new(at_ends(&q).only(&[&WORDS[..], &["beta", "pi", "k", "dT"]].concat()));
     let by_differentiation = "formal derivatives of (8) by C, D, phi and tau";
-    let statement = |label: &str, left: &str, printed: &str, setting: &Arc<Setting>, derived| {
-        Statement {
+    let statement =
+        |label: &str, left: &str, printed: &str, setting: &Arc<Setting>, derived| Statement {
             label: label.to_owned(),
             left: left.to_owned(),
             printed: printed.to_owned(),
@@ -125,8 +122,7 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
             squared: false,
             independent: String::new(),
             remark: String::new(),
-        }
-    };
+        };
     let mut list = vec![perturbed_flight(&q, &map)?];
     let times = Arc::new(Setting::new(q.clone()).only(&["pi", "k", "l", "omega", "dT"]));
     let period = times.read("2*pi*k/omega").ok_or(FAILED)?;
@@ -140,20 +136,28 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     {
         list.push(Statement {
             independent: by_differentiation.to_owned(),
-            remark: if label == "dx'" { "(11) has both terms right".to_owned() } else { String::new() },
+            remark: if label == "dx'" {
+                "(11) has both terms right".to_owned()
+            } else {
+                String::new()
+            },
             ..statement(label, left, printed, &flight, derived)
         });
     }
     let start = [&map.start_displacement, &map.start_velocity];
     let next = [of_next(&q, start[0]).ok_or(FAILED)?, of_next(&q, start[1]).ok_or(FAILED)?];
-    let [end_x, end_v] = [&map.end_displacement, &map.end_velocity]
-        .map(|f| with_length(&q, f));
+    let [end_x, end_v] = [&map.end_displacement, &map.end_velocity].map(|f| with_length(&q, f));
     let (end_x, end_v) = (end_x.ok_or(FAILED)?, end_v.ok_or(FAILED)?);
     let six = [
         ("(11), 1", "0 = ", "dC - a*dphi*sin(phi)", start[0].clone()),
         ("(11), 2", "delta x'_+ = ", "R*dC + dD*alpha0 - a*omega*dphi*cos(phi)", start[1].clone()),
         ("(11), 3", "0 = ", "dC' - a*dphi'*sin(phi)", next[0].clone()),
-        ("(11), 4", "delta x'_+' = ", "R*dC' + dD'*alpha0 - a*omega*dphi'*cos(phi)", next[1].clone()),
+        (
+            "(11), 4",
+            "delta x'_+' = ",
+            "R*dC' + dD'*alpha0 - a*omega*dphi'*cos(phi)",
+            next[1].clone(),
+        ),
         ("(11), 5", "0 = ", END_DISPLACEMENT, end_x),
         ("(11), 6", "delta x'_-' = ", END_VELOCITY, end_v),
     ];
@@ -184,6 +188,7 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     }
     let [b0, b1, b2] = map.characteristic.clone();
     let checks = orbit_values(&map).ok_or(FAILED)?;
+    let jacobian = if same_characteristic(&map) { "has" } else { "does not have" };
     for ((label, printed, derived), remark) in
         [("b_2, (16)", B[0], b2), ("b_1, (16)", B[1], b1), ("b_0, (16)", B[2], b0)]
             .into_iter()
@@ -191,9 +196,10 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     {
         let left = format!("{} = ", label.trim_end_matches(", (16)"));
         list.push(Statement {
-            independent: "the Jacobian of (phi, x'_+) by the implicit function theorem has trace \
-                          -b_1/b_2 and determinant b_0/b_2"
-                .to_owned(),
+            independent: format!(
+                "the Jacobian of (phi, x'_+) by the implicit function theorem {jacobian} trace \
+                 -b_1/b_2 and determinant b_0/b_2"
+            ),
             remark,
             ..statement(label, &left, printed, &ends, derived)
         });
@@ -205,8 +211,7 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
 fn perturbed_flight(q: &Quotients, map: &ImpactMap) -> Result<Statement, Error> {
     let p = |name: &str| q.parameter(name);
     let setting = in_flight(q);
-    let mut setting =
-        with_pair(setting, "omega*tau + phi + dphi", "cos(theta0)", "sin(theta0)");
+    let mut setting = with_pair(setting, "omega*tau + phi + dphi", "cos(theta0)", "sin(theta0)");
     let amplitude = setting.read("P0/(alpha^2 - omega^2)").ok_or(FAILED)?;
     let images = [
         ("C", q.add(&p("C"), &p("dC"))),
@@ -215,7 +220,7 @@ fn perturbed_flight(q: &Quotients, map: &ImpactMap) -> Result<Statement, Error> 
     ];
     // a stands for the amplitude, which is no polynomial.
     let shifted = replace(q, &map.displacement, &images).ok_or(FAILED)?;
-    let by_a = crate::impact_map::coefficient(q, &shifted, "a");
+    let by_a = coefficient(q, &shifted, "a");
     let rest = replace(q, &shifted, &[("a", q.integer(0))]).ok_or(FAILED)?;
     let derived = q.add(&rest, &q.mul(&by_a, &amplitude));
     setting = setting.only(&[
@@ -280,13 +285,31 @@ fn orbit_values(map: &ImpactMap) -> Option<[String; 3]> {
     ])
 }
 
+/// Whether the determinant of the equations and the Jacobian have the same roots.
+fn same_characteristic(map: &ImpactMap) -> bool {
+    let q = &map.field;
+    let [b0, b1, b2] = &map.characteristic;
+    q.equal(&q.mul(&map.trace, b2), &q.neg(b1)) && q.equal(&q.mul(&map.determinant, b2), b0)
+}
+
+/// Whether the equations are linear forms in the perturbations (Euler's relation of degree one)
+/// whose coefficients are free of them.
+fn is_linear(map: &ImpactMap) -> bool {
+    let q = &map.field;
+    let names = ["dC", "dD", "dphi", "dC'", "dD'", "dphi'"];
+    map.equations.iter().all(|form| {
+        let mut sum = q.integer(0);
+        for name in names {
+            sum = q.add(&sum, &q.mul(&coefficient(q, form, name), &q.parameter(name)));
+        }
+        q.equal(&sum, form)
+    })
+}
+
 /// (9)-(16) in the order of the paper.
 pub(super) fn rows() -> Result<Vec<Row>, Error> {
     let map = ImpactMap::derive().ok_or(FAILED)?;
-    let q = &map.field;
-    let [b0, b1, b2] = &map.characteristic;
-    let same = q.equal(&q.mul(&map.trace, b2), &q.neg(b1))
-        && q.equal(&q.mul(&map.determinant, b2), b0);
+    let same = same_characteristic(&map);
     let amplitude = super::orbit::statements()?.into_iter().find(|s| s.label == "(8)");
     let mut rows = Vec::new();
     for statement in statements()? {
@@ -317,8 +340,8 @@ pub(super) fn rows() -> Result<Vec<Row>, Error> {
                     "(14)",
                     "dC_l = a_1 gamma^l, dD_l = a_2 gamma^l, dphi_l = a_3 gamma^l",
                     "(12) is linear with constant coefficients".to_owned(),
-                    String::new(),
-                    true,
+                    "Euler's relation of degree one for each line".to_owned(),
+                    is_linear(&map),
                     "turns (12) into a linear system whose determinant must vanish",
                 ));
                 rows.push(plain(
