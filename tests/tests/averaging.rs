@@ -1,6 +1,8 @@
 //! Averaging (Krylov, Bogoliubov, Mitropolsky) against published coefficients, the expansion at
 //! fixed amplitude, characteristic roots and Hopf's bifurcation.
 
+#![allow(clippy::unwrap_used, clippy::panic)] // a test fails by panicking
+
 use lindstedt::algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt::averaging::{Averaging, AveragingSettings, Coefficient, average as average_problem};
 use lindstedt::coeff::PolynomialRing;

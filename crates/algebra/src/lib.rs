@@ -11,5 +11,5 @@ mod phase;
 mod ring;
 
 pub use averaging::{Averaged, AveragingAlgebra, LinearPart};
-pub use phase::{FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution};
+pub use phase::{Elementary, FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution};
 pub use ring::{RationalAlgebra, Rationals, Ring};

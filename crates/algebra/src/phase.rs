@@ -1,6 +1,7 @@
 //! Algebras of functions of the fast phase.
 
 use crate::RationalAlgebra;
+use rug::Rational;
 
 /// Shorthand for the constants of an algebra of functions.
 type Constant<A> = <<A as FunctionAlgebra>::Constants as crate::Ring>::Element;
@@ -29,6 +30,15 @@ pub trait FunctionAlgebra: RationalAlgebra {
     fn as_constant(&self, f: &Self::Element) -> Option<Constant<Self>>;
     /// ln |f|, where it lies in the algebra (in the Lobachevsky ring: f = cos psi).
     fn log_abs(&self, f: &Self::Element) -> Option<Self::Element>;
+    /// g(f) for an elementary function g, where the algebra can evaluate it: algebras of values
+    /// can, exact rings have nothing.
+    fn apply(&self, _function: &Elementary, _f: &Self::Element) -> Option<Self::Element> {
+        None
+    }
+    /// Whether f = g, as far as the algebra can tell: exactly, or within its rounding errors.
+    fn agrees(&self, f: &Self::Element, g: &Self::Element) -> bool {
+        f == g
+    }
     /// The number of terms of f, for the work counters.
     fn terms(&self, f: &Self::Element) -> usize;
     /// The number of delays that the algebra knows; 0 where time is the phase alone.
@@ -71,6 +81,20 @@ pub trait PhaseAlgebra: FunctionAlgebra {
     /// # Errors
     /// [`PhaseError`] when the solution does not lie in this algebra.
     fn resolve(&self, f: &Self::Element) -> Result<Resolution<Self>, PhaseError>;
+}
+
+/// An elementary function of one variable.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Elementary {
+    /// y^q: for y != 0 if q is an integer, for y > 0 otherwise.
+    Power(Rational),
+    /// e^y.
+    Exp,
+    /// sin y.
+    Sin,
+    /// cos y.
+    Cos,
 }
 
 /// f = cos_amplitude cos psi + sin_amplitude sin psi + (response'' + response).

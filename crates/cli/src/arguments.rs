@@ -22,6 +22,8 @@ pub enum Command {
     Derive(DeriveOptions),
     /// The Melnikov threshold of homoclinic chaos: value, zeros, cusps, curves, surfaces.
     Threshold(ThresholdOptions),
+    /// Stability of the vibro-impact orbit: the averaged prediction beside the exact truth, charts.
+    Stability(StabilityOptions),
     /// Read the paper: derive it, compare it with the print, tabulate what is true.
     Paper(PaperOptions),
 }
@@ -63,7 +65,7 @@ pub struct ProblemsOptions {
 
 #[derive(Debug, Args)]
 pub struct DeriveOptions {
-    /// power-law, pendulum, duffing or van-der-pol.
+    /// power-law, pendulum, vibro-impact, duffing or van-der-pol.
     pub problem: String,
     /// The highest order.
     #[arg(long, default_value_t = 4, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
@@ -71,7 +73,7 @@ pub struct DeriveOptions {
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// What the amplitude is: x(0), or the first harmonic.
+    /// What the amplitude is: x(0), the first harmonic, or free to drift (averaging).
     #[arg(long, value_enum)]
     pub normalisation: Option<Normalisation>,
     /// The driver, or the energy integral (frequency alone; power-law and pendulum).
@@ -101,6 +103,69 @@ pub struct ThresholdOptions {
     pub precision: Precision,
 }
 
+#[derive(Debug, Args)]
+pub struct StabilityOptions {
+    /// vibro-impact.
+    pub problem: String,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3); branch=+ or branch=-.
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// NAME=LO..HI:COUNT; at most two, the first along the horizontal axis.
+    #[arg(long, value_name = "NAME=LO..HI:COUNT")]
+    pub sweep: Vec<String>,
+    /// What to compute.
+    #[arg(long, value_enum, default_value_t = PredictorChoice::Both)]
+    pub predictor: PredictorChoice,
+    /// Which orbit meets which flow in the averaged prediction.
+    #[arg(long, value_enum, default_value_t = VariantChoice::E)]
+    pub variant: VariantChoice,
+    /// The order of the averaged flow.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub order: u32,
+    /// How the velocity kick of B is treated in the characteristic function.
+    #[arg(long, value_enum, default_value_t = KickChoice::Mean)]
+    pub kick: KickChoice,
+    /// A chart (.svg) or a table (.csv) of the sweeps; may be given twice.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Vec<PathBuf>,
+    #[command(flatten)]
+    pub precision: Precision,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PredictorChoice {
+    /// The averaged prediction (KBM) alone.
+    Kbm,
+    /// The exact characteristic function alone.
+    Exact,
+    /// Both, with their agreement.
+    Both,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "kebab-case")]
+pub enum VariantChoice {
+    /// Orbit and map of the equivalent flow.
+    #[value(name = "E")]
+    E,
+    /// The true orbit's saltation with the equivalent flow.
+    #[value(name = "S")]
+    S,
+    /// The paper's letter.
+    #[value(name = "P")]
+    P,
+    /// The averaging that knows of the impact within the delay.
+    ImpactAware,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum KickChoice {
+    None,
+    Mean,
+    Before,
+    After,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Route {
     /// Solution and frequency, checked by substitution.
@@ -123,6 +188,8 @@ pub enum Normalisation {
     Initial,
     /// The first harmonic of x is A cos.
     Fundamental,
+    /// The first harmonic is a cos(psi), a drifts: averaging (KBM).
+    Free,
 }
 
 #[derive(Debug, Args)]

@@ -2,12 +2,14 @@
 //! with files and a terminal.
 
 mod arguments;
+mod averaging;
 mod derive;
 mod failure;
 mod output;
 mod paper;
 mod problems;
 mod session;
+mod stability;
 mod threshold;
 
 use arguments::{Arguments, Command};
@@ -26,6 +28,7 @@ fn main() -> ExitCode {
         Command::Problems(options) => problems::run(options, &session),
         Command::Derive(options) => derive::run(options, &session),
         Command::Threshold(options) => threshold::run(options, &session),
+        Command::Stability(options) => stability::run(options, &session),
         Command::Paper(options) => paper::run(options, &session),
     };
     match outcome {

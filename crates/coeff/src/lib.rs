@@ -5,6 +5,7 @@ pub mod amplitude;
 pub mod ball;
 pub mod closed_forms;
 pub mod digits;
+pub mod floats;
 pub mod parameters;
 pub mod polynomial;
 pub mod print;

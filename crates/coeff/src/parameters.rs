@@ -206,8 +206,7 @@ fn split_linear(p: &Polynomial) -> Option<((PowerProduct, Rational), LinearForm)
     if linear.values().next()?.is_negative() {
         content = -content;
     }
-    let integral =
-        |(index, c): (u16, Rational)| (index, Rational::from(c / &content).numer().clone());
+    let integral = |(index, c): (u16, Rational)| (index, (c / &content).numer().clone());
     let form: LinearForm = linear.into_iter().map(integral).collect();
     (form.len() > 1).then_some(((monomial, content), form))
 }

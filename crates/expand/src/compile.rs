@@ -6,7 +6,7 @@
 
 use crate::ExpandError;
 use crate::excitation::Excitation;
-use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Ring};
+use lindstedt_algebra::{Elementary, FunctionAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
 use rug::Rational;
@@ -45,8 +45,19 @@ pub(crate) enum Node<E> {
     Product(NodeId, NodeId),
     /// ln|node|.
     Logarithm(NodeId),
-    /// exp(node), node without a term of order zero.
+    /// exp(node); in exact rings without a term of order zero.
     Exponential(NodeId),
+    /// node^q for a rational number q that is no natural number.
+    Power(NodeId, Rational),
+    /// sin(node) or cos(node); `partner` is the other one.
+    Circular {
+        /// The argument.
+        argument: NodeId,
+        /// The node of the other function of the same argument.
+        partner: NodeId,
+        /// Whether this is the cosine.
+        cosine: bool,
+    },
     /// The j-th derivative F^(j)(node) = sum_n F_{n+j} node^n/n!, node without a term of order
     /// zero, and the constant F_j.
     Formal {
@@ -125,7 +136,8 @@ fn degree<E>(nodes: &[Node<E>], root: NodeId) -> usize {
             Node::Displacement | Node::Velocity | Node::Delayed { .. } => 1,
             Node::Sum(terms) => terms.iter().map(|(_, t)| degrees[*t]).max().unwrap_or(0),
             Node::Product(a, b) => degrees[*a].saturating_add(degrees[*b]),
-            Node::Logarithm(a) | Node::Exponential(a) => degrees[*a],
+            Node::Logarithm(a) | Node::Exponential(a) | Node::Power(a, _) => degrees[*a],
+            Node::Circular { argument, .. } => degrees[*argument],
             Node::Formal { argument, .. } => degrees[*argument],
         });
     }
@@ -174,7 +186,13 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
                 Node::Exponential(self.node(argument)?)
             }
             Expression::Function(function @ (Function::Cos | Function::Sin), argument) => {
-                return self.forcing(*function, argument).ok_or_else(unsupported);
+                if let Some(forcing) = self.forcing(*function, argument) {
+                    return Ok(forcing);
+                }
+                let cosine = *function == Function::Cos;
+                let elementary = if cosine { Elementary::Cos } else { Elementary::Sin };
+                self.offered(&elementary).then_some(()).ok_or_else(unsupported)?;
+                return self.circular(argument, cosine);
             }
             Expression::Delayed(inner, delay) => {
                 let position = self.excitation.delays.iter().position(|known| known == &**delay);
@@ -197,6 +215,23 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
         let node = self.push(Node::Forcing { multiple, sine });
         let sign = Rational::from(if sine && signed < 0 { -1 } else { 1 });
         Some(self.push(Node::Sum(vec![(sign, node)])))
+    }
+
+    /// Whether the algebra evaluates this function at all: then it does so at 1.
+    fn offered(&self, function: &Elementary) -> bool {
+        self.algebra.apply(function, &self.algebra.one()).is_some()
+    }
+
+    /// The sine and the cosine, one after the other, and of them the one asked for.
+    fn circular(&mut self, argument: &Expression, cosine: bool) -> Result<NodeId, ExpandError> {
+        let argument = self.node(argument)?;
+        let known = |node: &Node<_>| matches!(node, Node::Circular { argument: a, cosine: false, .. } if *a == argument);
+        let sine = self.nodes.iter().position(known).unwrap_or(self.nodes.len());
+        if sine == self.nodes.len() {
+            self.nodes.push(Node::Circular { argument, partner: sine + 1, cosine: false });
+            self.nodes.push(Node::Circular { argument, partner: sine, cosine: true });
+        }
+        Ok(sine + usize::from(cosine))
     }
 
     fn sum(&mut self, terms: &[Expression]) -> Result<NodeId, ExpandError> {
@@ -228,7 +263,8 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
         Ok(product)
     }
 
-    /// Integer powers by multiplication; otherwise base^exponent = exp(exponent ln base).
+    /// Natural powers by multiplication, other rational ones where the algebra evaluates them;
+    /// otherwise base^exponent = exp(exponent ln base).
     fn power(&mut self, base: &Expression, exponent: &Expression) -> Result<NodeId, ExpandError> {
         if let Expression::Number(q) = exponent {
             let integer = q.is_integer().then(|| q.numer().to_u32()).flatten();
@@ -236,6 +272,11 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
                 let whole = Expression::Power(Box::new(base.clone()), Box::new(exponent.clone()));
                 ExpandError::UnsupportedTerm { term: whole.print("eps", Style::Text) }
             };
+            let natural = q.is_integer() && !q.is_negative();
+            if !natural && self.offered(&Elementary::Power(q.clone())) {
+                let base = self.node(base)?;
+                return Ok(self.push(Node::Power(base, q.clone())));
+            }
             // Multiplying repeatedly: a power as long as the expansion is a different problem.
             let n = integer.filter(|&n| n <= 1000).ok_or_else(unsupported)?;
             if n == 0 {

@@ -258,7 +258,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
             .filter(|_| algebra.is_zero(&by_v[root][0]))
             .ok_or(ExpandError::NotWeaklyNonlinear)?;
         let order_zero = evaluator.coefficient(root, 0)?;
-        if order_zero != algebra.scale_by(&x0, &stiffness) {
+        if !algebra.agrees(&order_zero, &algebra.scale_by(&x0, &stiffness)) {
             return Err(ExpandError::NotWeaklyNonlinear);
         }
         if equation.has_velocity() && stiffness != constants.one() {

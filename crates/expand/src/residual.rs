@@ -191,6 +191,12 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
                 Node::Formal { derivative, argument, .. } => {
                     (slope(id), product(&slope(*argument), &values[*derivative]))
                 }
+                // Only algebras of values have these: nothing to verify identically.
+                Node::Power(..) | Node::Circular { .. } => {
+                    return Err(ExpandError::UnsupportedTerm {
+                        term: "the identical residual of an elementary function".into(),
+                    });
+                }
                 _ => continue,
             };
             let minus_one = Rational::from(-1);

@@ -5,9 +5,9 @@ use crate::characteristic::{Characteristic, Kick};
 use crate::complex::Complex;
 use crate::equivalent::{Drive, equivalent_orbit};
 use crate::error::ImpactError;
-use crate::flow::{Flow, Scratch};
+use crate::flow::{Flow, Scratch, free_delay};
 use crate::map::{ImpactMap, Verdict};
-use crate::orbit::orbit;
+use crate::orbit::{Orbit, orbit};
 use crate::parameters::Parameters;
 use crate::prediction::{Variant, predict};
 use crate::zeros::{exact_verdict, leading_modulus};
@@ -56,6 +56,10 @@ impl Axis {
             return self.low;
         }
         self.low + (self.high - self.low) * (n as f64 / (self.count - 1) as f64)
+    }
+    /// Whether the parameter acts through the delay loop only.
+    fn is_gain(&self) -> bool {
+        matches!(self.parameter, Swept::DisplacementGain | Swept::VelocityGain)
     }
     fn set(&self, n: usize, parameters: &mut Parameters<f64>) {
         let slot = match self.parameter {
@@ -150,9 +154,13 @@ pub fn chart(
             let mut parameters = base.clone();
             plan.rows.set(row, &mut parameters);
             let mut seeds = Vec::new();
+            let mut fixed = Fixed::new(&parameters, plan);
             for (column, point) in line.iter_mut().enumerate() {
                 plan.columns.set(column, &mut parameters);
-                *point = evaluate(&parameters, plan, scratch, &mut seeds);
+                if !plan.columns.is_gain() {
+                    fixed = Fixed::new(&parameters, plan);
+                }
+                *point = evaluate(&parameters, &fixed, plan, scratch, &mut seeds);
             }
             let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
             if observer(finished) { Ok(()) } else { Err(ImpactError::Cancelled) }
@@ -161,34 +169,60 @@ pub fn chart(
     Ok(Chart { plan: *plan, points })
 }
 
+/// What does not depend on the gains A, B.
+struct Fixed {
+    time: f64,
+    delay: Complex<f64>,
+    drive: Result<Drive<f64>, ImpactError>,
+    orbit: Option<Result<Orbit<f64>, ImpactError>>,
+}
+
+impl Fixed {
+    fn new(parameters: &Parameters<f64>, plan: &Plan) -> Self {
+        let time = parameters.period();
+        let needs_orbit = plan.exact.is_some()
+            || matches!(
+                plan.predictor,
+                Some((Predictor::Kbm(Variant::S) | Predictor::ImpactAware(_), _))
+            );
+        Self {
+            time,
+            delay: free_delay(parameters, &time),
+            // Refuses c >= 2 alpha, as the single prediction does.
+            drive: Flow::uncontrolled(parameters).and_then(|_| Drive::new(parameters)),
+            orbit: needs_orbit.then(|| orbit(parameters)),
+        }
+    }
+    fn orbit(&self) -> Option<&Orbit<f64>> {
+        self.orbit.as_ref().and_then(|found| found.as_ref().ok())
+    }
+}
+
 fn evaluate(
     parameters: &Parameters<f64>,
+    fixed: &Fixed,
     plan: &Plan,
     scratch: &mut Scratch<f64>,
     seeds: &mut Vec<Complex<f64>>,
 ) -> Point {
     let mut point = EMPTY;
-    match plan.predictor {
-        Some((Predictor::Kbm(variant), order)) => {
-            if let Ok(map) = predicted_map(parameters, variant, order, scratch) {
+    match (plan.predictor, fixed.orbit()) {
+        (Some((Predictor::Kbm(variant), order)), _) => {
+            if let Ok(map) = predicted_map(parameters, fixed, variant, order, scratch) {
                 point.predicted = Some(map.verdict());
                 point.predicted_radius = map.spectral_radius();
             }
         }
-        Some((Predictor::ImpactAware(kick), order)) => {
-            let found =
-                orbit(parameters).and_then(|orbit| impact_aware(parameters, &orbit, kick, order));
-            if let Ok(found) = found {
+        (Some((Predictor::ImpactAware(kick), order)), Some(orbit)) => {
+            if let Ok(found) = impact_aware(parameters, orbit, kick, order) {
                 point.predicted = Some(found.verdict());
                 point.predicted_radius = found.spectral_radius();
             }
         }
-        None => {}
+        _ => {}
     }
-    if let Some(kick) = plan.exact
-        && let Ok(orbit) = orbit(parameters)
-    {
-        let g = Characteristic::new(parameters, &orbit, kick);
+    if let (Some(kick), Some(orbit)) = (plan.exact, fixed.orbit()) {
+        let g = Characteristic::new(parameters, orbit, kick);
         point.exact = Some(exact_verdict(&g).0);
         if plan.radius {
             point.exact_radius = leading_modulus(&g, seeds).unwrap_or(f64::NAN);
@@ -199,21 +233,21 @@ fn evaluate(
 
 fn predicted_map(
     parameters: &Parameters<f64>,
+    fixed: &Fixed,
     variant: Variant,
     order: usize,
     scratch: &mut Scratch<f64>,
 ) -> Result<ImpactMap<f64>, ImpactError> {
-    // Refuses c >= 2 alpha, as the single prediction does.
-    Flow::uncontrolled(parameters)?;
-    scratch.fill(parameters, &parameters.period(), order);
+    scratch.fill(parameters, &fixed.time, &fixed.delay, order);
     let flow = scratch.flow().ok_or(ImpactError::OrderZero)?;
     if variant == Variant::E {
         // Without the polynomial, which the verdict does not need.
-        let drive = Drive::new(parameters)?;
-        let orbit = equivalent_orbit(&flow, &drive)?;
-        return Ok(ImpactMap::of_orbit(&flow, &drive, &orbit));
+        let drive = fixed.drive.as_ref().map_err(Clone::clone)?;
+        let orbit = equivalent_orbit(&flow, drive)?;
+        return Ok(ImpactMap::of_orbit(&flow, drive, &orbit));
     }
-    Ok(predict(variant, parameters, &flow, None)?.map)
+    Flow::uncontrolled(parameters)?;
+    Ok(predict(variant, parameters, &flow, fixed.orbit())?.map)
 }
 
 /// How prediction and truth compare over a chart.

@@ -147,7 +147,7 @@ fn largest_maximum<S: Real>(
                 continue;
             }
             if rising.is_positive() && falling.is_negative() {
-                let found = maximum(flight, &at(low), &at(high), &at(cut), &acceleration);
+                let found = maximum(flight, &at(low), &at(high), &at(cut));
                 best = larger(best, found.ok_or_else(undecided)?);
                 continue;
             }
@@ -163,16 +163,9 @@ fn largest_maximum<S: Real>(
 
 /// The maximum in an interval where x is proved concave and x' changes sign: Newton's method on
 /// x', then |t - t*| <= |x'|/min|x''|, and x(t*) - x(t) <= |x'| |t - t*|.
-fn maximum<S: Real>(
-    flight: &impl Flight<S>,
-    low: &S,
-    high: &S,
-    start: &S,
-    steepness: &S,
-) -> Option<Clearance<S>> {
+fn maximum<S: Real>(flight: &impl Flight<S>, low: &S, high: &S, start: &S) -> Option<Clearance<S>> {
     let (_, third) = flight.bounds();
     let width = (high.clone() - low).magnitude_above();
-    let least = steepness.magnitude_below() - third * width;
     let (mut t, mut last) = (start.clone(), f64::INFINITY);
     let (mut low, mut high) = (low.to_f64(), high.to_f64());
     for _ in 0..200 {
@@ -183,10 +176,15 @@ fn maximum<S: Real>(
             return None;
         }
         if size == 0.0 || (size >= last && size < 1e-9 * width) {
-            // Where the subdivision's bound of |x''| is exhausted, take the one around t.
-            let near = acceleration.magnitude_below() - third * 4.0 * size;
-            let slope = if least > 0.0 { least } else { near };
-            let error = velocity.clone() / velocity.number(slope.max(f64::MIN_POSITIVE));
+            // Within `reach` of t |x''| stays above `slope`; the zero is in there if x' falls by
+            // more than |x'(t)| over it.
+            let (speed, bend) = (velocity.magnitude_above(), acceleration.magnitude_below());
+            let reach = 4.0 * speed / bend;
+            let slope = bend - third * reach;
+            if slope.is_nan() || slope <= bend / 2.0 {
+                return None;
+            }
+            let error = velocity.clone() / velocity.number(slope);
             let margin = margin.widened(&(error.clone() * &velocity));
             return Some(Clearance { margin, time: t.widened(&error) });
         }

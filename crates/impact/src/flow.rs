@@ -38,8 +38,15 @@ pub struct Rates<S> {
 /// Cost: order^2 multiplications. Certified for balls; for doubles a few ulp times the order.
 pub fn rates<S: Real>(parameters: &Parameters<S>, order: usize) -> Rates<S> {
     let mut scratch = Scratch { terms: Vec::new(), delayed: Vec::new() };
-    scratch.fill(parameters, &parameters.period(), order);
+    let time = parameters.period();
+    scratch.fill(parameters, &time, &free_delay(parameters, &time), order);
     Rates { terms: scratch.terms }
+}
+
+/// e_0 = exp(-i alpha T).
+pub(crate) fn free_delay<S: Real>(parameters: &Parameters<S>, time: &S) -> Complex<S> {
+    let (sin, cos) = (parameters.alpha.clone() * time).sin_cos();
+    Complex::new(cos, -sin)
 }
 
 /// Buffers of the recursion, reused along a chart.
@@ -54,14 +61,19 @@ impl<S: Real> Scratch<S> {
         Self { terms: Vec::with_capacity(capacity), delayed: Vec::with_capacity(capacity) }
     }
     /// Runs the recursion; allocates only while the buffers grow.
-    pub(crate) fn fill(&mut self, parameters: &Parameters<S>, time: &S, order: usize) {
+    pub(crate) fn fill(
+        &mut self,
+        parameters: &Parameters<S>,
+        time: &S,
+        delay: &Complex<S>,
+        order: usize,
+    ) {
         let Parameters { alpha, damping, displacement_gain: a, velocity_gain: b, .. } = parameters;
         let zero = alpha.integer(0);
         self.terms.clear();
         self.delayed.clear();
-        let (sin, cos) = (alpha.clone() * time).sin_cos();
         self.terms.push(Complex::new(zero.clone(), alpha.clone()));
-        self.delayed.push(Complex::new(cos, -sin));
+        self.delayed.push(delay.clone());
         let half_inverse = alpha.integer(1) / alpha.doubled();
         for m in 1..=order {
             let (lambda, e) = (&self.terms, &self.delayed);

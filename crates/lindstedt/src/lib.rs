@@ -20,6 +20,7 @@ mod error;
 pub mod impact_map;
 pub mod multimodular;
 pub mod number;
+pub mod numeric;
 pub mod paper;
 pub mod quotient;
 mod value;

@@ -12,7 +12,11 @@ pub(crate) fn problem() -> Problem {
         impact: None,
         synchronous: None,
         small: "rho".into(),
-        conditions: vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude],
+        conditions: vec![
+            Condition::InitialAmplitude,
+            Condition::FundamentalAmplitude,
+            Condition::FreeAmplitude,
+        ],
         amplitude: AmplitudeRole::InSmallParameter,
         parameters: vec![
             ParameterCard {

@@ -13,7 +13,7 @@ pub(crate) fn problem() -> Problem {
         impact: None,
         synchronous: None,
         small: "eps".into(),
-        conditions: vec![Condition::LimitCycle],
+        conditions: vec![Condition::LimitCycle, Condition::FreeAmplitude],
         amplitude: AmplitudeRole::Determined,
         parameters: vec![ParameterCard {
             name: "eps".into(),

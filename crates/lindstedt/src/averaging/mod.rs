@@ -73,7 +73,9 @@ pub struct Averaging {
     pub amplitude_rate: Vec<Vec<RateTerm>>,
     /// B_n; the one of order zero is omega_0.
     pub phase_rate: Vec<Vec<RateTerm>>,
-    /// Terms of x, order by order.
+    /// u_0 = a cos psi + the forced response, u_1, ... as text and as LaTeX.
+    pub solution: Vec<[String; 2]>,
+    /// Terms of u_n.
     pub terms: Vec<usize>,
     /// Whether the coefficients are exact (rational numbers or formulas); otherwise they are
     /// certified and the residual encloses zero.
@@ -164,6 +166,7 @@ struct Over<K: RationalAlgebra> {
     frequency: K::Element,
     expansion: AveragedExpansion<Torus<K>>,
     checked_orders: usize,
+    solution: Vec<[String; 2]>,
     terms: Vec<usize>,
 }
 
@@ -270,7 +273,7 @@ impl<'a> Task<'a> {
         Ok((Torus::new(ring, frequency.clone(), forcing, delays), frequency))
     }
 
-    fn derive<K: Coefficients>(
+    fn derive<K: Coefficients + Print>(
         &self,
         (algebra, frequency): (Torus<K>, K::Element),
         values: &dyn Fn(&str) -> Option<K::Element>,
@@ -284,7 +287,9 @@ impl<'a> Task<'a> {
         observer(Progress::Checking);
         let checked_orders = check_averaged(&algebra, &graph, &expansion)?;
         let terms = expansion.solution.iter().map(|x| algebra.terms(x)).collect();
-        Ok(Over { frequency, expansion, checked_orders, terms })
+        let print = |x| [Style::Text, Style::Latex].map(|style| algebra.print(x, style));
+        let solution = expansion.solution.iter().map(print).collect();
+        Ok(Over { frequency, expansion, checked_orders, solution, terms })
     }
 
     fn finish<K: RationalAlgebra>(
@@ -310,6 +315,7 @@ impl<'a> Task<'a> {
             checked_orders: over.checked_orders,
             amplitude_rate: rates(&over.expansion.amplitude_rate)?,
             phase_rate,
+            solution: over.solution.clone(),
             terms: over.terms.clone(),
             exact,
         })
