@@ -181,7 +181,7 @@ pub fn derivation(
             let name = k.ring.parameters.get(usize::from(index));
             let Some(image) = name.and_then(|name| image(name)) else { continue };
             let lowered = monomial.times(&PowerProduct::power(symbol, -1));
-            let factor = Rational::from(coefficient * Rational::from(exponent));
+            let factor = coefficient * Rational::from(exponent);
             let term = Sparse::term(&lindstedt_algebra::Rationals, lowered, factor);
             // The ring operations reduce sines, a bare polynomial is taken as it is.
             let rest = substitute(q, &term, &[]);

@@ -135,9 +135,8 @@ fn numbers(node: &Tree, _: &[String], report: &mut Report<'_>) {
 fn exchanges(tree: &Tree, paths: &[Vec<usize>], list: &mut Vec<Edit>) {
     let mut leaves: Vec<(&Vec<usize>, &Tree)> = Vec::new();
     for path in paths {
-        match tree.at(path) {
-            Some(node @ (Tree::Symbol(_) | Tree::Apply(..))) => leaves.push((path, node)),
-            _ => {}
+        if let Some(node @ (Tree::Symbol(_) | Tree::Apply(..))) = tree.at(path) {
+            leaves.push((path, node));
         }
     }
     for (n, (first, a)) in leaves.iter().enumerate() {

@@ -203,7 +203,7 @@ impl Setting {
             let pair = pairs.iter().find(|(cos, sin)| index == *cos || index == *sin);
             let Some(&(cos, _)) = pair else { return n };
             let t = Rational::from((u32::from(cos) * 2 + 3, u32::from(cos) * 3 + 8));
-            let square = Rational::from(t.clone().pow(2));
+            let square = t.clone().pow(2);
             let below = Rational::from(&square + 1);
             if index == cos { (1 - square) / below } else { t * 2 / below }
         };
