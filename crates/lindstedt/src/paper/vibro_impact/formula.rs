@@ -264,7 +264,7 @@ mod tests {
         for text in ["a +", "(a", "a)", "a b", "2a", "^2", ""] {
             assert!(parse(text).is_none(), "{text}");
         }
-        assert_eq!(completions("a*(b - c").len(), 3);
+        assert_eq!(completions("a*(b - c").len(), 2);
         assert!(completions("a*(b - c)").is_empty());
     }
 }
