@@ -2,11 +2,12 @@
 
 use crate::arguments::Format;
 use lindstedt::equation::print::Style;
-use lindstedt::trade::{LeftOut, Plan, Reason, Row, Trade, pareto, recommend};
+use lindstedt::trade::{LeftOut, Plan, Reason, Row, Trade, pareto, recommend, recommend_for_many};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
 const MEMORY: &str = "estimated: numbers kept at once times their size";
+const AGAIN: &str = "for one more value of the small parameter";
 const ERRORS: &str = "relative errors of the period";
 
 /// Where the row's method has harmonics instead of digits.
@@ -24,6 +25,7 @@ fn row_json(row: &Row, on_front: bool) -> Json {
         "digits": row.method.digits(),
         "harmonics": harmonics(row),
         "seconds": row.seconds,
+        "seconds_again": row.seconds_again,
         "memory_bytes": row.bytes,
         "period": period(row),
         "true_error": row.true_error,
@@ -42,6 +44,7 @@ fn reason(reason: &Reason, plan: &Plan) -> String {
     match reason {
         Reason::TooLong => format!("longer than {} s", plan.run_seconds),
         Reason::Predicted(s) if s.is_infinite() => "a lower order takes too long".to_owned(),
+        Reason::Predicted(s) if *s > 1e4 => "predicted to take hours".to_owned(),
         Reason::Predicted(s) => format!("predicted to take {s:.0} s"),
         Reason::Refused(error) => error.to_string(),
         Reason::NotIntegrated(error) => error.to_string(),
@@ -64,8 +67,13 @@ pub fn json(trade: &Trade, plan: &Plan, wanted: Option<f64>) -> Json {
     let at: serde_json::Map<String, Json> =
         trade.truth.at.iter().map(|(k, v)| (k.clone(), json!(v.to_string()))).collect();
     let recommendation = wanted.map(|error| {
-        let row = recommend(&trade.rows, error).and_then(|i| trade.rows.get(i));
-        json!({"error": error, "row": row.map(|row| row_json(row, true))})
+        let many = recommend_for_many(&trade.rows, error);
+        let (one, many) = (recommend(&trade.rows, error), many);
+        let row = |i: Option<usize>| {
+            let i = i?;
+            Some(row_json(trade.rows.get(i)?, front.contains(&i)))
+        };
+        json!({"error": error, "row": row(one), "for_many": row(many)})
     });
     let digits = trade.truth.period.prec() as usize * 3 / 10 - 18;
     json!({
@@ -74,6 +82,7 @@ pub fn json(trade: &Trade, plan: &Plan, wanted: Option<f64>) -> Json {
         "parameter": trade.problem.small,
         "small": trade.truth.small.to_string(),
         "period": trade.truth.period.to_string_radix(10, Some(digits)),
+        "period_error": trade.truth.uncertainty,
         "source": trade.truth.source,
         "errors": ERRORS,
         "memory": MEMORY,
@@ -89,18 +98,19 @@ pub fn json(trade: &Trade, plan: &Plan, wanted: Option<f64>) -> Json {
 pub fn csv(trade: &Trade) -> String {
     let front = pareto(&trade.rows);
     let mut text =
-        "tier,order,digits,harmonics,seconds,memory_bytes,true_error,stated_error,pareto\n"
+        "tier,order,digits,harmonics,seconds,seconds_again,memory_bytes,true_error,stated_error,pareto\n"
             .to_owned();
     let number = |n: Option<usize>| n.map_or(String::new(), |n| n.to_string());
     for (i, row) in trade.rows.iter().enumerate() {
         let _ = writeln!(
             text,
-            "{},{},{},{},{:e},{},{:e},{:e},{}",
+            "{},{},{},{},{:e},{:e},{},{:e},{:e},{}",
             row.method.name(),
             number(row.order),
             row.method.digits(),
             number(harmonics(row)),
             row.seconds,
+            row.seconds_again,
             row.bytes,
             row.true_error,
             row.stated_error,
@@ -139,7 +149,7 @@ pub fn text(trade: &Trade, plan: &Plan, wanted: Option<f64>, format: Format) -> 
     let _ = writeln!(text, "{}: {equation} = 0 at {}", trade.problem.name, at.join(", "));
     let _ = writeln!(
         text,
-        "T = {} ({}); {ERRORS}; time: best of {}; memory {MEMORY}; * is on the Pareto front.",
+        "T = {} ({}); {ERRORS}; time: best of {}; again: {AGAIN}; memory {MEMORY}; * is on the Pareto front.",
         trade.truth.period.to_string_radix(10, Some(digits)),
         trade.truth.source,
         plan.repeats,
@@ -150,21 +160,21 @@ pub fn text(trade: &Trade, plan: &Plan, wanted: Option<f64>, format: Format) -> 
         _ => ("  ", ""),
     };
     let begin = if format == Format::Markdown { "| " } else { "" };
-    let line = |cells: [String; 7], text: &mut String| {
-        let widths = [16, 5, 10, 10, 9, 11, 12];
+    let line = |cells: [String; 8], text: &mut String| {
+        let widths = [16, 5, 10, 10, 10, 9, 11, 12];
         let cells: Vec<String> =
             cells.iter().zip(widths).map(|(c, w)| format!("{c:<w$}")).collect();
         let _ = writeln!(text, "{begin}{}{end}", cells.join(gap).trim_end());
     };
-    let titles = ["tier", "order", "precision", "time", "memory", "true error", "stated error"];
+    let titles = ["tier", "order", "precision", "time", "again", "memory", "true error", "stated error"];
     match format {
         Format::Markdown => text.push('\n'),
-        Format::Latex => text.push_str("\\begin{tabular}{lllllll}\n"),
+        Format::Latex => text.push_str("\\begin{tabular}{llllllll}\n"),
         _ => {}
     }
     line(titles.map(str::to_owned), &mut text);
     if format == Format::Markdown {
-        text.push_str("|---|---|---|---|---|---|---|\n");
+        text.push_str("|---|---|---|---|---|---|---|---|\n");
     }
     let front = pareto(&trade.rows);
     for (i, row) in trade.rows.iter().enumerate() {
@@ -174,6 +184,7 @@ pub fn text(trade: &Trade, plan: &Plan, wanted: Option<f64>, format: Format) -> 
             row.order.map_or(String::new(), |n| n.to_string()),
             precision(row),
             duration(row.seconds),
+            duration(row.seconds_again),
             size(row.bytes),
             format!("{:.1e}", row.true_error),
             format!("{:.1e}", row.stated_error),
@@ -196,15 +207,22 @@ pub fn text(trade: &Trade, plan: &Plan, wanted: Option<f64>, format: Format) -> 
 }
 
 fn advice(trade: &Trade, error: f64) -> String {
-    let Some(row) = recommend(&trade.rows, error).and_then(|i| trade.rows.get(i)) else {
+    let row = |i: Option<usize>| trade.rows.get(i?);
+    let (one, many) = (recommend(&trade.rows, error), recommend_for_many(&trade.rows, error));
+    let (Some(one), Some(many)) = (row(one), row(many)) else {
         return format!("For {error:e}: no run here states so small an error.");
     };
-    let order = row.order.map_or(String::new(), |n| format!(", order {n}"));
+    let name = |row: &Row| {
+        let order = row.order.map_or(String::new(), |n| format!(", order {n}"));
+        let (name, precision) = (row.method.name(), precision(row));
+        format!("{name}{order}, {precision} (states {:.1e})", row.stated_error)
+    };
     format!(
-        "For {error:e} in {}: {}{order}, {} (states {:.1e}).",
-        duration(row.seconds),
-        row.method.name(),
-        precision(row),
-        row.stated_error
+        "For {error:e} in {}: {}.\nFor {error:e} at many values, {} each after {}: {}.",
+        duration(one.seconds),
+        name(one),
+        duration(many.seconds_again),
+        duration(many.seconds),
+        name(many)
     )
 }

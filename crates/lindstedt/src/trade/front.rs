@@ -29,8 +29,18 @@ pub fn pareto(rows: &[Row]) -> Vec<usize> {
 /// not know the truth. Of equally fast rows the first.
 #[must_use]
 pub fn recommend(rows: &[Row], error: f64) -> Option<usize> {
+    fastest(rows, error, |row| row.seconds)
+}
+
+/// As [`recommend`], by the time for one more value of the small parameter.
+#[must_use]
+pub fn recommend_for_many(rows: &[Row], error: f64) -> Option<usize> {
+    fastest(rows, error, |row| row.seconds_again)
+}
+
+fn fastest(rows: &[Row], error: f64, time: impl Fn(&Row) -> f64) -> Option<usize> {
     let good = rows.iter().enumerate().filter(|(_, row)| row.stated_error <= error);
-    good.min_by(|(_, a), (_, b)| a.seconds.total_cmp(&b.seconds)).map(|(i, _)| i)
+    good.min_by(|(_, a), (_, b)| time(a).total_cmp(&time(b))).map(|(i, _)| i)
 }
 
 #[cfg(test)]
@@ -44,6 +54,7 @@ mod tests {
             method: Method::Doubles,
             order: Some(1),
             seconds,
+            seconds_again: 1.0 / seconds,
             bytes: 0,
             period: Float::with_val(53, 1),
             true_error: error,
@@ -88,5 +99,6 @@ mod tests {
         assert_eq!(recommend(&list, 1e-9), Some(3));
         assert_eq!(recommend(&list, 1.0), Some(1));
         assert_eq!(recommend(&list, 1e-20), None);
+        assert_eq!(recommend_for_many(&list, 1e-3), Some(0));
     }
 }

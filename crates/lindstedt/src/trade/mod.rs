@@ -1,6 +1,6 @@
 //! Speed against accuracy: what every route to a period costs, and how wrong its result is.
 //!
-//! The period T of a problem with a closed form (or a reference of 43 digits: van der Pol's
+//! The period T of a problem with a closed form (or a reference of many digits: van der Pol's
 //! oscillator at eps = 1) is computed by every tier at every order and precision asked for, and by
 //! the integrator in the time domain, which shares no code with them. Of each run are kept the
 //! time, the memory, the true relative error, and the error that the run states without knowing
@@ -15,7 +15,7 @@ mod simulation;
 mod truth;
 
 use crate::{Error, Value};
-pub use front::{pareto, recommend};
+pub use front::{pareto, recommend, recommend_for_many};
 use lindstedt_equation::Problem;
 use rug::Float;
 use std::collections::BTreeMap;
@@ -136,11 +136,14 @@ pub struct Row {
     pub order: Option<usize>,
     /// The time of the fastest run.
     pub seconds: f64,
+    /// The time for one more value of the small parameter: summing the series again; for the
+    /// integrator the same as `seconds`.
+    pub seconds_again: f64,
     /// Numbers kept at once times their size: an estimate of the memory in bytes.
     pub bytes: u64,
     /// The period found.
     pub period: Float,
-    /// |period/T - 1|.
+    /// |period/T - 1|, up to [`Truth::uncertainty`].
     pub true_error: f64,
     /// The estimate of the relative error that the run gives without knowing T: four times the
     /// difference of two grids or two tolerances, and of a series the rest estimated from its last
@@ -192,7 +195,7 @@ pub struct Trade {
 ///
 /// Parameters that are not given have values at which the series converges: delta = 1/4 for the
 /// power law, eps = 1/4 for Duffing's oscillator; for the pendulum delta = 1 and amplitude 1, where
-/// it does not; eps = 1 for van der Pol's, the only one with a reference.
+/// it does not; eps = 1 for van der Pol's, the only one with a reference (digits beyond it cannot be judged).
 ///
 /// `observer` is asked before every run and at every order of it; when it returns `false`, the
 /// rows finished so far are returned. It is told the run and the rows so far.

@@ -14,6 +14,8 @@ use std::time::Instant;
 /// What a run found.
 pub(super) struct Found {
     pub(super) seconds: f64,
+    /// For one more value of the small parameter; nothing where everything is done again.
+    pub(super) again: Option<f64>,
     pub(super) bytes: u64,
     pub(super) period: Float,
     /// The stated absolute error.
@@ -25,6 +27,13 @@ pub(super) struct Job<'a> {
     pub(super) truth: &'a Truth,
     pub(super) memory: u64,
     pub(super) bits: u32,
+}
+
+/// Period, stated error, bytes, seconds of the summation.
+type Summed = (Float, Float, u64, Option<f64>);
+
+fn simulated((period, error, bytes): (Float, Float, u64)) -> Summed {
+    (period, error, bytes, None)
 }
 
 /// Longer runs are not repeated: noise is small beside them.
@@ -64,7 +73,7 @@ impl Job<'_> {
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Found, Reason> {
         let start = Instant::now();
-        let (period, error, bytes) = match *method {
+        let (period, error, bytes, again) = match *method {
             Method::Exact { digits } => self.exact(Route::Driver, order, digits, goes_on)?,
             Method::Energy { digits } => {
                 self.exact(Route::EnergyIntegral, order, digits, goes_on)?
@@ -77,13 +86,13 @@ impl Job<'_> {
                 self.numeric(Tier::Fourier { harmonics }, order, goes_on)?
             }
             Method::SimulationInDoubles { digits } => {
-                simulation::in_doubles(self.problem, self.truth, digits, goes_on)?
+                simulated(simulation::in_doubles(self.problem, self.truth, digits, goes_on)?)
             }
             Method::Simulation { digits } => {
-                simulation::in_digits(self.problem, self.truth, digits, goes_on)?
+                simulated(simulation::in_digits(self.problem, self.truth, digits, goes_on)?)
             }
         };
-        Ok(Found { seconds: start.elapsed().as_secs_f64(), bytes, period, error })
+        Ok(Found { seconds: start.elapsed().as_secs_f64(), again, bytes, period, error })
     }
 
     fn settings(&self, order: usize, route: Route) -> Settings {
@@ -97,7 +106,7 @@ impl Job<'_> {
         order: usize,
         digits: u32,
         goes_on: &mut dyn FnMut() -> bool,
-    ) -> Result<(Float, Float, u64), Reason> {
+    ) -> Result<Summed, Reason> {
         let settings = self.settings(order, route);
         let result = derive(self.problem, &settings, &mut |_| goes_on());
         let result = result.map_err(Reason::Refused)?;
@@ -120,8 +129,7 @@ impl Job<'_> {
         // x, x' and x'' are kept; a term is a fraction and its exponents.
         let copies = if matches!(result.solution, Solution::FrequencyOnly) { 1 } else { 3 };
         let bytes = (copies * terms + symbolic) as u64 * (96 + u64::from(size) / 8);
-        let (sum, error) = self.sum(&list, bits);
-        Ok((sum, error, bytes))
+        Ok(self.timed_sum(&list, bits, bytes))
     }
 
     fn numeric(
@@ -129,7 +137,7 @@ impl Job<'_> {
         tier: Tier,
         order: usize,
         goes_on: &mut dyn FnMut() -> bool,
-    ) -> Result<(Float, Float, u64), Reason> {
+    ) -> Result<Summed, Reason> {
         let settings = self.settings(order, Route::Driver);
         let result = numeric::derive(self.problem, &settings, tier, &mut |_| goes_on());
         let result = result.map_err(Reason::Refused)?;
@@ -137,8 +145,13 @@ impl Job<'_> {
         // As `numeric` predicts it: twelve lists of values per order.
         let value = if result.bits <= 53 { 8 } else { u64::from(result.bits) / 8 + 48 };
         let bytes = (order as u64 + 1) * result.nodes as u64 * value * 12;
-        let (sum, error) = self.sum(&series.coefficients, result.bits.max(64));
-        Ok((sum, error, bytes))
+        Ok(self.timed_sum(&series.coefficients, result.bits.max(64), bytes))
+    }
+
+    fn timed_sum(&self, list: &[(Float, Float)], bits: u32, bytes: u64) -> Summed {
+        let start = Instant::now();
+        let (sum, error) = self.sum(list, bits);
+        (sum, error, bytes, Some(start.elapsed().as_secs_f64()))
     }
 
     /// 2 pi times the partial sum, and its error: of the coefficients, of rounding, of the rest.
