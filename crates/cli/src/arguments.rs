@@ -257,7 +257,11 @@ pub struct Precision {
 
 fn seconds(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("not a number: {text}"))?;
-    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("not a positive number".to_owned()) }
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err("not a positive number".to_owned())
+    }
 }
 
 fn memory_size(text: &str) -> Result<u64, String> {
