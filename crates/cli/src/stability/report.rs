@@ -349,6 +349,10 @@ fn plain(value: &Json) -> String {
                 items.collect::<Vec<_>>().join(", ")
             }
         },
+        // Estimates: six digits are plenty.
+        Json::Number(number) if number.is_f64() => {
+            number.as_f64().map_or_else(String::new, |x| format!("{x:.6}"))
+        }
         other => other.to_string(),
     }
 }

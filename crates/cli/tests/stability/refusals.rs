@@ -38,7 +38,8 @@ fn bad_input_is_named() {
         assert_eq!(message.lines().count(), 1, "{message}");
         let output = run(&[arguments, &["--format", "json"]].concat());
         let found: Value = serde_json::from_slice(&output.stdout).unwrap();
-        assert!(found["error"]["message"].as_str().unwrap().contains(words), "{found}");
+        let [message, hint] = ["message", "hint"].map(|key| found["error"][key].as_str().unwrap());
+        assert!(format!("{message} ({hint})").contains(words), "{found}");
     }
     let file = [a[0], a[1], b[0], b[1], "--plot", "/nonexistent/x.svg"];
     assert_eq!(run(&file).status.code(), Some(5));
