@@ -39,7 +39,7 @@ struct Judge {
 impl Judge {
     fn compare(&self, what: &str, found: &Value, expected: &Rational, size: &Rational) {
         let text = found["decimal"].as_str().unwrap_or_else(|| panic!("{what}: {found}"));
-        let off = Rational::from(decimal(text) - expected).abs();
+        let off = (decimal(text) - expected).abs();
         let allowed = Rational::from(size.abs_ref()) * Rational::from(10).pow(-self.digits);
         assert!(off <= allowed, "{what}: {text} is off by {:e}", off.to_f64());
         let status = found["status"].as_str().unwrap();
