@@ -27,6 +27,7 @@ pub fn run(
     problem: &Problem,
     settings: &Settings,
     digits: usize,
+    header: &str,
     session: &Session<'_>,
 ) -> Outcome {
     let asked = AveragingSettings {
@@ -55,7 +56,10 @@ pub fn run(
             }
             format!("{json:#}\n")
         }
-        Format::Text => Board { result: &result, style: Style::Text, markdown: false }.write(),
+        Format::Text => {
+            header.to_owned()
+                + &Board { result: &result, style: Style::Text, markdown: false }.write()
+        }
         Format::Latex => Board { result: &result, style: Style::Latex, markdown: false }.write(),
         Format::Markdown => Board { result: &result, style: Style::Latex, markdown: true }.write(),
     };
