@@ -3,6 +3,7 @@
 use crate::arguments::Format;
 use crate::output::warn;
 use lindstedt::Error;
+use lindstedt::algebra::PhaseError;
 use lindstedt::expand::ExpandError;
 use serde_json::json;
 use std::io::Write;
@@ -66,6 +67,9 @@ impl From<Error> for Failure {
             Error::UnknownCondition { .. } => {
                 (USAGE, "unknown-normalisation", "see `lindstedt problems --show NAME`")
             }
+            Error::NotAmongSymbols { .. } => {
+                (USAGE, "not-among-symbols", "set all parameters, or leave this one open")
+            }
             Error::NoSuchRoute { .. } => (NO_ANSWER, "no-such-route", "use --route driver"),
             Error::OutsideDomain { .. } => (NO_ANSWER, "outside-domain", ""),
             Error::TooLarge { .. } => {
@@ -75,6 +79,9 @@ impl From<Error> for Failure {
             Error::NoValue => (NO_ANSWER, "no-value", ""),
             Error::OutOfPrimes => (UNDECIDED, "out-of-primes", "lower --order"),
             Error::Expand(ExpandError::Interrupted { .. }) => (INTERRUPTED, "interrupted", ""),
+            Error::Expand(ExpandError::Phase { source: PhaseError::Resonance { .. }, .. }) => {
+                (NO_ANSWER, "resonance", "averaging needs a force off resonance")
+            }
             Error::Expand(ExpandError::Phase { .. }) => {
                 (UNDECIDED, "could-not-decide", "the orders below this one can be derived")
             }
