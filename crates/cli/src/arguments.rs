@@ -24,6 +24,8 @@ pub enum Command {
     Threshold(ThresholdOptions),
     /// Stability of the vibro-impact orbit: the averaged prediction beside the exact truth, charts.
     Stability(StabilityOptions),
+    /// Speed against accuracy: every tier at every order and precision, timed, beside the truth.
+    Trade(TradeOptions),
     /// Read the paper: derive it, compare it with the print, tabulate what is true.
     Paper(PaperOptions),
 }
@@ -149,6 +151,39 @@ pub struct StabilityOptions {
     pub precision: Precision,
 }
 
+#[derive(Debug, Args)]
+pub struct TradeOptions {
+    /// power-law, pendulum, duffing or van-der-pol.
+    pub problem: String,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Orders of the series.
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [2, 4, 8, 16, 32])]
+    #[arg(value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub orders: Vec<u32>,
+    /// Digits of the tiers that have them.
+    #[arg(long, value_name = "D,...", value_delimiter = ',', default_values_t = [16, 30, 50])]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub digits: Vec<u32>,
+    /// Harmonics of the Fourier tier.
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [16, 64])]
+    #[arg(value_parser = clap::value_parser!(u32).range(4..=16384))]
+    pub harmonics: Vec<u32>,
+    /// A run that takes longer is broken off, and higher orders of its tier are left out.
+    #[arg(long, value_name = "S", default_value = "5", value_parser = seconds)]
+    pub limit_run: f64,
+    /// Runs per row; the fastest counts.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub repeats: u32,
+    /// Recommend the fastest run that states at most this relative error.
+    #[arg(long = "for", value_name = "ERROR", value_parser = seconds)]
+    pub wanted: Option<f64>,
+    /// A figure (.svg) or a table (.csv); may be given twice.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Vec<PathBuf>,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PredictorChoice {
     /// The averaged prediction (KBM) alone.
@@ -222,7 +257,7 @@ pub struct Precision {
 
 fn seconds(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("not a number: {text}"))?;
-    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("not a positive time".to_owned()) }
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("not a positive number".to_owned()) }
 }
 
 fn memory_size(text: &str) -> Result<u64, String> {

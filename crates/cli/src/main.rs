@@ -13,6 +13,7 @@ mod problems;
 mod session;
 mod stability;
 mod threshold;
+mod trade;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         Command::Derive(options) => derive::run(options, &session),
         Command::Threshold(options) => threshold::run(options, &session),
         Command::Stability(options) => stability::run(options, &session),
+        Command::Trade(options) => trade::run(options, &session),
         Command::Paper(options) => paper::run(options, &session),
     };
     match outcome {

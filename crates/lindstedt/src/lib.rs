@@ -24,6 +24,7 @@ pub mod numeric;
 mod oscillator;
 pub mod paper;
 pub mod quotient;
+pub mod trade;
 mod value;
 
 pub use derivation::{Derivation, NamedSeries, Progress, Route, Settings, Solution, derive};
@@ -43,3 +44,4 @@ pub use lindstedt_phase as phase;
 pub use lindstedt_problem_file as problem_file;
 pub use lindstedt_problems as problems;
 pub use lindstedt_series as series;
+pub use lindstedt_simulate as simulate;

@@ -13,6 +13,7 @@
 mod double;
 mod integrals;
 mod point;
+mod rectangular;
 
 pub use double::lobachevsky_f64;
 pub use point::{Point, cosine, log_cosine, sine};
@@ -72,7 +73,8 @@ fn eta_value(k: u32, balls: Balls) -> Ball {
 /// The Lobachevsky function L(x) = -int_0^x ln|cos t| dt.
 ///
 /// Domain: every real x. Returns a ball with about the precision of `balls` relative to |L(x)|,
-/// exactly 0 at 0. Cost: at most `bits` steps of two products each, fewer near multiples of pi/2,
+/// exactly 0 at 0. Cost: at most `bits` steps with machine words and 3 sqrt(bits) products, fewer near
+/// multiples of pi/2, one sine, one logarithm,
 /// and the reduction of x modulo pi, which takes as many more bits of pi as |x| has.
 ///
 /// ```
@@ -94,10 +96,10 @@ pub fn lobachevsky(x: &Point, balls: Balls) -> Ball {
         half_period.clone()
     } else if reduced.is_near_zero() {
         let sine = work.sin(&work.abs(&reduced.offset));
-        last(integrals::from_zero(&sine, 1, work), work)
+        rectangular::from_zero(&sine, work)
     } else {
         let sine = work.sin(&reduced.complement);
-        work.sub(&half_period, &last(integrals::from_pole(&sine, 1, work), work))
+        work.sub(&half_period, &rectangular::from_pole(&reduced.complement, &sine, work))
     };
     let value = with_sign(on_quarter, &reduced, work);
     let turns = work.mul_power_of_two(&half_period, 1);

@@ -1,0 +1,92 @@
+//! `lindstedt derive --tier`: the numeric tiers beside the exact one.
+#![allow(clippy::unwrap_used)]
+
+use rug::Float;
+use serde_json::Value;
+use std::process::{Command, Output};
+
+fn lindstedt(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = lindstedt(&[arguments, &["--format", "json", "--quiet"]].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn float(text: &Value) -> Float {
+    Float::with_val(300, Float::parse(text.as_str().unwrap()).unwrap())
+}
+
+#[test]
+fn numbers_agree_with_the_exact_tier_within_their_errors() {
+    let tiers: [(&[&str], &str); 4] = [
+        (&["--tier", "collocation", "--digits", "25"], "collocation"),
+        (&["--tier", "collocation", "--f64"], "collocation"),
+        (&["--tier", "fourier"], "fourier"),
+        (&["--tier", "fourier", "--harmonics", "20"], "fourier"),
+    ];
+    let problems: [&[&str]; 5] = [
+        &["power-law"],
+        &["pendulum", "--set", "amplitude=2"],
+        &["duffing"],
+        &["duffing", "--normalisation", "fundamental"],
+        &["van-der-pol"],
+    ];
+    for problem in problems {
+        let start = [&["derive"], problem, &["--order", "5"]].concat();
+        let exact = json(&[&start[..], &["--digits", "60"]].concat());
+        for (tier, name) in tiers {
+            let value = json(&[&start[..], tier].concat());
+            assert_eq!(value["tier"], name);
+            assert_eq!(value["order"], 5);
+            assert_eq!(value["residual"]["zero"], Value::Null);
+            assert!(value["method"]["nodes"].as_u64().unwrap() > 0);
+            let series = value["series"].as_object().unwrap();
+            assert!(series.len() >= 3);
+            for (name, list) in series {
+                let list = list.as_array().unwrap();
+                assert_eq!(list.len(), 6, "{problem:?} {tier:?} {name}");
+                for (n, number) in list.iter().enumerate() {
+                    assert_eq!(number["status"], "estimated");
+                    assert_eq!(number["exact"], Value::Null);
+                    let truth = float(&exact["series"][name][n]["decimal"]);
+                    let distance = (float(&number["decimal"]) - truth).abs();
+                    let error = float(&number["error"]);
+                    assert!(distance <= error, "{problem:?} {tier:?} {name} {n}: {number}");
+                    assert!(tier[1] != "collocation" || error < 1e-12, "{name} {n}: {number}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn as_text() {
+    let arguments = ["derive", "power-law", "--order", "2", "--tier", "collocation", "--digits", "20"];
+    let output = lindstedt(&arguments);
+    assert!(output.status.success());
+    let text = String::from_utf8(output.stdout).unwrap();
+    // 1 - 2 ln 2.
+    assert!(text.contains("-0.38629436111989061883"), "{text}");
+    assert!(text.contains("Estimated numbers"), "{text}");
+}
+
+#[test]
+fn bad_combinations_are_refused() {
+    let cases: [(&[&str], i32, &str); 6] = [
+        (&["power-law", "--tier", "collocation", "--route", "energy"], 2, "route-and-tier"),
+        (&["power-law", "--tier", "nope"], 2, "usage"),
+        (&["power-law", "--tier", "fourier", "--harmonics", "3"], 2, "usage"),
+        (&["power-law", "--tier", "collocation", "--f64", "--digits", "20"], 2, "usage"),
+        (&["duffing", "--tier", "fourier", "--order", "1000000000"], 4, "too-large"),
+        (&["pendulum", "--tier", "fourier", "--set", "amplitude=4"], 3, "outside-domain"),
+    ];
+    for (arguments, exit, code) in cases {
+        let output = lindstedt(&[&["derive"], arguments, &["--format", "json"]].concat());
+        assert_eq!(output.status.code(), Some(exit), "{arguments:?}");
+        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(value["error"]["code"], code, "{arguments:?}");
+    }
+}

@@ -1,0 +1,128 @@
+//! `lindstedt trade`: the rows, their order, their errors, the front, the files.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::process::{Command, Output};
+
+fn lindstedt(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
+}
+
+const SMALL: [&str; 8] =
+    ["--orders", "2,6", "--digits", "20", "--harmonics", "16", "--repeats", "1"];
+
+fn json(problem: &str, more: &[&str]) -> Value {
+    let start = ["trade", problem, "--quiet", "--format", "json"];
+    let output = lindstedt(&[&start, &SMALL[..], more].concat());
+    assert!(output.status.success(), "{problem}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+const PROBLEMS: [&str; 4] = ["power-law", "pendulum", "duffing", "van-der-pol"];
+
+#[test]
+fn every_true_error_is_below_the_stated_one() {
+    for problem in PROBLEMS {
+        let value = json(problem, &["--for", "1e-10"]);
+        let rows = value["rows"].as_array().unwrap();
+        assert!(rows.len() >= 11, "{problem}");
+        let reference = value["period_error"].as_f64().unwrap();
+        for row in rows {
+            let number = |key: &str| row[key].as_f64().unwrap();
+            assert!(number("true_error") <= number("stated_error") + reference, "{problem} {row}");
+            assert!(number("seconds") > 0.0 && number("seconds_again") <= number("seconds"));
+            assert!(number("memory_bytes") > 0.0 && row["pareto"].is_boolean());
+        }
+        let best = &value["recommendation"]["row"];
+        assert!(best["stated_error"].as_f64().unwrap() <= 1e-10, "{problem}");
+        assert_eq!(value["finished"], true);
+        for key in ["problem", "at", "parameter", "period", "source", "errors", "memory", "left_out"]
+        {
+            assert!(!value[key].is_null(), "{key}");
+        }
+    }
+}
+
+#[test]
+fn rows_have_a_fixed_order() {
+    let tiers = [
+        "exact", "energy", "collocation", "collocation-f64", "fourier", "simulation-f64",
+        "simulation",
+    ];
+    let value = json("power-law", &["--digits", "20,10"]);
+    let place = |row: &Value| {
+        let tier = tiers.iter().position(|t| row["tier"] == **t).unwrap();
+        (tier, row["digits"].as_u64(), row["order"].as_u64())
+    };
+    let places: Vec<_> = value["rows"].as_array().unwrap().iter().map(place).collect();
+    assert!(places.is_sorted(), "{places:?}");
+    assert_eq!(places.len(), 2 * 6 + 3 + 2);
+}
+
+#[test]
+fn parameters_enter() {
+    // T(a) = a^(-delta) T(1); rho = eps a^2.
+    let period = |problem: &str, set: &[&str]| {
+        let set: Vec<&str> = set.iter().flat_map(|s| ["--set", s]).collect();
+        let value = json(problem, &set);
+        for row in value["rows"].as_array().unwrap() {
+            let number = |key: &str| row[key].as_f64().unwrap();
+            assert!(number("true_error") <= number("stated_error"), "{problem} {set:?} {row}");
+        }
+        value["period"].as_str().unwrap().parse::<f64>().unwrap()
+    };
+    let ratio = period("power-law", &["n=2", "amplitude=4"]) / period("power-law", &["delta=1/2"]);
+    assert!((ratio - 0.5).abs() < 1e-15);
+    let difference = period("duffing", &["eps=1", "amplitude=1/2"]) - period("duffing", &[]);
+    assert!(difference.abs() < 1e-15);
+    // Outside the circle of convergence, and where sin a is far from a.
+    assert!(period("duffing", &["eps=3"]) < 4.0);
+    assert!(period("pendulum", &["amplitude=3"]) > 16.0);
+}
+
+#[test]
+fn figure_and_table() {
+    let folder = std::env::temp_dir().join(format!("lindstedt-trade-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let (svg, csv) = (folder.join("a.svg"), folder.join("a.csv"));
+    let files = ["--plot", svg.to_str().unwrap(), "--plot", csv.to_str().unwrap()];
+    let value = json("duffing", &files);
+    let count = value["rows"].as_array().unwrap().len();
+    let table = std::fs::read_to_string(&csv).unwrap();
+    assert_eq!(table.lines().count(), count + 1);
+    let width = table.lines().next().unwrap().split(',').count();
+    assert!(table.lines().all(|line| line.split(',').count() == width));
+    let figure = std::fs::read_to_string(&svg).unwrap();
+    assert!(figure.starts_with("<svg") && figure.contains("Pareto front"));
+    assert!(figure.matches("<circle").count() >= count);
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn limits_keep_the_finished_rows() {
+    let start = ["trade", "power-law", "--quiet", "--format", "json"];
+    let limits = ["--limit-seconds", "0.05", "--orders", "2,4,8,16,32,64", "--repeats", "1000"];
+    let output = lindstedt(&[&start[..], &limits].concat());
+    assert_eq!(output.status.code(), Some(4));
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(value["finished"], false);
+    assert!(value["rows"].as_array().unwrap().len() < 40);
+}
+
+#[test]
+fn bad_input() {
+    let cases: [(&[&str], i32, &str); 6] = [
+        (&["trade", "nope"], 2, "unknown-problem"),
+        (&["trade", "vibro-impact"], 3, "no-reference"),
+        (&["trade", "van-der-pol", "--set", "eps=2"], 3, "no-reference"),
+        (&["trade", "duffing", "--set", "eps=-1"], 3, "outside-domain"),
+        (&["trade", "duffing", "--orders", "x"], 2, "usage"),
+        (&["trade", "duffing", "--for", "0"], 2, "usage"),
+    ];
+    for (arguments, exit, code) in cases {
+        let output = lindstedt(&[arguments, &["--format", "json", "--quiet"]].concat());
+        assert_eq!(output.status.code(), Some(exit), "{arguments:?}");
+        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(value["error"]["code"], code, "{arguments:?}");
+    }
+}

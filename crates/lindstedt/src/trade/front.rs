@@ -1,0 +1,104 @@
+//! What is worth its time.
+
+use super::Row;
+
+/// The indices of the rows that no other row beats in both time and true error, from the fastest
+/// to the most accurate. Of equal rows the first stays.
+///
+/// O(n log n).
+#[must_use]
+pub fn pareto(rows: &[Row]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    let key = |i: &usize| rows.get(*i).map_or((f64::NAN, f64::NAN), |r| (r.seconds, r.true_error));
+    order.sort_by(|a, b| {
+        let ((s, e), (t, f)) = (key(a), key(b));
+        s.total_cmp(&t).then(e.total_cmp(&f)).then(a.cmp(b))
+    });
+    let mut least = f64::INFINITY;
+    order.retain(|i| {
+        let better = key(i).1 < least;
+        if better {
+            least = key(i).1;
+        }
+        better
+    });
+    order
+}
+
+/// The fastest row whose *stated* relative error is at most `error`: what a user can know who does
+/// not know the truth. Of equally fast rows the first.
+#[must_use]
+pub fn recommend(rows: &[Row], error: f64) -> Option<usize> {
+    fastest(rows, error, |row| row.seconds)
+}
+
+/// As [`recommend`], by the time for one more value of the small parameter.
+#[must_use]
+pub fn recommend_for_many(rows: &[Row], error: f64) -> Option<usize> {
+    fastest(rows, error, |row| row.seconds_again)
+}
+
+fn fastest(rows: &[Row], error: f64, time: impl Fn(&Row) -> f64) -> Option<usize> {
+    let good = rows.iter().enumerate().filter(|(_, row)| row.stated_error <= error);
+    good.min_by(|(_, a), (_, b)| time(a).total_cmp(&time(b))).map(|(i, _)| i)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trade::Method;
+    use rug::Float;
+
+    fn rows(points: &[(f64, f64)]) -> Vec<Row> {
+        let row = |&(seconds, error): &(f64, f64)| Row {
+            method: Method::Doubles,
+            order: Some(1),
+            seconds,
+            seconds_again: 1.0 / seconds,
+            bytes: 0,
+            period: Float::with_val(53, 1),
+            true_error: error,
+            stated_error: 10.0 * error,
+        };
+        points.iter().map(row).collect()
+    }
+
+    #[test]
+    fn the_front_is_what_nothing_beats() {
+        let points = [(3.0, 1e-9), (1.0, 1e-2), (2.0, 1e-2), (2.0, 1e-5), (4.0, 1e-9), (5.0, 0.0)];
+        assert_eq!(pareto(&rows(&points)), [1, 3, 0, 5]);
+        assert_eq!(pareto(&rows(&[(1.0, 1.0), (1.0, 1.0)])), [0]);
+        assert_eq!(pareto(&rows(&[(1.0, f64::NAN), (2.0, 0.5)])), [1]);
+        assert!(pareto(&[]).is_empty());
+    }
+
+    /// The definition by all pairs, on pseudo-random points.
+    #[test]
+    fn the_front_by_its_definition() {
+        let mut state = 1u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            f64::from((state >> 33) as u32 % 40)
+        };
+        for _ in 0..50 {
+            let points: Vec<(f64, f64)> = (0..30).map(|_| (next(), next())).collect();
+            let front = pareto(&rows(&points));
+            for (i, p) in points.iter().enumerate() {
+                let beaten = points.iter().enumerate().any(|(j, q)| {
+                    q.0 <= p.0 && q.1 <= p.1 && (q.0 < p.0 || q.1 < p.1 || j < i)
+                });
+                assert_eq!(front.contains(&i), !beaten, "{points:?} {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_fastest_that_states_enough() {
+        let list = rows(&[(3.0, 1e-12), (1.0, 1e-2), (2.0, 1e-9), (2.5, 1e-10)]);
+        // Stated are ten times the true errors.
+        assert_eq!(recommend(&list, 1e-9), Some(3));
+        assert_eq!(recommend(&list, 1.0), Some(1));
+        assert_eq!(recommend(&list, 1e-20), None);
+        assert_eq!(recommend_for_many(&list, 1e-3), Some(0));
+    }
+}

@@ -1,0 +1,320 @@
+//! Speed against accuracy: what every route to a period costs, and how wrong its result is.
+//!
+//! The period T of a problem with a closed form (or a reference of many digits: van der Pol's
+//! oscillator at eps = 1) is computed by every tier at every order and precision asked for, and by
+//! the integrator in the time domain, which shares no code with them. Of each run are kept the
+//! time, the memory, the true relative error, and the error that the run states without knowing
+//! the truth.
+//!
+//! Series are summed as they stand (partial sums, broken off at the smallest term where the terms
+//! grow); so the parameter should lie inside the circle of convergence.
+
+mod front;
+mod run;
+mod simulation;
+mod truth;
+
+use crate::{Error, Value};
+pub use front::{pareto, recommend, recommend_for_many};
+use lindstedt_equation::Problem;
+use rug::Float;
+use std::collections::BTreeMap;
+use std::time::Instant;
+pub use truth::Truth;
+
+/// How a period is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Method {
+    /// Derived in exact rings, then evaluated to `digits` digits.
+    Exact {
+        /// Digits of the evaluation.
+        digits: u32,
+    },
+    /// The exact energy integral (power law and pendulum), then evaluated.
+    Energy {
+        /// Digits of the evaluation.
+        digits: u32,
+    },
+    /// [`crate::numeric::Tier::Collocation`].
+    Collocation {
+        /// Correct digits of the coefficients.
+        digits: u32,
+    },
+    /// [`crate::numeric::Tier::Doubles`].
+    Doubles,
+    /// [`crate::numeric::Tier::Fourier`].
+    Fourier {
+        /// Harmonics of each symmetry class.
+        harmonics: usize,
+    },
+    /// Integrated in the time domain in double precision.
+    SimulationInDoubles {
+        /// Digits of one step.
+        digits: u32,
+    },
+    /// Integrated in the time domain in floats of so many digits.
+    Simulation {
+        /// Digits of one step.
+        digits: u32,
+    },
+}
+
+impl Method {
+    /// `exact`, `energy`, `collocation`, `collocation-f64`, `fourier`, `simulation-f64`,
+    /// `simulation`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Exact { .. } => "exact",
+            Self::Energy { .. } => "energy",
+            Self::Collocation { .. } => "collocation",
+            Self::Doubles => "collocation-f64",
+            Self::Fourier { .. } => "fourier",
+            Self::SimulationInDoubles { .. } => "simulation-f64",
+            Self::Simulation { .. } => "simulation",
+        }
+    }
+
+    /// Digits computed with; 16 for the tiers in doubles.
+    #[must_use]
+    pub fn digits(&self) -> u32 {
+        match *self {
+            Self::Exact { digits }
+            | Self::Energy { digits }
+            | Self::Collocation { digits }
+            | Self::SimulationInDoubles { digits }
+            | Self::Simulation { digits } => digits,
+            Self::Doubles | Self::Fourier { .. } => 16,
+        }
+    }
+
+    /// Whether a series is summed, to an order; otherwise the equation is integrated.
+    #[must_use]
+    pub fn has_order(&self) -> bool {
+        !matches!(self, Self::SimulationInDoubles { .. } | Self::Simulation { .. })
+    }
+}
+
+/// What is run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Orders of the series.
+    pub orders: Vec<usize>,
+    /// Digits of the tiers that have them.
+    pub digits: Vec<u32>,
+    /// Harmonics of the Fourier tier.
+    pub harmonics: Vec<usize>,
+    /// A run that takes longer is broken off, and higher orders of its method are left out.
+    pub run_seconds: f64,
+    /// The time of a row is the least of so many runs; a run longer than 1 s is not repeated.
+    pub repeats: u32,
+    /// The memory that may be used, in bytes.
+    pub memory: u64,
+}
+
+impl Default for Plan {
+    /// Orders 2 to 32, 16, 30 and 50 digits, 16 and 64 harmonics, 5 s for a run, best of 3.
+    fn default() -> Self {
+        Self {
+            orders: vec![2, 4, 8, 16, 32],
+            digits: vec![16, 30, 50],
+            harmonics: vec![16, 64],
+            run_seconds: 5.0,
+            repeats: 3,
+            memory: 8 << 30,
+        }
+    }
+}
+
+/// One run.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The method.
+    pub method: Method,
+    /// The order of the series; nothing for the integrator.
+    pub order: Option<usize>,
+    /// The time of the fastest run.
+    pub seconds: f64,
+    /// The time for one more value of the small parameter: summing the series again; for the
+    /// integrator the same as `seconds`.
+    pub seconds_again: f64,
+    /// Numbers kept at once times their size: an estimate of the memory in bytes.
+    pub bytes: u64,
+    /// The period found.
+    pub period: Float,
+    /// |period/T - 1|, up to [`Truth::uncertainty`].
+    pub true_error: f64,
+    /// The estimate of the relative error that the run gives without knowing T: four times the
+    /// difference of two grids or two tolerances, and of a series the rest estimated from its last
+    /// terms.
+    pub stated_error: f64,
+}
+
+/// A run that was not made.
+#[derive(Clone, Debug)]
+pub struct LeftOut {
+    /// The method.
+    pub method: Method,
+    /// The order.
+    pub order: Option<usize>,
+    /// Why.
+    pub reason: Reason,
+}
+
+/// Why a run was left out.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// It took longer than [`Plan::run_seconds`].
+    TooLong,
+    /// A lower order of the same method predicts so many seconds.
+    Predicted(f64),
+    /// It was refused.
+    Refused(Error),
+    /// The integrator refused.
+    NotIntegrated(lindstedt_simulate::SimulateError),
+}
+
+/// What was measured.
+#[derive(Clone, Debug)]
+pub struct Trade {
+    /// The problem.
+    pub problem: Problem,
+    /// The true period and where it is from.
+    pub truth: Truth,
+    /// The rows in the order of [`Method`], digits, order.
+    pub rows: Vec<Row>,
+    /// The runs that were not made, in the same order.
+    pub left_out: Vec<LeftOut>,
+    /// Whether the observer let all runs finish.
+    pub finished: bool,
+}
+
+/// Measures a problem: power-law, pendulum, duffing or van-der-pol.
+///
+/// Parameters that are not given have values at which the series converges: delta = 1/4 for the
+/// power law, eps = 1/4 for Duffing's oscillator; for the pendulum delta = 1 and amplitude 1, where
+/// it does not; eps = 1 for van der Pol's, the only one with a reference (digits beyond it cannot be judged).
+///
+/// `observer` is asked before every run and at every order of it; when it returns `false`, the
+/// rows finished so far are returned. It is told the run and the rows so far.
+///
+/// # Errors
+/// [`Error::NoValue`] where the true period is unknown; [`Error::UnknownParameter`] and
+/// [`Error::OutsideDomain`] for parameters.
+///
+/// ```
+/// use lindstedt::problems;
+/// use lindstedt::trade::{Plan, measure, pareto, recommend};
+/// let problem = problems::find("duffing").ok_or("no such problem")?;
+/// let plan = Plan { orders: vec![2, 8], digits: vec![20], ..Plan::default() };
+/// let trade = measure(&problem, &Default::default(), &plan, &mut |_, _| true)?;
+/// assert!(trade.rows.iter().all(|row| row.true_error <= row.stated_error));
+/// assert!(!pareto(&trade.rows).is_empty() && recommend(&trade.rows, 1e-3).is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn measure(
+    problem: &Problem,
+    parameters: &BTreeMap<String, Value>,
+    plan: &Plan,
+    observer: &mut dyn FnMut(&Method, &[Row]) -> bool,
+) -> Result<Trade, Error> {
+    crate::derivation::check_parameters(problem, parameters)?;
+    let most = plan.digits.iter().copied().max().unwrap_or(16).max(16);
+    let bits = (f64::from(most) * std::f64::consts::LOG2_10).ceil() as u32 + 64;
+    let truth = truth::truth(problem, parameters, bits)?;
+    let methods = methods(problem, plan, most);
+    let mut trade = Trade {
+        problem: problem.clone(),
+        truth,
+        rows: Vec::new(),
+        left_out: Vec::new(),
+        finished: true,
+    };
+    for method in methods {
+        let mut orders: Vec<Option<usize>> = vec![None];
+        if method.has_order() {
+            orders = plan.orders.iter().copied().map(Some).collect();
+            orders.sort_unstable();
+            orders.dedup();
+        }
+        let mut times: Vec<(usize, f64)> = Vec::new();
+        for order in orders {
+            if let Some(seconds) = predict(&method, &times, order).filter(|s| *s > plan.run_seconds)
+            {
+                let reason = Reason::Predicted(seconds);
+                trade.left_out.push(LeftOut { method, order, reason });
+                continue;
+            }
+            if !observer(&method, &trade.rows) {
+                trade.finished = false;
+                return Ok(trade);
+            }
+            let mut cancelled = false;
+            let start = Instant::now();
+            let mut goes_on = || {
+                cancelled |= !observer(&method, &trade.rows);
+                !cancelled && start.elapsed().as_secs_f64() <= plan.run_seconds
+            };
+            let job = run::Job { problem, truth: &trade.truth, memory: plan.memory, bits };
+            let outcome = job.best(&method, order.unwrap_or(0), plan.repeats, &mut goes_on);
+            if cancelled {
+                trade.finished = false;
+                return Ok(trade);
+            }
+            match outcome {
+                Ok(found) => {
+                    times.push((order.unwrap_or(0), found.seconds));
+                    trade.rows.push(trade.truth.row(method, order, found));
+                }
+                Err(reason) => {
+                    let reason = match reason {
+                        _ if start.elapsed().as_secs_f64() > plan.run_seconds => Reason::TooLong,
+                        other => other,
+                    };
+                    let ends = reason == Reason::TooLong;
+                    trade.left_out.push(LeftOut { method, order, reason });
+                    if ends {
+                        // Higher orders take longer still.
+                        times.push((order.unwrap_or(0), f64::INFINITY));
+                    }
+                }
+            }
+        }
+    }
+    Ok(trade)
+}
+
+/// All methods in the order of the rows.
+fn methods(problem: &Problem, plan: &Plan, most: u32) -> Vec<Method> {
+    let mut digits = plan.digits.clone();
+    let mut harmonics = plan.harmonics.clone();
+    digits.sort_unstable();
+    digits.dedup();
+    harmonics.sort_unstable();
+    harmonics.dedup();
+    // The digits of an evaluation cost nothing beside an exact derivation.
+    let mut list = vec![Method::Exact { digits: most }];
+    if run::has_energy_route(problem) {
+        list.push(Method::Energy { digits: most });
+    }
+    list.extend(digits.iter().map(|&digits| Method::Collocation { digits }));
+    list.push(Method::Doubles);
+    list.extend(harmonics.into_iter().map(|harmonics| Method::Fourier { harmonics }));
+    list.extend([8, 12, 16].map(|digits| Method::SimulationInDoubles { digits }));
+    list.extend(digits.into_iter().map(|digits| Method::Simulation { digits }));
+    list
+}
+
+/// The seconds of an order from those of lower ones. Exact derivations cannot be broken off
+/// everywhere and grow exponentially; the numeric ones are broken off when their time is over.
+fn predict(method: &Method, times: &[(usize, f64)], order: Option<usize>) -> Option<f64> {
+    let &(last, seconds) = times.last()?;
+    if seconds == f64::INFINITY || !matches!(method, Method::Exact { .. } | Method::Energy { .. }) {
+        return seconds.is_infinite().then_some(seconds);
+    }
+    let &(before, less) = times.iter().rev().nth(1)?;
+    let steps = (order? - last) as f64 / (last - before) as f64;
+    Some(seconds * (seconds / less).max(1.0).powf(steps))
+}
