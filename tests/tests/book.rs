@@ -219,6 +219,7 @@ fn tour_of_an_own_oscillator() -> Outcome {
         equation: Expression::Acceleration + x.clone() + Expression::Small * x.pow(5),
         time_domain: None,
         impact: None,
+        synchronous: None,
         small: "eps".into(),
         conditions: vec![Condition::InitialAmplitude],
         amplitude: AmplitudeRole::InSmallParameter,

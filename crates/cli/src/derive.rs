@@ -2,6 +2,7 @@
 
 use crate::Outcome;
 use crate::arguments::{self, DeriveOptions, Format, Normalisation};
+use crate::averaging;
 use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
 use crate::output;
 use crate::problems::{condition_name, condition_text};
@@ -25,6 +26,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         condition: options.normalisation.map(|normalisation| match normalisation {
             Normalisation::Initial => Condition::InitialAmplitude,
             Normalisation::Fundamental => Condition::FundamentalAmplitude,
+            Normalisation::Free => Condition::FreeAmplitude,
         }),
         parameters: parameters(&options.set)?,
         memory: session.memory(),
@@ -34,6 +36,12 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         },
     };
     output::check_writable(session)?;
+    let condition = settings.condition.or(problem.conditions.first().copied());
+    if condition == Some(Condition::FreeAmplitude)
+        && problem.conditions.contains(&Condition::FreeAmplitude)
+    {
+        return averaging::run(&problem, &settings, digits, session);
+    }
     let mut observer = |progress: Progress| {
         session.say(match progress {
             Progress::Order(n, terms) => format!("order {n} of {}: {terms} terms", settings.order),

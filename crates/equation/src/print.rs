@@ -134,6 +134,7 @@ impl Printer<'_> {
         let needs = match expression {
             Expression::Number(n) => !n.is_integer() || n.cmp0() == Ordering::Less,
             Expression::Sum(_) | Expression::Product(_) | Expression::Power(..) => true,
+            Expression::Function(Function::Abs, _) => false,
             Expression::Function(..) => self.latex(),
             _ => false,
         };

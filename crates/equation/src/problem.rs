@@ -69,6 +69,17 @@ pub struct Impact {
     pub restitution: Expression,
 }
 
+/// A delay that is a whole number of periods of the force, T = 2 pi k/omega.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Synchronous {
+    /// The parameter T.
+    pub delay: Text,
+    /// The parameter k, a positive integer.
+    pub periods: Text,
+    /// The parameter omega.
+    pub frequency: Text,
+}
+
 /// A built-in or user-defined oscillator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
@@ -83,6 +94,8 @@ pub struct Problem {
     pub time_domain: Option<Expression>,
     /// A wall with an impact law.
     pub impact: Option<Impact>,
+    /// A delay tied to the force.
+    pub synchronous: Option<Synchronous>,
     /// The name of the small parameter.
     pub small: Text,
     /// The conditions that make sense, the default first.

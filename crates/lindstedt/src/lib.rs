@@ -13,11 +13,13 @@
 #[cfg(doctest)]
 struct Readme;
 
+pub mod averaging;
 mod derivation;
 pub mod energy;
 mod error;
 pub mod multimodular;
 pub mod number;
+pub mod numeric;
 pub mod paper;
 mod value;
 

@@ -10,8 +10,13 @@ pub(crate) fn problem() -> Problem {
         equation: Expression::Acceleration + x.clone() + Expression::Small * x.pow(3),
         time_domain: None,
         impact: None,
+        synchronous: None,
         small: "rho".into(),
-        conditions: vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude],
+        conditions: vec![
+            Condition::InitialAmplitude,
+            Condition::FundamentalAmplitude,
+            Condition::FreeAmplitude,
+        ],
         amplitude: AmplitudeRole::InSmallParameter,
         parameters: vec![
             ParameterCard {

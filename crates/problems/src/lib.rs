@@ -12,7 +12,13 @@ use lindstedt_equation::Problem;
 
 /// All built-in problems, in the order of the command line's list.
 pub fn all() -> Vec<Problem> {
-    vec![power_law::problem(), pendulum::problem(), duffing::problem(), van_der_pol::problem()]
+    vec![
+        power_law::problem(),
+        pendulum::problem(),
+        vibro_impact::problem(),
+        duffing::problem(),
+        van_der_pol::problem(),
+    ]
 }
 
 /// The built-in problem of that name.

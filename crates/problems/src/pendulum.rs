@@ -16,6 +16,7 @@ pub(crate) fn problem() -> Problem {
         equation: Expression::Acceleration + x * exponent.formal("S"),
         time_domain: Some(Expression::Acceleration + force),
         impact: None,
+        synchronous: None,
         small: "delta".into(),
         conditions: vec![Condition::InitialAmplitude],
         amplitude: AmplitudeRole::InSums,

@@ -11,6 +11,7 @@ pub(crate) fn problem() -> Problem {
         equation: Expression::Acceleration + x * stiffness,
         time_domain: None,
         impact: None,
+        synchronous: None,
         small: "delta".into(),
         conditions: vec![Condition::InitialAmplitude],
         amplitude: AmplitudeRole::ScalesFrequency { exponent: 2 },

@@ -11,8 +11,9 @@ pub(crate) fn problem() -> Problem {
         equation: Expression::Acceleration + x - Expression::Small * gain * Expression::Velocity,
         time_domain: None,
         impact: None,
+        synchronous: None,
         small: "eps".into(),
-        conditions: vec![Condition::LimitCycle],
+        conditions: vec![Condition::LimitCycle, Condition::FreeAmplitude],
         amplitude: AmplitudeRole::Determined,
         parameters: vec![ParameterCard {
             name: "eps".into(),

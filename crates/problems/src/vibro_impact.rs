@@ -2,6 +2,7 @@
 
 use lindstedt_equation::{
     AmplitudeRole, Condition, Crossing, Expression, Function, Impact, ParameterCard, Problem,
+    Synchronous,
 };
 
 /// The controlled vibro-impact oscillator; eps = 1 in the end.
@@ -30,6 +31,11 @@ pub fn problem() -> Problem {
             position: symbol("s"),
             crossing: Crossing::Rising,
             restitution: symbol("R_r"),
+        }),
+        synchronous: Some(Synchronous {
+            delay: "T".into(),
+            periods: "k".into(),
+            frequency: "omega".into(),
         }),
         small: "eps".into(),
         conditions: vec![Condition::FreeAmplitude],

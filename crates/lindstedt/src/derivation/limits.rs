@@ -8,7 +8,7 @@ use rug::Rational;
 use std::collections::BTreeMap;
 
 /// Names and domains of the parameters given.
-pub(super) fn check_parameters(
+pub(crate) fn check_parameters(
     problem: &Problem,
     given: &BTreeMap<String, Value>,
 ) -> Result<(), Error> {
