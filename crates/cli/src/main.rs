@@ -9,7 +9,9 @@ mod output;
 mod paper;
 mod problems;
 mod session;
+mod simulate;
 mod threshold;
+mod verify;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -27,6 +29,8 @@ fn main() -> ExitCode {
         Command::Problems(options) => problems::run(options, &session),
         Command::Derive(options) => derive::run(options, &session),
         Command::Threshold(options) => threshold::run(options, &session),
+        Command::Simulate(options) => simulate::run(options, &session),
+        Command::Verify(options) => verify::run(options, &session),
         Command::Paper(options) => paper::run(options, &session),
     };
     match outcome {

@@ -22,6 +22,7 @@ pub mod number;
 pub mod numeric;
 pub mod paper;
 mod value;
+pub mod verify;
 
 pub use derivation::{Derivation, NamedSeries, Progress, Route, Settings, Solution, derive};
 pub use error::Error;
@@ -36,3 +37,4 @@ pub use lindstedt_melnikov as melnikov;
 pub use lindstedt_phase as phase;
 pub use lindstedt_problems as problems;
 pub use lindstedt_series as series;
+pub use lindstedt_simulate as simulate;
