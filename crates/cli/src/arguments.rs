@@ -196,7 +196,7 @@ pub struct VerifyOptions {
     )]
     pub small: String,
     /// The window, in periods.
-    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub periods: u32,
     /// Digits of the integration; by default enough for the smallest error.
     #[arg(long, value_name = "D", value_parser = clap::value_parser!(u32).range(5..=2000))]

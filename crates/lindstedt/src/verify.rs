@@ -50,12 +50,12 @@ pub struct VerifySettings {
 }
 
 impl Default for VerifySettings {
-    /// Order 4 at 1/1000, 1/2000, 1/4000, 1/8000 on two periods.
+    /// Order 4 at 1/1000, 1/2000, 1/4000, 1/8000 on one period.
     fn default() -> Self {
         Self {
             order: 4,
             small: (0..4).map(|j| Rational::from((1, 1000 << j))).collect(),
-            periods: 2,
+            periods: 1,
             samples: 48,
             digits: None,
             parameters: BTreeMap::new(),
