@@ -22,6 +22,8 @@ pub enum Command {
     Derive(DeriveOptions),
     /// The Melnikov threshold of homoclinic chaos: value, zeros, cusps, curves, surfaces.
     Threshold(ThresholdOptions),
+    /// Stability of the vibro-impact orbit: the averaged prediction beside the exact truth, charts.
+    Stability(StabilityOptions),
     /// The motion in the time domain, with impacts, sticking and delay: events, sections, figures.
     Simulate(SimulateOptions),
     /// The expansion against the time domain: observed order of accuracy, verdict.
@@ -81,8 +83,25 @@ pub struct DeriveOptions {
     /// The driver, or the energy integral (frequency alone; power-law and pendulum).
     #[arg(long, value_enum, default_value_t = Route::Driver)]
     pub route: Route,
+    /// Exact, or numbers with an estimated error: collocation (--digits or --f64) or a truncated
+    /// Fourier series in doubles (--harmonics).
+    #[arg(long, value_enum, default_value_t = TierName::Exact)]
+    pub tier: TierName,
+    /// Harmonics of each symmetry class in the Fourier tier.
+    #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=16384))]
+    pub harmonics: u32,
     #[command(flatten)]
     pub precision: Precision,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TierName {
+    /// Exact rings; every order substituted back.
+    Exact,
+    /// Values at double-exponential nodes.
+    Collocation,
+    /// A truncated Fourier series.
+    Fourier,
 }
 
 #[derive(Debug, Args)]
@@ -103,6 +122,95 @@ pub struct ThresholdOptions {
     pub plot: Vec<PathBuf>,
     #[command(flatten)]
     pub precision: Precision,
+}
+
+#[derive(Debug, Args)]
+pub struct StabilityOptions {
+    /// vibro-impact.
+    pub problem: String,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3); branch=+ or branch=-.
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// NAME=LO..HI:COUNT; at most two, the first along the horizontal axis.
+    #[arg(long, value_name = "NAME=LO..HI:COUNT")]
+    pub sweep: Vec<String>,
+    /// What to compute.
+    #[arg(long, value_enum, default_value_t = PredictorChoice::Both)]
+    pub predictor: PredictorChoice,
+    /// Which orbit meets which flow in the averaged prediction.
+    #[arg(long, value_enum, default_value_t = VariantChoice::E)]
+    pub variant: VariantChoice,
+    /// The order of the averaged flow.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub order: u32,
+    /// How the velocity kick of B is treated in the characteristic function.
+    #[arg(long, value_enum, default_value_t = KickChoice::Mean)]
+    pub kick: KickChoice,
+    /// A chart (.svg) or a table (.csv) of the sweeps; may be given twice.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Vec<PathBuf>,
+    #[command(flatten)]
+    pub precision: Precision,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PredictorChoice {
+    /// The averaged prediction (KBM) alone.
+    Kbm,
+    /// The exact characteristic function alone.
+    Exact,
+    /// Both, with their agreement.
+    Both,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "kebab-case")]
+pub enum VariantChoice {
+    /// Orbit and map of the equivalent flow.
+    #[value(name = "E")]
+    E,
+    /// The true orbit's saltation with the equivalent flow.
+    #[value(name = "S")]
+    S,
+    /// The paper's letter.
+    #[value(name = "P")]
+    P,
+    /// The averaging that knows of the impact within the delay.
+    ImpactAware,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum KickChoice {
+    None,
+    Mean,
+    Before,
+    After,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Route {
+    /// Solution and frequency, checked by substitution.
+    Driver,
+    /// The frequency alone, exact and to much higher order.
+    Energy,
+}
+
+/// With --out DIR the report and its data are written into that directory.
+#[derive(Debug, Args)]
+pub struct PaperOptions {
+    /// Lower orders, a few seconds.
+    #[arg(long)]
+    pub quick: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Normalisation {
+    /// x(0) = A, x'(0) = 0.
+    Initial,
+    /// The first harmonic of x is A cos.
+    Fundamental,
+    /// The first harmonic is a cos(psi), a drifts: averaging (KBM).
+    Free,
 }
 
 #[derive(Debug, Args)]
@@ -204,32 +312,6 @@ pub struct VerifyOptions {
     /// A figure (.svg) of the errors, or a table (.csv); may be given twice.
     #[arg(long, value_name = "FILE")]
     pub plot: Vec<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Route {
-    /// Solution and frequency, checked by substitution.
-    Driver,
-    /// The frequency alone, exact and to much higher order.
-    Energy,
-}
-
-/// With --out DIR the report and its data are written into that directory.
-#[derive(Debug, Args)]
-pub struct PaperOptions {
-    /// Lower orders, a few seconds.
-    #[arg(long)]
-    pub quick: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Normalisation {
-    /// x(0) = A, x'(0) = 0.
-    Initial,
-    /// The first harmonic of x is A cos.
-    Fundamental,
-    /// The first harmonic is a cos(psi), a drifts: averaging (KBM).
-    Free,
 }
 
 #[derive(Debug, Args)]

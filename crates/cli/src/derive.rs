@@ -42,6 +42,9 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     {
         return averaging::run(&problem, &settings, digits, session);
     }
+    if options.tier != arguments::TierName::Exact {
+        return crate::derive_numeric::run(options, &problem, &settings, digits, session);
+    }
     let mut observer = |progress: Progress| {
         session.say(match progress {
             Progress::Order(n, terms) => format!("order {n} of {}: {terms} terms", settings.order),

@@ -4,12 +4,14 @@
 mod arguments;
 mod averaging;
 mod derive;
+mod derive_numeric;
 mod failure;
 mod output;
 mod paper;
 mod problems;
 mod session;
 mod simulate;
+mod stability;
 mod threshold;
 mod verify;
 
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
         Command::Threshold(options) => threshold::run(options, &session),
         Command::Simulate(options) => simulate::run(options, &session),
         Command::Verify(options) => verify::run(options, &session),
+        Command::Stability(options) => stability::run(options, &session),
         Command::Paper(options) => paper::run(options, &session),
     };
     match outcome {

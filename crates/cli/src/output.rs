@@ -3,6 +3,7 @@
 use crate::failure::{FILE, Failure};
 use crate::session::Session;
 use std::io::Write;
+use std::path::Path;
 
 /// Writes a result to the file asked for or to standard output.
 ///
@@ -22,7 +23,11 @@ pub fn write(session: &Session, text: &str) -> Result<(), Failure> {
 
 /// Fails now rather than after the work if the output cannot be written.
 pub fn check_writable(session: &Session) -> Result<(), Failure> {
-    let Some(path) = session.out() else { return Ok(()) };
+    session.out().map_or(Ok(()), check_file)
+}
+
+/// Fails now rather than after the work if a file cannot be written.
+pub fn check_file(path: &Path) -> Result<(), Failure> {
     let existed = path.exists();
     let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
     opened.map_err(|error| trouble(&path.display().to_string(), &error))?;
@@ -30,6 +35,11 @@ pub fn check_writable(session: &Session) -> Result<(), Failure> {
         let _ = std::fs::remove_file(path);
     }
     Ok(())
+}
+
+/// Writes a figure or a table.
+pub fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text).map_err(|error| trouble(&path.display().to_string(), &error))
 }
 
 /// A failure of the file system.

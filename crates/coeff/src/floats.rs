@@ -13,7 +13,7 @@ pub trait Reals: RationalAlgebra {
     /// The precision in bits.
     fn bits(&self) -> u32;
     /// The nearest number.
-    fn from_float(&self, x: &Float) -> Self::Element;
+    fn nearest(&self, x: &Float) -> Self::Element;
     /// The number at its own precision.
     fn to_float(&self, a: &Self::Element) -> Float;
     /// Whether a is neither infinite nor NaN.
@@ -115,7 +115,7 @@ impl Reals for Doubles {
     fn bits(&self) -> u32 {
         f64::MANTISSA_DIGITS
     }
-    fn from_float(&self, x: &Float) -> f64 {
+    fn nearest(&self, x: &Float) -> f64 {
         x.to_f64()
     }
     fn to_float(&self, a: &f64) -> Float {
@@ -199,7 +199,7 @@ impl Reals for Floats {
     fn bits(&self) -> u32 {
         self.bits
     }
-    fn from_float(&self, x: &Float) -> Float {
+    fn nearest(&self, x: &Float) -> Float {
         Float::with_val(self.bits, x)
     }
     fn to_float(&self, a: &Float) -> Float {

@@ -190,6 +190,13 @@ impl<A: PhaseAlgebra> Scheme for Driver<'_, A> {
         let f = self.right_side(n)?;
         let phase = |source| ExpandError::Phase { order: n, source };
         let mut split = algebra.resolve(&f).map_err(phase)?;
+        // Rounding errors of an estimating algebra are no drift of the amplitude.
+        if self.limit_cycle.is_none() && !constants.is_zero(&split.sin_amplitude) {
+            let resonant = algebra.scale_by(&algebra.sine(), &split.sin_amplitude);
+            if algebra.agrees(&f, &algebra.sub(&f, &resonant)) {
+                split.sin_amplitude = constants.zero();
+            }
+        }
         if let Some(shift) = self.amplitude_shift(&split.sin_amplitude, n)? {
             if let Some(reaction) = &self.limit_cycle {
                 let change = constants.mul(&reaction.cos, &shift);

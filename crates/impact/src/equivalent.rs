@@ -222,3 +222,47 @@ impl<S: Real> EquivalentOrbit<S> {
         (x, x1, x2)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// x' and x'' are the derivatives of x and x', and the ends meet the impact law.
+    #[test]
+    fn the_flight_is_consistent() {
+        let drive = Drive {
+            omega: 1.7_f64,
+            period: 2.0 * std::f64::consts::PI / 1.7,
+            restitution: 0.6,
+            wall: 0.1,
+            forced_amplitude: 0.8,
+            branch: Branch::Plus,
+        };
+        let flow = Flow { growth_rate: -0.13, frequency: 0.9 };
+        let orbit = equivalent_orbit(&flow, &drive).ok();
+        let state = |t: f64| orbit.as_ref().map(|orbit| orbit.state(&flow, &drive.omega, &t));
+        let velocity = orbit.as_ref().map_or(f64::NAN, |orbit| orbit.velocity);
+        let mut checked = 0;
+        for n in 1..20 {
+            let (t, h) = (drive.period * f64::from(n) / 20.0, 1e-4);
+            let (Some(before), Some(here), Some(after)) = (state(t - h), state(t), state(t + h))
+            else {
+                continue;
+            };
+            assert!(((after.0 - before.0) / (2.0 * h) - here.1).abs() < 1e-7);
+            assert!(((after.1 - before.1) / (2.0 * h) - here.2).abs() < 1e-7);
+            checked += 1;
+        }
+        assert_eq!(checked, 19);
+        for (t, expected) in [(0.0, -0.6 * velocity), (drive.period, velocity)] {
+            let found = state(t).unwrap_or((f64::NAN, f64::NAN, f64::NAN));
+            assert!((found.0 - 0.1).abs() < 1e-14 && (found.1 - expected).abs() < 1e-14);
+        }
+        let ends = state(0.0).zip(state(drive.period)).zip(orbit.as_ref());
+        let good = ends.is_some_and(|((start, end), orbit)| {
+            (start.2 - orbit.acceleration_after).abs() < 1e-13
+                && (end.2 - orbit.acceleration_before).abs() < 1e-13
+        });
+        assert!(good);
+    }
+}

@@ -240,14 +240,14 @@ impl StabilityReport<Certified> {
     /// no verdict is open.
     fn has_bits(&self, bits: i64) -> bool {
         let good = |x: &Certified| x.ball().relative_accuracy_bits() >= bits;
-        let orbit = self.orbit.as_ref().is_ok_and(|found| {
+        let orbit = self.orbit.as_ref().map_or_else(settled, |found| {
             let form = found
                 .form
                 .as_ref()
                 .is_none_or(|form| good(&form.phase) && good(&form.cosine) && good(&form.sine));
             good(&found.orbit.velocity) && found.penetrates.is_some() && form
         });
-        let kbm = self.kbm.as_ref().is_ok_and(|found| {
+        let kbm = self.kbm.as_ref().map_or_else(settled, |found| {
             let polynomial = found
                 .prediction
                 .polynomial
@@ -264,4 +264,16 @@ impl StabilityReport<Certified> {
         });
         orbit && kbm && exact
     }
+}
+
+/// Whether more precision would not change this refusal.
+fn settled(error: &ImpactError) -> bool {
+    !matches!(
+        error,
+        ImpactError::Undecided { .. }
+            | ImpactError::PeriodicFreeFlow { .. }
+            | ImpactError::ImpactResonance { .. }
+            | ImpactError::NoPositiveVelocity { .. }
+            | ImpactError::NoConvergence { .. }
+    )
 }

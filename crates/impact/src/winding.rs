@@ -85,3 +85,50 @@ fn safe_step<S: Real>(g: &Characteristic<S>, w: &Complex<f64>, floor: f64, slope
         reach /= 2.0;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::characteristic::Kick;
+    use crate::orbit::orbit;
+    use crate::parameters::{Branch, Parameters};
+
+    /// On the disc of a safe step G stays within its budget, so no turn can be missed.
+    #[test]
+    fn a_step_stays_within_its_budget() {
+        let mut longest = 0.0_f64;
+        for n in 0..60 {
+            let spread = f64::from(n % 7) / 3.0 - 1.0;
+            let parameters = Parameters {
+                alpha: 1.0,
+                omega: 2.0 + f64::from(n) / 20.0,
+                periods: 1 + n % 3,
+                restitution: 0.8,
+                wall: -0.2,
+                damping: 0.1,
+                force: 1.0,
+                displacement_gain: 0.4 * spread,
+                velocity_gain: -0.3 * spread,
+                branch: Branch::Plus,
+            };
+            let found = orbit(&parameters).ok();
+            let Some(found) = found else { continue };
+            let g = Characteristic::new(&parameters, &found, Kick::Mean);
+            for m in 0..40 {
+                let (sin, cos) = (std::f64::consts::PI * f64::from(m) / 40.0).sin_cos();
+                let w = Complex::new(cos, sin);
+                let (value, slope) = g.value_and_slope(&w);
+                let size = value.modulus();
+                let step = safe_step(&g, &w, size, slope.modulus());
+                for k in 0..24 {
+                    let (sin, cos) = (f64::from(k) * 0.27).sin_cos();
+                    let there = w.clone() + Complex::new(step * cos, step * sin);
+                    let change = (g.value_and_slope(&there).0 - &value).modulus() / size;
+                    assert!(change < 0.91, "{parameters:?} {change}");
+                    longest = longest.max(change);
+                }
+            }
+        }
+        assert!(longest > 0.3, "the steps are needlessly short: {longest}");
+    }
+}

@@ -56,7 +56,7 @@ pub struct Estimate {
     pub tier: Tier,
     /// The normalisation used.
     pub condition: Condition,
-    /// The highest order derived (lower than asked for when interrupted).
+    /// The highest order derived.
     pub order: usize,
     /// The nodes of the finer grid.
     pub nodes: usize,
@@ -100,7 +100,8 @@ const MOST_NODES: usize = 1 << 14;
 
 /// Derives an expansion in a numeric tier. `settings.route` does not apply.
 ///
-/// `observer` is told every finished order; when it returns `false`, the expansion ends there.
+/// `observer` is told every finished order of every grid; when it returns `false`, the derivation
+/// ends with an error (one grid alone has no error estimate).
 ///
 /// # Errors
 /// [`Error`] with the reason; [`Error::NotEnoughBits`] when refining the grid does not reach the
@@ -125,6 +126,7 @@ pub fn derive(
 ) -> Result<Estimate, Error> {
     crate::derivation::check_parameters(problem, &settings.parameters)?;
     let condition = crate::derivation::condition(problem, settings.condition)?;
+    limit_memory(settings, 32, 64)?;
     let mut job = Job { problem, settings, condition, observer };
     match tier {
         Tier::Collocation { digits } => job.refine(tier, digits),
@@ -144,6 +146,7 @@ pub fn derive(
                 job.run(&Collocation::fourier(Doubles, harmonics), harmonics)
             };
             let harmonics = harmonics.clamp(4, MOST_NODES);
+            limit_memory(settings, harmonics, 64)?;
             // Algebraic convergence is uneven at high orders: three numbers of harmonics.
             let coarse =
                 [run(&mut job, harmonics.div_ceil(4))?, run(&mut job, harmonics.div_ceil(2))?];
@@ -151,6 +154,21 @@ pub fn derive(
             Ok(job.compare(tier, &coarse, fine, 53))
         }
     }
+}
+
+/// Refuses before allocating: a value takes its bits and 48 bytes, an order about 12 lists of them
+/// (x, x', x'' and the coefficients of some nodes of the equation).
+fn limit_memory(settings: &Settings, nodes: usize, bits: u32) -> Result<(), Error> {
+    let value = f64::from(bits) / 8.0 + 48.0;
+    let bytes = (settings.order as f64 + 1.0) * nodes as f64 * value * 12.0;
+    if bytes > settings.memory as f64 {
+        return Err(Error::TooLarge {
+            order: settings.order,
+            exponent: bytes.log10().round() as u64,
+            limit: settings.memory >> 20,
+        });
+    }
+    Ok(())
 }
 
 /// One run on one grid.
@@ -180,6 +198,7 @@ impl Job<'_> {
                 break;
             }
             bits = needed;
+            limit_memory(self.settings, grid.nodes, bits)?;
             let algebra = Collocation::new(Floats::new(bits), grid);
             let run = self.run(&algebra, grid.nodes)?;
             let Some(before) = coarse.replace(run) else {
@@ -189,11 +208,15 @@ impl Job<'_> {
             let Some(fine) = coarse.take() else { break };
             let estimate = self.compare(tier, &[before], fine, bits);
             let tolerance = Float::with_val(53, Float::i_pow_u(10, digits)).recip();
-            let reached = |(value, error): &(Float, Float)| {
+            let missing = |(value, error): &(Float, Float)| {
                 let size = Float::with_val(53, value.abs_ref());
-                *error <= tolerance || *error <= size * &tolerance
+                let allowed = if size > 1 { size * &tolerance } else { tolerance.clone() };
+                let ratio = Float::with_val(53, error / &allowed);
+                if ratio.is_finite() { ratio.log10().to_f64().ceil() } else { f64::INFINITY }
             };
-            if estimate.series.iter().flat_map(|s| &s.coefficients).all(reached) {
+            let coefficients = estimate.series.iter().flat_map(|s| &s.coefficients);
+            let missing = coefficients.map(missing).fold(f64::NEG_INFINITY, f64::max);
+            if missing <= 0.0 {
                 return Ok(estimate);
             }
             let values = |s: &EstimatedSeries| {
@@ -201,7 +224,7 @@ impl Job<'_> {
             };
             let series = estimate.series.iter().map(values).collect();
             coarse = Some(Run { nodes: estimate.nodes, products: estimate.products, series });
-            guard += digits / 2 + 10;
+            guard += (missing as u32).clamp(6, digits + 20);
         }
         Err(Error::NotEnoughBits { bits, best: None })
     }
@@ -256,6 +279,9 @@ impl Job<'_> {
         };
         let request = Request { condition: self.condition, order, leading_amplitude };
         let expansion = expand(algebra, &equation, &request, self.observer)?;
+        if expansion.order() < order {
+            return Err(ExpandError::Interrupted { order: expansion.order() + 1 }.into());
+        }
         let kappa = reals.to_float(&expansion.stiffness);
         if kappa <= 0 || !kappa.is_finite() {
             return Err(ExpandError::NegativeStiffness.into());
@@ -314,7 +340,7 @@ impl Job<'_> {
 
 /// The middle of a ball in a context of floats.
 fn real<R: Reals>(reals: &R, ball: &Ball) -> R::Element {
-    reals.from_float(ball.midpoint())
+    reals.nearest(ball.midpoint())
 }
 
 /// Values of parameters and of the formal sums S_n.

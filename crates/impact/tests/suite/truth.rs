@@ -65,6 +65,17 @@ fn flip_boundary_is_where_the_simulation_flips() {
     assert!(flips.iter().any(|a| (a - 0.176).abs() < 1e-3));
 }
 
+#[test]
+fn a_certified_report_without_a_predicted_orbit() {
+    let p = parameters(&data("O8_saddle"));
+    let report = certified_stability(&p, &Request::default(), 30).unwrap();
+    assert!(matches!(report.kbm, Err(ImpactError::BeyondFold { .. })));
+    let exact = report.exact.unwrap();
+    assert_eq!(exact.definite(), Verdict::Unstable);
+    // Settled at the first precision: 30 digits and guard bits.
+    assert!(exact.multipliers.unwrap().values[0].re.precision() < 256);
+}
+
 /// The nonlinear simulation of the delayed system, done elsewhere, against the linear return map:
 /// impact times T l + delta_l after a perturbed start.
 #[test]

@@ -23,7 +23,7 @@ impl<E: Clone + PartialEq> Fourier<E> {
         let bits = reals.bits() + 16;
         let angle = |i: usize| Float::with_val(bits, Constant::Pi) * i as u64 / (4 * points as u64);
         let table = |f: fn(Float) -> Float| {
-            (0..8 * points).map(|i| reals.from_float(&f(angle(i)))).collect::<Vec<_>>()
+            (0..8 * points).map(|i| reals.nearest(&f(angle(i)))).collect::<Vec<_>>()
         };
         Self { points, cos: table(Float::cos), sin: table(Float::sin) }
     }

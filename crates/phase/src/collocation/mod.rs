@@ -118,7 +118,7 @@ impl<R: Reals> Collocation<R> {
         values
     }
 
-    fn from_parts(&self, values: [Option<Vec<R::Element>>; PARTS]) -> Sampled<R::Element> {
+    fn with_parts(&self, values: [Option<Vec<R::Element>>; PARTS]) -> Sampled<R::Element> {
         let absent = |list: &Vec<R::Element>| list.iter().all(|v| self.reals.is_zero(v));
         let values = values.map(|part| part.filter(|list| !absent(list)).map(Arc::new));
         Sampled { values, derivative: None }
@@ -134,7 +134,7 @@ impl<R: Reals> Collocation<R> {
 
     /// The function with a NaN for every value.
     fn unknown(&self) -> Sampled<R::Element> {
-        let nan = self.reals.from_float(&rug::Float::with_val(2, rug::float::Special::Nan));
+        let nan = self.reals.nearest(&rug::Float::with_val(2, rug::float::Special::Nan));
         self.of_part(COS_EVEN, Arc::new(vec![nan; self.nodes]))
     }
 
@@ -159,7 +159,7 @@ impl<R: Reals> Collocation<R> {
     }
 
     /// The function with these values at psi, pi - psi, -psi and pi + psi.
-    fn from_images(&self, images: &[Vec<R::Element>; 4]) -> Sampled<R::Element> {
+    fn with_images(&self, images: &[Vec<R::Element>; 4]) -> Sampled<R::Element> {
         let quarter = rug::Rational::from((1, 4));
         let combine = |signs: [bool; 2]| -> Vec<R::Element> {
             let [a, b, c, d] = images;
@@ -173,7 +173,7 @@ impl<R: Reals> Collocation<R> {
             };
             pairs.map(value).collect()
         };
-        self.from_parts([
+        self.with_parts([
             Some(combine([true, true])),
             Some(combine([true, false])),
             Some(combine([false, false])),
@@ -205,7 +205,7 @@ impl<R: Reals> Collocation<R> {
         }
         let result = images.map(|image| image.iter().map(&g).collect::<Vec<_>>());
         let finite = result.iter().flatten().all(|v| self.reals.is_finite(v));
-        finite.then(|| self.from_images(&result))
+        finite.then(|| self.with_images(&result))
     }
 
     /// One value per node, on both cores where a value is long work.

@@ -10,6 +10,9 @@ use lindstedt_coeff::floats::Reals;
 use rug::Rational;
 use std::sync::Arc;
 
+/// Pairs of lists to be multiplied point by point.
+type Factors<'a, E> = Vec<(&'a [E], &'a [E])>;
+
 /// Bits by which two ways to the same function may differ.
 const ROUNDING_BITS: i32 = 12;
 
@@ -22,7 +25,7 @@ impl<R: Reals> Collocation<R> {
     ) -> Sampled<R::Element> {
         let list = |list: &Arc<Vec<R::Element>>| list.iter().map(g).collect::<Vec<_>>();
         let values = f.values.each_ref().map(|part| part.as_ref().map(list));
-        let mut image = self.from_parts(values);
+        let mut image = self.with_parts(values);
         image.derivative = f.derivative.as_ref().map(|d| Arc::new(self.linear(d, g)));
         image
     }
@@ -38,8 +41,16 @@ impl<R: Reals> Collocation<R> {
 
     /// Whether f vanishes against `scale`, within rounding errors.
     fn is_negligible(&self, f: &Sampled<R::Element>, scale: &rug::Float) -> bool {
-        let tolerance =
-            rug::Float::with_val(53, scale) >> (self.reals.bits() as i32 - ROUNDING_BITS);
+        let mut tolerance =
+            rug::Float::with_val(53, 1) >> (self.reals.bits() as i32 - ROUNDING_BITS);
+        // What lies beyond the last node is missing from an integral.
+        if let (Rule::Sinc(_), Some(last)) = (&self.rule, self.cos.last()) {
+            let missing = rug::Float::with_val(53, self.reals.to_float(last) * 64u32);
+            if missing > tolerance {
+                tolerance = missing;
+            }
+        }
+        tolerance *= scale;
         self.size(f) <= tolerance
     }
 
@@ -69,7 +80,7 @@ impl<R: Reals> Collocation<R> {
                 let bits = self.reals.bits() + 8;
                 let pi = rug::Float::with_val(bits, rug::float::Constant::Pi);
                 let sum = rug::Float::with_val(bits, self.reals.to_float(&sum) * 4u32);
-                self.reals.from_float(&(sum / pi))
+                self.reals.nearest(&(sum / pi))
             }
             Rule::Fourier(fourier) => {
                 let list = fourier.coefficients(&self.reals, part, f);
@@ -149,8 +160,7 @@ impl<R: Reals> Ring for Collocation<R> {
         self.sum_of_products(&[(f, g)])
     }
     fn sum_of_products(&self, pairs: &[(&Self::Element, &Self::Element)]) -> Self::Element {
-        let mut factors: [Vec<(&[R::Element], &[R::Element])>; PARTS] =
-            [const { Vec::new() }; PARTS];
+        let mut factors: [Factors<'_, R::Element>; PARTS] = [const { Vec::new() }; PARTS];
         for (f, g) in pairs {
             for (p, a) in f.values.iter().enumerate() {
                 for (q, b) in g.values.iter().enumerate() {
@@ -174,7 +184,7 @@ impl<R: Reals> Ring for Collocation<R> {
                 })
             })
         });
-        self.from_parts(values)
+        self.with_parts(values)
     }
 }
 
@@ -190,7 +200,7 @@ impl<R: Reals> RationalAlgebra for Collocation<R> {
     }
     /// Nothing where f has a zero.
     fn reciprocal(&self, f: &Self::Element) -> Option<Self::Element> {
-        let nan = || self.reals.from_float(&rug::Float::with_val(2, rug::float::Special::Nan));
+        let nan = || self.reals.nearest(&rug::Float::with_val(2, rug::float::Special::Nan));
         self.pointwise(f, Domain::NoZeros, |v| self.reals.reciprocal(v).unwrap_or_else(nan))
     }
     fn as_rational(&self, f: &Self::Element) -> Option<Rational> {
@@ -204,7 +214,7 @@ impl<R: Reals> FunctionAlgebra for Collocation<R> {
         &self.reals
     }
     fn embed(&self, c: &R::Element) -> Self::Element {
-        let mut f = self.from_parts([Some(vec![c.clone(); self.nodes]), None, None, None]);
+        let mut f = self.with_parts([Some(vec![c.clone(); self.nodes]), None, None, None]);
         f.derivative = Some(Arc::new(self.zero()));
         f
     }
@@ -233,7 +243,7 @@ impl<R: Reals> FunctionAlgebra for Collocation<R> {
         };
         self.pointwise(f, domain, |v| self.reals.elementary(function, v))
     }
-    /// Up to rounding: `ROUNDING_BITS` bits of the larger one.
+    /// Up to rounding (`ROUNDING_BITS` bits of the larger one) and the rest beyond the last node.
     fn agrees(&self, f: &Self::Element, g: &Self::Element) -> bool {
         let (a, b) = (self.size(f), self.size(g));
         self.is_negligible(&self.sub(f, g), if a > b { &a } else { &b })
@@ -288,7 +298,7 @@ impl<R: Reals> PhaseAlgebra for Collocation<R> {
             };
             self.add_assign(&mut free, &term);
         }
-        let [u, slope] = parts.map(|values| self.from_parts(values));
+        let [u, slope] = parts.map(|values| self.with_parts(values));
         let (mut u, mut slope) = (u, slope);
         slope.derivative = Some(Arc::new(self.sub(&rest, &u)));
         u.derivative = Some(Arc::new(slope));

@@ -31,12 +31,12 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Sinc<E> {
         let (mut cos, mut sin, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..grid.nodes {
             let [c, s, slope] = node(k as f64 * grid.step, bits);
-            cos.push(reals.from_float(&c));
-            sin.push(reals.from_float(&s));
-            weights.push(reals.from_float(&(slope * grid.step)));
+            cos.push(reals.nearest(&c));
+            sin.push(reals.nearest(&s));
+            weights.push(reals.nearest(&(slope * grid.step)));
         }
         let table = sine_integrals(2 * grid.nodes, bits);
-        let positive: Vec<_> = table.iter().map(|x| reals.from_float(x)).collect();
+        let positive: Vec<_> = table.iter().map(|x| reals.nearest(x)).collect();
         let negative = positive.iter().take(grid.nodes).skip(1).rev().map(|x| reals.neg(x));
         let forward: Vec<_> = negative.chain(positive.iter().cloned()).collect();
         let backward = forward.iter().rev().cloned().collect();
@@ -88,7 +88,7 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Sinc<E> {
         let correlation = self.packed.as_ref().map(|packed| {
             let g: Vec<Float> = g.iter().map(|g| reals.to_float(g)).collect();
             let list = packed.correlation(&g);
-            list.iter().map(|c| reals.from_float(c)).collect::<Vec<E>>()
+            list.iter().map(|c| reals.nearest(c)).collect::<Vec<E>>()
         });
         let known = |index: usize| correlation.as_ref().and_then(|list| list.get(index));
         let value = |k: usize| {

@@ -1,0 +1,197 @@
+//! Charts: two parameters, the prediction and the truth at every point.
+
+use super::request::Request;
+use crate::failure::{Failure, UNDECIDED};
+use crate::session::Session;
+use lindstedt_impact::ImpactError;
+use lindstedt_impact::chart::{Agreement, Axis, Chart, Plan, Point, Swept, chart};
+use lindstedt_impact::flip::flip_boundary;
+use lindstedt_impact::map::Verdict;
+use lindstedt_impact::parameters::Exact;
+use lindstedt_impact::real::Real;
+use rayon::prelude::*;
+use rug::Rational;
+use serde_json::{Value as Json, json};
+use std::fmt::Write;
+
+/// Bits of the flip curve.
+const FLIP_BITS: u32 = 96;
+/// At most so many points of the flip curve are computed.
+const FLIP_POINTS: usize = 201;
+
+pub struct Grid {
+    pub names: [&'static str; 2],
+    pub plan: Plan,
+    pub chart: Chart,
+    pub agreement: Agreement,
+    /// Points (column value, row value) of the flip curve G(-1) = 0.
+    pub flip: Vec<(f64, f64)>,
+    pub finished: bool,
+}
+
+/// How a point stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    BothStable,
+    BothUnstable,
+    FalseStable,
+    FalseUnstable,
+    /// Only one of the two was asked for or exists.
+    OnlyStable,
+    OnlyUnstable,
+    Open,
+}
+
+pub fn standing(point: &Point) -> Standing {
+    use Verdict::{Neutral, Stable, Unstable};
+    match (point.predicted, point.exact) {
+        (Some(Neutral), _) | (_, Some(Neutral)) | (None, None) => Standing::Open,
+        (Some(Stable), Some(Stable)) => Standing::BothStable,
+        (Some(Unstable), Some(Unstable)) => Standing::BothUnstable,
+        (Some(Stable), Some(Unstable)) => Standing::FalseStable,
+        (Some(Unstable), Some(Stable)) => Standing::FalseUnstable,
+        (Some(Stable), None) | (None, Some(Stable)) => Standing::OnlyStable,
+        (Some(Unstable), None) | (None, Some(Unstable)) => Standing::OnlyUnstable,
+    }
+}
+
+impl Grid {
+    pub fn compute(request: &Request, session: &Session<'_>) -> Result<Option<Self>, Failure> {
+        let Some(plan) = request.plan() else { return Ok(None) };
+        let points = plan.columns.count.saturating_mul(plan.rows.count);
+        let bytes = points.saturating_mul(size_of::<Point>()) as u64;
+        if bytes > session.memory() {
+            return Err(Failure {
+                exit: UNDECIDED,
+                code: "too-large",
+                message: format!("{points} points need {bytes} bytes"),
+                hint: "fewer values, or raise --limit-memory".into(),
+            });
+        }
+        let base = request.parameters.to_f64();
+        let rows = plan.rows.count;
+        let observer = |done: usize| {
+            session.say(format!("row {done} of {rows}"));
+            session.goes_on()
+        };
+        let second = request.sweeps.get(1).map(|(name, _)| *name);
+        let other = if plan.rows.parameter == Swept::VelocityGain { "B" } else { "A" };
+        let names = [request.sweeps[0].0, second.unwrap_or(other)];
+        let chart = match chart(&base, &plan, &observer) {
+            Ok(chart) => chart,
+            // Rows are finished in any order: nothing of a stopped chart is shown.
+            Err(ImpactError::Cancelled) => {
+                let chart = Chart { plan, points: Vec::new() };
+                let agreement = Agreement::default();
+                let flip = Vec::new();
+                return Ok(Some(Self { names, plan, chart, agreement, flip, finished: false }));
+            }
+            Err(error) => return Err(error.into()),
+        };
+        let agreement = chart.agreement();
+        let flip = flip(request, &plan);
+        Ok(Some(Self { names, plan, chart, agreement, flip, finished: true }))
+    }
+
+    pub fn csv(&self) -> String {
+        let mut text = format!("{},{},kbm,exact\n", self.names[0], self.names[1]);
+        let word = |verdict: Option<Verdict>| match verdict {
+            Some(Verdict::Stable) => "stable",
+            Some(Verdict::Unstable) => "unstable",
+            Some(Verdict::Neutral) => "undecided",
+            None => "",
+        };
+        let width = self.plan.columns.count;
+        for (index, point) in self.chart.points.iter().enumerate() {
+            let x = self.plan.columns.value(index % width);
+            let y = self.plan.rows.value(index / width);
+            let _ = writeln!(text, "{x},{y},{},{}", word(point.predicted), word(point.exact));
+        }
+        text
+    }
+
+    pub fn json(&self) -> Json {
+        let axis = |name: &str, axis: &Axis| {
+            let values: Vec<f64> = (0..axis.count).map(|n| axis.value(n)).collect();
+            json!({"name": name, "values": values})
+        };
+        let matrix = |verdict: &dyn Fn(&Point) -> Option<Verdict>| -> Json {
+            let cell = |point: &Point| match verdict(point) {
+                Some(Verdict::Stable) => json!(true),
+                Some(Verdict::Unstable) => json!(false),
+                _ => Json::Null,
+            };
+            let rows = self.chart.points.chunks(self.plan.columns.count.max(1));
+            rows.map(|row| row.iter().map(cell).collect::<Json>()).collect()
+        };
+        json!({
+            "columns": axis(self.names[0], &self.plan.columns),
+            "rows": axis(self.names[1], &self.plan.rows),
+            "kbm": matrix(&|point| point.predicted),
+            "exact": matrix(&|point| point.exact),
+            "agreement": self.agreement_json(),
+            "flip": self.flip,
+            "status": "estimated",
+            "finished": self.finished,
+        })
+    }
+
+    fn agreement_json(&self) -> Json {
+        let Agreement { compared, equal, false_stable, false_unstable } = self.agreement;
+        let rate = (compared > 0).then(|| self.agreement.rate());
+        json!({
+            "compared": compared, "equal": equal, "rate": rate,
+            "false_stable": false_stable, "false_unstable": false_unstable,
+        })
+    }
+
+    /// One line for the text formats.
+    pub fn summary(&self) -> String {
+        let Agreement { compared, equal, false_stable, false_unstable } = self.agreement;
+        let points = self.chart.points.len();
+        if compared == 0 {
+            return format!("chart: {points} points; prediction and truth were not compared");
+        }
+        format!(
+            "chart: {points} points, {compared} compared: prediction and truth agree in {equal} \
+             ({:.1} %); predicted stable but unstable {false_stable}, predicted unstable but \
+             stable {false_unstable}",
+            100.0 * self.agreement.rate(),
+        )
+    }
+}
+
+/// The flip curve, where A is one of the axes: A as a function of the other axis.
+fn flip(request: &Request, plan: &Plan) -> Vec<(f64, f64)> {
+    if plan.exact.is_none() {
+        return Vec::new();
+    }
+    let (along, across, transposed) = match (plan.columns.parameter, plan.rows.parameter) {
+        (Swept::DisplacementGain, _) => (plan.columns, plan.rows, false),
+        (_, Swept::DisplacementGain) => (plan.rows, plan.columns, true),
+        _ => return Vec::new(),
+    };
+    let (low, high) = (along.low.min(along.high), along.low.max(along.high));
+    let stride = across.count.div_ceil(FLIP_POINTS).max(1);
+    let steps: Vec<usize> = (0..across.count).step_by(stride).collect();
+    let values = |n: usize| -> Vec<(f64, f64)> {
+        let value = across.value(n);
+        let Some(q) = Rational::from_f64(value) else { return Vec::new() };
+        let mut parameters = request.parameters.clone();
+        let slot = match across.parameter {
+            Swept::Alpha => &mut parameters.alpha,
+            Swept::Omega => &mut parameters.omega,
+            Swept::Restitution => &mut parameters.restitution,
+            Swept::Wall => &mut parameters.wall,
+            Swept::Damping => &mut parameters.damping,
+            Swept::Force => &mut parameters.force,
+            Swept::DisplacementGain => &mut parameters.displacement_gain,
+            Swept::VelocityGain => &mut parameters.velocity_gain,
+        };
+        *slot = Exact::Rational(q);
+        let found = flip_boundary(&parameters, request.kick, low, high, FLIP_BITS);
+        let place = |a: f64| if transposed { (value, a) } else { (a, value) };
+        found.unwrap_or_default().iter().map(|a| place(a.to_f64())).collect()
+    };
+    steps.into_par_iter().flat_map_iter(values).collect()
+}

@@ -1,0 +1,332 @@
+//! One point: the true orbit, the prediction and the truth, as JSON and as text.
+
+use super::chart::Grid;
+use super::request::Request;
+use crate::arguments::{Format, PredictorChoice};
+use crate::derive::number_json;
+use lindstedt::coeff::ball::Ball;
+use lindstedt::coeff::digits::{decimal, error_string};
+use lindstedt::{Number, Status};
+use lindstedt_impact::complex::Complex;
+use lindstedt_impact::equivalent::EquivalentOrbit;
+use lindstedt_impact::map::Verdict;
+use lindstedt_impact::real::Real;
+use lindstedt_impact::report::StabilityReport;
+use serde_json::{Map, Value as Json, json};
+use std::fmt::Write;
+
+/// A number in doubles: rounding errors are not tracked.
+pub fn double_number(x: f64) -> Number {
+    Number { exact: None, decimal: format!("{x:e}"), error: None, status: Status::Estimated }
+}
+
+/// As many of the digits asked for as are certain; an enclosure of zero is 0 with its radius.
+pub fn certified_number(ball: &Ball, digits: usize) -> Number {
+    let known = ball.relative_accuracy_bits().max(0) as f64 * std::f64::consts::LOG10_2;
+    let certain = if ball.is_exact() { digits } else { digits.min((known as usize).max(1)) };
+    let decimal = decimal(ball, certain).unwrap_or_else(|| "0".to_owned());
+    let error = error_string(ball, &decimal);
+    let error = (error != "0").then_some(error);
+    Number { exact: None, decimal, error, status: Status::Certified }
+}
+
+pub struct Answer {
+    request_at: Map<String, Json>,
+    body: Map<String, Json>,
+    pub exists: bool,
+    pub warnings: Vec<String>,
+}
+
+/// Writes numbers of one report.
+struct Writer<'a, S>(&'a dyn Fn(&S) -> Number);
+
+impl<S: Real> Writer<'_, S> {
+    fn number(&self, x: &S) -> Json {
+        number_json(&(self.0)(x))
+    }
+    fn pair(&self, z: &Complex<S>) -> Json {
+        json!([self.number(&z.re), self.number(&z.im)])
+    }
+    fn orbit(&self, orbit: &EquivalentOrbit<S>) -> Json {
+        json!({
+            "exists": true,
+            "impact_velocity": self.number(&orbit.velocity),
+            "phase": self.number(&orbit.phase_angle()),
+            "C": self.number(&orbit.cosine),
+            "D": self.number(&orbit.sine),
+        })
+    }
+}
+
+fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Stable => "stable",
+        Verdict::Unstable => "unstable",
+        Verdict::Neutral => "undecided: a multiplier on or near the unit circle",
+    }
+}
+
+fn stable(verdict: Verdict) -> Json {
+    match verdict {
+        Verdict::Stable => json!(true),
+        Verdict::Unstable => json!(false),
+        Verdict::Neutral => Json::Null,
+    }
+}
+
+fn refused(error: &dyn std::fmt::Display) -> Json {
+    json!({"exists": false, "reason": error.to_string()})
+}
+
+impl Answer {
+    pub fn new<S: Real>(
+        request: &Request,
+        report: &StabilityReport<S>,
+        number: &dyn Fn(&S) -> Number,
+    ) -> Self {
+        let w = Writer(number);
+        let mut body = Map::new();
+        let mut warnings = Vec::new();
+        body.insert("orbit".to_owned(), orbit(&w, report, &mut warnings));
+        if request.predictor != PredictorChoice::Exact {
+            body.insert("kbm".to_owned(), prediction(&w, request, report, &mut warnings));
+        }
+        if let Some(aware) = &report.impact_aware
+            && request.predictor != PredictorChoice::Exact
+        {
+            let aware = match aware {
+                Ok(found) => json!({
+                    "multipliers": found.multipliers.iter().map(|z| {
+                        let z = z.to_f64();
+                        json!([number_json(&double_number(z.re)), number_json(&double_number(z.im))])
+                    }).collect::<Vec<_>>(),
+                    "stable": stable(found.verdict()),
+                    "order": request.order,
+                    "status": "estimated",
+                }),
+                Err(error) => json!({"reason": error.to_string()}),
+            };
+            body.insert("impact_aware".to_owned(), aware);
+        }
+        if request.predictor != PredictorChoice::Kbm {
+            body.insert("exact".to_owned(), exact(&w, request, report));
+        }
+        let at = request.at.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
+        Self { request_at: at, body, exists: report.orbit.is_ok(), warnings }
+    }
+
+    pub fn json(&self, grid: Option<&Grid>) -> Json {
+        let mut all = Map::new();
+        all.insert("problem".to_owned(), json!("vibro-impact"));
+        all.insert("at".to_owned(), Json::Object(self.request_at.clone()));
+        all.extend(self.body.clone());
+        all.insert("grid".to_owned(), grid.map_or(Json::Null, Grid::json));
+        all.insert("warnings".to_owned(), json!(self.warnings));
+        Json::Object(all)
+    }
+
+    pub fn text(&self, format: Format, grid: Option<&Grid>) -> String {
+        let at: Vec<String> = self
+            .request_at
+            .iter()
+            .map(|(name, value)| format!("{name} = {}", value.as_str().unwrap_or_default()))
+            .collect();
+        let mut text = String::new();
+        let fence = match format {
+            Format::Markdown => "```\n",
+            Format::Latex => "\\begin{verbatim}\n",
+            _ => "",
+        };
+        text += fence;
+        let _ = writeln!(text, "vibro-impact at {}\n", at.join(", "));
+        let titles = [
+            ("orbit", "The orbit of the true system (without perturbation the loop is silent)"),
+            ("kbm", "What averaging predicts (not the stability of the delayed system)"),
+            ("impact_aware", "Averaging that knows of the impact within the delay (estimated)"),
+            ("exact", "The truth: zeros of the characteristic function G in the unit disc"),
+        ];
+        for (key, title) in titles {
+            if let Some(Json::Object(map)) = self.body.get(key) {
+                let _ = writeln!(text, "{title}");
+                for (name, value) in map {
+                    let _ = writeln!(text, "  {name}: {}", plain(value));
+                }
+                text.push('\n');
+            }
+        }
+        if let Some(grid) = grid {
+            let _ = writeln!(text, "{}", grid.summary());
+        }
+        text += match format {
+            Format::Markdown => "```\n",
+            Format::Latex => "\\end{verbatim}\n",
+            _ => "",
+        };
+        text
+    }
+}
+
+fn orbit<S: Real>(
+    w: &Writer<'_, S>,
+    report: &StabilityReport<S>,
+    warnings: &mut Vec<String>,
+) -> Json {
+    let found = match &report.orbit {
+        Ok(found) => found,
+        Err(error) => {
+            warnings.push(format!("no orbit: {error}"));
+            return refused(error);
+        }
+    };
+    if found.penetrates == Some(true) {
+        warnings.push("the flight passes through the wall: this orbit does not exist".to_owned());
+    }
+    let form = |part: &dyn Fn(&lindstedt_impact::report::FormReport<S>) -> Json| {
+        found.form.as_ref().map_or(Json::Null, part)
+    };
+    json!({
+        "exists": found.penetrates != Some(true),
+        "impact_velocity": w.number(&found.orbit.velocity),
+        "phase": form(&|f| w.number(&f.phase)),
+        "C": form(&|f| w.number(&f.cosine)),
+        "D": form(&|f| w.number(&f.sine)),
+        "penetrates": found.penetrates,
+        "clearance": found.clearance.as_ref().map(|c| w.number(&c.margin)),
+        "force_phase": w.number(&found.orbit.force_angle()),
+        "acceleration_before": w.number(&found.orbit.acceleration_before),
+        "acceleration_after": w.number(&found.orbit.acceleration_after),
+        "saltation": w.number(&found.orbit.saltation),
+        "discriminant": w.number(&found.orbit.discriminant),
+    })
+}
+
+fn prediction<S: Real>(
+    w: &Writer<'_, S>,
+    request: &Request,
+    report: &StabilityReport<S>,
+    warnings: &mut Vec<String>,
+) -> Json {
+    let convergence = &report.convergence;
+    if convergence.diverges() {
+        warnings.push(format!(
+            "the averaged series diverges at eps = 1: its radius of convergence is about {:.3}",
+            convergence.radius
+        ));
+    }
+    let mismatch = report.mismatch.as_ref().map(Real::to_f64);
+    if mismatch.is_some_and(|m| m > 1.0) {
+        warnings.push(
+            "the mismatch is above 1: averaging ignores the impact within the delay and is not \
+             to be believed here"
+                .to_owned(),
+        );
+    }
+    let finite = |x: f64| if x.is_finite() { json!(x) } else { json!(x.to_string()) };
+    let mut map = Map::new();
+    map.insert("order".to_owned(), json!(request.order));
+    map.insert("variant".to_owned(), json!(request.variant_name()));
+    match &report.kbm {
+        Err(error) => {
+            map.insert("orbit".to_owned(), refused(error));
+            map.insert("stable".to_owned(), Json::Null);
+        }
+        Ok(found) => {
+            let p = &found.prediction;
+            map.insert("R".to_owned(), w.number(&p.flow.growth_rate));
+            map.insert("alpha0".to_owned(), w.number(&p.flow.frequency));
+            if let Some(b) = &p.polynomial {
+                map.insert("b2".to_owned(), w.number(&b.quadratic));
+                map.insert("b1".to_owned(), w.number(&b.linear));
+                map.insert("b0".to_owned(), w.number(&b.constant));
+            }
+            map.insert("trace".to_owned(), w.number(&p.map.trace));
+            map.insert("determinant".to_owned(), w.number(&p.map.determinant));
+            let multipliers: Vec<Json> = p.map.multipliers().iter().map(|z| w.pair(z)).collect();
+            map.insert("multipliers".to_owned(), json!(multipliers));
+            map.insert("stable".to_owned(), stable(found.verdict));
+            map.insert("verdict".to_owned(), json!(word(found.verdict)));
+            let orbit = p.orbit.as_ref().map_or(Json::Null, |orbit| w.orbit(orbit));
+            map.insert("orbit".to_owned(), orbit);
+        }
+    }
+    map.insert("mismatch".to_owned(), report.mismatch.as_ref().map_or(Json::Null, |m| w.number(m)));
+    map.insert("residual".to_owned(), report.residual.as_ref().map_or(Json::Null, |r| w.number(r)));
+    map.insert(
+        "convergence".to_owned(),
+        json!({
+            "radius": finite(convergence.radius),
+            "ratio": finite(convergence.ratio),
+            "diverges": convergence.diverges(),
+            "status": "estimated",
+        }),
+    );
+    Json::Object(map)
+}
+
+fn exact<S: Real>(w: &Writer<'_, S>, request: &Request, report: &StabilityReport<S>) -> Json {
+    let Some(found) = &report.exact else {
+        return json!({"stable": null, "verdict": "no orbit"});
+    };
+    // For B != 0 the return map is piecewise linear; iterating it is what decides.
+    let kicked = found.growth.as_ref();
+    let verdict = match kicked.map(|growth| growth.verdict()) {
+        Some(Verdict::Neutral) | None => found.verdict,
+        Some(decided) => decided,
+    };
+    let mut map = Map::new();
+    map.insert("stable".to_owned(), stable(verdict));
+    map.insert("verdict".to_owned(), json!(word(verdict)));
+    match &found.multipliers {
+        Ok(list) => {
+            let pairs: Vec<Json> = list.values.iter().map(|z| w.pair(z)).collect();
+            map.insert("multipliers".to_owned(), json!(pairs));
+            map.insert("complete_to_modulus".to_owned(), json!(list.complete_to));
+        }
+        Err(error) => {
+            map.insert("multipliers".to_owned(), json!([]));
+            map.insert("multipliers_missing".to_owned(), json!(error.to_string()));
+        }
+    }
+    map.insert("zeros_in_unit_disc".to_owned(), json!(found.zeros_in_unit_disc));
+    let kick = if kicked.is_some() { request.kick_name() } else { "none" };
+    map.insert("kick".to_owned(), json!(kick));
+    if let Some(growth) = kicked {
+        map.insert(
+            "return_map".to_owned(),
+            json!({
+                "growth_per_impact": growth.rate,
+                "spread": growth.spread,
+                "status": "estimated",
+                "verdict": word(growth.verdict()),
+            }),
+        );
+    }
+    Json::Object(map)
+}
+
+/// A value of the report on one line.
+fn plain(value: &Json) -> String {
+    match value {
+        Json::Null => "-".to_owned(),
+        Json::Bool(yes) => (if *yes { "yes" } else { "no" }).to_owned(),
+        Json::String(text) => text.clone(),
+        Json::Array(list) => {
+            let complex = |item: &Json| match item.as_array().map(Vec::as_slice) {
+                Some([re, im]) => {
+                    let (re, im) = (plain(re), plain(im));
+                    if im == "0" { re } else { format!("{re} + ({im})*i") }
+                }
+                _ => plain(item),
+            };
+            list.iter().map(complex).collect::<Vec<_>>().join("\n    ")
+        }
+        Json::Object(map) => match map.get("decimal").and_then(Json::as_str) {
+            Some(decimal) => decimal.to_owned(),
+            None => {
+                let items = map.iter().map(|(name, inner)| format!("{name} {}", plain(inner)));
+                items.collect::<Vec<_>>().join(", ")
+            }
+        },
+        other => other.to_string(),
+    }
+}

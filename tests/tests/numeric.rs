@@ -1,0 +1,269 @@
+//! The numeric tiers against closed forms and against each other.
+
+#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+use lindstedt::algebra::{RationalAlgebra, Ring};
+use lindstedt::coeff::ball::Balls;
+use lindstedt::coeff::floats::Floats;
+use lindstedt::equation::{AmplitudeRole, Condition, Expression, Function, Problem};
+use lindstedt::numeric::{Estimate, Tier, derive};
+use lindstedt::phase::lobachevsky_function::means;
+use lindstedt::series::Series;
+use lindstedt::{Error, Settings, Value, problems};
+use rug::{Float, Rational};
+
+/// omega^power of the power law from T/2pi = (1 + delta)^(-1/2) M(u), M(u) = sum_m mu_m u^m,
+/// u = delta/(1 + delta): the Gamma function's moments and the binomial series, no quadrature.
+fn closed_form(power: i32, order: usize, bits: u32) -> Vec<Float> {
+    let reals = Floats::new(bits);
+    let moments = means(order, Balls::new(bits));
+    let moments = Series::truncated(moments.iter().map(|mu| mu.midpoint().clone()).collect());
+    let of_u = moments.power(&reals, &Rational::from(-power)).unwrap().coefficients;
+    let binomial = |top: Rational, k: usize| {
+        (0..k)
+            .fold(Rational::from(1), |b, i| b * (top.clone() - Rational::from(i)) / (i as u64 + 1))
+    };
+    let coefficient = |n: usize| {
+        of_u.iter().take(n + 1).enumerate().fold(reals.zero(), |sum, (j, c)| {
+            let top = Rational::from((power, 2)) - Rational::from(j);
+            reals.add(&sum, &reals.scale(c, &binomial(top, n - j)))
+        })
+    };
+    (0..=order).map(coefficient).collect()
+}
+
+fn estimate(problem: &Problem, order: usize, tier: Tier) -> Result<Estimate, Error> {
+    let settings = Settings { order, ..Settings::default() };
+    derive(problem, &settings, tier, &mut |_| true)
+}
+
+/// Every coefficient within the error stated, and the stated error within the digits asked.
+fn check_power_law(order: usize, digits: u32) {
+    let result =
+        estimate(&problems::find("power-law").unwrap(), order, Tier::Collocation { digits });
+    let result = result.unwrap();
+    assert_eq!(result.order, order);
+    let allowed = Float::with_val(53, Float::i_pow_u(10, digits)).recip();
+    for (series, power) in result.series.iter().zip([2, 1, -1]) {
+        let truth = closed_form(power, order, 2 * result.bits + 40 * order as u32);
+        assert_eq!(series.coefficients.len(), truth.len());
+        for (n, ((value, error), truth)) in series.coefficients.iter().zip(&truth).enumerate() {
+            let distance = Float::with_val(53, value - truth).abs();
+            assert!(distance <= *error && *error <= allowed, "{} {n}: {distance}", series.name);
+        }
+    }
+}
+
+#[test]
+fn power_law_to_many_digits() {
+    check_power_law(20, 60);
+}
+
+#[test]
+#[ignore = "seconds"]
+fn power_law_50_digits_order_60_and_100_digits_order_100() {
+    check_power_law(60, 50);
+    check_power_law(100, 100);
+}
+
+/// x'' + x + eps F(x) = 0.
+fn perturbed(force: Expression) -> Problem {
+    let x = Expression::Displacement;
+    Problem {
+        name: "test",
+        title: "",
+        equation: Expression::Acceleration + x + Expression::Small * force,
+        small: "eps",
+        conditions: vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude],
+        amplitude: AmplitudeRole::InSmallParameter,
+        parameters: Vec::new(),
+        notes: "",
+        source: "",
+    }
+}
+
+fn x() -> Expression {
+    Expression::Displacement
+}
+
+/// |x| = (x^2)^(1/2).
+fn absolute() -> Expression {
+    x().pow(2).pow(Expression::Number(Rational::from((1, 2))))
+}
+
+/// T/2pi from the energy integral: coefficient n is binomial(-1/2, n) <g(cos)^n> with
+/// g = 2 (V(1) - V(x))/(1 - x^2), by mpmath 1.3.0, quad at 30 digits.
+#[test]
+fn forces_of_any_shape() {
+    let rational = (x().pow(2) + 1).pow(-1);
+    let cases = [
+        (
+            x() * absolute(),
+            ["1", "-0.42441318157838756205", "0.27519560614053747932", "-0.20165192733854891269"],
+        ),
+        (
+            Expression::Function(Function::Sin, Box::new(x())),
+            ["1", "-0.44005058574493351594", "0.29075141075464684256", "-0.21365984327832345649"],
+        ),
+        (
+            x() * rational,
+            ["1", "-0.29289321881345247557", "0.13040055603258382172", "-0.06535903513580522782"],
+        ),
+    ];
+    for (force, expected) in cases {
+        for tier in [Tier::Collocation { digits: 18 }, Tier::Doubles] {
+            let result = estimate(&perturbed(force.clone()), 3, tier).unwrap();
+            let series = result.named("period_over_2pi").unwrap();
+            for ((value, error), text) in series.coefficients.iter().zip(expected) {
+                let truth = Float::with_val(80, Float::parse(text).unwrap());
+                let distance = Float::with_val(53, value - truth).abs();
+                assert!(
+                    distance <= error.clone() + 1e-19 && *error < 1e-12,
+                    "{tier:?} {text}: {value}"
+                );
+            }
+        }
+    }
+}
+
+/// x + eps sgn x: T/2pi = (2/pi) arccos(eps/(1 + eps)), here to order 8.
+#[test]
+fn dry_spring() {
+    let sign = x() * absolute().pow(-1);
+    let result = estimate(&perturbed(sign), 8, Tier::Collocation { digits: 25 }).unwrap();
+    // z = eps/(1 + eps) = eps - eps^2 + ...; arccos z = pi/2 - sum binomial(2k, k) z^(2k+1)/(4^k (2k+1)).
+    let reals = Floats::new(200);
+    let z: Vec<Float> = (0..=8i32)
+        .map(|n| Float::with_val(200, if n == 0 { 0 } else { 1 - 2 * ((n + 1) % 2) }))
+        .collect();
+    let z = Series::truncated(z);
+    let (square, mut power) = (z.mul(&reals, &z, 8), z);
+    let mut angle = Series::truncated(vec![Float::new(200); 9]);
+    let mut c = Rational::from(1);
+    for k in 0..4u64 {
+        angle = angle.add(&reals, &power.map(|v| reals.scale(v, &(c.clone() / (2 * k + 1)))));
+        power = power.mul(&reals, &square, 8);
+        c *= Rational::from((2 * k + 1, 2 * k + 2));
+    }
+    let two_over_pi = Float::with_val(200, 2) / Float::with_val(200, rug::float::Constant::Pi);
+    let series = result.named("period_over_2pi").unwrap();
+    for (n, (value, error)) in series.coefficients.iter().enumerate() {
+        let truth =
+            Float::with_val(200, -&angle.coefficients[n]) * &two_over_pi + u32::from(n == 0);
+        let distance = Float::with_val(53, value - truth).abs();
+        assert!(distance <= *error && *error < 1e-25, "{n}: {value} {distance} {error}");
+    }
+}
+
+/// The exact ring and the tier on a limit cycle and with the first harmonic fixed.
+#[test]
+fn damped_and_renormalised() {
+    let cases = [
+        ("van-der-pol", None, "amplitude"),
+        ("duffing", Some(Condition::FundamentalAmplitude), "initial_displacement"),
+        ("duffing", None, "frequency"),
+    ];
+    for (name, condition, series) in cases {
+        let problem = problems::find(name).unwrap();
+        let settings = Settings { order: 5, condition, ..Settings::default() };
+        let exact = lindstedt::derive(&problem, &settings, &mut |_| true).unwrap();
+        let named = exact.named(series).unwrap();
+        for tier in
+            [Tier::Collocation { digits: 20 }, Tier::Doubles, Tier::Fourier { harmonics: 64 }]
+        {
+            let result = derive(&problem, &settings, tier, &mut |_| true).unwrap();
+            for (n, (value, error)) in result.named(series).unwrap().coefficients.iter().enumerate()
+            {
+                let truth = exact.ball(named, n, Balls::new(200)).unwrap();
+                let distance = Float::with_val(53, value - truth.midpoint()).abs();
+                assert!(
+                    distance <= *error && *error < 1e-6,
+                    "{name} {tier:?} {n}: {distance} {error}"
+                );
+            }
+        }
+    }
+}
+
+/// What the tiers cannot do is refused: a pole inside the quarter period, sines in exact rings.
+#[test]
+fn refusals() {
+    let pole = (x() - Expression::Number(Rational::from((1, 2)))).pow(-1);
+    assert!(estimate(&perturbed(pole), 2, Tier::Doubles).is_err());
+    let sine = perturbed(Expression::Function(Function::Sin, Box::new(x())));
+    let settings = Settings { order: 2, ..Settings::default() };
+    assert!(lindstedt::derive(&sine, &settings, &mut |_| true).is_err());
+    assert!(estimate(&perturbed(Expression::Velocity), 2, Tier::Doubles).is_err());
+}
+
+/// Knuth's linear congruential generator.
+struct Random(u64);
+
+impl Random {
+    fn between(&mut self, low: u64, high: u64) -> u64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (self.0 >> 33) % (high - low + 1)
+    }
+}
+
+/// Two results of one problem may differ by the sum of their stated errors, no more; for the power
+/// law at amplitude one the closed form joins in, without an error.
+fn random_combinations(count: usize, seed: u64) {
+    let mut random = Random(seed);
+    let mut compared = 0;
+    for _ in 0..count {
+        let name = ["power-law", "power-law", "pendulum", "duffing"][random.between(0, 3) as usize];
+        let problem = problems::find(name).unwrap();
+        let order = random.between(0, 16) as usize;
+        let mut settings = Settings { order, ..Settings::default() };
+        if name == "pendulum" {
+            let a = Rational::from((random.between(1, 30), 10));
+            settings.parameters.insert("amplitude".to_owned(), Value::Rational(a));
+        }
+        let digits = random.between(3, 40) as u32;
+        let other = random.between(3, 40) as u32;
+        let harmonics = random.between(4, 160) as usize;
+        let tiers = [
+            Tier::Collocation { digits },
+            Tier::Collocation { digits: other },
+            Tier::Doubles,
+            Tier::Fourier { harmonics },
+        ];
+        let results = tiers.map(|tier| derive(&problem, &settings, tier, &mut |_| true).unwrap());
+        let mut lists: Vec<(String, Vec<(Float, Float)>)> = Vec::new();
+        for result in &results {
+            lists.push((format!("{:?}", result.tier), result.series[2].coefficients.clone()));
+        }
+        if name == "power-law" {
+            let truth = closed_form(-1, order, 1000);
+            let exact = truth.into_iter().map(|t| (t, Float::new(53))).collect();
+            lists.push(("closed form".to_owned(), exact));
+        }
+        for (i, (one, a)) in lists.iter().enumerate() {
+            for (two, b) in lists.iter().skip(i + 1) {
+                for (n, ((v, e), (w, f))) in a.iter().zip(b).enumerate() {
+                    let distance = Float::with_val(53, v - w).abs();
+                    let allowed = Float::with_val(53, e + f);
+                    assert!(
+                        distance <= allowed,
+                        "{name} {one} {two} order {n}: {distance} > {allowed}"
+                    );
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 20 * count, "{compared} comparisons");
+}
+
+#[test]
+fn tiers_agree_within_their_errors() {
+    random_combinations(25, 1);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn tiers_agree_within_their_errors_in_1000_combinations() {
+    random_combinations(1000, 2);
+}
