@@ -4,6 +4,7 @@
 //!
 //! It shares nothing with the expansions that it judges but the expression tree of the problem.
 
+mod bifurcation;
 mod branch;
 mod compile;
 mod digits;
@@ -14,6 +15,7 @@ mod impact;
 mod integrator;
 mod linear;
 mod past;
+mod poincare;
 mod power;
 mod quantity;
 mod real;
@@ -28,11 +30,13 @@ mod tangent;
 mod tape;
 mod trajectory;
 
+pub use bifurcation::{Column, DiagramSettings, Sweep, diagram};
 pub use digits::Digits;
 pub use error::{SimulateError, Surface};
 pub use estimate::{Computation, Estimated, estimate};
 pub use integrator::{Integrator, Observer, Settings};
 pub use linear::{Monodromy, monodromy};
+pub use poincare::{PoincareMap, Point, Section};
 pub use quantity::{Parameters, Quantity};
 pub use real::{Doubles, Real};
 pub use report::{Event, EventKind, Outcome, Report, Segment, Work};
