@@ -35,7 +35,8 @@ pub(crate) struct Compiler<'a, R: Real> {
     pub(crate) tape: Tape<R::Element>,
     pub(crate) switches: Vec<Switch>,
     pub(crate) delays: Vec<Float>,
-    pub(crate) affine: Vec<bool>,
+    /// The constants of the tape, before rounding.
+    exact: Vec<Float>,
     pub(crate) parameters: &'a Parameters,
     pub(crate) small: Option<&'a str>,
     /// Names of the states; x is state 0 and x' state 1.
@@ -53,10 +54,17 @@ impl<'a, R: Real> Compiler<'a, R> {
     ) -> Self {
         Self {
             real,
-            tape: Tape { states, ops: Vec::new(), constants: Vec::new() },
+            tape: Tape {
+                states,
+                ops: Vec::new(),
+                affine: Vec::new(),
+                live: Vec::new(),
+                curved: Vec::new(),
+                constants: Vec::new(),
+            },
             switches: Vec::new(),
             delays: Vec::new(),
-            affine: Vec::new(),
+            exact: Vec::new(),
             parameters,
             small,
             names,
@@ -85,13 +93,13 @@ impl<'a, R: Real> Compiler<'a, R> {
             _ => false,
         };
         self.tape.ops.push(op);
-        self.affine.push(affine);
+        self.tape.affine.push(affine);
         states + self.tape.ops.len() - 1
     }
 
     fn is_affine(&self, row: usize) -> bool {
         let index = row.checked_sub(self.tape.states);
-        index.and_then(|index| self.affine.get(index)).copied().unwrap_or(false)
+        index.and_then(|index| self.tape.affine.get(index)).copied().unwrap_or(false)
     }
 
     /// The place of a constant in the table.
@@ -100,6 +108,7 @@ impl<'a, R: Real> Compiler<'a, R> {
         let constants = &mut self.tape.constants;
         constants.iter().position(|known| *known == element).unwrap_or_else(|| {
             constants.push(element);
+            self.exact.push(value.clone());
             constants.len() - 1
         })
     }
@@ -260,6 +269,12 @@ impl<'a, R: Real> Compiler<'a, R> {
                 }
                 if c.is_zero() {
                     return Value::Constant(c);
+                }
+                // One factor instead of two.
+                let index = row.checked_sub(self.tape.states);
+                if let Some(Op::Scale(inner, known)) = index.map(|index| self.tape.ops[index]) {
+                    let both = c * &self.exact[known];
+                    return self.product(Value::Constant(both), Value::Row(inner));
                 }
                 let c = self.constant(&c);
                 Value::Row(self.push(Op::Scale(row, c)))

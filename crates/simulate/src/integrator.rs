@@ -70,6 +70,7 @@ pub struct Integrator<'s, R: Real> {
     /// The wall of the impact that began the step.
     pub(crate) rebound: Option<usize>,
     pub(crate) smooth: bool,
+    stalled: u32,
     pub(crate) work: Work,
 }
 
@@ -126,6 +127,7 @@ impl<'s, R: Real> Integrator<'s, R> {
             polynomial: Vec::new(),
             rebound: None,
             smooth: false,
+            stalled: 0,
             work: Work::default(),
         };
         flow.begin()?;
@@ -182,8 +184,9 @@ impl<'s, R: Real> Integrator<'s, R> {
         self.system.real.to_f64(&self.clock.high)
     }
 
-    /// Integrates up to `target` (which is met exactly) or until the observer breaks it off;
-    /// may be called again with a later target. Cost: per step O(operations order^2).
+    /// Integrates up to `target` (which is met exactly; nothing happens if it is past) or until
+    /// the observer breaks it off, after which the state is that at the end of the step. May be
+    /// called again with a later target: stroboscopic sections are a loop over targets. Cost: per step O(operations order^2).
     pub fn advance(
         &mut self,
         target: &R::Element,
@@ -209,8 +212,14 @@ impl<'s, R: Real> Integrator<'s, R> {
     ) -> Result<ControlFlow<()>, SimulateError> {
         let limit = self.expand()?;
         if let Some(hit) = self.hit_at_start() {
+            // Events without a step between them: a sequence that does not end is no motion.
+            self.stalled += 1;
+            if self.stalled > 100 {
+                return Err(SimulateError::StepTooSmall { time: self.seconds() });
+            }
             return self.arrive(&hit, observer);
         }
+        self.stalled = 0;
         if self.rebound.is_some()
             && let Some((duration, log2_error)) = self.accumulation(remaining)
         {

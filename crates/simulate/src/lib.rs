@@ -3,6 +3,39 @@
 //! linearisation through all of them.
 //!
 //! It shares nothing with the expansions that it judges but the expression tree of the problem.
+//!
+//! A [`Model`] (expressions, walls, sections, history) is compiled for one arithmetic
+//! ([`Doubles`] or [`Digits`]) and one set of [`Parameters`] into a [`System`]; an [`Integrator`]
+//! runs on it and tells an observer of every [`Segment`] (a Taylor polynomial per state) and every
+//! [`Event`]. [`Trajectory`] keeps both, [`monodromy`] returns the derivative of the flow,
+//! [`estimate`] the error of anything by a run with more digits. All results are estimated: the
+//! truncation error of every step is kept at the tolerance by the last two coefficients and
+//! checked by the residual at its end, rounding errors are not bounded.
+//!
+//! ```
+//! use lindstedt_equation::{Crossing, Expression, Impact};
+//! use lindstedt_simulate::{
+//!     Doubles, Integrator, Model, Parameters, Quantity, Settings, Trajectory,
+//! };
+//!
+//! // x'' = -x with a wall at x = -1/2 that gives back R of the speed.
+//! let wall = Impact {
+//!     position: Expression::parameter("s"),
+//!     crossing: Crossing::Falling,
+//!     restitution: Expression::parameter("R"),
+//! };
+//! let equation = Expression::Acceleration + Expression::Displacement;
+//! let model = Model::second_order(&equation)?.with_wall(wall);
+//! let value = |text| Quantity::parse(text).unwrap_or(Quantity::from(0));
+//! let parameters = Parameters::new().with("s", value("-1/2")).with("R", value("0.999"));
+//! let system = model.compile(Doubles, &parameters)?;
+//! let mut flow = Integrator::new(&system, &0.0, &[1.0, 0.0], Settings::for_digits(16))?;
+//! let mut trajectory = Trajectory::new(Doubles);
+//! flow.advance(&3.0, &mut |report| trajectory.record(report))?;
+//! let first = trajectory.events[0].time;
+//! assert!((first - 2.0 * std::f64::consts::PI / 3.0).abs() < 1e-15);
+//! # Ok::<(), lindstedt_simulate::SimulateError>(())
+//! ```
 
 mod bifurcation;
 mod branch;

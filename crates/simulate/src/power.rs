@@ -128,7 +128,7 @@ impl<R: Real> Compiler<'_, R> {
                 // |x| itself is not needed any more.
                 if inner < self.tape.states + known.0 {
                     self.tape.ops.truncate(known.0);
-                    self.affine.truncate(known.0);
+                    self.tape.affine.truncate(known.0);
                     self.switches.truncate(known.1);
                 }
                 let scale = self.real.to_float(&scale);

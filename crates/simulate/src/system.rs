@@ -147,16 +147,22 @@ impl Model {
                 right_sides.push(compiler.row(tangent));
             }
         }
-        let (tape, mut switches, delays) = (compiler.tape, compiler.switches, compiler.delays);
+        let (mut tape, mut switches, delays) = (compiler.tape, compiler.switches, compiler.delays);
         for (index, switch) in switches.iter_mut().enumerate() {
             let rows = switch.tangents.iter().flatten().copied().chain([switch.row]);
-            switch.cone = cone(&tape, rows.collect());
+            switch.cone = tape.cone(rows.collect());
             let own =
                 |op: &usize| matches!(tape.ops[*op], Op::Control { switch, .. } if switch == index);
             if switch.cone.iter().any(own) {
                 return Err(SimulateError::NotAffine { switch: index });
             }
         }
+        let mut needed = right_sides.clone();
+        needed.extend(walls.iter().map(|wall| wall.row).chain(sections.iter().copied()));
+        for switch in &switches {
+            needed.extend(switch.tangents.iter().flatten().copied().chain([switch.row]));
+        }
+        tape.restrict(needed);
         let delays = delays.iter().map(|delay| real.float(delay)).collect();
         let history = self.compile_history(&real, parameters)?;
         Ok(System {
@@ -195,27 +201,10 @@ impl Model {
         if !compiler.switches.is_empty() {
             return Err(SimulateError::UnexpectedState);
         }
-        Ok(Some(History { tape: compiler.tape, rows, derived }))
+        let mut tape = compiler.tape;
+        tape.restrict(rows.clone());
+        Ok(Some(History { tape, rows, derived }))
     }
-}
-
-/// The operations that some rows need, in order.
-fn cone<E>(tape: &Tape<E>, mut open: Vec<usize>) -> Vec<usize> {
-    let mut needed = vec![false; tape.ops.len()];
-    while let Some(row) = open.pop() {
-        let Some(index) = row.checked_sub(tape.states) else { continue };
-        if std::mem::replace(&mut needed[index], true) {
-            continue;
-        }
-        open.extend(tape.ops[index].operands().into_iter().flatten());
-        // Sine and cosine read each other.
-        match tape.ops[index] {
-            Op::Sin { .. } => open.push(row + 1),
-            Op::Cos { .. } => open.push(row - 1),
-            _ => {}
-        }
-    }
-    (0..needed.len()).filter(|index| needed[*index]).collect()
 }
 
 /// The solution before the start.
@@ -268,9 +257,9 @@ impl<R: Real> System<R> {
         self.switches.len()
     }
 
-    /// The number of recurrences per level.
+    /// The number of recurrences per level, from the second on.
     #[must_use]
     pub fn operations(&self) -> usize {
-        self.tape.ops.len()
+        self.tape.curved.len()
     }
 }

@@ -83,6 +83,11 @@ pub(crate) const LEAP: i8 = 2;
 pub(crate) struct Tape<E> {
     pub(crate) states: usize,
     pub(crate) ops: Vec<Op>,
+    /// The rows that are a + b t: zero from level 2 on.
+    pub(crate) affine: Vec<bool>,
+    /// The operations that are needed, and those of them that are needed from level 2 on.
+    pub(crate) live: Vec<usize>,
+    pub(crate) curved: Vec<usize>,
     pub(crate) constants: Vec<E>,
 }
 
@@ -137,9 +142,35 @@ impl<E: Clone> Tape<E> {
         n: usize,
         moment: &mut Moment<'_, E>,
     ) {
-        for index in 0..self.ops.len() {
-            self.operation(real, rows, index, n, moment);
+        // Rows start as zeros: where nothing is written they remain so.
+        for index in if n < 2 { &self.live } else { &self.curved } {
+            self.operation(real, rows, *index, n, moment);
         }
+    }
+
+    /// Restricts the work to what the given rows need.
+    pub(crate) fn restrict(&mut self, needed: Vec<usize>) {
+        self.live = self.cone(needed);
+        self.curved = self.live.iter().copied().filter(|index| !self.affine[*index]).collect();
+    }
+
+    /// The operations that some rows need, in order.
+    pub(crate) fn cone(&self, mut open: Vec<usize>) -> Vec<usize> {
+        let mut needed = vec![false; self.ops.len()];
+        while let Some(row) = open.pop() {
+            let Some(index) = row.checked_sub(self.states) else { continue };
+            if std::mem::replace(&mut needed[index], true) {
+                continue;
+            }
+            open.extend(self.ops[index].operands().into_iter().flatten());
+            // Sine and cosine read each other.
+            match self.ops[index] {
+                Op::Sin { .. } => open.push(row + 1),
+                Op::Cos { .. } => open.push(row - 1),
+                _ => {}
+            }
+        }
+        (0..needed.len()).filter(|index| needed[*index]).collect()
     }
 
     /// Level `n` of operation `index`.
