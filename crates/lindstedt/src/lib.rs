@@ -24,7 +24,9 @@ pub mod paper;
 mod value;
 pub mod verify;
 
-pub use derivation::{Derivation, NamedSeries, Progress, Route, Settings, Solution, derive};
+pub use derivation::{
+    Derivation, NamedSeries, Progress, Route, Settings, Solution, check_parameters, derive,
+};
 pub use error::Error;
 pub use number::{Number, Status};
 pub use value::Value;

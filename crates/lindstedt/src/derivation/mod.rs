@@ -6,7 +6,7 @@ mod series;
 use crate::multimodular::{self, RationalBinding};
 use crate::number::{Constants, Number, certified};
 use crate::{Error, Value};
-pub(crate) use limits::check_parameters;
+pub use limits::check_parameters;
 use limits::{has_logarithms, limit_memory};
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::ball::{Ball, Balls};
