@@ -129,6 +129,7 @@ impl Plan {
             strobe,
             bits,
             count: 0,
+            ended: None,
             motion: Motion {
                 events: Vec::new(),
                 samples: Vec::new(),
@@ -153,11 +154,21 @@ impl Plan {
         let stuck = flow.contact().is_some() || flow.modes().contains(&0);
         let [x, v, ..] = flow.state() else { return Ok(keeper.motion) };
         keeper.rest(flow.time(), [x, v], stuck);
-        let mut motion = keeper.motion;
+        let (mut motion, ended) = (keeper.motion, keeper.ended);
+        motion.complete = !stopped
+            && match self.end {
+                End::Time(_) => outcome == Outcome::Reached,
+                _ => ended.is_some(),
+            };
         motion.last = moment(&real, flow.time(), [x, v], stuck);
+        if let Some(last) = ended {
+            let end = last.time.to_f64();
+            motion.line.retain(|dot| dot.time <= end);
+            motion.samples.retain(|sample| sample.time <= last.time);
+            motion.points.retain(|point| point.time <= last.time);
+            motion.last = last;
+        }
         motion.work = flow.work();
-        let by_event = !matches!(self.end, End::Time(_));
-        motion.complete = !stopped && (by_event == (outcome == Outcome::Stopped));
         Ok(motion)
     }
 }
@@ -177,6 +188,8 @@ struct Keeper<'p, R: Real> {
     bits: u32,
     /// Events that count towards the end.
     count: u32,
+    /// The event that ended it; a section is crossed inside of a step, which goes on behind it.
+    ended: Option<Moment>,
     motion: Motion,
 }
 
@@ -188,6 +201,7 @@ impl<R: Real> Keeper<'_, R> {
                 self.segment(segment);
                 false
             }
+            Report::Event(_) if self.ended.is_some() => true,
             Report::Event(event) => {
                 let pair = |states: &[R::Element]| match states {
                     [x, v, ..] => [self.real.to_float(x), self.real.to_float(v)],
@@ -196,6 +210,7 @@ impl<R: Real> Keeper<'_, R> {
                 let (before, after) = (pair(event.before), pair(event.after));
                 let time = self.real.to_float(event.time);
                 let (section, end) = (self.plan.section, &self.plan.end);
+                let here = Moment { time: time.clone(), state: after.clone(), stuck: false };
                 let maximum = matches!(event.kind, EventKind::Section { rising: false, .. });
                 let impact = matches!(event.kind, EventKind::Impact { .. });
                 if (maximum && section == Some(Section::Velocity))
@@ -207,17 +222,16 @@ impl<R: Real> Keeper<'_, R> {
                 if !matches!(event.kind, EventKind::Section { .. }) {
                     self.motion.events.push(Happening { kind: event.kind, time, before, after });
                 }
-                match end {
-                    End::Time(_) => false,
-                    End::Maxima(n) => {
-                        self.count += u32::from(maximum);
-                        self.count >= *n
-                    }
-                    End::Impacts(n) => {
-                        self.count += u32::from(impact);
-                        self.count >= *n
-                    }
+                let (counts, most) = match end {
+                    End::Time(_) => (false, u32::MAX),
+                    End::Maxima(n) => (maximum, *n),
+                    End::Impacts(n) => (impact, *n),
+                };
+                self.count += u32::from(counts);
+                if counts && self.count >= most {
+                    self.ended = Some(here);
                 }
+                self.ended.is_some()
             }
         }
     }

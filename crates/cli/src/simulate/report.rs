@@ -2,6 +2,7 @@
 
 use super::motion::{Happening, Moment, Motion, Plan};
 use crate::session::Session;
+use lindstedt::coeff::ball::Balls;
 use lindstedt::simulate::EventKind;
 use rug::Float;
 use serde_json::{Value as Json, json};
@@ -41,7 +42,9 @@ fn decimal(value: &Float, error: &Float, digits: u32) -> String {
     let size = value.clone().abs().log10().to_f64();
     let lost = if error.is_zero() { f64::NEG_INFINITY } else { error.clone().log10().to_f64() };
     let supported = (size - lost).floor().clamp(1.0, f64::from(digits));
-    value.to_string_radix(10, Some(supported as usize))
+    let ball = Balls::new(value.prec()).from_parts(value, &Float::new(53));
+    let shown = lindstedt::coeff::digits::decimal(&ball, supported as usize);
+    shown.unwrap_or_else(|| value.to_string_radix(10, Some(supported as usize)))
 }
 
 /// One digit, rounded up.
