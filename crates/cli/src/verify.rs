@@ -239,20 +239,18 @@ impl Report<'_> {
         let name = &self.found.parameter;
         let labels = (format!("log10 |{name}|"), "log10 max |x_N - x|".to_owned());
         let expected = self.found.order as f64 + 1.0;
-        plot::chart(&self.title(), &labels, &points, |chart| {
+        let grey = RGBColor(150, 150, 150);
+        let words = [format!("slope {expected}"), "measured".to_owned()];
+        let marks = [plot::Mark::Line(grey, 2), plot::Mark::Disc(plot::BLUE)];
+        let legend: Vec<(&str, plot::Mark)> = words.iter().map(String::as_str).zip(marks).collect();
+        plot::chart(&self.title(), &labels, &legend, &points, |chart| {
             if let Some(&(x0, y0)) = points.last() {
                 let line = points.iter().map(|(x, _)| (*x, y0 + expected * (x - x0)));
-                let grey = RGBColor(150, 150, 150).stroke_width(2);
-                chart
-                    .draw_series(LineSeries::new(line, grey))?
-                    .label(format!("slope {expected}"))
-                    .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 20, y)], grey));
+                chart.draw_series(LineSeries::new(line, plot::stroke(grey, 2)))?;
             }
-            let dots = points.iter().map(|p| Circle::new(*p, 5, plot::BLUE.filled()));
+            let radius = (5 * plot::FINE) as i32;
             chart
-                .draw_series(dots)?
-                .label("measured")
-                .legend(|(x, y)| Circle::new((x + 10, y), 5, plot::BLUE.filled()));
+                .draw_series(points.iter().map(|p| Circle::new(*p, radius, plot::BLUE.filled())))?;
             Ok(())
         })
     }

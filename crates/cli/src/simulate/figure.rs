@@ -1,7 +1,7 @@
 //! Figures of a motion: phase portrait, time series, section.
 
 use super::motion::{Dot, Motion, Plan};
-use super::plot::{BLUE, Chart, Drawn, RED, chart};
+use super::plot::{BLUE, Chart, Drawn, FINE, Mark, RED, chart, stroke};
 use super::report::{name, plain};
 use crate::arguments::{Figure, Section};
 use crate::failure::Failure;
@@ -30,10 +30,10 @@ pub fn draw(figure: Figure, plan: &Plan, motion: &Motion) -> Result<String, Fail
             let points: Vec<(f64, f64)> = motion.points.iter().map(plain).map(pick).collect();
             let up = if maxima { "maximum of x" } else { up };
             let title = format!("{problem}: Poincare section {kind}, {} points", points.len());
-            return chart(&title, &labels("time t", up), &points, |c| dots(c, &points));
+            return chart(&title, &labels("time t", up), &[], &points, |c| dots(c, &points));
         }
         let title = format!("{problem}: Poincare section {kind}, {} points", points.len());
-        return chart(&title, &labels("displacement x", up), &points, |c| dots(c, &points));
+        return chart(&title, &labels("displacement x", up), &[], &points, |c| dots(c, &points));
     }
     let phase = figure == Figure::Phase;
     let place = |dot: &Dot| if phase { (dot.x, dot.v) } else { (dot.time, dot.x) };
@@ -45,14 +45,37 @@ pub fn draw(figure: Figure, plan: &Plan, motion: &Motion) -> Result<String, Fail
     };
     let end = motion.line.last().map_or(0.0, |dot| dot.time);
     let title = format!("{problem}: {title} to t = {end:.4}");
-    chart(&title, &labels, &points, |chart| {
+    let legend = legend(motion, phase);
+    chart(&title, &labels, &legend, &points, |chart| {
         lines(chart, motion, &place, phase)?;
         events(chart, motion, phase)
     })
 }
 
+const STICK: &str = "stick";
+const SLIP: &str = "slip";
+
+fn legend(motion: &Motion, phase: bool) -> Vec<(&'static str, Mark)> {
+    let mut list = vec![("moving", Mark::Line(BLUE, 2))];
+    let happens = |wanted: &str| motion.events.iter().any(|e| name(e.kind) == wanted);
+    if motion.line.iter().any(|dot| dot.stuck) {
+        list.push(("sticking, or at rest at the wall", Mark::Line(RED, 4)));
+    }
+    if happens("impact") {
+        let mark = if phase { Mark::Line(GREY, 1) } else { Mark::Triangle(RED) };
+        list.push(("impact", mark));
+    }
+    if phase && happens(STICK) {
+        list.push(("stick begins", Mark::Disc(RED)));
+    }
+    if phase && happens(SLIP) {
+        list.push(("slip begins", Mark::Ring(RED)));
+    }
+    list
+}
+
 fn dots(chart: &mut Chart<'_, '_>, points: &[(f64, f64)]) -> Drawn {
-    let radius = if points.len() > 500 { 1 } else { 3 };
+    let radius = (if points.len() > 500 { FINE } else { 3 * FINE }) as i32;
     chart.draw_series(points.iter().map(|p| Circle::new(*p, radius, BLUE.filled())))?;
     Ok(())
 }
@@ -64,26 +87,14 @@ fn lines(
     place: &dyn Fn(&Dot) -> (f64, f64),
     phase: bool,
 ) -> Drawn {
-    let mut labelled = [false; 2];
     let jump = |a: &Dot, b: &Dot| phase && a.time == b.time && (a.v - b.v).abs() > 1e-9;
+    let same = |a: &Dot, b: &Dot| a.stuck == b.stuck && !jump(a, b);
     // The sticking pieces are drawn last, on top.
     for stuck in [false, true] {
-        let same = |a: &Dot, b: &Dot| a.stuck == b.stuck && !jump(a, b);
-        for piece in
-            motion.line.chunk_by(same).filter(|p| p.first().is_some_and(|d| d.stuck == stuck))
-        {
-            let (colour, width, word) = if stuck {
-                (RED, 4, "sticking or at rest at the wall")
-            } else {
-                (BLUE, 1, "moving")
-            };
-            let style = colour.stroke_width(width);
-            let series = chart.draw_series(LineSeries::new(piece.iter().map(place), style))?;
-            if !std::mem::replace(&mut labelled[usize::from(stuck)], true) {
-                let key = colour.stroke_width(width.max(2));
-                series
-                    .label(word)
-                    .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 20, y)], key));
+        let style = if stuck { stroke(RED, 4) } else { stroke(BLUE, 1) };
+        for piece in motion.line.chunk_by(same) {
+            if piece.first().is_some_and(|dot| dot.stuck == stuck) {
+                chart.draw_series(LineSeries::new(piece.iter().map(place), style))?;
             }
         }
     }
@@ -91,42 +102,21 @@ fn lines(
 }
 
 fn events(chart: &mut Chart<'_, '_>, motion: &Motion, phase: bool) -> Drawn {
-    let impacts = motion.events.iter().filter(|e| matches!(e.kind, EventKind::Impact { .. }));
-    let impacts: Vec<_> = impacts.collect();
-    if !phase && !impacts.is_empty() {
-        let marks = impacts.iter().map(|e| (e.time.to_f64(), e.after[0].to_f64()));
-        chart
-            .draw_series(marks.map(|at| TriangleMarker::new(at, 6, RED.filled())))?
-            .label("impact")
-            .legend(|(x, y)| TriangleMarker::new((x + 10, y), 6, RED.filled()));
-    }
-    if phase && !impacts.is_empty() {
-        let mut first = true;
-        for e in &impacts {
+    let fine = FINE as i32;
+    for e in motion.events.iter().filter(|e| matches!(e.kind, EventKind::Impact { .. })) {
+        if phase {
             let ends = [&e.before, &e.after].map(|s| (s[0].to_f64(), s[1].to_f64()));
-            let style = GREY.mix(0.6).stroke_width(1);
-            let series = chart.draw_series(DashedLineSeries::new(ends, 4, 4, style))?;
-            if std::mem::take(&mut first) {
-                series.label("impact").legend(move |(x, y)| {
-                    PathElement::new(vec![(x, y), (x + 20, y)], GREY.stroke_width(1))
-                });
-            }
+            let dashes = DashedLineSeries::new(ends, 5 * FINE, 4 * FINE, stroke(GREY, 1));
+            chart.draw_series(dashes)?;
+        } else {
+            let at = (e.time.to_f64(), e.after[0].to_f64());
+            chart.draw_series([TriangleMarker::new(at, 6 * fine, RED.filled())])?;
         }
     }
-    if !phase {
-        return Ok(());
-    }
-    for (kind, filled) in [("stick", true), ("slip", false)] {
-        let found = motion.events.iter().filter(|e| name(e.kind) == kind);
-        let places: Vec<_> = found.map(|e| (e.after[0].to_f64(), e.after[1].to_f64())).collect();
-        if places.is_empty() {
-            continue;
-        }
-        let style = if filled { RED.filled() } else { RED.stroke_width(2) };
-        chart
-            .draw_series(places.into_iter().map(|at| Circle::new(at, 4, style)))?
-            .label(if filled { "stick begins" } else { "slip begins" })
-            .legend(move |(x, y)| Circle::new((x + 10, y), 4, style));
+    for (kind, style) in [(STICK, RED.filled()), (SLIP, stroke(RED, 2))] {
+        let found = motion.events.iter().filter(|e| phase && name(e.kind) == kind);
+        let places = found.map(|e| (e.after[0].to_f64(), e.after[1].to_f64()));
+        chart.draw_series(places.map(|at| Circle::new(at, 4 * fine, style)))?;
     }
     Ok(())
 }

@@ -219,7 +219,14 @@ impl<R: Real> Keeper<'_, R> {
                     let point = Moment { time: time.clone(), state: before.clone(), stuck: false };
                     self.motion.points.push(point);
                 }
-                if !matches!(event.kind, EventKind::Section { .. }) {
+                // Where a fractional power passes zero nothing happens that could be told in time:
+                // the integrator leaps over the branch point.
+                let silent = match event.kind {
+                    EventKind::Section { .. } => true,
+                    EventKind::Switching { .. } => !self.plan.setup.sticks,
+                    _ => false,
+                };
+                if !silent {
                     self.motion.events.push(Happening { kind: event.kind, time, before, after });
                 }
                 let (counts, most) = match end {

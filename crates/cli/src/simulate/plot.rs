@@ -9,6 +9,23 @@ use std::path::{Path, PathBuf};
 pub const BLUE: RGBColor = RGBColor(31, 90, 166);
 pub const RED: RGBColor = RGBColor(200, 60, 40);
 const SIZE: (u32, u32) = (960, 640);
+/// The library places points on whole units: the picture is drawn so many times larger and the
+/// heading of the file says how large it is shown.
+pub const FINE: u32 = 10;
+
+/// An entry of the legend.
+#[derive(Clone, Copy)]
+pub enum Mark {
+    Line(RGBColor, u32),
+    Disc(RGBColor),
+    Ring(RGBColor),
+    Triangle(RGBColor),
+}
+
+/// A style of that width in shown units.
+pub fn stroke(colour: RGBColor, width: u32) -> ShapeStyle {
+    colour.stroke_width(width * FINE)
+}
 
 pub type Chart<'a, 'b> =
     ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -49,11 +66,11 @@ fn range(values: impl Iterator<Item = f64>) -> Option<std::ops::Range<f64>> {
     (low <= high && (high - low).is_finite()).then_some(low - margin..high + margin)
 }
 
-/// A chart over the range of the points, with axes named; `draw` fills it. A legend is shown when
-/// `draw` labels a series.
+/// A chart over the range of the points, with axes named and a legend above; `draw` fills it.
 pub fn chart(
     title: &str,
     labels: &(String, String),
+    legend: &[(&str, Mark)],
     points: &[(f64, f64)],
     draw: impl FnOnce(&mut Chart<'_, '_>) -> Drawn,
 ) -> Result<String, Failure> {
@@ -61,35 +78,47 @@ pub fn chart(
     let drawn = || -> Drawn {
         let xs = range(points.iter().map(|p| p.0)).ok_or("no finite abscissa")?;
         let ys = range(points.iter().map(|p| p.1)).ok_or("no finite ordinate")?;
-        let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        let large = (SIZE.0 * FINE, SIZE.1 * FINE);
+        let root = SVGBackend::with_string(&mut svg, large).into_drawing_area();
         root.fill(&WHITE)?;
-        let mut chart = ChartBuilder::on(&root)
-            .margin(16)
-            .margin_right(28)
-            .caption(title, ("sans-serif", 18))
-            .x_label_area_size(48)
-            .y_label_area_size(72)
-            .build_cartesian_2d(xs.clone(), ys.clone())?;
+        let font = |size: u32| ("sans-serif", size * FINE);
+        let (heading, body) = root.split_vertically(36 * FINE);
+        heading.draw_text(
+            title,
+            &font(17).into_text_style(&heading),
+            ((24 * FINE) as i32, (12 * FINE) as i32),
+        )?;
+        let strip = if legend.is_empty() { 4 } else { 26 };
+        let (key, body) = body.split_vertically(strip * FINE);
+        entries(&key, legend)?;
         let (across, up) = (decimals(&xs), decimals(&ys));
+        let whole = ys.start.abs().max(ys.end.abs()).log10().max(0.0) as u32;
+        let width = 52 + 8 * (up as u32 + whole);
+        let mut chart = ChartBuilder::on(&body)
+            .margin(12 * FINE)
+            .margin_right(28 * FINE)
+            .x_label_area_size(48 * FINE)
+            .y_label_area_size(width * FINE)
+            .build_cartesian_2d(xs.clone(), ys.clone())?;
+        let shown = |x: &f64, places: usize, range: &std::ops::Range<f64>| {
+            // No "-0.0".
+            let x = if x.abs() < 1e-9 * (range.end - range.start) { 0.0 } else { *x };
+            format!("{x:.places$}")
+        };
         chart
             .configure_mesh()
             .x_desc(labels.0.as_str())
             .y_desc(labels.1.as_str())
-            .axis_desc_style(("sans-serif", 16))
-            .label_style(("sans-serif", 13))
-            .x_label_formatter(&|x| format!("{:.across$}", x + 0.0))
-            .y_label_formatter(&|y| format!("{:.up$}", y + 0.0))
+            .axis_desc_style(font(15))
+            .label_style(font(13))
+            .x_label_formatter(&|x| shown(x, across, &xs))
+            .y_label_formatter(&|y| shown(y, up, &ys))
+            .set_all_tick_mark_size((5 * FINE) as i32)
+            .axis_style(stroke(BLACK, 1))
             .light_line_style(WHITE)
-            .bold_line_style(RGBColor(228, 228, 228))
+            .bold_line_style(stroke(RGBColor(232, 232, 232), 1))
             .draw()?;
         draw(&mut chart)?;
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.9))
-            .border_style(RGBColor(170, 170, 170))
-            .label_font(("sans-serif", 14))
-            .draw()?;
         root.present()?;
         Ok(())
     };
@@ -99,7 +128,37 @@ pub fn chart(
         message: format!("nothing to draw: {error}"),
         hint: String::new(),
     })?;
-    Ok(svg)
+    let large = format!("width=\"{}\" height=\"{}\"", SIZE.0 * FINE, SIZE.1 * FINE);
+    let small = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
+    Ok(svg.replacen(&large, &small, 1))
+}
+
+/// The legend: marks with words, in a row.
+fn entries(
+    area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
+    legend: &[(&str, Mark)],
+) -> Drawn {
+    let fine = FINE as i32;
+    let (mut x, y) = (24 * fine, 10 * fine);
+    let radius = 4 * fine;
+    for (word, mark) in legend {
+        let middle = (x + 12 * fine, y);
+        match *mark {
+            Mark::Line(colour, width) => {
+                let ends = vec![(x, y), (x + 24 * fine, y)];
+                area.draw(&PathElement::new(ends, stroke(colour, width)))?;
+            }
+            Mark::Disc(colour) => area.draw(&Circle::new(middle, radius, colour.filled()))?,
+            Mark::Ring(colour) => area.draw(&Circle::new(middle, radius, stroke(colour, 2)))?,
+            Mark::Triangle(colour) => {
+                area.draw(&TriangleMarker::new(middle, radius, colour.filled()))?;
+            }
+        }
+        let style = ("sans-serif", 14 * FINE).into_text_style(area);
+        area.draw_text(word, &style, (x + 32 * fine, y - 7 * fine))?;
+        x += (56 + 8 * word.chars().count() as i32) * fine;
+    }
+    Ok(())
 }
 
 /// Decimal places that tell about ten ticks apart.

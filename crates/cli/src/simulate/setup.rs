@@ -26,6 +26,8 @@ pub struct Setup {
     pub forcing: Option<Quantity>,
     /// A wall bounds the motion.
     pub wall: bool,
+    /// Dry friction makes the body stick.
+    pub sticks: bool,
     /// Period and impact velocity of the periodic impact orbit that the motion starts on.
     pub orbit: Option<(Float, Float)>,
     /// Parameters that can be swept (nothing else depends on them).
@@ -114,6 +116,7 @@ fn belt(given: &Given) -> Result<Setup, Failure> {
         start: [Quantity::Float(well), integer(0)],
         forcing: Some(Quantity::Float(pi * 2u32 / omega)),
         wall: false,
+        sticks: true,
         orbit: None,
         sweepable: vec!["gamma", "a", "b", "T0", "alpha", "beta", "vstar", "eps"],
         remarks: Vec::new(),
@@ -165,6 +168,7 @@ fn smooth(problem: &Problem, given: &Given) -> Result<Setup, Failure> {
         start: [amplitude, integer(0)],
         forcing: None,
         wall: false,
+        sticks: false,
         orbit: None,
         sweepable: match &*problem.name {
             "duffing" | "van-der-pol" => vec!["eps"],
@@ -299,6 +303,7 @@ fn impact_oscillator(
         start: [Quantity::Float(x), Quantity::Float(v)],
         forcing: Some(Quantity::Float(forcing)),
         wall: true,
+        sticks: false,
         orbit: found,
         // The orbit does not depend on the gains.
         sweepable: vec!["A", "B"],

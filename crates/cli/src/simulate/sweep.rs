@@ -4,7 +4,7 @@
 //! written in order, each with one write, so whatever ends the program leaves whole lines but for
 //! the last; what is not whole is computed again, with the same numbers.
 
-use super::plot::{BLUE, chart};
+use super::plot::{BLUE, FINE, chart};
 use super::request::{range, section};
 use super::setup::Setup;
 use crate::arguments::{Section, SimulateOptions};
@@ -212,14 +212,13 @@ impl Diagram {
             self.transient
         );
         let labels = (format!("{} (dimensionless)", self.name), format!("{up} (dimensionless)"));
-        chart(&title, &labels, &points, |chart| {
+        chart(&title, &labels, &[], &points, |chart| {
             // One small square per point keeps the file small.
-            let style = BLUE.mix(0.7).filled();
-            chart.draw_series(
-                points
-                    .iter()
-                    .map(|p| EmptyElement::at(*p) + Rectangle::new([(0, 0), (1, 1)], style)),
-            )?;
+            let (style, side) = (BLUE.mix(0.7).filled(), FINE as i32);
+            let dot = |p: &(f64, f64)| {
+                EmptyElement::at(*p) + Rectangle::new([(0, 0), (side, side)], style)
+            };
+            chart.draw_series(points.iter().map(dot))?;
             Ok(())
         })
     }
