@@ -51,7 +51,9 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
     }
     let (motion, finer) = integrate(&plan, digits, doubles, session)?;
     session.done();
-    let answer = Answer { plan: &plan, motion: &motion, finer: &finer, digits };
+    let chaotic = finer.is_none();
+    let finer = finer.as_ref().unwrap_or(&motion);
+    let answer = Answer { plan: &plan, motion: &motion, finer, digits, chaotic };
     let text = match session.format() {
         Format::Json => format!("{:#}\n", answer.json(session)),
         Format::Text => answer.text(),
@@ -62,17 +64,21 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
         plot::write(path, || Ok(answer.csv()), || figure::draw(figure, &plan, &motion))?;
     }
     output::write(session, &text)?;
-    if motion.complete { Ok(0) } else { Ok(NO_ANSWER) }
+    Ok(match (motion.complete, chaotic) {
+        (false, _) => NO_ANSWER,
+        (true, true) => UNDECIDED,
+        (true, false) => 0,
+    })
 }
 
 /// Two integrations, the second with more digits, both with so many that their difference leaves
-/// the digits asked for.
+/// the digits asked for. In doubles there is one try; no second motion where it met other events.
 fn integrate(
     plan: &Plan,
     digits: u32,
     doubles: bool,
     session: &Session<'_>,
-) -> Result<(Motion, Motion), Failure> {
+) -> Result<(Motion, Option<Motion>), Failure> {
     let mut working = if doubles { 16 } else { digits.saturating_add(4) };
     let undecided = |message: String, hint: &str| Failure {
         exit: UNDECIDED,
@@ -89,15 +95,14 @@ fn integrate(
         if !session.goes_on() {
             return Err(stopped(session));
         }
-        let answer = Answer { plan, motion: &motion, finer: &finer, digits };
+        let answer = Answer { plan, motion: &motion, finer: &finer, digits, chaotic: false };
         let comparable = answer.comparable();
         lost = answer.log10_error() + f64::from(digits);
         if comparable && (doubles || lost <= 0.0) {
-            return Ok((motion, finer));
+            return Ok((motion, Some(finer)));
         }
         if doubles {
-            let message = "in doubles the events differ from those with 24 digits".to_owned();
-            return Err(undecided(message, "use --digits"));
+            return Ok((motion, None));
         }
         let more = if comparable { lost.ceil().clamp(1.0, 1e4) as u32 + 2 } else { digits };
         working = working.saturating_add(more);

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use lindstedt::simulate::EventKind;
 use plotters::prelude::*;
 
-const GREY: RGBColor = RGBColor(120, 120, 120);
+const GREY: RGBColor = RGBColor(90, 90, 90);
 
 pub fn draw(figure: Figure, plan: &Plan, motion: &Motion) -> Result<String, Failure> {
     let problem = &plan.setup.name;

@@ -156,7 +156,7 @@ fn entries(
         }
         let style = ("sans-serif", 14 * FINE).into_text_style(area);
         area.draw_text(word, &style, (x + 32 * fine, y - 7 * fine))?;
-        x += (56 + 8 * word.chars().count() as i32) * fine;
+        x += (60 + 7 * word.chars().count() as i32) * fine;
     }
     Ok(())
 }

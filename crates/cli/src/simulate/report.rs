@@ -18,6 +18,8 @@ pub struct Answer<'a> {
     /// The same with 8 digits more.
     pub finer: &'a Motion,
     pub digits: u32,
+    /// In doubles the two met different events: no digit of the later numbers is known.
+    pub chaotic: bool,
 }
 
 /// The name of an event.
@@ -96,6 +98,10 @@ impl<'a> Answer<'a> {
     }
 
     fn number(&self, value: &Float, finer: &Float) -> Json {
+        if self.chaotic {
+            let decimal = self.digits_of(value, finer);
+            return json!({"exact": null, "decimal": decimal, "error": null, "status": "estimated"});
+        }
         let error = Self::error(value, finer);
         json!({
             "exact": null,
@@ -145,7 +151,13 @@ impl<'a> Answer<'a> {
     pub fn verdict(&self) -> String {
         let motion = self.motion;
         let time = motion.last.time.to_f64();
-        let mut text = if motion.complete {
+        let chaotic = if self.chaotic {
+            "chaotic: other events than with 24 digits, a picture without digits; "
+        } else {
+            ""
+        };
+        let mut text = chaotic.to_owned();
+        text += &if motion.complete {
             format!("reached t = {time:.6}")
         } else {
             format!("the events that end the motion did not come before t = {time:.6}")

@@ -95,25 +95,24 @@ fn bound(at: &[(String, Value)]) -> Parameters {
     parameters
 }
 
-/// The stick-slip oscillator, at rest in the right well sqrt(a/b).
+/// The stick-slip oscillator, from (1/2, 1/10) in the right well: the attractor that sticks, not
+/// the small orbit about the well.
 fn belt(given: &Given) -> Result<Setup, Failure> {
     let at = values(&stick_slip::card().parameters, given)?;
-    let float =
-        |name: &str| at.iter().find(|(n, _)| n == name).map(|(_, v)| quantity(v).float(4000));
-    let refuse = |name: &str, domain: &'static str| {
-        let message = format!("{name} is outside its domain {domain}");
-        Failure { exit: NO_ANSWER, code: "outside-domain", message, hint: String::new() }
-    };
-    let positive = |name: &str| float(name).filter(|x| *x > 0).ok_or_else(|| refuse(name, "> 0"));
-    let (a, b, omega) = (positive("a")?, positive("b")?, positive("omega")?);
-    let well = (a / b).sqrt();
+    let omega = at.iter().find(|(name, _)| name == "omega").map(|(_, v)| quantity(v).float(4000));
+    let omega = omega.filter(|x| *x > 0).ok_or_else(|| Failure {
+        exit: NO_ANSWER,
+        code: "outside-domain",
+        message: "omega is outside its domain > 0".into(),
+        hint: String::new(),
+    })?;
     let pi = Float::with_val(4000, rug::float::Constant::Pi);
     Ok(Setup {
         name: "stick-slip".into(),
         model: Model::second_order(&stick_slip::equation())?.with_small("eps"),
         parameters: bound(&at),
         at: shown(&at),
-        start: [Quantity::Float(well), integer(0)],
+        start: [(1, 2), (1, 10)].map(|q| Quantity::from(Rational::from(q))),
         forcing: Some(Quantity::Float(pi * 2u32 / omega)),
         wall: false,
         sticks: true,
