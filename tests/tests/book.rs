@@ -233,3 +233,14 @@ fn tour_of_an_own_oscillator() -> Outcome {
     assert_eq!(result.checked_orders, Some(3));
     Ok(())
 }
+
+#[rustfmt::skip]
+#[test]
+fn problem_files_from_rust() -> Outcome {
+    use lindstedt::Oscillator;
+
+    let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+    let result = duffing.set("amplitude", "1/2")?.derive(4)?;
+    assert_eq!(result.exact("frequency", 1).as_deref(), Some("3/32"));
+    Ok(())
+}

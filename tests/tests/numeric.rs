@@ -70,15 +70,18 @@ fn power_law_50_digits_order_60_and_100_digits_order_100() {
 fn perturbed(force: Expression) -> Problem {
     let x = Expression::Displacement;
     Problem {
-        name: "test",
-        title: "",
+        name: "test".into(),
+        title: "".into(),
         equation: Expression::Acceleration + x + Expression::Small * force,
-        small: "eps",
+        time_domain: None,
+        impact: None,
+        synchronous: None,
+        small: "eps".into(),
         conditions: vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude],
         amplitude: AmplitudeRole::InSmallParameter,
         parameters: Vec::new(),
-        notes: "",
-        source: "",
+        notes: "".into(),
+        source: "".into(),
     }
 }
 

@@ -218,7 +218,7 @@ fn melnikov(label: &str) -> &'static Row {
 #[test]
 fn order_of_the_sections() {
     let numbers: Vec<u32> = paper().sections.iter().map(|s| s.number).collect();
-    assert_eq!(numbers, [3, 4]);
+    assert_eq!(numbers, [2, 3, 4]);
     assert!(paper().section(5).is_none());
 }
 

@@ -62,14 +62,14 @@ pub struct Common {
 
 #[derive(Debug, Args)]
 pub struct ProblemsOptions {
-    /// Show one problem in full.
-    #[arg(long, value_name = "NAME")]
+    /// Show one problem as a problem file, with its classification.
+    #[arg(long, value_name = "NAME|FILE")]
     pub show: Option<String>,
 }
 
 #[derive(Debug, Args)]
 pub struct DeriveOptions {
-    /// power-law, pendulum, vibro-impact, duffing or van-der-pol.
+    /// power-law, pendulum, vibro-impact, duffing, van-der-pol, or the path of a problem file (.toml).
     pub problem: String,
     /// The highest order.
     #[arg(long, default_value_t = 4, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]

@@ -23,6 +23,7 @@ pub fn run(
     problem: &Problem,
     settings: &Settings,
     digits: usize,
+    header: &str,
     session: &Session<'_>,
 ) -> Outcome {
     let asked = AveragingSettings {
@@ -41,7 +42,10 @@ pub fn run(
     session.done();
     let text = match session.format() {
         Format::Json => format!("{:#}\n", report(&result, settings, session)),
-        Format::Text => Board { result: &result, style: Style::Text, markdown: false }.write(),
+        Format::Text => {
+            header.to_owned()
+                + &Board { result: &result, style: Style::Text, markdown: false }.write()
+        }
         Format::Latex => Board { result: &result, style: Style::Latex, markdown: false }.write(),
         Format::Markdown => Board { result: &result, style: Style::Latex, markdown: true }.write(),
     };

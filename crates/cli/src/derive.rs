@@ -3,10 +3,11 @@
 use crate::Outcome;
 use crate::arguments::{self, DeriveOptions, Format, Normalisation};
 use crate::averaging;
+use crate::classification;
 use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
 use crate::output;
 use crate::problems::{condition_name, condition_text};
-use crate::session::{Session, digits, parameters, problem};
+use crate::session::{Loaded, Session, digits, load, parameters};
 use lindstedt::coeff::print::Style;
 use lindstedt::equation::{AmplitudeRole, Condition, print};
 use lindstedt::expand::ExpandError;
@@ -19,7 +20,7 @@ use std::fmt::Write;
 const PRINTED_TERMS: usize = 60;
 
 pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
-    let problem = problem(&options.problem)?;
+    let Loaded { problem, file } = load(&options.problem)?;
     let digits = digits(&options.precision)?;
     let settings = Settings {
         order: options.order as usize,
@@ -36,11 +37,28 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         },
     };
     output::check_writable(session)?;
+    // The equation of a file is looked at before any work starts; built-in ones are known.
+    let mut header = String::new();
+    if let Some(file) = &file
+        && let Ok(parts) = classification::of(&problem, &settings.parameters)
+    {
+        classification::check(&parts, file, settings.condition, &options.problem)?;
+        if session.format() == Format::Text {
+            header = classification::text(&parts, &problem.small) + "\n";
+        }
+    }
     let condition = settings.condition.or(problem.conditions.first().copied());
     if condition == Some(Condition::FreeAmplitude)
         && problem.conditions.contains(&Condition::FreeAmplitude)
     {
-        return averaging::run(&problem, &settings, digits, session);
+        // A file gives its values; the parameters of a built-in problem stay symbols.
+        let mut settings = settings;
+        if file.is_some() {
+            let known = lindstedt::known_values(&problem, &settings.parameters);
+            let known = known.into_iter().map(|(name, q)| (name, lindstedt::Value::Rational(q)));
+            settings.parameters = known.chain(settings.parameters).collect();
+        }
+        return averaging::run(&problem, &settings, digits, &header, session);
     }
     if options.tier != arguments::TierName::Exact {
         return crate::derive_numeric::run(options, &problem, &settings, digits, session);
@@ -68,7 +86,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     session.done();
     let text = match session.format() {
         Format::Json => format!("{:#}\n", report.json(session)),
-        Format::Text => report.board(Style::Text, &Frame::TEXT),
+        Format::Text => header + &report.board(Style::Text, &Frame::TEXT),
         Format::Latex => report.board(Style::Latex, &Frame::LATEX),
         Format::Markdown => report.board(Style::Latex, &Frame::MARKDOWN),
     };
@@ -180,12 +198,16 @@ impl<'a> Report<'a> {
     fn at(&self) -> Json {
         let enters = matches!(
             self.result.problem.amplitude,
-            AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::InSums
+            AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::InSums | AmplitudeRole::Scaled
         );
-        match &self.result.amplitude {
-            Some(value) if enters => json!({"amplitude": value.to_string()}),
-            _ => json!({}),
+        let mut at = serde_json::Map::new();
+        if let (Some(value), true) = (&self.result.amplitude, enters) {
+            at.insert("amplitude".into(), value.to_string().into());
         }
+        for (name, value) in &self.result.bound {
+            at.insert(name.clone(), value.to_string().into());
+        }
+        at.into()
     }
 
     /// What x stands for when the amplitude is not one.
@@ -200,8 +222,29 @@ impl<'a> Report<'a> {
             AmplitudeRole::InSums => {
                 format!("Amplitude a = {value} (in the S_n): x/a is expanded below.\n")
             }
+            AmplitudeRole::Scaled if value.to_string() != "1" => {
+                format!("Amplitude a = {value}: y = x/a is expanded, written x below.\n")
+            }
             _ => String::new(),
         }
+    }
+
+    /// What the symbols of the equation stand for when it is not the one that was written.
+    fn values(&self, omega: &str) -> String {
+        let result = self.result;
+        let mut text = String::new();
+        if !result.bound.is_empty() {
+            let list: Vec<String> =
+                result.bound.iter().map(|(n, q)| format!("{n} = {q}")).collect();
+            text += &format!("With {}.\n", list.join(", "));
+        }
+        if result.time_scale != 1 {
+            text += &format!(
+                "Time is in units of 1/{w} below; the result has {omega} in the time of the problem.\n",
+                w = result.time_scale
+            );
+        }
+        text
     }
 
     /// The derivation: equation, secular condition, solution of every order.
@@ -230,6 +273,7 @@ impl<'a> Report<'a> {
         ));
         let _ = writeln!(text, "Normalisation: {}.", condition_text(result.condition));
         text += &self.scaling();
+        text += &self.values(omega);
         text.push('\n');
         if matches!(result.solution, Solution::Lobachevsky(_)) {
             text += names.ring;

@@ -58,6 +58,8 @@ impl From<Error> for Failure {
             Error::BadValue { .. } => {
                 (USAGE, "bad-value", "values are exact: 3, -1/3, 0.1, 2.5e-3, pi/4, 2*pi/3")
             }
+            Error::Parse(_) | Error::File(_) => (USAGE, "problem-file", ""),
+            Error::Irrational { .. } => (NO_ANSWER, "irrational", "set a rational value"),
             Error::UnknownParameter { .. } => {
                 (USAGE, "unknown-parameter", "see `lindstedt problems --show NAME`")
             }

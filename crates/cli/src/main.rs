@@ -3,6 +3,7 @@
 
 mod arguments;
 mod averaging;
+mod classification;
 mod derive;
 mod derive_numeric;
 mod failure;

@@ -2,21 +2,22 @@
 
 use crate::Outcome;
 use crate::arguments::{Format, ProblemsOptions};
+use crate::classification;
 use crate::output;
-use crate::session::{Session, problem};
+use crate::session::{Loaded, Session, load};
 use lindstedt::equation::print::Style;
 use lindstedt::equation::{Condition, ParameterCard, Problem};
 use lindstedt::problems::stick_slip;
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 pub fn run(options: &ProblemsOptions, session: &Session<'_>) -> Outcome {
+    if let Some(name) = options.show.as_deref() {
+        return show(name, session);
+    }
     let belt = stick_slip::card();
-    let (list, belt) = match options.show.as_deref() {
-        Some(name) if name == belt.name => (Vec::new(), Some(belt)),
-        Some(name) => (vec![problem(name)?], None),
-        None => (lindstedt::problems::all(), Some(belt)),
-    };
+    let (list, belt) = (lindstedt::problems::all(), Some(belt));
     let text = match session.format() {
         Format::Json => {
             let list: Vec<_> =
@@ -28,6 +29,47 @@ pub fn run(options: &ProblemsOptions, session: &Session<'_>) -> Outcome {
             let cards: String = list.iter().map(|p| card(p, style)).collect();
             cards + &belt.as_ref().map(belt_card).unwrap_or_default()
         }
+    };
+    output::write(session, &text)?;
+    Ok(0)
+}
+
+/// One problem as a problem file, with its classification in comments.
+fn show(name: &str, session: &Session<'_>) -> Outcome {
+    let loaded = match name {
+        _ if name == stick_slip::card().name => {
+            Loaded { problem: stick_slip::problem(), file: None }
+        }
+        "vibro-impact" => {
+            Loaded { problem: lindstedt::problems::vibro_impact::problem(), file: None }
+        }
+        _ => load(name)?,
+    };
+    let problem = &loaded.problem;
+    let parts = classification::of(problem, &BTreeMap::new());
+    let file = match &loaded.file {
+        Some(file) => file.to_text(),
+        None => lindstedt::problem_file::write(problem),
+    };
+    let text = match session.format() {
+        Format::Text => {
+            let lines = match &parts {
+                Ok(parts) => classification::text(parts, &problem.small),
+                Err(error) => format!("{error}\n"),
+            };
+            let comments: String = lines.lines().map(|line| format!("# {line}\n")).collect();
+            format!("{file}\n{comments}")
+        }
+        Format::Json => {
+            let mut json = as_json(problem);
+            json["file"] = file.into();
+            json["classification"] = match &parts {
+                Ok(parts) => classification::as_json(parts, &problem.small),
+                Err(error) => json!({ "error": error.to_string() }),
+            };
+            format!("{:#}\n", json!({ "problems": [json] }))
+        }
+        Format::Latex | Format::Markdown => card(problem, Style::Latex),
     };
     output::write(session, &text)?;
     Ok(0)

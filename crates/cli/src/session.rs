@@ -1,10 +1,13 @@
 //! What all commands share: format, output, progress, limits, Ctrl-C.
 
 use crate::arguments::{Common, Format, Precision};
-use crate::failure::{Failure, NO_ANSWER, UNDECIDED};
+use crate::failure::{FILE, Failure, NO_ANSWER, UNDECIDED, USAGE};
 use indicatif::{ProgressBar, ProgressStyle};
-use lindstedt::Value;
+use lindstedt::equation::Problem;
+use lindstedt::problem_file::{FileError, LARGEST_FILE};
+use lindstedt::{ProblemFile, Value};
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -118,8 +121,67 @@ pub fn parameters(list: &[String]) -> Result<BTreeMap<String, Value>, Failure> {
     Ok(parameters)
 }
 
+/// A problem with the file that it was read from.
+pub struct Loaded {
+    /// The problem.
+    pub problem: Problem,
+    /// Its file; nothing for a built-in problem.
+    pub file: Option<ProblemFile>,
+}
+
+/// The built-in problem of that name, or the one in a file `NAME.toml`.
+pub fn load(name: &str) -> Result<Loaded, Failure> {
+    if name.ends_with(".toml") {
+        let file = ProblemFile::parse(&read(name)?).map_err(|error| at_path(name, error))?;
+        return Ok(Loaded { problem: file.problem.clone(), file: Some(file) });
+    }
+    problem(name).map(|problem| Loaded { problem, file: None })
+}
+
+/// An error of a problem file with the path in front.
+fn at_path(path: &str, error: FileError) -> Failure {
+    let FileError { kind, line, column } = &error;
+    let exit = if error.is_limit() { UNDECIDED } else { USAGE };
+    let message = format!("{}:{line}:{column}: {kind}", shown(path));
+    Failure { exit, code: "problem-file", message, hint: error.hint() }
+}
+
+fn shown(name: &str) -> String {
+    name.chars().take(60).collect()
+}
+
+/// The text of a file, if it is a file of a reasonable size: devices, pipes and what is too large
+/// are refused before anything is read.
+fn read(path: &str) -> Result<String, Failure> {
+    let failure = |what: String, hint: &str| Failure {
+        exit: FILE,
+        code: "file",
+        message: format!("cannot read {}: {what}", shown(path)),
+        hint: hint.into(),
+    };
+    let trouble = |error: std::io::Error| failure(error.to_string(), "");
+    let metadata = std::fs::metadata(path).map_err(trouble)?;
+    if !metadata.is_file() {
+        return Err(failure("it is not a file".into(), ""));
+    }
+    let too_large = || failure(format!("it has more than {LARGEST_FILE} bytes"), "");
+    if metadata.len() > LARGEST_FILE {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(trouble)?;
+    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(trouble)?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(too_large());
+    }
+    String::from_utf8(bytes).map_err(|_| failure("it is not UTF-8 text".into(), ""))
+}
+
 /// The built-in problem of that name.
-pub fn problem(name: &str) -> Result<lindstedt::equation::Problem, Failure> {
+pub fn problem(name: &str) -> Result<Problem, Failure> {
+    if name.ends_with(".toml") {
+        return load(name).map(|loaded| loaded.problem);
+    }
     lindstedt::problems::find(name).ok_or_else(|| {
         if name == lindstedt::problems::stick_slip::card().name {
             return Failure {

@@ -1,10 +1,16 @@
 //! Problems as data: an oscillator is an expression tree, a small parameter, a condition that
 //! fixes the amplitude, and a data card.
 
+mod canonical;
+pub mod classify;
 mod expression;
+mod methods;
+mod monomials;
 pub mod print;
 mod problem;
+mod smooth;
 
+pub use canonical::AccelerationFault;
 pub use expression::{Expression, Function};
 pub use problem::{
     AmplitudeRole, Condition, Crossing, Impact, ParameterCard, Problem, Synchronous, Text,

@@ -30,6 +30,8 @@ pub enum AmplitudeRole {
     },
     /// The coefficients S_n of the formal function depend on it, 0 < a < pi.
     InSums,
+    /// x = a y is substituted into the equation and the equation divided by a; a > 0 rational.
+    Scaled,
     /// It is part of the small parameter; a is not zero.
     InSmallParameter,
     /// The equation determines it.

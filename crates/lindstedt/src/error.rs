@@ -1,6 +1,7 @@
 //! Errors of the facade.
 
 use lindstedt_expand::ExpandError;
+use lindstedt_problem_file::{FileError, ParseError};
 use thiserror::Error;
 
 /// Why the engine has no answer. Each kind maps to one exit code of the command line.
@@ -24,6 +25,20 @@ pub enum Error {
     /// No more primes of 61 bits with the roots of unity that the order needs.
     #[error("no more 61-bit primes for this order")]
     OutOfPrimes,
+    /// An equation cannot be read.
+    #[error(transparent)]
+    Parse(#[from] ParseError),
+    /// A problem file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A rational value is needed where the parameter stands.
+    #[error("{name} = {value} is irrational, but exact derivations of this problem are over Q")]
+    Irrational {
+        /// The parameter.
+        name: String,
+        /// The value.
+        value: String,
+    },
     /// A value that cannot be read.
     #[error("cannot read the value {text:?}")]
     BadValue {

@@ -17,10 +17,13 @@ pub mod averaging;
 mod derivation;
 pub mod energy;
 mod error;
+pub mod impact_map;
 pub mod multimodular;
 pub mod number;
 pub mod numeric;
+mod oscillator;
 pub mod paper;
+pub mod quotient;
 mod value;
 pub mod verify;
 
@@ -28,15 +31,19 @@ pub use derivation::{
     Derivation, NamedSeries, Progress, Route, Settings, Solution, check_parameters, derive,
 };
 pub use error::Error;
+pub use lindstedt_problem_file::ProblemFile;
 pub use number::{Number, Status};
+pub use oscillator::{Oscillator, known_values};
 pub use value::Value;
 
 pub use lindstedt_algebra as algebra;
 pub use lindstedt_coeff as coeff;
 pub use lindstedt_equation as equation;
 pub use lindstedt_expand as expand;
+pub use lindstedt_impact as impact;
 pub use lindstedt_melnikov as melnikov;
 pub use lindstedt_phase as phase;
+pub use lindstedt_problem_file as problem_file;
 pub use lindstedt_problems as problems;
 pub use lindstedt_series as series;
 pub use lindstedt_simulate as simulate;

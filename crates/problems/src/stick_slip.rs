@@ -1,7 +1,7 @@
 //! The stick-slip oscillator of section 3: a data card. Its equation has a sign and a forcing in
 //! t, so it is no problem of the expansion driver; Melnikov's method and the simulation take it.
 
-use lindstedt_equation::{Expression, Function, ParameterCard, Text};
+use lindstedt_equation::{AmplitudeRole, Expression, Function, ParameterCard, Problem, Text};
 
 /// What is to be said about a problem that is not expanded.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +32,25 @@ pub fn equation() -> Expression {
     Expression::Acceleration - symbol("a") * x.clone()
         + symbol("b") * x.pow(3)
         + Expression::Small * (friction - forcing)
+}
+
+/// Equation and card together; no condition of the expansion driver belongs to it.
+pub fn problem() -> Problem {
+    let Card { name, title, parameters, notes, source, .. } = card();
+    Problem {
+        name,
+        title,
+        equation: equation(),
+        time_domain: None,
+        impact: None,
+        synchronous: None,
+        small: "eps".into(),
+        conditions: Vec::new(),
+        amplitude: AmplitudeRole::Free,
+        parameters,
+        notes,
+        source,
+    }
 }
 
 /// The card of the paper's (18)-(20).

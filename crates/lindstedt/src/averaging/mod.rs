@@ -128,6 +128,16 @@ pub fn average(
     task.certified(observer)
 }
 
+/// The averaged expansion with every parameter a symbol, as elements of their field.
+pub(crate) fn formulas(
+    problem: &Problem,
+    order: usize,
+) -> Result<(ParameterField, AveragedExpansion<Torus<ParameterField>>), Error> {
+    let settings = AveragingSettings { order, parameters: BTreeMap::new(), digits: 20 };
+    let (field, over) = Task::new(problem, &settings)?.over_parameters(&mut |_| true)?;
+    Ok((field, over.expansion))
+}
+
 struct Task<'a> {
     problem: &'a Problem,
     settings: &'a AveragingSettings,
@@ -334,7 +344,11 @@ impl<'a> Task<'a> {
         self.finish(&over, true, &number).map(Some)
     }
 
-    fn symbolic(&self, observer: &mut dyn FnMut(Progress) -> bool) -> Result<Averaging, Error> {
+    /// Over the field of the parameters without a value.
+    fn over_parameters(
+        &self,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<(ParameterField, Over<ParameterField>), Error> {
         let given = |name: &str| match self.value(name)? {
             Given::Value(value) => value.as_rational().cloned(),
             Given::Period(..) => None,
@@ -365,6 +379,11 @@ impl<'a> Task<'a> {
         let algebra = self.algebra(&plain, &values, &|field, angles| with_angles(field, angles))?;
         let field = algebra.0.coefficients().clone();
         let over = self.derive(algebra, &values, observer)?;
+        Ok((field, over))
+    }
+
+    fn symbolic(&self, observer: &mut dyn FnMut(Progress) -> bool) -> Result<Averaging, Error> {
+        let (field, over) = self.over_parameters(observer)?;
         let formula = |c: &ParameterFraction| match field.as_rational(c) {
             Some(q) => rational(&q, self.settings.digits).map(Coefficient::Number),
             None => Ok(Coefficient::Formula {

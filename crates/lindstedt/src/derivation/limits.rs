@@ -29,7 +29,9 @@ pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> R
                 {
                     return Err(outside("0 < amplitude < pi (at pi the period is infinite)"));
                 }
-                AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::InSmallParameter
+                AmplitudeRole::ScalesFrequency { .. }
+                | AmplitudeRole::InSmallParameter
+                | AmplitudeRole::Scaled
                     if !exceeds(value, &Value::Rational(Rational::new())) =>
                 {
                     return Err(outside("amplitude > 0 (there is no oscillation at amplitude 0)"));
@@ -84,14 +86,15 @@ fn exceeds(a: &Value, b: &Value) -> bool {
     }
 }
 
-/// Whether the equation needs the Lobachevsky ring.
+/// Whether the equation needs the Lobachevsky ring, or exp, which the route over many primes does
+/// not take.
 pub(super) fn has_logarithms(expression: &Expression) -> bool {
     match expression {
         Expression::Sum(list) | Expression::Product(list) => list.iter().any(has_logarithms),
         Expression::Power(base, exponent) => {
             !matches!(**exponent, Expression::Number(_)) || has_logarithms(base)
         }
-        Expression::Function(Function::Ln, _) | Expression::Formal(..) => true,
+        Expression::Function(Function::Ln | Function::Exp, _) | Expression::Formal(..) => true,
         Expression::Function(_, argument) => has_logarithms(argument),
         _ => false,
     }

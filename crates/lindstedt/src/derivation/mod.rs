@@ -1,6 +1,7 @@
 //! From a problem to a checked expansion: the call behind `lindstedt derive`.
 
 mod limits;
+mod prepare;
 mod series;
 
 use crate::multimodular::{self, RationalBinding};
@@ -18,6 +19,7 @@ use lindstedt_expand::{
 };
 use lindstedt_phase::print::PrintPhase;
 use lindstedt_phase::{Lobachevsky, Trigonometric};
+use prepare::{Prepared, prepare};
 use rayon::prelude::*;
 use rug::Rational;
 use series::{Powers, energy_integral, series};
@@ -100,7 +102,7 @@ pub enum Solution {
 /// A checked expansion.
 #[derive(Debug)]
 pub struct Derivation {
-    /// The problem.
+    /// The problem as it was expanded: values put in, x and t scaled.
     pub problem: Problem,
     /// The normalisation used.
     pub condition: Condition,
@@ -118,6 +120,11 @@ pub struct Derivation {
     pub solution: Solution,
     /// The amplitude that was asked for or is the default; nothing where there is none.
     pub amplitude: Option<Value>,
+    /// Parameters of the equation with the values that were put in.
+    pub bound: BTreeMap<String, Rational>,
+    /// Time is in units of 1/this: the solution's equation has linear stiffness 1 where x' occurs.
+    /// The series of the result are in the time of the problem.
+    pub time_scale: Rational,
     pub(crate) constants: Constants,
 }
 
@@ -178,6 +185,8 @@ pub fn derive(
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Derivation, Error> {
     check_parameters(problem, &settings.parameters)?;
+    let Prepared { problem, bound, time_scale } = prepare(problem, settings)?;
+    let problem = &problem;
     let condition = condition(problem, settings.condition)?;
     let amplitude = settings.parameters.get("amplitude").cloned();
     let has_logarithms = has_logarithms(&problem.equation);
@@ -237,8 +246,9 @@ pub fn derive(
     if ring.as_rational(&stiffness).is_some_and(|kappa| kappa < 0) {
         return Err(ExpandError::NegativeStiffness.into());
     }
-    let series =
+    let mut series =
         series(problem, &ring, condition, powers, amplitudes, amplitude.as_ref(), &stiffness)?;
+    prepare::undo_time_scale(&mut series, &ring, &time_scale);
     let default = problem.parameters.iter().find(|p| p.name == "amplitude");
     let amplitude = match amplitude {
         Some(value) => Some(value),
@@ -254,6 +264,8 @@ pub fn derive(
         series,
         solution,
         amplitude: amplitude.clone(),
+        bound,
+        time_scale,
         constants: Constants::new(amplitude),
     })
 }

@@ -18,8 +18,10 @@ mod periods;
 mod power_law;
 mod stick_slip;
 mod tables;
+mod vibro_impact;
 
 pub use compare::{Decimal, Findings};
+pub use vibro_impact::reread;
 
 use crate::Error;
 use lindstedt_coeff::ball::{Ball, Balls};
@@ -130,13 +132,15 @@ pub struct Options {
     pub order: usize,
     /// The order up to which the tables go, at least 6.
     pub table_order: usize,
+    /// Gains of each kind for which predictions of stability are compared with the truth.
+    pub grid: usize,
 }
 
 impl Options {
     /// A minute of work at most.
-    pub const FULL: Self = Self { order: 10, table_order: 20 };
+    pub const FULL: Self = Self { order: 10, table_order: 20, grid: 21 };
     /// A few seconds.
-    pub const QUICK: Self = Self { order: 4, table_order: 14 };
+    pub const QUICK: Self = Self { order: 4, table_order: 14, grid: 7 };
 }
 
 /// The precision of every comparison. Two numbers of the size of a period that differ are told
@@ -157,7 +161,7 @@ impl Reader<'_> {
     }
 }
 
-/// Reads the paper (sections 3 and 4): derives, compares, tabulates.
+/// Reads the paper (sections 2 to 4): derives, compares, tabulates.
 ///
 /// `observer` is told what comes next; when it returns `false` the work stops with the rows
 /// finished so far.
@@ -195,6 +199,17 @@ pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<
 
 /// What is read: number and title of a section, and its parts with their names.
 const SECTIONS: &[(u32, &str, &[NamedPart])] = &[
+    (
+        2,
+        "Stability improvement of periodic vibro-impact processes",
+        &[
+            ("the vibro-impact oscillator, (1)-(4)", vibro_impact::read_equation),
+            ("averaging, (5)-(7)", vibro_impact::read_averaging),
+            ("the periodic orbit, (8)", vibro_impact::read_orbit),
+            ("the impact map, (9)-(16)", vibro_impact::read_perturbation),
+            ("stability, (17)", vibro_impact::read_stability),
+        ],
+    ),
     (
         3,
         "Prediction of stick-slip chaos",

@@ -1,0 +1,336 @@
+//! Problem files on the command line: what they print, and a hundred that are wrong.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn lindstedt(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
+}
+
+fn text(arguments: &[&str]) -> String {
+    let output = lindstedt(arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A folder of this test that is removed with it.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("lindstedt-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+    fn file(&self, name: &str, content: &[u8]) -> String {
+        let path = self.0.join(name);
+        std::fs::write(&path, content).unwrap();
+        path.to_str().unwrap().to_owned()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn example(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/examples");
+    folder.join(name).to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_file_is_classified_and_derived() {
+    insta::assert_snapshot!(text(&[
+        "derive",
+        &example("rayleigh.toml"),
+        "--order",
+        "2",
+        "--digits",
+        "12"
+    ]));
+    insta::assert_snapshot!(text(&["problems", "--show", &example("vibro-impact.toml")]));
+    let scaled = [
+        "derive",
+        &example("duffing.toml"),
+        "--order",
+        "1",
+        "--digits",
+        "12",
+        "--set",
+        "amplitude=1/2",
+    ];
+    insta::assert_snapshot!(text(&scaled));
+}
+
+#[test]
+fn built_in_problems_run_from_their_printed_files() {
+    let folder = Folder::new("printed");
+    for name in ["power-law", "pendulum", "duffing", "van-der-pol"] {
+        let shown = text(&["problems", "--show", name]);
+        let path = folder.file("printed.toml", shown.as_bytes());
+        let run = |problem: &str| -> Value {
+            let arguments =
+                ["derive", problem, "--order", "4", "--digits", "25", "--format", "json"];
+            let mut value: Value = serde_json::from_str(&text(&arguments)).unwrap();
+            value["seconds"] = 0.into();
+            value
+        };
+        assert_eq!(run(name), run(&path), "{name}");
+        // And what the file prints is the same file.
+        assert_eq!(text(&["problems", "--show", &path]), shown, "{name}");
+    }
+    for name in ["stick-slip", "vibro-impact"] {
+        let shown = text(&["problems", "--show", name]);
+        let path = folder.file("printed.toml", shown.as_bytes());
+        assert_eq!(text(&["problems", "--show", &path]), shown, "{name}");
+    }
+}
+
+/// Files with a delay are averaged: order 10 leaves a residual that encloses zero, and order 1 is
+/// Nayfeh and Mook's da/dt = -(g/2) a sin T, dpsi/dt = 1 + (3/8) beta a^2 - (g/2) cos T.
+#[test]
+fn files_with_delays_are_averaged() {
+    let name = example("delayed-duffing.toml");
+    let shown = text(&["derive", &name, "--order", "10", "--digits", "15", "--format", "json"]);
+    let result: Value = serde_json::from_str(&shown).unwrap();
+    assert_eq!(result["residual"]["checked_orders"], 10);
+    assert_eq!(result["residual"]["encloses_zero"], true);
+    let coefficient = |rate: &str, term: usize| -> f64 {
+        let decimal = &result["series"][rate][1][term]["coefficient"]["decimal"];
+        decimal.as_str().unwrap().parse().unwrap()
+    };
+    let (g, delay) = (0.1f64, 1.0f64);
+    assert!((coefficient("amplitude_rate", 0) + g / 2.0 * delay.sin()).abs() < 1e-15);
+    assert!((coefficient("phase_rate", 0) + g / 2.0 * delay.cos()).abs() < 1e-15);
+    assert_eq!(coefficient("phase_rate", 1), 0.375);
+    for file in ["wright.toml", "vibro-impact.toml"] {
+        let shown = text(&["derive", &example(file), "--order", "3", "--format", "json"]);
+        let result: Value = serde_json::from_str(&shown).unwrap();
+        assert_eq!(result["residual"]["checked_orders"], 3, "{file}");
+    }
+}
+
+/// Equations that are wrong: exit code, equation, a piece of the message.
+const EQUATIONS: [(i32, &str, &str); 62] = [
+    (2, "", "expected a number, a name or a parenthesis, found the end"),
+    (2, "   ", "found the end"),
+    (2, "= 0", "found `=`"),
+    (2, "x'' + x =", "found the end"),
+    (2, "x'' + x = 0 = 0", "a second `=`"),
+    (2, "x'' + x = 0; y'' + y = 0", "';' has no meaning"),
+    (2, "x'' + x + eps*x^3 = 0, x' = 1", "found `,`"),
+    (2, "x'' + x + tan(x)*eps = 0", "the function tan is not taken"),
+    (2, "x'' + tan x = 0", "sin(x)/cos(x)"),
+    (2, "x'' + sinh(x) = 0", "taylor(sinh(x), 9)"),
+    (2, "x'' + asin(x) = 0", "the function asin is not taken"),
+    (2, "x'' + bessel(x) = 0", "the function bessel is not taken"),
+    (2, "x'' + omga*x = 0", "did you mean omega"),
+    (2, "x'' + q*x = 0", "the name q is not declared"),
+    (2, "x'' + epsx^3 = 0", "not declared"),
+    (2, "x'' + x + eps*nan = 0", "the name nan is not declared"),
+    (2, "x'' + x + eps*inf = 0", "the name inf is not declared"),
+    (2, "x'' + pi*x = 0", "the name pi is not declared"),
+    (2, "x'' + i*x = 0", "not declared"),
+    (2, "x''' + x = 0", "a derivative of order 3"),
+    (2, "x'''' + x = 0", "a derivative of order 4"),
+    (2, "y'' + y = 0", "y is no function of time"),
+    (2, "k'*x + x'' = 0", "k is no function of time"),
+    (2, "x + eps*x^3 = 0", "x'' does not occur"),
+    (2, "x' + x = 0", "x'' does not occur"),
+    (2, "x'' - x'' + x = 0", "x'' does not occur"),
+    (2, "x''*x + x = 0", "x'' inside x''*x"),
+    (2, "(1 + x^2)*x'' + x = 0", "x'' inside"),
+    (2, "(x'')^2 + x = 0", "x'' inside x''^2"),
+    (2, "sin(x'') + x = 0", "x'' inside sin(x'')"),
+    (2, "eps*x'' + x = 0", "x'' inside eps*x''"),
+    (2, "x'' + (x = 0", "expected `)`"),
+    (2, "x'' + x) = 0", "found `)`"),
+    (2, "x'' + [x = 0", "expected `]`"),
+    (2, "x'' + |x = 0", "expected `|`"),
+    (2, "x'' + x + * x = 0", "found `*`"),
+    (2, "x'' + x^ = 0", "found `=`"),
+    (2, "x'' + x 2 = 0", "found `2`"),
+    (2, "x'' + 1..2*x = 0", "found `.2`"),
+    (2, "x'' + 0x10*x = 0", "not declared"),
+    (2, "x'' + x/0 = 0", "a division by zero"),
+    (2, "x'' + x/(1 - 1) = 0", "a division by zero"),
+    (2, "x'' + 0^(-1) = 0", "a division by zero"),
+    (2, "x'' + 1/2x = 0", "two readings"),
+    (2, "x'' + x/omega x = 0", "two readings"),
+    (2, "x'' + sin x^2 = 0", "expected `(`"),
+    (2, "x'' + sin 2x = 0", "expected `(`"),
+    (2, "x'' + x(2 t) = 0", "is not x at an earlier time"),
+    (2, "x'' + x(t + T) = 0", "is not x at an earlier time"),
+    (2, "x''(t - T) + x'' = 0", "is not x at an earlier time"),
+    (2, "x'' + x(t - x) = 0", "is not x at an earlier time"),
+    (2, "x'' + (x + 1)(t - T) = 0", "two readings"),
+    (2, "x'' + taylor(x, 3) = 0", "no Taylor polynomial of x is known"),
+    (2, "x'' + taylor(sin(1 + x), 3) = 0", "does not vanish"),
+    (2, "x'' + taylor(sin(x), 1000) = 0", "a whole number from 1 to 99"),
+    (2, "x'' + taylor(sin(x)) = 0", "expected a comma"),
+    (2, "x'' + x + 3 & x = 0", "'&' has no meaning"),
+    (2, "x'' + x + eps*x^3 \u{1f600} = 0", "has no meaning"),
+    (4, "x'' + x + eps*x^(10^9) = 0", "more than 1000 as an exponent"),
+    (4, "x'' + 9^(9^9)*x = 0", "more than 1000 as an exponent"),
+    (4, "x'' + 1e999999999*x = 0", "more than 300 digits"),
+    (4, "x'' + ((x^100)^100)^100 = 0", "more than 1000 as an exponent"),
+];
+
+/// Equations without an expansion: the reason and the term are said.
+const REFUSED: [(&str, &str); 16] = [
+    ("x'' + x = F cos(omega t) + eps*x^3", "2:23: -F*cos(omega*t) depends on t"),
+    ("x'' + x + eps*sign(x') = 0", "2:27: sign(x') is not smooth"),
+    ("x'' + x + eps*|x| = 0", "2:27: abs(x) is not smooth"),
+    ("x'' + x + eps*sin(x) = 0", "2:27: sin(x) is no polynomial"),
+    ("x'' + sin(x) + eps*x' = 0", "2:19: sin(x) is no polynomial"),
+    ("x'' + x + eps*x^(1/3) = 0", "2:27: x^(1/3) is not real everywhere"),
+    ("x'' + x^(1 + 2 eps) = 0", "2:19: x^(1 + 2*eps) is not real everywhere"),
+    ("x'' + x + eps*ln(x) = 0", "2:27: ln(x) is not real everywhere"),
+    ("x'' + x + x^3 = eps*x^5", "2:23: x^3 has no factor eps"),
+    ("x'' + x + x' = eps*x^3", "2:23: x' has no factor eps"),
+    ("x'' + eps*x^3 = 0", "without eps there is no term in x"),
+    ("x'' - x + eps*x^3 = 0", "the linear stiffness is negative"),
+    ("x'' + x + eps*x' = 0", "2:23: eps*x' works on x', so the amplitude drifts"),
+    ("x'' + x + eps*x(t - T) = 0", "2:27: x(t - T) is a delay"),
+    ("x'' + x/(1 + x^2) + eps*x^3 = 0", "(1 + x^2)^(-1) is no polynomial"),
+    ("x'' + 2 x + eps*(x^2 - 1)*x'^2 + eps*x*x' = 0", "omega_0 is irrational"),
+];
+
+/// Whole files that are wrong.
+const FILES: [(i32, &str, &str); 27] = [
+    (2, "", "missing field `name`"),
+    (2, "name = 'a'", "missing field `equation`"),
+    (2, "equation = \"x'' + x + eps*x^3\"", "missing field `name`"),
+    (2, "name = 'a'\nname = 'b'\nequation = \"x'' + eps*x\"", "duplicate key"),
+    (2, "name = 'a'\nequation = \"x'' + eps*x\"\nequation = \"x''\"", "duplicate key"),
+    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\ncolour = 'red'", "unknown field `colour`"),
+    (2, "name = '../../x'\nequation = \"x'' + x + eps*x^3\"", "is not a name for a problem"),
+    (2, "name = 'A b'\nequation = \"x'' + x + eps*x^3\"", "is not a name for a problem"),
+    (2, "name = ''\nequation = \"x'' + x + eps*x^3\"", "is not a name for a problem"),
+    (2, "name = 3\nequation = \"x'' + x + eps*x^3\"", "invalid type"),
+    (2, "name = 'a'\nequation = 7", "invalid type"),
+    (2, "name = 'a\nequation = \"x''\"", "invalid"),
+    (2, "name = 'a'\nequation = \"x'' + x\"", "the small parameter eps does not occur"),
+    (2, "name = 'a'\nsmall = 'mu'\nequation = \"x'' + x + eps*x^3\"", "not declared"),
+    (2, "name = 'a'\nsmall = 'x'\nequation = \"x'' + x\"", "is not a name for a small parameter"),
+    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\ncondition = 'none'", "condition cannot be"),
+    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\nasked = ['colour']", "asked cannot be"),
+    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\nfixed = ['k']", "fixed mentions k"),
+    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\norders = { k = 1 }", "orders mentions k"),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nk = { value = 0.1 }",
+        "in quotes",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nk = { value = 'nan' }",
+        "cannot read the value",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nk = { value = '1/0' }",
+        "cannot read the value",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nk = { value = nan }",
+        "in quotes",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nsin = { value = '1' }",
+        "is not a name for a parameter",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\nω = { value = '1' }\nomega = { value = '1' }",
+        "unquoted",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\n'ω' = { value = '1' }\nomega = { value = '1' }",
+        "omega is declared twice",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[impact]\nposition = 's'\ncrossing = 'up'\nrestitution = '1'",
+        "crossing cannot be",
+    ),
+];
+
+fn with_parameters(equation: &str) -> String {
+    format!(
+        "name = \"bad\"\nequation = \"{equation}\"\ncondition = \"initial-amplitude\"\n[parameters]\n\
+         omega = {{ value = \"2\" }}\nk = {{ value = \"1\" }}\nF = {{ value = \"1\" }}\nT = {{ value = \"1\" }}\n"
+    )
+}
+
+/// What is wrong with the refusal of a file; nothing when it is right.
+fn refused(path: &str, exit: i32, message: &str, code: &str) -> Option<String> {
+    let output = lindstedt(&["derive", path, "--order", "2"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    let status = output.status.code();
+    let one_line = error.lines().count() == 1 && error.len() < 500 && !error.contains("panicked");
+    if status != Some(exit) || !output.stdout.is_empty() || !one_line || !error.contains(message) {
+        return Some(format!("exit {status:?}: {error}"));
+    }
+    let output = lindstedt(&["derive", path, "--order", "2", "--format", "json"]);
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let right = output.status.code() == Some(exit) && value["error"]["code"] == code;
+    (!right).then(|| format!("in JSON: {value}"))
+}
+
+#[test]
+fn a_hundred_bad_files_get_one_clear_line_each() {
+    let folder = Folder::new("bad");
+    let (mut count, mut wrong) = (0, Vec::new());
+    let mut check = |content: &[u8], exit, message: &str, code| {
+        let path = folder.file("bad.toml", content);
+        if let Some(error) = refused(&path, exit, message, code) {
+            let content = String::from_utf8_lossy(&content[..content.len().min(120)]);
+            wrong.push(format!("{content} | wanted {exit} {message} | {error}"));
+        }
+        count += 1;
+    };
+    for (exit, equation, message) in EQUATIONS {
+        check(with_parameters(equation).as_bytes(), exit, message, "problem-file");
+    }
+    for (equation, message) in REFUSED {
+        check(with_parameters(equation).as_bytes(), 3, message, "no-method");
+    }
+    for (exit, content, message) in FILES {
+        check(content.as_bytes(), exit, message, "problem-file");
+    }
+    let deep = |open: &str, close: &str| {
+        let equation = format!("x'' + {}x{} = 0", open.repeat(100_000), close.repeat(100_000));
+        with_parameters(&equation)
+    };
+    check(deep("(", ")").as_bytes(), 4, "more than 10000 bytes in an equation", "problem-file");
+    let deep = format!("x'' + {}x{} = 0", "(".repeat(4000), ")".repeat(4000));
+    check(
+        with_parameters(&deep).as_bytes(),
+        4,
+        "more than 64 parentheses or powers",
+        "problem-file",
+    );
+    let nested = format!("name = 'a'\nequation = {}{}", "[".repeat(100_000), "]".repeat(100_000));
+    check(nested.as_bytes(), 2, "max recursion depth", "problem-file");
+    let keys: String = (0..10_000).map(|n| format!("a{n} = 1\n")).collect();
+    check(keys.as_bytes(), 2, "unknown field", "problem-file");
+    check(&vec![b'#'; 100 << 20], 5, "it has more than 262144 bytes", "file");
+    check(&[0xff, 0xfe, 0x00], 5, "it is not UTF-8 text", "file");
+    check(&[0; 100], 2, "", "problem-file");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(count >= 110, "{count}");
+    for path in ["/nonexistent.toml", "../../x.toml", "/dev/null/x.toml"] {
+        assert_eq!(refused(path, 5, "cannot read", "file"), None, "{path}");
+    }
+    std::fs::create_dir(folder.0.join("folder.toml")).unwrap();
+    let path = folder.0.join("folder.toml");
+    assert_eq!(refused(path.to_str().unwrap(), 5, "it is not a file", "file"), None);
+}

@@ -1,0 +1,352 @@
+//! One form for trees that addition and multiplication make equal, and the tree algebra that
+//! loading a problem needs: substitution, searching, x'' set free.
+
+use crate::Expression;
+use rug::Rational;
+use rug::ops::Pow;
+use std::cmp::Ordering;
+
+/// Powers of numbers with more bits are left as they stand.
+const LARGEST_NUMBER: u64 = 100_000;
+
+/// x'' does not occur linearly with a constant factor.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AccelerationFault {
+    /// x'' does not occur, or its factors cancel.
+    Missing,
+    /// x'' stands inside this term, which is not linear in it with a constant factor.
+    Inside(Expression),
+}
+
+impl Expression {
+    /// The same expression with sums in sums and products in products flat, the numbers of a
+    /// sum and of a product collected into one (in front of a product), ones and zeros left out.
+    /// Idempotent. Nothing is expanded or reordered; the cost is linear in the size of the tree.
+    ///
+    /// ```
+    /// use lindstedt_equation::Expression;
+    /// let x = || Expression::Displacement;
+    /// let e = Expression::Product(vec![x(), Expression::integer(2) * Expression::integer(3)]);
+    /// assert_eq!(e.canonical(), 6 * x());
+    /// ```
+    #[must_use]
+    pub fn canonical(&self) -> Self {
+        match self {
+            Self::Sum(terms) => canonical_sum(terms),
+            Self::Product(factors) => canonical_product(factors),
+            Self::Power(base, exponent) => canonical_power(base.canonical(), exponent.canonical()),
+            Self::Function(function, argument) => {
+                Self::Function(*function, Box::new(argument.canonical()))
+            }
+            Self::Formal(name, argument) => {
+                Self::Formal(name.clone(), Box::new(argument.canonical()))
+            }
+            Self::Delayed(inner, delay) => {
+                Self::Delayed(Box::new(inner.canonical()), Box::new(delay.canonical()))
+            }
+            leaf => leaf.clone(),
+        }
+    }
+
+    /// The expression with every leaf (number, name, x, x', x'', t) that `change` has something
+    /// for replaced by it.
+    #[must_use]
+    pub fn substitute(&self, change: &dyn Fn(&Self) -> Option<Self>) -> Self {
+        let all = |list: &[Self]| list.iter().map(|e| e.substitute(change)).collect();
+        match self {
+            Self::Sum(terms) => Self::Sum(all(terms)),
+            Self::Product(factors) => Self::Product(all(factors)),
+            Self::Power(base, exponent) => base.substitute(change).pow(exponent.substitute(change)),
+            Self::Function(function, argument) => argument.substitute(change).apply(*function),
+            Self::Formal(name, argument) => argument.substitute(change).formal(name),
+            Self::Delayed(inner, delay) => {
+                inner.substitute(change).delayed(delay.substitute(change))
+            }
+            leaf => change(leaf).unwrap_or_else(|| leaf.clone()),
+        }
+    }
+
+    /// The first subexpression, from the outside and from the left, that `wanted` accepts.
+    #[must_use]
+    pub fn find(&self, wanted: &dyn Fn(&Self) -> bool) -> Option<&Self> {
+        if wanted(self) {
+            return Some(self);
+        }
+        match self {
+            Self::Sum(list) | Self::Product(list) => list.iter().find_map(|e| e.find(wanted)),
+            Self::Power(a, b) | Self::Delayed(a, b) => a.find(wanted).or_else(|| b.find(wanted)),
+            Self::Function(_, argument) | Self::Formal(_, argument) => argument.find(wanted),
+            _ => None,
+        }
+    }
+
+    /// Whether the expression has a subexpression like this.
+    #[must_use]
+    pub fn contains(&self, part: &Self) -> bool {
+        self.find(&|e| e == part).is_some()
+    }
+
+    /// Whether neither x, x', x'', t, the small parameter nor a formal function occurs.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        let varies = |e: &Self| {
+            matches!(
+                e,
+                Self::Displacement
+                    | Self::Velocity
+                    | Self::Acceleration
+                    | Self::Time
+                    | Self::Small
+                    | Self::Formal(..)
+            )
+        };
+        self.find(&varies).is_none()
+    }
+
+    /// The names of the parameters, each once, in the order of their first occurrence.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        collect_parameters(self, &mut names);
+        names
+    }
+
+    /// The number, if the expression is one after [`Self::canonical`].
+    #[must_use]
+    pub fn as_number(&self) -> Option<Rational> {
+        match self.canonical() {
+            Self::Number(q) => Some(q),
+            _ => None,
+        }
+    }
+
+    /// The terms of a sum, or the expression itself as the only one.
+    #[must_use]
+    pub fn terms(&self) -> &[Self] {
+        match self {
+            Self::Sum(terms) => terms,
+            single => std::slice::from_ref(single),
+        }
+    }
+
+    /// x'' + ... = 0 for an equation c x'' + ... = 0 with a constant c other than zero; an
+    /// equation in which x'' stands alone is returned unchanged. A factor c with parameters
+    /// becomes c^(-1) on every other term.
+    ///
+    /// # Errors
+    /// [`AccelerationFault`] when x'' does not occur linearly with a constant factor.
+    ///
+    /// ```
+    /// use lindstedt_equation::Expression;
+    /// let x = Expression::Displacement;
+    /// let doubled = 2 * (Expression::Acceleration + x.clone());
+    /// assert_eq!(doubled.acceleration_alone(), Ok(Expression::Acceleration + x));
+    /// ```
+    pub fn acceleration_alone(&self) -> Result<Self, AccelerationFault> {
+        let holds = |e: &Self| e.contains(&Self::Acceleration);
+        let with: Vec<&Self> = self.terms().iter().filter(|term| holds(term)).collect();
+        if with == [&Self::Acceleration] {
+            return Ok(self.clone());
+        }
+        let (factor, rest) = split_acceleration(self)?;
+        let factor = Self::Sum(factor).canonical();
+        let mut terms = vec![Self::Acceleration];
+        let scale = match &factor {
+            Self::Number(c) if c.is_zero() => return Err(AccelerationFault::Missing),
+            Self::Number(c) => Self::Number(Rational::from(c.recip_ref())),
+            constant => constant.clone().pow(-1),
+        };
+        for term in rest {
+            match Self::Product(vec![scale.clone(), term]).canonical() {
+                Self::Number(q) if q.is_zero() => {}
+                term => terms.push(term),
+            }
+        }
+        Ok(Self::Sum(terms))
+    }
+}
+
+/// c and r with e = c x'' + r, as lists of terms.
+fn split_acceleration(
+    e: &Expression,
+) -> Result<(Vec<Expression>, Vec<Expression>), AccelerationFault> {
+    let holds = |e: &Expression| e.contains(&Expression::Acceleration);
+    match e {
+        Expression::Acceleration => Ok((vec![Expression::integer(1)], Vec::new())),
+        e if !holds(e) => Ok((Vec::new(), vec![e.clone()])),
+        Expression::Sum(terms) => {
+            let (mut factor, mut rest) = (Vec::new(), Vec::new());
+            for term in terms {
+                let (c, r) = split_acceleration(term)?;
+                factor.extend(c);
+                rest.extend(r);
+            }
+            Ok((factor, rest))
+        }
+        Expression::Product(factors) => {
+            let inside = || AccelerationFault::Inside(e.clone());
+            let (with, others): (Vec<_>, Vec<_>) = factors.iter().cloned().partition(holds);
+            let [with] = &with[..] else { return Err(inside()) };
+            if !others.iter().all(Expression::is_constant) {
+                return Err(inside());
+            }
+            let times = |list: Vec<Expression>| -> Vec<Expression> {
+                let one = |t| Expression::Product(others.iter().cloned().chain([t]).collect());
+                list.into_iter().map(one).collect()
+            };
+            let (factor, rest) = split_acceleration(with)?;
+            Ok((times(factor), times(rest)))
+        }
+        other => Err(AccelerationFault::Inside(other.clone())),
+    }
+}
+
+fn collect_parameters(e: &Expression, names: &mut Vec<String>) {
+    match e {
+        Expression::Parameter(name) if !names.contains(name) => names.push(name.clone()),
+        Expression::Sum(list) | Expression::Product(list) => {
+            list.iter().for_each(|e| collect_parameters(e, names));
+        }
+        Expression::Power(a, b) | Expression::Delayed(a, b) => {
+            collect_parameters(a, names);
+            collect_parameters(b, names);
+        }
+        Expression::Function(_, argument) | Expression::Formal(_, argument) => {
+            collect_parameters(argument, names);
+        }
+        _ => {}
+    }
+}
+
+fn canonical_sum(terms: &[Expression]) -> Expression {
+    let mut list: Vec<Expression> = Vec::new();
+    let mut number: Option<(usize, Rational)> = None;
+    let canonical = terms.iter().map(Expression::canonical);
+    for term in canonical.flat_map(|t| match t {
+        Expression::Sum(inner) => inner,
+        single => vec![single],
+    }) {
+        match (term, &mut number) {
+            (Expression::Number(q), Some((_, sum))) => *sum += q,
+            (Expression::Number(q), None) if q.is_zero() => {}
+            (Expression::Number(q), None) => number = Some((list.len(), q)),
+            (other, _) => list.push(other),
+        }
+    }
+    if let Some((at, sum)) = number.filter(|(_, sum)| !sum.is_zero()) {
+        list.insert(at, Expression::Number(sum));
+    }
+    match list.len() {
+        0 => Expression::integer(0),
+        1 => list.remove(0),
+        _ => Expression::Sum(list),
+    }
+}
+
+fn canonical_product(factors: &[Expression]) -> Expression {
+    let mut list: Vec<Expression> = Vec::new();
+    let mut number = Rational::from(1);
+    let canonical = factors.iter().map(Expression::canonical);
+    for factor in canonical.flat_map(|f| match f {
+        Expression::Product(inner) => inner,
+        single => vec![single],
+    }) {
+        match factor {
+            Expression::Number(q) => number *= q,
+            other => list.push(other),
+        }
+    }
+    if number.is_zero() || list.is_empty() {
+        return Expression::Number(number);
+    }
+    if number != 1 {
+        list.insert(0, Expression::Number(number));
+    }
+    if list.len() == 1 { list.remove(0) } else { Expression::Product(list) }
+}
+
+fn canonical_power(base: Expression, exponent: Expression) -> Expression {
+    if let Expression::Number(n) = &exponent {
+        if *n == 1 {
+            return base;
+        }
+        if let (Expression::Number(q), true) = (&base, n.is_integer())
+            && let Some(power) = number_power(q, n)
+        {
+            return Expression::Number(power);
+        }
+    }
+    base.pow(exponent)
+}
+
+/// q^n for an integer n, unless it is undefined or too long.
+fn number_power(q: &Rational, n: &Rational) -> Option<Rational> {
+    let n = n.numer().to_i32()?;
+    if n.cmp(&0) == Ordering::Less && q.is_zero() {
+        return None;
+    }
+    let bits = u64::from(q.numer().significant_bits().max(q.denom().significant_bits()));
+    let unit = Rational::from(q.abs_ref()) <= 1 && q.is_integer();
+    if !unit && bits * u64::from(n.unsigned_abs()) > LARGEST_NUMBER {
+        return None;
+    }
+    // Powers of 0, 1 and -1 are short whatever the exponent is.
+    Some(if unit {
+        q.clone().pow(if n == 0 { 0 } else { 2 - n.rem_euclid(2) })
+    } else {
+        q.clone().pow(n)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Expression::{Acceleration, Displacement, Small, Velocity};
+
+    fn x() -> Expression {
+        Displacement
+    }
+
+    #[test]
+    fn numbers_are_collected_and_nothing_else() {
+        let e = Expression::Sum(vec![
+            Expression::integer(1),
+            Expression::Sum(vec![x(), Expression::integer(2)]),
+            Expression::Product(vec![Expression::integer(0), Velocity]),
+        ]);
+        assert_eq!(e.canonical(), Expression::integer(3) + x());
+        assert_eq!(e.canonical().canonical(), e.canonical());
+        // Neither 0^(-1) nor a number that fills the memory.
+        for (base, n) in [(0, -1), (9, 1_000_000_000)] {
+            let power = Expression::integer(base).pow(n);
+            assert_eq!(power.canonical(), power);
+        }
+        assert_eq!(
+            Expression::integer(-1).pow(1_000_000_001).as_number(),
+            Some(Rational::from(-1))
+        );
+    }
+
+    #[test]
+    fn a_constant_factor_of_the_acceleration_goes() {
+        let rest = || x() + Small * x().pow(3);
+        let expected = Acceleration + rest();
+        for e in [
+            2 * (Acceleration + rest()),
+            Expression::integer(3) * Acceleration + 3 * x() + 3 * (Small * x().pow(3)),
+            -(Acceleration + rest()),
+        ] {
+            assert_eq!(e.acceleration_alone().map(|e| e.canonical()), Ok(expected.clone()));
+        }
+        let mass = Expression::parameter("m") * Acceleration + x();
+        let divided = Acceleration + Expression::parameter("m").pow(-1) * x();
+        assert_eq!(mass.acceleration_alone(), Ok(divided));
+        let steep = Acceleration * x() + x();
+        let inside = AccelerationFault::Inside(Acceleration * x());
+        assert_eq!(steep.acceleration_alone(), Err(inside));
+        assert_eq!(
+            (Acceleration - Acceleration + x()).acceleration_alone(),
+            Err(AccelerationFault::Missing)
+        );
+    }
+}

@@ -1,0 +1,247 @@
+//! Which methods take an equation, and what is against the others.
+
+use crate::classify::{Algebra, Classification, Method, Parity, Reason, parity, parity_in_x};
+use crate::{Condition, Expression, Function, Problem};
+use rug::Rational;
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+
+/// Fills in algebra and methods.
+pub(crate) fn decide(
+    problem: &Problem,
+    rest: &Expression,
+    values: &BTreeMap<String, Rational>,
+    stiffness: Option<Rational>,
+    parts: &mut Classification,
+) {
+    let time = terms_in_time(problem, rest);
+    let weak = weakly_nonlinear(parts, rest, stiffness.as_ref());
+    let lindstedt = lindstedt(problem, rest, stiffness.as_ref(), parts, &weak);
+    let averaging = averaging(problem, rest, parts, &weak);
+    let logarithms = rest.find(&is_logarithmic).is_some();
+    let unbound = rest.parameters().iter().any(|name| !values.contains_key(name));
+    parts.algebra = match (lindstedt.is_empty(), averaging.is_empty()) {
+        (false, false) => Algebra::Numeric,
+        _ if logarithms => Algebra::Lobachevsky,
+        (true, _) if !unbound => Algebra::TrigonometricOverRationals,
+        _ => Algebra::TrigonometricOverParameters,
+    };
+    let energy = if is_energy_form(rest) { Vec::new() } else { vec![Reason::Form] };
+    let saddle = stiffness.is_some_and(|kappa| kappa.cmp0() == Ordering::Less)
+        && parts.strong.iter().all(|t| parity(&t.term, false) == Some(Parity::Even))
+        && parts.delays.is_empty()
+        && parts.forcing.iter().all(|f| f.order > 0)
+        && !parts.impact;
+    let melnikov = if saddle { Vec::new() } else { vec![Reason::NoSaddle] };
+    parts.methods = vec![
+        (Method::LindstedtPoincare, lindstedt),
+        (Method::Averaging, averaging),
+        (Method::EnergyIntegral, energy),
+        (Method::Melnikov, melnikov),
+        (Method::TimeDomain, time),
+    ];
+}
+
+/// What is against integration in time.
+fn terms_in_time(problem: &Problem, rest: &Expression) -> Vec<Reason> {
+    let equation = problem.time_domain.as_ref().unwrap_or(rest);
+    let formal = equation.find(&|e| matches!(e, Expression::Formal(..)));
+    let not_real = equation.find(&is_not_real);
+    let formal = formal.map(|e| Reason::Formal(e.clone()));
+    formal.into_iter().chain(not_real.map(|e| Reason::NotReal(e.clone()))).collect()
+}
+
+/// What both expansions need: an oscillator at order zero, and functions that a ring contains.
+fn weakly_nonlinear(
+    parts: &Classification,
+    rest: &Expression,
+    stiffness: Option<&Rational>,
+) -> Vec<Reason> {
+    let mut against = Vec::new();
+    if let Some(e) = rest.find(&is_not_real) {
+        against.push(Reason::NotReal(e.clone()));
+    } else if let Some(e) = parts.non_smooth.first() {
+        against.push(Reason::NonSmooth(e.clone()));
+    } else if let Some(e) = rest.find(&is_not_polynomial) {
+        against.push(Reason::NotPolynomial(e.clone()));
+    }
+    if parts.stiffness == Expression::integer(0) {
+        against.push(Reason::NoLinearPart);
+    }
+    if let Some(term) = parts.strong.first() {
+        against.push(Reason::NotWeaklyNonlinear(term.term.clone()));
+    }
+    if stiffness.is_some_and(|kappa| kappa.cmp0() == Ordering::Less) {
+        against.push(Reason::NegativeStiffness);
+    }
+    if rest.find(&|e| *e == Expression::Small).is_none() && against.is_empty() {
+        let linear = parts.weak.is_empty() && parts.forcing.is_empty();
+        if !linear {
+            against.push(Reason::NoSmallParameter);
+        }
+    }
+    against
+}
+
+fn lindstedt(
+    problem: &Problem,
+    rest: &Expression,
+    stiffness: Option<&Rational>,
+    parts: &Classification,
+    weak: &[Reason],
+) -> Vec<Reason> {
+    let mut against = weak.to_vec();
+    if let Some(forcing) = parts.forcing.first() {
+        against.push(Reason::Forced(forcing.term.clone()));
+    }
+    if let Some(delay) = parts.delays.first() {
+        against.push(Reason::Delay(delay.clone()));
+    }
+    if parts.impact {
+        against.push(Reason::Impact);
+    }
+    let condition = problem.conditions.first();
+    let cycle = problem.conditions.contains(&Condition::LimitCycle);
+    if matches!(condition, None | Some(Condition::FreeAmplitude)) {
+        against.push(Reason::Condition);
+    } else if !cycle && against.is_empty() {
+        // The only term that works on x' has nothing to cancel against.
+        let works = |e: &Expression| {
+            parity(e, false) == Some(Parity::Odd) && parity_in_x(e) == Some(Parity::Even)
+        };
+        let mut drift = parts.weak.iter().filter(|t| works(&t.term));
+        if let (Some(only), None) = (drift.next(), drift.next()) {
+            against.push(Reason::Drift(only.term.clone()));
+        }
+    }
+    let has_velocity = rest.contains(&Expression::Velocity);
+    let irrational = stiffness.is_none_or(|kappa| crate::classify::rational_root(kappa).is_none());
+    if has_velocity && irrational && against.is_empty() {
+        against.push(Reason::IrrationalFrequency);
+    }
+    against
+}
+
+fn averaging(
+    problem: &Problem,
+    rest: &Expression,
+    parts: &Classification,
+    weak: &[Reason],
+) -> Vec<Reason> {
+    let mut against = weak.to_vec();
+    for force in &parts.forcing {
+        match (&force.frequency, force.resonance) {
+            (None, _) => against.push(Reason::Forced(force.term.clone())),
+            (Some(_), Some((1, 1))) if force.order == 0 => {
+                against.push(Reason::Resonant(force.term.clone(), (1, 1)));
+            }
+            (Some(_), _) if force.order == 0 && force.parametric => {
+                against.push(Reason::NotWeaklyNonlinear(force.term.clone()));
+            }
+            _ => {}
+        }
+    }
+    if let Some(e) = rest.find(&is_logarithmic) {
+        against.push(Reason::NotPolynomial(e.clone()));
+    }
+    if !problem.conditions.contains(&Condition::FreeAmplitude) {
+        against.push(Reason::Condition);
+    }
+    against
+}
+
+/// The equations of the energy integral: x (x^2)^small and x S(small ln x^2).
+fn is_energy_form(rest: &Expression) -> bool {
+    let x = || Expression::Displacement;
+    let square = || x().pow(2);
+    let rest = rest.canonical();
+    let power = x() * square().pow(Expression::Small);
+    let formal = |name: &str| x() * (Expression::Small * square().ln()).formal(name);
+    match rest.find(&|e| matches!(e, Expression::Formal(..))) {
+        Some(Expression::Formal(name, _)) => rest == formal(name),
+        _ => rest == power,
+    }
+}
+
+/// ln, exp, formal functions, powers with the small parameter in the exponent.
+fn is_logarithmic(e: &Expression) -> bool {
+    match e {
+        Expression::Function(Function::Ln | Function::Exp, z) => {
+            !z.is_constant() && !z.contains(&Expression::Time)
+        }
+        Expression::Formal(..) => true,
+        Expression::Power(base, exponent) => {
+            !base.is_constant() && exponent.contains(&Expression::Small)
+        }
+        _ => false,
+    }
+}
+
+/// A function of x or x' that is in neither ring.
+fn is_not_polynomial(e: &Expression) -> bool {
+    let varies = |z: &Expression| {
+        z.find(&|e| {
+            matches!(e, Expression::Displacement | Expression::Velocity | Expression::Delayed(..))
+        })
+        .is_some()
+    };
+    let in_time = |z: &Expression| z.contains(&Expression::Time) && !varies(z);
+    match e {
+        Expression::Function(Function::Sin | Function::Cos, z) => !in_time(z),
+        Expression::Function(Function::Abs | Function::Sign, _) => true,
+        Expression::Function(Function::Exp, z) => !in_time(z) && !is_multiple_of_small(z),
+        Expression::Function(Function::Ln, z) => !in_time(z) && !is_square_of_x(z),
+        Expression::Power(base, exponent) if varies(base) || varies(exponent) => {
+            let whole = exponent.as_number().is_some_and(|n| n.is_integer() && n >= 0);
+            let vanishing = is_multiple_of_small(exponent) && is_square_of_x(base);
+            !(whole || vanishing)
+        }
+        Expression::Power(_, exponent) if !in_time(e) => {
+            !exponent.as_number().is_some_and(|n| n.is_integer())
+        }
+        _ => false,
+    }
+}
+
+fn is_square_of_x(e: &Expression) -> bool {
+    matches!(e, Expression::Power(base, n) if **base == Expression::Displacement
+        && n.as_number().is_some_and(|n| n > 0 && n.is_integer() && n.numer().is_even()))
+}
+
+/// Whether the small parameter is a factor of every term.
+fn is_multiple_of_small(e: &Expression) -> bool {
+    match e {
+        Expression::Small => true,
+        Expression::Sum(list) => list.iter().all(is_multiple_of_small),
+        Expression::Product(list) => list.iter().any(is_multiple_of_small),
+        _ => false,
+    }
+}
+
+/// A real power or a logarithm of something that can be negative.
+fn is_not_real(e: &Expression) -> bool {
+    match e {
+        Expression::Power(base, exponent) => {
+            let whole = exponent.as_number().is_some_and(|n| n.is_integer());
+            !whole && !is_non_negative(base)
+        }
+        Expression::Function(Function::Ln, z) => !is_non_negative(z),
+        _ => false,
+    }
+}
+
+/// Whether the form of an expression shows that it is never negative; parameters are taken to be
+/// positive here.
+fn is_non_negative(e: &Expression) -> bool {
+    match e {
+        Expression::Number(q) => q.cmp0() != Ordering::Less,
+        Expression::Parameter(_) | Expression::Small => true,
+        Expression::Function(Function::Abs | Function::Exp, _) => true,
+        Expression::Sum(list) | Expression::Product(list) => list.iter().all(is_non_negative),
+        Expression::Power(base, n) => {
+            let even = n.as_number().is_some_and(|n| n.is_integer() && n.numer().is_even());
+            even || is_non_negative(base)
+        }
+        _ => false,
+    }
+}

@@ -1,0 +1,238 @@
+//! An expression multiplied out: the form in which terms have an order and a degree.
+
+use crate::Expression;
+use crate::print::Style;
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// Terms of an expanded expression; more are not formed.
+pub(crate) const MOST_TERMS: usize = 1000;
+/// Products of terms formed on the way.
+const MOST_WORK: usize = 100_000;
+
+/// small^order * parameters * x^x * x'^velocity * atoms.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Monomial {
+    pub order: u32,
+    pub x: u32,
+    pub velocity: u32,
+    /// Everything that is no polynomial, by its printed form.
+    pub atoms: BTreeMap<String, u32>,
+    pub parameters: BTreeMap<String, i32>,
+}
+
+/// A sum of monomials with what their atoms stand for.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Monomials {
+    pub terms: BTreeMap<Monomial, Rational>,
+    pub atoms: BTreeMap<String, Expression>,
+}
+
+/// Multiplies out; nothing when that takes too many terms.
+pub(crate) fn expand(e: &Expression) -> Option<Monomials> {
+    let mut expander = Expander { atoms: BTreeMap::new(), work: 0 };
+    let terms = expander.terms(e)?;
+    Some(Monomials { terms, atoms: expander.atoms })
+}
+
+type Terms = BTreeMap<Monomial, Rational>;
+
+struct Expander {
+    atoms: BTreeMap<String, Expression>,
+    work: usize,
+}
+
+fn single(monomial: Monomial) -> Terms {
+    Terms::from([(monomial, Rational::from(1))])
+}
+
+impl Expander {
+    fn terms(&mut self, e: &Expression) -> Option<Terms> {
+        let one = Monomial::default();
+        Some(match e {
+            Expression::Number(q) if q.is_zero() => Terms::new(),
+            Expression::Number(q) => Terms::from([(one, q.clone())]),
+            Expression::Parameter(name) => {
+                single(Monomial { parameters: BTreeMap::from([(name.clone(), 1)]), ..one })
+            }
+            Expression::Small => single(Monomial { order: 1, ..one }),
+            Expression::Displacement => single(Monomial { x: 1, ..one }),
+            Expression::Velocity => single(Monomial { velocity: 1, ..one }),
+            Expression::Sum(list) => {
+                let mut sum = Terms::new();
+                for e in list {
+                    for (monomial, q) in self.terms(e)? {
+                        add(&mut sum, monomial, &q);
+                    }
+                    self.spend(sum.len(), 1)?;
+                }
+                sum
+            }
+            Expression::Product(list) => {
+                let mut product = single(one);
+                for e in list {
+                    let factor = self.terms(e)?;
+                    product = self.product(&product, &factor)?;
+                }
+                product
+            }
+            Expression::Power(base, exponent) => return self.power(e, base, exponent),
+            other => self.atom(other),
+        })
+    }
+
+    fn spend(&mut self, terms: usize, work: usize) -> Option<()> {
+        self.work += work;
+        (terms <= MOST_TERMS && self.work <= MOST_WORK).then_some(())
+    }
+
+    fn atom(&mut self, e: &Expression) -> Terms {
+        let e = e.canonical();
+        if let Expression::Number(q) = e {
+            return Terms::from([(Monomial::default(), q)]);
+        }
+        if e.is_constant() {
+            return self.constant(&e, 1);
+        }
+        let key = e.print("eps", Style::Text);
+        self.atoms.insert(key.clone(), e);
+        single(Monomial { atoms: BTreeMap::from([(key, 1)]), ..Monomial::default() })
+    }
+
+    /// A constant that is no polynomial in the parameters, as one more parameter.
+    fn constant(&mut self, e: &Expression, n: i32) -> Terms {
+        let key = e.print("eps", Style::Text);
+        self.atoms.insert(key.clone(), e.clone());
+        single(Monomial { parameters: BTreeMap::from([(key, n)]), ..Monomial::default() })
+    }
+
+    fn power(
+        &mut self,
+        whole: &Expression,
+        base: &Expression,
+        exponent: &Expression,
+    ) -> Option<Terms> {
+        let n = exponent.as_number().filter(Rational::is_integer);
+        let Some(n) = n.and_then(|n| n.numer().to_i32()) else { return Some(self.atom(whole)) };
+        let of_base = self.terms(base)?;
+        if n < 0 {
+            // A product of parameters and a number can be divided by.
+            if let [(monomial, q)] = &of_base.iter().collect::<Vec<_>>()[..]
+                && **monomial
+                    == (Monomial { parameters: monomial.parameters.clone(), ..Monomial::default() })
+                && n > -1000
+            {
+                let mut inverse = (*monomial).clone();
+                for exponent in inverse.parameters.values_mut() {
+                    *exponent = exponent.saturating_mul(n);
+                }
+                let mut value = Rational::from(1);
+                for _ in 0..n.unsigned_abs() {
+                    value /= *q;
+                }
+                return Some(Terms::from([(inverse, value)]));
+            }
+            let base = base.canonical();
+            let is_number = matches!(base, Expression::Number(_));
+            return Some(if base.is_constant() && !is_number {
+                self.constant(&base, n)
+            } else {
+                self.atom(whole)
+            });
+        }
+        let mut power = single(Monomial::default());
+        for _ in 0..n {
+            power = self.product(&power, &of_base)?;
+        }
+        Some(power)
+    }
+
+    fn product(&mut self, a: &Terms, b: &Terms) -> Option<Terms> {
+        self.spend(0, a.len() * b.len())?;
+        let mut product = Terms::new();
+        for (m, p) in a {
+            for (n, q) in b {
+                add(&mut product, times(m, n)?, &Rational::from(p * q));
+            }
+        }
+        self.spend(product.len(), 0)?;
+        Some(product)
+    }
+}
+
+fn add(sum: &mut Terms, monomial: Monomial, q: &Rational) {
+    use std::collections::btree_map::Entry;
+    match sum.entry(monomial) {
+        Entry::Vacant(entry) => {
+            entry.insert(q.clone());
+        }
+        Entry::Occupied(mut entry) => {
+            *entry.get_mut() += q;
+            if entry.get().is_zero() {
+                entry.remove();
+            }
+        }
+    }
+}
+
+fn times(a: &Monomial, b: &Monomial) -> Option<Monomial> {
+    let mut product = a.clone();
+    product.order = a.order.checked_add(b.order)?;
+    product.x = a.x.checked_add(b.x)?;
+    product.velocity = a.velocity.checked_add(b.velocity)?;
+    for (key, n) in &b.atoms {
+        let exponent = product.atoms.entry(key.clone()).or_default();
+        *exponent = exponent.checked_add(*n)?;
+    }
+    for (name, n) in &b.parameters {
+        let exponent = product.parameters.entry(name.clone()).or_default();
+        *exponent = exponent.checked_add(*n)?;
+        if *exponent == 0 {
+            product.parameters.remove(name);
+        }
+    }
+    Some(product)
+}
+
+impl Monomial {
+    /// The monomial without the small parameter, x, x' and atoms: the constant factor.
+    fn constant(&self) -> Self {
+        Self { parameters: self.parameters.clone(), ..Self::default() }
+    }
+
+    /// Whether the rest of the monomial is x^x x'^velocity without atoms.
+    pub(crate) fn is_power(&self, x: u32, velocity: u32) -> bool {
+        self.x == x && self.velocity == velocity && self.atoms.is_empty()
+    }
+}
+
+impl Monomials {
+    /// A term as a tree: number, parameters, small^order, x, x', atoms.
+    pub(crate) fn tree(&self, monomial: &Monomial, q: &Rational) -> Expression {
+        let mut factors = vec![Expression::Number(q.clone())];
+        let mut push = |base: Expression, n: i64| {
+            if n != 0 {
+                factors.push(base.pow(n));
+            }
+        };
+        push(Expression::Small, monomial.order.into());
+        for (name, n) in &monomial.parameters {
+            let stands_for = self.atoms.get(name).cloned();
+            push(stands_for.unwrap_or_else(|| Expression::parameter(name)), i64::from(*n));
+        }
+        push(Expression::Displacement, monomial.x.into());
+        push(Expression::Velocity, monomial.velocity.into());
+        for (key, n) in &monomial.atoms {
+            if let Some(atom) = self.atoms.get(key) {
+                push(atom.clone(), i64::from(*n));
+            }
+        }
+        Expression::Product(factors).canonical()
+    }
+
+    /// The sum of the constant factors of the terms that `wanted` accepts.
+    pub(crate) fn coefficient(&self, wanted: impl Fn(&Monomial) -> bool) -> Expression {
+        let chosen = self.terms.iter().filter(|(m, _)| wanted(m));
+        Expression::Sum(chosen.map(|(m, q)| self.tree(&m.constant(), q)).collect()).canonical()
+    }
+}

@@ -1,0 +1,141 @@
+//! From a problem as it was written to the equation that is expanded: values put in, x scaled by
+//! the amplitude, time scaled so that the linear stiffness is 1 where the velocity occurs.
+
+use super::{NamedSeries, Settings};
+use crate::{Error, Value};
+use lindstedt_algebra::RationalAlgebra;
+use lindstedt_coeff::PolynomialRing;
+use lindstedt_equation::classify::{linear_stiffness, rational_root};
+use lindstedt_equation::print::Style;
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
+use lindstedt_expand::ExpandError;
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// A problem ready for the driver.
+pub(super) struct Prepared {
+    /// The problem with the equation that is expanded.
+    pub problem: Problem,
+    /// Values that were put in.
+    pub bound: BTreeMap<String, Rational>,
+    /// omega_0, where time was scaled.
+    pub time_scale: Rational,
+}
+
+/// Prepares a problem. With a free amplitude parameters stay symbols and nothing is scaled.
+pub(super) fn prepare(problem: &Problem, settings: &Settings) -> Result<Prepared, Error> {
+    let mut prepared = Prepared {
+        problem: problem.clone(),
+        bound: BTreeMap::new(),
+        time_scale: Rational::from(1),
+    };
+    let condition = settings.condition.or(problem.conditions.first().copied());
+    if matches!(condition, None | Some(Condition::FreeAmplitude)) {
+        return Ok(prepared);
+    }
+    let value = |name: &str| -> Result<Option<Rational>, Error> {
+        let card = problem.parameters.iter().find(|card| card.name == name);
+        let default = card.map(|card| &*card.default).filter(|text| !text.is_empty());
+        let value = match (settings.parameters.get(name), default) {
+            (Some(value), _) => value.clone(),
+            (None, Some(text)) => Value::parse(text)?,
+            (None, None) => return Ok(None),
+        };
+        let irrational = || Error::Irrational { name: name.to_owned(), value: value.to_string() };
+        value.as_rational().cloned().map(Some).ok_or_else(irrational)
+    };
+    let mut equation = problem.equation.smooth_powers().canonical();
+    for name in equation.parameters() {
+        if let Some(q) = value(&name)? {
+            prepared.bound.insert(name, q);
+        }
+    }
+    if !prepared.bound.is_empty() {
+        let put_in = |e: &Expression| match e {
+            Expression::Parameter(name) => {
+                prepared.bound.get(name).cloned().map(Expression::Number)
+            }
+            _ => None,
+        };
+        equation = equation.substitute(&put_in).canonical();
+    }
+    equation = equation.acceleration_alone().map_err(|_| {
+        let term = equation.print(&problem.small, Style::Text);
+        ExpandError::AccelerationNotIsolated { term }
+    })?;
+    if problem.amplitude == AmplitudeRole::Scaled {
+        let amplitude = value("amplitude")?.unwrap_or_else(|| Rational::from(1));
+        equation = scale(equation, &amplitude, &Rational::from(1));
+    }
+    if equation.contains(&Expression::Velocity)
+        && equation.find(&|e| matches!(e, Expression::Time | Expression::Delayed(..))).is_none()
+        && let Some(Expression::Number(kappa)) = linear_stiffness(&equation)
+        && let Some(root) = rational_root(&kappa)
+    {
+        equation = scale(equation, &Rational::from(1), &root);
+        prepared.time_scale = root;
+    }
+    prepared.problem.equation = equation;
+    Ok(prepared)
+}
+
+/// The equation of y(s) for x = a y, t = s/w, divided by a w^2.
+fn scale(equation: Expression, a: &Rational, w: &Rational) -> Expression {
+    if *a == 1 && *w == 1 {
+        return equation;
+    }
+    let number = |q: Rational| Expression::Number(q);
+    let change = |e: &Expression| match e {
+        Expression::Displacement => Some(number(a.clone()) * e.clone()),
+        Expression::Velocity => Some(number(Rational::from(a * w)) * e.clone()),
+        _ => None,
+    };
+    let inverse = (a * Rational::from(w * w)).recip();
+    let term = |term: &Expression| match term {
+        Expression::Acceleration => Expression::Acceleration,
+        other => number(inverse.clone()) * other.substitute(&change),
+    };
+    let scaled = Expression::Sum(equation.terms().iter().map(term).collect());
+    distribute_powers(&scaled).canonical()
+}
+
+/// (q y)^n as q^n y^n, so that numbers meet.
+fn distribute_powers(e: &Expression) -> Expression {
+    let again = distribute_powers;
+    match e {
+        Expression::Sum(list) => Expression::Sum(list.iter().map(again).collect()),
+        Expression::Product(list) => Expression::Product(list.iter().map(again).collect()),
+        Expression::Power(base, n) if n.as_number().is_some_and(|n| n.is_integer()) => {
+            match again(base).canonical() {
+                Expression::Product(mut factors)
+                    if matches!(factors.first(), Some(Expression::Number(_))) =>
+                {
+                    let number = factors.remove(0).pow((**n).clone());
+                    number * Expression::Product(factors).canonical().pow((**n).clone())
+                }
+                base => base.pow((**n).clone()),
+            }
+        }
+        Expression::Power(base, n) => again(base).pow(again(n)),
+        Expression::Function(function, z) => again(z).apply(*function),
+        other => other.clone(),
+    }
+}
+
+/// Powers of the frequency in the time of the problem: omega = w Omega.
+pub(super) fn undo_time_scale(series: &mut [NamedSeries], ring: &PolynomialRing, w: &Rational) {
+    if *w == 1 {
+        return;
+    }
+    for named in series {
+        let factor = match named.name {
+            "frequency_squared" => Rational::from(w * w),
+            "frequency" => w.clone(),
+            "period_over_2pi" => Rational::from(w.recip_ref()),
+            _ => continue,
+        };
+        for coefficient in &mut named.coefficients {
+            *coefficient = ring.scale(coefficient, &factor);
+        }
+    }
+}

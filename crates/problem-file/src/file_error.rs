@@ -1,0 +1,112 @@
+//! What is wrong with a problem file, and where.
+
+use crate::error::{ParseError, ParseErrorKind};
+use thiserror::Error;
+
+/// What is wrong with a problem file.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum FileErrorKind {
+    /// The text is no TOML of this schema; the message is the TOML reader's.
+    #[error("{message}")]
+    Toml {
+        /// What the TOML reader said.
+        message: String,
+    },
+    /// An equation or expression cannot be read.
+    #[error("{0}")]
+    Equation(ParseError),
+    /// The file is too large.
+    #[error("more than {limit} bytes in a problem file")]
+    TooLarge {
+        /// The limit.
+        limit: u64,
+    },
+    /// A word that a key does not take.
+    #[error("{key} cannot be {found:?}")]
+    Word {
+        /// The key.
+        key: &'static str,
+        /// What stands there.
+        found: String,
+        /// What it takes.
+        known: &'static str,
+    },
+    /// A name that no parameter can have.
+    #[error("{name:?} is not a name for a {what}")]
+    Name {
+        /// The name.
+        name: String,
+        /// What it should name.
+        what: &'static str,
+    },
+    /// A value that is not exact.
+    #[error("cannot read the value {text:?}")]
+    Value {
+        /// The text.
+        text: String,
+    },
+    /// Two spellings of one name.
+    #[error("{name} is declared twice")]
+    Twice {
+        /// The name.
+        name: String,
+    },
+    /// A quantity that the problem does not have.
+    #[error("{key} mentions {name}, which is not declared")]
+    Undeclared {
+        /// The key.
+        key: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// The small parameter does not occur in the equation.
+    #[error("the small parameter {name} does not occur in the equation")]
+    NoSmallParameter {
+        /// Its name.
+        name: String,
+    },
+}
+
+/// What is wrong with a problem file, and where.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("line {line}, column {column}: {kind}")]
+pub struct FileError {
+    /// What.
+    pub kind: FileErrorKind,
+    /// The line, from 1.
+    pub line: usize,
+    /// The column in characters, from 1.
+    pub column: usize,
+}
+
+impl FileError {
+    /// What would be right.
+    pub fn hint(&self) -> String {
+        match &self.kind {
+            FileErrorKind::Equation(error) => error.hint(),
+            FileErrorKind::Word { known, .. } => format!("known: {known}"),
+            FileErrorKind::Name { .. } => {
+                "letters, digits, `_` (problems: a-z, 0-9, `-`), at most 40, not reserved".into()
+            }
+            FileErrorKind::Value { .. } => {
+                "values are exact: \"3\", \"-1/3\", \"0.1\", \"2.5e-3\", \"pi/4\", \"2*pi/3\""
+                    .into()
+            }
+            FileErrorKind::NoSmallParameter { .. } => {
+                "small = \"...\" names it; [orders] can give parameters an order".into()
+            }
+            FileErrorKind::Undeclared { .. } => "declare it under [parameters]".into(),
+            _ => "see `lindstedt problems --show duffing` for a complete file".into(),
+        }
+    }
+
+    /// Whether a limit of size was exceeded.
+    pub fn is_limit(&self) -> bool {
+        match &self.kind {
+            FileErrorKind::TooLarge { .. } => true,
+            FileErrorKind::Equation(e) => matches!(e.kind, ParseErrorKind::TooLarge { .. }),
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! Problem files: an oscillator from its equation, written as on paper.
+//!
+//! [`parse_equation`] reads `x'' + x + eps*x^3 = 0` into the tree that the engine works with;
+//! [`ProblemFile::parse`] reads a TOML file with the equation and everything that is to be said
+//! about it; [`write`](write()) writes such a file. Text in, trees out: no file is opened here.
+
+mod error;
+mod file;
+mod file_error;
+mod grammar;
+mod lexer;
+mod names;
+mod operands;
+mod reader;
+mod schema;
+mod taylor;
+mod trees;
+mod write;
+
+pub use error::{Expectation, Limit, ParseError, ParseErrorKind, position};
+pub use file::{
+    AMPLITUDES, CONDITIONS, LARGEST_FILE, ProblemFile, usual_amplitude, usual_condition,
+};
+pub use file_error::{FileError, FileErrorKind};
+pub use grammar::{locate, parse_equation, parse_expression};
+pub use names::{Names, canonical_name, is_parameter_name};
+pub use write::write;

@@ -1,0 +1,77 @@
+//! What the reading of every key needs: positions, exact values, words.
+
+use crate::error::{ParseError, excerpt, position};
+use crate::file_error::{FileError, FileErrorKind};
+use crate::lexer::exact;
+use crate::schema::Exact;
+use std::ops::Range;
+use toml::Spanned;
+
+pub(crate) struct Reader<'a> {
+    pub text: &'a str,
+}
+
+impl Reader<'_> {
+    pub fn error(&self, kind: FileErrorKind, at: usize) -> FileError {
+        let (line, column) = position(self.text, at);
+        FileError { kind, line, column }
+    }
+
+    /// Where the content of a string starts, if it stands in the file as it is.
+    pub fn content(&self, string: &Spanned<String>) -> Option<usize> {
+        let raw = self.text.get(string.span())?;
+        let inside = raw.find(string.get_ref().as_str())?;
+        Some(string.span().start + inside)
+    }
+
+    /// An error inside a string.
+    pub fn inside(&self, string: &Spanned<String>, error: ParseError) -> FileError {
+        let start = self.content(string);
+        let at = start.map_or(string.span().start, |start| start + error.at.start);
+        self.error(FileErrorKind::Equation(error), at)
+    }
+
+    pub fn value(&self, value: &Spanned<Exact>) -> Result<String, FileError> {
+        let text = value.get_ref().0.trim();
+        let sign = matches!(text, "+" | "-");
+        if sign || is_exact(text) {
+            return Ok(text.to_owned());
+        }
+        let kind = FileErrorKind::Value { text: excerpt(text) };
+        Err(self.error(kind, value.span().start))
+    }
+
+    pub fn word<T: Clone>(
+        &self,
+        key: &'static str,
+        word: &str,
+        at: Range<usize>,
+        list: &[(&str, T)],
+        known: &'static str,
+    ) -> Result<T, FileError> {
+        let found = list.iter().find(|(name, _)| *name == word).map(|(_, value)| value.clone());
+        let kind = || FileErrorKind::Word { key, found: excerpt(word), known };
+        found.ok_or_else(|| self.error(kind(), at.start))
+    }
+}
+
+/// Whether a value reads as a rational number times at most one pi.
+fn is_exact(text: &str) -> bool {
+    let body = text.strip_prefix('-').unwrap_or(text);
+    let (mut pi, mut divide) = (0, false);
+    for token in body.split_inclusive(['*', '/']) {
+        let number = token.trim_end_matches(['*', '/']).trim();
+        let digits = number.starts_with(|c: char| c.is_ascii_digit() || c == '.')
+            && number.chars().all(|c| c.is_ascii_digit() || ".eE+-".contains(c));
+        match (number, divide) {
+            ("pi", false) => pi += 1,
+            _ if !digits => return false,
+            _ => match exact(number) {
+                Some(q) if !(divide && q.is_zero()) => {}
+                _ => return false,
+            },
+        }
+        divide = token.ends_with('/');
+    }
+    pi <= 1 && !body.is_empty() && !body.ends_with(['*', '/'])
+}
