@@ -186,7 +186,7 @@ impl Homoclinic<'_> {
             (error, periods) = (change, periods + 1);
         }
         // The same orbit, begun one period farther out: how straight the manifold is there.
-        let (other, _) = self.newton((value, phase + 1.0), periods)?;
+        let (other, _) = self.newton((value, phase + 1.0), periods - 1)?;
         Ok(Tangency { value, error: error + (other - value).abs(), phase, periods })
     }
 
@@ -204,7 +204,9 @@ impl Homoclinic<'_> {
             away |= distance > AWAY;
             if away && distance < nearest.0 {
                 nearest = (distance, periods);
-            } else if nearest.0 < AWAY && distance > AWAY {
+            }
+            // Nearer is better, but later amplifies rounding errors.
+            if nearest.0 < NEAR || nearest.0 < AWAY && distance > AWAY {
                 break;
             }
         }
@@ -350,3 +352,5 @@ impl Branch<'_, '_> {
 
 /// Farther than this from the saddle the coordinates tell nothing.
 const AWAY: f64 = 0.4;
+/// Near enough to begin with.
+const NEAR: f64 = 0.05;
