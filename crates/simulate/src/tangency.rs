@@ -137,6 +137,19 @@ impl Homoclinic<'_> {
         closest.ok_or(SimulateError::NoTangency { value })
     }
 
+    /// The phase of the extremum of the excess that is nearest to zero.
+    fn extremum(&self, value: f64) -> Result<f64, SimulateError> {
+        let returns = self.returns(value, 128)?;
+        let neighbours = (0..returns.len()).filter_map(|k| {
+            let at = |shift: usize| returns.get((k + shift) % returns.len());
+            let (before, middle, after) = (at(0)?, at(1)?, at(2)?);
+            let turns = (middle.excess - before.excess) * (after.excess - middle.excess) <= 0.0;
+            turns.then_some(middle)
+        });
+        let nearest = neighbours.min_by(|a, b| a.excess.abs().total_cmp(&b.excess.abs()));
+        nearest.map(|nearest| nearest.phase).ok_or(SimulateError::NoTangency { value })
+    }
+
     /// The tangency between two values of the parameter, at one of which all of `count` orbits
     /// turn back and at the other not: bisected to 1/64 of the bracket, then by [`Self::tangency`].
     ///
@@ -286,7 +299,9 @@ pub fn continue_tangency(
     let mut branch = Branch { homoclinic, along, known: Vec::new() };
     for target in values {
         let tangency = if branch.known.is_empty() {
-            branch.place(*target, start, homoclinic.guess)?
+            let first = branch.place(*target, (start.0, Some(start.1)), homoclinic.guess)?;
+            branch.known.push(first);
+            first.1
         } else {
             branch.step(*target, 6)?
         };
@@ -300,24 +315,29 @@ pub fn continue_tangency(
 struct Branch<'a, 'h> {
     homoclinic: &'a Homoclinic<'h>,
     along: &'a str,
-    /// Values of the other parameter, tangencies and saddles.
-    known: Vec<(f64, Tangency, [f64; 2])>,
+    known: Vec<Known>,
 }
+
+/// A value of the other parameter, the tangency and the saddle there.
+type Known = (f64, Tangency, [f64; 2]);
 
 impl Branch<'_, '_> {
     fn place(
-        &mut self,
+        &self,
         target: f64,
-        (value, phase): (f64, f64),
+        (value, phase): (f64, Option<f64>),
         guess: [f64; 2],
-    ) -> Result<Tangency, SimulateError> {
+    ) -> Result<Known, SimulateError> {
         let mut parameters = self.homoclinic.parameters.clone();
         parameters.set(self.along, Quantity::Float(Float::with_val(53, target)));
         let homoclinic = Homoclinic { parameters: &parameters, guess, ..*self.homoclinic };
+        let phase = match phase {
+            Some(phase) => phase,
+            None => homoclinic.extremum(value)?,
+        };
         let tangency = homoclinic.tangency(value, phase)?;
         let saddle = homoclinic.saddle(tangency.value)?;
-        self.known.push((target, tangency, saddle.state));
-        Ok(tangency)
+        Ok((target, tangency, saddle.state))
     }
 
     fn step(&mut self, target: f64, halvings: u32) -> Result<Tangency, SimulateError> {
@@ -331,22 +351,22 @@ impl Branch<'_, '_> {
         let value = tangency.value + share * (tangency.value - old.value);
         let phase = tangency.phase + share * (tangency.phase - old.phase);
         let guess = [0, 1].map(|k| saddle[k] + share * (saddle[k] - place[k]));
-        let reach = 0.3 * value.abs();
-        match self.place(target, (value, phase), guess) {
+        // The phase jumps where the saddle orbit begins to stick: looked for again then.
+        for phase in [Some(phase), None] {
+            let found = self.place(target, (value, phase), guess);
             // Far from the prediction: another branch.
-            Ok(found) if (found.value - value).abs() < reach => Ok(found),
-            Err(error) if halvings == 0 => Err(error),
-            outcome => {
-                if outcome.is_ok() {
-                    self.known.pop();
-                    if halvings == 0 {
-                        return Err(SimulateError::NoTangency { value });
-                    }
-                }
-                self.step((last + target) / 2.0, halvings - 1)?;
-                self.step(target, halvings - 1)
+            if let Ok(found) = found
+                && (found.1.value - value).abs() < 0.02 * value.abs()
+            {
+                self.known.push(found);
+                return Ok(found.1);
             }
         }
+        if halvings == 0 {
+            return Err(SimulateError::NoTangency { value });
+        }
+        self.step((last + target) / 2.0, halvings - 1)?;
+        self.step(target, halvings - 1)
     }
 }
 
