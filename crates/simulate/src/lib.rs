@@ -40,6 +40,7 @@
 mod bifurcation;
 mod branch;
 mod compile;
+mod continuation;
 mod digits;
 mod error;
 mod estimate;
@@ -68,6 +69,7 @@ mod trajectory;
 mod zero_one;
 
 pub use bifurcation::{Column, DiagramSettings, Sweep, diagram};
+pub use continuation::continue_tangency;
 pub use digits::Digits;
 pub use error::{SimulateError, Surface};
 pub use estimate::{Computation, Estimated, estimate};
@@ -80,6 +82,6 @@ pub use real::{Doubles, Real};
 pub use report::{Event, EventKind, Outcome, Report, Segment, Work};
 pub use saddle::{Saddle, saddle, unstable_manifold};
 pub use system::{Model, System};
-pub use tangency::{Homoclinic, Loop, Return, Tangency, continue_tangency};
+pub use tangency::{Homoclinic, Loop, Return, Tangency};
 pub use trajectory::{Occurrence, Trajectory};
 pub use zero_one::{ZeroOne, zero_one};

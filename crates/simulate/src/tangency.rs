@@ -16,7 +16,6 @@ use crate::real::Doubles;
 use crate::saddle::{Saddle, saddle};
 use crate::system::{Model, System};
 use rug::Float;
-use std::ops::ControlFlow;
 
 /// Which half of the unstable manifold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,40 +129,58 @@ impl Homoclinic<'_> {
         Ok(returns)
     }
 
-    /// The return with the smallest excess.
-    fn closest(&self, value: f64, count: u32) -> Result<Return, SimulateError> {
+    /// The phase of the extremum of the excess that is nearest to zero.
+    pub(crate) fn extremum(&self, value: f64) -> Result<f64, SimulateError> {
+        let returns = self.returns(value, 128)?;
+        let neighbours = (0..returns.len()).filter_map(|k| {
+            let at = |shift: usize| returns.get((k + shift) % returns.len());
+            let (before, middle, after) = (at(0)?, at(1)?, at(2)?);
+            let turns = (middle.excess - before.excess) * (after.excess - middle.excess) <= 0.0;
+            turns.then_some(middle)
+        });
+        let nearest = neighbours.min_by(|a, b| a.excess.abs().total_cmp(&b.excess.abs()));
+        nearest.map(|nearest| nearest.phase).ok_or(SimulateError::NoTangency { value })
+    }
+
+    /// The return with the smallest `sign` excess, and that.
+    fn margin(&self, value: f64, count: u32, sign: f64) -> Result<(f64, Return), SimulateError> {
         let returns = self.returns(value, count)?;
-        let closest = returns.into_iter().min_by(|a, b| a.excess.total_cmp(&b.excess));
-        closest.ok_or(SimulateError::NoTangency { value })
+        let least =
+            returns.into_iter().min_by(|a, b| (sign * a.excess).total_cmp(&(sign * b.excess)));
+        let least = least.ok_or(SimulateError::NoTangency { value })?;
+        Ok((sign * least.excess, least))
     }
 
     /// The tangency between two values of the parameter, at one of which all of `count` orbits
-    /// turn back and at the other not: bisected to 1/64 of the bracket, then by [`Self::tangency`].
+    /// turn back (or all pass over the saddle) and at the other not: bisected to 1/64 of the
+    /// bracket, then by [`Self::tangency`]. Seen from the end where all do the same it is the first
+    /// one, up to what hides between the orbits followed and the values tried.
     ///
-    /// It is the first tangency met from the inner end of the bracket, unless others lie between.
-    /// Errors: [`SimulateError::NoTangency`] if both ends are of one kind.
+    /// Errors: [`SimulateError::NoTangency`] if the ends are of one kind.
     pub fn first_tangency(
         &self,
-        (mut low, mut high): (f64, f64),
+        (low, high): (f64, f64),
         count: u32,
     ) -> Result<Tangency, SimulateError> {
-        let mut ends = [self.closest(low, count)?, self.closest(high, count)?];
-        let inside = ends[0].excess > 0.0;
-        if inside == (ends[1].excess > 0.0) {
-            return Err(SimulateError::NoTangency { value: low });
-        }
-        for _ in 0..6 {
-            let middle = (low + high) / 2.0;
-            let closest = self.closest(middle, count)?;
-            if (closest.excess > 0.0) == inside {
-                (low, ends[0]) = (middle, closest);
-            } else {
-                (high, ends[1]) = (middle, closest);
+        for sign in [1.0, -1.0] {
+            let margins = (self.margin(low, count, sign)?, self.margin(high, count, sign)?);
+            let (mut pure, mut mixed) = ((low, margins.0), (high, margins.1));
+            if mixed.1.0 > 0.0 {
+                (pure, mixed) = (mixed, pure);
             }
+            if !(pure.1.0 > 0.0 && mixed.1.0 < 0.0) {
+                continue;
+            }
+            for _ in 0..6 {
+                let middle = (pure.0 + mixed.0) / 2.0;
+                let margin = self.margin(middle, count, sign)?;
+                let end = if margin.0 > 0.0 { &mut pure } else { &mut mixed };
+                *end = (middle, margin);
+            }
+            let (value, (_, nearer)) = if pure.1.0 < -mixed.1.0 { pure } else { mixed };
+            return self.tangency(value, nearer.phase);
         }
-        let [a, b] = ends;
-        let (value, nearer) = if a.excess.abs() < b.excess.abs() { (low, a) } else { (high, b) };
-        self.tangency(value, nearer.phase)
+        Err(SimulateError::NoTangency { value: low })
     }
 
     /// The tangency near a value of the parameter and a phase: Newton's method for G = 0 and
@@ -186,7 +203,7 @@ impl Homoclinic<'_> {
             (error, periods) = (change, periods + 1);
         }
         // The same orbit, begun one period farther out: how straight the manifold is there.
-        let (other, _) = self.newton((value, phase + 1.0), periods)?;
+        let (other, _) = self.newton((value, phase + 1.0), periods - 1)?;
         Ok(Tangency { value, error: error + (other - value).abs(), phase, periods })
     }
 
@@ -204,7 +221,9 @@ impl Homoclinic<'_> {
             away |= distance > AWAY;
             if away && distance < nearest.0 {
                 nearest = (distance, periods);
-            } else if nearest.0 < AWAY && distance > AWAY {
+            }
+            // Nearer is better, but later amplifies rounding errors.
+            if nearest.0 < NEAR || nearest.0 < AWAY && distance > AWAY {
                 break;
             }
         }
@@ -266,87 +285,7 @@ impl Homoclinic<'_> {
     }
 }
 
-/// Follows a tangency while another parameter, `along`, takes the given values, with steps in
-/// between where Newton's method needs them. The first value starts from `start` = (value, phase)
-/// and from the guess of the saddle; then on from the two before. Equal values of `along` in
-/// sequence repeat the same point.
-///
-/// The branch is followed, whether or not other tangencies have come before it. The observer is
-/// told of every point asked for, and breaks off.
-///
-/// Errors: [`SimulateError::NoTangency`] where the branch ends or 6 halvings do not help.
-pub fn continue_tangency(
-    homoclinic: &Homoclinic<'_>,
-    (along, values): (&str, &[f64]),
-    start: (f64, f64),
-    observer: &mut dyn FnMut(f64, &Tangency) -> ControlFlow<()>,
-) -> Result<(), SimulateError> {
-    let mut branch = Branch { homoclinic, along, known: Vec::new() };
-    for target in values {
-        let tangency = if branch.known.is_empty() {
-            branch.place(*target, start, homoclinic.guess)?
-        } else {
-            branch.step(*target, 6)?
-        };
-        if observer(*target, &tangency).is_break() {
-            break;
-        }
-    }
-    Ok(())
-}
-
-struct Branch<'a, 'h> {
-    homoclinic: &'a Homoclinic<'h>,
-    along: &'a str,
-    /// Values of the other parameter, tangencies and saddles.
-    known: Vec<(f64, Tangency, [f64; 2])>,
-}
-
-impl Branch<'_, '_> {
-    fn place(
-        &mut self,
-        target: f64,
-        (value, phase): (f64, f64),
-        guess: [f64; 2],
-    ) -> Result<Tangency, SimulateError> {
-        let mut parameters = self.homoclinic.parameters.clone();
-        parameters.set(self.along, Quantity::Float(Float::with_val(53, target)));
-        let homoclinic = Homoclinic { parameters: &parameters, guess, ..*self.homoclinic };
-        let tangency = homoclinic.tangency(value, phase)?;
-        let saddle = homoclinic.saddle(tangency.value)?;
-        self.known.push((target, tangency, saddle.state));
-        Ok(tangency)
-    }
-
-    fn step(&mut self, target: f64, halvings: u32) -> Result<Tangency, SimulateError> {
-        let Some((last, tangency, saddle)) = self.known.last().copied() else {
-            return Err(SimulateError::NoTangency { value: f64::NAN });
-        };
-        let before = self.known.len().checked_sub(2).and_then(|index| self.known.get(index));
-        let before = before.filter(|before| before.0 != last);
-        let share = before.map_or(0.0, |before| (target - last) / (last - before.0));
-        let (old, place) = before.map_or((tangency, saddle), |before| (before.1, before.2));
-        let value = tangency.value + share * (tangency.value - old.value);
-        let phase = tangency.phase + share * (tangency.phase - old.phase);
-        let guess = [0, 1].map(|k| saddle[k] + share * (saddle[k] - place[k]));
-        let reach = 0.3 * value.abs();
-        match self.place(target, (value, phase), guess) {
-            // Far from the prediction: another branch.
-            Ok(found) if (found.value - value).abs() < reach => Ok(found),
-            Err(error) if halvings == 0 => Err(error),
-            outcome => {
-                if outcome.is_ok() {
-                    self.known.pop();
-                    if halvings == 0 {
-                        return Err(SimulateError::NoTangency { value });
-                    }
-                }
-                self.step((last + target) / 2.0, halvings - 1)?;
-                self.step(target, halvings - 1)
-            }
-        }
-    }
-}
-
 /// Farther than this from the saddle the coordinates tell nothing.
 const AWAY: f64 = 0.4;
+/// Near enough to begin with.
+const NEAR: f64 = 0.05;

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 fn settings(transient: u32, kept: u32, follow: bool) -> DiagramSettings<f64> {
     DiagramSettings {
         time: 0.0,
-        start: vec![0.5, 0.1],
+        start: vec![0.11, 0.05],
         section: Section::Period(std::f64::consts::PI),
         transient,
         kept,
