@@ -76,6 +76,8 @@ impl From<Error> for Failure {
                 (UNDECIDED, "too-large", "lower --order or raise --limit-memory")
             }
             Error::NotEnoughBits { .. } => (UNDECIDED, "not-enough-digits", "ask for fewer digits"),
+            Error::Simulate(_) => (NO_ANSWER, "no-trajectory", ""),
+            Error::NoPeriodicOrbit { .. } => (NO_ANSWER, "no-periodic-orbit", "smaller --small"),
             Error::NoValue => (NO_ANSWER, "no-value", ""),
             Error::OutOfPrimes => (UNDECIDED, "out-of-primes", "lower --order"),
             Error::Expand(ExpandError::Interrupted { .. }) => (INTERRUPTED, "interrupted", ""),

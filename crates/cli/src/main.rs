@@ -11,9 +11,11 @@ mod output;
 mod paper;
 mod problems;
 mod session;
+mod simulate;
 mod stability;
 mod threshold;
 mod trade;
+mod verify;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -31,6 +33,8 @@ fn main() -> ExitCode {
         Command::Problems(options) => problems::run(options, &session),
         Command::Derive(options) => derive::run(options, &session),
         Command::Threshold(options) => threshold::run(options, &session),
+        Command::Simulate(options) => simulate::run(options, &session),
+        Command::Verify(options) => verify::run(options, &session),
         Command::Stability(options) => stability::run(options, &session),
         Command::Trade(options) => trade::run(options, &session),
         Command::Paper(options) => paper::run(options, &session),

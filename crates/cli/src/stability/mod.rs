@@ -3,7 +3,7 @@
 mod chart;
 mod figure;
 mod report;
-mod request;
+pub mod request;
 
 use crate::Outcome;
 use crate::arguments::{Format, StabilityOptions};

@@ -8,10 +8,7 @@ use rug::Rational;
 use std::collections::BTreeMap;
 
 /// Names and domains of the parameters given.
-pub(crate) fn check_parameters(
-    problem: &Problem,
-    given: &BTreeMap<String, Value>,
-) -> Result<(), Error> {
+pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> Result<(), Error> {
     for (name, value) in given {
         if !problem.parameters.iter().any(|card| card.name == *name) {
             let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
