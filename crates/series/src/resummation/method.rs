@@ -1,0 +1,266 @@
+//! The methods, one value with an error estimate each.
+
+use super::borel::{borel_transform, laplace};
+use super::estimate::{best_truncation, distance, settle};
+use super::{Estimate, Growth, Map, Pade, ResummationError, growth, partial_sums};
+use super::{Singularity, nearest_singularity};
+use rug::Float;
+
+/// A way from coefficients to a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Method {
+    /// The partial sum; of a divergent series up to the smallest term.
+    PartialSum,
+    /// Diagonal Pade approximants.
+    Pade,
+    /// The series in u = x/(s + x) with a prefactor, its partial sum.
+    Uniform,
+    /// Diagonal Pade approximants in u.
+    UniformPade,
+    /// Pade approximants after the conformal map of the plane cut at the nearest singularities.
+    ConformalPade,
+    /// Pade approximants of the Borel transform and Laplace's integral.
+    BorelPade,
+}
+
+impl Method {
+    /// All of them, in the order in which `auto` prefers them among equals.
+    pub const ALL: [Self; 6] = [
+        Self::PartialSum,
+        Self::Uniform,
+        Self::Pade,
+        Self::UniformPade,
+        Self::ConformalPade,
+        Self::BorelPade,
+    ];
+}
+
+/// What is known of the function beyond its coefficients.
+#[derive(Clone, Debug)]
+pub struct UniformMap {
+    /// s in u = x/(s + x).
+    pub scale: Float,
+    /// p: the series of (1 - u)^p f is re-expanded; f ~ x^p for x -> infinity makes it bounded.
+    pub prefactor: Float,
+    /// The radius of convergence in u where it is known; else it is estimated.
+    pub radius: Option<f64>,
+}
+
+/// The coefficients and the point at some precision, with what they tell.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// c_0, c_1, ...
+    pub coefficients: Vec<Float>,
+    /// x.
+    pub point: Float,
+    /// The change of variable for [`Method::Uniform`].
+    pub map: Option<UniformMap>,
+    /// The precision to which all of these are known, relative.
+    pub bits: u32,
+}
+
+/// A value by one method.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The value with its error estimate.
+    pub estimate: Estimate,
+    /// The highest order of the series that is used.
+    pub order: usize,
+    /// Degrees of the numerator and the denominator, for the methods with Pade approximants.
+    pub degrees: Option<(usize, usize)>,
+    /// The order of the smallest term, where the series was cut there because it diverges.
+    pub smallest_term: Option<usize>,
+}
+
+/// Approximants before the last one that enter the error estimate, for the partial sums of a
+/// convergent series and for Pade approximants.
+const SUMS: usize = 3;
+const APPROXIMANTS: usize = 4;
+
+impl Sample {
+    /// The value by `method`.
+    ///
+    /// `singularity` is needed for [`Method::ConformalPade`] (see [`nearest_singularity`]).
+    /// `accuracy` is the number of bits beyond which a Laplace integral need not go.
+    ///
+    /// # Errors
+    /// [`ResummationError`] where the method does not apply or gives no value.
+    pub fn sum(
+        &self,
+        method: Method,
+        singularity: Option<&Singularity>,
+        accuracy: u32,
+    ) -> Result<Outcome, ResummationError> {
+        let known = self.coefficients.len();
+        if known < 3 {
+            return Err(ResummationError::TooFewCoefficients { known, needed: 3 });
+        }
+        match method {
+            Method::PartialSum => self.partial_sum(),
+            Method::Pade => diagonal(&self.coefficients, &self.point, self.bits),
+            Method::Uniform => {
+                let (c, u, factor) = self.uniform()?;
+                let radius = self.map.as_ref().and_then(|map| map.radius);
+                let radius = radius.or(match growth(&c) {
+                    Growth::Radius(radius) => Some(radius),
+                    Growth::Factorial { .. } => Some(0.0),
+                    _ => None,
+                });
+                if let Some(radius) = radius.filter(|radius| u.clone().abs() >= *radius) {
+                    return Err(ResummationError::OutsideDisc { radius, at: u.to_f64() });
+                }
+                convergent(&c, &u, self.bits).map(|outcome| scaled(outcome, &factor))
+            }
+            Method::UniformPade => {
+                let (c, u, factor) = self.uniform()?;
+                diagonal(&c, &u, self.bits).map(|outcome| scaled(outcome, &factor))
+            }
+            Method::ConformalPade => {
+                let singularity = singularity.ok_or(ResummationError::NoSingularity)?;
+                let map = wedge(singularity, self.bits);
+                let w = map.inverse(&self.point, self.bits)?;
+                let c = map.expand(&self.coefficients, &Float::new(self.bits), self.bits);
+                diagonal(&c, &w, self.bits)
+            }
+            Method::BorelPade => {
+                let b = borel_transform(&self.coefficients, &self.point, self.bits);
+                let value = |pade: &Pade| laplace(pade, accuracy, self.bits);
+                let mut outcome = staircase(&b, self.bits, value)?;
+                // What the integral was not asked for.
+                let size = Float::with_val(53, outcome.estimate.value.abs_ref());
+                outcome.estimate.error += size >> accuracy;
+                Ok(outcome)
+            }
+        }
+    }
+
+    /// The nearest singularity in the coefficients.
+    #[must_use]
+    pub fn singularity(&self) -> Option<Singularity> {
+        nearest_singularity(&self.coefficients, self.bits)
+    }
+
+    fn partial_sum(&self) -> Result<Outcome, ResummationError> {
+        let sums = partial_sums(&self.coefficients, &self.point, self.bits);
+        let diverges = match growth(&self.coefficients) {
+            Growth::Factorial { .. } => true,
+            Growth::Radius(radius) => self.point.clone().abs() > radius * 1.02,
+            _ => false,
+        };
+        // The smallest term among the last ones is no smallest term yet.
+        let best = best_truncation(&sums).filter(|(order, _)| order + 2 < sums.len());
+        if let Some((order, estimate)) = best.filter(|_| diverges) {
+            return Ok(Outcome { estimate, order, degrees: None, smallest_term: Some(order) });
+        }
+        convergent(&self.coefficients, &self.point, self.bits)
+    }
+
+    /// The coefficients in u, u itself, and (1 - u)^-p.
+    fn uniform(&self) -> Result<(Vec<Float>, Float, Float), ResummationError> {
+        let map = self.map.as_ref().ok_or(ResummationError::NoMap)?;
+        if matches!(growth(&self.coefficients), Growth::Factorial { .. }) {
+            return Err(ResummationError::ZeroRadius);
+        }
+        let change = Map::Rational { scale: map.scale.clone() };
+        let u = change.inverse(&self.point, self.bits)?;
+        let c = change.expand(&self.coefficients, &map.prefactor, self.bits);
+        // 1 - u = s/(s + x), without the cancellation for x -> infinity.
+        let rest = Float::with_val(self.bits, &self.point + &map.scale);
+        let rest = Float::with_val(self.bits, rest / &map.scale);
+        let factor = rug::ops::Pow::pow(rest, &map.prefactor);
+        Ok((c, u, factor))
+    }
+}
+
+/// The wedge whose tips are the singularity and its conjugate.
+fn wedge(singularity: &Singularity, bits: u32) -> Map {
+    // The same map at every precision: the tips need not be right to all bits, so they are
+    // rounded to doubles, and rounding is then what the comparison of two precisions measures.
+    let modulus = Float::with_val(bits, singularity.at.abs().to_f64());
+    let fraction = singularity.at.arg().to_f64().abs() / std::f64::consts::PI;
+    // A real singularity has an imaginary part from rounding only.
+    let nearest = fraction.round();
+    let fraction = if (fraction - nearest).abs() < 1e-12 { nearest } else { fraction };
+    Map::Wedge { modulus, fraction: Float::with_val(bits, fraction) }
+}
+
+fn scaled(mut outcome: Outcome, factor: &Float) -> Outcome {
+    outcome.estimate.value *= factor;
+    outcome.estimate.error *= Float::with_val(53, factor.abs_ref());
+    outcome
+}
+
+/// The last partial sum of a series that converges.
+fn convergent(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationError> {
+    let sums = partial_sums(c, x, bits);
+    let order = sums.len() - 1;
+    let estimate = settle(&sums, SUMS.min(order / 2).max(1), order);
+    let estimate = estimate.ok_or(ResummationError::Undefined)?;
+    Ok(Outcome { estimate, order, degrees: None, smallest_term: None })
+}
+
+/// The approximants [n/n], [n-1/n] ... at x.
+fn diagonal(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationError> {
+    staircase(c, bits, |pade| pade.value(x).ok_or(ResummationError::Undefined))
+}
+
+/// A value from the last steps of the staircase [k - k/2 / k/2], k = N - 8 .. N.
+///
+/// A step whose value stands apart from both neighbours by more than a thousand times their
+/// distance is computed again without its spurious poles.
+fn staircase(
+    c: &[Float],
+    bits: u32,
+    value: impl Fn(&Pade) -> Result<Float, ResummationError>,
+) -> Result<Outcome, ResummationError> {
+    let order = c.len().saturating_sub(1);
+    let first = order.saturating_sub(2 * APPROXIMANTS);
+    let degrees = |k: usize| (k - k / 2, k / 2);
+    let mut values = Vec::new();
+    let mut failure = ResummationError::Undefined;
+    let mut last = None;
+    for k in first..=order {
+        let (l, m) = degrees(k);
+        let Some(pade) = Pade::new(c, l, m, bits) else { continue };
+        match value(&pade) {
+            Ok(v) => {
+                values.push((k, v));
+                last = Some((k, pade.degrees()));
+            }
+            Err(error) => {
+                failure = error;
+                // A pole next to the path: without the doublet it may be gone.
+                let robust = Pade::robust(c, l, m, bits).filter(|p| p.degrees() != pade.degrees());
+                if let Some(pade) = robust
+                    && let Ok(v) = value(&pade)
+                {
+                    values.push((k, v));
+                    last = Some((k, pade.degrees()));
+                }
+            }
+        }
+    }
+    let Some((used, pade_degrees)) = last.filter(|_| values.len() > 1) else { return Err(failure) };
+    for i in 1..values.len() {
+        let far = |j: usize| Some(distance(&values.get(j)?.1, &values[i].1));
+        let between = match values.get(i + 1) {
+            Some(next) => distance(&next.1, &values[i - 1].1),
+            None if i > 1 => distance(&values[i - 2].1, &values[i - 1].1),
+            None => continue,
+        };
+        let apart =
+            [far(i - 1), far(i + 1)].into_iter().flatten().all(|d| d > between.clone() * 1000u32);
+        if apart {
+            let (l, m) = degrees(values[i].0);
+            let again = Pade::robust(c, l, m, bits).and_then(|pade| value(&pade).ok());
+            if let Some(v) = again {
+                values[i].1 = v;
+            }
+        }
+    }
+    let list: Vec<Float> = values.into_iter().map(|(_, v)| v).collect();
+    let estimate = settle(&list, APPROXIMANTS.min((list.len() - 1).div_ceil(2)).max(1), order);
+    let estimate = estimate.ok_or(ResummationError::Undefined)?;
+    Ok(Outcome { estimate, order: used, degrees: Some(pade_degrees), smallest_term: None })
+}
