@@ -20,6 +20,8 @@ pub enum Command {
     Problems(ProblemsOptions),
     /// Derive the expansion of a problem, order by order, and check it.
     Derive(DeriveOptions),
+    /// The period and the solution at given parameters, by resummation of the expansion.
+    Evaluate(EvaluateOptions),
     /// The Melnikov threshold of homoclinic chaos: value, zeros, cusps, curves, surfaces.
     Threshold(ThresholdOptions),
     /// Read the paper: derive it, compare it with the print, tabulate what is true.
@@ -79,6 +81,41 @@ pub struct DeriveOptions {
     pub route: Route,
     #[command(flatten)]
     pub precision: Precision,
+}
+
+#[derive(Debug, Args)]
+pub struct EvaluateOptions {
+    /// power-law, pendulum, duffing or van-der-pol.
+    pub problem: String,
+    /// The highest order; a quick one if not given.
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
+    pub order: Option<u32>,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// How the series is summed; auto takes the least error estimate and says why.
+    #[arg(long, value_enum, default_value_t = Resum::Auto)]
+    pub resum: Resum,
+    #[command(flatten)]
+    pub precision: Precision,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Resum {
+    /// The partial sum; of a divergent series up to the smallest term.
+    None,
+    /// Diagonal Pade approximants.
+    Pade,
+    /// The series in u = x/(1 + x) with a prefactor.
+    Uniform,
+    /// Pade approximants in u.
+    UniformPade,
+    /// A conformal map of the plane cut at the nearest singularities, then Pade.
+    Conformal,
+    /// Pade approximants of the Borel transform.
+    BorelPade,
+    /// The least error estimate of all.
+    Auto,
 }
 
 #[derive(Debug, Args)]

@@ -70,6 +70,9 @@ impl From<Error> for Failure {
                 (UNDECIDED, "too-large", "lower --order or raise --limit-memory")
             }
             Error::NotEnoughBits { .. } => (UNDECIDED, "not-enough-digits", "ask for fewer digits"),
+            Error::Resummation { .. } => {
+                (NO_ANSWER, "no-such-resummation", "try --resum auto, or another order")
+            }
             Error::NoValue => (NO_ANSWER, "no-value", ""),
             Error::OutOfPrimes => (UNDECIDED, "out-of-primes", "lower --order"),
             Error::Expand(ExpandError::Interrupted { .. }) => (INTERRUPTED, "interrupted", ""),

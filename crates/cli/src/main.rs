@@ -3,6 +3,7 @@
 
 mod arguments;
 mod derive;
+mod evaluate;
 mod failure;
 mod output;
 mod paper;
@@ -25,6 +26,7 @@ fn main() -> ExitCode {
     let outcome = match &arguments.command {
         Command::Problems(options) => problems::run(options, &session),
         Command::Derive(options) => derive::run(options, &session),
+        Command::Evaluate(options) => evaluate::run(options, &session),
         Command::Threshold(options) => threshold::run(options, &session),
         Command::Paper(options) => paper::run(options, &session),
     };

@@ -4,7 +4,7 @@ use lindstedt_expand::ExpandError;
 use thiserror::Error;
 
 /// Why the engine has no answer. Each kind maps to one exit code of the command line.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The driver refused.
@@ -70,6 +70,14 @@ pub enum Error {
         bits: u32,
         /// The best enclosure.
         best: Option<String>,
+    },
+    /// The series has no value by the method asked for.
+    #[error("{problem}: {reason}")]
+    Resummation {
+        /// The problem.
+        problem: String,
+        /// Why.
+        reason: lindstedt_series::resummation::ResummationError,
     },
     /// The value does not exist.
     #[error("the value does not exist")]

@@ -16,6 +16,7 @@ struct Readme;
 mod derivation;
 pub mod energy;
 mod error;
+pub mod evaluate;
 pub mod multimodular;
 pub mod number;
 pub mod paper;

@@ -5,6 +5,7 @@ use super::estimate::{best_truncation, distance, settle};
 use super::{Estimate, Growth, Map, Pade, ResummationError, growth, partial_sums};
 use super::{Singularity, nearest_singularity};
 use rug::Float;
+use rug::float::Special;
 
 /// A way from coefficients to a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -96,6 +97,33 @@ impl Sample {
         if known < 3 {
             return Err(ResummationError::TooFewCoefficients { known, needed: 3 });
         }
+        let mut outcome = self.by(method, singularity, accuracy)?;
+        if self.is_unresolved() {
+            outcome.estimate.error = Float::with_val(53, Special::Infinity);
+        }
+        Ok(outcome)
+    }
+
+    /// Whether no agreement means anything: the terms of an entire function (or of one with too
+    /// few coefficients to tell) still grow at the last order.
+    fn is_unresolved(&self) -> bool {
+        if !matches!(growth(&self.coefficients), Growth::Entire | Growth::Undecided) {
+            return false;
+        }
+        let sums = partial_sums(&self.coefficients, &self.point, self.bits);
+        let terms: Vec<Float> = sums.windows(2).map(|p| distance(&p[1], &p[0])).collect();
+        let third = terms.len().div_ceil(3);
+        let largest = |list: &[Float]| list.iter().cloned().reduce(|a, b| a.max(&b));
+        let (early, late) = (terms.get(..third), terms.get(terms.len() - third..));
+        late.and_then(largest) > early.and_then(largest)
+    }
+
+    fn by(
+        &self,
+        method: Method,
+        singularity: Option<&Singularity>,
+        accuracy: u32,
+    ) -> Result<Outcome, ResummationError> {
         match method {
             Method::PartialSum => self.partial_sum(),
             Method::Pade => diagonal(&self.coefficients, &self.point, self.bits),

@@ -1,0 +1,78 @@
+//! `lindstedt evaluate`: numbers from the expansion.
+
+mod report;
+
+use crate::Outcome;
+use crate::arguments::{EvaluateOptions, Format, Resum};
+use crate::failure::{Failure, UNDECIDED};
+use crate::output;
+use crate::session::{Session, digits, parameters, problem};
+use lindstedt::evaluate::{EvaluateSettings, evaluate};
+use lindstedt::series::resummation::Method;
+use lindstedt::{Error, Progress, expand::ExpandError};
+use report::Report;
+
+pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
+    let problem = problem(&options.problem)?;
+    let settings = EvaluateSettings {
+        order: options.order.map(|order| order as usize),
+        method: method(options.resum),
+        parameters: parameters(&options.set)?,
+        digits: digits(&options.precision)?,
+        memory: session.memory(),
+    };
+    output::check_writable(session)?;
+    let mut observer = |progress: Progress| {
+        if let Progress::Primes(n) = progress {
+            session.say(format!("{n} primes done"));
+        }
+        session.goes_on()
+    };
+    let result = evaluate(&problem, &settings, &mut observer).map_err(|error| match error {
+        Error::Expand(ExpandError::Interrupted { .. }) if !session.interrupted() => Failure {
+            exit: UNDECIDED,
+            code: "time-limit",
+            message: "the time limit was reached before the expansion was finished".to_owned(),
+            hint: "raise --limit-seconds or lower --order".to_owned(),
+        },
+        other => other.into(),
+    })?;
+    session.done();
+    let report = Report { problem: &problem, result: &result, resum: options.resum };
+    let text = match session.format() {
+        Format::Json => format!("{:#}\n", report.json(session)),
+        Format::Text => report.text(),
+        Format::Latex => report.latex(),
+        Format::Markdown => report.markdown(),
+    };
+    output::write(session, &text)?;
+    if result.period.is_none() {
+        output::warn("the expansion gives not one digit of the period here");
+        return Ok(UNDECIDED);
+    }
+    Ok(0)
+}
+
+fn method(resum: Resum) -> Option<Method> {
+    Some(match resum {
+        Resum::None => Method::PartialSum,
+        Resum::Pade => Method::Pade,
+        Resum::Uniform => Method::Uniform,
+        Resum::UniformPade => Method::UniformPade,
+        Resum::Conformal => Method::ConformalPade,
+        Resum::BorelPade => Method::BorelPade,
+        Resum::Auto => return None,
+    })
+}
+
+/// The name of a method on the command line.
+fn flag(method: Method) -> &'static str {
+    match method {
+        Method::PartialSum => "none",
+        Method::Pade => "pade",
+        Method::Uniform => "uniform",
+        Method::UniformPade => "uniform-pade",
+        Method::ConformalPade => "conformal",
+        _ => "borel-pade",
+    }
+}
