@@ -6,7 +6,7 @@ use crate::derive::number_json;
 use crate::session::Session;
 use lindstedt::Number;
 use lindstedt::equation::Problem;
-use lindstedt::evaluate::{Evaluation, kind_name};
+use lindstedt::evaluate::{Evaluation, kind_name, method_name};
 use lindstedt::series::resummation::{Complex, Growth};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
@@ -100,7 +100,7 @@ impl Report<'_> {
         if scaled.clone().abs() <= error.clone() {
             "0".to_owned()
         } else {
-            format!("{:.*}", places + 1, Fixed(&scaled))
+            format!("{:.*}", places, Fixed(&scaled))
         }
     }
 
@@ -127,7 +127,7 @@ impl Report<'_> {
         let resummed = &result.resummed;
         let how = format!(
             "{} of T/(2*pi) in {}, order {}",
-            flag(resummed.method),
+            method_name(resummed.method),
             result.variable,
             result.order
         );
@@ -149,7 +149,7 @@ impl Report<'_> {
         if let Some(picture) = &result.picture {
             let spurious = picture.poles.iter().filter(|p| p.spurious).count();
             let text = format!(
-                "{} poles, {spurious} spurious, {} zeros",
+                "{} poles, {spurious} in doublets, {} zeros",
                 picture.poles.len(),
                 picture.zeros.len()
             );

@@ -59,6 +59,8 @@ pub struct Evaluation {
     pub resummed: Resummed,
     /// The best truncation of a divergent series: order and partial sum of T.
     pub best_truncation: Option<(usize, Option<Number>)>,
+    /// What is proved about the radius of convergence: its value, and why.
+    pub radius: Option<(f64, &'static str)>,
     /// In words.
     pub verdict: String,
     /// Poles and zeros of the diagonal Pade approximant of the highest order.
@@ -129,10 +131,11 @@ pub fn evaluate(
     let closed = source.closed.as_ref().and_then(|(_, formula)| formula(balls));
     let value = balls.mul(&balls.from_parts(&estimate.value, &Float::new(53)), &scale);
     let difference = closed.as_ref().map(|exact| balls.sub(&value, exact).abs_upper());
-    if !estimate.error.is_finite()
-        && let Some(error) = &difference
+    if let Some(error) = &difference
+        && (!estimate.error.is_finite() || error > period.radius())
     {
-        // Too few orders for an estimate; the closed form measures the error.
+        // Too few orders for an estimate, or an estimate that fails: the closed form measures
+        // the error.
         period = balls.add_error(&value, error);
     }
     let frequency = balls.div(&balls.mul_i64(&balls.pi(), 2), &period);
@@ -148,6 +151,7 @@ pub fn evaluate(
         true_error: difference.map(|error| short(&error)),
         resummed,
         best_truncation: best,
+        radius: source.radius,
         verdict: String::new(),
         picture,
     };
@@ -229,19 +233,28 @@ impl Evaluation {
     fn describe(&self) -> String {
         let outcome = &self.resummed.outcome;
         let mut parts = Vec::new();
-        match self.resummed.growth {
-            Growth::Factorial { rate } => parts.push(format!(
-                "the series in {} diverges for every argument (coefficients grow like n!^{rate:.1}), \
-                 it is asymptotic",
-                self.variable
-            )),
-            Growth::Radius(radius) => {
-                let radius = self.resummed.singularity.as_ref().map_or(radius, |s| s.at.abs().to_f64());
-                parts.push(format!("the series in {} has radius of convergence {radius:.4}", self.variable));
+        let name = self.variable;
+        parts.push(match (self.radius, self.resummed.growth) {
+            (Some((0.0, why)), _) => {
+                format!("the series in {name} diverges for every {name} but 0 ({why}): it is asymptotic")
             }
-            Growth::Entire => parts.push("the coefficients fall like those of an entire function".to_owned()),
-            _ => parts.push("too few coefficients to tell the radius of convergence".to_owned()),
-        }
+            (Some((radius, why)), _) => {
+                format!("the series in {name} has radius of convergence {radius} ({why})")
+            }
+            (None, Growth::Factorial { rate }) => format!(
+                "the series in {name} seems to diverge for every {name} but 0 (coefficients grow like \
+                 n!^{rate:.1}): asymptotic"
+            ),
+            (None, Growth::Radius(radius)) => {
+                let found = self.resummed.singularity.as_ref();
+                let radius = found.map_or(radius, |s| s.at.abs().to_f64());
+                format!("the series in {name} has radius of convergence {radius:.4e} (estimated)")
+            }
+            (None, Growth::Entire) => {
+                format!("the coefficients in {name} fall like those of an entire function")
+            }
+            _ => "too few coefficients to estimate the radius of convergence".to_owned(),
+        });
         if let Some((order, number)) = &self.best_truncation {
             let value = number.as_ref().map_or_else(String::new, |n| format!(": {}", n.decimal));
             parts.push(format!("best truncation at order {order}{value}"));

@@ -29,6 +29,8 @@ pub(super) struct Source {
     pub factor: Formula,
     /// The period in closed form, with its formula.
     pub closed: Option<(&'static str, Formula)>,
+    /// What is proved about the radius of convergence: its value, and why.
+    pub radius: Option<(f64, &'static str)>,
     /// (scale, prefactor, radius) of the change of variable u = x/(scale + x).
     map: Option<(u32, Rational, Option<f64>)>,
 }
@@ -132,6 +134,7 @@ fn power_law(given: &Given<'_>, order: usize) -> Result<Source, Error> {
             "4*sqrt(pi*(1+delta))*Gamma(1+y)/Gamma(1/2+y)*a^(-delta), y = 1/(2+2*delta)",
             Box::new(closed),
         )),
+        radius: Some((1.0, "the period is singular at delta = -1")),
         // sqrt(1 - u) T/2pi = Gamma(2-u) 2^u/Gamma(1-u/2)^2 has its nearest pole at u = 3.
         map: Some((1, Rational::from((1, 2)), Some(3.0))),
     })
@@ -154,6 +157,8 @@ fn pendulum(given: &Given<'_>, order: usize) -> Result<Source, Error> {
         point: Box::new(move |balls| Some(balls.from_rational(&delta))),
         factor: Box::new(|balls| Some(balls.one())),
         closed,
+        // int x^(1 + 2 k delta) dx: a pole of the potential for every k.
+        radius: Some((0.0, "the potential has poles at delta = -1/k for all k")),
         map: None,
     })
 }
@@ -204,6 +209,7 @@ fn duffing(given: &Given<'_>, series: Vec<Rational>) -> Result<Source, Error> {
             "4*K(k)/sqrt(1+rho), k^2 = rho/(2+2*rho)",
             Box::new(move |balls| closed::duffing(balls, &closed(balls)?)),
         )),
+        radius: Some((1.0, "the separatrix at rho = -1")),
         // sqrt(1 + rho) T/4 = K(k), 2 k^2 = u: analytic for |u| < 2; T ~ rho^(-1/2).
         map: Some((1, Rational::from((-1, 2)), Some(2.0))),
     })
@@ -225,6 +231,7 @@ fn limit_cycle(given: &Given<'_>, series: Vec<Rational>) -> Result<Source, Error
         point: Box::new(move |balls| Some(balls.square(&eps.ball(balls)))),
         factor: Box::new(|balls| Some(balls.one())),
         closed: None,
+        radius: None,
         // T ~ (3 - 2 ln 2) eps for eps -> infinity: relaxation oscillations.
         map: Some((1, Rational::from((1, 2)), None)),
     })

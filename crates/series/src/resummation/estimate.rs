@@ -30,8 +30,8 @@ fn spread(list: &[Float], value: &Float) -> Option<Float> {
 ///
 /// For errors e q^k the spread s1 of the `window` values before the last one and the spread s2
 /// of the `window` before these satisfy s2/s1 - 1 = q^-window, so that |error| = s1/(s2/s1 - 2);
-/// the estimate is that, but at least s1, and at most s1 times the number of the last
-/// approximant: then the sequence converges slower than a geometric one, and for an error k^-p
+/// the estimate is that where it is above s1, the geometric mean with s1 where it is below (fast
+/// convergence is trusted by half), and at most s1 times the number of the last approximant: then the sequence converges slower than a geometric one, and for an error k^-p
 /// the remainder is about s1 k/(p window). Four times the result, for luck in the differences.
 ///
 /// Infinite where s2 < s1 (the sequence runs away) and for approximants below number six.
@@ -54,7 +54,8 @@ pub(super) fn settle(values: &[Float], window: usize, number: usize) -> Option<E
             if ratio < 1.0 {
                 f64::INFINITY
             } else {
-                (1.0 / (ratio - 2.0).max(1.0 / worst)).max(1.0)
+                let factor = 1.0 / (ratio - 2.0).max(1.0 / worst);
+                if factor < 1.0 { factor.sqrt() } else { factor }
             }
         }
         Some(_) => 1.0,

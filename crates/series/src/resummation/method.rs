@@ -163,10 +163,19 @@ impl Sample {
         }
     }
 
-    /// The nearest singularity in the coefficients.
+    /// The nearest singularity in the coefficients; nothing where its modulus contradicts their
+    /// growth by more than a half.
     #[must_use]
     pub fn singularity(&self) -> Option<Singularity> {
-        nearest_singularity(&self.coefficients, self.bits)
+        let found = nearest_singularity(&self.coefficients, self.bits)?;
+        match growth(&self.coefficients) {
+            Growth::Radius(radius) => {
+                let ratio = found.at.abs().to_f64() / radius;
+                (0.67..1.5).contains(&ratio).then_some(found)
+            }
+            Growth::Undecided => Some(found),
+            _ => None,
+        }
     }
 
     fn partial_sum(&self) -> Result<Outcome, ResummationError> {
@@ -233,7 +242,7 @@ fn diagonal(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationErr
     staircase(c, bits, |pade| pade.value(x).ok_or(ResummationError::Undefined))
 }
 
-/// A value from the last steps of the staircase [k - k/2 / k/2], k = N - 8 .. N.
+/// A value from the last steps of the staircase [k - k/2 / k/2], k = N - 9 .. N.
 ///
 /// A step whose value stands apart from both neighbours by more than a thousand times their
 /// distance is computed again without its spurious poles.
@@ -243,7 +252,7 @@ fn staircase(
     value: impl Fn(&Pade) -> Result<Float, ResummationError>,
 ) -> Result<Outcome, ResummationError> {
     let order = c.len().saturating_sub(1);
-    let first = order.saturating_sub(2 * APPROXIMANTS);
+    let first = order.saturating_sub(2 * APPROXIMANTS + 1);
     let degrees = |k: usize| (k - k / 2, k / 2);
     let mut values = Vec::new();
     let mut failure = ResummationError::Undefined;

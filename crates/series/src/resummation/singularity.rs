@@ -13,6 +13,7 @@ use super::Complex;
 use super::complex::{derivative, evaluate, zeros};
 use super::estimate::distance;
 use super::linear::Echelon;
+use super::maps::multiply;
 use rug::Float;
 
 /// What kind of singularity an exponent means.
@@ -141,12 +142,19 @@ pub fn nearest_singularity(c: &[Float], bits: u32) -> Option<Singularity> {
             gaps.get(gaps.len() * 3 / 4).or(gaps.last()).map(|g| Float::with_val(53, *g))
         };
         let (error, exponent_error) = (worst(|p| &p.0)?, worst(|p| &p.1)?);
-        // The exponent of a pair need not be real, that of a real singularity of a real
-        // function is; a removable one (alpha a positive integer) is no singularity.
         let exponent = alpha.re.clone();
+        // A zero with alpha = 1, 2, ... is where the equation, not the function, is singular.
+        let whole = exponent.to_f64().round();
+        if whole >= 1.0 && distance(&exponent, &Float::with_val(53, whole)) < 0.05 {
+            continue;
+        }
         let kind = kind(&exponent, &exponent_error)?;
+        let refined = if kind == Kind::SquareRoot { square_root(&scaled, z, bits) } else { None };
+        let (at, error) = refined
+            .filter(|(at, _)| at.sub(z).abs() < Float::with_val(53, &modulus * SAME))
+            .unwrap_or((z.clone(), error));
         return Some(Singularity {
-            at: z.clone().shift(shift),
+            at: at.shift(shift),
             error: error << shift,
             exponent,
             exponent_error,
@@ -154,6 +162,63 @@ pub fn nearest_singularity(c: &[Float], bits: u32) -> Option<Singularity> {
         });
     }
     None
+}
+
+/// A square root branch point near `start`, from quadratic approximants p f^2 + q f + r =
+/// O(x^(deg p + deg q + deg r + 2)): a zero of the discriminant q^2 - 4 p r. They have such branch
+/// points themselves and converge faster than the differential ones (R. E. Shafer, SIAM J.
+/// Numer. Anal. 11 (1974) 447). Returned: that of the highest order, and the largest distance of
+/// the others from it.
+fn square_root(c: &[Float], start: &Complex, bits: u32) -> Option<(Complex, Float)> {
+    let square = multiply(c, c, bits);
+    let order = c.len().checked_sub(1)?;
+    let mut list: Vec<Complex> = Vec::new();
+    for drop in 0..5 {
+        let free = order.checked_sub(2 + drop)?;
+        let first = free / 3;
+        let second = (free - first) / 2;
+        let (p, q, r) = (first, second, free - first - second);
+        let rows = free + 2;
+        let at = |list: &[Float], i: usize, j: usize| -> Float {
+            let entry = i.checked_sub(j).and_then(|k| list.get(k)).cloned();
+            entry.unwrap_or_else(|| Float::new(bits))
+        };
+        let row = |i: usize| -> Vec<Float> {
+            let mut row: Vec<Float> = (0..=p).map(|j| at(&square, i, j)).collect();
+            row.extend((0..=q).map(|j| at(c, i, j)));
+            row.extend((0..=r).map(|j| Float::with_val(bits, u32::from(i == j))));
+            row
+        };
+        let echelon = Echelon::new((0..rows).map(row).collect(), bits);
+        let Some(vector) = echelon.kernel() else { continue };
+        let (left, rest) = vector.split_at_checked(p + 1)?;
+        let (middle, right) = rest.split_at_checked(q + 1)?;
+        let pad = |list: &[Float]| -> Vec<Float> {
+            let mut list = list.to_vec();
+            list.resize(2 * rows, Float::new(bits));
+            list
+        };
+        let product = multiply(&pad(left), &pad(right), bits);
+        let squared = multiply(&pad(middle), &pad(middle), bits);
+        let discriminant: Vec<Float> = squared
+            .iter()
+            .zip(&product)
+            .map(|(s, p)| Float::with_val(bits, s - (p.clone() << 2u32)))
+            .collect();
+        let slope = derivative(&discriminant);
+        let mut z = start.clone();
+        for _ in 0..bits.ilog2() + 8 {
+            let step = evaluate(&discriminant, &z).div(&evaluate(&slope, &z));
+            if !step.is_finite() {
+                break;
+            }
+            z = z.sub(&step);
+        }
+        list.push(z);
+    }
+    let (best, others) = list.split_first()?;
+    let error = others.iter().map(|z| z.sub(best).abs()).reduce(|a, b| a.max(&b))?;
+    Some((best.clone(), Float::with_val(53, error)))
 }
 
 /// The kind of an exponent.
@@ -205,7 +270,7 @@ mod tests {
             (1.0 / 3.0, Kind::Power),
         ] {
             let singular = power(p, -2.0, order);
-            let mut c = super::super::maps::multiply(&singular, &exponential, BITS);
+            let mut c = multiply(&singular, &exponential, BITS);
             for (x, y) in c.iter_mut().zip(power(-1.0, -5.0, order)) {
                 *x += y;
             }
@@ -232,7 +297,7 @@ mod tests {
         let exponential = |n: u32| Float::with_val(BITS, Float::factorial(n)).recip();
         let log: Vec<Float> = (0..=order).map(term).collect();
         let smooth: Vec<Float> = (0..=order).map(exponential).collect();
-        let found = nearest_singularity(&super::super::maps::multiply(&log, &smooth, BITS), BITS);
+        let found = nearest_singularity(&multiply(&log, &smooth, BITS), BITS);
         let found = found.unwrap();
         assert!((found.at.re.to_f64() + 3.0).abs() < 1e-8);
         assert_eq!(found.kind, Kind::Logarithm);
