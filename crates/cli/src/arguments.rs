@@ -96,8 +96,31 @@ pub struct EvaluateOptions {
     /// How the series is summed; auto takes the least error estimate and says why.
     #[arg(long, value_enum, default_value_t = Resum::Auto)]
     pub resum: Resum,
+    /// The solution x(t) at these times, x(0) = amplitude, x'(0) = 0 but for --phase.
+    #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
+    pub times: Option<String>,
+    /// x(t) = X(omega t + PHASE).
+    #[arg(long, value_name = "PHASE", default_value = "0", allow_hyphen_values = true)]
+    pub phase: String,
+    /// A figure of the solution (.svg) or a table (.csv); may be given twice. One period without
+    /// --times.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Vec<PathBuf>,
+    /// The solution as a function in this language instead of the report.
+    #[arg(long, value_enum)]
+    pub code: Option<Language>,
+    /// Harmonics in the code.
+    #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=512))]
+    pub harmonics: u32,
     #[command(flatten)]
     pub precision: Precision,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Language {
+    Rust,
+    Python,
+    Latex,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

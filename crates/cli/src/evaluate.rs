@@ -1,15 +1,17 @@
 //! `lindstedt evaluate`: numbers from the expansion.
 
+mod code;
 mod report;
+mod trajectory;
 
 use crate::Outcome;
 use crate::arguments::{EvaluateOptions, Format, Resum};
-use crate::failure::{Failure, UNDECIDED};
+use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
 use crate::output;
 use crate::session::{Session, digits, parameters, problem};
-use lindstedt::evaluate::{EvaluateSettings, evaluate};
+use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
 use lindstedt::series::resummation::Method;
-use lindstedt::{Error, Progress, expand::ExpandError};
+use lindstedt::{Error, Progress, Value, expand::ExpandError};
 use report::Report;
 
 pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
@@ -21,6 +23,7 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         digits: digits(&options.precision)?,
         memory: session.memory(),
     };
+    let times = trajectory::Request::read(options)?;
     output::check_writable(session)?;
     let mut observer = |progress: Progress| {
         if let Progress::Primes(n) = progress {
@@ -28,17 +31,36 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         }
         session.goes_on()
     };
-    let result = evaluate(&problem, &settings, &mut observer).map_err(|error| match error {
-        Error::Expand(ExpandError::Interrupted { .. }) if !session.interrupted() => Failure {
-            exit: UNDECIDED,
-            code: "time-limit",
-            message: "the time limit was reached before the expansion was finished".to_owned(),
-            hint: "raise --limit-seconds or lower --order".to_owned(),
-        },
-        other => other.into(),
-    })?;
+    let fail = |error| failure(error, session);
+    let solution = match &times {
+        None => None,
+        Some(request) => {
+            let phase = Value::parse(&options.phase)?;
+            let found = Trajectory::new(&problem, &settings, phase, &mut observer).map_err(fail)?;
+            if let Some(language) = options.code {
+                session.done();
+                let text = code::write(&problem, &found, language, options.harmonics)?;
+                output::write(session, &text)?;
+                return Ok(0);
+            }
+            Some(trajectory::Table::compute(request, &found, session)?)
+        }
+    };
+    let result = evaluate(&problem, &settings, &mut observer).map_err(fail)?;
     session.done();
-    let report = Report { problem: &problem, result: &result, resum: options.resum };
+    for path in &options.plot {
+        if let Some(table) = &solution {
+            let contents = table.file(path, &problem)?;
+            std::fs::write(path, contents)
+                .map_err(|error| output::trouble(&path.display().to_string(), &error))?;
+        }
+    }
+    let report = Report {
+        problem: &problem,
+        result: &result,
+        resum: options.resum,
+        solution: solution.as_ref(),
+    };
     let text = match session.format() {
         Format::Json => format!("{:#}\n", report.json(session)),
         Format::Text => report.text(),
@@ -46,11 +68,27 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         Format::Markdown => report.markdown(),
     };
     output::write(session, &text)?;
+    if solution.as_ref().is_some_and(|table| !table.finished) {
+        output::warn("stopped; the times not reached are missing");
+        return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
+    }
     if result.period.is_none() {
         output::warn("the expansion gives not one digit of the period here");
         return Ok(UNDECIDED);
     }
     Ok(0)
+}
+
+fn failure(error: Error, session: &Session<'_>) -> Failure {
+    match error {
+        Error::Expand(ExpandError::Interrupted { .. }) if !session.interrupted() => Failure {
+            exit: UNDECIDED,
+            code: "time-limit",
+            message: "the time limit was reached before the expansion was finished".to_owned(),
+            hint: "raise --limit-seconds or lower --order".to_owned(),
+        },
+        other => other.into(),
+    }
 }
 
 fn method(resum: Resum) -> Option<Method> {

@@ -1,6 +1,7 @@
 //! The presentation of an evaluation.
 
 use super::flag;
+use super::trajectory::Table;
 use crate::arguments::Resum;
 use crate::derive::number_json;
 use crate::session::Session;
@@ -16,6 +17,7 @@ pub struct Report<'a> {
     pub problem: &'a Problem,
     pub result: &'a Evaluation,
     pub resum: Resum,
+    pub solution: Option<&'a Table>,
 }
 
 /// A double for a picture.
@@ -75,6 +77,7 @@ impl Report<'_> {
                 "poles": picture.poles.iter().map(|p| json!({"at": pair(&p.at), "residue": pair(&p.residue), "spurious": p.spurious})).collect::<Vec<_>>(),
                 "zeros": picture.zeros.iter().map(pair).collect::<Vec<_>>(),
             })),
+            "solution": self.solution.map(Table::json),
             "seconds": session.elapsed().as_secs_f64(),
         })
     }
@@ -169,6 +172,9 @@ impl Report<'_> {
         for (label, value) in self.lines() {
             let _ = writeln!(text, "  {label:<24} {value}");
         }
+        if let Some(table) = self.solution {
+            text.push_str(&table.text());
+        }
         text
     }
 
@@ -177,6 +183,12 @@ impl Report<'_> {
         for (label, value) in self.lines() {
             let escape = |s: &str| s.trim().replace('|', "\\|").replace('*', "\\*");
             let _ = writeln!(text, "| {} | {} |", escape(&label), escape(&value));
+        }
+        if let Some(table) = self.solution {
+            text.push_str("\n| t | x | error |\n|---|---|---|\n");
+            for [time, value, error] in table.rows() {
+                let _ = writeln!(text, "| {time} | {value} | {error} |");
+            }
         }
         text
     }
@@ -189,6 +201,13 @@ impl Report<'_> {
             let _ = writeln!(text, "{} & {} \\\\", escape(&label), escape(&value));
         }
         text.push_str("\\end{tabular}\n");
+        if let Some(table) = self.solution {
+            text.push_str("\\begin{tabular}{lll}\nt & x & error \\\\\n");
+            for [time, value, error] in table.rows() {
+                let _ = writeln!(text, "{time} & {value} & {error} \\\\");
+            }
+            text.push_str("\\end{tabular}\n");
+        }
         text
     }
 }

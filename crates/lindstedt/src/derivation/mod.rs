@@ -117,7 +117,7 @@ pub struct Derivation {
     pub solution: Solution,
     /// The amplitude that was asked for or is the default; nothing where there is none.
     pub amplitude: Option<Value>,
-    constants: Constants,
+    pub(crate) constants: Constants,
 }
 
 /// The name of the formal function whose Taylor coefficients are the sums S_n.

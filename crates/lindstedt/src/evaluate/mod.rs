@@ -3,6 +3,7 @@
 
 mod closed;
 mod coefficients;
+mod solution;
 mod source;
 
 use crate::number::{Number, Status, certified};
@@ -14,6 +15,7 @@ use lindstedt_series::resummation::{
     Growth, Kind, Method, Pade, Picture, ResummationError, Resummed, resum,
 };
 use rug::Float;
+pub use solution::{Displacement, Trajectory};
 use source::Source;
 use std::collections::BTreeMap;
 
@@ -157,6 +159,24 @@ pub fn evaluate(
     };
     result.verdict = result.describe();
     Ok(result)
+}
+
+/// The period with its estimated error, for a solution without closed form; the order is that of
+/// the period's own default at least.
+fn period(
+    problem: &Problem,
+    settings: &EvaluateSettings,
+    observer: &mut dyn FnMut(Progress) -> bool,
+) -> Result<Ball, Error> {
+    let order = settings.order.unwrap_or(0).max(default_order(problem));
+    let source = source::source(problem, &settings.parameters, order, settings.memory, observer)?;
+    let found = resum(&|bits| source.sample(bits), None, bits_for(settings.digits));
+    let found =
+        found.map_err(|reason| Error::Resummation { problem: problem.name.to_owned(), reason })?;
+    let balls = Balls::new(found.bits);
+    let estimate = &found.outcome.estimate;
+    Ok(balls
+        .mul(&balls.from_parts(&estimate.value, &estimate.error), &period_scale(&source, balls)?))
 }
 
 /// 2 pi times the factor of the series.

@@ -78,6 +78,18 @@ impl Given<'_> {
     }
 }
 
+/// As [`source`] without coefficients: the point, and the closed form.
+pub(super) fn point(problem: &Problem, values: &BTreeMap<String, Value>) -> Result<Source, Error> {
+    check_parameters(problem, values)?;
+    let given = Given { problem, values };
+    match problem.amplitude {
+        AmplitudeRole::ScalesFrequency { .. } => power_law(&given, 0),
+        AmplitudeRole::InSums => pendulum(&given, 0),
+        AmplitudeRole::InSmallParameter => duffing(&given, Vec::new()),
+        AmplitudeRole::Determined => limit_cycle(&given, Vec::new()),
+    }
+}
+
 /// The series of a problem. Problems over Q are derived by the driver to `order`; the others
 /// have their coefficients by the energy integral when asked for.
 pub(super) fn source(
