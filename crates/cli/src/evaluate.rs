@@ -14,6 +14,9 @@ use lindstedt::series::resummation::Method;
 use lindstedt::{Error, Progress, Value, expand::ExpandError};
 use report::Report;
 
+/// Digits of a double.
+const DOUBLE: usize = 16;
+
 pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     let problem = problem(&options.problem)?;
     let settings = EvaluateSettings {
@@ -32,11 +35,16 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         session.goes_on()
     };
     let fail = |error| failure(error, session);
+    let result = evaluate(&problem, &settings, &mut observer).map_err(fail)?;
     let solution = match &times {
         None => None,
         Some(request) => {
             let phase = Value::parse(&options.phase)?;
-            let found = Trajectory::new(&problem, &settings, phase, &mut observer).map_err(fail)?;
+            // A figure or a function in doubles needs no more than these.
+            let digits = if options.times.is_some() { settings.digits } else { DOUBLE };
+            let settings = EvaluateSettings { digits, ..settings.clone() };
+            let found = Trajectory::new(&problem, &settings, &result, phase, &mut observer)
+                .map_err(fail)?;
             if let Some(language) = options.code {
                 session.done();
                 let text = code::write(&problem, &found, language, options.harmonics)?;
@@ -46,7 +54,6 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
             Some(trajectory::Table::compute(request, &found, session)?)
         }
     };
-    let result = evaluate(&problem, &settings, &mut observer).map_err(fail)?;
     session.done();
     for path in &options.plot {
         if let Some(table) = &solution {

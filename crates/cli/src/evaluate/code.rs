@@ -23,7 +23,7 @@ pub fn write(
         hint: "lower or raise --order, or --resum none".to_owned(),
     })?;
     let size = list.iter().fold(0.0f64, |m, (c, s)| m.max(c.abs()).max(s.abs()));
-    let small = (size * 1e-17).max(size * trajectory.negligible());
+    let small = size * trajectory.negligible();
     let keep = |x: f64| if x.abs() > small { x } else { 0.0 };
     let terms: Vec<Term> = list
         .iter()

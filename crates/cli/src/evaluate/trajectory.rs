@@ -10,6 +10,7 @@ use lindstedt::coeff::ball::Balls;
 use lindstedt::equation::Problem;
 use lindstedt::evaluate::{Displacement, Trajectory};
 use plotters::prelude::*;
+use rayon::prelude::*;
 use rug::Rational;
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
@@ -19,6 +20,8 @@ use std::path::Path;
 const MOST_TIMES: u32 = 100_000;
 /// Points of a figure for which no times are given.
 const POINTS: u32 = 129;
+/// Times between two looks at the clock.
+const BLOCK: usize = 16;
 const SIZE: (u32, u32) = (960, 540);
 
 /// The times asked for.
@@ -78,7 +81,7 @@ impl Request {
 pub struct Table {
     points: Vec<Displacement>,
     order: usize,
-    resum: &'static str,
+    resum: String,
     pub finished: bool,
 }
 
@@ -90,15 +93,16 @@ impl Table {
     ) -> Result<Self, Failure> {
         let times = request.times(trajectory);
         let mut points = Vec::new();
-        for time in &times {
+        for block in times.chunks(BLOCK) {
             if !session.goes_on() {
                 break;
             }
             session.say(format!("x(t): {} of {}", points.len(), times.len()));
-            points.push(trajectory.at(time));
+            points.par_extend(block.par_iter().map(|time| trajectory.at(time)));
         }
         let finished = points.len() == times.len();
-        let (order, resum) = (trajectory.order(), flag(trajectory.method()));
+        let methods: Vec<&str> = trajectory.methods().iter().map(|m| flag(*m)).collect();
+        let (order, resum) = (trajectory.order(), methods.join(" or "));
         Ok(Self { points, order, resum, finished })
     }
 
@@ -110,7 +114,9 @@ impl Table {
                 Some(number) => number.decimal.clone(),
                 None => format!("{:.1e}", point.double),
             };
-            [format!("{time:?}"), value, format!("{:.1e}", point.error)]
+            // The bound belongs to the digits that are printed.
+            let error = point.value.as_ref().and_then(|number| number.error.clone());
+            [format!("{time:?}"), value, error.unwrap_or_else(|| format!("{:.1e}", point.error))]
         })
     }
 

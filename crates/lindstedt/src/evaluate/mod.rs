@@ -63,6 +63,8 @@ pub struct Evaluation {
     pub best_truncation: Option<(usize, Option<Number>)>,
     /// What is proved about the radius of convergence: its value, and why.
     pub radius: Option<(f64, &'static str)>,
+    /// The best that is known of the period: the closed form, else the estimate.
+    best_period: Ball,
     /// In words.
     pub verdict: String,
     /// Poles and zeros of the diagonal Pade approximant of the highest order.
@@ -154,29 +156,12 @@ pub fn evaluate(
         resummed,
         best_truncation: best,
         radius: source.radius,
+        best_period: closed.unwrap_or(period),
         verdict: String::new(),
         picture,
     };
     result.verdict = result.describe();
     Ok(result)
-}
-
-/// The period with its estimated error, for a solution without closed form; the order is that of
-/// the period's own default at least.
-fn period(
-    problem: &Problem,
-    settings: &EvaluateSettings,
-    observer: &mut dyn FnMut(Progress) -> bool,
-) -> Result<Ball, Error> {
-    let order = settings.order.unwrap_or(0).max(default_order(problem));
-    let source = source::source(problem, &settings.parameters, order, settings.memory, observer)?;
-    let found = resum(&|bits| source.sample(bits), None, bits_for(settings.digits));
-    let found =
-        found.map_err(|reason| Error::Resummation { problem: problem.name.to_owned(), reason })?;
-    let balls = Balls::new(found.bits);
-    let estimate = &found.outcome.estimate;
-    Ok(balls
-        .mul(&balls.from_parts(&estimate.value, &estimate.error), &period_scale(&source, balls)?))
 }
 
 /// 2 pi times the factor of the series.

@@ -1,16 +1,17 @@
 //! The solution x(t) at given times: the expansion at the phase omega t, order by order, and its
 //! series in the small parameter summed there.
 
-use super::{EvaluateSettings, bits_for, estimated, source};
+use super::{EvaluateSettings, Evaluation, bits_for, estimated, source};
 use crate::number::Number;
 use crate::{Derivation, Error, Progress, Settings, Solution, Value, derive};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::{AmplitudeRole, Problem};
 use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
 use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
-use lindstedt_series::resummation::{Method, Sample, UniformMap, resum};
+use lindstedt_series::resummation::{Method, Resummed, Sample, UniformMap, resum};
 use rug::Float;
-use rug::ops::Pow;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 /// x at one time.
 #[derive(Clone, Debug)]
@@ -38,7 +39,7 @@ pub struct Trajectory {
     speed: f64,
     /// x(t) = X(omega t + phase).
     phase: Value,
-    method: Method,
+    methods: Vec<Method>,
     digits: usize,
     /// The period.
     pub period: f64,
@@ -48,7 +49,7 @@ pub struct Trajectory {
 fn default_order(problem: &Problem) -> usize {
     match problem.amplitude {
         AmplitudeRole::ScalesFrequency { .. } => 10,
-        AmplitudeRole::InSums => 7,
+        AmplitudeRole::InSums => 8,
         AmplitudeRole::InSmallParameter => 24,
         AmplitudeRole::Determined => 40,
     }
@@ -57,14 +58,15 @@ fn default_order(problem: &Problem) -> usize {
 impl Trajectory {
     /// Derives the solution of a problem, x(0) = a, x'(0) = 0 at phase 0.
     ///
-    /// The frequency is the closed form's where there is one, else the resummed one of
-    /// [`super::evaluate`] with its error.
+    /// The frequency is the closed form's where there is one, else the resummed one, with its
+    /// error, of `evaluation` (by [`super::evaluate`] with the same settings).
     ///
     /// # Errors
     /// As [`super::evaluate`] and [`crate::derive`].
     pub fn new(
         problem: &Problem,
         settings: &EvaluateSettings,
+        evaluation: &Evaluation,
         phase: Value,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Self, Error> {
@@ -72,10 +74,7 @@ impl Trajectory {
         let digits = settings.digits.min(30);
         let point = source::point(problem, &settings.parameters)?;
         let balls = Balls::new(bits_for(digits).saturating_add(64));
-        let period = match &point.closed {
-            Some((_, formula)) => formula(balls).ok_or(Error::NoValue)?,
-            None => super::period(problem, settings, observer)?,
-        };
+        let period = evaluation.best_period.clone();
         let two_pi = balls.mul_i64(&balls.pi(), 2);
         let frequency = balls.div(&two_pi, &period).ok_or(Error::NoValue)?;
         let mut parameters = settings.parameters.clone();
@@ -89,16 +88,15 @@ impl Trajectory {
         let one = || Value::Rational(rug::Rational::from(1));
         let given = |name: &str| point.at.iter().find(|(n, _)| *n == name).map(|(_, v)| v.clone());
         let eps = given("eps").map_or(0.0, |v| v.ball(balls).midpoint().to_f64().abs());
-        let method = match settings.method {
-            Some(method @ (Method::PartialSum | Method::Pade | Method::BorelPade)) => method,
-            _ if matches!(
-                problem.amplitude,
-                AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::InSmallParameter
-            ) =>
-            {
-                Method::UniformPade
-            }
-            _ => Method::Pade,
+        let methods = match settings.method {
+            Some(
+                method @ (Method::PartialSum
+                | Method::Pade
+                | Method::Uniform
+                | Method::UniformPade
+                | Method::BorelPade),
+            ) => vec![method],
+            _ => vec![Method::Pade, Method::UniformPade],
         };
         let limit_cycle = matches!(problem.amplitude, AmplitudeRole::Determined);
         Ok(Self {
@@ -115,16 +113,17 @@ impl Trajectory {
             // Van der Pol: |x| <= about 2, |x'| <= (2/3) eps + ... in Lienard's plane.
             speed: 3.0 + 2.0 * eps,
             phase,
-            method,
+            methods,
             digits,
             period: period.midpoint().to_f64(),
         })
     }
 
-    /// The method that sums the series in the small parameter at every phase.
+    /// The methods that sum the series in the small parameter; at every phase the one with the
+    /// least error estimate.
     #[must_use]
-    pub fn method(&self) -> Method {
-        self.method
+    pub fn methods(&self) -> &[Method] {
+        &self.methods
     }
 
     /// The order of the solution.
@@ -156,7 +155,12 @@ impl Trajectory {
         let drift = balls.mul(&t, &self.frequency).radius().to_f64()
             / self.frequency.midpoint().to_f64().abs();
         let point = Point::Rational(tau.midpoint().to_rational()?);
+        // The methods ask for the same precisions: each is computed once.
+        let known: RefCell<BTreeMap<u32, Sample>> = RefCell::default();
         let source = |bits: u32| {
+            if let Some(sample) = known.borrow().get(&bits) {
+                return Some(sample.clone());
+            }
             let balls = Balls::new(bits).with_guard(64);
             let map = UniformMap {
                 scale: Float::with_val(bits, 1),
@@ -164,7 +168,7 @@ impl Trajectory {
                 radius: None,
             };
             let coefficients = self.coefficients(&point, balls)?;
-            Some(Sample {
+            let sample = Sample {
                 coefficients: coefficients
                     .iter()
                     .map(|c| Float::with_val(bits, c.midpoint()))
@@ -172,9 +176,14 @@ impl Trajectory {
                 point: Float::with_val(bits, (self.small)(balls)?.midpoint()),
                 map: Some(map),
                 bits,
-            })
+            };
+            known.borrow_mut().insert(bits, sample.clone());
+            Some(sample)
         };
-        let found = resum(&source, Some(self.method), bits_for(self.digits)).ok()?;
+        let sums = self.methods.iter();
+        let sums = sums.filter_map(|m| resum(&source, Some(*m), bits_for(self.digits)).ok());
+        let error = |found: &Resummed| found.outcome.estimate.error.clone();
+        let found = sums.min_by(|a, b| error(a).total_cmp(&error(b)))?;
         let balls = Balls::new(found.bits);
         let estimate = &found.outcome.estimate;
         let ball = balls.from_parts(&estimate.value, &estimate.error);
@@ -252,9 +261,9 @@ impl Trajectory {
         self.frequency.midpoint().to_f64()
     }
 
-    /// 10^-digits, below which a harmonic is not worth a line.
+    /// 10^-digits (15 at most), below which a harmonic is not worth a line.
     #[must_use]
     pub fn negligible(&self) -> f64 {
-        10f64.pow(-(self.digits.min(17) as i32))
+        10f64.powi(-(self.digits.min(15) as i32))
     }
 }

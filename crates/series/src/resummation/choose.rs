@@ -60,12 +60,12 @@ pub fn resum(
     accuracy: u32,
 ) -> Result<Resummed, ResummationError> {
     let sample = |bits: u32| source(bits).ok_or(ResummationError::NoCoefficients { bits });
-    let order = sample(64)?.coefficients.len();
+    let first = sample(accuracy.saturating_add(128))?;
     // Pade approximants of order N lose a few bits per order.
-    let bits = accuracy
-        .saturating_add(64)
-        .saturating_add(u32::try_from(order).unwrap_or(u32::MAX).saturating_mul(4));
-    let (low, high) = (sample(bits)?, sample(bits.saturating_mul(2))?);
+    let loss = u32::try_from(first.coefficients.len()).unwrap_or(u32::MAX).saturating_mul(4);
+    let bits = accuracy.saturating_add(64).saturating_add(loss);
+    let low = if first.bits >= bits { first } else { sample(bits)? };
+    let high = sample(low.bits.saturating_mul(2))?;
     let growth = growth(&low.coefficients);
     let singularity = match growth {
         Growth::Factorial { .. } | Growth::Entire => None,

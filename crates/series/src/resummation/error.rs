@@ -28,9 +28,6 @@ pub enum ResummationError {
     /// No change of variable is known for this series.
     #[error("no change of variable is known for this series")]
     NoMap,
-    /// A change of variable that is analytic at 0 cannot help where the radius is zero.
-    #[error("the series has radius of convergence zero, which no change of variable mends")]
-    ZeroRadius,
     /// No singularity was found to build a conformal map on.
     #[error("no stable singularity was found in the coefficients")]
     NoSingularity,

@@ -60,7 +60,11 @@ pub(super) fn settle(
                 f64::INFINITY
             } else {
                 let factor = 1.0 / (ratio - 2.0).max(1.0 / worst);
-                if trusting { factor.max((2.0 * factor.sqrt()).clamp(1e-9, 1.0)) } else { factor.max(1.0) }
+                if trusting {
+                    factor.max((2.0 * factor.sqrt()).clamp(1e-9, 1.0))
+                } else {
+                    factor.max(1.0)
+                }
             }
         }
         Some(_) => 1.0,

@@ -196,9 +196,6 @@ impl Sample {
     /// The coefficients in u, u itself, and (1 - u)^-p.
     fn uniform(&self) -> Result<(Vec<Float>, Float, Float), ResummationError> {
         let map = self.map.as_ref().ok_or(ResummationError::NoMap)?;
-        if matches!(growth(&self.coefficients), Growth::Factorial { .. }) {
-            return Err(ResummationError::ZeroRadius);
-        }
         let change = Map::Rational { scale: map.scale.clone() };
         let u = change.inverse(&self.point, self.bits)?;
         let c = change.expand(&self.coefficients, &map.prefactor, self.bits);
