@@ -74,9 +74,11 @@ pub fn resum(
     let methods = method.map_or_else(|| Method::ALL.to_vec(), |method| vec![method]);
     let mut tried = Vec::new();
     let mut best: Option<(Method, Outcome, u32)> = None;
+    let mut values: Vec<Outcome> = Vec::new();
     for method in methods {
         let found = settled(&sample, [&low, &high], method, singularity.as_ref(), accuracy);
         if let Ok((outcome, bits)) = &found {
+            values.push(outcome.clone());
             let error = &outcome.estimate.error;
             let better = best.as_ref().is_none_or(|(_, best, _)| {
                 // Below the accuracy asked for there is no better.
@@ -92,7 +94,17 @@ pub fn resum(
         tried.push((method, found.map(|(outcome, _)| outcome.estimate.error)));
     }
     match best {
-        Some((method, outcome, bits)) => {
+        Some((method, mut outcome, bits)) => {
+            // The least of several estimates is more often too small than each: where another
+            // method with a comparable estimate disagrees, the disagreement is added.
+            let own = outcome.estimate.clone();
+            for other in &values {
+                if other.estimate.error <= Float::with_val(53, &own.error * 100u32) {
+                    let gap = distance(&other.estimate.value, &own.value);
+                    let sum = Float::with_val(53, &own.error + gap);
+                    outcome.estimate.error = outcome.estimate.error.max(&sum);
+                }
+            }
             Ok(Resummed { method, outcome, growth, singularity, tried, bits })
         }
         None => Err(tried.pop().and_then(|(_, r)| r.err()).unwrap_or(ResummationError::Undefined)),

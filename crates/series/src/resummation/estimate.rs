@@ -30,8 +30,8 @@ fn spread(list: &[Float], value: &Float) -> Option<Float> {
 ///
 /// For errors e q^k the spread s1 of the `window` values before the last one and the spread s2
 /// of the `window` before these satisfy s2/s1 - 1 = q^-window, so that |error| = s1/(s2/s1 - 2);
-/// the estimate is that where it is above s1, s1 where it is below or, if `trusting`, twice the geometric mean
-/// with s1, and at most s1 times the number of the last approximant: then the sequence converges slower than a geometric one, and for an error k^-p
+/// the estimate is that, but at least s1, and at most s1 times the number of the last approximant:
+/// then the sequence converges slower than a geometric one, and for an error k^-p
 /// the remainder is about s1 k/(p window). Four times the result, for luck in the differences.
 ///
 /// Infinite where s2 < s1 (the sequence runs away) and for approximants below number six.
@@ -39,12 +39,7 @@ fn spread(list: &[Float], value: &Float) -> Option<Float> {
 ///
 /// What fools it: errors that oscillate with a period of more than some four windows and hardly
 /// decrease, as at the edge of a disc with a singularity at a small angle to the point.
-pub(super) fn settle(
-    values: &[Float],
-    window: usize,
-    number: usize,
-    trusting: bool,
-) -> Option<Estimate> {
+pub(super) fn settle(values: &[Float], window: usize, number: usize) -> Option<Estimate> {
     let (value, before) = values.split_last()?;
     if before.is_empty() || !value.is_finite() {
         return None;
@@ -60,11 +55,7 @@ pub(super) fn settle(
                 f64::INFINITY
             } else {
                 let factor = 1.0 / (ratio - 2.0).max(1.0 / worst);
-                if trusting {
-                    factor.max((2.0 * factor.sqrt()).clamp(1e-9, 1.0))
-                } else {
-                    factor.max(1.0)
-                }
+                factor.max(1.0)
             }
         }
         Some(_) => 1.0,
@@ -116,11 +107,11 @@ mod tests {
         let mut checked = 0;
         for model in &models {
             for number in 8..60usize {
-                for (window, trusting) in [(3usize, false), (4, true)] {
+                for window in [3usize, 4] {
                     let list: Vec<Float> = (number.saturating_sub(12).max(1)..=number)
                         .map(|k| Float::with_val(200, 1.0) + model(k as f64))
                         .collect();
-                    let found = settle(&list, window, number, trusting).unwrap();
+                    let found = settle(&list, window, number).unwrap();
                     let error = model(number as f64).abs();
                     // Not below the rounding, which the caller measures, and not before anything
                     // has converged.

@@ -229,7 +229,7 @@ fn scaled(mut outcome: Outcome, factor: &Float) -> Outcome {
 fn convergent(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationError> {
     let sums = partial_sums(c, x, bits);
     let order = sums.len() - 1;
-    let estimate = settle(&sums, SUMS.min(order / 2).max(1), order, false);
+    let estimate = settle(&sums, SUMS.min(order / 2).max(1), order);
     let estimate = estimate.ok_or(ResummationError::Undefined)?;
     Ok(Outcome { estimate, order, degrees: None, smallest_term: None })
 }
@@ -295,7 +295,7 @@ fn staircase(
     }
     let list: Vec<Float> = values.into_iter().map(|(_, v)| v).collect();
     let window = APPROXIMANTS.min((list.len() - 1).div_ceil(2)).max(1);
-    let estimate = settle(&list, window, order, window == APPROXIMANTS);
+    let estimate = settle(&list, window, order);
     let estimate = estimate.ok_or(ResummationError::Undefined)?;
     Ok(Outcome { estimate, order: used, degrees: Some(pade_degrees), smallest_term: None })
 }
