@@ -21,6 +21,8 @@ pub struct Resummed {
     pub bits: u32,
 }
 
+/// What the least of several estimates is multiplied by.
+const SELECTION: u32 = 4;
 /// Doublings of the precision before the rounding is added to the error as it is.
 const DOUBLINGS: u32 = 4;
 
@@ -98,6 +100,9 @@ pub fn resum(
             // The least of several estimates is more often too small than each: where another
             // method with a comparable estimate disagrees, the disagreement is added.
             let own = outcome.estimate.clone();
+            if tried.len() > 1 {
+                outcome.estimate.error *= SELECTION;
+            }
             for other in &values {
                 if other.estimate.error <= Float::with_val(53, &own.error * 100u32) {
                     let gap = distance(&other.estimate.value, &own.value);

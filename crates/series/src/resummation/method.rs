@@ -180,14 +180,21 @@ impl Sample {
 
     fn partial_sum(&self) -> Result<Outcome, ResummationError> {
         let sums = partial_sums(&self.coefficients, &self.point, self.bits);
-        let diverges = match growth(&self.coefficients) {
-            Growth::Factorial { .. } => true,
-            Growth::Radius(radius) => self.point.clone().abs() > radius * 1.02,
-            _ => false,
+        // The size of the error in units of the terms about the smallest one: an asymptotic series
+        // has it below one, but a short one may be mistaken for it; outside a disc of convergence
+        // nothing bounds it, four is a guess.
+        let units = match growth(&self.coefficients) {
+            Growth::Factorial { .. } => Some(3u32),
+            Growth::Radius(radius) if self.point.clone().abs() > radius * 1.02 => Some(4),
+            _ => None,
         };
         // The smallest term among the last ones is no smallest term yet.
-        let best = best_truncation(&sums).filter(|(order, _)| order + 2 < sums.len());
-        if let Some((order, estimate)) = best.filter(|_| diverges) {
+        let inside = |order: usize| {
+            if units == Some(3) { order + 2 < sums.len() } else { 3 * order < 2 * sums.len() }
+        };
+        let best = best_truncation(&sums).filter(|(order, _)| inside(*order));
+        if let (Some((order, mut estimate)), Some(units)) = (best, units) {
+            estimate.error *= units;
             return Ok(Outcome { estimate, order, degrees: None, smallest_term: Some(order) });
         }
         convergent(&self.coefficients, &self.point, self.bits)
