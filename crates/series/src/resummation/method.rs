@@ -193,7 +193,15 @@ impl Sample {
             if units == Some(3) { order + 2 < sums.len() } else { 3 * order < 2 * sums.len() }
         };
         let best = best_truncation(&sums).filter(|(order, _)| inside(*order));
-        if let (Some((order, mut estimate)), Some(units)) = (best, units) {
+        // Terms that do not grow well beyond the smallest ones are no divergence yet.
+        let terms = sums.windows(2).map(|pair| distance(&pair[1], &pair[0]));
+        let late = terms.skip(sums.len() * 2 / 3).reduce(|a, b| a.max(&b));
+        let grows = |estimate: &Estimate| {
+            late.as_ref().is_some_and(|late| *late > Float::with_val(53, &estimate.error * 4u32))
+        };
+        if let (Some((order, mut estimate)), Some(units)) = (best, units)
+            && grows(&estimate)
+        {
             estimate.error *= units;
             return Ok(Outcome { estimate, order, degrees: None, smallest_term: Some(order) });
         }
