@@ -50,8 +50,7 @@ pub fn growth(c: &[Float]) -> Growth {
             (n, near.fold(f64::NEG_INFINITY, |top, (m, y)| top.max(y + slope * (n - m))))
         })
         .collect();
-    let (Some(factorial), Some(power)) =
-        (fit(&envelope, |n| log_factorial(n)), fit(&envelope, f64::ln))
+    let (Some(factorial), Some(power)) = (fit(&envelope, log_factorial), fit(&envelope, f64::ln))
     else {
         return Growth::Undecided;
     };
@@ -97,8 +96,9 @@ fn fit(points: &[(f64, f64)], f: impl Fn(f64) -> f64) -> Option<[f64; 3]> {
         }
         for i in k + 1..3 {
             let factor = normal[i][k] / pivot;
-            for j in k..4 {
-                normal[i][j] -= factor * normal[k][j];
+            let pivot_row = normal[k];
+            for (entry, above) in normal[i].iter_mut().zip(pivot_row).skip(k) {
+                *entry -= factor * above;
             }
         }
     }

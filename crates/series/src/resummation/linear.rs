@@ -70,8 +70,9 @@ impl Echelon {
         permuted[self.rank] = Float::with_val(self.bits, 1);
         for i in (0..self.rank).rev() {
             let mut sum = Float::new(self.bits);
-            for j in i + 1..=self.rank {
-                sum -= Float::with_val(self.bits, &self.rows[i][j] * &permuted[j]);
+            let known = self.rows[i].iter().zip(&permuted).take(self.rank + 1).skip(i + 1);
+            for (entry, value) in known {
+                sum -= Float::with_val(self.bits, entry * value);
             }
             permuted[i] = sum / &self.rows[i][i];
         }
