@@ -95,7 +95,7 @@ mod tests {
         let mut models: Vec<Model> = Vec::new();
         for q in [0.01f64, 0.3, 0.6, 0.9, 0.97] {
             for phi in
-                [0.0f64, 0.4, 1.0, 1.57, 2.2, 3.14].into_iter().filter(|p| q < 0.9 || *p != 0.4)
+                [0.0f64, 0.4, 1.0, 1.57, 2.2, 3.1].into_iter().filter(|p| q < 0.9 || *p != 0.4)
             {
                 models.push(Box::new(move |k| q.powf(k) * (k * phi + 0.3).cos()));
             }
