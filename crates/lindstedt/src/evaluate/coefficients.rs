@@ -23,7 +23,7 @@ pub(super) fn power_law(order: usize, bits: u32) -> Option<Vec<Float>> {
             let top = Rational::from((-1, 2)) - Rational::from(j);
             let mut binomial = Rational::from(1);
             for i in 0..n - j {
-                binomial *= Rational::from(&top - Rational::from(i)) / Rational::from(i + 1);
+                binomial *= (&top - Rational::from(i)) / Rational::from(i + 1);
             }
             sum = balls.add(&sum, &balls.mul_rational(mu, &binomial));
         }
