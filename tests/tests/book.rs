@@ -214,15 +214,18 @@ fn tour_of_an_own_oscillator() -> Outcome {
 
     let x = Expression::Displacement;
     let quintic = Problem {
-        name: "quintic",
-        title: "x'' + x + eps x^5 = 0 at amplitude 1",
+        name: "quintic".into(),
+        title: "x'' + x + eps x^5 = 0 at amplitude 1".into(),
         equation: Expression::Acceleration + x.clone() + Expression::Small * x.pow(5),
-        small: "eps",
+        time_domain: None,
+        impact: None,
+        synchronous: None,
+        small: "eps".into(),
         conditions: vec![Condition::InitialAmplitude],
         amplitude: AmplitudeRole::InSmallParameter,
         parameters: Vec::new(),
-        notes: "",
-        source: "",
+        notes: "".into(),
+        source: "".into(),
     };
     let settings = Settings { order: 3, ..Settings::default() };
     let result = derive(&quintic, &settings, &mut |_| true)?;

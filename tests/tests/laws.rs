@@ -2,7 +2,7 @@
 //! after it.
 
 use lindstedt::algebra::{
-    PhaseAlgebra, PhaseError, RationalAlgebra, Rationals, Resolution, Ring, laws,
+    FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Rationals, Resolution, Ring, laws,
 };
 use lindstedt::phase::Trigonometric;
 use lindstedt::phase::trigonometric::TrigonometricPolynomial;
@@ -121,7 +121,7 @@ impl RationalAlgebra for Broken {
     }
 }
 
-impl PhaseAlgebra for Broken {
+impl FunctionAlgebra for Broken {
     type Constants = Rationals;
     fn constants(&self) -> &Rationals {
         self.sound.constants()
@@ -135,6 +135,18 @@ impl PhaseAlgebra for Broken {
     fn linear_combination(&self, terms: &[(&Element, &Rational)]) -> Element {
         self.spoil("linear combination", self.sound.linear_combination(terms))
     }
+    fn as_constant(&self, f: &Element) -> Option<Rational> {
+        self.sound.as_constant(f)
+    }
+    fn log_abs(&self, f: &Element) -> Option<Element> {
+        self.sound.log_abs(f)
+    }
+    fn terms(&self, f: &Element) -> usize {
+        self.sound.terms(f)
+    }
+}
+
+impl PhaseAlgebra for Broken {
     fn cosine(&self) -> Element {
         if self.has("cos^2 + sin^2 = 1") {
             return self.sound.cos(1, Rational::from(2));
@@ -147,9 +159,6 @@ impl PhaseAlgebra for Broken {
             "cos^2 + sin^2 = 1" => self.sound.sin(1, Rational::from(2)),
             _ => self.sound.sine(),
         }
-    }
-    fn as_constant(&self, f: &Element) -> Option<Rational> {
-        self.sound.as_constant(f)
     }
     fn derivative(&self, f: &Element) -> Element {
         let slope = self.sound.derivative(f);
@@ -164,12 +173,6 @@ impl PhaseAlgebra for Broken {
     }
     fn at_zero(&self, f: &Element) -> Option<Rational> {
         self.sound.at_zero(f)
-    }
-    fn log_abs(&self, f: &Element) -> Option<Element> {
-        self.sound.log_abs(f)
-    }
-    fn terms(&self, f: &Element) -> usize {
-        self.sound.terms(f)
     }
     fn first_harmonic(&self, f: &Element) -> Result<(Rational, Rational), PhaseError> {
         let (c, s) = self.sound.first_harmonic(f)?;

@@ -2,7 +2,7 @@
 //! period, the energy integral, the elliptic integral, published values.
 #![allow(clippy::unwrap_used)]
 
-use lindstedt::algebra::{PhaseAlgebra, Ring};
+use lindstedt::algebra::{FunctionAlgebra, PhaseAlgebra, Ring};
 use lindstedt::coeff::ball::Balls;
 use lindstedt::coeff::closed_forms::ClosedForms;
 use lindstedt::coeff::{PolynomialRing, Symbol};

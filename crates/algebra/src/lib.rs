@@ -5,9 +5,11 @@
 //! every ring of the workspace runs them with one call.
 #![warn(missing_docs)]
 
+mod averaging;
 pub mod laws;
 mod phase;
 mod ring;
 
-pub use phase::{PhaseAlgebra, PhaseError, Resolution};
+pub use averaging::{Averaged, AveragingAlgebra, LinearPart};
+pub use phase::{Elementary, FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution};
 pub use ring::{RationalAlgebra, Rationals, Ring};

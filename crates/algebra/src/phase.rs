@@ -1,19 +1,14 @@
 //! Algebras of functions of the fast phase.
 
 use crate::RationalAlgebra;
+use rug::Rational;
 
-/// Shorthand for the constants of a phase algebra.
-type Constant<A> = <<A as PhaseAlgebra>::Constants as crate::Ring>::Element;
+/// Shorthand for the constants of an algebra of functions.
+type Constant<A> = <<A as FunctionAlgebra>::Constants as crate::Ring>::Element;
 
-/// What the equation u'' + u = f asks of an algebra of functions of the phase psi.
-///
-/// Laws (see [`laws::phase_algebra`](crate::laws::phase_algebra)): the derivation satisfies
-/// Leibniz' rule and kills exactly the constants; `resolve` splits f without loss,
-///
-///   f = c cos psi + s sin psi + (u'' + u),   u(0) = u'(0) = 0,
-///
-/// where `c = 2<f cos>` and `s = 2<f sin>` are the resonant amplitudes (means over a period).
-pub trait PhaseAlgebra: RationalAlgebra {
+/// An algebra of functions over a ring of constants: what it takes to expand an equation in its
+/// small parameter.
+pub trait FunctionAlgebra: RationalAlgebra {
     /// The ring of constants: functions that do not depend on the phase.
     type Constants: RationalAlgebra;
 
@@ -31,20 +26,48 @@ pub trait PhaseAlgebra: RationalAlgebra {
         }
         sum
     }
+    /// The constant that f is, if it is one.
+    fn as_constant(&self, f: &Self::Element) -> Option<Constant<Self>>;
+    /// ln |f|, where it lies in the algebra (in the Lobachevsky ring: f = cos psi).
+    fn log_abs(&self, f: &Self::Element) -> Option<Self::Element>;
+    /// g(f) for an elementary function g, where the algebra can evaluate it: algebras of values
+    /// can, exact rings have nothing.
+    fn apply(&self, _function: &Elementary, _f: &Self::Element) -> Option<Self::Element> {
+        None
+    }
+    /// Whether f = g, as far as the algebra can tell: exactly, or within its rounding errors.
+    fn agrees(&self, f: &Self::Element, g: &Self::Element) -> bool {
+        f == g
+    }
+    /// The number of terms of f, for the work counters.
+    fn terms(&self, f: &Self::Element) -> usize;
+    /// The number of delays that the algebra knows; 0 where time is the phase alone.
+    fn delays(&self) -> usize {
+        0
+    }
+    /// (cos m eta, sin m eta) of a forcing phase eta; nothing in algebras without one.
+    fn forcing(&self, _multiple: u32) -> Option<(Self::Element, Self::Element)> {
+        None
+    }
+}
+
+/// What the equation u'' + u = f asks of an algebra of functions of the phase psi.
+///
+/// Laws (see [`laws::phase_algebra`](crate::laws::phase_algebra)): the derivation satisfies
+/// Leibniz' rule and kills exactly the constants; `resolve` splits f without loss,
+///
+///   f = c cos psi + s sin psi + (u'' + u),   u(0) = u'(0) = 0,
+///
+/// where `c = 2<f cos>` and `s = 2<f sin>` are the resonant amplitudes (means over a period).
+pub trait PhaseAlgebra: FunctionAlgebra {
     /// cos psi.
     fn cosine(&self) -> Self::Element;
     /// sin psi.
     fn sine(&self) -> Self::Element;
-    /// The constant that f is, if it is one.
-    fn as_constant(&self, f: &Self::Element) -> Option<Constant<Self>>;
     /// df/dpsi.
     fn derivative(&self, f: &Self::Element) -> Self::Element;
     /// The value f(0), where the algebra can give it.
     fn at_zero(&self, f: &Self::Element) -> Option<Constant<Self>>;
-    /// ln |f|, where it lies in the algebra (in the Lobachevsky ring: f = cos psi).
-    fn log_abs(&self, f: &Self::Element) -> Option<Self::Element>;
-    /// The number of terms of f, for the work counters.
-    fn terms(&self, f: &Self::Element) -> usize;
     /// The first harmonic `(2<f cos>, 2<f sin>)` of f.
     ///
     /// # Errors
@@ -58,6 +81,20 @@ pub trait PhaseAlgebra: RationalAlgebra {
     /// # Errors
     /// [`PhaseError`] when the solution does not lie in this algebra.
     fn resolve(&self, f: &Self::Element) -> Result<Resolution<Self>, PhaseError>;
+}
+
+/// An elementary function of one variable.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Elementary {
+    /// y^q: for y != 0 if q is an integer, for y > 0 otherwise.
+    Power(Rational),
+    /// e^y.
+    Exp,
+    /// sin y.
+    Sin,
+    /// cos y.
+    Cos,
 }
 
 /// f = cos_amplitude cos psi + sin_amplitude sin psi + (response'' + response).
@@ -80,6 +117,20 @@ pub enum PhaseError {
         /// The power of cos psi at which the elimination leaves a remainder.
         power: i32,
     },
+    /// The harmonic cos(k psi + m eta) is resonant: the linear part has no bounded response.
+    Resonance {
+        /// k.
+        free: i32,
+        /// m.
+        forced: i32,
+    },
+    /// The ring of coefficients cannot divide by what the harmonic needs: could not decide.
+    Indivisible {
+        /// k in cos(k psi + m eta).
+        free: i32,
+        /// m.
+        forced: i32,
+    },
 }
 
 impl std::fmt::Display for PhaseError {
@@ -87,6 +138,17 @@ impl std::fmt::Display for PhaseError {
         match self {
             Self::NotIntegrable { power } => {
                 write!(f, "the antiderivative is not in the algebra (remainder at cos^{power})")
+            }
+            Self::Resonance { free, forced } => {
+                let harmonic = "resonance with the harmonic";
+                write!(f, "{harmonic} cos({free} psi + {forced} eta) of the response and the force")
+            }
+            Self::Indivisible { free, forced } => {
+                let harmonic = "could not divide by the response of the harmonic";
+                write!(
+                    f,
+                    "{harmonic} cos({free} psi + {forced} eta): zero is not excluded, or the parameters must be numbers"
+                )
             }
         }
     }

@@ -16,6 +16,11 @@ pub trait Ring: Sync {
     fn one(&self) -> Self::Element;
     /// Whether `a` is the zero of the ring.
     fn is_zero(&self, a: &Self::Element) -> bool;
+    /// Whether `a` may be the zero of the ring: where elements are enclosures, whether zero is
+    /// enclosed.
+    fn may_vanish(&self, a: &Self::Element) -> bool {
+        self.is_zero(a)
+    }
     /// a <- a + b.
     fn add_assign(&self, a: &mut Self::Element, b: &Self::Element);
     /// -a.

@@ -65,7 +65,7 @@ pub struct ProblemsOptions {
 
 #[derive(Debug, Args)]
 pub struct DeriveOptions {
-    /// power-law, pendulum, duffing or van-der-pol.
+    /// power-law, pendulum, vibro-impact, duffing or van-der-pol.
     pub problem: String,
     /// The highest order.
     #[arg(long, default_value_t = 4, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
@@ -73,7 +73,7 @@ pub struct DeriveOptions {
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// What the amplitude is: x(0), or the first harmonic.
+    /// What the amplitude is: x(0), the first harmonic, or free to drift (averaging).
     #[arg(long, value_enum)]
     pub normalisation: Option<Normalisation>,
     /// The driver, or the energy integral (frequency alone; power-law and pendulum).
@@ -183,6 +183,8 @@ pub enum Normalisation {
     Initial,
     /// The first harmonic of x is A cos.
     Fundamental,
+    /// The first harmonic is a cos(psi), a drifts: averaging (KBM).
+    Free,
 }
 
 #[derive(Debug, Args)]

@@ -2,6 +2,7 @@
 
 use crate::Outcome;
 use crate::arguments::{self, DeriveOptions, Format, Normalisation};
+use crate::averaging;
 use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
 use crate::output;
 use crate::problems::{condition_name, condition_text};
@@ -25,6 +26,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         condition: options.normalisation.map(|normalisation| match normalisation {
             Normalisation::Initial => Condition::InitialAmplitude,
             Normalisation::Fundamental => Condition::FundamentalAmplitude,
+            Normalisation::Free => Condition::FreeAmplitude,
         }),
         parameters: parameters(&options.set)?,
         memory: session.memory(),
@@ -34,6 +36,12 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         },
     };
     output::check_writable(session)?;
+    let condition = settings.condition.or(problem.conditions.first().copied());
+    if condition == Some(Condition::FreeAmplitude)
+        && problem.conditions.contains(&Condition::FreeAmplitude)
+    {
+        return averaging::run(&problem, &settings, digits, session);
+    }
     let mut observer = |progress: Progress| {
         session.say(match progress {
             Progress::Order(n, terms) => format!("order {n} of {}: {terms} terms", settings.order),
@@ -147,7 +155,7 @@ impl<'a> Report<'a> {
         };
         json!({
             "problem": result.problem.name,
-            "equation": format!("{} = 0", result.problem.equation.print(result.problem.small, print::Style::Text)),
+            "equation": format!("{} = 0", result.problem.equation.print(&result.problem.small, print::Style::Text)),
             "parameter": result.problem.small,
             "at": self.at(),
             "order": result.order,
@@ -198,14 +206,14 @@ impl<'a> Report<'a> {
         let result = self.result;
         let mut text = String::new();
         let small = match style {
-            Style::Text => result.problem.small.to_owned(),
-            Style::Latex => lindstedt::coeff::print::latex_name(result.problem.small),
+            Style::Text => result.problem.small.to_string(),
+            Style::Latex => lindstedt::coeff::print::latex_name(&result.problem.small),
         };
         let print_style = match style {
             Style::Text => print::Style::Text,
             Style::Latex => print::Style::Latex,
         };
-        let equation = result.problem.equation.print(result.problem.small, print_style);
+        let equation = result.problem.equation.print(&result.problem.small, print_style);
         text += &frame.title(&format!("{}: {}", result.problem.name, result.problem.title));
         text += &frame.formula(&format!("{equation} = 0"));
         let names = Names::new(style);

@@ -2,6 +2,7 @@
 //! with files and a terminal.
 
 mod arguments;
+mod averaging;
 mod derive;
 mod evaluate;
 mod failure;

@@ -39,6 +39,7 @@ pub fn condition_name(condition: Condition) -> &'static str {
         Condition::InitialAmplitude => "initial-amplitude",
         Condition::FundamentalAmplitude => "fundamental-amplitude",
         Condition::LimitCycle => "limit-cycle",
+        Condition::FreeAmplitude => "free-amplitude",
     }
 }
 
@@ -50,12 +51,15 @@ pub fn condition_text(condition: Condition) -> &'static str {
             "the first harmonic of x is cos(tau): corrections have no first harmonic"
         }
         Condition::LimitCycle => "x'(0) = 0; the amplitude x(0) is determined order by order",
+        Condition::FreeAmplitude => {
+            "the first harmonic of x is a cos(psi): a and psi drift, corrections have none"
+        }
     }
 }
 
 fn card(problem: &Problem, style: Style) -> String {
     let mut text = String::new();
-    let equation = problem.equation.print(problem.small, style);
+    let equation = problem.equation.print(&problem.small, style);
     let equation = match style {
         Style::Text => format!("{equation} = 0"),
         Style::Latex => format!("$${equation} = 0$$"),
@@ -66,7 +70,7 @@ fn card(problem: &Problem, style: Style) -> String {
         let name = condition_name(*condition);
         let _ = writeln!(text, "  normalisation {name}: {}", condition_text(*condition));
     }
-    closing(&mut text, &problem.parameters, problem.notes, problem.source);
+    closing(&mut text, &problem.parameters, &problem.notes, &problem.source);
     text
 }
 
@@ -74,7 +78,7 @@ fn card(problem: &Problem, style: Style) -> String {
 fn belt_card(card: &stick_slip::Card) -> String {
     let mut text = format!("{}\n  {}\n  {}\n", card.name, card.title, card.equation);
     let _ = writeln!(text, "  small parameter eps; see `lindstedt threshold`");
-    closing(&mut text, &card.parameters, card.notes, card.source);
+    closing(&mut text, &card.parameters, &card.notes, &card.source);
     text
 }
 
@@ -108,8 +112,8 @@ fn as_json(problem: &Problem) -> serde_json::Value {
     json!({
         "name": problem.name,
         "title": problem.title,
-        "equation": format!("{} = 0", problem.equation.print(problem.small, Style::Text)),
-        "latex": format!("{} = 0", problem.equation.print(problem.small, Style::Latex)),
+        "equation": format!("{} = 0", problem.equation.print(&problem.small, Style::Text)),
+        "latex": format!("{} = 0", problem.equation.print(&problem.small, Style::Latex)),
         "parameter": problem.small,
         "normalisations": conditions,
         "parameters": parameters,

@@ -129,7 +129,7 @@ pub fn problem(name: &str) -> Result<lindstedt::equation::Problem, Failure> {
                 hint: "Melnikov's method takes it: lindstedt threshold stick-slip".into(),
             };
         }
-        let names: Vec<&str> = lindstedt::problems::all().iter().map(|p| p.name).collect();
+        let names: Vec<_> = lindstedt::problems::all().into_iter().map(|p| p.name).collect();
         let shown: String = name.chars().take(60).collect();
         let message = format!("there is no problem {shown:?}");
         Failure::usage("unknown-problem", message, &format!("known: {}", names.join(", ")))

@@ -13,7 +13,11 @@
 //! step in them is rounded up. MPFR's exponents reach 2^(+-10^9), so a radius of 10^-100000 is an
 //! ordinary number; underflow is counted as an error, and an overflow gives the whole line.
 
+mod complex;
 mod elementary;
+pub mod ring;
+
+pub use complex::{Complex, ComplexBalls};
 
 use rug::float::{Constant, Round, Special};
 use rug::ops::{AssignRound, Pow};

@@ -256,6 +256,13 @@ pub fn latex_name(name: &str) -> String {
         let space = if argument.starts_with('\\') { "" } else { " " };
         return if simple { format!(r"\ln{space}{argument}") } else { format!(r"\ln({argument})") };
     }
+    for function in ["cos", "sin"] {
+        let argument = name.strip_prefix(function).and_then(|rest| rest.strip_prefix('('));
+        if let Some(product) = argument.and_then(|rest| rest.strip_suffix(')')) {
+            let factors: Vec<String> = product.split('*').map(latex_name).collect();
+            return format!(r"\{function}({})", factors.join(r"\,"));
+        }
+    }
     if let Some((letter, index)) = name.split_once('_') {
         let index = latex_name(index);
         let single = index.chars().count() == 1;
@@ -372,7 +379,8 @@ mod tests {
         assert_eq!(print_rational(&q, Style::Latex), r"-\frac{3}{8}");
         assert_eq!(Rationals.print(&Rational::from(5), Style::Latex), "5");
         assert_eq!(Rationals.print(&Rational::new(), Style::Text), "0");
-        let names = ["mu_12", "R_in", "omega0", "eps", "S_1", "ln(eta)", "ln(a+b)", "a"];
+        let names =
+            ["mu_12", "R_in", "omega0", "eps", "S_1", "ln(eta)", "ln(a+b)", "a", "sin(alpha*T)"];
         let latex = [
             r"\mu_{12}",
             r"R_{\mathrm{in}}",
@@ -382,6 +390,7 @@ mod tests {
             r"\ln\eta",
             r"\ln(a+b)",
             "a",
+            r"\sin(\alpha\,T)",
         ];
         assert_eq!(names.map(latex_name), latex);
     }

@@ -18,6 +18,11 @@ pub enum Expression {
     Velocity,
     /// x'' = d^2x/dt^2.
     Acceleration,
+    /// The time t.
+    Time,
+    /// An expression in x and x' (first) at the earlier time t - T; T (second) is a positive
+    /// expression in parameters.
+    Delayed(Box<Expression>, Box<Expression>),
     /// A sum.
     Sum(Vec<Expression>),
     /// A product.
@@ -42,6 +47,10 @@ pub enum Function {
     Sin,
     /// The cosine.
     Cos,
+    /// The absolute value.
+    Abs,
+    /// The sign; between -1 and 1 at zero (Filippov's convention).
+    Sign,
 }
 
 impl Expression {
@@ -65,6 +74,18 @@ impl Expression {
     #[must_use]
     pub fn ln(self) -> Self {
         Self::Function(Function::Ln, Box::new(self))
+    }
+
+    /// F(self) for an elementary function F.
+    #[must_use]
+    pub fn apply(self, function: Function) -> Self {
+        Self::Function(function, Box::new(self))
+    }
+
+    /// self at the time t - delay.
+    #[must_use]
+    pub fn delayed(self, delay: impl Into<Self>) -> Self {
+        Self::Delayed(Box::new(self), Box::new(delay.into()))
     }
 
     /// F(self) for a formal function F.

@@ -6,4 +6,6 @@ pub mod print;
 mod problem;
 
 pub use expression::{Expression, Function};
-pub use problem::{AmplitudeRole, Condition, ParameterCard, Problem};
+pub use problem::{
+    AmplitudeRole, Condition, Crossing, Impact, ParameterCard, Problem, Synchronous, Text,
+};

@@ -134,6 +134,7 @@ impl Printer<'_> {
         let needs = match expression {
             Expression::Number(n) => !n.is_integer() || n.cmp0() == Ordering::Less,
             Expression::Sum(_) | Expression::Product(_) | Expression::Power(..) => true,
+            Expression::Function(Function::Abs, _) => false,
             Expression::Function(..) => self.latex(),
             _ => false,
         };
@@ -154,6 +155,8 @@ impl Printer<'_> {
             (Expression::Velocity, true) => r"\dot{x}".to_owned(),
             (Expression::Acceleration, false) => "x''".to_owned(),
             (Expression::Acceleration, true) => r"\ddot{x}".to_owned(),
+            (Expression::Time, _) => "t".to_owned(),
+            (Expression::Delayed(inner, delay), _) => self.delayed(inner, delay),
             (Expression::Power(base, exponent), true) => {
                 format!("{}^{{{}}}", self.base(base), self.sum(exponent))
             }
@@ -180,19 +183,27 @@ impl Printer<'_> {
             Function::Exp => "exp",
             Function::Sin => "sin",
             Function::Cos => "cos",
+            Function::Abs => "abs",
+            Function::Sign => "sign",
         };
         let line = self.sum(argument);
         if !self.latex() {
             return format!("{name}({line})");
         }
-        if function == Function::Exp {
-            return format!("e^{{{line}}}");
+        match function {
+            Function::Exp => return format!("e^{{{line}}}"),
+            Function::Abs => return format!(r"\left|{line}\right|"),
+            Function::Sign => {
+                return format!(r"\operatorname{{sign}}{}", self.parenthesize(&line));
+            }
+            Function::Ln | Function::Sin | Function::Cos => {}
         }
         let symbol = matches!(
             argument,
             Expression::Displacement
                 | Expression::Velocity
                 | Expression::Parameter(_)
+                | Expression::Time
                 | Expression::Small
         );
         if symbol && last {
@@ -200,6 +211,15 @@ impl Printer<'_> {
             return format!(r"\{name}{space}{line}");
         }
         format!(r"\{name}{}", self.parenthesize(&line))
+    }
+
+    /// x(t - T), x'(t - T); other delayed expressions as [..](t - T).
+    fn delayed(&self, inner: &Expression, delay: &Expression) -> String {
+        let bare = matches!(inner, Expression::Displacement | Expression::Velocity);
+        let line = self.sum(inner);
+        let line = if bare { line } else { format!("[{line}]") };
+        let time = Expression::Time - delay.clone();
+        format!("{line}{}", self.parenthesize(&self.sum(&time)))
     }
 
     fn parenthesize(&self, line: &str) -> String {
@@ -310,6 +330,18 @@ mod tests {
         for (e, text, latex) in cases {
             assert_eq!(both(&e, "eps"), [text, latex]);
         }
+    }
+
+    #[test]
+    fn time_delays_and_non_smooth_functions() {
+        let delay = || Expression::parameter("T");
+        let forcing = (Expression::parameter("omega") * Expression::Time).apply(Function::Cos);
+        let e = x() - x().delayed(delay()) + Velocity.delayed(delay() * 2) - forcing;
+        let latex = r"x - x(t - T) + \dot{x}(t - T \cdot 2) - \cos(\omega\,t)";
+        assert_eq!(both(&e, "eps"), ["x - x(t - T) + x'(t - T*2) - cos(omega*t)", latex]);
+        let e = x().apply(Function::Abs).pow(3) * Velocity.apply(Function::Sign);
+        let latex = r"\left|x\right|^{3}\,\operatorname{sign}(\dot{x})";
+        assert_eq!(both(&e, "eps"), ["abs(x)^3*sign(x')", latex]);
     }
 
     #[test]

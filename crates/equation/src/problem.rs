@@ -1,6 +1,10 @@
 //! A problem: an equation with what is needed to expand it and to talk about it.
 
 use crate::Expression;
+use std::borrow::Cow;
+
+/// Text of a data card: a literal of a built-in problem or a string read from a problem file.
+pub type Text = Cow<'static, str>;
 
 /// What fixes the amplitude (and the phase) of the solution, order by order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +15,9 @@ pub enum Condition {
     FundamentalAmplitude,
     /// A limit cycle with x'(0) = 0; its amplitude x(0) is determined order by order.
     LimitCycle,
+    /// A free amplitude a that drifts (Krylov, Bogoliubov, Mitropolsky): x = a cos psi + ...,
+    /// corrections have no first harmonic, da/dt and dpsi/dt are functions of a.
+    FreeAmplitude,
 }
 
 /// How the amplitude of the user's solution enters an equation written for amplitude one.
@@ -27,30 +34,70 @@ pub enum AmplitudeRole {
     InSmallParameter,
     /// The equation determines it.
     Determined,
+    /// It is a variable of the result.
+    Free,
 }
 
 /// One line of a data card.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterCard {
     /// The name on the command line.
-    pub name: &'static str,
+    pub name: Text,
     /// What it is, with its domain; all parameters are dimensionless unless a unit is given.
-    pub meaning: &'static str,
+    pub meaning: Text,
     /// The default value, as the user would write it.
-    pub default: &'static str,
+    pub default: Text,
+}
+
+/// The direction in which x crosses a wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Crossing {
+    /// x' > 0: the wall is above.
+    Rising,
+    /// x' < 0: the wall is below.
+    Falling,
+}
+
+/// A rigid wall: when x reaches `position` in the given direction, x' becomes -restitution x'.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Impact {
+    /// Where the wall stands; an expression in parameters.
+    pub position: Expression,
+    /// From which side the wall is reached.
+    pub crossing: Crossing,
+    /// The restitution coefficient, between 0 and 1; an expression in parameters.
+    pub restitution: Expression,
+}
+
+/// A delay that is a whole number of periods of the force, T = 2 pi k/omega.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Synchronous {
+    /// The parameter T.
+    pub delay: Text,
+    /// The parameter k, a positive integer.
+    pub periods: Text,
+    /// The parameter omega.
+    pub frequency: Text,
 }
 
 /// A built-in or user-defined oscillator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// The name on the command line.
-    pub name: &'static str,
+    pub name: Text,
     /// One line.
-    pub title: &'static str,
-    /// The left side of equation = 0.
+    pub title: Text,
+    /// The left side of equation = 0, as it is expanded.
     pub equation: Expression,
+    /// The same equation with its formal functions written out, for integration in time; nothing
+    /// when `equation` has none.
+    pub time_domain: Option<Expression>,
+    /// A wall with an impact law.
+    pub impact: Option<Impact>,
+    /// A delay tied to the force.
+    pub synchronous: Option<Synchronous>,
     /// The name of the small parameter.
-    pub small: &'static str,
+    pub small: Text,
     /// The conditions that make sense, the default first.
     pub conditions: Vec<Condition>,
     /// How an amplitude other than one enters.
@@ -58,7 +105,7 @@ pub struct Problem {
     /// The parameters.
     pub parameters: Vec<ParameterCard>,
     /// How the dimensionless equation follows from the physical one, and what is known.
-    pub notes: &'static str,
+    pub notes: Text,
     /// Where it comes from.
-    pub source: &'static str,
+    pub source: Text,
 }

@@ -5,7 +5,8 @@
 //! node, so that x^3 costs x*x and (x*x)*x, and x^2 + x^4 costs no square twice.
 
 use crate::ExpandError;
-use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use crate::excitation::Excitation;
+use lindstedt_algebra::{Elementary, FunctionAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
 use rug::Rational;
@@ -24,14 +25,39 @@ pub(crate) enum Node<E> {
     Displacement,
     /// x' (with respect to physical time).
     Velocity,
+    /// x (or x') at t - T_delay.
+    Delayed {
+        /// Whether it is the velocity.
+        velocity: bool,
+        /// The position of the delay in [`Excitation::delays`].
+        delay: usize,
+    },
+    /// cos(m eta) or sin(m eta) of the forcing phase eta = omega t.
+    Forcing {
+        /// m.
+        multiple: u32,
+        /// Whether it is the sine.
+        sine: bool,
+    },
     /// sum q_i node_i.
     Sum(Vec<(Rational, NodeId)>),
     /// The product of two nodes.
     Product(NodeId, NodeId),
     /// ln|node|.
     Logarithm(NodeId),
-    /// exp(node), node without a term of order zero.
+    /// exp(node); in exact rings without a term of order zero.
     Exponential(NodeId),
+    /// node^q for a rational number q that is no natural number.
+    Power(NodeId, Rational),
+    /// sin(node) or cos(node); `partner` is the other one.
+    Circular {
+        /// The argument.
+        argument: NodeId,
+        /// The node of the other function of the same argument.
+        partner: NodeId,
+        /// Whether this is the cosine.
+        cosine: bool,
+    },
     /// The j-th derivative F^(j)(node) = sum_n F_{n+j} node^n/n!, node without a term of order
     /// zero, and the constant F_j.
     Formal {
@@ -54,12 +80,12 @@ pub trait Binding<C: Ring> {
 
 /// x'' + F(x, x'; eps) = 0 as a graph; `root` is F.
 #[derive(Clone, Debug)]
-pub struct Equation<A: PhaseAlgebra> {
+pub struct Equation<A: FunctionAlgebra> {
     pub(crate) nodes: Vec<Node<<A::Constants as Ring>::Element>>,
     pub(crate) root: NodeId,
 }
 
-impl<A: PhaseAlgebra> Equation<A> {
+impl<A: FunctionAlgebra> Equation<A> {
     /// Whether the velocity occurs.
     pub fn has_velocity(&self) -> bool {
         self.nodes.contains(&Node::Velocity)
@@ -70,13 +96,14 @@ impl<A: PhaseAlgebra> Equation<A> {
 ///
 /// # Errors
 /// [`ExpandError`] naming the term that cannot be taken or the name without a value.
-pub fn compile<A: PhaseAlgebra>(
+pub fn compile<A: FunctionAlgebra>(
     algebra: &A,
     equation: &Expression,
     binding: &dyn Binding<A::Constants>,
     order: usize,
 ) -> Result<Equation<A>, ExpandError> {
-    let mut compiler = Compiler { algebra, binding, order, nodes: Vec::new() };
+    let excitation = Excitation::of(equation)?;
+    let mut compiler = Compiler { algebra, binding, order, excitation, nodes: Vec::new() };
     let terms = match equation {
         Expression::Sum(terms) => terms.as_slice(),
         single => std::slice::from_ref(single),
@@ -105,25 +132,27 @@ fn degree<E>(nodes: &[Node<E>], root: NodeId) -> usize {
     let mut degrees: Vec<usize> = Vec::new();
     for node in nodes {
         degrees.push(match node {
-            Node::Constant(_) | Node::Small => 0,
-            Node::Displacement | Node::Velocity => 1,
+            Node::Constant(_) | Node::Small | Node::Forcing { .. } => 0,
+            Node::Displacement | Node::Velocity | Node::Delayed { .. } => 1,
             Node::Sum(terms) => terms.iter().map(|(_, t)| degrees[*t]).max().unwrap_or(0),
             Node::Product(a, b) => degrees[*a].saturating_add(degrees[*b]),
-            Node::Logarithm(a) | Node::Exponential(a) => degrees[*a],
+            Node::Logarithm(a) | Node::Exponential(a) | Node::Power(a, _) => degrees[*a],
+            Node::Circular { argument, .. } => degrees[*argument],
             Node::Formal { argument, .. } => degrees[*argument],
         });
     }
     degrees.get(root).copied().unwrap_or(0)
 }
 
-struct Compiler<'a, A: PhaseAlgebra> {
+struct Compiler<'a, A: FunctionAlgebra> {
     algebra: &'a A,
     binding: &'a dyn Binding<A::Constants>,
     order: usize,
+    excitation: Excitation,
     nodes: Vec<Node<<A::Constants as Ring>::Element>>,
 }
 
-impl<A: PhaseAlgebra> Compiler<'_, A> {
+impl<A: FunctionAlgebra> Compiler<'_, A> {
     fn push(&mut self, node: Node<<A::Constants as Ring>::Element>) -> NodeId {
         if let Some(found) = self.nodes.iter().position(|known| *known == node) {
             return found;
@@ -156,10 +185,53 @@ impl<A: PhaseAlgebra> Compiler<'_, A> {
             Expression::Function(Function::Exp, argument) => {
                 Node::Exponential(self.node(argument)?)
             }
-            Expression::Function(..) => return Err(unsupported()),
+            Expression::Function(function @ (Function::Cos | Function::Sin), argument) => {
+                if let Some(forcing) = self.forcing(*function, argument) {
+                    return Ok(forcing);
+                }
+                let cosine = *function == Function::Cos;
+                let elementary = if cosine { Elementary::Cos } else { Elementary::Sin };
+                self.offered(&elementary).then_some(()).ok_or_else(unsupported)?;
+                return self.circular(argument, cosine);
+            }
+            Expression::Delayed(inner, delay) => {
+                let position = self.excitation.delays.iter().position(|known| known == &**delay);
+                let delay = position.filter(|&delay| delay < self.algebra.delays());
+                let delay = delay.ok_or_else(unsupported)?;
+                Node::Delayed { velocity: **inner == Expression::Velocity, delay }
+            }
+            Expression::Function(..) | Expression::Time => return Err(unsupported()),
             Expression::Formal(name, argument) => return self.formal(name, argument),
         };
         Ok(self.push(node))
+    }
+
+    /// cos(m eta), and sin(-m eta) = -sin(m eta).
+    fn forcing(&mut self, function: Function, argument: &Expression) -> Option<NodeId> {
+        let signed = self.excitation.multiple(argument)?;
+        let multiple = u32::try_from(signed.unsigned_abs()).ok()?;
+        self.algebra.forcing(multiple)?;
+        let sine = function == Function::Sin;
+        let node = self.push(Node::Forcing { multiple, sine });
+        let sign = Rational::from(if sine && signed < 0 { -1 } else { 1 });
+        Some(self.push(Node::Sum(vec![(sign, node)])))
+    }
+
+    /// Whether the algebra evaluates this function at all: then it does so at 1.
+    fn offered(&self, function: &Elementary) -> bool {
+        self.algebra.apply(function, &self.algebra.one()).is_some()
+    }
+
+    /// The sine and the cosine, one after the other, and of them the one asked for.
+    fn circular(&mut self, argument: &Expression, cosine: bool) -> Result<NodeId, ExpandError> {
+        let argument = self.node(argument)?;
+        let known = |node: &Node<_>| matches!(node, Node::Circular { argument: a, cosine: false, .. } if *a == argument);
+        let sine = self.nodes.iter().position(known).unwrap_or(self.nodes.len());
+        if sine == self.nodes.len() {
+            self.nodes.push(Node::Circular { argument, partner: sine + 1, cosine: false });
+            self.nodes.push(Node::Circular { argument, partner: sine, cosine: true });
+        }
+        Ok(sine + usize::from(cosine))
     }
 
     fn sum(&mut self, terms: &[Expression]) -> Result<NodeId, ExpandError> {
@@ -191,7 +263,8 @@ impl<A: PhaseAlgebra> Compiler<'_, A> {
         Ok(product)
     }
 
-    /// Integer powers by multiplication; otherwise base^exponent = exp(exponent ln base).
+    /// Natural powers by multiplication, other rational ones where the algebra evaluates them;
+    /// otherwise base^exponent = exp(exponent ln base).
     fn power(&mut self, base: &Expression, exponent: &Expression) -> Result<NodeId, ExpandError> {
         if let Expression::Number(q) = exponent {
             let integer = q.is_integer().then(|| q.numer().to_u32()).flatten();
@@ -199,6 +272,11 @@ impl<A: PhaseAlgebra> Compiler<'_, A> {
                 let whole = Expression::Power(Box::new(base.clone()), Box::new(exponent.clone()));
                 ExpandError::UnsupportedTerm { term: whole.print("eps", Style::Text) }
             };
+            let natural = q.is_integer() && !q.is_negative();
+            if !natural && self.offered(&Elementary::Power(q.clone())) {
+                let base = self.node(base)?;
+                return Ok(self.push(Node::Power(base, q.clone())));
+            }
             // Multiplying repeatedly: a power as long as the expansion is a different problem.
             let n = integer.filter(|&n| n <= 1000).ok_or_else(unsupported)?;
             if n == 0 {

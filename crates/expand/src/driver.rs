@@ -13,11 +13,11 @@ use crate::ExpandError;
 use crate::compile::{Equation, Node};
 use crate::evaluator::Evaluator;
 use crate::limit_cycle;
-use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::Condition;
 use rug::Rational;
 
-type Constant<A> = <<A as PhaseAlgebra>::Constants as Ring>::Element;
+type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
 
 /// What one order cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,6 +92,7 @@ pub fn leading_amplitude<A: PhaseAlgebra>(
     match condition {
         Condition::LimitCycle => limit_cycle::leading_amplitude(algebra, equation),
         Condition::InitialAmplitude | Condition::FundamentalAmplitude => Ok(Rational::from(1)),
+        Condition::FreeAmplitude => Err(ExpandError::AmplitudeIsFree),
     }
 }
 
@@ -110,20 +111,39 @@ pub fn expand<A: PhaseAlgebra>(
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<Expansion<A>, ExpandError> {
     let mut driver = Driver::start(algebra, equation, request)?;
-    for n in 1..=request.order {
-        let before = driver.evaluator.products;
-        driver.step(n)?;
-        let work = OrderWork {
-            order: n,
-            products: driver.evaluator.products - before,
-            terms: driver.x.last().map_or(0, |x| algebra.terms(x)),
-        };
-        driver.work.push(work);
+    let work = run(&mut driver, request.order, observer)?;
+    driver.finish(work)
+}
+
+/// How the amplitude is treated: fixed or a limit cycle's (`Driver` below), or free and drifting
+/// ([`crate::average`]). The loop over the orders is the same.
+pub(crate) trait Scheme {
+    /// Derives order n: residual, resonant part, response.
+    fn step(&mut self, n: usize) -> Result<(), ExpandError>;
+    /// Products formed so far.
+    fn products(&self) -> u64;
+    /// Terms of the last order of the solution.
+    fn terms(&self) -> usize;
+}
+
+/// The loop over the orders; stops early when the observer says so.
+pub(crate) fn run(
+    scheme: &mut dyn Scheme,
+    order: usize,
+    observer: &mut dyn FnMut(&OrderWork) -> bool,
+) -> Result<Vec<OrderWork>, ExpandError> {
+    let mut list = Vec::new();
+    for n in 1..=order {
+        let before = scheme.products();
+        scheme.step(n)?;
+        let products = scheme.products() - before;
+        let work = OrderWork { order: n, products, terms: scheme.terms() };
+        list.push(work);
         if !observer(&work) {
             break;
         }
     }
-    driver.finish()
+    Ok(list)
 }
 
 struct Driver<'a, A: PhaseAlgebra> {
@@ -144,7 +164,6 @@ struct Driver<'a, A: PhaseAlgebra> {
     /// Whether coefficient n of a node depends on x_n.
     sensitive: Vec<bool>,
     limit_cycle: Option<LimitCycleResponse<A>>,
-    work: Vec<OrderWork>,
 }
 
 /// How order n reacts to a change of the amplitude of order n - 1.
@@ -157,76 +176,13 @@ struct LimitCycleResponse<A: PhaseAlgebra> {
     response: A::Element,
 }
 
-impl<'a, A: PhaseAlgebra> Driver<'a, A> {
-    fn start(
-        algebra: &'a A,
-        equation: &'a Equation<A>,
-        request: &Request,
-    ) -> Result<Self, ExpandError> {
-        let constants = algebra.constants();
-        let mut evaluator = Evaluator::new(algebra, equation);
-        let amplitude = constants.rational(&request.leading_amplitude);
-        let inverse_amplitude =
-            constants.reciprocal(&amplitude).ok_or(ExpandError::NoLimitCycle)?;
-        let x0 = algebra.scale_by(&algebra.cosine(), &amplitude);
-        evaluator.assign(&Node::Displacement, 0, x0.clone());
-        evaluator.assign(&Node::Velocity, 0, algebra.derivative(&x0));
-
-        let still = [algebra.zero(), algebra.zero()];
-        let moving = [algebra.one(), algebra.zero()];
-        let by_x = evaluator.tangents(&algebra.one(), &still)?;
-        let by_v = evaluator.tangents(&algebra.zero(), &moving)?;
-        let sensitive: Vec<bool> = by_x
-            .iter()
-            .zip(&by_v)
-            .map(|(x, v)| !algebra.is_zero(&x[0]) || !algebra.is_zero(&v[0]))
-            .collect();
-        let root = equation.root;
-        let stiffness = algebra
-            .as_constant(&by_x[root][0])
-            .filter(|_| algebra.is_zero(&by_v[root][0]))
-            .ok_or(ExpandError::NotWeaklyNonlinear)?;
-        let order_zero = evaluator.coefficient(root, 0)?;
-        if order_zero != algebra.scale_by(&x0, &stiffness) {
-            return Err(ExpandError::NotWeaklyNonlinear);
-        }
-        if equation.has_velocity() && stiffness != constants.one() {
-            return Err(ExpandError::StiffnessNotOne);
-        }
-        let inverse_stiffness =
-            constants.reciprocal(&stiffness).ok_or(ExpandError::SingularStiffness)?;
-        let mut driver = Self {
-            algebra,
-            condition: request.condition,
-            evaluator,
-            stiffness,
-            inverse_stiffness,
-            inverse_amplitude,
-            frequency_squared: vec![constants.one()],
-            frequency: vec![constants.one()],
-            slopes: vec![algebra.derivative(&x0)],
-            second_derivatives: vec![algebra.neg(&x0)],
-            x: vec![x0],
-            sensitive,
-            limit_cycle: None,
-            work: Vec::new(),
-        };
-        driver.forget(1);
-        Ok(driver)
+impl<A: PhaseAlgebra> Scheme for Driver<'_, A> {
+    fn products(&self) -> u64 {
+        self.evaluator.products
     }
 
-    /// Forgets provisional coefficients: those of order n and above that depend on x_n.
-    fn forget(&mut self, n: usize) {
-        self.evaluator.forget_from(n, &self.sensitive);
-    }
-
-    /// f_n.
-    fn right_side(&mut self, n: usize) -> Result<A::Element, ExpandError> {
-        let force = self.evaluator.coefficient(self.evaluator.equation.root, n)?;
-        let mut terms = vec![(&force, &self.inverse_stiffness)];
-        terms.extend(self.convolution(&self.frequency_squared[1..], &self.second_derivatives, n));
-        let f = self.algebra.linear_combination(&terms);
-        Ok(self.algebra.neg(&f))
+    fn terms(&self) -> usize {
+        self.x.last().map_or(0, |x| self.algebra.terms(x))
     }
 
     fn step(&mut self, n: usize) -> Result<(), ExpandError> {
@@ -268,6 +224,79 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
             self.limit_cycle = Some(self.prepare_limit_cycle()?);
         }
         Ok(())
+    }
+}
+
+impl<'a, A: PhaseAlgebra> Driver<'a, A> {
+    fn start(
+        algebra: &'a A,
+        equation: &'a Equation<A>,
+        request: &Request,
+    ) -> Result<Self, ExpandError> {
+        let constants = algebra.constants();
+        let mut evaluator = Evaluator::new(algebra, equation);
+        let amplitude = constants.rational(&request.leading_amplitude);
+        let inverse_amplitude =
+            constants.reciprocal(&amplitude).ok_or(ExpandError::NoLimitCycle)?;
+        let x0 = algebra.scale_by(&algebra.cosine(), &amplitude);
+        evaluator.assign(&Node::Displacement, 0, x0.clone());
+        evaluator.assign(&Node::Velocity, 0, algebra.derivative(&x0));
+
+        let unit = |variable| {
+            move |node: &Node<_>| (*node == variable).then(|| [algebra.one(), algebra.zero()])
+        };
+        let by_x = evaluator.tangents(&unit(Node::Displacement))?;
+        let by_v = evaluator.tangents(&unit(Node::Velocity))?;
+        let sensitive: Vec<bool> = by_x
+            .iter()
+            .zip(&by_v)
+            .map(|(x, v)| !algebra.is_zero(&x[0]) || !algebra.is_zero(&v[0]))
+            .collect();
+        let root = equation.root;
+        let stiffness = algebra
+            .as_constant(&by_x[root][0])
+            .filter(|_| algebra.is_zero(&by_v[root][0]))
+            .ok_or(ExpandError::NotWeaklyNonlinear)?;
+        let order_zero = evaluator.coefficient(root, 0)?;
+        if !algebra.agrees(&order_zero, &algebra.scale_by(&x0, &stiffness)) {
+            return Err(ExpandError::NotWeaklyNonlinear);
+        }
+        if equation.has_velocity() && stiffness != constants.one() {
+            return Err(ExpandError::StiffnessNotOne);
+        }
+        let inverse_stiffness =
+            constants.reciprocal(&stiffness).ok_or(ExpandError::SingularStiffness)?;
+        let mut driver = Self {
+            algebra,
+            condition: request.condition,
+            evaluator,
+            stiffness,
+            inverse_stiffness,
+            inverse_amplitude,
+            frequency_squared: vec![constants.one()],
+            frequency: vec![constants.one()],
+            slopes: vec![algebra.derivative(&x0)],
+            second_derivatives: vec![algebra.neg(&x0)],
+            x: vec![x0],
+            sensitive,
+            limit_cycle: None,
+        };
+        driver.forget(1);
+        Ok(driver)
+    }
+
+    /// Forgets provisional coefficients: those of order n and above that depend on x_n.
+    fn forget(&mut self, n: usize) {
+        self.evaluator.forget_from(n, &self.sensitive);
+    }
+
+    /// f_n.
+    fn right_side(&mut self, n: usize) -> Result<A::Element, ExpandError> {
+        let force = self.evaluator.coefficient(self.evaluator.equation.root, n)?;
+        let mut terms = vec![(&force, &self.inverse_stiffness)];
+        terms.extend(self.convolution(&self.frequency_squared[1..], &self.second_derivatives, n));
+        let f = self.algebra.linear_combination(&terms);
+        Ok(self.algebra.neg(&f))
     }
 
     /// The amplitude of order n - 1 that removes the secular term in sin psi from order n.
@@ -344,7 +373,12 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         alone.assign(&Node::Velocity, 0, algebra.derivative(&self.x[0]));
         let velocity = algebra.scale_by(&algebra.derivative(&self.x[0]), &self.frequency[1]);
         alone.assign(&Node::Velocity, 1, velocity);
-        let tangents = alone.tangents(&direction, &slopes)?;
+        let change = |node: &Node<_>| match node {
+            Node::Displacement => Some([direction.clone(), algebra.zero()]),
+            Node::Velocity => Some(slopes.clone()),
+            _ => None,
+        };
+        let tangents = alone.tangents(&change)?;
         let force = &tangents[self.evaluator.equation.root][1];
         let mut change = algebra.neg(&algebra.scale_by(force, &self.inverse_stiffness));
         let inertia = algebra.scale_by(&direction, &self.frequency_squared[1]);
@@ -362,7 +396,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     }
 
     /// The amplitude of the last order of a limit cycle is fixed by the order after it.
-    fn finish(mut self) -> Result<Expansion<A>, ExpandError> {
+    fn finish(mut self, work: Vec<OrderWork>) -> Result<Expansion<A>, ExpandError> {
         let algebra = self.algebra;
         let order = self.x.len() - 1;
         if self.limit_cycle.is_some() {
@@ -380,7 +414,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
             frequency_squared: self.frequency_squared,
             amplitude,
             solution: self.x,
-            work: self.work,
+            work,
             certificates: self.evaluator.certificates(order),
         })
     }

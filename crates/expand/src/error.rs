@@ -46,6 +46,15 @@ pub enum ExpandError {
         /// The order at which it appears.
         order: usize,
     },
+    /// omega_0, the square root of the stiffness, is not in the ring of coefficients.
+    #[error("the linear stiffness has no square root among the coefficients")]
+    StiffnessNotSquare,
+    /// The cosine of a phase shift omega_0 T is not in the ring of coefficients.
+    #[error("the phase shift of a delay is no angle with coefficients of this ring")]
+    IrrationalAngle,
+    /// A free amplitude was asked of the expansion at fixed amplitude.
+    #[error("a free amplitude drifts: it is taken by the averaging expansion")]
+    AmplitudeIsFree,
     /// No limit cycle: the first-order averaged equation has no positive root.
     #[error("no limit cycle: the averaged amplitude equation of order 1 has no positive root")]
     NoLimitCycle,

@@ -2,11 +2,16 @@
 
 use crate::ExpandError;
 use crate::compile::{Equation, Node, NodeId};
-use lindstedt_algebra::{PhaseAlgebra, Ring};
+use lindstedt_algebra::{Elementary, FunctionAlgebra, Ring};
 use rug::Rational;
 
+type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
+
+/// The change of a variable: orders 0 and 1, or nothing where it does not change.
+type Direction<'a, A> = dyn Fn(&Node<Constant<A>>) -> Option<[<A as Ring>::Element; 2]> + 'a;
+
 /// The memory of the driver: coefficient n of every node, as far as it was asked for.
-pub(crate) struct Evaluator<'a, A: PhaseAlgebra> {
+pub(crate) struct Evaluator<'a, A: FunctionAlgebra> {
     pub(crate) algebra: &'a A,
     pub(crate) equation: &'a Equation<A>,
     values: Vec<Vec<Option<A::Element>>>,
@@ -17,13 +22,13 @@ pub(crate) struct Evaluator<'a, A: PhaseAlgebra> {
 /// The highest order at which a node can be different from zero, if there is one.
 fn degree<E>(node: &Node<E>) -> Option<usize> {
     match node {
-        Node::Constant(_) => Some(0),
+        Node::Constant(_) | Node::Forcing { .. } => Some(0),
         Node::Small => Some(1),
         _ => None,
     }
 }
 
-impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
+impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
     pub(crate) fn new(algebra: &'a A, equation: &'a Equation<A>) -> Self {
         let values = equation.nodes.iter().map(|_| Vec::new()).collect();
         Self { algebra, equation, values, products: 0 }
@@ -43,12 +48,7 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
     }
 
     /// Sets the coefficient of the displacement or the velocity, if it occurs.
-    pub(crate) fn assign(
-        &mut self,
-        variable: &Node<<A::Constants as Ring>::Element>,
-        n: usize,
-        value: A::Element,
-    ) {
+    pub(crate) fn assign(&mut self, variable: &Node<Constant<A>>, n: usize, value: A::Element) {
         if let Some(node) = self.equation.nodes.iter().position(|known| known == variable) {
             self.store(node, n, value);
         }
@@ -65,7 +65,15 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
     /// The coefficients up to `order` of the nodes that are not polynomial.
     pub(crate) fn certificates(self, order: usize) -> Vec<Vec<A::Element>> {
         let is_transcendental = |node: &Node<_>| {
-            matches!(node, Node::Logarithm(_) | Node::Exponential(_) | Node::Formal { .. })
+            !matches!(
+                node,
+                Node::Constant(_)
+                    | Node::Small
+                    | Node::Displacement
+                    | Node::Velocity
+                    | Node::Sum(_)
+                    | Node::Product(..)
+            )
         };
         let prefix = |list: Vec<Option<A::Element>>| {
             list.into_iter().take(order + 1).map_while(|value| value).collect()
@@ -117,10 +125,17 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
         match &equation.nodes[node] {
             Node::Constant(c) if n == 0 => Ok(algebra.embed(c)),
             Node::Small if n == 1 => Ok(algebra.one()),
-            // Orders of x and x' beyond those assigned are the provisional zero.
-            Node::Constant(_) | Node::Small | Node::Displacement | Node::Velocity => {
-                Ok(algebra.zero())
+            Node::Forcing { multiple, sine } if n == 0 => {
+                let (cos, sin) = algebra.forcing(*multiple).ok_or_else(|| unsupported("t"))?;
+                Ok(if *sine { sin } else { cos })
             }
+            // Orders of x and x' beyond those assigned are the provisional zero.
+            Node::Constant(_)
+            | Node::Small
+            | Node::Forcing { .. }
+            | Node::Displacement
+            | Node::Velocity
+            | Node::Delayed { .. } => Ok(algebra.zero()),
             Node::Sum(terms) => {
                 let mut sum = algebra.zero();
                 for (q, term) in terms {
@@ -146,8 +161,35 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
             }
             &Node::Exponential(g) if n == 0 => {
                 let leading = self.coefficient(g, 0)?;
-                let vanishes = algebra.is_zero(&leading);
-                vanishes.then(|| algebra.one()).ok_or_else(|| unsupported("exp"))
+                if algebra.is_zero(&leading) {
+                    return Ok(algebra.one());
+                }
+                algebra.apply(&Elementary::Exp, &leading).ok_or_else(|| unsupported("exp"))
+            }
+            Node::Power(y, q) if n == 0 => {
+                let leading = self.coefficient(*y, 0)?;
+                let power = algebra.apply(&Elementary::Power(q.clone()), &leading);
+                power.ok_or_else(|| unsupported("a power of a function that vanishes"))
+            }
+            // n y_0 P_n = sum_{k=1}^n (q k + k - n) y_k P_{n-k}, from y P' = q y' P.
+            Node::Power(y, q) => {
+                let leading = self.coefficient(*y, 0)?;
+                let inverse = algebra.reciprocal(&leading).ok_or_else(|| unsupported("a power"))?;
+                let weight = |k: usize| Rational::from(q + 1u32) * k - n;
+                let sum = self.weighted_by(*y, node, 1..n + 1, n, &weight)?;
+                self.products += 1;
+                Ok(algebra.scale(&algebra.mul(&sum, &inverse), &Rational::from((1, n))))
+            }
+            &Node::Circular { argument, cosine, .. } if n == 0 => {
+                let leading = self.coefficient(argument, 0)?;
+                let function = if cosine { Elementary::Cos } else { Elementary::Sin };
+                algebra.apply(&function, &leading).ok_or_else(|| unsupported("sin"))
+            }
+            // S' = g' C, C' = -g' S.
+            &Node::Circular { argument, partner, cosine } => {
+                let sum = self.weighted(argument, partner, 1..n + 1, n)?;
+                let sign = if cosine { -1 } else { 1 };
+                Ok(algebra.scale(&sum, &Rational::from((sign, n))))
             }
             // n E_n = sum_{k=1}^n k g_k E_{n-k}, from E' = g' E.
             &Node::Exponential(g) => {
@@ -214,6 +256,18 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
         range: std::ops::Range<usize>,
         n: usize,
     ) -> Result<A::Element, ExpandError> {
+        self.weighted_by(a, b, range, n, &|k| Rational::from(k))
+    }
+
+    /// sum_k w(k) a_k b_{n-k} over the range.
+    fn weighted_by(
+        &mut self,
+        a: NodeId,
+        b: NodeId,
+        range: std::ops::Range<usize>,
+        n: usize,
+        weight: &dyn Fn(usize) -> Rational,
+    ) -> Result<A::Element, ExpandError> {
         let algebra = self.algebra;
         for k in range.clone() {
             self.ensure(a, k)?;
@@ -223,7 +277,7 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
         }
         let weights: Vec<A::Element> = range
             .clone()
-            .filter_map(|k| Some(algebra.scale(self.known(a, k)?, &Rational::from(k))))
+            .filter_map(|k| Some(algebra.scale(self.known(a, k)?, &weight(k))))
             .collect();
         let zero = algebra.zero();
         let pairs: Vec<_> = weights
@@ -238,15 +292,15 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
         Ok(sum)
     }
 
-    /// The derivative of the coefficients of order 0 and 1 of every node with respect to x and
-    /// x' in the direction (dx, dv_0 + eps dv_1).
+    /// The derivative of the coefficients of order 0 and 1 of every node when x, x' and their
+    /// delayed values change by `direction`; nothing for a variable that does not change.
     pub(crate) fn tangents(
         &mut self,
-        dx: &A::Element,
-        dv: &[A::Element; 2],
+        direction: &Direction<'_, A>,
     ) -> Result<Vec<[A::Element; 2]>, ExpandError> {
         let algebra = self.algebra;
         let equation = self.equation;
+        let still = || [algebra.zero(), algebra.zero()];
         let mut tangents: Vec<[A::Element; 2]> = Vec::new();
         for (id, node) in equation.nodes.iter().enumerate() {
             let product = |this: &mut Self, factor: NodeId, tangent: &[A::Element; 2]| {
@@ -255,9 +309,10 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
                 Ok::<_, ExpandError>([algebra.mul(&f[0], &tangent[0]), first])
             };
             let tangent = match node {
-                Node::Constant(_) | Node::Small => [algebra.zero(), algebra.zero()],
-                Node::Displacement => [dx.clone(), algebra.zero()],
-                Node::Velocity => dv.clone(),
+                Node::Constant(_) | Node::Small | Node::Forcing { .. } => still(),
+                Node::Displacement | Node::Velocity | Node::Delayed { .. } => {
+                    direction(node).unwrap_or_else(still)
+                }
                 Node::Sum(terms) => {
                     let mut sum = [algebra.zero(), algebra.zero()];
                     for (q, term) in terms {
@@ -289,6 +344,25 @@ impl<'a, A: PhaseAlgebra> Evaluator<'a, A> {
                 &Node::Formal { derivative, argument, .. } => {
                     let tangent = tangents[argument].clone();
                     product(self, derivative, &tangent)?
+                }
+                // d y^q = w dy with w = q y^q/y: w_0 = q P_0/y_0, w_1 = (q P_1 - w_0 y_1)/y_0.
+                Node::Power(y, q) => {
+                    let (y0, y1) = (self.coefficient(*y, 0)?, self.coefficient(*y, 1)?);
+                    let inverse = algebra
+                        .reciprocal(&y0)
+                        .ok_or_else(|| ExpandError::UnsupportedTerm { term: "a power".into() })?;
+                    let power = [self.coefficient(id, 0)?, self.coefficient(id, 1)?];
+                    let [p0, p1] = power.map(|p| algebra.scale(&p, q));
+                    let w0 = algebra.mul(&p0, &inverse);
+                    let w1 = algebra.mul(&algebra.sub(&p1, &algebra.mul(&w0, &y1)), &inverse);
+                    let [t0, t1] = &tangents[*y];
+                    let first = algebra.sum_of_products(&[(&w0, t1), (&w1, t0)]);
+                    [algebra.mul(&w0, t0), first]
+                }
+                &Node::Circular { argument, partner, cosine } => {
+                    let tangent = tangents[argument].clone();
+                    let [zero, one] = product(self, partner, &tangent)?;
+                    if cosine { [algebra.neg(&zero), algebra.neg(&one)] } else { [zero, one] }
                 }
             };
             tangents.push(tangent);

@@ -1,16 +1,20 @@
 //! The driver and its judge within the algebra: expansions to any order, written once over
 //! [`lindstedt_algebra::PhaseAlgebra`], and the residual check that shares no code with it.
 
+mod averaging;
 mod bound;
 mod compile;
 mod driver;
 mod error;
 mod evaluator;
+mod excitation;
 mod limit_cycle;
 mod residual;
 
+pub use averaging::{AveragedExpansion, average, check_averaged, linear_part};
 pub use bound::{degrees, equation_denominator, residual_bits};
 pub use compile::{Binding, Equation, compile};
 pub use driver::{Expansion, OrderWork, Request, expand, leading_amplitude};
 pub use error::ExpandError;
+pub use excitation::Excitation;
 pub use residual::{check, check_normalisation};

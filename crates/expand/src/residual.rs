@@ -14,7 +14,7 @@
 use crate::ExpandError;
 use crate::compile::{Equation, Node, NodeId};
 use crate::driver::Expansion;
-use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::Condition;
 use lindstedt_series::Series;
 use rug::Rational;
@@ -94,7 +94,7 @@ pub fn check_normalisation<A: PhaseAlgebra>(
                 .is_some_and(|a| *x == algebra.scale_by(&algebra.cosine(), a)),
             Condition::InitialAmplitude => vanishes(x) && vanishes(&algebra.derivative(x)),
             Condition::LimitCycle => vanishes(&algebra.derivative(x)),
-            Condition::FundamentalAmplitude => algebra
+            Condition::FundamentalAmplitude | Condition::FreeAmplitude => algebra
                 .first_harmonic(x)
                 .is_ok_and(|(c, s)| constants.is_zero(&c) && constants.is_zero(&s)),
         };
@@ -103,6 +103,28 @@ pub fn check_normalisation<A: PhaseAlgebra>(
         }
     }
     Ok(())
+}
+
+/// The value of a node that is a constant, a sum or a product of the nodes before it.
+pub(crate) fn polynomial_value<A: FunctionAlgebra>(
+    algebra: &A,
+    node: &Node<<A::Constants as Ring>::Element>,
+    values: &[Series<A::Element>],
+    order: usize,
+) -> Option<Series<A::Element>> {
+    match node {
+        Node::Constant(c) => Some(Series::polynomial(vec![algebra.embed(c)])),
+        Node::Small => Some(Series::polynomial(vec![algebra.zero(), algebra.one()])),
+        Node::Sum(terms) => {
+            let mut sum = Series::polynomial(Vec::new());
+            for (q, term) in terms {
+                sum = sum.add(algebra, &values[*term].map(|c| algebra.scale(c, q)));
+            }
+            Some(sum)
+        }
+        &Node::Product(a, b) => Some(values[a].mul(algebra, &values[b], order)),
+        _ => None,
+    }
 }
 
 struct Judge<'a, A: PhaseAlgebra> {
@@ -133,8 +155,6 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
     fn value(&self, id: NodeId, values: &[Series<A::Element>]) -> Series<A::Element> {
         let algebra = self.algebra;
         match &self.equation.nodes[id] {
-            Node::Constant(c) => Series::polynomial(vec![algebra.embed(c)]),
-            Node::Small => Series::polynomial(vec![algebra.zero(), algebra.one()]),
             Node::Displacement => self.solution.clone(),
             Node::Velocity => {
                 let half = Rational::from((1, 2));
@@ -142,17 +162,8 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
                 let frequency = frequency.unwrap_or(Series::truncated(Vec::new()));
                 self.over_frequency(&frequency, &self.solution.map(|x| algebra.derivative(x)))
             }
-            Node::Sum(terms) => {
-                let mut sum = Series::polynomial(Vec::new());
-                for (q, term) in terms {
-                    sum = sum.add(algebra, &values[*term].map(|c| algebra.scale(c, q)));
-                }
-                sum
-            }
-            &Node::Product(a, b) => values[a].mul(algebra, &values[b], self.order),
-            Node::Logarithm(_) | Node::Exponential(_) | Node::Formal { .. } => {
-                Series::truncated(self.expansion.certificates[id].clone())
-            }
+            node => polynomial_value(algebra, node, values, self.order)
+                .unwrap_or_else(|| Series::truncated(self.expansion.certificates[id].clone())),
         }
     }
 
@@ -179,6 +190,12 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
                 Node::Exponential(g) => (slope(id), product(&slope(*g), &values[id])),
                 Node::Formal { derivative, argument, .. } => {
                     (slope(id), product(&slope(*argument), &values[*derivative]))
+                }
+                // Only algebras of values have these: nothing to verify identically.
+                Node::Power(..) | Node::Circular { .. } => {
+                    return Err(ExpandError::UnsupportedTerm {
+                        term: "the identical residual of an elementary function".into(),
+                    });
                 }
                 _ => continue,
             };

@@ -29,6 +29,12 @@ pub enum Error {
         /// The parameters it has.
         known: String,
     },
+    /// A value that cannot stand among symbols.
+    #[error("{name} can only be set when all parameters are: symbols take rational values")]
+    NotAmongSymbols {
+        /// The parameter.
+        name: String,
+    },
     /// A value outside the domain of a parameter.
     #[error("{name} = {value} is outside its domain {domain}")]
     OutsideDomain {

@@ -13,12 +13,14 @@
 #[cfg(doctest)]
 struct Readme;
 
+pub mod averaging;
 mod derivation;
 pub mod energy;
 mod error;
 pub mod evaluate;
 pub mod multimodular;
 pub mod number;
+pub mod numeric;
 pub mod paper;
 mod value;
 

@@ -174,7 +174,7 @@ impl Quotient {
 mod tests {
     use super::*;
     use crate::Lobachevsky;
-    use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Rationals, Ring};
+    use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Rationals, Ring};
     use lindstedt_coeff::polynomial::power;
     use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 

@@ -1,14 +1,18 @@
 //! Algebras of functions of the fast phase: trigonometric polynomials, the Lobachevsky ring, and
 //! the Lobachevsky functions as numbers.
 
+pub mod collocation;
 pub mod evaluate;
 pub mod fourier;
 pub mod lobachevsky;
 pub mod lobachevsky_function;
 pub mod modular;
 pub mod print;
+pub mod torus;
 pub mod trigonometric;
 
+pub use collocation::Collocation;
 pub use lobachevsky::Lobachevsky;
 pub use modular::Modular;
+pub use torus::{Delay, Torus};
 pub use trigonometric::Trigonometric;

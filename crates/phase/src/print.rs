@@ -13,7 +13,7 @@
 use crate::Lobachevsky;
 use crate::lobachevsky::{Factor, LobachevskyElement, Moments, Word};
 use crate::trigonometric::{Trigonometric, TrigonometricPolynomial, harmonics};
-use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra};
+use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra};
 use lindstedt_coeff::print::{Print, Style, Term, latex_name, parenthesize, power, print_sum};
 use rug::Rational;
 

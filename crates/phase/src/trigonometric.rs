@@ -1,6 +1,8 @@
 //! Trigonometric polynomials over any ring of constants.
 
-use lindstedt_algebra::{PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring};
+use lindstedt_algebra::{
+    FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring,
+};
 use rug::Rational;
 use std::collections::BTreeMap;
 
@@ -190,9 +192,8 @@ impl<C: RationalAlgebra> RationalAlgebra for Trigonometric<C> {
     }
 }
 
-impl<C: RationalAlgebra> PhaseAlgebra for Trigonometric<C> {
+impl<C: RationalAlgebra> FunctionAlgebra for Trigonometric<C> {
     type Constants = C;
-
     fn constants(&self) -> &C {
         &self.constants
     }
@@ -202,15 +203,25 @@ impl<C: RationalAlgebra> PhaseAlgebra for Trigonometric<C> {
     fn scale_by(&self, f: &Self::Element, c: &C::Element) -> Self::Element {
         self.map(f, |x| self.constants.mul(x, c))
     }
+    fn as_constant(&self, f: &Self::Element) -> Option<C::Element> {
+        (f.sin.is_empty() && f.cos.len() <= 1)
+            .then(|| f.cos.first().cloned().unwrap_or_else(|| self.constants.zero()))
+    }
+    /// ln of a trigonometric polynomial is none, except ln 1 = 0.
+    fn log_abs(&self, f: &Self::Element) -> Option<Self::Element> {
+        (*f == self.one()).then(|| self.zero())
+    }
+    fn terms(&self, f: &Self::Element) -> usize {
+        f.cos.iter().chain(&f.sin).filter(|c| !self.constants.is_zero(c)).count()
+    }
+}
+
+impl<C: RationalAlgebra> PhaseAlgebra for Trigonometric<C> {
     fn cosine(&self) -> Self::Element {
         self.cos(1, self.constants.one())
     }
     fn sine(&self) -> Self::Element {
         self.sin(1, self.constants.one())
-    }
-    fn as_constant(&self, f: &Self::Element) -> Option<C::Element> {
-        (f.sin.is_empty() && f.cos.len() <= 1)
-            .then(|| f.cos.first().cloned().unwrap_or_else(|| self.constants.zero()))
     }
     fn derivative(&self, f: &Self::Element) -> Self::Element {
         let times = |list: &[C::Element], sign: i64| -> Vec<C::Element> {
@@ -226,19 +237,11 @@ impl<C: RationalAlgebra> PhaseAlgebra for Trigonometric<C> {
         }
         Some(sum)
     }
-    /// ln of a trigonometric polynomial is none, except ln 1 = 0.
-    fn log_abs(&self, f: &Self::Element) -> Option<Self::Element> {
-        (*f == self.one()).then(|| self.zero())
-    }
-    fn terms(&self, f: &Self::Element) -> usize {
-        f.cos.iter().chain(&f.sin).filter(|c| !self.constants.is_zero(c)).count()
-    }
     fn first_harmonic(&self, f: &Self::Element) -> Result<(C::Element, C::Element), PhaseError> {
         let first =
             |list: &[C::Element]| list.get(1).cloned().unwrap_or_else(|| self.constants.zero());
         Ok((first(&f.cos), first(&f.sin)))
     }
-
     /// u_k = f_k/(1 - k^2), then the multiples of cos and sin that bring u to rest at psi = 0.
     fn resolve(&self, f: &Self::Element) -> Result<Resolution<Self>, PhaseError> {
         let (cos_amplitude, sin_amplitude) = self.first_harmonic(f)?;

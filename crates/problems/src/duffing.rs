@@ -5,26 +5,34 @@ use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Pr
 pub(crate) fn problem() -> Problem {
     let x = Expression::Displacement;
     Problem {
-        name: "duffing",
-        title: "Duffing oscillator x'' + x + eps x^3 = 0, in rho = eps A^2",
+        name: "duffing".into(),
+        title: "Duffing oscillator x'' + x + eps x^3 = 0, in rho = eps A^2".into(),
         equation: Expression::Acceleration + x.clone() + Expression::Small * x.pow(3),
-        small: "rho",
-        conditions: vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude],
+        time_domain: None,
+        impact: None,
+        synchronous: None,
+        small: "rho".into(),
+        conditions: vec![
+            Condition::InitialAmplitude,
+            Condition::FundamentalAmplitude,
+            Condition::FreeAmplitude,
+        ],
         amplitude: AmplitudeRole::InSmallParameter,
         parameters: vec![
             ParameterCard {
-                name: "eps",
-                meaning: "coefficient of the cubic force, any sign",
-                default: "1",
+                name: "eps".into(),
+                meaning: "coefficient of the cubic force, any sign".into(),
+                default: "1".into(),
             },
             ParameterCard {
-                name: "amplitude",
-                meaning: "A: x(0), or the first harmonic with --normalisation fundamental",
-                default: "1",
+                name: "amplitude".into(),
+                meaning: "A: x(0), or the first harmonic with --normalisation fundamental".into(),
+                default: "1".into(),
             },
         ],
         notes: "m x'' + k x + k_3 x^3 = 0 with time in sqrt(m/k) and eps = k_3/k; x = A y gives \
-                y'' + y + rho y^3 = 0 with rho = eps A^2. The coefficients depend on what A is.",
-        source: "classical; initial-amplitude series converges for |rho| < 1",
+                y'' + y + rho y^3 = 0 with rho = eps A^2. The coefficients depend on what A is."
+            .into(),
+        source: "classical; initial-amplitude series converges for |rho| < 1".into(),
     }
 }

@@ -6,12 +6,19 @@ mod pendulum;
 mod power_law;
 pub mod stick_slip;
 mod van_der_pol;
+pub mod vibro_impact;
 
 use lindstedt_equation::Problem;
 
 /// All built-in problems, in the order of the command line's list.
 pub fn all() -> Vec<Problem> {
-    vec![power_law::problem(), pendulum::problem(), duffing::problem(), van_der_pol::problem()]
+    vec![
+        power_law::problem(),
+        pendulum::problem(),
+        vibro_impact::problem(),
+        duffing::problem(),
+        van_der_pol::problem(),
+    ]
 }
 
 /// The built-in problem of that name.

@@ -1,32 +1,42 @@
 //! x'' + sin x = 0, embedded in the small-delta method.
 
-use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, Function, ParameterCard, Problem};
 
 pub(crate) fn problem() -> Problem {
     let x = Expression::Displacement;
     let exponent = Expression::Small * x.clone().pow(2).ln();
+    // S(z) = sin(a e^(z/2))/(a e^(z/2)), and e^(z/2) = (y^2)^(delta/2) = stretch.
+    let half = Expression::Number(rug::Rational::from((1, 2)));
+    let stretch = x.clone().pow(2).pow(Expression::Small * half);
+    let angle = Expression::parameter("amplitude") * stretch;
+    let force = x.clone() * angle.clone().apply(Function::Sin) * angle.pow(-1);
     Problem {
-        name: "pendulum",
-        title: "mathematical pendulum x'' + sin x = 0 by the small-delta method (delta = 1)",
+        name: "pendulum".into(),
+        title: "mathematical pendulum x'' + sin x = 0 by the small-delta method (delta = 1)".into(),
         equation: Expression::Acceleration + x * exponent.formal("S"),
-        small: "delta",
+        time_domain: Some(Expression::Acceleration + force),
+        impact: None,
+        synchronous: None,
+        small: "delta".into(),
         conditions: vec![Condition::InitialAmplitude],
         amplitude: AmplitudeRole::InSums,
         parameters: vec![
             ParameterCard {
-                name: "amplitude",
-                meaning: "x(0) = a in radians, 0 < a < pi, x'(0) = 0; enters through the sums S_n",
-                default: "1",
+                name: "amplitude".into(),
+                meaning: "x(0) = a in radians, 0 < a < pi, x'(0) = 0; enters through the sums S_n"
+                    .into(),
+                default: "1".into(),
             },
             ParameterCard {
-                name: "delta",
-                meaning: "small parameter; delta = 1 is the pendulum",
-                default: "1",
+                name: "delta".into(),
+                meaning: "small parameter; delta = 1 is the pendulum".into(),
+                default: "1".into(),
             },
         ],
         notes: "x = a y turns sin x into a y sum_k (-1)^k a^(2k) (y^2)^k/(2k+1)!. Replacing the \
                 exponent k by k delta gives y S(delta ln y^2) with S(z) = sum_n S_n z^n/n! and \
-                S_n = sum_k (-1)^k a^(2k) k^n/(2k+1)!; S_0 = sin(a)/a. Time in sqrt(length/g).",
-        source: "Awrejcewicz and Andrianov, section 4, equations (43)-(51)",
+                S_n = sum_k (-1)^k a^(2k) k^n/(2k+1)!; S_0 = sin(a)/a. Time in sqrt(length/g)."
+            .into(),
+        source: "Awrejcewicz and Andrianov, section 4, equations (43)-(51)".into(),
     }
 }

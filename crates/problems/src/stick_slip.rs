@@ -1,33 +1,52 @@
 //! The stick-slip oscillator of section 3: a data card. Its equation has a sign and a forcing in
 //! t, so it is no problem of the expansion driver; Melnikov's method and the simulation take it.
 
-use lindstedt_equation::ParameterCard;
+use lindstedt_equation::{Expression, Function, ParameterCard, Text};
 
 /// What is to be said about a problem that is not expanded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Card {
     /// The name on the command line.
-    pub name: &'static str,
+    pub name: Text,
     /// One line.
-    pub title: &'static str,
+    pub title: Text,
     /// The equation in print.
-    pub equation: &'static str,
+    pub equation: Text,
     /// The parameters, with the paper's values as defaults.
     pub parameters: Vec<ParameterCard>,
     /// How the dimensionless equation follows from the physical one, and what is known.
-    pub notes: &'static str,
+    pub notes: Text,
     /// Where it comes from.
-    pub source: &'static str,
+    pub source: Text,
+}
+
+/// x'' - a x + b x^3 + eps (T0 sign w - alpha w + beta w^3 - gamma cos(omega t)), w = x' - vstar.
+pub fn equation() -> Expression {
+    let x = Expression::Displacement;
+    let symbol = Expression::parameter;
+    let slip = Expression::Velocity - symbol("vstar");
+    let friction = symbol("T0") * slip.clone().apply(Function::Sign)
+        - symbol("alpha") * slip.clone()
+        + symbol("beta") * slip.pow(3);
+    let forcing = symbol("gamma") * (symbol("omega") * Expression::Time).apply(Function::Cos);
+    Expression::Acceleration - symbol("a") * x.clone()
+        + symbol("b") * x.pow(3)
+        + Expression::Small * (friction - forcing)
 }
 
 /// The card of the paper's (18)-(20).
 pub fn card() -> Card {
-    let line = |name, meaning, default| ParameterCard { name, meaning, default };
+    let line = |name: &'static str, meaning: &'static str, default: &'static str| ParameterCard {
+        name: name.into(),
+        meaning: meaning.into(),
+        default: default.into(),
+    };
     Card {
-        name: "stick-slip",
-        title: "mass on a moving belt in a double well",
+        name: "stick-slip".into(),
+        title: "mass on a moving belt in a double well".into(),
         equation: "x'' = a*x - b*x^3 + eps*(gamma*cos(omega*t) - T(x' - vstar)), \
-                   T(w) = T0*sign(w) - alpha*w + beta*w^3",
+                   T(w) = T0*sign(w) - alpha*w + beta*w^3"
+            .into(),
         parameters: vec![
             line("a", "k_1/m > 0: the saddle's rate squared", "1"),
             line("b", "k_2/m > 0: stiffening, wells at +-sqrt(a/b)", "1"),
@@ -45,7 +64,8 @@ pub fn card() -> Card {
         ],
         notes: "(18) divided by m. All parameters are dimensionless once time and length are \
                 scaled; homoclinic orbit x0 = +-sqrt(2a/b) sech(sqrt(a) t), largest speed \
-                V = a/sqrt(2b). Valid for |v*| and ||v*| - V| large against eps.",
-        source: "section 3 of the paper, (18)-(27), with its misprints corrected",
+                V = a/sqrt(2b). Valid for |v*| and ||v*| - V| large against eps."
+            .into(),
+        source: "section 3 of the paper, (18)-(27), with its misprints corrected".into(),
     }
 }

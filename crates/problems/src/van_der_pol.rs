@@ -6,19 +6,23 @@ pub(crate) fn problem() -> Problem {
     let x = Expression::Displacement;
     let gain = 1 - x.clone().pow(2);
     Problem {
-        name: "van-der-pol",
-        title: "van der Pol's oscillator x'' - eps (1 - x^2) x' + x = 0, its limit cycle",
+        name: "van-der-pol".into(),
+        title: "van der Pol's oscillator x'' - eps (1 - x^2) x' + x = 0, its limit cycle".into(),
         equation: Expression::Acceleration + x - Expression::Small * gain * Expression::Velocity,
-        small: "eps",
-        conditions: vec![Condition::LimitCycle],
+        time_domain: None,
+        impact: None,
+        synchronous: None,
+        small: "eps".into(),
+        conditions: vec![Condition::LimitCycle, Condition::FreeAmplitude],
         amplitude: AmplitudeRole::Determined,
         parameters: vec![ParameterCard {
-            name: "eps",
-            meaning: "strength of the nonlinear damping, any sign",
-            default: "1",
+            name: "eps".into(),
+            meaning: "strength of the nonlinear damping, any sign".into(),
+            default: "1".into(),
         }],
         notes: "Phase x'(0) = 0; the amplitude x(0) is the largest displacement, determined order \
-                by order. Time in the period of small oscillations over 2 pi.",
-        source: "C. M. Andersen and J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678",
+                by order. Time in the period of small oscillations over 2 pi."
+            .into(),
+        source: "C. M. Andersen and J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678".into(),
     }
 }

@@ -6,6 +6,7 @@ use crate::derive::number_json;
 use crate::failure::Failure;
 use crate::session::Session;
 use lindstedt::coeff::ball::{Ball, Balls};
+use lindstedt::equation::Text;
 use lindstedt::number::{Number, certified};
 use lindstedt_melnikov::{Branch, MelnikovError, Verdict};
 use serde_json::{Value as Json, json};
@@ -20,7 +21,7 @@ const COUNTING_BITS: u32 = 400;
 
 /// The answer at the point of the request.
 pub struct Answer {
-    at: Vec<(&'static str, String)>,
+    at: Vec<(Text, String)>,
     numbers: Vec<(&'static str, Number)>,
     zeros: Vec<Number>,
     zeros_of: Option<(String, bool)>,
@@ -96,7 +97,7 @@ impl Answer {
             _ => "undecided",
         };
         Ok(Self {
-            at: request.at.iter().map(|(name, value)| (*name, value.to_string())).collect(),
+            at: request.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect(),
             numbers,
             zeros,
             zeros_of,
@@ -117,7 +118,7 @@ impl Answer {
         let mut result = serde_json::Map::new();
         result.insert("problem".into(), "stick-slip".into());
         let at: serde_json::Map<_, _> =
-            self.at.iter().map(|(n, v)| ((*n).to_owned(), Json::from(v.clone()))).collect();
+            self.at.iter().map(|(n, v)| (n.to_string(), Json::from(v.clone()))).collect();
         result.insert("at".into(), at.into());
         for (name, number) in &self.numbers {
             if *name != "cusp" {

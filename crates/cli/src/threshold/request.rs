@@ -4,6 +4,7 @@ use crate::arguments::ThresholdOptions;
 use crate::failure::Failure;
 use crate::session::parameters;
 use lindstedt::Value;
+use lindstedt::equation::Text;
 use lindstedt::problems::stick_slip;
 use lindstedt_melnikov::{Axis, Real, StickSlip};
 use rug::Rational;
@@ -26,7 +27,7 @@ pub struct Request {
     pub gamma: Real,
     pub eps: Real,
     /// Every parameter as it stands, in the order of the data card.
-    pub at: Vec<(&'static str, Real)>,
+    pub at: Vec<(Text, Real)>,
     /// One, or two: the first is the horizontal axis of a figure.
     pub sweeps: Vec<Sweep>,
     /// Parameter, its name, and the range.
@@ -111,14 +112,14 @@ impl Request {
         let mut set = parameters(&options.set)?;
         let mut at = Vec::new();
         for card in stick_slip::card().parameters {
-            let value = match set.remove(card.name) {
+            let value = match set.remove(&*card.name) {
                 Some(value) => real(value),
-                None => parse(card.default)?,
+                None => parse(&card.default)?,
             };
             at.push((card.name, value));
         }
         if let Some(name) = set.keys().next() {
-            let known: Vec<&str> = at.iter().map(|(name, _)| *name).collect();
+            let known: Vec<&str> = at.iter().map(|(name, _)| &**name).collect();
             let message = format!("stick-slip has no parameter {name:?}");
             let hint = format!("it has {}", known.join(", "));
             return Err(Failure::usage("unknown-parameter", message, &hint));
@@ -131,7 +132,7 @@ impl Request {
         }
         point.check()?;
         let get = |wanted: &str| {
-            let value = at.iter().find(|(name, _)| *name == wanted).map(|(_, value)| value.clone());
+            let value = at.iter().find(|(name, _)| name == wanted).map(|(_, value)| value.clone());
             value.unwrap_or_else(|| Real::from(0))
         };
         let (gamma, eps) = (get("gamma"), get("eps"));

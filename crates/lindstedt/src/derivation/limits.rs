@@ -13,10 +13,10 @@ pub(crate) fn check_parameters(
     given: &BTreeMap<String, Value>,
 ) -> Result<(), Error> {
     for (name, value) in given {
-        if !problem.parameters.iter().any(|card| card.name == name) {
-            let known: Vec<&str> = problem.parameters.iter().map(|card| card.name).collect();
+        if !problem.parameters.iter().any(|card| card.name == *name) {
+            let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
             return Err(Error::UnknownParameter {
-                problem: problem.name.to_owned(),
+                problem: problem.name.to_string(),
                 name: name.clone(),
                 known: known.join(", "),
             });

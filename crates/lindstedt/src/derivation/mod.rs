@@ -6,8 +6,9 @@ mod series;
 use crate::multimodular::{self, RationalBinding};
 use crate::number::{Constants, Number, certified};
 use crate::{Error, Value};
-use limits::{check_parameters, has_logarithms, limit_memory};
-use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Rationals, Ring};
+pub(crate) use limits::check_parameters;
+use limits::{has_logarithms, limit_memory};
+use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
@@ -121,7 +122,7 @@ pub struct Derivation {
 }
 
 /// The name of the formal function whose Taylor coefficients are the sums S_n.
-const FORMAL: &str = "S";
+pub(crate) const FORMAL: &str = "S";
 
 /// Rational values given for parameters of the equation, and the formal sums.
 struct Given<'a> {
@@ -143,6 +144,15 @@ impl RationalBinding for Given<'_> {
     fn parameter(&self, name: &str) -> Option<Rational> {
         self.parameters.get(name)?.as_rational().cloned()
     }
+}
+
+/// The normalisation asked for, if the problem offers it; its own if none is.
+pub(crate) fn condition(problem: &Problem, asked: Option<Condition>) -> Result<Condition, Error> {
+    let condition = match asked {
+        None => problem.conditions.first().copied(),
+        Some(asked) => problem.conditions.iter().copied().find(|c| *c == asked),
+    };
+    condition.ok_or_else(|| Error::UnknownCondition { problem: problem.name.to_string() })
 }
 
 /// Derives and checks the expansion of a problem.
@@ -168,12 +178,7 @@ pub fn derive(
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Derivation, Error> {
     check_parameters(problem, &settings.parameters)?;
-    let condition = match settings.condition {
-        None => problem.conditions.first().copied(),
-        Some(asked) => problem.conditions.iter().copied().find(|c| *c == asked),
-    };
-    let condition =
-        condition.ok_or_else(|| Error::UnknownCondition { problem: problem.name.to_owned() })?;
+    let condition = condition(problem, settings.condition)?;
     let amplitude = settings.parameters.get("amplitude").cloned();
     let has_logarithms = has_logarithms(&problem.equation);
     limit_memory(problem, settings)?;
@@ -237,7 +242,7 @@ pub fn derive(
     let default = problem.parameters.iter().find(|p| p.name == "amplitude");
     let amplitude = match amplitude {
         Some(value) => Some(value),
-        None => default.map(|card| Value::parse(card.default)).transpose()?,
+        None => default.map(|card| Value::parse(&card.default)).transpose()?,
     };
     Ok(Derivation {
         problem: problem.clone(),

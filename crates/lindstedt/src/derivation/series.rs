@@ -86,7 +86,7 @@ pub(super) fn series(
     // x(0), where the condition does not fix it.
     let name = match condition {
         Condition::InitialAmplitude => None,
-        Condition::FundamentalAmplitude => Some("initial_displacement"),
+        Condition::FundamentalAmplitude | Condition::FreeAmplitude => Some("initial_displacement"),
         Condition::LimitCycle => Some("amplitude"),
     };
     if let Some(name) = name {
@@ -111,7 +111,7 @@ pub(super) fn energy_integral(
     ring: &PolynomialRing,
     order: usize,
 ) -> Result<(Powers, Polynomial), Error> {
-    let unavailable = || Error::NoSuchRoute { problem: problem.name.to_owned() };
+    let unavailable = || Error::NoSuchRoute { problem: problem.name.to_string() };
     // The formulas hold for these two equations, whatever the problem is called.
     let x = || Expression::Displacement;
     let square = || x().pow(2);

@@ -4,7 +4,7 @@ use super::compare::{Ratio, Term, compare_sums};
 use super::{Findings, Reader, Row, periods};
 use crate::number::Constants;
 use crate::{Derivation, Error, Progress, Settings, Solution, derive};
-use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
+use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::digits::decimal;
 use lindstedt_coeff::print::Style;

@@ -13,7 +13,9 @@ mod word;
 
 pub use word::Word;
 
-use lindstedt_algebra::{PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring};
+use lindstedt_algebra::{
+    FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring,
+};
 use lindstedt_coeff::sparse::{Accumulator, Monomial, Sparse};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use rug::Rational;
@@ -241,9 +243,8 @@ where
         .then(|| (factor.power, c.clone()))
 }
 
-impl<C: Moments> PhaseAlgebra for Lobachevsky<C> {
+impl<C: Moments> FunctionAlgebra for Lobachevsky<C> {
     type Constants = C;
-
     fn constants(&self) -> &C {
         &self.constants
     }
@@ -256,19 +257,29 @@ impl<C: Moments> PhaseAlgebra for Lobachevsky<C> {
         }
         self.map(f, |x| self.constants.mul(x, c))
     }
-    fn cosine(&self) -> Self::Element {
-        self.term(1, false, Word::unit(), self.constants.one())
-    }
-    fn sine(&self) -> Self::Element {
-        self.term(0, true, Word::unit(), self.constants.one())
-    }
     fn as_constant(&self, f: &Self::Element) -> Option<C::Element> {
         if f.is_empty() {
             return Some(self.constants.zero());
         }
         single_power(f).and_then(|(power, c)| (power == 0).then_some(c))
     }
+    /// ln|cos^k| = -k l.
+    fn log_abs(&self, f: &Self::Element) -> Option<Self::Element> {
+        let (power, c) = single_power(f)?;
+        (c == self.constants.one()).then(|| self.scale(&self.log_secant(), &Rational::from(-power)))
+    }
+    fn terms(&self, f: &Self::Element) -> usize {
+        f.len()
+    }
+}
 
+impl<C: Moments> PhaseAlgebra for Lobachevsky<C> {
+    fn cosine(&self) -> Self::Element {
+        self.term(1, false, Word::unit(), self.constants.one())
+    }
+    fn sine(&self) -> Self::Element {
+        self.term(0, true, Word::unit(), self.constants.one())
+    }
     /// With E = sum_m (l^m/m! - mu_m) d/dLambda_m the part of the derivation that leaves cos
     /// and sin alone:
     ///
@@ -296,7 +307,6 @@ impl<C: Moments> PhaseAlgebra for Lobachevsky<C> {
         }
         LobachevskyElement { blocks }
     }
-
     /// cos 0 = 1, sin 0 = l(0) = Lambda_m(0) = 0.
     fn at_zero(&self, f: &Self::Element) -> Option<C::Element> {
         let mut sum = self.constants.zero();
@@ -307,17 +317,6 @@ impl<C: Moments> PhaseAlgebra for Lobachevsky<C> {
         }
         Some(sum)
     }
-
-    /// ln|cos^k| = -k l.
-    fn log_abs(&self, f: &Self::Element) -> Option<Self::Element> {
-        let (power, c) = single_power(f)?;
-        (c == self.constants.one()).then(|| self.scale(&self.log_secant(), &Rational::from(-power)))
-    }
-
-    fn terms(&self, f: &Self::Element) -> usize {
-        f.len()
-    }
-
     fn first_harmonic(&self, f: &Self::Element) -> Result<(C::Element, C::Element), PhaseError> {
         let twice_mean = |g: &Self::Element| -> Result<C::Element, PhaseError> {
             let (_, mean) = self.antiderivative(&self.mul(f, g))?;
@@ -325,7 +324,6 @@ impl<C: Moments> PhaseAlgebra for Lobachevsky<C> {
         };
         Ok((twice_mean(&self.cosine())?, twice_mean(&self.sine())?))
     }
-
     /// Variation of constants, u = sin int f cos - cos int f sin. With f = p + P' the means of
     /// f cos and f sin are p and q; subtracting 2 p cos + 2 q sin from f takes the secular
     /// terms p t and q t out of the two integrals and leaves

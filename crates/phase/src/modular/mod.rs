@@ -14,7 +14,9 @@ mod field;
 
 pub use field::PrimeField;
 
-use lindstedt_algebra::{PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring};
+use lindstedt_algebra::{
+    FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring,
+};
 use rug::{Integer, Rational};
 use std::sync::OnceLock;
 
@@ -304,9 +306,8 @@ impl RationalAlgebra for Modular {
     }
 }
 
-impl PhaseAlgebra for Modular {
+impl FunctionAlgebra for Modular {
     type Constants = PrimeField;
-
     fn constants(&self) -> &PrimeField {
         &self.field
     }
@@ -323,12 +324,6 @@ impl PhaseAlgebra for Modular {
         let pairs: Vec<_> = terms.iter().zip(&constants).map(|((f, _), c)| (*f, c)).collect();
         self.sum_of_products(&pairs)
     }
-    fn cosine(&self) -> ModularElement {
-        self.from_harmonics([vec![0, self.field.one()], Vec::new()])
-    }
-    fn sine(&self) -> ModularElement {
-        self.from_harmonics([Vec::new(), vec![0, self.field.one()]])
-    }
     fn as_constant(&self, f: &ModularElement) -> Option<u64> {
         match &f.values {
             [None, None, None, None] => Some(0),
@@ -338,6 +333,23 @@ impl PhaseAlgebra for Modular {
             }
             _ => None,
         }
+    }
+    /// ln 1 = 0; no other logarithm is a trigonometric polynomial.
+    fn log_abs(&self, f: &ModularElement) -> Option<ModularElement> {
+        (*f == self.one()).then(|| self.zero())
+    }
+    fn terms(&self, f: &ModularElement) -> usize {
+        let [cos, sin] = self.harmonics(f);
+        cos.iter().chain(&sin).filter(|&&c| c != 0).count()
+    }
+}
+
+impl PhaseAlgebra for Modular {
+    fn cosine(&self) -> ModularElement {
+        self.from_harmonics([vec![0, self.field.one()], Vec::new()])
+    }
+    fn sine(&self) -> ModularElement {
+        self.from_harmonics([Vec::new(), vec![0, self.field.one()]])
     }
     fn derivative(&self, f: &ModularElement) -> ModularElement {
         let [cos, sin] = self.harmonics(f);
@@ -350,14 +362,6 @@ impl PhaseAlgebra for Modular {
     fn at_zero(&self, f: &ModularElement) -> Option<u64> {
         let [cos, _] = self.harmonics(f);
         Some(cos.iter().fold(0, |sum, c| self.field.add(&sum, c)))
-    }
-    /// ln 1 = 0; no other logarithm is a trigonometric polynomial.
-    fn log_abs(&self, f: &ModularElement) -> Option<ModularElement> {
-        (*f == self.one()).then(|| self.zero())
-    }
-    fn terms(&self, f: &ModularElement) -> usize {
-        let [cos, sin] = self.harmonics(f);
-        cos.iter().chain(&sin).filter(|&&c| c != 0).count()
     }
     fn first_harmonic(&self, f: &ModularElement) -> Result<(u64, u64), PhaseError> {
         let [cos, sin] = self.harmonics(f);

@@ -1,0 +1,230 @@
+//! `lindstedt derive` with a free amplitude: the averaged equations of Krylov, Bogoliubov and
+//! Mitropolsky.
+
+use crate::Outcome;
+use crate::arguments::Format;
+use crate::derive::number_json;
+use crate::failure::{INTERRUPTED, UNDECIDED};
+use crate::output;
+use crate::problems::{condition_name, condition_text};
+use crate::session::Session;
+use lindstedt::averaging::{Averaging, AveragingSettings, Coefficient, RateTerm, average};
+use lindstedt::coeff::print::Style;
+use lindstedt::coeff::print::{latex_name, power};
+use lindstedt::equation::{Condition, Problem, print};
+use lindstedt::{Progress, Settings};
+use serde_json::{Value as Json, json};
+use std::fmt::Write;
+
+/// Formulas longer than this are counted in the text formats; the JSON format has them all.
+const PRINTED_CHARACTERS: usize = 6000;
+
+pub fn run(
+    problem: &Problem,
+    settings: &Settings,
+    digits: usize,
+    session: &Session<'_>,
+) -> Outcome {
+    let asked = AveragingSettings {
+        order: settings.order,
+        parameters: settings.parameters.clone(),
+        digits,
+    };
+    let mut observer = |progress: Progress| {
+        session.say(match progress {
+            Progress::Order(n, terms) => format!("order {n} of {}: {terms} terms", asked.order),
+            _ => "substituting into the equation".to_owned(),
+        });
+        session.goes_on()
+    };
+    let result = average(problem, &asked, &mut observer)?;
+    session.done();
+    let text = match session.format() {
+        Format::Json => format!("{:#}\n", report(&result, settings, session)),
+        Format::Text => Board { result: &result, style: Style::Text, markdown: false }.write(),
+        Format::Latex => Board { result: &result, style: Style::Latex, markdown: false }.write(),
+        Format::Markdown => Board { result: &result, style: Style::Latex, markdown: true }.write(),
+    };
+    output::write(session, &text)?;
+    if result.order < asked.order {
+        let reason = if session.interrupted() { "interrupted" } else { "time limit" };
+        output::warn(&format!("{reason}: orders 0 to {} are finished and checked", result.order));
+        return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
+    }
+    Ok(0)
+}
+
+fn coefficient_json(coefficient: &Coefficient) -> Json {
+    match coefficient {
+        Coefficient::Number(number) => number_json(number),
+        Coefficient::Formula { text, .. } => {
+            json!({"exact": text, "decimal": null, "error": null, "status": "exact"})
+        }
+    }
+}
+
+/// A linear problem has numbers, growth_rate and frequency; otherwise the rates are polynomials in
+/// the amplitude.
+fn report(result: &Averaging, settings: &Settings, session: &Session<'_>) -> Json {
+    let zero = || json!({"exact": "0", "decimal": "0", "error": null, "status": "exact"});
+    let numbers = |rates: &[Vec<RateTerm>]| -> Json {
+        let value = |rate: &Vec<RateTerm>| {
+            rate.first().map_or_else(zero, |term| coefficient_json(&term.coefficient))
+        };
+        rates.iter().map(value).collect()
+    };
+    let polynomials = |rates: &[Vec<RateTerm>]| -> Json {
+        let term = |term: &RateTerm| json!({"power": term.exponent, "coefficient": coefficient_json(&term.coefficient)});
+        rates.iter().map(|rate| rate.iter().map(term).collect::<Json>()).collect()
+    };
+    let (a, b) = (&result.amplitude_rate, &result.phase_rate);
+    let series = if result.is_linear() {
+        json!({"growth_rate": numbers(a), "frequency": numbers(b)})
+    } else {
+        json!({"amplitude_rate": polynomials(a), "phase_rate": polynomials(b)})
+    };
+    let at: serde_json::Map<String, Json> =
+        settings.parameters.iter().map(|(n, v)| (n.clone(), Json::from(v.to_string()))).collect();
+    let problem = &result.problem;
+    json!({
+        "problem": problem.name,
+        "equation": format!("{} = 0", problem.equation.print(&problem.small, print::Style::Text)),
+        "parameter": problem.small,
+        "at": at,
+        "order": result.order,
+        "tier": if result.exact { "exact" } else { "certified" },
+        "normalisation": condition_name(Condition::FreeAmplitude),
+        "series": series,
+        "solution": result.solution.iter().map(|[text, _]| text).collect::<Vec<_>>(),
+        "terms": result.terms,
+        "residual": {
+            "checked_orders": result.checked_orders,
+            "zero": result.exact.then_some(true),
+            "encloses_zero": !result.exact,
+        },
+        "method": {"name": "averaging (Krylov, Bogoliubov, Mitropolsky)"},
+        "seconds": session.elapsed().as_secs_f64(),
+    })
+}
+
+struct Board<'a> {
+    result: &'a Averaging,
+    style: Style,
+    markdown: bool,
+}
+
+impl Board<'_> {
+    fn formula(&self, text: &str) -> String {
+        match (self.style, self.markdown) {
+            (Style::Text, _) => format!("  {text}\n"),
+            (Style::Latex, false) => format!("\\[ {text} \\]\n"),
+            (Style::Latex, true) => format!("$$ {text} $$\n"),
+        }
+    }
+
+    fn write(&self) -> String {
+        let (result, problem) = (self.result, &self.result.problem);
+        let style = match self.style {
+            Style::Text => print::Style::Text,
+            Style::Latex => print::Style::Latex,
+        };
+        let mut text = match (self.style, self.markdown) {
+            (Style::Text, _) => format!("{}: {}\n", problem.name, problem.title),
+            (Style::Latex, false) => {
+                format!("\\paragraph*{{{}: {}}}\n", problem.name, problem.title)
+            }
+            (Style::Latex, true) => format!("### {}: {}\n", problem.name, problem.title),
+        };
+        text += &self.formula(&format!("{} = 0", problem.equation.print(&problem.small, style)));
+        let small = match self.style {
+            Style::Text => problem.small.to_string(),
+            Style::Latex => latex_name(&problem.small),
+        };
+        text += &self.formula(&match self.style {
+            Style::Text => format!("x = u_0 + u_1*{small} + ...   a' = A_1(a)*{small} + A_2(a)*{small}^2 + ...   psi' = B_0 + B_1(a)*{small} + ..."),
+            Style::Latex => format!("x = u_0 + u_1\\,{small} + \\dots,\\quad \\dot a = A_1(a)\\,{small} + A_2(a)\\,{small}^2 + \\dots,\\quad \\dot\\psi = B_0 + B_1(a)\\,{small} + \\dots"),
+        });
+        let _ = writeln!(text, "Normalisation: {}.\n", condition_text(Condition::FreeAmplitude));
+        for n in 0..=result.order {
+            let position = usize::from(self.style == Style::Latex);
+            let solution = result.solution.get(n).map_or("0", |pair| pair[position].as_str());
+            let index = match self.style {
+                Style::Text => format!("u_{n}"),
+                Style::Latex => format!("u_{{{n}}}"),
+            };
+            text += &self.formula(&format!("{index} = {}", self.shortened(solution.to_owned())));
+            for (name, rates) in [("A", &result.amplitude_rate), ("B", &result.phase_rate)] {
+                if n == 0 && name == "A" {
+                    continue;
+                }
+                let index = match self.style {
+                    Style::Text => format!("{name}_{n}"),
+                    Style::Latex => format!("{name}_{{{n}}}"),
+                };
+                let rate = self.rate(rates.get(n).map_or(&[], Vec::as_slice));
+                text += &self.formula(&format!("{index} = {rate}"));
+            }
+        }
+        let _ = if result.exact {
+            writeln!(
+                text,
+                "\nResidual: the expansion substituted into the equation vanishes identically at orders 0 to {}.",
+                result.checked_orders
+            )
+        } else {
+            writeln!(
+                text,
+                "\nResidual: the expansion substituted into the equation encloses zero at orders 0 to {};\nall digits printed are certain.",
+                result.checked_orders
+            )
+        };
+        text
+    }
+
+    fn rate(&self, terms: &[RateTerm]) -> String {
+        let mut line = String::new();
+        for term in terms {
+            let coefficient = match &term.coefficient {
+                Coefficient::Number(number) => {
+                    number.exact.clone().unwrap_or_else(|| number.decimal.clone())
+                }
+                Coefficient::Formula { text, latex } => match self.style {
+                    Style::Text => text.clone(),
+                    Style::Latex => latex.clone(),
+                },
+            };
+            let is_sum = coefficient.trim_start_matches('-').contains([' ']);
+            let name = (term.exponent != 0).then(|| power("a", term.exponent.into(), self.style));
+            let (negative, magnitude) = match coefficient.strip_prefix('-') {
+                Some(rest) if !is_sum => (true, rest.to_owned()),
+                _ => (false, coefficient),
+            };
+            line += match (line.is_empty(), negative) {
+                (true, false) => "",
+                (true, true) => "-",
+                (false, false) => " + ",
+                (false, true) => " - ",
+            };
+            let times = if self.style == Style::Text { "*" } else { "\\," };
+            line += &match (name, is_sum) {
+                (None, _) => magnitude,
+                (Some(name), _) if magnitude == "1" => name,
+                (Some(name), true) => format!("{name}{times}({magnitude})"),
+                (Some(name), false) => format!("{magnitude}{times}{name}"),
+            };
+        }
+        if line.is_empty() {
+            return "0".to_owned();
+        }
+        self.shortened(line)
+    }
+
+    fn shortened(&self, line: String) -> String {
+        let count = line.len();
+        match self.style {
+            _ if count <= PRINTED_CHARACTERS => line,
+            Style::Text => format!("[{count} characters; in full with --format json]"),
+            Style::Latex => format!("\\text{{[{count} characters; in full with --format json]}}"),
+        }
+    }
+}

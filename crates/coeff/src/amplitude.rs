@@ -1,0 +1,179 @@
+//! K[a, 1/a]: functions of the amplitude a, the constants of an averaged expansion.
+
+use crate::print::{Print, Style, Term, power};
+use crate::sparse::{Accumulator, Monomial, Sparse};
+use lindstedt_algebra::{RationalAlgebra, Ring};
+use rug::Rational;
+
+/// a^exponent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct AmplitudePower(pub i32);
+
+impl Monomial for AmplitudePower {
+    fn unit() -> Self {
+        Self(0)
+    }
+    fn times(&self, other: &Self) -> Self {
+        // Exponents are bounded by degree times order, far below i32.
+        Self(self.0.saturating_add(other.0))
+    }
+}
+
+/// An element of [`AmplitudePolynomials`].
+pub type AmplitudePolynomial<E> = Sparse<AmplitudePower, E>;
+
+/// Laurent polynomials in the amplitude a over a ring K of numbers or parameters.
+///
+/// ```
+/// use lindstedt_algebra::{Rationals, Ring};
+/// use lindstedt_coeff::amplitude::AmplitudePolynomials;
+/// use lindstedt_coeff::print::{Print, Style};
+/// use rug::Rational;
+///
+/// let ring = AmplitudePolynomials::new(Rationals);
+/// let drift = ring.sub(&ring.power(1, Rational::from((1, 2))), &ring.power(3, Rational::from((1, 8))));
+/// assert_eq!(ring.print(&drift, Style::Text), "1/2*a - 1/8*a^3");
+/// assert_eq!(ring.print(&ring.derivative(&drift), Style::Text), "1/2 - 3/8*a^2");
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct AmplitudePolynomials<K> {
+    /// K.
+    pub coefficients: K,
+}
+
+impl<K: RationalAlgebra> AmplitudePolynomials<K> {
+    /// The ring over K.
+    pub fn new(coefficients: K) -> Self {
+        Self { coefficients }
+    }
+    /// c a^exponent.
+    pub fn power(&self, exponent: i32, c: K::Element) -> AmplitudePolynomial<K::Element> {
+        Sparse::term(&self.coefficients, AmplitudePower(exponent), c)
+    }
+    /// An element of K.
+    pub fn embed(&self, c: K::Element) -> AmplitudePolynomial<K::Element> {
+        self.power(0, c)
+    }
+    /// The element of K that f is, if f does not depend on a.
+    pub fn as_coefficient(&self, f: &AmplitudePolynomial<K::Element>) -> Option<K::Element> {
+        match f.terms() {
+            [] => Some(self.coefficients.zero()),
+            [(AmplitudePower(0), c)] => Some(c.clone()),
+            _ => None,
+        }
+    }
+    /// df/da.
+    #[must_use]
+    pub fn derivative(
+        &self,
+        f: &AmplitudePolynomial<K::Element>,
+    ) -> AmplitudePolynomial<K::Element> {
+        let k = &self.coefficients;
+        let terms = f
+            .terms()
+            .iter()
+            .map(|(AmplitudePower(n), c)| (AmplitudePower(n - 1), k.scale(c, &Rational::from(*n))));
+        Sparse::collect(k, terms)
+    }
+    /// c f for c in K.
+    #[must_use]
+    pub fn times(
+        &self,
+        f: &AmplitudePolynomial<K::Element>,
+        c: &K::Element,
+    ) -> AmplitudePolynomial<K::Element> {
+        f.map(&self.coefficients, |x| self.coefficients.mul(x, c))
+    }
+    /// f a^exponent.
+    #[must_use]
+    pub fn shift(
+        &self,
+        f: &AmplitudePolynomial<K::Element>,
+        exponent: i32,
+    ) -> AmplitudePolynomial<K::Element> {
+        let terms = f.terms().iter().cloned();
+        let shifted = terms.map(|(m, c)| (m.times(&AmplitudePower(exponent)), c));
+        Sparse::collect(&self.coefficients, shifted)
+    }
+}
+
+impl<K: RationalAlgebra> Ring for AmplitudePolynomials<K> {
+    type Element = AmplitudePolynomial<K::Element>;
+
+    fn zero(&self) -> Self::Element {
+        Sparse::default()
+    }
+    fn one(&self) -> Self::Element {
+        self.embed(self.coefficients.one())
+    }
+    fn is_zero(&self, f: &Self::Element) -> bool {
+        f.is_zero()
+    }
+    fn may_vanish(&self, f: &Self::Element) -> bool {
+        f.terms().iter().all(|(_, c)| self.coefficients.may_vanish(c))
+    }
+    fn add_assign(&self, f: &mut Self::Element, g: &Self::Element) {
+        f.add_assign(&self.coefficients, g);
+    }
+    fn neg(&self, f: &Self::Element) -> Self::Element {
+        f.neg(&self.coefficients)
+    }
+    fn mul(&self, f: &Self::Element, g: &Self::Element) -> Self::Element {
+        f.mul(&self.coefficients, g)
+    }
+    fn sum_of_products(&self, pairs: &[(&Self::Element, &Self::Element)]) -> Self::Element {
+        let mut sum = Accumulator::default();
+        for (f, g) in pairs {
+            sum.add_product(&self.coefficients, f, g);
+        }
+        sum.finish(&self.coefficients)
+    }
+}
+
+impl<K: RationalAlgebra> RationalAlgebra for AmplitudePolynomials<K> {
+    fn rational(&self, q: &Rational) -> Self::Element {
+        self.embed(self.coefficients.rational(q))
+    }
+    fn scale(&self, f: &Self::Element, q: &Rational) -> Self::Element {
+        f.scale(&self.coefficients, q)
+    }
+    /// The inverse of a single term with a coefficient that K can invert.
+    fn reciprocal(&self, f: &Self::Element) -> Option<Self::Element> {
+        let [(AmplitudePower(n), c)] = f.terms() else { return None };
+        Some(self.power(-n, self.coefficients.reciprocal(c)?))
+    }
+    fn as_rational(&self, f: &Self::Element) -> Option<Rational> {
+        self.coefficients.as_rational(&self.as_coefficient(f)?)
+    }
+}
+
+impl<K: RationalAlgebra + Print> Print for AmplitudePolynomials<K> {
+    fn print_terms(&self, f: &Self::Element, style: Style) -> Vec<Term> {
+        let term = |(AmplitudePower(n), c): &(AmplitudePower, K::Element)| {
+            let name = (*n != 0).then(|| power("a", (*n).into(), style));
+            self.coefficients.factor(c, style).times(name)
+        };
+        match f.terms() {
+            [(AmplitudePower(0), c)] => self.coefficients.print_terms(c, style),
+            terms => terms.iter().map(term).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lindstedt_algebra::{Rationals, laws};
+
+    #[test]
+    fn laws_hold() {
+        let ring = AmplitudePolynomials::new(Rationals);
+        let q = |n, d| Rational::from((n, d));
+        let mixed = ring.add(&ring.power(3, q(2, 5)), &ring.power(-1, q(-1, 3)));
+        let samples = [ring.zero(), ring.one(), ring.power(2, q(7, 1)), mixed.clone()];
+        assert_eq!(laws::rational_algebra(&ring, &samples), Ok(()));
+        let product = ring.mul(&mixed, &mixed);
+        let leibniz = ring.scale(&ring.mul(&mixed, &ring.derivative(&mixed)), &q(2, 1));
+        assert_eq!(ring.derivative(&product), leibniz);
+    }
+}

@@ -1,0 +1,92 @@
+//! Balls as coefficients of an expansion: every coefficient of the result encloses the exact one.
+//!
+//! The axioms of a ring hold for the enclosed numbers, not for the balls: distributivity holds up
+//! to the radii. The driver needs no axiom at run time, only enclosures; what it must decide about
+//! a coefficient it asks as `may_vanish` and `reciprocal`, both of which are honest here.
+
+use crate::ball::{Ball, Balls};
+use crate::digits::decimal;
+use crate::print::{Print, Style, Term};
+use lindstedt_algebra::{RationalAlgebra, Ring};
+use rug::Rational;
+
+/// The real numbers, enclosed at a precision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BallRing {
+    /// The context.
+    pub balls: Balls,
+}
+
+/// A ball that compares as data: equal when midpoint and radius are.
+#[derive(Clone, Debug)]
+pub struct Enclosure(pub Ball);
+
+impl PartialEq for Enclosure {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.midpoint() == other.0.midpoint() && self.0.radius() == other.0.radius()
+    }
+}
+
+impl Ring for BallRing {
+    type Element = Enclosure;
+
+    fn zero(&self) -> Enclosure {
+        Enclosure(self.balls.zero())
+    }
+    fn one(&self) -> Enclosure {
+        Enclosure(self.balls.one())
+    }
+    /// Whether it is the exact zero.
+    fn is_zero(&self, a: &Enclosure) -> bool {
+        a.0.is_exact() && a.0.midpoint().is_zero()
+    }
+    /// Whether the ball contains zero.
+    fn may_vanish(&self, a: &Enclosure) -> bool {
+        a.0.contains_zero()
+    }
+    fn add_assign(&self, a: &mut Enclosure, b: &Enclosure) {
+        a.0 = self.balls.add(&a.0, &b.0);
+    }
+    fn neg(&self, a: &Enclosure) -> Enclosure {
+        Enclosure(self.balls.neg(&a.0))
+    }
+    fn mul(&self, a: &Enclosure, b: &Enclosure) -> Enclosure {
+        Enclosure(self.balls.mul(&a.0, &b.0))
+    }
+}
+
+impl RationalAlgebra for BallRing {
+    fn rational(&self, q: &Rational) -> Enclosure {
+        Enclosure(self.balls.from_rational(q))
+    }
+    fn scale(&self, a: &Enclosure, q: &Rational) -> Enclosure {
+        Enclosure(self.balls.mul_rational(&a.0, q))
+    }
+    fn reciprocal(&self, a: &Enclosure) -> Option<Enclosure> {
+        self.balls.div(&self.balls.one(), &a.0).map(Enclosure)
+    }
+    /// The midpoint of an exact ball.
+    fn as_rational(&self, a: &Enclosure) -> Option<Rational> {
+        a.0.is_exact().then(|| a.0.midpoint().to_rational()).flatten()
+    }
+}
+
+/// Digits of a printed enclosure; the numbers of a result are printed with their errors instead.
+const PRINTED_DIGITS: usize = 17;
+
+impl Print for BallRing {
+    /// The midpoint, as far as it is known; `[0]` for an enclosure of zero.
+    fn print_terms(&self, a: &Enclosure, _: Style) -> Vec<Term> {
+        if self.is_zero(a) {
+            return Vec::new();
+        }
+        let known = a.0.relative_accuracy_bits().max(0) as f64 * std::f64::consts::LOG10_2;
+        let digits = (known as usize).clamp(1, PRINTED_DIGITS);
+        let shown = decimal(&a.0, digits).unwrap_or_else(|| "[0]".to_owned());
+        let (sign, magnitude) = match shown.strip_prefix('-') {
+            Some(rest) => (-1, rest.to_owned()),
+            None => (1, shown),
+        };
+        vec![Term { coefficient: Rational::from(sign), factors: vec![magnitude] }]
+    }
+}

@@ -1,0 +1,178 @@
+//! What an equation contains besides x, x' and parameters: the delays and the forcing frequency.
+//!
+//! Both must be known before an algebra can be chosen, because the fast phases advance by
+//! omega_0 T and omega T during a delay T.
+
+use crate::ExpandError;
+use lindstedt_equation::print::Style;
+use lindstedt_equation::{Expression, Function};
+use rug::{Integer, Rational};
+
+/// The delays and the forcing of an equation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Excitation {
+    /// The distinct delays T in the order of their first occurrence.
+    pub delays: Vec<Expression>,
+    /// The frequency omega of which all forcing terms cos(m omega t), sin(m omega t) are harmonics.
+    pub frequency: Option<Expression>,
+    /// The number in `frequency`; the rest of it is `symbols`.
+    number: Rational,
+    symbols: Vec<Expression>,
+}
+
+impl Excitation {
+    /// Reads an equation.
+    ///
+    /// # Errors
+    /// [`ExpandError::UnsupportedTerm`] for a delayed term that is not x(t - T) or x'(t - T), a
+    /// function of t that is not cos or sin of a multiple of t, or two forcing frequencies whose
+    /// ratio is not a rational number.
+    pub fn of(equation: &Expression) -> Result<Self, ExpandError> {
+        let mut found = Self::default();
+        found.read(equation)?;
+        if !found.number.is_zero() {
+            let number = Expression::Number(found.number.clone());
+            found.frequency = Some(
+                found.symbols.iter().cloned().fold(number, |product, symbol| product * symbol),
+            );
+        }
+        Ok(found)
+    }
+
+    fn read(&mut self, expression: &Expression) -> Result<(), ExpandError> {
+        match expression {
+            Expression::Delayed(inner, delay) => {
+                if !matches!(**inner, Expression::Displacement | Expression::Velocity) {
+                    return Err(unsupported(expression));
+                }
+                if !self.delays.contains(delay) {
+                    self.delays.push((**delay).clone());
+                }
+                Ok(())
+            }
+            Expression::Function(Function::Cos | Function::Sin, argument)
+                if split_time(argument).is_some() =>
+            {
+                let (number, symbols) =
+                    split_time(argument).ok_or_else(|| unsupported(expression))?;
+                if self.number.is_zero() {
+                    (self.number, self.symbols) = (number.abs(), symbols);
+                } else if self.symbols == symbols {
+                    self.number = common_divisor(&self.number, &number);
+                } else {
+                    return Err(unsupported(expression));
+                }
+                Ok(())
+            }
+            Expression::Time => Err(unsupported(expression)),
+            Expression::Sum(list) | Expression::Product(list) => {
+                list.iter().try_for_each(|inner| self.read(inner))
+            }
+            Expression::Power(base, exponent) => {
+                self.read(base)?;
+                self.read(exponent)
+            }
+            Expression::Function(_, argument) | Expression::Formal(_, argument) => {
+                self.read(argument)
+            }
+            Expression::Number(_)
+            | Expression::Parameter(_)
+            | Expression::Small
+            | Expression::Displacement
+            | Expression::Velocity
+            | Expression::Acceleration => Ok(()),
+        }
+    }
+
+    /// m in cos(m omega t), with its sign.
+    pub(crate) fn multiple(&self, argument: &Expression) -> Option<i64> {
+        let (number, symbols) = split_time(argument)?;
+        if symbols != self.symbols || self.number.is_zero() {
+            return None;
+        }
+        let ratio = number / &self.number;
+        ratio.is_integer().then(|| ratio.numer().to_i64()).flatten()
+    }
+}
+
+fn unsupported(term: &Expression) -> ExpandError {
+    ExpandError::UnsupportedTerm { term: term.print("eps", Style::Text) }
+}
+
+/// q and the other factors of q t s_1 s_2 ...; nothing when the expression is no multiple of t.
+fn split_time(argument: &Expression) -> Option<(Rational, Vec<Expression>)> {
+    let mut factors = Vec::new();
+    flatten(argument, &mut factors);
+    let (mut number, mut symbols, mut times) = (Rational::from(1), Vec::new(), 0);
+    for factor in factors {
+        match factor {
+            Expression::Time => times += 1,
+            Expression::Number(q) => number *= q,
+            constant if is_constant(constant) => symbols.push(constant.clone()),
+            _ => return None,
+        }
+    }
+    // The order of the factors as typed does not matter.
+    symbols.sort_by_cached_key(|symbol| symbol.print("eps", Style::Text));
+    (times == 1 && !number.is_zero()).then_some((number, symbols))
+}
+
+fn flatten<'a>(expression: &'a Expression, factors: &mut Vec<&'a Expression>) {
+    match expression {
+        Expression::Product(list) => list.iter().for_each(|factor| flatten(factor, factors)),
+        single => factors.push(single),
+    }
+}
+
+/// Whether an expression contains numbers and parameters only.
+fn is_constant(expression: &Expression) -> bool {
+    match expression {
+        Expression::Number(_) | Expression::Parameter(_) => true,
+        Expression::Sum(list) | Expression::Product(list) => list.iter().all(is_constant),
+        Expression::Power(base, exponent) => is_constant(base) && is_constant(exponent),
+        Expression::Function(_, argument) => is_constant(argument),
+        _ => false,
+    }
+}
+
+/// The largest rational number of which both are integer multiples.
+fn common_divisor(p: &Rational, q: &Rational) -> Rational {
+    let left = Integer::from(p.numer() * q.denom());
+    let right = Integer::from(q.numer() * p.denom());
+    Rational::from((left.gcd(&right), Integer::from(p.denom() * q.denom())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cos(argument: Expression) -> Expression {
+        argument.apply(Function::Cos)
+    }
+
+    #[test]
+    fn harmonics_of_one_frequency() {
+        let omega = || Expression::parameter("omega");
+        let t = || Expression::Time;
+        let half = Expression::Number(Rational::from((3, 2)));
+        let force = cos(omega() * t()) + cos(t() * half.clone() * omega()).apply(Function::Abs);
+        let Ok(found) = Excitation::of(&force) else { panic!("harmonics") };
+        let shown = found.frequency.as_ref().map(|f| f.print("eps", Style::Text));
+        assert_eq!(shown.as_deref(), Some("1/2*omega"));
+        assert_eq!(found.multiple(&(t() * half * omega())), Some(3));
+        assert_eq!(found.multiple(&(t() * omega() * -1)), Some(-2));
+        assert_eq!(found.multiple(&t()), None);
+        assert!(Excitation::of(&(cos(omega() * t()) + cos(t()))).is_err());
+        assert!(Excitation::of(&(t() * omega())).is_err());
+    }
+
+    #[test]
+    fn delays_are_listed_once() {
+        let delay = || Expression::parameter("T");
+        let x = Expression::Displacement.delayed(delay()) - Expression::Velocity.delayed(delay());
+        let twice = x.clone() + Expression::Displacement.delayed(delay() * 2);
+        assert_eq!(Excitation::of(&twice).map(|e| e.delays.len()), Ok(2));
+        let square = Expression::Displacement.pow(2).delayed(delay());
+        assert!(Excitation::of(&(x + square)).is_err());
+    }
+}

@@ -1,0 +1,302 @@
+//! Stability charts over two parameters in doubles, in parallel.
+
+use crate::aware::impact_aware;
+use crate::characteristic::{Characteristic, Kick};
+use crate::complex::Complex;
+use crate::equivalent::{Drive, equivalent_orbit};
+use crate::error::ImpactError;
+use crate::flow::{Flow, Scratch, free_delay};
+use crate::map::{ImpactMap, Verdict};
+use crate::orbit::{Orbit, orbit};
+use crate::parameters::Parameters;
+use crate::prediction::{Variant, predict};
+use crate::zeros::{exact_verdict, leading_modulus};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A parameter that can be swept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Swept {
+    /// alpha.
+    Alpha,
+    /// omega (T = 2 pi k/omega follows).
+    Omega,
+    /// R_r.
+    Restitution,
+    /// s.
+    Wall,
+    /// c.
+    Damping,
+    /// P0.
+    Force,
+    /// A.
+    DisplacementGain,
+    /// B.
+    VelocityGain,
+}
+
+/// Equidistant values of one parameter.
+#[derive(Clone, Copy, Debug)]
+pub struct Axis {
+    /// Which.
+    pub parameter: Swept,
+    /// First value.
+    pub low: f64,
+    /// Last value.
+    pub high: f64,
+    /// Number of values, at least 1.
+    pub count: usize,
+}
+
+impl Axis {
+    /// The value number n.
+    #[must_use]
+    pub fn value(&self, n: usize) -> f64 {
+        if self.count < 2 {
+            return self.low;
+        }
+        self.low + (self.high - self.low) * (n as f64 / (self.count - 1) as f64)
+    }
+    /// Whether the parameter acts through the delay loop only.
+    fn is_gain(&self) -> bool {
+        matches!(self.parameter, Swept::DisplacementGain | Swept::VelocityGain)
+    }
+    fn set(&self, n: usize, parameters: &mut Parameters<f64>) {
+        let slot = match self.parameter {
+            Swept::Alpha => &mut parameters.alpha,
+            Swept::Omega => &mut parameters.omega,
+            Swept::Restitution => &mut parameters.restitution,
+            Swept::Wall => &mut parameters.wall,
+            Swept::Damping => &mut parameters.damping,
+            Swept::Force => &mut parameters.force,
+            Swept::DisplacementGain => &mut parameters.displacement_gain,
+            Swept::VelocityGain => &mut parameters.velocity_gain,
+        };
+        *slot = self.value(n);
+    }
+}
+
+/// A prediction for every point.
+#[derive(Clone, Copy, Debug)]
+pub enum Predictor {
+    /// The paper's prediction in a variant; its orbit is not checked for penetration.
+    Kbm(Variant),
+    /// The impact-aware prediction with this kick.
+    ImpactAware(Kick),
+}
+
+/// What to compute.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// First axis: the faster index.
+    pub columns: Axis,
+    /// Second axis.
+    pub rows: Axis,
+    /// Prediction and its order.
+    pub predictor: Option<(Predictor, usize)>,
+    /// The exact verdict by G with this kick.
+    pub exact: Option<Kick>,
+    /// Whether the exact spectral radius is wanted besides the verdict.
+    pub radius: bool,
+}
+
+/// One point.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// The predicted verdict; `None` without a predicted orbit or flow, or if not asked for.
+    pub predicted: Option<Verdict>,
+    /// The exact verdict; `None` without a true orbit or if not asked for; neutral if undecided.
+    pub exact: Option<Verdict>,
+    /// Predicted max |gamma|; NaN if there is none.
+    pub predicted_radius: f64,
+    /// Exact max |gamma|; NaN if not asked for or not found.
+    pub exact_radius: f64,
+}
+
+const EMPTY: Point =
+    Point { predicted: None, exact: None, predicted_radius: f64::NAN, exact_radius: f64::NAN };
+
+/// A chart: the points row by row.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// What was computed.
+    pub plan: Plan,
+    /// `rows.count` rows of `columns.count` points.
+    pub points: Vec<Point>,
+}
+
+/// Computes a chart on rayon's threads. `observer` receives the number of finished rows and stops
+/// the work by returning false.
+///
+/// Cost per point: a prediction some 0.2 microseconds (order 1), an exact verdict some 50
+/// evaluations of G. Estimated: doubles without error bounds.
+///
+/// # Errors
+/// [`ImpactError::BadAxes`], [`ImpactError::OrderZero`], [`ImpactError::Cancelled`].
+pub fn chart(
+    base: &Parameters<f64>,
+    plan: &Plan,
+    observer: &(dyn Fn(usize) -> bool + Sync),
+) -> Result<Chart, ImpactError> {
+    let (width, height) = (plan.columns.count, plan.rows.count);
+    if width == 0 || height == 0 || plan.columns.parameter == plan.rows.parameter {
+        return Err(ImpactError::BadAxes);
+    }
+    let order = plan.predictor.map_or(1, |(_, order)| order);
+    if order == 0 {
+        return Err(ImpactError::OrderZero);
+    }
+    let mut points = vec![EMPTY; width.checked_mul(height).ok_or(ImpactError::BadAxes)?];
+    let done = AtomicUsize::new(0);
+    points.par_chunks_mut(width).enumerate().try_for_each_init(
+        || Scratch::new(order),
+        |scratch, (row, line)| {
+            let mut parameters = base.clone();
+            plan.rows.set(row, &mut parameters);
+            let mut seeds = Vec::new();
+            let mut fixed = Fixed::new(&parameters, plan);
+            for (column, point) in line.iter_mut().enumerate() {
+                plan.columns.set(column, &mut parameters);
+                if !plan.columns.is_gain() {
+                    fixed = Fixed::new(&parameters, plan);
+                }
+                *point = evaluate(&parameters, &fixed, plan, scratch, &mut seeds);
+            }
+            let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
+            if observer(finished) { Ok(()) } else { Err(ImpactError::Cancelled) }
+        },
+    )?;
+    Ok(Chart { plan: *plan, points })
+}
+
+/// What does not depend on the gains A, B.
+struct Fixed {
+    time: f64,
+    delay: Complex<f64>,
+    drive: Result<Drive<f64>, ImpactError>,
+    orbit: Option<Result<Orbit<f64>, ImpactError>>,
+}
+
+impl Fixed {
+    fn new(parameters: &Parameters<f64>, plan: &Plan) -> Self {
+        let time = parameters.period();
+        let needs_orbit = plan.exact.is_some()
+            || matches!(
+                plan.predictor,
+                Some((Predictor::Kbm(Variant::S) | Predictor::ImpactAware(_), _))
+            );
+        Self {
+            time,
+            delay: free_delay(parameters, &time),
+            // Refuses c >= 2 alpha, as the single prediction does.
+            drive: Flow::uncontrolled(parameters).and_then(|_| Drive::new(parameters)),
+            orbit: needs_orbit.then(|| orbit(parameters)),
+        }
+    }
+    fn orbit(&self) -> Option<&Orbit<f64>> {
+        self.orbit.as_ref().and_then(|found| found.as_ref().ok())
+    }
+}
+
+fn evaluate(
+    parameters: &Parameters<f64>,
+    fixed: &Fixed,
+    plan: &Plan,
+    scratch: &mut Scratch<f64>,
+    seeds: &mut Vec<Complex<f64>>,
+) -> Point {
+    let mut point = EMPTY;
+    match (plan.predictor, fixed.orbit()) {
+        (Some((Predictor::Kbm(variant), order)), _) => {
+            if let Ok(map) = predicted_map(parameters, fixed, variant, order, scratch) {
+                point.predicted = Some(map.verdict());
+                point.predicted_radius = map.spectral_radius();
+            }
+        }
+        (Some((Predictor::ImpactAware(kick), order)), Some(orbit)) => {
+            if let Ok(found) = impact_aware(parameters, orbit, kick, order) {
+                point.predicted = Some(found.verdict());
+                point.predicted_radius = found.spectral_radius();
+            }
+        }
+        _ => {}
+    }
+    if let (Some(kick), Some(orbit)) = (plan.exact, fixed.orbit()) {
+        let g = Characteristic::new(parameters, orbit, kick);
+        point.exact = Some(exact_verdict(&g).0);
+        if plan.radius {
+            point.exact_radius = leading_modulus(&g, seeds).unwrap_or(f64::NAN);
+        }
+    }
+    point
+}
+
+fn predicted_map(
+    parameters: &Parameters<f64>,
+    fixed: &Fixed,
+    variant: Variant,
+    order: usize,
+    scratch: &mut Scratch<f64>,
+) -> Result<ImpactMap<f64>, ImpactError> {
+    scratch.fill(parameters, &fixed.time, &fixed.delay, order);
+    let flow = scratch.flow().ok_or(ImpactError::OrderZero)?;
+    if variant == Variant::E {
+        // Without the polynomial, which the verdict does not need.
+        let drive = fixed.drive.as_ref().map_err(Clone::clone)?;
+        let orbit = equivalent_orbit(&flow, drive)?;
+        return Ok(ImpactMap::of_orbit(&flow, drive, &orbit));
+    }
+    Flow::uncontrolled(parameters)?;
+    Ok(predict(variant, parameters, &flow, fixed.orbit())?.map)
+}
+
+/// How prediction and truth compare over a chart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Agreement {
+    /// Points where both verdicts exist and neither is neutral.
+    pub compared: usize,
+    /// Of these, the points with equal verdicts.
+    pub equal: usize,
+    /// Predicted stable, truly unstable.
+    pub false_stable: usize,
+    /// Predicted unstable, truly stable.
+    pub false_unstable: usize,
+}
+
+impl Agreement {
+    /// equal/compared; NaN if nothing was compared.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.equal as f64 / self.compared as f64
+    }
+}
+
+impl Chart {
+    /// The point of a column and a row.
+    #[must_use]
+    pub fn point(&self, column: usize, row: usize) -> Option<&Point> {
+        if column >= self.plan.columns.count {
+            return None;
+        }
+        self.points.get(row.checked_mul(self.plan.columns.count)? + column)
+    }
+    /// Counts of agreement between prediction and exact verdict.
+    #[must_use]
+    pub fn agreement(&self) -> Agreement {
+        let mut agreement = Agreement::default();
+        for point in &self.points {
+            match (point.predicted, point.exact) {
+                (Some(Verdict::Neutral), _) | (_, Some(Verdict::Neutral)) => continue,
+                (Some(predicted), Some(exact)) => {
+                    agreement.compared += 1;
+                    agreement.equal += usize::from(predicted == exact);
+                    let wrong = predicted != exact;
+                    agreement.false_stable += usize::from(wrong && predicted == Verdict::Stable);
+                    agreement.false_unstable += usize::from(wrong && exact == Verdict::Stable);
+                }
+                _ => {}
+            }
+        }
+        agreement
+    }
+}

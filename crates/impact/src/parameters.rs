@@ -1,0 +1,214 @@
+//! The parameters of the oscillator.
+//!
+//! x'' + c x' + alpha^2 x = P0 cos(omega t) + A (x - x_T) + B (x' - x'_T) for x <= s, and at x = s
+//! x' -> -R_r x'; x_T = x(t - T), T = 2 pi k/omega. All numbers are dimensionless.
+
+use crate::error::ImpactError;
+use crate::real::{Certified, Real};
+use lindstedt_coeff::ball::Balls;
+use rug::Rational;
+
+/// The sign of the root in the quadratic equation for the impact velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Branch {
+    /// The larger impact velocity.
+    Plus,
+    /// The smaller one: always a saddle, with a multiplier above 1 that no delay loop can move in.
+    Minus,
+}
+
+/// One parameter set over the reals S.
+#[derive(Clone, Debug)]
+pub struct Parameters<S> {
+    /// alpha > 0, frequency of the undamped free flight.
+    pub alpha: S,
+    /// omega > 0, frequency of the force.
+    pub omega: S,
+    /// k >= 1, periods of the force between two impacts.
+    pub periods: u32,
+    /// R_r in \[0, 1\], restitution coefficient.
+    pub restitution: S,
+    /// s, position of the wall.
+    pub wall: S,
+    /// c >= 0, damping.
+    pub damping: S,
+    /// P0 > 0, amplitude of the force.
+    pub force: S,
+    /// A, gain of the displacement loop.
+    pub displacement_gain: S,
+    /// B, gain of the velocity loop.
+    pub velocity_gain: S,
+    /// Sign of the root in the impact velocity.
+    pub branch: Branch,
+}
+
+impl<S: Real> Parameters<S> {
+    /// T = 2 pi k/omega, delay and period of the orbit.
+    pub fn period(&self) -> S {
+        let two_k = self.omega.integer(2 * i64::from(self.periods));
+        self.omega.pi() * two_k / &self.omega
+    }
+    /// F = P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2), amplitude of the forced part; not finite
+    /// for alpha = omega, c = 0.
+    pub fn forced_amplitude(&self) -> S {
+        let (detuning, loss) = self.forced_denominator();
+        self.force.clone() / (detuning.square() + loss.square()).sqrt()
+    }
+    /// theta0 = atan2(c omega, alpha^2 - omega^2): with the force P0 cos(omega t + psi) the forced
+    /// part is F cos(omega t + psi - theta0).
+    pub fn phase_lag(&self) -> S {
+        let (detuning, loss) = self.forced_denominator();
+        loss.atan2(&detuning)
+    }
+    /// (alpha^2 - omega^2, c omega), the first without cancellation.
+    pub(crate) fn forced_denominator(&self) -> (S, S) {
+        let sum = self.alpha.clone() + &self.omega;
+        let difference = self.alpha.clone() - &self.omega;
+        (sum * difference, self.damping.clone() * &self.omega)
+    }
+    /// The midpoints.
+    pub fn to_f64(&self) -> Parameters<f64> {
+        Parameters {
+            alpha: self.alpha.to_f64(),
+            omega: self.omega.to_f64(),
+            periods: self.periods,
+            restitution: self.restitution.to_f64(),
+            wall: self.wall.to_f64(),
+            damping: self.damping.to_f64(),
+            force: self.force.to_f64(),
+            displacement_gain: self.displacement_gain.to_f64(),
+            velocity_gain: self.velocity_gain.to_f64(),
+            branch: self.branch,
+        }
+    }
+    /// Checks the domain of every parameter.
+    ///
+    /// # Errors
+    /// [`ImpactError::NotFinite`], [`ImpactError::NotPositive`], [`ImpactError::OutOfRange`].
+    pub fn validate(&self) -> Result<(), ImpactError> {
+        let named = [
+            ("alpha", &self.alpha),
+            ("omega", &self.omega),
+            ("P0", &self.force),
+            ("R_r", &self.restitution),
+            ("c", &self.damping),
+            ("s", &self.wall),
+            ("A", &self.displacement_gain),
+            ("B", &self.velocity_gain),
+        ];
+        for (name, value) in named {
+            if !value.is_finite() {
+                return Err(ImpactError::NotFinite { name });
+            }
+        }
+        for (name, value) in &named[..3] {
+            if !value.is_positive() {
+                return Err(ImpactError::NotPositive { name, value: value.to_f64() });
+            }
+        }
+        if self.periods == 0 {
+            return Err(ImpactError::NotPositive { name: "k", value: 0.0 });
+        }
+        let above = self.restitution.clone() - self.restitution.integer(1);
+        if self.restitution.is_negative() || above.is_positive() {
+            let value = self.restitution.to_f64();
+            return Err(ImpactError::OutOfRange { name: "R_r", value, low: 0.0, high: 1.0 });
+        }
+        if self.damping.is_negative() {
+            let (value, high) = (self.damping.to_f64(), f64::INFINITY);
+            return Err(ImpactError::OutOfRange { name: "c", value, low: 0.0, high });
+        }
+        Ok(())
+    }
+}
+
+/// An exact real number as a user writes it: `1/3`, `0.1`, `pi/4`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Exact {
+    /// A rational number.
+    Rational(Rational),
+    /// A rational multiple of pi.
+    PiMultiple(Rational),
+}
+
+impl Exact {
+    /// An enclosure in the given context.
+    #[must_use]
+    pub fn certified(&self, balls: Balls) -> Certified {
+        match self {
+            Self::Rational(q) => Certified::from_rational(balls, q),
+            Self::PiMultiple(q) => Certified::new(balls, balls.mul_rational(&balls.pi(), q)),
+        }
+    }
+    /// The nearest double (within 1 ulp for multiples of pi).
+    #[must_use]
+    pub fn to_f64(&self) -> f64 {
+        self.certified(Balls::new(120)).to_f64()
+    }
+}
+
+impl From<Rational> for Exact {
+    fn from(q: Rational) -> Self {
+        Self::Rational(q)
+    }
+}
+
+impl From<(i32, u32)> for Exact {
+    /// n/d; a denominator of 0 is read as 1.
+    fn from((n, d): (i32, u32)) -> Self {
+        Self::Rational(Rational::from((n, d.max(1))))
+    }
+}
+
+/// A parameter set with exact numbers, the input of the certified path.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExactParameters {
+    /// alpha.
+    pub alpha: Exact,
+    /// omega.
+    pub omega: Exact,
+    /// k.
+    pub periods: u32,
+    /// R_r.
+    pub restitution: Exact,
+    /// s.
+    pub wall: Exact,
+    /// c.
+    pub damping: Exact,
+    /// P0.
+    pub force: Exact,
+    /// A.
+    pub displacement_gain: Exact,
+    /// B.
+    pub velocity_gain: Exact,
+    /// Sign of the root in the impact velocity.
+    pub branch: Branch,
+}
+
+impl ExactParameters {
+    fn map<S>(&self, number: impl Fn(&Exact) -> S) -> Parameters<S> {
+        Parameters {
+            alpha: number(&self.alpha),
+            omega: number(&self.omega),
+            periods: self.periods,
+            restitution: number(&self.restitution),
+            wall: number(&self.wall),
+            damping: number(&self.damping),
+            force: number(&self.force),
+            displacement_gain: number(&self.displacement_gain),
+            velocity_gain: number(&self.velocity_gain),
+            branch: self.branch,
+        }
+    }
+    /// Enclosures at the given precision.
+    #[must_use]
+    pub fn certified(&self, bits: u32) -> Parameters<Certified> {
+        let balls = Balls::new(bits);
+        self.map(|number| number.certified(balls))
+    }
+    /// The nearest doubles.
+    #[must_use]
+    pub fn to_f64(&self) -> Parameters<f64> {
+        self.map(Exact::to_f64)
+    }
+}

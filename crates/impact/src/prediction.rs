@@ -1,0 +1,133 @@
+//! The paper's prediction of stability: an impact map with the equivalent flow in place of the
+//! delay loop.
+//!
+//! The equivalent flow replaces z(t-T) by e^(-lambda T) z(t), as if no impact lay in the delay
+//! interval; exactly one does. These verdicts are predictions, not the stability of the delayed
+//! system: see [`crate::characteristic`].
+
+use crate::complex::Complex;
+use crate::equivalent::{Drive, EquivalentOrbit, equivalent_orbit};
+use crate::error::ImpactError;
+use crate::flow::{Flow, Rates};
+use crate::map::{Amplitudes, ImpactMap, Polynomial, polynomial};
+use crate::orbit::{Orbit, orbit};
+use crate::parameters::Parameters;
+use crate::real::Real;
+
+/// Which orbit meets which flow in the impact map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variant {
+    /// Orbit and map both of the equivalent flow (self-consistent).
+    E,
+    /// The paper's letter: amplitudes of the uncontrolled orbit, (R, alpha0) in (16).
+    P,
+    /// Saltation of the true orbit, equivalent flow between the impacts.
+    S,
+}
+
+/// A predicted impact map.
+#[derive(Clone, Debug)]
+pub struct Prediction<S> {
+    /// R and alpha0 used.
+    pub flow: Flow<S>,
+    /// The orbit of the equivalent flow (variant E), of the uncontrolled flow (P), none for S.
+    pub orbit: Option<EquivalentOrbit<S>>,
+    /// b_2, b_1, b_0 (variants E and P).
+    pub polynomial: Option<Polynomial<S>>,
+    /// Trace and determinant.
+    pub map: ImpactMap<S>,
+}
+
+/// R and alpha0 at the given order, checked.
+///
+/// # Errors
+/// [`ImpactError::OrderZero`], [`ImpactError::Overdamped`], [`ImpactError::NotApplicable`].
+pub fn predicted_flow<S: Real>(
+    parameters: &Parameters<S>,
+    rates: &Rates<S>,
+    order: usize,
+) -> Result<Flow<S>, ImpactError> {
+    Flow::uncontrolled(parameters)?;
+    let flow = if order == 0 { None } else { rates.flow(order) }.ok_or(ImpactError::OrderZero)?;
+    flow.validate()?;
+    Ok(flow)
+}
+
+/// The prediction of a variant with the flow of some order.
+///
+/// For variant E the determinant is formed as (R_r E)^2 and the trace from the saltation, which
+/// stays accurate where b_2 vanishes (grazing). Variant S computes the true orbit unless given.
+///
+/// # Errors
+/// The errors of the orbit that the variant needs; [`ImpactError::Resonance`] for E and P at
+/// alpha = omega, c = 0.
+pub fn predict<S: Real>(
+    variant: Variant,
+    parameters: &Parameters<S>,
+    flow: &Flow<S>,
+    true_orbit: Option<&Orbit<S>>,
+) -> Result<Prediction<S>, ImpactError> {
+    flow.validate()?;
+    if variant == Variant::S {
+        let map = match true_orbit {
+            Some(orbit) => saltation_map(parameters, flow, orbit),
+            None => saltation_map(parameters, flow, &orbit(parameters)?),
+        };
+        return Ok(Prediction { flow: flow.clone(), orbit: None, polynomial: None, map });
+    }
+    let drive = Drive::new(parameters)?;
+    let form = match variant {
+        Variant::E => equivalent_orbit(flow, &drive)?,
+        _ => equivalent_orbit(&Flow::uncontrolled(parameters)?, &drive)?,
+    };
+    let polynomial = polynomial(flow, &drive, &Amplitudes::of(&form));
+    let map = match variant {
+        Variant::E => ImpactMap::of_orbit(flow, &drive, &form),
+        _ => polynomial.map(),
+    };
+    Ok(Prediction { flow: flow.clone(), orbit: Some(form), polynomial: Some(polynomial), map })
+}
+
+fn saltation_map<S: Real>(
+    parameters: &Parameters<S>,
+    flow: &Flow<S>,
+    orbit: &Orbit<S>,
+) -> ImpactMap<S> {
+    // F is not needed for the map.
+    let drive = Drive {
+        omega: parameters.omega.clone(),
+        period: orbit.period.clone(),
+        restitution: parameters.restitution.clone(),
+        wall: parameters.wall.clone(),
+        forced_amplitude: parameters.omega.integer(0),
+        branch: parameters.branch,
+    };
+    ImpactMap::from_saltation(flow, &drive, &orbit.saltation)
+}
+
+/// The impact map of the uncontrolled oscillator (A = B = 0) on its true orbit; any damping.
+pub fn uncontrolled_map<S: Real>(parameters: &Parameters<S>, orbit: &Orbit<S>) -> ImpactMap<S> {
+    let (h, slope) = &orbit.response;
+    let c = &parameters.damping;
+    // tr(S Phi) = sigma h - R_r (2 h' + c h), det = R_r^2 e^(-cT)
+    let free_trace = slope.doubled() + c.clone() * h;
+    let contraction = (-(c.clone() * &orbit.period)).exp();
+    ImpactMap {
+        trace: orbit.saltation.clone() * h - parameters.restitution.clone() * free_trace,
+        determinant: parameters.restitution.square() * contraction,
+    }
+}
+
+/// m = max over +- of |1/gamma_0 - e^(+- i alpha T)| with gamma_0 the leading multiplier of the
+/// uncontrolled map: how wrong e^(-lambda T) is in place of 1/gamma.
+///
+/// Measured: below 1 the predicted effect of A has the right sign in 98% of cases, above 2 the
+/// wrong one in about 90%.
+pub fn mismatch<S: Real>(parameters: &Parameters<S>, uncontrolled: &ImpactMap<S>, period: &S) -> S {
+    let [leading, _] = uncontrolled.multipliers();
+    let inverse = leading.inverse();
+    let (sin, cos) = (parameters.alpha.clone() * period).sin_cos();
+    let ahead = (inverse.clone() - Complex::new(cos.clone(), sin.clone())).modulus();
+    let behind = (inverse - Complex::new(cos, -sin)).modulus();
+    if ahead.to_f64() >= behind.to_f64() { ahead } else { behind }
+}

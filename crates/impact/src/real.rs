@@ -1,0 +1,320 @@
+//! Real numbers for both paths: doubles for charts, certified balls for digits.
+
+use lindstedt_coeff::ball::{Ball, Balls};
+use rug::{Float, Rational};
+use std::cmp::Ordering;
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A real number: an `f64` (rounding errors not tracked) or a [`Certified`] ball.
+///
+/// Every formula of the crate is written once over this trait. Division by zero, roots of negative
+/// numbers and the like give a number that is not finite (NaN or a ball of infinite radius), which
+/// survives every operation, and are refused at the end.
+pub trait Real:
+    Clone
+    + Debug
+    + Send
+    + Sync
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + for<'a> Add<&'a Self, Output = Self>
+    + for<'a> Sub<&'a Self, Output = Self>
+    + for<'a> Mul<&'a Self, Output = Self>
+    + for<'a> Div<&'a Self, Output = Self>
+{
+    /// The integer n in the context (precision) of `self`.
+    fn integer(&self, n: i64) -> Self;
+    /// The double x in the context of `self`; not finite where x is not.
+    fn number(&self, x: f64) -> Self;
+    /// pi in the context of `self`.
+    fn pi(&self) -> Self;
+    /// x^2.
+    fn square(&self) -> Self;
+    /// sqrt(x) for x >= 0; a ball reaching below zero is cut there, a negative number gives a value
+    /// that is not finite.
+    fn sqrt(&self) -> Self;
+    /// e^x.
+    fn exp(&self) -> Self;
+    /// e^x - 1 without cancellation for small x.
+    fn exp_m1(&self) -> Self;
+    /// (sin x, cos x).
+    fn sin_cos(&self) -> (Self, Self);
+    /// The angle of the point (x, y) = (`x`, `self`) in (-pi, pi].
+    fn atan2(&self, x: &Self) -> Self;
+    /// The sign; `None` where the ball contains zero without being zero, or for NaN.
+    fn sign(&self) -> Option<Ordering>;
+    /// The midpoint.
+    fn to_f64(&self) -> f64;
+    /// An upper bound of |x| (for doubles |x| itself).
+    fn magnitude_above(&self) -> f64;
+    /// A lower bound of |x| (for doubles |x| itself).
+    fn magnitude_below(&self) -> f64;
+    /// Whether anything is known: a finite double, a finite radius.
+    fn is_finite(&self) -> bool;
+    /// The midpoint as an exact number (for Newton's method).
+    fn centre(&self) -> Self;
+    /// x with the error bound |e| added (nothing happens to doubles).
+    fn widened(&self, error: &Self) -> Self;
+    /// Half width of the band around zero in which a condition of stability counts as neutral:
+    /// 10^-10 for doubles, 0 for balls, whose radius decides.
+    fn neutral_width(&self) -> f64;
+    /// Bits of the midpoint.
+    fn precision(&self) -> u32;
+
+    /// Twice x.
+    fn doubled(&self) -> Self {
+        self.clone() + self
+    }
+    /// Half of x.
+    fn halved(&self) -> Self {
+        self.clone() / self.integer(2)
+    }
+    /// Whether x is proved positive.
+    fn is_positive(&self) -> bool {
+        self.sign() == Some(Ordering::Greater)
+    }
+    /// Whether x is proved negative.
+    fn is_negative(&self) -> bool {
+        self.sign() == Some(Ordering::Less)
+    }
+}
+
+impl Real for f64 {
+    fn integer(&self, n: i64) -> Self {
+        n as f64
+    }
+    fn number(&self, x: f64) -> Self {
+        x
+    }
+    fn pi(&self) -> Self {
+        std::f64::consts::PI
+    }
+    fn square(&self) -> Self {
+        self * self
+    }
+    fn sqrt(&self) -> Self {
+        f64::sqrt(*self)
+    }
+    fn exp(&self) -> Self {
+        f64::exp(*self)
+    }
+    fn exp_m1(&self) -> Self {
+        f64::exp_m1(*self)
+    }
+    fn sin_cos(&self) -> (Self, Self) {
+        f64::sin_cos(*self)
+    }
+    fn atan2(&self, x: &Self) -> Self {
+        f64::atan2(*self, *x)
+    }
+    fn sign(&self) -> Option<Ordering> {
+        self.partial_cmp(&0.0)
+    }
+    fn to_f64(&self) -> f64 {
+        *self
+    }
+    fn magnitude_above(&self) -> f64 {
+        self.abs()
+    }
+    fn magnitude_below(&self) -> f64 {
+        self.abs()
+    }
+    fn is_finite(&self) -> bool {
+        f64::is_finite(*self)
+    }
+    fn centre(&self) -> Self {
+        *self
+    }
+    fn widened(&self, _error: &Self) -> Self {
+        *self
+    }
+    fn neutral_width(&self) -> f64 {
+        1e-10
+    }
+    fn precision(&self) -> u32 {
+        f64::MANTISSA_DIGITS
+    }
+    fn halved(&self) -> Self {
+        0.5 * self
+    }
+}
+
+/// A ball together with its context: |x - midpoint| <= radius, always.
+#[derive(Clone, Debug)]
+pub struct Certified {
+    value: Ball,
+    balls: Balls,
+}
+
+impl Certified {
+    /// The ball in the context `balls`.
+    #[must_use]
+    pub fn new(balls: Balls, value: Ball) -> Self {
+        Self { value, balls }
+    }
+    /// The rational number q.
+    #[must_use]
+    pub fn from_rational(balls: Balls, q: &Rational) -> Self {
+        Self::new(balls, balls.from_rational(q))
+    }
+    /// The ball.
+    #[must_use]
+    pub fn ball(&self) -> &Ball {
+        &self.value
+    }
+    /// The context.
+    #[must_use]
+    pub fn balls(&self) -> Balls {
+        self.balls
+    }
+    fn with(&self, value: Ball) -> Self {
+        Self { value, balls: self.balls }
+    }
+    fn or_nothing(&self, value: Option<Ball>) -> Self {
+        self.with(value.unwrap_or_else(|| self.balls.indeterminate()))
+    }
+}
+
+macro_rules! operators {
+    ($($trait:ident $name:ident |$balls:ident, $a:ident, $b:ident| $value:expr;)*) => { $(
+        impl $trait<&Certified> for Certified {
+            type Output = Certified;
+            fn $name(self, other: &Certified) -> Certified {
+                let ($balls, $a, $b) = (self.balls, &self.value, &other.value);
+                let value = $value;
+                self.with(value)
+            }
+        }
+        impl $trait for Certified {
+            type Output = Certified;
+            fn $name(self, other: Certified) -> Certified {
+                $trait::$name(self, &other)
+            }
+        }
+    )* };
+}
+
+operators! {
+    Add add |balls, a, b| balls.add(a, b);
+    Sub sub |balls, a, b| balls.sub(a, b);
+    Mul mul |balls, a, b| balls.mul(a, b);
+    Div div |balls, a, b| balls.div(a, b).unwrap_or_else(|| balls.indeterminate());
+}
+
+impl Neg for Certified {
+    type Output = Self;
+    fn neg(self) -> Self {
+        self.with(self.balls.neg(&self.value))
+    }
+}
+
+impl Real for Certified {
+    fn integer(&self, n: i64) -> Self {
+        self.with(self.balls.from_i64(n))
+    }
+    fn number(&self, x: f64) -> Self {
+        self.or_nothing(self.balls.from_f64(x))
+    }
+    fn pi(&self) -> Self {
+        self.with(self.balls.pi())
+    }
+    fn square(&self) -> Self {
+        self.with(self.balls.square(&self.value))
+    }
+    fn sqrt(&self) -> Self {
+        if let Some(root) = self.balls.sqrt(&self.value) {
+            return self.with(root);
+        }
+        if self.value.is_negative() || !self.value.is_finite() {
+            return self.with(self.balls.indeterminate());
+        }
+        // The ball reaches below zero: [0, sqrt(upper end)].
+        let upper = self.balls.from_parts(&self.value.abs_upper(), &Float::new(53));
+        let root = self.balls.sqrt(&upper).map(|top| self.balls.hull(&self.balls.zero(), &top));
+        self.or_nothing(root)
+    }
+    fn exp(&self) -> Self {
+        self.with(self.balls.exp(&self.value))
+    }
+    fn exp_m1(&self) -> Self {
+        // 2 e^(x/2) sinh(x/2)
+        let half = self.balls.mul_power_of_two(&self.value, -1);
+        let product = self.balls.mul(&self.balls.exp(&half), &self.balls.sinh(&half));
+        self.with(self.balls.mul_power_of_two(&product, 1))
+    }
+    fn sin_cos(&self) -> (Self, Self) {
+        (self.with(self.balls.sin(&self.value)), self.with(self.balls.cos(&self.value)))
+    }
+    fn atan2(&self, x: &Self) -> Self {
+        let (balls, y) = (self.balls, &self.value);
+        let by = |n: &Ball, d: &Ball| balls.div(n, d).map(|t| balls.atan(&t));
+        if x.value.abs_lower() >= y.abs_lower() {
+            let angle = by(y, &x.value);
+            if !x.value.midpoint().is_sign_negative() {
+                return self.or_nothing(angle);
+            }
+            let turn = match self.sign() {
+                Some(Ordering::Less) => balls.neg(&balls.pi()),
+                Some(_) => balls.pi(),
+                None => balls.indeterminate(),
+            };
+            return self.or_nothing(angle.map(|angle| balls.add(&angle, &turn)));
+        }
+        let quarter = balls.mul_power_of_two(&balls.pi(), -1);
+        let quarter = if y.is_negative() { balls.neg(&quarter) } else { quarter };
+        self.or_nothing(by(&x.value, y).map(|angle| balls.sub(&quarter, &angle)))
+    }
+    fn sign(&self) -> Option<Ordering> {
+        if self.value.is_positive() {
+            Some(Ordering::Greater)
+        } else if self.value.is_negative() {
+            Some(Ordering::Less)
+        } else if self.value.is_exact() {
+            Some(Ordering::Equal)
+        } else {
+            None
+        }
+    }
+    fn to_f64(&self) -> f64 {
+        if self.value.is_finite() { self.value.midpoint().to_f64() } else { f64::NAN }
+    }
+    fn magnitude_above(&self) -> f64 {
+        // Rounded to nearest from 53 bits: exact; only the smallest numbers are pushed up.
+        let above = self.value.abs_upper().to_f64();
+        if above == 0.0 && !(self.value.is_exact() && self.value.contains_zero()) {
+            return f64::MIN_POSITIVE;
+        }
+        above
+    }
+    fn magnitude_below(&self) -> f64 {
+        self.value.abs_lower().to_f64_round(rug::float::Round::Down)
+    }
+    fn is_finite(&self) -> bool {
+        self.value.is_finite()
+    }
+    fn centre(&self) -> Self {
+        if !self.value.is_finite() {
+            return self.clone();
+        }
+        self.with(self.balls.from_parts(self.value.midpoint(), &Float::new(53)))
+    }
+    fn widened(&self, error: &Self) -> Self {
+        self.with(self.balls.add_error(&self.value, &error.value.abs_upper()))
+    }
+    fn neutral_width(&self) -> f64 {
+        0.0
+    }
+    fn precision(&self) -> u32 {
+        self.balls.bits()
+    }
+    fn doubled(&self) -> Self {
+        self.with(self.balls.mul_power_of_two(&self.value, 1))
+    }
+    fn halved(&self) -> Self {
+        self.with(self.balls.mul_power_of_two(&self.value, -1))
+    }
+}

@@ -1,0 +1,74 @@
+//! Doubles against the reference numbers.
+
+use crate::support::{close, data, number, parameters};
+use lindstedt_impact::characteristic::{Characteristic, Kick};
+use lindstedt_impact::equivalent::Drive;
+use lindstedt_impact::flow::{Flow, rates};
+use lindstedt_impact::orbit::orbit;
+use lindstedt_impact::prediction::{Variant, predict, predicted_flow};
+use lindstedt_impact::zeros::multipliers;
+
+#[test]
+fn doubles_have_twelve_digits_where_the_orbit_is_well_conditioned() {
+    for name in ["O1_A", "O2_k2_stabilised", "O5_false_stable", "O8_saddle", "k5", "plastic"] {
+        let case = data(name);
+        let p = parameters(&case).to_f64();
+        let found = orbit(&p).unwrap();
+        let reference = &case["orbit_uncontrolled"];
+        close(name, found.velocity, &reference["v"], 1e-12);
+        close(name, found.saltation, &reference["sigma"], 1e-12);
+        let free = Flow::uncontrolled(&p).unwrap();
+        let form = predict(Variant::P, &p, &free, None).unwrap().orbit.unwrap();
+        for (value, field) in [
+            (form.velocity, "v"),
+            (form.phase_angle(), "phi"),
+            (form.cosine, "C"),
+            (form.sine, "D"),
+            (form.saltation, "sigma"),
+        ] {
+            close(&format!("{name} {field}"), value, &reference[field], 1e-12);
+        }
+        let rates = rates(&p, 4);
+        for order in 1..=4 {
+            let flow = predicted_flow(&p, &rates, order).unwrap();
+            let reference = &case["kbm"]["cumulative"][order.to_string()];
+            close(name, flow.growth_rate, &reference["R"], 1e-12);
+            close(name, flow.frequency, &reference["alpha0"], 1e-12);
+            let reference = &case["E"][order.to_string()]["stability"];
+            if let Ok(found) = predict(Variant::E, &p, &flow, None) {
+                let b = found.polynomial.unwrap();
+                close(name, b.quadratic, &reference["b2"], 1e-12);
+                close(name, b.linear, &reference["b1"], 1e-12);
+                close(name, found.map.spectral_radius(), &reference["max_abs"], 1e-12);
+            }
+            let found = predict(Variant::S, &p, &flow, Some(&found)).unwrap();
+            let reference = &case["S"][order.to_string()];
+            close(name, found.map.spectral_radius(), &reference["max_abs"], 1e-12);
+        }
+        for (label, kick) in
+            [("classical", Kick::None), ("chi_0_no_kick", Kick::None), ("chi_mean", Kick::Mean)]
+        {
+            let reference = &case["true_floquet"][label];
+            if reference.is_null() {
+                continue;
+            }
+            let g = Characteristic::new(&p, &found, kick);
+            let list = multipliers(&g, 0.5 * number(&reference["max_abs"]).to_f64()).unwrap();
+            let leading = list.values[0].norm_squared().sqrt();
+            close(&format!("{name} {label}"), leading, &reference["max_abs"], 1e-12);
+        }
+    }
+}
+
+/// Near grazing v = 0.00166 is the small root of a quadratic with coefficients of order one; the
+/// condition number of the wall position is s/(F - s) = 300, so that two to three digits are lost.
+#[test]
+fn doubles_lose_three_digits_near_grazing() {
+    let case = data("near_grazing");
+    let p = parameters(&case).to_f64();
+    let reference = &case["orbit_uncontrolled"];
+    close("v", orbit(&p).unwrap().velocity, &reference["v"], 1e-12 * 300.0);
+    let drive = Drive::new(&p).unwrap();
+    let condition = p.wall / (drive.forced_amplitude - p.wall);
+    assert!((condition - 305.0).abs() < 1.0, "{condition}");
+}

@@ -1,0 +1,10 @@
+//! Periodic impact orbits and their stability against independent numbers and methods.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod agreement;
+mod collocation;
+mod doubles;
+mod extremes;
+mod oracles;
+mod support;
+mod truth;

@@ -1,0 +1,361 @@
+//! The numeric tiers of the driver: the same recursion over functions known by their values.
+//!
+//! Forces that no exact ring takes (|x|^p, sin x, x + sign x, quotients) are expanded here, and
+//! the power law to orders where its exact solution has millions of terms. The numbers are
+//! *estimated*: every expansion is computed on two grids of different accuracy, and four times the
+//! largest difference of the two results up to that order stands beside each number.
+
+use crate::derivation::Settings;
+use crate::{Error, Number, Status, Value, number::sine_sum};
+use lindstedt_algebra::{PhaseAlgebra, Rationals};
+use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_coeff::digits::{decimal, error_string};
+use lindstedt_coeff::floats::{Doubles, Floats, Reals};
+use lindstedt_equation::{AmplitudeRole, Condition, Problem};
+use lindstedt_expand::{
+    Binding, ExpandError, OrderWork, Request, compile, expand, leading_amplitude,
+};
+use lindstedt_phase::Trigonometric;
+use lindstedt_phase::collocation::{Collocation, Grid};
+use lindstedt_series::Series;
+use rug::{Float, Rational};
+
+/// How the numbers are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Tier {
+    /// Values at double-exponential nodes, at the precision that `digits` correct digits need;
+    /// grids are refined until two agree to that.
+    Collocation {
+        /// Correct digits of every coefficient.
+        digits: u32,
+    },
+    /// The same in double precision.
+    Doubles,
+    /// A truncated Fourier series in double precision: the cheap tier. With singularities at
+    /// x = 0 (logarithms, signs) it converges like a power of 1/harmonics only.
+    Fourier {
+        /// The number of harmonics of each symmetry class.
+        harmonics: usize,
+    },
+}
+
+/// A series of estimated numbers.
+#[derive(Clone, Debug)]
+pub struct EstimatedSeries {
+    /// As in [`crate::NamedSeries::name`].
+    pub name: &'static str,
+    /// From order 0: the coefficient and the estimate of its absolute error.
+    pub coefficients: Vec<(Float, Float)>,
+}
+
+/// An expansion in estimated numbers.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// The tier.
+    pub tier: Tier,
+    /// The normalisation used.
+    pub condition: Condition,
+    /// The highest order derived (lower than asked for when interrupted).
+    pub order: usize,
+    /// The nodes of the finer grid.
+    pub nodes: usize,
+    /// The bits computed with.
+    pub bits: u32,
+    /// Products of phase functions on the finer grid.
+    pub products: u64,
+    /// The series of the result.
+    pub series: Vec<EstimatedSeries>,
+}
+
+impl Estimate {
+    /// The series of that name.
+    #[must_use]
+    pub fn named(&self, name: &str) -> Option<&EstimatedSeries> {
+        self.series.iter().find(|series| series.name == name)
+    }
+}
+
+impl EstimatedSeries {
+    /// Coefficient n with at most `digits` digits, as many as the estimate supports and two more.
+    #[must_use]
+    pub fn number(&self, n: usize, digits: usize) -> Option<Number> {
+        let (value, error) = self.coefficients.get(n)?;
+        let balls = Balls::new(value.prec().max(64));
+        let sure = match (value.get_exp(), error.get_exp()) {
+            (Some(v), Some(e)) => (f64::from(v - e) * 2f64.log10()).max(0.0) as usize + 2,
+            _ => digits,
+        };
+        let centre = balls.from_parts(value, &Float::new(53));
+        let text = decimal(&centre, digits.min(sure).max(1))?;
+        let error = error_string(&balls.from_parts(value, error), &text);
+        Some(Number { exact: None, decimal: text, error: Some(error), status: Status::Estimated })
+    }
+}
+
+/// What may go wrong with a grid: refine at most so many times.
+const REFINEMENTS: usize = 6;
+/// More nodes than this are refused: a solution costs their square.
+const MOST_NODES: usize = 1 << 14;
+
+/// Derives an expansion in a numeric tier. `settings.route` does not apply.
+///
+/// `observer` is told every finished order; when it returns `false`, the expansion ends there.
+///
+/// # Errors
+/// [`Error`] with the reason; [`Error::NotEnoughBits`] when refining the grid does not reach the
+/// digits (a force that is singular inside the quarter period, for example).
+///
+/// # Example
+/// ```
+/// use lindstedt::numeric::{Tier, derive};
+/// use lindstedt::{Settings, problems};
+/// let problem = problems::find("power-law").ok_or("no such problem")?;
+/// let settings = Settings { order: 3, ..Settings::default() };
+/// let result = derive(&problem, &settings, Tier::Collocation { digits: 30 }, &mut |_| true)?;
+/// let alpha = result.named("frequency_squared").and_then(|s| s.number(1, 30)).ok_or("none")?;
+/// assert_eq!(alpha.decimal, "-0.386294361119890618834464242916");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn derive(
+    problem: &Problem,
+    settings: &Settings,
+    tier: Tier,
+    observer: &mut dyn FnMut(&OrderWork) -> bool,
+) -> Result<Estimate, Error> {
+    crate::derivation::check_parameters(problem, &settings.parameters)?;
+    let condition = crate::derivation::condition(problem, settings.condition)?;
+    let mut job = Job { problem, settings, condition, observer };
+    match tier {
+        Tier::Collocation { digits } => job.refine(tier, digits),
+        Tier::Doubles => {
+            let run = |job: &mut Job<'_>, (accuracy, end)| {
+                let algebra = Collocation::new(Doubles, Grid::new(accuracy, end));
+                job.run(&algebra, algebra.nodes())
+            };
+            // A solution is known to about 1e-16: where cos psi is smaller than that, x_n/x_0 is
+            // noise, and its powers must not enter. So the grids end before.
+            let coarse = run(&mut job, (55.0, 30.0))?;
+            let fine = run(&mut job, (62.0, 32.0))?;
+            Ok(job.compare(tier, &[coarse], fine, 53))
+        }
+        Tier::Fourier { harmonics } => {
+            let run = |job: &mut Job<'_>, harmonics| {
+                job.run(&Collocation::fourier(Doubles, harmonics), harmonics)
+            };
+            let harmonics = harmonics.clamp(4, MOST_NODES);
+            // Algebraic convergence is uneven at high orders: three numbers of harmonics.
+            let coarse =
+                [run(&mut job, harmonics.div_ceil(4))?, run(&mut job, harmonics.div_ceil(2))?];
+            let fine = run(&mut job, harmonics)?;
+            Ok(job.compare(tier, &coarse, fine, 53))
+        }
+    }
+}
+
+/// One run on one grid.
+struct Run {
+    nodes: usize,
+    products: u64,
+    series: Vec<(&'static str, Vec<Float>)>,
+}
+
+struct Job<'a> {
+    problem: &'a Problem,
+    settings: &'a Settings,
+    condition: Condition,
+    observer: &'a mut dyn FnMut(&OrderWork) -> bool,
+}
+
+impl Job<'_> {
+    /// Two grids, the finer one with six more digits; finer ones until they agree.
+    fn refine(&mut self, tier: Tier, digits: u32) -> Result<Estimate, Error> {
+        let mut guard = 0;
+        let mut coarse: Option<Run> = None;
+        let mut bits = 0;
+        for _ in 0..REFINEMENTS {
+            let wanted = digits.saturating_add(guard);
+            let (grid, needed) = Grid::for_digits(wanted, self.settings.order);
+            if grid.nodes > MOST_NODES {
+                break;
+            }
+            bits = needed;
+            let algebra = Collocation::new(Floats::new(bits), grid);
+            let run = self.run(&algebra, grid.nodes)?;
+            let Some(before) = coarse.replace(run) else {
+                guard = 6;
+                continue;
+            };
+            let Some(fine) = coarse.take() else { break };
+            let estimate = self.compare(tier, &[before], fine, bits);
+            let tolerance = Float::with_val(53, Float::i_pow_u(10, digits)).recip();
+            let reached = |(value, error): &(Float, Float)| {
+                let size = Float::with_val(53, value.abs_ref());
+                *error <= tolerance || *error <= size * &tolerance
+            };
+            if estimate.series.iter().flat_map(|s| &s.coefficients).all(reached) {
+                return Ok(estimate);
+            }
+            let values = |s: &EstimatedSeries| {
+                (s.name, s.coefficients.iter().map(|(v, _)| v.clone()).collect())
+            };
+            let series = estimate.series.iter().map(values).collect();
+            coarse = Some(Run { nodes: estimate.nodes, products: estimate.products, series });
+            guard += digits / 2 + 10;
+        }
+        Err(Error::NotEnoughBits { bits, best: None })
+    }
+
+    /// Four times the largest difference between the finest grid and the others at this and at
+    /// lower orders (an accidental agreement at one order says nothing), and rounding errors.
+    fn compare(&self, tier: Tier, coarse: &[Run], fine: Run, bits: u32) -> Estimate {
+        let rounding = Float::with_val(53, 1) >> (bits as i32 - 6);
+        let estimated = |(index, (name, values)): (usize, (&'static str, Vec<Float>))| {
+            let mut error = rounding.clone();
+            let mut coefficients = Vec::new();
+            for (n, value) in values.into_iter().enumerate() {
+                let others = coarse.iter().filter_map(|run| run.series.get(index)?.1.get(n));
+                for other in others {
+                    let difference = Float::with_val(53, &value - other).abs() * 4u32;
+                    if difference > error || difference.is_nan() {
+                        error = difference;
+                    }
+                }
+                coefficients.push((value, error.clone()));
+            }
+            EstimatedSeries { name, coefficients }
+        };
+        let series: Vec<_> = fine.series.into_iter().enumerate().map(estimated).collect();
+        Estimate {
+            tier,
+            condition: self.condition,
+            order: series.first().map_or(0, |s| s.coefficients.len().saturating_sub(1)),
+            nodes: fine.nodes,
+            bits,
+            products: fine.products,
+            series,
+        }
+    }
+
+    fn run<A: PhaseAlgebra>(&mut self, algebra: &A, nodes: usize) -> Result<Run, Error>
+    where
+        A::Constants: Reals,
+    {
+        let reals = algebra.constants();
+        let given = Given { settings: self.settings, problem: self.problem, reals };
+        let order = self.settings.order;
+        let equation = compile(algebra, &self.problem.equation, &given, order)?;
+        let leading_amplitude = match self.condition {
+            // Found exactly: a root of an averaged polynomial.
+            Condition::LimitCycle => {
+                let plain = Trigonometric::new(Rationals);
+                let exact = compile(&plain, &self.problem.equation, &Exact(self.settings), order)?;
+                leading_amplitude(&plain, &exact, self.condition)?
+            }
+            _ => leading_amplitude(algebra, &equation, self.condition)?,
+        };
+        let request = Request { condition: self.condition, order, leading_amplitude };
+        let expansion = expand(algebra, &equation, &request, self.observer)?;
+        let kappa = reals.to_float(&expansion.stiffness);
+        if kappa <= 0 || !kappa.is_finite() {
+            return Err(ExpandError::NegativeStiffness.into());
+        }
+        let squared = Series::truncated(expansion.frequency_squared);
+        let root = kappa.sqrt();
+        let mut series = Vec::new();
+        let names = [("frequency_squared", 2), ("frequency", 1), ("period_over_2pi", -1)];
+        for (name, power) in names {
+            let half = Rational::from((power, 2));
+            let list = squared.power(reals, &half).ok_or(Error::NoValue)?;
+            let scaled = self.scale_to_amplitude(reals, list, power);
+            let factor = rug::ops::Pow::pow(root.clone(), power);
+            let value = |c: &_| reals.to_float(c) * &factor;
+            series.push((name, scaled.iter().map(value).collect()));
+        }
+        let name = match self.condition {
+            Condition::InitialAmplitude => None,
+            Condition::FundamentalAmplitude | Condition::FreeAmplitude => {
+                Some("initial_displacement")
+            }
+            Condition::LimitCycle => Some("amplitude"),
+        };
+        if let Some(name) = name {
+            series.push((name, expansion.amplitude.iter().map(|c| reals.to_float(c)).collect()));
+        }
+        let products = expansion.work.iter().map(|work| work.products).sum();
+        Ok(Run { nodes, products, series })
+    }
+
+    /// The factor a^(power exponent eps/2), where the amplitude scales the frequency.
+    fn scale_to_amplitude<R: Reals>(
+        &self,
+        reals: &R,
+        series: Series<R::Element>,
+        power: i32,
+    ) -> Vec<R::Element> {
+        let amplitude = self.settings.parameters.get("amplitude");
+        let (AmplitudeRole::ScalesFrequency { exponent }, Some(a)) =
+            (self.problem.amplitude, amplitude)
+        else {
+            return series.coefficients;
+        };
+        let log = reals.log_abs(&real(reals, &a.ball(Balls::new(reals.bits() + 16))));
+        let rate = reals.scale(&log, &Rational::from((exponent * power, 2)));
+        let mut factor = vec![reals.one()];
+        for n in 1..series.coefficients.len() {
+            let term = factor.last().map(|last| reals.mul(last, &rate));
+            let term = term.unwrap_or_else(|| reals.zero());
+            factor.push(reals.scale(&term, &Rational::from((1, n))));
+        }
+        let order = series.coefficients.len().saturating_sub(1);
+        series.mul(reals, &Series::truncated(factor), order).coefficients
+    }
+}
+
+/// The middle of a ball in a context of floats.
+fn real<R: Reals>(reals: &R, ball: &Ball) -> R::Element {
+    reals.from_float(ball.midpoint())
+}
+
+/// Values of parameters and of the formal sums S_n.
+struct Given<'a, R> {
+    settings: &'a Settings,
+    problem: &'a Problem,
+    reals: &'a R,
+}
+
+impl<R: Reals> Given<'_, R> {
+    fn value(&self, name: &str) -> Option<Value> {
+        let card = || self.problem.parameters.iter().find(|card| card.name == name);
+        let given = self.settings.parameters.get(name).cloned();
+        given.or_else(|| Value::parse(&card()?.default).ok())
+    }
+}
+
+impl<R: Reals> Binding<R> for Given<'_, R> {
+    fn parameter(&self, name: &str) -> Option<R::Element> {
+        let balls = Balls::new(self.reals.bits() + 16);
+        Some(real(self.reals, &self.value(name)?.ball(balls)))
+    }
+    fn formal(&self, name: &str, n: usize) -> Option<R::Element> {
+        if name != crate::derivation::FORMAL {
+            return None;
+        }
+        // S_n with small n cancels: the Taylor series of sin at the amplitude.
+        let balls = Balls::new(self.reals.bits() + 64);
+        let amplitude = self.value("amplitude")?.ball(balls);
+        Some(real(self.reals, &sine_sum(u16::try_from(n).ok()?, &amplitude, balls)))
+    }
+}
+
+/// Exact values of parameters.
+struct Exact<'a>(&'a Settings);
+
+impl Binding<Rationals> for Exact<'_> {
+    fn parameter(&self, name: &str) -> Option<Rational> {
+        self.0.parameters.get(name)?.as_rational().cloned()
+    }
+    fn formal(&self, _: &str, _: usize) -> Option<Rational> {
+        None
+    }
+}

@@ -1,0 +1,62 @@
+//! x'' + alpha^2 x = P0 cos(omega t) + eps (A [x - x(t-T)] + B [x' - x'(t-T)] - c x'), x <= s.
+
+use lindstedt_equation::{
+    AmplitudeRole, Condition, Crossing, Expression, Function, Impact, ParameterCard, Problem,
+    Synchronous,
+};
+
+/// The controlled vibro-impact oscillator; eps = 1 in the end.
+pub fn problem() -> Problem {
+    let (x, v) = (Expression::Displacement, Expression::Velocity);
+    let symbol = Expression::parameter;
+    let period = || symbol("T");
+    let loop_force = symbol("A") * (x.clone() - x.clone().delayed(period()))
+        + symbol("B") * (v.clone() - v.clone().delayed(period()))
+        - symbol("c") * v;
+    let force = symbol("P0") * (symbol("omega") * Expression::Time).apply(Function::Cos);
+    let flight = Expression::Acceleration + symbol("alpha").pow(2) * x
+        - force
+        - Expression::Small * loop_force;
+    let line = |name: &'static str, meaning: &'static str, default: &'static str| ParameterCard {
+        name: name.into(),
+        meaning: meaning.into(),
+        default: default.into(),
+    };
+    Problem {
+        name: "vibro-impact".into(),
+        title: "vibro-impact oscillator with a delay loop, one impact in k periods".into(),
+        equation: flight,
+        time_domain: None,
+        impact: Some(Impact {
+            position: symbol("s"),
+            crossing: Crossing::Rising,
+            restitution: symbol("R_r"),
+        }),
+        synchronous: Some(Synchronous {
+            delay: "T".into(),
+            periods: "k".into(),
+            frequency: "omega".into(),
+        }),
+        small: "eps".into(),
+        conditions: vec![Condition::FreeAmplitude],
+        amplitude: AmplitudeRole::Free,
+        parameters: vec![
+            line("alpha", "frequency of free flight, > 0", "1"),
+            line("omega", "frequency of the force, > 0", "3.3"),
+            line("k", "periods of the force between impacts; T = 2 pi k/omega", "1"),
+            line("R_r", "restitution coefficient, 0 to 1", "0.6"),
+            line("s", "position of the wall", "-0.2"),
+            line("c", "damping, of order eps", "0.2"),
+            line("P0", "amplitude of the force", "1"),
+            line("A", "gain of the displacement loop, of order eps", "0"),
+            line("B", "gain of the velocity loop, of order eps", "0"),
+            line("branch", "+ or -, the sign of the root in the impact velocity", "+"),
+        ],
+        notes: "(1) with c, A, B of order eps and eps = 1 in the end; c = c_1/m, \
+                alpha^2 = (k_1 + k_2)/m, P0 = y_0 k_2/m, A = k_2 a_1/m, B = k_2 b_1/m. Impact at \
+                x = s: x' -> -R_r x'. Dimensionless once time and length are scaled. No published \
+                parameter set exists; the defaults are orbit O3 of the tests."
+            .into(),
+        source: "Awrejcewicz and Andrianov, section 2, equations (1)-(17)".into(),
+    }
+}
