@@ -73,6 +73,7 @@ impl From<Error> for Failure {
             Error::Resummation { .. } => {
                 (NO_ANSWER, "no-such-resummation", "try --resum auto, or another order")
             }
+            Error::NotEvaluated { .. } => (NO_ANSWER, "not-evaluated", ""),
             Error::NoValue => (NO_ANSWER, "no-value", ""),
             Error::OutOfPrimes => (UNDECIDED, "out-of-primes", "lower --order"),
             Error::Expand(ExpandError::Interrupted { .. }) => (INTERRUPTED, "interrupted", ""),

@@ -85,6 +85,12 @@ pub enum Error {
         /// Why.
         reason: lindstedt_series::resummation::ResummationError,
     },
+    /// Period and solution are not summed for this problem.
+    #[error("{problem}: no series of the period is known that can be summed")]
+    NotEvaluated {
+        /// The problem.
+        problem: String,
+    },
     /// The value does not exist.
     #[error("the value does not exist")]
     NoValue,

@@ -77,7 +77,7 @@ fn default_order(problem: &Problem) -> usize {
         AmplitudeRole::ScalesFrequency { .. } => 20,
         AmplitudeRole::InSums => 24,
         AmplitudeRole::InSmallParameter => 30,
-        AmplitudeRole::Determined => 60,
+        AmplitudeRole::Determined | AmplitudeRole::Free => 60,
     }
 }
 
@@ -92,6 +92,7 @@ fn bits_for(digits: usize) -> u32 {
 /// it is always this one. `period` and `frequency` are estimated; `exact_period` is certified.
 ///
 /// # Errors
+/// [`Error::NotEvaluated`] for a problem whose period has no known series,
 /// [`Error::OutsideDomain`] and [`Error::UnknownParameter`] for parameters,
 /// [`Error::Resummation`] where the method asked for does not apply, and what
 /// [`crate::derive`] returns.
@@ -121,7 +122,7 @@ pub fn evaluate(
     let sample = |bits: u32| source.sample(bits);
     let resummed = resum(&sample, settings.method, accuracy);
     let resummed = resummed
-        .map_err(|reason| Error::Resummation { problem: problem.name.to_owned(), reason })?;
+        .map_err(|reason| Error::Resummation { problem: problem.name.to_string(), reason })?;
     let exact_period = match &source.closed {
         None => None,
         Some((form, formula)) => {

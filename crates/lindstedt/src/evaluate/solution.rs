@@ -51,7 +51,7 @@ fn default_order(problem: &Problem) -> usize {
         AmplitudeRole::ScalesFrequency { .. } => 10,
         AmplitudeRole::InSums => 8,
         AmplitudeRole::InSmallParameter => 24,
-        AmplitudeRole::Determined => 40,
+        AmplitudeRole::Determined | AmplitudeRole::Free => 40,
     }
 }
 

@@ -65,7 +65,7 @@ impl Given<'_> {
             return Ok(value.clone());
         }
         let card = self.problem.parameters.iter().find(|card| card.name == name);
-        card.map_or(Err(Error::NoValue), |card| Value::parse(card.default))
+        card.map_or(Err(Error::NoValue), |card| Value::parse(&card.default))
     }
 
     fn rational(&self, name: &'static str) -> Result<Rational, Error> {
@@ -80,6 +80,7 @@ impl Given<'_> {
 
 /// As [`source`] without coefficients: the point, and the closed form.
 pub(super) fn point(problem: &Problem, values: &BTreeMap<String, Value>) -> Result<Source, Error> {
+    check_known(problem)?;
     check_parameters(problem, values)?;
     let given = Given { problem, values };
     match problem.amplitude {
@@ -87,7 +88,20 @@ pub(super) fn point(problem: &Problem, values: &BTreeMap<String, Value>) -> Resu
         AmplitudeRole::InSums => pendulum(&given, 0),
         AmplitudeRole::InSmallParameter => duffing(&given, Vec::new()),
         AmplitudeRole::Determined => limit_cycle(&given, Vec::new()),
+        AmplitudeRole::Free => Err(not_evaluated(problem)),
     }
+}
+
+/// The maps and closed forms below belong to the equations of the library; another equation with
+/// the same role of its amplitude has others.
+fn check_known(problem: &Problem) -> Result<(), Error> {
+    let known = lindstedt_problems::find(&problem.name)
+        .is_some_and(|known| known.equation == problem.equation);
+    if known { Ok(()) } else { Err(not_evaluated(problem)) }
+}
+
+fn not_evaluated(problem: &Problem) -> Error {
+    Error::NotEvaluated { problem: problem.name.to_string() }
 }
 
 /// The series of a problem. Problems over Q are derived by the driver to `order`; the others
@@ -99,6 +113,7 @@ pub(super) fn source(
     memory: u64,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Source, Error> {
+    check_known(problem)?;
     check_parameters(problem, values)?;
     let given = Given { problem, values };
     match problem.amplitude {
@@ -112,6 +127,7 @@ pub(super) fn source(
             let series = over_rationals(problem, order, memory, observer)?;
             limit_cycle(&given, series)
         }
+        AmplitudeRole::Free => Err(not_evaluated(problem)),
     }
 }
 
