@@ -4,6 +4,7 @@
 
 use lindstedt::evaluate::{EvaluateSettings, evaluate};
 use lindstedt::series::resummation::{Method, Resummed, Sample, UniformMap, resum};
+use lindstedt::algebra::RationalAlgebra;
 use lindstedt::{Error, Settings, Value, derive, problems};
 use rug::{Float, Rational};
 
@@ -167,6 +168,7 @@ fn van_der_pol(seed: u64, order: usize, cases: usize, count: &mut Count) {
                     prefactor: Float::with_val(bits, 0.5),
                     radius: None,
                 }),
+                radius: None,
                 bits,
             })
         };

@@ -180,6 +180,7 @@ fn check(g: &mut Generator, count: &mut Count, failures: &mut Vec<String>) {
                 prefactor: Float::with_val(bits, prefactor),
                 radius: None,
             }),
+            radius: None,
             bits,
         })
     };

@@ -74,7 +74,7 @@ impl Report<'_> {
             "best_truncation": best.map(|(order, number)| json!({"order": order, "period": optional(number.as_ref())})),
             "singularity": self.singularity(),
             "pade": result.picture.as_ref().map(|picture| json!({
-                "poles": picture.poles.iter().map(|p| json!({"at": pair(&p.at), "residue": pair(&p.residue), "spurious": p.spurious})).collect::<Vec<_>>(),
+                "poles": picture.poles.iter().map(|p| json!({"at": pair(&p.at), "residue": pair(&p.residue), "doublet": p.doublet})).collect::<Vec<_>>(),
                 "zeros": picture.zeros.iter().map(pair).collect::<Vec<_>>(),
             })),
             "solution": self.solution.map(Table::json),
@@ -150,9 +150,9 @@ impl Report<'_> {
             ));
         }
         if let Some(picture) = &result.picture {
-            let spurious = picture.poles.iter().filter(|p| p.spurious).count();
+            let doublets = picture.poles.iter().filter(|p| p.doublet).count();
             let text = format!(
-                "{} poles, {spurious} in doublets, {} zeros",
+                "{} poles, {doublets} of them in doublets with a zero, {} zeros",
                 picture.poles.len(),
                 picture.zeros.len()
             );

@@ -175,6 +175,7 @@ impl Trajectory {
                     .collect(),
                 point: Float::with_val(bits, (self.small)(balls)?.midpoint()),
                 map: Some(map),
+                radius: None,
                 bits,
             };
             known.borrow_mut().insert(bits, sample.clone());

@@ -48,6 +48,7 @@ impl Source {
             coefficients: (self.coefficients)(bits)?,
             point: Float::with_val(bits, point.midpoint()),
             map,
+            radius: self.radius.map(|(radius, _)| radius),
             bits,
         })
     }

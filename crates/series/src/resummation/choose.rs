@@ -47,6 +47,7 @@ const DOUBLINGS: u32 = 4;
 ///         .collect(),
 ///     point: Float::with_val(bits, 1) / 10u32,
 ///     map: None,
+///     radius: None,
 ///     bits,
 /// });
 /// let found = resum(&source, None, 100)?;
@@ -69,10 +70,7 @@ pub fn resum(
     let low = if first.bits >= bits { first } else { sample(bits)? };
     let high = sample(low.bits.saturating_mul(2))?;
     let growth = growth(&low.coefficients);
-    let singularity = match growth {
-        Growth::Factorial { .. } | Growth::Entire => None,
-        _ => high.singularity(),
-    };
+    let singularity = high.singularity();
     let methods = method.map_or_else(|| Method::ALL.to_vec(), |method| vec![method]);
     let mut tried = Vec::new();
     let mut best: Option<(Method, Outcome, u32)> = None;
@@ -221,6 +219,7 @@ mod tests {
                             coefficients: (0..=order).map(|n| c(n, bits)).collect(),
                             point: Float::with_val(bits, x),
                             map: None,
+                            radius: None,
                             bits,
                         })
                     };

@@ -2,6 +2,7 @@
 
 use rug::Float;
 use rug::float::Special;
+use rug::ops::Pow;
 
 /// The least number of an approximant whose error is estimated.
 const FEWEST: usize = 6;
@@ -71,6 +72,49 @@ pub(super) fn settle(values: &[Float], window: usize, number: usize) -> Option<E
     Some(Estimate { value: value.clone(), error })
 }
 
+/// The last of a sequence of approximants; the error is four times the largest distance from it
+/// in the sequence. For methods that converge slower than a geometric sequence, as Borel's with
+/// Pade approximants of a transform with singularities near the path, and where [`settle`]'s
+/// ratio of two windows would mean nothing.
+pub(super) fn widest(values: &[Float], number: usize) -> Option<Estimate> {
+    let (value, before) = values.split_last()?;
+    let mut estimate = settle(values, before.len().div_ceil(2).clamp(1, 4), number)?;
+    estimate.error = estimate.error.max(&(spread(before, value)? * 4u32));
+    Some(estimate)
+}
+
+/// What may be missing from the last of the partial sums at |x| = `ratio` times the radius of
+/// convergence (0 for an unknown one), if the terms go on as they began: below A q^n they leave
+///
+///   sum_{n > N} A q^n = A q^(N+1)/(1 - q).
+///
+/// q is the larger of `ratio` and the one between the largest terms of the middle and the last
+/// third; A comes from the last third. Twice the result; infinite for q >= 1.
+pub(super) fn geometric_tail(sums: &[Float], ratio: &Float) -> Float {
+    let terms: Vec<Float> = sums.windows(2).map(|pair| distance(&pair[1], &pair[0])).collect();
+    let last = terms.len();
+    let (early, late) = (last / 3, last * 2 / 3);
+    let largest = |from: usize, to: usize| {
+        let list = terms.iter().take(to).skip(from);
+        list.fold(Float::new(53), |a, b| a.max(b))
+    };
+    let (before, after) = (largest(early, late), largest(late, last));
+    let mut ratio = Float::with_val(53, ratio);
+    if !before.is_zero() {
+        let steps = (late - early).max(1) as f64;
+        ratio = ratio.max(&(after / before).pow(1.0 / steps));
+    }
+    let rest = Float::with_val(53, 1 - &ratio);
+    if rest <= 0 || !rest.is_finite() {
+        return Float::with_val(53, Special::Infinity);
+    }
+    let scaled = terms.iter().enumerate().skip(late).map(|(i, term)| {
+        let left = u32::try_from(last - i).unwrap_or(u32::MAX);
+        Float::with_val(53, (&ratio).pow(left)) * term
+    });
+    scaled.fold(Float::new(53), |a, b| a.max(&b)) * 2u32 / rest
+}
+
 /// The partial sum up to the smallest term, and its order: what is best for a divergent series.
 /// The error estimate is the largest of the smallest term and its two neighbours.
 pub(super) fn best_truncation(sums: &[Float]) -> Option<(usize, Estimate)> {
@@ -87,6 +131,30 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
     use super::*;
+
+    /// The remainder of sum q^n cos(n phi) n^p at random q next to one, for slow oscillations too.
+    #[test]
+    fn tails_are_above_the_remainder() {
+        for q in [0.3f64, 0.9, 0.99, 0.9995] {
+            for phi in [0.0f64, 0.05, 0.4, 1.0, 3.1] {
+                for p in [-3.0f64, -1.5, -0.5, 0.0] {
+                    let term =
+                        |n: i32| q.powi(n) * (f64::from(n) * phi).cos() * f64::from(n).powf(p);
+                    for number in [8, 15, 30] {
+                        let mut sum = Float::new(200);
+                        let mut sums = vec![sum.clone()];
+                        for n in 1..=number {
+                            sum += term(n);
+                            sums.push(sum.clone());
+                        }
+                        let found = geometric_tail(&sums, &Float::with_val(53, q));
+                        let rest: f64 = (number + 1..80_000).map(term).sum();
+                        assert!(found >= rest.abs(), "{q} {phi} {p} {number}: {found} {rest}");
+                    }
+                }
+            }
+        }
+    }
 
     /// Errors q^k cos(k phi + psi), k^-p and 1/k!: the estimate holds for all of them.
     #[test]

@@ -7,7 +7,7 @@ use rug::Float;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Growth {
-    /// Too few coefficients that do not vanish.
+    /// Too few coefficients that do not vanish, or contradictory ones.
     Undecided,
     /// |c_n| falls like 1/n!^g, g > 0: no singularity.
     Entire,
@@ -20,12 +20,18 @@ pub enum Growth {
     },
 }
 
-/// The least number of non-zero coefficients to say anything.
+/// The least number of non-zero coefficients to say anything, and to call a series factorial or
+/// entire: the coefficients of a function with a radius may swell and ebb over twenty orders.
 const FEWEST: usize = 8;
-/// Of |g|: a singularity (1 - x)^(-p) shows up as g = (p - 1)/n on a finite stretch.
-const LEAST_RATE: f64 = 0.2;
+const FEWEST_TO_EXCLUDE_A_RADIUS: usize = 20;
+/// Of |g|: a singularity (1 - x)^(-p) shows up as g = (p - 1)/n on a finite stretch; a larger one
+/// contradicts a radius, and beyond the second bound in every fit it excludes one.
+const MOST_WITH_A_RADIUS: f64 = 0.2;
+const LEAST_WITHOUT: f64 = 0.4;
 
-/// Fits ln |c_n| = a + b n + g ln n! and a + b n + h ln n over the last two thirds.
+/// Fits ln |c_n| = a + b n + g ln n! and a + b n + h ln n over the last two thirds; once more
+/// without the last few coefficients, to a quarter of them: g must agree in sign and be large in
+/// all of these fits before a series is called factorial or entire.
 ///
 /// |c_n| is replaced by its upper envelope over four orders, so that the oscillation from a
 /// pair of complex singularities does not disturb. Heuristic: what a finite number of
@@ -40,7 +46,26 @@ pub fn growth(c: &[Float]) -> Growth {
     if logs.len() < FEWEST {
         return Growth::Undecided;
     }
-    let Some([_, slope, _]) = fit(&logs, |_| 0.0) else { return Growth::Undecided };
+    let Some((rate, radius)) = rate_and_radius(&logs) else { return Growth::Undecided };
+    let shorter = (logs.len() - logs.len() / 4..=logs.len()).filter_map(|n| logs.get(..n));
+    let rates: Vec<f64> = shorter.filter_map(|list| Some(rate_and_radius(list)?.0)).collect();
+    let long = logs.len() >= FEWEST_TO_EXCLUDE_A_RADIUS;
+    if long && rates.iter().all(|g| *g > LEAST_WITHOUT) {
+        Growth::Factorial { rate }
+    } else if long && rates.iter().all(|g| *g < -LEAST_WITHOUT) {
+        Growth::Entire
+    } else if rates.iter().all(|g| g.abs() < MOST_WITH_A_RADIUS)
+        || long && rate.abs() < MOST_WITH_A_RADIUS
+    {
+        Growth::Radius(radius)
+    } else {
+        Growth::Undecided
+    }
+}
+
+/// g, and exp(-b) of the fit without it.
+fn rate_and_radius(logs: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let [_, slope, _] = fit(logs, |_| 0.0)?;
     let envelope: Vec<(f64, f64)> = logs
         .iter()
         .enumerate()
@@ -50,18 +75,8 @@ pub fn growth(c: &[Float]) -> Growth {
             (n, near.fold(f64::NEG_INFINITY, |top, (m, y)| top.max(y + slope * (n - m))))
         })
         .collect();
-    let (Some(factorial), Some(power)) = (fit(&envelope, log_factorial), fit(&envelope, f64::ln))
-    else {
-        return Growth::Undecided;
-    };
-    let rate = factorial[2];
-    if rate > LEAST_RATE {
-        Growth::Factorial { rate }
-    } else if rate < -LEAST_RATE {
-        Growth::Entire
-    } else {
-        Growth::Radius((-power[1]).exp())
-    }
+    let (factorial, power) = (fit(&envelope, log_factorial)?, fit(&envelope, f64::ln)?);
+    Some((factorial[2], (-power[1]).exp()))
 }
 
 /// ln n! for n >= 1 by Stirling's series (1e-3 at 1, where it does not matter).
@@ -149,6 +164,9 @@ mod tests {
             let Growth::Radius(radius) = found else { panic!("{phi}: {found:?}") };
             assert!((radius - 2.0).abs() < 0.2, "{phi}: {radius}");
         }
+        // Factorial ones, too few to tell.
+        let few: Vec<Float> = list(|n| factorial(n).pow(2.0f64)).into_iter().take(15).collect();
+        assert_eq!(growth(&few), Growth::Undecided);
         assert_eq!(growth(&list(|n| float(if n < 3 { 1.0 } else { 0.0 }))), Growth::Undecided);
     }
 }

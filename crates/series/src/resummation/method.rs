@@ -1,7 +1,7 @@
 //! The methods, one value with an error estimate each.
 
 use super::borel::{borel_transform, laplace};
-use super::estimate::{best_truncation, distance, settle};
+use super::estimate::{best_truncation, distance, geometric_tail, settle, widest};
 use super::{Estimate, Growth, Map, Pade, ResummationError, growth, partial_sums};
 use super::{Singularity, nearest_singularity};
 use rug::Float;
@@ -57,6 +57,9 @@ pub struct Sample {
     pub point: Float,
     /// The change of variable for [`Method::Uniform`].
     pub map: Option<UniformMap>,
+    /// The radius of convergence where it is known, zero for a series that diverges everywhere;
+    /// else it is estimated.
+    pub radius: Option<f64>,
     /// The precision to which all of these are known, relative.
     pub bits: u32,
 }
@@ -107,7 +110,9 @@ impl Sample {
     /// Whether no agreement means anything: the terms of an entire function (or of one with too
     /// few coefficients to tell) still grow at the last order.
     fn is_unresolved(&self) -> bool {
-        if !matches!(growth(&self.coefficients), Growth::Entire | Growth::Undecided) {
+        let of_unknown_kind =
+            matches!(growth(&self.coefficients), Growth::Entire | Growth::Undecided);
+        if self.radius.is_some() || !of_unknown_kind {
             return false;
         }
         let sums = partial_sums(&self.coefficients, &self.point, self.bits);
@@ -129,16 +134,11 @@ impl Sample {
             Method::Pade => diagonal(&self.coefficients, &self.point, self.bits),
             Method::Uniform => {
                 let (c, u, factor) = self.uniform()?;
-                let radius = self.map.as_ref().and_then(|map| map.radius);
-                let radius = radius.or(match growth(&c) {
-                    Growth::Radius(radius) => Some(radius),
-                    Growth::Factorial { .. } => Some(0.0),
-                    _ => None,
-                });
+                let radius = disc(&c, self.map.as_ref().and_then(|map| map.radius));
                 if let Some(radius) = radius.filter(|radius| u.clone().abs() >= *radius) {
                     return Err(ResummationError::OutsideDisc { radius, at: u.to_f64() });
                 }
-                convergent(&c, &u, self.bits).map(|outcome| scaled(outcome, &factor))
+                convergent(&c, &u, radius, self.bits).map(|outcome| scaled(outcome, &factor))
             }
             Method::UniformPade => {
                 let (c, u, factor) = self.uniform()?;
@@ -154,7 +154,7 @@ impl Sample {
             Method::BorelPade => {
                 let b = borel_transform(&self.coefficients, &self.point, self.bits);
                 let value = |pade: &Pade| laplace(pade, accuracy, self.bits);
-                let mut outcome = staircase(&b, self.bits, value)?;
+                let mut outcome = staircase(&b, self.bits, &widest, value)?;
                 // What the integral was not asked for.
                 let size = Float::with_val(53, outcome.estimate.value.abs_ref());
                 outcome.estimate.error += size >> accuracy;
@@ -164,9 +164,12 @@ impl Sample {
     }
 
     /// The nearest singularity in the coefficients; nothing where its modulus contradicts their
-    /// growth by more than a half.
+    /// growth by more than a half, and for a series that diverges everywhere.
     #[must_use]
     pub fn singularity(&self) -> Option<Singularity> {
+        if self.radius == Some(0.0) {
+            return None;
+        }
         let found = nearest_singularity(&self.coefficients, self.bits)?;
         match growth(&self.coefficients) {
             Growth::Radius(radius) => {
@@ -180,17 +183,15 @@ impl Sample {
 
     fn partial_sum(&self) -> Result<Outcome, ResummationError> {
         let sums = partial_sums(&self.coefficients, &self.point, self.bits);
-        // The size of the error in units of the terms about the smallest one: an asymptotic series
-        // has it below one, but a short one may be mistaken for it; outside a disc of convergence
-        // nothing bounds it, four is a guess.
-        let units = match growth(&self.coefficients) {
-            Growth::Factorial { .. } => Some(3u32),
-            Growth::Radius(radius) if self.point.clone().abs() > radius * 1.02 => Some(4),
-            _ => None,
-        };
+        let radius = disc(&self.coefficients, self.radius);
+        let outside = radius.is_some_and(|radius| self.point.clone().abs() >= radius);
+        if !outside {
+            return convergent(&self.coefficients, &self.point, radius, self.bits);
+        }
+        let asymptotic = radius == Some(0.0);
         // The smallest term among the last ones is no smallest term yet.
         let inside = |order: usize| {
-            if units == Some(3) { order + 2 < sums.len() } else { 3 * order < 2 * sums.len() }
+            if asymptotic { order + 2 < sums.len() } else { 3 * order < 2 * sums.len() }
         };
         let best = best_truncation(&sums).filter(|(order, _)| inside(*order));
         // Terms that do not grow well beyond the smallest ones are no divergence yet.
@@ -199,13 +200,20 @@ impl Sample {
         let grows = |estimate: &Estimate| {
             late.as_ref().is_some_and(|late| *late > Float::with_val(53, &estimate.error * 4u32))
         };
-        if let (Some((order, mut estimate)), Some(units)) = (best, units)
-            && grows(&estimate)
-        {
-            estimate.error *= units;
-            return Ok(Outcome { estimate, order, degrees: None, smallest_term: Some(order) });
+        let mut outcome = match best {
+            Some((order, estimate)) if grows(&estimate) => {
+                Outcome { estimate, order, degrees: None, smallest_term: Some(order) }
+            }
+            _ => last_sum(&sums)?,
+        };
+        if !asymptotic {
+            // Outside a disc of convergence nothing bounds the error by the terms.
+            outcome.estimate.error = Float::with_val(53, Special::Infinity);
+        } else if outcome.smallest_term.is_some() {
+            // An asymptotic series has its error below the smallest term or near it.
+            outcome.estimate.error *= 3u32;
         }
-        convergent(&self.coefficients, &self.point, self.bits)
+        Ok(outcome)
     }
 
     /// The coefficients in u, u itself, and (1 - u)^-p.
@@ -240,18 +248,47 @@ fn scaled(mut outcome: Outcome, factor: &Float) -> Outcome {
     outcome
 }
 
-/// The last partial sum of a series that converges.
-fn convergent(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationError> {
-    let sums = partial_sums(c, x, bits);
+/// An estimated radius of convergence is taken this much smaller.
+const MARGIN: f64 = 0.95;
+
+/// The radius of convergence as far as it may be relied on; zero for a series that diverges
+/// everywhere, nothing for an entire function or too few coefficients.
+fn disc(c: &[Float], known: Option<f64>) -> Option<f64> {
+    known.or(match growth(c) {
+        Growth::Radius(radius) => Some(radius * MARGIN),
+        Growth::Factorial { .. } => Some(0.0),
+        _ => None,
+    })
+}
+
+/// The last partial sum, judged by those before it alone.
+fn last_sum(sums: &[Float]) -> Result<Outcome, ResummationError> {
     let order = sums.len() - 1;
-    let estimate = settle(&sums, SUMS.min(order / 2).max(1), order);
+    let estimate = settle(sums, SUMS.min(order / 2).max(1), order);
     let estimate = estimate.ok_or(ResummationError::Undefined)?;
     Ok(Outcome { estimate, order, degrees: None, smallest_term: None })
 }
 
+/// The last partial sum of a series that converges, |x| below the radius.
+fn convergent(
+    c: &[Float],
+    x: &Float,
+    radius: Option<f64>,
+    bits: u32,
+) -> Result<Outcome, ResummationError> {
+    let sums = partial_sums(c, x, bits);
+    let mut outcome = last_sum(&sums)?;
+    let ratio = radius.map_or_else(|| Float::new(53), |r| Float::with_val(53, x.abs_ref()) / r);
+    outcome.estimate.error = outcome.estimate.error.max(&geometric_tail(&sums, &ratio));
+    Ok(outcome)
+}
+
 /// The approximants [n/n], [n-1/n] ... at x.
 fn diagonal(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationError> {
-    staircase(c, bits, |pade| pade.value(x).ok_or(ResummationError::Undefined))
+    let window = |list: &[Float], order: usize| {
+        settle(list, APPROXIMANTS.min((list.len() - 1).div_ceil(2)).max(1), order)
+    };
+    staircase(c, bits, &window, |pade| pade.value(x).ok_or(ResummationError::Undefined))
 }
 
 /// A value from the last steps of the staircase [k - k/2 / k/2], k = N - 9 .. N.
@@ -261,6 +298,7 @@ fn diagonal(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationErr
 fn staircase(
     c: &[Float],
     bits: u32,
+    judge: &dyn Fn(&[Float], usize) -> Option<Estimate>,
     value: impl Fn(&Pade) -> Result<Float, ResummationError>,
 ) -> Result<Outcome, ResummationError> {
     let order = c.len().saturating_sub(1);
@@ -309,8 +347,6 @@ fn staircase(
         }
     }
     let list: Vec<Float> = values.into_iter().map(|(_, v)| v).collect();
-    let window = APPROXIMANTS.min((list.len() - 1).div_ceil(2)).max(1);
-    let estimate = settle(&list, window, order);
-    let estimate = estimate.ok_or(ResummationError::Undefined)?;
+    let estimate = judge(&list, order).ok_or(ResummationError::Undefined)?;
     Ok(Outcome { estimate, order: used, degrees: Some(pade_degrees), smallest_term: None })
 }

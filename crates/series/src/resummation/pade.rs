@@ -20,6 +20,10 @@ pub struct Pade {
     bits: u32,
 }
 
+/// A zero so near to a pole, relative to its modulus, and a residue so small make a doublet.
+const NEAR: f64 = 1e-6;
+const WEAK: f64 = 1e-8;
+
 /// A pole with the zero next to it.
 #[derive(Clone, Debug)]
 pub struct Pole {
@@ -27,9 +31,10 @@ pub struct Pole {
     pub at: Complex,
     /// The residue of p/q.
     pub residue: Complex,
-    /// A Froissart doublet: a zero lies within 10^-3 of its modulus, and the residue is below
-    /// 10^-6 of what the modulus and f(0) suggest. It carries no information.
-    pub spurious: bool,
+    /// Whether a zero lies within 10^-6 of its modulus and the residue is below 10^-8 of the
+    /// modulus times |f(0)|: a Froissart doublet, which other degrees do not reproduce. A pole of
+    /// the function with so weak a residue looks the same; only other degrees tell.
+    pub doublet: bool,
 }
 
 /// The poles and zeros, ascending in modulus.
@@ -171,7 +176,7 @@ impl Pade {
         q.fold(Float::new(self.bits), |sum, c| sum * &y + c).is_sign_negative()
     }
 
-    /// The poles and zeros, with the spurious ones marked. Nothing where the iteration for the
+    /// The poles and zeros, with the doublets marked. Nothing where the iteration for the
     /// zeros of a polynomial does not settle.
     #[must_use]
     pub fn picture(&self) -> Option<Picture> {
@@ -185,13 +190,13 @@ impl Pade {
             let residue = evaluate(&self.numerator, &pole).div(&evaluate(&slope, &pole));
             let modulus = pole.abs();
             let distance = zeros.iter().map(|z| z.sub(&pole).abs()).reduce(|a, b| a.min(&b));
-            let near = distance.is_some_and(|d| d < Float::with_val(53, &modulus * 1e-3f64));
+            let near = distance.is_some_and(|d| d < Float::with_val(53, &modulus * NEAR));
             let scale = Float::with_val(53, &modulus * &size);
-            let weak = residue.abs() < scale * 1e-6f64;
+            let weak = residue.abs() < scale * WEAK;
             Pole {
                 at: pole.shift(self.exponent),
                 residue: residue.shift(self.exponent),
-                spurious: near && weak,
+                doublet: near && weak,
             }
         };
         Some(Picture {
@@ -200,19 +205,19 @@ impl Pade {
         })
     }
 
-    /// [l/m] with the spurious poles removed by lowering both degrees until none is left.
+    /// [l/m] with the doublets removed by lowering both degrees until none is left.
     #[must_use]
     pub fn robust(c: &[Float], l: usize, m: usize, bits: u32) -> Option<Self> {
         let (mut l, mut m) = (l, m);
         loop {
             let pade = Self::new(c, l, m, bits)?;
-            let spurious =
-                pade.picture().map_or(0, |p| p.poles.iter().filter(|pole| pole.spurious).count());
+            let doublets =
+                pade.picture().map_or(0, |p| p.poles.iter().filter(|pole| pole.doublet).count());
             let (upper, lower) = pade.degrees();
-            if spurious == 0 || lower == 0 {
+            if doublets == 0 || lower == 0 {
                 return Some(pade);
             }
-            (l, m) = (upper.saturating_sub(spurious), lower.saturating_sub(spurious));
+            (l, m) = (upper.saturating_sub(doublets), lower.saturating_sub(doublets));
         }
     }
 }
@@ -278,7 +283,7 @@ mod tests {
                 assert!((found - exact).abs() < 1e-12);
             }
             assert!((picture.zeros[0].re.to_f64() + 2.0).abs() < 1e-12);
-            assert!(picture.poles.iter().all(|p| !p.spurious));
+            assert!(picture.poles.iter().all(|p| !p.doublet));
         }
     }
 
@@ -292,8 +297,8 @@ mod tests {
         };
         let c: Vec<Float> = (0..21).map(|_| Float::with_val(BITS, 1.0 + 1e-12 * noise())).collect();
         let plain = Pade::new(&c, 10, 10, BITS).unwrap();
-        let spurious = plain.picture().unwrap().poles.iter().filter(|p| p.spurious).count();
-        assert_eq!((plain.degrees().1, spurious), (10, 9));
+        let doublets = plain.picture().unwrap().poles.iter().filter(|p| p.doublet).count();
+        assert_eq!((plain.degrees().1, doublets), (10, 9));
         let robust = Pade::robust(&c, 10, 10, BITS).unwrap();
         assert_eq!(robust.degrees().1, 1);
         let value = robust.value(&Float::with_val(BITS, -3)).unwrap();
