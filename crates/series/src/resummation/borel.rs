@@ -5,6 +5,8 @@ use super::estimate::distance;
 use super::{Pade, ResummationError};
 use rug::Float;
 use rug::float::Constant;
+use std::cell::RefCell;
+use std::rc::Rc;
 
 /// Halvings of the step before the integral is given up.
 const LEVELS: i32 = 9;
@@ -22,45 +24,84 @@ pub fn borel_transform(c: &[Float], x: &Float, bits: u32) -> Vec<Float> {
     c.iter().enumerate().map(term).collect()
 }
 
-/// int_0^infinity e^-s B(s) ds for a Pade approximant B, to about 2^-`accuracy` relative.
+/// A node of the quadrature: s, and e^-s ds/dt there.
+struct Node {
+    s: Float,
+    weight: Float,
+}
+
+/// The nodes of the exp-sinh rule s = exp((pi/2) sinh t), level by level as they are asked for:
+/// the same for all approximants.
+pub(super) struct Nodes {
+    accuracy: u32,
+    bits: u32,
+    levels: RefCell<Vec<Rc<Vec<Node>>>>,
+}
+
+impl Nodes {
+    /// For integrals to about 2^-`accuracy` relative.
+    pub fn new(accuracy: u32, bits: u32) -> Self {
+        Self { accuracy, bits, levels: RefCell::default() }
+    }
+
+    /// The step of a level.
+    fn step(level: i32) -> f64 {
+        0.5f64.powi(level + 1)
+    }
+
+    /// The nodes that a level adds to those before it.
+    fn level(&self, level: i32) -> Rc<Vec<Node>> {
+        let index = usize::try_from(level).unwrap_or(0);
+        if let Some(known) = self.levels.borrow().get(index) {
+            return Rc::clone(known);
+        }
+        let bits = self.bits;
+        let half_pi = Float::with_val(bits, Constant::Pi) >> 1u32;
+        let nats = f64::from(self.accuracy + 8) * std::f64::consts::LN_2;
+        // e^-s < 2^-accuracy above, s < 2^-accuracy below.
+        let high = (nats.ln() * std::f64::consts::FRAC_2_PI).asinh() + 0.3;
+        let low = -(nats * std::f64::consts::FRAC_2_PI).asinh() - 0.1;
+        let h = Self::step(level);
+        let (first, end) = ((low / h).floor() as i64, (high / h).ceil() as i64);
+        let node = |k: i64| {
+            let t = Float::with_val(bits, k as f64 * h);
+            let (sinh, cosh) = t.sinh_cosh(Float::new(bits));
+            let s = (sinh * &half_pi).exp();
+            let slope = cosh * &half_pi * &s;
+            let weight = Float::with_val(bits, -&s).exp() * slope;
+            Node { s, weight }
+        };
+        let new = (first..=end).filter(|k| level == 0 || k % 2 != 0).map(node).collect();
+        let new = Rc::new(new);
+        self.levels.borrow_mut().push(Rc::clone(&new));
+        new
+    }
+}
+
+/// int_0^infinity e^-s B(s) ds for a Pade approximant B.
 ///
-/// The exp-sinh rule s = exp((pi/2) sinh t) is exponentially convergent for an integrand that is
-/// analytic near the positive axis; a zero of the denominator there is met as a change of its
-/// sign between nodes.
+/// The exp-sinh rule is exponentially convergent for an integrand that is analytic near the
+/// positive axis; a simple zero of the denominator there is met as a change of its sign.
 ///
 /// # Errors
 /// [`ResummationError::PoleOnPath`], [`ResummationError::NotSettled`] after nine halvings.
-pub(super) fn laplace(pade: &Pade, accuracy: u32, bits: u32) -> Result<Float, ResummationError> {
-    let half_pi = Float::with_val(bits, Constant::Pi) >> 1u32;
-    let nats = f64::from(accuracy + 8) * std::f64::consts::LN_2;
-    // e^-s < 2^-accuracy above, s < 2^-accuracy below.
-    let high = (nats.ln() * std::f64::consts::FRAC_2_PI).asinh() + 0.3;
-    let low = -(nats * std::f64::consts::FRAC_2_PI).asinh() - 0.1;
+pub(super) fn laplace(pade: &Pade, nodes: &Nodes) -> Result<Float, ResummationError> {
+    let bits = nodes.bits;
     let mut sum = Float::new(bits);
     let mut last: Option<Float> = None;
-    let mut signs: Vec<(f64, bool)> = Vec::new();
+    // q(0) = 1: a node where q is not positive lies behind a pole.
     for level in 0..=LEVELS {
-        let h = 0.5f64.powi(level + 1);
-        let first = (low / h).floor() as i64;
-        let end = (high / h).ceil() as i64;
-        for k in (first..=end).filter(|k| level == 0 || k % 2 != 0) {
-            let t = Float::with_val(bits, k as f64 * h);
-            let exponent = Float::with_val(bits, t.sinh_ref()) * &half_pi;
-            let s = exponent.exp();
-            let slope = Float::with_val(bits, t.cosh_ref()) * &half_pi * &s;
-            signs.push((s.to_f64(), pade.denominator_is_negative(&s)));
-            let decay = Float::with_val(bits, -&s).exp();
-            let value = pade.value(&s).ok_or(ResummationError::PoleOnPath)?;
-            sum += value * decay * slope;
+        for node in nodes.level(level).iter() {
+            let (top, bottom) = pade.parts(&node.s);
+            if bottom <= 0 {
+                return Err(ResummationError::PoleOnPath);
+            }
+            sum += top / bottom * &node.weight;
         }
-        let value = Float::with_val(bits, &sum * h);
-        signs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        if signs.windows(2).any(|pair| pair[0].1 != pair[1].1) {
-            return Err(ResummationError::PoleOnPath);
-        }
+        let value = Float::with_val(bits, &sum * Nodes::step(level));
         if let Some(before) = &last {
             let size = Float::with_val(53, value.abs_ref());
-            if level > 2 && distance(&value, before) <= size >> (accuracy / 2) {
+            if level > 2 && distance(&value, before) <= size >> (nodes.accuracy / 2) {
                 return Ok(value);
             }
         }
@@ -87,7 +128,7 @@ mod tests {
         let one = Float::with_val(bits, 1);
         let sum = |sign: i32| {
             let b = borel_transform(&c(sign), &one, bits);
-            laplace(&Pade::new(&b, 10, 10, bits).unwrap(), 200, bits)
+            laplace(&Pade::new(&b, 10, 10, bits).unwrap(), &Nodes::new(200, bits))
         };
         let gompertz =
             Float::parse("0.596347362323194074341078499369279376074177860152548781573485").unwrap();

@@ -1,6 +1,6 @@
 //! The methods, one value with an error estimate each.
 
-use super::borel::{borel_transform, laplace};
+use super::borel::{Nodes, borel_transform, laplace};
 use super::estimate::{best_truncation, distance, geometric_tail, settle, widest};
 use super::{Estimate, Growth, Map, Pade, ResummationError, growth, partial_sums};
 use super::{Singularity, nearest_singularity};
@@ -153,7 +153,8 @@ impl Sample {
             }
             Method::BorelPade => {
                 let b = borel_transform(&self.coefficients, &self.point, self.bits);
-                let value = |pade: &Pade| laplace(pade, accuracy, self.bits);
+                let nodes = Nodes::new(accuracy, self.bits);
+                let value = |pade: &Pade| laplace(pade, &nodes);
                 let mut outcome = staircase(&b, self.bits, &widest, value)?;
                 // What the integral was not asked for.
                 let size = Float::with_val(53, outcome.estimate.value.abs_ref());

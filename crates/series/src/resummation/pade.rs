@@ -162,18 +162,17 @@ impl Pade {
     /// p(x)/q(x); nothing at a pole.
     #[must_use]
     pub fn value(&self, x: &Float) -> Option<Float> {
-        let y = Float::with_val(self.bits, x) >> self.exponent;
-        let horner =
-            |p: &[Float]| p.iter().rev().fold(Float::new(self.bits), |sum, c| sum * &y + c);
-        let value = horner(&self.numerator) / horner(&self.denominator);
+        let (top, bottom) = self.parts(x);
+        let value = top / bottom;
         value.is_finite().then_some(value)
     }
 
-    /// The sign of q(x): it changes at a pole on the real axis.
-    pub(super) fn denominator_is_negative(&self, x: &Float) -> bool {
+    /// p(x) and q(x).
+    pub(super) fn parts(&self, x: &Float) -> (Float, Float) {
         let y = Float::with_val(self.bits, x) >> self.exponent;
-        let q = self.denominator.iter().rev();
-        q.fold(Float::new(self.bits), |sum, c| sum * &y + c).is_sign_negative()
+        let horner =
+            |p: &[Float]| p.iter().rev().fold(Float::new(self.bits), |sum, c| sum * &y + c);
+        (horner(&self.numerator), horner(&self.denominator))
     }
 
     /// The poles and zeros, with the doublets marked. Nothing where the iteration for the
