@@ -2,9 +2,9 @@
 //! The generator is seeded; the ignored test counts over many more and larger cases.
 #![allow(clippy::unwrap_used)]
 
+use lindstedt::algebra::RationalAlgebra;
 use lindstedt::evaluate::{EvaluateSettings, evaluate};
 use lindstedt::series::resummation::{Method, Resummed, Sample, UniformMap, resum};
-use lindstedt::algebra::RationalAlgebra;
 use lindstedt::{Error, Settings, Value, derive, problems};
 use rug::{Float, Rational};
 
