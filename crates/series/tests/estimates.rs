@@ -223,9 +223,9 @@ fn run(seed: u64, cases: usize) -> (Count, Vec<String>) {
 
 #[test]
 fn estimates_hold() {
-    let (count, failures) = run(2, 40);
+    let (count, failures) = run(2, 24);
     assert!(failures.is_empty(), "{failures:#?}");
-    assert!(count.useful > 60, "{count:?}");
+    assert!(count.useful > 50, "{count:?}");
 }
 
 /// Five thousand sums; minutes.

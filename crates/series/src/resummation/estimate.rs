@@ -90,7 +90,8 @@ pub(super) fn widest(values: &[Float], number: usize) -> Option<Estimate> {
 ///
 /// q is the larger of `ratio` and the one between the largest terms of the middle and the last
 /// third; A comes from the last third. Twice the result; infinite for q >= 1.
-pub(super) fn geometric_tail(sums: &[Float], ratio: &Float) -> Float {
+/// Where the radius is not known, N terms do not tell q from 1 - 1/N: 1/(1 - q) is at least N.
+pub(super) fn geometric_tail(sums: &[Float], ratio: &Float, known: bool) -> Float {
     let terms: Vec<Float> = sums.windows(2).map(|pair| distance(&pair[1], &pair[0])).collect();
     let last = terms.len();
     let (early, late) = (last / 3, last * 2 / 3);
@@ -104,7 +105,10 @@ pub(super) fn geometric_tail(sums: &[Float], ratio: &Float) -> Float {
         let steps = (late - early).max(1) as f64;
         ratio = ratio.max(&(after / before).pow(1.0 / steps));
     }
-    let rest = Float::with_val(53, 1 - &ratio);
+    let mut rest = Float::with_val(53, 1 - &ratio);
+    if !known {
+        rest = rest.min(&Float::with_val(53, 1.0 / last.max(1) as f64));
+    }
     if rest <= 0 || !rest.is_finite() {
         return Float::with_val(53, Special::Infinity);
     }
@@ -147,7 +151,7 @@ mod tests {
                             sum += term(n);
                             sums.push(sum.clone());
                         }
-                        let found = geometric_tail(&sums, &Float::with_val(53, q));
+                        let found = geometric_tail(&sums, &Float::with_val(53, q), true);
                         let rest: f64 = (number + 1..80_000).map(term).sum();
                         assert!(found >= rest.abs(), "{q} {phi} {p} {number}: {found} {rest}");
                     }

@@ -134,11 +134,13 @@ impl Sample {
             Method::Pade => diagonal(&self.coefficients, &self.point, self.bits),
             Method::Uniform => {
                 let (c, u, factor) = self.uniform()?;
-                let radius = disc(&c, self.map.as_ref().and_then(|map| map.radius));
+                let known = self.map.as_ref().and_then(|map| map.radius);
+                let radius = disc(&c, known);
                 if let Some(radius) = radius.filter(|radius| u.clone().abs() >= *radius) {
                     return Err(ResummationError::OutsideDisc { radius, at: u.to_f64() });
                 }
-                convergent(&c, &u, radius, self.bits).map(|outcome| scaled(outcome, &factor))
+                convergent(&c, &u, (radius, known.is_some()), self.bits)
+                    .map(|outcome| scaled(outcome, &factor))
             }
             Method::UniformPade => {
                 let (c, u, factor) = self.uniform()?;
@@ -187,7 +189,8 @@ impl Sample {
         let radius = disc(&self.coefficients, self.radius);
         let outside = radius.is_some_and(|radius| self.point.clone().abs() >= radius);
         if !outside {
-            return convergent(&self.coefficients, &self.point, radius, self.bits);
+            let known = self.radius.is_some();
+            return convergent(&self.coefficients, &self.point, (radius, known), self.bits);
         }
         let asymptotic = radius == Some(0.0);
         // The smallest term among the last ones is no smallest term yet.
@@ -270,17 +273,18 @@ fn last_sum(sums: &[Float]) -> Result<Outcome, ResummationError> {
     Ok(Outcome { estimate, order, degrees: None, smallest_term: None })
 }
 
-/// The last partial sum of a series that converges, |x| below the radius.
+/// The last partial sum of a series that converges, |x| below the radius (and whether that is
+/// known, not estimated).
 fn convergent(
     c: &[Float],
     x: &Float,
-    radius: Option<f64>,
+    (radius, known): (Option<f64>, bool),
     bits: u32,
 ) -> Result<Outcome, ResummationError> {
     let sums = partial_sums(c, x, bits);
     let mut outcome = last_sum(&sums)?;
     let ratio = radius.map_or_else(|| Float::new(53), |r| Float::with_val(53, x.abs_ref()) / r);
-    outcome.estimate.error = outcome.estimate.error.max(&geometric_tail(&sums, &ratio));
+    outcome.estimate.error = outcome.estimate.error.max(&geometric_tail(&sums, &ratio, known));
     Ok(outcome)
 }
 
