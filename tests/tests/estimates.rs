@@ -1,6 +1,6 @@
 //! Error estimates of periods on random problems: a true error above its estimate is a failure.
 //! The generator is seeded; the ignored test counts over many more and larger cases.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use lindstedt::algebra::RationalAlgebra;
 use lindstedt::evaluate::{EvaluateSettings, evaluate};
