@@ -20,6 +20,8 @@ pub enum Command {
     Problems(ProblemsOptions),
     /// Derive the expansion of a problem, order by order, and check it.
     Derive(DeriveOptions),
+    /// The period and the solution at given parameters, by resummation of the expansion.
+    Evaluate(EvaluateOptions),
     /// The Melnikov threshold of homoclinic chaos: value, zeros, cusps, curves, surfaces.
     Threshold(ThresholdOptions),
     /// Stability of the vibro-impact orbit: the averaged prediction beside the exact truth, charts.
@@ -104,6 +106,64 @@ pub enum TierName {
     Collocation,
     /// A truncated Fourier series.
     Fourier,
+}
+
+#[derive(Debug, Args)]
+pub struct EvaluateOptions {
+    /// power-law, pendulum, duffing or van-der-pol.
+    pub problem: String,
+    /// The highest order; a quick one if not given.
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
+    pub order: Option<u32>,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// How the series is summed; auto takes the least error estimate and says why.
+    #[arg(long, value_enum, default_value_t = Resum::Auto)]
+    pub resum: Resum,
+    /// The solution x(t) at these times, x(0) = amplitude, x'(0) = 0 but for --phase.
+    #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
+    pub times: Option<String>,
+    /// x(t) = X(omega t + PHASE).
+    #[arg(long, value_name = "PHASE", default_value = "0", allow_hyphen_values = true)]
+    pub phase: String,
+    /// A figure of the solution (.svg) or a table (.csv); may be given twice. One period without
+    /// --times.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Vec<PathBuf>,
+    /// The solution as a function in this language instead of the report.
+    #[arg(long, value_enum)]
+    pub code: Option<Language>,
+    /// Harmonics in the code.
+    #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=512))]
+    pub harmonics: u32,
+    #[command(flatten)]
+    pub precision: Precision,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Language {
+    Rust,
+    Python,
+    Latex,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Resum {
+    /// The partial sum; of a divergent series up to the smallest term.
+    None,
+    /// Diagonal Pade approximants.
+    Pade,
+    /// The series in u = x/(1 + x) with a prefactor.
+    Uniform,
+    /// Pade approximants in u.
+    UniformPade,
+    /// A conformal map of the plane cut at the nearest singularities, then Pade.
+    Conformal,
+    /// Pade approximants of the Borel transform.
+    BorelPade,
+    /// The least error estimate of all.
+    Auto,
 }
 
 #[derive(Debug, Args)]
@@ -362,7 +422,11 @@ pub struct Precision {
 
 fn seconds(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("not a number: {text}"))?;
-    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("not a positive number".to_owned()) }
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err("not a positive number".to_owned())
+    }
 }
 
 fn memory_size(text: &str) -> Result<u64, String> {

@@ -78,6 +78,10 @@ impl From<Error> for Failure {
             Error::NotEnoughBits { .. } => (UNDECIDED, "not-enough-digits", "ask for fewer digits"),
             Error::Simulate(_) => (NO_ANSWER, "no-trajectory", ""),
             Error::NoPeriodicOrbit { .. } => (NO_ANSWER, "no-periodic-orbit", "smaller --small"),
+            Error::Resummation { .. } => {
+                (NO_ANSWER, "no-such-resummation", "try --resum auto, or another order")
+            }
+            Error::NotEvaluated { .. } => (NO_ANSWER, "not-evaluated", ""),
             Error::NoValue => (NO_ANSWER, "no-value", ""),
             Error::OutOfPrimes => (UNDECIDED, "out-of-primes", "lower --order"),
             Error::Expand(ExpandError::Interrupted { .. }) => (INTERRUPTED, "interrupted", ""),

@@ -6,6 +6,7 @@ mod averaging;
 mod classification;
 mod derive;
 mod derive_numeric;
+mod evaluate;
 mod failure;
 mod output;
 mod paper;
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
     let outcome = match &arguments.command {
         Command::Problems(options) => problems::run(options, &session),
         Command::Derive(options) => derive::run(options, &session),
+        Command::Evaluate(options) => evaluate::run(options, &session),
         Command::Threshold(options) => threshold::run(options, &session),
         Command::Simulate(options) => simulate::run(options, &session),
         Command::Verify(options) => verify::run(options, &session),

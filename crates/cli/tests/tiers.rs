@@ -64,7 +64,8 @@ fn numbers_agree_with_the_exact_tier_within_their_errors() {
 
 #[test]
 fn as_text() {
-    let arguments = ["derive", "power-law", "--order", "2", "--tier", "collocation", "--digits", "20"];
+    let arguments =
+        ["derive", "power-law", "--order", "2", "--tier", "collocation", "--digits", "20"];
     let output = lindstedt(&arguments);
     assert!(output.status.success());
     let text = String::from_utf8(output.stdout).unwrap();

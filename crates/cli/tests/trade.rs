@@ -36,7 +36,8 @@ fn every_true_error_is_below_the_stated_one() {
         let best = &value["recommendation"]["row"];
         assert!(best["stated_error"].as_f64().unwrap() <= 1e-10, "{problem}");
         assert_eq!(value["finished"], true);
-        for key in ["problem", "at", "parameter", "period", "source", "errors", "memory", "left_out"]
+        for key in
+            ["problem", "at", "parameter", "period", "source", "errors", "memory", "left_out"]
         {
             assert!(!value[key].is_null(), "{key}");
         }
@@ -46,7 +47,12 @@ fn every_true_error_is_below_the_stated_one() {
 #[test]
 fn rows_have_a_fixed_order() {
     let tiers = [
-        "exact", "energy", "collocation", "collocation-f64", "fourier", "simulation-f64",
+        "exact",
+        "energy",
+        "collocation",
+        "collocation-f64",
+        "fourier",
+        "simulation-f64",
         "simulation",
     ];
     let value = json("power-law", &["--digits", "20,10"]);

@@ -103,6 +103,20 @@ pub enum Error {
         /// The best enclosure.
         best: Option<String>,
     },
+    /// The series has no value by the method asked for.
+    #[error("{problem}: {reason}")]
+    Resummation {
+        /// The problem.
+        problem: String,
+        /// Why.
+        reason: lindstedt_series::resummation::ResummationError,
+    },
+    /// Period and solution are not summed for this problem.
+    #[error("{problem}: no series of the period is known that can be summed")]
+    NotEvaluated {
+        /// The problem.
+        problem: String,
+    },
     /// The value does not exist.
     #[error("the value does not exist")]
     NoValue,

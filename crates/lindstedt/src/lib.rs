@@ -17,6 +17,7 @@ pub mod averaging;
 mod derivation;
 pub mod energy;
 mod error;
+pub mod evaluate;
 pub mod impact_map;
 pub mod multimodular;
 pub mod number;

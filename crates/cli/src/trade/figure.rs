@@ -49,7 +49,8 @@ fn paint(trade: &Trade, svg: &mut String) -> Result<(), Box<dyn std::error::Erro
     let ys = range(trade.rows.iter().map(|r| at(r).1)).ok_or("no rows")?;
     let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
-    let parameters: Vec<String> = trade.truth.at.iter().map(|(k, v)| format!("{k} = {v}")).collect();
+    let parameters: Vec<String> =
+        trade.truth.at.iter().map(|(k, v)| format!("{k} = {v}")).collect();
     let caption = format!("{} at {}: period", trade.problem.name, parameters.join(", "));
     let mut chart = ChartBuilder::on(&root)
         .margin(16)
@@ -76,9 +77,9 @@ fn paint(trade: &Trade, svg: &mut String) -> Result<(), Box<dyn std::error::Erro
     }
     let grey = RGBColor(150, 150, 150);
     let front = chart.draw_series(LineSeries::new(steps, grey.stroke_width(6)))?;
-    front.label("Pareto front").legend(move |(x, y)| {
-        PathElement::new(vec![(x, y), (x + 18, y)], grey.stroke_width(6))
-    });
+    front
+        .label("Pareto front")
+        .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], grey.stroke_width(6)));
     let mut rest = trade.rows.as_slice();
     let mut named: Vec<&str> = Vec::new();
     while let Some(first) = rest.first() {

@@ -138,7 +138,8 @@ fn size(bytes: u64) -> String {
 }
 
 fn precision(row: &Row) -> String {
-    harmonics(row).map_or_else(|| format!("{} digits", row.method.digits()), |n| format!("{n} harm."))
+    harmonics(row)
+        .map_or_else(|| format!("{} digits", row.method.digits()), |n| format!("{n} harm."))
 }
 
 pub fn text(trade: &Trade, plan: &Plan, wanted: Option<f64>, format: Format) -> String {
@@ -166,7 +167,8 @@ pub fn text(trade: &Trade, plan: &Plan, wanted: Option<f64>, format: Format) -> 
             cells.iter().zip(widths).map(|(c, w)| format!("{c:<w$}")).collect();
         let _ = writeln!(text, "{begin}{}{end}", cells.join(gap).trim_end());
     };
-    let titles = ["tier", "order", "precision", "time", "again", "memory", "true error", "stated error"];
+    let titles =
+        ["tier", "order", "precision", "time", "again", "memory", "true error", "stated error"];
     match format {
         Format::Markdown => text.push('\n'),
         Format::Latex => text.push_str("\\begin{tabular}{llllllll}\n"),

@@ -1,6 +1,6 @@
 //! From a problem to a checked expansion: the call behind `lindstedt derive`.
 
-mod limits;
+pub(crate) mod limits;
 mod prepare;
 mod series;
 

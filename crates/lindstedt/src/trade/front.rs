@@ -84,9 +84,10 @@ mod tests {
             let points: Vec<(f64, f64)> = (0..30).map(|_| (next(), next())).collect();
             let front = pareto(&rows(&points));
             for (i, p) in points.iter().enumerate() {
-                let beaten = points.iter().enumerate().any(|(j, q)| {
-                    q.0 <= p.0 && q.1 <= p.1 && (q.0 < p.0 || q.1 < p.1 || j < i)
-                });
+                let beaten = points
+                    .iter()
+                    .enumerate()
+                    .any(|(j, q)| q.0 <= p.0 && q.1 <= p.1 && (q.0 < p.0 || q.1 < p.1 || j < i));
                 assert_eq!(front.contains(&i), !beaten, "{points:?} {i}");
             }
         }

@@ -105,9 +105,9 @@ fn period<R: Real>(
         }
         let time = real.to_float(&event.time);
         let turn = Float::with_val(bits, &time - &last);
-        let settled = length.as_ref().is_some_and(|before| {
-            Float::with_val(53, &turn - before).abs() <= 10.0 * tolerance
-        });
+        let settled = length
+            .as_ref()
+            .is_some_and(|before| Float::with_val(53, &turn - before).abs() <= 10.0 * tolerance);
         turns += 1;
         if !cycle || settled || turns >= MOST_TURNS {
             found = Some(turn);

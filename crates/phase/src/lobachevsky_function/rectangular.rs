@@ -174,10 +174,7 @@ mod tests {
             let (y, exact) = (balls.from_rational(&x), fine.from_rational(&x));
             let slow = |m: Vec<Ball>| m[1].clone();
             let sine = fine.sin(&exact);
-            enclosed(
-                from_zero(&balls.sin(&y), balls),
-                slow(integrals::from_zero(&sine, 1, fine)),
-            );
+            enclosed(from_zero(&balls.sin(&y), balls), slow(integrals::from_zero(&sine, 1, fine)));
             enclosed(
                 from_pole(&y, &balls.sin(&y), balls),
                 slow(integrals::from_pole(&sine, 1, fine)),
