@@ -173,7 +173,7 @@ impl Job<'_> {
         let period = sum(&terms, bits + 64) * Float::with_val(bits + 64, Constant::Pi) * 2u32;
         let period = Float::with_val(bits, period);
         let rounding = Float::with_val(53, period.abs_ref()) >> (bits - 2);
-        let error = (sum(&errors, 53) + rest) * 6.283_185_307_179_59f64 + rounding;
+        let error = (sum(&errors, 53) + rest) * std::f64::consts::TAU + rounding;
         (period, error)
     }
 }

@@ -49,7 +49,7 @@ fn both<R: Real>(
     let (value, bytes) = period(problem, truth, &fine, digits, goes_on)?;
     let (other, _) = period(problem, truth, &coarse, digits.saturating_sub(LESS).max(4), goes_on)?;
     let difference = Float::with_val(53, &value - &other).abs() * 4u32;
-    let rounding = Float::with_val(53, value.abs_ref()) * 64u32 >> (fine.bits() - 1);
+    let rounding = (Float::with_val(53, value.abs_ref()) * 64u32) >> (fine.bits() - 1);
     let step = Float::with_val(53, value.abs_ref())
         * Float::with_val(53, Float::i_pow_u(10, digits)).recip();
     Ok((value, difference + rounding + step, bytes))
@@ -103,7 +103,7 @@ fn period<R: Real>(
         if event.kind != (EventKind::Section { section: 0, rising: false }) {
             return ControlFlow::Continue(());
         }
-        let time = real.to_float(&event.time);
+        let time = real.to_float(event.time);
         let turn = Float::with_val(bits, &time - &last);
         let settled = length
             .as_ref()
