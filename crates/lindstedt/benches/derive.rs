@@ -1,10 +1,10 @@
-//! Hot paths: `cargo bench -p lindstedt`. Whole derivations with their residual checks, and the
-//! Lobachevsky function.
+//! Hot paths: `cargo bench -p lindstedt`. Whole derivations with their residual checks, the
+//! numeric tiers, averaging.
 
 use divan::Bencher;
-use lindstedt::phase::lobachevsky_function::{Point, lobachevsky_digits, lobachevsky_f64};
-use lindstedt::{Route, Settings, derive, problems};
-use rug::Rational;
+use lindstedt::averaging::{AveragingSettings, average};
+use lindstedt::numeric::{self, Tier};
+use lindstedt::{Route, Settings, Value, derive, problems};
 
 fn main() {
     divan::main();
@@ -41,13 +41,59 @@ fn pendulum(bencher: Bencher<'_, '_>, order: usize) {
     derivation(bencher, "pendulum", order, Route::Driver);
 }
 
-#[divan::bench(args = [100, 1000])]
-fn lobachevsky_function(bencher: Bencher<'_, '_>, digits: usize) {
-    let x = Point::Rational(Rational::from((3, 4)));
-    bencher.bench(|| lobachevsky_digits(&x, digits).is_ok());
+/// The collocation tier at 30 digits over the order, and at order 20 over the digits.
+#[divan::bench(args = [10, 20, 40], sample_count = 3, sample_size = 1)]
+fn collocation_at_30_digits(bencher: Bencher<'_, '_>, order: usize) {
+    in_a_tier(bencher, order, Tier::Collocation { digits: 30 });
 }
 
-#[divan::bench]
-fn lobachevsky_function_in_doubles() -> f64 {
-    lobachevsky_f64(divan::black_box(0.75))
+#[divan::bench(args = [25, 50, 100], sample_count = 3, sample_size = 1)]
+fn collocation_to_order_20(bencher: Bencher<'_, '_>, digits: u32) {
+    in_a_tier(bencher, 20, Tier::Collocation { digits });
+}
+
+#[divan::bench(args = [10, 20, 40], sample_count = 5)]
+fn collocation_in_doubles(bencher: Bencher<'_, '_>, order: usize) {
+    in_a_tier(bencher, order, Tier::Doubles);
+}
+
+#[divan::bench(args = [16, 64, 256], sample_count = 5)]
+fn fourier_to_order_20(bencher: Bencher<'_, '_>, harmonics: usize) {
+    in_a_tier(bencher, 20, Tier::Fourier { harmonics });
+}
+
+fn in_a_tier(bencher: Bencher<'_, '_>, order: usize, tier: Tier) {
+    let problem = problems::find("power-law").expect("a built-in problem");
+    let settings = Settings { order, ..Settings::default() };
+    bencher.bench(|| numeric::derive(&problem, &settings, tier, &mut |_| true).map(|d| d.nodes));
+}
+
+/// The vibro-impact oscillator with its delay loop: every parameter a symbol.
+#[divan::bench(args = [2, 4, 6], sample_count = 3, sample_size = 1)]
+fn averaging_in_symbols(bencher: Bencher<'_, '_>, order: usize) {
+    averaging(bencher, order, &[]);
+}
+
+/// The same with certified numbers of 30 digits.
+#[divan::bench(args = [10, 50], sample_count = 3, sample_size = 1)]
+fn averaging_in_numbers(bencher: Bencher<'_, '_>, order: usize) {
+    let values = [
+        ("alpha", "1"),
+        ("omega", "3.3"),
+        ("k", "1"),
+        ("c", "0.05"),
+        ("P0", "1"),
+        ("A", "0.2"),
+        ("B", "0.1"),
+    ];
+    averaging(bencher, order, &values);
+}
+
+fn averaging(bencher: Bencher<'_, '_>, order: usize, values: &[(&str, &str)]) {
+    let problem = problems::find("vibro-impact").expect("a built-in problem");
+    let value = |text: &str| Value::parse(text).expect("a number");
+    let parameters = values.iter().map(|(name, text)| ((*name).to_owned(), value(text))).collect();
+    let settings = AveragingSettings { order, parameters, digits: 30 };
+    average(&problem, &settings, &mut |_| true).expect("an expansion");
+    bencher.bench(|| average(&problem, &settings, &mut |_| true).map(|a| a.order));
 }
