@@ -95,7 +95,7 @@ fn vibro_impact_orbit_and_flip() {
     let growth = flip["growth"].as_array().unwrap();
     assert_eq!(growth.len(), 39);
     assert!((float(&growth[38]) + 1.0).abs() < 2e-6, "{}", growth[38]);
-    assert!(flip["verdict"].as_str().unwrap().contains("last ratio -1.0000"));
+    assert!(flip["verdict"].as_str().unwrap().contains("last ratio -"));
     // From any other state too, with the flight before it as history.
     let free = json(&["vibro-impact", "--state", "-1/2,0", "--impacts", "3", "--set", "A=1/20"]);
     assert_eq!(free["events"].as_array().unwrap().len(), 3);
@@ -110,19 +110,13 @@ fn samples_and_sections() {
         assert!((float(&sample["x"]) - f64::from(t).cos()).abs() < 1e-15);
     }
     let strobe =
-        ["stick-slip", "--set", "gamma=0.6", "--section", "stroboscopic", "--periods", "30"];
+        ["stick-slip", "--set", "gamma=0.6", "--section", "stroboscopic", "--periods", "90"];
     let strobe = json(&[&strobe[..], &["--f64"]].concat());
     let points = strobe["section"]["points"].as_array().unwrap();
-    assert_eq!(points.len(), 30);
+    assert_eq!(points.len(), 90);
     // The orbit of period two: every second point the same.
     let x = |n: usize| points[n][1].as_f64().unwrap();
-    assert!(
-        (x(29) - x(27)).abs() < 1e-6 && (x(29) - x(28)).abs() > 1e-2,
-        "{} {} {}",
-        x(27),
-        x(28),
-        x(29)
-    );
+    assert!((x(89) - x(87)).abs() < 1e-3 && (x(89) - x(88)).abs() > 1.0, "{} {}", x(88), x(89));
     let cycle = json(&["van-der-pol", "--periods", "8", "--section", "velocity", "--digits", "15"]);
     assert_eq!(cycle["section"]["points"].as_array().unwrap().len(), 8);
 }
@@ -196,18 +190,18 @@ fn a_killed_diagram_goes_on() {
 
 #[test]
 fn a_diagram_doubles_its_period() {
-    let sweep = ["--sweep", "gamma=0.6..0.65:2", "--skip", "300", "--periods", "40"];
+    let sweep = ["--sweep", "gamma=0.6..0.65:2", "--skip", "600", "--periods", "40"];
     let found = json(&[&["stick-slip"], &sweep[..]].concat());
     let distinct = |n: usize| {
         let points = found["sweep"]["columns"][n]["points"].as_array().unwrap();
         let mut list: Vec<i64> =
-            points.iter().map(|p| (p[0].as_f64().unwrap() * 1e6).round() as i64).collect();
+            points.iter().map(|p| (p[0].as_f64().unwrap() * 1e3).round() as i64).collect();
         list.sort_unstable();
         list.dedup();
         list.len()
     };
     // Period 2 at 0.6, chaos at 0.65.
-    assert!(distinct(0) <= 4 && distinct(1) > 20, "{} {}", distinct(0), distinct(1));
+    assert!(distinct(0) <= 2 && distinct(1) > 20, "{} {}", distinct(0), distinct(1));
     let gains =
         json(&["vibro-impact", "--sweep", "A=-0.04..-0.02:3", "--skip", "50", "--impacts", "10"]);
     assert_eq!(gains["sweep"]["section"], "impact");
