@@ -315,8 +315,8 @@ pub struct SimulateOptions {
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// x(0) and x'(0); by default at rest at the amplitude, on the orbit (vibro-impact), 1/2 and
-    /// 1/10 (stick-slip).
+    /// x(0) and x'(0); by default at rest at the amplitude, on the orbit (vibro-impact), 1/10
+    /// and 0 (stick-slip).
     #[arg(long, value_name = "X,V", allow_hyphen_values = true)]
     pub state: Option<String>,
     /// The end.

@@ -321,7 +321,12 @@ impl Judge {
         let mut trajectory = Trajectory::new(real);
         let end = times.last().map_or_else(|| real.zero(), |t| real.float(t));
         flow.advance(&end, &mut |report| trajectory.record(report))?;
-        let value = |t: &Float| trajectory.value(0, &real.float(t));
+        // The end of the last segment may be rounded to just before the end itself.
+        let last = || flow.state().first().cloned();
+        let value = |t: &Float| {
+            let t = real.float(t);
+            if t >= *flow.time() { last() } else { trajectory.value(0, &t) }
+        };
         times.iter().map(|t| value(t).ok_or(Error::NoValue)).collect()
     }
 }
