@@ -133,7 +133,7 @@ fn shoot(
         if size < 1e-6 {
             return Ok(states[0]);
         }
-        if !(size < 1e3) {
+        if size.is_nan() || size >= 1e3 {
             break;
         }
     }
