@@ -68,12 +68,12 @@ pub fn largest_lyapunov_exponent<R: Real>(
     }
     let real = &system.real;
     let mut flow = Integrator::new(system, time, state, settings.integration)?;
-    let mut growths = Vec::new();
+    let (mut growths, mut left) = (Vec::new(), 0.0);
     for interval in 1..=settings.transient.saturating_add(settings.averaged) {
         let mut target = settings.interval.clone();
         real.times_integer(&mut target, interval as i32);
         flow.advance(&real.sum(time, &target), &mut |_| ControlFlow::Continue(()))?;
-        let growth = flow.normalise_directions();
+        let growth = flow.normalise_directions(&mut left);
         if interval > settings.transient {
             growths.push(growth);
         }
@@ -91,16 +91,17 @@ pub fn largest_lyapunov_exponent<R: Real>(
 }
 
 impl<R: Real> Integrator<'_, R> {
-    /// Divides all directions by a power of two near their largest component; returns ln of it.
-    fn normalise_directions(&mut self) -> f64 {
+    /// Divides all directions by a power of two near their largest component (no rounding errors);
+    /// `left` is ln of what is left of it. Returns the growth since the time before.
+    fn normalise_directions(&mut self, left: &mut f64) -> f64 {
         let real = &self.system.real;
         let directions = &mut self.state[self.system.variables..];
         let largest = directions.iter().map(|x| real.log2(x)).fold(f64::NEG_INFINITY, f64::max);
-        // A power of two: no rounding errors. The exponent telescopes.
         let power = largest.round().clamp(-900.0, 900.0);
         let factor = real.double((-power).exp2());
         directions.iter_mut().for_each(|x| real.scale(x, &factor));
-        if largest == f64::NEG_INFINITY { largest } else { power * std::f64::consts::LN_2 }
+        let before = std::mem::replace(left, (largest - power) * std::f64::consts::LN_2);
+        largest * std::f64::consts::LN_2 - before
     }
 }
 

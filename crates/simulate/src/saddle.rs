@@ -6,6 +6,7 @@ use crate::linear::monodromy;
 use crate::poincare::{PoincareMap, Section};
 use crate::real::Doubles;
 use crate::system::System;
+use nalgebra::{DMatrix, DVector};
 
 /// A periodic orbit of saddle type, seen once per period (at t = 0).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +48,8 @@ impl Saddle {
 }
 
 /// The saddle orbit of the period-map of a linearised system with two states, by Newton's method
-/// from `guess`; to about 1e-15 times the condition.
+/// from `guess`, or, where that leads nowhere, from what multiple shooting makes of the guess; to
+/// about 1e-15 times the condition.
 ///
 /// Errors: [`SimulateError::NoSaddle`] without convergence or where the multipliers are not
 /// -1 < stable < 1 < unstable.
@@ -57,8 +59,22 @@ pub fn saddle(
     guess: [f64; 2],
     settings: Settings,
 ) -> Result<Saddle, SimulateError> {
+    match newton(system, period, guess, settings) {
+        Err(SimulateError::NoSaddle) => {
+            newton(system, period, shoot(system, period, guess, settings)?, settings)
+        }
+        outcome => outcome,
+    }
+}
+
+fn newton(
+    system: &System<Doubles>,
+    period: f64,
+    guess: [f64; 2],
+    settings: Settings,
+) -> Result<Saddle, SimulateError> {
     let mut state = guess;
-    let mut moved = f64::INFINITY;
+    let (mut moved, mut reach) = (f64::INFINITY, None);
     for _ in 0..30 {
         let result = monodromy(system, (&0.0, &period), &state, settings)?;
         let ([[a, b], [c, d]], [x, v]) = (square(&result.matrix)?, pair(&result.end)?);
@@ -68,7 +84,9 @@ pub fn saddle(
         let delta = [(p * (d - 1.0) - b * q) / determinant, ((a - 1.0) * q - c * p) / determinant];
         state = [state[0] + delta[0], state[1] + delta[1]];
         let size = delta[0].hypot(delta[1]);
-        if !size.is_finite() {
+        // Lost: a strongly nonlinear system far out is slow, too.
+        let reach = *reach.get_or_insert(10.0 * (guess[0].hypot(guess[1]) + x.hypot(v)));
+        if !(size.is_finite() && state[0].hypot(state[1]) <= reach) {
             break;
         }
         // Newton's steps no longer shrink: rounding errors.
@@ -76,6 +94,48 @@ pub fn saddle(
             return classify(period, state, [[a, b], [c, d]]);
         }
         moved = size;
+    }
+    Err(SimulateError::NoSaddle)
+}
+
+/// Newton's method for the states at 8 equidistant times, all starting from the guess: a strong
+/// instability acts over an eighth of the period only. To about 1e-6.
+fn shoot(
+    system: &System<Doubles>,
+    period: f64,
+    guess: [f64; 2],
+    settings: Settings,
+) -> Result<[f64; 2], SimulateError> {
+    const PARTS: usize = 8;
+    let mut states = [guess; PARTS];
+    for _ in 0..30 {
+        // M_k delta_k - delta_{k+1} = state_{k+1} - end_k.
+        let mut matrix = DMatrix::zeros(2 * PARTS, 2 * PARTS);
+        let mut right = DVector::zeros(2 * PARTS);
+        for (k, state) in states.iter().enumerate() {
+            let times = [k, k + 1].map(|k| period * k as f64 / PARTS as f64);
+            let result = monodromy(system, (&times[0], &times[1]), state, settings)?;
+            let (m, end) = (square(&result.matrix)?, pair(&result.end)?);
+            let next = (k + 1) % PARTS;
+            for i in 0..2 {
+                for j in 0..2 {
+                    matrix[(2 * k + i, 2 * k + j)] += m[i][j];
+                }
+                matrix[(2 * k + i, 2 * next + i)] -= 1.0;
+                right[2 * k + i] = states[next][i] - end[i];
+            }
+        }
+        let delta = matrix.lu().solve(&right).ok_or(SimulateError::NoSaddle)?;
+        for (k, state) in states.iter_mut().enumerate() {
+            *state = [state[0] + delta[2 * k], state[1] + delta[2 * k + 1]];
+        }
+        let size = delta.amax();
+        if size < 1e-6 {
+            return Ok(states[0]);
+        }
+        if size.is_nan() || size >= 1e3 {
+            break;
+        }
     }
     Err(SimulateError::NoSaddle)
 }

@@ -26,7 +26,28 @@ pub enum Loop {
     Left,
 }
 
-/// The homoclinic loop of a saddle orbit; one parameter is free.
+/// The homoclinic loop of a saddle orbit of a forced system of second order without walls; one
+/// parameter is free. Everything is in f64.
+///
+/// ```
+/// use lindstedt_equation::{Expression, Function};
+/// use lindstedt_simulate::{Homoclinic, Loop, Model, Parameters};
+/// use std::f64::consts::PI;
+///
+/// // x'' = x - x^3 + (F cos t - x')/100: Melnikov's threshold is 4 cosh(pi/2)/(3 sqrt 2 pi).
+/// let (x, v) = (Expression::Displacement, Expression::Velocity);
+/// let force = Expression::parameter("F") * Expression::Time.apply(Function::Cos);
+/// let equation = Expression::Acceleration - x.clone() + x.pow(3) + Expression::Small * (v - force);
+/// let model = Model::second_order(&equation)?.with_small("eps");
+/// let parameters = Parameters::new().with("eps", rug::Rational::from((1, 100)));
+/// let (model, parameters, side) = (&model, &parameters, Loop::Right);
+/// let (period, guess) = (2.0 * PI, [0.0, 0.0]);
+/// let homoclinic = Homoclinic { model, parameters, name: "F", period, side, guess };
+/// let tangency = homoclinic.first_tangency((0.7, 0.8), 24)?;
+/// let threshold = 4.0 * (PI / 2.0).cosh() / (3.0 * 2f64.sqrt() * PI);
+/// assert!((tangency.value - threshold).abs() < 1e-3);
+/// # Ok::<(), lindstedt_simulate::SimulateError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Homoclinic<'a> {
     /// A model of second order, not linearised.
@@ -96,7 +117,8 @@ impl Homoclinic<'_> {
     }
 
     /// Follows `count` orbits of a fundamental domain round the loop; those that do not come back
-    /// within 50 periods are left out.
+    /// within 50 periods are left out. The signs are sure, the numbers are those at the first of 64
+    /// looks per period after the event. Cost: some ten periods of integration per orbit.
     pub fn returns(&self, value: f64, count: u32) -> Result<Vec<Return>, SimulateError> {
         let saddle = self.saddle(value)?;
         let system = self.system(value, false)?;
@@ -194,7 +216,11 @@ impl Homoclinic<'_> {
         let (mut value, mut phase) = self.newton((value, phase), periods)?;
         let mut error = f64::INFINITY;
         for _ in 0..3 {
-            let next = self.newton((value, phase), periods + 1)?;
+            let next = match self.newton((value, phase), periods + 1) {
+                Err(failure) if error == f64::INFINITY => return Err(failure),
+                Err(_) => break,
+                Ok(next) => next,
+            };
             let change = (next.0 - value).abs();
             if change > error {
                 break;
@@ -258,12 +284,20 @@ impl Homoclinic<'_> {
     fn newton(&self, start: (f64, f64), periods: u32) -> Result<(f64, f64), SimulateError> {
         let (mut value, mut phase) = start;
         let mut moved = f64::INFINITY;
-        for _ in 0..25 {
+        let (mut step, mut turn) = (1e-6, 1e-5);
+        for _ in 0..30 {
             let at = |dv: f64, dp: f64| self.unstable_component((value + dv, phase + dp), periods);
-            let (step, turn) = (1e-6, 1e-5);
             let [g, slope] = at(0.0, 0.0)?;
             let (more, less) = (at(step, 0.0)?, at(-step, 0.0)?);
             let (later, sooner) = (at(0.0, turn)?, at(0.0, -turn)?);
+            // The differences stay where G is nearly linear in the value, quadratic in the phase.
+            let (change, bend) =
+                ((more[0] - less[0]).abs(), (later[0] + sooner[0] - 2.0 * g).abs());
+            if change > 1e-3 || bend > 1e-3 {
+                step *= (1e-4 / change).min(1.0);
+                turn *= (1e-4 / bend).sqrt().min(1.0);
+                continue;
+            }
             let by_value = [0, 1].map(|k| (more[k] - less[k]) / (2.0 * step));
             let curvature = (later[1] - sooner[1]) / (2.0 * turn);
             let determinant = by_value[0] * curvature - by_value[1] * slope;

@@ -120,6 +120,15 @@ mod tests {
         assert!(zero_one(&series).unwrap().k.abs() < 0.1);
     }
 
+    /// The oscillation that a mean adds to M_c is taken out: it would drown the growth.
+    #[test]
+    fn a_large_mean_changes_little() {
+        let series = logistic(3.97, 3000);
+        let shifted: Vec<f64> = series.iter().map(|x| x + 20.0).collect();
+        let (k, other) = (zero_one(&series).unwrap().k, zero_one(&shifted).unwrap().k);
+        assert!((k - other).abs() < 0.02, "{k} {other}");
+    }
+
     #[test]
     fn no_answer_without_data() {
         assert!(zero_one(&[1.0; 99]).is_none());

@@ -61,6 +61,7 @@ fn switchings_of_the_stick_slip_orbit() {
     for _ in 0..100 {
         let point = map.next_point().unwrap().unwrap();
         assert!((point.state[1] - 0.4).abs() < 1e-14);
+        assert_eq!(point.modes, map.flow().modes());
         if point.stuck() { stuck += 1 } else { free += 1 }
     }
     assert!(stuck >= 20 && free >= 20, "{stuck} {free}");

@@ -177,3 +177,22 @@ fn the_unstable_manifold_of_duffing() {
     let outcome = saddle(&system, PI, [1.01, 0.0], settings);
     assert_eq!(outcome, Err(SimulateError::NoSaddle));
 }
+
+/// x'' = x - x^3 + (F cos t - x')/100: Melnikov's threshold is 4 cosh(pi/2)/(3 sqrt 2 pi).
+#[test]
+fn the_damped_duffing_oscillator() {
+    let (x, v) = (Expression::Displacement, Expression::Velocity);
+    let force =
+        Expression::parameter("F") * Expression::Time.apply(lindstedt_equation::Function::Cos);
+    let equation =
+        Expression::Acceleration - x.clone() + x.pow(3) + Expression::Small * (v - force);
+    let model = Model::second_order(&equation).unwrap().with_small("eps");
+    let parameters = Parameters::new().with("eps", rug::Rational::from((1, 100)));
+    let (model, parameters, side) = (&model, &parameters, Loop::Right);
+    let (period, guess) = (2.0 * PI, [0.0, 0.0]);
+    let homoclinic = Homoclinic { model, parameters, name: "F", period, side, guess };
+    let tangency = homoclinic.first_tangency((0.7, 0.8), 24).unwrap();
+    let threshold = 4.0 * (PI / 2.0).cosh() / (3.0 * 2f64.sqrt() * PI);
+    println!("{tangency:?} {threshold}");
+    assert!((tangency.value - threshold).abs() < 1e-3);
+}
