@@ -55,6 +55,9 @@ fn bound(error: &Float) -> String {
     above.to_string_radix_round(10, Some(2), rug::float::Round::Up)
 }
 
+/// Title, headings, rows.
+type Table = (&'static str, Vec<&'static str>, Vec<Vec<String>>);
+
 impl<'a> Answer<'a> {
     /// Whether both integrations met the same events; nothing else can be compared.
     pub fn comparable(&self) -> bool {
@@ -240,7 +243,7 @@ impl<'a> Answer<'a> {
     }
 
     /// Heading and rows of each list: events, samples, section.
-    fn tables(&self) -> Vec<(&'static str, Vec<&'static str>, Vec<Vec<String>>)> {
+    fn tables(&self) -> Vec<Table> {
         let d = |a: &Float, b: &Float| self.digits_of(a, b);
         let event = |(a, b): (&Happening, &Happening)| {
             vec![
