@@ -20,12 +20,18 @@ pub enum Command {
     Problems(ProblemsOptions),
     /// Derive the expansion of a problem, order by order, and check it.
     Derive(DeriveOptions),
+    /// The period and the solution at given parameters, by resummation of the expansion.
+    Evaluate(EvaluateOptions),
     /// The Melnikov threshold of homoclinic chaos: value, zeros, cusps, curves, surfaces.
     Threshold(ThresholdOptions),
     /// Stability of the vibro-impact orbit: the averaged prediction beside the exact truth, charts.
     Stability(StabilityOptions),
     /// Speed against accuracy: every tier at every order and precision, timed, beside the truth.
     Trade(TradeOptions),
+    /// The motion in the time domain, with impacts, sticking and delay: events, sections, figures.
+    Simulate(SimulateOptions),
+    /// The expansion against the time domain: observed order of accuracy, verdict.
+    Verify(VerifyOptions),
     /// Read the paper: derive it, compare it with the print, tabulate what is true.
     Paper(PaperOptions),
 }
@@ -100,6 +106,64 @@ pub enum TierName {
     Collocation,
     /// A truncated Fourier series.
     Fourier,
+}
+
+#[derive(Debug, Args)]
+pub struct EvaluateOptions {
+    /// power-law, pendulum, duffing or van-der-pol.
+    pub problem: String,
+    /// The highest order; a quick one if not given.
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
+    pub order: Option<u32>,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// How the series is summed; auto takes the least error estimate and says why.
+    #[arg(long, value_enum, default_value_t = Resum::Auto)]
+    pub resum: Resum,
+    /// The solution x(t) at these times, x(0) = amplitude, x'(0) = 0 but for --phase.
+    #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
+    pub times: Option<String>,
+    /// x(t) = X(omega t + PHASE).
+    #[arg(long, value_name = "PHASE", default_value = "0", allow_hyphen_values = true)]
+    pub phase: String,
+    /// A figure of the solution (.svg) or a table (.csv); may be given twice. One period without
+    /// --times.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Vec<PathBuf>,
+    /// The solution as a function in this language instead of the report.
+    #[arg(long, value_enum)]
+    pub code: Option<Language>,
+    /// Harmonics in the code.
+    #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=512))]
+    pub harmonics: u32,
+    #[command(flatten)]
+    pub precision: Precision,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Language {
+    Rust,
+    Python,
+    Latex,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Resum {
+    /// The partial sum; of a divergent series up to the smallest term.
+    None,
+    /// Diagonal Pade approximants.
+    Pade,
+    /// The series in u = x/(1 + x) with a prefactor.
+    Uniform,
+    /// Pade approximants in u.
+    UniformPade,
+    /// A conformal map of the plane cut at the nearest singularities, then Pade.
+    Conformal,
+    /// Pade approximants of the Borel transform.
+    BorelPade,
+    /// The least error estimate of all.
+    Auto,
 }
 
 #[derive(Debug, Args)]
@@ -242,6 +306,107 @@ pub enum Normalisation {
     Fundamental,
     /// The first harmonic is a cos(psi), a drifts: averaging (KBM).
     Free,
+}
+
+#[derive(Debug, Args)]
+pub struct SimulateOptions {
+    /// power-law, pendulum, duffing, van-der-pol, vibro-impact or stick-slip.
+    pub problem: String,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// x(0) and x'(0); by default at rest at the amplitude, on the orbit (vibro-impact), 1/10
+    /// and 0 (stick-slip).
+    #[arg(long, value_name = "X,V", allow_hyphen_values = true)]
+    pub state: Option<String>,
+    /// The end.
+    #[arg(long, value_name = "T", conflicts_with_all = ["periods", "impacts"])]
+    pub until: Option<String>,
+    /// The end: periods of the force, or of the motion (maxima of x) without one.
+    #[arg(long, value_name = "N", conflicts_with = "impacts")]
+    pub periods: Option<u32>,
+    /// The end: the N-th impact.
+    #[arg(long, value_name = "N")]
+    pub impacts: Option<u32>,
+    /// Times at which the state is given; by default 21 of equal distance.
+    #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
+    pub times: Option<String>,
+    /// The section whose points are listed.
+    #[arg(long, value_enum)]
+    pub section: Option<Section>,
+    /// Bifurcation diagram over a parameter: the points of the section after --skip.
+    #[arg(long, value_name = "NAME=LO..HI:COUNT", allow_hyphen_values = true)]
+    pub sweep: Option<String>,
+    /// Points of the section that are left out at the beginning [default: 200 with --sweep, else 0].
+    #[arg(long, value_name = "N")]
+    pub skip: Option<u32>,
+    /// Velocity added at the start, in units of the impact velocity: growth ratios per impact
+    /// (vibro-impact, on the orbit).
+    #[arg(long, value_name = "DELTA", allow_hyphen_values = true)]
+    pub perturb: Option<String>,
+    /// What a figure shows.
+    #[arg(long, value_enum)]
+    pub figure: Option<Figure>,
+    /// A figure (.svg) or a table (.csv); may be given several times.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Vec<PathBuf>,
+    /// Keeps the finished parameters of a sweep in this file and continues from it.
+    #[arg(long, value_name = "FILE", requires = "sweep")]
+    pub resume: Option<PathBuf>,
+    #[command(flatten)]
+    pub precision: Precision,
+}
+
+/// A Poincare section.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Section {
+    /// Once per period of the force, t = 2 pi n/omega.
+    Stroboscopic,
+    /// Just before each impact.
+    Impact,
+    /// x' = 0 from above: maxima of x.
+    Velocity,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Figure {
+    /// x' over x, sticking marked.
+    Phase,
+    /// x over t with impacts and sticking.
+    Time,
+    /// The points of the section.
+    Section,
+    /// The points of the section over the swept parameter.
+    Bifurcation,
+}
+
+#[derive(Debug, Args)]
+pub struct VerifyOptions {
+    /// power-law, pendulum, duffing or van-der-pol.
+    pub problem: String,
+    /// The order N; the observed order should be N + 1.
+    #[arg(long, default_value_t = 4, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub order: u32,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Values of the small parameter, decreasing in modulus.
+    #[arg(
+        long,
+        value_name = "V1,V2,...",
+        default_value = "1/1000,1/2000,1/4000,1/8000",
+        allow_hyphen_values = true
+    )]
+    pub small: String,
+    /// The window, in periods.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub periods: u32,
+    /// Digits of the integration; by default enough for the smallest error.
+    #[arg(long, value_name = "D", value_parser = clap::value_parser!(u32).range(5..=2000))]
+    pub digits: Option<u32>,
+    /// A figure (.svg) of the errors, or a table (.csv); may be given twice.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -9,10 +9,14 @@ use crate::output;
 use crate::problems::{condition_name, condition_text};
 use crate::session::Session;
 use lindstedt::averaging::{Averaging, AveragingSettings, Coefficient, RateTerm, average};
+use lindstedt::coeff::ball::Balls;
 use lindstedt::coeff::print::Style;
 use lindstedt::coeff::print::{latex_name, power};
 use lindstedt::equation::{Condition, Problem, print};
-use lindstedt::{Progress, Settings};
+use lindstedt::{Progress, Settings, problems};
+use lindstedt_impact::complex::Complex;
+use lindstedt_impact::convergence::{Convergence, convergence};
+use lindstedt_impact::parameters::{Branch, Parameters};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
@@ -40,8 +44,18 @@ pub fn run(
     };
     let result = average(problem, &asked, &mut observer)?;
     session.done();
+    let convergence = series_convergence(&result, settings);
+    if let Some(found) = convergence.as_ref().filter(|found| found.diverges()) {
+        output::warn(&divergence(found));
+    }
     let text = match session.format() {
-        Format::Json => format!("{:#}\n", report(&result, settings, session)),
+        Format::Json => {
+            let mut json = report(&result, settings, session);
+            if let (Some(map), Some(found)) = (json.as_object_mut(), &convergence) {
+                map.insert("convergence".to_owned(), convergence_json(found));
+            }
+            format!("{json:#}\n")
+        }
         Format::Text => {
             header.to_owned()
                 + &Board { result: &result, style: Style::Text, markdown: false }.write()
@@ -65,6 +79,63 @@ fn coefficient_json(coefficient: &Coefficient) -> Json {
             json!({"exact": text, "decimal": null, "error": null, "status": "exact"})
         }
     }
+}
+
+/// The radius of the averaged series of the impact oscillator, when every parameter has a value
+/// (the numbers are then no formulas).
+fn series_convergence(result: &Averaging, settings: &Settings) -> Option<Convergence> {
+    if result.problem.name != problems::vibro_impact::problem().name || !result.is_linear() {
+        return None;
+    }
+    let numbers = |rates: &[Vec<RateTerm>]| -> Option<Vec<f64>> {
+        let value = |rate: &Vec<RateTerm>| match rate.first().map(|term| &term.coefficient) {
+            None => Some(0.0),
+            Some(Coefficient::Number(number)) => number.decimal.parse().ok(),
+            Some(Coefficient::Formula { .. }) => None,
+        };
+        rates.iter().map(value).collect()
+    };
+    let (growth, frequency) = (numbers(&result.amplitude_rate)?, numbers(&result.phase_rate)?);
+    let terms: Vec<_> =
+        growth.into_iter().zip(frequency).map(|(r, w)| Complex::new(r, w)).collect();
+    let value =
+        |name: &str| Some(settings.parameters.get(name)?.ball(Balls::new(64)).midpoint().to_f64());
+    let parameters = Parameters {
+        alpha: value("alpha")?,
+        omega: value("omega")?,
+        periods: settings.parameters.get("k")?.as_rational()?.numer().to_u32()?,
+        damping: value("c")?,
+        displacement_gain: value("A")?,
+        velocity_gain: value("B")?,
+        // The flight between the impacts knows nothing of the following.
+        restitution: 1.0,
+        wall: 0.0,
+        force: 1.0,
+        branch: Branch::Plus,
+    };
+    parameters.validate().ok()?;
+    Some(convergence(&parameters, &terms))
+}
+
+pub fn convergence_json(found: &Convergence) -> Json {
+    let finite = |x: f64| match x {
+        x if x.is_finite() => json!(x),
+        x if x.is_nan() => Json::Null,
+        x => json!(x.to_string()),
+    };
+    json!({
+        "radius": finite(found.radius),
+        "ratio": finite(found.ratio),
+        "diverges": found.diverges(),
+        "status": "estimated",
+    })
+}
+
+pub fn divergence(found: &Convergence) -> String {
+    let radius = found.radius;
+    format!(
+        "the averaged series diverges at eps = 1: its radius of convergence is about {radius:.3}"
+    )
 }
 
 /// A linear problem has numbers, growth_rate and frequency; otherwise the rates are polynomials in

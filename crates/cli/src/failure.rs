@@ -3,6 +3,7 @@
 use crate::arguments::Format;
 use crate::output::warn;
 use lindstedt::Error;
+use lindstedt::algebra::PhaseError;
 use lindstedt::expand::ExpandError;
 use serde_json::json;
 use std::io::Write;
@@ -66,15 +67,27 @@ impl From<Error> for Failure {
             Error::UnknownCondition { .. } => {
                 (USAGE, "unknown-normalisation", "see `lindstedt problems --show NAME`")
             }
+            Error::NotAmongSymbols { .. } => {
+                (USAGE, "not-among-symbols", "set all parameters, or leave this one open")
+            }
             Error::NoSuchRoute { .. } => (NO_ANSWER, "no-such-route", "use --route driver"),
             Error::OutsideDomain { .. } => (NO_ANSWER, "outside-domain", ""),
             Error::TooLarge { .. } => {
                 (UNDECIDED, "too-large", "lower --order or raise --limit-memory")
             }
             Error::NotEnoughBits { .. } => (UNDECIDED, "not-enough-digits", "ask for fewer digits"),
+            Error::Simulate(_) => (NO_ANSWER, "no-trajectory", ""),
+            Error::NoPeriodicOrbit { .. } => (NO_ANSWER, "no-periodic-orbit", "smaller --small"),
+            Error::Resummation { .. } => {
+                (NO_ANSWER, "no-such-resummation", "try --resum auto, or another order")
+            }
+            Error::NotEvaluated { .. } => (NO_ANSWER, "not-evaluated", ""),
             Error::NoValue => (NO_ANSWER, "no-value", ""),
             Error::OutOfPrimes => (UNDECIDED, "out-of-primes", "lower --order"),
             Error::Expand(ExpandError::Interrupted { .. }) => (INTERRUPTED, "interrupted", ""),
+            Error::Expand(ExpandError::Phase { source: PhaseError::Resonance { .. }, .. }) => {
+                (NO_ANSWER, "resonance", "averaging needs a force off resonance")
+            }
             Error::Expand(ExpandError::Phase { .. }) => {
                 (UNDECIDED, "could-not-decide", "the orders below this one can be derived")
             }

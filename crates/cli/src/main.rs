@@ -6,14 +6,17 @@ mod averaging;
 mod classification;
 mod derive;
 mod derive_numeric;
+mod evaluate;
 mod failure;
 mod output;
 mod paper;
 mod problems;
 mod session;
+mod simulate;
 mod stability;
 mod threshold;
 mod trade;
+mod verify;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -30,7 +33,10 @@ fn main() -> ExitCode {
     let outcome = match &arguments.command {
         Command::Problems(options) => problems::run(options, &session),
         Command::Derive(options) => derive::run(options, &session),
+        Command::Evaluate(options) => evaluate::run(options, &session),
         Command::Threshold(options) => threshold::run(options, &session),
+        Command::Simulate(options) => simulate::run(options, &session),
+        Command::Verify(options) => verify::run(options, &session),
         Command::Stability(options) => stability::run(options, &session),
         Command::Trade(options) => trade::run(options, &session),
         Command::Paper(options) => paper::run(options, &session),

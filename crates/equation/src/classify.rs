@@ -209,6 +209,7 @@ pub enum ClassifyError {
 /// let x = Expression::Displacement;
 /// # let problem = |equation| Problem {
 /// #     name: "".into(), title: "".into(), equation, time_domain: None, impact: None,
+/// #     synchronous: None,
 /// #     small: "eps".into(), conditions: vec![Condition::InitialAmplitude],
 /// #     amplitude: AmplitudeRole::InSmallParameter, parameters: Vec::new(), notes: "".into(),
 /// #     source: "".into(),

@@ -106,6 +106,8 @@ impl<S> ExactReport<S> {
 pub struct StabilityReport<S> {
     /// The true orbit or why there is none.
     pub orbit: Result<OrbitReport<S>, ImpactError>,
+    /// R and alpha0 of the averaged flow, which may exist without an orbit of its own.
+    pub flow: Option<Flow<S>>,
     /// The prediction or why there is none.
     pub kbm: Result<PredictionReport<S>, ImpactError>,
     /// The impact-aware prediction if asked for.
@@ -168,7 +170,8 @@ pub fn stability<S: Real>(
         exact: found.as_ref().ok().map(|orbit| exact_report(parameters, orbit, request)),
         mismatch: map.map(|map| mismatch(parameters, &map, &parameters.period())),
         convergence: convergence(&midpoint, &doubles),
-        residual: flow.ok().map(|flow| flow.residual(parameters)),
+        residual: flow.as_ref().ok().map(|flow| flow.residual(parameters)),
+        flow: flow.ok(),
         orbit: found.and_then(|orbit| orbit_report(parameters, orbit)),
     })
 }

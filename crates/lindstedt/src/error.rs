@@ -5,12 +5,23 @@ use lindstedt_problem_file::{FileError, ParseError};
 use thiserror::Error;
 
 /// Why the engine has no answer. Each kind maps to one exit code of the command line.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The driver refused.
     #[error(transparent)]
     Expand(#[from] ExpandError),
+    /// The integration in the time domain failed.
+    #[error(transparent)]
+    Simulate(#[from] lindstedt_simulate::SimulateError),
+    /// Newton's method found no periodic orbit near the expansion's.
+    #[error("no periodic orbit near the expansion's at {parameter} = {value}")]
+    NoPeriodicOrbit {
+        /// The small parameter.
+        parameter: String,
+        /// Its value.
+        value: String,
+    },
     /// No more primes of 61 bits with the roots of unity that the order needs.
     #[error("no more 61-bit primes for this order")]
     OutOfPrimes,
@@ -91,6 +102,20 @@ pub enum Error {
         bits: u32,
         /// The best enclosure.
         best: Option<String>,
+    },
+    /// The series has no value by the method asked for.
+    #[error("{problem}: {reason}")]
+    Resummation {
+        /// The problem.
+        problem: String,
+        /// Why.
+        reason: lindstedt_series::resummation::ResummationError,
+    },
+    /// Period and solution are not summed for this problem.
+    #[error("{problem}: no series of the period is known that can be summed")]
+    NotEvaluated {
+        /// The problem.
+        problem: String,
     },
     /// The value does not exist.
     #[error("the value does not exist")]

@@ -17,6 +17,7 @@ pub mod averaging;
 mod derivation;
 pub mod energy;
 mod error;
+pub mod evaluate;
 pub mod impact_map;
 pub mod multimodular;
 pub mod number;
@@ -26,8 +27,11 @@ pub mod paper;
 pub mod quotient;
 pub mod trade;
 mod value;
+pub mod verify;
 
-pub use derivation::{Derivation, NamedSeries, Progress, Route, Settings, Solution, derive};
+pub use derivation::{
+    Derivation, NamedSeries, Progress, Route, Settings, Solution, check_parameters, derive,
+};
 pub use error::Error;
 pub use lindstedt_problem_file::ProblemFile;
 pub use number::{Number, Status};

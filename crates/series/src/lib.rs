@@ -4,6 +4,8 @@
 //! it serves the residual check, which must share no code with the driver, and the series of
 //! the results: the frequency from its square, the period from the frequency.
 
+pub mod resummation;
+
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rayon::prelude::*;
 use rug::Rational;

@@ -116,6 +116,15 @@ pub enum SimulateError {
         /// Where.
         time: f64,
     },
+    /// Newton's method found no periodic orbit of saddle type.
+    #[error("no saddle orbit near the guess")]
+    NoSaddle,
+    /// Newton's method found no homoclinic tangency.
+    #[error("no homoclinic tangency near {value}")]
+    NoTangency {
+        /// The value of the free parameter that was tried.
+        value: f64,
+    },
     /// A closed-form answer was asked where the eigenvalues did not converge.
     #[error("the eigenvalues of the monodromy matrix did not converge")]
     NoMultipliers,

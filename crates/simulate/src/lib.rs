@@ -37,8 +37,10 @@
 //! # Ok::<(), lindstedt_simulate::SimulateError>(())
 //! ```
 
+mod bifurcation;
 mod branch;
 mod compile;
+mod continuation;
 mod digits;
 mod error;
 mod estimate;
@@ -46,28 +48,40 @@ mod events;
 mod impact;
 mod integrator;
 mod linear;
+mod lyapunov;
 mod past;
+mod poincare;
 mod power;
 mod quantity;
 mod real;
 mod report;
 mod roots;
+mod saddle;
 mod second_order;
 mod segment;
 mod series;
 mod switching;
 mod system;
+mod tangency;
 mod tangent;
 mod tape;
 mod trajectory;
+mod zero_one;
 
+pub use bifurcation::{Column, DiagramSettings, Sweep, diagram};
+pub use continuation::continue_tangency;
 pub use digits::Digits;
 pub use error::{SimulateError, Surface};
 pub use estimate::{Computation, Estimated, estimate};
 pub use integrator::{Integrator, Observer, Settings};
 pub use linear::{Monodromy, monodromy};
+pub use lyapunov::{LyapunovExponent, LyapunovSettings, largest_lyapunov_exponent};
+pub use poincare::{PoincareMap, Point, Section};
 pub use quantity::{Parameters, Quantity};
 pub use real::{Doubles, Real};
 pub use report::{Event, EventKind, Outcome, Report, Segment, Work};
+pub use saddle::{Saddle, saddle, unstable_manifold};
 pub use system::{Model, System};
+pub use tangency::{Homoclinic, Loop, Return, Tangency};
 pub use trajectory::{Occurrence, Trajectory};
+pub use zero_one::{ZeroOne, zero_one};

@@ -153,6 +153,13 @@ fn paint(
         legend.draw(&Rectangle::new([(x, y), (x + 18, y + 16)], BLACK.stroke_width(1)))?;
         legend.draw(&Text::new(text.clone(), (x + 26, y + 1), ("sans-serif", 15)))?;
     }
+    let fixed: Vec<String> = request
+        .at
+        .iter()
+        .filter(|(name, _)| !grid.names.contains(&name.as_str()))
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
+    legend.draw(&Text::new(fixed.join(",  "), (70, 82), ("sans-serif", 15)))?;
     root.present()?;
     Ok(())
 }

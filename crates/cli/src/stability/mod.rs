@@ -3,7 +3,7 @@
 mod chart;
 mod figure;
 mod report;
-mod request;
+pub mod request;
 
 use crate::Outcome;
 use crate::arguments::{Format, StabilityOptions};
@@ -53,7 +53,12 @@ pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
         return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
     }
     // Without an orbit there is no stability to speak of.
-    Ok(if answer.exists || grid.is_some() { 0 } else { NO_ANSWER })
+    Ok(match answer.exists {
+        _ if grid.is_some() => 0,
+        Some(true) => 0,
+        Some(false) => NO_ANSWER,
+        None => UNDECIDED,
+    })
 }
 
 impl From<ImpactError> for Failure {

@@ -3,6 +3,7 @@
 use super::chart::Grid;
 use super::request::Request;
 use crate::arguments::{Format, PredictorChoice};
+use crate::averaging::{convergence_json, divergence};
 use crate::derive::number_json;
 use lindstedt::coeff::ball::Ball;
 use lindstedt::coeff::digits::{decimal, error_string};
@@ -17,7 +18,9 @@ use std::fmt::Write;
 
 /// A number in doubles: rounding errors are not tracked.
 pub fn double_number(x: f64) -> Number {
-    Number { exact: None, decimal: format!("{x:e}"), error: None, status: Status::Estimated }
+    // 0, not -0.
+    let decimal = format!("{:e}", x + 0.0);
+    Number { exact: None, decimal, error: None, status: Status::Estimated }
 }
 
 /// As many of the digits asked for as are certain; an enclosure of zero is 0 with its radius.
@@ -27,14 +30,27 @@ pub fn certified_number(ball: &Ball, digits: usize) -> Number {
     let decimal = decimal(ball, certain).unwrap_or_else(|| "0".to_owned());
     let error = error_string(ball, &decimal);
     let error = (error != "0").then_some(error);
+    if ball.is_exact() && error.is_none() {
+        let exact = Some(decimal.clone());
+        return Number { exact, decimal, error, status: Status::Exact };
+    }
     Number { exact: None, decimal, error, status: Status::Certified }
 }
 
 pub struct Answer {
     request_at: Map<String, Json>,
     body: Map<String, Json>,
-    pub exists: bool,
+    /// Whether the orbit exists: with a penetrating flight it does not, with a touching one it is
+    /// not decided.
+    pub exists: Option<bool>,
     pub warnings: Vec<String>,
+}
+
+fn exists<S>(report: &StabilityReport<S>) -> Option<bool> {
+    match &report.orbit {
+        Ok(found) => found.penetrates.map(|penetrates| !penetrates),
+        Err(_) => Some(false),
+    }
 }
 
 /// Writes numbers of one report.
@@ -57,6 +73,8 @@ impl<S: Real> Writer<'_, S> {
         })
     }
 }
+
+const PENETRATES: &str = "no orbit: the flight passes through the wall";
 
 fn word(verdict: Verdict) -> &'static str {
     match verdict {
@@ -112,7 +130,7 @@ impl Answer {
             body.insert("exact".to_owned(), exact(&w, request, report));
         }
         let at = request.at.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
-        Self { request_at: at, body, exists: report.orbit.is_ok(), warnings }
+        Self { request_at: at, body, exists: exists(report), warnings }
     }
 
     pub fn json(&self, grid: Option<&Grid>) -> Json {
@@ -122,6 +140,11 @@ impl Answer {
         all.extend(self.body.clone());
         all.insert("grid".to_owned(), grid.map_or(Json::Null, Grid::json));
         all.insert("warnings".to_owned(), json!(self.warnings));
+        if self.exists != Some(true) && grid.is_none() {
+            let code = if self.exists.is_some() { "no-orbit" } else { "undecided" };
+            let message = self.warnings.first();
+            all.insert("error".to_owned(), json!({"code": code, "message": message, "hint": ""}));
+        }
         Json::Object(all)
     }
 
@@ -178,14 +201,16 @@ fn orbit<S: Real>(
             return refused(error);
         }
     };
-    if found.penetrates == Some(true) {
-        warnings.push("the flight passes through the wall: this orbit does not exist".to_owned());
+    match found.penetrates {
+        Some(false) => {}
+        Some(true) => warnings.push(PENETRATES.to_owned()),
+        None => warnings.push("it is not decided whether the flight passes the wall".to_owned()),
     }
     let form = |part: &dyn Fn(&lindstedt_impact::report::FormReport<S>) -> Json| {
         found.form.as_ref().map_or(Json::Null, part)
     };
     json!({
-        "exists": found.penetrates != Some(true),
+        "exists": exists(report),
         "impact_velocity": w.number(&found.orbit.velocity),
         "phase": form(&|f| w.number(&f.phase)),
         "C": form(&|f| w.number(&f.cosine)),
@@ -208,10 +233,7 @@ fn prediction<S: Real>(
 ) -> Json {
     let convergence = &report.convergence;
     if convergence.diverges() {
-        warnings.push(format!(
-            "the averaged series diverges at eps = 1: its radius of convergence is about {:.3}",
-            convergence.radius
-        ));
+        warnings.push(divergence(convergence));
     }
     let mismatch = report.mismatch.as_ref().map(Real::to_f64);
     if mismatch.is_some_and(|m| m > 1.0) {
@@ -221,10 +243,13 @@ fn prediction<S: Real>(
                 .to_owned(),
         );
     }
-    let finite = |x: f64| if x.is_finite() { json!(x) } else { json!(x.to_string()) };
     let mut map = Map::new();
     map.insert("order".to_owned(), json!(request.order));
     map.insert("variant".to_owned(), json!(request.variant_name()));
+    if let Some(flow) = &report.flow {
+        map.insert("R".to_owned(), w.number(&flow.growth_rate));
+        map.insert("alpha0".to_owned(), w.number(&flow.frequency));
+    }
     match &report.kbm {
         Err(error) => {
             map.insert("orbit".to_owned(), refused(error));
@@ -232,8 +257,6 @@ fn prediction<S: Real>(
         }
         Ok(found) => {
             let p = &found.prediction;
-            map.insert("R".to_owned(), w.number(&p.flow.growth_rate));
-            map.insert("alpha0".to_owned(), w.number(&p.flow.frequency));
             if let Some(b) = &p.polynomial {
                 map.insert("b2".to_owned(), w.number(&b.quadratic));
                 map.insert("b1".to_owned(), w.number(&b.linear));
@@ -251,15 +274,7 @@ fn prediction<S: Real>(
     }
     map.insert("mismatch".to_owned(), report.mismatch.as_ref().map_or(Json::Null, |m| w.number(m)));
     map.insert("residual".to_owned(), report.residual.as_ref().map_or(Json::Null, |r| w.number(r)));
-    map.insert(
-        "convergence".to_owned(),
-        json!({
-            "radius": finite(convergence.radius),
-            "ratio": finite(convergence.ratio),
-            "diverges": convergence.diverges(),
-            "status": "estimated",
-        }),
-    );
+    map.insert("convergence".to_owned(), convergence_json(convergence));
     Json::Object(map)
 }
 
@@ -267,6 +282,7 @@ fn exact<S: Real>(w: &Writer<'_, S>, request: &Request, report: &StabilityReport
     let Some(found) = &report.exact else {
         return json!({"stable": null, "verdict": "no orbit"});
     };
+    let standing = exists(report);
     // For B != 0 the return map is piecewise linear; iterating it is what decides.
     let kicked = found.growth.as_ref();
     let verdict = match kicked.map(|growth| growth.verdict()) {
@@ -274,8 +290,14 @@ fn exact<S: Real>(w: &Writer<'_, S>, request: &Request, report: &StabilityReport
         Some(decided) => decided,
     };
     let mut map = Map::new();
-    map.insert("stable".to_owned(), stable(verdict));
-    map.insert("verdict".to_owned(), json!(word(verdict)));
+    // The multipliers of a flight through the wall are those of a system without wall on the way.
+    let (answer, words) = match standing {
+        Some(true) => (stable(verdict), word(verdict)),
+        Some(false) => (Json::Null, PENETRATES),
+        None => (Json::Null, "undecided: the flight touches the wall"),
+    };
+    map.insert("stable".to_owned(), answer);
+    map.insert("verdict".to_owned(), json!(words));
     match &found.multipliers {
         Ok(list) => {
             let pairs: Vec<Json> = list.values.iter().map(|z| w.pair(z)).collect();
@@ -327,6 +349,10 @@ fn plain(value: &Json) -> String {
                 items.collect::<Vec<_>>().join(", ")
             }
         },
+        // Estimates: six digits are plenty.
+        Json::Number(number) if number.is_f64() => {
+            number.as_f64().map_or_else(String::new, |x| format!("{x:.6}"))
+        }
         other => other.to_string(),
     }
 }

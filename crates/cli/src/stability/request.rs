@@ -36,6 +36,73 @@ pub struct Request {
     pub kick: Kick,
 }
 
+/// The parameters given and the defaults of the others, and all of them as text in the order of
+/// the card.
+pub fn exact_parameters(
+    set: &[String],
+) -> Result<(ExactParameters, Vec<(String, String)>), Failure> {
+    let (branches, numbers): (Vec<String>, Vec<String>) =
+        set.iter().cloned().partition(|item| item.trim().starts_with("branch="));
+    let branch = match branches.as_slice() {
+        [] => Branch::Plus,
+        [only] => match only.trim().trim_start_matches("branch=").trim() {
+            "+" | "plus" => Branch::Plus,
+            "-" | "minus" => Branch::Minus,
+            other => {
+                let message = format!("branch is + or -, not {other:?}");
+                return Err(Failure::usage("set", message, "--set branch=-"));
+            }
+        },
+        _ => return Err(Failure::usage("set", "branch is set twice".to_owned(), "")),
+    };
+    let mut given = parameters(&numbers)?;
+    let mut at = Vec::new();
+    let mut values = std::collections::BTreeMap::new();
+    for card in vibro_impact::problem().parameters {
+        if card.name == "branch" {
+            let sign = if branch == Branch::Plus { "+" } else { "-" };
+            at.push(("branch".to_owned(), sign.to_owned()));
+            continue;
+        }
+        let value = match given.remove(&*card.name) {
+            Some(value) => value,
+            None => Value::parse(&card.default)?,
+        };
+        at.push((card.name.to_string(), value.to_string()));
+        values.insert(card.name.to_string(), value);
+    }
+    if let Some(name) = given.keys().next() {
+        let known: Vec<&str> = at.iter().map(|(name, _)| name.as_str()).collect();
+        let message = format!("vibro-impact has no parameter {name:?}");
+        let hint = format!("it has {}; T = 2 pi k/omega follows", known.join(", "));
+        return Err(Failure::usage("unknown-parameter", message, &hint));
+    }
+    let get = |name: &str| match values.get(name) {
+        Some(Value::Rational(q)) => Exact::Rational(q.clone()),
+        Some(Value::PiTimes(q)) => Exact::PiMultiple(q.clone()),
+        None => Exact::from((0, 1)),
+    };
+    let whole = values.get("k").and_then(Value::as_rational);
+    let periods = whole.filter(|q| q.is_integer()).and_then(|q| q.numer().to_u32());
+    let periods = periods.filter(|&k| k > 0).ok_or_else(|| {
+        Failure::usage("parameter", "k must be a positive integer".to_owned(), "--set k=2")
+    })?;
+    let parameters = ExactParameters {
+        alpha: get("alpha"),
+        omega: get("omega"),
+        periods,
+        restitution: get("R_r"),
+        wall: get("s"),
+        damping: get("c"),
+        force: get("P0"),
+        displacement_gain: get("A"),
+        velocity_gain: get("B"),
+        branch,
+    };
+    parameters.to_f64().validate()?;
+    Ok((parameters, at))
+}
+
 impl Request {
     pub fn read(options: &StabilityOptions) -> Result<Self, Failure> {
         if options.problem != "vibro-impact" {
@@ -43,65 +110,7 @@ impl Request {
             let message = format!("no impact orbit in {shown:?}");
             return Err(Failure::usage("unknown-problem", message, "known: vibro-impact"));
         }
-        let (branches, numbers): (Vec<String>, Vec<String>) =
-            options.set.iter().cloned().partition(|item| item.trim().starts_with("branch="));
-        let branch = match branches.as_slice() {
-            [] => Branch::Plus,
-            [only] => match only.trim().trim_start_matches("branch=").trim() {
-                "+" | "plus" => Branch::Plus,
-                "-" | "minus" => Branch::Minus,
-                other => {
-                    let message = format!("branch is + or -, not {other:?}");
-                    return Err(Failure::usage("set", message, "--set branch=-"));
-                }
-            },
-            _ => return Err(Failure::usage("set", "branch is set twice".to_owned(), "")),
-        };
-        let mut given = parameters(&numbers)?;
-        let mut at = Vec::new();
-        let mut values = std::collections::BTreeMap::new();
-        for card in vibro_impact::problem().parameters {
-            if card.name == "branch" {
-                let sign = if branch == Branch::Plus { "+" } else { "-" };
-                at.push(("branch".to_owned(), sign.to_owned()));
-                continue;
-            }
-            let value = match given.remove(&*card.name) {
-                Some(value) => value,
-                None => Value::parse(&card.default)?,
-            };
-            at.push((card.name.to_string(), value.to_string()));
-            values.insert(card.name.to_string(), value);
-        }
-        if let Some(name) = given.keys().next() {
-            let known: Vec<&str> = at.iter().map(|(name, _)| name.as_str()).collect();
-            let message = format!("vibro-impact has no parameter {name:?}");
-            let hint = format!("it has {}; T = 2 pi k/omega follows", known.join(", "));
-            return Err(Failure::usage("unknown-parameter", message, &hint));
-        }
-        let get = |name: &str| match values.get(name) {
-            Some(Value::Rational(q)) => Exact::Rational(q.clone()),
-            Some(Value::PiTimes(q)) => Exact::PiMultiple(q.clone()),
-            None => Exact::from((0, 1)),
-        };
-        let whole = values.get("k").and_then(Value::as_rational);
-        let periods = whole.filter(|q| q.is_integer()).and_then(|q| q.numer().to_u32());
-        let periods = periods.filter(|&k| k > 0).ok_or_else(|| {
-            Failure::usage("parameter", "k must be a positive integer".to_owned(), "--set k=2")
-        })?;
-        let parameters = ExactParameters {
-            alpha: get("alpha"),
-            omega: get("omega"),
-            periods,
-            restitution: get("R_r"),
-            wall: get("s"),
-            damping: get("c"),
-            force: get("P0"),
-            displacement_gain: get("A"),
-            velocity_gain: get("B"),
-            branch,
-        };
-        parameters.to_f64().validate()?;
+        let (parameters, at) = exact_parameters(&options.set)?;
         let sweeps: Vec<(&'static str, Axis)> =
             options.sweep.iter().map(|text| axis(text)).collect::<Result<_, _>>()?;
         if sweeps.len() > 2 {

@@ -283,6 +283,12 @@ fn a_flow_that_does_not_oscillate_is_refused() {
     let p = Parameters { displacement_gain: 3.0, omega: 2.0, ..base() };
     let refused = predicted_flow(&p, &rates(&p, 1), 1);
     assert!(matches!(refused, Err(ImpactError::NotApplicable { frequency }) if frequency <= 0.0));
+    // Overflow of the second order is no flow either.
+    let p = Parameters { displacement_gain: 1e200, ..p };
+    let refused = predicted_flow(&p, &rates(&p, 2), 2);
+    assert!(
+        matches!(refused, Err(ImpactError::NotApplicable { frequency }) if !frequency.is_finite())
+    );
     let p = base();
     assert_eq!(predicted_flow(&p, &rates(&p, 1), 0).unwrap_err(), ImpactError::OrderZero);
 }

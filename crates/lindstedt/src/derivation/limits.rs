@@ -8,10 +8,7 @@ use rug::Rational;
 use std::collections::BTreeMap;
 
 /// Names and domains of the parameters given.
-pub(crate) fn check_parameters(
-    problem: &Problem,
-    given: &BTreeMap<String, Value>,
-) -> Result<(), Error> {
+pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> Result<(), Error> {
     for (name, value) in given {
         if !problem.parameters.iter().any(|card| card.name == *name) {
             let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
@@ -106,7 +103,7 @@ pub(super) fn has_logarithms(expression: &Expression) -> bool {
 /// Refuses before allocating. Measured: the Lobachevsky ring takes 0.7 GiB at order 20 and 1.5
 /// times more per order; with formal sums 0.1 GiB at order 10 and twice as much per order; van
 /// der Pol's series over Q 0.42 GiB at order 164, growing like the fourth power of the order.
-pub(super) fn limit_memory(problem: &Problem, settings: &Settings) -> Result<(), Error> {
+pub(crate) fn limit_memory(problem: &Problem, settings: &Settings) -> Result<(), Error> {
     let order = settings.order as f64;
     let gibibytes = if settings.route == Route::EnergyIntegral {
         // 28 629 terms in 0.1 GiB at order 30; the number of partitions grows by 1.2 per order,

@@ -1,13 +1,13 @@
 //! From a problem to a checked expansion: the call behind `lindstedt derive`.
 
-mod limits;
+pub(crate) mod limits;
 mod prepare;
 mod series;
 
 use crate::multimodular::{self, RationalBinding};
 use crate::number::{Constants, Number, certified};
 use crate::{Error, Value};
-pub(crate) use limits::check_parameters;
+pub use limits::check_parameters;
 use limits::{has_logarithms, limit_memory};
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::ball::{Ball, Balls};
@@ -125,7 +125,7 @@ pub struct Derivation {
     /// Time is in units of 1/this: the solution's equation has linear stiffness 1 where x' occurs.
     /// The series of the result are in the time of the problem.
     pub time_scale: Rational,
-    constants: Constants,
+    pub(crate) constants: Constants,
 }
 
 /// The name of the formal function whose Taylor coefficients are the sums S_n.

@@ -1,0 +1,123 @@
+//! `lindstedt evaluate`: numbers from the expansion.
+
+mod code;
+mod report;
+mod trajectory;
+
+use crate::Outcome;
+use crate::arguments::{EvaluateOptions, Format, Resum};
+use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
+use crate::output;
+use crate::session::{Session, digits, parameters, problem};
+use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
+use lindstedt::series::resummation::Method;
+use lindstedt::{Error, Progress, Value, expand::ExpandError};
+use report::Report;
+
+/// Digits of a double.
+const DOUBLE: usize = 16;
+
+pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
+    let problem = problem(&options.problem)?;
+    let settings = EvaluateSettings {
+        order: options.order.map(|order| order as usize),
+        method: method(options.resum),
+        parameters: parameters(&options.set)?,
+        digits: digits(&options.precision)?,
+        memory: session.memory(),
+    };
+    let times = trajectory::Request::read(options)?;
+    output::check_writable(session)?;
+    let mut observer = |progress: Progress| {
+        if let Progress::Primes(n) = progress {
+            session.say(format!("{n} primes done"));
+        }
+        session.goes_on()
+    };
+    let fail = |error| failure(error, session);
+    let result = evaluate(&problem, &settings, &mut observer).map_err(fail)?;
+    let solution = match &times {
+        None => None,
+        Some(request) => {
+            let phase = Value::parse(&options.phase)?;
+            // A figure or a function in doubles needs no more than these.
+            let digits = if options.times.is_some() { settings.digits } else { DOUBLE };
+            let settings = EvaluateSettings { digits, ..settings.clone() };
+            let found = Trajectory::new(&problem, &settings, &result, phase, &mut observer)
+                .map_err(fail)?;
+            if let Some(language) = options.code {
+                session.done();
+                let text = code::write(&problem, &found, language, options.harmonics)?;
+                output::write(session, &text)?;
+                return Ok(0);
+            }
+            Some(trajectory::Table::compute(request, &found, session)?)
+        }
+    };
+    session.done();
+    for path in &options.plot {
+        if let Some(table) = &solution {
+            let contents = table.file(path, &problem)?;
+            std::fs::write(path, contents)
+                .map_err(|error| output::trouble(&path.display().to_string(), &error))?;
+        }
+    }
+    let report = Report {
+        problem: &problem,
+        result: &result,
+        resum: options.resum,
+        solution: solution.as_ref(),
+    };
+    let text = match session.format() {
+        Format::Json => format!("{:#}\n", report.json(session)),
+        Format::Text => report.text(),
+        Format::Latex => report.latex(),
+        Format::Markdown => report.markdown(),
+    };
+    output::write(session, &text)?;
+    if solution.as_ref().is_some_and(|table| !table.finished) {
+        output::warn("stopped; the times not reached are missing");
+        return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
+    }
+    if result.period.is_none() {
+        output::warn("the expansion gives not one digit of the period here");
+        return Ok(UNDECIDED);
+    }
+    Ok(0)
+}
+
+fn failure(error: Error, session: &Session<'_>) -> Failure {
+    match error {
+        Error::Expand(ExpandError::Interrupted { .. }) if !session.interrupted() => Failure {
+            exit: UNDECIDED,
+            code: "time-limit",
+            message: "the time limit was reached before the expansion was finished".to_owned(),
+            hint: "raise --limit-seconds or lower --order".to_owned(),
+        },
+        other => other.into(),
+    }
+}
+
+fn method(resum: Resum) -> Option<Method> {
+    Some(match resum {
+        Resum::None => Method::PartialSum,
+        Resum::Pade => Method::Pade,
+        Resum::Uniform => Method::Uniform,
+        Resum::UniformPade => Method::UniformPade,
+        Resum::Conformal => Method::ConformalPade,
+        Resum::BorelPade => Method::BorelPade,
+        Resum::Auto => return None,
+    })
+}
+
+/// The name of a method on the command line.
+fn flag(method: Method) -> &'static str {
+    match method {
+        Method::PartialSum => "none",
+        Method::Pade => "pade",
+        Method::Uniform => "uniform",
+        Method::UniformPade => "uniform-pade",
+        Method::ConformalPade => "conformal",
+        _ => "borel-pade",
+    }
+}

@@ -1,0 +1,191 @@
+//! x(t) at asked times: table, comma-separated values, figure.
+
+use super::flag;
+use crate::arguments::EvaluateOptions;
+use crate::derive::number_json;
+use crate::failure::{Failure, NO_ANSWER};
+use crate::session::Session;
+use lindstedt::Value;
+use lindstedt::coeff::ball::Balls;
+use lindstedt::equation::Problem;
+use lindstedt::evaluate::{Displacement, Trajectory};
+use plotters::prelude::*;
+use rayon::prelude::*;
+use rug::Rational;
+use serde_json::{Value as Json, json};
+use std::fmt::Write;
+use std::path::Path;
+
+/// The most times of one table.
+const MOST_TIMES: u32 = 100_000;
+/// Points of a figure for which no times are given.
+const POINTS: u32 = 129;
+/// Times between two looks at the clock.
+const BLOCK: usize = 16;
+const SIZE: (u32, u32) = (960, 540);
+
+/// The times asked for.
+pub struct Request {
+    /// Nothing: one period.
+    range: Option<(Rational, Rational)>,
+    count: u32,
+}
+
+fn usage(text: &str) -> Failure {
+    let shown: String = text.chars().take(60).collect();
+    let hint = "--times LO..HI:COUNT, for example 0..10:101";
+    Failure::usage("range", format!("cannot read the times {shown:?}"), hint)
+}
+
+/// The number, or the double next to a multiple of pi.
+fn rational(text: &str) -> Result<Rational, Failure> {
+    let value = Value::parse(text)?;
+    let nearest = || value.ball(Balls::new(200)).midpoint().to_rational();
+    value.as_rational().cloned().or_else(nearest).ok_or_else(|| usage(text))
+}
+
+impl Request {
+    /// Nothing unless --times, --plot or --code ask for the solution.
+    pub fn read(options: &EvaluateOptions) -> Result<Option<Self>, Failure> {
+        let is = |path: &Path, kind: &str| {
+            path.extension().is_some_and(|e| e.eq_ignore_ascii_case(kind))
+        };
+        if let Some(path) = options.plot.iter().find(|path| !is(path, "svg") && !is(path, "csv")) {
+            let message = format!("cannot plot to {}", path.display());
+            return Err(Failure::usage("plot", message, "the name must end in .svg or .csv"));
+        }
+        let Some(text) = &options.times else {
+            let asked = !options.plot.is_empty() || options.code.is_some();
+            return Ok(asked.then_some(Self { range: None, count: POINTS }));
+        };
+        let (low, rest) = text.split_once("..").ok_or_else(|| usage(text))?;
+        let (high, count) = rest.rsplit_once(':').ok_or_else(|| usage(text))?;
+        let count: u32 = count.trim().parse().map_err(|_| usage(text))?;
+        if count == 0 || count > MOST_TIMES {
+            let message = format!("1 to {MOST_TIMES} times, not {count}");
+            return Err(Failure::usage("range", message, ""));
+        }
+        Ok(Some(Self { range: Some((rational(low)?, rational(high)?)), count }))
+    }
+
+    fn times(&self, trajectory: &Trajectory) -> Vec<Value> {
+        let (low, high) = self.range.clone().unwrap_or_else(|| {
+            (Rational::new(), Rational::from_f64(trajectory.period).unwrap_or_default())
+        });
+        let width = (high - &low) / Rational::from(self.count.saturating_sub(1).max(1));
+        (0..self.count).map(|i| Value::Rational(Rational::from(&width * i) + &low)).collect()
+    }
+}
+
+/// x(t) at the times asked for.
+pub struct Table {
+    points: Vec<Displacement>,
+    order: usize,
+    resum: String,
+    pub finished: bool,
+}
+
+impl Table {
+    pub fn compute(
+        request: &Request,
+        trajectory: &Trajectory,
+        session: &Session<'_>,
+    ) -> Result<Self, Failure> {
+        let times = request.times(trajectory);
+        let mut points = Vec::new();
+        for block in times.chunks(BLOCK) {
+            if !session.goes_on() {
+                break;
+            }
+            session.say(format!("x(t): {} of {}", points.len(), times.len()));
+            points.par_extend(block.par_iter().map(|time| trajectory.at(time)));
+        }
+        let finished = points.len() == times.len();
+        let methods: Vec<&str> = trajectory.methods().iter().map(|m| flag(*m)).collect();
+        let (order, resum) = (trajectory.order(), methods.join(" or "));
+        Ok(Self { points, order, resum, finished })
+    }
+
+    /// Time, value, error as text.
+    pub fn rows(&self) -> impl Iterator<Item = [String; 3]> {
+        self.points.iter().map(|point| {
+            let time = point.time.ball(Balls::new(64)).midpoint().to_f64();
+            let value = match &point.value {
+                Some(number) => number.decimal.clone(),
+                None => format!("{:.1e}", point.double),
+            };
+            // The bound belongs to the digits that are printed.
+            let error = point.value.as_ref().and_then(|number| number.error.clone());
+            [format!("{time:?}"), value, error.unwrap_or_else(|| format!("{:.1e}", point.error))]
+        })
+    }
+
+    pub fn json(&self) -> Json {
+        let values: Vec<Json> = self
+            .points
+            .iter()
+            .map(|point| {
+                let error = point.error.is_finite().then(|| format!("{:.2e}", point.error));
+                let number = point.value.as_ref().map_or_else(
+                    || json!({"exact": null, "decimal": format!("{:e}", point.double), "error": error, "status": "estimated"}),
+                    number_json,
+                );
+                json!({"t": point.time.to_string(), "x": number})
+            })
+            .collect();
+        json!({"order": self.order, "resum": self.resum, "values": values})
+    }
+
+    pub fn text(&self) -> String {
+        let mut text = format!("\n  x(t), order {}, summed by {}\n", self.order, self.resum);
+        for [time, value, error] in self.rows() {
+            let _ = writeln!(text, "  {time:<22} {value:<34} +- {error}");
+        }
+        text
+    }
+
+    /// The contents of a .csv or .svg file.
+    pub fn file(&self, path: &Path, problem: &Problem) -> Result<String, Failure> {
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+            let mut text = String::from("t,x,error\n");
+            for point in &self.points {
+                let time = point.time.ball(Balls::new(64)).midpoint().to_f64();
+                let _ = writeln!(text, "{time:?},{:?},{:e}", point.double, point.error);
+            }
+            return Ok(text);
+        }
+        let mut svg = String::new();
+        self.draw(problem, &mut svg).map_err(|error| Failure {
+            exit: NO_ANSWER,
+            code: "figure",
+            message: format!("nothing to draw: {error}"),
+            hint: String::new(),
+        })?;
+        Ok(svg)
+    }
+
+    fn draw(&self, problem: &Problem, svg: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+        let at = |point: &Displacement| point.time.ball(Balls::new(64)).midpoint().to_f64();
+        let points: Vec<(f64, f64)> = self
+            .points
+            .iter()
+            .filter(|point| point.double.is_finite())
+            .map(|point| (at(point), point.double))
+            .collect();
+        let (first, last) = points.first().zip(points.last()).ok_or("no finite value")?;
+        let top = points.iter().fold(0.0f64, |top, p| top.max(p.1.abs())).max(1e-300) * 1.05;
+        let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
+        root.fill(&WHITE)?;
+        let caption = format!("{}: x(t), order {}, {}", problem.name, self.order, self.resum);
+        let mut chart = ChartBuilder::on(&root)
+            .margin(16)
+            .caption(caption, ("sans-serif", 18))
+            .x_label_area_size(44)
+            .y_label_area_size(64)
+            .build_cartesian_2d(first.0..last.0.max(first.0 + 1e-9), -top..top)?;
+        chart.configure_mesh().x_desc("t").y_desc("x").light_line_style(WHITE).draw()?;
+        chart.draw_series(LineSeries::new(points.iter().copied(), BLUE.stroke_width(2)))?;
+        root.present()?;
+        Ok(())
+    }
+}

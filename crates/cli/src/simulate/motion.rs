@@ -1,0 +1,300 @@
+//! The motion, integrated twice: the difference estimates the errors.
+
+use super::setup::Setup;
+use crate::arguments::Section;
+use lindstedt::equation::Expression;
+use lindstedt::simulate::{
+    Digits, Doubles, EventKind, Integrator, Outcome, Quantity, Real, Report, Segment, Settings,
+    SimulateError, Work,
+};
+use rug::Float;
+use std::ops::ControlFlow;
+
+/// Points of a figure per step.
+const DOTS: u32 = 24;
+/// Impacts after which a motion is given up.
+const MOST_IMPACTS: u64 = 1_000_000;
+
+/// Where a motion ends.
+#[derive(Clone)]
+pub enum End {
+    Time(Quantity),
+    /// The N-th maximum of x.
+    Maxima(u32),
+    Impacts(u32),
+}
+
+/// What to integrate.
+pub struct Plan {
+    pub setup: Setup,
+    pub end: End,
+    /// Times of the samples, in order.
+    pub times: Vec<Quantity>,
+    pub section: Option<Section>,
+    /// Whether the line of a figure is kept.
+    pub drawn: bool,
+}
+
+/// A state at a time.
+#[derive(Clone)]
+pub struct Moment {
+    pub time: Float,
+    pub state: [Float; 2],
+    /// Sticking, or resting at the wall.
+    pub stuck: bool,
+}
+
+/// An event.
+pub struct Happening {
+    pub kind: EventKind,
+    pub time: Float,
+    pub before: [Float; 2],
+    pub after: [Float; 2],
+}
+
+/// A point of a figure.
+#[derive(Clone, Copy)]
+pub struct Dot {
+    pub time: f64,
+    pub x: f64,
+    pub v: f64,
+    pub stuck: bool,
+}
+
+/// What came of it.
+pub struct Motion {
+    pub events: Vec<Happening>,
+    pub samples: Vec<Moment>,
+    pub points: Vec<Moment>,
+    pub last: Moment,
+    pub work: Work,
+    /// The time spent sticking or at rest at the wall.
+    pub stuck_time: Float,
+    pub line: Vec<Dot>,
+    /// The end was reached.
+    pub complete: bool,
+}
+
+impl Plan {
+    fn watches_velocity(&self) -> bool {
+        self.section == Some(Section::Velocity) || matches!(self.end, End::Maxima(_))
+    }
+
+    /// The end, or a time that is long for the events that are to end it.
+    fn target(&self) -> Quantity {
+        let unit = self.setup.forcing.as_ref().map_or(10.0, |q| q.float(64).to_f64());
+        let long = |n: u32| Quantity::Float(Float::with_val(64, 100.0 * unit * f64::from(n + 1)));
+        match &self.end {
+            End::Time(time) => time.clone(),
+            End::Maxima(n) | End::Impacts(n) => long(*n),
+        }
+    }
+
+    /// Integrates with so many digits, in doubles if `doubles`.
+    pub fn run(
+        &self,
+        digits: u32,
+        doubles: bool,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Result<Motion, SimulateError> {
+        if doubles {
+            self.integrate(Doubles, 16, goes_on)
+        } else {
+            self.integrate(Digits::for_digits(digits), digits, goes_on)
+        }
+    }
+
+    fn integrate<R: Real>(
+        &self,
+        real: R,
+        digits: u32,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Result<Motion, SimulateError> {
+        let mut model = self.setup.model.clone();
+        if self.watches_velocity() {
+            model = model.with_section(Expression::Velocity);
+        }
+        let system = model.compile(real.clone(), &self.setup.parameters)?;
+        let bits = real.bits() + 64;
+        let element = |q: &Quantity| real.float(&q.float(bits));
+        let start = self.setup.start.each_ref().map(element);
+        let settings = Settings { most_impacts: MOST_IMPACTS, ..Settings::for_digits(digits) };
+        let mut flow = Integrator::new(&system, &real.zero(), &start, settings)?;
+        let strobe = (self.section == Some(Section::Stroboscopic))
+            .then(|| self.setup.forcing.as_ref().map(|q| q.float(bits)))
+            .flatten();
+        let mut keeper = Keeper {
+            plan: self,
+            times: self.times.iter().map(element).collect(),
+            strobe,
+            bits,
+            count: 0,
+            ended: None,
+            motion: Motion {
+                events: Vec::new(),
+                samples: Vec::new(),
+                points: Vec::new(),
+                last: moment(&real, &real.zero(), start.each_ref(), false),
+                work: Work::default(),
+                stuck_time: Float::new(real.bits()),
+                line: Vec::new(),
+                complete: false,
+            },
+            real: real.clone(),
+        };
+        let mut stopped = false;
+        let target = element(&self.target());
+        let outcome = flow.advance(&target, &mut |report| {
+            stopped |= !goes_on();
+            if stopped || keeper.keep(report) {
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        })?;
+        let stuck = flow.contact().is_some() || flow.modes().contains(&0);
+        let [x, v, ..] = flow.state() else { return Ok(keeper.motion) };
+        keeper.rest(flow.time(), [x, v], stuck);
+        let (mut motion, ended) = (keeper.motion, keeper.ended);
+        motion.complete = !stopped
+            && match self.end {
+                End::Time(_) => outcome == Outcome::Reached,
+                _ => ended.is_some(),
+            };
+        motion.last = moment(&real, flow.time(), [x, v], stuck);
+        if let Some(last) = ended {
+            let end = last.time.to_f64();
+            motion.line.retain(|dot| dot.time <= end);
+            motion.samples.retain(|sample| sample.time <= last.time);
+            motion.points.retain(|point| point.time <= last.time);
+            motion.last = last;
+        }
+        motion.work = flow.work();
+        Ok(motion)
+    }
+}
+
+fn moment<R: Real>(real: &R, time: &R::Element, [x, v]: [&R::Element; 2], stuck: bool) -> Moment {
+    Moment { time: real.to_float(time), state: [real.to_float(x), real.to_float(v)], stuck }
+}
+
+/// Collects what is reported.
+struct Keeper<'p, R: Real> {
+    plan: &'p Plan,
+    real: R,
+    /// The times of samples.
+    times: Vec<R::Element>,
+    /// The period of the force, for the stroboscopic section.
+    strobe: Option<Float>,
+    bits: u32,
+    /// Events that count towards the end.
+    count: u32,
+    /// The event that ended it; a section is crossed inside of a step, which goes on behind it.
+    ended: Option<Moment>,
+    motion: Motion,
+}
+
+impl<R: Real> Keeper<'_, R> {
+    /// Keeps a report; whether the end is reached.
+    fn keep(&mut self, report: &Report<'_, R>) -> bool {
+        match report {
+            Report::Segment(segment) => {
+                self.segment(segment);
+                false
+            }
+            Report::Event(_) if self.ended.is_some() => true,
+            Report::Event(event) => {
+                let pair = |states: &[R::Element]| match states {
+                    [x, v, ..] => [self.real.to_float(x), self.real.to_float(v)],
+                    _ => [Float::new(2), Float::new(2)],
+                };
+                let (before, after) = (pair(event.before), pair(event.after));
+                let time = self.real.to_float(event.time);
+                let (section, end) = (self.plan.section, &self.plan.end);
+                let here = Moment { time: time.clone(), state: after.clone(), stuck: false };
+                let maximum = matches!(event.kind, EventKind::Section { rising: false, .. });
+                let impact = matches!(event.kind, EventKind::Impact { .. });
+                if (maximum && section == Some(Section::Velocity))
+                    || (impact && section == Some(Section::Impact))
+                {
+                    let point = Moment { time: time.clone(), state: before.clone(), stuck: false };
+                    self.motion.points.push(point);
+                }
+                // Where a fractional power passes zero nothing happens that could be told in time:
+                // the integrator leaps over the branch point.
+                let silent = match event.kind {
+                    EventKind::Section { .. } => true,
+                    EventKind::Switching { .. } => !self.plan.setup.sticks,
+                    _ => false,
+                };
+                if !silent {
+                    self.motion.events.push(Happening { kind: event.kind, time, before, after });
+                }
+                let (counts, most) = match end {
+                    End::Time(_) => (false, u32::MAX),
+                    End::Maxima(n) => (maximum, *n),
+                    End::Impacts(n) => (impact, *n),
+                };
+                self.count += u32::from(counts);
+                if counts && self.count >= most {
+                    self.ended = Some(here);
+                }
+                self.ended.is_some()
+            }
+        }
+    }
+
+    fn strobe_time(&self) -> Option<R::Element> {
+        let n = u32::try_from(self.motion.points.len()).ok()?.checked_add(1)?;
+        let period = self.strobe.as_ref()?;
+        Some(self.real.float(&Float::with_val(self.bits, period * n)))
+    }
+
+    fn segment(&mut self, segment: &Segment<'_, R>) {
+        let real = self.real.clone();
+        let stuck = segment.contact.is_some() || segment.modes.contains(&0);
+        let end = real.sum(segment.start, segment.length);
+        let at = |time: &R::Element| {
+            let mut s = real.difference(time, segment.start);
+            if real.sign(&s) < 0 {
+                // During an accumulation of impacts, which is jumped over.
+                s = real.zero();
+            }
+            let (x, v) = (segment.value(0, &s), segment.value(1, &s));
+            moment(&real, time, [&x, &v], stuck)
+        };
+        while let Some(time) = self.times.get(self.motion.samples.len()).filter(|t| **t < end) {
+            let sample = at(time);
+            self.motion.samples.push(sample);
+        }
+        while let Some(time) = self.strobe_time().filter(|t| *t < end) {
+            let point = at(&time);
+            self.motion.points.push(point);
+        }
+        if stuck {
+            self.motion.stuck_time += real.to_float(segment.length);
+        }
+        if self.plan.drawn {
+            let start = real.to_f64(segment.start);
+            for k in 0..=DOTS {
+                let part = real.double(f64::from(k) / f64::from(DOTS));
+                let s = real.product(segment.length, &part);
+                let value = |state| real.to_f64(&segment.value(state, &s));
+                let time = start + real.to_f64(&s);
+                self.motion.line.push(Dot { time, x: value(0), v: value(1), stuck });
+            }
+        }
+    }
+
+    /// What falls on the end itself.
+    fn rest(&mut self, time: &R::Element, state: [&R::Element; 2], stuck: bool) {
+        let real = self.real.clone();
+        while let Some(t) = self.times.get(self.motion.samples.len()).filter(|t| *t <= time) {
+            let sample = moment(&real, t, state, stuck);
+            self.motion.samples.push(sample);
+        }
+        while let Some(t) = self.strobe_time().filter(|t| t <= time) {
+            let point = moment(&real, &t, state, stuck);
+            self.motion.points.push(point);
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! `lindstedt verify`: the expansion against the time domain.
+
+use crate::Outcome;
+use crate::arguments::{Format, VerifyOptions};
+use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
+use crate::output;
+use crate::session::{Session, parameters, problem};
+use crate::simulate::plot;
+use lindstedt::verify::{Comparison, TOLERANCE, Verdict, Verification, VerifySettings, verify};
+use lindstedt::{Progress, Value};
+use plotters::prelude::*;
+use rug::{Float, Rational};
+use serde_json::{Value as Json, json};
+use std::fmt::Write;
+
+pub fn run(options: &VerifyOptions, session: &Session<'_>) -> Outcome {
+    let problem = problem(&options.problem)?;
+    let parameters = parameters(&options.set)?;
+    // The equation is written for amplitude one; only the sums of the pendulum depend on it.
+    let allowed = |name: &str| {
+        name == "amplitude" && problem.amplitude == lindstedt::equation::AmplitudeRole::InSums
+    };
+    if let Some(name) = parameters.keys().find(|name| !allowed(name)) {
+        if problem.parameters.iter().any(|card| card.name == **name) {
+            let message =
+                format!("{name} is not free here: {} is varied, amplitude 1", problem.small);
+            return Err(Failure::usage("parameter", message, "--small V1,V2,..."));
+        }
+        let message = format!("{} has no parameter {name:?}", problem.name);
+        return Err(Failure::usage("unknown-parameter", message, "see `lindstedt problems`"));
+    }
+    plot::check(&options.plot)?;
+    let settings = VerifySettings {
+        order: options.order as usize,
+        small: small(&options.small)?,
+        periods: options.periods,
+        digits: options.digits,
+        parameters,
+        memory: session.memory(),
+        ..VerifySettings::default()
+    };
+    output::check_writable(session)?;
+    let found = verify(&problem, &settings, &mut |progress| {
+        if let Progress::Order(order, _) = progress {
+            session.say(format!("order {order}"));
+        }
+        session.goes_on()
+    })?;
+    session.done();
+    if found.order < settings.order {
+        let message = format!("stopped after order {} of the expansion", found.order);
+        let (exit, code) = if session.interrupted() {
+            (INTERRUPTED, "interrupted")
+        } else {
+            (UNDECIDED, "limit-seconds")
+        };
+        return Err(Failure { exit, code, message, hint: "raise --limit-seconds".into() });
+    }
+    let report = Report { problem: &problem.name, settings: &settings, found: &found };
+    let text = match session.format() {
+        Format::Json => format!("{:#}\n", report.json(session)),
+        Format::Text => report.text(),
+        Format::Latex => report.latex(),
+        Format::Markdown => report.markdown(),
+    };
+    for path in &options.plot {
+        plot::write(path, || Ok(report.csv()), || report.figure())?;
+    }
+    output::write(session, &text)?;
+    Ok(match found.verdict {
+        Verdict::Agrees => 0,
+        Verdict::Disagrees => NO_ANSWER,
+        Verdict::Undecided => UNDECIDED,
+    })
+}
+
+fn small(text: &str) -> Result<Vec<Rational>, Failure> {
+    let mut list: Vec<Rational> = Vec::new();
+    for part in text.split(',') {
+        let value = Value::parse(part)?;
+        let wrong = |message: String| Err(Failure::usage("small", message, "1/100,1/200,1/400"));
+        let Some(q) = value.as_rational().filter(|q| !q.is_zero()) else {
+            return wrong(format!("{part:?} is no rational number other than zero"));
+        };
+        if list.last().is_some_and(|last| q.cmp_abs(last).is_ge()) {
+            return wrong(format!("{part} is not smaller than the value before"));
+        }
+        list.push(q.clone());
+    }
+    if list.len() < 2 || list.len() > 100 {
+        return Err(Failure::usage("small", "2 to 100 values are needed".into(), "1/100,1/200"));
+    }
+    Ok(list)
+}
+
+struct Report<'a> {
+    problem: &'a str,
+    settings: &'a VerifySettings,
+    found: &'a Verification,
+}
+
+fn short(x: &Float) -> String {
+    x.to_string_radix(10, Some(6))
+}
+
+impl Report<'_> {
+    fn verdict(&self) -> String {
+        let expected = self.found.order + 1;
+        match (self.found.verdict, self.found.observed) {
+            (Verdict::Agrees, Some(slope)) => {
+                format!("agrees: observed order {slope:.4}, expected {expected}")
+            }
+            (Verdict::Disagrees, Some(slope)) => {
+                format!(
+                    "disagrees: observed order {slope:.4}, expected {expected} within {TOLERANCE}"
+                )
+            }
+            _ => "undecided: the error of the integration is not small against the difference; \
+                  more --digits or larger --small"
+                .to_owned(),
+        }
+    }
+
+    fn word(&self) -> &'static str {
+        match self.found.verdict {
+            Verdict::Agrees => "agrees",
+            Verdict::Disagrees => "disagrees",
+            Verdict::Undecided => "undecided",
+        }
+    }
+
+    fn json(&self, session: &Session<'_>) -> Json {
+        let row = |c: &Comparison| {
+            json!({
+                "small": {"exact": c.small.to_string(), "decimal": format!("{:e}", c.small.to_f64()),
+                          "error": null, "status": "exact"},
+                "difference": {"exact": null, "decimal": short(&c.error),
+                               "error": short(&c.simulation_error), "status": "estimated"},
+                "slope": c.slope,
+            })
+        };
+        let at: serde_json::Map<_, _> = self
+            .settings
+            .parameters
+            .iter()
+            .map(|(n, v)| (n.clone(), v.to_string().into()))
+            .collect();
+        json!({
+            "problem": self.problem,
+            "parameter": self.found.parameter,
+            "at": at,
+            "order": self.found.order,
+            "digits": self.found.digits,
+            "periods": self.settings.periods,
+            "table": self.found.comparisons.iter().map(row).collect::<Vec<_>>(),
+            "observed_order": self.found.observed,
+            "expected_order": self.found.order + 1,
+            "tolerance": TOLERANCE,
+            "verdict": self.word(),
+            "reason": self.verdict(),
+            "seconds": session.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// Small parameter, difference, error of the integration, slope.
+    fn rows(&self) -> Vec<[String; 4]> {
+        let slope = |c: &Comparison| c.slope.map(|s| format!("{s:.4}")).unwrap_or_default();
+        let row = |c: &Comparison| {
+            [c.small.to_string(), short(&c.error), short(&c.simulation_error), slope(c)]
+        };
+        self.found.comparisons.iter().map(row).collect()
+    }
+
+    fn heading(&self) -> [String; 4] {
+        let name = self.found.parameter.clone();
+        [name, "max |x_N - x|".into(), "integration".into(), "local order".into()]
+    }
+
+    fn title(&self) -> String {
+        let Self { problem, found, settings } = self;
+        format!(
+            "{problem}: order {}, {} periods, integration with {} digits",
+            found.order, settings.periods, found.digits
+        )
+    }
+
+    fn text(&self) -> String {
+        let mut text = format!("{}\n\n", self.title());
+        for [small, error, noise, slope] in [self.heading()].into_iter().chain(self.rows()) {
+            let line = format!("  {small:<12} {error:<16} {noise:<16} {slope}");
+            let _ = writeln!(text, "{}", line.trim_end());
+        }
+        let _ = writeln!(text, "\n  {}", self.verdict());
+        text
+    }
+
+    fn markdown(&self) -> String {
+        let mut text = format!("### {}\n\n", self.title());
+        let line = |cells: [String; 4]| {
+            format!("| {} |\n", cells.map(|c| c.replace('|', "\\|")).join(" | "))
+        };
+        text += &line(self.heading());
+        text += "|---|---|---|---|\n";
+        text.extend(self.rows().into_iter().map(line));
+        let _ = writeln!(text, "\n{}", self.verdict());
+        text
+    }
+
+    fn latex(&self) -> String {
+        let mut text = String::from("\\begin{tabular}{llll}\n");
+        let name = match self.found.parameter.as_str() {
+            "eps" => r"\varepsilon".to_owned(),
+            other => format!("\\{other}"),
+        };
+        let _ =
+            writeln!(text, "${name}$ & $\\max |x_N - x|$ & integration & local order \\\\ \\hline");
+        for row in self.rows() {
+            let _ = writeln!(text, "{} \\\\", row.join(" & "));
+        }
+        let _ = writeln!(text, "\\end{{tabular}}\n% {}", self.verdict());
+        text
+    }
+
+    fn csv(&self) -> String {
+        let mut text = format!("# {}\nsmall,difference,integration,slope\n", self.title());
+        for row in self.rows() {
+            let _ = writeln!(text, "{}", row.join(","));
+        }
+        text
+    }
+
+    /// log10 of the errors over log10 of the small parameter, with the line of slope N + 1.
+    fn figure(&self) -> Result<String, Failure> {
+        let log = |x: Float| x.abs().log10().to_f64();
+        let points: Vec<(f64, f64)> = (self.found.comparisons.iter())
+            .map(|c| (log(Float::with_val(80, &c.small)), log(c.error.clone())))
+            .filter(|(_, y)| y.is_finite())
+            .collect();
+        let name = &self.found.parameter;
+        let labels = (format!("log10 |{name}|"), "log10 max |x_N - x|".to_owned());
+        let expected = self.found.order as f64 + 1.0;
+        let grey = RGBColor(150, 150, 150);
+        let words = [format!("slope {expected}"), "measured".to_owned()];
+        let marks = [plot::Mark::Line(grey, 2), plot::Mark::Disc(plot::BLUE)];
+        let legend: Vec<(&str, plot::Mark)> = words.iter().map(String::as_str).zip(marks).collect();
+        plot::chart(&self.title(), &labels, &legend, &points, |chart| {
+            if let Some(&(x0, y0)) = points.last() {
+                let line = points.iter().map(|(x, _)| (*x, y0 + expected * (x - x0)));
+                chart.draw_series(LineSeries::new(line, plot::stroke(grey, 2)))?;
+            }
+            let radius = (5 * plot::FINE) as i32;
+            chart
+                .draw_series(points.iter().map(|p| Circle::new(*p, radius, plot::BLUE.filled())))?;
+            Ok(())
+        })
+    }
+}

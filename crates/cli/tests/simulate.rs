@@ -1,0 +1,251 @@
+//! `lindstedt simulate`: events, digits, sections, figures, diagrams that survive a kill.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
+    command.args(["simulate", "--quiet"]).args(arguments);
+    command
+}
+
+fn run(arguments: &[&str]) -> Output {
+    command(arguments).output().unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = run(&[arguments, &["--format", "json"]].concat());
+    assert!(output.status.success(), "{arguments:?} {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn float(number: &Value) -> f64 {
+    number["decimal"].as_str().unwrap().parse().unwrap()
+}
+
+fn file(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("lindstedt-simulate-{}-{name}", std::process::id()))
+}
+
+/// The period 4 K(sin(a/2)) of the pendulum and B(1/4, 1/2) sqrt(2) of x'' + x^3 = 0 (both from
+/// mpmath 1.3.0).
+#[test]
+fn periods_to_thirty_digits() {
+    let cases: [(&[&str], &str); 2] = [
+        (&["pendulum", "--set", "amplitude=3"], PENDULUM),
+        (&["power-law", "--set", "n=3"], CUBIC),
+    ];
+    for (arguments, period) in cases {
+        let found = json(&[arguments, &["--periods", "1"]].concat());
+        assert_eq!(found["final"]["t"]["decimal"], period, "{arguments:?}");
+        assert_eq!(found["final"]["t"]["status"], "estimated");
+    }
+}
+const PENDULUM: &str = "16.1555393723933747637602761155";
+const CUBIC: &str = "7.41629870920548767373540138878";
+
+/// tests/data/stick-slip/trajectories.json, first case: an independent event code.
+#[test]
+fn stick_slip_events() {
+    let data =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/stick-slip/trajectories.json");
+    let data: Value = serde_json::from_str(&std::fs::read_to_string(data).unwrap()).unwrap();
+    let case = &data["trajectories"][0];
+    let start = format!("{},{}", case["x0"].as_str().unwrap(), case["v0"].as_str().unwrap());
+    let end = case["t_end"].as_str().unwrap();
+    let found = json(&[
+        "stick-slip",
+        "--set",
+        "gamma=0.6",
+        "--state",
+        &start,
+        "--until",
+        end,
+        "--digits",
+        "25",
+    ]);
+    let (known, events) = (case["events"].as_array().unwrap(), found["events"].as_array().unwrap());
+    assert_eq!(known.len(), events.len());
+    let head = |text: &Value| text.as_str().unwrap().chars().take(20).collect::<String>();
+    let mut sticks = 0;
+    for (known, event) in known.iter().zip(events) {
+        assert_eq!(head(&known["t"]), head(&event["t"]["decimal"]));
+        sticks += u32::from(event["kind"] == "stick");
+    }
+    assert!(sticks > 0 && float(&found["sticking_time"]) > 0.0);
+    let x: f64 = case["final"]["x"].as_str().unwrap().parse().unwrap();
+    assert!((float(&found["final"]["x"]) - x).abs() < 1e-14);
+}
+
+/// The uncontrolled orbit O3 repeats; at the flip gain perturbations alternate with ratio -1.
+#[test]
+fn vibro_impact_orbit_and_flip() {
+    let orbit = json(&["vibro-impact", "--impacts", "5"]);
+    let times: Vec<f64> =
+        orbit["events"].as_array().unwrap().iter().map(|e| float(&e["t"])).collect();
+    let period = 2.0 * std::f64::consts::PI / 3.3;
+    for (n, time) in (1..).zip(&times) {
+        assert!((time - f64::from(n) * period).abs() < 1e-13, "{n} {time}");
+    }
+    let at = ["--set", "A=-0.0292903246974", "--perturb", "1e-8", "--impacts", "40"];
+    let flip = json(&[&["vibro-impact"], &at[..]].concat());
+    let growth = flip["growth"].as_array().unwrap();
+    assert_eq!(growth.len(), 39);
+    assert!((float(&growth[38]) + 1.0).abs() < 2e-6, "{}", growth[38]);
+    assert!(flip["verdict"].as_str().unwrap().contains("last ratio -"));
+    // From any other state too, with the flight before it as history.
+    let free = json(&["vibro-impact", "--state", "-1/2,0", "--impacts", "3", "--set", "A=1/20"]);
+    assert_eq!(free["events"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn samples_and_sections() {
+    let found = json(&["duffing", "--set", "eps=0", "--until", "10", "--times", "0..10:11"]);
+    let samples = found["samples"].as_array().unwrap();
+    assert_eq!(samples.len(), 11);
+    for (t, sample) in (0..).zip(samples) {
+        assert!((float(&sample["x"]) - f64::from(t).cos()).abs() < 1e-15);
+    }
+    let strobe =
+        ["stick-slip", "--set", "gamma=0.6", "--section", "stroboscopic", "--periods", "90"];
+    let strobe = json(&[&strobe[..], &["--f64"]].concat());
+    let points = strobe["section"]["points"].as_array().unwrap();
+    assert_eq!(points.len(), 90);
+    // The orbit of period two: every second point the same.
+    let x = |n: usize| points[n][1].as_f64().unwrap();
+    assert!((x(89) - x(87)).abs() < 1e-3 && (x(89) - x(88)).abs() > 1.0, "{} {}", x(88), x(89));
+    let cycle = json(&["van-der-pol", "--periods", "8", "--section", "velocity", "--digits", "15"]);
+    assert_eq!(cycle["section"]["points"].as_array().unwrap().len(), 8);
+}
+
+#[test]
+fn figures_show_what_happens() {
+    let belt = ["stick-slip", "--f64", "--set", "gamma=0.6", "--periods", "10"];
+    let bounce = ["vibro-impact", "--f64", "--impacts", "6"];
+    let cases: [(&[&str], &str, &[&str]); 4] = [
+        (&belt, "phase", &["sticking", "stick begins", "velocity x&apos;|velocity x'"]),
+        (&belt, "section", &["Poincare section", "displacement x"]),
+        (&bounce, "time", &["impact", "<polygon", "time t"]),
+        (&bounce, "phase", &["impact", "phase portrait"]),
+    ];
+    for (arguments, figure, words) in cases {
+        let path = file(&format!("{figure}.svg"));
+        let plot = ["--figure", figure, "--plot", path.to_str().unwrap()];
+        assert!(run(&[arguments, &plot].concat()).status.success());
+        let drawn = std::fs::read_to_string(&path).unwrap();
+        assert!(drawn.trim_end().ends_with("</svg>") && drawn.contains("width=\"960\""));
+        for word in words {
+            assert!(word.split('|').any(|word| drawn.contains(word)), "{figure}: {word}");
+        }
+        let _ = std::fs::remove_file(path);
+    }
+    let path = file("table.csv");
+    assert!(run(&[&belt[..], &["--plot", path.to_str().unwrap()]].concat()).status.success());
+    let table = std::fs::read_to_string(&path).unwrap();
+    assert!(
+        table.contains("\nsticking,") && table.contains("\nstick,") && table.contains("\nslip,")
+    );
+    let _ = std::fs::remove_file(path);
+}
+
+/// Killed in the middle and begun again, the file, the table and the figure are the same bytes.
+#[test]
+fn a_killed_diagram_goes_on() {
+    let sweep =
+        ["stick-slip", "--sweep", "gamma=0.58..0.66:60", "--skip", "150", "--periods", "60"];
+    let go = |name: &str, kill: bool| -> [Vec<u8>; 3] {
+        let paths = ["dat", "csv", "svg"].map(|kind| file(&format!("{name}.{kind}")));
+        let [resume, csv, svg] = paths.each_ref().map(|p| p.to_str().unwrap());
+        let all = [&sweep[..], &["--resume", resume, "--plot", csv, "--plot", svg]].concat();
+        if kill {
+            let mut child =
+                command(&all).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+            // As soon as some values are there.
+            let lines = || std::fs::read_to_string(&paths[0]).map_or(0, |t| t.lines().count());
+            while lines() < 5 && child.try_wait().unwrap().is_none() {
+                std::thread::sleep(Duration::from_millis(2));
+            }
+            child.kill().unwrap();
+            child.wait().unwrap();
+            assert!(!paths[2].exists() && lines() < 61, "killed too late");
+            // A line that was cut in the middle.
+            let mut torn = std::fs::read(&paths[0]).unwrap();
+            torn.truncate(torn.len() - 7);
+            std::fs::write(&paths[0], torn).unwrap();
+        }
+        assert!(command(&all).output().unwrap().status.success());
+        paths.map(|path| {
+            let bytes = std::fs::read(&path).unwrap();
+            let _ = std::fs::remove_file(path);
+            bytes
+        })
+    };
+    let (whole, resumed) = (go("whole", false), go("killed", true));
+    assert!(whole == resumed);
+    assert_eq!(String::from_utf8_lossy(&whole[0]).lines().count(), 61);
+}
+
+#[test]
+fn a_diagram_doubles_its_period() {
+    let sweep = ["--sweep", "gamma=0.6..0.65:2", "--skip", "600", "--periods", "40"];
+    let found = json(&[&["stick-slip"], &sweep[..]].concat());
+    let distinct = |n: usize| {
+        let points = found["sweep"]["columns"][n]["points"].as_array().unwrap();
+        let mut list: Vec<i64> =
+            points.iter().map(|p| (p[0].as_f64().unwrap() * 1e3).round() as i64).collect();
+        list.sort_unstable();
+        list.dedup();
+        list.len()
+    };
+    // Period 2 at 0.6, chaos at 0.65.
+    assert!(distinct(0) <= 2 && distinct(1) > 20, "{} {}", distinct(0), distinct(1));
+    let gains =
+        json(&["vibro-impact", "--sweep", "A=-0.04..-0.02:3", "--skip", "50", "--impacts", "10"]);
+    assert_eq!(gains["sweep"]["section"], "impact");
+    assert_eq!(gains["sweep"]["columns"][0]["points"].as_array().unwrap().len(), 10);
+}
+
+#[test]
+fn refusals_have_their_exit_code() {
+    let cases: [(&[&str], i32); 24] = [
+        (&["nonsense"], 2),
+        (&["duffing", "--set", "x=1"], 2),
+        (&["duffing", "--state", "1"], 2),
+        (&["duffing", "--state", "1,nan"], 2),
+        (&["duffing", "--until", "0"], 2),
+        (&["duffing", "--until", "-1"], 2),
+        (&["duffing", "--until", "x"], 2),
+        (&["duffing", "--until", "1", "--periods", "2"], 2),
+        (&["duffing", "--impacts", "3"], 2),
+        (&["duffing", "--section", "impact"], 2),
+        (&["duffing", "--section", "stroboscopic"], 2),
+        (&["duffing", "--times", "0..1"], 2),
+        (&["duffing", "--times=-1..1:3"], 2),
+        (&["duffing", "--figure", "bifurcation"], 2),
+        (&["duffing", "--perturb", "1e-3"], 2),
+        (&["duffing", "--resume", "x"], 2),
+        (&["duffing", "--plot", "x.png"], 2),
+        (&["duffing", "--until", "1", "--plot", "/nonexistent/x.svg"], 5),
+        (&["stick-slip", "--sweep", "omega=1..2:3"], 2),
+        (&["stick-slip", "--sweep", "gamma=1..0:3"], 2),
+        (&["stick-slip", "--set", "omega=0"], 3),
+        (&["vibro-impact", "--set", "c=3"], 3),
+        (&["vibro-impact", "--set", "R_r=2"], 2),
+        (&["duffing", "--until", "1e9", "--limit-seconds", "0.2"], 4),
+    ];
+    for (arguments, code) in cases {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        assert!(!output.stderr.is_empty(), "{arguments:?}");
+    }
+    // A file of another sweep is not overwritten.
+    let path = file("other");
+    std::fs::write(&path, "mine\n").unwrap();
+    let other = ["--sweep", "gamma=0.6..0.7:2", "--resume", path.to_str().unwrap()];
+    assert_eq!(run(&[&["stick-slip"], &other[..]].concat()).status.code(), Some(5));
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "mine\n");
+    let _ = std::fs::remove_file(path);
+}

@@ -1,0 +1,209 @@
+//! The coefficients of T/2pi as floats, by the energy integral in numbers.
+//!
+//! The exact polynomials of [`crate::energy`] have tens of thousands of terms at order 30; their
+//! values satisfy the same recurrences and cost O(N^2) for the power law, O(N^5/120) products for
+//! forces x F(delta ln x^2).
+
+use crate::number::sine_sum;
+use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_phase::lobachevsky_function::means;
+use rug::{Float, Integer, Rational};
+
+/// T/2pi of x'' + x (x^2)^delta = 0 at amplitude one: with x = cos^(1/(1+delta)) theta,
+/// T/2pi = sum_j mu_j delta^j (1 + delta)^(-1/2 - j), so t_n = sum_j mu_j binomial(-1/2-j, n-j).
+///
+/// Nothing unless every coefficient is known to `bits` bits relative, with 16 N more in work.
+pub(super) fn power_law(order: usize, bits: u32) -> Option<Vec<Float>> {
+    let guard = 16u32.checked_mul(u32::try_from(order).ok()?)?.checked_add(64)?;
+    let balls = Balls::new(bits).with_guard(guard);
+    let moments = means(order, balls);
+    let coefficient = |n: usize| -> Option<Float> {
+        let mut sum = balls.zero();
+        for (j, mu) in moments.iter().enumerate().take(n + 1) {
+            let top = Rational::from((-1, 2)) - Rational::from(j);
+            let mut binomial = Rational::from(1);
+            for i in 0..n - j {
+                binomial *= (&top - Rational::from(i)) / Rational::from(i + 1);
+            }
+            sum = balls.add(&sum, &balls.mul_rational(mu, &binomial));
+        }
+        known(&sum, bits)
+    };
+    (0..=order).map(coefficient).collect()
+}
+
+/// The midpoint, if it has so many bits.
+fn known(ball: &Ball, bits: u32) -> Option<Float> {
+    let enough = ball.relative_accuracy_bits() >= i64::from(bits);
+    enough.then(|| Float::with_val(bits, ball.midpoint()))
+}
+
+/// T/2pi of x'' + x F(delta ln x^2) = 0, F(z) = sum_n S_n(a) z^n/n!, x(0) = 1, by the recurrence
+/// y_n of the radicand's power -1/2 as polynomials in K = cot^2 theta and l = -ln cos theta, with
+/// numbers for coefficients, and their means.
+///
+/// Rounded at `bits` + 16 N bits without proof; the caller computes with other bits and compares.
+pub(super) fn pendulum(
+    amplitude: &dyn Fn(Balls) -> Ball,
+    order: usize,
+    bits: u32,
+) -> Option<Vec<Float>> {
+    let guard = 16u32.checked_mul(u32::try_from(order).ok()?)?.checked_add(64)?;
+    let work = bits.checked_add(guard)?;
+    let mut balls = Balls::new(work).with_guard(64);
+    // The sums cancel near amplitude pi, where S_0 = sin(a)/a vanishes.
+    let sums = loop {
+        let at = amplitude(balls);
+        let list: Vec<Ball> =
+            (0..=u16::try_from(order).ok()?).map(|n| sine_sum(n, &at, balls)).collect();
+        if list.iter().all(|s| s.relative_accuracy_bits() >= i64::from(work)) {
+            break list;
+        }
+        if balls.bits() > work.saturating_mul(16) {
+            return None;
+        }
+        balls = Balls::new(balls.bits().saturating_mul(2));
+    };
+    let root = balls.sqrt(sums.first()?)?;
+    let ratios: Vec<Float> = sums
+        .iter()
+        .map(|s| Some(Float::with_val(work, balls.div(s, sums.first()?)?.midpoint())))
+        .collect::<Option<_>>()?;
+    let radicand = radicand(&ratios, work);
+    let powers = inverse_root(&radicand, work);
+    let table = means_of_powers(order, work);
+    let scale = Float::with_val(work, root.midpoint());
+    let coefficient = |y: &Grid| {
+        let mut sum = Float::new(work);
+        for (i, row) in y.iter().enumerate() {
+            for (m, c) in row.iter().enumerate() {
+                sum += c * &table[i][m];
+            }
+        }
+        Float::with_val(bits, sum / &scale)
+    };
+    Some(powers.iter().map(coefficient).collect())
+}
+
+/// c[i][m] of K^i l^m.
+type Grid = Vec<Vec<Float>>;
+
+/// One order of the radicand: a constant, and the coefficients of K l^i for i = 1, 2, ...
+struct Radicand {
+    constant: Float,
+    logs: Vec<Float>,
+}
+
+/// (F_j/F_0) w_j/sin^2 with w_j/sin^2 = (2^(j+1)/j!) I_j/sin^2 and
+/// I_j/sin^2 = -K (-l)^j/2 - (j/2) I_{j-1}/sin^2.
+fn radicand(ratios: &[Float], bits: u32) -> Vec<Radicand> {
+    let mut constant = Rational::from((1, 2));
+    let mut logs: Vec<Rational> = Vec::new();
+    let mut factor = Rational::from(2);
+    let mut list = Vec::new();
+    for (j, ratio) in ratios.iter().enumerate().skip(1) {
+        let step = Rational::from((-(j as i64), 2));
+        constant *= &step;
+        for c in &mut logs {
+            *c *= &step;
+        }
+        logs.push(Rational::from((if j % 2 == 0 { -1 } else { 1 }, 2)));
+        factor *= Rational::from((2, j));
+        let value = |c: &Rational| Float::with_val(bits, Rational::from(c * &factor)) * ratio;
+        list.push(Radicand { constant: value(&constant), logs: logs.iter().map(value).collect() });
+    }
+    list
+}
+
+/// n y_n = sum_{k=1}^n (k/2 - n) x_k y_{n-k}, y = x^(-1/2).
+fn inverse_root(radicand: &[Radicand], bits: u32) -> Vec<Grid> {
+    let mut list: Vec<Grid> = vec![vec![vec![Float::with_val(bits, 1)]]];
+    for n in 1..=radicand.len() {
+        let mut y: Grid = (0..=n).map(|_| vec![Float::new(bits); n + 1]).collect();
+        for (k, x) in (1..=n).zip(radicand) {
+            let weight = Float::with_val(bits, k as f64 / 2.0 - n as f64) / n as u64;
+            let constant = Float::with_val(bits, &x.constant * &weight);
+            let logs: Vec<Float> =
+                x.logs.iter().map(|c| Float::with_val(bits, c * &weight)).collect();
+            for (i, row) in list[n - k].iter().enumerate() {
+                for (m, c) in row.iter().enumerate().filter(|(_, c)| !c.is_zero()) {
+                    y[i][m] += c * &constant;
+                    for (j, log) in logs.iter().enumerate() {
+                        y[i + 1][m + j + 1] += c * log;
+                    }
+                }
+            }
+        }
+        list.push(y);
+    }
+    list
+}
+
+/// <K^i l^m> = m! [z^m] prod_{r<i} -(1 + 2r - z)/(1 + 2r) sum_m mu_m z^m for i, m <= order.
+fn means_of_powers(order: usize, bits: u32) -> Grid {
+    let moments = means(order, Balls::new(bits));
+    let mut product = vec![Rational::new(); order + 1];
+    product[0] += 1;
+    let mut table = Vec::new();
+    for i in 0..=order {
+        let mean = |m: usize| {
+            let mut sum = Float::new(bits);
+            for (c, mu) in product.iter().take(m + 1).zip(moments[..=m].iter().rev()) {
+                sum += Float::with_val(bits, mu.midpoint() * c);
+            }
+            let factorial = u32::try_from(m).unwrap_or(u32::MAX);
+            sum * Integer::from(Integer::factorial(factorial))
+        };
+        table.push((0..=order).map(mean).collect());
+        let odd = 2 * i as u64 + 1;
+        for index in (0..product.len()).rev() {
+            let mut value = Rational::from(&product[index] * odd);
+            if index > 0 {
+                value -= &product[index - 1];
+            }
+            product[index] = -value / odd;
+        }
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+    use super::*;
+    use crate::{Route, Settings, derive, problems};
+
+    /// The exact polynomials, evaluated as balls, against the recurrences in numbers.
+    #[test]
+    fn numbers_agree_with_the_exact_series() {
+        let order = 9;
+        let settings = Settings { order, route: Route::EnergyIntegral, ..Settings::default() };
+        let one = |balls: Balls| balls.one();
+        for name in ["power-law", "pendulum"] {
+            let problem = problems::find(name).unwrap();
+            let exact = derive(&problem, &settings, &mut |_| true).unwrap();
+            let series = exact.named("period_over_2pi").unwrap();
+            let numbers = match name {
+                "power-law" => power_law(order, 300),
+                _ => pendulum(&one, order, 300),
+            };
+            for (n, number) in numbers.unwrap().iter().enumerate() {
+                let ball = exact.ball(series, n, Balls::new(400)).unwrap();
+                let error = Float::with_val(53, ball.midpoint() - number).abs();
+                assert!(error < 1e-85, "{name} {n}: {error}");
+            }
+        }
+    }
+
+    /// What rounding leaves at order 40.
+    #[test]
+    fn rounding_is_below_the_bits() {
+        let three = |balls: Balls| balls.from_i64(3);
+        let (low, high) = (pendulum(&three, 40, 200).unwrap(), pendulum(&three, 40, 500).unwrap());
+        for (a, b) in low.iter().zip(&high) {
+            let error = Float::with_val(53, a - b).abs() / Float::with_val(53, b.abs_ref());
+            assert!(error < 1e-55, "{error}");
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! Values from an expansion: period and frequency at given parameters, by resummation of the
+//! series of T/2pi, beside the closed form where there is one.
+
+mod closed;
+mod coefficients;
+mod solution;
+mod source;
+
+use crate::number::{Number, Status, certified};
+use crate::{Error, Progress, Value};
+use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_coeff::digits::{decimal, error_string};
+use lindstedt_equation::{AmplitudeRole, Problem};
+use lindstedt_series::resummation::{
+    Growth, Kind, Method, Pade, Picture, ResummationError, Resummed, resum,
+};
+use rug::Float;
+pub use solution::{Displacement, Trajectory};
+use source::Source;
+use std::collections::BTreeMap;
+
+/// What to evaluate.
+#[derive(Clone, Debug)]
+pub struct EvaluateSettings {
+    /// The highest order of the expansion; a quick one if nothing.
+    pub order: Option<usize>,
+    /// The method; nothing is `auto`, the one with the least error estimate.
+    pub method: Option<Method>,
+    /// Values of parameters by name.
+    pub parameters: BTreeMap<String, Value>,
+    /// Digits asked for; an estimate has as many of them as its error allows.
+    pub digits: usize,
+    /// The memory that may be used, in bytes.
+    pub memory: u64,
+}
+
+impl Default for EvaluateSettings {
+    fn default() -> Self {
+        Self { order: None, method: None, parameters: BTreeMap::new(), digits: 30, memory: 8 << 30 }
+    }
+}
+
+/// A period and how it was found.
+#[derive(Debug)]
+pub struct Evaluation {
+    /// The parameters, the derived ones included.
+    pub at: Vec<(&'static str, Value)>,
+    /// The variable of the series.
+    pub variable: &'static str,
+    /// The order of the expansion in the small parameter.
+    pub order: usize,
+    /// The period by resummation; nothing where not one digit is supported.
+    pub period: Option<Number>,
+    /// 2 pi over the period.
+    pub frequency: Option<Number>,
+    /// The period by the closed form, and that form.
+    pub exact_period: Option<Number>,
+    /// |period - exact period|, where both are known.
+    pub true_error: Option<String>,
+    /// What was done, what the alternatives gave, what the coefficients tell.
+    pub resummed: Resummed,
+    /// The best truncation of a divergent series: order and partial sum of T.
+    pub best_truncation: Option<(usize, Option<Number>)>,
+    /// What is proved about the radius of convergence: its value, and why.
+    pub radius: Option<(f64, &'static str)>,
+    /// The best that is known of the period: the closed form, else the estimate.
+    best_period: Ball,
+    /// In words.
+    pub verdict: String,
+    /// Poles and zeros of the diagonal Pade approximant of the highest order.
+    pub picture: Option<Picture>,
+}
+
+/// The order that takes well below a second.
+fn default_order(problem: &Problem) -> usize {
+    match problem.amplitude {
+        AmplitudeRole::ScalesFrequency { .. } => 20,
+        AmplitudeRole::InSums => 24,
+        AmplitudeRole::InSmallParameter => 30,
+        AmplitudeRole::Determined | AmplitudeRole::Free | AmplitudeRole::Scaled => 60,
+    }
+}
+
+/// Bits for so many digits, with a margin.
+fn bits_for(digits: usize) -> u32 {
+    u32::try_from(digits).unwrap_or(u32::MAX / 8).saturating_mul(4).saturating_add(32)
+}
+
+/// Evaluates the period of a problem.
+///
+/// The series of T/2pi in the small parameter is summed; which quantity is truncated matters, and
+/// it is always this one. `period` and `frequency` are estimated; `exact_period` is certified.
+///
+/// # Errors
+/// [`Error::NotEvaluated`] for a problem whose period has no known series,
+/// [`Error::OutsideDomain`] and [`Error::UnknownParameter`] for parameters,
+/// [`Error::Resummation`] where the method asked for does not apply, and what
+/// [`crate::derive`] returns.
+///
+/// ```
+/// use lindstedt::evaluate::{EvaluateSettings, evaluate};
+/// use lindstedt::problems;
+/// let problem = problems::find("power-law").ok_or("no such problem")?;
+/// let result = evaluate(&problem, &EvaluateSettings::default(), &mut |_| true)?;
+/// let exact = result.exact_period.ok_or("no closed form")?;
+/// assert_eq!(exact.decimal, "7.41629870920548767373540138878");
+/// let period = result.period.ok_or("not one digit")?;
+/// assert!(period.decimal.starts_with("7.41629870920548"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn evaluate(
+    problem: &Problem,
+    settings: &EvaluateSettings,
+    observer: &mut dyn FnMut(Progress) -> bool,
+) -> Result<Evaluation, Error> {
+    let order = settings.order.unwrap_or_else(|| default_order(problem));
+    let source = source::source(problem, &settings.parameters, order, settings.memory, observer)?;
+    if !observer(Progress::Checking) {
+        return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
+    }
+    let accuracy = bits_for(settings.digits);
+    let sample = |bits: u32| source.sample(bits);
+    let resummed = resum(&sample, settings.method, accuracy);
+    let resummed = resummed
+        .map_err(|reason| Error::Resummation { problem: problem.name.to_string(), reason })?;
+    let exact_period = match &source.closed {
+        None => None,
+        Some((form, formula)) => {
+            Some(certified(Some((*form).to_owned()), settings.digits, formula)?)
+        }
+    };
+    let balls = Balls::new(resummed.bits).with_guard(64);
+    let scale = period_scale(&source, balls)?;
+    let estimate = &resummed.outcome.estimate;
+    let mut period = balls.mul(&balls.from_parts(&estimate.value, &estimate.error), &scale);
+    let closed = source.closed.as_ref().and_then(|(_, formula)| formula(balls));
+    let value = balls.mul(&balls.from_parts(&estimate.value, &Float::new(53)), &scale);
+    let difference = closed.as_ref().map(|exact| balls.sub(&value, exact).abs_upper());
+    if let Some(error) = &difference
+        && (!estimate.error.is_finite() || error > period.radius())
+    {
+        // Too few orders for an estimate, or an estimate that fails: the closed form measures
+        // the error.
+        period = balls.add_error(&value, error);
+    }
+    let frequency = balls.div(&balls.mul_i64(&balls.pi(), 2), &period);
+    let best = best_truncation(&sample, &resummed, &scale, settings.digits);
+    let picture = picture(&sample, resummed.bits);
+    let mut result = Evaluation {
+        at: source.at,
+        variable: source.variable,
+        order,
+        period: estimated(&period, settings.digits),
+        frequency: frequency.and_then(|f| estimated(&f, settings.digits)),
+        exact_period,
+        true_error: difference.map(|error| short(&error)),
+        resummed,
+        best_truncation: best,
+        radius: source.radius,
+        best_period: closed.unwrap_or(period),
+        verdict: String::new(),
+        picture,
+    };
+    result.verdict = result.describe();
+    Ok(result)
+}
+
+/// 2 pi times the factor of the series.
+fn period_scale(source: &Source, balls: Balls) -> Result<Ball, Error> {
+    let factor = (source.factor)(balls).filter(Ball::is_finite).ok_or(Error::NoValue)?;
+    Ok(balls.mul(&balls.mul_i64(&balls.pi(), 2), &factor))
+}
+
+/// An estimated number with as many digits as its error allows, at most `digits`.
+fn estimated(ball: &Ball, digits: usize) -> Option<Number> {
+    let known = ball.relative_accuracy_bits().clamp(0, 40_000) * 302 / 1000 + 2;
+    let most = usize::try_from(known).unwrap_or(1).min(digits).max(1);
+    let decimal = (1..=most).rev().find_map(|d| decimal(ball, d))?;
+    let error = error_string(ball, &decimal);
+    Some(Number { exact: None, decimal, error: Some(error), status: Status::Estimated })
+}
+
+fn short(x: &Float) -> String {
+    if x.is_zero() { "0".to_owned() } else { format!("{:.1e}", Float::with_val(53, x)) }
+}
+
+/// The smallest term of a series that diverges at the point.
+fn best_truncation(
+    sample: &dyn Fn(u32) -> Option<lindstedt_series::resummation::Sample>,
+    resummed: &Resummed,
+    scale: &Ball,
+    digits: usize,
+) -> Option<(usize, Option<Number>)> {
+    let outcome = sample(resummed.bits)?.sum(Method::PartialSum, None, 64).ok()?;
+    let order = outcome.smallest_term?;
+    let balls = Balls::new(resummed.bits);
+    let ball = balls.from_parts(&outcome.estimate.value, &outcome.estimate.error);
+    Some((order, estimated(&balls.mul(&ball, scale), digits)))
+}
+
+/// The poles and zeros of the diagonal approximant.
+fn picture(
+    sample: &dyn Fn(u32) -> Option<lindstedt_series::resummation::Sample>,
+    bits: u32,
+) -> Option<Picture> {
+    let sample = sample(bits)?;
+    let order = sample.coefficients.len().checked_sub(1)?;
+    Pade::new(&sample.coefficients, order - order / 2, order / 2, bits)?.picture()
+}
+
+/// The name of a method in words.
+#[must_use]
+pub fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::PartialSum => "partial sum",
+        Method::Pade => "Pade",
+        Method::Uniform => "uniform (series in u)",
+        Method::UniformPade => "Pade in u",
+        Method::ConformalPade => "conformal map and Pade",
+        Method::BorelPade => "Borel and Pade",
+        _ => "another method",
+    }
+}
+
+/// The name of a kind of singularity.
+#[must_use]
+pub fn kind_name(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Pole => "pole",
+        Kind::SquareRoot => "square root",
+        Kind::InverseSquareRoot => "inverse square root",
+        Kind::Logarithm => "logarithm",
+        _ => "power",
+    }
+}
+
+impl Evaluation {
+    /// What was done and why, in one or two sentences.
+    fn describe(&self) -> String {
+        let outcome = &self.resummed.outcome;
+        let mut parts = Vec::new();
+        let name = self.variable;
+        parts.push(match (self.radius, self.resummed.growth) {
+            (Some((0.0, why)), _) => {
+                format!("the series in {name} diverges for every {name} but 0 ({why}): it is asymptotic")
+            }
+            (Some((radius, why)), _) => {
+                format!("the series in {name} has radius of convergence {radius} ({why})")
+            }
+            (None, Growth::Factorial { rate }) => format!(
+                "the series in {name} seems to diverge for every {name} but 0 (coefficients grow like \
+                 n!^{rate:.1}): asymptotic"
+            ),
+            (None, Growth::Radius(radius)) => {
+                let found = self.resummed.singularity.as_ref();
+                let radius = found.map_or(radius, |s| s.at.abs().to_f64());
+                format!("the series in {name} has radius of convergence {radius:.4e} (estimated)")
+            }
+            (None, Growth::Entire) => {
+                format!("the coefficients in {name} fall like those of an entire function")
+            }
+            _ => "too few coefficients to estimate the radius of convergence".to_owned(),
+        });
+        if let Some((order, number)) = &self.best_truncation {
+            let value = number.as_ref().map_or_else(String::new, |n| format!(": {}", n.decimal));
+            parts.push(format!("best truncation at order {order}{value}"));
+        }
+        let method = method_name(self.resummed.method);
+        let degrees = outcome.degrees.map_or_else(String::new, |(l, m)| format!(" [{l}/{m}]"));
+        let tried = self.resummed.tried.len();
+        let choice = if tried > 1 {
+            format!(", the least error estimate of {tried} methods")
+        } else {
+            String::new()
+        };
+        parts.push(match &self.period {
+            Some(number) => format!(
+                "summed by {method}{degrees}{choice}, estimated error {}",
+                number.error.as_deref().unwrap_or("unknown")
+            ),
+            None => format!(
+                "{method}{degrees} gives not one digit: neighbouring approximants do not agree"
+            ),
+        });
+        parts.join("; ")
+    }
+
+    /// Why a method gave nothing, or its error estimate relative to 2 pi times the factor.
+    #[must_use]
+    pub fn tried(&self) -> Vec<(&'static str, String)> {
+        let text = |found: &Result<Float, ResummationError>| match found {
+            Ok(error) => short(error),
+            Err(reason) => reason.to_string(),
+        };
+        self.resummed.tried.iter().map(|(m, found)| (method_name(*m), text(found))).collect()
+    }
+}

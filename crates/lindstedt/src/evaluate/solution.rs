@@ -1,0 +1,270 @@
+//! The solution x(t) at given times: the expansion at the phase omega t, order by order, and its
+//! series in the small parameter summed there.
+
+use super::{EvaluateSettings, Evaluation, bits_for, estimated, source};
+use crate::number::Number;
+use crate::{Derivation, Error, Progress, Settings, Solution, Value, derive};
+use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_equation::{AmplitudeRole, Problem};
+use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
+use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
+use lindstedt_series::resummation::{Method, Resummed, Sample, UniformMap, resum};
+use rug::Float;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+/// x at one time.
+#[derive(Clone, Debug)]
+pub struct Displacement {
+    /// The time.
+    pub time: Value,
+    /// x(t); nothing where not one digit is supported (or x vanishes within the error).
+    pub value: Option<Number>,
+    /// x(t) as a double, for pictures.
+    pub double: f64,
+    /// The estimated error as a double; infinite where there is no estimate.
+    pub error: f64,
+}
+
+/// x(t), to be evaluated at any time.
+pub struct Trajectory {
+    derivation: Derivation,
+    /// The frequency with its uncertainty.
+    frequency: Ball,
+    /// a in x = a y; 1 where the expansion contains its amplitude.
+    amplitude: Value,
+    /// The small parameter.
+    small: Box<dyn Fn(Balls) -> Option<Ball> + Send + Sync>,
+    /// A bound of |x'|, for the error that an uncertain frequency makes.
+    speed: f64,
+    /// x(t) = X(omega t + phase).
+    phase: Value,
+    methods: Vec<Method>,
+    digits: usize,
+    /// The period.
+    pub period: f64,
+}
+
+/// The order of a solution that takes about a second.
+fn default_order(problem: &Problem) -> usize {
+    match problem.amplitude {
+        AmplitudeRole::ScalesFrequency { .. } => 10,
+        AmplitudeRole::InSums => 8,
+        AmplitudeRole::InSmallParameter => 24,
+        AmplitudeRole::Determined | AmplitudeRole::Free | AmplitudeRole::Scaled => 40,
+    }
+}
+
+impl Trajectory {
+    /// Derives the solution of a problem, x(0) = a, x'(0) = 0 at phase 0.
+    ///
+    /// The frequency is the closed form's where there is one, else the resummed one, with its
+    /// error, of `evaluation` (by [`super::evaluate`] with the same settings).
+    ///
+    /// # Errors
+    /// As [`super::evaluate`] and [`crate::derive`].
+    pub fn new(
+        problem: &Problem,
+        settings: &EvaluateSettings,
+        evaluation: &Evaluation,
+        phase: Value,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Self, Error> {
+        let order = settings.order.unwrap_or_else(|| default_order(problem));
+        let digits = settings.digits.min(30);
+        let point = source::point(problem, &settings.parameters)?;
+        let balls = Balls::new(bits_for(digits).saturating_add(64));
+        let period = evaluation.best_period.clone();
+        let two_pi = balls.mul_i64(&balls.pi(), 2);
+        let frequency = balls.div(&two_pi, &period).ok_or(Error::NoValue)?;
+        let mut parameters = settings.parameters.clone();
+        if !matches!(problem.amplitude, AmplitudeRole::InSums) {
+            // The amplitude is scaled out; only the sums S_n depend on it.
+            parameters.remove("amplitude");
+        }
+        let derived =
+            Settings { order, parameters, memory: settings.memory, ..Settings::default() };
+        let derivation = derive(problem, &derived, observer)?;
+        let one = || Value::Rational(rug::Rational::from(1));
+        let given = |name: &str| point.at.iter().find(|(n, _)| *n == name).map(|(_, v)| v.clone());
+        let eps = given("eps").map_or(0.0, |v| v.ball(balls).midpoint().to_f64().abs());
+        let methods = match settings.method {
+            Some(
+                method @ (Method::PartialSum
+                | Method::Pade
+                | Method::Uniform
+                | Method::UniformPade
+                | Method::BorelPade),
+            ) => vec![method],
+            _ => vec![Method::Pade, Method::UniformPade],
+        };
+        let limit_cycle = matches!(problem.amplitude, AmplitudeRole::Determined);
+        Ok(Self {
+            derivation,
+            frequency,
+            amplitude: if limit_cycle { one() } else { given("amplitude").unwrap_or_else(one) },
+            small: if limit_cycle {
+                // The period is a series in eps^2, the solution in eps.
+                let eps = given("eps").ok_or(Error::NoValue)?;
+                Box::new(move |balls| Some(eps.ball(balls)))
+            } else {
+                point.point
+            },
+            // Van der Pol: |x| <= about 2, |x'| <= (2/3) eps + ... in Lienard's plane.
+            speed: 3.0 + 2.0 * eps,
+            phase,
+            methods,
+            digits,
+            period: period.midpoint().to_f64(),
+        })
+    }
+
+    /// The methods that sum the series in the small parameter; at every phase the one with the
+    /// least error estimate.
+    #[must_use]
+    pub fn methods(&self) -> &[Method] {
+        &self.methods
+    }
+
+    /// The order of the solution.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.derivation.order
+    }
+
+    /// x(t).
+    ///
+    /// The error is estimated from neighbouring approximants; to it the effect of the uncertain
+    /// frequency is added.
+    #[must_use]
+    pub fn at(&self, time: &Value) -> Displacement {
+        let nothing = || Displacement {
+            time: time.clone(),
+            value: None,
+            double: f64::NAN,
+            error: f64::INFINITY,
+        };
+        self.value(time).unwrap_or_else(nothing)
+    }
+
+    fn value(&self, time: &Value) -> Option<Displacement> {
+        let bits = self.frequency.midpoint().prec();
+        let balls = Balls::new(bits);
+        let t = time.ball(balls);
+        let tau = balls.add(&balls.mul(&self.frequency, &t), &self.phase.ball(balls));
+        let drift = balls.mul(&t, &self.frequency).radius().to_f64()
+            / self.frequency.midpoint().to_f64().abs();
+        let point = Point::Rational(tau.midpoint().to_rational()?);
+        // The methods ask for the same precisions: each is computed once.
+        let known: RefCell<BTreeMap<u32, Sample>> = RefCell::default();
+        let source = |bits: u32| {
+            if let Some(sample) = known.borrow().get(&bits) {
+                return Some(sample.clone());
+            }
+            let balls = Balls::new(bits).with_guard(64);
+            let map = UniformMap {
+                scale: Float::with_val(bits, 1),
+                prefactor: Float::new(bits),
+                radius: None,
+            };
+            let coefficients = self.coefficients(&point, balls)?;
+            let sample = Sample {
+                coefficients: coefficients
+                    .iter()
+                    .map(|c| Float::with_val(bits, c.midpoint()))
+                    .collect(),
+                point: Float::with_val(bits, (self.small)(balls)?.midpoint()),
+                map: Some(map),
+                radius: None,
+                bits,
+            };
+            known.borrow_mut().insert(bits, sample.clone());
+            Some(sample)
+        };
+        let sums = self.methods.iter();
+        let sums = sums.filter_map(|m| resum(&source, Some(*m), bits_for(self.digits)).ok());
+        let error = |found: &Resummed| found.outcome.estimate.error.clone();
+        let found = sums.min_by(|a, b| error(a).total_cmp(&error(b)))?;
+        let balls = Balls::new(found.bits);
+        let estimate = &found.outcome.estimate;
+        let ball = balls.from_parts(&estimate.value, &estimate.error);
+        let ball = balls.mul(&ball, &self.amplitude.ball(balls));
+        let ball = balls.add_error(&ball, &Float::with_val(53, drift * self.speed));
+        let value = balls
+            .mul(&balls.from_parts(&estimate.value, &Float::new(53)), &self.amplitude.ball(balls));
+        Some(Displacement {
+            time: time.clone(),
+            value: estimated(&ball, self.digits),
+            double: value.midpoint().to_f64(),
+            error: ball.radius().to_f64(),
+        })
+    }
+
+    /// x_n at a phase.
+    fn coefficients(&self, point: &Point, balls: Balls) -> Option<Vec<Ball>> {
+        match &self.derivation.solution {
+            Solution::Lobachevsky(expansion) => {
+                let table = LambdaTable::new(expansion.solution.len(), balls);
+                let constants = &self.derivation.constants;
+                let value = |x| lobachevsky(x, point, &table, |c| constants.evaluate(c, balls));
+                expansion.solution.iter().map(value).collect()
+            }
+            Solution::Rational(proved) => {
+                let value = |x| trigonometric(x, point, balls, of_rational(balls));
+                proved.expansion.solution.iter().map(value).collect()
+            }
+            Solution::FrequencyOnly => None,
+        }
+    }
+
+    /// The Fourier coefficients (c_k, s_k), k = 0 .. `harmonics`, of x as a function of
+    /// omega t, by the trapezoidal rule on 4 (harmonics + 1) points, and the largest deviation of
+    /// their sum from x at as many points between.
+    #[must_use]
+    pub fn fourier(&self, harmonics: usize) -> Option<(Vec<(f64, f64)>, f64)> {
+        let count = 4 * (harmonics + 1);
+        let turn = std::f64::consts::TAU / count as f64;
+        let sample = |offset: f64| -> Option<Vec<f64>> {
+            let one = |i: usize| {
+                let time = (i as f64 + offset) / count as f64 * self.period;
+                let time = Value::Rational(rug::Rational::from_f64(time)?);
+                let x = self.at(&time).double;
+                x.is_finite().then_some(x)
+            };
+            (0..count).map(one).collect()
+        };
+        let nodes = sample(0.25)?;
+        let coefficient = |k: usize| {
+            let weight = if k == 0 { 1.0 } else { 2.0 } / count as f64;
+            nodes.iter().enumerate().fold((0.0, 0.0), |(c, s), (i, x)| {
+                let angle = k as f64 * (i as f64 + 0.25) * turn;
+                (c + weight * x * angle.cos(), s + weight * x * angle.sin())
+            })
+        };
+        let list: Vec<(f64, f64)> = (0..=harmonics).map(coefficient).collect();
+        let sum = |angle: f64| {
+            let term = |(k, (c, s)): (usize, &(f64, f64))| {
+                let angle = k as f64 * angle;
+                c * angle.cos() + s * angle.sin()
+            };
+            list.iter().enumerate().map(term).sum::<f64>()
+        };
+        let between = sample(0.75)?;
+        let deviation =
+            between.iter().enumerate().map(|(i, x)| (sum((i as f64 + 0.75) * turn) - x).abs());
+        let deviation = deviation.fold(0.0, f64::max);
+        Some((list, deviation))
+    }
+
+    /// omega as a double.
+    #[must_use]
+    pub fn frequency(&self) -> f64 {
+        self.frequency.midpoint().to_f64()
+    }
+
+    /// 10^-digits (15 at most), below which a harmonic is not worth a line.
+    #[must_use]
+    pub fn negligible(&self) -> f64 {
+        10f64.powi(-(self.digits.min(15) as i32))
+    }
+}

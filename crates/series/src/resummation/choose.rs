@@ -1,0 +1,251 @@
+//! One method or the best of all, with the rounding measured and kept below the rest.
+
+use super::estimate::distance;
+use super::{Growth, Method, Outcome, ResummationError, Sample, Singularity, growth};
+use rug::Float;
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Resummed {
+    /// The method used.
+    pub method: Method,
+    /// Its value, the error estimate with the measured rounding, and what it used.
+    pub outcome: Outcome,
+    /// How the coefficients grow.
+    pub growth: Growth,
+    /// The nearest singularity, where one is stable.
+    pub singularity: Option<Singularity>,
+    /// Every method tried: its error estimate, or why it has none.
+    pub tried: Vec<(Method, Result<Float, ResummationError>)>,
+    /// The precision at which the value was computed.
+    pub bits: u32,
+}
+
+/// What the least of several estimates is multiplied by.
+const SELECTION: u32 = 4;
+/// Doublings of the precision before the rounding is added to the error as it is.
+const DOUBLINGS: u32 = 4;
+
+/// Sums a series by one method, or with `None` by the one whose error estimate is least (`auto`;
+/// among estimates within a factor ten the simpler method is taken).
+///
+/// `source` gives coefficients and point at a precision. Everything is computed at p and 2p bits,
+/// p doubled until the two values differ by less than an eighth of the error estimate or by less
+/// than 2^-`accuracy` relative; the difference is added to the error.
+///
+/// # Errors
+/// That of the method, or for `auto` that of the last method; [`ResummationError::NoCoefficients`]
+/// where the source gives none.
+///
+/// ```
+/// use lindstedt_series::resummation::{Method, Sample, resum};
+/// use rug::Float;
+/// // Euler's divergent series sum (-1)^n n! x^n at x = 1/10.
+/// let source = |bits: u32| Some(Sample {
+///     coefficients: (0..25u32)
+///         .map(|n| Float::with_val(bits, Float::factorial(n)) * (-1i32).pow(n))
+///         .collect(),
+///     point: Float::with_val(bits, 1) / 10u32,
+///     map: None,
+///     radius: None,
+///     bits,
+/// });
+/// let found = resum(&source, None, 100)?;
+/// assert_eq!(found.method, Method::BorelPade);
+/// // 10 e^10 E_1(10).
+/// let error = (found.outcome.estimate.value - 0.915_633_339_397_880_8f64).abs();
+/// assert!(error < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn resum(
+    source: &dyn Fn(u32) -> Option<Sample>,
+    method: Option<Method>,
+    accuracy: u32,
+) -> Result<Resummed, ResummationError> {
+    let sample = |bits: u32| source(bits).ok_or(ResummationError::NoCoefficients { bits });
+    let first = sample(accuracy.saturating_add(128))?;
+    // Pade approximants of order N lose a few bits per order.
+    let loss = u32::try_from(first.coefficients.len()).unwrap_or(u32::MAX).saturating_mul(4);
+    let bits = accuracy.saturating_add(64).saturating_add(loss);
+    let low = if first.bits >= bits { first } else { sample(bits)? };
+    let high = sample(low.bits.saturating_mul(2))?;
+    let growth = growth(&low.coefficients);
+    let singularity = high.singularity();
+    let methods = method.map_or_else(|| Method::ALL.to_vec(), |method| vec![method]);
+    let mut tried = Vec::new();
+    let mut best: Option<(Method, Outcome, u32)> = None;
+    let mut values: Vec<Outcome> = Vec::new();
+    for method in methods {
+        let found = settled(&sample, [&low, &high], method, singularity.as_ref(), accuracy);
+        if let Ok((outcome, bits)) = &found {
+            values.push(outcome.clone());
+            let error = &outcome.estimate.error;
+            let better = best.as_ref().is_none_or(|(_, best, _)| {
+                // Below the accuracy asked for there is no better.
+                let floor = Float::with_val(53, best.estimate.value.abs_ref()) >> accuracy;
+                let least = best.estimate.error.clone();
+                least > floor && Float::with_val(53, error * 10u32) < least
+                    || error.is_finite() && !least.is_finite()
+            });
+            if better {
+                best = Some((method, outcome.clone(), *bits));
+            }
+        }
+        tried.push((method, found.map(|(outcome, _)| outcome.estimate.error)));
+    }
+    match best {
+        Some((method, mut outcome, bits)) => {
+            // The least of several estimates is more often too small than each: where another
+            // method with a comparable estimate disagrees, the disagreement is added.
+            let own = outcome.estimate.clone();
+            if tried.len() > 1 {
+                outcome.estimate.error *= SELECTION;
+            }
+            for other in &values {
+                if other.estimate.error <= Float::with_val(53, &own.error * 100u32) {
+                    let gap = distance(&other.estimate.value, &own.value);
+                    let sum = Float::with_val(53, &own.error + gap);
+                    outcome.estimate.error = outcome.estimate.error.max(&sum);
+                }
+            }
+            Ok(Resummed { method, outcome, growth, singularity, tried, bits })
+        }
+        None => Err(tried.pop().and_then(|(_, r)| r.err()).unwrap_or(ResummationError::Undefined)),
+    }
+}
+
+/// One method at p and 2p bits, until the rounding does not matter.
+fn settled(
+    sample: &dyn Fn(u32) -> Result<Sample, ResummationError>,
+    first: [&Sample; 2],
+    method: Method,
+    singularity: Option<&Singularity>,
+    accuracy: u32,
+) -> Result<(Outcome, u32), ResummationError> {
+    let [low, high] = first;
+    let mut before = low.sum(method, singularity, accuracy)?;
+    let mut bits = high.bits;
+    let mut after = high.sum(method, singularity, accuracy)?;
+    for _ in 0..DOUBLINGS {
+        let rounding = distance(&before.estimate.value, &after.estimate.value);
+        let size = Float::with_val(53, after.estimate.value.abs_ref()) >> accuracy;
+        if rounding.clone() * 8u32 <= after.estimate.error || rounding <= size {
+            break;
+        }
+        bits = bits.saturating_mul(2);
+        before = after;
+        after = sample(bits)?.sum(method, singularity, accuracy)?;
+    }
+    let rounding = distance(&before.estimate.value, &after.estimate.value);
+    // An error of exactly 0 is a rational function, known to the rounding.
+    let size = Float::with_val(53, after.estimate.value.abs_ref()) >> (bits / 4);
+    after.estimate.error +=
+        rounding.max(&size.min(&(Float::with_val(53, after.estimate.value.abs_ref()) >> accuracy)));
+    Ok((after, bits))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+    use super::*;
+
+    type Series = (&'static str, fn(u32, u32) -> Float, fn(&Float) -> Float);
+
+    fn binomial(p: (i32, u32), n: u32, bits: u32) -> Float {
+        let p = rug::Rational::from(p);
+        let mut value = rug::Rational::from(1);
+        for k in 0..n {
+            value *= (p.clone() - k) / (k + 1);
+        }
+        Float::with_val(bits, value)
+    }
+
+    fn series() -> Vec<Series> {
+        vec![
+            ("sqrt", |n, bits| binomial((1, 2), n, bits), |x| (x.clone() + 1u32).sqrt()),
+            (
+                "log",
+                |n, bits| {
+                    if n == 0 {
+                        Float::with_val(bits, 1)
+                    } else {
+                        Float::with_val(bits, if n % 2 == 1 { 1 } else { -1 }) / n
+                    }
+                },
+                |x| Float::with_val(x.prec(), x.ln_1p_ref()) + 1u32,
+            ),
+            (
+                "exp",
+                |n, bits| Float::with_val(bits, Float::factorial(n)).recip(),
+                |x| x.clone().exp(),
+            ),
+            (
+                "geometric",
+                |n, bits| Float::with_val(bits, if n % 2 == 0 { 1 } else { -1 }),
+                |x| (x.clone() + 1u32).recip(),
+            ),
+            (
+                "atan",
+                |n, bits| match n {
+                    0 => Float::with_val(bits, 2),
+                    _ if n % 2 == 0 => Float::new(bits),
+                    _ => Float::with_val(bits, if n % 4 == 1 { 1 } else { -1 }) / n,
+                },
+                |x| Float::with_val(x.prec(), x.atan_ref()) + 2u32,
+            ),
+            // Gamma(0, 1/x) e^(1/x)/x.
+            (
+                "Euler",
+                |n, bits| Float::with_val(bits, Float::factorial(n)) * (-1i32).pow(n),
+                |x| {
+                    let inverse = Float::with_val(x.prec(), x.recip_ref());
+                    let zero = Float::new(x.prec());
+                    zero.gamma_inc(&inverse) * inverse.clone().exp() * inverse
+                },
+            ),
+        ]
+    }
+
+    /// Every method at every order and point, refused or with a true error below its estimate.
+    #[test]
+    fn no_estimate_is_below_the_true_error() {
+        let (mut checked, mut sharp) = (0, 0);
+        for (name, c, f) in series() {
+            for order in [3u32, 6, 9, 14] {
+                for x in [1e-3, 0.3, 1.0, 1.7, 6.0, 40.0] {
+                    let source = |bits: u32| {
+                        Some(Sample {
+                            coefficients: (0..=order).map(|n| c(n, bits)).collect(),
+                            point: Float::with_val(bits, x),
+                            map: None,
+                            radius: None,
+                            bits,
+                        })
+                    };
+                    let exact = f(&Float::with_val(600, x));
+                    for method in [
+                        None,
+                        Some(Method::PartialSum),
+                        Some(Method::Pade),
+                        Some(Method::ConformalPade),
+                        Some(Method::BorelPade),
+                    ] {
+                        let Ok(found) = resum(&source, method, 80) else { continue };
+                        let estimate = &found.outcome.estimate;
+                        let error = distance(&estimate.value, &exact);
+                        assert!(
+                            error <= estimate.error,
+                            "{name} order {order} x {x} {method:?} -> {:?}: {error} > {}",
+                            found.method,
+                            estimate.error
+                        );
+                        checked += 1;
+                        sharp += u32::from(estimate.error < 1e-6);
+                    }
+                }
+            }
+        }
+        assert!(checked > 300 && sharp > 100, "{checked} {sharp}");
+    }
+}

@@ -1,0 +1,49 @@
+//! Errors of resummation.
+
+use thiserror::Error;
+
+/// Why a resummation gives no value.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ResummationError {
+    /// Not enough coefficients for a value and an error estimate.
+    #[error("{known} coefficients are too few, {needed} are needed")]
+    TooFewCoefficients {
+        /// The number there is.
+        known: usize,
+        /// The number needed.
+        needed: usize,
+    },
+    /// The re-expanded series does not converge at the point.
+    #[error("the series in u converges for |u| < {radius}, and u = {at}")]
+    OutsideDisc {
+        /// The radius of convergence in u.
+        radius: f64,
+        /// u.
+        at: f64,
+    },
+    /// The map sends the point to infinity or beyond.
+    #[error("the change of variable is not defined at the point")]
+    OutsideMap,
+    /// No change of variable is known for this series.
+    #[error("no change of variable is known for this series")]
+    NoMap,
+    /// No singularity was found to build a conformal map on.
+    #[error("no stable singularity was found in the coefficients")]
+    NoSingularity,
+    /// The Borel transform has a pole on the path of integration.
+    #[error("the Borel transform has a pole on the positive axis")]
+    PoleOnPath,
+    /// The Borel integral did not settle.
+    #[error("the Laplace integral did not settle")]
+    NotSettled,
+    /// The approximants have a pole at the point or do not exist.
+    #[error("the approximants are not defined at the point")]
+    Undefined,
+    /// The coefficients are not known to the precision needed.
+    #[error("the coefficients are not known to {bits} bits")]
+    NoCoefficients {
+        /// The precision.
+        bits: u32,
+    },
+}

@@ -1,0 +1,357 @@
+//! The methods, one value with an error estimate each.
+
+use super::borel::{Nodes, borel_transform, laplace};
+use super::estimate::{best_truncation, distance, geometric_tail, settle, widest};
+use super::{Estimate, Growth, Map, Pade, ResummationError, growth, partial_sums};
+use super::{Singularity, nearest_singularity};
+use rug::Float;
+use rug::float::Special;
+
+/// A way from coefficients to a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Method {
+    /// The partial sum; of a divergent series up to the smallest term.
+    PartialSum,
+    /// Diagonal Pade approximants.
+    Pade,
+    /// The series in u = x/(s + x) with a prefactor, its partial sum.
+    Uniform,
+    /// Diagonal Pade approximants in u.
+    UniformPade,
+    /// Pade approximants after the conformal map of the plane cut at the nearest singularities.
+    ConformalPade,
+    /// Pade approximants of the Borel transform and Laplace's integral.
+    BorelPade,
+}
+
+impl Method {
+    /// All of them, in the order in which `auto` prefers them among equals.
+    pub const ALL: [Self; 6] = [
+        Self::PartialSum,
+        Self::Uniform,
+        Self::Pade,
+        Self::UniformPade,
+        Self::ConformalPade,
+        Self::BorelPade,
+    ];
+}
+
+/// What is known of the function beyond its coefficients.
+#[derive(Clone, Debug)]
+pub struct UniformMap {
+    /// s in u = x/(s + x).
+    pub scale: Float,
+    /// p: the series of (1 - u)^p f is re-expanded; f ~ x^p for x -> infinity makes it bounded.
+    pub prefactor: Float,
+    /// The radius of convergence in u where it is known; else it is estimated.
+    pub radius: Option<f64>,
+}
+
+/// The coefficients and the point at some precision, with what they tell.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// c_0, c_1, ...
+    pub coefficients: Vec<Float>,
+    /// x.
+    pub point: Float,
+    /// The change of variable for [`Method::Uniform`].
+    pub map: Option<UniformMap>,
+    /// The radius of convergence where it is known, zero for a series that diverges everywhere;
+    /// else it is estimated.
+    pub radius: Option<f64>,
+    /// The precision to which all of these are known, relative.
+    pub bits: u32,
+}
+
+/// A value by one method.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The value with its error estimate.
+    pub estimate: Estimate,
+    /// The highest order of the series that is used.
+    pub order: usize,
+    /// Degrees of the numerator and the denominator, for the methods with Pade approximants.
+    pub degrees: Option<(usize, usize)>,
+    /// The order of the smallest term, where the series was cut there because it diverges.
+    pub smallest_term: Option<usize>,
+}
+
+/// Approximants before the last one that enter the error estimate, for the partial sums of a
+/// convergent series and for Pade approximants.
+const SUMS: usize = 3;
+const APPROXIMANTS: usize = 4;
+
+impl Sample {
+    /// The value by `method`.
+    ///
+    /// `singularity` is needed for [`Method::ConformalPade`] (see [`nearest_singularity`]).
+    /// `accuracy` is the number of bits beyond which a Laplace integral need not go.
+    ///
+    /// # Errors
+    /// [`ResummationError`] where the method does not apply or gives no value.
+    pub fn sum(
+        &self,
+        method: Method,
+        singularity: Option<&Singularity>,
+        accuracy: u32,
+    ) -> Result<Outcome, ResummationError> {
+        let known = self.coefficients.len();
+        if known < 3 {
+            return Err(ResummationError::TooFewCoefficients { known, needed: 3 });
+        }
+        let mut outcome = self.by(method, singularity, accuracy)?;
+        if self.is_unresolved() {
+            outcome.estimate.error = Float::with_val(53, Special::Infinity);
+        }
+        Ok(outcome)
+    }
+
+    /// Whether no agreement means anything: the terms of an entire function (or of one with too
+    /// few coefficients to tell) still grow at the last order.
+    fn is_unresolved(&self) -> bool {
+        let of_unknown_kind =
+            matches!(growth(&self.coefficients), Growth::Entire | Growth::Undecided);
+        if self.radius.is_some() || !of_unknown_kind {
+            return false;
+        }
+        let sums = partial_sums(&self.coefficients, &self.point, self.bits);
+        let terms: Vec<Float> = sums.windows(2).map(|p| distance(&p[1], &p[0])).collect();
+        let third = terms.len().div_ceil(3);
+        let largest = |list: &[Float]| list.iter().cloned().reduce(|a, b| a.max(&b));
+        let (early, late) = (terms.get(..third), terms.get(terms.len() - third..));
+        late.and_then(largest) > early.and_then(largest)
+    }
+
+    fn by(
+        &self,
+        method: Method,
+        singularity: Option<&Singularity>,
+        accuracy: u32,
+    ) -> Result<Outcome, ResummationError> {
+        match method {
+            Method::PartialSum => self.partial_sum(),
+            Method::Pade => diagonal(&self.coefficients, &self.point, self.bits),
+            Method::Uniform => {
+                let (c, u, factor) = self.uniform()?;
+                let known = self.map.as_ref().and_then(|map| map.radius);
+                let radius = disc(&c, known);
+                if let Some(radius) = radius.filter(|radius| u.clone().abs() >= *radius) {
+                    return Err(ResummationError::OutsideDisc { radius, at: u.to_f64() });
+                }
+                convergent(&c, &u, (radius, known.is_some()), self.bits)
+                    .map(|outcome| scaled(outcome, &factor))
+            }
+            Method::UniformPade => {
+                let (c, u, factor) = self.uniform()?;
+                diagonal(&c, &u, self.bits).map(|outcome| scaled(outcome, &factor))
+            }
+            Method::ConformalPade => {
+                let singularity = singularity.ok_or(ResummationError::NoSingularity)?;
+                let map = wedge(singularity, self.bits);
+                let w = map.inverse(&self.point, self.bits)?;
+                let c = map.expand(&self.coefficients, &Float::new(self.bits), self.bits);
+                diagonal(&c, &w, self.bits)
+            }
+            Method::BorelPade => {
+                let b = borel_transform(&self.coefficients, &self.point, self.bits);
+                let nodes = Nodes::new(accuracy, self.bits);
+                let value = |pade: &Pade| laplace(pade, &nodes);
+                let mut outcome = staircase(&b, self.bits, &widest, value)?;
+                // What the integral was not asked for.
+                let size = Float::with_val(53, outcome.estimate.value.abs_ref());
+                outcome.estimate.error += size >> accuracy;
+                Ok(outcome)
+            }
+        }
+    }
+
+    /// The nearest singularity in the coefficients; nothing where its modulus contradicts their
+    /// growth by more than a half, and for a series that diverges everywhere.
+    #[must_use]
+    pub fn singularity(&self) -> Option<Singularity> {
+        if self.radius == Some(0.0) {
+            return None;
+        }
+        let found = nearest_singularity(&self.coefficients, self.bits)?;
+        match growth(&self.coefficients) {
+            Growth::Radius(radius) => {
+                let ratio = found.at.abs().to_f64() / radius;
+                (0.67..1.5).contains(&ratio).then_some(found)
+            }
+            Growth::Undecided => Some(found),
+            _ => None,
+        }
+    }
+
+    fn partial_sum(&self) -> Result<Outcome, ResummationError> {
+        let sums = partial_sums(&self.coefficients, &self.point, self.bits);
+        let radius = disc(&self.coefficients, self.radius);
+        let outside = radius.is_some_and(|radius| self.point.clone().abs() >= radius);
+        if !outside {
+            let known = self.radius.is_some();
+            return convergent(&self.coefficients, &self.point, (radius, known), self.bits);
+        }
+        let asymptotic = radius == Some(0.0);
+        // The smallest term among the last ones is no smallest term yet.
+        let inside = |order: usize| {
+            if asymptotic { order + 2 < sums.len() } else { 3 * order < 2 * sums.len() }
+        };
+        let best = best_truncation(&sums).filter(|(order, _)| inside(*order));
+        // Terms that do not grow well beyond the smallest ones are no divergence yet.
+        let terms = sums.windows(2).map(|pair| distance(&pair[1], &pair[0]));
+        let late = terms.skip(sums.len() * 2 / 3).reduce(|a, b| a.max(&b));
+        let grows = |estimate: &Estimate| {
+            late.as_ref().is_some_and(|late| *late > Float::with_val(53, &estimate.error * 4u32))
+        };
+        let mut outcome = match best {
+            Some((order, estimate)) if grows(&estimate) => {
+                Outcome { estimate, order, degrees: None, smallest_term: Some(order) }
+            }
+            _ => last_sum(&sums)?,
+        };
+        if !asymptotic {
+            // Outside a disc of convergence nothing bounds the error by the terms.
+            outcome.estimate.error = Float::with_val(53, Special::Infinity);
+        } else if outcome.smallest_term.is_some() {
+            // An asymptotic series has its error below the smallest term or near it.
+            outcome.estimate.error *= 3u32;
+        }
+        Ok(outcome)
+    }
+
+    /// The coefficients in u, u itself, and (1 - u)^-p.
+    fn uniform(&self) -> Result<(Vec<Float>, Float, Float), ResummationError> {
+        let map = self.map.as_ref().ok_or(ResummationError::NoMap)?;
+        let change = Map::Rational { scale: map.scale.clone() };
+        let u = change.inverse(&self.point, self.bits)?;
+        let c = change.expand(&self.coefficients, &map.prefactor, self.bits);
+        // 1 - u = s/(s + x), without the cancellation for x -> infinity.
+        let rest = Float::with_val(self.bits, &self.point + &map.scale);
+        let rest = Float::with_val(self.bits, rest / &map.scale);
+        let factor = rug::ops::Pow::pow(rest, &map.prefactor);
+        Ok((c, u, factor))
+    }
+}
+
+/// The wedge whose tips are the singularity and its conjugate.
+fn wedge(singularity: &Singularity, bits: u32) -> Map {
+    // The same map at every precision: the tips need not be right to all bits, so they are
+    // rounded to doubles, and rounding is then what the comparison of two precisions measures.
+    let modulus = Float::with_val(bits, singularity.at.abs().to_f64());
+    let fraction = singularity.at.arg().to_f64().abs() / std::f64::consts::PI;
+    // A real singularity has an imaginary part from rounding only.
+    let nearest = fraction.round();
+    let fraction = if (fraction - nearest).abs() < 1e-12 { nearest } else { fraction };
+    Map::Wedge { modulus, fraction: Float::with_val(bits, fraction) }
+}
+
+fn scaled(mut outcome: Outcome, factor: &Float) -> Outcome {
+    outcome.estimate.value *= factor;
+    outcome.estimate.error *= Float::with_val(53, factor.abs_ref());
+    outcome
+}
+
+/// An estimated radius of convergence is taken this much smaller.
+const MARGIN: f64 = 0.95;
+
+/// The radius of convergence as far as it may be relied on; zero for a series that diverges
+/// everywhere, nothing for an entire function or too few coefficients.
+fn disc(c: &[Float], known: Option<f64>) -> Option<f64> {
+    known.or(match growth(c) {
+        Growth::Radius(radius) => Some(radius * MARGIN),
+        Growth::Factorial { .. } => Some(0.0),
+        _ => None,
+    })
+}
+
+/// The last partial sum, judged by those before it alone.
+fn last_sum(sums: &[Float]) -> Result<Outcome, ResummationError> {
+    let order = sums.len() - 1;
+    let estimate = settle(sums, SUMS.min(order / 2).max(1), order);
+    let estimate = estimate.ok_or(ResummationError::Undefined)?;
+    Ok(Outcome { estimate, order, degrees: None, smallest_term: None })
+}
+
+/// The last partial sum of a series that converges, |x| below the radius (and whether that is
+/// known, not estimated).
+fn convergent(
+    c: &[Float],
+    x: &Float,
+    (radius, known): (Option<f64>, bool),
+    bits: u32,
+) -> Result<Outcome, ResummationError> {
+    let sums = partial_sums(c, x, bits);
+    let mut outcome = last_sum(&sums)?;
+    let ratio = radius.map_or_else(|| Float::new(53), |r| Float::with_val(53, x.abs_ref()) / r);
+    outcome.estimate.error = outcome.estimate.error.max(&geometric_tail(&sums, &ratio, known));
+    Ok(outcome)
+}
+
+/// The approximants [n/n], [n-1/n] ... at x.
+fn diagonal(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationError> {
+    let window = |list: &[Float], order: usize| {
+        settle(list, APPROXIMANTS.min((list.len() - 1).div_ceil(2)).max(1), order)
+    };
+    staircase(c, bits, &window, |pade| pade.value(x).ok_or(ResummationError::Undefined))
+}
+
+/// A value from the last steps of the staircase [k - k/2 / k/2], k = N - 9 .. N.
+///
+/// A step whose value stands apart from both neighbours by more than a thousand times their
+/// distance is computed again without its spurious poles.
+fn staircase(
+    c: &[Float],
+    bits: u32,
+    judge: &dyn Fn(&[Float], usize) -> Option<Estimate>,
+    value: impl Fn(&Pade) -> Result<Float, ResummationError>,
+) -> Result<Outcome, ResummationError> {
+    let order = c.len().saturating_sub(1);
+    let first = order.saturating_sub(2 * APPROXIMANTS + 1);
+    let degrees = |k: usize| (k - k / 2, k / 2);
+    let mut values = Vec::new();
+    let mut failure = ResummationError::Undefined;
+    let mut last = None;
+    for k in first..=order {
+        let (l, m) = degrees(k);
+        let Some(pade) = Pade::new(c, l, m, bits) else { continue };
+        match value(&pade) {
+            Ok(v) => {
+                values.push((k, v));
+                last = Some((k, pade.degrees()));
+            }
+            Err(error) => {
+                failure = error;
+                // A pole next to the path: without the doublet it may be gone.
+                let robust = Pade::robust(c, l, m, bits).filter(|p| p.degrees() != pade.degrees());
+                if let Some(pade) = robust
+                    && let Ok(v) = value(&pade)
+                {
+                    values.push((k, v));
+                    last = Some((k, pade.degrees()));
+                }
+            }
+        }
+    }
+    let Some((used, pade_degrees)) = last.filter(|_| values.len() > 1) else { return Err(failure) };
+    for i in 1..values.len() {
+        let far = |j: usize| Some(distance(&values.get(j)?.1, &values[i].1));
+        let between = match values.get(i + 1) {
+            Some(next) => distance(&next.1, &values[i - 1].1),
+            None if i > 1 => distance(&values[i - 2].1, &values[i - 1].1),
+            None => continue,
+        };
+        let apart =
+            [far(i - 1), far(i + 1)].into_iter().flatten().all(|d| d > between.clone() * 1000u32);
+        if apart {
+            let (l, m) = degrees(values[i].0);
+            let again = Pade::robust(c, l, m, bits).and_then(|pade| value(&pade).ok());
+            if let Some(v) = again {
+                values[i].1 = v;
+            }
+        }
+    }
+    let list: Vec<Float> = values.into_iter().map(|(_, v)| v).collect();
+    let estimate = judge(&list, order).ok_or(ResummationError::Undefined)?;
+    Ok(Outcome { estimate, order: used, degrees: Some(pade_degrees), smallest_term: None })
+}

@@ -1,0 +1,28 @@
+//! Values of a function from the coefficients of its power series: partial sums, Pade, change
+//! of variable, conformal map, Borel and Pade.
+//!
+//! Everything here is *estimated*: the error is measured by the agreement of neighbouring
+//! approximants, not proved.
+
+mod borel;
+mod choose;
+pub mod complex;
+mod error;
+mod estimate;
+mod growth;
+mod linear;
+mod maps;
+mod method;
+mod pade;
+mod singularity;
+
+pub use borel::borel_transform;
+pub use choose::{Resummed, resum};
+pub use complex::Complex;
+pub use error::ResummationError;
+pub use estimate::Estimate;
+pub use growth::{Growth, growth};
+pub use maps::Map;
+pub use method::{Method, Outcome, Sample, UniformMap};
+pub use pade::{Pade, Picture, Pole, partial_sums};
+pub use singularity::{Kind, Singularity, nearest_singularity};

@@ -1,0 +1,117 @@
+//! The largest Lyapunov exponent, through impacts, switchings and sliding.
+
+use crate::error::SimulateError;
+use crate::integrator::{Integrator, Settings};
+use crate::real::Real;
+use crate::system::System;
+use std::ops::ControlFlow;
+
+/// How long to follow a solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LyapunovSettings<E> {
+    /// Time between two renormalisations: the period of the forcing, say.
+    pub interval: E,
+    /// Intervals thrown away; the directions turn to the fastest meanwhile.
+    pub transient: u32,
+    /// Intervals averaged over.
+    pub averaged: u32,
+    /// The integration.
+    pub integration: Settings,
+}
+
+/// An exponent in 1/time, natural logarithm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LyapunovExponent {
+    /// The average; minus infinity if everything is forgotten (a rigid orbit).
+    pub value: f64,
+    /// An estimate: the standard error of the mean, from up to 20 blocks of the average (it tells
+    /// of chaotic fluctuations, not of slow transients); NaN for fewer than 2.
+    pub error: f64,
+}
+
+/// lim 1/t ln ||D flow_t||, the largest Lyapunov exponent of the solution from `state` at `time`:
+/// all directions of the linearisation, carried through events by their saltation matrices
+/// (Mueller, Chaos, Solitons and Fractals 5, 1995, 1671-1681), divided by their common norm after
+/// every interval.
+///
+/// The system must be compiled from a model with [`crate::Model::linearised`]. The observer is
+/// asked after every interval; nothing if it breaks off. Errors: as of [`Integrator::advance`].
+///
+/// ```
+/// use lindstedt_equation::Expression;
+/// use lindstedt_simulate::{
+///     Doubles, LyapunovSettings, Model, Parameters, Settings, largest_lyapunov_exponent,
+/// };
+/// use std::ops::ControlFlow;
+///
+/// // x'' = x: the exponents are 1 and -1.
+/// let equation = Expression::Acceleration - Expression::Displacement;
+/// let system = Model::second_order(&equation)?.linearised().compile(Doubles, &Parameters::new())?;
+/// let integration = Settings::for_digits(16);
+/// let settings = LyapunovSettings { interval: 1.0, transient: 20, averaged: 50, integration };
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// let exponent = largest_lyapunov_exponent(&system, &0.0, &[0.0, 0.0], &settings, go_on)?;
+/// assert!(exponent.is_some_and(|exponent| (exponent.value - 1.0).abs() < 1e-14));
+/// # Ok::<(), lindstedt_simulate::SimulateError>(())
+/// ```
+pub fn largest_lyapunov_exponent<R: Real>(
+    system: &System<R>,
+    time: &R::Element,
+    state: &[R::Element],
+    settings: &LyapunovSettings<R::Element>,
+    observer: &mut dyn FnMut(u32) -> ControlFlow<()>,
+) -> Result<Option<LyapunovExponent>, SimulateError> {
+    let n = system.variables;
+    if system.directions() != n {
+        let given = system.directions();
+        return Err(SimulateError::WrongDimension { states: n, given });
+    }
+    let real = &system.real;
+    let mut flow = Integrator::new(system, time, state, settings.integration)?;
+    let (mut growths, mut left) = (Vec::new(), 0.0);
+    for interval in 1..=settings.transient.saturating_add(settings.averaged) {
+        let mut target = settings.interval.clone();
+        real.times_integer(&mut target, interval as i32);
+        flow.advance(&real.sum(time, &target), &mut |_| ControlFlow::Continue(()))?;
+        let growth = flow.normalise_directions(&mut left);
+        if interval > settings.transient {
+            growths.push(growth);
+        }
+        if growth == f64::NEG_INFINITY || growth.is_nan() {
+            // All directions are zero, for good.
+            return Ok(Some(LyapunovExponent { value: growth, error: 0.0 }));
+        }
+        if observer(interval).is_break() {
+            return Ok(None);
+        }
+    }
+    let (value, error) = mean(&growths);
+    let interval = real.to_f64(&settings.interval);
+    Ok(Some(LyapunovExponent { value: value / interval, error: error / interval }))
+}
+
+impl<R: Real> Integrator<'_, R> {
+    /// Divides all directions by a power of two near their largest component (no rounding errors);
+    /// `left` is ln of what is left of it. Returns the growth since the time before.
+    fn normalise_directions(&mut self, left: &mut f64) -> f64 {
+        let real = &self.system.real;
+        let directions = &mut self.state[self.system.variables..];
+        let largest = directions.iter().map(|x| real.log2(x)).fold(f64::NEG_INFINITY, f64::max);
+        let power = largest.round().clamp(-900.0, 900.0);
+        let factor = real.double((-power).exp2());
+        directions.iter_mut().for_each(|x| real.scale(x, &factor));
+        let before = std::mem::replace(left, (largest - power) * std::f64::consts::LN_2);
+        largest * std::f64::consts::LN_2 - before
+    }
+}
+
+/// The mean and its standard error from at most 20 blocks.
+fn mean(values: &[f64]) -> (f64, f64) {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let size = values.len().div_ceil(20).max(1);
+    let blocks: Vec<f64> =
+        values.chunks_exact(size).map(|block| block.iter().sum::<f64>() / size as f64).collect();
+    let count = blocks.len() as f64;
+    let variance = blocks.iter().map(|block| (block - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    (mean, (variance / count).sqrt())
+}

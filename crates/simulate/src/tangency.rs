@@ -1,0 +1,325 @@
+//! Homoclinic tangencies of a periodically forced system of second order: its unstable manifold
+//! continued until it comes back to the saddle.
+//!
+//! A point of the unstable manifold is saddle + A mu^sigma (unstable direction), 0 <= sigma < 1.
+//! Its orbit leaves the saddle, goes round the well, comes back along the stable manifold and
+//! turns back (inside) or passes over the saddle (outside). It is homoclinic when its unstable
+//! component after many periods vanishes, and the manifolds are tangent when this happens at an
+//! extremum over sigma. Only forward time is used: with sticking there is no other.
+
+use crate::error::SimulateError;
+use crate::integrator::Settings;
+use crate::linear::monodromy;
+use crate::poincare::{PoincareMap, Section};
+use crate::quantity::{Parameters, Quantity};
+use crate::real::Doubles;
+use crate::saddle::{Saddle, saddle};
+use crate::system::{Model, System};
+use rug::Float;
+
+/// Which half of the unstable manifold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loop {
+    /// Towards larger x.
+    Right,
+    /// Towards smaller x.
+    Left,
+}
+
+/// The homoclinic loop of a saddle orbit of a forced system of second order without walls; one
+/// parameter is free. Everything is in f64.
+///
+/// ```
+/// use lindstedt_equation::{Expression, Function};
+/// use lindstedt_simulate::{Homoclinic, Loop, Model, Parameters};
+/// use std::f64::consts::PI;
+///
+/// // x'' = x - x^3 + (F cos t - x')/100: Melnikov's threshold is 4 cosh(pi/2)/(3 sqrt 2 pi).
+/// let (x, v) = (Expression::Displacement, Expression::Velocity);
+/// let force = Expression::parameter("F") * Expression::Time.apply(Function::Cos);
+/// let equation = Expression::Acceleration - x.clone() + x.pow(3) + Expression::Small * (v - force);
+/// let model = Model::second_order(&equation)?.with_small("eps");
+/// let parameters = Parameters::new().with("eps", rug::Rational::from((1, 100)));
+/// let (model, parameters, side) = (&model, &parameters, Loop::Right);
+/// let (period, guess) = (2.0 * PI, [0.0, 0.0]);
+/// let homoclinic = Homoclinic { model, parameters, name: "F", period, side, guess };
+/// let tangency = homoclinic.first_tangency((0.7, 0.8), 24)?;
+/// let threshold = 4.0 * (PI / 2.0).cosh() / (3.0 * 2f64.sqrt() * PI);
+/// assert!((tangency.value - threshold).abs() < 1e-3);
+/// # Ok::<(), lindstedt_simulate::SimulateError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Homoclinic<'a> {
+    /// A model of second order, not linearised.
+    pub model: &'a Model,
+    /// The other parameters.
+    pub parameters: &'a Parameters,
+    /// The name of the free parameter.
+    pub name: &'a str,
+    /// The period of the forcing.
+    pub period: f64,
+    /// Which loop.
+    pub side: Loop,
+    /// Where Newton's method looks for the saddle at t = 0.
+    pub guess: [f64; 2],
+}
+
+/// Where an orbit of the unstable manifold went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Return {
+    /// Where it began: the fraction sigma of a fundamental domain.
+    pub phase: f64,
+    /// y^2 - w^2 where it turned back (positive: inside) or passed over the saddle (negative),
+    /// y and w the differences of x and x' from the saddle orbit; zero on the stable manifold.
+    pub excess: f64,
+}
+
+/// A homoclinic tangency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangency {
+    /// The value of the free parameter.
+    pub value: f64,
+    /// Its estimated error: the change when the orbit is followed one period less, and when it
+    /// begins one period farther from the saddle.
+    pub error: f64,
+    /// The phase sigma of the tangent orbit on the unstable manifold (not reduced to [0, 1)).
+    pub phase: f64,
+    /// Periods from there to the end near the saddle.
+    pub periods: u32,
+}
+
+/// A: small, so that the manifold is straight, but far above rounding errors.
+const AMOUNT: f64 = 1e-6;
+/// Looks per period.
+const LOOKS: usize = 64;
+
+impl Homoclinic<'_> {
+    fn system(&self, value: f64, linearised: bool) -> Result<System<Doubles>, SimulateError> {
+        let mut parameters = self.parameters.clone();
+        parameters.set(self.name, Quantity::Float(Float::with_val(53, value)));
+        let model = self.model.clone();
+        let model = if linearised { model.linearised() } else { model };
+        model.compile(Doubles, &parameters)
+    }
+
+    fn settings() -> Settings {
+        Settings::for_digits(16)
+    }
+
+    fn amount(&self, saddle: &Saddle, phase: f64) -> f64 {
+        let amount = AMOUNT * saddle.multipliers[0].powf(phase);
+        if self.side == Loop::Right { amount } else { -amount }
+    }
+
+    /// The saddle orbit.
+    pub fn saddle(&self, value: f64) -> Result<Saddle, SimulateError> {
+        saddle(&self.system(value, true)?, self.period, self.guess, Self::settings())
+    }
+
+    /// Follows `count` orbits of a fundamental domain round the loop; those that do not come back
+    /// within 50 periods are left out. The signs are sure, the numbers are those at the first of 64
+    /// looks per period after the event. Cost: some ten periods of integration per orbit.
+    pub fn returns(&self, value: f64, count: u32) -> Result<Vec<Return>, SimulateError> {
+        let saddle = self.saddle(value)?;
+        let system = self.system(value, false)?;
+        let section = Section::Period(self.period / LOOKS as f64);
+        let settings = Self::settings();
+        let mut orbit = Vec::new();
+        let mut map = PoincareMap::new(&system, &0.0, &saddle.state, section.clone(), settings)?;
+        for _ in 0..LOOKS {
+            orbit.extend(map.next_point()?);
+        }
+        let sign = if self.side == Loop::Right { 1.0 } else { -1.0 };
+        let mut returns = Vec::new();
+        for index in 0..count {
+            let phase = f64::from(index) / f64::from(count);
+            let start = saddle.unstable(self.amount(&saddle, phase));
+            let mut map = PoincareMap::new(&system, &0.0, &start, section.clone(), settings)?;
+            let mut back = false;
+            for look in 0..50 * LOOKS {
+                let Some(point) = map.next_point()? else { break };
+                let known = &orbit[look % LOOKS].state;
+                let y = sign * (point.state[0] - known[0]);
+                let w = sign * (point.state[1] - known[1]);
+                back |= w < 0.0;
+                if back && (w > 0.0 || y < 0.0) {
+                    returns.push(Return { phase, excess: y * y - w * w });
+                    break;
+                }
+            }
+        }
+        Ok(returns)
+    }
+
+    /// The phase of the extremum of the excess that is nearest to zero.
+    pub(crate) fn extremum(&self, value: f64) -> Result<f64, SimulateError> {
+        let returns = self.returns(value, 128)?;
+        let neighbours = (0..returns.len()).filter_map(|k| {
+            let at = |shift: usize| returns.get((k + shift) % returns.len());
+            let (before, middle, after) = (at(0)?, at(1)?, at(2)?);
+            let turns = (middle.excess - before.excess) * (after.excess - middle.excess) <= 0.0;
+            turns.then_some(middle)
+        });
+        let nearest = neighbours.min_by(|a, b| a.excess.abs().total_cmp(&b.excess.abs()));
+        nearest.map(|nearest| nearest.phase).ok_or(SimulateError::NoTangency { value })
+    }
+
+    /// The return with the smallest `sign` excess, and that.
+    fn margin(&self, value: f64, count: u32, sign: f64) -> Result<(f64, Return), SimulateError> {
+        let returns = self.returns(value, count)?;
+        let least =
+            returns.into_iter().min_by(|a, b| (sign * a.excess).total_cmp(&(sign * b.excess)));
+        let least = least.ok_or(SimulateError::NoTangency { value })?;
+        Ok((sign * least.excess, least))
+    }
+
+    /// The tangency between two values of the parameter, at one of which all of `count` orbits
+    /// turn back (or all pass over the saddle) and at the other not: bisected to 1/64 of the
+    /// bracket, then by [`Self::tangency`]. Seen from the end where all do the same it is the first
+    /// one, up to what hides between the orbits followed and the values tried.
+    ///
+    /// Errors: [`SimulateError::NoTangency`] if the ends are of one kind.
+    pub fn first_tangency(
+        &self,
+        (low, high): (f64, f64),
+        count: u32,
+    ) -> Result<Tangency, SimulateError> {
+        for sign in [1.0, -1.0] {
+            let margins = (self.margin(low, count, sign)?, self.margin(high, count, sign)?);
+            let (mut pure, mut mixed) = ((low, margins.0), (high, margins.1));
+            if mixed.1.0 > 0.0 {
+                (pure, mixed) = (mixed, pure);
+            }
+            if !(pure.1.0 > 0.0 && mixed.1.0 < 0.0) {
+                continue;
+            }
+            for _ in 0..6 {
+                let middle = (pure.0 + mixed.0) / 2.0;
+                let margin = self.margin(middle, count, sign)?;
+                let end = if margin.0 > 0.0 { &mut pure } else { &mut mixed };
+                *end = (middle, margin);
+            }
+            let (value, (_, nearer)) = if pure.1.0 < -mixed.1.0 { pure } else { mixed };
+            return self.tangency(value, nearer.phase);
+        }
+        Err(SimulateError::NoTangency { value: low })
+    }
+
+    /// The tangency near a value of the parameter and a phase: Newton's method for G = 0 and
+    /// dG/dsigma = 0, G the unstable component after N periods (its derivative along sigma by the
+    /// linearised flow, the others by differences), for N, N + 1, ... as the orbit comes closer to
+    /// the saddle.
+    ///
+    /// Errors: [`SimulateError::NoTangency`] without convergence.
+    pub fn tangency(&self, value: f64, phase: f64) -> Result<Tangency, SimulateError> {
+        let mut periods = self.arrival(value, phase)?;
+        let (mut value, mut phase) = self.newton((value, phase), periods)?;
+        let mut error = f64::INFINITY;
+        for _ in 0..3 {
+            let next = match self.newton((value, phase), periods + 1) {
+                Err(failure) if error == f64::INFINITY => return Err(failure),
+                Err(_) => break,
+                Ok(next) => next,
+            };
+            let change = (next.0 - value).abs();
+            if change > error {
+                break;
+            }
+            (value, phase) = next;
+            (error, periods) = (change, periods + 1);
+        }
+        // The same orbit, begun one period farther out: how straight the manifold is there.
+        let (other, _) = self.newton((value, phase + 1.0), periods - 1)?;
+        Ok(Tangency { value, error: error + (other - value).abs(), phase, periods })
+    }
+
+    /// After how many periods the orbit that came back is nearest to the saddle.
+    fn arrival(&self, value: f64, phase: f64) -> Result<u32, SimulateError> {
+        let (saddle, system) = (self.saddle(value)?, self.system(value, false)?);
+        let start = saddle.unstable(self.amount(&saddle, phase));
+        let section = Section::Period(self.period);
+        let mut map = PoincareMap::new(&system, &0.0, &start, section, Self::settings())?;
+        let (mut away, mut nearest) = (false, (f64::INFINITY, 0));
+        for periods in 1..50 {
+            let Some(point) = map.next_point()? else { break };
+            let [u, s] = saddle.coordinates(&point.state);
+            let distance = u.hypot(s);
+            away |= distance > AWAY;
+            if away && distance < nearest.0 {
+                nearest = (distance, periods);
+            }
+            // Nearer is better, but later amplifies rounding errors.
+            if nearest.0 < NEAR || nearest.0 < AWAY && distance > AWAY {
+                break;
+            }
+        }
+        if nearest.0 < AWAY { Ok(nearest.1) } else { Err(SimulateError::NoTangency { value }) }
+    }
+
+    /// (G, dG/dsigma).
+    fn unstable_component(
+        &self,
+        (value, phase): (f64, f64),
+        periods: u32,
+    ) -> Result<[f64; 2], SimulateError> {
+        let system = self.system(value, true)?;
+        let saddle = saddle(&system, self.period, self.guess, Self::settings())?;
+        let amount = self.amount(&saddle, phase);
+        let end = f64::from(periods) * self.period;
+        let start = saddle.unstable(amount);
+        let flow = monodromy(&system, (&0.0, &end), &start, Self::settings())?;
+        let [u, _] = saddle.coordinates(&flow.end);
+        // d(start)/dsigma = amount ln(mu) (unstable direction).
+        let rate = amount * saddle.multipliers[0].ln();
+        let [x, v] = saddle.directions[0];
+        let carried = flow.matrix.iter().map(|row| match row[..] {
+            [first, second] => rate * (first * x + second * v),
+            _ => f64::NAN,
+        });
+        let mut carried = carried.fuse();
+        let tangent = [(); 2].map(|()| carried.next().unwrap_or(f64::NAN));
+        Ok([u, saddle.components(tangent)[0]])
+    }
+
+    fn newton(&self, start: (f64, f64), periods: u32) -> Result<(f64, f64), SimulateError> {
+        let (mut value, mut phase) = start;
+        let mut moved = f64::INFINITY;
+        let (mut step, mut turn) = (1e-6, 1e-5);
+        for _ in 0..30 {
+            let at = |dv: f64, dp: f64| self.unstable_component((value + dv, phase + dp), periods);
+            let [g, slope] = at(0.0, 0.0)?;
+            let (more, less) = (at(step, 0.0)?, at(-step, 0.0)?);
+            let (later, sooner) = (at(0.0, turn)?, at(0.0, -turn)?);
+            // The differences stay where G is nearly linear in the value, quadratic in the phase.
+            let (change, bend) =
+                ((more[0] - less[0]).abs(), (later[0] + sooner[0] - 2.0 * g).abs());
+            if change > 1e-3 || bend > 1e-3 {
+                step *= (1e-4 / change).min(1.0);
+                turn *= (1e-4 / bend).sqrt().min(1.0);
+                continue;
+            }
+            let by_value = [0, 1].map(|k| (more[k] - less[k]) / (2.0 * step));
+            let curvature = (later[1] - sooner[1]) / (2.0 * turn);
+            let determinant = by_value[0] * curvature - by_value[1] * slope;
+            let dv = (slope * slope - g * curvature) / determinant;
+            let dp = (g * by_value[1] - slope * by_value[0]) / determinant;
+            if !(dv.is_finite() && dp.is_finite()) {
+                break;
+            }
+            // Not out of the neighbourhood where G means something.
+            let damping = (0.05 / dp.abs()).min(0.02 / dv.abs()).min(1.0);
+            value += damping * dv;
+            phase += damping * dp;
+            if dv.abs() < 1e-8 && dv.abs() >= 0.25 * moved || dv == 0.0 {
+                return Ok((value, phase));
+            }
+            moved = dv.abs();
+        }
+        Err(SimulateError::NoTangency { value: start.0 })
+    }
+}
+
+/// Farther than this from the saddle the coordinates tell nothing.
+const AWAY: f64 = 0.4;
+/// Near enough to begin with.
+const NEAR: f64 = 0.05;

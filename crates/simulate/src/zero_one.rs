@@ -1,0 +1,138 @@
+//! The 0-1 test for chaos of a time series.
+
+/// The growth rate K of the mean square displacement of the series' translation variables: near 0
+/// for regular, near 1 for chaotic motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ZeroOne {
+    /// The median of K_c over the frequencies c.
+    pub k: f64,
+    /// The lower and the upper quartile of K_c: how far the answer depends on c.
+    pub quartiles: (f64, f64),
+}
+
+/// Frequencies c per test.
+const FREQUENCIES: u32 = 100;
+
+/// The 0-1 test of Gottwald and Melbourne (SIAM J. Appl. Dyn. Syst. 8, 2009, 129-145): with
+///
+/// p_c(n) = sum_{j<=n} phi_j cos jc,  q_c(n) = sum_{j<=n} phi_j sin jc,
+/// M_c(n) = mean_j ((p_c(j+n) - p_c(j))^2 + (q_c(j+n) - q_c(j))^2)
+///        - mean(phi)^2 (1 - cos nc)/(1 - cos c),  n = 1..=N/10,  j = 1..=N - N/10,
+///
+/// K_c is the correlation coefficient of M_c(n) and n, K its median over 100 values of c in
+/// (pi/5, 4 pi/5) (multiples of the golden ratio modulo 1: the same ones every time).
+///
+/// A statistical estimate, with no bound; errors like 1/sqrt(N). The series must not be sampled
+/// too finely: take stroboscopic points, and every m-th of them where the attractor has m bands
+/// (several bands look regular). Nothing for less than 100 points or values that are not finite.
+/// Cost: O(100 N^2/10).
+///
+/// ```
+/// let mut x = 0.3;
+/// let logistic: Vec<f64> = (0..2000).map(|_| { x = 3.97 * x * (1.0 - x); x }).collect();
+/// let k = lindstedt_simulate::zero_one(&logistic).map_or(0.0, |test| test.k);
+/// assert!(k > 0.99);
+/// ```
+#[must_use]
+pub fn zero_one(series: &[f64]) -> Option<ZeroOne> {
+    if series.len() < 100 || !series.iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let mean = series.iter().sum::<f64>() / series.len() as f64;
+    let golden = (5f64.sqrt() - 1.0) / 2.0;
+    let mut growths: Vec<f64> = (1..=FREQUENCIES)
+        .map(|k| std::f64::consts::PI * (0.2 + 0.6 * (f64::from(k) * golden).fract()))
+        .map(|c| growth(series, mean, c))
+        .collect();
+    growths.sort_by(f64::total_cmp);
+    let at = |share: f64| {
+        let place = share * (growths.len() - 1) as f64;
+        let (low, high) = (place.floor() as usize, place.ceil() as usize);
+        growths[low] + (growths[high] - growths[low]) * place.fract()
+    };
+    Some(ZeroOne { k: at(0.5), quartiles: (at(0.25), at(0.75)) })
+}
+
+/// K_c.
+fn growth(series: &[f64], mean: f64, c: f64) -> f64 {
+    let (mut p, mut q) = (0.0, 0.0);
+    let mut path = Vec::with_capacity(series.len());
+    for (j, phi) in (1u32..).zip(series) {
+        let (sin, cos) = (f64::from(j) * c).sin_cos();
+        p += phi * cos;
+        q += phi * sin;
+        path.push((p, q));
+    }
+    let cut = series.len() / 10;
+    let places = (series.len() - cut) as f64;
+    let displacements: Vec<f64> = (1..=cut)
+        .map(|n| {
+            let pairs = path.iter().zip(&path[n..]).take(series.len() - cut);
+            let sum: f64 = pairs.map(|(a, b)| (b.0 - a.0).powi(2) + (b.1 - a.1).powi(2)).sum();
+            // The part of the oscillation of the mean, which does not grow.
+            sum / places - mean * mean * (1.0 - (n as f64 * c).cos()) / (1.0 - c.cos())
+        })
+        .collect();
+    correlation(&displacements)
+}
+
+/// The correlation coefficient of d_n with n; zero for a constant.
+fn correlation(d: &[f64]) -> f64 {
+    let n = d.len() as f64;
+    let (middle, mean) = ((n + 1.0) / 2.0, d.iter().sum::<f64>() / n);
+    let (mut mixed, mut squares, mut spread) = (0.0, 0.0, 0.0);
+    for (k, value) in (1u32..).zip(d) {
+        let (x, y) = (f64::from(k) - middle, value - mean);
+        mixed += x * y;
+        squares += x * x;
+        spread += y * y;
+    }
+    if spread > 0.0 { mixed / (squares * spread).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn logistic(r: f64, count: usize) -> Vec<f64> {
+        let mut x = 0.3;
+        let mut step = || {
+            x = r * x * (1.0 - x);
+            x
+        };
+        (0..200).for_each(|_| {
+            step();
+        });
+        (0..count).map(|_| step()).collect()
+    }
+
+    #[test]
+    fn the_logistic_map() {
+        let k = |r| zero_one(&logistic(r, 3000)).unwrap().k;
+        assert!(k(3.55).abs() < 0.05, "{}", k(3.55));
+        assert!(k(3.97) > 0.99, "{}", k(3.97));
+    }
+
+    #[test]
+    fn a_quasi_periodic_series_is_regular() {
+        let series: Vec<f64> =
+            (0..3000).map(|n| (f64::from(n) * 2f64.sqrt()).cos() + 0.5).collect();
+        assert!(zero_one(&series).unwrap().k.abs() < 0.1);
+    }
+
+    /// The oscillation that a mean adds to M_c is taken out: it would drown the growth.
+    #[test]
+    fn a_large_mean_changes_little() {
+        let series = logistic(3.97, 3000);
+        let shifted: Vec<f64> = series.iter().map(|x| x + 20.0).collect();
+        let (k, other) = (zero_one(&series).unwrap().k, zero_one(&shifted).unwrap().k);
+        assert!((k - other).abs() < 0.02, "{k} {other}");
+    }
+
+    #[test]
+    fn no_answer_without_data() {
+        assert!(zero_one(&[1.0; 99]).is_none());
+        assert!(zero_one(&[f64::NAN; 200]).is_none());
+        assert!(zero_one(&[0.0; 200]).is_some());
+    }
+}

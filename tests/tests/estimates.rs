@@ -1,0 +1,202 @@
+//! Error estimates of periods on random problems: a true error above its estimate is a failure.
+//! The generator is seeded; the ignored test counts over many more and larger cases.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use lindstedt::algebra::RationalAlgebra;
+use lindstedt::evaluate::{EvaluateSettings, evaluate};
+use lindstedt::series::resummation::{Method, Resummed, Sample, UniformMap, resum};
+use lindstedt::{Error, Settings, Value, derive, problems};
+use rug::{Float, Rational};
+
+const BITS: u32 = 300;
+
+/// splitmix64.
+struct Generator(u64);
+
+impl Generator {
+    fn below(&mut self, n: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) % n
+    }
+
+    /// A decimal between low and high, in thousandths.
+    fn thousandths(&mut self, low: i64, high: i64) -> String {
+        let n = low + self.below((high - low) as u64) as i64;
+        format!("{n}/1000")
+    }
+
+    fn method(&mut self) -> Option<Method> {
+        Method::ALL.get(self.below(6) as usize).copied()
+    }
+}
+
+#[derive(Default, Debug)]
+struct Count {
+    held: usize,
+    /// With an estimate below 10^-3.
+    useful: usize,
+    refused: usize,
+    infinite: usize,
+    /// log_10 of estimate over true error, summed over the useful ones.
+    pessimism: f64,
+    failures: Vec<String>,
+}
+
+impl Count {
+    fn add(&mut self, name: String, found: Result<&Resummed, ()>, exact: &Float) {
+        let Ok(found) = found else {
+            self.refused += 1;
+            return;
+        };
+        let estimate = &found.outcome.estimate;
+        let error = Float::with_val(53, &estimate.value - exact).abs();
+        // The exact values have 30 or 28 digits.
+        let known = Float::with_val(53, exact.abs_ref()) * 2e-28;
+        if !estimate.error.is_finite() {
+            self.infinite += 1;
+        } else if error <= Float::with_val(53, &estimate.error + &known) {
+            self.held += 1;
+            if estimate.error < 1e-3 {
+                self.useful += 1;
+                let floor = error.max(&known);
+                self.pessimism +=
+                    Float::with_val(53, &estimate.error / floor).log10().to_f64().max(0.0);
+            }
+        } else {
+            self.failures.push(format!(
+                "{name} -> {:?}: {error:.2e} > {:.2e}",
+                found.method, estimate.error
+            ));
+        }
+    }
+
+    fn print(&self) {
+        let total = self.held + self.refused + self.infinite + self.failures.len();
+        println!(
+            "{total} sums: {} held, {} useful, {} refused, {} infinite, {} violated; mean pessimism 10^{:.2}",
+            self.held,
+            self.useful,
+            self.refused,
+            self.infinite,
+            self.failures.len(),
+            self.pessimism / self.useful as f64
+        );
+        for line in &self.failures {
+            println!("  {line}");
+        }
+    }
+}
+
+/// T/2pi without the amplitude's factor, from the closed form's digits.
+fn over_two_pi(period: &str) -> Float {
+    let two_pi = Float::with_val(BITS, rug::float::Constant::Pi) * 2u32;
+    Float::with_val(BITS, Float::parse(period).unwrap()) / two_pi
+}
+
+/// A random problem with a closed form: name, parameter and value.
+fn random(g: &mut Generator) -> (&'static str, &'static str, String) {
+    match g.below(4) {
+        0 => ("power-law", "n", g.thousandths(-997, 300)),
+        1 => {
+            let exponent = g.below(4);
+            ("power-law", "n", g.thousandths(301, 3 * 10i64.pow(3 + exponent as u32)))
+        }
+        2 => {
+            let high = [0, 3_000, 300_000][g.below(3) as usize];
+            ("duffing", "eps", g.thousandths(-950, high))
+        }
+        _ => ("pendulum", "amplitude", g.thousandths(20, 3_100)),
+    }
+}
+
+fn closed_forms(seed: u64, cases: usize, most: u64, count: &mut Count) {
+    let mut g = Generator(seed);
+    for _ in 0..cases {
+        let (name, parameter, value) = random(&mut g);
+        let order = 5 + g.below(most - 5) as usize;
+        for method in [None, g.method(), g.method()] {
+            let parameters =
+                [(parameter.to_owned(), Value::parse(&value).unwrap())].into_iter().collect();
+            let settings = EvaluateSettings {
+                order: Some(order),
+                method,
+                parameters,
+                ..EvaluateSettings::default()
+            };
+            let problem = problems::find(name).unwrap();
+            let found = evaluate(&problem, &settings, &mut |_| true);
+            let label = format!("{name} {parameter} = {value} order {order} {method:?}");
+            match found {
+                Ok(found) => {
+                    let exact = found.exact_period.as_ref().unwrap().decimal.clone();
+                    count.add(label, Ok(&found.resummed), &over_two_pi(&exact));
+                }
+                Err(Error::Resummation { .. }) => count.add(label, Err(()), &Float::new(53)),
+                Err(other) => panic!("{label}: {other}"),
+            }
+        }
+    }
+}
+
+/// T/2pi of van der Pol in eps^2.
+fn limit_cycle(order: usize) -> Vec<Rational> {
+    let problem = problems::find("van-der-pol").unwrap();
+    let settings = Settings { order, ..Settings::default() };
+    let result = derive(&problem, &settings, &mut |_| true).unwrap();
+    let series = &result.named("period_over_2pi").unwrap().coefficients;
+    series.iter().step_by(2).map(|c| result.ring.as_rational(c).unwrap()).collect()
+}
+
+fn van_der_pol(seed: u64, order: usize, cases: usize, count: &mut Count) {
+    let mut g = Generator(seed);
+    let series = limit_cycle(order);
+    let references = include_str!("../data/van-der-pol/periods.txt").lines();
+    let references: Vec<(&str, &str)> =
+        references.filter(|l| !l.starts_with('#')).map(|l| l.split_once(' ').unwrap()).collect();
+    for _ in 0..cases {
+        let (eps, period) = references[g.below(references.len() as u64) as usize];
+        let known = 6 + g.below(series.len() as u64 - 5) as usize;
+        let eps_value: Rational = eps.parse().unwrap();
+        let source = |bits: u32| {
+            Some(Sample {
+                coefficients: series.iter().take(known).map(|c| Float::with_val(bits, c)).collect(),
+                point: Float::with_val(bits, eps_value.clone().square()),
+                map: Some(UniformMap {
+                    scale: Float::with_val(bits, 1),
+                    prefactor: Float::with_val(bits, 0.5),
+                    radius: None,
+                }),
+                radius: None,
+                bits,
+            })
+        };
+        for method in [None, g.method(), g.method()] {
+            let found = resum(&source, method, 100);
+            let label = format!("van-der-pol {eps} {known} terms {method:?}");
+            count.add(label, found.as_ref().map_err(|_| ()), &over_two_pi(period));
+        }
+    }
+}
+
+#[test]
+fn estimates_hold() {
+    let mut count = Count::default();
+    closed_forms(11, 30, 17, &mut count);
+    van_der_pol(12, 40, 20, &mut count);
+    count.print();
+    assert!(count.failures.is_empty());
+    assert!(count.useful > 60, "{count:?}");
+}
+
+#[test]
+#[ignore = "minutes"]
+fn every_estimate() {
+    for seed in 200..204 {
+        let mut count = Count::default();
+        closed_forms(seed, 60, 28, &mut count);
+        van_der_pol(seed, 80, 40, &mut count);
+        count.print();
+    }
+}

@@ -1,0 +1,11 @@
+//! The averaged delay loop against the root that it expands, and the stability of the impact orbit
+//! against the nonlinear delayed system in the time domain.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // a test fails by panicking
+
+#[path = "vibro_impact/nonlinear.rs"]
+mod nonlinear;
+#[path = "vibro_impact/series.rs"]
+mod series;
+#[path = "vibro_impact/support.rs"]
+mod support;
