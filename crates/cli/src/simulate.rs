@@ -108,7 +108,7 @@ fn integrate(
         working = working.saturating_add(more);
     }
     let message =
-        format!("{digits} digits were not reached, {:.0} are missing", lost.max(1.0).min(1e6));
+        format!("{digits} digits were not reached, {:.0} are missing", lost.clamp(1.0, 1e6));
     Err(undecided(message, "a shorter time, or fewer --digits"))
 }
 

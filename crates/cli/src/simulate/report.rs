@@ -11,6 +11,9 @@ use std::fmt::Write;
 /// Lines of a list that are printed; files have all.
 const PRINTED: usize = 40;
 
+/// Title, heading, rows.
+type Table = (&'static str, Vec<&'static str>, Vec<Vec<String>>);
+
 /// A motion with the estimated errors of its numbers.
 pub struct Answer<'a> {
     pub plan: &'a Plan,
@@ -240,7 +243,7 @@ impl<'a> Answer<'a> {
     }
 
     /// Heading and rows of each list: events, samples, section.
-    fn tables(&self) -> Vec<(&'static str, Vec<&'static str>, Vec<Vec<String>>)> {
+    fn tables(&self) -> Vec<Table> {
         let d = |a: &Float, b: &Float| self.digits_of(a, b);
         let event = |(a, b): (&Happening, &Happening)| {
             vec![
