@@ -11,6 +11,9 @@ use std::fmt::Write;
 /// Lines of a list that are printed; files have all.
 const PRINTED: usize = 40;
 
+/// Title, heading, rows.
+type Table = (&'static str, Vec<&'static str>, Vec<Vec<String>>);
+
 /// A motion with the estimated errors of its numbers.
 pub struct Answer<'a> {
     pub plan: &'a Plan,
