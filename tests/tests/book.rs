@@ -189,12 +189,11 @@ fn rust_blocks_are_compiled_and_run() -> Outcome {
 mod readme {
     //! The library example of the README.
 
-    use lindstedt::{Settings, derive, problems};
+    use lindstedt::Oscillator;
 
     fn main() -> Result<(), Box<dyn std::error::Error>> {
-        let problem = problems::find("van-der-pol").ok_or("no such problem")?;
-        let settings = Settings { order: 6, ..Settings::default() };
-        let result = derive(&problem, &settings, &mut |_| true)?;
+        let oscillator = Oscillator::parse("x'' + x + eps*(x^2 - 1)*x' = 0")?;
+        let result = oscillator.derive(6)?;
         assert_eq!(result.exact("frequency", 6).as_deref(), Some("35/884736"));
         assert_eq!(result.checked_orders, Some(6));
         Ok(())
