@@ -272,11 +272,28 @@ pub fn classify(
         let list = if order > 0 || hidden { &mut parts.weak } else { &mut parts.strong };
         list.push(Term { term, order });
     }
+    if !parts.strong.is_empty() && strong_terms_cancel(&rest, values) {
+        parts.strong.clear();
+    }
     parts.reversible =
         parts.forcing.is_empty() && problem.impact.is_none() && is_reversible(&equation);
     let stiffness_value = value(&parts.stiffness);
     crate::methods::decide(problem, &rest, values, stiffness_value, &mut parts);
     Ok(parts)
+}
+
+/// Whether the nonlinear terms at small parameter zero cancel each other at the values given.
+fn strong_terms_cancel(rest: &Expression, values: &BTreeMap<String, Rational>) -> bool {
+    let bind = |e: &Expression| match e {
+        Expression::Small => Some(Expression::integer(0)),
+        Expression::Parameter(name) => values.get(name).cloned().map(Expression::Number),
+        _ => None,
+    };
+    let bound = without_trivial_powers(&rest.substitute(&bind).canonical());
+    let Some(all) = expand(&bound) else { return false };
+    all.terms.iter().all(|(monomial, q)| {
+        monomial.is_power(1, 0) || all.tree(monomial, q).contains(&Expression::Time)
+    })
 }
 
 /// kappa, when the equation at small parameter zero, multiplied out, is kappa x alone.

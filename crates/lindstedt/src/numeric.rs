@@ -231,15 +231,18 @@ impl Job<'_> {
 
     /// Four times the largest difference between the finest grid and the others at this and at
     /// lower orders (an accidental agreement at one order says nothing), and rounding errors.
+    /// Sixteen times for the truncated Fourier series, which converges algebraically: far from
+    /// resolution two truncations are wrong together.
     fn compare(&self, tier: Tier, coarse: &[Run], fine: Run, bits: u32) -> Estimate {
         let rounding = Float::with_val(53, 1) >> (bits as i32 - 6);
         let estimated = |(index, (name, values)): (usize, (&'static str, Vec<Float>))| {
             let mut error = rounding.clone();
+            let safety = if matches!(tier, Tier::Fourier { .. }) { 16u32 } else { 4 };
             let mut coefficients = Vec::new();
             for (n, value) in values.into_iter().enumerate() {
                 let others = coarse.iter().filter_map(|run| run.series.get(index)?.1.get(n));
                 for other in others {
-                    let difference = Float::with_val(53, &value - other).abs() * 4u32;
+                    let difference = Float::with_val(53, &value - other).abs() * safety;
                     if difference > error || difference.is_nan() {
                         error = difference;
                     }

@@ -214,7 +214,7 @@ fn is_refused(e: &Expression) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: iterations(2000), max_global_rejects: u32::MAX, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: iterations(2000), max_global_rejects: u32::MAX, rng_seed: seed(), ..ProptestConfig::default() })]
 
     #[test]
     fn what_is_printed_reads_back_as_the_same_tree(e in tree()) {
@@ -261,6 +261,14 @@ const WORDS: [&str; 36] = [
     "eps", "k", "2", "1/3", "0.5", "1e3", "sin", "cos(", "ln(", "abs(", "sign(", "sqrt(",
     "taylor(", ", 3)", "(t-1)", "²", "S(", "^2", "x(",
 ];
+
+/// The same cases every time, unless it is a long run.
+fn seed() -> proptest::test_runner::RngSeed {
+    match std::env::var_os("LINDSTEDT_FUZZ") {
+        Some(_) => proptest::test_runner::RngSeed::Random,
+        None => proptest::test_runner::RngSeed::Fixed(1),
+    }
+}
 
 /// The number of cases; LINDSTEDT_FUZZ multiplies it for a long run.
 fn iterations(normal: u32) -> u32 {
