@@ -16,18 +16,16 @@ pub fn run(options: &ProblemsOptions, session: &Session<'_>) -> Outcome {
     if let Some(name) = options.show.as_deref() {
         return show(name, session);
     }
-    let belt = stick_slip::card();
-    let (list, belt) = (lindstedt::problems::all(), Some(belt));
+    let mut list = lindstedt::problems::all();
+    list.push(stick_slip::problem());
     let text = match session.format() {
         Format::Json => {
-            let list: Vec<_> =
-                list.iter().map(as_json).chain(belt.as_ref().map(card_as_json)).collect();
+            let list: Vec<_> = list.iter().map(as_json).collect();
             format!("{:#}\n", json!({ "problems": list }))
         }
         format => {
             let style = if format == Format::Text { Style::Text } else { Style::Latex };
-            let cards: String = list.iter().map(|p| card(p, style)).collect();
-            cards + &belt.as_ref().map(belt_card).unwrap_or_default()
+            list.iter().map(|p| card(p, style)).collect()
         }
     };
     output::write(session, &text)?;
@@ -37,7 +35,7 @@ pub fn run(options: &ProblemsOptions, session: &Session<'_>) -> Outcome {
 /// One problem as a problem file, with its classification in comments.
 fn show(name: &str, session: &Session<'_>) -> Outcome {
     let loaded = match name {
-        _ if name == stick_slip::card().name => {
+        _ if name == stick_slip::problem().name => {
             Loaded { problem: stick_slip::problem(), file: None }
         }
         "vibro-impact" => {
@@ -116,14 +114,6 @@ fn card(problem: &Problem, style: Style) -> String {
     text
 }
 
-/// The card of a problem that Melnikov's method takes instead of the driver.
-fn belt_card(card: &stick_slip::Card) -> String {
-    let mut text = format!("{}\n  {}\n  {}\n", card.name, card.title, card.equation);
-    let _ = writeln!(text, "  small parameter eps; see `lindstedt threshold`");
-    closing(&mut text, &card.parameters, &card.notes, &card.source);
-    text
-}
-
 fn closing(text: &mut String, parameters: &[ParameterCard], notes: &str, source: &str) {
     for card in parameters {
         let _ = writeln!(text, "  {} = {} by default: {}", card.name, card.default, card.meaning);
@@ -134,18 +124,6 @@ fn closing(text: &mut String, parameters: &[ParameterCard], notes: &str, source:
 fn parameters_as_json(parameters: &[ParameterCard]) -> Vec<serde_json::Value> {
     let json = |card: &ParameterCard| json!({"name": card.name, "default": card.default, "meaning": card.meaning});
     parameters.iter().map(json).collect()
-}
-
-fn card_as_json(card: &stick_slip::Card) -> serde_json::Value {
-    json!({
-        "name": card.name,
-        "title": card.title,
-        "equation": card.equation,
-        "parameter": "eps",
-        "parameters": parameters_as_json(&card.parameters),
-        "notes": card.notes,
-        "source": card.source,
-    })
 }
 
 fn as_json(problem: &Problem) -> serde_json::Value {

@@ -183,7 +183,7 @@ pub fn problem(name: &str) -> Result<Problem, Failure> {
         return load(name).map(|loaded| loaded.problem);
     }
     lindstedt::problems::find(name).ok_or_else(|| {
-        if name == lindstedt::problems::stick_slip::card().name {
+        if name == lindstedt::problems::stick_slip::problem().name {
             return Failure {
                 exit: NO_ANSWER,
                 code: "no-expansion",

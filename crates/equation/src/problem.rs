@@ -51,6 +51,14 @@ pub struct ParameterCard {
     pub default: Text,
 }
 
+impl ParameterCard {
+    /// A line of a built-in problem.
+    #[must_use]
+    pub fn new(name: &'static str, meaning: &'static str, default: &'static str) -> Self {
+        Self { name: name.into(), meaning: meaning.into(), default: default.into() }
+    }
+}
+
 /// The direction in which x crosses a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crossing {

@@ -1,24 +1,7 @@
 //! The stick-slip oscillator of section 3: a data card. Its equation has a sign and a forcing in
 //! t, so it is no problem of the expansion driver; Melnikov's method and the simulation take it.
 
-use lindstedt_equation::{AmplitudeRole, Expression, Function, ParameterCard, Problem, Text};
-
-/// What is to be said about a problem that is not expanded.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Card {
-    /// The name on the command line.
-    pub name: Text,
-    /// One line.
-    pub title: Text,
-    /// The equation in print.
-    pub equation: Text,
-    /// The parameters, with the paper's values as defaults.
-    pub parameters: Vec<ParameterCard>,
-    /// How the dimensionless equation follows from the physical one, and what is known.
-    pub notes: Text,
-    /// Where it comes from.
-    pub source: Text,
-}
+use lindstedt_equation::{AmplitudeRole, Expression, Function, ParameterCard, Problem};
 
 /// x'' - a x + b x^3 + eps (T0 sign w - alpha w + beta w^3 - gamma cos(omega t)), w = x' - vstar.
 pub fn equation() -> Expression {
@@ -34,12 +17,12 @@ pub fn equation() -> Expression {
         + Expression::Small * (friction - forcing)
 }
 
-/// Equation and card together; no condition of the expansion driver belongs to it.
+/// Equation and card; no condition of the expansion driver belongs to it.
 pub fn problem() -> Problem {
-    let Card { name, title, parameters, notes, source, .. } = card();
+    let line = ParameterCard::new;
     Problem {
-        name,
-        title,
+        name: "stick-slip".into(),
+        title: "mass on a moving belt in a double well".into(),
         equation: equation(),
         time_domain: None,
         impact: None,
@@ -47,25 +30,6 @@ pub fn problem() -> Problem {
         small: "eps".into(),
         conditions: Vec::new(),
         amplitude: AmplitudeRole::Free,
-        parameters,
-        notes,
-        source,
-    }
-}
-
-/// The card of the paper's (18)-(20).
-pub fn card() -> Card {
-    let line = |name: &'static str, meaning: &'static str, default: &'static str| ParameterCard {
-        name: name.into(),
-        meaning: meaning.into(),
-        default: default.into(),
-    };
-    Card {
-        name: "stick-slip".into(),
-        title: "mass on a moving belt in a double well".into(),
-        equation: "x'' = a*x - b*x^3 + eps*(gamma*cos(omega*t) - T(x' - vstar)), \
-                   T(w) = T0*sign(w) - alpha*w + beta*w^3"
-            .into(),
         parameters: vec![
             line("a", "k_1/m > 0: the saddle's rate squared", "1"),
             line("b", "k_2/m > 0: stiffening, wells at +-sqrt(a/b)", "1"),

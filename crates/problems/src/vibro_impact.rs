@@ -17,11 +17,7 @@ pub fn problem() -> Problem {
     let flight = Expression::Acceleration + symbol("alpha").pow(2) * x
         - force
         - Expression::Small * loop_force;
-    let line = |name: &'static str, meaning: &'static str, default: &'static str| ParameterCard {
-        name: name.into(),
-        meaning: meaning.into(),
-        default: default.into(),
-    };
+    let line = ParameterCard::new;
     Problem {
         name: "vibro-impact".into(),
         title: "vibro-impact oscillator with a delay loop, one impact in k periods".into(),

@@ -58,9 +58,6 @@ fn bound(error: &Float) -> String {
     above.to_string_radix_round(10, Some(2), rug::float::Round::Up)
 }
 
-/// Title, headings, rows.
-type Table = (&'static str, Vec<&'static str>, Vec<Vec<String>>);
-
 impl<'a> Answer<'a> {
     /// Whether both integrations met the same events; nothing else can be compared.
     pub fn comparable(&self) -> bool {

@@ -69,7 +69,7 @@ impl Setup {
     ) -> Result<Self, Failure> {
         let mut setup = if name == vibro_impact::problem().name {
             return impact_oscillator(set, state, perturbation, digits);
-        } else if name == stick_slip::card().name {
+        } else if name == stick_slip::problem().name {
             belt(&parameters(set)?)?
         } else {
             smooth(&problem(name)?, &parameters(set)?)?
@@ -98,7 +98,7 @@ fn bound(at: &[(String, Value)]) -> Parameters {
 /// The stick-slip oscillator, from (1/10, 0): the attractor that sticks, with the paper's parameters;
 /// most other starts come to the small orbit of one period about the right well.
 fn belt(given: &Given) -> Result<Setup, Failure> {
-    let at = values(&stick_slip::card().parameters, given)?;
+    let at = values(&stick_slip::problem().parameters, given)?;
     let omega = at.iter().find(|(name, _)| name == "omega").map(|(_, v)| quantity(v).float(4000));
     let omega = omega.filter(|x| *x > 0).ok_or_else(|| Failure {
         exit: NO_ANSWER,

@@ -111,7 +111,7 @@ impl Request {
         }
         let mut set = parameters(&options.set)?;
         let mut at = Vec::new();
-        for card in stick_slip::card().parameters {
+        for card in stick_slip::problem().parameters {
             let value = match set.remove(&*card.name) {
                 Some(value) => real(value),
                 None => parse(&card.default)?,
