@@ -143,7 +143,10 @@ fn console_blocks_show_what_the_program_prints() -> Outcome {
             let mut lines = block.lines();
             let command = lines.next().and_then(|line| line.strip_prefix("$ lindstedt "));
             let command = command.ok_or("a console block starts with $ lindstedt")?;
-            let output = Command::new(&binary).args(command.split_whitespace()).output()?;
+            let output = Command::new(&binary)
+                .args(command.split_whitespace())
+                .current_dir(root())
+                .output()?;
             let mut shown = String::from_utf8_lossy(&output.stdout).into_owned();
             shown.push_str(&String::from_utf8_lossy(&output.stderr));
             let expected: Vec<&str> = lines.filter(|l| !l.trim().is_empty()).collect();
