@@ -249,3 +249,24 @@ fn refusals_have_their_exit_code() {
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "mine\n");
     let _ = std::fs::remove_file(path);
 }
+
+/// A problem file is integrated with its small parameter set (Duffing's first integral holds at
+/// the end), and what it contains is never ignored: a wall is refused, a delay needs a history.
+#[test]
+fn problem_files() {
+    let example = |name: &str| {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/");
+        format!("{folder}{name}.toml")
+    };
+    let duffing = example("duffing");
+    let result = json(&[&duffing, "--set", "eps=1/10", "--until", "3"]);
+    let last = result["samples"].as_array().unwrap().last().unwrap();
+    let (x, v) = (float(&last["x"]), float(&last["v"]));
+    let energy = |x: f64, v: f64| 0.5 * v * v + 0.5 * x * x + 0.025 * x.powi(4);
+    assert!((energy(x, v) - energy(1.0, 0.0)).abs() < 1e-14);
+    for (name, word) in [("vibro-impact", "wall"), ("delayed-duffing", "history")] {
+        let output = run(&[&example(name)]);
+        assert!(!output.status.success(), "{name}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains(word), "{name}");
+    }
+}

@@ -72,7 +72,7 @@ impl Setup {
         } else if name == stick_slip::problem().name {
             belt(&parameters(set)?)?
         } else {
-            smooth(&problem(name)?, &parameters(set)?)?
+            smooth(&of_file(problem(name)?, name)?, &parameters(set)?)?
         };
         if perturbation.is_some() {
             let message = format!("{name} has no periodic impact orbit to perturb");
@@ -81,6 +81,26 @@ impl Setup {
         setup.start = state.unwrap_or(setup.start);
         Ok(setup)
     }
+}
+
+/// A problem of a file: its small parameter can be set, 1 by default; nothing of it is ignored.
+fn of_file(mut problem: Problem, name: &str) -> Result<Problem, Failure> {
+    if lindstedt::problems::find(name).is_some() {
+        return Ok(problem);
+    }
+    if problem.impact.is_some() {
+        return Err(Failure {
+            exit: NO_ANSWER,
+            code: "no-method",
+            message: "a wall in a problem file is not simulated yet".into(),
+            hint: "the built-in vibro-impact oscillator has one".into(),
+        });
+    }
+    if problem.parameters.iter().all(|card| card.name != problem.small) {
+        let (name, meaning) = (problem.small.clone(), "small parameter".into());
+        problem.parameters.push(ParameterCard { name, meaning, default: "1".into() });
+    }
+    Ok(problem)
 }
 
 fn shown(at: &[(String, Value)]) -> Vec<(String, String)> {
