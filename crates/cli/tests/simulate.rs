@@ -210,8 +210,10 @@ fn a_diagram_doubles_its_period() {
 
 #[test]
 fn refusals_have_their_exit_code() {
-    let cases: [(&[&str], i32); 24] = [
+    let cases: [(&[&str], i32); 25] = [
         (&["nonsense"], 2),
+        // The lower branch of orbit O3 passes through the wall.
+        (&["vibro-impact", "--set", "branch=-", "--impacts", "3"], 3),
         (&["duffing", "--set", "x=1"], 2),
         (&["duffing", "--state", "1"], 2),
         (&["duffing", "--state", "1,nan"], 2),

@@ -38,3 +38,15 @@ fn point(case: &Value) -> Vec<String> {
     let sets = sets.chain([format!("branch={branch}")]);
     sets.flat_map(|set| ["--set".to_owned(), set]).collect()
 }
+
+/// Where the flight of the orbit passes through the wall there is no orbit and no verdict, neither
+/// for the point nor in a chart.
+#[test]
+fn a_chart_has_no_verdict_where_the_orbit_does_not_exist() {
+    let refused = run(&["--set", "omega=1"]);
+    assert_eq!(refused.status.code(), Some(3));
+    let chart = json(&["--sweep", "omega=1..2:2"]);
+    assert!(chart["grid"]["exact"][0][0].is_null(), "omega = 1 penetrates");
+    assert!(chart["grid"]["exact"][0][1].is_boolean(), "omega = 2 does not");
+    assert_eq!(chart["grid"]["agreement"]["compared"], 1);
+}

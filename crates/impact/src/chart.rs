@@ -5,6 +5,7 @@ use crate::characteristic::{Characteristic, Kick};
 use crate::complex::Complex;
 use crate::equivalent::{Drive, equivalent_orbit};
 use crate::error::ImpactError;
+use crate::flight::clearance;
 use crate::flow::{Flow, Scratch, free_delay};
 use crate::map::{ImpactMap, Verdict};
 use crate::orbit::{Orbit, orbit};
@@ -105,7 +106,8 @@ pub struct Plan {
 pub struct Point {
     /// The predicted verdict; `None` without a predicted orbit or flow, or if not asked for.
     pub predicted: Option<Verdict>,
-    /// The exact verdict; `None` without a true orbit or if not asked for; neutral if undecided.
+    /// The exact verdict; `None` without a true orbit (its flight is checked for penetration) or if
+    /// not asked for; neutral if undecided.
     pub exact: Option<Verdict>,
     /// Predicted max |gamma|; NaN if there is none.
     pub predicted_radius: f64,
@@ -175,6 +177,8 @@ struct Fixed {
     delay: Complex<f64>,
     drive: Result<Drive<f64>, ImpactError>,
     orbit: Option<Result<Orbit<f64>, ImpactError>>,
+    /// Whether the flight of the true orbit passes through the wall: then there is no such orbit.
+    penetrates: bool,
 }
 
 impl Fixed {
@@ -185,12 +189,19 @@ impl Fixed {
                 plan.predictor,
                 Some((Predictor::Kbm(Variant::S) | Predictor::ImpactAware(_), _))
             );
+        let orbit = needs_orbit.then(|| orbit(parameters));
+        let through = |orbit: &Orbit<f64>| {
+            let found = clearance(parameters, orbit);
+            matches!(found, Ok(Some(found)) if found.margin > 0.0)
+        };
+        let found = orbit.as_ref().and_then(|found| found.as_ref().ok());
         Self {
+            penetrates: plan.exact.is_some() && found.is_some_and(through),
             time,
             delay: free_delay(parameters, &time),
             // Refuses c >= 2 alpha, as the single prediction does.
             drive: Flow::uncontrolled(parameters).and_then(|_| Drive::new(parameters)),
-            orbit: needs_orbit.then(|| orbit(parameters)),
+            orbit,
         }
     }
     fn orbit(&self) -> Option<&Orbit<f64>> {
@@ -221,7 +232,7 @@ fn evaluate(
         }
         _ => {}
     }
-    if let (Some(kick), Some(orbit)) = (plan.exact, fixed.orbit()) {
+    if let (Some(kick), Some(orbit)) = (plan.exact, fixed.orbit().filter(|_| !fixed.penetrates)) {
         let g = Characteristic::new(parameters, orbit, kick);
         point.exact = Some(exact_verdict(&g).0);
         if plan.radius {

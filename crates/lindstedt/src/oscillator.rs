@@ -114,7 +114,7 @@ impl Oscillator {
     /// The checked expansion up to an order.
     ///
     /// # Errors
-    /// As [`derive`].
+    /// As [`derive()`].
     pub fn derive(&self, order: usize) -> Result<Derivation, Error> {
         let settings = Settings { order, ..self.settings.clone() };
         derive(&self.problem, &settings, &mut |_: Progress| true)

@@ -107,7 +107,7 @@ pub struct Verification {
 
 /// Compares the expansion of a problem with the time domain.
 ///
-/// Errors: those of [`derive`]; [`Error::Simulate`]; [`Error::UnknownCondition`] for a problem whose
+/// Errors: those of [`derive()`]; [`Error::Simulate`]; [`Error::UnknownCondition`] for a problem whose
 /// first normalisation fixes no start; [`Error::NoPeriodicOrbit`]. Cost: two integrations per value.
 ///
 /// # Example

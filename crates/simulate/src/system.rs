@@ -49,7 +49,7 @@ impl Model {
         Ok(model)
     }
 
-    /// The system y_k' = `right_sides`[k]; state k goes by names[k], the first two also by x
+    /// The system y_k' = `right_sides[k]`; state k goes by `names[k]`, the first two also by x
     /// and x' (which is then no derivative, only a name).
     pub fn first_order(names: &[&str], right_sides: &[Expression]) -> Result<Self, SimulateError> {
         if right_sides.is_empty() || (!names.is_empty() && names.len() != right_sides.len()) {

@@ -81,7 +81,10 @@ impl<R: Real> Trajectory<R> {
         let piece = self.pieces.get(next.checked_sub(1)?)?;
         // The last piece includes its end; so does one before the gap of an accumulation.
         let end = self.real.sum(&piece.start, &piece.length);
-        (*time <= end || next < self.pieces.len()).then_some(piece)
+        // Start and length are rounded: the end that was asked for may lie just beyond their sum.
+        let beyond = self.real.to_f64(&self.real.difference(time, &end));
+        let rounding = 1e-6 * self.real.to_f64(&piece.length);
+        (beyond <= rounding || next < self.pieces.len()).then_some(piece)
     }
 
     /// A state at a time (after the jump, at a jump); nothing outside of what was kept or for a

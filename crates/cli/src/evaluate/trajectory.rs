@@ -125,11 +125,9 @@ impl Table {
             .points
             .iter()
             .map(|point| {
-                let error = point.error.is_finite().then(|| format!("{:.2e}", point.error));
-                let number = point.value.as_ref().map_or_else(
-                    || json!({"exact": null, "decimal": format!("{:e}", point.double), "error": error, "status": "estimated"}),
-                    number_json,
-                );
+                // Without a digit that the estimate supports there is no decimal to print.
+                let none = || json!({"exact": null, "decimal": null, "error": null, "status": "estimated"});
+                let number = point.value.as_ref().map_or_else(none, number_json);
                 json!({"t": point.time.to_string(), "x": number})
             })
             .collect();

@@ -9,7 +9,9 @@ use lindstedt::equation::{Expression, ParameterCard, Problem};
 use lindstedt::problems::{stick_slip, vibro_impact};
 use lindstedt::simulate::{Digits, Model, Parameters, Quantity, Real};
 use lindstedt::verify::quantity;
+use lindstedt_impact::flight::clearance;
 use lindstedt_impact::orbit::orbit;
+use lindstedt_impact::real::Real as _;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
@@ -268,6 +270,16 @@ fn impact_oscillator(
         }
         None => {
             let orbit = orbit(&p)?;
+            if let Ok(Some(found)) = clearance(&p, &orbit)
+                && found.margin.is_positive()
+            {
+                return Err(Failure {
+                    exit: NO_ANSWER,
+                    code: "no-orbit",
+                    message: "no orbit: the flight passes through the wall".into(),
+                    hint: "give a start with --state".into(),
+                });
+            }
             let (velocity, restitution) = (real(&orbit.velocity), real(&p.restitution));
             remarks.push(
                 "start and history: the periodic orbit, t = 0 just after an impact".to_owned(),

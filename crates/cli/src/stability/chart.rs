@@ -42,8 +42,12 @@ pub enum Standing {
     Open,
 }
 
-pub fn standing(point: &Point) -> Standing {
+pub fn standing(point: &Point, plan: &Plan) -> Standing {
     use Verdict::{Neutral, Stable, Unstable};
+    // Where the true orbit does not exist a prediction is about nothing.
+    if plan.exact.is_some() && point.exact.is_none() {
+        return Standing::Open;
+    }
     match (point.predicted, point.exact) {
         (Some(Neutral), _) | (_, Some(Neutral)) | (None, None) => Standing::Open,
         (Some(Stable), Some(Stable)) => Standing::BothStable,

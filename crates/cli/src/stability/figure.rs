@@ -108,7 +108,9 @@ fn paint(
     let mut present = Vec::new();
     let mut cells = Vec::new();
     for row in (0..rows.count).step_by(dy) {
-        let at = |column: usize| grid.chart.point(column, row).map_or(Standing::Open, standing);
+        let at = |column: usize| {
+            grid.chart.point(column, row).map_or(Standing::Open, |p| standing(p, &grid.plan))
+        };
         let mut column = 0;
         while column < columns.count {
             // Runs of equal standing become one rectangle.

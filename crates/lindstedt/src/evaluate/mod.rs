@@ -95,7 +95,7 @@ fn bits_for(digits: usize) -> u32 {
 /// [`Error::NotEvaluated`] for a problem whose period has no known series,
 /// [`Error::OutsideDomain`] and [`Error::UnknownParameter`] for parameters,
 /// [`Error::Resummation`] where the method asked for does not apply, and what
-/// [`crate::derive`] returns.
+/// [`crate::derive()`] returns.
 ///
 /// ```
 /// use lindstedt::evaluate::{EvaluateSettings, evaluate};

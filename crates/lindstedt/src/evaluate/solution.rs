@@ -62,7 +62,7 @@ impl Trajectory {
     /// error, of `evaluation` (by [`super::evaluate`] with the same settings).
     ///
     /// # Errors
-    /// As [`super::evaluate`] and [`crate::derive`].
+    /// As [`super::evaluate`] and [`crate::derive()`].
     pub fn new(
         problem: &Problem,
         settings: &EvaluateSettings,
