@@ -50,7 +50,7 @@ pub enum Symmetry {
 pub enum Algebra {
     /// Trigonometric polynomials over Q.
     TrigonometricOverRationals,
-    /// Trigonometric polynomials over Q[parameters].
+    /// Trigonometric polynomials over `Q[parameters]`.
     TrigonometricOverParameters,
     /// The Lobachevsky ring.
     Lobachevsky,
