@@ -1,16 +1,16 @@
 //! Averaging of a problem: rates of amplitude and phase as formulas or as numbers.
 
 mod coefficients;
+mod values;
 
 use crate::number::rational;
-use crate::{Error, Number, Progress, Status, Value};
+use crate::{Error, Number, Progress, Value};
 use coefficients::{Coefficients, with_angles};
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials, AmplitudePower};
+use lindstedt_coeff::ball::Balls;
 use lindstedt_coeff::ball::ring::{BallRing, Enclosure};
-use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::digits::{decimal, error_string};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_equation::{Expression, Problem};
@@ -21,6 +21,7 @@ use lindstedt_expand::{
 use lindstedt_phase::{Delay, Torus};
 use rug::Rational;
 use std::collections::{BTreeMap, BTreeSet};
+use values::{Given, collect, constant, enclosed};
 
 /// What to average.
 #[derive(Clone, Debug)]
@@ -160,6 +161,9 @@ impl<K: RationalAlgebra> Binding<AmplitudePolynomials<K>> for Bound<'_, K> {
         None
     }
 }
+
+/// Beyond this precision "not enough bits" is answered.
+const MOST_BITS: u32 = 1 << 18;
 
 /// The result over K.
 struct Over<K: RationalAlgebra> {
@@ -412,91 +416,5 @@ impl<'a> Task<'a> {
                 other => return other,
             }
         }
-    }
-}
-
-/// Beyond this precision "not enough bits" is answered.
-const MOST_BITS: u32 = 1 << 18;
-
-/// A number from its enclosure: all digits are certain, or it is zero to twice the digits.
-fn enclosed(ball: &Ball, digits: usize, bits: u32) -> Result<Coefficient, Error> {
-    let number = |decimal: String| {
-        let error = error_string(ball, &decimal);
-        let error = (error != "0").then_some(error);
-        Coefficient::Number(Number { exact: None, decimal, error, status: Status::Certified })
-    };
-    let small = ball.contains_zero()
-        && ball.abs_upper().get_exp().is_none_or(|e| f64::from(-e) > 6.66 * digits as f64 + 8.0);
-    if small && !ball.is_exact() {
-        return Ok(number("0".to_owned()));
-    }
-    let needed = (digits as f64 * std::f64::consts::LOG2_10).ceil() as i64 + 2;
-    let enough = ball.is_exact() || ball.relative_accuracy_bits() >= needed;
-    match decimal(ball, digits).filter(|_| enough) {
-        Some(decimal) => Ok(number(decimal)),
-        None => Err(Error::NotEnoughBits { bits, best: None }),
-    }
-}
-
-/// A value as it was given, or a delay of k periods.
-enum Given {
-    Value(Value),
-    Period(Value, Value),
-}
-
-impl Given {
-    fn ball(&self, balls: Balls) -> Option<Ball> {
-        match self {
-            Self::Value(value) => Some(value.ball(balls)),
-            Self::Period(periods, frequency) => {
-                let angle = balls.mul(&balls.mul_i64(&balls.pi(), 2), &periods.ball(balls));
-                balls.div(&angle, &frequency.ball(balls))
-            }
-        }
-    }
-}
-
-fn collect(expression: &Expression, names: &mut BTreeSet<String>) {
-    match expression {
-        Expression::Parameter(name) => {
-            names.insert(name.clone());
-        }
-        Expression::Sum(list) | Expression::Product(list) => {
-            list.iter().for_each(|inner| collect(inner, names));
-        }
-        Expression::Power(a, b) | Expression::Delayed(a, b) => {
-            collect(a, names);
-            collect(b, names);
-        }
-        Expression::Function(_, inner) | Expression::Formal(_, inner) => collect(inner, names),
-        _ => {}
-    }
-}
-
-/// The value of an expression in numbers and parameters.
-fn constant<K: RationalAlgebra>(
-    ring: &K,
-    expression: &Expression,
-    values: &dyn Fn(&str) -> Option<K::Element>,
-) -> Option<K::Element> {
-    let value = |inner: &Expression| constant(ring, inner, values);
-    match expression {
-        Expression::Number(q) => Some(ring.rational(q)),
-        Expression::Parameter(name) => values(name),
-        Expression::Sum(list) => {
-            list.iter().try_fold(ring.zero(), |sum, inner| Some(ring.add(&sum, &value(inner)?)))
-        }
-        Expression::Product(list) => list
-            .iter()
-            .try_fold(ring.one(), |product, inner| Some(ring.mul(&product, &value(inner)?))),
-        Expression::Power(base, exponent) => {
-            let Expression::Number(n) = &**exponent else { return None };
-            let n = n.is_integer().then(|| n.numer().to_i32()).flatten()?;
-            let base = value(base)?;
-            let base = if n < 0 { ring.reciprocal(&base)? } else { base };
-            (n.unsigned_abs() <= 1000)
-                .then(|| lindstedt_coeff::polynomial::power(ring, &base, n.unsigned_abs()))
-        }
-        _ => None,
     }
 }
