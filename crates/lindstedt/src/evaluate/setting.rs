@@ -65,6 +65,32 @@ pub(crate) struct Setting {
     parameters: BTreeMap<String, Value>,
 }
 
+/// The value of the small parameter of an averaged problem, its amplitude being free, and all
+/// values in the order of the card.
+pub(super) fn small_value(
+    problem: &Problem,
+    given: &BTreeMap<String, Value>,
+) -> Result<(Value, Vec<(String, Value)>), Error> {
+    let values = Values { problem, given };
+    let small = match problem.amplitude {
+        // eps A^power at A = 1: the displacement is not scaled.
+        AmplitudeRole::InSmallParameter => {
+            values.get(&problem.small).or_else(|| values.coefficient().map(|(_, value)| value))
+        }
+        _ => values.get(&problem.small),
+    };
+    let coefficient = small.ok_or_else(|| unset(problem, &problem.small))?;
+    let small = Small { coefficient, power: 0, name: problem.small.to_string() };
+    let listed = matches!(problem.amplitude, AmplitudeRole::InSmallParameter)
+        && values.get(&problem.small).is_none();
+    let mut all = values.all(&small);
+    if listed {
+        // It stands there under the name of its coefficient.
+        all.retain(|(name, _)| **name != *problem.small);
+    }
+    Ok((small.coefficient, all))
+}
+
 fn one() -> Value {
     Value::Rational(Rational::from(1))
 }
@@ -134,15 +160,7 @@ impl Setting {
             });
         }
         let at = values.all(&small);
-        Ok(Self {
-            problem: problem.clone(),
-            condition,
-            form,
-            at,
-            small,
-            amplitude,
-            parameters,
-        })
+        Ok(Self { problem: problem.clone(), condition, form, at, small, amplitude, parameters })
     }
 
     /// The value of the small parameter.
@@ -192,10 +210,12 @@ impl Values<'_> {
         let scales = matches!(self.problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
         let listed = self.problem.parameters.iter().any(|card| card.name == "n");
         let value = self.given.get("n").filter(|_| scales && listed)?;
-        Some(value.as_rational().cloned().ok_or_else(|| Error::Irrational {
-            name: "n".to_owned(),
-            value: value.to_string(),
-        }))
+        Some(
+            value.as_rational().cloned().ok_or_else(|| Error::Irrational {
+                name: "n".to_owned(),
+                value: value.to_string(),
+            }),
+        )
     }
 
     fn small(&self, equation: &Expression) -> Result<Small, Error> {
@@ -222,11 +242,10 @@ impl Values<'_> {
     /// one that the equation does not mention.
     fn coefficient(&self) -> Option<(String, Value)> {
         let mentioned = self.problem.equation.parameters();
-        let mut others = self
-            .problem
-            .parameters
-            .iter()
-            .filter(|card| card.name != "amplitude" && !mentioned.contains(&card.name.to_string()));
+        let mut others =
+            self.problem.parameters.iter().filter(|card| {
+                card.name != "amplitude" && !mentioned.contains(&card.name.to_string())
+            });
         let card = others.next()?;
         others.next().is_none().then_some(())?;
         Some((card.name.to_string(), self.get(&card.name)?))
