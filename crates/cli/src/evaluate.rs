@@ -1,6 +1,8 @@
 //! `lindstedt evaluate`: numbers from the expansion.
 
+mod averaged;
 mod code;
+mod figure;
 mod report;
 mod trajectory;
 
@@ -12,8 +14,8 @@ use crate::output;
 use crate::session::{Loaded, Session, digits, load, parameters};
 use lindstedt::equation::{Condition, Expression};
 use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
-use lindstedt::series::resummation::Method;
 use lindstedt::problem_file::parse_equation;
+use lindstedt::series::resummation::Method;
 use lindstedt::{Error, Progress, Value, expand::ExpandError};
 use report::Report;
 use rug::Rational;
@@ -32,6 +34,17 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         classification::check(&parts, file, condition, &options.problem)?;
     }
     set_order_parameter(&loaded, &mut given);
+    let free = condition.or(loaded.problem.conditions.first().copied());
+    if free == Some(Condition::FreeAmplitude)
+        && loaded.problem.conditions.contains(&Condition::FreeAmplitude)
+    {
+        return averaged::run(options, &loaded, given, session);
+    }
+    if options.start.is_some() || options.state.is_some() {
+        let message = "--start and --state belong to averaged motions".to_owned();
+        let hint = "--normalisation free averages; else --set amplitude=A, --phase PHASE";
+        return Err(Failure::usage("start", message, hint));
+    }
     let problem = loaded.problem;
     let settings = EvaluateSettings {
         order: options.order.map(|order| order as usize),

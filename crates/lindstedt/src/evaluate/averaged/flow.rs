@@ -6,6 +6,7 @@ use lindstedt_simulate::{
     Digits, Integrator, Model, Parameters, Settings, SimulateError, Trajectory,
 };
 use rug::Float;
+use std::ops::ControlFlow;
 
 /// Digits of the second integration beyond those of the first.
 const MORE: u32 = 8;
@@ -28,7 +29,12 @@ pub(super) struct Flow {
 }
 
 impl Flow {
-    pub(super) fn new(system: &Truncated, times: &[Float], digits: usize) -> Self {
+    pub(super) fn new(
+        system: &Truncated,
+        times: &[Float],
+        digits: usize,
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Self {
         if let Some([growth, frequency]) = system.linear() {
             let state = |t: &Float| {
                 let bits = growth.prec();
@@ -47,8 +53,8 @@ impl Flow {
                 continue;
             }
             let wanted: Vec<Float> = chosen.iter().map(|i| times[*i].clone().abs()).collect();
-            let [coarse, fine] =
-                [digits, digits + MORE].map(|d| integrate(system, &wanted, backward, d));
+            let mut run = |digits| integrate(system, (&wanted[..], backward), digits, goes_on);
+            let (coarse, fine) = (run(digits), run(digits + MORE));
             for (place, (a, b)) in chosen.into_iter().zip(coarse.0.into_iter().zip(fine.0)) {
                 let (Some(a), Some(b)) = (a, b) else { continue };
                 let errors = [0, 1].map(|k| Float::with_val(53, &a[k] - &b[k]).to_f64().abs());
@@ -65,15 +71,18 @@ type Values = Vec<Option<[Float; 2]>>;
 /// The states at |t|, t = 0 included, and what ended the integration early.
 fn integrate(
     system: &Truncated,
-    times: &[Float],
-    backward: bool,
+    (times, backward): (&[Float], bool),
     digits: u32,
+    goes_on: &mut dyn FnMut() -> bool,
 ) -> (Values, Option<SimulateError>) {
     let real = Digits::for_digits(digits);
     let mut trajectory = Trajectory::new(real);
     let last = times.iter().fold(Float::new(53), |top, t| top.max(t));
-    let outcome =
-        if last.is_zero() { Ok(()) } else { run(system, &last, backward, digits, &mut trajectory) };
+    let outcome = if last.is_zero() {
+        Ok(())
+    } else {
+        run(system, (&last, backward), digits, (&mut trajectory, goes_on))
+    };
     let bits = real_bits(&real);
     let start = system.start.clone();
     let value = |t: &Float| {
@@ -92,10 +101,9 @@ fn real_bits(real: &Digits) -> u32 {
 
 fn run(
     system: &Truncated,
-    last: &Float,
-    backward: bool,
+    (last, backward): (&Float, bool),
     digits: u32,
-    trajectory: &mut Trajectory<Digits>,
+    (trajectory, goes_on): (&mut Trajectory<Digits>, &mut dyn FnMut() -> bool),
 ) -> Result<(), SimulateError> {
     let real = Digits::for_digits(digits);
     let bits = real_bits(&real);
@@ -115,6 +123,9 @@ fn run(
     let start: Vec<Float> = system.start.iter().map(|x| Float::with_val(bits, x)).collect();
     let settings = Settings::for_digits(digits);
     let mut flow = Integrator::new(&compiled, &Float::new(bits), &start, settings)?;
-    flow.advance(&Float::with_val(bits, last), &mut |report| trajectory.record(report))?;
+    flow.advance(&Float::with_val(bits, last), &mut |report| {
+        let _ = trajectory.record(report);
+        if goes_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    })?;
     Ok(())
 }

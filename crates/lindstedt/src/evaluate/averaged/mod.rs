@@ -112,7 +112,7 @@ impl Motion {
     /// let parameters = [("eps".to_owned(), Value::parse("1/10")?)].into();
     /// let settings = MotionSettings { order: 4, parameters, digits: 12, start };
     /// let mut motion = Motion::new(&problem, &settings, &mut |_| true)?;
-    /// let far = motion.at(&[Value::parse("100")?]);
+    /// let far = motion.at(&[Value::parse("100")?], &mut || true);
     /// // The limit cycle has amplitude 2 + O(eps^2).
     /// assert!((far[0].amplitude.double - 2.0).abs() < 1e-3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -197,6 +197,19 @@ impl Motion {
         })
     }
 
+    /// a' and psi' of order N at the start.
+    #[must_use]
+    pub fn rates(&self) -> [f64; 2] {
+        let rate = |order: &Truncated| order.rate(&order.start[0]).map(|x| x.to_f64());
+        self.orders.first().map_or([f64::NAN; 2], rate)
+    }
+
+    /// 2 pi over psi' at the start.
+    #[must_use]
+    pub fn turn(&self) -> f64 {
+        std::f64::consts::TAU / self.rates()[1]
+    }
+
     /// Whether the terms of the expansion decrease at the start, so that the last ones say
     /// something about the rest.
     #[must_use]
@@ -204,15 +217,15 @@ impl Motion {
         self.ratio.is_some_and(|ratio| ratio < 1.0)
     }
 
-    /// The motion at times in increasing order. Times that the integration does not reach are left
-    /// out.
-    pub fn at(&mut self, times: &[Value]) -> Vec<Moment> {
+    /// The motion at times in increasing order. Times that the integration does not reach, because
+    /// it ends or `goes_on` says no (asked at every step), are left out.
+    pub fn at(&mut self, times: &[Value], goes_on: &mut dyn FnMut() -> bool) -> Vec<Moment> {
         let Some(full) = self.orders.first() else { return Vec::new() };
         let bits = full.start[0].prec();
         let float = |value: &Value| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
         let floats: Vec<Float> = times.iter().map(float).collect();
-        let flows: Vec<Flow> =
-            self.orders.iter().map(|o| Flow::new(o, &floats, self.digits)).collect();
+        let mut flow = |order| Flow::new(order, &floats, self.digits, goes_on);
+        let flows: Vec<Flow> = self.orders.iter().map(&mut flow).collect();
         self.ended = flows.first().and_then(|flow| flow.ended.clone());
         let mut list = Vec::new();
         // Errors accumulate: the largest difference so far.
