@@ -203,8 +203,12 @@ impl Report<'_> {
             ("psi' there".to_owned(), format!("{turn}")),
         ];
         if let Some([growth, frequency]) = &motion.linear {
-            lines.push(("growth rate a'/a".to_owned(), growth.decimal.clone()));
-            lines.push(("frequency psi'".to_owned(), frequency.decimal.clone()));
+            let shown = |number: &Number| match &number.error {
+                Some(error) => format!("{} +- {error} (estimated)", number.decimal),
+                None => number.decimal.clone(),
+            };
+            lines.push(("growth rate a'/a".to_owned(), shown(growth)));
+            lines.push(("frequency psi'".to_owned(), shown(frequency)));
         }
         lines.push(("verdict".to_owned(), motion.verdict()));
         lines

@@ -81,7 +81,8 @@ pub struct Motion {
     pub order: usize,
     /// a(0), psi(0) of order N.
     pub start: [f64; 2],
-    /// The growth rate R of a = a(0) exp(R t) and the frequency psi', where neither depends on a.
+    /// The growth rate R of a = a(0) exp(R t) and the frequency psi', where neither depends on a;
+    /// nothing, too, where not one digit of them is supported.
     pub linear: Option<[Number; 2]>,
     /// The ratio of the last two terms of x at the start: below one they decrease.
     pub ratio: Option<f64>,
@@ -92,6 +93,8 @@ pub struct Motion {
     pub ended: Option<lindstedt_simulate::SimulateError>,
     /// Whether delayed values occur: then the past before t = 0 is the averaged motion's own.
     pub is_delayed: bool,
+    /// Whether there is a wall, which the averaged motion does not see: it holds between impacts.
+    pub has_wall: bool,
     orders: Vec<Truncated>,
     digits: usize,
 }
@@ -174,15 +177,30 @@ impl Motion {
             orders.push(truncated);
         }
         let full = orders.first().ok_or(Error::NoValue)?;
-        let number = |x: &Float| {
-            let balls = Balls::new(bits);
-            plain(&balls.from_parts(x, &Float::new(53)), settings.digits, false)
-        };
-        let linear = full.linear().and_then(|[r, w]| Some([number(&r)?, number(&w)?]));
         let start = full.start.clone();
         let sizes = [order, order.saturating_sub(1)].map(|n| full.size(n, &start[0]));
         let ratio = (order > 0 && !sizes[1].is_zero())
             .then(|| Float::with_val(53, &sizes[0] / &sizes[1]).to_f64());
+        let rates: Vec<_> = orders.iter().map(Truncated::linear).collect();
+        let linear = full.linear().and_then(|rates_of_full| {
+            let number = |k: usize| {
+                let x = &rates_of_full[k];
+                let apart = |i: usize, j: usize| {
+                    let (a, b) = (rates.get(i)?.as_ref()?, rates.get(j)?.as_ref()?);
+                    Some(Float::with_val(53, &a[k] - &b[k]).abs())
+                };
+                let quotient = ratio.filter(|ratio| *ratio < 1.0);
+                let balls = Balls::new(bits);
+                match quotient.zip(apart(0, 1)) {
+                    Some((quotient, last)) => {
+                        let before = apart(1, 2).unwrap_or_else(|| Float::new(53)) * quotient;
+                        estimated(&balls.from_parts(x, &last.max(&before)), settings.digits)
+                    }
+                    None => plain(&balls.from_parts(x, &Float::new(53)), settings.digits, false),
+                }
+            };
+            Some([number(0)?, number(1)?])
+        });
         Ok(Self {
             at,
             order,
@@ -192,6 +210,7 @@ impl Motion {
             integration_error: 0.0,
             ended: None,
             is_delayed: found.is_delayed,
+            has_wall: problem.impact.is_some(),
             orders,
             digits: settings.digits,
         })
@@ -295,13 +314,16 @@ impl Motion {
             ),
             None => "no estimate from so few orders".to_owned(),
         });
-        parts.push(if self.linear.is_some() {
+        parts.push(if self.orders.first().is_some_and(|full| full.linear().is_some()) {
             "a is an exponential: no error of integration".to_owned()
         } else {
             format!("integrated to {:.0e}", self.integration_error.max(1e-300))
         });
         if self.is_delayed {
             parts.push("before t = 0 the motion is taken to be the same averaged one".to_owned());
+        }
+        if self.has_wall {
+            parts.push("the wall is not seen: this is the motion between impacts".to_owned());
         }
         if let Some(reason) = &self.ended {
             parts.push(format!("the integration of a, psi ends early: {reason}"));
