@@ -142,7 +142,10 @@ impl<R: Real> Integrator<'_, R> {
         let without = self.rates_without(index)?;
         self.phase.modes[index] = mode;
         let largest = |list: &mut dyn Iterator<Item = f64>| {
-            list.fold(f64::NEG_INFINITY, |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
+            list.fold(
+                f64::NEG_INFINITY,
+                |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) },
+            )
         };
         let log = real.log2(length);
         let (mut change, mut duration) = (f64::NEG_INFINITY, f64::NEG_INFINITY);

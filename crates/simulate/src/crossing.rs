@@ -99,7 +99,11 @@ impl<R: Real> Integrator<'_, R> {
         let mut before = Local::new(system, lattice, (index, -1, self.phase.modes.clone()), rates);
         let back = |local: &Local<R>, length: &R::Element| -> Vec<R::Element> {
             let changes = local.states.iter().map(|terms| local.lattice.change(terms, length));
-            self.state.iter().zip(changes).map(|(now, change)| real.difference(now, &change)).collect()
+            self.state
+                .iter()
+                .zip(changes)
+                .map(|(now, change)| real.difference(now, &change))
+                .collect()
         };
         let mut length = after.clone();
         let mut start = back(&before, &length);

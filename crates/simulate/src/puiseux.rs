@@ -206,8 +206,7 @@ impl<R: Real> Lattice<R> {
         let mut open = Terms::from([(self.integer(0), first)]);
         while let Some((e, value)) = open.pop_first() {
             let exponent = self.element(e);
-            let known =
-                if done.is_empty() { value } else { real.quotient(&value, &exponent) };
+            let known = if done.is_empty() { value } else { real.quotient(&value, &exponent) };
             for (f, c, order) in &u {
                 if e.value + f.value > reach + 1e-9 {
                     break;

@@ -155,17 +155,20 @@ fn singular_forces() {
         let half = Float::with_val(BITS, &share + 0.5f64);
         let exact = root * 4u32 * share.clone().gamma() / half.gamma();
         for digits in [10, 25, 60] {
-            let value =
-                period(&model, (Digits::for_digits(digits), digits), &parameters, &Quantity::from(1));
+            let value = period(
+                &model,
+                (Digits::for_digits(digits), digits),
+                &parameters,
+                &Quantity::from(1),
+            );
             let value = value.unwrap();
             let error = Float::with_val(BITS, value - &exact).abs().to_f64();
             println!("n = {p}/{q}, {digits} digits: {error:e}");
-            // An error of x before the zero of x is one of the energy, times x^n.
-            assert!(error < 10f64.powi(3 - digits as i32), "{p}/{q} {digits} {error:e}");
+            assert!(error < 10f64.powi(-(digits as i32)), "{p}/{q} {digits} {error:e}");
         }
         let value = period(&model, (Doubles, 16), &parameters, &Quantity::from(1)).unwrap();
         let error = (value / exact.to_f64() - 1.0).abs();
         println!("n = {p}/{q}, f64: {error:e}");
-        assert!(error < 1e-12, "{p}/{q} {error:e}");
+        assert!(error < 2e-15, "{p}/{q} {error:e}");
     }
 }
