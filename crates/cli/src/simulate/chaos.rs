@@ -157,11 +157,19 @@ impl Diagnosis {
             parts.push(if value == f64::NEG_INFINITY {
                 "every perturbation is forgotten (the motion sticks or rests): regular".to_owned()
             } else {
+                // Regular motion without dissipation lets perturbations grow like a power of t.
+                let growth = value * self.interval * f64::from(self.kept);
+                let share = f64::from(self.kept) / f64::from(self.skipped.max(1));
+                let power = 3.0 * share.ln_1p() + 3.0;
                 let word = match value {
-                    // Where there is no force the exponent along the motion is zero.
-                    value if value > 4.0 * error => "chaotic: perturbations grow",
-                    value if value < -4.0 * error => "regular: perturbations decay",
-                    _ => "undecided: zero within four standard errors",
+                    value if value > 4.0 * error && growth > power => "chaotic: perturbations grow",
+                    value if value < -4.0 * error && growth < -3.0 => {
+                        "regular: perturbations decay"
+                    }
+                    _ if !self.forced => {
+                        "no exponential growth (without a force the exponent of regular motion is 0)"
+                    }
+                    _ => "undecided: no exponential growth, no decay",
                 };
                 format!("{word}, largest Lyapunov exponent {value:.4} +- {error:.4}")
             });
@@ -173,7 +181,8 @@ impl Diagnosis {
                 _ => "undecided",
             };
             let every =
-                if *stride == 1 { String::new() } else { format!(" at every {stride}th point") };
+                ["", "", " at every 2nd point", " at every 3rd point", " at every 4th point"];
+            let every = every.get(*stride).copied().unwrap_or_default();
             parts.push(format!("0-1 test {word}: K = {k:.4}{every}"));
         }
         parts.join("; ")
