@@ -347,13 +347,22 @@ pub struct SimulateOptions {
     /// Bifurcation diagram over a parameter: the points of the section after --skip.
     #[arg(long, value_name = "NAME=LO..HI:COUNT", allow_hyphen_values = true)]
     pub sweep: Option<String>,
-    /// Points of the section that are left out at the beginning [default: 200 with --sweep, else 0].
+    /// Points of the section that are left out at the beginning [default: 200 with --sweep, 500
+    /// periods with --lyapunov and --zero-one, else 0].
     #[arg(long, value_name = "N")]
     pub skip: Option<u32>,
     /// Velocity added at the start, in units of the impact velocity: growth ratios per impact
     /// (vibro-impact, on the orbit).
     #[arg(long, value_name = "DELTA", allow_hyphen_values = true)]
     pub perturb: Option<String>,
+    /// The largest Lyapunov exponent instead of the motion, over --periods [default: 2000] periods
+    /// of the force (units of time without one) after --skip [default: 500].
+    #[arg(long, conflicts_with = "sweep")]
+    pub lyapunov: bool,
+    /// The 0-1 test for chaos instead of the motion, of x once per period of the force (of the
+    /// maxima of x without one), over --periods after --skip.
+    #[arg(long, conflicts_with = "sweep")]
+    pub zero_one: bool,
     /// What a figure shows.
     #[arg(long, value_enum)]
     pub figure: Option<Figure>,

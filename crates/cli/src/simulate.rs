@@ -1,6 +1,8 @@
 //! `lindstedt simulate`: the motion in the time domain, its events, sections and figures.
 
+mod chaos;
 mod figure;
+mod growth;
 mod motion;
 pub mod plot;
 mod report;
@@ -14,7 +16,7 @@ use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
 use crate::session::{Session, digits};
 use lindstedt::simulate::SimulateError;
-use motion::{Motion, Plan};
+use motion::{Motion, Plan, align};
 use report::Answer;
 use rug::Rational;
 use serde_json::json;
@@ -42,6 +44,9 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
         Setup::read(&options.problem, &options.set, state, perturbation.as_ref(), digits + spare)?;
     let figure = request::figure(options, &setup)?;
     output::check_writable(session)?;
+    if chaos::wanted(options) {
+        return diagnose(options, setup, session);
+    }
     if let Some(text) = &options.sweep {
         return bifurcation(sweep::Diagram::read(options, setup, text)?, options, session);
     }
@@ -49,11 +54,17 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
     if figure == crate::arguments::Figure::Section && plan.section.is_none() {
         plan.section = request::section(options, &plan.setup)?;
     }
-    let (motion, finer) = integrate(&plan, digits, doubles, session)?;
-    session.done();
+    let (motion, finer, working) = integrate(&plan, digits, doubles, session)?;
     let chaotic = finer.is_none();
+    let half = if plan.perturbed() && !chaotic {
+        let half = plan.run_half(working, doubles, &|| session.goes_on());
+        half.map(|half| growth::shifts(&plan, &half))
+    } else {
+        None
+    };
+    session.done();
     let finer = finer.as_ref().unwrap_or(&motion);
-    let answer = Answer { plan: &plan, motion: &motion, finer, digits, chaotic };
+    let answer = Answer { plan: &plan, motion: &motion, finer, digits, chaotic, half };
     let text = match session.format() {
         Format::Json => format!("{:#}\n", answer.json(session)),
         Format::Text => answer.text(),
@@ -64,6 +75,12 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
         plot::write(path, || Ok(answer.csv()), || figure::draw(figure, &plan, &motion))?;
     }
     output::write(session, &text)?;
+    if chaotic {
+        output::warn(
+            "chaotic in doubles: no digits (without --f64 there are some, over a shorter time; \
+             --lyapunov and --zero-one tell how chaotic)",
+        );
+    }
     Ok(match (motion.complete, chaotic) {
         (false, _) => NO_ANSWER,
         (true, true) => UNDECIDED,
@@ -78,7 +95,7 @@ fn integrate(
     digits: u32,
     doubles: bool,
     session: &Session<'_>,
-) -> Result<(Motion, Option<Motion>), Failure> {
+) -> Result<(Motion, Option<Motion>, u32), Failure> {
     let mut working = if doubles { 16 } else { digits.saturating_add(4) };
     let undecided = |message: String, hint: &str| Failure {
         exit: UNDECIDED,
@@ -86,30 +103,67 @@ fn integrate(
         message,
         hint: hint.to_owned(),
     };
-    let mut lost = 0.0;
-    for _ in 0..TRIES {
+    let (mut lost, mut same) = (0.0, false);
+    for left in (0..TRIES).rev() {
         session.say(format!("{working} digits"));
         let goes_on = || session.goes_on();
-        let motion = plan.run(working, doubles, &goes_on)?;
-        let finer = plan.run(working + MORE, false, &goes_on)?;
+        let pair = plan.run(working, doubles, &goes_on).and_then(|motion| {
+            let finer = plan.run(working.saturating_add(MORE), false, &goes_on)?;
+            Ok((motion, finer))
+        });
+        let (mut motion, mut finer) = match pair {
+            // Near a branch point, or a double root to working precision: more digits may tell.
+            Err(error) if !doubles && degenerate(&error) && left > 0 => {
+                working = working.saturating_mul(2);
+                continue;
+            }
+            pair => pair?,
+        };
+        align(&mut motion, &mut finer);
         if !session.goes_on() {
             return Err(stopped(session));
         }
-        let answer = Answer { plan, motion: &motion, finer: &finer, digits, chaotic: false };
+        let answer =
+            Answer { plan, motion: &motion, finer: &finer, digits, chaotic: false, half: None };
         let comparable = answer.comparable();
+        same = comparable;
         lost = answer.log10_error() + f64::from(digits);
         if comparable && (doubles || lost <= 0.0) {
-            return Ok((motion, Some(finer)));
+            return Ok((motion, Some(finer), working));
         }
         if doubles {
-            return Ok((motion, None));
+            return Ok((motion, None, working));
         }
         let more = if comparable { lost.ceil().clamp(1.0, 1e4) as u32 + 2 } else { digits };
         working = working.saturating_add(more);
     }
-    let message =
-        format!("{digits} digits were not reached, {:.0} are missing", lost.clamp(1.0, 1e6));
+    let message = if same {
+        format!("{digits} digits were not reached, {:.0} are missing", lost.clamp(1.0, 1e6))
+    } else {
+        format!("{digits} digits were not reached: with {MORE} more the events are others")
+    };
     Err(undecided(message, "a shorter time, or fewer --digits"))
+}
+
+fn degenerate(error: &SimulateError) -> bool {
+    matches!(
+        error,
+        SimulateError::BranchPoint { .. }
+            | SimulateError::StepTooSmall { .. }
+            | SimulateError::Grazing { .. }
+    )
+}
+
+/// `--lyapunov`, `--zero-one`.
+fn diagnose(options: &SimulateOptions, setup: Setup, session: &Session<'_>) -> Outcome {
+    let diagnosis = chaos::Diagnosis::compute(options, setup, session)?;
+    session.done();
+    let text = match session.format() {
+        Format::Json => format!("{:#}\n", diagnosis.json(session)),
+        _ => diagnosis.text(),
+    };
+    output::write(session, &text)?;
+    Ok(0)
 }
 
 fn stopped(session: &Session<'_>) -> Failure {
@@ -143,7 +197,7 @@ fn bifurcation(
     let text = if session.format() == Format::Json {
         let at: serde_json::Map<_, _> =
             diagram.setup.at.iter().map(|(n, v)| (n.clone(), v.clone().into())).collect();
-        let column = |line: &sweep::Line| json!({"value": line.value, "points": line.points, "failure": line.failure});
+        let column = |line: &sweep::Line| json!({"value": line.value, "exact": line.exact, "points": line.points, "failure": line.failure});
         let result = json!({
             "problem": diagram.setup.name,
             "at": at,
@@ -165,7 +219,7 @@ fn bifurcation(
         let mut text = format!("{}: {verdict}\n", diagram.setup.name);
         for line in diagram.lines.iter().filter(|line| line.failure.is_some()) {
             let reason = line.failure.as_deref().unwrap_or_default();
-            let _ = writeln!(text, "  {} = {}: {reason}", diagram.name, line.value);
+            let _ = writeln!(text, "  {} = {}: {reason}", diagram.name, line.exact);
         }
         text
     };
@@ -180,6 +234,11 @@ fn bifurcation(
 impl From<SimulateError> for Failure {
     fn from(error: SimulateError) -> Self {
         let (exit, code, hint) = match &error {
+            SimulateError::BranchPoint { .. } => (
+                UNDECIDED,
+                "could-not-decide",
+                "more --digits; not at all where w reaches zero without speed, or for p near -1",
+            ),
             SimulateError::Grazing { .. } | SimulateError::StepTooSmall { .. } => (
                 UNDECIDED,
                 "could-not-decide",

@@ -272,3 +272,129 @@ fn problem_files() {
         assert!(String::from_utf8_lossy(&output.stderr).contains(word), "{name}");
     }
 }
+
+/// 4 sqrt(pi/(2 (n+1))) Gamma(1/(n+1))/Gamma(1/(n+1) + 1/2), from mpmath 1.3.0: forces that are
+/// singular at x = 0, a sign, or of infinite slope there.
+#[test]
+fn periods_of_singular_forces() {
+    for (n, period) in SINGULAR {
+        for digits in [10, 30] {
+            let set = format!("n={n}");
+            let digits = digits.to_string();
+            let found = json(&["power-law", "--set", &set, "--periods", "1", "--digits", &digits]);
+            let decimal = found["final"]["t"]["decimal"].as_str().unwrap();
+            let known: f64 = period.parse().unwrap();
+            assert!(period.starts_with(&decimal[..decimal.len() - 1]), "{n} {decimal} {period}");
+            assert!(decimal.len() + 1 >= digits.parse::<usize>().unwrap());
+            assert!((float(&found["final"]["t"]) - known).abs() < 1e-8);
+        }
+        let doubles = json(&["power-law", "--set", &format!("n={n}"), "--periods", "1", "--f64"]);
+        let error = float(&doubles["final"]["t"]) - period.parse::<f64>().unwrap();
+        assert!(error.abs() < 1e-13, "{n} {error:e}");
+    }
+}
+const SINGULAR: [(&str, &str); 5] = [
+    ("-2/5", "5.39816481648534820381952219966689769"),
+    ("-1/4", "5.49540909521411535810152198281491242"),
+    ("0", "5.65685424949238019520675489683879231"),
+    ("1/8", "5.73705073589736300094902269672529676"),
+    ("1/4", "5.81678920206024256262887253196809302"),
+];
+
+/// A verdict only from deviations that are linear: at A = 0.05 the orbit is unstable (multiplier
+/// -1.405), and what is left after it has grown decays to another orbit.
+#[test]
+fn growth_is_judged_in_the_linear_regime() {
+    let verdict = |gain: &str, perturbation: &str| -> (String, serde_json::Value) {
+        let gain = format!("A={gain}");
+        let at = ["vibro-impact", "--set", &gain, "--perturb", perturbation, "--impacts", "60"];
+        let found = json(&at);
+        (found["verdict"].as_str().unwrap().to_owned(), found["linear_regime"]["grows"].clone())
+    };
+    let (text, grows) = verdict("0.05", "1e-2");
+    assert!(text.contains("undecided") && grows.is_null(), "{text}");
+    for gain in ["0.05", "-0.02"] {
+        let (text, grows) = verdict(gain, "1e-6");
+        assert!(text.contains("the perturbation grows") && grows == true, "{text}");
+    }
+    let (text, grows) = verdict("-0.04", "1e-2");
+    assert!(text.contains("the perturbation decays") && grows == false, "{text}");
+}
+
+/// Infinitely many impacts in a finite time are named, to the digits and in doubles.
+#[test]
+fn chattering_is_named() {
+    let at = ["vibro-impact", "--set", "R_r=3/10", "--set", "omega=1/3", "--state=-0.4,0"];
+    let exact = json(&[&at[..], &["--until", "40", "--digits", "15"]].concat());
+    assert!(exact["verdict"].as_str().unwrap().contains("chattering: infinitely many impacts"));
+    let doubles = json(&[&at[..], &["--until", "40", "--f64"]].concat());
+    let (a, b) = (&exact["chattering"], &doubles["chattering"]);
+    assert!(
+        a.as_array().unwrap().len() >= 2
+            && a.as_array().unwrap().len() == b.as_array().unwrap().len()
+    );
+    for (a, b) in a.as_array().unwrap().iter().zip(b.as_array().unwrap()) {
+        assert!((float(&a["t"]) - float(&b["t"])).abs() < 1e-7);
+    }
+    // The hundredth impact is among those that accumulate.
+    let hundred = json(&[&at[..], &["--impacts", "100", "--digits", "15"]].concat());
+    assert!(hundred["complete"] == true);
+    assert!(hundred["verdict"].as_str().unwrap().contains("among them"));
+    let error = float(&hundred["final"]["t"]) - float(&exact["chattering"][0]["t"]);
+    assert!(error.abs() < 1e-13, "{error:e}");
+}
+
+#[test]
+fn exponents_and_the_zero_one_test() {
+    let at = |gamma: &str, periods: &str| {
+        let gamma = format!("gamma={gamma}");
+        let both = ["--lyapunov", "--zero-one", "--periods", periods];
+        json(&[&["stick-slip", "--set", &gamma], &both[..]].concat())
+    };
+    let chaotic = at("0.65", "2000");
+    let exponent = &chaotic["lyapunov"];
+    let error: f64 = exponent["error"].as_str().unwrap().parse().unwrap();
+    assert!((float(exponent) - 0.0719).abs() < 4.0 * error && error < 0.01, "{exponent}");
+    // Two bands: every second point looks chaotic.
+    assert!(float(&chaotic["zero_one"]["k"][1]) > 0.95, "{}", chaotic["zero_one"]);
+    assert!(chaotic["verdict"].as_str().unwrap().starts_with("chaotic"));
+    let regular = at("0.6", "500");
+    assert!((float(&regular["lyapunov"]) + 0.0185).abs() < 1e-3);
+    assert!(regular["verdict"].as_str().unwrap().starts_with("regular"));
+    // Duffing's oscillator: perturbations grow like t.
+    let linear = json(&["duffing", "--lyapunov", "--periods", "300", "--skip", "100"]);
+    assert!(linear["verdict"].as_str().unwrap().starts_with("no exponential growth"));
+    // A delay has no finite linearisation; too few periods tell nothing.
+    for (arguments, code) in [
+        (&["vibro-impact", "--set", "A=1/50", "--lyapunov"][..], 3),
+        (&["stick-slip", "--lyapunov", "--periods", "10"], 2),
+        (&["stick-slip", "--lyapunov", "--until", "10"], 2),
+        (&["stick-slip", "--lyapunov", "--sweep", "gamma=0.6..0.7:2"], 2),
+    ] {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        assert!(!output.stderr.is_empty());
+    }
+}
+
+#[test]
+fn values_of_a_sweep_are_exact() {
+    let path = file("exact.csv");
+    let sweep = ["stick-slip", "--sweep", "gamma=0.5..0.8:10", "--skip", "0", "--periods", "1"];
+    let found = json(&[&sweep[..], &["--plot", path.to_str().unwrap()]].concat());
+    let columns = found["sweep"]["columns"].as_array().unwrap();
+    let exact: Vec<&str> = columns.iter().map(|c| c["exact"].as_str().unwrap()).collect();
+    assert_eq!(exact[..4], ["0.5", "8/15", "17/30", "0.6"]);
+    let table = std::fs::read_to_string(&path).unwrap();
+    assert!(table.contains("\n0.6,") && table.contains("\n0.5666666666666667,"));
+    let _ = std::fs::remove_file(path);
+}
+
+/// Chaos in doubles: no digits, exit code 4, and what to do.
+#[test]
+fn chaos_in_doubles_says_what_to_do() {
+    let output = run(&["stick-slip", "--f64", "--set", "gamma=1.2", "--periods", "400"]);
+    assert_eq!(output.status.code(), Some(4));
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(text.contains("--lyapunov") && text.contains("without --f64"), "{text}");
+}

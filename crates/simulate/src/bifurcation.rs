@@ -73,7 +73,7 @@ pub struct Column<E> {
 
 /// Computes the columns `range` of the diagram, in parallel in rayon's current pool, and hands
 /// them over in order of their index on the calling thread; the observer breaks the diagram off.
-/// `tick` is asked at every point, on the computing threads, whether to go on (cancellation
+/// `tick` is asked at every step, on the computing threads, whether to go on (cancellation
 /// inside of long columns: unfinished columns are dropped). Returns the index of the first column
 /// that was not handed over: `range.end` when the diagram is complete.
 ///
@@ -185,7 +185,11 @@ fn collect<R: Real>(
         if tick().is_break() {
             return Ok(None);
         }
-        let Some(point) = map.next_point()? else { break };
+        let point = match map.next_point_while(tick) {
+            Err(SimulateError::Stopped) => return Ok(None),
+            point => point?,
+        };
+        let Some(point) = point else { break };
         if count >= u64::from(settings.transient) {
             points.push(point);
         }

@@ -1,7 +1,9 @@
 //! Branch points: |w|^p with p no integer where w passes zero.
 //!
 //! The solution has no Taylor series there. Steps come closer geometrically (a step is a fixed
-//! part of the distance) until what the terms in |w| do from there to the mirror image behind
+//! part of the distance) until the series in fractional powers about the branch point converges
+//! fast (`crossing`). Where there is none of the kind known there (a delay, two different
+//! exponents), they go on until what the terms in |w| do from there to the mirror image behind
 //! the zero is below the tolerance; that short way is made without them (a leap). With w = O(s)
 //! the terms contribute O(s^(p+1)), so p > -1 is needed, and about 10 digits/(p+1) steps on either
 //! side. Where w does not pass zero with a speed the branch point is refused.
@@ -15,9 +17,19 @@ use std::ops::ControlFlow;
 
 /// A branch point ahead.
 pub(crate) struct Branch<E> {
-    switch: usize,
+    pub(crate) switch: usize,
     /// When, to first order; zero: it is here.
     pub(crate) after: E,
+}
+
+/// What the terms in |w| do in a time, all as log2.
+pub(crate) struct Influence<E> {
+    /// The largest change of a state by them, relative to the state.
+    pub(crate) change: f64,
+    /// The largest change of a state without them, relative to the state.
+    pub(crate) duration: f64,
+    /// The rates of all states without them.
+    pub(crate) rates: Vec<E>,
 }
 
 impl<R: Real> Integrator<'_, R> {
@@ -48,6 +60,10 @@ impl<R: Real> Integrator<'_, R> {
         remaining: &R::Element,
         observer: &mut Observer<'_, R>,
     ) -> Result<Option<ControlFlow<()>>, SimulateError> {
+        if let Some(told) = self.cross(branch, remaining, observer)? {
+            return Ok(Some(told));
+        }
+        self.expand()?;
         let system = self.system;
         let real = &system.real;
         let index = branch.switch;
@@ -106,32 +122,55 @@ impl<R: Real> Integrator<'_, R> {
     /// Whether the terms in |w|, as large as they are now, change no state by more than the
     /// tolerance in the time `length`.
     fn negligible(&mut self, index: usize, length: &R::Element) -> Result<bool, SimulateError> {
+        Ok(self.influence(index, length)?.change <= self.log2_tolerance)
+    }
+
+    /// What the terms in |w|, as large as they are now, do in the time `length`.
+    pub(crate) fn influence(
+        &mut self,
+        index: usize,
+        length: &R::Element,
+    ) -> Result<Influence<R::Element>, SimulateError> {
         let system = self.system;
         let (real, n) = (&system.real, system.variables);
         let mode = self.phase.modes[index];
-        self.expand_to(1)?;
         let rates = |this: &Self| -> Vec<R::Element> {
             (0..system.tape.states).map(|k| this.series.rows.at(k, 1).clone()).collect()
         };
-        let with = rates(self);
-        self.phase.modes[index] = LEAP;
         self.expand_to(1)?;
-        let without = rates(self);
+        let with = rates(self);
+        let without = self.rates_without(index)?;
         self.phase.modes[index] = mode;
-        let largest = |list: &mut dyn Iterator<Item = f64>| list.fold(f64::NEG_INFINITY, f64::max);
+        let largest = |list: &mut dyn Iterator<Item = f64>| {
+            list.fold(
+                f64::NEG_INFINITY,
+                |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) },
+            )
+        };
+        let log = real.log2(length);
+        let (mut change, mut duration) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
         for group in [0..n, n..system.tape.states] {
             let pairs = with[group.clone()].iter().zip(&without[group.clone()]);
-            let change = pairs.map(|(a, b)| real.log2(&real.difference(a, b)));
-            let change =
-                change.fold(f64::NEG_INFINITY, |a, b| if b.is_nan() { b } else { a.max(b) });
+            let jump = largest(&mut pairs.map(|(a, b)| real.log2(&real.difference(a, b))));
+            let rate = largest(&mut without[group.clone()].iter().map(|x| real.log2(x)));
             let scale = largest(&mut self.state[group].iter().map(|x| real.log2(x)));
-            let size = change + real.log2(length);
-            let small = change == f64::NEG_INFINITY || size <= self.log2_tolerance + scale;
-            if !small {
-                return Ok(false);
-            }
+            let worse = |known: f64, rate: f64| match rate {
+                f64::NEG_INFINITY => known,
+                _ => largest(&mut [known, rate + log - scale].into_iter()),
+            };
+            (change, duration) = (worse(change, jump), worse(duration, rate));
         }
-        Ok(true)
+        Ok(Influence { change, duration, rates: without })
+    }
+
+    /// The rates of all states without the terms in |w|.
+    pub(crate) fn rates_without(&mut self, index: usize) -> Result<Vec<R::Element>, SimulateError> {
+        let mode = std::mem::replace(&mut self.phase.modes[index], LEAP);
+        let outcome = self.expand_to(1);
+        self.phase.modes[index] = mode;
+        outcome?;
+        let states = 0..self.system.tape.states;
+        Ok(states.map(|k| self.series.rows.at(k, 1).clone()).collect())
     }
 
     /// The length of a leap away from w = 0: as long as the terms in |w| are negligible at its

@@ -197,6 +197,8 @@ impl<'a, R: Real> Compiler<'a, R> {
                     return Ok(constant);
                 }
                 let mut total = self.removable_quotient(&mut others, delay)?;
+                let quotient = self.modulus_quotient(&mut others, delay)?;
+                total = self.product(total, quotient);
                 for factor in others {
                     let factor = self.expression(factor, delay)?;
                     total = self.product(total, factor);

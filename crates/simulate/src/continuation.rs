@@ -1,6 +1,7 @@
 //! Homoclinic tangencies, continued in a second parameter.
 
 use crate::error::SimulateError;
+use crate::integrator::Tick;
 use crate::quantity::Quantity;
 use crate::tangency::{Homoclinic, Tangency};
 use rug::Float;
@@ -12,16 +13,18 @@ use std::ops::ControlFlow;
 /// sequence repeat the same point.
 ///
 /// The branch is followed, whether or not other tangencies have come before it. The observer is
-/// told of every point asked for, and breaks off.
+/// told of every point asked for, and breaks off; `tick` is asked at every step of the integrations
+/// behind it ([`SimulateError::Stopped`]).
 ///
 /// Errors: [`SimulateError::NoTangency`] where the branch ends or 6 halvings do not help.
 pub fn continue_tangency(
     homoclinic: &Homoclinic<'_>,
     (along, values): (&str, &[f64]),
     start: (f64, f64),
+    tick: &Tick<'_>,
     observer: &mut dyn FnMut(f64, &Tangency) -> ControlFlow<()>,
 ) -> Result<(), SimulateError> {
-    let mut branch = Branch { homoclinic, along, known: Vec::new() };
+    let mut branch = Branch { homoclinic, along, tick, known: Vec::new() };
     for target in values {
         let tangency = if branch.known.is_empty() {
             let first = branch.place(*target, (start.0, Some(start.1)), homoclinic.guess)?;
@@ -40,6 +43,7 @@ pub fn continue_tangency(
 struct Branch<'a, 'h> {
     homoclinic: &'a Homoclinic<'h>,
     along: &'a str,
+    tick: &'a Tick<'a>,
     known: Vec<Known>,
 }
 
@@ -58,10 +62,10 @@ impl Branch<'_, '_> {
         let homoclinic = Homoclinic { parameters: &parameters, guess, ..*self.homoclinic };
         let phase = match phase {
             Some(phase) => phase,
-            None => homoclinic.extremum(value)?,
+            None => homoclinic.extremum(value, self.tick)?,
         };
-        let tangency = homoclinic.tangency(value, phase)?;
-        let saddle = homoclinic.saddle(tangency.value)?;
+        let tangency = homoclinic.tangency(value, phase, self.tick)?;
+        let saddle = homoclinic.saddle(tangency.value, self.tick)?;
         Ok((target, tangency, saddle.state))
     }
 
@@ -79,6 +83,9 @@ impl Branch<'_, '_> {
         // The phase jumps where the saddle orbit begins to stick: looked for again then.
         for phase in [Some(phase), None] {
             let found = self.place(target, (value, phase), guess);
+            if matches!(found, Err(SimulateError::Stopped)) {
+                return Err(SimulateError::Stopped);
+            }
             // Far from the prediction: another branch.
             if let Ok(found) = found
                 && (found.1.value - value).abs() < 0.02 * value.abs()

@@ -125,6 +125,9 @@ pub enum SimulateError {
         /// The value of the free parameter that was tried.
         value: f64,
     },
+    /// The observer broke off a computation that has no partial answer.
+    #[error("stopped by the observer")]
+    Stopped,
     /// A closed-form answer was asked where the eigenvalues did not converge.
     #[error("the eigenvalues of the monodromy matrix did not converge")]
     NoMultipliers,

@@ -77,6 +77,15 @@ pub struct Integrator<'s, R: Real> {
 /// The observer of an integration: told of every segment and event; breaks it off if it likes.
 pub type Observer<'o, R> = dyn FnMut(&Report<'_, R>) -> ControlFlow<()> + 'o;
 
+/// Asked at every step of a long computation whether to go on. Where there is no partial answer
+/// the computation ends with [`SimulateError::Stopped`].
+pub type Tick<'t> = dyn Fn() -> ControlFlow<()> + 't;
+
+/// A tick that never breaks off.
+pub fn go_on() -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
 /// An event ahead: after which part of the step, on which surface.
 pub(crate) struct Hit<E> {
     pub(crate) at: E,
@@ -201,6 +210,18 @@ impl<'s, R: Real> Integrator<'s, R> {
             if self.step(&remaining, &target, observer)?.is_break() {
                 return Ok(Outcome::Stopped);
             }
+        }
+    }
+
+    /// [`Self::advance`] with nothing to tell but whether to go on.
+    pub(crate) fn advance_while(
+        &mut self,
+        target: &R::Element,
+        tick: &Tick<'_>,
+    ) -> Result<(), SimulateError> {
+        match self.advance(target, &mut |_| tick())? {
+            Outcome::Reached => Ok(()),
+            Outcome::Stopped => Err(SimulateError::Stopped),
         }
     }
 

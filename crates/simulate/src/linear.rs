@@ -1,12 +1,10 @@
 //! Linearisation: saltation at events, monodromy matrix, Floquet multipliers.
 
 use crate::error::SimulateError;
-use crate::integrator::{Integrator, Settings};
+use crate::integrator::{Integrator, Settings, Tick, go_on};
 use crate::real::Real;
-use crate::report::Report;
 use crate::system::System;
 use nalgebra::{Complex, DMatrix};
-use std::ops::ControlFlow;
 
 impl<R: Real> Integrator<'_, R> {
     /// Component k of direction i.
@@ -102,9 +100,20 @@ impl<R: Real> Monodromy<R> {
 /// [`crate::Model::linearised`].
 pub fn monodromy<R: Real>(
     system: &System<R>,
+    times: (&R::Element, &R::Element),
+    state: &[R::Element],
+    settings: Settings,
+) -> Result<Monodromy<R>, SimulateError> {
+    monodromy_while(system, times, state, settings, &go_on)
+}
+
+/// The same; `tick` is asked at every step whether to go on ([`SimulateError::Stopped`]).
+pub fn monodromy_while<R: Real>(
+    system: &System<R>,
     (start, end): (&R::Element, &R::Element),
     state: &[R::Element],
     settings: Settings,
+    tick: &Tick<'_>,
 ) -> Result<Monodromy<R>, SimulateError> {
     let n = system.variables;
     if system.directions() != n {
@@ -112,7 +121,7 @@ pub fn monodromy<R: Real>(
         return Err(SimulateError::WrongDimension { states, given });
     }
     let mut flow = Integrator::new(system, start, state, settings)?;
-    flow.advance(end, &mut |_: &Report<'_, R>| ControlFlow::Continue(()))?;
+    flow.advance_while(end, tick)?;
     let end = flow.state()[..n].to_vec();
     let matrix = (0..n).map(|k| (0..n).map(|i| flow.tangent(i, k)).collect()).collect();
     Ok(Monodromy { end, matrix })

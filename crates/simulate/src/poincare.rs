@@ -1,7 +1,7 @@
 //! Poincare maps: the state once per forcing period, or at the crossings of a surface.
 
 use crate::error::{SimulateError, Surface};
-use crate::integrator::{Integrator, Settings};
+use crate::integrator::{Integrator, Settings, Tick, go_on};
 use crate::real::Real;
 use crate::report::{EventKind, Report};
 use crate::system::System;
@@ -90,10 +90,18 @@ impl<'s, R: Real> PoincareMap<'s, R> {
     /// integration; times of a stroboscopic map are rounded once, not summed. Errors: as of
     /// [`Integrator::advance`].
     pub fn next_point(&mut self) -> Result<Option<Point<R::Element>>, SimulateError> {
+        self.next_point_while(&go_on)
+    }
+
+    /// The same; `tick` is asked at every step whether to go on ([`SimulateError::Stopped`]).
+    pub fn next_point_while(
+        &mut self,
+        tick: &Tick<'_>,
+    ) -> Result<Option<Point<R::Element>>, SimulateError> {
         match self.section.clone() {
-            Section::Period(period) => self.strobe(period).map(Some),
+            Section::Period(period) => self.strobe(period, tick).map(Some),
             Section::Events { surface, rising, patience } => {
-                self.event((surface, rising), &patience)
+                self.event((surface, rising), &patience, tick)
             }
         }
     }
@@ -104,12 +112,16 @@ impl<'s, R: Real> PoincareMap<'s, R> {
         &self.flow
     }
 
-    fn strobe(&mut self, mut period: R::Element) -> Result<Point<R::Element>, SimulateError> {
+    fn strobe(
+        &mut self,
+        mut period: R::Element,
+        tick: &Tick<'_>,
+    ) -> Result<Point<R::Element>, SimulateError> {
         let real = &self.flow.system.real;
         self.count += 1;
         real.times_integer(&mut period, self.count);
         let target = real.sum(&self.start, &period);
-        self.flow.advance(&target, &mut |_| ControlFlow::Continue(()))?;
+        self.flow.advance_while(&target, tick)?;
         let state = self.flow.state()[..self.flow.system.variables].to_vec();
         let (modes, contact) = (self.flow.modes().to_vec(), self.flow.contact());
         Ok(Point { time: target, state, modes, contact })
@@ -119,18 +131,21 @@ impl<'s, R: Real> PoincareMap<'s, R> {
         &mut self,
         wanted: (Surface, Option<bool>),
         patience: &R::Element,
+        tick: &Tick<'_>,
     ) -> Result<Option<Point<R::Element>>, SimulateError> {
         if self.waiting.is_empty() {
             let (n, real) = (self.flow.system.variables, &self.flow.system.real);
             let limit = real.sum(self.flow.time(), patience);
             let (mut modes, mut contact) = (self.flow.modes().to_vec(), self.flow.contact());
             let waiting = &mut self.waiting;
+            let mut stopped = false;
             // A step may cross a section several times: the step ends behind the last of them.
             self.flow.advance(&limit, &mut |report| match report {
                 Report::Segment(segment) => {
                     modes = segment.modes.to_vec();
                     contact = segment.contact;
-                    ControlFlow::Continue(())
+                    stopped |= tick().is_break();
+                    if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
                 }
                 Report::Event(event) => {
                     after(event.kind, &mut modes, &mut contact);
@@ -146,6 +161,9 @@ impl<'s, R: Real> PoincareMap<'s, R> {
                     ControlFlow::Break(())
                 }
             })?;
+            if stopped && self.waiting.is_empty() {
+                return Err(SimulateError::Stopped);
+            }
         }
         Ok(self.waiting.pop_front())
     }

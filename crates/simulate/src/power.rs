@@ -146,6 +146,60 @@ impl<R: Real> Compiler<'_, R> {
         Ok(one)
     }
 
+    /// w^m |w|^q with integers m and q < 0, without 0/0 at w = 0: w^(m+q), times the sign of w for
+    /// odd q. Takes such factors out of the list and returns their product, 1 if there are none.
+    pub(crate) fn modulus_quotient(
+        &mut self,
+        factors: &mut Vec<&Expression>,
+        delay: Option<&Float>,
+    ) -> Result<Value, SimulateError> {
+        let one = Value::Constant(self.float(1));
+        let found = factors.iter().find_map(|factor| match factor {
+            Expression::Power(base, exponent) => {
+                let exponent = self.rational(exponent)?;
+                let (inner, k) = match &**base {
+                    Expression::Power(inner, k) => (inner, small_integer(&self.rational(k)?)?),
+                    Expression::Function(Function::Abs, inner) => (inner, 1),
+                    _ => return None,
+                };
+                let modulus = k == 1 || k % 2 == 0;
+                let total = small_integer(&(exponent * k)).filter(|q| modulus && *q < 0)?;
+                Some(((**inner).clone(), *factor, total))
+            }
+            _ => None,
+        });
+        let Some((inner, modulus, mut total)) = found else { return Ok(one) };
+        let odd = total % 2 != 0;
+        let own = |this: &Self, factor: &Expression| match factor {
+            factor if *factor == inner => Some(1),
+            Expression::Power(base, m) if **base == inner => small_integer(&this.rational(m)?),
+            _ => None,
+        };
+        let (mut rest, mut taken) = (Vec::new(), false);
+        for factor in factors.iter().copied() {
+            if std::ptr::eq(factor, modulus) {
+                continue;
+            }
+            match own(self, factor).and_then(|m| total.checked_add(m)) {
+                Some(sum) => (total, taken) = (sum, true),
+                None => rest.push(factor),
+            }
+        }
+        if !taken {
+            return Ok(one);
+        }
+        *factors = rest;
+        let inner = self.expression(&inner, delay)?;
+        if !odd {
+            return Ok(self.integer_power(inner, total));
+        }
+        let (sign, power) =
+            if total > 0 { (Function::Abs, total - 1) } else { (Function::Sign, total) };
+        let power = self.integer_power(inner.clone(), power);
+        let sign = self.function(sign, inner);
+        Ok(self.product(power, sign))
+    }
+
     /// The value of a constant expression, if it is rational.
     fn rational(&self, expression: &Expression) -> Option<Rational> {
         match expression {

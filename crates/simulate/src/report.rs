@@ -1,7 +1,7 @@
 //! What an integration tells its observer.
 
+use crate::local::ShapeRef;
 use crate::real::Real;
-use crate::tape::horner;
 
 /// What happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,7 +62,8 @@ pub struct Event<'a, R: Real> {
     pub log2_error: f64,
 }
 
-/// A piece of the solution: a Taylor polynomial per state, valid to the tolerance.
+/// A piece of the solution: a Taylor polynomial per state, valid to the tolerance; next to a branch
+/// point (|w|^p with w = 0) a series in fractional powers of the distance from it.
 #[derive(Debug)]
 pub struct Segment<'a, R: Real> {
     pub(crate) real: &'a R,
@@ -74,23 +75,21 @@ pub struct Segment<'a, R: Real> {
     pub modes: &'a [i8],
     /// The wall that the body rests at.
     pub contact: Option<usize>,
-    pub(crate) coefficients: &'a [R::Element],
-    pub(crate) stride: usize,
+    pub(crate) shape: ShapeRef<'a, R>,
 }
 
 impl<'a, R: Real> Segment<'a, R> {
-    /// The Taylor coefficients of a state, from order 0; nothing if there is no such state.
+    /// The Taylor coefficients of a state, from order 0; nothing if there is no such state, or
+    /// next to a branch point, where there is no Taylor series.
     #[must_use]
     pub fn coefficients(&self, state: usize) -> Option<&'a [R::Element]> {
-        self.coefficients.chunks_exact(self.stride).nth(state)
+        self.shape.taylor(state)
     }
 
     /// The state at start + s, 0 <= s <= length; zero for a state that does not exist.
     #[must_use]
     pub fn value(&self, state: usize, s: &R::Element) -> R::Element {
-        let mut value = self.real.zero();
-        horner(self.real, &mut value, self.coefficients(state).unwrap_or_default(), s);
-        value
+        self.shape.value(self.real, state, s).unwrap_or_else(|| self.real.zero())
     }
 }
 

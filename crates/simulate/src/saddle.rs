@@ -1,8 +1,8 @@
 //! Saddle orbits of periodically forced systems of second order, and their unstable manifolds.
 
 use crate::error::SimulateError;
-use crate::integrator::Settings;
-use crate::linear::monodromy;
+use crate::integrator::{Settings, Tick};
+use crate::linear::monodromy_while;
 use crate::poincare::{PoincareMap, Section};
 use crate::real::Doubles;
 use crate::system::System;
@@ -51,17 +51,20 @@ impl Saddle {
 /// from `guess`, or, where that leads nowhere, from what multiple shooting makes of the guess; to
 /// about 1e-15 times the condition.
 ///
-/// Errors: [`SimulateError::NoSaddle`] without convergence or where the multipliers are not
+/// `tick` is asked at every step of the integrations whether to go on. Errors:
+/// [`SimulateError::Stopped`] then, [`SimulateError::NoSaddle`] without convergence or where the multipliers are not
 /// -1 < stable < 1 < unstable.
 pub fn saddle(
     system: &System<Doubles>,
     period: f64,
     guess: [f64; 2],
     settings: Settings,
+    tick: &Tick<'_>,
 ) -> Result<Saddle, SimulateError> {
-    match newton(system, period, guess, settings) {
+    match newton(system, period, guess, settings, tick) {
         Err(SimulateError::NoSaddle) => {
-            newton(system, period, shoot(system, period, guess, settings)?, settings)
+            let guess = shoot(system, period, guess, settings, tick)?;
+            newton(system, period, guess, settings, tick)
         }
         outcome => outcome,
     }
@@ -72,11 +75,12 @@ fn newton(
     period: f64,
     guess: [f64; 2],
     settings: Settings,
+    tick: &Tick<'_>,
 ) -> Result<Saddle, SimulateError> {
     let mut state = guess;
     let (mut moved, mut reach) = (f64::INFINITY, None);
     for _ in 0..30 {
-        let result = monodromy(system, (&0.0, &period), &state, settings)?;
+        let result = monodromy_while(system, (&0.0, &period), &state, settings, tick)?;
         let ([[a, b], [c, d]], [x, v]) = (square(&result.matrix)?, pair(&result.end)?);
         // (M - 1) delta = start - end.
         let [p, q] = [state[0] - x, state[1] - v];
@@ -105,6 +109,7 @@ fn shoot(
     period: f64,
     guess: [f64; 2],
     settings: Settings,
+    tick: &Tick<'_>,
 ) -> Result<[f64; 2], SimulateError> {
     const PARTS: usize = 8;
     let mut states = [guess; PARTS];
@@ -114,7 +119,8 @@ fn shoot(
         let mut right = DVector::zeros(2 * PARTS);
         for (k, state) in states.iter().enumerate() {
             let times = [k, k + 1].map(|k| period * k as f64 / PARTS as f64);
-            let result = monodromy(system, (&times[0], &times[1]), state, settings)?;
+            let ends = (&times[0], &times[1]);
+            let result = monodromy_while(system, ends, state, settings, tick)?;
             let (m, end) = (square(&result.matrix)?, pair(&result.end)?);
             let next = (k + 1) % PARTS;
             for i in 0..2 {
@@ -178,13 +184,15 @@ fn square(matrix: &[Vec<f64>]) -> Result<[[f64; 2]; 2], SimulateError> {
 /// carried forward by 0, 1, ..., `periods` periods. A negative amount (of small size, 1e-6 say)
 /// gives the other half. The points are not refined where the manifold stretches.
 ///
-/// Cost: count periods integrations.
+/// `tick` is asked at every step whether to go on ([`SimulateError::Stopped`]). Cost: count periods
+/// integrations.
 pub fn unstable_manifold(
     system: &System<Doubles>,
     saddle: &Saddle,
     amount: f64,
     (count, periods): (u32, u32),
     settings: Settings,
+    tick: &Tick<'_>,
 ) -> Result<Vec<[f64; 2]>, SimulateError> {
     let mut rows = vec![Vec::new(); periods as usize + 1];
     for k in 0..count {
@@ -196,7 +204,7 @@ pub fn unstable_manifold(
             let state = if index == 0 {
                 start
             } else {
-                map.next_point()?.map_or(Ok(start), |point| pair(&point.state))?
+                map.next_point_while(tick)?.map_or(Ok(start), |point| pair(&point.state))?
             };
             row.push(state);
         }

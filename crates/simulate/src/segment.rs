@@ -2,6 +2,7 @@
 
 use crate::error::{SimulateError, Surface};
 use crate::integrator::{Integrator, Observer};
+use crate::local::ShapeRef;
 use crate::real::Real;
 use crate::report::{Event, EventKind, Report, Segment};
 use crate::roots::Cluster;
@@ -27,8 +28,10 @@ impl<R: Real> Integrator<'_, R> {
             length: h,
             modes: &self.phase.modes,
             contact: self.phase.contact,
-            coefficients: &self.series.rows.data[..system.tape.states * stride],
-            stride,
+            shape: ShapeRef::Taylor {
+                coefficients: &self.series.rows.data[..system.tape.states * stride],
+                stride,
+            },
         };
         let told = observer(&Report::Segment(segment));
         let crossed = self.cross_sections(h, observer)?;

@@ -8,8 +8,8 @@
 //! extremum over sigma. Only forward time is used: with sticking there is no other.
 
 use crate::error::SimulateError;
-use crate::integrator::Settings;
-use crate::linear::monodromy;
+use crate::integrator::{Settings, Tick};
+use crate::linear::monodromy_while;
 use crate::poincare::{PoincareMap, Section};
 use crate::quantity::{Parameters, Quantity};
 use crate::real::Doubles;
@@ -27,11 +27,12 @@ pub enum Loop {
 }
 
 /// The homoclinic loop of a saddle orbit of a forced system of second order without walls; one
-/// parameter is free. Everything is in f64.
+/// parameter is free. Everything is in f64. All computations ask a tick at every step whether to go
+/// on, and end with [`SimulateError::Stopped`] if not.
 ///
 /// ```
 /// use lindstedt_equation::{Expression, Function};
-/// use lindstedt_simulate::{Homoclinic, Loop, Model, Parameters};
+/// use lindstedt_simulate::{Homoclinic, Loop, Model, Parameters, go_on};
 /// use std::f64::consts::PI;
 ///
 /// // x'' = x - x^3 + (F cos t - x')/100: Melnikov's threshold is 4 cosh(pi/2)/(3 sqrt 2 pi).
@@ -43,7 +44,7 @@ pub enum Loop {
 /// let (model, parameters, side) = (&model, &parameters, Loop::Right);
 /// let (period, guess) = (2.0 * PI, [0.0, 0.0]);
 /// let homoclinic = Homoclinic { model, parameters, name: "F", period, side, guess };
-/// let tangency = homoclinic.first_tangency((0.7, 0.8), 24)?;
+/// let tangency = homoclinic.first_tangency((0.7, 0.8), 24, &go_on)?;
 /// let threshold = 4.0 * (PI / 2.0).cosh() / (3.0 * 2f64.sqrt() * PI);
 /// assert!((tangency.value - threshold).abs() < 1e-3);
 /// # Ok::<(), lindstedt_simulate::SimulateError>(())
@@ -112,22 +113,27 @@ impl Homoclinic<'_> {
     }
 
     /// The saddle orbit.
-    pub fn saddle(&self, value: f64) -> Result<Saddle, SimulateError> {
-        saddle(&self.system(value, true)?, self.period, self.guess, Self::settings())
+    pub fn saddle(&self, value: f64, tick: &Tick<'_>) -> Result<Saddle, SimulateError> {
+        saddle(&self.system(value, true)?, self.period, self.guess, Self::settings(), tick)
     }
 
     /// Follows `count` orbits of a fundamental domain round the loop; those that do not come back
     /// within 50 periods are left out. The signs are sure, the numbers are those at the first of 64
     /// looks per period after the event. Cost: some ten periods of integration per orbit.
-    pub fn returns(&self, value: f64, count: u32) -> Result<Vec<Return>, SimulateError> {
-        let saddle = self.saddle(value)?;
+    pub fn returns(
+        &self,
+        value: f64,
+        count: u32,
+        tick: &Tick<'_>,
+    ) -> Result<Vec<Return>, SimulateError> {
+        let saddle = self.saddle(value, tick)?;
         let system = self.system(value, false)?;
         let section = Section::Period(self.period / LOOKS as f64);
         let settings = Self::settings();
         let mut orbit = Vec::new();
         let mut map = PoincareMap::new(&system, &0.0, &saddle.state, section.clone(), settings)?;
         for _ in 0..LOOKS {
-            orbit.extend(map.next_point()?);
+            orbit.extend(map.next_point_while(tick)?);
         }
         let sign = if self.side == Loop::Right { 1.0 } else { -1.0 };
         let mut returns = Vec::new();
@@ -137,7 +143,7 @@ impl Homoclinic<'_> {
             let mut map = PoincareMap::new(&system, &0.0, &start, section.clone(), settings)?;
             let mut back = false;
             for look in 0..50 * LOOKS {
-                let Some(point) = map.next_point()? else { break };
+                let Some(point) = map.next_point_while(tick)? else { break };
                 let known = &orbit[look % LOOKS].state;
                 let y = sign * (point.state[0] - known[0]);
                 let w = sign * (point.state[1] - known[1]);
@@ -152,8 +158,8 @@ impl Homoclinic<'_> {
     }
 
     /// The phase of the extremum of the excess that is nearest to zero.
-    pub(crate) fn extremum(&self, value: f64) -> Result<f64, SimulateError> {
-        let returns = self.returns(value, 128)?;
+    pub(crate) fn extremum(&self, value: f64, tick: &Tick<'_>) -> Result<f64, SimulateError> {
+        let returns = self.returns(value, 128, tick)?;
         let neighbours = (0..returns.len()).filter_map(|k| {
             let at = |shift: usize| returns.get((k + shift) % returns.len());
             let (before, middle, after) = (at(0)?, at(1)?, at(2)?);
@@ -165,8 +171,12 @@ impl Homoclinic<'_> {
     }
 
     /// The return with the smallest `sign` excess, and that.
-    fn margin(&self, value: f64, count: u32, sign: f64) -> Result<(f64, Return), SimulateError> {
-        let returns = self.returns(value, count)?;
+    fn margin(
+        &self,
+        (value, count, sign): (f64, u32, f64),
+        tick: &Tick<'_>,
+    ) -> Result<(f64, Return), SimulateError> {
+        let returns = self.returns(value, count, tick)?;
         let least =
             returns.into_iter().min_by(|a, b| (sign * a.excess).total_cmp(&(sign * b.excess)));
         let least = least.ok_or(SimulateError::NoTangency { value })?;
@@ -183,9 +193,11 @@ impl Homoclinic<'_> {
         &self,
         (low, high): (f64, f64),
         count: u32,
+        tick: &Tick<'_>,
     ) -> Result<Tangency, SimulateError> {
         for sign in [1.0, -1.0] {
-            let margins = (self.margin(low, count, sign)?, self.margin(high, count, sign)?);
+            let margins =
+                (self.margin((low, count, sign), tick)?, self.margin((high, count, sign), tick)?);
             let (mut pure, mut mixed) = ((low, margins.0), (high, margins.1));
             if mixed.1.0 > 0.0 {
                 (pure, mixed) = (mixed, pure);
@@ -195,12 +207,12 @@ impl Homoclinic<'_> {
             }
             for _ in 0..6 {
                 let middle = (pure.0 + mixed.0) / 2.0;
-                let margin = self.margin(middle, count, sign)?;
+                let margin = self.margin((middle, count, sign), tick)?;
                 let end = if margin.0 > 0.0 { &mut pure } else { &mut mixed };
                 *end = (middle, margin);
             }
             let (value, (_, nearer)) = if pure.1.0 < -mixed.1.0 { pure } else { mixed };
-            return self.tangency(value, nearer.phase);
+            return self.tangency(value, nearer.phase, tick);
         }
         Err(SimulateError::NoTangency { value: low })
     }
@@ -211,12 +223,18 @@ impl Homoclinic<'_> {
     /// the saddle.
     ///
     /// Errors: [`SimulateError::NoTangency`] without convergence.
-    pub fn tangency(&self, value: f64, phase: f64) -> Result<Tangency, SimulateError> {
-        let mut periods = self.arrival(value, phase)?;
-        let (mut value, mut phase) = self.newton((value, phase), periods)?;
+    pub fn tangency(
+        &self,
+        value: f64,
+        phase: f64,
+        tick: &Tick<'_>,
+    ) -> Result<Tangency, SimulateError> {
+        let mut periods = self.arrival(value, phase, tick)?;
+        let (mut value, mut phase) = self.newton((value, phase), periods, tick)?;
         let mut error = f64::INFINITY;
         for _ in 0..3 {
-            let next = match self.newton((value, phase), periods + 1) {
+            let next = match self.newton((value, phase), periods + 1, tick) {
+                Err(SimulateError::Stopped) => return Err(SimulateError::Stopped),
                 Err(failure) if error == f64::INFINITY => return Err(failure),
                 Err(_) => break,
                 Ok(next) => next,
@@ -229,19 +247,19 @@ impl Homoclinic<'_> {
             (error, periods) = (change, periods + 1);
         }
         // The same orbit, begun one period farther out: how straight the manifold is there.
-        let (other, _) = self.newton((value, phase + 1.0), periods - 1)?;
+        let (other, _) = self.newton((value, phase + 1.0), periods - 1, tick)?;
         Ok(Tangency { value, error: error + (other - value).abs(), phase, periods })
     }
 
     /// After how many periods the orbit that came back is nearest to the saddle.
-    fn arrival(&self, value: f64, phase: f64) -> Result<u32, SimulateError> {
-        let (saddle, system) = (self.saddle(value)?, self.system(value, false)?);
+    fn arrival(&self, value: f64, phase: f64, tick: &Tick<'_>) -> Result<u32, SimulateError> {
+        let (saddle, system) = (self.saddle(value, tick)?, self.system(value, false)?);
         let start = saddle.unstable(self.amount(&saddle, phase));
         let section = Section::Period(self.period);
         let mut map = PoincareMap::new(&system, &0.0, &start, section, Self::settings())?;
         let (mut away, mut nearest) = (false, (f64::INFINITY, 0));
         for periods in 1..50 {
-            let Some(point) = map.next_point()? else { break };
+            let Some(point) = map.next_point_while(tick)? else { break };
             let [u, s] = saddle.coordinates(&point.state);
             let distance = u.hypot(s);
             away |= distance > AWAY;
@@ -261,13 +279,14 @@ impl Homoclinic<'_> {
         &self,
         (value, phase): (f64, f64),
         periods: u32,
+        tick: &Tick<'_>,
     ) -> Result<[f64; 2], SimulateError> {
         let system = self.system(value, true)?;
-        let saddle = saddle(&system, self.period, self.guess, Self::settings())?;
+        let saddle = saddle(&system, self.period, self.guess, Self::settings(), tick)?;
         let amount = self.amount(&saddle, phase);
         let end = f64::from(periods) * self.period;
         let start = saddle.unstable(amount);
-        let flow = monodromy(&system, (&0.0, &end), &start, Self::settings())?;
+        let flow = monodromy_while(&system, (&0.0, &end), &start, Self::settings(), tick)?;
         let [u, _] = saddle.coordinates(&flow.end);
         // d(start)/dsigma = amount ln(mu) (unstable direction).
         let rate = amount * saddle.multipliers[0].ln();
@@ -281,12 +300,18 @@ impl Homoclinic<'_> {
         Ok([u, saddle.components(tangent)[0]])
     }
 
-    fn newton(&self, start: (f64, f64), periods: u32) -> Result<(f64, f64), SimulateError> {
+    fn newton(
+        &self,
+        start: (f64, f64),
+        periods: u32,
+        tick: &Tick<'_>,
+    ) -> Result<(f64, f64), SimulateError> {
         let (mut value, mut phase) = start;
         let mut moved = f64::INFINITY;
         let (mut step, mut turn) = (1e-6, 1e-5);
         for _ in 0..30 {
-            let at = |dv: f64, dp: f64| self.unstable_component((value + dv, phase + dp), periods);
+            let at =
+                |dv: f64, dp: f64| self.unstable_component((value + dv, phase + dp), periods, tick);
             let [g, slope] = at(0.0, 0.0)?;
             let (more, less) = (at(step, 0.0)?, at(-step, 0.0)?);
             let (later, sooner) = (at(0.0, turn)?, at(0.0, -turn)?);

@@ -1,8 +1,8 @@
 //! A solution that is kept.
 
+use crate::local::Shape;
 use crate::real::Real;
 use crate::report::{EventKind, Report};
-use crate::tape::horner;
 
 /// An event, kept.
 #[derive(Clone, Debug)]
@@ -18,15 +18,14 @@ pub struct Occurrence<E> {
 }
 
 #[derive(Clone, Debug)]
-struct Piece<E> {
-    start: E,
-    length: E,
-    coefficients: Vec<E>,
-    stride: usize,
+struct Piece<R: Real> {
+    start: R::Element,
+    length: R::Element,
+    shape: Shape<R>,
     modes: Vec<i8>,
 }
 
-/// Dense output: the Taylor polynomials of all steps, and all events.
+/// Dense output: the polynomials of all steps, and all events.
 ///
 /// ```
 /// use lindstedt_equation::Expression;
@@ -45,7 +44,7 @@ struct Piece<E> {
 #[derive(Clone, Debug)]
 pub struct Trajectory<R: Real> {
     real: R,
-    pieces: Vec<Piece<R::Element>>,
+    pieces: Vec<Piece<R>>,
     /// The events, in order.
     pub events: Vec<Occurrence<R::Element>>,
 }
@@ -62,8 +61,7 @@ impl<R: Real> Trajectory<R> {
             Report::Segment(segment) => self.pieces.push(Piece {
                 start: segment.start.clone(),
                 length: segment.length.clone(),
-                coefficients: segment.coefficients.to_vec(),
-                stride: segment.stride,
+                shape: segment.shape.keep(),
                 modes: segment.modes.to_vec(),
             }),
             Report::Event(event) => self.events.push(Occurrence {
@@ -76,7 +74,7 @@ impl<R: Real> Trajectory<R> {
         std::ops::ControlFlow::Continue(())
     }
 
-    fn piece(&self, time: &R::Element) -> Option<&Piece<R::Element>> {
+    fn piece(&self, time: &R::Element) -> Option<&Piece<R>> {
         let next = self.pieces.partition_point(|piece| piece.start <= *time);
         let piece = self.pieces.get(next.checked_sub(1)?)?;
         // The last piece includes its end; so does one before the gap of an accumulation.
@@ -93,14 +91,11 @@ impl<R: Real> Trajectory<R> {
     #[must_use]
     pub fn value(&self, state: usize, time: &R::Element) -> Option<R::Element> {
         let piece = self.piece(time)?;
-        let coefficients = piece.coefficients.chunks_exact(piece.stride).nth(state)?;
         let mut s = self.real.difference(time, &piece.start);
         if s > piece.length {
             s = piece.length.clone();
         }
-        let mut value = self.real.zero();
-        horner(&self.real, &mut value, coefficients, &s);
-        Some(value)
+        piece.shape.borrow().value(&self.real, state, &s)
     }
 
     /// The signs of the switches at a time; 0: sliding.

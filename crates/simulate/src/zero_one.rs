@@ -1,5 +1,7 @@
 //! The 0-1 test for chaos of a time series.
 
+use crate::integrator::{Tick, go_on};
+
 /// The growth rate K of the mean square displacement of the series' translation variables: near 0
 /// for regular, near 1 for chaotic motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +37,12 @@ const FREQUENCIES: u32 = 100;
 /// ```
 #[must_use]
 pub fn zero_one(series: &[f64]) -> Option<ZeroOne> {
+    zero_one_while(series, &go_on)
+}
+
+/// The same; `tick` is asked before each of the 100 frequencies, nothing if it breaks off.
+#[must_use]
+pub fn zero_one_while(series: &[f64], tick: &Tick<'_>) -> Option<ZeroOne> {
     if series.len() < 100 || !series.iter().all(|x| x.is_finite()) {
         return None;
     }
@@ -42,8 +50,8 @@ pub fn zero_one(series: &[f64]) -> Option<ZeroOne> {
     let golden = (5f64.sqrt() - 1.0) / 2.0;
     let mut growths: Vec<f64> = (1..=FREQUENCIES)
         .map(|k| std::f64::consts::PI * (0.2 + 0.6 * (f64::from(k) * golden).fract()))
-        .map(|c| growth(series, mean, c))
-        .collect();
+        .map(|c| tick().is_continue().then(|| growth(series, mean, c)))
+        .collect::<Option<_>>()?;
     growths.sort_by(f64::total_cmp);
     let at = |share: f64| {
         let place = share * (growths.len() - 1) as f64;

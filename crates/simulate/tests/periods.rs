@@ -127,10 +127,6 @@ fn fractional_powers_have_branch_points() {
         println!("n = {p}/{q}");
         check(&model, &parameters, &Quantity::from(1), (&exact, 1.0));
     }
-    // For n = 1/5 the distance would be 1e-14, where coefficients of order 22 overflow in f64.
-    let parameters = Parameters::new().with("delta", Rational::from((-2, 5)));
-    let outcome = period(&model, (Doubles, 16), &parameters, &Quantity::from(1));
-    assert!(matches!(outcome, Err(SimulateError::BranchPoint { switch: 0, .. })));
     // From x = 0: half a period to the next zero of x.
     let parameters = Parameters::new().with("delta", Rational::from((1, 4)));
     let system = model.with_section(x()).compile(Doubles, &parameters).unwrap();
@@ -140,4 +136,39 @@ fn fractional_powers_have_branch_points() {
     // Energy v^2/2 + x^(5/2)/(5/2).
     let [x, v] = [flow.state()[0], flow.state()[1]];
     assert!((v * v / 2.0 + x.powf(2.5) / 2.5 - 0.45).abs() < 1e-14);
+}
+
+/// T = 4 sqrt(pi/(2 (n+1))) Gamma(1/(n+1))/Gamma(1/(n+1) + 1/2) where the force is singular (n < 0),
+/// a sign (n = 0: parabolas, T = 4 sqrt 2) or has an infinite slope at x = 0.
+#[test]
+fn singular_forces() {
+    let x = || Expression::Displacement;
+    let stiffness = x().pow(2).pow(Expression::Small);
+    let model = Model::second_order(&(Expression::Acceleration + x() * stiffness)).unwrap();
+    let model = model.with_small("delta");
+    for (p, q) in [(-3, 5), (-2, 5), (-1, 4), (-1, 10), (0, 1), (1, 8), (1, 5), (1, 4), (31, 100)] {
+        let n = Rational::from((p, q));
+        let delta = (n.clone() - 1i32) / 2i32;
+        let parameters = Parameters::new().with("delta", delta);
+        let share = Float::with_val(BITS, (n + 1i32).recip());
+        let root = (Float::with_val(BITS, Constant::Pi) * &share / 2u32).sqrt();
+        let half = Float::with_val(BITS, &share + 0.5f64);
+        let exact = root * 4u32 * share.clone().gamma() / half.gamma();
+        for digits in [10, 25, 60] {
+            let value = period(
+                &model,
+                (Digits::for_digits(digits), digits),
+                &parameters,
+                &Quantity::from(1),
+            );
+            let value = value.unwrap();
+            let error = Float::with_val(BITS, value - &exact).abs().to_f64();
+            println!("n = {p}/{q}, {digits} digits: {error:e}");
+            assert!(error < 10f64.powi(-(digits as i32)), "{p}/{q} {digits} {error:e}");
+        }
+        let value = period(&model, (Doubles, 16), &parameters, &Quantity::from(1)).unwrap();
+        let error = (value / exact.to_f64() - 1.0).abs();
+        println!("n = {p}/{q}, f64: {error:e}");
+        assert!(error < 2e-15, "{p}/{q} {error:e}");
+    }
 }

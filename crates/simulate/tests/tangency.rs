@@ -9,7 +9,7 @@ use common::{parameters, stick_slip};
 use lindstedt_equation::Expression;
 use lindstedt_simulate::{
     Doubles, Homoclinic, Loop, Model, Parameters, Settings, SimulateError, Tangency,
-    continue_tangency, saddle, unstable_manifold,
+    continue_tangency, go_on, saddle, unstable_manifold,
 };
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -23,7 +23,7 @@ fn with_loop<T>(eps: &str, side: Loop, work: impl FnOnce(&Homoclinic<'_>) -> T) 
 }
 
 fn tangency(eps: &str, side: Loop, bracket: (f64, f64), count: u32) -> Tangency {
-    with_loop(eps, side, |homoclinic| homoclinic.first_tangency(bracket, count)).unwrap()
+    with_loop(eps, side, |homoclinic| homoclinic.first_tangency(bracket, count, &go_on)).unwrap()
 }
 
 /// |G| cosh(pi omega/2)/(pi omega) with G = 2 T0 sqrt(1 - y) - 4/3 V (alpha - 3 beta vstar^2)
@@ -76,7 +76,7 @@ fn an_earlier_pair_on_the_left() {
     {
         let (period, side) = (PI, Loop::Left);
         let left = Homoclinic { model, parameters, name: "gamma", period, side, guess };
-        let tangency = left.first_tangency(bracket, 96);
+        let tangency = left.first_tangency(bracket, 96, &go_on);
         println!("{tangency:?}");
         assert!((tangency.unwrap().value - known).abs() < 1e-4);
     }
@@ -100,7 +100,7 @@ fn no_tangency_of_the_right_loop_before() {
         let (model, parameters) = (&model, &parameters);
         let (period, side) = (PI, Loop::Right);
         let right = Homoclinic { model, parameters, name: "gamma", period, side, guess };
-        let returns = right.returns(gamma, 256).unwrap();
+        let returns = right.returns(gamma, 256, &go_on).unwrap();
         let least = returns.iter().map(|back| back.excess).fold(f64::INFINITY, f64::min);
         println!("{gamma} {} {least:e}", returns.len());
         assert_eq!(returns.len(), 256);
@@ -138,7 +138,7 @@ fn continued_to_eps_one() {
         let start = (start.value, start.phase);
         let mut found = Vec::new();
         let outcome = with_loop("0.005", side, |homoclinic| {
-            continue_tangency(homoclinic, ("eps", &values), start, &mut |eps, tangency| {
+            continue_tangency(homoclinic, ("eps", &values), start, &go_on, &mut |eps, tangency| {
                 println!("{side:?} {eps} {tangency:?}");
                 found.push((eps, tangency.value));
                 ControlFlow::Continue(())
@@ -160,13 +160,13 @@ fn the_unstable_manifold_of_duffing() {
     let model = Model::second_order(&(Expression::Acceleration - x.clone() + x.pow(3))).unwrap();
     let system = model.clone().linearised().compile(Doubles, &Parameters::new()).unwrap();
     let settings = Settings::for_digits(16);
-    let point = saddle(&system, PI, [0.1, -0.1], settings).unwrap();
+    let point = saddle(&system, PI, [0.1, -0.1], settings, &go_on).unwrap();
     let [unstable, stable] = point.multipliers;
     assert!((unstable / PI.exp() - 1.0).abs() < 1e-13 && (stable * PI.exp() - 1.0).abs() < 1e-11);
     let [[x, v], [p, q]] = point.directions;
     assert!((x - v).abs() < 1e-13 && (p + q).abs() < 1e-13);
     let plain = model.compile(Doubles, &Parameters::new()).unwrap();
-    let points = unstable_manifold(&plain, &point, -1e-6, (10, 5), settings).unwrap();
+    let points = unstable_manifold(&plain, &point, -1e-6, (10, 5), settings, &go_on).unwrap();
     assert_eq!(points.len(), 60);
     for [x, v] in &points {
         assert!((v * v - x * x + x.powi(4) / 2.0).abs() < 1e-11, "{x} {v}");
@@ -174,7 +174,7 @@ fn the_unstable_manifold_of_duffing() {
     let least = points.iter().map(|point| point[0]).fold(0.0, f64::min);
     assert!(least < -1.3, "{least}");
     // The centre is no saddle.
-    let outcome = saddle(&system, PI, [1.01, 0.0], settings);
+    let outcome = saddle(&system, PI, [1.01, 0.0], settings, &go_on);
     assert_eq!(outcome, Err(SimulateError::NoSaddle));
 }
 
@@ -191,8 +191,31 @@ fn the_damped_duffing_oscillator() {
     let (model, parameters, side) = (&model, &parameters, Loop::Right);
     let (period, guess) = (2.0 * PI, [0.0, 0.0]);
     let homoclinic = Homoclinic { model, parameters, name: "F", period, side, guess };
-    let tangency = homoclinic.first_tangency((0.7, 0.8), 24).unwrap();
+    let tangency = homoclinic.first_tangency((0.7, 0.8), 24, &go_on).unwrap();
     let threshold = 4.0 * (PI / 2.0).cosh() / (3.0 * 2f64.sqrt() * PI);
     println!("{tangency:?} {threshold}");
     assert!((tangency.value - threshold).abs() < 1e-3);
+}
+
+/// Every long computation stops at the first step after the tick breaks off.
+#[test]
+fn ticks_break_off() {
+    with_loop("1", Loop::Right, |homoclinic| {
+        for steps in [0u32, 1, 5000] {
+            let count = std::cell::Cell::new(0);
+            let tick = || {
+                count.set(count.get() + 1);
+                if count.get() > steps { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            let found = homoclinic.first_tangency((1.1, 1.115), 48, &tick);
+            assert_eq!(found, Err(SimulateError::Stopped));
+            assert_eq!(count.get(), steps + 1);
+        }
+        let stop = || ControlFlow::Break(());
+        let returns = homoclinic.returns(1.1, 4, &stop);
+        assert_eq!(returns, Err(SimulateError::Stopped));
+        let (target, start) = (("eps", &[1.0][..]), (1.1, 0.3));
+        let outcome = continue_tangency(homoclinic, target, start, &stop, &mut |_, _| go_on());
+        assert_eq!(outcome, Err(SimulateError::Stopped));
+    });
 }

@@ -73,6 +73,8 @@ pub struct Motion {
     pub line: Vec<Dot>,
     /// The end was reached.
     pub complete: bool,
+    /// The points are those of a section at impacts.
+    points_at_impacts: bool,
 }
 
 impl Plan {
@@ -88,6 +90,38 @@ impl Plan {
             End::Time(time) => time.clone(),
             End::Maxima(n) | End::Impacts(n) => long(*n),
         }
+    }
+
+    /// x'(0) on the periodic impact orbit that the motion starts beside.
+    fn on_orbit(&self) -> Option<Float> {
+        let (_, velocity) = self.setup.orbit.as_ref()?;
+        let restitution = self.setup.parameters.get("R_r")?.float(velocity.prec());
+        Some(-(restitution * velocity))
+    }
+
+    /// Whether the motion starts beside the periodic impact orbit.
+    pub fn perturbed(&self) -> bool {
+        let (Some(orbit), Some((_, velocity))) = (self.on_orbit(), &self.setup.orbit) else {
+            return false;
+        };
+        let perturbation = self.setup.start[1].float(orbit.prec()) - orbit;
+        perturbation.abs() > Float::with_val(53, velocity) * 1e-25f64
+    }
+
+    /// The same with half the perturbation, in the digits of [`Self::run`].
+    pub fn run_half(
+        &mut self,
+        digits: u32,
+        doubles: bool,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Option<Motion> {
+        let orbit = self.on_orbit()?;
+        let start = self.setup.start[1].float(orbit.prec());
+        let half = Quantity::Float((start + orbit) / 2u32);
+        let whole = std::mem::replace(&mut self.setup.start[1], half);
+        let motion = self.run(digits, doubles, goes_on);
+        self.setup.start[1] = whole;
+        motion.ok()
     }
 
     /// Integrates with so many digits, in doubles if `doubles`.
@@ -139,6 +173,7 @@ impl Plan {
                 stuck_time: Float::new(real.bits()),
                 line: Vec::new(),
                 complete: false,
+                points_at_impacts: self.section == Some(Section::Impact),
             },
             real: real.clone(),
         };
@@ -170,6 +205,54 @@ impl Plan {
         }
         motion.work = flow.work();
         Ok(motion)
+    }
+}
+
+/// Leaves out the impacts before an accumulation that only one of two integrations told apart:
+/// with fewer digits the sequence is known to be geometric, and jumped over, earlier.
+pub fn align(a: &mut Motion, b: &mut Motion) {
+    let runs = |motion: &Motion| -> Vec<usize> {
+        let mut run = 0;
+        let mut list = Vec::new();
+        for event in &motion.events {
+            match event.kind {
+                EventKind::Impact { .. } => run += 1,
+                EventKind::Accumulation { .. } => list.push(std::mem::take(&mut run)),
+                _ => run = 0,
+            }
+        }
+        list
+    };
+    let common: Vec<usize> = runs(a).iter().zip(runs(b)).map(|(m, n)| (*m).min(n)).collect();
+    for motion in [a, b] {
+        let mut accumulations = runs(motion).into_iter().zip(&common);
+        let (mut events, mut points) = (Vec::new(), Vec::new());
+        // Points of a section at impacts stand for these impacts, in order.
+        let at_impacts = motion.points_at_impacts;
+        let mut old_points = std::mem::take(&mut motion.points).into_iter();
+        let mut run: Vec<(Happening, Option<Moment>)> = Vec::new();
+        for event in std::mem::take(&mut motion.events) {
+            if matches!(event.kind, EventKind::Impact { .. }) {
+                run.push((event, if at_impacts { old_points.next() } else { None }));
+                continue;
+            }
+            if matches!(event.kind, EventKind::Accumulation { .. })
+                && let Some((own, common)) = accumulations.next()
+            {
+                run.truncate(run.len() - (own - common).min(run.len()));
+            }
+            for (event, point) in run.drain(..) {
+                events.push(event);
+                points.extend(point);
+            }
+            events.push(event);
+        }
+        for (event, point) in run {
+            events.push(event);
+            points.extend(point);
+        }
+        points.extend(old_points);
+        (motion.events, motion.points) = (events, points);
     }
 }
 
@@ -235,7 +318,10 @@ impl<R: Real> Keeper<'_, R> {
                     End::Impacts(n) => (impact, *n),
                 };
                 self.count += u32::from(counts);
-                if counts && self.count >= most {
+                // Infinitely many impacts: the one that is to end the motion is among them.
+                let all = matches!(event.kind, EventKind::Accumulation { .. })
+                    && matches!(end, End::Impacts(_));
+                if all || counts && self.count >= most {
                     self.ended = Some(here);
                 }
                 self.ended.is_some()

@@ -1,6 +1,7 @@
 //! The result of a simulation as text, JSON, tables.
 
-use super::motion::{Happening, Moment, Motion, Plan};
+use super::growth::{self, shifts};
+use super::motion::{End, Happening, Moment, Motion, Plan};
 use crate::session::Session;
 use lindstedt::coeff::ball::Balls;
 use lindstedt::simulate::EventKind;
@@ -23,6 +24,8 @@ pub struct Answer<'a> {
     pub digits: u32,
     /// In doubles the two met different events: no digit of the later numbers is known.
     pub chaotic: bool,
+    /// Deviations of the impact times with half the perturbation: what is linear is half as large.
+    pub half: Option<Vec<Float>>,
 }
 
 /// The name of an event.
@@ -53,13 +56,14 @@ fn decimal(value: &Float, error: &Float, digits: u32) -> String {
 }
 
 /// One digit, rounded up.
-fn bound(error: &Float) -> String {
+pub fn bound(error: &Float) -> String {
     let above = Float::with_val(53, error * 1.05f64);
     above.to_string_radix_round(10, Some(2), rug::float::Round::Up)
 }
 
 impl<'a> Answer<'a> {
-    /// Whether both integrations met the same events; nothing else can be compared.
+    /// Whether both integrations met the same events (but for the impacts that one of them told
+    /// apart before an accumulation and the other not, see [`align`]); nothing else can be compared.
     pub fn comparable(&self) -> bool {
         let kinds = |m: &Motion| -> Vec<EventKind> { m.events.iter().map(|e| e.kind).collect() };
         let sizes = |m: &Motion| (m.samples.len(), m.points.len(), m.complete);
@@ -121,17 +125,9 @@ impl<'a> Answer<'a> {
     /// Ratios of consecutive deviations of the impact times from those of the periodic orbit,
     /// with their estimated errors.
     pub fn growth(&self) -> Vec<(Float, Float)> {
-        let Some((period, _)) = &self.plan.setup.orbit else { return Vec::new() };
-        let shifts = |motion: &Motion| -> Vec<Float> {
-            let impacts =
-                motion.events.iter().filter(|e| matches!(e.kind, EventKind::Impact { .. }));
-            (1u32..)
-                .zip(impacts)
-                .map(|(n, e)| Float::with_val(period.prec(), period * n) - &e.time)
-                .collect()
-        };
         let ratios = |motion: &Motion| -> Vec<Float> {
-            shifts(motion).windows(2).map(|w| Float::with_val(w[0].prec(), &w[1] / &w[0])).collect()
+            let shifts = shifts(self.plan, motion);
+            shifts.windows(2).map(|w| Float::with_val(w[0].prec(), &w[1] / &w[0])).collect()
         };
         let pairs = ratios(self.motion).into_iter().zip(ratios(self.finer));
         pairs
@@ -142,12 +138,18 @@ impl<'a> Answer<'a> {
             .collect()
     }
 
+    /// The deviations and how many of them tell of stability.
+    fn linear(&self) -> (Vec<Float>, usize) {
+        let (all, finer) = (shifts(self.plan, self.motion), shifts(self.plan, self.finer));
+        let linear = match &self.half {
+            Some(half) if !self.chaotic => growth::linear(&all, half, &finer),
+            _ => 0,
+        };
+        (all, linear)
+    }
+
     fn perturbed(&self) -> bool {
-        self.plan.setup.orbit.as_ref().is_some_and(|(_, v)| {
-            let start = self.plan.setup.start[1].float(v.prec());
-            let restitution = self.plan.setup.parameters.get("R_r").map(|q| q.float(v.prec()));
-            restitution.is_some_and(|r| (start + r * v).abs() > Float::with_val(53, v) * 1e-25f64)
-        })
+        self.plan.perturbed()
     }
 
     /// In words.
@@ -174,11 +176,30 @@ impl<'a> Answer<'a> {
                 }
             }
         }
-        if self.perturbed()
-            && let Some((last, _)) = self.growth().last()
-        {
-            let word = if last.clone().abs() > 1 { "grows" } else { "decays" };
-            let _ = write!(text, "; the perturbation {word}, last ratio {:.8}", last.to_f64());
+        let accumulations: Vec<String> = (motion.events.iter())
+            .filter(|e| matches!(e.kind, EventKind::Accumulation { .. }))
+            .map(|e| format!("{:.6}", e.time.to_f64()))
+            .collect();
+        if let Some((first, others)) = accumulations.split_first() {
+            let more = match others.len() {
+                0 => String::new(),
+                n => format!(" and {n} later times"),
+            };
+            let _ = write!(
+                text,
+                "; chattering: infinitely many impacts up to t = {first}{more}, then at rest at the wall"
+            );
+            if matches!(self.plan.end, End::Impacts(_)) {
+                text += "; the last impact asked for is among them";
+            }
+        }
+        if self.perturbed() {
+            let (shifts, linear) = self.linear();
+            let _ = write!(text, "; {}", growth::verdict(&shifts, linear));
+        }
+        if self.chaotic {
+            text += "; for digits: without --f64, a shorter time; for a picture enough, for \
+                     numbers --lyapunov or --zero-one";
         }
         text
     }
@@ -221,7 +242,16 @@ impl<'a> Answer<'a> {
                        "error": bound(error), "status": "estimated"})
             };
             put("growth", self.growth().iter().map(ratio).collect());
+            let (shifts, linear) = self.linear();
+            let grows = growth::grows(shifts.get(..linear).unwrap_or_default());
+            put("linear_regime", json!({"impacts": linear, "grows": grows}));
         }
+        let chattering = |(a, b): (&Happening, &Happening)| {
+            matches!(a.kind, EventKind::Accumulation { .. })
+                .then(|| json!({"t": number(&a.time, &b.time), "then": "rest"}))
+        };
+        let pairs = motion.events.iter().zip(&finer.events);
+        put("chattering", pairs.filter_map(chattering).collect());
         put("sticking_time", number(&motion.stuck_time, &finer.stuck_time));
         let work = motion.work;
         put(

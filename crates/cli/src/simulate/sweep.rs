@@ -15,6 +15,8 @@ use lindstedt::simulate::{
     self, Column, DiagramSettings, Doubles, Quantity, Settings, Surface, Sweep, diagram,
 };
 use plotters::prelude::*;
+use rug::Rational;
+use rug::ops::Pow;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::ops::ControlFlow;
@@ -39,6 +41,8 @@ pub struct Diagram {
 /// The points over one value, or why there are none.
 pub struct Line {
     pub value: f64,
+    /// As the user would write it.
+    pub exact: String,
     pub points: Vec<[f64; 2]>,
     pub failure: Option<String>,
 }
@@ -175,7 +179,7 @@ impl Diagram {
         for line in text.strip_prefix(&heading).unwrap_or("").split_inclusive('\n') {
             let index = self.lines.len();
             let Some(value) = self.values.get(index) else { break };
-            let Some(read) = Line::read(line, index, value.float(64).to_f64()) else { break };
+            let Some(read) = Line::read(line, index, value) else { break };
             self.lines.push(read);
             kept += line;
         }
@@ -228,23 +232,68 @@ impl Diagram {
         let _ = writeln!(text, "{},x,v", self.name);
         for line in &self.lines {
             for [x, v] in &line.points {
-                let _ = writeln!(text, "{:?},{x:?},{v:?}", line.value);
+                // What has no end as a decimal number is rounded: a column of numbers.
+                let value = if line.exact.contains(['/', 'p']) {
+                    format!("{:?}", line.value)
+                } else {
+                    line.exact.clone()
+                };
+                let _ = writeln!(text, "{value},{x:?},{v:?}");
             }
         }
         text
     }
 }
 
+/// A decimal number where it ends after at most 17 digits, a fraction otherwise, a multiple of pi,
+/// or 17 digits.
+fn exact(q: &Quantity) -> String {
+    match q {
+        Quantity::Rational(q) => decimal(q).unwrap_or_else(|| q.to_string()),
+        Quantity::PiMultiple(q) => match (q.numer().to_string().as_str(), q.denom()) {
+            ("0", _) => "0".to_owned(),
+            ("1", d) if *d == 1 => "pi".to_owned(),
+            (_, d) if *d == 1 => format!("{}*pi", q.numer()),
+            ("1", d) => format!("pi/{d}"),
+            (n, d) => format!("{n}*pi/{d}"),
+        },
+        other => format!("{:?}", other.float(53).to_f64()),
+    }
+}
+
+/// The digits of a decimal number, exactly.
+fn decimal(q: &Rational) -> Option<String> {
+    let places = (0..=17u32).find(|n| {
+        let power = rug::Integer::from(10).pow(*n);
+        Rational::from(q * power).is_integer()
+    })?;
+    let scaled = Rational::from(q * rug::Integer::from(10).pow(places)).numer().clone();
+    let digits =
+        format!("{:0>width$}", scaled.clone().abs().to_string(), width = places as usize + 1);
+    let (whole, rest) = digits.split_at(digits.len() - places as usize);
+    let sign = if scaled < 0 { "-" } else { "" };
+    let point = if rest.is_empty() { "" } else { "." };
+    Some(format!("{sign}{whole}{point}{rest}"))
+}
+
 impl Line {
     fn of(column: &Column<f64>, values: &[Quantity]) -> Self {
-        let value = values.get(column.index).map_or(f64::NAN, |q| q.float(64).to_f64());
+        let quantity = values.get(column.index);
+        let value = quantity.map_or(f64::NAN, |q| q.float(53).to_f64());
+        let exact = quantity.map_or_else(String::new, exact);
         let pair = |p: &simulate::Point<f64>| match p.state[..] {
             [x, v, ..] => [x, v],
             _ => [f64::NAN; 2],
         };
         match &column.points {
-            Ok(points) => Self { value, points: points.iter().map(pair).collect(), failure: None },
-            Err(error) => Self { value, points: Vec::new(), failure: Some(error.to_string()) },
+            Ok(points) => {
+                let points = points.iter().map(pair).collect();
+                Self { value, exact, points, failure: None }
+            }
+            Err(error) => {
+                let failure = Some(error.to_string());
+                Self { value, exact, points: Vec::new(), failure }
+            }
         }
     }
 
@@ -262,7 +311,8 @@ impl Line {
     }
 
     /// A whole line of that index; nothing for any other text.
-    fn read(text: &str, index: usize, value: f64) -> Option<Self> {
+    fn read(text: &str, index: usize, quantity: &Quantity) -> Option<Self> {
+        let (value, exact) = (quantity.float(53).to_f64(), exact(quantity));
         let line = text.strip_suffix('\n')?;
         let (body, failure) = match line.split_once(" ! ") {
             Some((body, failure)) => (body, Some(failure.to_owned())),
@@ -277,6 +327,26 @@ impl Line {
             Some([x.parse().ok()?, v.parse().ok()?])
         };
         let points = words.map(pair).collect::<Option<Vec<_>>>()?;
-        Some(Self { value, points, failure })
+        Some(Self { value, exact, points, failure })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_as_they_are_written() {
+        let q = |p: i64, r: i64| Rational::from((p, r));
+        for (value, text) in
+            [(q(3, 5), "0.6"), (q(-1, 40), "-0.025"), (q(7, 1), "7"), (q(1, 3), "1/3")]
+        {
+            assert_eq!(exact(&Quantity::Rational(value)), text);
+        }
+        for (value, text) in
+            [(q(1, 1), "pi"), (q(0, 1), "0"), (q(3, 4), "3*pi/4"), (q(-2, 1), "-2*pi")]
+        {
+            assert_eq!(exact(&Quantity::PiMultiple(value)), text);
+        }
     }
 }
