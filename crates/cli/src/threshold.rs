@@ -1,6 +1,7 @@
 //! `lindstedt threshold`: the Melnikov threshold of homoclinic chaos, its zeros, curves, surfaces.
 
 mod figure;
+mod general;
 mod report;
 mod request;
 mod sweep;
@@ -17,7 +18,7 @@ pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
     let digits = digits(&options.precision)?;
     let request = Request::read(options)?;
     output::check_writable(session)?;
-    let answer = report::Answer::new(&request, digits)?;
+    let answer = report::Answer::new(&request, digits, session)?;
     let table = sweep::Table::compute(&request, options.precision.f64, session)?;
     session.done();
     let text = match session.format() {
