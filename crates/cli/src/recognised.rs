@@ -2,8 +2,8 @@
 
 use crate::failure::{Failure, NO_ANSWER, UNDECIDED, USAGE};
 use crate::session::{Loaded, load, parameters};
-use lindstedt::equation::Problem;
 use lindstedt::equation::print::Style;
+use lindstedt::equation::{Expression, Problem};
 use lindstedt::recognise::{Refusal, all_values};
 use lindstedt::{ProblemFile, Value};
 use std::collections::BTreeMap;
@@ -39,7 +39,6 @@ impl Source {
         }
         let mut values = all_values(&problem, &given);
         values.extend(given);
-        values.remove("amplitude").filter(|_| !card("amplitude"));
         Ok(Self { path: path.to_owned(), problem, file, values })
     }
 
@@ -65,7 +64,20 @@ impl Source {
             }
             other => other.to_string(),
         };
-        let place = refusal.term().and_then(|term| self.file.locate(term));
+        // As it occurs multiplied out, without its factors eps and -1, or what it is a product of.
+        let place = refusal.term().and_then(|term| {
+            let factors = match term {
+                Expression::Product(list) => list.clone(),
+                single => vec![single.clone()],
+            };
+            let plain = |e: &Expression| matches!(e, Expression::Small | Expression::Number(_));
+            let bare: Vec<Expression> = factors.into_iter().filter(|e| !plain(e)).collect();
+            let constant = Expression::is_constant;
+            let varying: Vec<Expression> = bare.iter().filter(|e| !constant(e)).cloned().collect();
+            let product = |list: Vec<Expression>| Expression::Product(list).canonical();
+            let tries = [term.clone(), product(bare), product(varying.clone())];
+            tries.iter().chain(&varying).find_map(|part| self.file.locate(part))
+        });
         let place = place.map_or(String::new(), |(line, column)| format!(":{line}:{column}"));
         let shown: String = self.path.chars().take(60).collect();
         let message = format!("{shown}{place}: {text}");

@@ -1,7 +1,7 @@
 //! Which methods take an equation, and what is against the others.
 
-use crate::saddle::has_saddle;
 use crate::classify::{Algebra, Classification, Method, Parity, Reason, parity, parity_in_x};
+use crate::saddle::has_saddle;
 use crate::{Condition, Expression, Function, Problem};
 use rug::Rational;
 use std::cmp::Ordering;

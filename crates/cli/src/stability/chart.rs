@@ -100,7 +100,16 @@ impl Grid {
                 let agreement = Agreement::default();
                 let flip = Vec::new();
                 let finished = false;
-                return Ok(Some(Self { names, two, values, plan, chart, agreement, flip, finished }));
+                return Ok(Some(Self {
+                    names,
+                    two,
+                    values,
+                    plan,
+                    chart,
+                    agreement,
+                    flip,
+                    finished,
+                }));
             }
             Err(error) => return Err(error.into()),
         };
@@ -111,8 +120,11 @@ impl Grid {
 
     pub fn csv(&self) -> String {
         let [first, second] = &self.names;
-        let mut text =
-            if self.two { format!("{first},{second},kbm,exact\n") } else { format!("{first},kbm,exact\n") };
+        let mut text = if self.two {
+            format!("{first},{second},kbm,exact\n")
+        } else {
+            format!("{first},kbm,exact\n")
+        };
         let word = |verdict: Option<Verdict>| match verdict {
             Some(Verdict::Stable) => "stable",
             Some(Verdict::Unstable) => "unstable",

@@ -273,7 +273,8 @@ fn not_swept(name: &str, why: &str, known: &[String]) -> Failure {
 }
 
 /// Every k has an orbit of its own.
-const WHOLE: &str = ": it is a whole number, and every k has another orbit (--set k=1, --set k=2, ...)";
+const WHOLE: &str =
+    ": it is a whole number, and every k has another orbit (--set k=1, --set k=2, ...)";
 
 fn built_in(set: &[String]) -> Result<Known, Failure> {
     let (parameters, at) = exact_parameters(set)?;
@@ -341,9 +342,11 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
         let swept = found.names(&source.problem, &source.values, name, periods);
         swept.ok_or_else(|| {
             let known = source.at().into_iter().map(|(name, _)| name);
-            let known: Vec<String> = known.filter(|name| {
-                found.names(&source.problem, &source.values, name, periods).is_some()
-            }).collect();
+            let known: Vec<String> = known
+                .filter(|name| {
+                    found.names(&source.problem, &source.values, name, periods).is_some()
+                })
+                .collect();
             let why = match source.values.contains_key(name) {
                 _ if name == "k" || tied.as_deref() == Some(name) => WHOLE,
                 true => ": it is not one of alpha, omega, R_r, s, c, P0, A, B under another name",
@@ -363,10 +366,7 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
 }
 
 /// NAME=LO..HI:COUNT.
-fn sweep(
-    text: &str,
-    names: &dyn Fn(&str) -> Result<Swept, Failure>,
-) -> Result<Sweep, Failure> {
+fn sweep(text: &str, names: &dyn Fn(&str) -> Result<Swept, Failure>) -> Result<Sweep, Failure> {
     let bad = || {
         let message = format!("cannot read the sweep {text:?}");
         Failure::usage("range", message, "NAME=LO..HI:COUNT, for example A=-0.3..0.3:201")

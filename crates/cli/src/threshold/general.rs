@@ -1,6 +1,6 @@
 //! The answer for the equation of a file that is not the oscillator of section 3.
 
-use super::report::{Answer, tangle, validity};
+use super::report::{Answer, SMOOTH, tangle, validity};
 use super::request::{Request, Sweep};
 use crate::derive::number_json;
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
@@ -9,7 +9,7 @@ use crate::stability::report::certified_number;
 use lindstedt::coeff::ball::{Ball, Balls};
 use lindstedt::number::certified;
 use lindstedt::recognise::melnikov::Unperturbed;
-use lindstedt::recognise::{MelnikovProblem, OrbitThreshold};
+use lindstedt::recognise::{MelnikovProblem, OrbitCheck, OrbitThreshold};
 use lindstedt::{Number, Status};
 use lindstedt_melnikov::{Class, Friction, MelnikovError, Real};
 use rug::{Float, Rational};
@@ -41,9 +41,9 @@ pub fn answer(
     let number = |n: usize, part: &dyn Fn(&OrbitThreshold) -> Ball| -> Result<Number, Failure> {
         match orbits.get(n) {
             Some(orbit) if estimated => Ok(estimate(&part(orbit), digits)),
-            _ => Ok(certified(None, digits, |balls| {
-                found.thresholds(balls).ok()?.get(n).map(part)
-            })?),
+            _ => {
+                Ok(certified(None, digits, |balls| found.thresholds(balls).ok()?.get(n).map(part))?)
+            }
         }
     };
     let gamma = |o: &OrbitThreshold| o.threshold.gamma.clone();
@@ -58,9 +58,13 @@ pub fn answer(
         ("F", number(first, &|o| o.threshold.forcing.clone())?),
         ("V", speed),
     ];
+    let checks = match &found.unperturbed {
+        Unperturbed::Numeric(orbit) => orbit.check((digits as f64 * 3.33) as u32 + 20),
+        Unperturbed::Closed { .. } => Vec::new(),
+    };
     let mut listed = Vec::new();
     for (n, orbit) in orbits.iter().enumerate() {
-        let check = check(found, orbit.name, digits);
+        let check = check(found, orbit.name, &checks);
         listed.push(json!({
             "name": orbit.name,
             "gamma_c": number_json(&number(n, &gamma)?),
@@ -82,7 +86,7 @@ pub fn answer(
         Friction::Polynomial(law) => law.dry.sign().is_ne(),
         other => !other.kinks().is_empty(),
     };
-    let words = if jumps { validity(verdict) } else { "holds: the perturbation is smooth" };
+    let words = if jumps { validity(verdict) } else { SMOOTH };
     let (zeros, zeros_of) = match &request.zeros {
         None => (Vec::new(), None),
         Some((_, name, low, high)) => {
@@ -92,6 +96,7 @@ pub fn answer(
     Ok(Answer {
         problem: request.problem.clone(),
         at: request.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect(),
+        amplitude: request.gamma.to_string(),
         numbers,
         zeros,
         zeros_of,
@@ -100,6 +105,7 @@ pub fn answer(
         distances: [distance(false)?, distance(true)?],
         tangle: tangle(request, orbits.get(first).map(gamma)).to_owned(),
         orbits: listed,
+        subharmonics: None,
     })
 }
 
@@ -109,7 +115,7 @@ fn estimate(ball: &Ball, digits: usize) -> Number {
 }
 
 /// How the orbit was checked.
-fn check(found: &MelnikovProblem, name: &str, digits: usize) -> Json {
+fn check(found: &MelnikovProblem, name: &str, checks: &[OrbitCheck]) -> Json {
     match &found.unperturbed {
         Unperturbed::Closed { potential, .. } => {
             let kind = if potential.is_homoclinic() { "homoclinic" } else { "heteroclinic" };
@@ -127,9 +133,8 @@ fn check(found: &MelnikovProblem, name: &str, digits: usize) -> Json {
                 "{kind}, {family} with {parameters}: the residual of the equation is 0 identically"
             ))
         }
-        Unperturbed::Numeric(orbit) => {
-            let bits = (digits as f64 * 3.33) as u32 + 20;
-            let found = orbit.check(bits).into_iter().find(|check| check.name == name);
+        Unperturbed::Numeric(_) => {
+            let found = checks.iter().find(|check| check.name == name);
             found.map_or(Json::Null, |c| {
                 let (kind, end) = if c.homoclinic {
                     ("homoclinic", "turning point")
@@ -155,9 +160,10 @@ pub fn zeros(
     digits: usize,
     session: &Session<'_>,
 ) -> Result<Vec<Number>, Failure> {
-    let numeric = request.file.as_ref().is_some_and(|(_, found)| {
-        matches!(found.unperturbed, Unperturbed::Numeric(_))
-    });
+    let numeric = request
+        .file
+        .as_ref()
+        .is_some_and(|(_, found)| matches!(found.unperturbed, Unperturbed::Numeric(_)));
     let (Some(low), Some(high), false) = (low.as_rational(), high.as_rational(), numeric) else {
         return Err(Failure {
             exit: NO_ANSWER,

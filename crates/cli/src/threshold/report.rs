@@ -23,6 +23,8 @@ const COUNTING_BITS: u32 = 400;
 pub struct Answer {
     pub problem: String,
     pub at: Vec<(Text, String)>,
+    /// gamma in the equation: the whole coefficient of the (lowest) harmonic.
+    pub amplitude: String,
     /// With `cusp` where there is one.
     pub numbers: Vec<(&'static str, Number)>,
     pub zeros: Vec<Number>,
@@ -33,6 +35,8 @@ pub struct Answer {
     pub tangle: String,
     /// Of a file: its orbits with their thresholds, and how they were checked.
     pub orbits: Vec<Json>,
+    /// Resonances, if asked for.
+    pub subharmonics: Option<Vec<Json>>,
 }
 
 impl Answer {
@@ -103,14 +107,20 @@ impl Answer {
         Ok(Self {
             problem: request.problem.clone(),
             at: request.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect(),
+            amplitude: request.gamma.to_string(),
             numbers,
             zeros,
             zeros_of,
             touching_b: point.touching_b().map(|b| b.to_string()),
-            validity: validity(verdict).to_owned(),
+            validity: match point.dry.sign().is_eq() {
+                true => SMOOTH,
+                false => validity(verdict),
+            }
+            .to_owned(),
             distances: [distance(0)?, distance(1)?],
             tangle: tangle(request, gamma(Balls::new(400))).to_owned(),
             orbits: Vec::new(),
+            subharmonics: None,
         })
     }
 
@@ -131,6 +141,7 @@ impl Answer {
                 result.insert((*name).into(), number_json(number));
             }
         }
+        result.insert("amplitude".into(), self.amplitude.clone().into());
         result.insert("zeros".into(), self.zeros.iter().map(number_json).collect());
         if let Some((name, complete)) = &self.zeros_of {
             result.insert("zeros_of".into(), json!({"parameter": name, "complete": complete}));
@@ -149,6 +160,9 @@ impl Answer {
         }
         if !self.orbits.is_empty() {
             result.insert("orbits".into(), self.orbits.clone().into());
+        }
+        if let Some(list) = &self.subharmonics {
+            result.insert("subharmonics".into(), list.clone().into());
         }
         result.insert("homoclinic_points".into(), self.tangle.clone().into());
         let [saddle, tangency] = &self.distances;
@@ -207,6 +221,11 @@ impl Answer {
             lines.push((format!("gamma_c, {}", text("name")), text("gamma_c")));
             lines.push((format!("orbit, {}", text("name")), text("check")));
         }
+        for resonance in self.subharmonics.iter().flatten() {
+            let (m, around) = (&resonance["m"], resonance["around"].as_str().unwrap_or_default());
+            let gamma = resonance["gamma_c"]["decimal"].as_str().unwrap_or_default();
+            lines.push((format!("gamma_c of period {m}, {around}"), gamma.to_owned()));
+        }
         if let Some((name, complete)) = &self.zeros_of {
             let label = format!("zero in {name}");
             lines.extend(self.zeros.iter().map(|zero| (label.clone(), shown(zero))));
@@ -240,11 +259,8 @@ impl Answer {
     }
 
     pub fn markdown(&self) -> String {
-        let mut text = format!(
-            "### {}\n\n{}\n\n| | |\n|---|---|\n",
-            self.problem,
-            self.parameters()
-        );
+        let mut text =
+            format!("### {}\n\n{}\n\n| | |\n|---|---|\n", self.problem, self.parameters());
         for (label, value) in self.lines() {
             let escape = |s: &str| s.replace('|', "\\|");
             let _ = writeln!(text, "| {} | {} |", escape(&label), escape(&value));
@@ -262,6 +278,9 @@ impl Answer {
         text
     }
 }
+
+/// Without a jump there is nothing to be far from.
+pub const SMOOTH: &str = "holds: the perturbation is smooth";
 
 /// The verdict on the theory in words.
 pub fn validity(verdict: Option<Verdict>) -> &'static str {

@@ -2,9 +2,9 @@
 
 use crate::arguments::ThresholdOptions;
 use crate::failure::Failure;
+use crate::recognised::Source;
 use crate::session::parameters;
 use lindstedt::Value;
-use crate::recognised::Source;
 use lindstedt::coeff::ball::{Ball, Balls};
 use lindstedt::equation::Text;
 use lindstedt::problems::stick_slip;
@@ -128,8 +128,7 @@ impl Request {
             let message = "at most two sweeps".to_owned();
             return Err(Failure::usage("range", message, ""));
         }
-        let sweeps: Vec<Sweep> =
-            options
+        let sweeps: Vec<Sweep> = options
             .sweep
             .iter()
             .map(|text| Sweep::read(text, file.as_ref()))
@@ -262,12 +261,5 @@ fn built_in(options: &ThresholdOptions) -> Result<Known, Failure> {
         value.unwrap_or_else(|| Real::from(0))
     };
     let (gamma, eps) = (get("gamma"), get("eps"));
-    Ok(Known {
-        problem: "stick-slip".to_owned(),
-        point: Some(point),
-        file: None,
-        gamma,
-        eps,
-        at,
-    })
+    Ok(Known { problem: "stick-slip".to_owned(), point: Some(point), file: None, gamma, eps, at })
 }

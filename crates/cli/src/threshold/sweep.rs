@@ -34,9 +34,8 @@ impl Table {
         session: &Session<'_>,
     ) -> Result<Option<Self>, Failure> {
         let Some(first) = request.sweeps.first() else { return Ok(None) };
-        let doubles = |values: &[Real]| -> Vec<f64> {
-            values.par_iter().map(Real::to_f64).collect()
-        };
+        let doubles =
+            |values: &[Real]| -> Vec<f64> { values.par_iter().map(Real::to_f64).collect() };
         let columns = doubles(&first.values);
         let rows = request.sweeps.get(1).map_or_else(|| vec![f64::NAN], |s| doubles(&s.values));
         let points = rows.len().saturating_mul(columns.len());

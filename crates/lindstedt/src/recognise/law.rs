@@ -176,7 +176,10 @@ impl FrictionLaw {
             let value = evaluate(&whole, &argument);
             value.unwrap_or_else(|| Float::with_val(w.prec(), f64::NAN)) / &s
         });
-        (Friction::Custom { law, kinks: vec![0.0] }, belt)
+        let bends =
+            |e: &Expression| matches!(e, Expression::Function(Function::Abs | Function::Sign, _));
+        let smooth = self.whole.iter().all(|whole| whole.find(&bends).is_none());
+        (Friction::Custom { law, kinks: if smooth { Vec::new() } else { vec![0.0] } }, belt)
     }
 }
 

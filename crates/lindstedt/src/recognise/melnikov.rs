@@ -45,9 +45,9 @@ pub enum Unperturbed {
 ///     equation = "x'' + sin x = eps (gamma cos(omega t) - delta x')"
 ///     condition = []
 ///     [parameters]
-///     gamma = "1"
-///     omega = "1"
-///     delta = "1"
+///     gamma = { value = "1" }
+///     omega = { value = "1" }
+///     delta = { value = "1" }
 ///     "#,
 /// )?;
 /// let values = all_values(&file.problem, &Default::default());
@@ -63,11 +63,12 @@ pub struct MelnikovProblem {
     pub unperturbed: Unperturbed,
     /// T in y.
     pub friction: Friction,
-    /// The force at unit amplitude of its first harmonic.
+    /// The force at unit amplitude of its lowest harmonic.
     pub forcing: Forcing,
     /// v* in y.
     pub belt_speed: Real,
-    /// gamma as it stands in the equation, the amplitude of the first harmonic in x.
+    /// gamma as it stands in the equation for x: the whole coefficient of the lowest harmonic, the
+    /// others being in proportion to it.
     pub amplitude: Real,
 }
 
@@ -113,7 +114,8 @@ impl MelnikovProblem {
                 }
             }
         }
-        let terms: Vec<Term> = harmonics.iter().map(|(.., term)| term.clone()).collect();
+        let mut terms: Vec<Term> = harmonics.iter().map(|(.., term)| term.clone()).collect();
+        terms.sort_by(|a, b| a.omega.to_f64().total_cmp(&b.omega.to_f64()));
         let force_refusal = |why| match harmonics.first() {
             Some((m, q, _)) => Refusal::Term { term: Box::new(all.tree(m, q)), why },
             None => Refusal::NoForce,
@@ -436,7 +438,7 @@ impl Term {
     }
 }
 
-/// The force of unit first amplitude, and that amplitude.
+/// The force of unit lowest amplitude, and that amplitude; terms by rising frequency.
 fn forcing(terms: &[Term]) -> Result<(Forcing, Real), Why> {
     let first = terms.first().ok_or(Why::NotHarmonic)?;
     if terms.iter().any(|t| t.parametric) {

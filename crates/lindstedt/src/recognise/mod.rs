@@ -14,7 +14,7 @@ mod potential;
 pub use impact::ImpactProblem;
 pub use in_pi::all_values;
 pub use melnikov::{MelnikovProblem, OrbitThreshold};
-pub use numeric::NumericOrbit;
+pub use numeric::{NumericOrbit, OrbitCheck};
 
 use crate::Value;
 use lindstedt_equation::monomials::{MOST_TERMS, Monomial, Monomials, expand};
@@ -66,7 +66,7 @@ impl fmt::Display for Why {
             Self::DependsOnPosition => "depends on x; the perturbation is a function of x' or a force",
             Self::NotHarmonic => "is no harmonic force cos(omega*t + phase)",
             Self::Parametric => "is a parametric force; alone, on a polynomial potential about x = 0 it can be taken",
-            Self::OtherSpeed => "jumps at another speed than the jump before it",
+            Self::OtherSpeed => "jumps or bends elsewhere than at one speed x' = v*, the same for all terms",
             Self::Irrational => "has a coefficient that is neither rational nor a rational multiple of pi",
             Self::NotLinear => "is not linear in x, x', x(t - T), x'(t - T)",
             Self::OtherFrequency => "is a second force",
