@@ -178,7 +178,7 @@ pub enum Resum {
 
 #[derive(Debug, Args)]
 pub struct ThresholdOptions {
-    /// stick-slip.
+    /// stick-slip, or the path of a problem file (.toml).
     pub problem: String,
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
@@ -189,6 +189,9 @@ pub struct ThresholdOptions {
     /// All zeros of the signed threshold in this range of a parameter.
     #[arg(long, value_name = "NAME=LO..HI")]
     pub zeros: Option<String>,
+    /// Thresholds of the resonances of period 2 pi m/omega, m = 1 ... M, in one well and around both.
+    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub subharmonics: Option<u32>,
     /// A figure (.svg) or a table (.csv) of the sweep; may be given twice.
     #[arg(long, value_name = "FILE")]
     pub plot: Vec<PathBuf>,
@@ -198,7 +201,7 @@ pub struct ThresholdOptions {
 
 #[derive(Debug, Args)]
 pub struct StabilityOptions {
-    /// vibro-impact.
+    /// vibro-impact, or the path of a problem file (.toml) with a wall.
     pub problem: String,
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3); branch=+ or branch=-.
     #[arg(long = "set", value_name = "NAME=VALUE")]

@@ -132,10 +132,11 @@ pub fn convergence_json(found: &Convergence) -> Json {
 }
 
 pub fn divergence(found: &Convergence) -> String {
-    let radius = found.radius;
-    format!(
-        "the averaged series diverges at eps = 1: its radius of convergence is about {radius:.3}"
-    )
+    let radius = match found.radius {
+        radius if radius < 1e-3 => format!("{radius:.1e}"),
+        radius => format!("{radius:.3}"),
+    };
+    format!("the averaged series diverges at eps = 1: its radius of convergence is about {radius}")
 }
 
 /// A linear problem has numbers, growth_rate and frequency; otherwise the rates are polynomials in

@@ -76,7 +76,7 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
         }
         Reason::Condition => "the condition of the problem belongs to another method".into(),
         Reason::Form => format!("the form x*F({small}*ln(x^2)) is needed"),
-        Reason::NoSaddle => "no integrable equation with a saddle at x = 0 at order zero".into(),
+        Reason::NoSaddle => "no integrable equation with a saddle at order zero".into(),
         Reason::NoSmallParameter => format!("the small parameter {small} does not occur"),
         Reason::Formal(e) => format!("{} is a formal function", show(e)),
         _ => "not applicable".into(),
@@ -239,7 +239,7 @@ pub fn check(
         code: "no-method",
         message: format!("{path}{place}: {}", reason_text(reason, &file.problem.small)),
         hint: if parts.takes(Method::Melnikov) {
-            "Melnikov's method takes equations of this kind: lindstedt threshold stick-slip".into()
+            "Melnikov's method takes equations of this kind: lindstedt threshold FILE".into()
         } else {
             "`lindstedt problems --show FILE` lists the methods".into()
         },

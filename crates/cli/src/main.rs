@@ -11,6 +11,7 @@ mod failure;
 mod output;
 mod paper;
 mod problems;
+mod recognised;
 mod session;
 mod simulate;
 mod stability;

@@ -74,6 +74,16 @@ impl<'a> Session<'a> {
         !self.interrupted() && !self.out_of_time()
     }
 
+    /// The same question for work that outlives a borrow of the session.
+    pub fn watch(&self) -> Arc<dyn Fn() -> bool + Send + Sync> {
+        let (interrupts, start) = (Arc::clone(&self.interrupts), self.start);
+        let limit = self.common.limit_seconds;
+        Arc::new(move || {
+            let late = limit.is_some_and(|limit| start.elapsed().as_secs_f64() > limit);
+            interrupts.load(Ordering::SeqCst) == 0 && !late
+        })
+    }
+
     /// Shows what is being done.
     pub fn say(&self, message: String) {
         self.bar.set_message(message);
@@ -112,6 +122,12 @@ pub fn parameters(list: &[String]) -> Result<BTreeMap<String, Value>, Failure> {
             let message = format!("{item:?} is not NAME=VALUE");
             return Err(Failure::usage("set", message, "for example --set amplitude=1/2"));
         };
+        if name.trim() == "branch" && matches!(value.trim(), "+" | "-") {
+            let message = "branch has no meaning here: it chooses the root of the impact velocity, and \
+                           the free flight is the same on both";
+            let hint = "lindstedt stability and lindstedt simulate take it";
+            return Err(Failure::usage("set", message.to_owned(), hint));
+        }
         let value = Value::parse(value)?;
         if parameters.insert(name.trim().to_owned(), value).is_some() {
             let message = format!("{name} is set twice");

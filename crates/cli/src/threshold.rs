@@ -1,8 +1,10 @@
 //! `lindstedt threshold`: the Melnikov threshold of homoclinic chaos, its zeros, curves, surfaces.
 
 mod figure;
+mod general;
 mod report;
 mod request;
+mod subharmonics;
 mod sweep;
 
 use crate::Outcome;
@@ -17,7 +19,10 @@ pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
     let digits = digits(&options.precision)?;
     let request = Request::read(options)?;
     output::check_writable(session)?;
-    let answer = report::Answer::new(&request, digits)?;
+    let mut answer = report::Answer::new(&request, digits, session)?;
+    if let Some(largest) = options.subharmonics {
+        answer.subharmonics = Some(subharmonics::list(&request, largest, digits, session)?);
+    }
     let table = sweep::Table::compute(&request, options.precision.f64, session)?;
     session.done();
     let text = match session.format() {

@@ -50,3 +50,124 @@ fn a_chart_has_no_verdict_where_the_orbit_does_not_exist() {
     assert!(chart["grid"]["exact"][0][1].is_boolean(), "omega = 2 does not");
     assert_eq!(chart["grid"]["agreement"]["compared"], 1);
 }
+
+fn lindstedt(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
+}
+
+fn of_file(path: &str, arguments: &[&str]) -> Value {
+    let command = [&["stability", path], arguments, &["--format", "json"]].concat();
+    let output = lindstedt(&command);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn example(name: &str) -> String {
+    format!("{}/../../docs/examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A file for one test.
+fn written(name: &str, text: &str) -> String {
+    let name = format!("lindstedt-stability-{}-{name}.toml", std::process::id());
+    let path = std::env::temp_dir().join(name);
+    std::fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+fn without(mut result: Value, keys: &[&str]) -> Value {
+    for key in keys {
+        result.as_object_mut().unwrap().remove(*key);
+    }
+    result
+}
+
+#[test]
+fn the_printed_file_is_the_built_in_problem() {
+    let shown = lindstedt(&["problems", "--show", "vibro-impact"]).stdout;
+    let path = written("printed", &String::from_utf8(shown).unwrap());
+    let point = ["--set", "A=0.1", "--set", "B=-0.05", "--set", "k=2", "--set", "branch=+"];
+    let sweeps = ["--sweep", "A=-0.3..0.3:5", "--sweep", "omega=3..3.5:3"];
+    for arguments in [&point[..], &sweeps[..], &["--f64", "--order", "2"][..]] {
+        let built_in = json(arguments);
+        assert_eq!(of_file(&path, arguments), built_in);
+        let other = of_file(&example("vibro-impact"), arguments);
+        assert_eq!(without(other, &["problem", "at"]), without(built_in, &["problem", "at"]));
+    }
+    let _ = std::fs::remove_file(path);
+}
+
+/// The same oscillator with a mass, other names, the wall below, and the feedback written as one
+/// delayed force; and one with a constant force, a sine and a delay in seconds.
+#[test]
+fn other_words_for_the_impact_oscillator() {
+    let expected = without(json(&["--set", "A=-0.05"]), &["problem", "at"]);
+    let spring = of_file(&example("impact-spring"), &[]);
+    assert_eq!(spring["canonical"]["A"], "-1/20");
+    assert_eq!(without(spring, &["problem", "at", "canonical"]), expected);
+    let file = |equation: &str, rest: &str| {
+        format!(
+            "name = \"words\"\nequation = \"{equation}\"\ncondition = \"free-amplitude\"\n\
+             [parameters]\np = {{ value = \"1\" }}\nw = {{ value = \"33/10\" }}\n\
+             T = {{ value = \"20*pi/33\" }}\nA = {{ value = \"-1/20\" }}\n[impact]\n\
+             position = \"4/5\"\ncrossing = \"rising\"\nrestitution = \"3/5\"\n{rest}"
+        )
+    };
+    let equation = "x'' + x - 1 = p sin(w t + 1) + eps (A (x - x(t - T)) - x'/5)";
+    let path = written("words", &file(equation, ""));
+    assert_eq!(without(of_file(&path, &[]), &["problem", "at", "canonical"]), expected);
+    let swept = of_file(&path, &["--sweep", "A=-0.1..0.1:3"]);
+    assert_eq!(swept["grid"]["columns"]["values"], serde_json::json!([-0.1, 0.0, 0.1]));
+    let refusals = [
+        (equation.replace("x'/5", "x'^3/5"), "is not linear"),
+        (equation.replace("+ x - 1", "+ x - 1 + cos(2*w*t)"), "second force"),
+        (equation.replace("t - T", "t - 2*w"), "no period"),
+        (equation.replace("+ x - 1", "- x"), "alpha^2 > 0"),
+    ];
+    for (equation, words) in refusals {
+        std::fs::write(&path, file(&equation, "")).unwrap();
+        let output = lindstedt(&["stability", &path]);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(3), "{message}");
+        assert!(message.contains(words), "{equation}: {message}");
+    }
+    std::fs::write(&path, file(equation, "")).unwrap();
+    let output = lindstedt(&["stability", &path, "--sweep", "T=1..2:3"]);
+    assert_eq!(output.status.code(), Some(2));
+    let _ = std::fs::remove_file(path);
+}
+
+#[test]
+fn the_time_limit_is_seen_inside_a_point() {
+    let start = std::time::Instant::now();
+    let output = run(&["--set", "B=50", "--limit-seconds", "0.5"]);
+    assert_eq!(output.status.code(), Some(4));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("time limit"));
+    // Without a limit this point takes minutes.
+    assert!(start.elapsed().as_secs() < 30);
+}
+
+#[test]
+fn small_things() {
+    let table = std::env::temp_dir().join(format!("lindstedt-row-{}.csv", std::process::id()));
+    let plot = ["--sweep", "A=-0.3..0.3:7", "--f64", "--plot", table.to_str().unwrap()];
+    json(&plot);
+    let text = std::fs::read_to_string(&table).unwrap();
+    let columns: Vec<&str> = text.lines().map(|line| line.split(',').next().unwrap()).collect();
+    assert_eq!(columns, ["A", "-0.3", "-0.2", "-0.1", "0", "0.1", "0.2", "0.3"]);
+    assert_eq!(text.lines().next(), Some("A,kbm,exact"));
+    let _ = std::fs::remove_file(table);
+    let message = |arguments: &[&str]| String::from_utf8(run(arguments).stderr).unwrap();
+    assert!(message(&["--set", "c=-0.1"]).contains("c must be at least 0, not -0.1"));
+    assert!(message(&["--set", "k=1e20"]).contains("k is too large"));
+    assert!(message(&["--sweep", "k=1..3:3"]).contains("every k has another orbit"));
+    assert!(
+        !message(&["--set", "A=1000", "--f64"]).contains("radius of convergence is about 0.000")
+    );
+    let growth = &json(&["--set", "B=0.1", "--f64"])["exact"]["return_map"];
+    assert!(growth["error"].is_number() && growth["status"] == "estimated");
+    let output = lindstedt(&["derive", "vibro-impact", "--set", "branch=-"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("branch has no meaning here"));
+    let output = lindstedt(&["derive", "vibro-impact", "--set", "alpha=pi", "--order", "1"]);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("without a value: omega, k, c"));
+}

@@ -88,3 +88,257 @@ fn refusals_have_their_exit_code() {
         assert!(!output.stderr.is_empty());
     }
 }
+
+/// A file with this equation and these parameters; removed when dropped.
+struct File(std::path::PathBuf);
+
+impl File {
+    fn new(name: &str, equation: &str, parameters: &[(&str, &str)]) -> Self {
+        let mut text =
+            format!("name = \"{name}\"\nequation = \"{equation}\"\ncondition = []\n[parameters]\n");
+        for (name, value) in parameters {
+            text += &format!("{name} = {{ value = \"{value}\" }}\n");
+        }
+        Self::with_text(name, &text)
+    }
+    fn with_text(name: &str, text: &str) -> Self {
+        let name = format!("lindstedt-threshold-{}-{name}.toml", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        std::fs::write(&path, text).unwrap();
+        Self(path)
+    }
+    fn run(&self, arguments: &[&str]) -> Output {
+        lindstedt(&[&["threshold", self.0.to_str().unwrap()], arguments].concat())
+    }
+    fn json(&self, arguments: &[&str]) -> Value {
+        let output = self.run(&[arguments, &["--format", "json"]].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+        serde_json::from_slice(&output.stdout).unwrap()
+    }
+}
+
+impl Drop for File {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0);
+    }
+}
+
+fn lindstedt(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
+}
+
+fn example(name: &str, arguments: &[&str]) -> Value {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/");
+    let path = format!("{folder}{name}.toml");
+    let output = lindstedt(&[&["threshold", &path], arguments, &["--format", "json"][..]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn decimal(number: &Value) -> &str {
+    number["decimal"].as_str().unwrap()
+}
+
+/// What differs between two runs of the same thing.
+fn without(mut result: Value, keys: &[&str]) -> Value {
+    for key in keys {
+        result.as_object_mut().unwrap().remove(*key);
+    }
+    result
+}
+
+#[test]
+fn the_printed_file_and_the_example_are_the_built_in_problem() {
+    let shown = lindstedt(&["problems", "--show", "stick-slip"]).stdout;
+    let printed = File::with_text("printed", &String::from_utf8(shown).unwrap());
+    let arguments = [
+        "--set",
+        "b=5",
+        "--zeros",
+        "vstar=0..1",
+        "--sweep",
+        "vstar=0..1:11",
+        "--sweep",
+        "b=1,5",
+        "--digits",
+        "25",
+    ];
+    let built_in = without(json(&arguments), &["seconds"]);
+    assert_eq!(without(printed.json(&arguments), &["seconds"]), built_in);
+    assert_eq!(built_in["zeros"].as_array().unwrap().len(), 2);
+    let keys = ["seconds", "problem", "at"];
+    assert_eq!(
+        without(example("stick-slip", &arguments), &keys),
+        without(built_in, &["problem", "at"])
+    );
+}
+
+/// The same oscillator in other words: names, factors, order and form of the terms.
+#[test]
+fn other_words_for_the_oscillator_of_section_3() {
+    let parameters = [
+        ("p", "1"),
+        ("q", "1"),
+        ("mu", "3/10"),
+        ("c1", "3/10"),
+        ("c3", "3/10"),
+        ("nu", "2"),
+        ("belt", "2/5"),
+        ("g", "13/20"),
+    ];
+    let equations = [
+        "x'' - p x + q x^3 + eps (mu sign(x' - belt) - c1 (x' - belt) + c3 (x' - belt)^3) = eps g sin(nu t + 1)",
+        "3 x'' = 3 x (p - q x^2) + 3 eps (g cos(nu t) + mu sign(2 belt - 2 x') + (x' - belt)(c1 - c3 (x'^2 - 2 x' belt + belt^2)))",
+        "-x'' + p x - q x*x*x + eps g cos(-nu t) - eps mu (x' - belt)/|x' - belt| + eps c1 x' - eps c1 belt - eps c3 (x' - belt)^2 (x' - belt) = 0",
+    ];
+    let expected = json(&[]);
+    for (n, equation) in equations.iter().enumerate().take(2) {
+        let file = File::new(&format!("words-{n}"), equation, &parameters);
+        let found = file.json(&["--sweep", "belt=0..1:3", "--zeros", "belt=0..1"]);
+        for key in ["gamma_c", "signed", "D", "F", "V", "cusp", "validity", "homoclinic_points"] {
+            assert_eq!(found[key], expected[key], "{equation}: {key}");
+        }
+        assert_eq!(found["zeros_of"]["complete"], true);
+        assert_eq!(found["curve_status"], "certified");
+    }
+    // A quotient is no polynomial in x' and sign(x' - belt): the general route, estimated.
+    let file = File::new("words-2", equations[2], &parameters);
+    let found = file.json(&["--digits", "20"]);
+    assert_eq!(decimal(&found["gamma_c"]), "0.63707134284816358297");
+    assert_eq!(found["gamma_c"]["status"], "estimated");
+}
+
+/// J. Guckenheimer and P. Holmes, Nonlinear Oscillations (1983), section 4.5 (double well and
+/// pendulum); J. M. T. Thompson, Proc. R. Soc. Lond. A 421 (1989) 195 (escape). The numbers are the
+/// formulas of the notes in the files, evaluated by mpmath 1.3.
+#[test]
+fn classical_thresholds() {
+    let expected = [
+        ("forced-pendulum", "0.31947852638258523395"),
+        ("escape", "0.063335299146323558925"),
+        ("holmes-duffing", "0.18825452704050945619"),
+    ];
+    for (name, gamma) in expected {
+        let found = example(name, &["--digits", "20"]);
+        assert_eq!(decimal(&found["gamma_c"]), gamma, "{name}");
+        assert_eq!(found["gamma_c"]["status"], "certified", "{name}");
+        assert_eq!(found["validity"]["verdict"], "holds: the perturbation is smooth", "{name}");
+    }
+    let pendulum = example("forced-pendulum", &["--sweep", "delta=0.1..0.2:3"]);
+    assert_eq!(pendulum["orbits"][1]["name"], "lower orbit");
+    let curve = pendulum["curve"].as_array().unwrap();
+    let ratio = curve[2][1].as_f64().unwrap() / curve[0][1].as_f64().unwrap();
+    assert!((ratio - 2.0).abs() < 1e-14 && curve.len() == 3);
+    // A constant torque makes the separatrices different: D = 8 delta -+ 2 pi tau.
+    let equation = "x'' + sin x = eps (gamma cos(omega t) - delta x' + tau)";
+    let parameters = [("gamma", "1"), ("omega", "1"), ("delta", "1/5"), ("tau", "1/10")];
+    let torque = File::new("torque", equation, &parameters).json(&["--zeros", "tau=0..1"]);
+    let dissipation = |n: usize| {
+        let signed: f64 = decimal(&torque["orbits"][n]["signed"]).parse().unwrap();
+        signed * std::f64::consts::TAU / std::f64::consts::FRAC_PI_2.cosh()
+    };
+    assert!((dissipation(0) - (1.6 - 0.2 * std::f64::consts::PI)).abs() < 1e-14);
+    assert!((dissipation(1) - (1.6 + 0.2 * std::f64::consts::PI)).abs() < 1e-14);
+    // tau = 4 delta/pi.
+    assert_eq!(&decimal(&torque["zeros"][0])[..20], "0.254647908947032537");
+}
+
+/// Orbits without closed form here; the numbers by mpmath 1.3: quadrature of the orbits
+/// x = 1/(-q/3 +- sqrt(q^2/9 + 1/2) cosh t) (two unequal loops),
+/// x = (1/4 + sqrt(1/16 + 1/9) cosh 2t)^(-1/2), and 8 delta w0/(2 pi sech(pi/(2 w0))), w0^2 = 2.
+#[test]
+fn orbits_followed_numerically() {
+    let parameters = [
+        ("gamma", "1"),
+        ("omega", "1"),
+        ("delta", "1/10"),
+        ("mu", "1/5"),
+        ("v", "3/10"),
+        ("q", "1/2"),
+    ];
+    let wells = "x'' = x + q x^2 - x^3 + eps (gamma cos(omega t) - ";
+    let cases = [
+        ("asymmetric", format!("{wells} delta x')"), "0.056896427395", "0.103175188629"),
+        ("dry", format!("{wells} mu sign(x' - v))"), "0.215268453934", "0.259861819455"),
+        (
+            "stribeck",
+            format!("{wells} sign(x' - v)(mu + exp(-|x' - v|)))"),
+            "0.870475198747",
+            "0.877196507690",
+        ),
+        (
+            "quintic",
+            "x'' = x - x^3 - x^5/3 + eps (gamma cos(omega t) - delta x')".to_owned(),
+            "0.068574182143",
+            "0.068574182143",
+        ),
+        (
+            "swift",
+            "x'' + 2 sin x = eps (gamma cos(omega t) - delta x')".to_owned(),
+            "0.303034558291",
+            "0.303034558291",
+        ),
+    ];
+    for (name, equation, least, first) in cases {
+        let found = File::new(name, &equation, &parameters).json(&["--digits", "13"]);
+        assert_eq!(&decimal(&found["gamma_c"])[..14], least, "{name}");
+        assert_eq!(&decimal(&found["orbits"][0]["gamma_c"])[..14], first, "{name}");
+        assert_eq!(found["gamma_c"]["status"], "estimated");
+        assert!(found["gamma_c"]["error"].is_string());
+        let check = found["orbits"][0]["check"].as_str().unwrap();
+        let residual = check.split("energy residual ").nth(1).unwrap();
+        let residual: f64 = residual.split(',').next().unwrap().parse().unwrap();
+        assert!(residual < 1e-13, "{name}: {check}");
+    }
+}
+
+#[test]
+fn terms_that_do_not_fit_are_named() {
+    let parameters = [("gamma", "1"), ("omega", "1"), ("delta", "1/10"), ("v", "1/5")];
+    let cases = [
+        ("x'' + sin x = gamma cos(omega t) - eps delta x'", ":2:27:", "no factor"),
+        ("x'' - x + x^3 + delta x' = eps gamma cos(omega t)", ":2:29:", "delta*x' has no factor"),
+        ("x'' - x + x^3 = eps (gamma cos(omega t) - delta x^2 x')", ":2:", "depends on x"),
+        ("x'' - x + x^3 = eps (gamma cos(omega t)^2 - delta x')", ":2:", "no harmonic force"),
+        ("x'' - x + x^3 = eps (gamma cos(omega t) - delta x'(t - v))", ":2:", "is a delay"),
+        ("x'' - x + x^3 + eps^2 x' = eps gamma cos(omega t)", ":2:", "first order"),
+        ("x'' - x + x^3 = eps (gamma cos(omega t) - sign(x' - v) - sign(x'))", ":2:", "jumps"),
+        ("x'' + x + x^3 = eps (gamma cos(omega t) - delta x')", "", "no homoclinic"),
+        ("x'' - x + x^3 = -eps delta x'", "", "no harmonic force"),
+    ];
+    for (n, (equation, place, words)) in cases.iter().enumerate() {
+        let output = File::new(&format!("refused-{n}"), equation, &parameters).run(&[]);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(3), "{equation}: {message}");
+        assert!(message.contains(words) && message.contains(place), "{equation}: {message}");
+        assert_eq!(message.lines().count(), 1);
+    }
+    let open = File::new("open", "x'' - x + x^3 = eps (g cos(2 t) - d x')", &[("g", "1")]);
+    let text = std::fs::read_to_string(&open.0).unwrap() + "d = {}\n";
+    std::fs::write(&open.0, text).unwrap();
+    let output = open.run(&[]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("without a value: d"));
+    assert!(open.run(&["--set", "d=1/4"]).status.success());
+}
+
+/// The thresholds of the resonances tend to the homoclinic one; R_2 to R_5 of the paper's point are
+/// those of tests/data and of an independent quadrature.
+#[test]
+fn subharmonic_thresholds() {
+    let found = json(&["--subharmonics", "5", "--digits", "12"]);
+    let list = found["subharmonics"].as_array().unwrap();
+    let gamma = |m: u64, around: &str| {
+        let entry = list.iter().find(|e| e["m"] == m && e["around"] == around);
+        entry.map(|e| decimal(&e["gamma_c"]).to_owned())
+    };
+    // omega = 2 is faster than the small oscillations sqrt(2) in a well.
+    assert_eq!(gamma(1, "one well"), None);
+    assert_eq!(gamma(2, "both wells"), None);
+    for (m, known) in [(2, "0.5917"), (3, "0.63589"), (4, "0.637056"), (5, "0.637072")] {
+        assert!(gamma(m, "one well").unwrap().starts_with(known), "{m}");
+    }
+    assert!(gamma(1, "both wells").is_some() && gamma(5, "both wells").is_some());
+    let file = File::new("even", "x'' - x + x^2 = eps (g cos(2 t) - x')", &[("g", "1")]);
+    assert_eq!(file.run(&["--subharmonics", "2"]).status.code(), Some(3));
+}

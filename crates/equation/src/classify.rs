@@ -106,7 +106,7 @@ pub enum Reason {
     Condition,
     /// The form x F(small ln x^2) is needed.
     Form,
-    /// No saddle at x = 0 with an integrable equation at order zero.
+    /// No saddle of an integrable equation at order zero.
     NoSaddle,
     /// The small parameter does not occur.
     NoSmallParameter,

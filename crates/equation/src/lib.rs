@@ -5,9 +5,10 @@ mod canonical;
 pub mod classify;
 mod expression;
 mod methods;
-mod monomials;
+pub mod monomials;
 pub mod print;
 mod problem;
+mod saddle;
 mod smooth;
 
 pub use canonical::AccelerationFault;

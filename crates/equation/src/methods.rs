@@ -1,6 +1,7 @@
 //! Which methods take an equation, and what is against the others.
 
 use crate::classify::{Algebra, Classification, Method, Parity, Reason, parity, parity_in_x};
+use crate::saddle::has_saddle;
 use crate::{Condition, Expression, Function, Problem};
 use rug::Rational;
 use std::cmp::Ordering;
@@ -27,7 +28,10 @@ pub(crate) fn decide(
         _ => Algebra::TrigonometricOverParameters,
     };
     let energy = if is_energy_form(rest) { Vec::new() } else { vec![Reason::Form] };
-    let saddle = stiffness.is_some_and(|kappa| kappa.cmp0() == Ordering::Less)
+    let saddle_at_zero = stiffness.is_some_and(|kappa| kappa.cmp0() == Ordering::Less);
+    // Without a force a saddle elsewhere is no reason to think of Melnikov.
+    let elsewhere = || !parts.forcing.is_empty() && has_saddle(rest, values) == Some(true);
+    let saddle = (saddle_at_zero || elsewhere())
         && parts.strong.iter().all(|t| parity(&t.term, false) == Some(Parity::Even))
         && parts.delays.is_empty()
         && parts.forcing.iter().all(|f| f.order > 0)

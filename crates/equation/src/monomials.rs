@@ -6,30 +6,47 @@ use rug::Rational;
 use std::collections::BTreeMap;
 
 /// Terms of an expanded expression; more are not formed.
-pub(crate) const MOST_TERMS: usize = 1000;
+pub const MOST_TERMS: usize = 1000;
 /// Products of terms formed on the way.
 const MOST_WORK: usize = 100_000;
 
 /// small^order * parameters * x^x * x'^velocity * atoms.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Monomial {
+pub struct Monomial {
+    /// The power of the small parameter.
     pub order: u32,
+    /// The power of x.
     pub x: u32,
+    /// The power of x'.
     pub velocity: u32,
     /// Everything that is no polynomial, by its printed form.
     pub atoms: BTreeMap<String, u32>,
+    /// Powers of parameters, and of constants that are no polynomial in them.
     pub parameters: BTreeMap<String, i32>,
 }
 
 /// A sum of monomials with what their atoms stand for.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Monomials {
+pub struct Monomials {
+    /// The terms with their rational factors, none of which is zero.
     pub terms: BTreeMap<Monomial, Rational>,
+    /// What the names of atoms and of constants stand for.
     pub atoms: BTreeMap<String, Expression>,
 }
 
-/// Multiplies out; nothing when that takes too many terms.
-pub(crate) fn expand(e: &Expression) -> Option<Monomials> {
+/// Multiplies out; nothing when that takes more than [`MOST_TERMS`] terms or too many products of
+/// terms on the way.
+///
+/// ```
+/// use lindstedt_equation::{Expression, monomials::expand};
+/// let x = || Expression::Displacement;
+/// let square = expand(&((x() + 1) * (x() - 1))).ok_or("too long")?;
+/// let constant = square.terms.get(&Default::default());
+/// assert_eq!((square.terms.len(), constant), (2, Some(&(-1).into())));
+/// # Ok::<(), &str>(())
+/// ```
+#[must_use]
+pub fn expand(e: &Expression) -> Option<Monomials> {
     let mut expander = Expander { atoms: BTreeMap::new(), work: 0 };
     let terms = expander.terms(e)?;
     Some(Monomials { terms, atoms: expander.atoms })
@@ -201,14 +218,16 @@ impl Monomial {
     }
 
     /// Whether the rest of the monomial is x^x x'^velocity without atoms.
-    pub(crate) fn is_power(&self, x: u32, velocity: u32) -> bool {
+    #[must_use]
+    pub fn is_power(&self, x: u32, velocity: u32) -> bool {
         self.x == x && self.velocity == velocity && self.atoms.is_empty()
     }
 }
 
 impl Monomials {
     /// A term as a tree: number, parameters, small^order, x, x', atoms.
-    pub(crate) fn tree(&self, monomial: &Monomial, q: &Rational) -> Expression {
+    #[must_use]
+    pub fn tree(&self, monomial: &Monomial, q: &Rational) -> Expression {
         let mut factors = vec![Expression::Number(q.clone())];
         let mut push = |base: Expression, n: i64| {
             if n != 0 {
@@ -231,7 +250,8 @@ impl Monomials {
     }
 
     /// The sum of the constant factors of the terms that `wanted` accepts.
-    pub(crate) fn coefficient(&self, wanted: impl Fn(&Monomial) -> bool) -> Expression {
+    #[must_use]
+    pub fn coefficient(&self, wanted: impl Fn(&Monomial) -> bool) -> Expression {
         let chosen = self.terms.iter().filter(|(m, _)| wanted(m));
         Expression::Sum(chosen.map(|(m, q)| self.tree(&m.constant(), q)).collect()).canonical()
     }

@@ -6,7 +6,7 @@
 //! gamma together with kappa. At N = infinity this is the zero of [`crate::characteristic`] that
 //! grows out of the uncontrolled multiplier.
 
-use crate::characteristic::Kick;
+use crate::characteristic::{Kick, Watch};
 use crate::complex::Complex;
 use crate::error::ImpactError;
 use crate::map::{ImpactMap, Verdict};
@@ -47,6 +47,7 @@ struct Truncated<'a, S> {
     orbit: &'a Orbit<S>,
     chi: S,
     order: usize,
+    watch: &'a Watch,
 }
 
 impl<S: Real> Truncated<'_, S> {
@@ -104,6 +105,9 @@ impl<S: Real> Truncated<'_, S> {
         let mut f_before = self.at(&before, gain);
         let mut last = f64::INFINITY;
         for _ in 0..rounds {
+            if !self.watch.goes_on() {
+                return None;
+            }
             let f = self.at(&w, gain);
             let slope = (f.clone() - &f_before).over(&(w.clone() - &before));
             let step = f.over(&slope).centre();
@@ -136,7 +140,7 @@ impl<S: Real> Truncated<'_, S> {
             let rounds = if target < 1.0 { 30 } else { 60 };
             match self.solve(&w, &at(target), 0.3, rounds) {
                 Some(next) => (w, t, step) = (next, target, step * 1.5),
-                None if step > 1e-4 => step *= 0.5,
+                None if step > 1e-4 && self.watch.goes_on() => step *= 0.5,
                 None => return None,
             }
         }
@@ -157,17 +161,29 @@ pub fn impact_aware<S: Real>(
     kick: Kick,
     order: usize,
 ) -> Result<AwarePrediction<S>, ImpactError> {
+    watched_prediction(parameters, orbit, kick, order, &Watch::default())
+}
+
+/// [`impact_aware`], stopped by a watch.
+pub(crate) fn watched_prediction<S: Real>(
+    parameters: &Parameters<S>,
+    orbit: &Orbit<S>,
+    kick: Kick,
+    order: usize,
+    watch: &Watch,
+) -> Result<AwarePrediction<S>, ImpactError> {
     if order == 0 {
         return Err(ImpactError::OrderZero);
     }
     let chi = kick.factor(&parameters.restitution);
-    let truncated = Truncated { parameters, orbit, chi, order };
+    let truncated = Truncated { parameters, orbit, chi, order, watch };
     let map: ImpactMap<S> = uncontrolled_map(parameters, orbit);
     let mut multipliers = Vec::with_capacity(2);
     for gamma in map.multipliers() {
         if gamma.to_f64().modulus() == 0.0 {
             continue;
         }
+        watch.check()?;
         let start = gamma.inverse().centre();
         let lost = ImpactError::NoConvergence { what: "the impact-aware multiplier" };
         let w =

@@ -10,31 +10,11 @@ use crate::flow::{Flow, Scratch, free_delay};
 use crate::map::{ImpactMap, Verdict};
 use crate::orbit::{Orbit, orbit};
 use crate::parameters::Parameters;
+pub use crate::parameters::Swept;
 use crate::prediction::{Variant, predict};
 use crate::zeros::{exact_verdict, leading_modulus};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// A parameter that can be swept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Swept {
-    /// alpha.
-    Alpha,
-    /// omega (T = 2 pi k/omega follows).
-    Omega,
-    /// R_r.
-    Restitution,
-    /// s.
-    Wall,
-    /// c.
-    Damping,
-    /// P0.
-    Force,
-    /// A.
-    DisplacementGain,
-    /// B.
-    VelocityGain,
-}
 
 /// Equidistant values of one parameter.
 #[derive(Clone, Copy, Debug)]
@@ -63,17 +43,7 @@ impl Axis {
         matches!(self.parameter, Swept::DisplacementGain | Swept::VelocityGain)
     }
     fn set(&self, n: usize, parameters: &mut Parameters<f64>) {
-        let slot = match self.parameter {
-            Swept::Alpha => &mut parameters.alpha,
-            Swept::Omega => &mut parameters.omega,
-            Swept::Restitution => &mut parameters.restitution,
-            Swept::Wall => &mut parameters.wall,
-            Swept::Damping => &mut parameters.damping,
-            Swept::Force => &mut parameters.force,
-            Swept::DisplacementGain => &mut parameters.displacement_gain,
-            Swept::VelocityGain => &mut parameters.velocity_gain,
-        };
-        *slot = self.value(n);
+        *parameters.slot(self.parameter) = self.value(n);
     }
 }
 

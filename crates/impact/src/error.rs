@@ -18,8 +18,16 @@ pub enum ImpactError {
         /// Its value.
         value: f64,
     },
+    /// A parameter must not be negative.
+    #[error("parameter {name} must be at least 0, not {value}")]
+    Negative {
+        /// The parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// A parameter lies outside its interval.
-    #[error("parameter {name} = {value} must lie in [{low}, {high}]")]
+    #[error("parameter {name} must lie between {low} and {high}, not {value}")]
     OutOfRange {
         /// The parameter.
         name: &'static str,

@@ -11,6 +11,7 @@
 //!
 //! Such a map has no Floquet multipliers; its growth rate over many flights decides.
 
+use crate::characteristic::Watch;
 use crate::error::ImpactError;
 use crate::map::Verdict;
 use crate::orbit::Orbit;
@@ -175,12 +176,22 @@ pub fn piecewise_growth(
     orbit: &Orbit<f64>,
     flights: usize,
 ) -> Result<Growth, ImpactError> {
+    watched_growth(parameters, orbit, flights, &Watch::default())
+}
+
+/// [`piecewise_growth`], stopped by a watch.
+pub(crate) fn watched_growth(
+    parameters: &Parameters<f64>,
+    orbit: &Orbit<f64>,
+    flights: usize,
+    watch: &Watch,
+) -> Result<Growth, ImpactError> {
     let mut map = ReturnMap::new(parameters, orbit)?;
     let v = orbit.velocity;
     let mut growth = Growth { rate: 0.0, spread: 0.0 };
     for start in [[1.0, 0.3], [-1.0, -0.3], [0.2, 1.0], [-0.2, -1.0]] {
         map.start(start.map(|part| part * v));
-        let found = growth_of_run(&mut map, flights);
+        let found = growth_of_run(&mut map, flights, watch)?;
         if found.rate > growth.rate {
             growth = found;
         }
@@ -189,14 +200,19 @@ pub fn piecewise_growth(
 }
 
 /// The first quarter of the run is left out.
-fn growth_of_run(map: &mut ReturnMap, flights: usize) -> Growth {
+fn growth_of_run(
+    map: &mut ReturnMap,
+    flights: usize,
+    watch: &Watch,
+) -> Result<Growth, ImpactError> {
     let skip = flights / 4;
     let mut logarithms = [0.0, 0.0];
     for l in 0..flights {
+        watch.check()?;
         map.fly();
         let size = map.normalise();
         if size == 0.0 || !size.is_finite() {
-            return Growth { rate: size, spread: 0.0 };
+            return Ok(Growth { rate: size, spread: 0.0 });
         }
         if l >= skip {
             logarithms[usize::from(l >= skip + (flights - skip) / 2)] += size.ln();
@@ -205,7 +221,7 @@ fn growth_of_run(map: &mut ReturnMap, flights: usize) -> Growth {
     let count = (flights - skip).max(2) as f64;
     let rate = ((logarithms[0] + logarithms[1]) / count).exp();
     let halves = logarithms.map(|sum: f64| (2.0 * sum / count).exp());
-    Growth { rate, spread: (halves[0] - halves[1]).abs() }
+    Ok(Growth { rate, spread: (halves[0] - halves[1]).abs() })
 }
 
 /// The derivative of the interpolating polynomial at the Chebyshev points -cos(pi j/(n-1)).

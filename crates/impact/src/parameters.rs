@@ -18,7 +18,7 @@ pub enum Branch {
 }
 
 /// One parameter set over the reals S.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameters<S> {
     /// alpha > 0, frequency of the undamped free flight.
     pub alpha: S,
@@ -40,6 +40,57 @@ pub struct Parameters<S> {
     pub velocity_gain: S,
     /// Sign of the root in the impact velocity.
     pub branch: Branch,
+}
+
+/// A parameter that can be swept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Swept {
+    /// alpha.
+    Alpha,
+    /// omega (T = 2 pi k/omega follows).
+    Omega,
+    /// R_r.
+    Restitution,
+    /// s.
+    Wall,
+    /// c.
+    Damping,
+    /// P0.
+    Force,
+    /// A.
+    DisplacementGain,
+    /// B.
+    VelocityGain,
+}
+
+impl Swept {
+    /// All of them with their names.
+    pub const ALL: [(&'static str, Self); 8] = [
+        ("alpha", Self::Alpha),
+        ("omega", Self::Omega),
+        ("R_r", Self::Restitution),
+        ("s", Self::Wall),
+        ("c", Self::Damping),
+        ("P0", Self::Force),
+        ("A", Self::DisplacementGain),
+        ("B", Self::VelocityGain),
+    ];
+}
+
+impl<S> Parameters<S> {
+    /// The place of a parameter.
+    pub fn slot(&mut self, swept: Swept) -> &mut S {
+        match swept {
+            Swept::Alpha => &mut self.alpha,
+            Swept::Omega => &mut self.omega,
+            Swept::Restitution => &mut self.restitution,
+            Swept::Wall => &mut self.wall,
+            Swept::Damping => &mut self.damping,
+            Swept::Force => &mut self.force,
+            Swept::DisplacementGain => &mut self.displacement_gain,
+            Swept::VelocityGain => &mut self.velocity_gain,
+        }
+    }
 }
 
 impl<S: Real> Parameters<S> {
@@ -115,8 +166,7 @@ impl<S: Real> Parameters<S> {
             return Err(ImpactError::OutOfRange { name: "R_r", value, low: 0.0, high: 1.0 });
         }
         if self.damping.is_negative() {
-            let (value, high) = (self.damping.to_f64(), f64::INFINITY);
-            return Err(ImpactError::OutOfRange { name: "c", value, low: 0.0, high });
+            return Err(ImpactError::Negative { name: "c", value: self.damping.to_f64() });
         }
         Ok(())
     }
@@ -129,6 +179,8 @@ pub enum Exact {
     Rational(Rational),
     /// A rational multiple of pi.
     PiMultiple(Rational),
+    /// The positive square root of a positive rational number.
+    Root(Rational),
 }
 
 impl Exact {
@@ -138,12 +190,24 @@ impl Exact {
         match self {
             Self::Rational(q) => Certified::from_rational(balls, q),
             Self::PiMultiple(q) => Certified::new(balls, balls.mul_rational(&balls.pi(), q)),
+            Self::Root(q) => Certified::from_rational(balls, q).sqrt(),
         }
     }
     /// The nearest double (within 1 ulp for multiples of pi).
     #[must_use]
     pub fn to_f64(&self) -> f64 {
         self.certified(Balls::new(120)).to_f64()
+    }
+}
+
+impl std::fmt::Display for Exact {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Rational(q) => write!(f, "{q}"),
+            Self::PiMultiple(q) if *q == 1 => f.write_str("pi"),
+            Self::PiMultiple(q) => write!(f, "{q}*pi"),
+            Self::Root(q) => write!(f, "sqrt({q})"),
+        }
     }
 }
 
@@ -161,29 +225,7 @@ impl From<(i32, u32)> for Exact {
 }
 
 /// A parameter set with exact numbers, the input of the certified path.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ExactParameters {
-    /// alpha.
-    pub alpha: Exact,
-    /// omega.
-    pub omega: Exact,
-    /// k.
-    pub periods: u32,
-    /// R_r.
-    pub restitution: Exact,
-    /// s.
-    pub wall: Exact,
-    /// c.
-    pub damping: Exact,
-    /// P0.
-    pub force: Exact,
-    /// A.
-    pub displacement_gain: Exact,
-    /// B.
-    pub velocity_gain: Exact,
-    /// Sign of the root in the impact velocity.
-    pub branch: Branch,
-}
+pub type ExactParameters = Parameters<Exact>;
 
 impl ExactParameters {
     fn map<S>(&self, number: impl Fn(&Exact) -> S) -> Parameters<S> {

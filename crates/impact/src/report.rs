@@ -1,13 +1,13 @@
 //! One parameter point: the true orbit, the prediction and the truth side by side.
 
-use crate::aware::{AwarePrediction, impact_aware};
-use crate::characteristic::{Characteristic, Kick};
+use crate::aware::{AwarePrediction, watched_prediction};
+use crate::characteristic::{Characteristic, Kick, Watch};
 use crate::convergence::{Convergence, convergence};
 use crate::equivalent::{Drive, equivalent_orbit};
 use crate::error::ImpactError;
 use crate::flight::{Clearance, clearance};
 use crate::flow::{Flow, rates};
-use crate::kick::{Growth, piecewise_growth};
+use crate::kick::{Growth, watched_growth};
 use crate::map::Verdict;
 use crate::orbit::{Orbit, orbit};
 use crate::parameters::{ExactParameters, Parameters};
@@ -146,6 +146,18 @@ pub fn stability<S: Real>(
     parameters: &Parameters<S>,
     request: &Request,
 ) -> Result<StabilityReport<S>, ImpactError> {
+    stability_watched(parameters, request, &Watch::default())
+}
+
+/// [`stability`] that a watch can stop.
+///
+/// # Errors
+/// As [`stability`]; [`ImpactError::Cancelled`].
+pub fn stability_watched<S: Real>(
+    parameters: &Parameters<S>,
+    request: &Request,
+    watch: &Watch,
+) -> Result<StabilityReport<S>, ImpactError> {
     parameters.validate()?;
     if request.order == 0 {
         return Err(ImpactError::OrderZero);
@@ -160,20 +172,25 @@ pub fn stability<S: Real>(
         let prediction = predict(request.variant, parameters, &flow, found.as_ref().ok())?;
         Ok(PredictionReport { verdict: prediction.map.verdict(), prediction })
     });
-    let aware = |orbit: &Orbit<S>| impact_aware(parameters, orbit, request.kick, request.order);
-    Ok(StabilityReport {
+    let aware = |orbit: &Orbit<S>| {
+        watched_prediction(parameters, orbit, request.kick, request.order, watch)
+    };
+    let report = StabilityReport {
         kbm,
         impact_aware: match &found {
             Ok(orbit) if request.impact_aware => Some(aware(orbit)),
             _ => None,
         },
-        exact: found.as_ref().ok().map(|orbit| exact_report(parameters, orbit, request)),
+        exact: found.as_ref().ok().map(|orbit| exact_report(parameters, orbit, request, watch)),
         mismatch: map.map(|map| mismatch(parameters, &map, &parameters.period())),
         convergence: convergence(&midpoint, &doubles),
         residual: flow.as_ref().ok().map(|flow| flow.residual(parameters)),
         flow: flow.ok(),
         orbit: found.and_then(|orbit| orbit_report(parameters, orbit)),
-    })
+    };
+    // What was stopped on the way looks undecided.
+    watch.check()?;
+    Ok(report)
 }
 
 fn orbit_report<S: Real>(
@@ -200,11 +217,13 @@ fn exact_report<S: Real>(
     parameters: &Parameters<S>,
     orbit: &Orbit<S>,
     request: &Request,
+    watch: &Watch,
 ) -> ExactReport<S> {
-    let g = Characteristic::new(parameters, orbit, request.kick);
+    let g = Characteristic::new(parameters, orbit, request.kick).watched(watch);
     let (verdict, zeros_in_unit_disc) = exact_verdict(&g);
     let kicked = !parameters.velocity_gain.sign().is_some_and(|sign| sign.is_eq());
-    let growth = kicked.then(|| piecewise_growth(&parameters.to_f64(), &orbit.to_f64(), FLIGHTS));
+    let growth =
+        kicked.then(|| watched_growth(&parameters.to_f64(), &orbit.to_f64(), FLIGHTS, watch));
     ExactReport {
         verdict,
         zeros_in_unit_disc,
@@ -225,11 +244,24 @@ pub fn certified_stability(
     request: &Request,
     digits: u32,
 ) -> Result<StabilityReport<Certified>, ImpactError> {
+    certified_stability_watched(parameters, request, digits, &Watch::default())
+}
+
+/// [`certified_stability`] that a watch can stop.
+///
+/// # Errors
+/// As [`stability`]; [`ImpactError::Cancelled`].
+pub fn certified_stability_watched(
+    parameters: &ExactParameters,
+    request: &Request,
+    digits: u32,
+    watch: &Watch,
+) -> Result<StabilityReport<Certified>, ImpactError> {
     let wanted = digits.saturating_mul(4).saturating_add(8);
     let mut bits = wanted.saturating_add(64);
     let mut rounds = 0;
     loop {
-        let report = stability(&parameters.certified(bits), request)?;
+        let report = stability_watched(&parameters.certified(bits), request, watch)?;
         rounds += 1;
         if rounds > 3 || report.has_bits(i64::from(wanted) * 5 / 6) {
             return Ok(report);

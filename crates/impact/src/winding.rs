@@ -37,6 +37,9 @@ pub fn zero_count<S: Real>(g: &Characteristic<S>, radius: f64) -> Option<ZeroCou
     let mut centre = Complex::new(radius, 0.0);
     let mut angle = 0.0_f64;
     for evaluations in 1..=STEPS {
+        if !g.goes_on() {
+            return None;
+        }
         let here = value.to_f64();
         let floor = value.magnitude_below();
         if !here.is_finite() || floor <= 1e-12 * radius.min(1.0) * slope.magnitude_above() {

@@ -58,6 +58,9 @@ pub fn multipliers<S: Real>(
         .ok_or(ImpactError::NoConvergence { what: "the search for multipliers" })?;
     let mut discs = Vec::with_capacity(found.len());
     for zero in &found {
+        if !g.goes_on() {
+            return Err(ImpactError::Cancelled);
+        }
         discs.push(refine(g, zero).ok_or_else(|| undecided("a multiplier"))?);
     }
     for (n, (one, reach)) in discs.iter().enumerate() {
@@ -93,7 +96,7 @@ pub(crate) fn find_zeros(
         let mut size = radius.min(1.0) * 1e-3;
         while size < radius * ratio {
             for n in 0..=angles {
-                if inside(&zeros) >= expected {
+                if inside(&zeros) >= expected || !g.goes_on() {
                     break;
                 }
                 // Slightly off the symmetric angles, except on the axis itself.

@@ -56,10 +56,15 @@ pub enum Error {
         known: String,
     },
     /// A value that cannot stand among symbols.
-    #[error("{name} can only be set when all parameters are: symbols take rational values")]
+    #[error(
+        "{name} can only be set when all parameters are{}: symbols take rational values",
+        without(missing)
+    )]
     NotAmongSymbols {
         /// The parameter.
         name: String,
+        /// The parameters of the equation without a value.
+        missing: Vec<String>,
     },
     /// Newton's method found no amplitude and phase for the state asked for.
     #[error(
@@ -140,4 +145,12 @@ pub enum Error {
     /// The value does not exist.
     #[error("the value does not exist")]
     NoValue,
+}
+
+/// Which values are missing.
+fn without(missing: &[String]) -> String {
+    match missing {
+        [] => String::new(),
+        names => format!(" (without a value: {})", names.join(", ")),
+    }
 }

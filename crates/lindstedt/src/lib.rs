@@ -25,6 +25,7 @@ pub mod numeric;
 mod oscillator;
 pub mod paper;
 pub mod quotient;
+pub mod recognise;
 pub mod trade;
 mod value;
 pub mod verify;

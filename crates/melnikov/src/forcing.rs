@@ -87,24 +87,12 @@ impl ForcingWork {
         let oriented = |ball: &Ball| if branch.sign() < 0 { balls.neg(ball) } else { ball.clone() };
         match forcing {
             Forcing::Harmonics { omega, harmonics } => {
-                let mut terms = Vec::new();
-                for harmonic in harmonics {
-                    let frequency = balls.mul_i64(&omega.ball(balls), i64::from(harmonic.order));
-                    let (c, s) = potential.velocity_transform(balls, &frequency)?;
-                    let (c, s) = (oriented(&c), oriented(&s));
-                    let weight = harmonic.weight.ball(balls);
-                    let phase = harmonic.phase.ball(balls);
-                    let (cos, sin) = (balls.cos(&phase), balls.sin(&phase));
-                    let even = balls.sub(&balls.mul(&c, &cos), &balls.mul(&s, &sin));
-                    let odd = balls.add(&balls.mul(&c, &sin), &balls.mul(&s, &cos));
-                    let odd = balls.neg(&odd);
-                    terms.push((
-                        harmonic.order,
-                        balls.mul(&weight, &even),
-                        balls.mul(&weight, &odd),
-                    ));
-                }
-                Some(Self { terms })
+                let transform = |k: u32| {
+                    let frequency = balls.mul_i64(&omega.ball(balls), i64::from(k));
+                    let (c, s) = potential.velocity_transform(balls, &frequency).ok_or(())?;
+                    Ok((oriented(&c), oriented(&s)))
+                };
+                Self::from_transforms::<()>(balls, harmonics, &transform).ok()
             }
             Forcing::Parametric { omega } => {
                 // x0 v0 is even under the mirror image: the same on both branches.
@@ -113,6 +101,27 @@ impl ForcingWork {
             }
             Forcing::Incommensurate(_) => None,
         }
+    }
+
+    /// The same from C + iS = int v0 e^{i k omega t} dt, which `transform` returns for k.
+    ///
+    /// # Errors
+    /// Those of `transform`.
+    pub fn from_transforms<E>(
+        balls: Balls,
+        harmonics: &[Harmonic],
+        transform: &dyn Fn(u32) -> Result<(Ball, Ball), E>,
+    ) -> Result<Self, E> {
+        let mut terms = Vec::new();
+        for harmonic in harmonics {
+            let (c, s) = transform(harmonic.order)?;
+            let (weight, phase) = (harmonic.weight.ball(balls), harmonic.phase.ball(balls));
+            let (cos, sin) = (balls.cos(&phase), balls.sin(&phase));
+            let even = balls.sub(&balls.mul(&c, &cos), &balls.mul(&s, &sin));
+            let odd = balls.neg(&balls.add(&balls.mul(&c, &sin), &balls.mul(&s, &cos)));
+            terms.push((harmonic.order, balls.mul(&weight, &even), balls.mul(&weight, &odd)));
+        }
+        Ok(Self { terms })
     }
 
     /// The n-th derivative of F at theta.

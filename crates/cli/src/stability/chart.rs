@@ -1,6 +1,6 @@
 //! Charts: two parameters, the prediction and the truth at every point.
 
-use super::request::Request;
+use super::request::{Request, Sweep};
 use crate::failure::{Failure, UNDECIDED};
 use crate::session::Session;
 use lindstedt_impact::ImpactError;
@@ -20,7 +20,11 @@ const FLIP_BITS: u32 = 96;
 const FLIP_POINTS: usize = 201;
 
 pub struct Grid {
-    pub names: [&'static str; 2],
+    pub names: [String; 2],
+    /// Whether both axes are swept, not one.
+    pub two: bool,
+    /// The values along both axes.
+    pub values: [Vec<f64>; 2],
     pub plan: Plan,
     pub chart: Chart,
     pub agreement: Agreement,
@@ -78,9 +82,16 @@ impl Grid {
             session.say(format!("row {done} of {rows}"));
             session.goes_on()
         };
-        let second = request.sweeps.get(1).map(|(name, _)| *name);
+        let second = request.sweeps.get(1);
         let other = if plan.rows.parameter == Swept::VelocityGain { "B" } else { "A" };
-        let names = [request.sweeps[0].0, second.unwrap_or(other)];
+        let first = request.sweeps.first();
+        let name = |sweep: Option<&Sweep>| sweep.map_or(other.to_owned(), |s| s.name.clone());
+        let along = |sweep: Option<&Sweep>, axis: &Axis| -> Vec<f64> {
+            (0..axis.count).map(|n| sweep.map_or_else(|| axis.value(n), |s| s.value(n))).collect()
+        };
+        let names = [name(first), name(second)];
+        let values = [along(first, &plan.columns), along(second, &plan.rows)];
+        let two = second.is_some();
         let chart = match chart(&base, &plan, &observer) {
             Ok(chart) => chart,
             // Rows are finished in any order: nothing of a stopped chart is shown.
@@ -88,17 +99,32 @@ impl Grid {
                 let chart = Chart { plan, points: Vec::new() };
                 let agreement = Agreement::default();
                 let flip = Vec::new();
-                return Ok(Some(Self { names, plan, chart, agreement, flip, finished: false }));
+                let finished = false;
+                return Ok(Some(Self {
+                    names,
+                    two,
+                    values,
+                    plan,
+                    chart,
+                    agreement,
+                    flip,
+                    finished,
+                }));
             }
             Err(error) => return Err(error.into()),
         };
         let agreement = chart.agreement();
         let flip = flip(request, &plan);
-        Ok(Some(Self { names, plan, chart, agreement, flip, finished: true }))
+        Ok(Some(Self { names, two, values, plan, chart, agreement, flip, finished: true }))
     }
 
     pub fn csv(&self) -> String {
-        let mut text = format!("{},{},kbm,exact\n", self.names[0], self.names[1]);
+        let [first, second] = &self.names;
+        let mut text = if self.two {
+            format!("{first},{second},kbm,exact\n")
+        } else {
+            format!("{first},kbm,exact\n")
+        };
         let word = |verdict: Option<Verdict>| match verdict {
             Some(Verdict::Stable) => "stable",
             Some(Verdict::Unstable) => "unstable",
@@ -107,18 +133,20 @@ impl Grid {
         };
         let width = self.plan.columns.count;
         for (index, point) in self.chart.points.iter().enumerate() {
-            let x = self.plan.columns.value(index % width);
-            let y = self.plan.rows.value(index / width);
-            let _ = writeln!(text, "{x},{y},{},{}", word(point.predicted), word(point.exact));
+            let [columns, rows] = &self.values;
+            let x = columns.get(index % width).copied().unwrap_or(f64::NAN);
+            let _ = write!(text, "{x},");
+            if self.two {
+                let y = rows.get(index / width).copied().unwrap_or(f64::NAN);
+                let _ = write!(text, "{y},");
+            }
+            let _ = writeln!(text, "{},{}", word(point.predicted), word(point.exact));
         }
         text
     }
 
     pub fn json(&self) -> Json {
-        let axis = |name: &str, axis: &Axis| {
-            let values: Vec<f64> = (0..axis.count).map(|n| axis.value(n)).collect();
-            json!({"name": name, "values": values})
-        };
+        let axis = |name: &String, values: &Vec<f64>| json!({"name": name, "values": values});
         let matrix = |verdict: &dyn Fn(&Point) -> Option<Verdict>| -> Json {
             let cell = |point: &Point| match verdict(point) {
                 Some(Verdict::Stable) => json!(true),
@@ -129,8 +157,8 @@ impl Grid {
             rows.map(|row| row.iter().map(cell).collect::<Json>()).collect()
         };
         json!({
-            "columns": axis(self.names[0], &self.plan.columns),
-            "rows": axis(self.names[1], &self.plan.rows),
+            "columns": axis(&self.names[0], &self.values[0]),
+            "rows": axis(&self.names[1], &self.values[1]),
             "kbm": matrix(&|point| point.predicted),
             "exact": matrix(&|point| point.exact),
             "agreement": self.agreement_json(),
@@ -182,17 +210,7 @@ fn flip(request: &Request, plan: &Plan) -> Vec<(f64, f64)> {
         let value = across.value(n);
         let Some(q) = Rational::from_f64(value) else { return Vec::new() };
         let mut parameters = request.parameters.clone();
-        let slot = match across.parameter {
-            Swept::Alpha => &mut parameters.alpha,
-            Swept::Omega => &mut parameters.omega,
-            Swept::Restitution => &mut parameters.restitution,
-            Swept::Wall => &mut parameters.wall,
-            Swept::Damping => &mut parameters.damping,
-            Swept::Force => &mut parameters.force,
-            Swept::DisplacementGain => &mut parameters.displacement_gain,
-            Swept::VelocityGain => &mut parameters.velocity_gain,
-        };
-        *slot = Exact::Rational(q);
+        *parameters.slot(across.parameter) = Exact::Rational(q);
         let found = flip_boundary(&parameters, request.kick, low, high, FLIP_BITS);
         let place = |a: f64| if transposed { (value, a) } else { (a, value) };
         found.unwrap_or_default().iter().map(|a| place(a.to_f64())).collect()

@@ -93,8 +93,8 @@ fn paint(
     // 0, not -0 or 0.10000000000000003.
     let tick = |x: &f64| format!("{}", (x * 1e9).round() / 1e9 + 0.0);
     mesh.disable_mesh()
-        .x_desc(grid.names[0])
-        .y_desc(grid.names[1])
+        .x_desc(grid.names[0].as_str())
+        .y_desc(grid.names[1].as_str())
         .label_style(("sans-serif", 14))
         .axis_desc_style(("sans-serif", 17))
         .x_label_formatter(&tick)
@@ -158,7 +158,7 @@ fn paint(
     let fixed: Vec<String> = request
         .at
         .iter()
-        .filter(|(name, _)| !grid.names.contains(&name.as_str()))
+        .filter(|(name, _)| !grid.names.contains(name))
         .map(|(name, value)| format!("{name} = {value}"))
         .collect();
     legend.draw(&Text::new(fixed.join(",  "), (70, 82), ("sans-serif", 15)))?;

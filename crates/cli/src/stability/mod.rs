@@ -2,7 +2,7 @@
 
 mod chart;
 mod figure;
-mod report;
+pub mod report;
 pub mod request;
 
 use crate::Outcome;
@@ -12,7 +12,8 @@ use crate::output;
 use crate::session::{Session, digits};
 use chart::Grid;
 use lindstedt_impact::ImpactError;
-use lindstedt_impact::report::{certified_stability, stability};
+use lindstedt_impact::characteristic::Watch;
+use lindstedt_impact::report::{certified_stability_watched, stability_watched};
 use report::{Answer, certified_number, double_number};
 use request::Request;
 
@@ -23,12 +24,25 @@ pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
     for path in &options.plot {
         output::check_file(path)?;
     }
+    let watch = Watch::new(session.watch());
+    let stopped = |error| match error {
+        ImpactError::Cancelled if !session.interrupted() => Failure {
+            exit: UNDECIDED,
+            code: "limit-seconds",
+            message: "the time limit was reached before the point was finished".to_owned(),
+            hint: "raise --limit-seconds, or fewer --digits, or --f64".to_owned(),
+        },
+        other => other.into(),
+    };
     let answer = if options.precision.f64 {
-        let report = stability(&request.parameters.to_f64(), &request.point())?;
+        let point = request.parameters.to_f64();
+        let report = stability_watched(&point, &request.point(), &watch).map_err(stopped)?;
         Answer::new(&request, &report, &|x| double_number(*x))
     } else {
         let asked = u32::try_from(digits).unwrap_or(u32::MAX);
-        let report = certified_stability(&request.parameters, &request.point(), asked)?;
+        let point = (&request.parameters, &request.point());
+        let report =
+            certified_stability_watched(point.0, point.1, asked, &watch).map_err(stopped)?;
         Answer::new(&request, &report, &|x| certified_number(x.ball(), digits))
     };
     let grid = Grid::compute(&request, session)?;
@@ -67,6 +81,7 @@ impl From<ImpactError> for Failure {
             ImpactError::NotFinite { .. }
             | ImpactError::NotPositive { .. }
             | ImpactError::OutOfRange { .. }
+            | ImpactError::Negative { .. }
             | ImpactError::OrderZero
             | ImpactError::BadAxes => return Self::usage("parameter", error.to_string(), ""),
             ImpactError::NoConvergence { .. } | ImpactError::Undecided { .. } => {

@@ -38,6 +38,8 @@ pub fn certified_number(ball: &Ball, digits: usize) -> Number {
 }
 
 pub struct Answer {
+    problem: String,
+    canonical: Option<Map<String, Json>>,
     request_at: Map<String, Json>,
     body: Map<String, Json>,
     /// Whether the orbit exists: with a penetrating flight it does not, with a touching one it is
@@ -129,14 +131,27 @@ impl Answer {
         if request.predictor != PredictorChoice::Kbm {
             body.insert("exact".to_owned(), exact(&w, request, report));
         }
-        let at = request.at.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
-        Self { request_at: at, body, exists: exists(report), warnings }
+        let object = |list: &Vec<(String, String)>| -> Map<String, Json> {
+            list.iter().map(|(name, value)| (name.clone(), json!(value))).collect()
+        };
+        warnings.extend(request.remark.clone());
+        Self {
+            problem: request.problem.clone(),
+            canonical: request.canonical.as_ref().map(object),
+            request_at: object(&request.at),
+            body,
+            exists: exists(report),
+            warnings,
+        }
     }
 
     pub fn json(&self, grid: Option<&Grid>) -> Json {
         let mut all = Map::new();
-        all.insert("problem".to_owned(), json!("vibro-impact"));
+        all.insert("problem".to_owned(), json!(self.problem));
         all.insert("at".to_owned(), Json::Object(self.request_at.clone()));
+        if let Some(canonical) = &self.canonical {
+            all.insert("canonical".to_owned(), Json::Object(canonical.clone()));
+        }
         all.extend(self.body.clone());
         all.insert("grid".to_owned(), grid.map_or(Json::Null, Grid::json));
         all.insert("warnings".to_owned(), json!(self.warnings));
@@ -149,11 +164,12 @@ impl Answer {
     }
 
     pub fn text(&self, format: Format, grid: Option<&Grid>) -> String {
-        let at: Vec<String> = self
-            .request_at
-            .iter()
-            .map(|(name, value)| format!("{name} = {}", value.as_str().unwrap_or_default()))
-            .collect();
+        let listed = |map: &Map<String, Json>| -> String {
+            let one = |(name, value): (&String, &Json)| {
+                format!("{name} = {}", value.as_str().unwrap_or_default())
+            };
+            map.iter().map(one).collect::<Vec<_>>().join(", ")
+        };
         let mut text = String::new();
         let fence = match format {
             Format::Markdown => "```\n",
@@ -161,7 +177,10 @@ impl Answer {
             _ => "",
         };
         text += fence;
-        let _ = writeln!(text, "vibro-impact at {}\n", at.join(", "));
+        let _ = writeln!(text, "{} at {}\n", self.problem, listed(&self.request_at));
+        if let Some(canonical) = &self.canonical {
+            let _ = writeln!(text, "As the oscillator of section 2: {}\n", listed(canonical));
+        }
         let titles = [
             ("orbit", "The orbit of the true system (without perturbation the loop is silent)"),
             ("kbm", "What averaging predicts (not the stability of the delayed system)"),
@@ -318,6 +337,7 @@ fn exact<S: Real>(w: &Writer<'_, S>, request: &Request, report: &StabilityReport
             json!({
                 "growth_per_impact": growth.rate,
                 "spread": growth.spread,
+                "error": growth.spread,
                 "status": "estimated",
                 "verdict": word(growth.verdict()),
             }),
@@ -351,7 +371,10 @@ fn plain(value: &Json) -> String {
         },
         // Estimates: six digits are plenty.
         Json::Number(number) if number.is_f64() => {
-            number.as_f64().map_or_else(String::new, |x| format!("{x:.6}"))
+            number.as_f64().map_or_else(String::new, |x| match x.abs() {
+                size if size != 0.0 && !(1e-3..1e6).contains(&size) => format!("{x:.5e}"),
+                _ => format!("{x:.6}"),
+            })
         }
         other => other.to_string(),
     }

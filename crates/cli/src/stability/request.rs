@@ -2,52 +2,64 @@
 
 use crate::arguments::{KickChoice, PredictorChoice, StabilityOptions, VariantChoice};
 use crate::failure::Failure;
+use crate::recognised::Source;
 use crate::session::parameters;
 use lindstedt::Value;
 use lindstedt::problems::vibro_impact;
+use lindstedt::recognise::ImpactProblem;
 use lindstedt_impact::characteristic::Kick;
 use lindstedt_impact::chart::{Axis, Plan, Predictor, Swept};
 use lindstedt_impact::parameters::{Branch, Exact, ExactParameters};
 use lindstedt_impact::prediction::Variant;
 use lindstedt_impact::report;
+use rug::{Float, Rational};
 use std::path::Path;
 
-/// The parameters that can be swept, by name.
-const SWEPT: [(&str, Swept); 8] = [
-    ("alpha", Swept::Alpha),
-    ("omega", Swept::Omega),
-    ("R_r", Swept::Restitution),
-    ("s", Swept::Wall),
-    ("c", Swept::Damping),
-    ("P0", Swept::Force),
-    ("A", Swept::DisplacementGain),
-    ("B", Swept::VelocityGain),
-];
+/// A swept parameter: its name, its values as doubles, and its ends.
+pub struct Sweep {
+    pub name: String,
+    pub axis: Axis,
+    ends: [Value; 2],
+}
+
+impl Sweep {
+    /// The n-th value as the double nearest to the exact one, which decimals of few digits are.
+    pub fn value(&self, n: usize) -> f64 {
+        let [Value::Rational(low), Value::Rational(high)] = &self.ends else {
+            return self.axis.value(n);
+        };
+        let steps = self.axis.count.saturating_sub(1).max(1);
+        let q = Rational::from(high - low) * Rational::from((n, steps)) + low;
+        Float::with_val(53, q).to_f64()
+    }
+}
 
 pub struct Request {
+    pub problem: String,
     pub parameters: ExactParameters,
+    /// The canonical parameters of a file, where they are not those of the file itself.
+    pub canonical: Option<Vec<(String, String)>>,
+    /// What has to be said about the file.
+    pub remark: Option<String>,
     /// All parameters with their values as text, in the order of the card.
     pub at: Vec<(String, String)>,
     /// Names and axes of the sweeps.
-    pub sweeps: Vec<(&'static str, Axis)>,
+    pub sweeps: Vec<Sweep>,
     pub predictor: PredictorChoice,
     pub variant: VariantChoice,
     pub order: usize,
     pub kick: Kick,
 }
 
-/// The parameters given and the defaults of the others, and all of them as text in the order of
-/// the card.
-pub fn exact_parameters(
-    set: &[String],
-) -> Result<(ExactParameters, Vec<(String, String)>), Failure> {
+/// The branch set, and the other settings.
+fn branch_of(set: &[String]) -> Result<(Option<Branch>, Vec<String>), Failure> {
     let (branches, numbers): (Vec<String>, Vec<String>) =
         set.iter().cloned().partition(|item| item.trim().starts_with("branch="));
     let branch = match branches.as_slice() {
-        [] => Branch::Plus,
+        [] => None,
         [only] => match only.trim().trim_start_matches("branch=").trim() {
-            "+" | "plus" => Branch::Plus,
-            "-" | "minus" => Branch::Minus,
+            "+" | "plus" => Some(Branch::Plus),
+            "-" | "minus" => Some(Branch::Minus),
             other => {
                 let message = format!("branch is + or -, not {other:?}");
                 return Err(Failure::usage("set", message, "--set branch=-"));
@@ -55,6 +67,16 @@ pub fn exact_parameters(
         },
         _ => return Err(Failure::usage("set", "branch is set twice".to_owned(), "")),
     };
+    Ok((branch, numbers))
+}
+
+/// The parameters given and the defaults of the others, and all of them as text in the order of
+/// the card.
+pub fn exact_parameters(
+    set: &[String],
+) -> Result<(ExactParameters, Vec<(String, String)>), Failure> {
+    let (branch, numbers) = branch_of(set)?;
+    let branch = branch.unwrap_or(Branch::Plus);
     let mut given = parameters(&numbers)?;
     let mut at = Vec::new();
     let mut values = std::collections::BTreeMap::new();
@@ -77,15 +99,16 @@ pub fn exact_parameters(
         let hint = format!("it has {}; T = 2 pi k/omega follows", known.join(", "));
         return Err(Failure::usage("unknown-parameter", message, &hint));
     }
-    let get = |name: &str| match values.get(name) {
-        Some(Value::Rational(q)) => Exact::Rational(q.clone()),
-        Some(Value::PiTimes(q)) => Exact::PiMultiple(q.clone()),
-        None => Exact::from((0, 1)),
+    let get = |name: &str| {
+        values.get(name).map_or_else(|| Exact::from((0, 1)), |value| Exact::from(value.clone()))
     };
     let whole = values.get("k").and_then(Value::as_rational);
-    let periods = whole.filter(|q| q.is_integer()).and_then(|q| q.numer().to_u32());
-    let periods = periods.filter(|&k| k > 0).ok_or_else(|| {
+    let whole = whole.filter(|q| q.is_integer() && **q > 0).ok_or_else(|| {
         Failure::usage("parameter", "k must be a positive integer".to_owned(), "--set k=2")
+    })?;
+    let periods = whole.numer().to_u32().ok_or_else(|| {
+        let message = format!("k is too large: at most {}", u32::MAX);
+        Failure::usage("parameter", message, "--set k=2")
     })?;
     let parameters = ExactParameters {
         alpha: get("alpha"),
@@ -105,21 +128,26 @@ pub fn exact_parameters(
 
 impl Request {
     pub fn read(options: &StabilityOptions) -> Result<Self, Failure> {
-        if options.problem != "vibro-impact" {
-            let shown: String = options.problem.chars().take(60).collect();
-            let message = format!("no impact orbit in {shown:?}");
-            return Err(Failure::usage("unknown-problem", message, "known: vibro-impact"));
-        }
-        let (parameters, at) = exact_parameters(&options.set)?;
-        let sweeps: Vec<(&'static str, Axis)> =
-            options.sweep.iter().map(|text| axis(text)).collect::<Result<_, _>>()?;
+        let Known { problem, parameters, canonical, remark, at, names } =
+            if options.problem.ends_with(".toml") {
+                of_file(&options.problem, &options.set)?
+            } else if options.problem == "vibro-impact" {
+                built_in(&options.set)?
+            } else {
+                let shown: String = options.problem.chars().take(60).collect();
+                let message = format!("no impact orbit in {shown:?}");
+                let hint = "known: vibro-impact, or the path of a problem file (.toml)";
+                return Err(Failure::usage("unknown-problem", message, hint));
+            };
+        let sweeps: Vec<Sweep> =
+            options.sweep.iter().map(|text| sweep(text, &*names)).collect::<Result<_, _>>()?;
         if sweeps.len() > 2 {
             return Err(Failure::usage("range", "at most two sweeps".to_owned(), ""));
         }
-        if let [(first, _), (second, _)] = sweeps.as_slice()
-            && first == second
+        if let [first, second] = sweeps.as_slice()
+            && first.axis.parameter == second.axis.parameter
         {
-            return Err(Failure::usage("range", format!("{first} is swept twice"), ""));
+            return Err(Failure::usage("range", format!("{} is swept twice", first.name), ""));
         }
         if !options.plot.is_empty() && sweeps.is_empty() {
             let hint = "for example --sweep A=-0.3..0.3:201 --sweep B=-0.3..0.3:201";
@@ -138,7 +166,10 @@ impl Request {
             return Err(Failure::usage("plot", message, "or write a .csv table"));
         }
         Ok(Self {
+            problem,
             parameters,
+            canonical,
+            remark,
             at,
             sweeps,
             predictor: options.predictor,
@@ -173,11 +204,9 @@ impl Request {
 
     /// The question about a chart.
     pub fn plan(&self) -> Option<Plan> {
-        let (_, columns) = *self.sweeps.first()?;
-        let rows = match self.sweeps.get(1) {
-            Some(&(_, rows)) => rows,
-            None => self.single_row(columns.parameter),
-        };
+        let columns = self.sweeps.first()?.axis;
+        let second = self.sweeps.get(1).map(|sweep| sweep.axis);
+        let rows = second.unwrap_or_else(|| self.single_row(columns.parameter));
         let predictor = match self.variant {
             VariantChoice::ImpactAware => Predictor::ImpactAware(self.kick),
             _ => Predictor::Kbm(self.plain_variant()),
@@ -205,17 +234,7 @@ impl Request {
 
     /// The value of a swept parameter at the point asked for.
     pub fn base(&self, swept: Swept) -> f64 {
-        let p = self.parameters.to_f64();
-        match swept {
-            Swept::Alpha => p.alpha,
-            Swept::Omega => p.omega,
-            Swept::Restitution => p.restitution,
-            Swept::Wall => p.wall,
-            Swept::Damping => p.damping,
-            Swept::Force => p.force,
-            Swept::DisplacementGain => p.displacement_gain,
-            Swept::VelocityGain => p.velocity_gain,
-        }
+        *self.parameters.to_f64().slot(swept)
     }
 
     pub fn kick_name(&self) -> &'static str {
@@ -237,31 +256,135 @@ impl Request {
     }
 }
 
+/// What the problem says.
+struct Known {
+    problem: String,
+    parameters: ExactParameters,
+    canonical: Option<Vec<(String, String)>>,
+    remark: Option<String>,
+    at: Vec<(String, String)>,
+    /// The swept parameter of a name, or why it cannot be swept.
+    names: Box<dyn Fn(&str) -> Result<Swept, Failure>>,
+}
+
+fn not_swept(name: &str, why: &str, known: &[String]) -> Failure {
+    let message = format!("{name:?} cannot be swept{why}");
+    Failure::usage("unknown-parameter", message, &format!("known: {}", known.join(", ")))
+}
+
+/// Every k has an orbit of its own.
+const WHOLE: &str =
+    ": it is a whole number, and every k has another orbit (--set k=1, --set k=2, ...)";
+
+fn built_in(set: &[String]) -> Result<Known, Failure> {
+    let (parameters, at) = exact_parameters(set)?;
+    let names = |name: &str| {
+        let found = Swept::ALL.iter().find(|(known, _)| *known == name);
+        found.map(|(_, swept)| *swept).ok_or_else(|| {
+            let known: Vec<String> =
+                Swept::ALL.iter().map(|(name, _)| (*name).to_owned()).collect();
+            not_swept(name, if name == "k" { WHOLE } else { "" }, &known)
+        })
+    };
+    Ok(Known {
+        problem: "vibro-impact".to_owned(),
+        parameters,
+        canonical: None,
+        remark: None,
+        at,
+        names: Box::new(names),
+    })
+}
+
+/// A problem file with one impact in k periods of its force.
+fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
+    let (branch, numbers) = branch_of(set)?;
+    let source = Source::read(path, &numbers, &["k"])?;
+    let card = |name: &str| source.problem.parameters.iter().find(|card| card.name == name);
+    let default = card("branch").filter(|card| card.default == "-").map(|_| Branch::Minus);
+    let branch = branch.or(default).unwrap_or(Branch::Plus);
+    let tied = source.problem.synchronous.as_ref().map(|tie| tie.periods.to_string());
+    let k = source.values.get("k").filter(|_| card("k").is_none());
+    let periods = k.and_then(|k| k.as_rational()?.numer().to_u32());
+    let found = ImpactProblem::new(&source.problem, &source.values, periods, branch)
+        .map_err(|refusal| source.refuse(refusal))?;
+    found.parameters.to_f64().validate()?;
+    let sign = if branch == Branch::Plus { "+" } else { "-" };
+    let mut at = Vec::new();
+    for card in &source.problem.parameters {
+        match source.values.get(&*card.name) {
+            _ if card.name == "branch" => at.push(("branch".to_owned(), sign.to_owned())),
+            Some(value) => at.push((card.name.to_string(), value.to_string())),
+            None => {}
+        }
+    }
+    if let Some(k) = k {
+        at.push(("k".to_owned(), k.to_string()));
+    }
+    if card("branch").is_none() {
+        at.push(("branch".to_owned(), sign.to_owned()));
+    }
+    let mut canonical: Vec<(String, String)> = Vec::new();
+    let mut own = found.parameters.clone();
+    for (name, swept) in Swept::ALL {
+        canonical.push((name.to_owned(), own.slot(swept).to_string()));
+    }
+    canonical.push(("k".to_owned(), found.parameters.periods.to_string()));
+    canonical.push(("branch".to_owned(), sign.to_owned()));
+    let same = canonical.iter().all(|entry| at.contains(entry));
+    let remark = found.other_orders.then(|| {
+        "the averaged prediction counts damping and delay loop as of order 1 in the small \
+         parameter, whatever their order in the file"
+            .to_owned()
+    });
+    let (problem, parameters) = (source.problem.name.to_string(), found.parameters.clone());
+    let names = move |name: &str| {
+        let swept = found.names(&source.problem, &source.values, name, periods);
+        swept.ok_or_else(|| {
+            let known = source.at().into_iter().map(|(name, _)| name);
+            let known: Vec<String> = known
+                .filter(|name| {
+                    found.names(&source.problem, &source.values, name, periods).is_some()
+                })
+                .collect();
+            let why = match source.values.contains_key(name) {
+                _ if name == "k" || tied.as_deref() == Some(name) => WHOLE,
+                true => ": it is not one of alpha, omega, R_r, s, c, P0, A, B under another name",
+                false => "",
+            };
+            not_swept(name, why, &known)
+        })
+    };
+    Ok(Known {
+        problem,
+        parameters,
+        canonical: (!same).then_some(canonical),
+        remark,
+        at,
+        names: Box::new(names),
+    })
+}
+
 /// NAME=LO..HI:COUNT.
-fn axis(text: &str) -> Result<(&'static str, Axis), Failure> {
+fn sweep(text: &str, names: &dyn Fn(&str) -> Result<Swept, Failure>) -> Result<Sweep, Failure> {
     let bad = || {
         let message = format!("cannot read the sweep {text:?}");
         Failure::usage("range", message, "NAME=LO..HI:COUNT, for example A=-0.3..0.3:201")
     };
     let (name, range) = text.split_once('=').ok_or_else(bad)?;
-    let found = SWEPT.iter().find(|(known, _)| *known == name.trim());
-    let &(name, parameter) = found.ok_or_else(|| {
-        let known: Vec<&str> = SWEPT.iter().map(|(name, _)| *name).collect();
-        let message = format!("{:?} cannot be swept", name.trim());
-        Failure::usage("unknown-parameter", message, &format!("known: {}", known.join(", ")))
-    })?;
+    let name = name.trim();
+    let parameter = names(name)?;
     let (range, count) = range.rsplit_once(':').ok_or_else(bad)?;
     let (low, high) = range.split_once("..").ok_or_else(bad)?;
-    let number = |text: &str| -> Result<f64, Failure> {
-        let exact = match Value::parse(text)? {
-            Value::Rational(q) => Exact::Rational(q),
-            Value::PiTimes(q) => Exact::PiMultiple(q),
-        };
-        Some(exact.to_f64()).filter(|x| x.is_finite()).ok_or_else(bad)
+    let ends = [Value::parse(low)?, Value::parse(high)?];
+    let number = |value: &Value| {
+        let double = Exact::from(value.clone()).to_f64();
+        Some(double).filter(|x| x.is_finite()).ok_or_else(bad)
     };
     let count: usize = count.trim().parse().map_err(|_| bad())?;
     if count == 0 || count > 100_000 {
         return Err(bad());
     }
-    Ok((name, Axis { parameter, low: number(low)?, high: number(high)?, count }))
+    let axis = Axis { parameter, low: number(&ends[0])?, high: number(&ends[1])?, count };
+    Ok(Sweep { name: name.to_owned(), axis, ends })
 }

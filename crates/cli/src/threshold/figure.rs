@@ -50,7 +50,9 @@ fn curves(request: &Request, table: &Table, svg: &mut String) -> Drawn {
     let ys = -0.02 * top.end..top.end;
     let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
-    let caption = "Melnikov threshold of the stick-slip oscillator: circles zeros, triangles cusps";
+    let what = if request.file.is_some() { &request.problem } else { "the stick-slip oscillator" };
+    let marked = if request.point.is_some() { ": circles zeros, triangles cusps" } else { "" };
+    let caption = format!("Melnikov threshold of {what}{marked}");
     let mut chart = ChartBuilder::on(&root)
         .margin(16)
         .caption(caption, ("sans-serif", 18))
@@ -96,16 +98,16 @@ fn curves(request: &Request, table: &Table, svg: &mut String) -> Drawn {
 
 /// The zeros and the cusps (|v*| = V) of one curve over v*.
 fn marks(request: &Request, row: usize, xs: &std::ops::Range<f64>) -> (Vec<f64>, Vec<(f64, f64)>) {
-    let mut point = request.point.clone();
-    if let Some(second) = request.sweeps.get(1)
-        && let Some(value) = second.values.get(row)
-    {
-        point = point.with(second.axis, value.clone());
-    }
-    let balls = Balls::new(160);
-    if request.sweeps[0].axis != Axis::BeltSpeed {
+    let Some(mut point) = request.point.clone() else { return (Vec::new(), Vec::new()) };
+    if !request.is_fast() || request.sweeps[0].axis != Some(Axis::BeltSpeed) {
         return (Vec::new(), Vec::new());
     }
+    if let Some(second) = request.sweeps.get(1)
+        && let (Some(axis), Some(value)) = (second.axis, second.values.get(row))
+    {
+        point = point.with(axis, value.clone());
+    }
+    let balls = Balls::new(160);
     let both = |x: f64| [-x, x].into_iter().filter(|x| xs.contains(x));
     let zeros = point.zeros(balls).unwrap_or_default();
     let zeros = zeros.iter().flat_map(|zero| both(zero.midpoint().to_f64())).collect();

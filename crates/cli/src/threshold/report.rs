@@ -8,7 +8,7 @@ use crate::session::Session;
 use lindstedt::coeff::ball::{Ball, Balls};
 use lindstedt::equation::Text;
 use lindstedt::number::{Number, certified};
-use lindstedt_melnikov::{Branch, MelnikovError, Verdict};
+use lindstedt_melnikov::{Branch, MelnikovError, StickSlip, Verdict};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
@@ -21,19 +21,39 @@ const COUNTING_BITS: u32 = 400;
 
 /// The answer at the point of the request.
 pub struct Answer {
-    at: Vec<(Text, String)>,
-    numbers: Vec<(&'static str, Number)>,
-    zeros: Vec<Number>,
-    zeros_of: Option<(String, bool)>,
-    touching_b: Option<String>,
-    validity: String,
-    distances: [Number; 2],
-    tangle: String,
+    pub problem: String,
+    pub at: Vec<(Text, String)>,
+    /// gamma in the equation: the whole coefficient of the (lowest) harmonic.
+    pub amplitude: String,
+    /// With `cusp` where there is one.
+    pub numbers: Vec<(&'static str, Number)>,
+    pub zeros: Vec<Number>,
+    pub zeros_of: Option<(String, bool)>,
+    pub touching_b: Option<String>,
+    pub validity: String,
+    pub distances: [Number; 2],
+    pub tangle: String,
+    /// Of a file: its orbits with their thresholds, and how they were checked.
+    pub orbits: Vec<Json>,
+    /// Resonances, if asked for.
+    pub subharmonics: Option<Vec<Json>>,
 }
 
 impl Answer {
-    pub fn new(request: &Request, digits: usize) -> Result<Self, Failure> {
-        let point = &request.point;
+    pub fn new(request: &Request, digits: usize, session: &Session<'_>) -> Result<Self, Failure> {
+        match (&request.point, &request.file) {
+            (Some(point), _) => Self::of_point(request, point, digits, session),
+            (None, Some((_, found))) => super::general::answer(request, found, digits, session),
+            (None, None) => Err(MelnikovError::NoClosedForm.into()),
+        }
+    }
+
+    fn of_point(
+        request: &Request,
+        point: &StickSlip,
+        digits: usize,
+        session: &Session<'_>,
+    ) -> Result<Self, Failure> {
         let system = point.system()?;
         let threshold = |balls: Balls| system.threshold(balls, Branch::Positive);
         // An error of the problem is said as such; only precision is asked for again below.
@@ -60,7 +80,7 @@ impl Answer {
         ];
         let (zeros, zeros_of) = match &request.zeros {
             None => (Vec::new(), None),
-            Some((axis, name, low, high)) => {
+            Some((Some(axis), name, low, high)) => {
                 let found = point.zeros_in(Balls::new(COUNTING_BITS), *axis, low, high)?;
                 let nth = |n: usize| {
                     certified(None, digits, |balls| {
@@ -69,6 +89,10 @@ impl Answer {
                 };
                 let zeros = (0..found.zeros.len()).map(nth).collect::<Result<_, _>>()?;
                 (zeros, Some((name.clone(), found.complete)))
+            }
+            Some((None, name, low, high)) => {
+                let zeros = super::general::zeros(request, name, (low, high), digits, session)?;
+                (zeros, Some((name.clone(), false)))
             }
         };
         let few = digits.min(17);
@@ -80,31 +104,23 @@ impl Answer {
         };
         let eps = request.eps.to_f64();
         let verdict = system.validity(Balls::new(200)).map(|validity| validity.verdict(eps));
-        let validity = match verdict {
-            Some(Verdict::Holds) => "holds: |v*| and ||v*| - V| exceed 10 eps",
-            Some(Verdict::Doubtful) => {
-                "doubtful: |v*| or ||v*| - V| is below 10 eps, corrections of order eps count"
-            }
-            _ => "fails: v* = 0 or |v*| = V, for every eps",
-        };
-        let excess = |balls: Balls| {
-            let size = request.gamma.abs().ball(balls);
-            Some(balls.sub(&size, &gamma(balls)?))
-        };
-        let tangle = match excess(Balls::new(400)) {
-            Some(ball) if ball.is_positive() => "crossing",
-            Some(ball) if ball.is_negative() => "none",
-            _ => "undecided",
-        };
         Ok(Self {
+            problem: request.problem.clone(),
             at: request.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect(),
+            amplitude: request.gamma.to_string(),
             numbers,
             zeros,
             zeros_of,
             touching_b: point.touching_b().map(|b| b.to_string()),
-            validity: validity.to_owned(),
+            validity: match point.dry.sign().is_eq() {
+                true => SMOOTH,
+                false => validity(verdict),
+            }
+            .to_owned(),
             distances: [distance(0)?, distance(1)?],
-            tangle: tangle.to_owned(),
+            tangle: tangle(request, gamma(Balls::new(400))).to_owned(),
+            orbits: Vec::new(),
+            subharmonics: None,
         })
     }
 
@@ -116,7 +132,7 @@ impl Answer {
 
     pub fn json(&self, table: Option<&Table>, session: &Session<'_>) -> Json {
         let mut result = serde_json::Map::new();
-        result.insert("problem".into(), "stick-slip".into());
+        result.insert("problem".into(), self.problem.clone().into());
         let at: serde_json::Map<_, _> =
             self.at.iter().map(|(n, v)| (n.to_string(), Json::from(v.clone()))).collect();
         result.insert("at".into(), at.into());
@@ -125,6 +141,7 @@ impl Answer {
                 result.insert((*name).into(), number_json(number));
             }
         }
+        result.insert("amplitude".into(), self.amplitude.clone().into());
         result.insert("zeros".into(), self.zeros.iter().map(number_json).collect());
         if let Some((name, complete)) = &self.zeros_of {
             result.insert("zeros_of".into(), json!({"parameter": name, "complete": complete}));
@@ -140,6 +157,12 @@ impl Answer {
                     "touches_zero_at_b": self.touching_b,
                 }),
             );
+        }
+        if !self.orbits.is_empty() {
+            result.insert("orbits".into(), self.orbits.clone().into());
+        }
+        if let Some(list) = &self.subharmonics {
+            result.insert("subharmonics".into(), list.clone().into());
         }
         result.insert("homoclinic_points".into(), self.tangle.clone().into());
         let [saddle, tangency] = &self.distances;
@@ -190,6 +213,19 @@ impl Answer {
         if let Some(b) = &self.touching_b {
             lines.push(("cusp touches zero at b =".to_owned(), b.clone()));
         }
+        for orbit in &self.orbits {
+            let text = |key: &str| match &orbit[key] {
+                Json::String(text) => text.clone(),
+                value => value["decimal"].as_str().map_or_else(|| value.to_string(), str::to_owned),
+            };
+            lines.push((format!("gamma_c, {}", text("name")), text("gamma_c")));
+            lines.push((format!("orbit, {}", text("name")), text("check")));
+        }
+        for resonance in self.subharmonics.iter().flatten() {
+            let (m, around) = (&resonance["m"], resonance["around"].as_str().unwrap_or_default());
+            let gamma = resonance["gamma_c"]["decimal"].as_str().unwrap_or_default();
+            lines.push((format!("gamma_c of period {m}, {around}"), gamma.to_owned()));
+        }
         if let Some((name, complete)) = &self.zeros_of {
             let label = format!("zero in {name}");
             lines.extend(self.zeros.iter().map(|zero| (label.clone(), shown(zero))));
@@ -202,7 +238,7 @@ impl Answer {
     }
 
     pub fn text(&self, table: Option<&Table>) -> String {
-        let mut text = format!("stick-slip: {}\n\n", self.parameters());
+        let mut text = format!("{}: {}\n\n", self.problem, self.parameters());
         for (label, value) in self.lines() {
             let _ = writeln!(text, "  {label:<40} {value}");
         }
@@ -223,7 +259,8 @@ impl Answer {
     }
 
     pub fn markdown(&self) -> String {
-        let mut text = format!("### stick-slip\n\n{}\n\n| | |\n|---|---|\n", self.parameters());
+        let mut text =
+            format!("### {}\n\n{}\n\n| | |\n|---|---|\n", self.problem, self.parameters());
         for (label, value) in self.lines() {
             let escape = |s: &str| s.replace('|', "\\|");
             let _ = writeln!(text, "| {} | {} |", escape(&label), escape(&value));
@@ -239,5 +276,30 @@ impl Answer {
         }
         text.push_str("\\end{tabular}\n");
         text
+    }
+}
+
+/// Without a jump there is nothing to be far from.
+pub const SMOOTH: &str = "holds: the perturbation is smooth";
+
+/// The verdict on the theory in words.
+pub fn validity(verdict: Option<Verdict>) -> &'static str {
+    match verdict {
+        Some(Verdict::Holds) => "holds: |v*| and ||v*| - V| exceed 10 eps",
+        Some(Verdict::Doubtful) => {
+            "doubtful: |v*| or ||v*| - V| is below 10 eps, corrections of order eps count"
+        }
+        _ => "fails: v* = 0 or |v*| = V, for every eps",
+    }
+}
+
+/// Whether gamma exceeds the threshold.
+pub fn tangle(request: &Request, threshold: Option<Ball>) -> &'static str {
+    let balls = Balls::new(400);
+    let excess = threshold.map(|t| balls.sub(&request.gamma.abs().ball(balls), &t));
+    match excess {
+        Some(ball) if ball.is_positive() => "crossing",
+        Some(ball) if ball.is_negative() => "none",
+        _ => "undecided",
     }
 }

@@ -2,11 +2,14 @@
 
 use crate::arguments::ThresholdOptions;
 use crate::failure::Failure;
+use crate::recognised::Source;
 use crate::session::parameters;
 use lindstedt::Value;
+use lindstedt::coeff::ball::{Ball, Balls};
 use lindstedt::equation::Text;
 use lindstedt::problems::stick_slip;
-use lindstedt_melnikov::{Axis, Real, StickSlip};
+use lindstedt::recognise::MelnikovProblem;
+use lindstedt_melnikov::{Axis, Class, Real, StickSlip};
 use rug::Rational;
 use std::path::Path;
 
@@ -15,7 +18,8 @@ const MOST_VALUES: u64 = 1_000_000;
 
 /// A swept parameter.
 pub struct Sweep {
-    pub axis: Axis,
+    /// The parameter of section 3 that it is; nothing for other parameters of a file.
+    pub axis: Option<Axis>,
     pub name: String,
     /// The values, exact where the ends are rational.
     pub values: Vec<Real>,
@@ -23,7 +27,11 @@ pub struct Sweep {
 
 /// What is asked.
 pub struct Request {
-    pub point: StickSlip,
+    pub problem: String,
+    /// The oscillator of section 3, which the equation of a file may be too.
+    pub point: Option<StickSlip>,
+    /// A problem file, and what was found in it.
+    pub file: Option<(Source, MelnikovProblem)>,
     pub gamma: Real,
     pub eps: Real,
     /// Every parameter as it stands, in the order of the data card.
@@ -31,7 +39,7 @@ pub struct Request {
     /// One, or two: the first is the horizontal axis of a figure.
     pub sweeps: Vec<Sweep>,
     /// Parameter, its name, and the range.
-    pub zeros: Option<(Axis, String, Real, Real)>,
+    pub zeros: Option<(Option<Axis>, String, Real, Real)>,
 }
 
 pub fn axis(name: &str) -> Option<Axis> {
@@ -48,10 +56,7 @@ pub fn axis(name: &str) -> Option<Axis> {
 }
 
 pub fn real(value: Value) -> Real {
-    match value {
-        Value::Rational(q) => Real::Rational(q),
-        Value::PiTimes(q) => Real::pi_multiple(q),
-    }
+    value.into()
 }
 
 fn parse(text: &str) -> Result<Real, Failure> {
@@ -64,19 +69,32 @@ fn usage(what: &str, text: &str) -> Failure {
     Failure::usage("range", format!("cannot read the {what} {shown:?}"), hint)
 }
 
-fn named<'a>(what: &str, text: &'a str) -> Result<(Axis, &'a str, &'a str), Failure> {
+/// The parameter of a range, which parameter of section 3 it is, and the range.
+fn named<'a>(
+    what: &str,
+    text: &'a str,
+    file: Option<&(Source, MelnikovProblem)>,
+) -> Result<(Option<Axis>, &'a str, &'a str), Failure> {
     let (name, range) = text.split_once('=').ok_or_else(|| usage(what, text))?;
     let name = name.trim();
-    let axis = axis(name).ok_or_else(|| {
+    let unknown = |known: &str| {
         let message = format!("{name:?} cannot be varied");
-        Failure::usage("unknown-parameter", message, "a, b, T0, alpha, beta, omega, vstar")
-    })?;
-    Ok((axis, name, range))
+        Failure::usage("unknown-parameter", message, known)
+    };
+    let Some((source, found)) = file else {
+        let axis = axis(name).ok_or_else(|| unknown("a, b, T0, alpha, beta, omega, vstar"))?;
+        return Ok((Some(axis), name, range));
+    };
+    if !source.values.contains_key(name) || *name == *source.problem.small {
+        let known: Vec<String> = source.at().into_iter().map(|(name, _)| name).collect();
+        return Err(unknown(&known.join(", ")));
+    }
+    Ok((found.axis(&source.problem, &source.values, name), name, range))
 }
 
 impl Sweep {
-    fn read(text: &str) -> Result<Self, Failure> {
-        let (axis, name, range) = named("sweep", text)?;
+    fn read(text: &str, file: Option<&(Source, MelnikovProblem)>) -> Result<Self, Failure> {
+        let (axis, name, range) = named("sweep", text, file)?;
         let name = name.to_owned();
         let Some((low, rest)) = range.split_once("..") else {
             let values = range.split(',').map(parse).collect::<Result<_, _>>()?;
@@ -104,46 +122,19 @@ fn exact(value: &Real) -> Rational {
 
 impl Request {
     pub fn read(options: &ThresholdOptions) -> Result<Self, Failure> {
-        if options.problem != "stick-slip" {
-            let shown: String = options.problem.chars().take(60).collect();
-            let message = format!("no threshold for {shown:?}");
-            return Err(Failure::usage("unknown-problem", message, "known: stick-slip"));
-        }
-        let mut set = parameters(&options.set)?;
-        let mut at = Vec::new();
-        for card in stick_slip::problem().parameters {
-            let value = match set.remove(&*card.name) {
-                Some(value) => real(value),
-                None => parse(&card.default)?,
-            };
-            at.push((card.name, value));
-        }
-        if let Some(name) = set.keys().next() {
-            let known: Vec<&str> = at.iter().map(|(name, _)| &**name).collect();
-            let message = format!("stick-slip has no parameter {name:?}");
-            let hint = format!("it has {}", known.join(", "));
-            return Err(Failure::usage("unknown-parameter", message, &hint));
-        }
-        let mut point = StickSlip::paper();
-        for (name, value) in &at {
-            if let Some(axis) = axis(name) {
-                point = point.with(axis, value.clone());
-            }
-        }
-        point.check()?;
-        let get = |wanted: &str| {
-            let value = at.iter().find(|(name, _)| name == wanted).map(|(_, value)| value.clone());
-            value.unwrap_or_else(|| Real::from(0))
-        };
-        let (gamma, eps) = (get("gamma"), get("eps"));
+        let Known { problem, point, file, gamma, eps, at } =
+            if options.problem.ends_with(".toml") { of_file(options)? } else { built_in(options)? };
         if options.sweep.len() > 2 {
             let message = "at most two sweeps".to_owned();
             return Err(Failure::usage("range", message, ""));
         }
-        let sweeps: Vec<Sweep> =
-            options.sweep.iter().map(|text| Sweep::read(text)).collect::<Result<_, _>>()?;
+        let sweeps: Vec<Sweep> = options
+            .sweep
+            .iter()
+            .map(|text| Sweep::read(text, file.as_ref()))
+            .collect::<Result<_, _>>()?;
         if let [first, second] = sweeps.as_slice()
-            && first.axis == second.axis
+            && first.name == second.name
         {
             let message = format!("{} is swept twice", first.name);
             return Err(Failure::usage("range", message, ""));
@@ -162,11 +153,113 @@ impl Request {
         let zeros = match &options.zeros {
             None => None,
             Some(text) => {
-                let (axis, name, range) = named("range", text)?;
+                let (axis, name, range) = named("range", text, file.as_ref())?;
                 let (low, high) = range.split_once("..").ok_or_else(|| usage("range", text))?;
                 Some((axis, name.to_owned(), parse(low)?, parse(high)?))
             }
         };
-        Ok(Self { point, gamma, eps, at, sweeps, zeros })
+        Ok(Self { problem, point, file, gamma, eps, at, sweeps, zeros })
     }
+
+    /// The signed threshold with other values of swept parameters; of several orbits that of the
+    /// least threshold.
+    pub fn signed(&self, balls: Balls, changes: &[(&Sweep, &Real)]) -> Option<Ball> {
+        if let Some(point) = &self.point
+            && changes.iter().all(|(sweep, _)| sweep.axis.is_some())
+        {
+            let change = |point: StickSlip, (sweep, value): &(&Sweep, &Real)| match sweep.axis {
+                Some(axis) => point.with(axis, (*value).clone()),
+                None => point,
+            };
+            let point = changes.iter().fold(point.clone(), change);
+            return point.check().ok().and_then(|()| point.signed_threshold(balls));
+        }
+        let (source, _) = self.file.as_ref()?;
+        let mut values = source.values.clone();
+        for (sweep, value) in changes {
+            let value = match value {
+                Real::Rational(q) => Value::Rational(q.clone()),
+                Real::PiMultiple(q) => Value::PiTimes(q.clone()),
+            };
+            values.insert(sweep.name.clone(), value);
+        }
+        let found = MelnikovProblem::new(&source.problem, &values).ok()?;
+        let orbits = found.thresholds(balls).ok()?;
+        let least = |a: &Ball, b: &Ball| a.midpoint().total_cmp(b.midpoint());
+        let least = orbits.iter().min_by(|a, b| least(&a.threshold.gamma, &b.threshold.gamma));
+        least.map(|orbit| orbit.threshold.signed.clone())
+    }
+
+    /// Whether every swept parameter is one of section 3.
+    pub fn is_fast(&self) -> bool {
+        self.point.is_some() && self.sweeps.iter().all(|sweep| sweep.axis.is_some())
+    }
+
+    /// How the numbers are known.
+    pub fn class(&self) -> Class {
+        self.file.as_ref().map_or(Class::Certified, |(_, found)| found.class())
+    }
+}
+
+/// What the problem says.
+struct Known {
+    problem: String,
+    point: Option<StickSlip>,
+    file: Option<(Source, MelnikovProblem)>,
+    gamma: Real,
+    eps: Real,
+    at: Vec<(Text, Real)>,
+}
+
+fn of_file(options: &ThresholdOptions) -> Result<Known, Failure> {
+    let source = Source::read(&options.problem, &options.set, &[])?;
+    let found = MelnikovProblem::new(&source.problem, &source.values)
+        .map_err(|refusal| source.refuse(refusal))?;
+    let at = source.at().into_iter().map(|(name, value)| (Text::from(name), real(value)));
+    let eps = source.values.get(&*source.problem.small).cloned();
+    Ok(Known {
+        problem: source.problem.name.to_string(),
+        point: found.stick_slip(),
+        gamma: found.amplitude.clone(),
+        eps: eps.map_or_else(|| Real::from(1), real),
+        at: at.collect(),
+        file: Some((source, found)),
+    })
+}
+
+fn built_in(options: &ThresholdOptions) -> Result<Known, Failure> {
+    if options.problem != "stick-slip" {
+        let shown: String = options.problem.chars().take(60).collect();
+        let message = format!("no threshold for {shown:?}");
+        let hint = "known: stick-slip, or the path of a problem file (.toml)";
+        return Err(Failure::usage("unknown-problem", message, hint));
+    }
+    let mut set = parameters(&options.set)?;
+    let mut at = Vec::new();
+    for card in stick_slip::problem().parameters {
+        let value = match set.remove(&*card.name) {
+            Some(value) => real(value),
+            None => parse(&card.default)?,
+        };
+        at.push((card.name, value));
+    }
+    if let Some(name) = set.keys().next() {
+        let known: Vec<&str> = at.iter().map(|(name, _)| &**name).collect();
+        let message = format!("stick-slip has no parameter {name:?}");
+        let hint = format!("it has {}", known.join(", "));
+        return Err(Failure::usage("unknown-parameter", message, &hint));
+    }
+    let mut point = StickSlip::paper();
+    for (name, value) in &at {
+        if let Some(axis) = axis(name) {
+            point = point.with(axis, value.clone());
+        }
+    }
+    point.check()?;
+    let get = |wanted: &str| {
+        let value = at.iter().find(|(name, _)| name == wanted).map(|(_, value)| value.clone());
+        value.unwrap_or_else(|| Real::from(0))
+    };
+    let (gamma, eps) = (get("gamma"), get("eps"));
+    Ok(Known { problem: "stick-slip".to_owned(), point: Some(point), file: None, gamma, eps, at })
 }

@@ -1,11 +1,11 @@
 //! Curves and surfaces.
 
 use super::report::Answer;
-use super::request::Request;
+use super::request::{Request, Sweep};
 use crate::failure::{Failure, UNDECIDED};
 use crate::session::Session;
 use lindstedt::coeff::ball::Balls;
-use lindstedt_melnikov::{FastPoint, surface};
+use lindstedt_melnikov::{Class, FastPoint, Real, surface};
 use rayon::prelude::*;
 use std::fmt::Write;
 
@@ -34,9 +34,8 @@ impl Table {
         session: &Session<'_>,
     ) -> Result<Option<Self>, Failure> {
         let Some(first) = request.sweeps.first() else { return Ok(None) };
-        let doubles = |values: &[lindstedt_melnikov::Real]| -> Vec<f64> {
-            values.par_iter().map(lindstedt_melnikov::Real::to_f64).collect()
-        };
+        let doubles =
+            |values: &[Real]| -> Vec<f64> { values.par_iter().map(Real::to_f64).collect() };
         let columns = doubles(&first.values);
         let rows = request.sweeps.get(1).map_or_else(|| vec![f64::NAN], |s| doubles(&s.values));
         let points = rows.len().saturating_mul(columns.len());
@@ -51,15 +50,16 @@ impl Table {
         }
         let mut table = Self {
             signed: vec![f64::NAN; points],
-            certified: !f64_only && points <= CERTIFIED_POINTS,
+            certified: request.class() == Class::Certified,
             finished: true,
             columns,
             rows,
         };
-        if table.certified {
-            table.certify(request, session)
+        if request.is_fast() && (f64_only || points > CERTIFIED_POINTS) {
+            table.certified = false;
+            table.fast(request, session)?;
         } else {
-            table.fast(request, session)?
+            table.certify(request, session);
         }
         Ok(Some(table))
     }
@@ -67,28 +67,31 @@ impl Table {
     fn certify(&mut self, request: &Request, session: &Session<'_>) {
         let Some(first) = request.sweeps.first() else { return };
         let width = first.values.len();
+        // An orbit that is followed numerically takes its time: look at the clock in between.
+        let block = if self.certified { 256 } else { 4 };
         for (i, row) in self.signed.chunks_mut(width).enumerate() {
-            if !session.goes_on() {
-                self.finished = false;
-                return;
+            let second = request.sweeps.get(1);
+            let second = second.and_then(|sweep| Some((sweep, sweep.values.get(i)?)));
+            for (entries, values) in row.chunks_mut(block).zip(first.values.chunks(block)) {
+                if !session.goes_on() {
+                    self.finished = false;
+                    return;
+                }
+                entries.par_iter_mut().zip(values).for_each(|(entry, value)| {
+                    let changes: Vec<(&Sweep, &Real)> =
+                        second.into_iter().chain([(first, value)]).collect();
+                    let ball = request.signed(Balls::new(BITS), &changes);
+                    let ball = ball.filter(|b| b.is_finite());
+                    *entry = ball.map_or(f64::NAN, |b| b.midpoint().to_f64());
+                });
             }
-            let mut base = request.point.clone();
-            if let Some(second) = request.sweeps.get(1)
-                && let Some(value) = second.values.get(i)
-            {
-                base = base.with(second.axis, value.clone());
-            }
-            row.par_iter_mut().zip(&first.values).for_each(|(entry, value)| {
-                let at = base.clone().with(first.axis, value.clone());
-                let ball = at.check().ok().and_then(|()| at.signed_threshold(Balls::new(BITS)));
-                *entry = ball.filter(|b| b.is_finite()).map_or(f64::NAN, |b| b.midpoint().to_f64());
-            });
         }
     }
 
     fn fast(&mut self, request: &Request, session: &Session<'_>) -> Result<(), Failure> {
         let Some(first) = request.sweeps.first() else { return Ok(()) };
-        let point = &request.point;
+        let Some(point) = &request.point else { return Ok(()) };
+        let Some(along) = first.axis else { return Ok(()) };
         let base = FastPoint {
             a: point.a.to_f64(),
             b: point.b.to_f64(),
@@ -99,9 +102,10 @@ impl Table {
             belt_speed: point.belt_speed.to_f64(),
         };
         let width = self.columns.len();
-        let Some(second) = request.sweeps.get(1) else {
-            let here = [first_value(&base, first.axis)];
-            surface(&base, (first.axis, &here), (first.axis, &self.columns), &mut self.signed)?;
+        let across = request.sweeps.get(1).and_then(|second| second.axis);
+        let Some(across) = across else {
+            let here = [first_value(&base, along)];
+            surface(&base, (along, &here), (along, &self.columns), &mut self.signed)?;
             return Ok(());
         };
         let blocks = self.signed.chunks_mut(BLOCK * width).zip(self.rows.chunks(BLOCK));
@@ -110,7 +114,7 @@ impl Table {
                 self.finished = false;
                 break;
             }
-            surface(&base, (second.axis, rows), (first.axis, &self.columns), block)?;
+            surface(&base, (across, rows), (along, &self.columns), block)?;
         }
         Ok(())
     }
@@ -144,7 +148,7 @@ fn first_value(base: &FastPoint, axis: lindstedt_melnikov::Axis) -> f64 {
 pub fn csv(request: &Request, table: Option<&Table>, answer: &Answer) -> String {
     let mut text = String::new();
     let Some(table) = table else { return text };
-    let _ = writeln!(text, "# stick-slip, {}", answer.parameters());
+    let _ = writeln!(text, "# {}, {}", request.problem, answer.parameters());
     let names: Vec<&str> = request.sweeps.iter().rev().map(|s| s.name.as_str()).collect();
     let _ = writeln!(text, "{},gamma_c,signed", names.join(","));
     for (row, column, signed) in table.entries() {

@@ -9,7 +9,7 @@ use lindstedt_impact::equivalent::{Drive, equivalent_orbit};
 use lindstedt_impact::flow::{Flow, rates};
 use lindstedt_impact::map::{ImpactMap, Verdict};
 use lindstedt_impact::orbit::orbit;
-use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
+use lindstedt_impact::parameters::{Branch, Exact, ExactParameters, Parameters};
 use lindstedt_impact::prediction::{Variant, predict, predicted_flow, uncontrolled_map};
 use lindstedt_impact::real::Real;
 use lindstedt_impact::report::{Request, stability};
@@ -382,4 +382,30 @@ fn parameters_outside_their_domain_are_named() {
         refused(p),
         ImpactError::NoPositiveVelocity { .. } | ImpactError::BeyondFold { .. }
     ));
+}
+
+/// A watch ends the work, and what was stopped is not called undecided.
+#[test]
+fn a_watch_stops_the_work() {
+    use lindstedt_impact::characteristic::Watch;
+    use lindstedt_impact::report::certified_stability_watched;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicU32, Ordering};
+    let p = ExactParameters { velocity_gain: exact("50"), ..base_exact() };
+    let asked = Arc::new(AtomicU32::new(0));
+    let counter = Arc::clone(&asked);
+    let watch = Watch::new(Arc::new(move || counter.fetch_add(1, Ordering::SeqCst) < 100));
+    let stopped = certified_stability_watched(&p, &Request::default(), 30, &watch);
+    assert!(matches!(stopped, Err(ImpactError::Cancelled)));
+    let asked = asked.load(Ordering::SeqCst);
+    assert!((101..500).contains(&asked), "{asked}");
+}
+
+#[test]
+fn roots_are_exact_parameters() {
+    let p = ExactParameters { alpha: Exact::Root(rug::Rational::from(2)), ..base_exact() };
+    let alpha = p.certified(200).alpha;
+    let square = alpha.clone() * &alpha;
+    assert!((square.to_f64() - 2.0).abs() < 1e-15 && alpha.ball().relative_accuracy_bits() > 190);
+    assert_eq!(p.alpha.to_string(), "sqrt(2)");
 }

@@ -375,7 +375,16 @@ impl<'a> Task<'a> {
         };
         let names = self.settings.parameters.keys();
         if let Some(name) = names.clone().find(irrational).or(names.clone().find(tied)) {
-            return Err(Error::NotAmongSymbols { name: name.clone() });
+            // A delay tied to the force takes the values of its periods and its frequency.
+            let tie = self.problem.synchronous.as_ref();
+            let cards = self.problem.parameters.iter().map(|card| card.name.to_string());
+            let open = |name: &String| {
+                let behind = tie.is_some_and(|t| t.periods == **name || t.frequency == **name);
+                (self.names.contains(name) || behind)
+                    && !self.settings.parameters.contains_key(name)
+            };
+            let missing = cards.filter(open).collect();
+            return Err(Error::NotAmongSymbols { name: name.clone(), missing });
         }
         // In the order of the data card, which is the order of printing.
         let cards = self.problem.parameters.iter().map(|card| card.name.to_string());

@@ -64,7 +64,9 @@ pub(super) fn truth(
     let get = |name: &str, default: Rational| match given.get(name) {
         None => Ok(default),
         Some(Value::Rational(q)) => Ok(q.clone()),
-        Some(Value::PiTimes(_)) => Err(Error::NotAmongSymbols { name: name.to_owned() }),
+        Some(Value::PiTimes(_)) => {
+            Err(Error::NotAmongSymbols { name: name.to_owned(), missing: Vec::new() })
+        }
     };
     let pi = Float::with_val(bits, Constant::Pi);
     let real = |q: &Rational| Float::with_val(bits, q);

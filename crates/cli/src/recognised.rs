@@ -1,0 +1,95 @@
+//! What `threshold` and `stability` share about problem files: values, refusals with their place.
+
+use crate::failure::{Failure, NO_ANSWER, UNDECIDED, USAGE};
+use crate::session::{Loaded, load, parameters};
+use lindstedt::equation::print::Style;
+use lindstedt::equation::{Expression, Problem};
+use lindstedt::recognise::{Refusal, all_values};
+use lindstedt::{ProblemFile, Value};
+use std::collections::BTreeMap;
+
+/// A problem file with the values of its parameters.
+pub struct Source {
+    pub path: String,
+    pub problem: Problem,
+    file: ProblemFile,
+    /// The small parameter among them.
+    pub values: BTreeMap<String, Value>,
+}
+
+impl Source {
+    /// Reads the file; `extra` names may be set besides its parameters.
+    pub fn read(path: &str, set: &[String], extra: &[&str]) -> Result<Self, Failure> {
+        let Loaded { problem, file } = load(path)?;
+        let file = file.ok_or_else(|| {
+            Failure::usage("unknown-problem", format!("{path} is no problem file"), "")
+        })?;
+        let given = parameters(set)?;
+        let small = problem.small.to_string();
+        let card = |name: &str| problem.parameters.iter().any(|card| card.name == name);
+        let known = |name: &str| card(name) || name == small || extra.contains(&name);
+        if let Some(name) = given.keys().find(|name| !known(name)) {
+            let names: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
+            let message = format!("{} has no parameter {name:?}", problem.name);
+            let hint = match file.follows.get(name) {
+                Some(how) => format!("{name} follows: {how}"),
+                None => format!("it has {}", names.join(", ")),
+            };
+            return Err(Failure::usage("unknown-parameter", message, &hint));
+        }
+        let mut values = all_values(&problem, &given);
+        values.extend(given);
+        Ok(Self { path: path.to_owned(), problem, file, values })
+    }
+
+    /// The parameters as they stand, in the order of the file.
+    pub fn at(&self) -> Vec<(String, Value)> {
+        let cards = self.problem.parameters.iter();
+        let value = |name: &str| Some((name.to_owned(), self.values.get(name)?.clone()));
+        let mut at: Vec<_> = cards.filter_map(|card| value(&card.name)).collect();
+        // Set, though the file does not list it.
+        if at.iter().all(|(name, _)| *name != *self.problem.small) {
+            at.extend(value(&self.problem.small));
+        }
+        at
+    }
+
+    /// A refusal with the place of its term.
+    pub fn refuse(&self, refusal: Refusal) -> Failure {
+        let small = &self.problem.small;
+        let text = match &refusal {
+            Refusal::Term { term, why } => {
+                let shown: String = term.print(small, Style::Text).chars().take(80).collect();
+                format!("{shown} {why}")
+            }
+            other => other.to_string(),
+        };
+        // As it occurs multiplied out, without its factors eps and -1, or what it is a product of.
+        let place = refusal.term().and_then(|term| {
+            let factors = match term {
+                Expression::Product(list) => list.clone(),
+                single => vec![single.clone()],
+            };
+            let plain = |e: &Expression| matches!(e, Expression::Small | Expression::Number(_));
+            let bare: Vec<Expression> = factors.into_iter().filter(|e| !plain(e)).collect();
+            let constant = Expression::is_constant;
+            let varying: Vec<Expression> = bare.iter().filter(|e| !constant(e)).cloned().collect();
+            let product = |list: Vec<Expression>| Expression::Product(list).canonical();
+            let tries = [term.clone(), product(bare), product(varying.clone())];
+            tries.iter().chain(&varying).find_map(|part| self.file.locate(part))
+        });
+        let place = place.map_or(String::new(), |(line, column)| format!(":{line}:{column}"));
+        let shown: String = self.path.chars().take(60).collect();
+        let message = format!("{shown}{place}: {text}");
+        let (exit, code, hint) = match refusal {
+            Refusal::MissingValues { .. } => {
+                (USAGE, "missing-value", "give it under [parameters] or with --set NAME=VALUE")
+            }
+            Refusal::Periods { .. } => (USAGE, "parameter", "k = 1, 2, ..."),
+            Refusal::TooManyTerms { .. } => (UNDECIDED, "too-large", ""),
+            Refusal::Melnikov(error) => return Failure { message, ..error.into() },
+            _ => (NO_ANSWER, "no-method", "`lindstedt problems --show FILE` lists the methods"),
+        };
+        Failure { exit, code, message, hint: hint.to_owned() }
+    }
+}

@@ -1,0 +1,221 @@
+//! The answer for the equation of a file that is not the oscillator of section 3.
+
+use super::report::{Answer, SMOOTH, tangle, validity};
+use super::request::{Request, Sweep};
+use crate::derive::number_json;
+use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
+use crate::session::Session;
+use crate::stability::report::certified_number;
+use lindstedt::coeff::ball::{Ball, Balls};
+use lindstedt::number::certified;
+use lindstedt::recognise::melnikov::Unperturbed;
+use lindstedt::recognise::{MelnikovProblem, OrbitCheck, OrbitThreshold};
+use lindstedt::{Number, Status};
+use lindstedt_melnikov::{Class, Friction, MelnikovError, Real};
+use rug::{Float, Rational};
+use serde_json::{Value as Json, json};
+
+/// Cells in which a change of sign is looked for.
+const CELLS: i64 = 128;
+/// Bits that order the thresholds of several orbits.
+const ORDERING_BITS: u32 = 200;
+
+pub fn answer(
+    request: &Request,
+    found: &MelnikovProblem,
+    digits: usize,
+    session: &Session<'_>,
+) -> Result<Answer, Failure> {
+    let estimated = found.class() == Class::Estimated;
+    let bits = if estimated { (digits as f64 * 3.33) as u32 + 48 } else { ORDERING_BITS };
+    session.say("following the orbit".to_owned());
+    let orbits = found.thresholds(Balls::new(bits))?;
+    let least = |a: &OrbitThreshold, b: &OrbitThreshold| {
+        a.threshold.gamma.midpoint().total_cmp(b.threshold.gamma.midpoint())
+    };
+    let (first, _) = orbits
+        .iter()
+        .enumerate()
+        .min_by(|a, b| least(a.1, b.1))
+        .ok_or(Failure::from(MelnikovError::NoClosedForm))?;
+    let number = |n: usize, part: &dyn Fn(&OrbitThreshold) -> Ball| -> Result<Number, Failure> {
+        match orbits.get(n) {
+            Some(orbit) if estimated => Ok(estimate(&part(orbit), digits)),
+            _ => {
+                Ok(certified(None, digits, |balls| found.thresholds(balls).ok()?.get(n).map(part))?)
+            }
+        }
+    };
+    let gamma = |o: &OrbitThreshold| o.threshold.gamma.clone();
+    let speed = match found.largest_speed(Balls::new(bits)) {
+        Some(ball) if estimated => estimate(&ball, digits),
+        _ => certified(None, digits, |balls| found.largest_speed(balls))?,
+    };
+    let numbers = vec![
+        ("gamma_c", number(first, &gamma)?),
+        ("signed", number(first, &|o| o.threshold.signed.clone())?),
+        ("D", number(first, &|o| o.threshold.dissipation.clone())?),
+        ("F", number(first, &|o| o.threshold.forcing.clone())?),
+        ("V", speed),
+    ];
+    let checks = match &found.unperturbed {
+        Unperturbed::Numeric(orbit) => orbit.check((digits as f64 * 3.33) as u32 + 20),
+        Unperturbed::Closed { .. } => Vec::new(),
+    };
+    let mut listed = Vec::new();
+    for (n, orbit) in orbits.iter().enumerate() {
+        let check = check(found, orbit.name, &checks);
+        listed.push(json!({
+            "name": orbit.name,
+            "gamma_c": number_json(&number(n, &gamma)?),
+            "signed": number_json(&number(n, &|o| o.threshold.signed.clone())?),
+            "check": check,
+        }));
+    }
+    let few = digits.min(17);
+    let distance = |second: bool| {
+        let pick = |(belt, tangency, _): (Ball, Ball, bool)| if second { tangency } else { belt };
+        let at = |balls: Balls| found.distances(balls).map(pick);
+        match at(Balls::new(bits)) {
+            Some(ball) if estimated => Ok(estimate(&ball, few)),
+            _ => certified(None, few, at),
+        }
+    };
+    let verdict = found.verdict(Balls::new(ORDERING_BITS), request.eps.to_f64());
+    let jumps = match &found.friction {
+        Friction::Polynomial(law) => law.dry.sign().is_ne(),
+        other => !other.kinks().is_empty(),
+    };
+    let words = if jumps { validity(verdict) } else { SMOOTH };
+    let (zeros, zeros_of) = match &request.zeros {
+        None => (Vec::new(), None),
+        Some((_, name, low, high)) => {
+            (zeros(request, name, (low, high), digits, session)?, Some((name.clone(), false)))
+        }
+    };
+    Ok(Answer {
+        problem: request.problem.clone(),
+        at: request.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect(),
+        amplitude: request.gamma.to_string(),
+        numbers,
+        zeros,
+        zeros_of,
+        touching_b: None,
+        validity: words.to_owned(),
+        distances: [distance(false)?, distance(true)?],
+        tangle: tangle(request, orbits.get(first).map(gamma)).to_owned(),
+        orbits: listed,
+        subharmonics: None,
+    })
+}
+
+/// A number with the estimate of its error.
+fn estimate(ball: &Ball, digits: usize) -> Number {
+    Number { status: Status::Estimated, exact: None, ..certified_number(ball, digits) }
+}
+
+/// How the orbit was checked.
+fn check(found: &MelnikovProblem, name: &str, checks: &[OrbitCheck]) -> Json {
+    match &found.unperturbed {
+        Unperturbed::Closed { potential, .. } => {
+            let kind = if potential.is_homoclinic() { "homoclinic" } else { "heteroclinic" };
+            let parameters: Vec<String> =
+                potential.parameters().iter().map(|(n, v)| format!("{n} = {v}")).collect();
+            let family = match potential {
+                lindstedt_melnikov::Potential::DoubleWell { .. } => "x'' = a*x - b*x^3",
+                lindstedt_melnikov::Potential::SoftDuffing { .. } => "x'' = -a*x + b*x^3",
+                lindstedt_melnikov::Potential::Helmholtz { .. } => "x'' = a*x - b*x^2",
+                lindstedt_melnikov::Potential::Pendulum { .. } => "x'' = -w0^2*sin(x)",
+                _ => "x'' = kappa^2*x*(1 - x^2)*(1 - 3*x^2)",
+            };
+            let parameters = parameters.join(", ");
+            Json::from(format!(
+                "{kind}, {family} with {parameters}: the residual of the equation is 0 identically"
+            ))
+        }
+        Unperturbed::Numeric(_) => {
+            let found = checks.iter().find(|check| check.name == name);
+            found.map_or(Json::Null, |c| {
+                let (kind, end) = if c.homoclinic {
+                    ("homoclinic", "turning point")
+                } else {
+                    ("heteroclinic", "other saddle")
+                };
+                Json::from(format!(
+                    "{kind}, numeric: saddle {:.9}, {end} {:.9}, energy residual {:.1e}, \
+                     distance to the saddle at the end {:.1e}",
+                    c.saddle, c.end, c.energy_residual, c.decay
+                ))
+            })
+        }
+    }
+}
+
+/// The zeros of the signed threshold in a parameter of a file: changes of sign on a grid, enclosed
+/// by bisection.
+pub fn zeros(
+    request: &Request,
+    name: &str,
+    (low, high): (&Real, &Real),
+    digits: usize,
+    session: &Session<'_>,
+) -> Result<Vec<Number>, Failure> {
+    let numeric = request
+        .file
+        .as_ref()
+        .is_some_and(|(_, found)| matches!(found.unperturbed, Unperturbed::Numeric(_)));
+    let (Some(low), Some(high), false) = (low.as_rational(), high.as_rational(), numeric) else {
+        return Err(Failure {
+            exit: NO_ANSWER,
+            code: "no-answer",
+            message: "zeros are found between rational ends, on orbits in closed form".to_owned(),
+            hint: "--sweep shows where the sign changes".to_owned(),
+        });
+    };
+    let sweep = Sweep { axis: None, name: name.to_owned(), values: Vec::new() };
+    let bits = (digits as f64 * 3.33) as u32 + 64;
+    let sign = |q: &Rational| -> Option<bool> {
+        let value = Real::Rational(q.clone());
+        let ball = request.signed(Balls::new(bits), &[(&sweep, &value)])?;
+        (!ball.contains_zero()).then(|| ball.is_positive())
+    };
+    let width = Rational::from(high - low);
+    // No round fractions: zeros like to be there.
+    let at = |n: i64| Rational::from(&width * Rational::from((1009 * n, 1009 * CELLS + 1))) + low;
+    let stopped = || Failure {
+        exit: if session.interrupted() { INTERRUPTED } else { UNDECIDED },
+        code: if session.interrupted() { "interrupted" } else { "limit-seconds" },
+        message: "stopped before all zeros were found".to_owned(),
+        hint: String::new(),
+    };
+    let mut found = Vec::new();
+    for n in 0..CELLS {
+        if !session.goes_on() {
+            return Err(stopped());
+        }
+        let (mut a, mut b) = (at(n), if n + 1 == CELLS { high.clone() } else { at(n + 1) });
+        let (Some(left), Some(right)) = (sign(&a), sign(&b)) else { continue };
+        if left == right {
+            continue;
+        }
+        for _ in 0..bits {
+            let middle = Rational::from(&a + &b) / 2u32;
+            match sign(&middle) {
+                Some(side) if side == left => a = middle,
+                Some(_) => b = middle,
+                None => break,
+            }
+        }
+        let balls = Balls::new(bits + 32);
+        let ends = balls.hull(&balls.from_rational(&a), &balls.from_rational(&b));
+        let mut number = certified_number(&ends, digits);
+        if request.class() == Class::Estimated {
+            number.status = Status::Estimated;
+        }
+        let zero = Float::with_val(53, ends.midpoint());
+        if zero.is_finite() {
+            found.push(number);
+        }
+    }
+    Ok(found)
+}

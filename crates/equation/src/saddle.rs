@@ -1,0 +1,76 @@
+//! Whether x'' = f(x) has a saddle, by the signs of f on a grid.
+
+use crate::{Expression, Function};
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// Half the width of the grid.
+const REACH: f64 = 20.0;
+/// Its points.
+const POINTS: i32 = 4000;
+
+/// Whether f of x'' + rest = x'' - f(x) changes its sign upwards for some |x| < 20: estimated, for
+/// a list of methods; the method itself looks for the orbit. Terms with the small parameter or t
+/// are left out. Nothing where a parameter has no value or x' occurs.
+pub(crate) fn has_saddle(rest: &Expression, values: &BTreeMap<String, Rational>) -> Option<bool> {
+    let kept = |t: &&Expression| {
+        ![Expression::Small, Expression::Time].iter().any(|part| t.contains(part))
+    };
+    let terms: Vec<&Expression> = rest.terms().iter().filter(kept).collect();
+    let force = |x: f64| -> Option<f64> {
+        terms.iter().try_fold(0.0, |sum, term| Some(sum - value(term, x, values)?))
+    };
+    let mut before = None;
+    for n in -POINTS / 2..=POINTS / 2 {
+        // Off the symmetric points, where zeros like to be.
+        let here = force((f64::from(n) + 0.137) * 2.0 * REACH / f64::from(POINTS))?;
+        if before.is_some_and(|f: f64| f < 0.0) && here > 0.0 {
+            return Some(true);
+        }
+        before = Some(here);
+    }
+    Some(false)
+}
+
+fn value(e: &Expression, x: f64, values: &BTreeMap<String, Rational>) -> Option<f64> {
+    let of = |e: &Expression| value(e, x, values);
+    Some(match e {
+        Expression::Number(q) => q.to_f64(),
+        Expression::Parameter(name) => values.get(name)?.to_f64(),
+        Expression::Displacement => x,
+        Expression::Sum(list) => list.iter().try_fold(0.0, |sum, e| Some(sum + of(e)?))?,
+        Expression::Product(list) => list.iter().try_fold(1.0, |p, e| Some(p * of(e)?))?,
+        Expression::Power(base, n) => of(base)?.powf(of(n)?),
+        Expression::Function(function, z) => {
+            let z = of(z)?;
+            match function {
+                Function::Ln => z.ln(),
+                Function::Exp => z.exp(),
+                Function::Sin => z.sin(),
+                Function::Cos => z.cos(),
+                Function::Abs => z.abs(),
+                Function::Sign => z.signum(),
+            }
+        }
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Expression::Displacement;
+
+    #[test]
+    fn wells_and_hills() {
+        let x = || Displacement;
+        let none = BTreeMap::new();
+        let of = |e: Expression| has_saddle(&e, &none);
+        assert_eq!(of(x() - x().pow(2)), Some(true));
+        assert_eq!(of(x().apply(Function::Sin)), Some(true));
+        assert_eq!(of(x() + x().pow(3)), Some(false));
+        assert_eq!(of(x() - Expression::Small * x().pow(3)), Some(false));
+        assert_eq!(of(Expression::parameter("k") * x()), None);
+        assert_eq!(of(x() + Expression::Velocity), None);
+    }
+}

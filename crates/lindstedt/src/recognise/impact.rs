@@ -1,0 +1,345 @@
+//! x'' + c x' + alpha^2 x = P0 cos(omega t) + A (x - x_T) + B (x' - x'_T) between impacts, from the
+//! terms of an equation with a wall.
+
+use super::in_pi::InPi;
+use super::{Refusal, Why, bind, missing, multiply_out, named, rest};
+use crate::Value;
+use lindstedt_equation::monomials::{Monomial, Monomials, expand};
+use lindstedt_equation::{Crossing, Expression, Function, Problem};
+use lindstedt_impact::parameters::{Branch, Exact, ExactParameters};
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// An impact oscillator in the form of section 2.
+///
+/// With x'' + g x' + k x + a x(t - T) + b x'(t - T) = force + f_0 the canonical numbers are A = a,
+/// B = b, alpha^2 = k + a, c = g + b; a constant force moves the wall by -f_0/alpha^2, a wall below
+/// is turned over with x -> -x, and a factor of x'' is divided out. The orders of A, B, c in the
+/// small parameter are the canonical ones (1), whatever they are in the file: only the averaged
+/// prediction knows of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImpactProblem {
+    /// The canonical parameters.
+    pub parameters: ExactParameters,
+    /// Whether a term of the loop or the damping has another order in the file.
+    pub other_orders: bool,
+}
+
+/// The coefficients of a linear equation.
+#[derive(Default)]
+struct Linear {
+    stiffness: InPi,
+    damping: InPi,
+    delayed: InPi,
+    delayed_velocity: InPi,
+    constant: InPi,
+    /// cos(omega t), sin(omega t).
+    force: [InPi; 2],
+    other_orders: bool,
+}
+
+impl ImpactProblem {
+    /// Reads the equation and the wall of a problem with the values of its parameters. `periods`
+    /// is k where the file has no delay that says it.
+    ///
+    /// # Errors
+    /// [`Refusal`], naming the term that does not fit.
+    pub fn new(
+        problem: &Problem,
+        values: &BTreeMap<String, Value>,
+        periods: Option<u32>,
+        branch: Branch,
+    ) -> Result<Self, Refusal> {
+        let wall = problem.impact.as_ref().ok_or(Refusal::NoWall)?;
+        let tie = problem.synchronous.as_ref();
+        let rest = rest(problem)?;
+        let mut used = rest.parameters();
+        used.extend(wall.position.parameters());
+        used.extend(wall.restitution.parameters());
+        used.extend(tie.iter().flat_map(|t| [t.periods.to_string(), t.frequency.to_string()]));
+        used.retain(|name| tie.is_none_or(|tie| tie.delay != *name));
+        missing(&used, values)?;
+        // The delay that is tied to the force keeps its name.
+        let bound = spread(&bind(&rest, values));
+        let all = multiply_out(&bound)?;
+        let term = |m: &Monomial, q: &Rational| all.tree(m, q);
+        let symbolic = spread(&rest);
+        let refuse = |m: &Monomial, q: &Rational, why| {
+            named(&symbolic, values, (term(m, q), why), &|all, m| shape(all, m).err())
+        };
+        let mut linear = Linear::default();
+        let mut frequency: Option<InPi> = None;
+        let (mut delay, mut angle): (Option<Expression>, Option<Expression>) = (None, None);
+        // eps = 1 in the end, unless the file or its reader says otherwise.
+        let small = values.get(&*problem.small).and_then(Value::as_rational).cloned();
+        let small = small.unwrap_or_else(|| Rational::from(1));
+        for (m, q) in &all.terms {
+            let q = &(0..m.order).fold(q.clone(), |q, _| q * &small);
+            let found = shape(&all, m).map_err(|why| refuse(m, q, why))?;
+            let irrational = || refuse(m, q, Why::Irrational);
+            let slot = match &found {
+                Shape::Constant => &mut linear.constant,
+                Shape::Displacement => &mut linear.stiffness,
+                Shape::Velocity => &mut linear.damping,
+                Shape::Delayed(time, velocity) => {
+                    if delay.as_ref().is_some_and(|known| known != time) {
+                        return Err(refuse(m, q, Why::OtherDelay));
+                    }
+                    delay = Some(time.clone());
+                    if *velocity { &mut linear.delayed_velocity } else { &mut linear.delayed }
+                }
+                Shape::Force(argument, sine) => {
+                    let omega = angular_frequency(argument).ok_or_else(irrational)?;
+                    // A cosine and a sine of one angle add up.
+                    if angle.as_ref().is_some_and(|known| known != argument) {
+                        return Err(refuse(m, q, Why::OtherFrequency));
+                    }
+                    (frequency, angle) = (Some(omega), Some(argument.clone()));
+                    let [cosine_part, sine_part] = &mut linear.force;
+                    if *sine { sine_part } else { cosine_part }
+                }
+            };
+            let bare = Monomial { parameters: m.parameters.clone(), ..Monomial::default() };
+            slot.add(&bare, q).ok_or_else(irrational)?;
+            let loops = matches!(found, Shape::Velocity | Shape::Delayed(..));
+            linear.other_orders |= loops && m.order != 1;
+        }
+        let omega = match (&frequency, tie) {
+            (Some(omega), _) => omega.clone(),
+            (None, Some(tie)) => values
+                .get(&*tie.frequency)
+                .and_then(|v| InPi::of(&super::of_value(v)))
+                .ok_or(Refusal::NoForce)?,
+            _ => return Err(Refusal::NoForce),
+        };
+        let tied = tie.filter(|tie| {
+            let known = values.get(&*tie.frequency).and_then(|v| InPi::of(&super::of_value(v)));
+            known.as_ref() == Some(&omega)
+        });
+        let whole = |value: &Value| {
+            let k = value.as_rational().filter(|q| q.is_integer()).and_then(|q| q.numer().to_u32());
+            k.filter(|k| *k > 0).ok_or_else(|| Refusal::Periods { value: value.to_string() })
+        };
+        let other_delay = |time: &Expression| Refusal::Term {
+            term: Box::new(Expression::Displacement.delayed(time.clone())),
+            why: Why::OtherDelay,
+        };
+        let periods = match (&delay, tied) {
+            (Some(time), Some(tie)) if *time == Expression::parameter(&tie.delay) => {
+                whole(values.get(&*tie.periods).unwrap_or(&Value::Rational(Rational::new())))?
+            }
+            (None, Some(tie)) if values.contains_key(&*tie.periods) => {
+                whole(values.get(&*tie.periods).unwrap_or(&Value::Rational(Rational::new())))?
+            }
+            (Some(time), _) => periods_of(time, &omega).ok_or_else(|| other_delay(time))?,
+            (None, _) => periods.unwrap_or(1),
+        };
+        linear.parameters(problem, values, omega, periods, branch)
+    }
+
+    /// The same with one parameter of the file changed must change one canonical parameter into
+    /// it, at three more values, and nothing else: then the one is a name of the other.
+    #[must_use]
+    pub fn names(
+        &self,
+        problem: &Problem,
+        values: &BTreeMap<String, Value>,
+        name: &str,
+        periods: Option<u32>,
+    ) -> Option<lindstedt_impact::parameters::Swept> {
+        let known = Exact::from(values.get(name)?.clone());
+        let probes = [(1009, 733), (2003, 1511), (389, 617)].map(Rational::from);
+        let renamed = |swept| {
+            let same = |value: &Exact, found: &Self| {
+                let mut changed = self.parameters.clone();
+                *changed.slot(swept) = value.clone();
+                changed == found.parameters
+            };
+            same(&known, self)
+                && probes.iter().all(|q| {
+                    let mut values = values.clone();
+                    values.insert(name.to_owned(), Value::Rational(q.clone()));
+                    let found = Self::new(problem, &values, periods, self.parameters.branch);
+                    found.is_ok_and(|found| same(&Exact::Rational(q.clone()), &found))
+                })
+        };
+        let list = lindstedt_impact::parameters::Swept::ALL;
+        list.into_iter().map(|(_, swept)| swept).find(|swept| renamed(*swept))
+    }
+}
+
+impl Linear {
+    fn parameters(
+        &self,
+        problem: &Problem,
+        values: &BTreeMap<String, Value>,
+        omega: InPi,
+        periods: u32,
+        branch: Branch,
+    ) -> Result<ImpactProblem, Refusal> {
+        let wall = problem.impact.as_ref().ok_or(Refusal::NoWall)?;
+        let irrational = |term: &Expression| Refusal::Term {
+            term: Box::new(term.clone()),
+            why: Why::Irrational,
+        };
+        let exact = |c: &InPi, term: &Expression| {
+            c.value().map(Exact::from).ok_or_else(|| irrational(term))
+        };
+        let square = self.stiffness.plus(&self.delayed);
+        let stiffness = square.value().map_or_else(|| "?".into(), |v| v.to_string());
+        let no_stiffness = || Refusal::NoStiffness { value: stiffness.clone() };
+        let alpha = square.root().filter(|_| !square.is_zero()).ok_or_else(no_stiffness)?;
+        let x = Expression::Displacement;
+        let constant = |e: &Expression| InPi::of(&bind(e, values)).ok_or_else(|| irrational(e));
+        let mut position = constant(&wall.position)?;
+        if !self.constant.is_zero() {
+            // x = y - constant/alpha^2.
+            let square = square.value().and_then(|v| v.as_rational().cloned());
+            let square = square.ok_or_else(|| irrational(&x))?;
+            position = position.plus(&self.constant.scaled(&square.recip()));
+        }
+        if wall.crossing == Crossing::Falling {
+            position = position.neg();
+        }
+        let [cosine, sine] = &self.force;
+        let force = match (cosine.value(), sine.value()) {
+            (Some(p), _) if sine.is_zero() => Exact::from(p),
+            (_, Some(q)) if cosine.is_zero() => Exact::from(q),
+            (Some(Value::Rational(p)), Some(Value::Rational(q))) => {
+                let square = Rational::from(p.square_ref()) + Rational::from(q.square_ref());
+                lindstedt_equation::classify::rational_root(&square)
+                    .map_or(Exact::Root(square), Exact::Rational)
+            }
+            _ => return Err(Refusal::NoForce),
+        };
+        // A phase of pi.
+        let force = match force {
+            Exact::Rational(q) => Exact::Rational(q.abs()),
+            Exact::PiMultiple(q) => Exact::PiMultiple(q.abs()),
+            root => root,
+        };
+        let velocity = Expression::Velocity;
+        let parameters = ExactParameters {
+            alpha,
+            omega: exact(&omega, &Expression::Time)?,
+            periods,
+            restitution: exact(&constant(&wall.restitution)?, &wall.restitution)?,
+            wall: exact(&position, &wall.position)?,
+            damping: exact(&self.damping.plus(&self.delayed_velocity), &velocity)?,
+            force,
+            displacement_gain: exact(&self.delayed, &x)?,
+            velocity_gain: exact(&self.delayed_velocity, &velocity)?,
+            branch,
+        };
+        Ok(ImpactProblem { parameters, other_orders: self.other_orders })
+    }
+}
+
+/// What a term can be.
+enum Shape {
+    Constant,
+    Displacement,
+    Velocity,
+    /// The delay, and whether it is that of x'.
+    Delayed(Expression, bool),
+    /// The argument, and whether of a sine.
+    Force(Expression, bool),
+}
+
+fn shape(all: &Monomials, m: &Monomial) -> Result<Shape, Why> {
+    let atoms: Vec<(&Expression, u32)> =
+        m.atoms.iter().filter_map(|(key, n)| Some((all.atoms.get(key)?, *n))).collect();
+    match (m.x, m.velocity, atoms.as_slice()) {
+        (0, 0, []) => Ok(Shape::Constant),
+        (1, 0, []) => Ok(Shape::Displacement),
+        (0, 1, []) => Ok(Shape::Velocity),
+        (0, 0, [(Expression::Delayed(inner, delay), 1)]) => match **inner {
+            Expression::Displacement => Ok(Shape::Delayed((**delay).clone(), false)),
+            Expression::Velocity => Ok(Shape::Delayed((**delay).clone(), true)),
+            _ => Err(Why::NotLinear),
+        },
+        (0, 0, [(Expression::Function(function @ (Function::Cos | Function::Sin), z), 1)])
+            if linear_in_time(z) =>
+        {
+            Ok(Shape::Force((**z).clone(), *function == Function::Sin))
+        }
+        (0, 0, list) if list.iter().all(|(e, _)| e.contains(&Expression::Time)) => {
+            Err(Why::NotHarmonic)
+        }
+        _ => Err(Why::NotLinear),
+    }
+}
+
+/// omega t + phase: the phase moves the clock only.
+fn linear_in_time(argument: &Expression) -> bool {
+    expand(argument).is_some_and(|all| {
+        let time = |m: &Monomial| m.atoms.get("t") == Some(&1) && m.atoms.len() == 1;
+        let plain = |m: &Monomial| m.x == 0 && m.velocity == 0 && m.order == 0;
+        let fits = |m: &Monomial| plain(m) && (m.atoms.is_empty() || time(m));
+        all.terms.keys().all(fits) && all.terms.keys().any(time)
+    })
+}
+
+/// |omega| of omega t + phase; nothing for one that is neither rational nor a multiple of pi.
+fn angular_frequency(argument: &Expression) -> Option<InPi> {
+    let mut omega = InPi::default();
+    for (m, q) in expand(argument)?.terms {
+        if !m.atoms.is_empty() {
+            let bare = Monomial { parameters: m.parameters.clone(), ..Monomial::default() };
+            omega.add(&bare, &q)?;
+        }
+    }
+    let value = omega.value()?;
+    let negative = match &value {
+        Value::Rational(q) | Value::PiTimes(q) => *q < 0,
+    };
+    Some(if negative { omega.neg() } else { omega })
+}
+
+/// k of T = 2 pi k/omega.
+fn periods_of(delay: &Expression, omega: &InPi) -> Option<u32> {
+    let time = InPi::of(delay)?.value()?;
+    let turns = match (time, omega.value()?) {
+        (Value::PiTimes(t), Value::Rational(w)) | (Value::Rational(t), Value::PiTimes(w)) => {
+            t * w / 2u32
+        }
+        _ => return None,
+    };
+    (turns.is_integer() && turns > 0).then(|| turns.numer().to_u32()).flatten()
+}
+
+/// Sums at an earlier time become sums of what is at an earlier time; the small parameter stays.
+fn spread(e: &Expression) -> Expression {
+    let all = |list: &[Expression]| list.iter().map(spread).collect();
+    match e {
+        Expression::Sum(list) => Expression::Sum(all(list)),
+        Expression::Product(list) => Expression::Product(all(list)),
+        Expression::Power(a, b) => spread(a).pow((**b).clone()),
+        Expression::Delayed(inner, delay) => {
+            let inner = spread(inner);
+            let linear = |m: &Monomial| {
+                let bare = m.is_power(1, 0) || m.is_power(0, 1) || m.is_power(0, 0);
+                bare && m.order == 0
+            };
+            match expand(&inner) {
+                Some(parts) if parts.terms.keys().all(linear) => {
+                    let one = |(m, q): (&Monomial, &Rational)| {
+                        let bare =
+                            Monomial { parameters: m.parameters.clone(), ..Monomial::default() };
+                        let constant = parts.tree(&bare, q);
+                        match (m.x, m.velocity) {
+                            (0, 0) => constant,
+                            (1, _) => {
+                                constant * Expression::Displacement.delayed((**delay).clone())
+                            }
+                            _ => constant * Expression::Velocity.delayed((**delay).clone()),
+                        }
+                    };
+                    Expression::Sum(parts.terms.iter().map(one).collect())
+                }
+                _ => inner.delayed((**delay).clone()),
+            }
+        }
+        other => other.clone(),
+    }
+}

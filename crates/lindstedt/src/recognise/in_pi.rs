@@ -1,0 +1,135 @@
+//! Constants of a bound equation: polynomials in pi over Q.
+
+use super::PI;
+use crate::Value;
+use lindstedt_equation::classify::rational_root;
+use lindstedt_equation::monomials::{Monomial, expand};
+use lindstedt_equation::{Expression, Problem};
+use lindstedt_impact::parameters::Exact;
+use lindstedt_melnikov::Real;
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// sum_k q_k pi^k.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct InPi(BTreeMap<i32, Rational>);
+
+impl InPi {
+    /// Adds the constant factor of a term; nothing if it is no power of pi over Q.
+    pub fn add(&mut self, monomial: &Monomial, q: &Rational) -> Option<()> {
+        let power = match monomial.parameters.iter().collect::<Vec<_>>()[..] {
+            [] => 0,
+            [(name, n)] if name == PI => *n,
+            _ => return None,
+        };
+        let sum = self.0.entry(power).or_default();
+        *sum += q;
+        if sum.is_zero() {
+            self.0.remove(&power);
+        }
+        Some(())
+    }
+    /// The constant that a bound expression is.
+    pub fn of(e: &Expression) -> Option<Self> {
+        let mut sum = Self::default();
+        for (monomial, q) in &expand(e)?.terms {
+            let bare = Monomial { parameters: monomial.parameters.clone(), ..Monomial::default() };
+            (bare == *monomial).then_some(())?;
+            sum.add(monomial, q)?;
+        }
+        Some(sum)
+    }
+    pub fn is_zero(&self) -> bool {
+        self.0.is_empty()
+    }
+    /// The number, where it is rational or a rational multiple of pi.
+    pub fn value(&self) -> Option<Value> {
+        match self.0.iter().collect::<Vec<_>>()[..] {
+            [] => Some(Value::Rational(Rational::new())),
+            [(0, q)] => Some(Value::Rational(q.clone())),
+            [(1, q)] => Some(Value::PiTimes(q.clone())),
+            _ => None,
+        }
+    }
+    /// The positive square root of q or q pi^2, q >= 0.
+    pub fn root(&self) -> Option<Exact> {
+        match self.0.iter().collect::<Vec<_>>()[..] {
+            [] => Some(Exact::from((0, 1))),
+            [(0, q)] if *q > 0 => {
+                Some(rational_root(q).map_or_else(|| Exact::Root(q.clone()), Exact::Rational))
+            }
+            [(2, q)] => rational_root(q).map(Exact::PiMultiple),
+            _ => None,
+        }
+    }
+    pub fn scaled(&self, factor: &Rational) -> Self {
+        Self(self.0.iter().map(|(k, q)| (*k, Rational::from(q * factor))).collect())
+    }
+    pub fn neg(&self) -> Self {
+        self.scaled(&Rational::from(-1))
+    }
+    /// (k, q_k).
+    pub fn terms(&self) -> impl Iterator<Item = (i32, &Rational)> {
+        self.0.iter().map(|(k, q)| (*k, q))
+    }
+    pub fn plus(&self, other: &Self) -> Self {
+        let mut sum = self.clone();
+        for (k, q) in &other.0 {
+            let entry = sum.0.entry(*k).or_default();
+            *entry += q;
+            if entry.is_zero() {
+                sum.0.remove(k);
+            }
+        }
+        sum
+    }
+}
+
+impl From<Value> for Real {
+    fn from(value: Value) -> Self {
+        match value {
+            Value::Rational(q) => Self::Rational(q),
+            Value::PiTimes(q) => Self::pi_multiple(q),
+        }
+    }
+}
+
+impl From<Value> for Exact {
+    fn from(value: Value) -> Self {
+        match value {
+            Value::Rational(q) => Self::Rational(q),
+            Value::PiTimes(q) if q.is_zero() => Self::Rational(q),
+            Value::PiTimes(q) => Self::PiMultiple(q),
+        }
+    }
+}
+
+/// q x, exactly.
+pub(super) fn times(x: &Real, q: &Rational) -> Real {
+    match x {
+        Real::Rational(x) => Real::Rational(Rational::from(x * q)),
+        Real::PiMultiple(x) => Real::pi_multiple(Rational::from(x * q)),
+    }
+}
+
+/// x/y, where it is rational.
+pub(super) fn ratio(x: &Real, y: &Real) -> Option<Rational> {
+    let quotient = |x: &Rational, y: &Rational| (!y.is_zero()).then(|| Rational::from(x / y));
+    match (x, y) {
+        (Real::Rational(x), Real::Rational(y)) | (Real::PiMultiple(x), Real::PiMultiple(y)) => {
+            quotient(x, y)
+        }
+        (Real::Rational(x), Real::PiMultiple(_)) if x.is_zero() => Some(Rational::new()),
+        _ => None,
+    }
+}
+
+/// The values of all parameters of a problem: those given, else the defaults; cards without a
+/// value are left out.
+#[must_use]
+pub fn all_values(problem: &Problem, given: &BTreeMap<String, Value>) -> BTreeMap<String, Value> {
+    let value =
+        |name: &str, default: &str| given.get(name).cloned().or_else(|| Value::parse(default).ok());
+    let cards = problem.parameters.iter();
+    cards.filter_map(|c| Some((c.name.to_string(), value(&c.name, &c.default)?))).collect()
+}

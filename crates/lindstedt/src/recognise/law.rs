@@ -1,0 +1,237 @@
+//! The friction law of an equation: T(x' - v*), with v* the speed at which it jumps or bends.
+
+use super::in_pi::{InPi, times};
+use super::{PI, Refusal, Why, multiply_out};
+use lindstedt_equation::monomials::{Monomial, Monomials, expand};
+use lindstedt_equation::{Expression, Function};
+use lindstedt_melnikov::{Friction, PolynomialFriction, Real};
+use rug::float::Constant;
+use rug::ops::Pow;
+use rug::{Float, Rational};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A friction law and the speed of the belt.
+#[derive(Clone, Debug)]
+pub(super) struct FrictionLaw {
+    pub belt_speed: Real,
+    dry: Real,
+    /// t_k at index k.
+    coefficients: Vec<Real>,
+    /// The whole law in w, which x' stands for, where it is more than a sign and a polynomial.
+    whole: Option<Expression>,
+}
+
+/// v* from the sign(p x' + q) and |p x' + q| of an expression: -q/p, the same for all of them.
+/// Read before the values of coefficients can make a term vanish.
+fn belt_speed(perturbation: &Expression) -> Result<Option<InPi>, Refusal> {
+    let mut speed: Option<InPi> = None;
+    let mut refused = None;
+    let seen = std::cell::RefCell::new(Vec::new());
+    let _ = perturbation.find(&|e| {
+        if let Expression::Function(Function::Abs | Function::Sign, z) = e
+            && z.contains(&Expression::Velocity)
+        {
+            seen.borrow_mut().push((e.clone(), (**z).clone()));
+        }
+        false
+    });
+    for (whole, inside) in seen.into_inner() {
+        let found = kink(&inside);
+        match (&speed, found) {
+            (_, None) => refused = Some(whole),
+            (None, Some(found)) => speed = Some(found),
+            (Some(first), Some(found)) if *first != found => refused = Some(whole),
+            _ => {}
+        }
+    }
+    match refused {
+        Some(term) => Err(Refusal::Term { term: Box::new(term), why: Why::OtherSpeed }),
+        None => Ok(speed),
+    }
+}
+
+/// The zero in x' of p x' + q with a rational p.
+fn kink(inside: &Expression) -> Option<InPi> {
+    let all = expand(inside)?;
+    let (mut slope, mut constant) = (Rational::new(), InPi::default());
+    for (m, q) in &all.terms {
+        if m.is_power(0, 1) && m.order == 0 && m.parameters.is_empty() {
+            slope += q;
+        } else if m.is_power(0, 0) && m.order == 0 {
+            constant.add(m, q)?;
+        } else {
+            return None;
+        }
+    }
+    (!slope.is_zero()).then(|| constant.scaled(&(Rational::from(-1) / slope)))
+}
+
+impl InPi {
+    fn expression(&self) -> Expression {
+        let power = |k: i32| Expression::parameter(PI).pow(i64::from(k));
+        let terms = self.terms().map(|(k, q)| Expression::Number(q.clone()) * power(k));
+        Expression::Sum(terms.collect()).canonical()
+    }
+}
+
+/// sign(p w) = sgn(p) sign(w) and |p w| = |p||w|, everywhere inside.
+fn homogeneous(e: &Expression) -> Expression {
+    let all = |list: &[Expression]| list.iter().map(homogeneous).collect();
+    match e {
+        Expression::Sum(list) => Expression::Sum(all(list)),
+        Expression::Product(list) => Expression::Product(all(list)),
+        Expression::Power(a, b) => homogeneous(a).pow(homogeneous(b)),
+        Expression::Function(function @ (Function::Abs | Function::Sign), z) => {
+            let slope = expand(z).and_then(|all| match all.terms.iter().collect::<Vec<_>>()[..] {
+                [(m, q)] if m.is_power(0, 1) && m.parameters.is_empty() && m.order == 0 => {
+                    Some(q.clone())
+                }
+                _ => None,
+            });
+            let Some(slope) = slope else { return homogeneous(z).apply(*function) };
+            let factor = match function {
+                Function::Abs => Rational::from(slope.abs_ref()),
+                _ => Rational::from(slope.signum_ref()),
+            };
+            Expression::Number(factor) * Expression::Velocity.apply(*function)
+        }
+        Expression::Function(function, z) => homogeneous(z).apply(*function),
+        other => other.clone(),
+    }
+}
+
+impl FrictionLaw {
+    /// The law of the bound terms of first order without t, `perturbation` being all of them as
+    /// they were written.
+    pub fn new(perturbation: &Expression, all: &Monomials) -> Result<Self, Refusal> {
+        let belt = belt_speed(perturbation)?.unwrap_or_default();
+        let shift = |e: &Expression| {
+            matches!(e, Expression::Velocity).then(|| Expression::Velocity + belt.expression())
+        };
+        let terms = all.terms.iter().map(|(m, q)| all.tree(m, q));
+        let shifted = Expression::Sum(terms.collect()).substitute(&shift).canonical();
+        let sum = multiply_out(&homogeneous(&shifted).canonical())?;
+        let irrational = |m: &Monomial, q: &Rational| Refusal::Term {
+            term: Box::new(sum.tree(m, q)),
+            why: Why::Irrational,
+        };
+        let (mut dry, mut closed) = (InPi::default(), true);
+        let mut coefficients: BTreeMap<u32, InPi> = BTreeMap::new();
+        for (m, q) in &sum.terms {
+            let constant = Monomial { parameters: m.parameters.clone(), ..Monomial::default() };
+            match sign_and_power(&sum, m) {
+                Some((false, k)) => {
+                    coefficients
+                        .entry(k)
+                        .or_default()
+                        .add(&constant, q)
+                        .ok_or_else(|| irrational(m, q))?;
+                }
+                Some((true, 0)) => dry.add(&constant, q).ok_or_else(|| irrational(m, q))?,
+                _ => closed = false,
+            }
+        }
+        let term = |k: u32| {
+            Expression::Product(vec![Expression::Small, Expression::Velocity.pow(i64::from(k))])
+        };
+        let value = |c: &InPi, k: u32| {
+            let refusal = || Refusal::Term { term: Box::new(term(k)), why: Why::Irrational };
+            c.value().map(Real::from).ok_or_else(refusal)
+        };
+        let degree = coefficients.keys().max().map_or(0, |k| k + 1);
+        let list =
+            (0..degree).map(|k| coefficients.get(&k).map_or(Ok(Real::from(0)), |c| value(c, k)));
+        Ok(Self {
+            belt_speed: value(&belt, 0)?,
+            dry: value(&dry, 0)?,
+            coefficients: list.collect::<Result<_, _>>()?,
+            whole: (!closed).then(|| {
+                let bare =
+                    |(m, q): (&Monomial, _)| sum.tree(&Monomial { order: 0, ..m.clone() }, q);
+                Expression::Sum(sum.terms.iter().map(bare).collect()).canonical()
+            }),
+        })
+    }
+
+    /// The law for y with x = s y: T(s w)/s, and the speed of the belt v*/s.
+    pub fn scaled(&self, s: &Rational) -> (Friction, Real) {
+        let inverse = Rational::from(s.recip_ref());
+        let size = Rational::from(s.abs_ref());
+        let mut power = inverse.clone();
+        let mut coefficients = Vec::new();
+        for c in &self.coefficients {
+            coefficients.push(times(c, &power));
+            power *= s;
+        }
+        let dry = times(&self.dry, &Rational::from(size.recip_ref()));
+        let polynomial = PolynomialFriction { dry, coefficients };
+        let belt = times(&self.belt_speed, &inverse);
+        let Some(whole) = self.whole.clone() else {
+            return (Friction::Polynomial(polynomial), belt);
+        };
+        let s = s.clone();
+        let law = Arc::new(move |w: &Float| {
+            let argument = Float::with_val(w.prec(), w * &s);
+            let value = evaluate(&whole, &argument);
+            value.unwrap_or_else(|| Float::with_val(w.prec(), f64::NAN)) / &s
+        });
+        let bends =
+            |e: &Expression| matches!(e, Expression::Function(Function::Abs | Function::Sign, _));
+        let smooth = self.whole.iter().all(|whole| whole.find(&bends).is_none());
+        (Friction::Custom { law, kinks: if smooth { Vec::new() } else { vec![0.0] } }, belt)
+    }
+}
+
+/// (whether sign(w) is a factor, the power of w) of a term made of sign(w), |w| and w alone.
+fn sign_and_power(all: &Monomials, m: &Monomial) -> Option<(bool, u32)> {
+    let (mut signs, mut power) = (0, m.velocity);
+    for (key, n) in &m.atoms {
+        match all.atoms.get(key)? {
+            Expression::Function(Function::Sign, z) if **z == Expression::Velocity => signs += n,
+            Expression::Function(Function::Abs, z) if **z == Expression::Velocity => {
+                signs += n;
+                power += n;
+            }
+            _ => return None,
+        }
+    }
+    (m.x == 0).then_some((signs % 2 == 1, power))
+}
+
+/// The value of a bound expression in x' alone (or, in [`super::numeric`], in x alone) at w.
+pub(super) fn evaluate(e: &Expression, w: &Float) -> Option<Float> {
+    let bits = w.prec();
+    let of = |e: &Expression| evaluate(e, w);
+    Some(match e {
+        Expression::Number(q) => Float::with_val(bits, q),
+        Expression::Parameter(name) if name == PI => Float::with_val(bits, Constant::Pi),
+        Expression::Velocity | Expression::Displacement => w.clone(),
+        Expression::Sum(list) => {
+            list.iter().try_fold(Float::new(bits), |sum, e| Some(sum + of(e)?))?
+        }
+        Expression::Product(list) => {
+            list.iter().try_fold(Float::with_val(bits, 1), |product, e| Some(product * of(e)?))?
+        }
+        Expression::Power(base, exponent) => match exponent.as_number() {
+            Some(n) if n.is_integer() => {
+                let n = n.numer().to_i32()?;
+                of(base)?.pow(n)
+            }
+            _ => of(base)?.pow(of(exponent)?),
+        },
+        Expression::Function(function, z) => {
+            let z = of(z)?;
+            match function {
+                Function::Ln => z.ln(),
+                Function::Exp => z.exp(),
+                Function::Sin => z.sin(),
+                Function::Cos => z.cos(),
+                Function::Abs => z.abs(),
+                Function::Sign if z.is_zero() => z,
+                Function::Sign => z.signum(),
+            }
+        }
+        _ => return None,
+    })
+}

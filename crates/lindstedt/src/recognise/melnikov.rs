@@ -1,0 +1,482 @@
+//! x'' = f(x) + eps (gamma cos(omega t) - T(x' - v*)) in the form of its terms.
+
+use super::in_pi::{InPi, ratio, times};
+use super::law::FrictionLaw;
+use super::numeric::NumericOrbit;
+use super::{Refusal, Why, bind, missing, multiply_out, named, potential, rest};
+use crate::Value;
+use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_equation::monomials::{Monomial, Monomials, expand};
+use lindstedt_equation::{Expression, Function, Problem};
+use lindstedt_melnikov::{
+    Axis, Branch, Class, Forcing, Friction, Harmonic, MelnikovError, Potential, Real, StickSlip,
+    System, Threshold, Verdict,
+};
+use rug::{Integer, Rational};
+use std::collections::BTreeMap;
+
+/// Harmonics k omega up to this k.
+const LARGEST_HARMONIC: u32 = 10_000;
+
+/// The unperturbed oscillator.
+#[derive(Clone, Debug)]
+pub enum Unperturbed {
+    /// One with a closed orbit, in y with x = s y + constant.
+    Closed {
+        /// y'' = ...
+        potential: Potential,
+        /// s, not 0.
+        scale: Rational,
+    },
+    /// Any other smooth force, followed numerically.
+    Numeric(Box<NumericOrbit>),
+}
+
+/// A problem in the form that Melnikov's method takes.
+///
+/// ```
+/// use lindstedt::recognise::MelnikovProblem;
+/// use lindstedt::coeff::{ball::Balls, digits::decimal};
+/// use lindstedt::{ProblemFile, recognise::all_values};
+///
+/// let file = ProblemFile::parse(
+///     r#"
+///     name = "pendulum"
+///     equation = "x'' + sin x = eps (gamma cos(omega t) - delta x')"
+///     condition = []
+///     [parameters]
+///     gamma = { value = "1" }
+///     omega = { value = "1" }
+///     delta = { value = "1" }
+///     "#,
+/// )?;
+/// let values = all_values(&file.problem, &Default::default());
+/// let pendulum = MelnikovProblem::new(&file.problem, &values)?;
+/// let gamma = &pendulum.thresholds(Balls::new(120))?[0].threshold.gamma;
+/// // 4 delta cosh(pi omega/2)/pi
+/// assert_eq!(decimal(gamma, 12).as_deref(), Some("3.19484844803"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MelnikovProblem {
+    /// x'' = f(x).
+    pub unperturbed: Unperturbed,
+    /// T in y.
+    pub friction: Friction,
+    /// The force at unit amplitude of its lowest harmonic.
+    pub forcing: Forcing,
+    /// v* in y.
+    pub belt_speed: Real,
+    /// gamma as it stands in the equation for x: the whole coefficient of the lowest harmonic, the
+    /// others being in proportion to it.
+    pub amplitude: Real,
+}
+
+/// The threshold on one orbit, in x.
+#[derive(Clone, Debug)]
+pub struct OrbitThreshold {
+    /// Which orbit.
+    pub name: &'static str,
+    /// gamma_c, D and F.
+    pub threshold: Threshold,
+}
+
+impl MelnikovProblem {
+    /// Reads the equation of a problem with the values of its parameters.
+    ///
+    /// # Errors
+    /// [`Refusal`], naming the term that does not fit.
+    pub fn new(problem: &Problem, values: &BTreeMap<String, Value>) -> Result<Self, Refusal> {
+        if problem.impact.is_some() {
+            return Err(Refusal::Wall);
+        }
+        let rest = rest(problem)?;
+        missing(&rest.parameters(), values)?;
+        let bound = bind(&rest, values);
+        let all = multiply_out(&bound)?;
+        let refuse = |m: &Monomial, q: &Rational, why| {
+            named(&rest, values, (all.tree(m, q), why), &|all, m| kind(all, m).err())
+        };
+        let (mut force, mut friction) = (Monomials::default(), Monomials::default());
+        (force.atoms, friction.atoms) = (all.atoms.clone(), all.atoms.clone());
+        let mut harmonics = Vec::new();
+        for (m, q) in &all.terms {
+            match kind(&all, m).map_err(|why| refuse(m, q, why))? {
+                Kind::Force => {
+                    force.terms.insert(m.clone(), Rational::from(-q));
+                }
+                Kind::Friction => {
+                    friction.terms.insert(m.clone(), q.clone());
+                }
+                Kind::Harmonic => {
+                    let found = Term::new(&all, m, &Rational::from(-q));
+                    harmonics.push((m, q, found.ok_or_else(|| refuse(m, q, Why::Irrational))?));
+                }
+            }
+        }
+        let mut terms: Vec<Term> = harmonics.iter().map(|(.., term)| term.clone()).collect();
+        terms.sort_by(|a, b| a.omega.to_f64().total_cmp(&b.omega.to_f64()));
+        let force_refusal = |why| match harmonics.first() {
+            Some((m, q, _)) => Refusal::Term { term: Box::new(all.tree(m, q)), why },
+            None => Refusal::NoForce,
+        };
+        let (forcing, amplitude) = match terms.as_slice() {
+            [] => {
+                (Forcing::single(silent_frequency(&bound).ok_or(Refusal::NoForce)?), Real::from(0))
+            }
+            list => forcing(list).map_err(force_refusal)?,
+        };
+        let off = |e: &Expression| matches!(e, Expression::Time).then(|| Expression::integer(0));
+        let law = FrictionLaw::new(&bound.substitute(&off), &friction)?;
+        let (unperturbed, scale) = match potential::closed(&force) {
+            Some((potential, scale)) => {
+                (Unperturbed::Closed { potential, scale: scale.clone() }, scale)
+            }
+            None => {
+                (Unperturbed::Numeric(Box::new(NumericOrbit::find(&force)?)), Rational::from(1))
+            }
+        };
+        let (friction, belt_speed) = law.scaled(&scale);
+        let found = Self { unperturbed, friction, forcing, belt_speed, amplitude };
+        if matches!(found.forcing, Forcing::Parametric { .. }) && !found.takes_parametric(&force) {
+            return Err(force_refusal(Why::Parametric));
+        }
+        if let Some(system) = found.system()? {
+            system.potential().check()?;
+        }
+        Ok(found)
+    }
+
+    /// x cos(omega t) is y cos(omega t) only without a shift, and known on polynomial orbits.
+    fn takes_parametric(&self, force: &Monomials) -> bool {
+        let Some(f) = potential::polynomial(force) else { return false };
+        let zero = |k: usize| f.get(k).is_none_or(InPi::is_zero);
+        let still = zero(0)
+            && match &self.unperturbed {
+                // The saddle at x = 0.
+                Unperturbed::Closed { potential: Potential::Helmholtz { .. }, .. } => {
+                    let slope = f.get(1).and_then(InPi::value).map(Real::from);
+                    slope.is_some_and(|f1| f1.sign().is_gt())
+                }
+                _ => zero(2),
+            };
+        let closed = matches!(&self.unperturbed,
+            Unperturbed::Closed { potential, .. } if potential.description().is_some());
+        closed && still
+    }
+
+    /// The system of y; nothing for a numeric orbit.
+    ///
+    /// # Errors
+    /// Those of [`System::new`].
+    pub fn system(&self) -> Result<Option<System>, MelnikovError> {
+        let Unperturbed::Closed { potential, .. } = &self.unperturbed else { return Ok(None) };
+        let (friction, forcing) = (self.friction.clone(), self.forcing.clone());
+        System::new(potential.clone(), friction, forcing, self.belt_speed.clone()).map(Some)
+    }
+
+    /// The oscillator of section 3, where the problem is one: everything about it in closed form.
+    #[must_use]
+    pub fn stick_slip(&self) -> Option<StickSlip> {
+        let Unperturbed::Closed { potential: Potential::DoubleWell { a, b }, .. } =
+            &self.unperturbed
+        else {
+            return None;
+        };
+        let Friction::Polynomial(law) = &self.friction else { return None };
+        let Forcing::Harmonics { omega, harmonics } = &self.forcing else { return None };
+        let [only] = harmonics.as_slice() else { return None };
+        let t = |k: usize| law.coefficients.get(k).cloned().unwrap_or_else(|| Real::from(0));
+        let rest = (0..law.coefficients.len()).filter(|k| *k != 1 && *k != 3);
+        if only.order != 1 || rest.into_iter().any(|k| t(k).sign().is_ne()) {
+            return None;
+        }
+        Some(StickSlip {
+            a: a.clone(),
+            b: b.clone(),
+            dry: law.dry.clone(),
+            alpha: t(1).neg(),
+            beta: t(3),
+            omega: omega.clone(),
+            belt_speed: self.belt_speed.clone(),
+        })
+    }
+
+    /// Which parameter of section 3 the parameter `name` of the problem is: changed, at three more
+    /// values, it must change that one into itself and nothing else.
+    #[must_use]
+    pub fn axis(
+        &self,
+        problem: &Problem,
+        values: &BTreeMap<String, Value>,
+        name: &str,
+    ) -> Option<Axis> {
+        let point = self.stick_slip()?;
+        let known = Real::from(values.get(name)?.clone());
+        let probes = [(1009, 733), (2003, 1511), (389, 617)].map(Rational::from);
+        let renamed = |axis: &Axis| {
+            point.clone().with(*axis, known.clone()) == point
+                && probes.iter().all(|q| {
+                    let mut values = values.clone();
+                    values.insert(name.to_owned(), Value::Rational(q.clone()));
+                    let found = Self::new(problem, &values).ok().and_then(|f| f.stick_slip());
+                    found == Some(point.clone().with(*axis, Real::Rational(q.clone())))
+                })
+        };
+        let all =
+            [Axis::A, Axis::B, Axis::Dry, Axis::Alpha, Axis::Beta, Axis::Omega, Axis::BeltSpeed];
+        all.into_iter().find(renamed)
+    }
+
+    /// |s|.
+    fn size(&self) -> Rational {
+        match &self.unperturbed {
+            Unperturbed::Closed { scale, .. } => Rational::from(scale.abs_ref()),
+            Unperturbed::Numeric(_) => Rational::from(1),
+        }
+    }
+
+    /// The thresholds on the orbits, in x: right loop before left, upper before lower.
+    ///
+    /// # Errors
+    /// Those of [`System::threshold`].
+    pub fn thresholds(&self, balls: Balls) -> Result<Vec<OrbitThreshold>, MelnikovError> {
+        let Unperturbed::Closed { potential, scale } = &self.unperturbed else {
+            return self.numeric_thresholds(balls);
+        };
+        let Some(system) = self.system()? else { return Ok(Vec::new()) };
+        let mut names = if potential.is_homoclinic() {
+            ["right loop", "left loop"]
+        } else {
+            ["upper orbit", "lower orbit"]
+        };
+        if *scale < 0 {
+            names.reverse();
+        }
+        let mut found = Vec::new();
+        for (branch, name) in [Branch::Positive, Branch::Negative].into_iter().zip(names) {
+            if branch == Branch::Negative && !potential.has_mirror_image() {
+                continue;
+            }
+            let threshold = self.in_x(balls, system.threshold(balls, branch)?);
+            found.push(OrbitThreshold { name, threshold });
+        }
+        if *scale < 0 {
+            found.reverse();
+        }
+        Ok(found)
+    }
+
+    fn numeric_thresholds(&self, balls: Balls) -> Result<Vec<OrbitThreshold>, MelnikovError> {
+        let Unperturbed::Numeric(orbit) = &self.unperturbed else { return Ok(Vec::new()) };
+        orbit.thresholds(balls, &self.friction, &self.forcing, &self.belt_speed)
+    }
+
+    /// x = s y: D_x = s^2 D_y, F_x = |s| F_y.
+    fn in_x(&self, balls: Balls, threshold: Threshold) -> Threshold {
+        let size = self.size();
+        let by = |ball: &Ball| balls.mul_rational(ball, &size);
+        Threshold {
+            gamma: by(&threshold.gamma),
+            signed: by(&threshold.signed),
+            dissipation: by(&by(&threshold.dissipation)),
+            forcing: by(&threshold.forcing),
+            class: threshold.class,
+        }
+    }
+
+    /// V, the largest speed on the orbit, in x.
+    #[must_use]
+    pub fn largest_speed(&self, balls: Balls) -> Option<Ball> {
+        match &self.unperturbed {
+            Unperturbed::Closed { potential, .. } => {
+                Some(balls.mul_rational(&potential.largest_speed(balls)?, &self.size()))
+            }
+            Unperturbed::Numeric(orbit) => orbit.largest_speed(balls),
+        }
+    }
+
+    /// (|v*|, ||v*| - V|, whether friction jumps), in x.
+    #[must_use]
+    pub fn distances(&self, balls: Balls) -> Option<(Ball, Ball, bool)> {
+        let by = |ball: &Ball| balls.mul_rational(ball, &self.size());
+        if let Ok(Some(system)) = self.system() {
+            let validity = system.validity(balls)?;
+            return Some((by(&validity.belt_speed), by(&validity.tangency_distance), validity.dry));
+        }
+        let speed = self.belt_speed.abs().ball(balls);
+        let distance = balls.abs(&balls.sub(&self.largest_speed(balls)?, &speed));
+        let dry = match &self.friction {
+            Friction::Polynomial(law) => law.dry.sign().is_ne(),
+            other => !other.kinks().is_empty(),
+        };
+        Some((speed, distance, dry))
+    }
+
+    /// The verdict on the theory for this eps, as of [`lindstedt_melnikov::Validity`].
+    #[must_use]
+    pub fn verdict(&self, balls: Balls, eps: f64) -> Option<Verdict> {
+        let (belt_speed, tangency_distance, dry) = self.distances(balls)?;
+        let validity = lindstedt_melnikov::Validity { belt_speed, tangency_distance, dry };
+        Some(validity.verdict(eps))
+    }
+
+    /// How the numbers are known.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        match (&self.unperturbed, &self.friction) {
+            (Unperturbed::Closed { .. }, Friction::Polynomial(_)) => Class::Certified,
+            _ => Class::Estimated,
+        }
+    }
+}
+
+/// What a term can be.
+enum Kind {
+    Force,
+    Friction,
+    Harmonic,
+}
+
+fn kind(all: &Monomials, m: &Monomial) -> Result<Kind, Why> {
+    let atoms = || m.atoms.keys().filter_map(|key| all.atoms.get(key));
+    let holds = |e: &Expression| atoms().any(|atom| atom.contains(e));
+    let any = |wanted: &dyn Fn(&Expression) -> bool| atoms().any(|a| a.find(wanted).is_some());
+    if any(&|e| matches!(e, Expression::Delayed(..))) {
+        return Err(Why::Delay);
+    }
+    if any(&|e| matches!(e, Expression::Formal(..))) {
+        return Err(Why::Formal);
+    }
+    if holds(&Expression::Small) {
+        return Err(Why::SmallInside);
+    }
+    let time = holds(&Expression::Time);
+    let velocity = m.velocity > 0 || holds(&Expression::Velocity);
+    let position = m.x > 0 || holds(&Expression::Displacement);
+    match m.order {
+        0 if time || velocity => Err(Why::NotSmall),
+        0 => Ok(Kind::Force),
+        1 if time => {
+            let harmonic = m.atoms.values().eq(&[1]) && atoms().all(|e| angle(e).is_some());
+            if !harmonic || velocity || m.x > 1 {
+                Err(Why::NotHarmonic)
+            } else {
+                Ok(Kind::Harmonic)
+            }
+        }
+        1 if position => Err(Why::DependsOnPosition),
+        1 => Ok(Kind::Friction),
+        _ => Err(Why::HigherOrder),
+    }
+}
+
+/// (terms in t, terms without) of the argument of a sine or cosine of omega t + phase.
+fn angle(e: &Expression) -> Option<(Monomials, Monomials)> {
+    let Expression::Function(Function::Sin | Function::Cos, argument) = e else { return None };
+    let all = expand(argument)?;
+    let (mut frequency, mut phase) = (Monomials::default(), Monomials::default());
+    for (m, q) in all.terms {
+        (m.order == 0 && m.x == 0 && m.velocity == 0).then_some(())?;
+        let part = match m.atoms.iter().next() {
+            None => &mut phase,
+            Some((key, 1)) if key == "t" && m.atoms.len() == 1 => &mut frequency,
+            Some(_) => return None,
+        };
+        part.terms.insert(m, q);
+    }
+    (!frequency.terms.is_empty()).then_some((frequency, phase))
+}
+
+fn sum(part: &Monomials) -> Option<InPi> {
+    let mut sum = InPi::default();
+    part.terms.iter().try_for_each(|(m, q)| sum.add(m, q))?;
+    Some(sum)
+}
+
+/// The frequency of a force whose amplitude is zero at the values given.
+fn silent_frequency(bound: &Expression) -> Option<Real> {
+    let term = bound.find(&|e| angle(e).is_some())?;
+    let omega = Real::from(sum(&angle(term)?.0)?.value()?);
+    Some(omega.abs())
+}
+
+/// One harmonic force g x^p cos(omega t + phase).
+#[derive(Clone, Debug)]
+struct Term {
+    omega: Real,
+    /// In radians; nothing where it is a sum of a rational number and a multiple of pi.
+    phase: Option<Real>,
+    size: Real,
+    parametric: bool,
+}
+
+impl Term {
+    fn new(all: &Monomials, m: &Monomial, q: &Rational) -> Option<Self> {
+        let atom = all.atoms.get(m.atoms.keys().next()?)?;
+        let (frequency, phase) = angle(atom)?;
+        let omega = Real::from(sum(&frequency)?.value()?);
+        let mut phase = sum(&phase)?;
+        // cos(-z) = cos z.
+        if omega.sign().is_lt() {
+            phase = phase.neg();
+        }
+        if matches!(atom, Expression::Function(Function::Sin, _)) {
+            let quarter = if omega.sign().is_lt() { 1 } else { -1 };
+            let mut turn = InPi::of(&Expression::parameter(super::PI))?;
+            turn = turn.scaled(&Rational::from((quarter, 2)));
+            phase = phase.plus(&turn);
+        }
+        let mut size = InPi::default();
+        size.add(m, q)?;
+        Some(Self {
+            omega: omega.abs(),
+            phase: phase.value().map(Real::from),
+            size: Real::from(size.value()?),
+            parametric: m.x == 1,
+        })
+    }
+}
+
+/// The force of unit lowest amplitude, and that amplitude; terms by rising frequency.
+fn forcing(terms: &[Term]) -> Result<(Forcing, Real), Why> {
+    let first = terms.first().ok_or(Why::NotHarmonic)?;
+    if terms.iter().any(|t| t.parametric) {
+        return match terms {
+            [only] => Ok((Forcing::Parametric { omega: only.omega.clone() }, only.size.clone())),
+            _ => Err(Why::Parametric),
+        };
+    }
+    if let [only] = terms {
+        return Ok((Forcing::single(only.omega.clone()), only.size.clone()));
+    }
+    let weights: Option<Vec<Rational>> =
+        terms.iter().map(|t| ratio(&t.size, &first.size)).collect();
+    let weights = weights.ok_or(Why::Irrational)?;
+    let ratios: Option<Vec<Rational>> =
+        terms.iter().map(|t| ratio(&t.omega, &first.omega)).collect();
+    let Some(ratios) = ratios else {
+        // A rational number and a rational multiple of pi have no common period.
+        if terms.len() > 2 {
+            return Err(Why::NotHarmonic);
+        }
+        let list = terms.iter().zip(weights).map(|(t, w)| (t.omega.clone(), Real::Rational(w)));
+        return Ok((Forcing::Incommensurate(list.collect()), first.size.clone()));
+    };
+    // omega_i = ratio_i omega_1 = k_i omega with the largest omega.
+    let common = ratios.iter().fold(Integer::from(1), |c, r| c.lcm(r.denom()));
+    let whole: Vec<Integer> =
+        ratios.iter().map(|r| Integer::from(&common / r.denom()) * r.numer()).collect();
+    let divisor = whole.iter().fold(Integer::new(), |d, k| d.gcd(k));
+    let omega = times(&first.omega, &Rational::from((divisor.clone(), common)));
+    let mut harmonics = Vec::new();
+    for ((term, k), weight) in terms.iter().zip(whole).zip(weights) {
+        let order = Integer::from(k / &divisor).to_u32().filter(|k| *k <= LARGEST_HARMONIC);
+        harmonics.push(Harmonic {
+            order: order.ok_or(Why::NotHarmonic)?,
+            weight: Real::Rational(weight),
+            phase: term.phase.clone().ok_or(Why::Irrational)?,
+        });
+    }
+    Ok((Forcing::Harmonics { omega, harmonics }, first.size.clone()))
+}

@@ -1,0 +1,206 @@
+//! From the equation of a problem to what a method needs: Melnikov's potential, friction, forcing
+//! and belt speed ([`melnikov`]), the impact oscillator of section 2 ([`impact`]).
+//!
+//! Terms are matched by what they are, multiplied out with the values of the parameters, never by
+//! their names. A term that does not fit is named; nothing is dropped.
+
+pub mod impact;
+mod in_pi;
+mod law;
+pub mod melnikov;
+mod numeric;
+mod potential;
+
+pub use impact::ImpactProblem;
+pub use in_pi::all_values;
+pub use melnikov::{MelnikovProblem, OrbitThreshold};
+pub use numeric::{NumericOrbit, OrbitCheck};
+
+use crate::Value;
+use lindstedt_equation::monomials::{MOST_TERMS, Monomial, Monomials, expand};
+use lindstedt_equation::{Expression, Problem};
+use lindstedt_melnikov::MelnikovError;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Why a term does not fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Why {
+    /// It must vanish with the small parameter.
+    NotSmall,
+    /// It is of higher order than the first.
+    HigherOrder,
+    /// The small parameter stands inside a function.
+    SmallInside,
+    /// An earlier time.
+    Delay,
+    /// A formal function.
+    Formal,
+    /// A dissipative term that depends on x.
+    DependsOnPosition,
+    /// A function of t other than a harmonic force.
+    NotHarmonic,
+    /// A parametric force beside another force, or where the orbit does not take it.
+    Parametric,
+    /// It jumps at another speed than the jump before.
+    OtherSpeed,
+    /// A coefficient that is neither rational nor a rational multiple of pi.
+    Irrational,
+    /// It is not linear in x, x' and their delayed values.
+    NotLinear,
+    /// A second frequency.
+    OtherFrequency,
+    /// A delay that is not the period of the orbit.
+    OtherDelay,
+}
+
+impl fmt::Display for Why {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotSmall => "has no factor of the small parameter; only a force f(x) may have none",
+            Self::HigherOrder => "is of higher order in the small parameter; Melnikov's method is of first order",
+            Self::SmallInside => "has the small parameter inside a function",
+            Self::Delay => "is a delay; Melnikov's method has none",
+            Self::Formal => "is a formal function",
+            Self::DependsOnPosition => "depends on x; the perturbation is a function of x' or a force",
+            Self::NotHarmonic => "is no harmonic force cos(omega*t + phase)",
+            Self::Parametric => "is a parametric force; alone, on a polynomial potential about x = 0 it can be taken",
+            Self::OtherSpeed => "jumps or bends elsewhere than at one speed x' = v*, the same for all terms",
+            Self::Irrational => "has a coefficient that is neither rational nor a rational multiple of pi",
+            Self::NotLinear => "is not linear in x, x', x(t - T), x'(t - T)",
+            Self::OtherFrequency => "is a second force",
+            Self::OtherDelay => "has a delay that is no period 2*pi*k/omega of the force, k = 1, 2, ...",
+        })
+    }
+}
+
+/// Why an equation is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// x'' is not free.
+    #[error("x'' does not stand alone")]
+    Acceleration,
+    /// Multiplied out, the equation is too long.
+    #[error("multiplied out, the equation has more than {limit} terms")]
+    TooManyTerms {
+        /// The limit.
+        limit: usize,
+    },
+    /// Parameters of the equation without a value.
+    #[error("without a value: {}", names.join(", "))]
+    MissingValues {
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// A term that does not fit.
+    #[error("{}: {why}", term.print("eps", lindstedt_equation::print::Style::Text))]
+    Term {
+        /// The term, as it occurs multiplied out.
+        term: Box<Expression>,
+        /// Why.
+        why: Why,
+    },
+    /// No harmonic force.
+    #[error("there is no harmonic force")]
+    NoForce,
+    /// The unperturbed equation has no saddle with an orbit that returns or leads to another.
+    #[error("no homoclinic or heteroclinic orbit of the unperturbed equation was found")]
+    NoOrbit,
+    /// The unperturbed equation has no stiffness.
+    #[error("the free flight needs alpha^2 > 0 in x'' + alpha^2 x, not {value}")]
+    NoStiffness {
+        /// alpha^2.
+        value: String,
+    },
+    /// There is a wall.
+    #[error("there is a wall; Melnikov's method has none")]
+    Wall,
+    /// There is no wall.
+    #[error("there is no wall: the file has no [impact]")]
+    NoWall,
+    /// k is not a positive whole number.
+    #[error("the periods between impacts must be a positive whole number, not {value}")]
+    Periods {
+        /// k.
+        value: String,
+    },
+    /// What Melnikov's method says.
+    #[error(transparent)]
+    Melnikov(#[from] MelnikovError),
+}
+
+impl Refusal {
+    /// The term that the refusal is about.
+    #[must_use]
+    pub fn term(&self) -> Option<&Expression> {
+        match self {
+            Self::Term { term, .. } => Some(term),
+            _ => None,
+        }
+    }
+}
+
+/// The symbol that stands for pi in a bound expression: no parameter can have this name.
+const PI: &str = "pi";
+
+/// The value of a parameter as an expression.
+fn of_value(value: &Value) -> Expression {
+    match value {
+        Value::Rational(q) => Expression::Number(q.clone()),
+        Value::PiTimes(q) => Expression::Number(q.clone()) * Expression::parameter(PI),
+    }
+}
+
+/// The expression with the values of its parameters.
+fn bind(e: &Expression, values: &BTreeMap<String, Value>) -> Expression {
+    let value = |e: &Expression| match e {
+        Expression::Parameter(name) => values.get(name).map(of_value),
+        _ => None,
+    };
+    e.substitute(&value).canonical()
+}
+
+/// The left side of x'' + rest = 0 without x''.
+fn rest(problem: &Problem) -> Result<Expression, Refusal> {
+    let equation = problem.time_domain.as_ref().unwrap_or(&problem.equation);
+    let alone = equation.acceleration_alone().map_err(|_| Refusal::Acceleration)?;
+    let terms = alone.terms().iter().filter(|t| **t != Expression::Acceleration).cloned();
+    Ok(Expression::Sum(terms.collect()).canonical())
+}
+
+fn multiply_out(e: &Expression) -> Result<Monomials, Refusal> {
+    expand(e).ok_or(Refusal::TooManyTerms { limit: MOST_TERMS })
+}
+
+/// Names among `used` that have no value.
+fn missing(used: &[String], values: &BTreeMap<String, Value>) -> Result<(), Refusal> {
+    let mut names: Vec<String> = Vec::new();
+    for name in used.iter().filter(|name| !values.contains_key(*name)) {
+        if !names.contains(name) {
+            names.push(name.clone());
+        }
+    }
+    if names.is_empty() { Ok(()) } else { Err(Refusal::MissingValues { names }) }
+}
+
+/// The refusal of a term, named as it occurs in the equation without values: the first term there
+/// that `fits` refuses and whose coefficient does not vanish at the values.
+fn named(
+    rest: &Expression,
+    values: &BTreeMap<String, Value>,
+    bound: (Expression, Why),
+    fits: &dyn Fn(&Monomials, &Monomial) -> Option<Why>,
+) -> Refusal {
+    let found = expand(rest).and_then(|all| {
+        all.terms.iter().find_map(|(monomial, q)| {
+            let why = fits(&all, monomial)?;
+            let term = all.tree(monomial, q);
+            let vanishes = expand(&bind(&term, values)).is_some_and(|e| e.terms.is_empty());
+            (!vanishes).then_some((term, why))
+        })
+    });
+    let (term, why) = found.unwrap_or(bound);
+    Refusal::Term { term: Box::new(term), why }
+}

@@ -1,0 +1,540 @@
+//! Orbits of a force without closed form, followed by Taylor series; every number is estimated.
+
+use super::in_pi::{InPi, times};
+use super::law::evaluate;
+use super::melnikov::OrbitThreshold;
+use super::{PI, Refusal, potential};
+use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_equation::Expression;
+use lindstedt_equation::monomials::Monomials;
+use lindstedt_melnikov::quadrature::tanh_sinh;
+use lindstedt_melnikov::{Class, Forcing, ForcingWork, Friction, MelnikovError, Real, Threshold};
+use lindstedt_simulate::{Digits, Integrator, Model, Parameters, Quantity, Settings, Trajectory};
+use rug::{Float, Rational};
+
+/// Points of the search for saddles and turning points.
+const POINTS: i32 = 4000;
+/// Half the width of the search where no bound of the zeros is known.
+const REACH: f64 = 20.0;
+/// Bits of the search.
+const COARSE: u32 = 128;
+/// Halvings of the step of the trapezoidal rule.
+const LEVELS: u32 = 9;
+
+/// One orbit from a saddle.
+#[derive(Clone, Debug)]
+struct Path {
+    name: &'static str,
+    saddle: Float,
+    /// Where the motion starts: the turning point, or the centre between two saddles.
+    start: Float,
+    /// The other saddle of a heteroclinic orbit.
+    other: Option<Float>,
+    /// +1: x' >= 0 on a heteroclinic orbit.
+    sign: i32,
+}
+
+/// The orbits of x'' = f(x) from the saddle nearest to x = 0.
+///
+/// Found by the signs of f and of W(x) = int f from the saddle on a grid, W = x'^2/2: a zero of W
+/// is a turning point, a double one another saddle. Refined, then followed in time from the middle
+/// towards the saddle with twice the digits, which the instability of the saddle costs.
+#[derive(Clone, Debug)]
+pub struct NumericOrbit {
+    force: Expression,
+    paths: Vec<Path>,
+}
+
+/// What is known of an orbit.
+#[derive(Clone, Debug)]
+pub struct OrbitCheck {
+    /// Which.
+    pub name: &'static str,
+    /// Its saddle.
+    pub saddle: f64,
+    /// The turning point, or the other saddle.
+    pub end: f64,
+    /// Whether it returns.
+    pub homoclinic: bool,
+    /// max |x'^2/2 - W(x)| on the orbit, W by quadrature: two routes.
+    pub energy_residual: f64,
+    /// |x - saddle| where it was left.
+    pub decay: f64,
+}
+
+impl NumericOrbit {
+    /// The orbits of the force with these terms (in x alone, bound).
+    pub(super) fn find(force: &Monomials) -> Result<Self, Refusal> {
+        let terms = force.terms.iter().map(|(m, q)| force.tree(m, q));
+        let found = Self { force: Expression::Sum(terms.collect()).canonical(), paths: Vec::new() };
+        let reach = potential::polynomial(force).map_or(REACH, |f| cauchy_bound(&f));
+        let paths = found.search(reach).unwrap_or_default();
+        if paths.is_empty() { Err(Refusal::NoOrbit) } else { Ok(Self { paths, ..found }) }
+    }
+
+    fn f(&self, x: &Float) -> Option<Float> {
+        evaluate(&self.force, x).filter(Float::is_finite)
+    }
+
+    /// W between two points.
+    fn work(&self, from: &Float, to: &Float, bits: u32) -> Option<Float> {
+        let estimate = tanh_sinh(bits, from, to, |x| self.f(x)).ok()?;
+        Some(Float::with_val(bits, &estimate.value))
+    }
+
+    /// W over one cell of the search: Gauss and Legendre with five points, exact to 1e-16 there.
+    fn cell(&self, from: &Float, to: &Float) -> Option<Float> {
+        const NODES: [(f64, f64); 5] = [
+            (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
+            (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+            (0.0, 0.568_888_888_888_888_9),
+            (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+            (0.906_179_845_938_664, 0.236_926_885_056_189_1),
+        ];
+        let middle = Float::with_val(COARSE, from + to) / 2u32;
+        let half = Float::with_val(COARSE, to - from) / 2u32;
+        let mut sum = Float::new(COARSE);
+        for (node, weight) in NODES {
+            let x = Float::with_val(COARSE, &half * node) + &middle;
+            sum += self.f(&x)? * weight;
+        }
+        Some(sum * half)
+    }
+
+    /// A zero of f between two points of opposite sign.
+    fn zero(&self, low: &Float, high: &Float, bits: u32) -> Option<Float> {
+        let (mut low, mut high) = (Float::with_val(bits, low), Float::with_val(bits, high));
+        let rising = self.f(&high)? > 0;
+        for _ in 0..bits + 8 {
+            let middle = Float::with_val(bits, &low + &high) / 2u32;
+            if (self.f(&middle)? > 0) == rising { high = middle } else { low = middle }
+        }
+        Some(Float::with_val(bits, &low + &high) / 2u32)
+    }
+
+    fn search(&self, reach: f64) -> Option<Vec<Path>> {
+        let step = 2.0 * reach / f64::from(POINTS);
+        // Off the symmetric points, where zeros like to be.
+        let at = |n: i32| Float::with_val(COARSE, step * (f64::from(n) + 0.137) - reach);
+        let value = |n: i32| self.f(&at(n));
+        let mut saddles = Vec::new();
+        for n in 0..POINTS {
+            if let (Some(a), Some(b)) = (value(n), value(n + 1))
+                && a < 0
+                && b > 0
+            {
+                saddles.push((n, self.zero(&at(n), &at(n + 1), COARSE)?));
+            }
+        }
+        saddles.sort_by(|a, b| a.1.clone().abs().total_cmp(&b.1.clone().abs()));
+        for (_, saddle) in &saddles {
+            let mut paths = Vec::new();
+            for direction in [1, -1] {
+                self.follow(saddle, direction, step, reach, &mut paths);
+            }
+            if !paths.is_empty() {
+                return Some(paths);
+            }
+        }
+        None
+    }
+
+    /// Walks away from the saddle until W vanishes.
+    fn follow(&self, saddle: &Float, direction: i32, step: f64, reach: f64, paths: &mut Vec<Path>) {
+        let at = |n: i32| Float::with_val(COARSE, saddle + step * f64::from(n * direction));
+        let mut w = Float::new(COARSE);
+        let mut top = Float::new(COARSE);
+        let mut centre = None;
+        let mut n = 0;
+        while (at(n).to_f64()).abs() <= 1.5 * reach {
+            let (here, next) = (at(n), at(n + 1));
+            let Some(piece) = self.cell(&here, &next) else { return };
+            let before = w.clone();
+            w += piece;
+            if w > top {
+                top = w.clone();
+            }
+            let (Some(a), Some(b)) = (self.f(&here), self.f(&next)) else { return };
+            let (a, b) = (a * direction, b * direction);
+            if n > 0 && a > 0 && b <= 0 && centre.is_none() {
+                centre = self.zero(&here, &next, COARSE);
+            }
+            if n > 0 && a < 0 && b >= 0 {
+                // A minimum of W: another saddle, on the same level or higher.
+                let Some(other) = self.zero(&here, &next, COARSE) else { return };
+                let Some(level) = self.work(saddle, &other, 80) else { return };
+                let flat = Float::with_val(53, level.abs_ref()) < Float::with_val(53, &top * 1e-18);
+                if flat {
+                    let toward = (saddle.to_f64() > 0.0) == (direction < 0);
+                    if let Some(start) = centre.filter(|_| toward || *saddle == 0) {
+                        let path = |name, sign| Path {
+                            name,
+                            saddle: saddle.clone(),
+                            start: start.clone(),
+                            other: Some(other.clone()),
+                            sign,
+                        };
+                        paths.push(path("upper orbit", 1));
+                        paths.push(path("lower orbit", -1));
+                    }
+                    return;
+                }
+            }
+            if n > 0 && before > 0 && w < 0 {
+                let name = if direction > 0 { "right loop" } else { "left loop" };
+                let Some(start) = self.turning_point(saddle, &next, COARSE) else { return };
+                paths.push(Path { name, saddle: saddle.clone(), start, other: None, sign: 1 });
+                return;
+            }
+            n += 1;
+        }
+    }
+
+    /// The simple zero of W near x, by Newton's method.
+    fn turning_point(&self, saddle: &Float, near: &Float, bits: u32) -> Option<Float> {
+        let mut x = Float::with_val(bits, near);
+        for _ in 0..60 {
+            let step = self.work(saddle, &x, bits)? / self.f(&x)?;
+            x -= &step;
+            let small = Float::with_val(53, x.abs_ref()) >> (bits.saturating_sub(12));
+            if Float::with_val(53, step.abs_ref()) <= small {
+                return Some(x);
+            }
+        }
+        None
+    }
+
+    /// The motion with so many bits.
+    fn motion(&self, path: &Path, bits: u32) -> Result<Motion, MelnikovError> {
+        let undecided = || MelnikovError::Undecided { bits };
+        self.try_motion(path, bits).ok_or_else(undecided)
+    }
+
+    fn try_motion(&self, path: &Path, bits: u32) -> Option<Motion> {
+        let digits = (2.0 * f64::from(bits) * std::f64::consts::LOG10_2) as u32 + 20;
+        let real = Digits::for_digits(digits);
+        let work = (f64::from(digits) * std::f64::consts::LOG2_10) as u32 + 40;
+        let margin = Float::with_val(work, 1) >> 30;
+        let around =
+            |x: &Float| (Float::with_val(work, x - &margin), Float::with_val(work, x + &margin));
+        let (low, high) = around(&path.saddle);
+        let saddle = self.zero(&low, &high, work)?;
+        let start = if path.other.is_some() {
+            let (low, high) = around(&path.start);
+            self.zero(&low, &high, work)?
+        } else {
+            self.turning_point(&saddle, &path.start, work)?
+        };
+        let speed = if path.other.is_some() {
+            let square = self.work(&saddle, &start, work)? * 2u32;
+            (square > 0).then(|| square.sqrt())?
+        } else {
+            Float::new(work)
+        };
+        let h = Float::with_val(work, 1) >> (work / 3);
+        let (left, right) = (
+            self.f(&Float::with_val(work, &saddle - &h))?,
+            self.f(&Float::with_val(work, &saddle + &h))?,
+        );
+        let rate = (Float::with_val(work, right - left) / h / 2u32).sqrt().to_f64();
+        (rate > 0.0 && rate.is_finite()).then_some(())?;
+        let equation = Expression::Acceleration - self.force.clone();
+        let model = Model::second_order(&equation).ok()?;
+        let parameters = Parameters::new().with(PI, Quantity::PiMultiple(Rational::from(1)));
+        let system = model.compile(real, &parameters).ok()?;
+        // e^(-rate t) = 2^-bits, and what it takes to come near the saddle.
+        let end = (f64::from(bits) * std::f64::consts::LN_2 + 6.0) / rate;
+        let end = Float::with_val(work, end);
+        let run = |speed: Float| {
+            let state = [start.clone(), speed];
+            let zero = Float::new(work);
+            let mut flow =
+                Integrator::new(&system, &zero, &state, Settings::for_digits(digits)).ok()?;
+            let mut trajectory = Trajectory::new(real);
+            flow.advance(&end, &mut |report| trajectory.record(report)).ok()?;
+            Some(trajectory)
+        };
+        let two = path.other.is_some();
+        let forward = run(speed.clone() * path.sign)?;
+        let backward = if two { Some(run(-speed * path.sign)?) } else { None };
+        Some(Motion { forward, backward, end, rate, saddle, bits, work })
+    }
+
+    /// The thresholds on all orbits, each number with an estimated error in its radius.
+    ///
+    /// # Errors
+    /// [`MelnikovError::Undecided`] where a quadrature does not settle,
+    /// [`MelnikovError::NoForcing`], [`MelnikovError::NoClosedForm`] for parametric forces.
+    pub fn thresholds(
+        &self,
+        balls: Balls,
+        friction: &Friction,
+        forcing: &Forcing,
+        belt_speed: &Real,
+    ) -> Result<Vec<OrbitThreshold>, MelnikovError> {
+        let one = |path: &Path| {
+            let motion = self.motion(path, balls.bits())?;
+            let dissipation = motion.dissipation(balls, friction, belt_speed)?;
+            let forcing = motion.reach(balls, forcing, dissipation.is_negative())?;
+            let undecided = MelnikovError::Undecided { bits: balls.bits() };
+            let signed = balls.div(&dissipation, &forcing).ok_or(undecided)?;
+            let gamma = balls.abs(&signed);
+            let class = Class::Estimated;
+            Ok(OrbitThreshold {
+                name: path.name,
+                threshold: Threshold { gamma, signed, dissipation, forcing, class },
+            })
+        };
+        self.paths.iter().map(one).collect()
+    }
+
+    /// V on the first orbit.
+    #[must_use]
+    pub fn largest_speed(&self, balls: Balls) -> Option<Ball> {
+        let path = self.paths.first()?;
+        let bits = balls.bits();
+        // The speed is largest where f = 0: between the saddle and the turning point.
+        let centre = if path.other.is_some() {
+            path.start.clone()
+        } else {
+            self.centre(&path.saddle, &path.start)?
+        };
+        let margin = Float::with_val(bits, 1) >> 30;
+        let at = |x: &Float| -> Option<Float> {
+            self.zero(
+                &Float::with_val(bits, x - &margin),
+                &Float::with_val(bits, x + &margin),
+                bits,
+            )
+        };
+        let square = self.work(&at(&path.saddle)?, &at(&centre)?, bits)? * 2u32;
+        let value = (square > 0).then(|| square.sqrt())?;
+        let error = Float::with_val(53, value.abs_ref()) >> bits.saturating_sub(8);
+        Some(balls.from_parts(&value, &error))
+    }
+
+    /// The zero of f next to the saddle on the way to the end.
+    fn centre(&self, saddle: &Float, end: &Float) -> Option<Float> {
+        let step = Float::with_val(COARSE, end - saddle) / 400u32;
+        let at = |n: u32| Float::with_val(COARSE, saddle + Float::with_val(COARSE, &step * n));
+        let side = self.f(&at(1))? > 0;
+        let n = (1..400).find(|n| self.f(&at(n + 1)).is_some_and(|f| (f > 0) != side))?;
+        self.zero(&at(n), &at(n + 1), COARSE)
+    }
+
+    /// Checks every orbit: the energy of the motion followed in time by a quadrature of the force, and
+    /// the decay to the saddle.
+    #[must_use]
+    pub fn check(&self, bits: u32) -> Vec<OrbitCheck> {
+        let one = |path: &Path| {
+            let motion = self.try_motion(path, bits)?;
+            let mut residual = 0.0f64;
+            for n in 0..6 {
+                let t = Float::with_val(motion.work, &motion.end * n) / 12u32;
+                let (x, v) = motion.state(&t)?;
+                let w = self.work(&motion.saddle, &x, bits)?;
+                let energy = v.square() / 2u32;
+                residual = residual.max(Float::with_val(53, energy - w).abs().to_f64());
+            }
+            let (last, _) = motion.state(&motion.end)?;
+            let target = path.other.as_ref().filter(|o| (**o > path.saddle) == (path.sign > 0));
+            let target = target.map_or(motion.saddle.to_f64(), Float::to_f64);
+            Some(OrbitCheck {
+                name: path.name,
+                saddle: path.saddle.to_f64(),
+                end: path.other.as_ref().unwrap_or(&path.start).to_f64(),
+                homoclinic: path.other.is_none(),
+                energy_residual: residual,
+                decay: (last.to_f64() - target).abs(),
+            })
+        };
+        self.paths.iter().filter_map(one).collect()
+    }
+}
+
+/// Beyond 1 + max |f_k/f_n| a polynomial has no zeros.
+fn cauchy_bound(f: &[InPi]) -> f64 {
+    let size = |c: &InPi| -> f64 {
+        c.terms().map(|(k, q)| q.to_f64() * std::f64::consts::PI.powi(k)).sum::<f64>().abs()
+    };
+    let last = f.last().map_or(1.0, size);
+    let largest = f.iter().rev().skip(1).map(|c| size(c) / last).fold(0.0, f64::max);
+    (1.0 + largest).min(1e6)
+}
+
+/// x(t), x'(t) for |t| <= end.
+struct Motion {
+    forward: Trajectory<Digits>,
+    backward: Option<Trajectory<Digits>>,
+    end: Float,
+    rate: f64,
+    saddle: Float,
+    bits: u32,
+    work: u32,
+}
+
+impl Motion {
+    fn state(&self, t: &Float) -> Option<(Float, Float)> {
+        let (trajectory, flip) = match (&self.backward, t.is_sign_negative()) {
+            (Some(backward), true) => (backward, true),
+            // A loop is symmetric in time about its turning point.
+            (None, true) => (&self.forward, true),
+            _ => (&self.forward, false),
+        };
+        let t = Float::with_val(self.work, t.abs_ref());
+        let (x, v) = (trajectory.value(0, &t)?, trajectory.value(1, &t)?);
+        Some((x, if flip { -v } else { v }))
+    }
+
+    /// The integral of g(t, v) over the line by the trapezoidal rule, halved until it settles; the
+    /// error is the last change.
+    fn trapezoid(&self, g: &dyn Fn(&Float, &Float) -> Float) -> Option<(Float, Float)> {
+        let term = |t: &Float| Some(g(t, &self.state(t)?.1));
+        let mut h = Float::with_val(self.work, 0.5 / self.rate);
+        let (mut sum, mut last) = (term(&Float::new(self.work))?, None::<Float>);
+        let mut size = Float::new(53);
+        for level in 0..LEVELS {
+            let mut n = 1u32;
+            loop {
+                let t = Float::with_val(self.work, &h * n);
+                if t > self.end {
+                    break;
+                }
+                for t in [t.clone(), -t] {
+                    let value = term(&t)?;
+                    size = size.max(&Float::with_val(53, value.abs_ref()));
+                    sum += value;
+                }
+                n += if level == 0 { 1 } else { 2 };
+            }
+            let value = Float::with_val(self.work, &sum * &h);
+            if let Some(before) = &last {
+                let error = Float::with_val(53, &value - before).abs();
+                let floor = Float::with_val(53, &size / self.rate) >> (self.bits - 8);
+                if error <= floor {
+                    return Some((value, error + floor));
+                }
+            }
+            last = Some(value);
+            h /= 2u32;
+        }
+        None
+    }
+
+    fn ball(&self, balls: Balls, parts: Option<(Float, Float)>) -> Result<Ball, MelnikovError> {
+        let (value, error) = parts.ok_or(MelnikovError::Undecided { bits: self.bits })?;
+        Ok(balls.from_parts(&value, &error))
+    }
+
+    fn dissipation(
+        &self,
+        balls: Balls,
+        friction: &Friction,
+        belt: &Real,
+    ) -> Result<Ball, MelnikovError> {
+        let undecided = || MelnikovError::Undecided { bits: self.bits };
+        let belt = belt.ball(Balls::new(self.work)).midpoint().clone();
+        if let Friction::Polynomial(law) = friction {
+            let mut smooth = law.clone();
+            smooth.dry = Real::from(0);
+            let smooth = Friction::Polynomial(smooth).law(self.work);
+            let slide = |v: &Float| Float::with_val(self.work, v - &belt);
+            let smooth = self.trapezoid(&|_, v| smooth(&slide(v)) * v);
+            let smooth = self.ball(balls, smooth)?;
+            let sign = self.sign_integral(&belt).ok_or_else(undecided)?;
+            let error = Float::with_val(53, sign.abs_ref()) >> self.bits.saturating_sub(16);
+            let dry = balls.mul(&law.dry.ball(balls), &balls.from_parts(&sign, &error));
+            return Ok(balls.add(&smooth, &dry));
+        }
+        let law = friction.law(self.work);
+        let mut total = (Float::new(self.work), Float::new(53));
+        let cuts = self.cuts(&belt).ok_or_else(undecided)?;
+        for pair in cuts.windows(2) {
+            let [a, b] = pair else { continue };
+            let part = tanh_sinh(self.bits, a, b, |t| {
+                let (_, v) = self.state(t)?;
+                Some(law(&Float::with_val(self.work, &v - &belt)) * v)
+            })?;
+            total.0 += part.value;
+            total.1 += part.error;
+        }
+        total.1 += Float::with_val(53, total.0.abs_ref()) >> self.bits.saturating_sub(16);
+        self.ball(balls, Some(total))
+    }
+
+    /// The ends, 0, and the times at which x' passes the speed of the belt.
+    fn cuts(&self, belt: &Float) -> Option<Vec<Float>> {
+        const CELLS: i32 = 600;
+        let at = |n: i32| Float::with_val(self.work, &self.end * n) / CELLS;
+        let above = |t: &Float| Some(self.state(t)?.1 > *belt);
+        let mut cuts = vec![-self.end.clone(), Float::new(self.work), self.end.clone()];
+        for n in -CELLS..CELLS {
+            let (mut low, mut high) = (at(n), at(n + 1));
+            let side = above(&low)?;
+            if above(&high)? == side {
+                continue;
+            }
+            for _ in 0..self.work {
+                let middle = Float::with_val(self.work, &low + &high) / 2u32;
+                if above(&middle)? == side { low = middle } else { high = middle }
+            }
+            cuts.push(low);
+        }
+        cuts.sort_by(Float::total_cmp);
+        Some(cuts)
+    }
+
+    /// int v sgn(v - v*) dt: the displacements between the cuts.
+    fn sign_integral(&self, belt: &Float) -> Option<Float> {
+        let cuts = self.cuts(belt)?;
+        let mut sum = Float::new(self.work);
+        for pair in cuts.windows(2) {
+            let [a, b] = pair else { continue };
+            let piece = self.state(b)?.0 - self.state(a)?.0;
+            let middle = Float::with_val(self.work, a + b) / 2u32;
+            if self.state(&middle)?.1 > *belt { sum += piece } else { sum -= piece }
+        }
+        Some(sum)
+    }
+
+    /// max F, or -min F, of the work of the force.
+    fn reach(&self, balls: Balls, forcing: &Forcing, down: bool) -> Result<Ball, MelnikovError> {
+        let transform = |omega: &Real| -> Result<(Ball, Ball), MelnikovError> {
+            let omega = omega.ball(Balls::new(self.work)).midpoint().clone();
+            let angle = |t: &Float| Float::with_val(self.work, t * &omega);
+            let c = self.ball(balls, self.trapezoid(&|t, v| angle(t).cos() * v))?;
+            let s = self.ball(balls, self.trapezoid(&|t, v| angle(t).sin() * v))?;
+            Ok((c, s))
+        };
+        let size = |omega: &Real, weight: &Real| -> Result<Ball, MelnikovError> {
+            let (c, s) = transform(omega)?;
+            let square = balls.add(&balls.square(&c), &balls.square(&s));
+            let root = balls.sqrt(&square).ok_or(MelnikovError::Undecided { bits: self.bits })?;
+            Ok(balls.mul(&root, &weight.abs().ball(balls)))
+        };
+        let found = match forcing {
+            Forcing::Harmonics { omega, harmonics } => match harmonics.as_slice() {
+                [only] if only.order == 1 => size(omega, &only.weight)?,
+                _ => {
+                    let of = |k: u32| transform(&times(omega, &Rational::from(k)));
+                    ForcingWork::from_transforms(balls, harmonics, &of)?
+                        .extreme(balls, down)
+                        .map(|value| if down { balls.neg(&value) } else { value })
+                        .ok_or(MelnikovError::Undecided { bits: self.bits })?
+                }
+            },
+            Forcing::Incommensurate(terms) => {
+                let mut sum = balls.zero();
+                for (omega, weight) in terms {
+                    sum = balls.add(&sum, &size(omega, weight)?);
+                }
+                sum
+            }
+            _ => return Err(MelnikovError::NoClosedForm),
+        };
+        if found.contains_zero() {
+            return Err(MelnikovError::NoForcing);
+        }
+        Ok(found)
+    }
+}
