@@ -117,7 +117,7 @@ impl Orbit {
     }
 
     fn shown_exponent(&self) -> String {
-        format!("{:+.4} +- {:.4}", self.exponent, self.error)
+        format!("{:+.4} +- {:.0e}", self.exponent, self.error)
     }
 }
 
@@ -148,7 +148,7 @@ fn on_the_way(
 pub(super) const ORBITS: usize = 4;
 /// The values of gamma: those of the paper, and one after the first doubling.
 const GAMMAS: [&str; ORBITS] = ["0.6", "0.615", "0.65", "1.2"];
-const EPS: &str = "eps = 1 (the paper names none; 0.5 shows nothing of the kind)";
+const EPS: &str = "at eps = 1: the paper names no value";
 
 /// Reads what is reported of the simulations.
 pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {

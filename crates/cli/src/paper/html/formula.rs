@@ -15,10 +15,19 @@ pub enum Node {
     Operator(String, bool),
     /// A small space between factors.
     Space,
-    Group { open: &'static str, close: &'static str, body: Vec<Node>, length: usize },
+    Group {
+        open: &'static str,
+        close: &'static str,
+        body: Vec<Node>,
+        length: usize,
+    },
     Fraction(Vec<Node>, Vec<Node>),
     Root(Vec<Node>),
-    Scripts { base: Box<Node>, below: Vec<Node>, above: Vec<Node> },
+    Scripts {
+        base: Box<Node>,
+        below: Vec<Node>,
+        above: Vec<Node>,
+    },
 }
 
 /// Fractions with longer parts are written with a slash.
@@ -88,7 +97,11 @@ impl<'t, 'a> Parser<'t, 'a> {
                 self.at += 1;
                 let numbers = matches!(nodes.last(), Some(Node::Number(_)))
                     && self.peek().is_some_and(|t| t.kind == Kind::Number);
-                nodes.push(if numbers { Node::Operator("\u{b7}".into(), false) } else { Node::Space });
+                nodes.push(if numbers {
+                    Node::Operator("\u{b7}".into(), false)
+                } else {
+                    Node::Space
+                });
                 continue;
             }
             let spaced = token.spaced;
@@ -149,8 +162,10 @@ impl<'t, 'a> Parser<'t, 'a> {
     fn group(&mut self, open: &'static str, close: &'static str) -> Node {
         let start = self.at;
         let body = self.sequence(Some(close));
-        let length: usize =
-            self.tokens[start..self.at.min(self.tokens.len())].iter().map(|t| t.text.len() + 1).sum();
+        let length: usize = self.tokens[start..self.at.min(self.tokens.len())]
+            .iter()
+            .map(|t| t.text.len() + 1)
+            .sum();
         let closed = self.sees(close);
         if closed {
             self.at += 1;
@@ -194,7 +209,10 @@ impl<'t, 'a> Parser<'t, 'a> {
             } else if token.is("^") {
                 self.at += 1;
                 above.extend(self.argument());
-            } else if token.is("*") && matches!(&base, Node::Letter(l) if l == "v") && self.is_star() {
+            } else if token.is("*")
+                && matches!(&base, Node::Letter(l) if l == "v")
+                && self.is_star()
+            {
                 // v* is the speed of the belt.
                 self.at += 1;
                 below.push(Node::Operator("\u{2217}".to_owned(), false));
@@ -217,9 +235,9 @@ impl<'t, 'a> Parser<'t, 'a> {
 
     /// A star that no factor follows at once.
     fn is_star(&self) -> bool {
-        self.tokens.get(self.at + 1).is_none_or(|t| {
-            t.spaced || (t.kind == Kind::Sign && closing(t.text).is_none())
-        })
+        self.tokens
+            .get(self.at + 1)
+            .is_none_or(|t| t.spaced || (t.kind == Kind::Sign && closing(t.text).is_none()))
     }
 }
 
@@ -270,7 +288,9 @@ fn is_factor(node: &Node) -> bool {
 
 fn length(nodes: &[Node]) -> usize {
     let of = |node: &Node| match node {
-        Node::Letter(s) | Node::Upright(s) | Node::Number(s) | Node::Operator(s, _) => s.chars().count(),
+        Node::Letter(s) | Node::Upright(s) | Node::Number(s) | Node::Operator(s, _) => {
+            s.chars().count()
+        }
         Node::Space => 1,
         Node::Group { length, .. } => *length,
         Node::Fraction(a, b) => length(a).max(length(b)),

@@ -14,7 +14,8 @@ pub fn line(text: &str) -> String {
         let (from, to) = trim(&list, at, end);
         if to > from && is_formula(&list[from..to], from == 0) {
             html += &plain(&list[at..from]);
-            if list.get(from).is_some_and(|t| t.spaced) && !html.ends_with(' ') && !html.is_empty() {
+            if list.get(from).is_some_and(|t| t.spaced) && !html.ends_with(' ') && !html.is_empty()
+            {
                 html.push(' ');
             }
             html += &formula(&list[from..to]);
@@ -29,10 +30,6 @@ pub fn line(text: &str) -> String {
     html
 }
 
-/// A formula whatever its words are.
-pub fn whole(text: &str) -> String {
-    formula(&tokens(text))
-}
 
 fn opens(token: &Token<'_>) -> bool {
     ["(", "[", "{"].iter().any(|sign| token.is(sign))
@@ -52,14 +49,16 @@ fn is_math(list: &[Token<'_>], at: usize, depth: i32, begun: bool) -> bool {
         Kind::Word => {
             // "I" and hyphenated words are text; so is what stands beside a quotation mark.
             let hyphen = follows("-")
-                && list.get(at + 2).is_some_and(|t| {
-                    t.kind == Kind::Word && !t.spaced && name(t.text).is_none()
-                });
+                && list
+                    .get(at + 2)
+                    .is_some_and(|t| t.kind == Kind::Word && !t.spaced && name(t.text).is_none());
             (name(token.text).is_some() && !hyphen && token.text != "I")
                 || (operator(token.text).is_some() && (begun || follows("_")))
                 || (depth > 0 && begun && token.text.len() <= 2 && !ENGLISH.contains(&token.text))
                 || (begun && follows("_"))
-                || (begun && list.get(at.wrapping_sub(1)).is_some_and(|t| t.is("_") || t.is("/")) && !token.spaced)
+                || (begun
+                    && list.get(at.wrapping_sub(1)).is_some_and(|t| t.is("_") || t.is("/"))
+                    && !token.spaced)
                 || (begun && is_differential(token.text))
                 || (follows("/") && is_differential(token.text))
         }
@@ -97,8 +96,8 @@ fn run(list: &[Token<'_>], start: usize) -> usize {
 
 fn is_known(sign: &str) -> bool {
     const SIGNS: [&str; 27] = [
-        "+", "-", "*", "/", "^", "_", "=", "<", ">", "<=", ">=", "!=", "+-", "-+", "->", "...", "(",
-        ")", "[", "]", "{", "}", "|", "'", ",", "!", ":",
+        "+", "-", "*", "/", "^", "_", "=", "<", ">", "<=", ">=", "!=", "+-", "-+", "->", "...",
+        "(", ")", "[", "]", "{", "}", "|", "'", ",", "!", ":",
     ];
     SIGNS.contains(&sign)
 }
@@ -113,7 +112,8 @@ fn trim(list: &[Token<'_>], start: usize, end: usize) -> (usize, usize) {
             part.iter().map(|t| i32::from(opens(t)) - i32::from(closes(t))).sum::<i32>()
         };
         let dangling = ["+", "-", "*", "/", "^", "_", "=", "<", ">", "->", ",", ":", "+-", "-+"];
-        let star = last.is("*") && part.len() > 1 && part[part.len() - 2].text == "v" && !last.spaced;
+        let star =
+            last.is("*") && part.len() > 1 && part[part.len() - 2].text == "v" && !last.spaced;
         if dangling.iter().any(|sign| last.is(sign)) && !star || opens(last) {
             to -= 1;
         } else if balance(part) > 0 {

@@ -68,9 +68,7 @@ fn next(rest: &str, first: char) -> (Kind, usize) {
 }
 
 fn word(rest: &str) -> usize {
-    let length = |text: &str| {
-        text.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(text.len())
-    };
+    let length = |text: &str| text.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(text.len());
     let own = length(rest);
     // "Newton's" is a word, x'(0) is not.
     let tail = rest[own..].strip_prefix('\'').map_or("", |tail| tail);
@@ -84,9 +82,7 @@ fn word(rest: &str) -> usize {
 
 fn number(rest: &str) -> usize {
     let bytes = rest.as_bytes();
-    let digits = |from: usize| {
-        bytes.iter().skip(from).take_while(|b| b.is_ascii_digit()).count()
-    };
+    let digits = |from: usize| bytes.iter().skip(from).take_while(|b| b.is_ascii_digit()).count();
     let mut end = digits(0);
     if bytes.get(end) == Some(&b'.') && digits(end + 1) > 0 {
         end += 1 + digits(end + 1);
