@@ -9,6 +9,7 @@ use lindstedt_simulate::{
     Doubles, Integrator, LyapunovSettings, Model, Parameters, PoincareMap, Quantity, Report,
     Settings, System, largest_lyapunov_exponent, zero_one,
 };
+use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
@@ -153,13 +154,13 @@ const EPS: &str = "at eps = 1: the paper names no value";
 /// Reads what is reported of the simulations.
 pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
     let (transient, kept) = reader.options.periods;
-    let mut orbits = Vec::new();
     for gamma in GAMMAS {
         if !reader.goes_on(&format!("simulation at gamma = {gamma}")) {
             return Ok(false);
         }
-        orbits.push(Orbit::follow(gamma, transient, kept)?);
     }
+    let follow = |gamma| Orbit::follow(gamma, transient, kept);
+    let orbits: Vec<Orbit> = GAMMAS.into_par_iter().map(follow).collect::<Result<_, _>>()?;
     let [periodic, doubled, slight, wells] = &orbits[..] else { return Err(Error::NoValue) };
     let exponent =
         |o: &Orbit| format!("largest Lyapunov exponent {} (estimated)", o.shown_exponent());

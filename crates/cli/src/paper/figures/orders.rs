@@ -41,7 +41,7 @@ pub fn draw(list: &[Truncation]) -> Result<Figure, Failure> {
     Ok(Figure {
         name: "orders",
         section: 4,
-        caption: "True error of the period cut off after order N; \"in u\": the same coefficients \
+        caption: "True error of the period cut off after order N; the curves in u: the same coefficients \
                   re-expanded in u = delta/(1 + delta) with the factor sqrt(1 - u)."
             .to_owned(),
         svg,

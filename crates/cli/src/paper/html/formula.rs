@@ -21,6 +21,8 @@ pub enum Node {
         body: Vec<Node>,
         length: usize,
     },
+    /// Several that stay together.
+    Row(Vec<Node>),
     Fraction(Vec<Node>, Vec<Node>),
     Root(Vec<Node>),
     Scripts {
@@ -199,10 +201,11 @@ impl<'t, 'a> Parser<'t, 'a> {
 
     fn scripts(&mut self, base: Node) -> Node {
         let (mut below, mut above) = (Vec::new(), Vec::new());
+        let mut primes = Vec::new();
         while let Some(token) = self.peek().filter(|token| !token.spaced) {
             if token.is("'") {
                 self.at += 1;
-                above.push(Node::Operator("\u{2032}".to_owned(), false));
+                primes.push(Node::Operator("\u{2032}".to_owned(), false));
             } else if token.is("_") {
                 self.at += 1;
                 below.extend(self.argument());
@@ -220,17 +223,20 @@ impl<'t, 'a> Parser<'t, 'a> {
                 break;
             }
         }
-        // The index of a name of its own (alpha0) comes before these.
-        if below.is_empty() && above.is_empty() {
-            return base;
-        }
-        match base {
+        // The index of a name of its own (alpha0) comes before these. A prime stands high by itself.
+        let base = match base {
+            base if below.is_empty() && above.is_empty() => base,
             Node::Scripts { base, below: mut first, above: over } => {
                 first.extend(below);
                 Node::Scripts { base, below: first, above: [over, above].concat() }
             }
             base => Node::Scripts { base: Box::new(base), below, above },
+        };
+        if primes.is_empty() {
+            return base;
         }
+        primes.insert(0, base);
+        Node::Row(primes)
     }
 
     /// A star that no factor follows at once.
@@ -294,6 +300,7 @@ fn length(nodes: &[Node]) -> usize {
         Node::Space => 1,
         Node::Group { length, .. } => *length,
         Node::Fraction(a, b) => length(a).max(length(b)),
+        Node::Row(a) => length(a),
         Node::Root(a) => 1 + length(a),
         Node::Scripts { base, below, above } => {
             length(std::slice::from_ref(base)) + length(below).max(length(above))

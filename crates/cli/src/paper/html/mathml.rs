@@ -12,8 +12,8 @@ const TOGETHER: usize = 30;
 /// A piece with more marks than this ends at the next product.
 const PIECE: usize = 24;
 
-/// The formula of some tokens.
-pub fn formula(tokens: &[Token<'_>]) -> String {
+/// The formula of some tokens, in pieces.
+pub fn formula(tokens: &[Token<'_>]) -> Vec<String> {
     let mut pieces = Pieces::default();
     pieces.nodes(&parse(tokens));
     pieces.finish()
@@ -45,8 +45,10 @@ impl Pieces {
                         self.cut();
                     }
                     let unary = self.is_open || self.done.is_empty() && self.piece.is_empty();
-                    let form = if unary { "prefix" } else { "infix" };
-                    let _ = write!(self.piece, "<mo form=\"{form}\">{}</mo>", escape(sign));
+                    // The space between two pieces stands before the sign.
+                    let form =
+                        if unary { "form=\"prefix\"" } else { "form=\"infix\" lspace=\"0\"" };
+                    let _ = write!(self.piece, "<mo {form}>{}</mo>", escape(sign));
                     self.is_open = true;
                 }
                 Node::Space if self.marks > PIECE && !self.is_open => self.cut(),
@@ -86,10 +88,9 @@ impl Pieces {
         }
     }
 
-    fn finish(mut self) -> String {
+    fn finish(mut self) -> Vec<String> {
         self.cut();
-        let math = |piece: &String| format!("<math>{piece}</math>");
-        self.done.iter().map(math).collect::<Vec<_>>().join(" ")
+        self.done.iter().map(|piece| format!("<math>{piece}</math>")).collect()
     }
 }
 
@@ -116,18 +117,34 @@ fn render(node: &Node) -> String {
         Node::Operator(sign, _) => match sign.as_str() {
             "|" => "<mo stretchy=\"false\" lspace=\"0\" rspace=\"0\">|</mo>".to_owned(),
             "/" => "<mo lspace=\"0\" rspace=\"0\">/</mo>".to_owned(),
+            "\u{2032}" => "<mo lspace=\"0\" rspace=\"0\">\u{2032}</mo>".to_owned(),
             "," => "<mo rspace=\"0.25em\">,</mo>".to_owned(),
             sign => format!("<mo>{}</mo>", escape(sign)),
         },
         Node::Space => "<mspace width=\"0.18em\"/>".to_owned(),
         Node::Group { open, close, body, .. } => {
-            let close = if close.is_empty() { String::new() } else { format!("<mo>{close}</mo>") };
-            let body: String = body.iter().map(render).collect();
-            format!("<mrow><mo>{open}</mo>{body}{close}</mrow>")
+            let stretchy = if body.iter().any(is_tall) { "" } else { " stretchy=\"false\"" };
+            let fence = |sign: &str| match sign {
+                "" => String::new(),
+                sign => format!("<mo{stretchy}>{sign}</mo>"),
+            };
+            let inner: String = body.iter().map(render).collect();
+            format!("<mrow>{}{inner}{}</mrow>", fence(open), fence(close))
         }
+        Node::Row(nodes) => row(nodes),
         Node::Fraction(above, below) => format!("<mfrac>{}{}</mfrac>", row(above), row(below)),
         Node::Root(body) => format!("<msqrt>{}</msqrt>", row(body)),
         Node::Scripts { base, below, above } => scripts(base, below, above),
+    }
+}
+
+/// Whether brackets around it must grow.
+fn is_tall(node: &Node) -> bool {
+    match node {
+        Node::Fraction(..) | Node::Root(_) => true,
+        Node::Group { body, .. } => body.iter().any(is_tall),
+        Node::Scripts { base, .. } => is_tall(base),
+        _ => false,
     }
 }
 

@@ -12,24 +12,43 @@ pub fn line(text: &str) -> String {
     while at < list.len() {
         let end = run(&list, at);
         let (from, to) = trim(&list, at, end);
-        if to > from && is_formula(&list[from..to], from == 0) {
-            html += &plain(&list[at..from]);
-            if list.get(from).is_some_and(|t| t.spaced) && !html.ends_with(' ') && !html.is_empty()
-            {
-                html.push(' ');
-            }
-            html += &formula(&list[from..to]);
-            html += &plain(&list[to..end]);
-            at = end;
-        } else {
+        if to <= from || !is_formula(&list[from..to], from == 0) {
             let next = end.max(at + 1);
             html += &plain(&list[at..next]);
             at = next;
+            continue;
         }
+        html += &plain(&list[at..from]);
+        // No line begins with the full stop after a formula or ends with the bracket before it.
+        let before = html.ends_with(['(', '[']).then(|| html.pop()).flatten();
+        if list.get(from).is_some_and(|t| t.spaced && from > 0) {
+            html.push(' ');
+        }
+        at = to;
+        let mut after = String::new();
+        while let Some(token) = list.get(at).filter(|t| !t.spaced && is_mark(t)) {
+            after += token.text;
+            at += 1;
+        }
+        html += &glued(before, formula(&list[from..to]), &after);
     }
     html
 }
 
+fn is_mark(token: &Token<'_>) -> bool {
+    [",", ".", ";", ":", ")", "]", "?"].iter().any(|sign| token.is(sign))
+}
+
+/// The pieces of a formula, the outer ones held together with what stands beside them.
+fn glued(before: Option<char>, mut pieces: Vec<String>, after: &str) -> String {
+    if let (Some(before), Some(first)) = (before, pieces.first_mut()) {
+        *first = format!("<span class=\"g\">{before}{first}</span>");
+    }
+    if let (false, Some(last)) = (after.is_empty(), pieces.last_mut()) {
+        *last = format!("<span class=\"g\">{last}{after}</span>");
+    }
+    pieces.join(" ")
+}
 
 fn opens(token: &Token<'_>) -> bool {
     ["(", "[", "{"].iter().any(|sign| token.is(sign))
@@ -102,9 +121,16 @@ fn is_known(sign: &str) -> bool {
     SIGNS.contains(&sign)
 }
 
+/// A line of so many tokens, all of which can be a formula, is one.
+const WHOLE: usize = 12;
+
 /// Without signs at the ends that belong to the text, and with brackets in pairs.
 fn trim(list: &[Token<'_>], start: usize, end: usize) -> (usize, usize) {
     let (mut from, mut to) = (start, end);
+    // A whole line with a forgotten bracket: shown as printed.
+    if start == 0 && end == list.len() && end > WHOLE {
+        return (start, end);
+    }
     loop {
         let part = &list[from..to];
         let Some((first, last)) = part.first().zip(part.last()) else { return (from, to) };
@@ -137,6 +163,17 @@ fn is_formula(part: &[Token<'_>], first: bool) -> bool {
     part.iter().any(named)
 }
 
+/// A number of the text, 6e-13 as a product with a power of ten.
+pub fn number(text: &str) -> String {
+    let minus = |text: &str| text.replacen('-', "\u{2212}", 1);
+    match text.split_once('e') {
+        Some((digits, power)) => {
+            format!("{}\u{b7}10<sup>{}</sup>", minus(digits), minus(power.trim_start_matches('+')))
+        }
+        None => minus(text),
+    }
+}
+
 /// Tokens as text, with a space before each that had one.
 fn plain(list: &[Token<'_>]) -> String {
     let mut html = String::new();
@@ -149,6 +186,8 @@ fn plain(list: &[Token<'_>]) -> String {
         let alone = n == 0 || token.spaced;
         if token.kind == Kind::Quote {
             html += &format!("<code>{}</code>", escape(token.text.trim_matches('"')));
+        } else if token.kind == Kind::Number {
+            html += &number(token.text);
         } else if token.is("-") && number_follows && alone {
             html.push('\u{2212}');
         } else if token.is("+-") {

@@ -2,7 +2,7 @@
 
 use super::super::is_plain_number;
 use super::mathml::escape;
-use super::prose::line;
+use super::prose::{line, number};
 use lindstedt::paper::{Row, Section, Table, Verdict};
 use std::fmt::Write;
 
@@ -83,9 +83,4 @@ pub fn table(section: &Section, table: &Table) -> String {
         let _ = writeln!(text, "<li>{}</li>", line(note));
     }
     text + "</ul>\n</figure>\n"
-}
-
-/// A number with a true minus sign.
-fn number(text: &str) -> String {
-    text.replacen('-', "\u{2212}", usize::from(text.starts_with('-')))
 }

@@ -64,7 +64,11 @@ fn structure() {
     assert!(html.contains("<msqrt>") && html.contains("<mfrac><msup>"), "{html}");
     let html = line("alpha0 and x_0'' and T_(l+1)");
     assert!(html.contains("<msub><mi>\u{3b1}</mi><mn>0</mn></msub>"), "{html}");
-    assert!(html.contains("<msubsup><mi>x</mi><mn>0</mn>"), "{html}");
+    let primes = "<msub><mi>x</mi><mn>0</mn></msub><mo lspace=\"0\" rspace=\"0\">\u{2032}</mo>";
+    assert!(html.contains(primes), "{html}");
+    let html = line("at n = 3 (delta = 1, on the circle): 6e-13");
+    assert_eq!(html.matches("<math>").count(), 4, "{html}");
+    assert!(html.contains("10<sup>\u{2212}13</sup>"), "{html}");
     assert!(html.contains("<msub><mi>T</mi><mrow><mi>l</mi>"), "{html}");
 }
 

@@ -1,13 +1,15 @@
 //! Section 3: the eps up to which Melnikov's threshold tells where the tangle begins.
 
 use super::super::{Reader, Section, Table};
-use super::{Finding, percent};
+use super::Finding;
 use crate::Error;
 use crate::paper::simulated::{model, parameters};
 use lindstedt_melnikov::StickSlip;
-use lindstedt_simulate::{Homoclinic, Loop, Parameters, Quantity, continue_tangency};
+use lindstedt_simulate::{Homoclinic, Loop, Quantity, SimulateError, Tangency, continue_tangency};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::channel;
 
 /// The first homoclinic tangency of both loops.
 #[derive(Clone, Copy, Debug)]
@@ -56,10 +58,8 @@ pub(in super::super) fn read(
     let values = if reader.options.quick { QUICK } else { FULL };
     let mut points: Vec<OnsetPoint> =
         values.iter().map(|eps| OnsetPoint { eps: *eps, right: None, left: None }).collect();
-    for side in [Loop::Right, Loop::Left] {
-        if !follow(reader, side, threshold, &mut points)? {
-            return Ok(false);
-        }
+    if !follow(reader, threshold, &mut points)? {
+        return Ok(false);
     }
     let onset = Onset { threshold, points };
     section.rows.push(super::super::simulated::agreement(&onset)?);
@@ -68,55 +68,74 @@ pub(in super::super) fn read(
     Ok(true)
 }
 
+/// Follows both loops at a time; the points beyond the end of a branch stay empty.
 fn follow(
     reader: &mut Reader<'_>,
-    side: Loop,
     threshold: f64,
     points: &mut [OnsetPoint],
 ) -> Result<bool, Error> {
-    let Some(first) = points.first().map(|point| point.eps) else { return Ok(true) };
-    let model = model()?;
-    let at = |eps: f64| -> Result<Parameters, Error> {
-        let mut parameters = parameters()?;
-        let eps = Quantity::Float(rug::Float::with_val(53, eps));
-        parameters.set("eps", eps);
-        Ok(parameters)
-    };
-    let parameters = at(first)?;
+    let values: Vec<f64> = points.iter().map(|point| point.eps).collect();
+    let stopped = AtomicBool::new(false);
+    let (sender, receiver) = channel();
+    std::thread::scope(|scope| {
+        let branches = [Loop::Right, Loop::Left].map(|side| {
+            let (sender, stopped, values) = (sender.clone(), &stopped, &values);
+            scope.spawn(move || {
+                branch(side, threshold, values, &mut |eps, tangency| {
+                    let sent = sender.send((side, eps, tangency.value, tangency.error)).is_ok();
+                    sent && !stopped.load(Ordering::Relaxed)
+                })
+            })
+        });
+        drop(sender);
+        for (side, eps, value, error) in receiver {
+            if let Some(point) = points.iter_mut().find(|point| point.eps == eps) {
+                let found = Some((value, error));
+                if side == Loop::Right { point.right = found } else { point.left = found }
+            }
+            let name = if side == Loop::Right { "right" } else { "left" };
+            if !reader.goes_on(&format!("tangency of the {name} loop, eps = {eps}")) {
+                stopped.store(true, Ordering::Relaxed);
+            }
+        }
+        for branch in branches {
+            match branch.join() {
+                Ok(Ok(()) | Err(Error::Simulate(SimulateError::NoTangency { .. }))) => {}
+                Ok(Err(error)) => return Err(error),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        Ok(!stopped.load(Ordering::Relaxed))
+    })
+}
+
+/// Follows the first tangency of one loop from the first value of eps on.
+fn branch(
+    side: Loop,
+    threshold: f64,
+    values: &[f64],
+    observer: &mut dyn FnMut(f64, &Tangency) -> bool,
+) -> Result<(), Error> {
+    let Some(&first) = values.first() else { return Ok(()) };
+    let (model, mut parameters) = (model()?, parameters()?);
+    parameters.set("eps", Quantity::Float(rug::Float::with_val(53, first)));
     let homoclinic = Homoclinic {
         model: &model,
         parameters: &parameters,
         name: "gamma",
         period: PI,
         side,
-        // The forced response near the saddle: x'' = x + eps (gamma cos 2t + T0) to first order.
+        // Near the saddle x'' = x + eps (gamma cos 2t + ...): some tenths of eps on the left.
         guess: [-0.35 * first, 0.0],
     };
     // Close to Melnikov's value for so small an eps.
     let bracket = (0.97 * threshold, 1.02 * threshold);
     let start = homoclinic.first_tangency(bracket, ORBITS)?;
-    let values: Vec<f64> = points.iter().map(|point| point.eps).collect();
-    let name = if side == Loop::Right { "right" } else { "left" };
-    let mut stopped = false;
-    let mut next = points.iter_mut();
-    let outcome = continue_tangency(
-        &homoclinic,
-        ("eps", &values),
-        (start.value, start.phase),
-        &mut |eps, tangency| {
-            if let Some(point) = next.next() {
-                let found = Some((tangency.value, tangency.error));
-                if side == Loop::Right { point.right = found } else { point.left = found }
-            }
-            stopped = !reader.goes_on(&format!("tangency of the {name} loop, eps = {eps}"));
-            if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        },
-    );
-    // Where the branch ends the points beyond stay empty.
-    match outcome {
-        Ok(()) | Err(lindstedt_simulate::SimulateError::NoTangency { .. }) => Ok(!stopped),
-        Err(error) => Err(error.into()),
-    }
+    let start = (start.value, start.phase);
+    continue_tangency(&homoclinic, ("eps", values), start, &mut |eps, tangency| {
+        if observer(eps, tangency) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    })?;
+    Ok(())
 }
 
 impl Onset {
@@ -147,7 +166,7 @@ impl Onset {
             let eps = self
                 .reach(share)
                 .map_or("every eps computed".to_owned(), |eps| format!("eps = {eps:.2}"));
-            format!("to {} up to {eps}", percent(share))
+            format!("to {:.0} % up to {eps}", 100.0 * share)
         };
         let limit = self.limit().map_or_else(String::new, |(eps, mean)| {
             format!(

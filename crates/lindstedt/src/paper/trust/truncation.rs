@@ -98,8 +98,10 @@ fn uniform(series: &Truncations, delta: &Rational, exact: &Ball, balls: Balls) -
 pub(super) fn finding(list: &[Truncation]) -> Option<Finding> {
     let named = |name: &str| list.iter().find(|t| t.name == name);
     let (cubic, pendulum) = (named("n = 3")?, named("pendulum")?);
-    let share = |error: f64| {
-        if error < 1e-4 { format!("{error:.0e}") } else { format!("{:.2} %", 100.0 * error) }
+    let share = |error: f64| match error {
+        e if e < 1e-4 => format!("{e:.0e}"),
+        e if e < 2.0 => format!("{:.2} %", 100.0 * e),
+        e => format!("{e:.0} times T"),
     };
     let at =
         |t: &Truncation, order: usize| t.errors.get(order).map_or("?".to_owned(), |e| share(*e));
@@ -109,8 +111,9 @@ pub(super) fn finding(list: &[Truncation]) -> Option<Finding> {
         .iter()
         .filter(|t| t.delta > 1)
         .filter_map(|t| {
-            let ((best, least), (_, last)) = (t.best()?, t.last()?);
-            Some(format!("{}: best at order {best} ({}), then {last:.0e}", t.name, share(least)))
+            let ((best, least), (last, error)) = (t.best()?, t.last()?);
+            let (least, error) = (share(least), share(error));
+            Some(format!("{}: {least} at order {best}, {error} at order {last}", t.name))
         })
         .collect();
     let resummed: Vec<String> = list
@@ -123,7 +126,7 @@ pub(super) fn finding(list: &[Truncation]) -> Option<Finding> {
     let highest = cubic.last()?.0;
     Some(Finding {
         section: 4,
-        method: "the small delta method, T cut off after order N",
+        method: "The small delta method, T cut off after order N",
         trusted: vec![
             format!(
                 "n = 3 (delta = 1, on the circle of convergence): {} at order 1, {} at order 2, {} \
