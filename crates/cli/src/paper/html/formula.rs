@@ -189,6 +189,10 @@ impl<'t, 'a> Parser<'t, 'a> {
         let mut nodes = Vec::new();
         if negative && let Some(token) = self.next() {
             nodes.push(sign(token.text));
+            // x_+ with nothing else in the index.
+            if self.peek().is_none_or(|t| t.spaced || t.kind == Kind::Sign) {
+                return nodes;
+            }
         }
         match self.next() {
             Some(token) if token.kind == Kind::Number => nodes.push(self.number(token.text)),
@@ -310,18 +314,14 @@ fn length(nodes: &[Node]) -> usize {
 }
 
 /// A fraction, or a quotient with a slash where a part is long. A single bracket is dropped.
-fn push_fraction(nodes: &mut Vec<Node>, above: Vec<Node>, below: Vec<Node>) {
-    // A function's name stands before its bracket.
-    let mut above = above;
+fn push_fraction(nodes: &mut Vec<Node>, mut above: Vec<Node>, below: Vec<Node>) {
+    // What stands directly before a bracket is applied to it: z(t)/gamma.
     if matches!(above.first(), Some(Node::Group { open: "(", .. }))
-        && matches!(nodes.last(), Some(Node::Upright(_)) | Some(Node::Scripts { .. }))
-        && let Some(function) = nodes.pop()
+        && nodes.last().is_some_and(is_factor)
     {
-        if matches!(&function, Node::Upright(_)) || is_function_power(&function) {
-            above.insert(0, function);
-        } else {
-            nodes.push(function);
-        }
+        above.splice(0..0, nodes.pop());
+    } else {
+        gather(nodes, &mut above);
     }
     if length(&above) > LONG || length(&below) > LONG || below.is_empty() {
         nodes.extend(above);
@@ -337,6 +337,26 @@ fn push_fraction(nodes: &mut Vec<Node>, above: Vec<Node>, below: Vec<Node>) {
     nodes.push(Node::Fraction(bare(above), bare(below)));
 }
 
-fn is_function_power(node: &Node) -> bool {
-    matches!(node, Node::Scripts { base, .. } if matches!(**base, Node::Upright(_)))
+/// Takes the letters and numbers before a numerator into it: 2 pi k/omega.
+fn gather(nodes: &mut Vec<Node>, above: &mut Vec<Node>) {
+    let is_plain = |node: &Node| match node {
+        Node::Letter(_) | Node::Number(_) => true,
+        Node::Scripts { base, .. } => matches!(**base, Node::Letter(_)),
+        _ => false,
+    };
+    let mut from = nodes.len();
+    while let Some([factor, Node::Space]) = from.checked_sub(2).and_then(|n| nodes.get(n..from)) {
+        if !is_plain(factor) {
+            break;
+        }
+        from -= 2;
+    }
+    // The argument of a function without brackets (cos 2 beta t/2) stays with it.
+    let is_argument = match nodes.get(..from) {
+        Some([.., Node::Upright(_) | Node::Scripts { .. }, Node::Space]) => true,
+        _ => false,
+    };
+    if !is_argument && from < nodes.len() {
+        above.splice(0..0, nodes.drain(from..));
+    }
 }

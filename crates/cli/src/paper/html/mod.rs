@@ -48,7 +48,7 @@ fn header(paper: &Paper) -> String {
     };
     format!(
         "<header>\n<p class=\"kind\">lindstedt {}</p>\n\
-         <h1>Asymptotic approaches to strongly nonlinear and non-smooth systems, re-read by machine</h1>\n\
+         <h1>Asymptotic approaches to strongly nonlinear and <span class=\"g\">non-smooth</span> systems, <span class=\"g\">re-read</span> by machine</h1>\n\
          <p class=\"lead\">{rows} statements of the paper by J. Awrejcewicz and I. Andrianov: all of its \
          formulas (1) to (51) and every number in its text. For each: what is printed, what is derived \
          from the equations, what a route that shares nothing with the derivation says, and the verdict \

@@ -140,7 +140,10 @@ fn trim(list: &[Token<'_>], start: usize, end: usize) -> (usize, usize) {
         let dangling = ["+", "-", "*", "/", "^", "_", "=", "<", ">", "->", ",", ":", "+-", "-+"];
         let star =
             last.is("*") && part.len() > 1 && part[part.len() - 2].text == "v" && !last.spaced;
-        if dangling.iter().any(|sign| last.is(sign)) && !star || opens(last) {
+        let index =
+            part.len() > 1 && part[part.len() - 2].is("_") && (last.is("+") || last.is("-"));
+        let kept = star || index;
+        if dangling.iter().any(|sign| last.is(sign)) && !kept || opens(last) {
             to -= 1;
         } else if balance(part) > 0 {
             // An open bracket of the text: the formula begins after it, or ends before it.

@@ -60,6 +60,13 @@ fn structure() {
     let html = line("v* = 0.4 and R_r*v*sin(t)");
     assert!(html.contains("<msub><mi>v</mi><mo>\u{2217}</mo></msub>"), "{html}");
     assert!(html.contains("<mi>v</mi><mspace"), "{html}");
+    let html = line("z(t)/gamma = 2 pi k/omega, dx'_+ = -R_r dx'_-");
+    assert!(html.contains("<mfrac><mrow><mi>z</mi><mrow>"), "{html}");
+    assert!(html.contains("<mfrac><mrow><mn>2</mn><mspace"), "{html}");
+    assert!(
+        html.contains("<mo>+</mo></msub>") && html.contains("<mo>\u{2212}</mo></msub>"),
+        "{html}"
+    );
     let html = line("lambda = sqrt(alpha^2 - c^2/4)");
     assert!(html.contains("<msqrt>") && html.contains("<mfrac><msup>"), "{html}");
     let html = line("alpha0 and x_0'' and T_(l+1)");
