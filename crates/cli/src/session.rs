@@ -90,6 +90,21 @@ impl<'a> Session<'a> {
         self.bar.tick();
     }
 
+    /// How many steps there are: from now on the bar shows what part is done.
+    pub fn expect_steps(&self, steps: usize) {
+        self.bar.set_length(steps as u64);
+        let style = "{spinner} [{elapsed}] {bar:24} {pos}/{len} {msg}";
+        if let Ok(style) = ProgressStyle::with_template(style) {
+            self.bar.set_style(style);
+        }
+    }
+
+    /// Shows the next of these steps.
+    pub fn step(&self, message: String) {
+        self.bar.set_message(message);
+        self.bar.inc(1);
+    }
+
     /// Clears the progress line before results are printed.
     pub fn done(&self) {
         self.bar.finish_and_clear();

@@ -5,7 +5,7 @@ use lindstedt::paper::Paper;
 use std::fmt::Write;
 
 pub fn report(paper: &Paper) -> String {
-    let mut text = String::new();
+    let mut text = trust(paper);
     for section in &paper.sections {
         let _ = writeln!(text, "\\section*{{Section {}: {}}}", section.number, section.title);
         let _ =
@@ -36,6 +36,26 @@ pub fn report(paper: &Paper) -> String {
             }
             text += "\\end{tabular}\n";
         }
+    }
+    text
+}
+
+/// Where the methods can be trusted, above the sections.
+fn trust(paper: &Paper) -> String {
+    let mut text = String::new();
+    for finding in paper.trust.findings() {
+        if text.is_empty() {
+            text += "\\section*{Where the paper's methods can be trusted, and where not}\n";
+        }
+        let head = format!("Section {}: {}", finding.section, finding.method);
+        let _ = writeln!(text, "\\paragraph*{{{}}}", escape(&head));
+        for (name, list) in
+            [("To be trusted", &finding.trusted), ("Not to be trusted", &finding.not_trusted)]
+        {
+            let items: Vec<String> = list.iter().map(|item| escape(item)).collect();
+            let _ = writeln!(text, "{name}: {}.\\\\", items.join("; "));
+        }
+        let _ = writeln!(text, "{}.", escape(&finding.class));
     }
     text
 }

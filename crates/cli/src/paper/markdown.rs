@@ -1,11 +1,12 @@
 //! The report as Markdown.
 
+use super::figures::Figure;
 use super::{CLASSES, summary};
 use lindstedt::paper::Paper;
 use std::fmt::Write;
 
-pub fn report(paper: &Paper) -> String {
-    let mut text = String::new();
+pub fn report(paper: &Paper, figures: &[Figure]) -> String {
+    let mut text = trust(paper, figures);
     for section in &paper.sections {
         let _ = writeln!(text, "# Section {}: {}\n", section.number, section.title);
         let _ = writeln!(text, "{}. {CLASSES}\n", summary(section));
@@ -34,6 +35,32 @@ pub fn report(paper: &Paper) -> String {
                 let _ = writeln!(text, "| {} |", row.join(" | "));
             }
         }
+    }
+    text
+}
+
+/// Where the methods can be trusted, above the sections.
+fn trust(paper: &Paper, figures: &[Figure]) -> String {
+    let findings = paper.trust.findings();
+    if findings.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from("# Where the paper's methods can be trusted, and where not\n\n");
+    for finding in findings {
+        let _ = writeln!(text, "## Section {}: {}\n", finding.section, cell(finding.method));
+        for (name, list) in
+            [("To be trusted", &finding.trusted), ("Not to be trusted", &finding.not_trusted)]
+        {
+            let _ = writeln!(text, "{name}:\n");
+            for item in list {
+                let _ = writeln!(text, "- {}", cell(item));
+            }
+            text.push('\n');
+        }
+        for figure in figures.iter().filter(|figure| figure.section == finding.section) {
+            let _ = writeln!(text, "![{}]({}.svg)\n", cell(&figure.caption), figure.name);
+        }
+        let _ = writeln!(text, "{}.\n", cell(&finding.class));
     }
     text
 }

@@ -8,7 +8,7 @@ const WIDTH: usize = 100;
 const INDENT: usize = 15;
 
 pub fn report(paper: &Paper) -> String {
-    let mut text = String::new();
+    let mut text = trust(paper);
     for section in &paper.sections {
         let _ = writeln!(text, "Section {}: {}", section.number, section.title);
         let _ = writeln!(text, "{}\n{CLASSES}\n", summary(section));
@@ -18,6 +18,26 @@ pub fn report(paper: &Paper) -> String {
         for table in &section.tables {
             text += &aligned(table);
         }
+    }
+    text
+}
+
+/// Where the methods can be trusted, above the sections.
+fn trust(paper: &Paper) -> String {
+    let findings = paper.trust.findings();
+    if findings.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from("Where the paper's methods can be trusted, and where not\n\n");
+    for finding in findings {
+        let _ = writeln!(text, "Section {}: {}", finding.section, finding.method);
+        for (name, list) in [("trusted", &finding.trusted), ("not trusted", &finding.not_trusted)] {
+            for (n, item) in list.iter().enumerate() {
+                text += &wrapped(if n == 0 { name } else { "" }, item);
+            }
+        }
+        text += &wrapped("class", &finding.class);
+        text.push('\n');
     }
     text
 }

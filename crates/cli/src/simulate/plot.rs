@@ -74,11 +74,21 @@ pub fn chart(
     points: &[(f64, f64)],
     draw: impl FnOnce(&mut Chart<'_, '_>) -> Drawn,
 ) -> Result<String, Failure> {
+    sized(SIZE, (title, labels, legend), points, draw)
+}
+
+/// The same of another size: the smaller, the larger the letters when it is scaled to a page.
+pub fn sized(
+    size: (u32, u32),
+    (title, labels, legend): (&str, &(String, String), &[(&str, Mark)]),
+    points: &[(f64, f64)],
+    draw: impl FnOnce(&mut Chart<'_, '_>) -> Drawn,
+) -> Result<String, Failure> {
     let mut svg = String::new();
     let drawn = || -> Drawn {
         let xs = range(points.iter().map(|p| p.0)).ok_or("no finite abscissa")?;
         let ys = range(points.iter().map(|p| p.1)).ok_or("no finite ordinate")?;
-        let large = (SIZE.0 * FINE, SIZE.1 * FINE);
+        let large = (size.0 * FINE, size.1 * FINE);
         let root = SVGBackend::with_string(&mut svg, large).into_drawing_area();
         root.fill(&WHITE)?;
         let font = |size: u32| ("sans-serif", size * FINE);
@@ -128,8 +138,8 @@ pub fn chart(
         message: format!("nothing to draw: {error}"),
         hint: String::new(),
     })?;
-    let large = format!("width=\"{}\" height=\"{}\"", SIZE.0 * FINE, SIZE.1 * FINE);
-    let small = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
+    let large = format!("width=\"{}\" height=\"{}\"", size.0 * FINE, size.1 * FINE);
+    let small = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
     Ok(svg.replacen(&large, &small, 1))
 }
 

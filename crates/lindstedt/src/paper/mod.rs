@@ -16,11 +16,14 @@ mod pendulum_numbers;
 mod pendulum_results;
 mod periods;
 mod power_law;
+mod simulated;
 mod stick_slip;
 mod tables;
+pub mod trust;
 mod vibro_impact;
 
 pub use compare::{Decimal, Findings};
+pub use trust::Trust;
 pub use vibro_impact::reread;
 
 use crate::Error;
@@ -112,6 +115,8 @@ impl Section {
 /// What was read.
 #[derive(Clone, Debug)]
 pub struct Paper {
+    /// Where the methods can be trusted.
+    pub trust: Trust,
     /// The sections, in the order of the paper; those begun, when the observer stopped the work.
     pub sections: Vec<Section>,
     /// Whether everything is there (false when the observer stopped the work).
@@ -134,13 +139,41 @@ pub struct Options {
     pub table_order: usize,
     /// Gains of each kind for which predictions of stability are compared with the truth.
     pub grid: usize,
+    /// Gains of each kind in the charts of the region of stability.
+    pub chart: usize,
+    /// Periods of the forcing in the simulations: left out, averaged over.
+    pub periods: (u32, u32),
+    /// Fewer points where a curve is followed.
+    pub quick: bool,
 }
 
 impl Options {
     /// A minute of work at most.
-    pub const FULL: Self = Self { order: 10, table_order: 20, grid: 21 };
+    pub const FULL: Self = Self {
+        order: 10,
+        table_order: 20,
+        grid: 21,
+        chart: 121,
+        periods: (2000, 10_000),
+        quick: false,
+    };
     /// A few seconds.
-    pub const QUICK: Self = Self { order: 4, table_order: 14, grid: 7 };
+    pub const QUICK: Self =
+        Self { order: 4, table_order: 14, grid: 7, chart: 41, periods: (500, 1000), quick: true };
+
+    /// How often the observer of [`read`] is called when nothing stops it.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        let parts: usize = SECTIONS.iter().map(|(_, _, parts)| parts.len()).sum();
+        let derivations = 2 * self.order.max(2);
+        parts + derivations + self.inner_steps()
+    }
+
+    /// Steps within parts: orbits, tangencies of two loops, simulations, tables.
+    fn inner_steps(&self) -> usize {
+        let values = if self.quick { trust::QUICK_STEPS } else { trust::FULL_STEPS };
+        vibro_impact::ORBITS_READ + 2 * values + simulated::ORBITS + tables::TABLES
+    }
 }
 
 /// The precision of every comparison. Two numbers of the size of a period that differ are told
@@ -152,6 +185,9 @@ struct Reader<'a> {
     options: Options,
     balls: Balls,
     observer: &'a mut dyn FnMut(&str) -> bool,
+    trust: Trust,
+    /// Counted in section 2, before the charts.
+    sample: Option<trust::Sample>,
 }
 
 impl Reader<'_> {
@@ -179,8 +215,9 @@ impl Reader<'_> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<Paper, Error> {
-    let mut reader = Reader { options, balls: Balls::new(BITS), observer };
-    let mut paper = Paper { sections: Vec::new(), complete: true };
+    let balls = Balls::new(BITS);
+    let mut reader = Reader { options, balls, observer, trust: Trust::default(), sample: None };
+    let mut paper = Paper { trust: Trust::default(), sections: Vec::new(), complete: true };
     for (number, title, parts) in SECTIONS {
         let mut section = Section { number: *number, title, rows: Vec::new(), tables: Vec::new() };
         for (what, part) in *parts {
@@ -194,6 +231,7 @@ pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<
             break;
         }
     }
+    paper.trust = reader.trust;
     Ok(paper)
 }
 
@@ -208,6 +246,7 @@ const SECTIONS: &[(u32, &str, &[NamedPart])] = &[
             ("the periodic orbit, (8)", vibro_impact::read_orbit),
             ("the impact map, (9)-(16)", vibro_impact::read_perturbation),
             ("stability, (17)", vibro_impact::read_stability),
+            ("the region of stability", trust::read_region),
         ],
     ),
     (
@@ -218,6 +257,8 @@ const SECTIONS: &[(u32, &str, &[NamedPart])] = &[
             ("Melnikov's function, (22)-(27)", melnikov::read_formulas),
             ("its numbers", melnikov::read_numbers),
             ("the thresholds", stick_slip::read_table),
+            ("the simulations", simulated::read),
+            ("the onset against Melnikov's threshold", trust::read_onset),
         ],
     ),
     (
@@ -228,6 +269,7 @@ const SECTIONS: &[(u32, &str, &[NamedPart])] = &[
             ("its numbers", numbers::read),
             ("the pendulum, (43)-(51)", pendulum::read),
             ("the tables", tables::read),
+            ("the errors by order", trust::read_truncation),
         ],
     ),
 ];

@@ -255,9 +255,6 @@ fn table(balls: Balls) -> Result<Table, Error> {
                  one on each side of V"
             ),
             "at v* = 0 and v* = V themselves the theory does not hold: these are limits".to_owned(),
-            "what the paper observes in simulations (gamma = 0.6, 0.65 and 1.2, Fig. 1) is not \
-             compared: the engine has no time domain yet"
-                .to_owned(),
         ],
     })
 }

@@ -82,6 +82,11 @@ impl Truncations {
         self.series[quantity as usize].iter().map(scaled).collect()
     }
 
+    /// The coefficients of one series.
+    pub fn coefficients(&self, quantity: Quantity) -> &[Ball] {
+        &self.series[quantity as usize]
+    }
+
     /// The period that the series of a quantity gives when cut off after `order`; nothing where
     /// omega or omega^2 is not positive.
     pub fn period(&self, quantity: Quantity, order: usize, delta: &Rational) -> Option<Ball> {
@@ -105,6 +110,9 @@ impl Truncations {
         (1..terms.len()).min_by(|a, b| size(a).total_cmp(&size(b)))
     }
 }
+
+/// Tables that are announced.
+pub(super) const TABLES: usize = 5;
 
 /// Adds the tables of n = 3, 5, 7, 9 and of the pendulum.
 pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
@@ -144,7 +152,7 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
 }
 
 /// The exact coefficients of the pendulum grow like the partitions of the order.
-const PENDULUM_ORDER: usize = 14;
+pub(super) const PENDULUM_ORDER: usize = 14;
 
 fn table(
     name: &str,

@@ -15,6 +15,8 @@ mod prediction;
 mod setting;
 mod stability;
 
+pub(super) use prediction::{ORBITS_READ, SAMPLED, unstable_example};
+
 use super::{Reader, Row, Section};
 use crate::Error;
 use judge::Statement;

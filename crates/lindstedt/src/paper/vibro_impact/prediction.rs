@@ -3,6 +3,7 @@
 
 use super::FAILED;
 use crate::Error;
+use crate::paper::trust::{Rate, Sample};
 use crate::paper::{Findings, Reader, Row, Section, Table};
 use lindstedt_coeff::digits::decimal;
 use lindstedt_impact::characteristic::{Characteristic, Kick};
@@ -31,6 +32,33 @@ const ORBITS: [(&str, i32, u32, i32, i32, i32); 9] = [
     ("O8", 44, 3, 80, 50, 10),
     ("O9", 13, 1, 80, 20, 5),
 ];
+
+/// Orbits of the sample, and those of the upper branch: what is counted.
+pub(in crate::paper) const ORBITS_READ: usize = ORBITS.len();
+pub(in crate::paper) const SAMPLED: usize = ORBITS_READ - 1;
+
+/// The first orbit that is unstable without the loop: its name with the parameters.
+pub(in crate::paper) fn unstable_example() -> Option<(String, Parameters<f64>)> {
+    ORBITS.into_iter().filter(|entry| entry.0 != LOWER).find_map(|entry| {
+        let p = parameters(entry, Branch::Plus);
+        let base = p.to_f64();
+        let found = orbit(&base).ok()?;
+        let stable = uncontrolled_map(&base, &found).verdict() == Stability::Stable;
+        let (_, omega, k, restitution, wall, damping) = entry;
+        let tenths = f64::from(omega) / 10.0;
+        let [restitution, wall, damping] =
+            [restitution, wall, damping].map(|n| f64::from(n) / 100.0);
+        let name = format!(
+            "orbit {} (alpha = P0 = 1, omega = {tenths}, k = {k}, R_r = {restitution}, s = {wall}, \
+             c = {damping})",
+            entry.0
+        );
+        (!stable).then_some((name, base))
+    })
+}
+
+/// The orbit on the lower branch.
+const LOWER: &str = "O8";
 
 /// The largest gain.
 const REACH: f64 = 0.3;
@@ -114,6 +142,15 @@ impl Counts {
         (compared > 0).then(|| equal as f64 / compared as f64)
     }
 
+    fn sample(&self) -> Sample {
+        let rates = RULES.into_iter().zip(self.compared).zip(self.equal);
+        Sample {
+            points: self.points,
+            stable: self.stable,
+            rates: rates.map(|((rule, compared), equal)| Rate { rule, compared, equal }).collect(),
+        }
+    }
+
     fn cells(&self, name: &str) -> Vec<String> {
         let share = |x: Option<f64>| x.map_or("none".to_owned(), |x| format!("{x:.3}"));
         let mut cells = vec![name.to_owned()];
@@ -164,7 +201,7 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
         if !reader.goes_on(&format!("predictions and truth, orbit {}", entry.0)) {
             return Ok(false);
         }
-        let branch = if entry.0 == "O8" { Branch::Minus } else { Branch::Plus };
+        let branch = if entry.0 == LOWER { Branch::Minus } else { Branch::Plus };
         let counts = count(&parameters(entry, branch).to_f64(), side);
         all.add(&counts);
         if branch == Branch::Plus {
@@ -174,6 +211,7 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
     }
     rows.push(upper.cells("all but O8"));
     rows.push(all.cells("all"));
+    reader.sample = Some(upper.sample());
     let rate = |rule: usize| upper.rate(rule).unwrap_or(f64::NAN);
     section.rows.extend(statements(&upper, [rate(0), rate(1), rate(2), rate(3), rate(4), rate(5)]));
     section.tables.push(agreement(rows, side, &upper));
@@ -262,7 +300,7 @@ fn multipliers() -> Result<Table, Error> {
     const BITS: u32 = 160;
     const DIGITS: usize = 12;
     let mut rows = Vec::new();
-    for entry in ORBITS.into_iter().filter(|entry| entry.0 != "O8") {
+    for entry in ORBITS.into_iter().filter(|entry| entry.0 != LOWER) {
         let p = parameters(entry, Branch::Plus).certified(BITS);
         let failed = |_| FAILED;
         let flow = Flow::uncontrolled(&p).map_err(failed)?;
