@@ -6,6 +6,11 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+#[path = "book/guides.rs"]
+mod guides;
+#[path = "book/reference.rs"]
+mod reference;
+
 type Outcome = Result<(), Box<dyn Error>>;
 
 fn root() -> PathBuf {
@@ -171,20 +176,52 @@ fn the_comparison_can_fail() {
     assert_eq!(blocks("```rust\nx\n```\n").first().map(|b| b.1.as_str()), Some("x\n"));
 }
 
-/// The Rust blocks of the book and the README are code of this file.
+/// The one file that a block includes, below the folder of its page.
+fn included(page: &Path, block: &str) -> Option<PathBuf> {
+    let inner = block.trim().strip_prefix("{{#include ")?.strip_suffix("}}")?;
+    Some(page.parent()?.join(inner))
+}
+
+/// The Rust blocks of the book and the README are code of this test, or include an example (each
+/// is run, see `reference.rs`).
 #[test]
 fn rust_blocks_are_compiled_and_run() -> Outcome {
     let squeeze = |text: &str| text.lines().map(str::trim).collect::<Vec<_>>().join("\n");
-    let own = squeeze(include_str!("book.rs"));
+    let own = squeeze(concat!(include_str!("book.rs"), include_str!("book/guides.rs")));
+    let examples = root().join("crates/lindstedt/examples").canonicalize()?;
     let mut unknown = Vec::new();
     for (path, text) in pages()? {
         for (_, block) in blocks(&text).iter().filter(|(language, _)| language == "rust") {
-            if !own.contains(squeeze(block).trim()) {
+            let example = included(&path, block).map(|file| file.canonicalize()).transpose()?;
+            let run = match &example {
+                Some(file) => file.parent() == Some(&examples),
+                None => own.contains(squeeze(block).trim()),
+            };
+            if !run {
                 unknown.push(format!("{}:\n{block}", path.display()));
             }
         }
     }
     assert!(unknown.is_empty(), "not in tests/tests/book.rs: {}", unknown.join("\n"));
+    Ok(())
+}
+
+/// The TOML blocks are problem files: each is read, and prints as it was read.
+#[test]
+fn toml_blocks_are_problem_files() -> Outcome {
+    let mut count = 0;
+    for (path, text) in pages()? {
+        for (_, block) in blocks(&text).iter().filter(|(language, _)| language == "toml") {
+            let text = match included(&path, block) {
+                Some(file) => std::fs::read_to_string(file)?,
+                None => block.clone(),
+            };
+            let file = lindstedt::ProblemFile::parse(&text);
+            assert!(file.is_ok(), "{}: {file:?}", path.display());
+            count += 1;
+        }
+    }
+    assert!(count > 2, "only {count} problem files were found");
     Ok(())
 }
 
