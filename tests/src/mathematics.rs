@@ -72,6 +72,12 @@ fn mathml(tex: &str, display: bool) -> Result<String, String> {
     let mut text = String::new();
     let drawn = push_mathml(&mut text, events.into_iter().map(Ok::<_, std::fmt::Error>), config);
     drawn.map_err(|error| format!("{tex}: {error}"))?;
+    // The writer leaves the sign "less" as it is.
+    text = text.replace("><</", ">&lt;</");
+    if display {
+        // Wide formulas scroll on a narrow screen (docs/mathematics.css).
+        text = format!("<span class=\"formula\">{text}</span>");
+    }
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -95,6 +101,7 @@ mod tests {
         assert!(page.contains("<math") && page.contains("<mfrac>"), "{page}");
         assert!(page.contains("`$b`") && page.contains("\n```sh\n$ c\n```\n"), "{page}");
         assert!(!page.contains("x_1") && !page.contains('*'), "{page}");
+        assert!(render("$a < b$")?.contains("&lt;</mo>"));
         Ok(())
     }
 

@@ -87,14 +87,29 @@ fn links(page: &str) -> Vec<String> {
     list
 }
 
+/// The anchors of a page's headings, as mdBook and code hosts form them.
+fn anchors(page: &str) -> BTreeSet<String> {
+    let text = prose(page);
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    let slug = |line: &str| {
+        let kept = |c: &char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
+        let title: String = line.trim_start_matches('#').trim().chars().filter(kept).collect();
+        title.to_lowercase().replace(' ', "-")
+    };
+    headings.map(slug).collect()
+}
+
 #[test]
 fn links_resolve() -> Outcome {
     let mut broken = Vec::new();
     for (path, text) in pages()? {
         for link in links(&text) {
-            let file = link.split('#').next().unwrap_or_default();
+            let (file, anchor) = link.split_once('#').unwrap_or((&link, ""));
             let folder = path.parent().unwrap_or(Path::new("."));
-            if !file.is_empty() && !folder.join(file).exists() {
+            let target = if file.is_empty() { path.clone() } else { folder.join(file) };
+            let found = target.exists()
+                && (anchor.is_empty() || anchors(&std::fs::read_to_string(&target)?).contains(anchor));
+            if !found {
                 broken.push(format!("{}: {link}", path.display()));
             }
         }
@@ -173,6 +188,7 @@ fn the_comparison_can_fail() {
     assert_eq!(first_missing(&["c", "  b = 1"], text), Some("  b = 1"));
     assert_eq!(first_missing(&["  b = 2"], text), Some("  b = 2"));
     assert_eq!(links("[a](b.md) `x` [c](https://d) [e](f.md#g)"), ["b.md", "f.md#g"]);
+    assert!(anchors("# A b, c\n").contains("a-b-c"));
     assert_eq!(blocks("```rust\nx\n```\n").first().map(|b| b.1.as_str()), Some("x\n"));
 }
 
