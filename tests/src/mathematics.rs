@@ -63,7 +63,7 @@ fn render_paragraph(paragraph: &str) -> Result<String, String> {
 /// One formula. Characters that Markdown would read are written as entities.
 fn mathml(tex: &str, display: bool) -> Result<String, String> {
     // In a quotation every line begins with its mark.
-    let tex = tex.replace("\n> ", "\n");
+    let tex = primes(&tex.replace("\n> ", "\n"));
     let storage = Storage::new();
     let events: Result<Vec<_>, _> = Parser::new(&tex, &storage).collect();
     let events = events.map_err(|error| format!("{tex}: {error}"))?;
@@ -72,8 +72,8 @@ fn mathml(tex: &str, display: bool) -> Result<String, String> {
     let mut text = String::new();
     let drawn = push_mathml(&mut text, events.into_iter().map(Ok::<_, std::fmt::Error>), config);
     drawn.map_err(|error| format!("{tex}: {error}"))?;
-    // The writer leaves the sign "less" as it is.
-    text = text.replace("><</", ">&lt;</");
+    text = mended(&text);
+    balanced(&text).map_err(|element| format!("{tex}: {element} is malformed: {text}"))?;
     if display {
         // Wide formulas scroll on a narrow screen (docs/mathematics.css).
         text = format!("<span class=\"formula\">{text}</span>");
@@ -91,9 +91,86 @@ fn mathml(tex: &str, display: bool) -> Result<String, String> {
     Ok(safe)
 }
 
+/// x'' as TeX defines it, x^{\prime\prime}, joined with an exponent behind it: the parser takes each
+/// prime for a letter.
+fn primes(tex: &str) -> String {
+    let mut text = String::new();
+    let mut rest = tex;
+    while let Some(start) = rest.find('\'') {
+        text.push_str(&rest[..start]);
+        let after = rest[start..].trim_start_matches('\'');
+        text.push_str("^{");
+        text.push_str(&"\\prime ".repeat(rest.len() - start - after.len()));
+        rest = match after.strip_prefix('^') {
+            None => {
+                text.push('}');
+                after
+            }
+            Some(exponent) => match exponent.strip_prefix('{') {
+                Some(group) => group,
+                None => {
+                    let end = exponent.char_indices().nth(1).map_or(exponent.len(), |(at, _)| at);
+                    text.push_str(&exponent[..end]);
+                    text.push('}');
+                    &exponent[end..]
+                }
+            },
+        };
+    }
+    text + rest
+}
+
+/// What the writer gets wrong: a missing blank between attributes, "less" not written as an entity, the
+/// space before a function as the base of its exponent.
+fn mended(text: &str) -> String {
+    const SPACE: &str = "<mspace width=\"0.1667em\" />";
+    let text = text.replace("\"minsize", "\" minsize").replace("><</", ">&lt;</");
+    let mut mended = String::with_capacity(text.len());
+    for (index, part) in text.split(SPACE).enumerate() {
+        let open = mended
+            .rfind('<')
+            .filter(|&at| mended[at..].starts_with("<msu") && mended.ends_with('>'));
+        match open {
+            Some(at) if index > 0 => mended.insert_str(at, SPACE),
+            _ if index > 0 => mended.push_str(SPACE),
+            _ => {}
+        }
+        mended.push_str(part);
+    }
+    mended
+}
+
+/// Whether tags are closed in order and scripts and fractions have as many parts as they need; else the
+/// element that does not.
+fn balanced(text: &str) -> Result<(), String> {
+    let mut open: Vec<(&str, usize)> = Vec::new();
+    for tag in text.split('<').skip(1) {
+        let inner = tag.split('>').next().unwrap_or_default();
+        if let Some(name) = inner.strip_prefix('/') {
+            let (opened, parts) = open.pop().unwrap_or_default();
+            let needed = match name {
+                "msup" | "msub" | "mfrac" | "munder" | "mover" | "mroot" => 2,
+                "msubsup" | "munderover" => 3,
+                _ => parts,
+            };
+            if opened != name || parts != needed {
+                return Err(name.to_owned());
+            }
+        } else {
+            if let Some((_, parts)) = open.last_mut() {
+                *parts += 1;
+            }
+            if !inner.ends_with('/') {
+                open.push((inner.split(' ').next().unwrap_or_default(), 0));
+            }
+        }
+    }
+    open.pop().map_or(Ok(()), |(name, _)| Err(name.to_owned()))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::render;
+    use super::{balanced, primes, render};
 
     #[test]
     fn formulas_are_drawn_and_code_is_left() -> Result<(), String> {
@@ -103,6 +180,19 @@ mod tests {
         assert!(!page.contains("x_1") && !page.contains('*'), "{page}");
         assert!(render("$a < b$")?.contains("&lt;</mo>"));
         Ok(())
+    }
+
+    #[test]
+    fn primes_are_exponents() {
+        assert_eq!(primes("x''"), "x^{\\prime \\prime }");
+        assert_eq!(primes("x'^2 + u_n'^{k}"), "x^{\\prime 2} + u_n^{\\prime k}");
+    }
+
+    #[test]
+    fn malformed_elements_are_found() {
+        assert!(balanced("<math><msup><mi>x</mi><mn>2</mn></msup></math>").is_ok());
+        assert!(balanced("<math><msup><mi>x</mi></msup></math>").is_err());
+        assert!(balanced("<math><mi>x</math>").is_err());
     }
 
     #[test]

@@ -108,7 +108,8 @@ fn links_resolve() -> Outcome {
             let folder = path.parent().unwrap_or(Path::new("."));
             let target = if file.is_empty() { path.clone() } else { folder.join(file) };
             let found = target.exists()
-                && (anchor.is_empty() || anchors(&std::fs::read_to_string(&target)?).contains(anchor));
+                && (anchor.is_empty()
+                    || anchors(&std::fs::read_to_string(&target)?).contains(anchor));
             if !found {
                 broken.push(format!("{}: {link}", path.display()));
             }

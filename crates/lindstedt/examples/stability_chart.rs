@@ -1,8 +1,8 @@
 //! Where averaging predicts a stable impact orbit with a delay loop, and where it is stable.
 
 use lindstedt::impact::ImpactError;
-use lindstedt::impact::chart::{Axis, Plan, Point, Predictor, Swept, chart};
 use lindstedt::impact::characteristic::Kick;
+use lindstedt::impact::chart::{Axis, Plan, Point, Predictor, Swept, chart};
 use lindstedt::impact::flip::flip_boundary;
 use lindstedt::impact::map::Verdict::{Stable, Unstable};
 use lindstedt::impact::parameters::{Branch, Exact, ExactParameters};

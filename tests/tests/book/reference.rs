@@ -23,7 +23,8 @@ fn sources(folder: &Path, text: &mut Vec<String>) -> Outcome {
 
 /// The codes in a source text: literals where a code stands.
 fn codes(source: &str) -> BTreeSet<String> {
-    let places = ["code: ", "usage(", "USAGE,", "NO_ANSWER,", "UNDECIDED,", "FILE,", "INTERRUPTED,"];
+    let places =
+        ["code: ", "usage(", "USAGE,", "NO_ANSWER,", "UNDECIDED,", "FILE,", "INTERRUPTED,"];
     let mut found = BTreeSet::new();
     for place in places {
         for (position, _) in source.match_indices(place) {
@@ -43,7 +44,8 @@ fn codes(source: &str) -> BTreeSet<String> {
 
 #[test]
 fn codes_are_found() {
-    let source = "Failure::usage(\n    \"set\", m) (NO_ANSWER, \"no-orbit\") usage(\"a b\") code: \"x-y\",";
+    let source =
+        "Failure::usage(\n    \"set\", m) (NO_ANSWER, \"no-orbit\") usage(\"a b\") code: \"x-y\",";
     assert_eq!(codes(source).into_iter().collect::<Vec<_>>(), ["no-orbit", "set", "x-y"]);
 }
 
