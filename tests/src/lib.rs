@@ -1,5 +1,7 @@
 //! Shared helpers of the integration tests.
 
+pub mod mathematics;
+
 use lindstedt::{Derivation, Settings, derive, problems};
 
 /// The checked expansion of a built-in problem with its default settings, to an order.

@@ -6,6 +6,11 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+#[path = "book/guides.rs"]
+mod guides;
+#[path = "book/reference.rs"]
+mod reference;
+
 type Outcome = Result<(), Box<dyn Error>>;
 
 fn root() -> PathBuf {
@@ -82,14 +87,30 @@ fn links(page: &str) -> Vec<String> {
     list
 }
 
+/// The anchors of a page's headings, as mdBook and code hosts form them.
+fn anchors(page: &str) -> BTreeSet<String> {
+    let text = prose(page);
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    let slug = |line: &str| {
+        let kept = |c: &char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
+        let title: String = line.trim_start_matches('#').trim().chars().filter(kept).collect();
+        title.to_lowercase().replace(' ', "-")
+    };
+    headings.map(slug).collect()
+}
+
 #[test]
 fn links_resolve() -> Outcome {
     let mut broken = Vec::new();
     for (path, text) in pages()? {
         for link in links(&text) {
-            let file = link.split('#').next().unwrap_or_default();
+            let (file, anchor) = link.split_once('#').unwrap_or((&link, ""));
             let folder = path.parent().unwrap_or(Path::new("."));
-            if !file.is_empty() && !folder.join(file).exists() {
+            let target = if file.is_empty() { path.clone() } else { folder.join(file) };
+            let found = target.exists()
+                && (anchor.is_empty()
+                    || anchors(&std::fs::read_to_string(&target)?).contains(anchor));
+            if !found {
                 broken.push(format!("{}: {link}", path.display()));
             }
         }
@@ -168,23 +189,56 @@ fn the_comparison_can_fail() {
     assert_eq!(first_missing(&["c", "  b = 1"], text), Some("  b = 1"));
     assert_eq!(first_missing(&["  b = 2"], text), Some("  b = 2"));
     assert_eq!(links("[a](b.md) `x` [c](https://d) [e](f.md#g)"), ["b.md", "f.md#g"]);
+    assert!(anchors("# A b, c\n").contains("a-b-c"));
     assert_eq!(blocks("```rust\nx\n```\n").first().map(|b| b.1.as_str()), Some("x\n"));
 }
 
-/// The Rust blocks of the book and the README are code of this file.
+/// The one file that a block includes, below the folder of its page.
+fn included(page: &Path, block: &str) -> Option<PathBuf> {
+    let inner = block.trim().strip_prefix("{{#include ")?.strip_suffix("}}")?;
+    Some(page.parent()?.join(inner))
+}
+
+/// The Rust blocks of the book and the README are code of this test, or include an example (each
+/// is run, see `reference.rs`).
 #[test]
 fn rust_blocks_are_compiled_and_run() -> Outcome {
     let squeeze = |text: &str| text.lines().map(str::trim).collect::<Vec<_>>().join("\n");
-    let own = squeeze(include_str!("book.rs"));
+    let own = squeeze(concat!(include_str!("book.rs"), include_str!("book/guides.rs")));
+    let examples = root().join("crates/lindstedt/examples").canonicalize()?;
     let mut unknown = Vec::new();
     for (path, text) in pages()? {
         for (_, block) in blocks(&text).iter().filter(|(language, _)| language == "rust") {
-            if !own.contains(squeeze(block).trim()) {
+            let example = included(&path, block).map(|file| file.canonicalize()).transpose()?;
+            let run = match &example {
+                Some(file) => file.parent() == Some(&examples),
+                None => own.contains(squeeze(block).trim()),
+            };
+            if !run {
                 unknown.push(format!("{}:\n{block}", path.display()));
             }
         }
     }
     assert!(unknown.is_empty(), "not in tests/tests/book.rs: {}", unknown.join("\n"));
+    Ok(())
+}
+
+/// The TOML blocks are problem files: each is read, and prints as it was read.
+#[test]
+fn toml_blocks_are_problem_files() -> Outcome {
+    let mut count = 0;
+    for (path, text) in pages()? {
+        for (_, block) in blocks(&text).iter().filter(|(language, _)| language == "toml") {
+            let text = match included(&path, block) {
+                Some(file) => std::fs::read_to_string(file)?,
+                None => block.clone(),
+            };
+            let file = lindstedt::ProblemFile::parse(&text);
+            assert!(file.is_ok(), "{}: {file:?}", path.display());
+            count += 1;
+        }
+    }
+    assert!(count > 2, "only {count} problem files were found");
     Ok(())
 }
 

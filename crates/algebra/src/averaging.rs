@@ -54,7 +54,8 @@ pub struct LinearPart<E> {
     pub delayed: Vec<(E, E)>,
 }
 
-/// The result of [`AveragingAlgebra::average`].
+/// The result of [`AveragingAlgebra::average`]: A, B and u of
+/// L(D_0) u + L'(D_0) (A d/da + B d/dpsi) (a cos psi) = f, unique since u has no first harmonic.
 #[derive(Clone, Debug)]
 pub struct Averaged<A: AveragingAlgebra + ?Sized> {
     /// A.

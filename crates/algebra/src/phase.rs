@@ -97,7 +97,8 @@ pub enum Elementary {
     Cos,
 }
 
-/// f = cos_amplitude cos psi + sin_amplitude sin psi + (response'' + response).
+/// The parts of f = cos_amplitude cos psi + sin_amplitude sin psi + (response'' + response), unique with
+/// the response at rest at zero, u(0) = u'(0) = 0.
 #[derive(Clone, Debug)]
 pub struct Resolution<A: PhaseAlgebra + ?Sized> {
     /// `2<f cos psi>`.

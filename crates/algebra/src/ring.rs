@@ -5,7 +5,17 @@ use std::fmt::Debug;
 
 /// A commutative ring with one. The value owns the context, elements are bare data.
 ///
-/// Elements are canonical: two elements are equal in the ring exactly when `==` says so.
+/// Elements are canonical: two elements are equal in the ring exactly when `==` says so. Laws:
+/// [`laws::ring`](crate::laws::ring). Nothing fails: what a ring cannot do has no method here.
+///
+/// ```
+/// use lindstedt_algebra::{RationalAlgebra, Rationals, Ring, laws};
+/// use rug::Rational;
+/// let half = Rational::from((1, 2));
+/// assert_eq!(Rationals.add(&half, &half), Rationals.one());
+/// assert_eq!(Rationals.reciprocal(&Rationals.zero()), None);
+/// assert_eq!(laws::rational_algebra(&Rationals, &[Rationals.zero(), Rationals.one(), half]), Ok(()));
+/// ```
 pub trait Ring: Sync {
     /// A bare element; it means nothing without its ring.
     type Element: Clone + PartialEq + Debug + Send + Sync;
@@ -49,7 +59,8 @@ pub trait Ring: Sync {
     }
 }
 
-/// A ring that contains the rational numbers.
+/// A ring that contains the rational numbers: q -> q 1 is injective, and `scale` by q is the product
+/// with its image. Laws: [`laws::rational_algebra`](crate::laws::rational_algebra).
 pub trait RationalAlgebra: Ring {
     /// The image of a rational number.
     fn rational(&self, q: &Rational) -> Self::Element;
@@ -61,7 +72,8 @@ pub trait RationalAlgebra: Ring {
     fn as_rational(&self, a: &Self::Element) -> Option<Rational>;
 }
 
-/// The field Q, on GMP's rationals (always in lowest terms).
+/// The field Q, on GMP's rationals (always in lowest terms, so canonical). Exact; a product of n-bit
+/// numbers costs a product and a greatest common divisor of n-bit integers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rationals;
 

@@ -90,7 +90,8 @@ pub struct Synchronous {
     pub frequency: Text,
 }
 
-/// A built-in or user-defined oscillator.
+/// A built-in or user-defined oscillator, as data: the same tree is expanded, integrated, classified and
+/// printed. Dimensionless; `notes` says how it follows from the physical one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// The name on the command line.

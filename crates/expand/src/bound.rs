@@ -68,7 +68,8 @@ where
     equation.nodes.iter().flat_map(of_node).collect()
 }
 
-/// A common denominator of the rational numbers that occur in an equation.
+/// A common denominator of the rational numbers that occur in an equation: 1 for x'' + x + eps x^3, 2 for
+/// x'' + x/2. A prime that divides it cannot be used.
 pub fn equation_denominator<A>(equation: &Equation<A>) -> Integer
 where
     A: PhaseAlgebra,

@@ -70,7 +70,8 @@ pub(crate) enum Node<E> {
     },
 }
 
-/// Values for the names that occur in an equation.
+/// Values for the names that occur in an equation, as constants of the algebra's ring. A name without a
+/// value is an error of [`compile`], never zero.
 pub trait Binding<C: Ring> {
     /// The constant that a parameter stands for.
     fn parameter(&self, name: &str) -> Option<C::Element>;
@@ -78,7 +79,8 @@ pub trait Binding<C: Ring> {
     fn formal(&self, name: &str, n: usize) -> Option<C::Element>;
 }
 
-/// x'' + F(x, x'; eps) = 0 as a graph; `root` is F.
+/// x'' + F(x, x'; eps) = 0 as a graph of operations with known recurrences in eps; equal subexpressions
+/// are one node; `root` is F.
 #[derive(Clone, Debug)]
 pub struct Equation<A: FunctionAlgebra> {
     pub(crate) nodes: Vec<Node<<A::Constants as Ring>::Element>>,

@@ -30,7 +30,9 @@ pub struct OrderWork {
     pub terms: usize,
 }
 
-/// An expansion with its normalisation.
+/// An expansion with its normalisation: x = sum x_n(psi) eps^n with psi = omega t and
+/// omega^2 = kappa sum W_n eps^n, for n = 0, ..., order; coefficients are elements of the algebra that
+/// derived it and mean nothing without it.
 #[derive(Clone, Debug)]
 pub struct Expansion<A: PhaseAlgebra> {
     /// What fixes the amplitude, and so the meaning of every coefficient.
@@ -69,7 +71,7 @@ impl<A: PhaseAlgebra> Expansion<A> {
     }
 }
 
-/// What to derive.
+/// What to derive: x'' + F(x, x'; eps) = 0 up to eps^order, with the amplitude that `condition` fixes.
 #[derive(Clone, Debug)]
 pub struct Request {
     /// What fixes the amplitude.
@@ -97,6 +99,35 @@ pub fn leading_amplitude<A: PhaseAlgebra>(
 }
 
 /// Derives the expansion up to the order of the request.
+///
+/// Order n solves x_n'' + x_n = f_n - W_n x_0'' in the phase: `PhaseAlgebra::resolve` splits off the
+/// resonant part of f_n, its cosine fixes W_n, its sine the amplitude of order n - 1 (limit cycle) or must
+/// vanish, and the rest gives x_n. The coefficients of F come from recurrences in eps, so order n costs
+/// O(n) products of phase functions per node of the equation and nothing is computed twice. What is
+/// returned is not checked: that is [`crate::check`].
+///
+/// ```
+/// use lindstedt_algebra::{Rationals, Ring};
+/// use lindstedt_equation::{Condition, Expression};
+/// use lindstedt_expand::{Binding, Request, check, compile, expand};
+/// use lindstedt_phase::Trigonometric;
+/// use rug::Rational;
+///
+/// struct NoNames;
+/// impl Binding<Rationals> for NoNames {
+///     fn parameter(&self, _: &str) -> Option<Rational> { None }
+///     fn formal(&self, _: &str, _: usize) -> Option<Rational> { None }
+/// }
+/// let (algebra, x) = (Trigonometric::new(Rationals), Expression::Displacement);
+/// let duffing = Expression::Acceleration + x.clone() + Expression::Small * x.pow(3);
+/// let equation = compile(&algebra, &duffing, &NoNames, 2)?;
+/// let condition = Condition::InitialAmplitude;
+/// let request = Request { condition, order: 2, leading_amplitude: Rational::from(1) };
+/// let found = expand(&algebra, &equation, &request, &mut |_| true)?;
+/// assert_eq!(found.frequency_squared[1..], [Rational::from((3, 4)), Rational::from((-3, 128))]);
+/// assert_eq!(check(&algebra, &equation, &found)?, 2);
+/// # Ok::<(), lindstedt_expand::ExpandError>(())
+/// ```
 ///
 /// After each order `observer` is told the work; when it returns `false` the driver stops and
 /// returns the orders that are finished.

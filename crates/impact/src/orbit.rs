@@ -82,7 +82,13 @@ fn response<S: Real>(parameters: &Parameters<S>, time: &S, full_period: bool) ->
     Response { h, slope, integral }
 }
 
-/// The true orbit.
+/// The true orbit: one impact per T = 2 pi k/omega, T-periodic, so the loop is silent and A and B do not
+/// enter.
+///
+/// Position and velocity after a flight are linear in cos psi, sin psi (the phase of the force at the
+/// impact) and the impact velocity v; eliminating psi leaves a quadratic for v, whose root `branch` chooses.
+/// Regular at alpha = omega, c = 0 and c >= 2 alpha. Whether the flight passes through the wall is another
+/// question: [`crate::flight::clearance`].
 ///
 /// Certified for balls; for doubles a relative error of some 10^-15 times the condition of the
 /// velocity (large at the fold and towards grazing).

@@ -122,7 +122,9 @@ pub struct StabilityReport<S> {
     pub residual: Option<S>,
 }
 
-/// The report for one point.
+/// The report for one point: the orbit, the averaged prediction in the variant and order of the request,
+/// and the truth by the zeros of G(w). Certified over balls, estimated over doubles; see the fields for
+/// what is estimated in both.
 ///
 /// ```
 /// use lindstedt_impact::map::Verdict;

@@ -25,7 +25,8 @@ pub enum Status {
     Estimated,
 }
 
-/// A number as it leaves the program.
+/// A number as it leaves the program. |decimal - true value| <= error where the status is exact or
+/// certified; the decimal has the digits asked for, or fewer where the error of an estimate says so.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Number {
     /// The closed form, if there is one.

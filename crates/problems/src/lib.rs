@@ -21,7 +21,15 @@ pub fn all() -> Vec<Problem> {
     ]
 }
 
-/// The built-in problem of that name.
+/// The built-in problem of that name, or nothing: stick-slip has no expansion and is found in
+/// [`stick_slip`].
+///
+/// ```
+/// let problem = lindstedt_problems::find("duffing").ok_or("no such problem")?;
+/// assert_eq!(&*problem.small, "rho");
+/// assert!(lindstedt_problems::find("stick-slip").is_none());
+/// # Ok::<(), &str>(())
+/// ```
 pub fn find(name: &str) -> Option<Problem> {
     all().into_iter().find(|problem| problem.name == name)
 }

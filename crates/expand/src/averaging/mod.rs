@@ -32,7 +32,9 @@ use rug::Rational;
 
 type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
 
-/// An averaged expansion; x has the first harmonic a cos psi and no other part in it.
+/// An averaged expansion: x = a cos psi + sum eps^n u_n(a, psi, eta), da/dt = sum eps^n A_n(a),
+/// dpsi/dt = omega_0 + sum eps^n B_n(a); the u_n have no first harmonic in psi, so a is the amplitude of
+/// the first harmonic. Time is that of the equation.
 #[derive(Clone, Debug)]
 pub struct AveragedExpansion<A: AveragingAlgebra> {
     /// The linear part at order zero.

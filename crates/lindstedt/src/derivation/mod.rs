@@ -99,7 +99,8 @@ pub enum Solution {
     Rational(Box<multimodular::Proved>),
 }
 
-/// A checked expansion.
+/// A checked expansion: nothing leaves [`derive()`] that was not substituted back
+/// (`checked_orders`), but for [`Route::EnergyIntegral`], which has no solution to substitute.
 #[derive(Debug)]
 pub struct Derivation {
     /// The problem as it was expanded: values put in, x and t scaled.
@@ -162,7 +163,14 @@ pub(crate) fn condition(problem: &Problem, asked: Option<Condition>) -> Result<C
     condition.ok_or_else(|| Error::UnknownCondition { problem: problem.name.to_string() })
 }
 
-/// Derives and checks the expansion of a problem.
+/// Derives and checks the expansion of a problem: omega^2, omega and T/2pi as power series in the small
+/// parameter, and x_0, x_1, ... as functions of the phase tau = omega t.
+///
+/// Dimensionless, in the time of the problem; the amplitude is what the condition of the settings fixes
+/// (the problem's first if none is given), and it is part of the result. Exact: the coefficients are
+/// rational numbers or polynomials in named constants, the residual has been checked, over Q proved.
+/// Cost over Q: O(N^3) per prime for order N, and a number of primes that grows a little faster than N;
+/// in the Lobachevsky ring a factor of about 1.8 per order.
 ///
 /// `observer` is told the progress; when it returns `false` the derivation stops with the orders
 /// finished so far (over Q, where all orders are finished together, with an error).

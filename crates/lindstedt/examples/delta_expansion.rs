@@ -1,0 +1,26 @@
+//! The small-delta expansion of x'' + x (x^2)^delta = 0 to order 8, and what it says about x^3.
+
+use lindstedt::evaluate::{EvaluateSettings, evaluate};
+use lindstedt::{Error, Settings, derive, problems};
+
+fn main() -> Result<(), Error> {
+    let problem = problems::find("power-law").ok_or(Error::NoValue)?;
+    let settings = Settings { order: 8, ..Settings::default() };
+    let result = derive(&problem, &settings, &mut |_| true)?;
+
+    let period = result.named("period_over_2pi").ok_or(Error::NoValue)?;
+    for n in 0..=3 {
+        let number = result.number(period, n, 30)?;
+        println!("T/2pi, delta^{n}: {} = {}", number.exact.unwrap_or_default(), number.decimal);
+    }
+    println!("T/2pi, delta^8: {}", result.number(period, 8, 30)?.decimal);
+    println!("residual zero to order {}", result.checked_orders.ok_or(Error::NoValue)?);
+
+    // delta = 1 is the default: x'' + x^3 = 0, on the circle of convergence.
+    let settings = EvaluateSettings { order: Some(20), ..EvaluateSettings::default() };
+    let value = evaluate(&problem, &settings, &mut |_| true)?;
+    let (sum, exact) = (value.period.ok_or(Error::NoValue)?, value.exact_period);
+    println!("period of x'' + x^3 = 0: {} +- {}", sum.decimal, sum.error.unwrap_or_default());
+    println!("closed form:             {}", exact.ok_or(Error::NoValue)?.decimal);
+    Ok(())
+}

@@ -1,0 +1,29 @@
+//! The threshold of stick-slip chaos over the speed of the belt, and where it vanishes.
+
+use lindstedt::coeff::ball::Balls;
+use lindstedt::coeff::digits::decimal;
+use lindstedt::melnikov::{Axis, FastPoint, MelnikovError, Real, StickSlip};
+
+fn main() -> Result<(), MelnikovError> {
+    // Doubles for the curve.
+    let point =
+        FastPoint { a: 1.0, b: 1.0, dry: 0.3, alpha: 0.3, beta: 0.3, omega: 2.0, belt_speed: 0.0 };
+    for tenth in 0..=10 {
+        let speed = f64::from(tenth) / 10.0;
+        let threshold = point.with(Axis::BeltSpeed, speed).threshold()?;
+        println!("vstar = {speed:.1}: gamma_c = {:.12}", threshold.signed.abs());
+    }
+
+    // Balls for what is to be quoted: every digit printed is proved.
+    let balls = Balls::new(160);
+    let undecided = MelnikovError::Undecided { bits: 160 };
+    let proved = StickSlip::paper().signed_threshold(balls).and_then(|g| decimal(&g, 30));
+    println!("vstar = 2/5 with 30 digits: {}", proved.ok_or(undecided.clone())?);
+    let soft = StickSlip { b: Real::from(5), ..StickSlip::paper() };
+    let found = soft.zeros_in(balls, Axis::BeltSpeed, &Real::from(0), &Real::from(1))?;
+    for zero in &found.zeros {
+        println!("b = 5: zero at vstar = {}", decimal(zero, 30).ok_or(undecided.clone())?);
+    }
+    println!("no other zero between 0 and 1: {}", found.complete);
+    Ok(())
+}
