@@ -139,7 +139,8 @@ pub fn derive(
             // noise, and its powers must not enter. So the grids end before.
             let coarse = run(&mut job, (55.0, 30.0))?;
             let fine = run(&mut job, (62.0, 32.0))?;
-            Ok(job.compare(tier, &[coarse], fine, 53))
+            let estimate = job.compare(tier, &[coarse], fine, 53);
+            Ok(job.scaled_to_amplitude(estimate))
         }
         Tier::Fourier { harmonics } => {
             let run = |job: &mut Job<'_>, harmonics| {
@@ -151,7 +152,8 @@ pub fn derive(
             let coarse =
                 [run(&mut job, harmonics.div_ceil(4))?, run(&mut job, harmonics.div_ceil(2))?];
             let fine = run(&mut job, harmonics)?;
-            Ok(job.compare(tier, &coarse, fine, 53))
+            let estimate = job.compare(tier, &coarse, fine, 53);
+            Ok(job.scaled_to_amplitude(estimate))
         }
     }
 }
@@ -206,7 +208,8 @@ impl Job<'_> {
                 continue;
             };
             let Some(fine) = coarse.take() else { break };
-            let estimate = self.compare(tier, &[before], fine, bits);
+            let plain = self.compare(tier, &[before], fine, bits);
+            let estimate = self.scaled_to_amplitude(plain.clone());
             let tolerance = Float::with_val(53, Float::i_pow_u(10, digits)).recip();
             let missing = |(value, error): &(Float, Float)| {
                 let size = Float::with_val(53, value.abs_ref());
@@ -222,21 +225,21 @@ impl Job<'_> {
             let values = |s: &EstimatedSeries| {
                 (s.name, s.coefficients.iter().map(|(v, _)| v.clone()).collect())
             };
-            let series = estimate.series.iter().map(values).collect();
-            coarse = Some(Run { nodes: estimate.nodes, products: estimate.products, series });
+            let series = plain.series.iter().map(values).collect();
+            coarse = Some(Run { nodes: plain.nodes, products: plain.products, series });
             guard += (missing as u32).clamp(6, digits + 20);
         }
         Err(Error::NotEnoughBits { bits, best: None })
     }
 
     /// Four times the largest difference between the finest grid and the others at this and at
-    /// lower orders (an accidental agreement at one order says nothing), and rounding errors.
+    /// lower orders (an accidental agreement at one order says nothing), and rounding errors
+    /// relative to the largest coefficient so far.
     /// Sixteen times for the truncated Fourier series, which converges algebraically: far from
     /// resolution two truncations are wrong together.
     fn compare(&self, tier: Tier, coarse: &[Run], fine: Run, bits: u32) -> Estimate {
-        let rounding = Float::with_val(53, 1) >> (bits as i32 - 6);
         let estimated = |(index, (name, values)): (usize, (&'static str, Vec<Float>))| {
-            let mut error = rounding.clone();
+            let mut error = rounding(&Float::with_val(53, 1), bits);
             let safety = if matches!(tier, Tier::Fourier { .. }) { 16u32 } else { 4 };
             let mut coefficients = Vec::new();
             for (n, value) in values.into_iter().enumerate() {
@@ -247,6 +250,7 @@ impl Job<'_> {
                         error = difference;
                     }
                 }
+                error = error.max(&rounding(&value, bits));
                 coefficients.push((value, error.clone()));
             }
             EstimatedSeries { name, coefficients }
@@ -292,14 +296,12 @@ impl Job<'_> {
         let squared = Series::truncated(expansion.frequency_squared);
         let root = kappa.sqrt();
         let mut series = Vec::new();
-        let names = [("frequency_squared", 2), ("frequency", 1), ("period_over_2pi", -1)];
-        for (name, power) in names {
+        for (name, power) in POWERS {
             let half = Rational::from((power, 2));
             let list = squared.power(reals, &half).ok_or(Error::NoValue)?;
-            let scaled = self.scale_to_amplitude(reals, list, power);
             let factor = rug::ops::Pow::pow(root.clone(), power);
             let value = |c: &_| reals.to_float(c) * &factor;
-            series.push((name, scaled.iter().map(value).collect()));
+            series.push((name, list.coefficients.iter().map(value).collect()));
         }
         let name = match self.condition {
             Condition::InitialAmplitude => None,
@@ -315,30 +317,53 @@ impl Job<'_> {
         Ok(Run { nodes, products, series })
     }
 
-    /// The factor a^(power exponent eps/2), where the amplitude scales the frequency.
-    fn scale_to_amplitude<R: Reals>(
-        &self,
-        reals: &R,
-        series: Series<R::Element>,
-        power: i32,
-    ) -> Vec<R::Element> {
+    /// The factor a^(power exponent eps/2), where the amplitude scales the frequency; its
+    /// coefficients (ln a)^n/n! may be huge, so the errors go through the product too.
+    fn scaled_to_amplitude(&self, mut estimate: Estimate) -> Estimate {
         let amplitude = self.settings.parameters.get("amplitude");
         let (AmplitudeRole::ScalesFrequency { exponent }, Some(a)) =
             (self.problem.amplitude, amplitude)
         else {
-            return series.coefficients;
+            return estimate;
         };
-        let log = reals.log_abs(&real(reals, &a.ball(Balls::new(reals.bits() + 16))));
-        let rate = reals.scale(&log, &Rational::from((exponent * power, 2)));
-        let mut factor = vec![reals.one()];
-        for n in 1..series.coefficients.len() {
-            let term = factor.last().map(|last| reals.mul(last, &rate));
-            let term = term.unwrap_or_else(|| reals.zero());
-            factor.push(reals.scale(&term, &Rational::from((1, n))));
+        let work = estimate.bits.saturating_add(64);
+        let Some(log) = Balls::new(work).ln(&a.ball(Balls::new(work.saturating_add(64)))) else {
+            return estimate;
+        };
+        for series in &mut estimate.series {
+            let Some((_, power)) = POWERS.iter().find(|(name, _)| *name == series.name) else {
+                continue;
+            };
+            let rate = Float::with_val(work, log.midpoint() * (exponent * power)) / 2u32;
+            let mut factor = vec![Float::with_val(work, 1)];
+            for n in 1..series.coefficients.len() {
+                let term = factor.last().map(|last| Float::with_val(work, last * &rate) / n as u64);
+                factor.extend(term);
+            }
+            let coefficient = |n: usize| {
+                let terms = series.coefficients.iter().take(n + 1).zip(factor[..=n].iter().rev());
+                let (mut sum, mut error) = (Float::new(work), Float::new(53));
+                for ((value, uncertainty), f) in terms {
+                    sum += value * f;
+                    error += Float::with_val(53, uncertainty * f).abs();
+                }
+                let value = Float::with_val(estimate.bits, &sum);
+                let error = error + rounding(&value, estimate.bits);
+                (value, error)
+            };
+            series.coefficients = (0..series.coefficients.len()).map(coefficient).collect();
         }
-        let order = series.coefficients.len().saturating_sub(1);
-        series.mul(reals, &Series::truncated(factor), order).coefficients
+        estimate
     }
+}
+
+/// The series of powers of the frequency.
+const POWERS: [(&str, i32); 3] =
+    [("frequency_squared", 2), ("frequency", 1), ("period_over_2pi", -1)];
+
+/// 64 roundings at so many bits.
+fn rounding(value: &Float, bits: u32) -> Float {
+    Float::with_val(53, value.abs_ref()) >> bits.saturating_sub(6)
 }
 
 /// The middle of a ball in a context of floats.

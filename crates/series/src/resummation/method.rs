@@ -155,13 +155,23 @@ impl Sample {
             }
             Method::BorelPade => {
                 let b = borel_transform(&self.coefficients, &self.point, self.bits);
-                let nodes = Nodes::new(accuracy, self.bits);
-                let value = |pade: &Pade| laplace(pade, &nodes);
-                let mut outcome = staircase(&b, self.bits, &widest, value)?;
-                // What the integral was not asked for.
-                let size = Float::with_val(53, outcome.estimate.value.abs_ref());
-                outcome.estimate.error += size >> accuracy;
-                Ok(outcome)
+                // The integral is no better than the approximants: many digits only where they
+                // agree to as many.
+                let mut asked = accuracy.min(128);
+                loop {
+                    let nodes = Nodes::new(asked, self.bits);
+                    let value = |pade: &Pade| laplace(pade, &nodes);
+                    let mut outcome = staircase(&b, self.bits, &widest, value)?;
+                    let size = Float::with_val(53, outcome.estimate.value.abs_ref());
+                    // What the integral was not asked for.
+                    let rest = size >> asked;
+                    let limited = outcome.estimate.error < Float::with_val(53, &rest << 16);
+                    outcome.estimate.error += rest;
+                    if !limited || asked >= accuracy {
+                        return Ok(outcome);
+                    }
+                    asked = asked.saturating_mul(4).min(accuracy);
+                }
             }
         }
     }
