@@ -65,6 +65,23 @@ pub(crate) struct Setting {
     parameters: BTreeMap<String, Value>,
 }
 
+/// Refuses a name that is neither on the card nor the small parameter.
+pub(super) fn check_names(problem: &Problem, given: &BTreeMap<String, Value>) -> Result<(), Error> {
+    let mut known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
+    if !known.contains(&&*problem.small) && problem.amplitude != AmplitudeRole::InSmallParameter {
+        known.push(&problem.small);
+    }
+    let unknown = |name: &&String| !known.contains(&name.as_str()) && ***name != *problem.small;
+    match given.keys().find(unknown) {
+        None => Ok(()),
+        Some(name) => Err(Error::UnknownParameter {
+            problem: problem.name.to_string(),
+            name: name.clone(),
+            known: known.join(", "),
+        }),
+    }
+}
+
 /// The value of the small parameter of an averaged problem, its amplitude being free, and all
 /// values in the order of the card.
 pub(super) fn small_value(
@@ -112,6 +129,7 @@ impl Setting {
         condition: Option<Condition>,
         given: &BTreeMap<String, Value>,
     ) -> Result<Self, Error> {
+        check_names(problem, given)?;
         let listed = |name: &str| problem.parameters.iter().any(|card| card.name == name);
         let mut parameters = given.clone();
         if !listed(&problem.small) {

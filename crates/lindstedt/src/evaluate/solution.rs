@@ -9,7 +9,7 @@ use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::Problem;
 use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
 use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
-use lindstedt_series::resummation::{Method, Resummed, Sample, UniformMap, resum};
+use lindstedt_series::resummation::{Method, Resummed, Sample, UniformMap, partial_sums, resum};
 use rayon::prelude::*;
 use rug::{Float, Rational};
 use std::cell::RefCell;
@@ -123,7 +123,7 @@ impl Trajectory {
         let point = |k: u32| Point::PiTimes(Rational::from((2 * k + 1, PHASES)));
         let x: Vec<f64> = (0..PHASES)
             .into_par_iter()
-            .map(|k| self.sum(&point(k)).map_or(f64::NAN, |(x, _)| x.midpoint().to_f64()))
+            .map(|k| self.rough(&point(k)).unwrap_or(f64::NAN))
             .collect();
         let step = std::f64::consts::TAU / f64::from(PHASES);
         let next = x.iter().cycle().skip(1);
@@ -182,6 +182,36 @@ impl Trajectory {
         Some(Displacement { time: time.clone(), value, double, error: ball.radius().to_f64() })
     }
 
+    /// X at a phase to some digits, by one sequence of Pade approximants or the partial sum.
+    fn rough(&self, point: &Point) -> Option<f64> {
+        let order = u32::try_from(self.order()).ok()?;
+        let bits = 128 + 4 * order;
+        let sample = self.sample(point, bits)?;
+        let sum = sample.sum(Method::Pade, None, 53).map(|found| found.estimate.value).ok();
+        let partial = || partial_sums(&sample.coefficients, &sample.point, bits).pop();
+        let value = sum.or_else(partial)?;
+        let balls = Balls::new(bits);
+        let scaled = balls
+            .mul(&balls.from_parts(&value, &Float::new(53)), &self.setting.amplitude.ball(balls));
+        Some(scaled.midpoint().to_f64())
+    }
+
+    /// The coefficients of X at a phase and the small parameter.
+    fn sample(&self, point: &Point, bits: u32) -> Option<Sample> {
+        let balls = Balls::new(bits).with_guard(64);
+        let scale = Float::with_val(bits, 1);
+        let map = UniformMap { scale, prefactor: Float::new(bits), radius: None };
+        let coefficients = self.coefficients(point, balls)?;
+        let float = |c: &Ball| Float::with_val(bits, c.midpoint());
+        Some(Sample {
+            coefficients: coefficients.iter().map(float).collect(),
+            point: Float::with_val(bits, self.setting.small(balls).midpoint()),
+            map: Some(map),
+            radius: None,
+            bits,
+        })
+    }
+
     /// X at a phase, and its estimated error.
     fn sum(&self, point: &Point) -> Option<(Ball, Float)> {
         // The methods ask for the same precisions: each is computed once.
@@ -190,23 +220,7 @@ impl Trajectory {
             if let Some(sample) = known.borrow().get(&bits) {
                 return Some(sample.clone());
             }
-            let balls = Balls::new(bits).with_guard(64);
-            let map = UniformMap {
-                scale: Float::with_val(bits, 1),
-                prefactor: Float::new(bits),
-                radius: None,
-            };
-            let coefficients = self.coefficients(point, balls)?;
-            let sample = Sample {
-                coefficients: coefficients
-                    .iter()
-                    .map(|c| Float::with_val(bits, c.midpoint()))
-                    .collect(),
-                point: Float::with_val(bits, self.setting.small(balls).midpoint()),
-                map: Some(map),
-                radius: None,
-                bits,
-            };
+            let sample = self.sample(point, bits)?;
             known.borrow_mut().insert(bits, sample.clone());
             Some(sample)
         };

@@ -13,7 +13,7 @@ mod flow;
 mod truncated;
 
 use super::few::plain;
-use super::setting::small_value;
+use super::setting::{check_names, small_value};
 use super::{bits_for, estimated};
 use crate::averaging::AveragingSettings;
 use crate::averaging::numbers::{Numbers, numbers};
@@ -128,19 +128,13 @@ impl Motion {
         if !problem.conditions.contains(&Condition::FreeAmplitude) {
             return Err(Error::UnknownCondition { problem: problem.name.to_string() });
         }
+        check_names(problem, &settings.parameters)?;
         let (small, at) = small_value(problem, &settings.parameters)?;
         let listed = |name: &String| problem.parameters.iter().any(|card| card.name == *name);
         // The small parameter has its value in the sum, not in the coefficients; an amplitude is
         // free.
         let parameters =
             at.iter().filter(|(name, _)| listed(name)).cloned().collect::<BTreeMap<_, _>>();
-        if let Some(name) =
-            settings.parameters.keys().find(|name| !listed(name) && ***name != *problem.small)
-        {
-            let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
-            let (problem, known) = (problem.name.to_string(), known.join(", "));
-            return Err(Error::UnknownParameter { problem, name: name.clone(), known });
-        }
         let bits = bits_for(settings.digits.saturating_add(16));
         let averaging =
             AveragingSettings { order: settings.order, parameters, digits: settings.digits };
@@ -189,7 +183,7 @@ impl Motion {
                     let (a, b) = (rates.get(i)?.as_ref()?, rates.get(j)?.as_ref()?);
                     Some(Float::with_val(53, &a[k] - &b[k]).abs())
                 };
-                let quotient = ratio.filter(|ratio| *ratio < 1.0);
+                let quotient = ratio.filter(|ratio| *ratio < 1.0 && order > 1);
                 let balls = Balls::new(bits);
                 match quotient.zip(apart(0, 1)) {
                     Some((quotient, last)) => {
@@ -229,11 +223,11 @@ impl Motion {
         std::f64::consts::TAU / self.rates()[1]
     }
 
-    /// Whether the terms of the expansion decrease at the start, so that the last ones say
-    /// something about the rest.
+    /// Whether the last terms say something about the rest: those of x decrease at the start, and
+    /// there are three orders (corrections of a or psi alone may vanish at every other order).
     #[must_use]
     pub fn has_estimate(&self) -> bool {
-        self.ratio.is_some_and(|ratio| ratio < 1.0)
+        self.orders.len() > 2 && self.ratio.is_some_and(|ratio| ratio < 1.0)
     }
 
     /// The motion at times in increasing order. Times that the integration does not reach, because
@@ -303,7 +297,8 @@ impl Motion {
     #[must_use]
     pub fn verdict(&self) -> String {
         let mut parts = vec![format!("averaged to order {}", self.order)];
-        parts.push(match self.ratio {
+        let ratio = self.ratio.filter(|_| self.orders.len() > 2);
+        parts.push(match ratio {
             Some(ratio) if ratio < 1.0 => format!(
                 "the error of breaking off is estimated by the last two orders (the last term of \
                  x is {ratio:.1e} of the one before), the series being asymptotic"
