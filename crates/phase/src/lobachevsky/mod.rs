@@ -46,7 +46,8 @@ pub struct Factor {
     pub sine: bool,
 }
 
-/// An element: a polynomial in l and the Lambda_m for every factor cos^k or cos^k sin.
+/// An element: a polynomial in l and the Lambda_m for every factor cos^k or cos^k sin, the basis in which
+/// every element has one form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LobachevskyElement<E> {
     blocks: BTreeMap<Factor, LogPolynomial<E>>,
@@ -69,7 +70,12 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> LobachevskyElement<E>
     }
 }
 
-/// The Lobachevsky ring over a ring of constants with moments.
+/// The Lobachevsky ring C[cos, 1/cos, sin, l, Lambda_1, Lambda_2, ...] modulo sin^2 + cos^2 = 1 over a ring
+/// C of constants with moments: l = -ln|cos t|, Lambda_m = int_0^t (l^m/m! - mu_m), odd and pi-periodic.
+///
+/// Exact and canonical. `log_abs` knows cos t alone, `reciprocal` the units c cos^k. `resolve` is partial:
+/// it finds the response if it lies in the ring and says `NotIntegrable` if not
+/// (`docs/src/concepts/resonance.md`). A product costs one product of constants per pair of terms.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lobachevsky<C> {
     constants: C,

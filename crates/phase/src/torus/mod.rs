@@ -42,7 +42,9 @@ pub struct Delay<E> {
     pub forced: [E; 2],
 }
 
-/// The algebra over a ring K of numbers or parameters.
+/// The algebra over a ring K of numbers or parameters, with the rates omega_0 of psi and omega of eta at
+/// order zero and the delays T_j: what averaging needs ([`AveragingAlgebra`]). Exact over an exact K; over
+/// balls every coefficient is an enclosure.
 #[derive(Clone, Debug)]
 pub struct Torus<K: RationalAlgebra> {
     constants: AmplitudePolynomials<K>,
