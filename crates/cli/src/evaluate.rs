@@ -25,6 +25,7 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         parameters: parameters(&options.set)?,
         digits: digits(&options.precision)?,
         memory: session.memory(),
+        stop: session.stop(),
     };
     let times = trajectory::Request::read(options)?;
     output::check_writable(session)?;

@@ -8,6 +8,7 @@ mod source;
 
 use crate::number::{Number, Status, certified};
 use crate::{Error, Progress, Value};
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::digits::{decimal, error_string};
 use lindstedt_equation::{AmplitudeRole, Problem};
@@ -32,11 +33,20 @@ pub struct EvaluateSettings {
     pub digits: usize,
     /// The memory that may be used, in bytes.
     pub memory: u64,
+    /// Asked within long steps whether to stop.
+    pub stop: Stop,
 }
 
 impl Default for EvaluateSettings {
     fn default() -> Self {
-        Self { order: None, method: None, parameters: BTreeMap::new(), digits: 30, memory: 8 << 30 }
+        Self {
+            order: None,
+            method: None,
+            parameters: BTreeMap::new(),
+            digits: 30,
+            memory: 8 << 30,
+            stop: Stop::default(),
+        }
     }
 }
 
@@ -114,13 +124,22 @@ pub fn evaluate(
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Evaluation, Error> {
     let order = settings.order.unwrap_or_else(|| default_order(problem));
-    let source = source::source(problem, &settings.parameters, order, settings.memory, observer)?;
+    let source = source::source(
+        problem,
+        &settings.parameters,
+        order,
+        (settings.memory, &settings.stop),
+        observer,
+    )?;
     if !observer(Progress::Checking) {
         return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
     }
     let accuracy = bits_for(settings.digits);
-    let sample = |bits: u32| source.sample(bits);
+    let sample = |bits: u32| if settings.stop.asked() { None } else { source.sample(bits) };
     let resummed = resum(&sample, settings.method, accuracy);
+    if settings.stop.asked() {
+        return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
+    }
     let resummed = resummed
         .map_err(|reason| Error::Resummation { problem: problem.name.to_string(), reason })?;
     let exact_period = match &source.closed {
@@ -146,6 +165,9 @@ pub fn evaluate(
     let frequency = balls.div(&balls.mul_i64(&balls.pi(), 2), &period);
     let best = best_truncation(&sample, &resummed, &scale, settings.digits);
     let picture = picture(&sample, resummed.bits);
+    if settings.stop.asked() {
+        return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
+    }
     let mut result = Evaluation {
         at: source.at,
         variable: source.variable,

@@ -82,8 +82,13 @@ impl Trajectory {
             // The amplitude is scaled out; only the sums S_n depend on it.
             parameters.remove("amplitude");
         }
-        let derived =
-            Settings { order, parameters, memory: settings.memory, ..Settings::default() };
+        let derived = Settings {
+            order,
+            parameters,
+            memory: settings.memory,
+            stop: settings.stop.clone(),
+            ..Settings::default()
+        };
         let derivation = derive(problem, &derived, observer)?;
         let one = || Value::Rational(rug::Rational::from(1));
         let given = |name: &str| point.at.iter().find(|(n, _)| *n == name).map(|(_, v)| v.clone());

@@ -4,7 +4,7 @@
 use super::{closed, coefficients};
 use crate::derivation::limits::check_parameters;
 use crate::{Error, Progress, Settings, Value, derive};
-use lindstedt_algebra::RationalAlgebra;
+use lindstedt_algebra::{RationalAlgebra, Stop};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::{AmplitudeRole, Condition, Problem};
 use lindstedt_series::resummation::{Sample, UniformMap};
@@ -85,8 +85,8 @@ pub(super) fn point(problem: &Problem, values: &BTreeMap<String, Value>) -> Resu
     check_parameters(problem, values)?;
     let given = Given { problem, values };
     match problem.amplitude {
-        AmplitudeRole::ScalesFrequency { .. } => power_law(&given, 0),
-        AmplitudeRole::InSums => pendulum(&given, 0),
+        AmplitudeRole::ScalesFrequency { .. } => power_law(&given, 0, &Stop::default()),
+        AmplitudeRole::InSums => pendulum(&given, 0, &Stop::default()),
         AmplitudeRole::InSmallParameter => duffing(&given, Vec::new()),
         AmplitudeRole::Determined => limit_cycle(&given, Vec::new()),
         AmplitudeRole::Free | AmplitudeRole::Scaled => Err(not_evaluated(problem)),
@@ -111,28 +111,28 @@ pub(super) fn source(
     problem: &Problem,
     values: &BTreeMap<String, Value>,
     order: usize,
-    memory: u64,
+    (memory, stop): (u64, &Stop),
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Source, Error> {
     check_known(problem)?;
     check_parameters(problem, values)?;
     let given = Given { problem, values };
     match problem.amplitude {
-        AmplitudeRole::ScalesFrequency { .. } => power_law(&given, order),
-        AmplitudeRole::InSums => pendulum(&given, order),
+        AmplitudeRole::ScalesFrequency { .. } => power_law(&given, order, stop),
+        AmplitudeRole::InSums => pendulum(&given, order, stop),
         AmplitudeRole::InSmallParameter => {
-            let series = over_rationals(problem, order, memory, observer)?;
+            let series = over_rationals(problem, order, (memory, stop), observer)?;
             duffing(&given, series)
         }
         AmplitudeRole::Determined => {
-            let series = over_rationals(problem, order, memory, observer)?;
+            let series = over_rationals(problem, order, (memory, stop), observer)?;
             limit_cycle(&given, series)
         }
         AmplitudeRole::Free | AmplitudeRole::Scaled => Err(not_evaluated(problem)),
     }
 }
 
-fn power_law(given: &Given<'_>, order: usize) -> Result<Source, Error> {
+fn power_law(given: &Given<'_>, order: usize, stop: &Stop) -> Result<Source, Error> {
     let delta = if given.values.contains_key("n") {
         (given.rational("n")? - 1u32) / 2u32
     } else {
@@ -145,7 +145,7 @@ fn power_law(given: &Given<'_>, order: usize) -> Result<Source, Error> {
         ("delta", Value::Rational(delta.clone())),
         ("amplitude", amplitude.clone()),
     ];
-    let point = delta.clone();
+    let (point, stop) = (delta.clone(), stop.clone());
     let (exponent, base) = (delta.clone(), amplitude.clone());
     let closed = move |balls: Balls| {
         closed::power_law(balls, &balls.from_rational(&delta), &amplitude.ball(balls))
@@ -153,7 +153,7 @@ fn power_law(given: &Given<'_>, order: usize) -> Result<Source, Error> {
     Ok(Source {
         variable: "delta",
         at,
-        coefficients: Box::new(move |bits| coefficients::power_law(order, bits)),
+        coefficients: Box::new(move |bits| coefficients::power_law(order, bits, &stop)),
         point: Box::new(move |balls| Some(balls.from_rational(&point))),
         factor: Box::new(move |balls| {
             let log = balls.ln(&base.ball(balls))?;
@@ -169,7 +169,7 @@ fn power_law(given: &Given<'_>, order: usize) -> Result<Source, Error> {
     })
 }
 
-fn pendulum(given: &Given<'_>, order: usize) -> Result<Source, Error> {
+fn pendulum(given: &Given<'_>, order: usize, stop: &Stop) -> Result<Source, Error> {
     let (delta, amplitude) = (given.rational("delta")?, given.get("amplitude")?);
     let at = vec![("amplitude", amplitude.clone()), ("delta", Value::Rational(delta.clone()))];
     let closed: Option<(&'static str, Formula)> = (delta == 1).then(|| {
@@ -177,11 +177,12 @@ fn pendulum(given: &Given<'_>, order: usize) -> Result<Source, Error> {
         let formula = move |balls: Balls| closed::pendulum(balls, &amplitude.ball(balls));
         ("4*K(k), k = sin(a/2)", Box::new(formula) as Formula)
     });
+    let stop = stop.clone();
     Ok(Source {
         variable: "delta",
         at,
         coefficients: Box::new(move |bits| {
-            coefficients::pendulum(&|balls| amplitude.ball(balls), order, bits)
+            coefficients::pendulum(&|balls| amplitude.ball(balls), order, bits, &stop)
         }),
         point: Box::new(move |balls| Some(balls.from_rational(&delta))),
         factor: Box::new(|balls| Some(balls.one())),
@@ -196,12 +197,13 @@ fn pendulum(given: &Given<'_>, order: usize) -> Result<Source, Error> {
 fn over_rationals(
     problem: &Problem,
     order: usize,
-    memory: u64,
+    (memory, stop): (u64, &Stop),
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Vec<Rational>, Error> {
     let condition = problem.conditions.first().copied();
     let condition = condition.filter(|c| *c != Condition::FundamentalAmplitude);
-    let settings = Settings { order, condition, memory, ..Settings::default() };
+    let stop = stop.clone();
+    let settings = Settings { order, condition, memory, stop, ..Settings::default() };
     let result = derive(problem, &settings, observer)?;
     let series = result.named("period_over_2pi").ok_or(Error::NoValue)?;
     let value = |c| result.ring.as_rational(c).ok_or(Error::NoValue);
