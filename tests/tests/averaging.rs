@@ -279,7 +279,7 @@ fn averaged_loop(values: &[(&str, &str)], order: usize, digits: usize) -> Averag
     for (name, text) in values {
         parameters.insert((*name).to_owned(), Value::parse(text).unwrap());
     }
-    let settings = AveragingSettings { order, parameters, digits };
+    let settings = AveragingSettings { order, parameters, digits, ..AveragingSettings::default() };
     average_problem(&delay_loop(), &settings, &mut |_| true).unwrap()
 }
 
@@ -407,7 +407,7 @@ fn refusals() {
     let problem = delay_loop();
     let set = |pairs: &[(&str, &str)]| {
         let list = pairs.iter().map(|(n, v)| ((*n).to_owned(), Value::parse(v).unwrap()));
-        AveragingSettings { order: 2, parameters: list.collect(), digits: 20 }
+        AveragingSettings { parameters: list.collect(), digits: 20, ..AveragingSettings::default() }
     };
     let run = |pairs: &[(&str, &str)]| average_problem(&problem, &set(pairs), &mut |_| true).err();
     assert!(matches!(run(&[("zeta", "1")]), Some(Error::UnknownParameter { .. })));

@@ -9,7 +9,9 @@ mod averaging;
 pub mod laws;
 mod phase;
 mod ring;
+mod stop;
 
 pub use averaging::{Averaged, AveragingAlgebra, LinearPart};
 pub use phase::{Elementary, FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution};
 pub use ring::{RationalAlgebra, Rationals, Ring};
+pub use stop::Stop;

@@ -41,6 +41,11 @@ pub trait FunctionAlgebra: RationalAlgebra {
     }
     /// The number of terms of f, for the work counters.
     fn terms(&self, f: &Self::Element) -> usize;
+    /// Whether the algebra was asked to stop ([`Stop`](crate::Stop)) and the values computed
+    /// since may mean nothing.
+    fn interrupted(&self) -> bool {
+        false
+    }
     /// The number of delays that the algebra knows; 0 where time is the phase alone.
     fn delays(&self) -> usize {
         0

@@ -34,6 +34,7 @@ pub fn run(
         order: settings.order,
         parameters: settings.parameters.clone(),
         digits,
+        stop: settings.stop.clone(),
     };
     let mut observer = |progress: Progress| {
         session.say(match progress {
@@ -64,9 +65,11 @@ pub fn run(
         Format::Markdown => Board { result: &result, style: Style::Latex, markdown: true }.write(),
     };
     output::write(session, &text)?;
-    if result.order < asked.order {
+    if result.order < asked.order || result.checked_orders < result.order {
         let reason = if session.interrupted() { "interrupted" } else { "time limit" };
-        output::warn(&format!("{reason}: orders 0 to {} are finished and checked", result.order));
+        let checked =
+            if result.checked_orders == result.order { "and checked" } else { "but not checked" };
+        output::warn(&format!("{reason}: orders 0 to {} are finished {checked}", result.order));
         return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
     }
     Ok(0)

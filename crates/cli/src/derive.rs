@@ -35,6 +35,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
             arguments::Route::Driver => Route::Driver,
             arguments::Route::Energy => Route::EnergyIntegral,
         },
+        stop: session.stop(),
     };
     output::check_writable(session)?;
     // The equation of a file is looked at before any work starts; built-in ones are known.
@@ -91,9 +92,12 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         Format::Markdown => report.board(Style::Latex, &Frame::MARKDOWN),
     };
     output::write(session, &text)?;
-    if result.order < settings.order {
+    let unchecked =
+        result.checked_orders.is_none() && !matches!(result.solution, Solution::FrequencyOnly);
+    if result.order < settings.order || unchecked {
         let reason = if session.interrupted() { "interrupted" } else { "time limit" };
-        output::warn(&format!("{reason}: orders 0 to {} are finished and checked", result.order));
+        let checked = if unchecked { "but not checked" } else { "and checked" };
+        output::warn(&format!("{reason}: orders 0 to {} are finished {checked}", result.order));
         return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
     }
     Ok(0)
@@ -156,13 +160,21 @@ impl<'a> Report<'a> {
         Ok(Self { result, numbers })
     }
 
+    /// The number of orders whose solution is known.
+    fn solved(&self) -> usize {
+        match self.result.solution {
+            Solution::FrequencyOnly => 0,
+            _ => self.result.order + 1,
+        }
+    }
+
     fn json(&self, session: &Session<'_>) -> Json {
         let result = self.result;
         let mut series = serde_json::Map::new();
         for (named, numbers) in result.series.iter().zip(&self.numbers) {
             series.insert(named.name.to_owned(), numbers.iter().map(number_json).collect());
         }
-        let orders = result.checked_orders.map_or(0, |last| last + 1);
+        let orders = self.solved();
         let solution: Vec<String> =
             (0..orders).map(|n| result.print_solution(n, Style::Text)).collect();
         let method = match &result.solution {
@@ -278,7 +290,7 @@ impl<'a> Report<'a> {
         if matches!(result.solution, Solution::Lobachevsky(_)) {
             text += names.ring;
         }
-        for n in 0..result.checked_orders.map_or(0, |last| last + 1) {
+        for n in 0..self.solved() {
             text += &self.order(n, style, frame, &names);
         }
         text += &frame.title("Result");

@@ -54,6 +54,7 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         parameters: given,
         digits: digits(&options.precision)?,
         memory: session.memory(),
+        stop: session.stop(),
     };
     let times = trajectory::Request::read(options)?;
     output::check_writable(session)?;

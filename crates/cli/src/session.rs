@@ -3,6 +3,7 @@
 use crate::arguments::{Common, Format, Precision};
 use crate::failure::{FILE, Failure, NO_ANSWER, UNDECIDED, USAGE};
 use indicatif::{ProgressBar, ProgressStyle};
+use lindstedt::algebra::Stop;
 use lindstedt::equation::Problem;
 use lindstedt::problem_file::{FileError, LARGEST_FILE};
 use lindstedt::{ProblemFile, Value};
@@ -74,13 +75,13 @@ impl<'a> Session<'a> {
         !self.interrupted() && !self.out_of_time()
     }
 
-    /// The same question for work that outlives a borrow of the session.
-    pub fn watch(&self) -> Arc<dyn Fn() -> bool + Send + Sync> {
-        let (interrupts, start) = (Arc::clone(&self.interrupts), self.start);
-        let limit = self.common.limit_seconds;
-        Arc::new(move || {
-            let late = limit.is_some_and(|limit| start.elapsed().as_secs_f64() > limit);
-            interrupts.load(Ordering::SeqCst) == 0 && !late
+    /// The same question for the threads of the engine.
+    pub fn stop(&self) -> Stop {
+        let interrupts = Arc::clone(&self.interrupts);
+        let (start, limit) = (self.start, self.common.limit_seconds);
+        Stop::new(move || {
+            interrupts.load(Ordering::SeqCst) > 0
+                || limit.is_some_and(|limit| start.elapsed().as_secs_f64() > limit)
         })
     }
 

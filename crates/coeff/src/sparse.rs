@@ -154,11 +154,27 @@ impl<M: Monomial, E: Clone + PartialEq + Debug + Send + Sync> Accumulator<M, E> 
         a: &Sparse<M, E>,
         b: &Sparse<M, E>,
     ) {
+        self.add_product_while(ring, a, b, &|| true);
+    }
+
+    /// Adds a product of polynomials as long as `go_on`, which is asked once per term of `a`, says
+    /// so; whether it was finished.
+    pub fn add_product_while<R: Ring<Element = E>>(
+        &mut self,
+        ring: &R,
+        a: &Sparse<M, E>,
+        b: &Sparse<M, E>,
+        go_on: &dyn Fn() -> bool,
+    ) -> bool {
         for (m, x) in &a.terms {
+            if !go_on() {
+                return false;
+            }
             for (n, y) in &b.terms {
                 self.add(ring, m.times(n), ring.mul(x, y));
             }
         }
+        true
     }
 
     /// The sorted polynomial.

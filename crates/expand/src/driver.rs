@@ -129,8 +129,8 @@ pub fn leading_amplitude<A: PhaseAlgebra>(
 /// # Ok::<(), lindstedt_expand::ExpandError>(())
 /// ```
 ///
-/// After each order `observer` is told the work; when it returns `false` the driver stops and
-/// returns the orders that are finished.
+/// After each order `observer` is told the work; when it returns `false`, or when the algebra is
+/// interrupted within an order, the driver stops and returns the orders that are finished.
 ///
 /// # Errors
 /// [`ExpandError`] says at which order and why no expansion of the asked form exists or could
@@ -149,7 +149,8 @@ pub fn expand<A: PhaseAlgebra>(
 /// How the amplitude is treated: fixed or a limit cycle's (`Driver` below), or free and drifting
 /// ([`crate::average`]). The loop over the orders is the same.
 pub(crate) trait Scheme {
-    /// Derives order n: residual, resonant part, response.
+    /// Derives order n: residual, resonant part, response. Interrupted, it fails and leaves the
+    /// orders below as they were.
     fn step(&mut self, n: usize) -> Result<(), ExpandError>;
     /// Products formed so far.
     fn products(&self) -> u64;
@@ -157,7 +158,7 @@ pub(crate) trait Scheme {
     fn terms(&self) -> usize;
 }
 
-/// The loop over the orders; stops early when the observer says so.
+/// The loop over the orders; stops early when the observer says so or the algebra is interrupted.
 pub(crate) fn run(
     scheme: &mut dyn Scheme,
     order: usize,
@@ -166,7 +167,10 @@ pub(crate) fn run(
     let mut list = Vec::new();
     for n in 1..=order {
         let before = scheme.products();
-        scheme.step(n)?;
+        match scheme.step(n) {
+            Err(ExpandError::Interrupted { .. }) => break,
+            other => other?,
+        }
         let products = scheme.products() - before;
         let work = OrderWork { order: n, products, terms: scheme.terms() };
         list.push(work);
@@ -220,7 +224,9 @@ impl<A: PhaseAlgebra> Scheme for Driver<'_, A> {
         let (algebra, constants) = (self.algebra, self.algebra.constants());
         let f = self.right_side(n)?;
         let phase = |source| ExpandError::Phase { order: n, source };
-        let mut split = algebra.resolve(&f).map_err(phase)?;
+        let split = algebra.resolve(&f);
+        self.go_on(n)?;
+        let mut split = split.map_err(phase)?;
         // Rounding errors of an estimating algebra are no drift of the amplitude.
         if self.limit_cycle.is_none() && !constants.is_zero(&split.sin_amplitude) {
             let resonant = algebra.scale_by(&algebra.sine(), &split.sin_amplitude);
@@ -244,7 +250,9 @@ impl<A: PhaseAlgebra> Scheme for Driver<'_, A> {
 
         let mut x = split.response;
         if self.condition == Condition::FundamentalAmplitude {
-            let (c, s) = algebra.first_harmonic(&x).map_err(phase)?;
+            let harmonic = algebra.first_harmonic(&x);
+            self.go_on(n)?;
+            let (c, s) = harmonic.map_err(phase)?;
             x = algebra.sub(&x, &algebra.scale_by(&algebra.cosine(), &c));
             x = algebra.sub(&x, &algebra.scale_by(&algebra.sine(), &s));
         }
@@ -321,6 +329,11 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         };
         driver.forget(1);
         Ok(driver)
+    }
+
+    /// Fails after an interruption: the values of the order in progress mean nothing.
+    fn go_on(&self, order: usize) -> Result<(), ExpandError> {
+        if self.algebra.interrupted() { Err(ExpandError::Interrupted { order }) } else { Ok(()) }
     }
 
     /// Forgets provisional coefficients: those of order n and above that depend on x_n.
@@ -437,10 +450,16 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     fn finish(mut self, work: Vec<OrderWork>) -> Result<Expansion<A>, ExpandError> {
         let algebra = self.algebra;
         let order = self.x.len() - 1;
+        // The order in progress when it was interrupted may have its frequency already.
+        self.frequency_squared.truncate(order + 1);
+        if self.condition == Condition::LimitCycle && order > 0 {
+            self.go_on(order)?;
+        }
         if self.limit_cycle.is_some() {
             let f = self.right_side(order + 1)?;
             let phase = |source| ExpandError::Phase { order: order + 1, source };
             let (_, sin_amplitude) = algebra.first_harmonic(&f).map_err(phase)?;
+            self.go_on(order)?;
             if let Some(shift) = self.amplitude_shift(&sin_amplitude, order + 1)? {
                 self.shift_amplitude(&shift, order);
             }

@@ -104,7 +104,7 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
         if let Some(value) = self.known(node, n) {
             return Ok(value.clone());
         }
-        let value = self.compute(node, n)?;
+        let value = self.finished(node, n)?;
         self.store(node, n, value.clone());
         Ok(value)
     }
@@ -112,10 +112,19 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
     /// Computes and remembers, without handing out a copy.
     fn ensure(&mut self, node: NodeId, n: usize) -> Result<(), ExpandError> {
         if self.known(node, n).is_none() {
-            let value = self.compute(node, n)?;
+            let value = self.finished(node, n)?;
             self.store(node, n, value);
         }
         Ok(())
+    }
+
+    /// A coefficient that was not broken off.
+    fn finished(&mut self, node: NodeId, n: usize) -> Result<A::Element, ExpandError> {
+        let value = self.compute(node, n);
+        if self.algebra.interrupted() {
+            return Err(ExpandError::Interrupted { order: n });
+        }
+        value
     }
 
     fn compute(&mut self, node: NodeId, n: usize) -> Result<A::Element, ExpandError> {
@@ -366,6 +375,9 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
                 }
             };
             tangents.push(tangent);
+        }
+        if algebra.interrupted() {
+            return Err(ExpandError::Interrupted { order: 0 });
         }
         Ok(tangents)
     }

@@ -26,8 +26,21 @@ use rug::Rational;
 /// secular term in sin psi must vanish, which is checked too.
 ///
 /// # Errors
-/// [`ExpandError::Residual`] or [`ExpandError::Normalisation`] with the first order that fails.
+/// [`ExpandError::Residual`] or [`ExpandError::Normalisation`] with the first order that fails;
+/// [`ExpandError::Interrupted`] where the algebra was interrupted and nothing is known.
 pub fn check<A: PhaseAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    expansion: &Expansion<A>,
+) -> Result<usize, ExpandError> {
+    let result = substitute(algebra, equation, expansion);
+    if algebra.interrupted() {
+        return Err(ExpandError::Interrupted { order: expansion.order() });
+    }
+    result
+}
+
+fn substitute<A: PhaseAlgebra>(
     algebra: &A,
     equation: &Equation<A>,
     expansion: &Expansion<A>,

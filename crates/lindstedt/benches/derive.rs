@@ -93,7 +93,7 @@ fn averaging(bencher: Bencher<'_, '_>, order: usize, values: &[(&str, &str)]) {
     let problem = problems::find("vibro-impact").expect("a built-in problem");
     let value = |text: &str| Value::parse(text).expect("a number");
     let parameters = values.iter().map(|(name, text)| ((*name).to_owned(), value(text))).collect();
-    let settings = AveragingSettings { order, parameters, digits: 30 };
+    let settings = AveragingSettings { order, parameters, ..AveragingSettings::default() };
     average(&problem, &settings, &mut |_| true).expect("an expansion");
     bencher.bench(|| average(&problem, &settings, &mut |_| true).map(|a| a.order));
 }

@@ -9,7 +9,7 @@
 //! ([`residual_bits`]). So the residual vanishes over Q.
 
 use crate::Error;
-use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Rationals, Ring};
+use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_equation::Expression;
 use lindstedt_expand::{
     Binding, Equation, ExpandError, Expansion, Request, check, check_normalisation, compile,
@@ -54,7 +54,8 @@ pub struct Proved {
 
 /// Derives and proves the expansion of a polynomial equation over Q.
 ///
-/// `observer` is told the number of primes done so far; `false` stops.
+/// `observer` is told the number of primes done so far; `false` stops. `stop` is asked after every
+/// order modulo every prime, from all threads.
 ///
 /// # Errors
 /// [`Error::Expand`] as the driver over Q would, or interrupted.
@@ -63,6 +64,7 @@ pub fn derive(
     binding: &dyn RationalBinding,
     condition: lindstedt_equation::Condition,
     order: usize,
+    stop: &Stop,
     observer: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Proved, Error> {
     let plain = Trigonometric::new(Rationals);
@@ -73,7 +75,7 @@ pub fn derive(
         ExpandError::UnsupportedTerm { term: "a term that is not polynomial".into() }
     })?;
     let (points, roots) = Modular::points_for_degree(degree);
-    let job = Job { equation, binding, request, degrees, points };
+    let job = Job { equation, binding, request, degrees, points, stop };
 
     let mut primes = PrimeField::with_roots_of_unity(roots, 1 << 61);
     let mut images: Vec<(PrimeField, Vec<u64>)> = Vec::new();
@@ -99,9 +101,10 @@ pub fn derive(
         if !observer(images.len()) {
             return Err(ExpandError::Interrupted { order }.into());
         }
-        if let Some(values) = reconstruct(&images, job.probe()) {
+        if let Some(values) = reconstruct(&images, job.probe(), stop) {
             break values;
         }
+        job.go_on()?;
         batch = (images.len() / 6).max(2);
     };
     let expansion = job.assemble(&plain, &values)?;
@@ -116,9 +119,15 @@ struct Job<'a> {
     request: Request,
     degrees: Vec<usize>,
     points: usize,
+    stop: &'a Stop,
 }
 
 impl Job<'_> {
+    fn go_on(&self) -> Result<(), Error> {
+        let interrupted = ExpandError::Interrupted { order: self.request.order };
+        if self.stop.asked() { Err(interrupted.into()) } else { Ok(()) }
+    }
+
     fn over(&self, field: PrimeField) -> Result<(Modular, Equation<Modular>), Error> {
         let algebra = Modular::new(field, self.points).ok_or(Error::OutOfPrimes)?;
         let binding = Over(self.binding, &field);
@@ -130,7 +139,8 @@ impl Job<'_> {
     /// degree of x_n.
     fn image(&self, field: PrimeField) -> Result<(PrimeField, Vec<u64>), Error> {
         let (algebra, equation) = self.over(field)?;
-        let expansion = expand(&algebra, &equation, &self.request, &mut |_| true)?;
+        let expansion = expand(&algebra, &equation, &self.request, &mut |_| !self.stop.asked())?;
+        self.go_on()?;
         let mut list = Vec::new();
         for ((w, x), &degree) in
             expansion.frequency_squared.iter().zip(&expansion.solution).zip(&self.degrees)
@@ -195,17 +205,22 @@ impl Job<'_> {
 
 /// The rational numbers with given images, the last `probe` of them first; nothing when the
 /// primes do not suffice.
-fn reconstruct(images: &[(PrimeField, Vec<u64>)], probe: usize) -> Option<Vec<Rational>> {
+fn reconstruct(
+    images: &[(PrimeField, Vec<u64>)],
+    probe: usize,
+    stop: &Stop,
+) -> Option<Vec<Rational>> {
     let length = images.first()?.1.len();
     let remaindering = Remaindering::new(images);
-    let lift = |range: std::ops::Range<usize>| -> Vec<Integer> {
-        range.into_par_iter().map(|index| remaindering.lift(index)).collect()
+    let lift = |range: std::ops::Range<usize>| -> Option<Vec<Integer>> {
+        let lift = |index| (!stop.asked()).then(|| remaindering.lift(index));
+        range.into_par_iter().map(lift).collect()
     };
     let mut denominator = Integer::from(1);
     let start = length.saturating_sub(probe);
-    remaindering.rationals(&lift(start..length), &mut denominator)?;
+    remaindering.rationals(&lift(start..length)?, &mut denominator, stop)?;
     let mut denominator = Integer::from(1);
-    remaindering.rationals(&lift(0..length), &mut denominator)
+    remaindering.rationals(&lift(0..length)?, &mut denominator, stop)
 }
 
 /// The Chinese remainder theorem for the primes of a list of images.
@@ -250,10 +265,19 @@ impl<'a> Remaindering<'a> {
 
     /// Rational numbers over a growing common denominator. A candidate is accepted when it is
     /// shorter than the modulus by 80 bits, which happens by chance once in 2^80.
-    fn rationals(&self, lifted: &[Integer], denominator: &mut Integer) -> Option<Vec<Rational>> {
+    /// Nothing when stopped.
+    fn rationals(
+        &self,
+        lifted: &[Integer],
+        denominator: &mut Integer,
+        stop: &Stop,
+    ) -> Option<Vec<Rational>> {
         let limit = self.modulus.significant_bits().checked_sub(80)?;
         let mut values = Vec::with_capacity(lifted.len());
         for residue in lifted {
+            if stop.asked() {
+                return None;
+            }
             let mut numerator = self.centred(Integer::from(residue * &*denominator));
             if numerator.significant_bits() > limit {
                 let missing = self.missing_denominator(&numerator)?;
@@ -319,6 +343,7 @@ fn prove(
         return Err(Error::OutOfPrimes);
     }
     fields.into_par_iter().try_for_each(|field| {
+        job.go_on()?;
         let (algebra, equation) = job.over(field)?;
         let image = reduce(&algebra, expansion, &cleared);
         check(&algebra, &equation, &image).map(|_| ()).map_err(Error::from)

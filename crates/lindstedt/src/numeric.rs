@@ -133,6 +133,7 @@ pub fn derive(
         Tier::Doubles => {
             let run = |job: &mut Job<'_>, (accuracy, end)| {
                 let algebra = Collocation::new(Doubles, Grid::new(accuracy, end));
+                let algebra = algebra.with_stop(job.settings.stop.clone());
                 job.run(&algebra, algebra.nodes())
             };
             // A solution is known to about 1e-16: where cos psi is smaller than that, x_n/x_0 is
@@ -144,7 +145,8 @@ pub fn derive(
         }
         Tier::Fourier { harmonics } => {
             let run = |job: &mut Job<'_>, harmonics| {
-                job.run(&Collocation::fourier(Doubles, harmonics), harmonics)
+                let algebra = Collocation::fourier(Doubles, harmonics);
+                job.run(&algebra.with_stop(job.settings.stop.clone()), harmonics)
             };
             let harmonics = harmonics.clamp(4, MOST_NODES);
             limit_memory(settings, harmonics, 64)?;
@@ -202,6 +204,7 @@ impl Job<'_> {
             bits = needed;
             limit_memory(self.settings, grid.nodes, bits)?;
             let algebra = Collocation::new(Floats::new(bits), grid);
+            let algebra = algebra.with_stop(self.settings.stop.clone());
             let run = self.run(&algebra, grid.nodes)?;
             let Some(before) = coarse.replace(run) else {
                 guard = 6;

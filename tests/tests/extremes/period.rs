@@ -34,6 +34,9 @@ fn two_pi(bits: u32) -> Float {
 /// 4 sqrt(pi (1 + d)) Gamma(1 + y)/Gamma(1/2 + y) a^(-d), y = 1/(n + 1), d = (n - 1)/2; nothing
 /// beyond MPFR's exponents.
 fn power_law(n: &Rational, amplitude: &Rational, bits: u32) -> Option<Float> {
+    if *n == -1 {
+        return None;
+    }
     // 1/2 + 10^-300 needs its bits.
     let work = bits + 2100;
     let delta = Rational::from(n - 1u32) / 2u32;

@@ -53,7 +53,12 @@ fn grid_of(orders: &[usize], digits: &[usize]) -> Grid {
         for &order in orders {
             for &digits in digits {
                 let label = format!("{values:?} order {order} digits {digits}");
-                let settings = AveragingSettings { order, parameters: set(&given), digits };
+                let settings = AveragingSettings {
+                    order,
+                    parameters: set(&given),
+                    digits,
+                    ..AveragingSettings::default()
+                };
                 grid.cell(&label, |grid| {
                     let problem = problems::vibro_impact::problem();
                     let found = match average(&problem, &settings, &mut |_| true) {

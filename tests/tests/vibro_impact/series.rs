@@ -35,7 +35,8 @@ impl Case {
         }
         parameters.insert("k".to_owned(), Value::Rational(self.periods.into()));
         parameters.insert("P0".to_owned(), Value::Rational(1.into()));
-        let settings = AveragingSettings { order, parameters, digits };
+        let settings =
+            AveragingSettings { order, parameters, digits, ..AveragingSettings::default() };
         average(&problems::vibro_impact::problem(), &settings, &mut |_| true).unwrap()
     }
 

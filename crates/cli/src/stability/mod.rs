@@ -24,7 +24,8 @@ pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
     for path in &options.plot {
         output::check_file(path)?;
     }
-    let watch = Watch::new(session.watch());
+    let stop = session.stop();
+    let watch = Watch::new(std::sync::Arc::new(move || !stop.asked()));
     let stopped = |error| match error {
         ImpactError::Cancelled if !session.interrupted() => Failure {
             exit: UNDECIDED,

@@ -25,6 +25,18 @@ pub fn check_averaged<A: AveragingAlgebra>(
     equation: &Equation<A>,
     expansion: &AveragedExpansion<A>,
 ) -> Result<usize, ExpandError> {
+    let result = substitute(algebra, equation, expansion);
+    if algebra.interrupted() {
+        return Err(ExpandError::Interrupted { order: expansion.order() });
+    }
+    result
+}
+
+fn substitute<A: AveragingAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    expansion: &AveragedExpansion<A>,
+) -> Result<usize, ExpandError> {
     let judge = Judge { algebra, expansion, order: expansion.order() };
     judge.normalisation()?;
     let x = Series::truncated(expansion.solution.clone());

@@ -71,6 +71,11 @@ pub fn average<A: AveragingAlgebra>(
 ) -> Result<AveragedExpansion<A>, ExpandError> {
     let mut averaging = Averaging::start(algebra, equation)?;
     let work = run(&mut averaging, order, observer)?;
+    // An order that was interrupted has provisional values.
+    let finished = work.len() + 1;
+    averaging.x.truncate(finished);
+    averaging.amplitude_rate.truncate(finished);
+    averaging.phase_rate.truncate(finished);
     Ok(AveragedExpansion {
         linear: averaging.linear,
         amplitude_rate: averaging.amplitude_rate,
@@ -115,8 +120,11 @@ impl<A: AveragingAlgebra> Scheme for Averaging<'_, A> {
         self.assign(n);
         let f = self.right_side(n)?;
         let phase = |source| ExpandError::Phase { order: n, source };
-        let Averaged { amplitude_rate, phase_rate, response } =
-            algebra.average(&self.linear, &f).map_err(phase)?;
+        let averaged = algebra.average(&self.linear, &f);
+        if algebra.interrupted() {
+            return Err(ExpandError::Interrupted { order: n });
+        }
+        let Averaged { amplitude_rate, phase_rate, response } = averaged.map_err(phase)?;
         let leading = &self.x[0];
         let drift = algebra.add(
             &algebra.scale_by(&algebra.by_amplitude(leading), &amplitude_rate),
@@ -124,7 +132,11 @@ impl<A: AveragingAlgebra> Scheme for Averaging<'_, A> {
         );
         self.amplitude_rate[n] = amplitude_rate;
         self.phase_rate[n] = phase_rate;
-        self.amend(n, response, &drift)
+        self.amend(n, response, &drift)?;
+        if algebra.interrupted() {
+            return Err(ExpandError::Interrupted { order: n });
+        }
+        Ok(())
     }
 }
 

@@ -7,7 +7,7 @@ mod values;
 use crate::number::rational;
 use crate::{Error, Number, Progress, Value};
 use coefficients::{Coefficients, with_angles};
-use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
+use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials, AmplitudePower};
 use lindstedt_coeff::ball::Balls;
@@ -33,6 +33,15 @@ pub struct AveragingSettings {
     pub parameters: BTreeMap<String, Value>,
     /// Digits of numbers that are not rational.
     pub digits: usize,
+    /// Asked within the orders whether to stop.
+    pub stop: Stop,
+}
+
+impl Default for AveragingSettings {
+    /// Order 2, every parameter a symbol, 30 digits.
+    fn default() -> Self {
+        Self { order: 2, parameters: BTreeMap::new(), digits: 30, stop: Stop::default() }
+    }
 }
 
 /// One term c a^exponent of a rate.
@@ -69,7 +78,8 @@ pub struct Averaging {
     pub problem: Problem,
     /// The highest order derived.
     pub order: usize,
-    /// Orders 0..=this leave no residual.
+    /// Orders 0..=this leave no residual; 0 where [`AveragingSettings::stop`] left no time to check
+    /// the others.
     pub checked_orders: usize,
     /// A_n, order by order, as terms in increasing powers of a.
     pub amplitude_rate: Vec<Vec<RateTerm>>,
@@ -108,7 +118,7 @@ impl Averaging {
 /// use lindstedt::averaging::{AveragingSettings, Coefficient, average};
 /// use lindstedt::problems;
 /// let problem = problems::vibro_impact::problem();
-/// let settings = AveragingSettings { order: 1, parameters: Default::default(), digits: 30 };
+/// let settings = AveragingSettings { order: 1, ..AveragingSettings::default() };
 /// let result = average(&problem, &settings, &mut |_| true)?;
 /// // The paper's (7): da/dt = eps R a.
 /// let Coefficient::Formula { text, .. } = &result.amplitude_rate[1][0].coefficient else { panic!() };
@@ -135,7 +145,7 @@ pub(crate) fn formulas(
     problem: &Problem,
     order: usize,
 ) -> Result<(ParameterField, AveragedExpansion<Torus<ParameterField>>), Error> {
-    let settings = AveragingSettings { order, parameters: BTreeMap::new(), digits: 20 };
+    let settings = AveragingSettings { order, digits: 20, ..AveragingSettings::default() };
     let (field, over) = Task::new(problem, &settings)?.over_parameters(&mut |_| true)?;
     Ok((field, over.expansion))
 }
@@ -275,7 +285,8 @@ impl<'a> Task<'a> {
             };
             delays.push(Delay { free: turn(&frequency)?, forced, time });
         }
-        Ok((Torus::new(ring, frequency.clone(), forcing, delays), frequency))
+        let torus = Torus::new(ring, frequency.clone(), forcing, delays);
+        Ok((torus.with_stop(self.settings.stop.clone()), frequency))
     }
 
     fn derive<K: Coefficients + Print>(
@@ -290,7 +301,11 @@ impl<'a> Task<'a> {
             |work: &lindstedt_expand::OrderWork| observer(Progress::Order(work.order, work.terms));
         let expansion = expand_average(&algebra, &graph, self.settings.order, &mut on_order)?;
         observer(Progress::Checking);
-        let checked_orders = check_averaged(&algebra, &graph, &expansion)?;
+        // Order zero was checked before the loop.
+        let checked_orders = match check_averaged(&algebra, &graph, &expansion) {
+            Err(ExpandError::Interrupted { .. }) => 0,
+            other => other?,
+        };
         let terms = expansion.solution.iter().map(|x| algebra.terms(x)).collect();
         let print = |x| [Style::Text, Style::Latex].map(|style| algebra.print(x, style));
         let solution = expansion.solution.iter().map(print).collect();
@@ -438,7 +453,11 @@ impl<'a> Task<'a> {
             let over = self.over_balls(Balls::new(bits), observer)?;
             let result = self.finish(&over, false, &|c| enclosed(&c.0, digits, bits));
             match result {
-                Err(Error::NotEnoughBits { .. }) if bits < MOST_BITS => bits *= 2,
+                Err(Error::NotEnoughBits { .. })
+                    if bits < MOST_BITS && !self.settings.stop.asked() =>
+                {
+                    bits *= 2;
+                }
                 other => return other,
             }
         }

@@ -9,7 +9,7 @@ use crate::number::{Constants, Number, certified};
 use crate::{Error, Value};
 pub use limits::check_parameters;
 use limits::{has_logarithms, limit_memory};
-use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
+use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
@@ -38,6 +38,8 @@ pub struct Settings {
     pub memory: u64,
     /// How the series are derived.
     pub route: Route,
+    /// Asked within the orders, and from the threads of parallel loops, whether to stop.
+    pub stop: Stop,
 }
 
 impl Default for Settings {
@@ -49,6 +51,7 @@ impl Default for Settings {
             parameters: BTreeMap::new(),
             memory: 8 << 30,
             route: Route::default(),
+            stop: Stop::default(),
         }
     }
 }
@@ -109,7 +112,8 @@ pub struct Derivation {
     pub condition: Condition,
     /// The highest order derived (lower than asked for when interrupted).
     pub order: usize,
-    /// Orders whose residual vanishes identically: 0..=this; nothing without a solution.
+    /// Orders whose residual vanishes identically: 0..=this; nothing without a solution, and
+    /// where [`Settings::stop`] left no time to check.
     pub checked_orders: Option<usize>,
     /// The ring of the coefficients.
     pub ring: PolynomialRing,
@@ -173,7 +177,8 @@ pub(crate) fn condition(problem: &Problem, asked: Option<Condition>) -> Result<C
 /// in the Lobachevsky ring a factor of about 1.8 per order.
 ///
 /// `observer` is told the progress; when it returns `false` the derivation stops with the orders
-/// finished so far (over Q, where all orders are finished together, with an error).
+/// finished so far (over Q, where all orders are finished together, with an error). The same
+/// holds within an order when `settings.stop` says so; then the orders finished are not checked.
 ///
 /// # Errors
 /// [`Error`] with the reason; nothing is ever dropped or approximated silently.
@@ -205,12 +210,12 @@ pub fn derive(
         == Route::EnergyIntegral
     {
         let (powers, stiffness) = energy_integral(problem, &ring, settings.order)?;
-        if !observer(Progress::Checking) {
+        if !observer(Progress::Checking) || settings.stop.asked() {
             return Err(ExpandError::Interrupted { order: settings.order }.into());
         }
         (Solution::FrequencyOnly, powers, Vec::new(), stiffness, None)
     } else if has_logarithms {
-        let algebra = Lobachevsky::new(ring.clone());
+        let algebra = Lobachevsky::new(ring.clone()).with_stop(settings.stop.clone());
         let equation = compile(&algebra, &problem.equation, &given, settings.order)?;
         let leading_amplitude = leading_amplitude(&algebra, &equation, condition)?;
         let request = Request { condition, order: settings.order, leading_amplitude };
@@ -218,7 +223,10 @@ pub fn derive(
             |work: &lindstedt_expand::OrderWork| observer(Progress::Order(work.order, work.terms));
         let expansion = expand(&algebra, &equation, &request, &mut on_order)?;
         observer(Progress::Checking);
-        let checked = check(&algebra, &equation, &expansion)?;
+        let checked = match check(&algebra, &equation, &expansion) {
+            Err(ExpandError::Interrupted { .. }) => None,
+            other => Some(other?),
+        };
         let squared = expansion.frequency_squared.clone();
         let (amplitudes, stiffness) = (expansion.amplitude.clone(), expansion.stiffness.clone());
         (
@@ -226,7 +234,7 @@ pub fn derive(
             Powers::of_square(&ring, squared)?,
             amplitudes,
             stiffness,
-            Some(checked),
+            checked,
         )
     } else {
         let mut on_primes = |primes| observer(Progress::Primes(primes));
@@ -235,6 +243,7 @@ pub fn derive(
             &given,
             condition,
             settings.order,
+            &settings.stop,
             &mut on_primes,
         )?;
         let constants =

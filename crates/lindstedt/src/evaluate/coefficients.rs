@@ -5,6 +5,7 @@
 //! forces x F(delta ln x^2).
 
 use crate::number::sine_sum;
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_phase::lobachevsky_function::means;
 use rug::{Float, Integer, Rational};
@@ -12,12 +13,15 @@ use rug::{Float, Integer, Rational};
 /// T/2pi of x'' + x (x^2)^delta = 0 at amplitude one: with x = cos^(1/(1+delta)) theta,
 /// T/2pi = sum_j mu_j delta^j (1 + delta)^(-1/2 - j), so t_n = sum_j mu_j binomial(-1/2-j, n-j).
 ///
-/// Nothing unless every coefficient is known to `bits` bits relative, with 16 N more in work.
-pub(super) fn power_law(order: usize, bits: u32) -> Option<Vec<Float>> {
+/// Nothing when stopped, or unless every coefficient is known to `bits` bits relative, with 16 N more in work.
+pub(super) fn power_law(order: usize, bits: u32, stop: &Stop) -> Option<Vec<Float>> {
     let guard = 16u32.checked_mul(u32::try_from(order).ok()?)?.checked_add(64)?;
     let balls = Balls::new(bits).with_guard(guard);
     let moments = means(order, balls);
     let coefficient = |n: usize| -> Option<Float> {
+        if stop.asked() {
+            return None;
+        }
         let mut sum = balls.zero();
         for (j, mu) in moments.iter().enumerate().take(n + 1) {
             let top = Rational::from((-1, 2)) - Rational::from(j);
@@ -47,6 +51,7 @@ pub(super) fn pendulum(
     amplitude: &dyn Fn(Balls) -> Ball,
     order: usize,
     bits: u32,
+    stop: &Stop,
 ) -> Option<Vec<Float>> {
     let guard = 16u32.checked_mul(u32::try_from(order).ok()?)?.checked_add(64)?;
     let work = bits.checked_add(guard)?;
@@ -70,8 +75,8 @@ pub(super) fn pendulum(
         .map(|s| Some(Float::with_val(work, balls.div(s, sums.first()?)?.midpoint())))
         .collect::<Option<_>>()?;
     let radicand = radicand(&ratios, work);
-    let powers = inverse_root(&radicand, work);
-    let table = means_of_powers(order, work);
+    let powers = inverse_root(&radicand, work, stop)?;
+    let table = means_of_powers(order, work, stop)?;
     let scale = Float::with_val(work, root.midpoint());
     let coefficient = |y: &Grid| {
         let mut sum = Float::new(work);
@@ -116,11 +121,14 @@ fn radicand(ratios: &[Float], bits: u32) -> Vec<Radicand> {
 }
 
 /// n y_n = sum_{k=1}^n (k/2 - n) x_k y_{n-k}, y = x^(-1/2).
-fn inverse_root(radicand: &[Radicand], bits: u32) -> Vec<Grid> {
+fn inverse_root(radicand: &[Radicand], bits: u32, stop: &Stop) -> Option<Vec<Grid>> {
     let mut list: Vec<Grid> = vec![vec![vec![Float::with_val(bits, 1)]]];
     for n in 1..=radicand.len() {
         let mut y: Grid = (0..=n).map(|_| vec![Float::new(bits); n + 1]).collect();
         for (k, x) in (1..=n).zip(radicand) {
+            if stop.asked() {
+                return None;
+            }
             let weight = Float::with_val(bits, k as f64 / 2.0 - n as f64) / n as u64;
             let constant = Float::with_val(bits, &x.constant * &weight);
             let logs: Vec<Float> =
@@ -136,16 +144,19 @@ fn inverse_root(radicand: &[Radicand], bits: u32) -> Vec<Grid> {
         }
         list.push(y);
     }
-    list
+    Some(list)
 }
 
 /// <K^i l^m> = m! [z^m] prod_{r<i} -(1 + 2r - z)/(1 + 2r) sum_m mu_m z^m for i, m <= order.
-fn means_of_powers(order: usize, bits: u32) -> Grid {
+fn means_of_powers(order: usize, bits: u32, stop: &Stop) -> Option<Grid> {
     let moments = means(order, Balls::new(bits));
     let mut product = vec![Rational::new(); order + 1];
     product[0] += 1;
     let mut table = Vec::new();
     for i in 0..=order {
+        if stop.asked() {
+            return None;
+        }
         let mean = |m: usize| {
             let mut sum = Float::new(bits);
             for (c, mu) in product.iter().take(m + 1).zip(moments[..=m].iter().rev()) {
@@ -164,7 +175,7 @@ fn means_of_powers(order: usize, bits: u32) -> Grid {
             product[index] = -value / odd;
         }
     }
-    table
+    Some(table)
 }
 
 #[cfg(test)]
@@ -185,8 +196,8 @@ mod tests {
             let exact = derive(&problem, &settings, &mut |_| true).unwrap();
             let series = exact.named("period_over_2pi").unwrap();
             let numbers = match name {
-                "power-law" => power_law(order, 300),
-                _ => pendulum(&one, order, 300),
+                "power-law" => power_law(order, 300, &Stop::default()),
+                _ => pendulum(&one, order, 300, &Stop::default()),
             };
             for (n, number) in numbers.unwrap().iter().enumerate() {
                 let ball = exact.ball(series, n, Balls::new(400)).unwrap();
@@ -200,7 +211,8 @@ mod tests {
     #[test]
     fn rounding_is_below_the_bits() {
         let three = |balls: Balls| balls.from_i64(3);
-        let (low, high) = (pendulum(&three, 40, 200).unwrap(), pendulum(&three, 40, 500).unwrap());
+        let at = |bits| pendulum(&three, 40, bits, &Stop::default()).unwrap();
+        let (low, high) = (at(200), at(500));
         for (a, b) in low.iter().zip(&high) {
             let error = Float::with_val(53, a - b).abs() / Float::with_val(53, b.abs_ref());
             assert!(error < 1e-55, "{error}");

@@ -11,6 +11,7 @@ pub(crate) mod source;
 
 use crate::number::{Number, Status, certified};
 use crate::{Error, Progress, Value};
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::digits::{decimal, error_string};
 use lindstedt_equation::{Condition, Problem};
@@ -38,6 +39,8 @@ pub struct EvaluateSettings {
     pub digits: usize,
     /// The memory that may be used, in bytes.
     pub memory: u64,
+    /// Asked within long steps whether to stop.
+    pub stop: Stop,
 }
 
 impl Default for EvaluateSettings {
@@ -49,6 +52,7 @@ impl Default for EvaluateSettings {
             parameters: BTreeMap::new(),
             digits: 30,
             memory: 8 << 30,
+            stop: Stop::default(),
         }
     }
 }
@@ -137,14 +141,18 @@ pub fn evaluate(
 ) -> Result<Evaluation, Error> {
     let setting = Setting::new(problem, settings.condition, &settings.parameters)?;
     let order = settings.order.unwrap_or_else(|| default_order(&setting.form));
-    let source = Source::new(&setting, order, settings.memory, observer)?;
+    let limits = (settings.memory, &settings.stop);
+    let source = Source::new(&setting, order, limits, observer)?;
     if !observer(Progress::Checking) {
         return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
     }
     let accuracy = bits_for(settings.digits);
-    let sample = |bits: u32| source.sample(bits);
+    let sample = |bits: u32| if settings.stop.asked() { None } else { source.sample(bits) };
     let few = few::partial_sum(&sample, source.known, settings.method, accuracy);
     let resummed = few.unwrap_or_else(|| resum(&sample, settings.method, accuracy));
+    if settings.stop.asked() {
+        return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
+    }
     let resummed = resummed
         .map_err(|reason| Error::Resummation { problem: problem.name.to_string(), reason })?;
     let exact_period = match &source.closed {
@@ -177,6 +185,9 @@ pub fn evaluate(
     let frequency = balls.div(&balls.mul_i64(&balls.pi(), 2), &period);
     let best = best_truncation(&sample, &resummed, &scale, settings.digits);
     let picture = picture(&sample, resummed.bits);
+    if settings.stop.asked() {
+        return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
+    }
     let mut result = Evaluation {
         order,
         period: number(&period),

@@ -4,6 +4,7 @@
 use crate::derivation::limits::{check_parameters, has_logarithms};
 use crate::derivation::prepare::prepare;
 use crate::{Error, Progress, Settings, Value, derive};
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::classify::polynomial;
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
@@ -195,7 +196,7 @@ impl Setting {
     pub fn derive(
         &self,
         order: usize,
-        memory: u64,
+        (memory, stop): (u64, &Stop),
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<crate::Derivation, Error> {
         let settings = Settings {
@@ -203,6 +204,7 @@ impl Setting {
             condition: Some(self.condition),
             parameters: self.parameters.clone(),
             memory,
+            stop: stop.clone(),
             ..Settings::default()
         };
         derive(&self.problem, &settings, observer)

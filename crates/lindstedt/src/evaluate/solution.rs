@@ -84,7 +84,7 @@ impl Trajectory {
         let period = evaluation.best_period.clone();
         let two_pi = balls.mul_i64(&balls.pi(), 2);
         let frequency = balls.div(&two_pi, &period).ok_or(Error::NoValue)?;
-        let derivation = setting.derive(order, settings.memory, observer)?;
+        let derivation = setting.derive(order, (settings.memory, &settings.stop), observer)?;
         let few = few::is_few(derivation.order + 1);
         let methods = match settings.method {
             Some(

@@ -4,7 +4,7 @@
 use super::setting::{Form, Setting};
 use super::{closed, coefficients};
 use crate::{Derivation, Error, Progress, Value};
-use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_series::resummation::{Growth, Sample, UniformMap, growth};
 use rayon::prelude::*;
@@ -54,20 +54,20 @@ impl Source {
     pub(crate) fn new(
         setting: &Setting,
         order: usize,
-        memory: u64,
+        (memory, stop): (u64, &Stop),
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Self, Error> {
         match &setting.form {
-            Form::PowerLaw { stiffness } => power_law(setting, stiffness, order),
-            Form::Sums => Ok(sums(setting, order)),
+            Form::PowerLaw { stiffness } => power_law(setting, stiffness, order, stop),
+            Form::Sums => Ok(sums(setting, order, stop)),
             Form::Cubic { stiffness, coefficient } => {
                 let ratio = Rational::from(coefficient / stiffness);
                 let closed = cubic(setting, stiffness, &ratio)?;
-                let series = Series::new(setting.derive(order, memory, observer)?)?;
+                let series = Series::new(setting.derive(order, (memory, stop), observer)?)?;
                 Ok(closed.finish(setting, series))
             }
             _ => {
-                let series = Series::new(setting.derive(order, memory, observer)?)?;
+                let series = Series::new(setting.derive(order, (memory, stop), observer)?)?;
                 Ok(derived(setting, series))
             }
         }
@@ -96,7 +96,12 @@ fn outside(name: &str, value: &Ball, domain: &'static str) -> Error {
     Error::OutsideDomain { name: name.to_owned(), value, domain }
 }
 
-fn power_law(setting: &Setting, stiffness: &Rational, order: usize) -> Result<Source, Error> {
+fn power_law(
+    setting: &Setting,
+    stiffness: &Rational,
+    order: usize,
+    stop: &Stop,
+) -> Result<Source, Error> {
     let probe = Balls::new(200);
     let delta = setting.small(probe);
     if !probe.add(&probe.one(), &delta).is_positive() {
@@ -107,7 +112,7 @@ fn power_law(setting: &Setting, stiffness: &Rational, order: usize) -> Result<So
         let stiffness = stiffness.clone();
         move |balls: Balls| balls.sqrt(&balls.from_rational(&stiffness))
     };
-    let divisor = root.clone();
+    let (divisor, stop) = (root.clone(), stop.clone());
     let mut text = "4*sqrt(pi*(1+delta))*Gamma(1+y)/Gamma(1/2+y)*a^(-delta), y = 1/(2+2*delta)"
         .replace("delta", &setting.problem.small);
     if *stiffness != 1 {
@@ -117,7 +122,7 @@ fn power_law(setting: &Setting, stiffness: &Rational, order: usize) -> Result<So
         variable: setting.small.name.clone(),
         at: setting.at.clone(),
         known: order + 1,
-        coefficients: Box::new(move |bits| coefficients::power_law(order, bits)),
+        coefficients: Box::new(move |bits| coefficients::power_law(order, bits, &stop)),
         point: Box::new(move |balls| Some(point.small(balls))),
         factor: Box::new(move |balls| {
             let log = balls.ln(&factor.amplitude.ball(balls))?;
@@ -141,7 +146,8 @@ fn power_law(setting: &Setting, stiffness: &Rational, order: usize) -> Result<So
     })
 }
 
-fn sums(setting: &Setting, order: usize) -> Source {
+fn sums(setting: &Setting, order: usize, stop: &Stop) -> Source {
+    let stop = stop.clone();
     let amplitude = setting.amplitude.clone();
     let point = setting.clone();
     // The whole sine at delta = 1.
@@ -157,7 +163,7 @@ fn sums(setting: &Setting, order: usize) -> Source {
         at: setting.at.clone(),
         known: order + 1,
         coefficients: Box::new(move |bits| {
-            coefficients::pendulum(&|balls| amplitude.ball(balls), order, bits)
+            coefficients::pendulum(&|balls| amplitude.ball(balls), order, bits, &stop)
         }),
         point: Box::new(move |balls| Some(point.small(balls))),
         factor: Box::new(|balls| Some(balls.one())),

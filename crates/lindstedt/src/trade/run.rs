@@ -97,7 +97,7 @@ impl Job<'_> {
 
     fn settings(&self, order: usize, route: Route) -> Settings {
         let parameters = self.truth.given.clone();
-        Settings { order, condition: None, parameters, memory: self.memory, route }
+        Settings { order, parameters, memory: self.memory, route, ..Settings::default() }
     }
 
     fn exact(

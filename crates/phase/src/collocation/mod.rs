@@ -33,6 +33,7 @@ pub use grid::Grid;
 use fourier::Fourier;
 use sinc::Sinc;
 
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::floats::Reals;
 use std::sync::Arc;
 
@@ -84,6 +85,7 @@ pub struct Collocation<R: Reals> {
     cos: Arc<Vec<R::Element>>,
     sin: Arc<Vec<R::Element>>,
     rule: Rule<R::Element>,
+    stop: Stop,
 }
 
 impl<R: Reals> Collocation<R> {
@@ -96,7 +98,14 @@ impl<R: Reals> Collocation<R> {
             cos: Arc::new(cos),
             sin: Arc::new(sin),
             rule: Rule::Sinc(sinc),
+            stop: Stop::default(),
         }
+    }
+
+    /// The algebra whose expansions end when `stop` says so.
+    #[must_use]
+    pub fn with_stop(self, stop: Stop) -> Self {
+        Self { stop, ..self }
     }
 
     /// Truncated Fourier series: `harmonics` of them (at least one) in each symmetry class.
@@ -104,7 +113,14 @@ impl<R: Reals> Collocation<R> {
         let fourier = Fourier::new(&reals, harmonics.max(1));
         let [cos, sin] = fourier.nodes();
         let rule = Rule::Fourier(fourier);
-        Self { reals, nodes: cos.len(), cos: Arc::new(cos), sin: Arc::new(sin), rule }
+        Self {
+            reals,
+            nodes: cos.len(),
+            cos: Arc::new(cos),
+            sin: Arc::new(sin),
+            rule,
+            stop: Stop::default(),
+        }
     }
 
     /// The number of nodes.

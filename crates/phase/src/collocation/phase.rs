@@ -252,6 +252,9 @@ impl<R: Reals> FunctionAlgebra for Collocation<R> {
     fn terms(&self, f: &Self::Element) -> usize {
         f.values.iter().flatten().count() * self.nodes
     }
+    fn interrupted(&self) -> bool {
+        self.stop.asked()
+    }
 }
 
 impl<R: Reals> PhaseAlgebra for Collocation<R> {

@@ -14,7 +14,7 @@ mod word;
 pub use word::Word;
 
 use lindstedt_algebra::{
-    FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring,
+    FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring, Stop,
 };
 use lindstedt_coeff::sparse::{Accumulator, Monomial, Sparse};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
@@ -76,15 +76,22 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> LobachevskyElement<E>
 /// Exact and canonical. `log_abs` knows cos t alone, `reciprocal` the units c cos^k. `resolve` is partial:
 /// it finds the response if it lies in the ring and says `NotIntegrable` if not
 /// (`docs/src/concepts/resonance.md`). A product costs one product of constants per pair of terms.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Lobachevsky<C> {
     constants: C,
+    stop: Stop,
 }
 
 impl<C: Moments> Lobachevsky<C> {
     /// The ring over a ring of constants.
     pub fn new(constants: C) -> Self {
-        Self { constants }
+        Self { constants, stop: Stop::default() }
+    }
+
+    /// The ring whose products are broken off when `stop` says so.
+    #[must_use]
+    pub fn with_stop(self, stop: Stop) -> Self {
+        Self { stop, ..self }
     }
 
     /// c cos^power (times sin if `sine`) times a product of l and Lambda_m.
@@ -197,7 +204,10 @@ impl<C: Moments> Ring for Lobachevsky<C> {
                 for (q, b) in &g.blocks {
                     let sines = u8::from(p.sine) + u8::from(q.sine);
                     let sum = sums.entry((p.power + q.power, sines)).or_default();
-                    sum.add_product(&self.constants, a, b);
+                    let go_on = || !self.stop.asked();
+                    if !sum.add_product_while(&self.constants, a, b, &go_on) {
+                        return self.zero();
+                    }
                 }
             }
         }
@@ -276,6 +286,9 @@ impl<C: Moments> FunctionAlgebra for Lobachevsky<C> {
     }
     fn terms(&self, f: &Self::Element) -> usize {
         f.len()
+    }
+    fn interrupted(&self) -> bool {
+        self.stop.asked()
     }
 }
 

@@ -10,6 +10,7 @@ mod print;
 
 use lindstedt_algebra::{
     Averaged, AveragingAlgebra, FunctionAlgebra, LinearPart, PhaseError, RationalAlgebra, Ring,
+    Stop,
 };
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials};
 use rug::Rational;
@@ -53,6 +54,7 @@ pub struct Torus<K: RationalAlgebra> {
     /// omega, the rate of eta.
     forcing: Option<K::Element>,
     delays: Vec<Delay<K::Element>>,
+    stop: Stop,
 }
 
 /// A complex number or function, real and imaginary part.
@@ -79,7 +81,14 @@ impl<K: RationalAlgebra> Torus<K> {
         forcing: Option<K::Element>,
         delays: Vec<Delay<K::Element>>,
     ) -> Self {
-        Self { constants: AmplitudePolynomials::new(coefficients), frequency, forcing, delays }
+        let constants = AmplitudePolynomials::new(coefficients);
+        Self { constants, frequency, forcing, delays, stop: Stop::default() }
+    }
+
+    /// The algebra whose products are broken off when `stop` says so.
+    #[must_use]
+    pub fn with_stop(self, stop: Stop) -> Self {
+        Self { stop, ..self }
     }
 
     /// K.
@@ -280,6 +289,9 @@ impl<K: RationalAlgebra> Ring for Torus<K> {
         for (f, g) in pairs {
             for ((k, m), [c, s]) in &f.harmonics {
                 for ((j, n), [x, y]) in &g.harmonics {
+                    if self.stop.asked() {
+                        return self.zero();
+                    }
                     let [cx, sy, cy, sx] =
                         [(c, x), (s, y), (c, y), (s, x)].map(|(a, b)| ring.mul(a, b));
                     let high = [ring.sub(&cx, &sy), ring.add(&cy, &sx)];
@@ -327,6 +339,9 @@ impl<K: RationalAlgebra> FunctionAlgebra for Torus<K> {
         }
         let only = f.harmonics.get(&(0, 0)).filter(|_| f.harmonics.len() == 1)?;
         Some(only[0].clone())
+    }
+    fn interrupted(&self) -> bool {
+        self.stop.asked()
     }
     /// ln 1 = 0; no other logarithm is a trigonometric polynomial.
     fn log_abs(&self, f: &Self::Element) -> Option<Self::Element> {

@@ -1,0 +1,192 @@
+//! Stopping within an order: after every number of questions the result is a prefix of the whole
+//! one, and the questions within one order are many. Counted, not timed.
+#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+use lindstedt::algebra::Stop;
+use lindstedt::averaging::{Averaging, AveragingSettings, average};
+use lindstedt::evaluate::{EvaluateSettings, evaluate};
+use lindstedt::expand::ExpandError;
+use lindstedt::numeric::{Tier, derive as derive_numbers};
+use lindstedt::{Derivation, Error, Progress, Settings, Value, derive, problems};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Stops at the question with this number; and the number of questions so far.
+fn after(limit: u64) -> (Stop, Arc<AtomicU64>) {
+    let asked = Arc::new(AtomicU64::new(0));
+    let counter = Arc::clone(&asked);
+    (Stop::new(move || counter.fetch_add(1, Ordering::SeqCst) >= limit), asked)
+}
+
+fn interrupted<T>(result: &Result<T, Error>) -> bool {
+    matches!(result, Err(Error::Expand(ExpandError::Interrupted { .. })))
+}
+
+fn lobachevsky(name: &str, order: usize, stop: Stop) -> (Result<Derivation, Error>, Vec<usize>) {
+    let settings = Settings { order, stop, ..Settings::default() };
+    let mut orders = Vec::new();
+    let mut observer = |progress: Progress| {
+        if let Progress::Order(n, _) = progress {
+            orders.push(n);
+        }
+        true
+    };
+    let result = derive(&problems::find(name).unwrap(), &settings, &mut observer);
+    (result, orders)
+}
+
+#[test]
+fn orders_of_the_lobachevsky_ring() {
+    for (name, order) in [("power-law", 6), ("pendulum", 4)] {
+        let (stop, asked) = after(u64::MAX);
+        let whole = lobachevsky(name, order, stop).0.unwrap();
+        let total = asked.load(Ordering::SeqCst);
+        assert!(total > 100 * order as u64, "{name}: {total} questions");
+        let mut seen = std::collections::BTreeSet::new();
+        let mut unchecked = 0;
+        let stops = (0..40).map(|i| total * i / 40).chain([1, 2, 3, total - 1]);
+        for limit in stops {
+            let (stop, asked) = after(limit);
+            let (result, orders) = lobachevsky(name, order, stop);
+            let more = asked.load(Ordering::SeqCst).saturating_sub(limit);
+            assert!(more <= 1, "{name}: {more} questions after the answer");
+            match result {
+                Ok(result) => {
+                    // Every order that was announced is there, exact; nothing of the next one.
+                    assert_eq!(result.order, orders.len(), "{name} {limit}");
+                    for series in &result.series {
+                        let complete = whole.named(series.name).unwrap();
+                        assert_eq!(series.coefficients.len(), result.order + 1);
+                        assert_eq!(
+                            series.coefficients[..],
+                            complete.coefficients[..=result.order],
+                            "{name} {limit} {}",
+                            series.name
+                        );
+                    }
+                    for n in 0..=result.order {
+                        let style = lindstedt::coeff::print::Style::Text;
+                        assert_eq!(result.print_solution(n, style), whole.print_solution(n, style));
+                    }
+                    unchecked += usize::from(result.checked_orders.is_none());
+                    assert!(result.checked_orders.is_none_or(|n| n == result.order));
+                    seen.insert(result.order);
+                }
+                Err(error) => {
+                    assert!(interrupted::<()>(&Err(error)), "{name} {limit}");
+                    assert!(orders.is_empty());
+                }
+            }
+        }
+        assert!(seen.len() > order / 2 && unchecked > 30, "{name}: {seen:?} {unchecked}");
+    }
+}
+
+/// Over Q the orders are finished together: an error, whenever it is stopped.
+#[test]
+fn primes() {
+    for (name, order) in [("duffing", 12), ("van-der-pol", 10)] {
+        let run = |stop| {
+            let settings = Settings { order, stop, ..Settings::default() };
+            derive(&problems::find(name).unwrap(), &settings, &mut |_| true)
+        };
+        let (stop, asked) = after(u64::MAX);
+        assert!(run(stop).is_ok());
+        let total = asked.load(Ordering::SeqCst);
+        assert!(total > 3 * order as u64, "{name}: {total} questions");
+        for i in 0..20 {
+            let (stop, _) = after(total * i / 20);
+            assert!(interrupted(&run(stop)), "{name} {i}");
+        }
+    }
+}
+
+#[test]
+fn grids() {
+    for (name, tier) in [
+        ("power-law", Tier::Collocation { digits: 20 }),
+        ("power-law", Tier::Doubles),
+        ("van-der-pol", Tier::Fourier { harmonics: 20 }),
+    ] {
+        let run = |stop| {
+            let settings = Settings { order: 6, stop, ..Settings::default() };
+            let mut orders = 0;
+            let mut observer = |_: &lindstedt::expand::OrderWork| {
+                orders += 1;
+                true
+            };
+            let problem = problems::find(name).unwrap();
+            let result = derive_numbers(&problem, &settings, tier, &mut observer);
+            (result, orders)
+        };
+        let (stop, asked) = after(u64::MAX);
+        let (whole, orders) = run(stop);
+        assert!(whole.is_ok());
+        let total = asked.load(Ordering::SeqCst);
+        assert!(total > 3 * orders, "{name}: {total} questions in {orders} orders");
+        for i in 0..20 {
+            let (stop, _) = after(total * i / 20);
+            assert!(interrupted(&run(stop).0), "{name} {tier:?} {i}");
+        }
+    }
+}
+
+#[test]
+fn averaged_rates() {
+    let problem = problems::vibro_impact::problem();
+    let run = |values: bool, stop| -> Result<Averaging, Error> {
+        let list = [
+            ("alpha", "1"),
+            ("omega", "13/5"),
+            ("c", "1/20"),
+            ("A", "1/10"),
+            ("B", "1/10"),
+            ("k", "1"),
+            ("P0", "1"),
+        ];
+        let list = list.iter().filter(|_| values);
+        let parameters = list.map(|(n, v)| ((*n).to_owned(), Value::parse(v).unwrap())).collect();
+        let settings =
+            AveragingSettings { order: 3, parameters, stop, ..AveragingSettings::default() };
+        average(&problem, &settings, &mut |_| true)
+    };
+    for values in [true, false] {
+        let (stop, asked) = after(u64::MAX);
+        let whole = run(values, stop).unwrap();
+        let total = asked.load(Ordering::SeqCst);
+        assert!(total > 10 * 3, "{total} questions");
+        let mut seen = std::collections::BTreeSet::new();
+        for i in 0..30 {
+            let (stop, _) = after(total * i / 30);
+            let result = run(values, stop);
+            let Ok(found) = result else {
+                assert!(interrupted(&result), "{:?}", result.err());
+                continue;
+            };
+            assert!(found.checked_orders == 0 || found.checked_orders == found.order);
+            assert_eq!(found.amplitude_rate[..], whole.amplitude_rate[..=found.order]);
+            assert_eq!(found.phase_rate[..], whole.phase_rate[..=found.order]);
+            assert_eq!(found.solution[..], whole.solution[..=found.order]);
+            seen.insert(found.order);
+        }
+        assert!(seen.len() > 1, "{seen:?}");
+    }
+}
+
+#[test]
+fn evaluations() {
+    for name in ["power-law", "pendulum", "duffing"] {
+        let run = |stop| {
+            let settings = EvaluateSettings { order: Some(9), stop, ..EvaluateSettings::default() };
+            evaluate(&problems::find(name).unwrap(), &settings, &mut |_| true)
+        };
+        let (stop, asked) = after(u64::MAX);
+        assert!(run(stop).is_ok());
+        let total = asked.load(Ordering::SeqCst);
+        assert!(total > 9, "{name}: {total} questions");
+        for i in 0..10 {
+            let (stop, _) = after(total * i / 10);
+            assert!(interrupted(&run(stop)), "{name} {i} of {total}");
+        }
+    }
+}
