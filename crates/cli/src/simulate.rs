@@ -1,7 +1,9 @@
 //! `lindstedt simulate`: the motion in the time domain, its events, sections and figures.
 
 mod figure;
+mod history;
 mod motion;
+mod orbit;
 pub mod plot;
 mod report;
 mod request;
@@ -18,7 +20,7 @@ use motion::{Motion, Plan};
 use report::Answer;
 use rug::Rational;
 use serde_json::json;
-use setup::Setup;
+use setup::{Setup, Start};
 use std::fmt::Write;
 
 /// Digits more, in which the second integration is made.
@@ -31,19 +33,21 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
     plot::check(&options.plot)?;
     let state = request::state(options)?;
     let mut perturbation = request::perturbation(options)?;
+    let on_orbit = state.is_none() && options.history.is_none();
     let doubles = options.precision.f64;
-    if options.sweep.is_some() && options.problem == "vibro-impact" && state.is_none() {
+    if options.sweep.is_some() && options.problem == "vibro-impact" && on_orbit {
         // On the orbit itself nothing but rounding errors would tell stable from unstable.
         perturbation = perturbation.or(Some(Rational::from((1, 1000))));
     }
     // Digits that are lost on the way are made up for: what is computed beforehand has them.
     let spare = if doubles { 40 } else { digits.saturating_add(40) };
-    let setup =
-        Setup::read(&options.problem, &options.set, state, perturbation.as_ref(), digits + spare)?;
+    let start = Start { state, history: options.history.as_deref(), perturbation };
+    let setup = Setup::read(&options.problem, &options.set, &start, digits + spare)?;
     let figure = request::figure(options, &setup)?;
     output::check_writable(session)?;
     if let Some(text) = &options.sweep {
-        return bifurcation(sweep::Diagram::read(options, setup, text)?, options, session);
+        let text = request::sweep(text, &setup)?;
+        return bifurcation(sweep::Diagram::read(options, setup, &text)?, options, session);
     }
     let mut plan = request::plan(options, setup)?;
     if figure == crate::arguments::Figure::Section && plan.section.is_none() {

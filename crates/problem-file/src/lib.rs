@@ -8,6 +8,7 @@ mod error;
 mod file;
 mod file_error;
 mod grammar;
+mod history;
 mod lexer;
 mod names;
 mod operands;
@@ -22,6 +23,7 @@ pub use file::{
     AMPLITUDES, CONDITIONS, LARGEST_FILE, ProblemFile, usual_amplitude, usual_condition,
 };
 pub use file_error::{FileError, FileErrorKind};
+pub use history::History;
 pub use grammar::{locate, parse_equation, parse_expression};
 pub use names::{Names, canonical_name, is_parameter_name};
 pub use write::write;
