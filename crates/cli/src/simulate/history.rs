@@ -55,9 +55,9 @@ impl Evaluator<'_> {
             Expression::Function(function, argument) => {
                 let [f, df] = self.value_and_rate(argument)?;
                 let (value, slope) = match function {
-                    Function::Sin => (f.clone().sin(), f.cos()),
-                    Function::Cos => (f.clone().cos(), -f.sin()),
-                    Function::Exp => (f.clone().exp(), f.exp()),
+                    Sin => (f.clone().sin(), f.cos()),
+                    Cos => (f.clone().cos(), -f.sin()),
+                    Exp => (f.clone().exp(), f.exp()),
                     Function::Ln => (f.clone().ln(), f.recip()),
                     Function::Abs => (f.clone().abs(), f.signum()),
                     Function::Sign => (f.signum(), self.number(0)),

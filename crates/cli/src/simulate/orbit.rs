@@ -7,7 +7,7 @@ use lindstedt::Value;
 use lindstedt::equation::Expression;
 use lindstedt::equation::Function::{Cos, Exp, Sin};
 use lindstedt::equation::Problem;
-use lindstedt::simulate::{Digits, Model, Parameters, Quantity};
+use lindstedt::simulate::{Digits, Model, Parameters, Quantity, Real as _};
 use lindstedt::verify::quantity;
 use lindstedt_impact::flight::clearance;
 use lindstedt_impact::orbit::orbit;

@@ -12,7 +12,7 @@ use lindstedt::equation::{
 use lindstedt::expand::Excitation;
 use lindstedt::problem_file::{History, Names, ProblemFile, parse_expression};
 use lindstedt::problems::{stick_slip, vibro_impact};
-use lindstedt::simulate::{Digits, Model, Parameters, Quantity};
+use lindstedt::simulate::{Digits, Model, Parameters, Quantity, Real as _};
 use lindstedt::verify::{quantities, quantity};
 use lindstedt::{Error, Value};
 use rug::{Float, Rational};
@@ -264,7 +264,10 @@ impl Case<'_> {
         names.parameters.iter_mut().for_each(|set| {
             set.insert("pi".to_owned());
         });
-        for (name, text) in file.follows.iter().filter(|(name, _)| bindings.get(name).is_none()) {
+        for (name, text) in &file.follows {
+            if bindings.get(name).is_some() {
+                continue;
+            }
             let follows = parse_expression(text, &names).map_err(|error| Failure {
                 exit: NO_ANSWER,
                 code: "no-value",
