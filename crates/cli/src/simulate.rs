@@ -18,7 +18,6 @@ use crate::session::{Session, digits};
 use lindstedt::simulate::SimulateError;
 use motion::{Motion, Plan};
 use report::Answer;
-use rug::Rational;
 use serde_json::json;
 use setup::{Setup, Start};
 use std::fmt::Write;
@@ -32,16 +31,16 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
     let digits = u32::try_from(digits(&options.precision)?).unwrap_or(u32::MAX);
     plot::check(&options.plot)?;
     let state = request::state(options)?;
-    let mut perturbation = request::perturbation(options)?;
-    let on_orbit = state.is_none() && options.history.is_none();
+    let perturbation = request::perturbation(options)?;
     let doubles = options.precision.f64;
-    if options.sweep.is_some() && options.problem == "vibro-impact" && on_orbit {
-        // On the orbit itself nothing but rounding errors would tell stable from unstable.
-        perturbation = perturbation.or(Some(Rational::from((1, 1000))));
-    }
     // Digits that are lost on the way are made up for: what is computed beforehand has them.
     let spare = if doubles { 40 } else { digits.saturating_add(40) };
-    let start = Start { state, history: options.history.as_deref(), perturbation };
+    let start = Start {
+        state,
+        history: options.history.as_deref(),
+        perturbation,
+        sweep: options.sweep.is_some(),
+    };
     let setup = Setup::read(&options.problem, &options.set, &start, digits + spare)?;
     let figure = request::figure(options, &setup)?;
     output::check_writable(session)?;

@@ -2,10 +2,11 @@
 
 use crate::Outcome;
 use crate::arguments::{Format, Normalisation, VerifyOptions};
+use crate::classification;
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
 use crate::problems::condition_name;
-use crate::session::{Session, parameters, problem};
+use crate::session::{Loaded, Session, load, parameters};
 use crate::simulate::plot;
 use lindstedt::equation::{AmplitudeRole, Condition, Problem};
 use lindstedt::expand::ExpandError;
@@ -17,7 +18,7 @@ use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
 pub fn run(options: &VerifyOptions, session: &Session<'_>) -> Outcome {
-    let problem = problem(&options.problem)?;
+    let Loaded { problem, file } = load(&options.problem)?;
     let condition = options.normalisation.map(|normalisation| match normalisation {
         Normalisation::Initial => Condition::InitialAmplitude,
         Normalisation::Fundamental => Condition::FundamentalAmplitude,
@@ -31,6 +32,20 @@ pub fn run(options: &VerifyOptions, session: &Session<'_>) -> Outcome {
         }
         let message = format!("{} has no parameter {name:?}", problem.name);
         return Err(Failure::usage("unknown-parameter", message, "see `lindstedt problems`"));
+    }
+    // The equation of a file is looked at before any work starts.
+    if let Some(file) = &file
+        && let Ok(parts) = classification::of(&problem, &parameters)
+    {
+        classification::check(&parts, file, condition, &options.problem)?;
+    }
+    if condition.is_none() && problem.conditions.is_empty() {
+        return Err(Failure {
+            exit: NO_ANSWER,
+            code: "no-expansion",
+            message: format!("{} has no expansion that could be verified", problem.name),
+            hint: "`simulate` takes it, `problems --show` lists the methods".into(),
+        });
     }
     plot::check(&options.plot)?;
     let settings = VerifySettings {
@@ -200,6 +215,7 @@ impl Report<'_> {
             "table": self.found.comparisons.iter().map(row).collect::<Vec<_>>(),
             "observed_order": self.found.observed,
             "expected_order": self.found.order + 1,
+            "settled": self.found.settled,
             "tolerance": TOLERANCE,
             "verdict": self.word(),
             "reason": self.verdict(),

@@ -201,7 +201,23 @@ const REFUSED: [(&str, &str); 16] = [
 ];
 
 /// Whole files that are wrong.
-const FILES: [(i32, &str, &str); 27] = [
+const FILES: [(i32, &str, &str); 31] = [
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[initial]\nx = '1'",
+        "x and velocity belong",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[initial]\nhistory = 'x'",
+        "a history is an expression in t",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[initial]\nhistory = 'cos(k t)'",
+        "the name k is not declared",
+    ),
+    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\nswept = ['eps=1..2']", "is no range"),
     (2, "", "missing field `name`"),
     (2, "name = 'a'", "missing field `equation`"),
     (2, "equation = \"x'' + x + eps*x^3\"", "missing field `name`"),

@@ -184,16 +184,14 @@ pub fn verify_derivation(
     let (order, condition) = (derivation.order, derivation.condition);
     let digits = settings.digits.unwrap_or_else(|| digits(order, condition, settings));
     let expansion = Periodic::new(problem, derivation, settings, digits)?;
-    let compare = |small: &Rational, goes_on: &dyn Fn() -> bool| {
-        expansion.compare(small, digits, goes_on)
-    };
+    let compare =
+        |small: &Rational, goes_on: &dyn Fn() -> bool| expansion.compare(small, digits, goes_on);
     let comparisons = compare_all(&settings.small, order, &compare, observer)?;
     Ok(conclude(problem, condition, order, digits, comparisons))
 }
 
 /// A comparison at one value, which asks now and then whether to go on.
-type Compare<'a> =
-    dyn Fn(&Rational, &dyn Fn() -> bool) -> Result<Comparison, Error> + Sync + 'a;
+type Compare<'a> = dyn Fn(&Rational, &dyn Fn() -> bool) -> Result<Comparison, Error> + Sync + 'a;
 
 /// All comparisons, on as many threads as there are processors; the observer stays on this one.
 fn compare_all(
@@ -336,7 +334,8 @@ pub fn quantities(problem: &Problem, given: &BTreeMap<String, Value>) -> Paramet
         }
     }
     if let Some(tie) = &problem.synchronous
-        && let (Some(Value::Rational(k)), Some(omega)) = (value(&tie.periods), value(&tie.frequency))
+        && let (Some(Value::Rational(k)), Some(omega)) =
+            (value(&tie.periods), value(&tie.frequency))
     {
         let (Value::Rational(q) | Value::PiTimes(q)) = &omega;
         if !q.is_zero() {

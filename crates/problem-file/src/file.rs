@@ -2,8 +2,8 @@
 
 use crate::error::{ParseError, ParseErrorKind, excerpt, position};
 use crate::file_error::{FileError, FileErrorKind};
-use crate::history::{History, is_range, ranges, start};
 use crate::grammar::{locate, parse_equation, parse_expression};
+use crate::history::{History, is_range, ranges, start};
 use crate::names::{Names, canonical_name, is_parameter_name};
 use crate::reader::Reader;
 use crate::schema::Schema;

@@ -90,7 +90,8 @@ fn render(problem: &Problem, file: Option<&ProblemFile>) -> String {
         let how = file.and_then(|f| f.follows.get(&name)).map_or("see the notes", String::as_str);
         let _ = writeln!(text, "{name} = {{ follows = {} }}", quoted(how));
     }
-    let (initial, history) = file.map_or((None, None), |f| (f.initial.as_ref(), f.history.as_ref()));
+    let (initial, history) =
+        file.map_or((None, None), |f| (f.initial.as_ref(), f.history.as_ref()));
     if initial.is_some() || history.is_some() {
         text.push_str("\n[initial]\n");
     }

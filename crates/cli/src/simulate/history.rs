@@ -188,7 +188,8 @@ pub fn free_flight(
     // (k - omega^2) P + c omega Q = -p, (k - omega^2) Q - c omega P = -q.
     let stiff = Float::with_val(bits, &k - Float::with_val(bits, omega.square_ref()));
     let damped = Float::with_val(bits, &c * &omega);
-    let size = Float::with_val(bits, stiff.square_ref()) + Float::with_val(bits, damped.square_ref());
+    let size =
+        Float::with_val(bits, stiff.square_ref()) + Float::with_val(bits, damped.square_ref());
     let forced = !(p.is_zero() && q.is_zero());
     if !square.is_finite() || square <= 0 || (forced && size.is_zero()) {
         return Err(no_history(
@@ -207,7 +208,8 @@ pub fn free_flight(
     let w = square.sqrt();
     let rest = -d / &k;
     let first = Float::with_val(bits, &start[0] - &rest) - &cos;
-    let second = (Float::with_val(bits, &start[1] - times(&omega, &sin)) - times(&rate, &first)) / &w;
+    let second =
+        (Float::with_val(bits, &start[1] - times(&omega, &sin)) - times(&rate, &first)) / &w;
     // No parameter of an equation has a name with a space.
     let mut name = |name: &str, value: Float| {
         let name = format!("history {name}");
@@ -216,8 +218,8 @@ pub fn free_flight(
     };
     let t = || Expression::Time;
     let (omega, w) = (name("omega", omega), name("W", w));
-    let flight = name("C", first) * (w.clone() * t()).apply(Cos)
-        + name("D", second) * (w * t()).apply(Sin);
+    let flight =
+        name("C", first) * (w.clone() * t()).apply(Cos) + name("D", second) * (w * t()).apply(Sin);
     let force = name("P", cos) * (omega.clone() * t()).apply(Cos)
         + name("Q", sin) * (omega * t()).apply(Sin);
     Ok(name("d", rest) + force + (name("r", rate) * t()).apply(Exp) * flight)

@@ -118,6 +118,8 @@ pub fn on_orbit(
         // The orbit does not depend on the gains.
         sweepable: vec!["A".into(), "B".into()],
         ranges: std::collections::BTreeMap::new(),
-        remarks: vec!["start and history: the periodic orbit, t = 0 just after an impact".to_owned()],
+        remarks: vec![
+            "start and history: the periodic orbit, t = 0 just after an impact".to_owned(),
+        ],
     })
 }

@@ -6,9 +6,7 @@ use crate::failure::{Failure, NO_ANSWER};
 use crate::session::{Loaded, load, parameters};
 use crate::stability::request::exact_parameters;
 use lindstedt::equation::Function::{Abs, Sign, Sin};
-use lindstedt::equation::{
-    AmplitudeRole, Condition, Crossing, Expression, ParameterCard, Problem,
-};
+use lindstedt::equation::{AmplitudeRole, Condition, Crossing, Expression, ParameterCard, Problem};
 use lindstedt::expand::Excitation;
 use lindstedt::problem_file::{History, Names, ProblemFile, parse_expression};
 use lindstedt::problems::{stick_slip, vibro_impact};
@@ -54,11 +52,17 @@ pub struct Start<'a> {
     pub history: Option<&'a str>,
     /// Velocity added on the orbit.
     pub perturbation: Option<Rational>,
+    /// A parameter is swept: on the orbit itself nothing but rounding errors would tell stable
+    /// from unstable, so the start is perturbed.
+    pub sweep: bool,
 }
 
 /// Whether two problems are the same equation with the same wall and delay.
 fn same(a: &Problem, b: &Problem) -> bool {
-    let equation = |p: &Problem| p.equation.canonical();
+    let equation = |p: &Problem| {
+        let equation = p.equation.canonical();
+        equation.multiplied_out().unwrap_or(equation)
+    };
     let wall = |p: &Problem| {
         let wall = p.impact.as_ref()?;
         Some((wall.position.canonical(), wall.crossing, wall.restitution.canonical()))
@@ -101,7 +105,9 @@ impl Setup {
             set.extend(defaults(&problem, &set));
         }
         let mut setup = if impacting && state.is_none() && history.is_none() {
-            on_orbit(&problem, &set, start.perturbation.as_ref(), digits)?
+            let usual = || start.sweep.then(|| Rational::from((1, 1000)));
+            let perturbation = start.perturbation.clone().or_else(usual);
+            on_orbit(&problem, &set, perturbation.as_ref(), digits)?
         } else if start.perturbation.is_some() {
             let message = if impacting {
                 "--perturb starts on the orbit".to_owned()
@@ -219,8 +225,7 @@ impl Case<'_> {
         let delayed = |e: &Expression| matches!(e, Expression::Delayed(..));
         let mut held = Vec::new();
         if problem.equation.find(&delayed).is_some() {
-            let usual =
-                || if self.impacting { History::FreeFlight } else { History::Constant };
+            let usual = || if self.impacting { History::FreeFlight } else { History::Constant };
             let start = state.each_ref().map(|q| q.float(bits));
             let (expression, remark) = match history.unwrap_or_else(usual) {
                 History::Constant => {
@@ -275,9 +280,8 @@ impl Case<'_> {
                 hint: "follows = \"...\" needs an expression in parameters and pi".into(),
             })?;
             bindings.set("pi", Quantity::PiMultiple(Rational::from(1)));
-            let put_in = |e: &Expression| {
-                (*e == Expression::parameter(name)).then(|| follows.clone())
-            };
+            let put_in =
+                |e: &Expression| (*e == Expression::parameter(name)).then(|| follows.clone());
             problem.equation = problem.equation.substitute(&put_in);
             problem.time_domain = problem.time_domain.as_ref().map(|e| e.substitute(&put_in));
             if let Some(wall) = &mut problem.impact {
@@ -296,7 +300,9 @@ impl Case<'_> {
         let pendulum = lindstedt::problems::find("pendulum");
         let equation = match (&problem.time_domain, problem.amplitude) {
             // At delta = 1 the pendulum's embedding is the pendulum.
-            (Some(_), AmplitudeRole::InSums) if at_one && pendulum.is_some_and(|p| same(&p, problem)) => {
+            (Some(_), AmplitudeRole::InSums)
+                if at_one && pendulum.is_some_and(|p| same(&p, problem)) =>
+            {
                 Expression::Acceleration + Expression::Displacement.apply(Sin)
             }
             (Some(equation), AmplitudeRole::InSums) => scaled(equation),
@@ -323,11 +329,8 @@ impl Case<'_> {
         if problem.equation.canonical() == stick_slip::equation().canonical() {
             return [Quantity::from(Rational::from((1, 10))), rest];
         }
-        let mut say = |text: &str| {
-            if self.file.is_some() {
-                remarks.push(format!("start: at rest at {text}; the file has no [initial]"));
-            }
-        };
+        let mut say =
+            |text: &str| remarks.push(format!("start: at rest at {text}, nothing else is given"));
         if let Some(amplitude) = evaluator.parameters.get("amplitude") {
             if problem.conditions.first() == Some(&Condition::FundamentalAmplitude) {
                 say("x(0) = amplitude");

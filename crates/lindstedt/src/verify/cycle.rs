@@ -1,7 +1,9 @@
 //! The limit cycle in the time domain.
 
 use crate::Error;
-use lindstedt_simulate::{Digits, Integrator, Real, Report, Settings as Precision, System, monodromy};
+use lindstedt_simulate::{
+    Digits, Integrator, Real, Report, Settings as Precision, System, monodromy,
+};
 use rug::Float;
 use std::ops::ControlFlow;
 

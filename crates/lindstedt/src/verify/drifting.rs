@@ -190,8 +190,10 @@ impl Drifting {
             bits: self.bits,
             rates: [self.sum(expansion.amplitude_rate.iter(), small), phase_rate],
             harmonics: keys.iter().map(|key| (*key, [part(key, 0), part(key, 1)])).collect(),
-            forcing: forcing
-                .map_or_else(|| Float::new(self.bits), |w| Float::with_val(self.bits, w.0.midpoint())),
+            forcing: forcing.map_or_else(
+                || Float::new(self.bits),
+                |w| Float::with_val(self.bits, w.0.midpoint()),
+            ),
         }
     }
 
@@ -268,9 +270,8 @@ impl Drifting {
                 Expression::Number(if k % 2 == 0 { q } else { -q })
             };
             let Some((k, c)) = rest.next() else { return Expression::integer(0) };
-            let horner = |sum: Expression, (k, c): (usize, &Float)| {
-                Expression::Time * sum + number(k, c)
-            };
+            let horner =
+                |sum: Expression, (k, c): (usize, &Float)| Expression::Time * sum + number(k, c);
             rest.fold(number(k, c), horner)
         };
         Ok(Some(truncated.history([in_time(&a), in_time(&psi)])))
@@ -322,8 +323,7 @@ impl Drifting {
         for t in self.times.iter().map(|t| real.float(t)) {
             for (list, state) in lists.iter_mut().zip(states) {
                 let last = || flow.state().get(state).cloned();
-                let value =
-                    if t >= *flow.time() { last() } else { trajectory.value(state, &t) };
+                let value = if t >= *flow.time() { last() } else { trajectory.value(state, &t) };
                 list.push(value.ok_or(Error::NoValue)?);
             }
         }

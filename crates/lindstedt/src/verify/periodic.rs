@@ -3,10 +3,10 @@
 use super::cycle::cycle;
 use super::{Comparison, VerifySettings, quantities};
 use crate::{Derivation, Error, Solution};
+use lindstedt_algebra::{PhaseAlgebra, Rationals};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::{AmplitudeRole, Condition, Problem};
 use lindstedt_expand::ExpandError;
-use lindstedt_algebra::{PhaseAlgebra, Rationals};
 use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
 use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
 use lindstedt_phase::{Lobachevsky, Trigonometric};
@@ -74,9 +74,8 @@ impl Periodic {
                 Solution::Lobachevsky(e) => {
                     let table = LambdaTable::new(d.order + 1, balls);
                     let algebra = Lobachevsky::new(d.ring.clone());
-                    let value = |x: &_| {
-                        lobachevsky(x, point, &table, |c| d.constants.evaluate(c, balls))
-                    };
+                    let value =
+                        |x: &_| lobachevsky(x, point, &table, |c| d.constants.evaluate(c, balls));
                     let terms = e.solution.iter().take(d.order + 1);
                     if derivative {
                         terms.map(|x| value(&algebra.derivative(x))).collect()
