@@ -72,7 +72,7 @@ fn keys_of_the_result() {
 fn a_verdict_can_be_open() {
     // Far from small values the slopes have not settled: no verdict, code 4.
     for small in ["1,1/2", "1,1/2,1/4"] {
-        let far = run(&["van-der-pol", "--order", "3", "--small", small]);
+        let far = run(&["duffing", "--order", "3", "--small", small]);
         assert_eq!(far.status.code(), Some(4), "{small}");
         let text = String::from_utf8_lossy(&far.stdout);
         assert!(text.contains("undecided") && text.contains("smaller --small"), "{text}");

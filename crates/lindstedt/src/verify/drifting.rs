@@ -140,7 +140,11 @@ impl Drifting {
         let window = Float::with_val(bits, rug::float::Constant::Pi)
             * (2 * settings.periods.max(1))
             / enclosures.frequency.0.midpoint();
-        let time = |j: u32| Float::with_val(bits, &window * Rational::from((j, samples)));
+        // Not at a whole part of the period, where delays end too.
+        let time = |j: u32| {
+            let part = (1009 * u64::from(j) - 505, 1009 * u64::from(samples));
+            Float::with_val(bits, &window * Rational::from(part))
+        };
         let mut judged = problem.clone();
         judged.impact = None;
         Ok(Self {
