@@ -125,6 +125,28 @@ fn published_coefficients() {
     }
 }
 
+/// The expansion of one equation against the motion of another that differs at order 2: the
+/// errors do not fall faster than eps^2, however high the order.
+#[test]
+fn a_wrong_order_is_found() {
+    use lindstedt::verify::{Verdict, VerifySettings, verify_derivation};
+    let settings = VerifySettings { order: 4, ..VerifySettings::default() };
+    let check = |of: &str, against: &str| {
+        let derivation = Oscillator::parse(of).unwrap().derive(4).unwrap();
+        let other = Oscillator::parse(against).unwrap().problem;
+        verify_derivation(&other, &derivation, &settings, &mut |_| true).unwrap()
+    };
+    for (right, wrong) in [
+        ("x'' + x + eps x^3 = 0", "x'' + x + eps x^3 + eps^2 x^5/70 = 0"),
+        ("x'' + x = eps (1 - x^2) x'", "x'' + x = eps (1 - x^2) x' + eps^2 x^3/50"),
+    ] {
+        let found = check(right, wrong);
+        assert_eq!(found.verdict, Verdict::Disagrees, "{wrong}");
+        assert!(found.observed.is_some_and(|slope| (slope - 2.0).abs() < 0.05), "{wrong}");
+        assert_eq!(check(right, right).verdict, Verdict::Agrees, "{right}");
+    }
+}
+
 #[test]
 fn files_give_what_the_built_in_problems_give() {
     for (name, built_in) in [

@@ -323,15 +323,20 @@ pub enum Normalisation {
 
 #[derive(Debug, Args)]
 pub struct SimulateOptions {
-    /// power-law, pendulum, duffing, van-der-pol, vibro-impact or stick-slip.
+    /// power-law, pendulum, duffing, van-der-pol, vibro-impact, stick-slip, or the path of a problem
+    /// file (.toml).
     pub problem: String,
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// x(0) and x'(0); by default at rest at the amplitude, on the orbit (vibro-impact), 1/10
+    /// x(0) and x'(0); by default those of the file, else at rest at the amplitude, on the orbit (vibro-impact), 1/10
     /// and 0 (stick-slip).
     #[arg(long, value_name = "X,V", allow_hyphen_values = true)]
     pub state: Option<String>,
+    /// The motion before t = 0, for an equation with a delay: constant, free-flight (without
+    /// delay, through the start), or an expression in t.
+    #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
+    pub history: Option<String>,
     /// The end.
     #[arg(long, value_name = "T", conflicts_with_all = ["periods", "impacts"])]
     pub until: Option<String>,
@@ -347,7 +352,8 @@ pub struct SimulateOptions {
     /// The section whose points are listed.
     #[arg(long, value_enum)]
     pub section: Option<Section>,
-    /// Bifurcation diagram over a parameter: the points of the section after --skip.
+    /// Bifurcation diagram over a parameter: the points of the section after --skip. NAME alone
+    /// has the range that a problem file says (swept).
     #[arg(long, value_name = "NAME=LO..HI:COUNT", allow_hyphen_values = true)]
     pub sweep: Option<String>,
     /// Points of the section that are left out at the beginning [default: 200 with --sweep, 500
@@ -404,7 +410,7 @@ pub enum Figure {
 
 #[derive(Debug, Args)]
 pub struct VerifyOptions {
-    /// power-law, pendulum, duffing or van-der-pol.
+    /// power-law, pendulum, vibro-impact, duffing, van-der-pol, or the path of a problem file (.toml).
     pub problem: String,
     /// The order N; the observed order should be N + 1.
     #[arg(long, default_value_t = 4, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
@@ -412,6 +418,9 @@ pub struct VerifyOptions {
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
+    /// What the amplitude is: x(0), the first harmonic, or free to drift (averaging).
+    #[arg(long, value_enum)]
+    pub normalisation: Option<Normalisation>,
     /// Values of the small parameter, decreasing in modulus.
     #[arg(
         long,

@@ -68,6 +68,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         session.say(match progress {
             Progress::Order(n, terms) => format!("order {n} of {}: {terms} terms", settings.order),
             Progress::Primes(n) => format!("{n} primes done"),
+            Progress::Integrating(n) => format!("{n} values compared"),
             Progress::Checking => "substituting into the equation".to_owned(),
         });
         session.goes_on()

@@ -3,7 +3,9 @@
 mod chaos;
 mod figure;
 mod growth;
+mod history;
 mod motion;
+mod orbit;
 pub mod plot;
 mod report;
 mod request;
@@ -18,9 +20,8 @@ use crate::session::{Session, digits};
 use lindstedt::simulate::SimulateError;
 use motion::{Motion, Plan, align};
 use report::Answer;
-use rug::Rational;
 use serde_json::json;
-use setup::Setup;
+use setup::{Setup, Start};
 use std::fmt::Write;
 
 /// Digits more, in which the second integration is made.
@@ -32,23 +33,25 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
     let digits = u32::try_from(digits(&options.precision)?).unwrap_or(u32::MAX);
     plot::check(&options.plot)?;
     let state = request::state(options)?;
-    let mut perturbation = request::perturbation(options)?;
+    let perturbation = request::perturbation(options)?;
     let doubles = options.precision.f64;
-    if options.sweep.is_some() && options.problem == "vibro-impact" && state.is_none() {
-        // On the orbit itself nothing but rounding errors would tell stable from unstable.
-        perturbation = perturbation.or(Some(Rational::from((1, 1000))));
-    }
     // Digits that are lost on the way are made up for: what is computed beforehand has them.
     let spare = if doubles { 40 } else { digits.saturating_add(40) };
-    let setup =
-        Setup::read(&options.problem, &options.set, state, perturbation.as_ref(), digits + spare)?;
+    let start = Start {
+        state,
+        history: options.history.as_deref(),
+        perturbation,
+        sweep: options.sweep.is_some(),
+    };
+    let setup = Setup::read(&options.problem, &options.set, &start, digits + spare)?;
     let figure = request::figure(options, &setup)?;
     output::check_writable(session)?;
     if chaos::wanted(options) {
         return diagnose(options, setup, session);
     }
     if let Some(text) = &options.sweep {
-        return bifurcation(sweep::Diagram::read(options, setup, text)?, options, session);
+        let text = request::sweep(text, &setup)?;
+        return bifurcation(sweep::Diagram::read(options, setup, &text)?, options, session);
     }
     let mut plan = request::plan(options, setup)?;
     if figure == crate::arguments::Figure::Section && plan.section.is_none() {

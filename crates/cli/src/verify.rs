@@ -1,37 +1,56 @@
 //! `lindstedt verify`: the expansion against the time domain.
 
 use crate::Outcome;
-use crate::arguments::{Format, VerifyOptions};
+use crate::arguments::{Format, Normalisation, VerifyOptions};
+use crate::classification;
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
-use crate::session::{Session, parameters, problem};
+use crate::problems::condition_name;
+use crate::session::{Loaded, Session, load, parameters};
 use crate::simulate::plot;
+use lindstedt::equation::{AmplitudeRole, Condition, Problem};
+use lindstedt::expand::ExpandError;
 use lindstedt::verify::{Comparison, TOLERANCE, Verdict, Verification, VerifySettings, verify};
-use lindstedt::{Progress, Value};
+use lindstedt::{Error, Progress, Value};
 use plotters::prelude::*;
 use rug::{Float, Rational};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
 pub fn run(options: &VerifyOptions, session: &Session<'_>) -> Outcome {
-    let problem = problem(&options.problem)?;
+    let Loaded { problem, file } = load(&options.problem)?;
+    let condition = options.normalisation.map(|normalisation| match normalisation {
+        Normalisation::Initial => Condition::InitialAmplitude,
+        Normalisation::Fundamental => Condition::FundamentalAmplitude,
+        Normalisation::Free => Condition::FreeAmplitude,
+    });
     let parameters = parameters(&options.set)?;
-    // The equation is written for amplitude one; only the sums of the pendulum depend on it.
-    let allowed = |name: &str| {
-        name == "amplitude" && problem.amplitude == lindstedt::equation::AmplitudeRole::InSums
-    };
-    if let Some(name) = parameters.keys().find(|name| !allowed(name)) {
+    if let Some(name) = parameters.keys().find(|name| !is_free(&problem, condition, name)) {
         if problem.parameters.iter().any(|card| card.name == **name) {
-            let message =
-                format!("{name} is not free here: {} is varied, amplitude 1", problem.small);
+            let message = format!("{name} is not free here: {} is varied", problem.small);
             return Err(Failure::usage("parameter", message, "--small V1,V2,..."));
         }
         let message = format!("{} has no parameter {name:?}", problem.name);
         return Err(Failure::usage("unknown-parameter", message, "see `lindstedt problems`"));
     }
+    // The equation of a file is looked at before any work starts.
+    if let Some(file) = &file
+        && let Ok(parts) = classification::of(&problem, &parameters)
+    {
+        classification::check(&parts, file, condition, &options.problem)?;
+    }
+    if condition.is_none() && problem.conditions.is_empty() {
+        return Err(Failure {
+            exit: NO_ANSWER,
+            code: "no-expansion",
+            message: format!("{} has no expansion that could be verified", problem.name),
+            hint: "`simulate` takes it, `problems --show` lists the methods".into(),
+        });
+    }
     plot::check(&options.plot)?;
     let settings = VerifySettings {
         order: options.order as usize,
+        condition,
         small: small(&options.small)?,
         periods: options.periods,
         digits: options.digits,
@@ -41,20 +60,33 @@ pub fn run(options: &VerifyOptions, session: &Session<'_>) -> Outcome {
     };
     output::check_writable(session)?;
     let found = verify(&problem, &settings, &mut |progress| {
-        if let Progress::Order(order, _) = progress {
-            session.say(format!("order {order}"));
+        match progress {
+            Progress::Order(order, _) => session.say(format!("order {order}")),
+            Progress::Integrating(n) => {
+                session.say(format!("{n} of {} values compared", settings.small.len()));
+            }
+            _ => {}
         }
         session.goes_on()
-    })?;
-    session.done();
-    if found.order < settings.order {
-        let message = format!("stopped after order {} of the expansion", found.order);
+    });
+    let stopped = |what: String| {
         let (exit, code) = if session.interrupted() {
             (INTERRUPTED, "interrupted")
         } else {
             (UNDECIDED, "limit-seconds")
         };
-        return Err(Failure { exit, code, message, hint: "raise --limit-seconds".into() });
+        let hint = "raise --limit-seconds, or shorten --periods".to_owned();
+        Err(Failure { exit, code, message: what, hint })
+    };
+    let found = match found {
+        Err(Error::Expand(ExpandError::Interrupted { .. })) => {
+            return stopped("stopped before the comparison was finished".to_owned());
+        }
+        found => found?,
+    };
+    session.done();
+    if found.order < settings.order {
+        return stopped(format!("stopped after order {} of the expansion", found.order));
     }
     let report = Report { problem: &problem.name, settings: &settings, found: &found };
     let text = match session.format() {
@@ -72,6 +104,26 @@ pub fn run(options: &VerifyOptions, session: &Session<'_>) -> Outcome {
         Verdict::Disagrees => NO_ANSWER,
         Verdict::Undecided => UNDECIDED,
     })
+}
+
+/// Whether a parameter can be set: the equation mentions it, or it is the amplitude of the
+/// solution; the small parameter and what is part of it are varied.
+fn is_free(problem: &Problem, condition: Option<Condition>, name: &str) -> bool {
+    if name == "amplitude" {
+        let condition = condition.or(problem.conditions.first().copied());
+        return condition == Some(Condition::FreeAmplitude)
+            || matches!(
+                problem.amplitude,
+                AmplitudeRole::InSums
+                    | AmplitudeRole::Scaled
+                    | AmplitudeRole::ScalesFrequency { .. }
+            );
+    }
+    let is_card = problem.parameters.iter().any(|card| card.name == *name);
+    let mentioned = problem.equation.parameters().iter().any(|known| known == name);
+    let tied = problem.synchronous.as_ref().is_some_and(|tie| tie.periods == *name);
+    let determined = problem.synchronous.as_ref().is_some_and(|tie| tie.delay == *name);
+    is_card && name != problem.small && (mentioned || tied) && !determined
 }
 
 fn small(text: &str) -> Result<Vec<Rational>, Failure> {
@@ -107,6 +159,9 @@ impl Report<'_> {
     fn verdict(&self) -> String {
         let expected = self.found.order + 1;
         match (self.found.verdict, self.found.observed) {
+            (Verdict::Agrees, Some(slope)) if slope > expected as f64 + TOLERANCE => format!(
+                "agrees: observed order {slope:.4}, expected at least {expected}: the terms left out begin later"
+            ),
             (Verdict::Agrees, Some(slope)) => {
                 format!("agrees: observed order {slope:.4}, expected {expected}")
             }
@@ -115,6 +170,10 @@ impl Report<'_> {
                     "disagrees: observed order {slope:.4}, expected {expected} within {TOLERANCE}"
                 )
             }
+            (Verdict::Undecided, Some(slope)) if self.found.resolved => format!(
+                "undecided: observed order {slope:.4} has not settled, expected {expected}; smaller --small{}",
+                if self.found.comparisons.len() < 3 { ", at least three of them" } else { "" }
+            ),
             _ => "undecided: the error of the integration is not small against the difference; \
                   more --digits or larger --small"
                 .to_owned(),
@@ -151,10 +210,12 @@ impl Report<'_> {
             "at": at,
             "order": self.found.order,
             "digits": self.found.digits,
+            "normalisation": condition_name(self.found.condition),
             "periods": self.settings.periods,
             "table": self.found.comparisons.iter().map(row).collect::<Vec<_>>(),
             "observed_order": self.found.observed,
             "expected_order": self.found.order + 1,
+            "settled": self.found.settled,
             "tolerance": TOLERANCE,
             "verdict": self.word(),
             "reason": self.verdict(),

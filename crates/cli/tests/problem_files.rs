@@ -201,7 +201,23 @@ const REFUSED: [(&str, &str); 16] = [
 ];
 
 /// Whole files that are wrong.
-const FILES: [(i32, &str, &str); 27] = [
+const FILES: [(i32, &str, &str); 31] = [
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[initial]\nx = '1'",
+        "x and velocity belong",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[initial]\nhistory = 'x'",
+        "a history is an expression in t",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[initial]\nhistory = 'cos(k t)'",
+        "the name k is not declared",
+    ),
+    (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\nswept = ['eps=1..2']", "is no range"),
     (2, "", "missing field `name`"),
     (2, "name = 'a'", "missing field `equation`"),
     (2, "equation = \"x'' + x + eps*x^3\"", "missing field `name`"),
@@ -270,9 +286,26 @@ fn with_parameters(equation: &str) -> String {
     )
 }
 
+/// KiB of address space for a refusal.
+const LEAST_MEMORY: u32 = 100_000;
+
+/// A run with a limit of its address space, which includes code, libraries and stacks.
+#[cfg(unix)]
+fn with_memory(kibibytes: u32, arguments: &[&str]) -> Output {
+    let script = format!("ulimit -v {kibibytes} && exec \"$0\" \"$@\"");
+    let mut command = Command::new("sh");
+    command.args(["-c", &script, env!("CARGO_BIN_EXE_lindstedt")]).args(arguments);
+    command.output().unwrap()
+}
+
+#[cfg(not(unix))]
+fn with_memory(_: u32, arguments: &[&str]) -> Output {
+    lindstedt(arguments)
+}
+
 /// What is wrong with the refusal of a file; nothing when it is right.
 fn refused(path: &str, exit: i32, message: &str, code: &str) -> Option<String> {
-    let output = lindstedt(&["derive", path, "--order", "2"]);
+    let output = with_memory(LEAST_MEMORY, &["derive", path, "--order", "2"]);
     let error = String::from_utf8(output.stderr).unwrap();
     let status = output.status.code();
     let one_line = error.lines().count() == 1 && error.len() < 500 && !error.contains("panicked");

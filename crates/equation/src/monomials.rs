@@ -52,6 +52,22 @@ pub fn expand(e: &Expression) -> Option<Monomials> {
     Some(Monomials { terms, atoms: expander.atoms })
 }
 
+impl Expression {
+    /// The expression multiplied out, its terms in a fixed order: equal for all ways of writing a
+    /// polynomial; nothing when that takes too many terms.
+    ///
+    /// ```
+    /// use lindstedt_equation::Expression;
+    /// let x = || Expression::Displacement;
+    /// assert_eq!((x() * (x() - 1)).multiplied_out(), (x().pow(2) - x()).multiplied_out());
+    /// ```
+    #[must_use]
+    pub fn multiplied_out(&self) -> Option<Self> {
+        let all = expand(self)?;
+        Some(Self::Sum(all.terms.iter().map(|(monomial, q)| all.tree(monomial, q)).collect()))
+    }
+}
+
 type Terms = BTreeMap<Monomial, Rational>;
 
 struct Expander {

@@ -22,6 +22,12 @@ pub enum Error {
         /// Its value.
         value: String,
     },
+    /// The averaged solution has no one Taylor polynomial over a delay.
+    #[error("over the delay {delay} the slow motion has no single Taylor polynomial")]
+    LongDelay {
+        /// The delay.
+        delay: String,
+    },
     /// No more primes of 61 bits with the roots of unity that the order needs.
     #[error("no more 61-bit primes for this order")]
     OutOfPrimes,

@@ -1,49 +1,62 @@
 //! The expansion against the time domain: the observed order of accuracy.
 //!
-//! The expansion of order N, x_N(t) = sum_(n<=N) eps^n x_n(omega_N t), is compared with the
-//! solution of the equation by the integrator of [`lindstedt_simulate`], which shares nothing with
-//! the expansion but the equation. On a window of fixed length in omega_N t
+//! The expansion of order N, x_N(t), is compared with the solution x(t) of the equation by the
+//! integrator of [`lindstedt_simulate`], which shares nothing with the expansion but the equation
+//! as it was written (before values are put in, x is scaled or time is). On a fixed window
 //!
 //!   e(eps) = max_t |x_N(t; eps) - x(t; eps)| = C eps^(N+1) (1 + O(eps)),
 //!
-//! so d ln e/d ln eps tends to N + 1 if every order is right, and to n if order n is wrong. The
-//! start is the condition's: x(0) = 1, x'(0) = 0, or the point of largest x on the limit cycle,
-//! found by Newton's method on the return map (a start taken from the expansion would hide an
-//! error of the amplitude).
+//! so d ln e/d ln eps tends to N + 1 if every order is right, and to n if order n is wrong: x_N
+//! leaves a residual of order eps^(N+1) in the equation, and over a time that does not depend on
+//! eps a solution answers to a residual and to a change of its start by as much (Gronwall), if its
+//! start is that of x_N up to eps^(N+1). What the start is:
+//!
+//! - initial amplitude: x(0) = a, x'(0) = 0;
+//! - limit cycle: its point of largest x, found by Newton's method on the return map (a start
+//!   taken from the expansion would hide an error of the amplitude);
+//! - fundamental amplitude: x_N(0), x_N'(0); that the first harmonic of x_N is a is checked
+//!   exactly with the residual;
+//! - free amplitude (averaging): x_N(0), x_N'(0) at psi(0) = 0 and a(0) = a, where
+//!   da/dt = sum eps^n A_n(a), dpsi/dt = sum eps^n B_n(a) are truncated at N and integrated. With
+//!   a delay T the start is a function: x_N(t) for -T <= t <= 0 by the same rates. Any other
+//!   history excites other roots of the characteristic equation, which the expansion leaves out.
+//!   A wall takes no part: the expansion is that of the flight.
 
-use crate::{Derivation, Error, Progress, Settings, Solution, Value, derive};
-use lindstedt_coeff::ball::{Ball, Balls};
+mod cycle;
+mod drifting;
+mod periodic;
+
+use crate::derivation::condition;
+use crate::{Derivation, Error, Progress, Settings, Value, derive};
+use drifting::Drifting;
 use lindstedt_equation::{Condition, Problem};
-use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
-use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
-use lindstedt_simulate::{
-    Digits, Integrator, Model, Parameters, Quantity, Real, Report, Settings as Precision, System,
-    Trajectory, monodromy,
-};
-use rayon::prelude::*;
+use lindstedt_expand::ExpandError;
+use lindstedt_simulate::{Parameters, Quantity};
+use periodic::Periodic;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc;
 
 /// The observed order may differ from N + 1 by so much.
 pub const TOLERANCE: f64 = 0.05;
-/// Steps of Newton's method; the number of digits doubles in each.
-const MOST_STEPS: usize = 20;
 
 /// What to verify.
 #[derive(Clone, Debug)]
 pub struct VerifySettings {
     /// N.
     pub order: usize,
+    /// The normalisation; the problem's default if nothing.
+    pub condition: Option<Condition>,
     /// Values of the small parameter, each smaller in modulus than the one before, none zero.
     pub small: Vec<Rational>,
-    /// The window: so many periods 2 pi/omega_N.
+    /// The window: so many periods 2 pi/omega_N (2 pi/omega_0 with a free amplitude).
     pub periods: u32,
     /// Points of the window.
     pub samples: u32,
     /// Digits of the integration; by default enough for the smallest error expected.
     pub digits: Option<u32>,
-    /// Values of parameters by name.
+    /// Values of parameters by name; with a free amplitude, `amplitude` is a(0), by default 1.
     pub parameters: BTreeMap<String, Value>,
     /// The memory that may be used, in bytes.
     pub memory: u64,
@@ -54,6 +67,7 @@ impl Default for VerifySettings {
     fn default() -> Self {
         Self {
             order: 4,
+            condition: None,
             small: (0..4).map(|j| Rational::from((1, 1000 << j))).collect(),
             periods: 1,
             samples: 48,
@@ -80,11 +94,13 @@ pub struct Comparison {
 /// What the comparison says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The observed order is N + 1 within [`TOLERANCE`].
+    /// The observed order is N + 1 within [`TOLERANCE`], or it has settled above: the terms that
+    /// were left out begin later.
     Agrees,
-    /// It is not.
+    /// It has settled below N + 1.
     Disagrees,
-    /// The errors are not above those of the integration, or there are fewer than two.
+    /// The errors are not above those of the integration, there are fewer than two, or the slopes
+    /// have not settled: the small parameter is not small enough.
     Undecided,
 }
 
@@ -95,10 +111,16 @@ pub struct Verification {
     pub order: usize,
     /// The name of the small parameter.
     pub parameter: String,
+    /// The normalisation.
+    pub condition: Condition,
     /// One line per value, in the order given.
     pub comparisons: Vec<Comparison>,
     /// The slope between the last two values.
     pub observed: Option<f64>,
+    /// The slopes agree so far that their limit is known within [`TOLERANCE`] (three values).
+    pub settled: bool,
+    /// The errors of the last two values are above those of the integration.
+    pub resolved: bool,
     /// The verdict.
     pub verdict: Verdict,
     /// The digits of the integration.
@@ -107,8 +129,11 @@ pub struct Verification {
 
 /// Compares the expansion of a problem with the time domain.
 ///
-/// Errors: those of [`derive()`]; [`Error::Simulate`]; [`Error::UnknownCondition`] for a problem whose
-/// first normalisation fixes no start; [`Error::NoPeriodicOrbit`]. Cost: two integrations per value.
+/// `observer` is told the progress of the derivation and of the integrations; when it returns
+/// `false` both stop, with [`ExpandError::Interrupted`].
+///
+/// Errors: those of [`derive()`] and [`crate::averaging::average`]; [`Error::Simulate`];
+/// [`Error::NoPeriodicOrbit`]; [`Error::LongDelay`]. Cost: two integrations per value.
 ///
 /// # Example
 /// ```
@@ -124,211 +149,164 @@ pub fn verify(
     settings: &VerifySettings,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Verification, Error> {
-    let parameters = settings.parameters.clone();
-    let derived = Settings { order: settings.order, parameters, ..Settings::default() };
-    let derived = Settings { memory: settings.memory, ..derived };
+    let condition = condition(problem, settings.condition)?;
+    if condition == Condition::FreeAmplitude {
+        let digits = settings.digits.unwrap_or_else(|| digits(settings.order, condition, settings));
+        let expansion = Drifting::new(problem, settings, digits, observer)?;
+        let compare = |small: &Rational, goes_on: &dyn Fn() -> bool| {
+            expansion.compare(small, digits, goes_on)
+        };
+        let comparisons = compare_all(&settings.small, settings.order, &compare, observer)?;
+        return Ok(conclude(problem, condition, settings.order, digits, comparisons));
+    }
+    let derived = Settings {
+        order: settings.order,
+        condition: Some(condition),
+        parameters: settings.parameters.clone(),
+        memory: settings.memory,
+        ..Settings::default()
+    };
     let derivation = derive(problem, &derived, observer)?;
-    verify_derivation(&derivation, settings)
+    verify_derivation(problem, &derivation, settings, observer)
 }
 
-/// As [`verify`], for an expansion that is there; its order counts, not that of the settings.
+/// As [`verify`], for an expansion of the problem that is there; its order and its condition
+/// count, not those of the settings.
 ///
 /// # Errors
 /// As [`verify`].
 pub fn verify_derivation(
+    problem: &Problem,
     derivation: &Derivation,
     settings: &VerifySettings,
+    observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Verification, Error> {
-    let digits = settings.digits.unwrap_or_else(|| digits(derivation, settings));
-    let expansion = Sampled::new(derivation, settings, digits)?;
-    let judge = Judge::new(derivation, settings)?;
-    let compare = |small: &Rational| expansion.compare(&judge, small, digits);
-    let found: Result<Vec<_>, Error> = settings.small.par_iter().map(compare).collect();
-    let mut comparisons = found?;
+    let (order, condition) = (derivation.order, derivation.condition);
+    let digits = settings.digits.unwrap_or_else(|| digits(order, condition, settings));
+    let expansion = Periodic::new(problem, derivation, settings, digits)?;
+    let compare =
+        |small: &Rational, goes_on: &dyn Fn() -> bool| expansion.compare(small, digits, goes_on);
+    let comparisons = compare_all(&settings.small, order, &compare, observer)?;
+    Ok(conclude(problem, condition, order, digits, comparisons))
+}
+
+/// A comparison at one value, which asks now and then whether to go on.
+type Compare<'a> = dyn Fn(&Rational, &dyn Fn() -> bool) -> Result<Comparison, Error> + Sync + 'a;
+
+/// All comparisons, on as many threads as there are processors; the observer stays on this one.
+fn compare_all(
+    values: &[Rational],
+    order: usize,
+    compare: &Compare<'_>,
+    observer: &mut dyn FnMut(Progress) -> bool,
+) -> Result<Vec<Comparison>, Error> {
+    let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(values.len());
+    let (sender, receiver) = mpsc::channel::<Option<(usize, Result<Comparison, Error>)>>();
+    let mut found: Vec<Option<Result<Comparison, Error>>> = values.iter().map(|_| None).collect();
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            let (sender, next, stopped) = (sender.clone(), &next, &stopped);
+            scope.spawn(move || {
+                // Every step of an integration wakes the observer.
+                let goes_on = || sender.send(None).is_ok() && !stopped.load(Ordering::Relaxed);
+                loop {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(value) = values.get(index).filter(|_| goes_on()) else { return };
+                    let _ = sender.send(Some((index, compare(value, &goes_on))));
+                }
+            });
+        }
+        drop(sender);
+        let mut done = 0;
+        for message in receiver {
+            if let Some((index, result)) = message {
+                done += 1;
+                // The others are of no use any more.
+                stopped.fetch_or(result.is_err(), Ordering::Relaxed);
+                if let Some(place) = found.get_mut(index) {
+                    *place = Some(result);
+                }
+            }
+            if !stopped.load(Ordering::Relaxed) && !observer(Progress::Integrating(done)) {
+                stopped.store(true, Ordering::Relaxed);
+            }
+        }
+    });
+    let interrupted = || Error::from(ExpandError::Interrupted { order });
+    let is_reason = |e: &Error| !matches!(e, Error::Expand(ExpandError::Interrupted { .. }));
+    let reason = found.iter().flatten().find_map(|r| r.as_ref().err().filter(|e| is_reason(e)));
+    if let Some(reason) = reason {
+        return Err(reason.clone());
+    }
+    found.into_iter().map(|result| result.unwrap_or_else(|| Err(interrupted()))).collect()
+}
+
+/// Slopes and verdict.
+fn conclude(
+    problem: &Problem,
+    condition: Condition,
+    order: usize,
+    digits: u32,
+    mut comparisons: Vec<Comparison>,
+) -> Verification {
+    let size = |c: &Comparison| Float::with_val(80, &c.small).abs().ln().to_f64();
     for i in 1..comparisons.len() {
         let log = |c: &Comparison| c.error.clone().ln().to_f64();
-        let size = |c: &Comparison| Float::with_val(80, &c.small).abs().ln().to_f64();
         let [before, after] = [&comparisons[i - 1], &comparisons[i]];
         let slope = (log(after) - log(before)) / (size(after) - size(before));
         comparisons[i].slope = slope.is_finite().then_some(slope);
     }
     let observed = comparisons.last().and_then(|last| last.slope);
     let drowned = |c: &Comparison| c.simulation_error.clone() * 1000u32 > c.error;
-    let verdict = match observed {
-        _ if comparisons.iter().rev().take(2).any(drowned) => Verdict::Undecided,
-        None => Verdict::Undecided,
-        Some(slope) if (slope - derivation.order as f64 - 1.0).abs() <= TOLERANCE => {
-            Verdict::Agrees
-        }
-        Some(_) => Verdict::Disagrees,
+    let resolved = !comparisons.iter().rev().take(2).any(drowned);
+    // slope(eps) = limit + c eps + ...: from two slopes the rest c eps follows.
+    let settled = match &comparisons[..] {
+        [.., before, middle, last] => match (middle.slope, last.slope) {
+            (Some(first), Some(second)) => {
+                let ratio = (size(last) - size(middle)).exp();
+                let ratio_before = (size(middle) - size(before)).exp();
+                let rest = (second - first) * ratio / (1.0 / ratio_before - ratio);
+                (second - first).abs() <= 2.0 * TOLERANCE && rest.abs() <= TOLERANCE
+            }
+            _ => false,
+        },
+        _ => false,
     };
-    Ok(Verification {
-        order: derivation.order,
-        parameter: derivation.problem.small.to_string(),
+    let expected = order as f64 + 1.0;
+    let verdict = match observed {
+        Some(slope) if resolved && (slope - expected).abs() <= TOLERANCE => Verdict::Agrees,
+        Some(slope) if resolved && settled => {
+            let whole = (slope - slope.round()).abs() <= TOLERANCE;
+            match (slope > expected, whole) {
+                (true, true) => Verdict::Agrees,
+                (true, false) => Verdict::Undecided,
+                (false, _) => Verdict::Disagrees,
+            }
+        }
+        _ => Verdict::Undecided,
+    };
+    let parameter = problem.small.to_string();
+    Verification {
+        order,
+        parameter,
+        condition,
         comparisons,
         observed,
+        settled,
+        resolved,
         verdict,
         digits,
-    })
+    }
 }
 
 /// Enough for errors of the size eps^(N+1), and for the slow approach to a limit cycle, which
 /// multiplies the errors of the return map by about 1/eps.
-fn digits(derivation: &Derivation, settings: &VerifySettings) -> u32 {
+fn digits(order: usize, condition: Condition, settings: &VerifySettings) -> u32 {
     let sizes = settings.small.iter().map(|q| -Float::with_val(80, q).abs().log10().to_f64());
     let decades = sizes.fold(0.0, f64::max).min(1e6);
-    let cycle = if derivation.condition == Condition::LimitCycle { 2.0 * decades } else { 0.0 };
-    ((derivation.order as f64 + 1.0) * decades + cycle).ceil() as u32 + 16
-}
-
-/// The expansion at points of the phase, order by order.
-struct Sampled {
-    bits: u32,
-    /// kappa W_n.
-    frequency_squared: Vec<Float>,
-    /// tau_j/pi.
-    turns: Vec<Rational>,
-    /// x_n(tau_j), by point and order.
-    values: Vec<Vec<Float>>,
-    /// x_n(0).
-    amplitudes: Vec<Float>,
-}
-
-impl Sampled {
-    fn new(d: &Derivation, settings: &VerifySettings, digits: u32) -> Result<Self, Error> {
-        let bits = Digits::for_digits(digits + 8).bits();
-        let balls = Balls::new(bits).with_guard(64);
-        let float = |ball: &Ball| Float::with_val(bits, ball.midpoint());
-        let series = d.named("frequency_squared").ok_or(Error::NoValue)?;
-        let orders = 0..=d.order;
-        let ball = |n| d.ball(series, n, balls).ok_or(Error::NoValue);
-        let frequency_squared = orders.clone().map(|n| Ok(float(&ball(n)?)));
-        let frequency_squared = frequency_squared.collect::<Result<Vec<_>, Error>>()?;
-        // No point is an odd multiple of pi/2, where cos tau = 0 and ln|cos tau| has no value:
-        // the denominator's factor 1009 does not cancel.
-        let (periods, samples) = (settings.periods.max(1), settings.samples.max(2));
-        let turn = |j: u32| {
-            let numerator = (1009 * u64::from(j) + 504) * 2 * u64::from(periods);
-            Rational::from((numerator, 1009 * u64::from(samples)))
-        };
-        let turns: Vec<Rational> = (0..samples).map(turn).collect();
-        let at = |point: &Point| -> Option<Vec<Float>> {
-            let values: Option<Vec<Ball>> = match &d.solution {
-                Solution::Lobachevsky(e) => {
-                    let table = LambdaTable::new(d.order + 1, balls);
-                    let value =
-                        |x| lobachevsky(x, point, &table, |c| d.constants.evaluate(c, balls));
-                    e.solution.iter().take(d.order + 1).map(value).collect()
-                }
-                Solution::Rational(e) => {
-                    let value = |x| trigonometric(x, point, balls, of_rational(balls));
-                    e.expansion.solution.iter().take(d.order + 1).map(value).collect()
-                }
-                Solution::FrequencyOnly => None,
-            };
-            Some(values?.iter().map(float).collect())
-        };
-        let points = turns.par_iter().map(|q| at(&Point::PiTimes(q.clone())));
-        let values: Option<Vec<_>> = points.collect();
-        let values = values.ok_or(Error::NoValue)?;
-        let amplitudes = at(&Point::Rational(Rational::new())).ok_or(Error::NoValue)?;
-        Ok(Self { bits, frequency_squared, turns, values, amplitudes })
-    }
-
-    fn sum(&self, coefficients: &[Float], small: &Rational) -> Float {
-        let eps = Float::with_val(self.bits, small);
-        coefficients.iter().rev().fold(Float::new(self.bits), |sum, c| sum * &eps + c)
-    }
-
-    fn compare(&self, judge: &Judge, small: &Rational, digits: u32) -> Result<Comparison, Error> {
-        let square = self.sum(&self.frequency_squared, small);
-        if !(square.is_finite() && square > 0) {
-            return Err(judge.no_orbit(small));
-        }
-        let frequency = square.sqrt();
-        let pi = Float::with_val(self.bits, rug::float::Constant::Pi);
-        let times: Vec<Float> =
-            self.turns.iter().map(|q| Float::with_val(self.bits, &pi * q) / &frequency).collect();
-        let guess = (
-            self.sum(&self.amplitudes, small),
-            Float::with_val(self.bits, &pi * 2u32) / &frequency,
-        );
-        let coarse = judge.run(small, &guess, &times, digits)?;
-        let fine = judge.run(small, &guess, &times, digits + 8)?;
-        let (mut error, mut simulation_error) = (Float::new(64), Float::new(64));
-        for ((terms, coarse), fine) in self.values.iter().zip(&coarse).zip(&fine) {
-            let x = self.sum(terms, small);
-            error.max_mut(&Float::with_val(64, &x - fine).abs());
-            simulation_error.max_mut(&Float::with_val(64, fine - coarse).abs());
-        }
-        Ok(Comparison { small: small.clone(), error, simulation_error, slope: None })
-    }
-}
-
-/// The time domain.
-struct Judge {
-    model: Model,
-    parameters: Parameters,
-    small: String,
-    limit_cycle: bool,
-}
-
-impl Judge {
-    fn new(derivation: &Derivation, settings: &VerifySettings) -> Result<Self, Error> {
-        let problem = &derivation.problem;
-        let limit_cycle = match derivation.condition {
-            Condition::InitialAmplitude => false,
-            Condition::LimitCycle => true,
-            _ => return Err(Error::UnknownCondition { problem: problem.name.to_string() }),
-        };
-        let mut parameters = Parameters::new();
-        for card in &problem.parameters {
-            let value = match settings.parameters.get(&*card.name) {
-                Some(value) => value.clone(),
-                None => Value::parse(&card.default)?,
-            };
-            parameters.set(&card.name, quantity(&value));
-        }
-        let model = Model::of_problem(problem)?;
-        let small = problem.small.to_string();
-        Ok(Self { model, parameters, small, limit_cycle })
-    }
-
-    fn no_orbit(&self, small: &Rational) -> Error {
-        Error::NoPeriodicOrbit { parameter: self.small.clone(), value: small.to_string() }
-    }
-
-    /// x at the times.
-    fn run(
-        &self,
-        small: &Rational,
-        guess: &(Float, Float),
-        times: &[Float],
-        digits: u32,
-    ) -> Result<Vec<Float>, Error> {
-        let real = Digits::for_digits(digits);
-        let parameters = self.parameters.clone().with(&self.small, small.clone());
-        let precision = Precision::for_digits(digits);
-        let start = if self.limit_cycle {
-            let model = self.model.clone().linearised();
-            let cycle = cycle(&model.compile(real, &parameters)?, guess, precision)?;
-            cycle.ok_or_else(|| self.no_orbit(small))?
-        } else {
-            real.double(1.0)
-        };
-        let system = self.model.compile(real, &parameters)?;
-        let mut flow = Integrator::new(&system, &real.zero(), &[start, real.zero()], precision)?;
-        let mut trajectory = Trajectory::new(real);
-        let end = times.last().map_or_else(|| real.zero(), |t| real.float(t));
-        flow.advance(&end, &mut |report| trajectory.record(report))?;
-        // The end of the last segment may be rounded to just before the end itself.
-        let last = || flow.state().first().cloned();
-        let value = |t: &Float| {
-            let t = real.float(t);
-            if t >= *flow.time() { last() } else { trajectory.value(0, &t) }
-        };
-        times.iter().map(|t| value(t).ok_or(Error::NoValue)).collect()
-    }
+    let cycle = if condition == Condition::LimitCycle { 2.0 * decades } else { 0.0 };
+    ((order as f64 + 1.0) * decades + cycle).ceil() as u32 + 16
 }
 
 /// The value of a parameter for the integrator.
@@ -340,52 +318,34 @@ pub fn quantity(value: &Value) -> Quantity {
     }
 }
 
-/// x(0) of the limit cycle with x'(0) = 0: Newton's method for x(T) = x(0), x'(T) = 0 in x(0) and
-/// T, with the derivative of the flow from its linearisation.
-fn cycle(
-    system: &System<Digits>,
-    guess: &(Float, Float),
-    precision: Precision,
-) -> Result<Option<Float>, Error> {
-    let real = system.real();
-    let zero = real.zero();
-    let (mut a, mut period) = (real.float(&guess.0), real.float(&guess.1));
-    let mut last = f64::INFINITY;
-    for _ in 0..MOST_STEPS {
-        let start = [a.clone(), zero.clone()];
-        let flow = monodromy(system, (&zero, &period), &start, precision)?;
-        let [x, v] = &flow.end[..] else { return Ok(None) };
-        let [first, second] = &flow.matrix[..] else { return Ok(None) };
-        // x''(0), at the solution x''(T).
-        let mut acceleration = real.zero();
-        let mut one = Integrator::new(system, &zero, &start, precision)?;
-        one.advance(&period, &mut |report| {
-            if let Report::Segment(segment) = report
-                && let Some(rate) = segment.coefficients(1).and_then(|c| c.get(1))
-            {
-                acceleration = rate.clone();
-            }
-            ControlFlow::Break(())
-        })?;
-        let (p, q) = (real.difference(&first[0], &real.double(1.0)), v.clone());
-        let (r, s) = (second[0].clone(), acceleration);
-        let (f, g) = (real.difference(x, &a), v.clone());
-        let determinant = real.difference(&real.product(&p, &s), &real.product(&q, &r));
-        let da = real.difference(&real.product(&q, &g), &real.product(&s, &f));
-        let dt = real.difference(&real.product(&r, &f), &real.product(&p, &g));
-        let (da, dt) = (real.quotient(&da, &determinant), real.quotient(&dt, &determinant));
-        a += &da;
-        period += &dt;
-        let size = real.log2(&da);
-        // At the noise of the integration the steps cease to shrink.
-        let small = -std::f64::consts::LOG2_10 * f64::from(precision.digits);
-        if size < small || (size >= last && last < -40.0) {
-            return Ok(Some(a));
+/// The parameters of a problem for the integrator: given, or by default, with the delay that is a
+/// number of periods of the force. What has no value is left out.
+#[must_use]
+pub fn quantities(problem: &Problem, given: &BTreeMap<String, Value>) -> Parameters {
+    let mut parameters = Parameters::new();
+    let value = |name: &str| {
+        let card = problem.parameters.iter().find(|card| card.name == name);
+        let default = || Value::parse(&card?.default).ok();
+        given.get(name).cloned().or_else(default)
+    };
+    for card in &problem.parameters {
+        if let Some(value) = value(&card.name) {
+            parameters.set(&card.name, quantity(&value));
         }
-        if size.is_nan() || size > 0.0 {
-            return Ok(None);
-        }
-        last = size;
     }
-    Ok(None)
+    if let Some(tie) = &problem.synchronous
+        && let (Some(Value::Rational(k)), Some(omega)) =
+            (value(&tie.periods), value(&tie.frequency))
+    {
+        let (Value::Rational(q) | Value::PiTimes(q)) = &omega;
+        if !q.is_zero() {
+            let turns = k * 2u32 / q.clone();
+            let period = match omega {
+                Value::Rational(_) => Quantity::PiMultiple(turns),
+                Value::PiTimes(_) => Quantity::Rational(turns),
+            };
+            parameters.set(&tie.delay, period);
+        }
+    }
+    parameters
 }

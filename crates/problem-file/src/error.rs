@@ -137,6 +137,9 @@ pub enum ParseErrorKind {
         /// The limit.
         limit: u64,
     },
+    /// x stands in a history.
+    #[error("a history is an expression in t, without x")]
+    StateInHistory,
     /// x'' does not occur.
     #[error("x'' does not occur, so the equation is no oscillator of second order")]
     NoAcceleration,
@@ -212,6 +215,7 @@ impl ParseError {
                 "a power as steep as this is a different problem".into()
             }
             K::TooLarge { .. } => String::new(),
+            K::StateInHistory => "for example cos(2*t); or constant, or free-flight".into(),
             K::NoAcceleration => "for example x'' + x + eps*x^3 = 0".into(),
             K::AccelerationInside { .. } => "divide the equation by the factor of x''".into(),
             K::NoTaylor { .. } => {

@@ -3,6 +3,7 @@
 use crate::error::{ParseError, ParseErrorKind, excerpt, position};
 use crate::file_error::{FileError, FileErrorKind};
 use crate::grammar::{locate, parse_equation, parse_expression};
+use crate::history::{History, is_range, ranges, start};
 use crate::names::{Names, canonical_name, is_parameter_name};
 use crate::reader::Reader;
 use crate::schema::Schema;
@@ -28,10 +29,14 @@ pub struct ProblemFile {
     pub follows: BTreeMap<String, String>,
     /// x(0) and x'(0) as exact text.
     pub initial: Option<[String; 2]>,
+    /// The motion before t = 0, and as it was written.
+    pub history: Option<(History, String)>,
     /// Parameters that are held fixed.
     pub fixed: Vec<String>,
     /// Parameters that are swept.
     pub swept: Vec<String>,
+    /// LO..HI:COUNT of those of `swept` that have a range.
+    pub ranges: BTreeMap<String, String>,
     /// Quantities that are asked for.
     pub asked: Vec<String>,
     /// The names that the equation may mention.
@@ -254,10 +259,7 @@ fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {
             default: "1".into(),
         });
     }
-    let initial = match &schema.initial {
-        None => None,
-        Some(initial) => Some([reader.value(&initial.x)?, reader.value(&initial.velocity)?]),
-    };
+    let (initial, history) = start(reader, schema.initial.as_ref(), &names)?;
     if !equation.contains(&Expression::Small)
         && conditions.iter().any(|c| *c != Condition::FreeAmplitude)
     {
@@ -266,7 +268,15 @@ fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {
     }
     let listed = |key: &'static str, list: &[Spanned<String>]| -> Result<Vec<String>, FileError> {
         let one = |word: &Spanned<String>| {
-            let name = canonical_name(word.get_ref());
+            let (name, range) = match word.get_ref().split_once('=') {
+                Some((name, range)) if key == "swept" => (name.trim(), Some(range)),
+                _ => (word.get_ref().as_str(), None),
+            };
+            if let Some(text) = range.filter(|text| !is_range(text)) {
+                let kind = FileErrorKind::Range { text: excerpt(text) };
+                return Err(reader.error(kind, word.span().start));
+            }
+            let name = canonical_name(name);
             let known = declared.contains(&name) || name == small || name == "amplitude";
             let kind = || FileErrorKind::Undeclared { key, name: excerpt(&name) };
             if known { Ok(name.clone()) } else { Err(reader.error(kind(), word.span().start)) }
@@ -306,7 +316,9 @@ fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {
         units,
         follows,
         initial,
+        history,
         fixed,
+        ranges: ranges(&schema.swept),
         swept,
         asked,
         names,

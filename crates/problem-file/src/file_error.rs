@@ -60,6 +60,15 @@ pub enum FileErrorKind {
         /// The name.
         name: String,
     },
+    /// x(0) without x'(0), or the other way round.
+    #[error("x and velocity belong together")]
+    HalfAStart,
+    /// A range that cannot be read.
+    #[error("{text:?} is no range")]
+    Range {
+        /// The text.
+        text: String,
+    },
     /// The small parameter does not occur in the equation.
     #[error("the small parameter {name} does not occur in the equation")]
     NoSmallParameter {
@@ -96,6 +105,8 @@ impl FileError {
             FileErrorKind::NoSmallParameter { .. } => {
                 "small = \"...\" names it; [orders] can give parameters an order".into()
             }
+            FileErrorKind::HalfAStart => "give both, or a history alone".into(),
+            FileErrorKind::Range { .. } => "NAME=LO..HI:COUNT, as in \"gamma=1/2..1:100\"".into(),
             FileErrorKind::Undeclared { .. } => "declare it under [parameters]".into(),
             _ => "see `lindstedt problems --show duffing` for a complete file".into(),
         }

@@ -8,6 +8,7 @@ mod error;
 mod file;
 mod file_error;
 mod grammar;
+mod history;
 mod lexer;
 mod names;
 mod operands;
@@ -23,5 +24,6 @@ pub use file::{
 };
 pub use file_error::{FileError, FileErrorKind};
 pub use grammar::{locate, parse_equation, parse_expression};
+pub use history::History;
 pub use names::{Names, canonical_name, is_parameter_name};
 pub use write::write;

@@ -56,7 +56,7 @@ impl Reader<'_> {
 }
 
 /// Whether a value reads as a rational number times at most one pi.
-fn is_exact(text: &str) -> bool {
+pub(crate) fn is_exact(text: &str) -> bool {
     let body = text.strip_prefix('-').unwrap_or(text);
     let (mut pi, mut divide) = (0, false);
     for token in body.split_inclusive(['*', '/']) {

@@ -60,8 +60,9 @@ pub(crate) struct Synchronous {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Initial {
-    pub x: Spanned<Exact>,
-    pub velocity: Spanned<Exact>,
+    pub x: Option<Spanned<Exact>>,
+    pub velocity: Option<Spanned<Exact>>,
+    pub history: Option<Spanned<String>>,
 }
 
 /// A parameter: a value, or a table.

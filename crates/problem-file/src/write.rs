@@ -66,7 +66,11 @@ fn render(problem: &Problem, file: Option<&ProblemFile>) -> String {
         .flat_map(|f| [("fixed", &f.fixed), ("swept", &f.swept), ("asked", &f.asked)])
     {
         if !list.is_empty() {
-            let list: Vec<String> = list.iter().map(|name| quoted(name)).collect();
+            let range = |name: &String| match file.and_then(|f| f.ranges.get(name)) {
+                Some(range) if key == "swept" => quoted(&format!("{name}={range}")),
+                _ => quoted(name),
+            };
+            let list: Vec<String> = list.iter().map(range).collect();
             let _ = writeln!(text, "{key} = [{}]", list.join(", "));
         }
     }
@@ -86,9 +90,16 @@ fn render(problem: &Problem, file: Option<&ProblemFile>) -> String {
         let how = file.and_then(|f| f.follows.get(&name)).map_or("see the notes", String::as_str);
         let _ = writeln!(text, "{name} = {{ follows = {} }}", quoted(how));
     }
-    if let Some([x, velocity]) = file.and_then(|f| f.initial.as_ref()) {
-        let (x, velocity) = (quoted(x), quoted(velocity));
-        let _ = write!(text, "\n[initial]\nx = {x}\nvelocity = {velocity}\n");
+    let (initial, history) =
+        file.map_or((None, None), |f| (f.initial.as_ref(), f.history.as_ref()));
+    if initial.is_some() || history.is_some() {
+        text.push_str("\n[initial]\n");
+    }
+    if let Some([x, velocity]) = initial {
+        let _ = write!(text, "x = {}\nvelocity = {}\n", quoted(x), quoted(velocity));
+    }
+    if let Some((_, history)) = history {
+        let _ = writeln!(text, "history = {}", quoted(history));
     }
     if let Some(impact) = &problem.impact {
         let print = |e: &Expression| quoted(&e.print(&problem.small, Style::Text));

@@ -84,6 +84,14 @@ pub fn section(options: &SimulateOptions, setup: &Setup) -> Result<Option<Sectio
     Err(Failure::usage("section", message, "--section velocity"))
 }
 
+/// `--sweep`: NAME alone has the range of the file.
+pub fn sweep(text: &str, setup: &Setup) -> Result<String, Failure> {
+    match setup.ranges.get(text.trim()) {
+        Some(range) => Ok(format!("{}={range}", text.trim())),
+        None => Ok(text.to_owned()),
+    }
+}
+
 /// `X,V`.
 pub fn state(options: &SimulateOptions) -> Result<Option<[Quantity; 2]>, Failure> {
     let Some(text) = &options.state else { return Ok(None) };

@@ -54,7 +54,7 @@ impl Diagram {
             return Err(usage(format!("{text:?} is not NAME=LO..HI:COUNT"), "gamma=0.5..1:400"));
         };
         let name = name.trim().to_owned();
-        if !setup.sweepable.contains(&name.as_str()) {
+        if !setup.sweepable.contains(&name) {
             let hint = format!("it can be one of: {}", setup.sweepable.join(", "));
             return Err(usage(format!("{name:?} cannot be varied here"), &hint));
         }

@@ -63,6 +63,8 @@ pub enum Progress {
     Order(usize, usize),
     /// So many primes are done (problems over Q; their number is not known beforehand).
     Primes(usize),
+    /// So many values of the small parameter are compared with the time domain.
+    Integrating(usize),
     /// The finished expansion is being substituted into the equation.
     Checking,
 }

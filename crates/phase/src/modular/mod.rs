@@ -90,6 +90,10 @@ struct BasisTable {
     by_point: Vec<u64>,
 }
 
+/// Tables of the basis at more points are not kept: their squares cost more than the few
+/// transforms of a low order in a high degree.
+const TABLED_POINTS: usize = 512;
+
 impl Modular {
     /// The number of points per quarter period that represent harmonics up to `degree`, and the
     /// order of the root of unity that the prime must provide.
@@ -155,7 +159,6 @@ impl Modular {
     /// Fourier coefficients of a part from its values: by discrete orthogonality at the points
     /// (2j+1) pi/(4Q), sum_j cos k psi_j cos m psi_j = Q/2 delta_km for 0 < k < 2Q.
     fn forward(&self, part: Part, values: &[u64]) -> Vec<u64> {
-        let rows = self.table(part).by_harmonic.chunks(self.points);
         let coefficient = |(k, row): (usize, &[u64])| {
             let harmonic = part.harmonic(k);
             let sum = self.field.mul(&self.field.dot(row, values), &self.two_over_points);
@@ -166,12 +169,47 @@ impl Modular {
                 sum
             }
         };
-        rows.enumerate().map(coefficient).collect()
+        if self.points <= TABLED_POINTS {
+            let rows = self.table(part).by_harmonic.chunks(self.points);
+            return rows.enumerate().map(coefficient).collect();
+        }
+        let mut row = Vec::with_capacity(self.points);
+        let each = (0..self.points).map(|k| {
+            let harmonic = part.harmonic(k);
+            self.row(part, harmonic, 2 * harmonic, self.points, &mut row);
+            coefficient((k, &row))
+        });
+        each.collect()
+    }
+
+    /// The basis at a start and further arguments of equal distance, in units of the step of the
+    /// table of the sine: a row of the table of the part that is not kept.
+    fn row(&self, part: Part, start: usize, step: usize, count: usize, row: &mut Vec<u64>) {
+        let basis = if part.sine { &self.sin } else { &self.cos };
+        let (mut index, step) = (start % basis.len(), step % basis.len());
+        row.clear();
+        for _ in 0..count {
+            row.push(basis[index]);
+            index += step;
+            if index >= basis.len() {
+                index -= basis.len();
+            }
+        }
     }
 
     /// Values of a part from its coefficients.
     fn backward(&self, part: Part, coefficients: &[u64]) -> Option<Vec<u64>> {
         let used = coefficients.iter().rposition(|&c| c != 0)? + 1;
+        if self.points > TABLED_POINTS {
+            let mut row = Vec::with_capacity(used);
+            let each = (0..self.points).map(|j| {
+                let (first, second) = (part.harmonic(0), part.harmonic(1));
+                let odd = 2 * j + 1;
+                self.row(part, first * odd, (second - first) * odd, used, &mut row);
+                self.field.dot(&row, &coefficients[..used])
+            });
+            return Some(each.collect());
+        }
         let rows = self.table(part).by_point.chunks(self.points);
         Some(rows.map(|row| self.field.dot(row, &coefficients[..used])).collect())
     }

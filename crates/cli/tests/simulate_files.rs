@@ -1,0 +1,209 @@
+//! `lindstedt simulate FILE.toml`: walls, dry friction, delays with a history, start values, and
+//! the built-in problems from their printed files.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn lindstedt(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
+}
+
+fn simulate(arguments: &[&str]) -> Value {
+    let command = [&["simulate", "--quiet", "--format", "json"], arguments].concat();
+    let output = lindstedt(&command);
+    assert!(output.status.success(), "{arguments:?} {}", String::from_utf8_lossy(&output.stdout));
+    let mut value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    value["seconds"] = 0.into();
+    value
+}
+
+fn refusal(arguments: &[&str]) -> (Option<i32>, String) {
+    let output = lindstedt(&[&["simulate", "--quiet"], arguments].concat());
+    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+}
+
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("lindstedt-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+    fn file(&self, name: &str, content: &str) -> String {
+        let path = self.0.join(name).with_extension("toml");
+        std::fs::write(&path, content).unwrap();
+        path.to_str().unwrap().to_owned()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn float(number: &Value) -> f64 {
+    number["decimal"].as_str().unwrap().parse().unwrap()
+}
+
+fn end(found: &Value) -> [f64; 2] {
+    [float(&found["final"]["x"]), float(&found["final"]["v"])]
+}
+
+#[test]
+fn every_example_moves() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/examples");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let found = simulate(&[path.to_str().unwrap(), "--until", "3", "--digits", "10"]);
+        assert!((float(&found["final"]["t"]) - 3.0).abs() < 1e-12, "{}", path.display());
+        count += 1;
+    }
+    assert!(count >= 12);
+}
+
+#[test]
+fn built_in_problems_move_as_their_printed_files() {
+    let folder = Folder::new("moves");
+    let cases: [(&str, &[&str]); 9] = [
+        ("power-law", &["--until", "5", "--set", "n=2"]),
+        ("pendulum", &["--until", "5", "--set", "amplitude=2"]),
+        ("pendulum", &["--until", "2", "--set", "delta=1/2"]),
+        ("duffing", &["--until", "5", "--set", "eps=-1/4"]),
+        ("van-der-pol", &["--until", "5"]),
+        ("stick-slip", &["--until", "20"]),
+        ("vibro-impact", &["--impacts", "4", "--set", "A=1/10", "--perturb", "1e-3"]),
+        ("vibro-impact", &["--impacts", "4", "--set", "B=1/10", "--state=-3/2,1/2"]),
+        ("vibro-impact", &["--sweep", "A=0..1/10:3", "--skip", "5", "--impacts", "4"]),
+    ];
+    for (name, arguments) in cases {
+        let output = lindstedt(&["problems", "--show", name]);
+        let path = folder.file(name, &String::from_utf8(output.stdout).unwrap());
+        let run = |problem: &str| simulate(&[&[problem], arguments].concat());
+        assert_eq!(run(name), run(&path), "{name} {arguments:?}");
+    }
+    // The same state with the history said, by the general route.
+    let path = folder.0.join("vibro-impact.toml");
+    let base = ["--state=-3/2,1/2", "--set", "A=1/10", "--impacts", "5"];
+    let said = [&[path.to_str().unwrap()], &base[..], &["--history", "free-flight"]].concat();
+    let built_in = simulate(&[&["vibro-impact"], &base[..]].concat());
+    assert_eq!(simulate(&said)["events"], built_in["events"]);
+    // And another history is another motion.
+    let constant = [&["vibro-impact"], &base[..], &["--history", "constant"]].concat();
+    let other = simulate(&constant);
+    assert_ne!(other["events"], built_in["events"]);
+    assert!(other.to_string().contains("x(t) = x(0) before t = 0"));
+}
+
+/// x'' + x/2 + x(t - 2 pi)/2 = 0 has the solution cos t, of period 2 pi; so has x'' + x = 0, its
+/// free flight.
+#[test]
+fn histories() {
+    let folder = Folder::new("histories");
+    let file = |initial: &str| {
+        format!(
+            "name = 'late'\nequation = \"x'' + x/2 + x(t - T)/2 = 0\"\ncondition = []\n[parameters]\n\
+             T = {{ value = '2*pi' }}\n[initial]\n{initial}"
+        )
+    };
+    let exact = [10f64.cos(), -10f64.sin()];
+    let cases = [
+        ("cosine", "history = 'cos(t)'", true),
+        ("shifted", "history = 'cos(t) + 0*T'\nx = '1'\nvelocity = '0'", true),
+        ("flight", "x = '1'\nvelocity = '0'\nhistory = 'free-flight'", true),
+        ("constant", "x = '1'\nvelocity = '0'\nhistory = 'constant'", false),
+        ("usual", "x = '1'\nvelocity = '0'", false),
+    ];
+    let mut last = Vec::new();
+    for (name, initial, is_cosine) in cases {
+        let path = folder.file(name, &file(initial));
+        let found = simulate(&[&path, "--until", "10", "--digits", "20"]);
+        let state = end(&found);
+        let near = (0..2).all(|k| (state[k] - exact[k]).abs() < 1e-14);
+        assert_eq!(near, is_cosine, "{name}: {state:?}");
+        assert!(found.to_string().contains("history: "), "{name}");
+        last.push(state);
+    }
+    assert_eq!(last[3], last[4]);
+    // Before 2 pi the constant history is a constant force: x = -1 + 2 cos(t/sqrt 2).
+    let path = folder.file("constant", &file("x = '1'\nvelocity = '0'"));
+    let [x, _] = end(&simulate(&[&path, "--until", "6", "--digits", "20"]));
+    assert!((x - (-1.0 + 2.0 * (6.0 / 2f64.sqrt()).cos())).abs() < 1e-14, "{x}");
+    // What the command line says comes first.
+    let [x, _] = end(&simulate(&[&path, "--until", "10", "--history", "cos(t)"]));
+    assert!((x - exact[0]).abs() < 1e-14);
+    // No closed form of the free flight; x in a history.
+    let nonlinear =
+        file("history = 'free-flight'\nx = '1'\nvelocity = '0'").replace("x/2 +", "x^3 +");
+    let path = folder.file("nonlinear", &nonlinear);
+    let (code, error) = refusal(&[&path]);
+    assert!(code == Some(3) && error.contains("not linear"), "{error}");
+    let path = folder.file("state", &file("history = 'x'"));
+    let (code, error) = refusal(&[&path]);
+    assert!(code == Some(2) && error.contains("a history is an expression in t"), "{error}");
+}
+
+/// x'' = -x from (1, 0) reaches the wall at -1/2 after 2 pi/3 with -sqrt(3)/2.
+#[test]
+fn walls() {
+    let folder = Folder::new("walls");
+    let text = "name = 'wall'\nequation = \"x'' + k x = 0\"\ncondition = []\n[parameters]\n\
+                k = { value = '1' }\nR = { value = '4/5' }\n[initial]\nx = '1'\nvelocity = '0'\n\
+                [impact]\nposition = '-1/2'\ncrossing = 'falling'\nrestitution = 'R'\n";
+    let path = folder.file("wall", text);
+    let found = simulate(&[&path, "--impacts", "2"]);
+    let events = found["events"].as_array().unwrap();
+    let time = 2.0 * std::f64::consts::PI / 3.0;
+    assert!((float(&events[0]["t"]) - time).abs() < 1e-14);
+    assert!((float(&events[0]["v_after"]) - 0.8 * 0.75f64.sqrt()).abs() < 1e-14, "{}", events[0]);
+    // Sweeps of the wall's own parameter, fixed ones, ranges of the file.
+    let (code, error) = refusal(&[&path, "--sweep", "k"]);
+    assert!(code == Some(2) && error.contains("is not NAME=LO..HI:COUNT"), "{error}");
+    let ranged = text.replace("condition", "swept = ['R=1/2..4/5:3']\nfixed = ['k']\ncondition");
+    let path = folder.file("ranged", &ranged);
+    let swept = simulate(&[&path, "--sweep", "R", "--skip", "0", "--impacts", "2"]);
+    assert_eq!(swept["sweep"]["columns"].as_array().unwrap().len(), 3);
+    let (code, error) = refusal(&[&path, "--sweep", "k=1..2:3"]);
+    assert!(code == Some(2) && error.contains("cannot be varied"), "{error}");
+    // A start behind the wall, and a restitution above one.
+    let (code, error) = refusal(&[&path, "--state=-1,0"]);
+    assert!(code == Some(3) && error.contains("behind wall"), "{error}");
+    let (code, error) = refusal(&[&path, "--set", "R=2"]);
+    assert!(code == Some(3) && error.contains("restitution"), "{error}");
+}
+
+/// x'' + x = -m sign x' from (1, 0), m = 3/10: turning points -2/5 and, |x| > m no more after
+/// -1/5, rest there (each half oscillation loses 2 m).
+#[test]
+fn dry_friction() {
+    let folder = Folder::new("friction");
+    let text = "name = 'rub'\nequation = \"x'' + x + eps m sign(x') = 0\"\ncondition = []\n\
+                [parameters]\nm = { value = '3/10' }\n[initial]\nx = '1'\nvelocity = '0'\n";
+    let path = folder.file("rub", text);
+    let found = simulate(&[&path, "--until", "10"]);
+    let [x, v] = end(&found);
+    assert!((x + 0.2).abs() < 1e-14 && v.abs() < 1e-14, "{x} {v}");
+    let kinds: Vec<&str> =
+        found["events"].as_array().unwrap().iter().map(|e| e["kind"].as_str().unwrap()).collect();
+    assert!(kinds.contains(&"stick"), "{kinds:?}");
+}
+
+/// What determines a parameter (`follows`) is computed: x'' + (2 pi)^2 x = 0 has period 1.
+#[test]
+fn determined_parameters() {
+    let folder = Folder::new("follows");
+    let text = "name = 'f'\nequation = \"x'' + k x = 0\"\ncondition = []\n[parameters]\n\
+                k = { follows = '4*pi^2/p^2' }\np = { value = '1' }\n";
+    let path = folder.file("follows", text);
+    let [x, v] = end(&simulate(&[&path, "--until", "1", "--state", "1,1"]));
+    assert!((x - 1.0).abs() < 1e-14 && (v - 1.0).abs() < 1e-14, "{x} {v}");
+    let [x, _] = end(&simulate(&[&path, "--until", "1", "--state", "1,1", "--set", "p=2"]));
+    assert!((x + 1.0).abs() < 1e-14, "{x}");
+    let path = folder.file("words", &text.replace("4*pi^2/p^2", "see the notes"));
+    let (code, error) = refusal(&[&path]);
+    assert!(code == Some(3) && error.contains("k has no value"), "{error}");
+}

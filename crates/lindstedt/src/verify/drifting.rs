@@ -1,0 +1,336 @@
+//! Averaged expansions against the time domain: x_N(t) by the truncated rates of a and psi.
+
+use super::{Comparison, VerifySettings, quantities};
+use crate::averaging::{AveragingSettings, Enclosures, enclosures};
+use crate::{Error, Progress};
+use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePower};
+use lindstedt_coeff::ball::Balls;
+use lindstedt_coeff::ball::ring::Enclosure;
+use lindstedt_equation::{Expression, Function, Problem};
+use lindstedt_expand::ExpandError;
+use lindstedt_simulate::{
+    Digits, Integrator, Model, Outcome, Parameters, Real, Report, Settings as Precision, System,
+    Trajectory,
+};
+use rug::ops::Pow;
+use rug::{Float, Rational};
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+
+/// A Laurent polynomial in a.
+type Polynomial = BTreeMap<i32, Float>;
+
+/// x_N at one value of the small parameter.
+struct Truncated {
+    bits: u32,
+    /// da/dt and dpsi/dt.
+    rates: [Polynomial; 2],
+    /// c(a) cos(k psi + m omega t) + s(a) sin(k psi + m omega t), by (k, m).
+    harmonics: BTreeMap<(i32, i32), [Polynomial; 2]>,
+    /// omega.
+    forcing: Float,
+}
+
+fn value(f: &Polynomial, a: &Float, bits: u32) -> Float {
+    let term = |(n, c): (&i32, &Float)| Float::with_val(bits, a.pow(*n)) * c;
+    f.iter().map(term).fold(Float::new(bits), |sum, x| sum + x)
+}
+
+fn derivative(f: &Polynomial) -> Polynomial {
+    f.iter().map(|(n, c)| (n - 1, c.clone() * *n)).collect()
+}
+
+/// f(a) as an expression in the tree of a.
+fn tree(f: &Polynomial, a: &Expression) -> Expression {
+    let number = |c: &Float| Expression::Number(c.to_rational().unwrap_or_default());
+    let term = |(n, c): (&i32, &Float)| match n {
+        0 => number(c),
+        1 => number(c) * a.clone(),
+        n => number(c) * a.clone().pow(i64::from(*n)),
+    };
+    Expression::Sum(f.iter().map(term).collect())
+}
+
+impl Truncated {
+    /// x and dx/dt at a, psi, t.
+    fn value(&self, a: &Float, psi: &Float, t: &Float) -> [Float; 2] {
+        let bits = self.bits;
+        let zero = || Float::new(bits);
+        let (drift, rate) = (value(&self.rates[0], a, bits), value(&self.rates[1], a, bits));
+        let (mut x, mut v) = (zero(), zero());
+        for ((k, m), [c, s]) in &self.harmonics {
+            let turn = |psi: &Float, t: &Float| {
+                Float::with_val(bits, psi * *k) + Float::with_val(bits, t * *m) * &self.forcing
+            };
+            let (sin, cos) = turn(psi, t).sin_cos(zero());
+            let speed = turn(&rate, &Float::with_val(bits, 1));
+            let [dc, ds] = [c, s].map(|f| value(&derivative(f), a, bits) * &drift);
+            let (c, s) = (value(c, a, bits), value(s, a, bits));
+            x += Float::with_val(bits, &c * &cos) + Float::with_val(bits, &s * &sin);
+            v += (dc + Float::with_val(bits, &s * &speed)) * &cos;
+            v += (ds - Float::with_val(bits, &c * &speed)) * &sin;
+        }
+        [x, v]
+    }
+
+    /// The flow of a and psi, in t or backwards.
+    fn flow(&self, real: Digits, forward: bool) -> Result<System<Digits>, Error> {
+        let a = Expression::parameter("a");
+        let sign = Expression::integer(if forward { 1 } else { -1 });
+        let rates = self.rates.each_ref().map(|rate| sign.clone() * tree(rate, &a));
+        Ok(Model::first_order(&["a", "psi"], &rates)?.compile(real, &Parameters::new())?)
+    }
+
+    /// x_N(t) with a(t) and psi(t) as given expressions in t.
+    fn history(&self, [a, psi]: [Expression; 2]) -> Expression {
+        let number = |x: &Float| Expression::Number(x.to_rational().unwrap_or_default());
+        let mut terms = Vec::new();
+        for ((k, m), [c, s]) in &self.harmonics {
+            let turn = Expression::integer(i64::from(*k)) * psi.clone();
+            let forced = number(&Float::with_val(self.bits, &self.forcing * *m));
+            let angle = turn + forced * Expression::Time;
+            for (f, function) in [(c, Function::Cos), (s, Function::Sin)] {
+                if !f.is_empty() {
+                    terms.push(tree(f, &a) * angle.clone().apply(function));
+                }
+            }
+        }
+        Expression::Sum(terms)
+    }
+}
+
+/// An averaged expansion and its judge.
+pub(super) struct Drifting {
+    bits: u32,
+    enclosures: Enclosures,
+    /// a(0).
+    start: Float,
+    times: Vec<Float>,
+    model: Model,
+    parameters: Parameters,
+    small: String,
+}
+
+impl Drifting {
+    pub(super) fn new(
+        problem: &Problem,
+        settings: &VerifySettings,
+        digits: u32,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Self, Error> {
+        let bits = Digits::for_digits(digits + 16).bits();
+        let balls = Balls::new(bits);
+        let mut parameters = crate::averaging::defaults(problem, &settings.parameters);
+        let start = match parameters.remove("amplitude") {
+            Some(value) => Float::with_val(bits, value.ball(balls).midpoint()),
+            None => Float::with_val(bits, 1),
+        };
+        if start <= 0 {
+            let value = start.to_string_radix(10, Some(6));
+            let domain = "amplitude > 0";
+            return Err(Error::OutsideDomain { name: "amplitude".into(), value, domain });
+        }
+        let asked = AveragingSettings {
+            order: settings.order,
+            parameters,
+            digits: usize::try_from(digits).unwrap_or(usize::MAX),
+        };
+        let enclosures = enclosures(problem, &asked, bits, observer)?;
+        let samples = settings.samples.max(2);
+        let window = Float::with_val(bits, rug::float::Constant::Pi)
+            * (2 * settings.periods.max(1))
+            / enclosures.frequency.0.midpoint();
+        // Not at a whole part of the period, where delays end too.
+        let time = |j: u32| {
+            let part = (1009 * u64::from(j) - 505, 1009 * u64::from(samples));
+            Float::with_val(bits, &window * Rational::from(part))
+        };
+        let mut judged = problem.clone();
+        judged.impact = None;
+        Ok(Self {
+            bits,
+            start,
+            times: (1..=samples).map(time).collect(),
+            model: Model::of_problem(&judged)?,
+            parameters: quantities(problem, &settings.parameters),
+            small: problem.small.to_string(),
+            enclosures,
+        })
+    }
+
+    /// sum_n eps^n f_n.
+    fn sum<'a>(
+        &self,
+        orders: impl Iterator<Item = &'a AmplitudePolynomial<Enclosure>>,
+        small: &Rational,
+    ) -> Polynomial {
+        let mut sum = Polynomial::new();
+        for (n, f) in orders.enumerate() {
+            let power = Rational::from(small.pow(n as u32));
+            for (AmplitudePower(exponent), c) in f.terms() {
+                let entry = sum.entry(*exponent).or_insert_with(|| Float::new(self.bits));
+                *entry += Float::with_val(self.bits, c.0.midpoint()) * &power;
+            }
+        }
+        sum.retain(|_, c| !c.is_zero());
+        sum
+    }
+
+    fn truncated(&self, small: &Rational) -> Truncated {
+        let expansion = &self.enclosures.expansion;
+        let mut phase_rate = self.sum(expansion.phase_rate.iter(), small);
+        let frequency = self.enclosures.frequency.0.midpoint();
+        *phase_rate.entry(0).or_insert_with(|| Float::new(self.bits)) += frequency;
+        let keys: std::collections::BTreeSet<_> =
+            expansion.solution.iter().flat_map(|x| x.harmonics().keys().copied()).collect();
+        let empty = AmplitudePolynomial::default();
+        let part = |key, which: usize| {
+            let orders = expansion.solution.iter();
+            let term = orders.map(|x| x.harmonics().get(key).map_or(&empty, |pair| &pair[which]));
+            self.sum(term, small)
+        };
+        let forcing = self.enclosures.forcing.as_ref();
+        Truncated {
+            bits: self.bits,
+            rates: [self.sum(expansion.amplitude_rate.iter(), small), phase_rate],
+            harmonics: keys.iter().map(|key| (*key, [part(key, 0), part(key, 1)])).collect(),
+            forcing: forcing.map_or_else(
+                || Float::new(self.bits),
+                |w| Float::with_val(self.bits, w.0.midpoint()),
+            ),
+        }
+    }
+
+    pub(super) fn compare(
+        &self,
+        small: &Rational,
+        digits: u32,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Result<Comparison, Error> {
+        let truncated = self.truncated(small);
+        let expected = self.expansion(&truncated, digits + 16, goes_on)?;
+        let zero = Float::new(self.bits);
+        let start = truncated.value(&self.start, &zero, &zero);
+        let history = self.history(&truncated, digits + 16)?;
+        let coarse = self.run(small, &start, history.as_ref(), digits, goes_on)?;
+        let fine = self.run(small, &start, history.as_ref(), digits + 8, goes_on)?;
+        let (mut error, mut simulation_error) = (Float::new(64), Float::new(64));
+        for ((x, coarse), fine) in expected.iter().zip(&coarse).zip(&fine) {
+            error.max_mut(&Float::with_val(64, x - fine).abs());
+            simulation_error.max_mut(&Float::with_val(64, fine - coarse).abs());
+        }
+        Ok(Comparison { small: small.clone(), error, simulation_error, slope: None })
+    }
+
+    /// x_N at the times.
+    fn expansion(
+        &self,
+        truncated: &Truncated,
+        digits: u32,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Result<Vec<Float>, Error> {
+        let real = Digits::for_digits(digits);
+        let system = truncated.flow(real, true)?;
+        let start = [real.float(&self.start), real.zero()];
+        let [a, psi] = self.values(&system, &start, [0, 1], digits, goes_on)?;
+        let all = a.iter().zip(&psi).zip(&self.times);
+        let x = |((a, psi), t): ((&Float, &Float), &Float)| {
+            let [x, _] = truncated.value(a, psi, t);
+            x
+        };
+        Ok(all.map(x).collect())
+    }
+
+    /// x_N(t) before t = 0 as an expression in t, where there is a delay: a and psi by their Taylor
+    /// polynomials about 0, which converge on the slow scale 1/eps.
+    fn history(&self, truncated: &Truncated, digits: u32) -> Result<Option<Expression>, Error> {
+        let longest = self.enclosures.delays.iter().map(|t| t.0.midpoint());
+        let Some(longest) = longest.max_by(|a, b| a.total_cmp(b)) else { return Ok(None) };
+        let real = Digits::for_digits(digits);
+        let system = truncated.flow(real, false)?;
+        let start = [real.float(&self.start), real.zero()];
+        let precision = Precision::for_digits(digits);
+        let mut flow = Integrator::new(&system, &real.zero(), &start, precision)?;
+        let mut polynomials = None;
+        let end = real.float(longest);
+        flow.advance(&end, &mut |report| {
+            if let Report::Segment(segment) = report {
+                let list = |state| segment.coefficients(state).map(<[Float]>::to_vec);
+                polynomials = list(0).zip(list(1));
+            }
+            ControlFlow::Break(())
+        })?;
+        let (Some((a, psi)), true) = (polynomials, *flow.time() >= end) else {
+            let delay = longest.to_string_radix(10, Some(6));
+            return Err(Error::LongDelay { delay });
+        };
+        let floor = Float::with_val(64, 2).pow(-i64::from(self.bits));
+        let in_time = |c: &[Float]| {
+            let mut rest = c.iter().enumerate().rev().skip_while(|(k, c)| {
+                Float::with_val(64, longest.pow(*k as u32)) * (*c).clone().abs() < floor
+            });
+            let number = |k: usize, c: &Float| {
+                let q = c.to_rational().unwrap_or_default();
+                Expression::Number(if k % 2 == 0 { q } else { -q })
+            };
+            let Some((k, c)) = rest.next() else { return Expression::integer(0) };
+            let horner =
+                |sum: Expression, (k, c): (usize, &Float)| Expression::Time * sum + number(k, c);
+            rest.fold(number(k, c), horner)
+        };
+        Ok(Some(truncated.history([in_time(&a), in_time(&psi)])))
+    }
+
+    /// x at the times.
+    fn run(
+        &self,
+        small: &Rational,
+        start: &[Float; 2],
+        history: Option<&Expression>,
+        digits: u32,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Result<Vec<Float>, Error> {
+        let real = Digits::for_digits(digits);
+        let parameters = self.parameters.clone().with(&self.small, small.clone());
+        let mut model = self.model.clone();
+        if let Some(history) = history {
+            model = model.with_history(std::slice::from_ref(history));
+        }
+        let system = model.compile(real, &parameters)?;
+        let start = start.each_ref().map(|x| real.float(x));
+        let [x] = self.values(&system, &start, [0], digits, goes_on)?;
+        Ok(x)
+    }
+
+    /// States at the times.
+    fn values<const N: usize>(
+        &self,
+        system: &System<Digits>,
+        start: &[Float],
+        states: [usize; N],
+        digits: u32,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Result<[Vec<Float>; N], Error> {
+        let real = *system.real();
+        let precision = Precision::for_digits(digits);
+        let mut flow = Integrator::new(system, &real.zero(), start, precision)?;
+        let mut trajectory = Trajectory::new(real);
+        let end = self.times.last().map_or_else(|| real.zero(), |t| real.float(t));
+        let outcome = flow.advance(&end, &mut |report| {
+            if goes_on() { trajectory.record(report) } else { ControlFlow::Break(()) }
+        })?;
+        if outcome == Outcome::Stopped {
+            let order = self.enclosures.expansion.order();
+            return Err(ExpandError::Interrupted { order }.into());
+        }
+        let mut lists = states.map(|_| Vec::new());
+        for t in self.times.iter().map(|t| real.float(t)) {
+            for (list, state) in lists.iter_mut().zip(states) {
+                let last = || flow.state().get(state).cloned();
+                let value = if t >= *flow.time() { last() } else { trajectory.value(state, &t) };
+                list.push(value.ok_or(Error::NoValue)?);
+            }
+        }
+        Ok(lists)
+    }
+}
