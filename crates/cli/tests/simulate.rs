@@ -307,7 +307,7 @@ const SINGULAR: [(&str, &str); 5] = [
 /// -1.405), and what is left after it has grown decays to another orbit.
 #[test]
 fn growth_is_judged_in_the_linear_regime() {
-    let verdict = |gain: &str, perturbation: &str| -> (String, serde_json::Value) {
+    let verdict = |gain: &str, perturbation: &str| -> (String, Value) {
         let gain = format!("A={gain}");
         let at = ["vibro-impact", "--set", &gain, "--perturb", perturbation, "--impacts", "60"];
         let found = json(&at);

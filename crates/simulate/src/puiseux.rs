@@ -38,6 +38,9 @@ impl Ord for Exponent {
 /// A series: the coefficients that are not zero, by increasing exponent.
 pub(crate) type Terms<E> = BTreeMap<Exponent, E>;
 
+/// The same as a list.
+type List<E> = Vec<(Exponent, E)>;
+
 /// The exponents, and where the series are cut off.
 #[derive(Clone, Debug)]
 pub(crate) struct Lattice<R: Real> {
@@ -172,7 +175,7 @@ impl<R: Real> Lattice<R> {
         }
         let inverse = real.quotient(&real.double(1.0), first);
         let back = self.exponent(-lead.whole, -lead.parts);
-        let u: Vec<(Exponent, R::Element)> = (a.iter().skip(1))
+        let u: List<R::Element> = (a.iter().skip(1))
             .map(|(e, c)| (self.sum_of(*e, back), real.product(c, &inverse)))
             .collect();
         // The result begins at `shift`: it needs 1 + u up to cut - shift.
@@ -230,7 +233,7 @@ impl<R: Real> Lattice<R> {
     }
 
     /// The constant, and the rest; nothing if there are negative powers.
-    fn split(&self, a: &Terms<R::Element>) -> Option<(R::Element, Vec<(Exponent, R::Element)>)> {
+    fn split(&self, a: &Terms<R::Element>) -> Option<(R::Element, List<R::Element>)> {
         let zero = self.integer(0);
         if a.first_key_value().is_some_and(|(e, _)| *e < zero) {
             return None;

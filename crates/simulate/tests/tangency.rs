@@ -197,7 +197,7 @@ fn the_damped_duffing_oscillator() {
     assert!((tangency.value - threshold).abs() < 1e-3);
 }
 
-/// Every long computation stops at the first step after the tick breaks off.
+/// Every long computation stops at the end of the step in which the tick breaks off.
 #[test]
 fn ticks_break_off() {
     with_loop("1", Loop::Right, |homoclinic| {
@@ -209,7 +209,8 @@ fn ticks_break_off() {
             };
             let found = homoclinic.first_tangency((1.1, 1.115), 48, &tick);
             assert_eq!(found, Err(SimulateError::Stopped));
-            assert_eq!(count.get(), steps + 1);
+            // The events of the step that was begun are told of, too.
+            assert!((steps + 1..steps + 4).contains(&count.get()), "{}", count.get());
         }
         let stop = || ControlFlow::Break(());
         let returns = homoclinic.returns(1.1, 4, &stop);
