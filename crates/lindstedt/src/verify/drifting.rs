@@ -134,6 +134,7 @@ impl Drifting {
             order: settings.order,
             parameters,
             digits: usize::try_from(digits).unwrap_or(usize::MAX),
+            ..AveragingSettings::default()
         };
         let enclosures = enclosures(problem, &asked, bits, observer)?;
         let samples = settings.samples.max(2);

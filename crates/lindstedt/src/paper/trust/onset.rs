@@ -81,9 +81,10 @@ fn follow(
         let branches = [Loop::Right, Loop::Left].map(|side| {
             let (sender, stopped, values) = (sender.clone(), &stopped, &values);
             scope.spawn(move || {
-                branch(side, threshold, values, &mut |eps, tangency| {
+                let goes_on = || !stopped.load(Ordering::Relaxed);
+                branch(side, threshold, values, &goes_on, &mut |eps, tangency| {
                     let sent = sender.send((side, eps, tangency.value, tangency.error)).is_ok();
-                    sent && !stopped.load(Ordering::Relaxed)
+                    sent && goes_on()
                 })
             })
         });
@@ -100,7 +101,7 @@ fn follow(
         }
         for branch in branches {
             match branch.join() {
-                Ok(Ok(()) | Err(Error::Simulate(SimulateError::NoTangency { .. }))) => {}
+                Ok(Ok(()) | Err(Error::Simulate(SimulateError::NoTangency { .. } | SimulateError::Stopped))) => {}
                 Ok(Err(error)) => return Err(error),
                 Err(panic) => std::panic::resume_unwind(panic),
             }
@@ -114,6 +115,7 @@ fn branch(
     side: Loop,
     threshold: f64,
     values: &[f64],
+    goes_on: &dyn Fn() -> bool,
     observer: &mut dyn FnMut(f64, &Tangency) -> bool,
 ) -> Result<(), Error> {
     let Some(&first) = values.first() else { return Ok(()) };
@@ -130,9 +132,10 @@ fn branch(
     };
     // Close to Melnikov's value for so small an eps.
     let bracket = (0.97 * threshold, 1.02 * threshold);
-    let start = homoclinic.first_tangency(bracket, ORBITS)?;
+    let tick = || if goes_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+    let start = homoclinic.first_tangency(bracket, ORBITS, &tick)?;
     let start = (start.value, start.phase);
-    continue_tangency(&homoclinic, ("eps", values), start, &mut |eps, tangency| {
+    continue_tangency(&homoclinic, ("eps", values), start, &tick, &mut |eps, tangency| {
         if observer(eps, tangency) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     })?;
     Ok(())
