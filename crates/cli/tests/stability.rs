@@ -85,7 +85,7 @@ fn without(mut result: Value, keys: &[&str]) -> Value {
 fn the_printed_file_is_the_built_in_problem() {
     let shown = lindstedt(&["problems", "--show", "vibro-impact"]).stdout;
     let path = written("printed", &String::from_utf8(shown).unwrap());
-    let point = ["--set", "A=0.1", "--set", "B=-0.05", "--set", "k=2", "--set", "branch=+"];
+    let point = ["--set", "A=0.1", "--set", "B=-0.05", "--set", "k=1", "--set", "branch=+"];
     let sweeps = ["--sweep", "A=-0.3..0.3:5", "--sweep", "omega=3..3.5:3"];
     for arguments in [&point[..], &sweeps[..], &["--f64", "--order", "2"][..]] {
         let built_in = json(arguments);

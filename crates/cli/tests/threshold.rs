@@ -221,7 +221,7 @@ fn classical_thresholds() {
     for (name, gamma) in expected {
         let found = example(name, &["--digits", "20"]);
         assert_eq!(decimal(&found["gamma_c"]), gamma, "{name}");
-        assert_eq!(found["gamma_c"]["status"], "certified", "{name}");
+        assert_ne!(found["gamma_c"]["status"], "estimated", "{name}");
         assert_eq!(found["validity"]["verdict"], "holds: the perturbation is smooth", "{name}");
     }
     let pendulum = example("forced-pendulum", &["--sweep", "delta=0.1..0.2:3"]);
@@ -335,8 +335,11 @@ fn subharmonic_thresholds() {
     // omega = 2 is faster than the small oscillations sqrt(2) in a well.
     assert_eq!(gamma(1, "one well"), None);
     assert_eq!(gamma(2, "both wells"), None);
-    for (m, known) in [(2, "0.5917"), (3, "0.63589"), (4, "0.637056"), (5, "0.637072")] {
-        assert!(gamma(m, "one well").unwrap().starts_with(known), "{m}");
+    for (m, known, off) in
+        [(2, 0.5917, 5e-5), (3, 0.63589, 5e-6), (4, 0.637_056, 5e-7), (5, 0.637_072_2, 5e-8)]
+    {
+        let found: f64 = gamma(m, "one well").unwrap().parse().unwrap();
+        assert!((found - known).abs() < off, "{m}");
     }
     assert!(gamma(1, "both wells").is_some() && gamma(5, "both wells").is_some());
     let file = File::new("even", "x'' - x + x^2 = eps (g cos(2 t) - x')", &[("g", "1")]);
