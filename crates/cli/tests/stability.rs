@@ -131,8 +131,17 @@ fn other_words_for_the_impact_oscillator() {
         assert!(message.contains(words), "{equation}: {message}");
     }
     std::fs::write(&path, file(equation, "")).unwrap();
-    let output = lindstedt(&["stability", &path, "--sweep", "T=1..2:3"]);
-    assert_eq!(output.status.code(), Some(2));
+    for wrong in [["--sweep", "T=1..2:3"], ["--set", "k=2"], ["--set", "q=1"]] {
+        let output = lindstedt(&[&["stability", &path], &wrong[..]].concat());
+        assert_eq!(output.status.code(), Some(2), "{wrong:?}");
+    }
+    // Without a loop nothing in the file says how many periods lie between impacts.
+    let free = equation.replace("A (x - x(t - T))", "0");
+    std::fs::write(&path, file(&free, "")).unwrap();
+    let output = lindstedt(&["stability", &path, "--set", "k=2", "--format", "json"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["canonical"]["k"], "2");
+    assert_eq!(lindstedt(&["stability", &path, "--set", "k=1.5"]).status.code(), Some(2));
     let _ = std::fs::remove_file(path);
 }
 
