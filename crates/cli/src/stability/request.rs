@@ -261,6 +261,8 @@ impl Request {
     }
 }
 
+type Names = dyn Fn(&str) -> Result<Swept, Failure>;
+
 /// What the problem says.
 struct Known {
     problem: String,
@@ -269,7 +271,7 @@ struct Known {
     remark: Option<String>,
     at: Vec<(String, String)>,
     /// The swept parameter of a name, or why it cannot be swept.
-    names: Box<dyn Fn(&str) -> Result<Swept, Failure>>,
+    names: Box<Names>,
 }
 
 fn not_swept(name: &str, why: &str, known: &[String]) -> Failure {
@@ -379,7 +381,7 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
 }
 
 /// NAME=LO..HI:COUNT.
-fn sweep(text: &str, names: &dyn Fn(&str) -> Result<Swept, Failure>) -> Result<Sweep, Failure> {
+fn sweep(text: &str, names: &Names) -> Result<Sweep, Failure> {
     let bad = || {
         let message = format!("cannot read the sweep {text:?}");
         Failure::usage("range", message, "NAME=LO..HI:COUNT, for example A=-0.3..0.3:201")

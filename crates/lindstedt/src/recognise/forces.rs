@@ -150,7 +150,7 @@ pub(super) fn forcing(terms: &[Term]) -> Result<(Forcing, Real), Why> {
     let omega = times(&first.omega, &Rational::from((divisor.clone(), common)));
     let mut harmonics = Vec::new();
     for ((term, k), weight) in terms.iter().zip(whole).zip(weights) {
-        let order = Integer::from(k / &divisor).to_u32().filter(|k| *k <= LARGEST_HARMONIC);
+        let order = (k / &divisor).to_u32().filter(|k| *k <= LARGEST_HARMONIC);
         harmonics.push(Harmonic {
             order: order.ok_or(Why::NotHarmonic)?,
             weight: Real::Rational(weight),
