@@ -305,6 +305,8 @@ fn terms_that_do_not_fit_are_named() {
         ("x'' - x + x^3 = eps (gamma cos(omega t) - sign(x' - v) - sign(x'))", ":2:", "jumps"),
         ("x'' + x + x^3 = eps (gamma cos(omega t) - delta x')", "", "no homoclinic"),
         ("x'' - x + x^3 = -eps delta x'", "", "no harmonic force"),
+        // Nothing decays exponentially at a saddle without slope.
+        ("x'' = x (x^2)^(1/3) - x^3 + eps (gamma cos(omega t) - delta x')", "", "no homoclinic"),
     ];
     for (n, (equation, place, words)) in cases.iter().enumerate() {
         let output = File::new(&format!("refused-{n}"), equation, &parameters).run(&[]);
@@ -313,6 +315,9 @@ fn terms_that_do_not_fit_are_named() {
         assert!(message.contains(words) && message.contains(place), "{equation}: {message}");
         assert_eq!(message.lines().count(), 1);
     }
+    let six =
+        File::new("six", "x'' = x - x^3 - x^5 + eps (gamma cos(omega t) - delta x')", &parameters);
+    assert_eq!(six.run(&["--digits", "300", "--limit-seconds", "0.2"]).status.code(), Some(4));
     let open = File::new("open", "x'' - x + x^3 = eps (g cos(2 t) - d x')", &[("g", "1")]);
     let text = std::fs::read_to_string(&open.0).unwrap() + "d = {}\n";
     std::fs::write(&open.0, text).unwrap();

@@ -9,6 +9,7 @@ use crate::Value;
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::monomials::{Monomial, Monomials};
 use lindstedt_equation::{Expression, Problem};
+use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::{
     Axis, Branch, Class, Forcing, Friction, MelnikovError, Potential, Real, StickSlip, System,
     Threshold, Verdict,
@@ -143,6 +144,16 @@ impl MelnikovProblem {
             system.potential().check()?;
         }
         Ok(found)
+    }
+
+    /// The same problem, whose numeric orbits end undecided when the watch says so.
+    #[must_use]
+    pub fn watched(self, watch: &Watch) -> Self {
+        let unperturbed = match self.unperturbed {
+            Unperturbed::Numeric(orbit) => Unperturbed::Numeric(Box::new(orbit.watched(watch))),
+            closed @ Unperturbed::Closed { .. } => closed,
+        };
+        Self { unperturbed, ..self }
     }
 
     /// x cos(omega t) is y cos(omega t) only without a shift, and known on polynomial orbits.

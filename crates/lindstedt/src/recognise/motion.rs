@@ -2,6 +2,7 @@
 
 use super::in_pi::times;
 use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_melnikov::{Forcing, ForcingWork, Friction, MelnikovError, Real};
 use lindstedt_simulate::{Digits, Trajectory};
@@ -19,10 +20,14 @@ pub(super) struct Motion {
     pub saddle: Float,
     pub bits: u32,
     pub work: u32,
+    pub watch: Watch,
 }
 
 impl Motion {
     pub fn state(&self, t: &Float) -> Option<(Float, Float)> {
+        if !self.watch.goes_on() {
+            return None;
+        }
         let (trajectory, flip) = match (&self.backward, t.is_sign_negative()) {
             (Some(backward), true) => (backward, true),
             // A loop is symmetric in time about its turning point.

@@ -8,10 +8,14 @@ use super::{PI, Refusal, potential};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::Monomials;
+use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_melnikov::{Class, Forcing, Friction, MelnikovError, Real, Threshold};
-use lindstedt_simulate::{Digits, Integrator, Model, Parameters, Quantity, Settings, Trajectory};
+use lindstedt_simulate::{
+    Digits, Integrator, Model, Parameters, Quantity, Report, Settings, Trajectory,
+};
 use rug::{Float, Rational};
+use std::ops::ControlFlow;
 
 /// Points of the search for saddles and turning points.
 const POINTS: i32 = 4000;
@@ -19,6 +23,7 @@ const POINTS: i32 = 4000;
 const REACH: f64 = 20.0;
 /// Bits of the search.
 const COARSE: u32 = 128;
+
 /// One orbit from a saddle.
 #[derive(Clone, Debug)]
 struct Path {
@@ -41,6 +46,7 @@ struct Path {
 pub struct NumericOrbit {
     force: Expression,
     paths: Vec<Path>,
+    watch: Watch,
 }
 
 /// What is known of an orbit.
@@ -64,10 +70,30 @@ impl NumericOrbit {
     /// The orbits of the force with these terms (in x alone, bound).
     pub(super) fn find(force: &Monomials) -> Result<Self, Refusal> {
         let terms = force.terms.iter().map(|(m, q)| force.tree(m, q));
-        let found = Self { force: Expression::Sum(terms.collect()).canonical(), paths: Vec::new() };
+        let force_of_x = Expression::Sum(terms.collect()).canonical();
+        let found = Self { force: force_of_x, paths: Vec::new(), watch: Watch::default() };
         let reach = potential::polynomial(force).map_or(REACH, |f| cauchy_bound(&f));
         let paths = found.search(reach).unwrap_or_default();
         if paths.is_empty() { Err(Refusal::NoOrbit) } else { Ok(Self { paths, ..found }) }
+    }
+
+    /// The same orbits, whose computation ends undecided when the watch says so.
+    #[must_use]
+    pub fn watched(self, watch: &Watch) -> Self {
+        Self { watch: watch.clone(), ..self }
+    }
+
+    /// Whether f has a positive derivative at a zero: its difference quotients agree. Near other
+    /// saddles nothing decays exponentially.
+    fn is_hyperbolic(&self, x: &Float) -> bool {
+        let quotient = |h: f64| -> Option<f64> {
+            let ends = (Float::with_val(COARSE, x - h), Float::with_val(COARSE, x + h));
+            Some(((self.f(&ends.1)? - self.f(&ends.0)?) / (2.0 * h)).to_f64())
+        };
+        match (quotient(1e-6), quotient(1e-9)) {
+            (Some(a), Some(b)) => b > 0.0 && (a - b).abs() < 1e-2 * b,
+            _ => false,
+        }
     }
 
     fn f(&self, x: &Float) -> Option<Float> {
@@ -125,7 +151,7 @@ impl NumericOrbit {
             }
         }
         saddles.sort_by(|a, b| a.1.clone().abs().total_cmp(&b.1.clone().abs()));
-        for (_, saddle) in &saddles {
+        for (_, saddle) in saddles.iter().filter(|(_, saddle)| self.is_hyperbolic(saddle)) {
             let mut paths = Vec::new();
             for direction in [1, -1] {
                 self.follow(saddle, direction, step, reach, &mut paths);
@@ -249,13 +275,21 @@ impl NumericOrbit {
             let mut flow =
                 Integrator::new(&system, &zero, &state, Settings::for_digits(digits)).ok()?;
             let mut trajectory = Trajectory::new(real);
-            flow.advance(&end, &mut |report| trajectory.record(report)).ok()?;
-            Some(trajectory)
+            let mut keep = |report: &Report<'_, Digits>| {
+                let _ = trajectory.record(report);
+                if self.watch.goes_on() {
+                    ControlFlow::Continue(())
+                } else {
+                    ControlFlow::Break(())
+                }
+            };
+            flow.advance(&end, &mut keep).ok()?;
+            self.watch.goes_on().then_some(trajectory)
         };
         let two = path.other.is_some();
         let forward = run(speed.clone() * path.sign)?;
         let backward = if two { Some(run(-speed * path.sign)?) } else { None };
-        Some(Motion { forward, backward, end, rate, saddle, bits, work })
+        Some(Motion { forward, backward, end, rate, saddle, bits, work, watch: self.watch.clone() })
     }
 
     /// The thresholds on all orbits, each number with an estimated error in its radius.
