@@ -12,6 +12,7 @@ use crate::arguments::{Format, ThresholdOptions};
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
 use crate::session::{Session, digits};
+use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::MelnikovError;
 use request::Request;
 
@@ -19,7 +20,14 @@ pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
     let digits = digits(&options.precision)?;
     let request = Request::read(options)?;
     output::check_writable(session)?;
-    let mut answer = report::Answer::new(&request, digits, session)?;
+    let request = request.watched(&Watch::new(session.watch()));
+    let mut answer = report::Answer::new(&request, digits, session).map_err(|failure| {
+        // An orbit that was not followed to its end looks undecided.
+        match failure.exit {
+            UNDECIDED if !session.goes_on() => stopped(session),
+            _ => failure,
+        }
+    })?;
     if let Some(largest) = options.subharmonics {
         answer.subharmonics = Some(subharmonics::list(&request, largest, digits, session)?);
     }
@@ -46,6 +54,16 @@ pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
         return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
     }
     Ok(0)
+}
+
+fn stopped(session: &Session<'_>) -> Failure {
+    let interrupted = session.interrupted();
+    Failure {
+        exit: if interrupted { INTERRUPTED } else { UNDECIDED },
+        code: if interrupted { "interrupted" } else { "limit-seconds" },
+        message: "stopped before the threshold was found".to_owned(),
+        hint: "fewer --digits take less time".to_owned(),
+    }
 }
 
 impl From<MelnikovError> for Failure {

@@ -85,7 +85,7 @@ fn without(mut result: Value, keys: &[&str]) -> Value {
 fn the_printed_file_is_the_built_in_problem() {
     let shown = lindstedt(&["problems", "--show", "vibro-impact"]).stdout;
     let path = written("printed", &String::from_utf8(shown).unwrap());
-    let point = ["--set", "A=0.1", "--set", "B=-0.05", "--set", "k=2", "--set", "branch=+"];
+    let point = ["--set", "A=0.1", "--set", "B=-0.05", "--set", "k=1", "--set", "branch=+"];
     let sweeps = ["--sweep", "A=-0.3..0.3:5", "--sweep", "omega=3..3.5:3"];
     for arguments in [&point[..], &sweeps[..], &["--f64", "--order", "2"][..]] {
         let built_in = json(arguments);
@@ -131,8 +131,17 @@ fn other_words_for_the_impact_oscillator() {
         assert!(message.contains(words), "{equation}: {message}");
     }
     std::fs::write(&path, file(equation, "")).unwrap();
-    let output = lindstedt(&["stability", &path, "--sweep", "T=1..2:3"]);
-    assert_eq!(output.status.code(), Some(2));
+    for wrong in [["--sweep", "T=1..2:3"], ["--set", "k=2"], ["--set", "q=1"]] {
+        let output = lindstedt(&[&["stability", &path], &wrong[..]].concat());
+        assert_eq!(output.status.code(), Some(2), "{wrong:?}");
+    }
+    // Without a loop nothing in the file says how many periods lie between impacts.
+    let free = equation.replace("A (x - x(t - T))", "0");
+    std::fs::write(&path, file(&free, "")).unwrap();
+    let output = lindstedt(&["stability", &path, "--set", "k=2", "--format", "json"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["canonical"]["k"], "2");
+    assert_eq!(lindstedt(&["stability", &path, "--set", "k=1.5"]).status.code(), Some(2));
     let _ = std::fs::remove_file(path);
 }
 

@@ -221,7 +221,7 @@ fn classical_thresholds() {
     for (name, gamma) in expected {
         let found = example(name, &["--digits", "20"]);
         assert_eq!(decimal(&found["gamma_c"]), gamma, "{name}");
-        assert_eq!(found["gamma_c"]["status"], "certified", "{name}");
+        assert_ne!(found["gamma_c"]["status"], "estimated", "{name}");
         assert_eq!(found["validity"]["verdict"], "holds: the perturbation is smooth", "{name}");
     }
     let pendulum = example("forced-pendulum", &["--sweep", "delta=0.1..0.2:3"]);
@@ -305,6 +305,8 @@ fn terms_that_do_not_fit_are_named() {
         ("x'' - x + x^3 = eps (gamma cos(omega t) - sign(x' - v) - sign(x'))", ":2:", "jumps"),
         ("x'' + x + x^3 = eps (gamma cos(omega t) - delta x')", "", "no homoclinic"),
         ("x'' - x + x^3 = -eps delta x'", "", "no harmonic force"),
+        // Nothing decays exponentially at a saddle without slope.
+        ("x'' = x (x^2)^(1/3) - x^3 + eps (gamma cos(omega t) - delta x')", "", "no homoclinic"),
     ];
     for (n, (equation, place, words)) in cases.iter().enumerate() {
         let output = File::new(&format!("refused-{n}"), equation, &parameters).run(&[]);
@@ -313,6 +315,9 @@ fn terms_that_do_not_fit_are_named() {
         assert!(message.contains(words) && message.contains(place), "{equation}: {message}");
         assert_eq!(message.lines().count(), 1);
     }
+    let six =
+        File::new("six", "x'' = x - x^3 - x^5 + eps (gamma cos(omega t) - delta x')", &parameters);
+    assert_eq!(six.run(&["--digits", "300", "--limit-seconds", "0.2"]).status.code(), Some(4));
     let open = File::new("open", "x'' - x + x^3 = eps (g cos(2 t) - d x')", &[("g", "1")]);
     let text = std::fs::read_to_string(&open.0).unwrap() + "d = {}\n";
     std::fs::write(&open.0, text).unwrap();
@@ -335,8 +340,11 @@ fn subharmonic_thresholds() {
     // omega = 2 is faster than the small oscillations sqrt(2) in a well.
     assert_eq!(gamma(1, "one well"), None);
     assert_eq!(gamma(2, "both wells"), None);
-    for (m, known) in [(2, "0.5917"), (3, "0.63589"), (4, "0.637056"), (5, "0.637072")] {
-        assert!(gamma(m, "one well").unwrap().starts_with(known), "{m}");
+    for (m, known, off) in
+        [(2, 0.5917, 5e-5), (3, 0.63589, 5e-6), (4, 0.637_056, 5e-7), (5, 0.637_072_2, 5e-8)]
+    {
+        let found: f64 = gamma(m, "one well").unwrap().parse().unwrap();
+        assert!((found - known).abs() < off, "{m}");
     }
     assert!(gamma(1, "both wells").is_some() && gamma(5, "both wells").is_some());
     let file = File::new("even", "x'' - x + x^2 = eps (g cos(2 t) - x')", &[("g", "1")]);

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::recognised::Source;
 use crate::session::parameters;
 use lindstedt::Value;
+use lindstedt::equation::Expression;
 use lindstedt::problems::vibro_impact;
 use lindstedt::recognise::ImpactProblem;
 use lindstedt_impact::characteristic::Kick;
@@ -70,6 +71,17 @@ fn branch_of(set: &[String]) -> Result<(Option<Branch>, Vec<String>), Failure> {
     Ok((branch, numbers))
 }
 
+/// k as a number of periods.
+fn whole_periods(k: &Value) -> Result<u32, Failure> {
+    let whole = k.as_rational().filter(|q| q.is_integer() && **q > 0).ok_or_else(|| {
+        Failure::usage("parameter", "k must be a positive integer".to_owned(), "--set k=2")
+    })?;
+    whole.numer().to_u32().ok_or_else(|| {
+        let message = format!("k is too large: at most {}", u32::MAX);
+        Failure::usage("parameter", message, "--set k=2")
+    })
+}
+
 /// The parameters given and the defaults of the others, and all of them as text in the order of
 /// the card.
 pub fn exact_parameters(
@@ -102,14 +114,7 @@ pub fn exact_parameters(
     let get = |name: &str| {
         values.get(name).map_or_else(|| Exact::from((0, 1)), |value| Exact::from(value.clone()))
     };
-    let whole = values.get("k").and_then(Value::as_rational);
-    let whole = whole.filter(|q| q.is_integer() && **q > 0).ok_or_else(|| {
-        Failure::usage("parameter", "k must be a positive integer".to_owned(), "--set k=2")
-    })?;
-    let periods = whole.numer().to_u32().ok_or_else(|| {
-        let message = format!("k is too large: at most {}", u32::MAX);
-        Failure::usage("parameter", message, "--set k=2")
-    })?;
+    let periods = whole_periods(values.get("k").unwrap_or(&Value::Rational(Rational::new())))?;
     let parameters = ExactParameters {
         alpha: get("alpha"),
         omega: get("omega"),
@@ -256,6 +261,8 @@ impl Request {
     }
 }
 
+type Names = dyn Fn(&str) -> Result<Swept, Failure>;
+
 /// What the problem says.
 struct Known {
     problem: String,
@@ -264,7 +271,7 @@ struct Known {
     remark: Option<String>,
     at: Vec<(String, String)>,
     /// The swept parameter of a name, or why it cannot be swept.
-    names: Box<dyn Fn(&str) -> Result<Swept, Failure>>,
+    names: Box<Names>,
 }
 
 fn not_swept(name: &str, why: &str, known: &[String]) -> Failure {
@@ -305,7 +312,13 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
     let branch = branch.or(default).unwrap_or(Branch::Plus);
     let tied = source.problem.synchronous.as_ref().map(|tie| tie.periods.to_string());
     let k = source.values.get("k").filter(|_| card("k").is_none());
-    let periods = k.and_then(|k| k.as_rational()?.numer().to_u32());
+    let delayed = |e: &Expression| matches!(e, Expression::Delayed(..));
+    if k.is_some() && (tied.is_some() || source.problem.equation.find(&delayed).is_some()) {
+        let message = format!("{} has no parameter \"k\"", source.problem.name);
+        let hint = "the periods between impacts follow from its delay or its [synchronous]";
+        return Err(Failure::usage("unknown-parameter", message, hint));
+    }
+    let periods = k.map(whole_periods).transpose()?;
     let found = ImpactProblem::new(&source.problem, &source.values, periods, branch)
         .map_err(|refusal| source.refuse(refusal))?;
     found.parameters.to_f64().validate()?;
@@ -318,8 +331,10 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
             None => {}
         }
     }
-    if let Some(k) = k {
-        at.push(("k".to_owned(), k.to_string()));
+    let small = &*source.problem.small;
+    let unlisted = |name: &str| source.values.get(name).filter(|_| card(name).is_none());
+    for name in [small, "k"] {
+        at.extend(unlisted(name).map(|value| (name.to_owned(), value.to_string())));
     }
     if card("branch").is_none() {
         at.push(("branch".to_owned(), sign.to_owned()));
@@ -366,7 +381,7 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
 }
 
 /// NAME=LO..HI:COUNT.
-fn sweep(text: &str, names: &dyn Fn(&str) -> Result<Swept, Failure>) -> Result<Sweep, Failure> {
+fn sweep(text: &str, names: &Names) -> Result<Sweep, Failure> {
     let bad = || {
         let message = format!("cannot read the sweep {text:?}");
         Failure::usage("range", message, "NAME=LO..HI:COUNT, for example A=-0.3..0.3:201")

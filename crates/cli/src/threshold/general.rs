@@ -181,7 +181,7 @@ pub fn zeros(
     };
     let width = Rational::from(high - low);
     // No round fractions: zeros like to be there.
-    let at = |n: i64| Rational::from(&width * Rational::from((1009 * n, 1009 * CELLS + 1))) + low;
+    let at = |n: i64| &width * Rational::from((1009 * n, 1009 * CELLS + 1)) + low;
     let stopped = || Failure {
         exit: if session.interrupted() { INTERRUPTED } else { UNDECIDED },
         code: if session.interrupted() { "interrupted" } else { "limit-seconds" },

@@ -9,6 +9,7 @@ use lindstedt::coeff::ball::{Ball, Balls};
 use lindstedt::equation::Text;
 use lindstedt::problems::stick_slip;
 use lindstedt::recognise::MelnikovProblem;
+use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::{Axis, Class, Real, StickSlip};
 use rug::Rational;
 use std::path::Path;
@@ -159,6 +160,12 @@ impl Request {
             }
         };
         Ok(Self { problem, point, file, gamma, eps, at, sweeps, zeros })
+    }
+
+    /// The same request, whose orbits of files are followed no longer than the watch says.
+    pub fn watched(mut self, watch: &Watch) -> Self {
+        self.file = self.file.map(|(source, found)| (source, found.watched(watch)));
+        self
     }
 
     /// The signed threshold with other values of swept parameters; of several orbits that of the

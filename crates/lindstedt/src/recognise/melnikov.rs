@@ -1,22 +1,21 @@
 //! x'' = f(x) + eps (gamma cos(omega t) - T(x' - v*)) in the form of its terms.
 
-use super::in_pi::{InPi, ratio, times};
+use super::forces::{Kind, Term, forcing, kind, silent_frequency};
+use super::in_pi::InPi;
 use super::law::FrictionLaw;
 use super::numeric::NumericOrbit;
 use super::{Refusal, Why, bind, missing, multiply_out, named, potential, rest};
 use crate::Value;
 use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_equation::monomials::{Monomial, Monomials, expand};
-use lindstedt_equation::{Expression, Function, Problem};
+use lindstedt_equation::monomials::{Monomial, Monomials};
+use lindstedt_equation::{Expression, Problem};
+use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::{
-    Axis, Branch, Class, Forcing, Friction, Harmonic, MelnikovError, Potential, Real, StickSlip,
-    System, Threshold, Verdict,
+    Axis, Branch, Class, Forcing, Friction, MelnikovError, Potential, Real, StickSlip, System,
+    Threshold, Verdict,
 };
-use rug::{Integer, Rational};
+use rug::Rational;
 use std::collections::BTreeMap;
-
-/// Harmonics k omega up to this k.
-const LARGEST_HARMONIC: u32 = 10_000;
 
 /// The unperturbed oscillator.
 #[derive(Clone, Debug)]
@@ -145,6 +144,16 @@ impl MelnikovProblem {
             system.potential().check()?;
         }
         Ok(found)
+    }
+
+    /// The same problem, whose numeric orbits end undecided when the watch says so.
+    #[must_use]
+    pub fn watched(self, watch: &Watch) -> Self {
+        let unperturbed = match self.unperturbed {
+            Unperturbed::Numeric(orbit) => Unperturbed::Numeric(Box::new(orbit.watched(watch))),
+            closed @ Unperturbed::Closed { .. } => closed,
+        };
+        Self { unperturbed, ..self }
     }
 
     /// x cos(omega t) is y cos(omega t) only without a shift, and known on polynomial orbits.
@@ -329,154 +338,4 @@ impl MelnikovProblem {
             _ => Class::Estimated,
         }
     }
-}
-
-/// What a term can be.
-enum Kind {
-    Force,
-    Friction,
-    Harmonic,
-}
-
-fn kind(all: &Monomials, m: &Monomial) -> Result<Kind, Why> {
-    let atoms = || m.atoms.keys().filter_map(|key| all.atoms.get(key));
-    let holds = |e: &Expression| atoms().any(|atom| atom.contains(e));
-    let any = |wanted: &dyn Fn(&Expression) -> bool| atoms().any(|a| a.find(wanted).is_some());
-    if any(&|e| matches!(e, Expression::Delayed(..))) {
-        return Err(Why::Delay);
-    }
-    if any(&|e| matches!(e, Expression::Formal(..))) {
-        return Err(Why::Formal);
-    }
-    if holds(&Expression::Small) {
-        return Err(Why::SmallInside);
-    }
-    let time = holds(&Expression::Time);
-    let velocity = m.velocity > 0 || holds(&Expression::Velocity);
-    let position = m.x > 0 || holds(&Expression::Displacement);
-    match m.order {
-        0 if time || velocity => Err(Why::NotSmall),
-        0 => Ok(Kind::Force),
-        1 if time => {
-            let harmonic = m.atoms.values().eq(&[1]) && atoms().all(|e| angle(e).is_some());
-            if !harmonic || velocity || m.x > 1 {
-                Err(Why::NotHarmonic)
-            } else {
-                Ok(Kind::Harmonic)
-            }
-        }
-        1 if position => Err(Why::DependsOnPosition),
-        1 => Ok(Kind::Friction),
-        _ => Err(Why::HigherOrder),
-    }
-}
-
-/// (terms in t, terms without) of the argument of a sine or cosine of omega t + phase.
-fn angle(e: &Expression) -> Option<(Monomials, Monomials)> {
-    let Expression::Function(Function::Sin | Function::Cos, argument) = e else { return None };
-    let all = expand(argument)?;
-    let (mut frequency, mut phase) = (Monomials::default(), Monomials::default());
-    for (m, q) in all.terms {
-        (m.order == 0 && m.x == 0 && m.velocity == 0).then_some(())?;
-        let part = match m.atoms.iter().next() {
-            None => &mut phase,
-            Some((key, 1)) if key == "t" && m.atoms.len() == 1 => &mut frequency,
-            Some(_) => return None,
-        };
-        part.terms.insert(m, q);
-    }
-    (!frequency.terms.is_empty()).then_some((frequency, phase))
-}
-
-fn sum(part: &Monomials) -> Option<InPi> {
-    let mut sum = InPi::default();
-    part.terms.iter().try_for_each(|(m, q)| sum.add(m, q))?;
-    Some(sum)
-}
-
-/// The frequency of a force whose amplitude is zero at the values given.
-fn silent_frequency(bound: &Expression) -> Option<Real> {
-    let term = bound.find(&|e| angle(e).is_some())?;
-    let omega = Real::from(sum(&angle(term)?.0)?.value()?);
-    Some(omega.abs())
-}
-
-/// One harmonic force g x^p cos(omega t + phase).
-#[derive(Clone, Debug)]
-struct Term {
-    omega: Real,
-    /// In radians; nothing where it is a sum of a rational number and a multiple of pi.
-    phase: Option<Real>,
-    size: Real,
-    parametric: bool,
-}
-
-impl Term {
-    fn new(all: &Monomials, m: &Monomial, q: &Rational) -> Option<Self> {
-        let atom = all.atoms.get(m.atoms.keys().next()?)?;
-        let (frequency, phase) = angle(atom)?;
-        let omega = Real::from(sum(&frequency)?.value()?);
-        let mut phase = sum(&phase)?;
-        // cos(-z) = cos z.
-        if omega.sign().is_lt() {
-            phase = phase.neg();
-        }
-        if matches!(atom, Expression::Function(Function::Sin, _)) {
-            let quarter = if omega.sign().is_lt() { 1 } else { -1 };
-            let mut turn = InPi::of(&Expression::parameter(super::PI))?;
-            turn = turn.scaled(&Rational::from((quarter, 2)));
-            phase = phase.plus(&turn);
-        }
-        let mut size = InPi::default();
-        size.add(m, q)?;
-        Some(Self {
-            omega: omega.abs(),
-            phase: phase.value().map(Real::from),
-            size: Real::from(size.value()?),
-            parametric: m.x == 1,
-        })
-    }
-}
-
-/// The force of unit lowest amplitude, and that amplitude; terms by rising frequency.
-fn forcing(terms: &[Term]) -> Result<(Forcing, Real), Why> {
-    let first = terms.first().ok_or(Why::NotHarmonic)?;
-    if terms.iter().any(|t| t.parametric) {
-        return match terms {
-            [only] => Ok((Forcing::Parametric { omega: only.omega.clone() }, only.size.clone())),
-            _ => Err(Why::Parametric),
-        };
-    }
-    if let [only] = terms {
-        return Ok((Forcing::single(only.omega.clone()), only.size.clone()));
-    }
-    let weights: Option<Vec<Rational>> =
-        terms.iter().map(|t| ratio(&t.size, &first.size)).collect();
-    let weights = weights.ok_or(Why::Irrational)?;
-    let ratios: Option<Vec<Rational>> =
-        terms.iter().map(|t| ratio(&t.omega, &first.omega)).collect();
-    let Some(ratios) = ratios else {
-        // A rational number and a rational multiple of pi have no common period.
-        if terms.len() > 2 {
-            return Err(Why::NotHarmonic);
-        }
-        let list = terms.iter().zip(weights).map(|(t, w)| (t.omega.clone(), Real::Rational(w)));
-        return Ok((Forcing::Incommensurate(list.collect()), first.size.clone()));
-    };
-    // omega_i = ratio_i omega_1 = k_i omega with the largest omega.
-    let common = ratios.iter().fold(Integer::from(1), |c, r| c.lcm(r.denom()));
-    let whole: Vec<Integer> =
-        ratios.iter().map(|r| Integer::from(&common / r.denom()) * r.numer()).collect();
-    let divisor = whole.iter().fold(Integer::new(), |d, k| d.gcd(k));
-    let omega = times(&first.omega, &Rational::from((divisor.clone(), common)));
-    let mut harmonics = Vec::new();
-    for ((term, k), weight) in terms.iter().zip(whole).zip(weights) {
-        let order = Integer::from(k / &divisor).to_u32().filter(|k| *k <= LARGEST_HARMONIC);
-        harmonics.push(Harmonic {
-            order: order.ok_or(Why::NotHarmonic)?,
-            weight: Real::Rational(weight),
-            phase: term.phase.clone().ok_or(Why::Irrational)?,
-        });
-    }
-    Ok((Forcing::Harmonics { omega, harmonics }, first.size.clone()))
 }

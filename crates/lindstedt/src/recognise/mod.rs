@@ -4,10 +4,12 @@
 //! Terms are matched by what they are, multiplied out with the values of the parameters, never by
 //! their names. A term that does not fit is named; nothing is dropped.
 
+mod forces;
 pub mod impact;
 mod in_pi;
 mod law;
 pub mod melnikov;
+mod motion;
 mod numeric;
 mod potential;
 

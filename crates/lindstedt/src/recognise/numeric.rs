@@ -1,16 +1,21 @@
 //! Orbits of a force without closed form, followed by Taylor series; every number is estimated.
 
-use super::in_pi::{InPi, times};
+use super::in_pi::InPi;
 use super::law::evaluate;
 use super::melnikov::OrbitThreshold;
+use super::motion::Motion;
 use super::{PI, Refusal, potential};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::Monomials;
+use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::quadrature::tanh_sinh;
-use lindstedt_melnikov::{Class, Forcing, ForcingWork, Friction, MelnikovError, Real, Threshold};
-use lindstedt_simulate::{Digits, Integrator, Model, Parameters, Quantity, Settings, Trajectory};
+use lindstedt_melnikov::{Class, Forcing, Friction, MelnikovError, Real, Threshold};
+use lindstedt_simulate::{
+    Digits, Integrator, Model, Parameters, Quantity, Report, Settings, Trajectory,
+};
 use rug::{Float, Rational};
+use std::ops::ControlFlow;
 
 /// Points of the search for saddles and turning points.
 const POINTS: i32 = 4000;
@@ -18,8 +23,6 @@ const POINTS: i32 = 4000;
 const REACH: f64 = 20.0;
 /// Bits of the search.
 const COARSE: u32 = 128;
-/// Halvings of the step of the trapezoidal rule.
-const LEVELS: u32 = 9;
 
 /// One orbit from a saddle.
 #[derive(Clone, Debug)]
@@ -43,6 +46,7 @@ struct Path {
 pub struct NumericOrbit {
     force: Expression,
     paths: Vec<Path>,
+    watch: Watch,
 }
 
 /// What is known of an orbit.
@@ -66,10 +70,30 @@ impl NumericOrbit {
     /// The orbits of the force with these terms (in x alone, bound).
     pub(super) fn find(force: &Monomials) -> Result<Self, Refusal> {
         let terms = force.terms.iter().map(|(m, q)| force.tree(m, q));
-        let found = Self { force: Expression::Sum(terms.collect()).canonical(), paths: Vec::new() };
+        let force_of_x = Expression::Sum(terms.collect()).canonical();
+        let found = Self { force: force_of_x, paths: Vec::new(), watch: Watch::default() };
         let reach = potential::polynomial(force).map_or(REACH, |f| cauchy_bound(&f));
         let paths = found.search(reach).unwrap_or_default();
         if paths.is_empty() { Err(Refusal::NoOrbit) } else { Ok(Self { paths, ..found }) }
+    }
+
+    /// The same orbits, whose computation ends undecided when the watch says so.
+    #[must_use]
+    pub fn watched(self, watch: &Watch) -> Self {
+        Self { watch: watch.clone(), ..self }
+    }
+
+    /// Whether f has a positive derivative at a zero: its difference quotients agree. Near other
+    /// saddles nothing decays exponentially.
+    fn is_hyperbolic(&self, x: &Float) -> bool {
+        let quotient = |h: f64| -> Option<f64> {
+            let ends = (Float::with_val(COARSE, x - h), Float::with_val(COARSE, x + h));
+            Some(((self.f(&ends.1)? - self.f(&ends.0)?) / (2.0 * h)).to_f64())
+        };
+        match (quotient(1e-6), quotient(1e-9)) {
+            (Some(a), Some(b)) => b > 0.0 && (a - b).abs() < 1e-2 * b,
+            _ => false,
+        }
     }
 
     fn f(&self, x: &Float) -> Option<Float> {
@@ -127,7 +151,7 @@ impl NumericOrbit {
             }
         }
         saddles.sort_by(|a, b| a.1.clone().abs().total_cmp(&b.1.clone().abs()));
-        for (_, saddle) in &saddles {
+        for (_, saddle) in saddles.iter().filter(|(_, saddle)| self.is_hyperbolic(saddle)) {
             let mut paths = Vec::new();
             for direction in [1, -1] {
                 self.follow(saddle, direction, step, reach, &mut paths);
@@ -251,13 +275,21 @@ impl NumericOrbit {
             let mut flow =
                 Integrator::new(&system, &zero, &state, Settings::for_digits(digits)).ok()?;
             let mut trajectory = Trajectory::new(real);
-            flow.advance(&end, &mut |report| trajectory.record(report)).ok()?;
-            Some(trajectory)
+            let mut keep = |report: &Report<'_, Digits>| {
+                let _ = trajectory.record(report);
+                if self.watch.goes_on() {
+                    ControlFlow::Continue(())
+                } else {
+                    ControlFlow::Break(())
+                }
+            };
+            flow.advance(&end, &mut keep).ok()?;
+            self.watch.goes_on().then_some(trajectory)
         };
         let two = path.other.is_some();
         let forward = run(speed.clone() * path.sign)?;
         let backward = if two { Some(run(-speed * path.sign)?) } else { None };
-        Some(Motion { forward, backward, end, rate, saddle, bits, work })
+        Some(Motion { forward, backward, end, rate, saddle, bits, work, watch: self.watch.clone() })
     }
 
     /// The thresholds on all orbits, each number with an estimated error in its radius.
@@ -360,181 +392,4 @@ fn cauchy_bound(f: &[InPi]) -> f64 {
     let last = f.last().map_or(1.0, size);
     let largest = f.iter().rev().skip(1).map(|c| size(c) / last).fold(0.0, f64::max);
     (1.0 + largest).min(1e6)
-}
-
-/// x(t), x'(t) for |t| <= end.
-struct Motion {
-    forward: Trajectory<Digits>,
-    backward: Option<Trajectory<Digits>>,
-    end: Float,
-    rate: f64,
-    saddle: Float,
-    bits: u32,
-    work: u32,
-}
-
-impl Motion {
-    fn state(&self, t: &Float) -> Option<(Float, Float)> {
-        let (trajectory, flip) = match (&self.backward, t.is_sign_negative()) {
-            (Some(backward), true) => (backward, true),
-            // A loop is symmetric in time about its turning point.
-            (None, true) => (&self.forward, true),
-            _ => (&self.forward, false),
-        };
-        let t = Float::with_val(self.work, t.abs_ref());
-        let (x, v) = (trajectory.value(0, &t)?, trajectory.value(1, &t)?);
-        Some((x, if flip { -v } else { v }))
-    }
-
-    /// The integral of g(t, v) over the line by the trapezoidal rule, halved until it settles; the
-    /// error is the last change.
-    fn trapezoid(&self, g: &dyn Fn(&Float, &Float) -> Float) -> Option<(Float, Float)> {
-        let term = |t: &Float| Some(g(t, &self.state(t)?.1));
-        let mut h = Float::with_val(self.work, 0.5 / self.rate);
-        let (mut sum, mut last) = (term(&Float::new(self.work))?, None::<Float>);
-        let mut size = Float::new(53);
-        for level in 0..LEVELS {
-            let mut n = 1u32;
-            loop {
-                let t = Float::with_val(self.work, &h * n);
-                if t > self.end {
-                    break;
-                }
-                for t in [t.clone(), -t] {
-                    let value = term(&t)?;
-                    size = size.max(&Float::with_val(53, value.abs_ref()));
-                    sum += value;
-                }
-                n += if level == 0 { 1 } else { 2 };
-            }
-            let value = Float::with_val(self.work, &sum * &h);
-            if let Some(before) = &last {
-                let error = Float::with_val(53, &value - before).abs();
-                let floor = Float::with_val(53, &size / self.rate) >> (self.bits - 8);
-                if error <= floor {
-                    return Some((value, error + floor));
-                }
-            }
-            last = Some(value);
-            h /= 2u32;
-        }
-        None
-    }
-
-    fn ball(&self, balls: Balls, parts: Option<(Float, Float)>) -> Result<Ball, MelnikovError> {
-        let (value, error) = parts.ok_or(MelnikovError::Undecided { bits: self.bits })?;
-        Ok(balls.from_parts(&value, &error))
-    }
-
-    fn dissipation(
-        &self,
-        balls: Balls,
-        friction: &Friction,
-        belt: &Real,
-    ) -> Result<Ball, MelnikovError> {
-        let undecided = || MelnikovError::Undecided { bits: self.bits };
-        let belt = belt.ball(Balls::new(self.work)).midpoint().clone();
-        if let Friction::Polynomial(law) = friction {
-            let mut smooth = law.clone();
-            smooth.dry = Real::from(0);
-            let smooth = Friction::Polynomial(smooth).law(self.work);
-            let slide = |v: &Float| Float::with_val(self.work, v - &belt);
-            let smooth = self.trapezoid(&|_, v| smooth(&slide(v)) * v);
-            let smooth = self.ball(balls, smooth)?;
-            let sign = self.sign_integral(&belt).ok_or_else(undecided)?;
-            let error = Float::with_val(53, sign.abs_ref()) >> self.bits.saturating_sub(16);
-            let dry = balls.mul(&law.dry.ball(balls), &balls.from_parts(&sign, &error));
-            return Ok(balls.add(&smooth, &dry));
-        }
-        let law = friction.law(self.work);
-        let mut total = (Float::new(self.work), Float::new(53));
-        let cuts = self.cuts(&belt).ok_or_else(undecided)?;
-        for pair in cuts.windows(2) {
-            let [a, b] = pair else { continue };
-            let part = tanh_sinh(self.bits, a, b, |t| {
-                let (_, v) = self.state(t)?;
-                Some(law(&Float::with_val(self.work, &v - &belt)) * v)
-            })?;
-            total.0 += part.value;
-            total.1 += part.error;
-        }
-        total.1 += Float::with_val(53, total.0.abs_ref()) >> self.bits.saturating_sub(16);
-        self.ball(balls, Some(total))
-    }
-
-    /// The ends, 0, and the times at which x' passes the speed of the belt.
-    fn cuts(&self, belt: &Float) -> Option<Vec<Float>> {
-        const CELLS: i32 = 600;
-        let at = |n: i32| Float::with_val(self.work, &self.end * n) / CELLS;
-        let above = |t: &Float| Some(self.state(t)?.1 > *belt);
-        let mut cuts = vec![-self.end.clone(), Float::new(self.work), self.end.clone()];
-        for n in -CELLS..CELLS {
-            let (mut low, mut high) = (at(n), at(n + 1));
-            let side = above(&low)?;
-            if above(&high)? == side {
-                continue;
-            }
-            for _ in 0..self.work {
-                let middle = Float::with_val(self.work, &low + &high) / 2u32;
-                if above(&middle)? == side { low = middle } else { high = middle }
-            }
-            cuts.push(low);
-        }
-        cuts.sort_by(Float::total_cmp);
-        Some(cuts)
-    }
-
-    /// int v sgn(v - v*) dt: the displacements between the cuts.
-    fn sign_integral(&self, belt: &Float) -> Option<Float> {
-        let cuts = self.cuts(belt)?;
-        let mut sum = Float::new(self.work);
-        for pair in cuts.windows(2) {
-            let [a, b] = pair else { continue };
-            let piece = self.state(b)?.0 - self.state(a)?.0;
-            let middle = Float::with_val(self.work, a + b) / 2u32;
-            if self.state(&middle)?.1 > *belt { sum += piece } else { sum -= piece }
-        }
-        Some(sum)
-    }
-
-    /// max F, or -min F, of the work of the force.
-    fn reach(&self, balls: Balls, forcing: &Forcing, down: bool) -> Result<Ball, MelnikovError> {
-        let transform = |omega: &Real| -> Result<(Ball, Ball), MelnikovError> {
-            let omega = omega.ball(Balls::new(self.work)).midpoint().clone();
-            let angle = |t: &Float| Float::with_val(self.work, t * &omega);
-            let c = self.ball(balls, self.trapezoid(&|t, v| angle(t).cos() * v))?;
-            let s = self.ball(balls, self.trapezoid(&|t, v| angle(t).sin() * v))?;
-            Ok((c, s))
-        };
-        let size = |omega: &Real, weight: &Real| -> Result<Ball, MelnikovError> {
-            let (c, s) = transform(omega)?;
-            let square = balls.add(&balls.square(&c), &balls.square(&s));
-            let root = balls.sqrt(&square).ok_or(MelnikovError::Undecided { bits: self.bits })?;
-            Ok(balls.mul(&root, &weight.abs().ball(balls)))
-        };
-        let found = match forcing {
-            Forcing::Harmonics { omega, harmonics } => match harmonics.as_slice() {
-                [only] if only.order == 1 => size(omega, &only.weight)?,
-                _ => {
-                    let of = |k: u32| transform(&times(omega, &Rational::from(k)));
-                    ForcingWork::from_transforms(balls, harmonics, &of)?
-                        .extreme(balls, down)
-                        .map(|value| if down { balls.neg(&value) } else { value })
-                        .ok_or(MelnikovError::Undecided { bits: self.bits })?
-                }
-            },
-            Forcing::Incommensurate(terms) => {
-                let mut sum = balls.zero();
-                for (omega, weight) in terms {
-                    sum = balls.add(&sum, &size(omega, weight)?);
-                }
-                sum
-            }
-            _ => return Err(MelnikovError::NoClosedForm),
-        };
-        if found.contains_zero() {
-            return Err(MelnikovError::NoForcing);
-        }
-        Ok(found)
-    }
 }

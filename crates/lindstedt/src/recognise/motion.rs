@@ -1,0 +1,198 @@
+//! A motion on an orbit, and the integrals of Melnikov's function along it.
+
+use super::in_pi::times;
+use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_impact::characteristic::Watch;
+use lindstedt_melnikov::quadrature::tanh_sinh;
+use lindstedt_melnikov::{Forcing, ForcingWork, Friction, MelnikovError, Real};
+use lindstedt_simulate::{Digits, Trajectory};
+use rug::{Float, Rational};
+
+/// Halvings of the step of the trapezoidal rule.
+const LEVELS: u32 = 9;
+
+/// x(t), x'(t) for |t| <= end.
+pub(super) struct Motion {
+    pub forward: Trajectory<Digits>,
+    pub backward: Option<Trajectory<Digits>>,
+    pub end: Float,
+    pub rate: f64,
+    pub saddle: Float,
+    pub bits: u32,
+    pub work: u32,
+    pub watch: Watch,
+}
+
+impl Motion {
+    pub fn state(&self, t: &Float) -> Option<(Float, Float)> {
+        if !self.watch.goes_on() {
+            return None;
+        }
+        let (trajectory, flip) = match (&self.backward, t.is_sign_negative()) {
+            (Some(backward), true) => (backward, true),
+            // A loop is symmetric in time about its turning point.
+            (None, true) => (&self.forward, true),
+            _ => (&self.forward, false),
+        };
+        let t = Float::with_val(self.work, t.abs_ref());
+        let (x, v) = (trajectory.value(0, &t)?, trajectory.value(1, &t)?);
+        Some((x, if flip { -v } else { v }))
+    }
+
+    /// The integral of g(t, v) over the line by the trapezoidal rule, halved until it settles; the
+    /// error is the last change.
+    fn trapezoid(&self, g: &dyn Fn(&Float, &Float) -> Float) -> Option<(Float, Float)> {
+        let term = |t: &Float| Some(g(t, &self.state(t)?.1));
+        let mut h = Float::with_val(self.work, 0.5 / self.rate);
+        let (mut sum, mut last) = (term(&Float::new(self.work))?, None::<Float>);
+        let mut size = Float::new(53);
+        for level in 0..LEVELS {
+            let mut n = 1u32;
+            loop {
+                let t = Float::with_val(self.work, &h * n);
+                if t > self.end {
+                    break;
+                }
+                for t in [t.clone(), -t] {
+                    let value = term(&t)?;
+                    size = size.max(&Float::with_val(53, value.abs_ref()));
+                    sum += value;
+                }
+                n += if level == 0 { 1 } else { 2 };
+            }
+            let value = Float::with_val(self.work, &sum * &h);
+            if let Some(before) = &last {
+                let error = Float::with_val(53, &value - before).abs();
+                let floor = Float::with_val(53, &size / self.rate) >> (self.bits - 8);
+                if error <= floor {
+                    return Some((value, error + floor));
+                }
+            }
+            last = Some(value);
+            h /= 2u32;
+        }
+        None
+    }
+
+    fn ball(&self, balls: Balls, parts: Option<(Float, Float)>) -> Result<Ball, MelnikovError> {
+        let (value, error) = parts.ok_or(MelnikovError::Undecided { bits: self.bits })?;
+        Ok(balls.from_parts(&value, &error))
+    }
+
+    pub fn dissipation(
+        &self,
+        balls: Balls,
+        friction: &Friction,
+        belt: &Real,
+    ) -> Result<Ball, MelnikovError> {
+        let undecided = || MelnikovError::Undecided { bits: self.bits };
+        let belt = belt.ball(Balls::new(self.work)).midpoint().clone();
+        if let Friction::Polynomial(law) = friction {
+            let mut smooth = law.clone();
+            smooth.dry = Real::from(0);
+            let smooth = Friction::Polynomial(smooth).law(self.work);
+            let slide = |v: &Float| Float::with_val(self.work, v - &belt);
+            let smooth = self.trapezoid(&|_, v| smooth(&slide(v)) * v);
+            let smooth = self.ball(balls, smooth)?;
+            let sign = self.sign_integral(&belt).ok_or_else(undecided)?;
+            let error = Float::with_val(53, sign.abs_ref()) >> self.bits.saturating_sub(16);
+            let dry = balls.mul(&law.dry.ball(balls), &balls.from_parts(&sign, &error));
+            return Ok(balls.add(&smooth, &dry));
+        }
+        let law = friction.law(self.work);
+        let mut total = (Float::new(self.work), Float::new(53));
+        let cuts = self.cuts(&belt).ok_or_else(undecided)?;
+        for pair in cuts.windows(2) {
+            let [a, b] = pair else { continue };
+            let part = tanh_sinh(self.bits, a, b, |t| {
+                let (_, v) = self.state(t)?;
+                Some(law(&Float::with_val(self.work, &v - &belt)) * v)
+            })?;
+            total.0 += part.value;
+            total.1 += part.error;
+        }
+        total.1 += Float::with_val(53, total.0.abs_ref()) >> self.bits.saturating_sub(16);
+        self.ball(balls, Some(total))
+    }
+
+    /// The ends, 0, and the times at which x' passes the speed of the belt.
+    fn cuts(&self, belt: &Float) -> Option<Vec<Float>> {
+        const CELLS: i32 = 600;
+        let at = |n: i32| Float::with_val(self.work, &self.end * n) / CELLS;
+        let above = |t: &Float| Some(self.state(t)?.1 > *belt);
+        let mut cuts = vec![-self.end.clone(), Float::new(self.work), self.end.clone()];
+        for n in -CELLS..CELLS {
+            let (mut low, mut high) = (at(n), at(n + 1));
+            let side = above(&low)?;
+            if above(&high)? == side {
+                continue;
+            }
+            for _ in 0..self.work {
+                let middle = Float::with_val(self.work, &low + &high) / 2u32;
+                if above(&middle)? == side { low = middle } else { high = middle }
+            }
+            cuts.push(low);
+        }
+        cuts.sort_by(Float::total_cmp);
+        Some(cuts)
+    }
+
+    /// int v sgn(v - v*) dt: the displacements between the cuts.
+    fn sign_integral(&self, belt: &Float) -> Option<Float> {
+        let cuts = self.cuts(belt)?;
+        let mut sum = Float::new(self.work);
+        for pair in cuts.windows(2) {
+            let [a, b] = pair else { continue };
+            let piece = self.state(b)?.0 - self.state(a)?.0;
+            let middle = Float::with_val(self.work, a + b) / 2u32;
+            if self.state(&middle)?.1 > *belt { sum += piece } else { sum -= piece }
+        }
+        Some(sum)
+    }
+
+    /// max F, or -min F, of the work of the force.
+    pub fn reach(
+        &self,
+        balls: Balls,
+        forcing: &Forcing,
+        down: bool,
+    ) -> Result<Ball, MelnikovError> {
+        let transform = |omega: &Real| -> Result<(Ball, Ball), MelnikovError> {
+            let omega = omega.ball(Balls::new(self.work)).midpoint().clone();
+            let angle = |t: &Float| Float::with_val(self.work, t * &omega);
+            let c = self.ball(balls, self.trapezoid(&|t, v| angle(t).cos() * v))?;
+            let s = self.ball(balls, self.trapezoid(&|t, v| angle(t).sin() * v))?;
+            Ok((c, s))
+        };
+        let size = |omega: &Real, weight: &Real| -> Result<Ball, MelnikovError> {
+            let (c, s) = transform(omega)?;
+            let square = balls.add(&balls.square(&c), &balls.square(&s));
+            let root = balls.sqrt(&square).ok_or(MelnikovError::Undecided { bits: self.bits })?;
+            Ok(balls.mul(&root, &weight.abs().ball(balls)))
+        };
+        let found = match forcing {
+            Forcing::Harmonics { omega, harmonics } => match harmonics.as_slice() {
+                [only] if only.order == 1 => size(omega, &only.weight)?,
+                _ => {
+                    let of = |k: u32| transform(&times(omega, &Rational::from(k)));
+                    ForcingWork::from_transforms(balls, harmonics, &of)?
+                        .extreme(balls, down)
+                        .map(|value| if down { balls.neg(&value) } else { value })
+                        .ok_or(MelnikovError::Undecided { bits: self.bits })?
+                }
+            },
+            Forcing::Incommensurate(terms) => {
+                let mut sum = balls.zero();
+                for (omega, weight) in terms {
+                    sum = balls.add(&sum, &size(omega, weight)?);
+                }
+                sum
+            }
+            _ => return Err(MelnikovError::NoClosedForm),
+        };
+        if found.contains_zero() {
+            return Err(MelnikovError::NoForcing);
+        }
+        Ok(found)
+    }
+}
