@@ -120,6 +120,33 @@ fn every_command_is_described() -> Outcome {
     Ok(())
 }
 
+/// The keys at the top of what every command writes stand on the page of JSON.
+#[test]
+fn every_json_key_is_documented() -> Outcome {
+    let binary = binary()?;
+    let page = std::fs::read_to_string(root().join("docs/src/reference/json.md"))?;
+    for command in [
+        "derive duffing --order 1",
+        "derive vibro-impact --order 1",
+        "evaluate duffing --order 6 --times 0..1:2",
+        "threshold stick-slip --digits 8 --zeros vstar=0..1 --sweep vstar=0..1:3",
+        "stability vibro-impact --f64 --variant impact-aware",
+        "simulate duffing --periods 1 --digits 8",
+        "simulate vibro-impact --perturb 1e-6 --impacts 4 --digits 10",
+        "verify duffing --order 1",
+        "problems",
+        "paper --quick",
+    ] {
+        let arguments = command.split_whitespace().chain(["--format", "json", "--quiet"]);
+        let output = Command::new(&binary).args(arguments).output()?;
+        let value: serde_json::Value = serde_json::from_slice(&output.stdout)?;
+        for key in value.as_object().ok_or("no object")?.keys() {
+            assert!(page.contains(&format!("`{key}`")), "{command}: {key}");
+        }
+    }
+    Ok(())
+}
+
 #[test]
 fn every_formula_can_be_drawn() -> Outcome {
     let mut wrong = Vec::new();
