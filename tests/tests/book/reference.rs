@@ -133,6 +133,7 @@ fn every_json_key_is_documented() -> Outcome {
         "stability vibro-impact --f64 --variant impact-aware",
         "simulate duffing --periods 1 --digits 8",
         "simulate vibro-impact --perturb 1e-6 --impacts 4 --digits 10",
+        "simulate duffing --sweep eps=0..1:2 --section velocity --skip 2 --periods 4 --digits 8",
         "verify duffing --order 1",
         "problems",
         "paper --quick",
