@@ -81,8 +81,7 @@ fn options_page() -> Result<String, Box<dyn Error>> {
     let names = list.lines().take_while(|line| !line.is_empty());
     let names = names.filter_map(|line| line.split_whitespace().next());
     let mut page = String::from(
-        "# Options of every command\n\n<!-- Generated: UPDATE_REFERENCE=1 cargo test --release \
-         -p lindstedt-tests --test book -->\n\nThis page is what the program says of itself; a \
+        "# Options of every command\n\n<!-- Generated; how: contributing/testing.md -->\n\nThis page is what the program says of itself; a \
          test holds it against `--help`.\n",
     );
     for name in names.filter(|name| *name != "help") {
