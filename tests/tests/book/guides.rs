@@ -20,11 +20,18 @@ mod quintic {
             small: "rho".into(),
             conditions: vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude],
             amplitude: AmplitudeRole::InSmallParameter,
-            parameters: vec![ParameterCard {
-                name: "eps".into(),
-                meaning: "coefficient of the quintic force".into(),
-                default: "1".into(),
-            }],
+            parameters: vec![
+                ParameterCard {
+                    name: "eps".into(),
+                    meaning: "coefficient of the quintic force".into(),
+                    default: "1".into(),
+                },
+                ParameterCard {
+                    name: "amplitude".into(),
+                    meaning: "A: x(0), or the first harmonic".into(),
+                    default: "1".into(),
+                },
+            ],
             notes: "m x'' + k x + k_5 x^5 = 0 with time in sqrt(m/k) and eps = k_5/k".into(),
             source: "energy integral, docs/src/guide/add-a-problem.md".into(),
         }

@@ -81,8 +81,7 @@ fn options_page() -> Result<String, Box<dyn Error>> {
     let names = list.lines().take_while(|line| !line.is_empty());
     let names = names.filter_map(|line| line.split_whitespace().next());
     let mut page = String::from(
-        "# Options of every command\n\n<!-- Generated: UPDATE_REFERENCE=1 cargo test --release \
-         -p lindstedt-tests --test book -->\n\nThis page is what the program says of itself; a \
+        "# Options of every command\n\n<!-- Generated; how: contributing/testing.md -->\n\nThis page is what the program says of itself; a \
          test holds it against `--help`.\n",
     );
     for name in names.filter(|name| *name != "help") {
@@ -116,6 +115,34 @@ fn every_command_is_described() -> Outcome {
         let option = option.trim_end_matches([',', '.', ';', ':', ')', ']', '>']);
         let known = page.contains(option) || ["--help", "--version"].contains(&option);
         assert!(known, "{option} is not on the page of the command line");
+    }
+    Ok(())
+}
+
+/// The keys at the top of what every command writes stand on the page of JSON.
+#[test]
+fn every_json_key_is_documented() -> Outcome {
+    let binary = binary()?;
+    let page = std::fs::read_to_string(root().join("docs/src/reference/json.md"))?;
+    for command in [
+        "derive duffing --order 1",
+        "derive vibro-impact --order 1",
+        "evaluate duffing --order 6 --times 0..1:2",
+        "threshold stick-slip --digits 8 --zeros vstar=0..1 --sweep vstar=0..1:3",
+        "stability vibro-impact --f64 --variant impact-aware",
+        "simulate duffing --periods 1 --digits 8",
+        "simulate vibro-impact --perturb 1e-6 --impacts 4 --digits 10",
+        "simulate duffing --sweep eps=0..1:2 --section velocity --skip 2 --periods 4 --digits 8",
+        "verify duffing --order 1",
+        "problems",
+        "paper --quick",
+    ] {
+        let arguments = command.split_whitespace().chain(["--format", "json", "--quiet"]);
+        let output = Command::new(&binary).args(arguments).output()?;
+        let value: serde_json::Value = serde_json::from_slice(&output.stdout)?;
+        for key in value.as_object().ok_or("no object")?.keys() {
+            assert!(page.contains(&format!("`{key}`")), "{command}: {key}");
+        }
     }
     Ok(())
 }
