@@ -345,6 +345,10 @@ fn gather(nodes: &mut Vec<Node>, above: &mut Vec<Node>) {
         _ => false,
     };
     let mut from = nodes.len();
+    // 2a/b.
+    if matches!(nodes.last(), Some(Node::Number(_))) {
+        from -= 1;
+    }
     while let Some([factor, Node::Space]) = from.checked_sub(2).and_then(|n| nodes.get(n..from)) {
         if !is_plain(factor) {
             break;
