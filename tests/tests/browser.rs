@@ -171,7 +171,7 @@ fn the_probe_can_fail() -> Outcome {
     let bad = "<!DOCTYPE html><meta charset=\"utf-8\"><body><p>x\u{379}\u{3b1}</p>\
                <details><summary>s</summary>hidden</details>\
                <div style=\"width:2000px\">wide</div>\
-               <img src=\"file:///nowhere.png\">\
+               <img src=\"http://nowhere.invalid/x.png\">\
                <svg width=\"100\" height=\"50\"><text x=\"90\" y=\"20\">outside</text></svg></body>";
     let Some(found) = probe("bad", bad, 360)? else { return Ok(()) };
     assert_eq!(found["missing"], serde_json::json!(["U+379"]), "{found}");

@@ -8,14 +8,26 @@ use rug::Rational;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-fn paper() -> &'static Paper {
-    static PAPER: OnceLock<Paper> = OnceLock::new();
-    let paper = PAPER.get_or_init(|| match read(Options::QUICK, &mut |_| true) {
-        Ok(paper) => paper,
-        Err(error) => panic!("{error}"),
+/// The paper, read once, and how often the observer was called.
+fn counted() -> &'static (Paper, usize) {
+    static PAPER: OnceLock<(Paper, usize)> = OnceLock::new();
+    let found = PAPER.get_or_init(|| {
+        let mut steps = 0;
+        let paper = read(Options::QUICK, &mut |_| {
+            steps += 1;
+            true
+        });
+        match paper {
+            Ok(paper) => (paper, steps),
+            Err(error) => panic!("{error}"),
+        }
     });
-    assert!(paper.complete);
-    paper
+    assert!(found.0.complete);
+    found
+}
+
+fn paper() -> &'static Paper {
+    &counted().0
 }
 
 fn numbered(number: u32) -> &'static Section {
@@ -69,13 +81,7 @@ fn all_51_formulas_have_a_row() {
 /// The progress bar ends when the work does.
 #[test]
 fn steps_are_counted() {
-    let mut steps = 0;
-    let done = read(Options::QUICK, &mut |_| {
-        steps += 1;
-        true
-    });
-    assert!(done.is_ok());
-    assert_eq!(steps, Options::QUICK.steps());
+    assert_eq!(counted().1, Options::QUICK.steps());
 }
 
 /// Section 3 simulated: an independent event code (exponents, doublings, tangencies).

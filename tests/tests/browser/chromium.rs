@@ -69,10 +69,22 @@ impl Chromium {
         let path = scratch(&format!("{name}.html"));
         let page = html.replacen("</body>", &format!("<script>{PROBE}</script></body>"), 1);
         std::fs::write(&path, page)?;
+        // A window is never narrower than 500: the page lies in a frame of the width asked for.
+        let frame = scratch(&format!("{name}-frame.html"));
+        let style = format!("width:{width}px;height:{height}px;border:0");
+        let source = format!("file://{}", path.display());
+        let copy = "onload=()=>document.body.append(document.importNode(\
+                    document.querySelector('iframe').contentDocument.getElementById('probe'),true))";
+        let outer = format!(
+            "<!DOCTYPE html><body><iframe style=\"{style}\" src=\"{source}\"></iframe>\
+             <script>{copy}</script></body>"
+        );
+        std::fs::write(&frame, outer)?;
         let switches = [
-            format!("--window-size={width},{height}"),
+            format!("--window-size={},{height}", width.max(500) + 40),
+            "--allow-file-access-from-files".to_owned(),
             "--dump-dom".to_owned(),
-            format!("file://{}", path.display()),
+            format!("file://{}", frame.display()),
         ];
         let dom = self.run(name, &switches)?;
         let start = "id=\"probe\">";

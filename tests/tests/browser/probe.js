@@ -1,5 +1,5 @@
-// What a page says of itself, as JSON in its last element.
-(() => {
+// What a page says of itself when all is loaded, as JSON in its last element.
+addEventListener("load", () => {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 64;
   const pen = canvas.getContext("2d", { willReadFrequently: true });
@@ -61,4 +61,4 @@
   element.id = "probe";
   element.textContent = JSON.stringify(found).replaceAll("<", "\\u003c");
   document.body.append(element);
-})();
+});

@@ -2,6 +2,7 @@
 //! no fonts, scripts or pictures from elsewhere.
 
 mod formula;
+mod fraction;
 mod mathml;
 mod names;
 mod prose;

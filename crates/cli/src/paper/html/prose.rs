@@ -47,7 +47,16 @@ fn glued(before: Option<char>, mut pieces: Vec<String>, after: &str) -> String {
     if let (false, Some(last)) = (after.is_empty(), pieces.last_mut()) {
         *last = format!("<span class=\"g\">{last}{after}</span>");
     }
-    pieces.join(" ")
+    let html = pieces.join(" ");
+    if visible(&html) <= SHORT { format!("<span class=\"g\">{html}</span>") } else { html }
+}
+
+/// A formula of so few marks (n = 3) stays on one line.
+const SHORT: usize = 12;
+
+/// The marks of a piece of HTML that are not part of its tags.
+fn visible(html: &str) -> usize {
+    html.split('<').filter_map(|part| Some(part.split_once('>')?.1.trim().chars().count())).sum()
 }
 
 fn opens(token: &Token<'_>) -> bool {

@@ -18,6 +18,7 @@ pub fn anchor(section: &Section, row: &Row) -> String {
         match c {
             'a'..='z' | 'A'..='Z' | '0'..='9' | '.' => name.push(c),
             '\'' => name.push_str("prime"),
+            '+' => name.push_str("plus"),
             _ if name.ends_with('-') => {}
             _ => name.push('-'),
         }

@@ -121,7 +121,7 @@ pub fn glance(paper: &Paper) -> String {
             anchor(section, row)
         );
     }
-    text += "</ol>\n<table class=\"count\">\n<thead><tr><th scope=\"col\">statements</th>";
+    text += "</ol>\n<div class=\"scroll\"><table class=\"count\">\n<thead><tr><th scope=\"col\">statements</th>";
     let verdicts = super::super::VERDICTS;
     for verdict in verdicts {
         let name = verdict.name();
@@ -139,5 +139,5 @@ pub fn glance(paper: &Paper) -> String {
         }
         let _ = writeln!(text, "<td>{}</td></tr>", section.rows.len());
     }
-    text + "</tbody>\n</table>\n</section>\n"
+    text + "</tbody>\n</table></div>\n</section>\n"
 }

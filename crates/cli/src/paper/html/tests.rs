@@ -47,7 +47,10 @@ fn formulas_are_found() {
         assert!(formulas(text) >= count - 1, "{html}");
     }
     let html = line("a bound, omega^2 = sin 1, holds");
-    assert!(html.starts_with("a bound, <math>") && html.ends_with(", holds"), "{html}");
+    assert!(
+        html.starts_with("a bound, <span class=\"g\"><math>") && html.ends_with("</span> holds"),
+        "{html}"
+    );
     assert!(html.contains("<msup><mi>\u{3c9}</mi><mn>2</mn></msup>"), "{html}");
 }
 
@@ -67,16 +70,18 @@ fn structure() {
         html.contains("<mo>+</mo></msub>") && html.contains("<mo>\u{2212}</mo></msub>"),
         "{html}"
     );
+    let html = line("x = sqrt(2a/b)");
+    assert!(html.contains("<mfrac><mrow><mn>2</mn><mi>a</mi></mrow><mi>b</mi></mfrac>"), "{html}");
     let html = line("lambda = sqrt(alpha^2 - c^2/4)");
     assert!(html.contains("<msqrt>") && html.contains("<mfrac><msup>"), "{html}");
     let html = line("alpha0 and x_0'' and T_(l+1)");
     assert!(html.contains("<msub><mi>\u{3b1}</mi><mn>0</mn></msub>"), "{html}");
     let primes = "<msub><mi>x</mi><mn>0</mn></msub><mo lspace=\"0\" rspace=\"0\">\u{2032}</mo>";
     assert!(html.contains(primes), "{html}");
+    assert!(html.contains("<msub><mi>T</mi><mrow><mi>l</mi>"), "{html}");
     let html = line("at n = 3 (delta = 1, on the circle): 6e-13");
     assert_eq!(html.matches("<math>").count(), 4, "{html}");
     assert!(html.contains("10<sup>\u{2212}13</sup>"), "{html}");
-    assert!(html.contains("<msub><mi>T</mi><mrow><mi>l</mi>"), "{html}");
 }
 
 /// Elements are closed in the order in which they were opened, whatever is read.

@@ -30,7 +30,7 @@ impl Truncation {
     }
 
     fn last(&self) -> Option<(usize, f64)> {
-        self.errors.iter().copied().enumerate().last()
+        self.errors.iter().copied().enumerate().next_back()
     }
 }
 
