@@ -125,6 +125,22 @@ fn published_coefficients() {
     }
 }
 
+/// The first harmonic of cos^(2m+1) is binomial(2m+1, m)/4^m, so omega_1 = binomial(2m+1, m)/2^(2m+1):
+/// also in high degrees, where no tables of the basis are kept.
+#[test]
+fn high_degrees() {
+    for m in [1u32, 2, 99, 499] {
+        let degree = 2 * m + 1;
+        let result = Oscillator::parse(&format!("x'' + x + eps x^{degree} = 0")).unwrap();
+        let expected = rug::Rational::from((
+            rug::Integer::from(rug::Integer::binomial_u(degree, m)),
+            rug::Integer::from(1) << degree,
+        ));
+        let result = result.derive(1).unwrap();
+        assert_eq!(result.exact("frequency", 1), Some(expected.to_string()), "{degree}");
+    }
+}
+
 /// The expansion of one equation against the motion of another that differs at order 2: the
 /// errors do not fall faster than eps^2, however high the order.
 #[test]

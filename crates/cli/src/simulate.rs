@@ -1,5 +1,6 @@
 //! `lindstedt simulate`: the motion in the time domain, its events, sections and figures.
 
+mod case;
 mod chaos;
 mod figure;
 mod growth;

@@ -41,6 +41,9 @@ use std::sync::mpsc;
 /// The observed order may differ from N + 1 by so much.
 pub const TOLERANCE: f64 = 0.05;
 
+/// Integrations with more digits each, until the differences are resolved.
+const MOST_TRIES: usize = 3;
+
 /// What to verify.
 #[derive(Clone, Debug)]
 pub struct VerifySettings {
@@ -151,13 +154,15 @@ pub fn verify(
 ) -> Result<Verification, Error> {
     let condition = condition(problem, settings.condition)?;
     if condition == Condition::FreeAmplitude {
-        let digits = settings.digits.unwrap_or_else(|| digits(settings.order, condition, settings));
-        let expansion = Drifting::new(problem, settings, digits, observer)?;
-        let compare = |small: &Rational, goes_on: &dyn Fn() -> bool| {
-            expansion.compare(small, digits, goes_on)
-        };
-        let comparisons = compare_all(&settings.small, settings.order, &compare, observer)?;
-        return Ok(conclude(problem, condition, settings.order, digits, comparisons));
+        let order = settings.order;
+        return with_digits(order, condition, settings, &mut |digits| {
+            let expansion = Drifting::new(problem, settings, digits, observer)?;
+            let compare = |small: &Rational, goes_on: &dyn Fn() -> bool| {
+                expansion.compare(small, digits, goes_on)
+            };
+            let comparisons = compare_all(&settings.small, order, &compare, observer)?;
+            Ok(conclude(problem, condition, order, digits, comparisons))
+        });
     }
     let derived = Settings {
         order: settings.order,
@@ -182,12 +187,36 @@ pub fn verify_derivation(
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Verification, Error> {
     let (order, condition) = (derivation.order, derivation.condition);
-    let digits = settings.digits.unwrap_or_else(|| digits(order, condition, settings));
-    let expansion = Periodic::new(problem, derivation, settings, digits)?;
-    let compare =
-        |small: &Rational, goes_on: &dyn Fn() -> bool| expansion.compare(small, digits, goes_on);
-    let comparisons = compare_all(&settings.small, order, &compare, observer)?;
-    Ok(conclude(problem, condition, order, digits, comparisons))
+    with_digits(order, condition, settings, &mut |digits| {
+        let expansion = Periodic::new(problem, derivation, settings, digits)?;
+        let compare = |small: &Rational, goes_on: &dyn Fn() -> bool| {
+            expansion.compare(small, digits, goes_on)
+        };
+        let comparisons = compare_all(&settings.small, order, &compare, observer)?;
+        Ok(conclude(problem, condition, order, digits, comparisons))
+    })
+}
+
+/// With the digits asked for; otherwise with so many that the errors of the size eps^(N+1) are
+/// resolved, and with more where a small constant in front of it needs them.
+fn with_digits(
+    order: usize,
+    condition: Condition,
+    settings: &VerifySettings,
+    run: &mut dyn FnMut(u32) -> Result<Verification, Error>,
+) -> Result<Verification, Error> {
+    if let Some(digits) = settings.digits {
+        return run(digits);
+    }
+    let mut digits = digits(order, condition, settings);
+    for _ in 1..MOST_TRIES {
+        let found = run(digits)?;
+        if found.resolved {
+            return Ok(found);
+        }
+        digits = digits.saturating_add(digits / 2);
+    }
+    run(digits)
 }
 
 /// A comparison at one value, which asks now and then whether to go on.

@@ -272,7 +272,7 @@ impl Drifting {
             });
             let number = |k: usize, c: &Float| {
                 let q = c.to_rational().unwrap_or_default();
-                Expression::Number(if k % 2 == 0 { q } else { -q })
+                Expression::Number(if k.is_multiple_of(2) { q } else { -q })
             };
             let Some((k, c)) = rest.next() else { return Expression::integer(0) };
             let horner =

@@ -1,0 +1,328 @@
+//! A problem with values, start, history and forcing, read off its equation.
+
+use super::history::{Evaluator, constant, free_flight};
+use super::setup::{Setup, same};
+use crate::failure::{Failure, NO_ANSWER};
+use crate::session::parameters;
+use crate::stability::request::exact_parameters;
+use lindstedt::Value;
+use lindstedt::equation::Function::{Abs, Sign, Sin};
+use lindstedt::equation::{AmplitudeRole, Condition, Crossing, Expression, ParameterCard, Problem};
+use lindstedt::expand::Excitation;
+use lindstedt::problem_file::{History, ProblemFile, parse_expression};
+use lindstedt::problems::stick_slip;
+use lindstedt::simulate::{Digits, Model, Parameters, Quantity, Real as _};
+use lindstedt::verify::quantities;
+use rug::{Float, Rational};
+use std::collections::BTreeMap;
+
+type Given = BTreeMap<String, Value>;
+
+/// All parameters of a card: given, or by default; a default that is no number stands for itself.
+fn values(cards: &[ParameterCard], given: &Given) -> Vec<(String, Option<Value>)> {
+    let value = |card: &ParameterCard| {
+        let value = given.get(&*card.name).cloned();
+        (card.name.to_string(), value.or_else(|| Value::parse(&card.default).ok()))
+    };
+    cards.iter().map(value).collect()
+}
+
+/// A problem that does not start on an impact orbit.
+pub struct Case<'a> {
+    pub problem: &'a Problem,
+    pub file: Option<&'a ProblemFile>,
+    /// It is the vibro-impact oscillator.
+    pub impacting: bool,
+    pub digits: u32,
+}
+
+impl Case<'_> {
+    pub fn setup(
+        &self,
+        set: &[String],
+        state: Option<[Quantity; 2]>,
+        history: Option<History>,
+    ) -> Result<Setup, Failure> {
+        let mut problem = self.problem.clone();
+        let role = problem.amplitude;
+        let (given, mut at) = if self.impacting {
+            let (_, at) = exact_parameters(set)?;
+            let numbers = set.iter().filter(|item| !item.trim().starts_with("branch="));
+            (parameters(&numbers.cloned().collect::<Vec<_>>())?, at)
+        } else {
+            let is_small = |card: &ParameterCard| card.name == problem.small;
+            if role != AmplitudeRole::InSmallParameter && !problem.parameters.iter().any(is_small) {
+                let (name, meaning) = (problem.small.clone(), "small parameter".into());
+                problem.parameters.push(ParameterCard { name, meaning, default: "1".into() });
+            }
+            let given = parameters(set)?;
+            // Domains as the expansions have them.
+            lindstedt::check_parameters(&problem, &given)?;
+            (linked(given), Vec::new())
+        };
+        let mut bindings = quantities(&problem, &given);
+        if self.impacting {
+            bindings.set(&problem.small, 1);
+        } else {
+            let text = |(name, value): (String, Option<Value>)| {
+                let card = problem.parameters.iter().find(|card| *card.name == *name);
+                let default = || card.map_or_else(String::new, |card| card.default.to_string());
+                (name, value.map_or_else(default, |value| value.to_string()))
+            };
+            at = values(&problem.parameters, &given).into_iter().map(text).collect();
+        }
+        self.determined(&mut problem, &mut bindings)?;
+        let (equation, small) = self.time_domain(&problem, &bindings);
+        let bits = Digits::for_digits(self.digits + 40).bits();
+        let mut remarks = Vec::new();
+        let evaluator = Evaluator { parameters: &bindings, small: &small, bits };
+        let state = match (state, &history) {
+            (Some(state), _) => state,
+            (None, Some(History::Expression(e))) => {
+                let found = evaluator.value_and_rate(e).ok_or_else(|| unknown_start(&problem))?;
+                remarks.push("start: that of the history".to_owned());
+                found.map(Quantity::Float)
+            }
+            (None, _) => self.start(&problem, &evaluator, &mut remarks),
+        };
+        let forcing = self.forcing(&equation, &evaluator)?;
+        let wall = problem.impact.is_some();
+        problem.time_domain = None;
+        problem.small = small.clone().into();
+        problem.equation = equation;
+        let mut model = Model::of_problem(&problem)?;
+        let delayed = |e: &Expression| matches!(e, Expression::Delayed(..));
+        let mut held = Vec::new();
+        if problem.equation.find(&delayed).is_some() {
+            let usual = || if self.impacting { History::FreeFlight } else { History::Constant };
+            let start = state.each_ref().map(|q| q.float(bits));
+            let (expression, remark) = match history.unwrap_or_else(usual) {
+                History::Constant => {
+                    let [x, _] = start;
+                    (constant(x, &mut bindings), "x(t) = x(0) before t = 0")
+                }
+                History::FreeFlight => {
+                    let equation = &problem.equation;
+                    held = flying(equation).parameters();
+                    let remark = "free flight without delay loop through the start";
+                    (free_flight(equation, &start, &small, bits, &mut bindings)?, remark)
+                }
+                History::Expression(e) => (e, "the expression given, x(t) before t = 0"),
+            };
+            remarks.push(format!("history: {remark}"));
+            model = model.with_history(&[expression]);
+        } else if history.is_some() {
+            remarks.push("history: not used, there is no delay".to_owned());
+        }
+        let sweepable = self.sweepable(&problem, &held);
+        Ok(Setup {
+            name: problem.name.to_string(),
+            model,
+            parameters: bindings,
+            at,
+            start: state,
+            forcing,
+            wall,
+            sticks: rubs(&problem.equation),
+            orbit: None,
+            sweepable,
+            ranges: BTreeMap::new(),
+            remarks,
+        })
+    }
+
+    /// Puts in what determines a parameter that has no value of its own (`follows`).
+    fn determined(&self, problem: &mut Problem, bindings: &mut Parameters) -> Result<(), Failure> {
+        let Some(file) = self.file else { return Ok(()) };
+        let mut names = file.names.clone();
+        names.parameters.iter_mut().for_each(|set| {
+            set.insert("pi".to_owned());
+        });
+        for (name, text) in &file.follows {
+            if bindings.get(name).is_some() {
+                continue;
+            }
+            let follows = parse_expression(text, &names).map_err(|error| Failure {
+                exit: NO_ANSWER,
+                code: "no-value",
+                message: format!("{name} has no value: {error} in {text:?}"),
+                hint: "follows = \"...\" needs an expression in parameters and pi".into(),
+            })?;
+            bindings.set("pi", Quantity::PiMultiple(Rational::from(1)));
+            let put_in =
+                |e: &Expression| (*e == Expression::parameter(name)).then(|| follows.clone());
+            problem.equation = problem.equation.substitute(&put_in);
+            problem.time_domain = problem.time_domain.as_ref().map(|e| e.substitute(&put_in));
+            if let Some(wall) = &mut problem.impact {
+                wall.position = wall.position.substitute(&put_in);
+                wall.restitution = wall.restitution.substitute(&put_in);
+            }
+        }
+        Ok(())
+    }
+
+    /// The equation for x itself, and the name of its small parameter.
+    fn time_domain(&self, problem: &Problem, bindings: &Parameters) -> (Expression, String) {
+        let one = Some(Rational::from(1));
+        let small = problem.small.to_string();
+        let at_one = bindings.get(&small).and_then(Quantity::rational) == one;
+        let pendulum = lindstedt::problems::find("pendulum");
+        let equation = match (&problem.time_domain, problem.amplitude) {
+            // At delta = 1 the pendulum's embedding is the pendulum.
+            (Some(_), AmplitudeRole::InSums)
+                if at_one && pendulum.is_some_and(|p| same(&p, problem)) =>
+            {
+                Expression::Acceleration + Expression::Displacement.apply(Sin)
+            }
+            (Some(equation), AmplitudeRole::InSums) => scaled(equation),
+            (Some(equation), _) => equation.clone(),
+            (None, _) => problem.equation.clone(),
+        };
+        // Duffing's rho = eps A^2 belongs to x/A; the coefficient for x is eps.
+        if problem.amplitude == AmplitudeRole::InSmallParameter && bindings.get("eps").is_some() {
+            return (equation, "eps".to_owned());
+        }
+        (equation, small)
+    }
+
+    /// Where a motion starts about which nothing is said: at rest at the amplitude; on a belt at
+    /// (1/10, 0), from where it comes to the attractor that sticks (with the paper's parameters);
+    /// in front of a wall; at 2.
+    fn start(
+        &self,
+        problem: &Problem,
+        evaluator: &Evaluator<'_>,
+        remarks: &mut Vec<String>,
+    ) -> [Quantity; 2] {
+        let rest = Quantity::from(0);
+        if problem.equation.canonical() == stick_slip::equation().canonical() {
+            return [Quantity::from(Rational::from((1, 10))), rest];
+        }
+        let mut say =
+            |text: &str| remarks.push(format!("start: at rest at {text}, nothing else is given"));
+        if let Some(amplitude) = evaluator.parameters.get("amplitude") {
+            if problem.conditions.first() == Some(&Condition::FundamentalAmplitude) {
+                say("x(0) = amplitude");
+            }
+            return [amplitude.clone(), rest];
+        }
+        if let Some(wall) = &problem.impact
+            && let Some(position) = evaluator.value(&wall.position)
+        {
+            let side = if wall.crossing == Crossing::Rising { -1 } else { 1 };
+            say("distance 1 from the wall");
+            return [Quantity::Float(position + side), rest];
+        }
+        say("x(0) = 2");
+        [Quantity::from(2), rest]
+    }
+
+    /// The period of the force, where there is one.
+    fn forcing(
+        &self,
+        equation: &Expression,
+        evaluator: &Evaluator<'_>,
+    ) -> Result<Option<Quantity>, Failure> {
+        let Ok(Excitation { frequency: Some(frequency), .. }) = Excitation::of(equation) else {
+            return Ok(None);
+        };
+        let Some(omega) = evaluator.value(&frequency) else { return Ok(None) };
+        if omega > 0 {
+            let pi = Float::with_val(evaluator.bits, rug::float::Constant::Pi);
+            return Ok(Some(Quantity::Float(pi * 2u32 / omega)));
+        }
+        let name = frequency.parameters().join("*");
+        Err(Failure {
+            exit: NO_ANSWER,
+            code: "outside-domain",
+            message: format!("{name} is outside its domain > 0"),
+            hint: String::new(),
+        })
+    }
+
+    /// The parameters on which neither the start nor the period of the force depends, nor what
+    /// was computed for the history.
+    fn sweepable(&self, problem: &Problem, held: &[String]) -> Vec<String> {
+        if self.impacting {
+            return vec!["A".to_owned(), "B".to_owned()];
+        }
+        let frequency = Excitation::of(&problem.equation).ok().and_then(|e| e.frequency);
+        let frequency = frequency.map_or_else(Vec::new, |e| e.parameters());
+        let mut mentioned = problem.equation.parameters();
+        mentioned.push(problem.small.to_string());
+        if let Some(wall) = &problem.impact {
+            mentioned.extend(wall.position.parameters());
+            mentioned.extend(wall.restitution.parameters());
+        }
+        let cards = problem.parameters.iter().map(|card| card.name.to_string());
+        let linked = problem.parameters.iter().any(|card| card.name == "n");
+        cards
+            .filter(|name| {
+                let tied = problem.synchronous.as_ref();
+                let tied = tied.is_some_and(|t| t.frequency == **name || t.periods == **name);
+                let bound = ["amplitude", "pi"].contains(&name.as_str())
+                    || (linked && *name == *problem.small);
+                let contains = |list: &[String]| list.contains(name);
+                contains(&mentioned) && !contains(&frequency) && !contains(held) && !tied && !bound
+            })
+            .collect()
+    }
+}
+
+fn unknown_start(problem: &Problem) -> Failure {
+    Failure {
+        exit: NO_ANSWER,
+        code: "no-history",
+        message: format!("{}: the history has no value and slope at t = 0", problem.name),
+        hint: "give a start with --state".into(),
+    }
+}
+
+/// n = 1 + 2 delta: whichever is given determines the other.
+fn linked(mut given: Given) -> Given {
+    let rational = |name: &str| given.get(name).and_then(Value::as_rational).cloned();
+    match (rational("n"), rational("delta")) {
+        (Some(n), None) => {
+            given.insert("delta".into(), Value::Rational((n - 1u32) / 2u32));
+        }
+        (None, Some(delta)) => {
+            given.insert("n".into(), Value::Rational(delta * 2u32 + 1u32));
+        }
+        _ => {}
+    }
+    given
+}
+
+/// The equation without delay.
+fn flying(e: &Expression) -> Expression {
+    let inner = |e: &Expression| match e {
+        Expression::Delayed(inner, _) => Some((**inner).clone()),
+        _ => None,
+    };
+    e.substitute(&inner).canonical()
+}
+
+/// Whether a sign or absolute value has the velocity in its argument: dry friction.
+fn rubs(equation: &Expression) -> bool {
+    let is_friction = |e: &Expression| match e {
+        Expression::Function(Abs | Sign, argument) => argument.contains(&Expression::Velocity),
+        _ => false,
+    };
+    equation.find(&is_friction).is_some()
+}
+
+/// The equation for x = a y from that for y.
+fn scaled(e: &Expression) -> Expression {
+    let over = |e: Expression| e * Expression::parameter("amplitude").pow(-1);
+    let list = |l: &[Expression]| l.iter().map(scaled).collect();
+    match e {
+        Expression::Displacement | Expression::Velocity | Expression::Acceleration => {
+            over(e.clone())
+        }
+        Expression::Sum(l) => Expression::Sum(list(l)),
+        Expression::Product(l) => Expression::Product(list(l)),
+        Expression::Power(a, b) => Expression::Power(Box::new(scaled(a)), Box::new(scaled(b))),
+        Expression::Function(f, a) => scaled(a).apply(*f),
+        other => other.clone(),
+    }
+}
