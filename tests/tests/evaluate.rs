@@ -320,6 +320,9 @@ fn cycle_period(problem: &Problem, set: &[(&str, &str)], transient: i32) -> Floa
     Float::with_val(100, &crossings[1] - &crossings[0])
 }
 
+/// A problem, values of its parameters, a bound of the error.
+type Case = (Problem, &'static [(&'static str, &'static str)], f64);
+
 /// Limit cycles of files, parameters of their own included, against the time domain.
 #[test]
 fn limit_cycles_of_files() {
@@ -328,7 +331,7 @@ fn limit_cycles_of_files() {
         "condition = 'limit-cycle'\n[parameters]\nomega_0 = { value = '2' }\nk = { value = '4' }\n\
          c = { value = '1/5' }\n",
     );
-    let cases: [(Problem, &[(&str, &str)], f64); 4] = [
+    let cases: [Case; 4] = [
         (example("rayleigh"), &[("eps", "1/2")], 1e-16),
         (example("duffing-van-der-pol"), &[("eps", "1/4")], 1e-12),
         (example("duffing-van-der-pol"), &[("eps", "1/4"), ("beta", "-1/3")], 1e-8),
@@ -383,8 +386,8 @@ fn conservative_files() {
     let mut helmholtz = example("helmholtz-duffing");
     helmholtz.conditions = vec![Condition::InitialAmplitude];
     let eps = 0.1;
-    type Case = (Problem, &'static [(&'static str, &'static str)], Vec<f64>, f64, bool);
-    let cases: Vec<Case> = vec![
+    type Force = (Problem, &'static [(&'static str, &'static str)], Vec<f64>, f64, bool);
+    let cases: Vec<Force> = vec![
         (
             helmholtz,
             &[("eps", "1/10"), ("amplitude", "2"), ("alpha_3", "3")],

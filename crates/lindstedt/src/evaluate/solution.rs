@@ -9,7 +9,7 @@ use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::Problem;
 use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
 use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
-use lindstedt_series::resummation::{Method, Resummed, Sample, UniformMap, partial_sums, resum};
+use lindstedt_series::resummation::{Estimate, Method, Sample, UniformMap, partial_sums};
 use rayon::prelude::*;
 use rug::{Float, Rational};
 use std::cell::RefCell;
@@ -61,6 +61,36 @@ fn default_order(form: &Form) -> usize {
 /// Phases at which the speed is looked at, and its safety factor.
 const PHASES: u32 = 64;
 const SAFETY: f64 = 2.0;
+
+/// Doublings of the precision before the rounding is added to the error as it is.
+const DOUBLINGS: u32 = 4;
+
+/// One method at p and 2p bits, p doubled until the rounding does not matter; it is added to the
+/// error. The same as [`lindstedt_series::resummation::resum`] without the search for the nearest
+/// singularity, which would take most of the time at every phase anew.
+fn settled(
+    sample: &dyn Fn(u32) -> Option<Sample>,
+    method: Method,
+    known: usize,
+    accuracy: u32,
+) -> Option<(Estimate, u32)> {
+    let loss = u32::try_from(known).ok()?.saturating_mul(4);
+    let mut bits = accuracy.saturating_add(64).saturating_add(loss);
+    let sum = |bits: u32| Some(sample(bits)?.sum(method, None, accuracy).ok()?.estimate);
+    let mut before = sum(bits)?;
+    for last in (0..=DOUBLINGS).rev() {
+        bits = bits.saturating_mul(2);
+        let mut after = sum(bits)?;
+        let rounding = Float::with_val(53, &after.value - &before.value).abs();
+        let size = Float::with_val(53, after.value.abs_ref()) >> accuracy;
+        if last == 0 || Float::with_val(53, &rounding * 8u32) <= after.error || rounding <= size {
+            after.error += rounding.max(&size);
+            return Some((after, bits));
+        }
+        before = after;
+    }
+    None
+}
 
 impl Trajectory {
     /// Derives the solution of a problem, x(0) = a, x'(0) = 0 at phase 0.
@@ -225,17 +255,16 @@ impl Trajectory {
             Some(sample)
         };
         let accuracy = bits_for(self.digits);
-        let found = match few::partial_sum(&source, self.order() + 1, None, accuracy) {
-            Some(few) => few.ok()?,
+        let known = self.order() + 1;
+        let (estimate, bits) = match few::partial_sum(&source, known, None, accuracy) {
+            Some(few) => few.ok().map(|found| (found.outcome.estimate, found.bits))?,
             None => {
                 let sums = self.methods.iter();
-                let sums = sums.filter_map(|m| resum(&source, Some(*m), accuracy).ok());
-                let error = |found: &Resummed| found.outcome.estimate.error.clone();
-                sums.min_by(|a, b| error(a).total_cmp(&error(b)))?
+                let sums = sums.filter_map(|m| settled(&source, *m, known, accuracy));
+                sums.min_by(|a, b| a.0.error.total_cmp(&b.0.error))?
             }
         };
-        let balls = Balls::new(found.bits);
-        let estimate = &found.outcome.estimate;
+        let balls = Balls::new(bits);
         let amplitude = self.setting.amplitude.ball(balls);
         let value = balls.from_parts(&estimate.value, &Float::new(53));
         let error = Float::with_val(53, &estimate.error * amplitude.abs_upper());

@@ -307,12 +307,13 @@ impl Motion {
                 "no estimate: the last term of x is {ratio:.1} times the one before, the terms do \
                  not decrease"
             ),
+            None if self.orders.len() > 2 => "no estimate: the last terms vanish".to_owned(),
             None => "no estimate from so few orders".to_owned(),
         });
         parts.push(if self.orders.first().is_some_and(|full| full.linear().is_some()) {
-            "a is an exponential: no error of integration".to_owned()
+            "a is an exponential, without an error of integration".to_owned()
         } else {
-            format!("integrated to {:.0e}", self.integration_error.max(1e-300))
+            format!("a and psi are integrated, error {:.0e}", self.integration_error)
         });
         if self.is_delayed {
             parts.push("before t = 0 the motion is taken to be the same averaged one".to_owned());
