@@ -20,7 +20,8 @@ pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
     let digits = digits(&options.precision)?;
     let request = Request::read(options)?;
     output::check_writable(session)?;
-    let request = request.watched(&Watch::new(session.watch()));
+    let stop = session.stop();
+    let request = request.watched(&Watch::new(std::sync::Arc::new(move || !stop.asked())));
     let mut answer = report::Answer::new(&request, digits, session).map_err(|failure| {
         // An orbit that was not followed to its end looks undecided.
         match failure.exit {
