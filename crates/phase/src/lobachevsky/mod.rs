@@ -70,12 +70,7 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> LobachevskyElement<E>
     }
 }
 
-/// The Lobachevsky ring C[cos, 1/cos, sin, l, Lambda_1, Lambda_2, ...] modulo sin^2 + cos^2 = 1 over a ring
-/// C of constants with moments: l = -ln|cos t|, Lambda_m = int_0^t (l^m/m! - mu_m), odd and pi-periodic.
-///
-/// Exact and canonical. `log_abs` knows cos t alone, `reciprocal` the units c cos^k. `resolve` is partial:
-/// it finds the response if it lies in the ring and says `NotIntegrable` if not
-/// (`docs/src/concepts/resonance.md`). A product costs one product of constants per pair of terms.
+/// The Lobachevsky ring over a ring of constants with moments.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lobachevsky<C> {
     constants: C,
