@@ -100,6 +100,14 @@ pub fn leading_amplitude<A: PhaseAlgebra>(
 
 /// Derives the expansion up to the order of the request.
 ///
+/// After each order `observer` is told the work; when it returns `false` the driver stops and
+/// returns the orders that are finished.
+///
+/// # Errors
+/// [`ExpandError`] says at which order and why no expansion of the asked form exists or could
+/// be found in this algebra.
+///
+/// # Method
 /// Order n solves x_n'' + x_n = f_n - W_n x_0'' in the phase: `PhaseAlgebra::resolve` splits off the
 /// resonant part of f_n, its cosine fixes W_n, its sine the amplitude of order n - 1 (limit cycle) or must
 /// vanish, and the rest gives x_n. The coefficients of F come from recurrences in eps, so order n costs
@@ -128,6 +136,7 @@ pub fn leading_amplitude<A: PhaseAlgebra>(
 /// assert_eq!(check(&algebra, &equation, &found)?, 2);
 /// # Ok::<(), lindstedt_expand::ExpandError>(())
 /// ```
+<<<<<<< HEAD
 ///
 /// After each order `observer` is told the work; when it returns `false`, or when the algebra is
 /// interrupted within an order, the driver stops and returns the orders that are finished.
@@ -135,6 +144,8 @@ pub fn leading_amplitude<A: PhaseAlgebra>(
 /// # Errors
 /// [`ExpandError`] says at which order and why no expansion of the asked form exists or could
 /// be found in this algebra.
+=======
+>>>>>>> book
 pub fn expand<A: PhaseAlgebra>(
     algebra: &A,
     equation: &Equation<A>,

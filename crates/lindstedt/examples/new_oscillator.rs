@@ -4,7 +4,8 @@ use lindstedt::verify::{VerifySettings, verify_derivation};
 use lindstedt::{Error, Oscillator};
 
 fn main() -> Result<(), Error> {
-    let rayleigh = Oscillator::parse("x'' + x = eps*(x' - x'^3/3)")?.derive(6)?;
+    let oscillator = Oscillator::parse("x'' + x = eps*(x' - x'^3/3)")?;
+    let rayleigh = oscillator.derive(6)?;
     for n in 0..=rayleigh.order {
         let coefficient = rayleigh.exact("frequency", n).ok_or(Error::NoValue)?;
         println!("frequency, coefficient of eps^{n}: {coefficient}");
@@ -12,7 +13,8 @@ fn main() -> Result<(), Error> {
     let checked = rayleigh.checked_orders.ok_or(Error::NoValue)?;
     println!("substituted into the equation: vanishes identically at orders 0 to {checked}");
 
-    let judge = verify_derivation(&rayleigh, &VerifySettings::default())?;
+    let (problem, settings) = (&oscillator.problem, VerifySettings::default());
+    let judge = verify_derivation(problem, &rayleigh, &settings, &mut |_| true)?;
     let observed = judge.observed.ok_or(Error::NoValue)?;
     println!("against the motion in time: {:?}, observed order {observed:.2}", judge.verdict);
     Ok(())
