@@ -98,7 +98,7 @@ pub fn resum(
             // The least of several estimates is more often too small than each: where another
             // method with a comparable estimate disagrees, the disagreement is added.
             let own = outcome.estimate.clone();
-            if tried.len() > 1 {
+            if tried.len() > 1 && !low.has_known_tail(method) {
                 outcome.estimate.error *= SELECTION;
             }
             for other in &values {
