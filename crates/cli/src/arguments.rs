@@ -110,7 +110,7 @@ pub enum TierName {
 
 #[derive(Debug, Args)]
 pub struct EvaluateOptions {
-    /// power-law, pendulum, duffing or van-der-pol.
+    /// power-law, pendulum, duffing, van-der-pol, vibro-impact, or the path of a problem file (.toml).
     pub problem: String,
     /// The highest order; a quick one if not given.
     #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
@@ -118,6 +118,10 @@ pub struct EvaluateOptions {
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
+    /// What the amplitude is: x(0), the first harmonic, or free to drift (averaging: a(t), psi(t)
+    /// and x(t) at --times from --start or --state).
+    #[arg(long, value_enum)]
+    pub normalisation: Option<Normalisation>,
     /// How the series is summed; auto takes the least error estimate and says why.
     #[arg(long, value_enum, default_value_t = Resum::Auto)]
     pub resum: Resum,

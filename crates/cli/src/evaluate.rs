@@ -5,24 +5,39 @@ mod report;
 mod trajectory;
 
 use crate::Outcome;
-use crate::arguments::{EvaluateOptions, Format, Resum};
+use crate::arguments::{EvaluateOptions, Format, Normalisation, Resum};
+use crate::classification;
 use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
 use crate::output;
-use crate::session::{Session, digits, parameters, problem};
+use crate::session::{Loaded, Session, digits, load, parameters};
+use lindstedt::equation::{Condition, Expression};
 use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
 use lindstedt::series::resummation::Method;
+use lindstedt::problem_file::parse_equation;
 use lindstedt::{Error, Progress, Value, expand::ExpandError};
 use report::Report;
+use rug::Rational;
+use std::collections::BTreeMap;
 
 /// Digits of a double.
 const DOUBLE: usize = 16;
 
 pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
-    let problem = problem(&options.problem)?;
+    let loaded = load(&options.problem)?;
+    let condition = options.normalisation.map(condition);
+    let mut given = parameters(&options.set)?;
+    if let Some(file) = &loaded.file
+        && let Ok(parts) = classification::of(&loaded.problem, &given)
+    {
+        classification::check(&parts, file, condition, &options.problem)?;
+    }
+    set_order_parameter(&loaded, &mut given);
+    let problem = loaded.problem;
     let settings = EvaluateSettings {
         order: options.order.map(|order| order as usize),
         method: method(options.resum),
-        parameters: parameters(&options.set)?,
+        condition,
+        parameters: given,
         digits: digits(&options.precision)?,
         memory: session.memory(),
     };
@@ -84,6 +99,33 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         return Ok(UNDECIDED);
     }
     Ok(0)
+}
+
+fn condition(normalisation: Normalisation) -> Condition {
+    match normalisation {
+        Normalisation::Initial => Condition::InitialAmplitude,
+        Normalisation::Fundamental => Condition::FundamentalAmplitude,
+        Normalisation::Free => Condition::FreeAmplitude,
+    }
+}
+
+/// Where the small parameter only counts orders (the equation as it was written does not mention
+/// it, a table of orders puts it in) it is 1, unless it is set.
+fn set_order_parameter(loaded: &Loaded, given: &mut BTreeMap<String, Value>) {
+    let problem = &loaded.problem;
+    let written = loaded.file.as_ref().map(|file| parse_equation(&file.equation, &file.names));
+    let mentions = |e: &Expression| e.contains(&Expression::Small);
+    let counts_only = match &written {
+        Some(Ok(equation)) => !mentions(equation),
+        // Built-in problems have a card for a small parameter that means something.
+        None => problem.conditions.contains(&Condition::FreeAmplitude) && problem.impact.is_some(),
+        Some(Err(_)) => false,
+    };
+    let listed = problem.parameters.iter().any(|card| card.name == problem.small);
+    if counts_only && !listed {
+        let one = || Value::Rational(Rational::from(1));
+        given.entry(problem.small.to_string()).or_insert_with(one);
+    }
 }
 
 fn failure(error: Error, session: &Session<'_>) -> Failure {

@@ -67,6 +67,7 @@ impl From<Error> for Failure {
             Error::UnknownCondition { .. } => {
                 (USAGE, "unknown-normalisation", "see `lindstedt problems --show NAME`")
             }
+            Error::Unset { .. } => (USAGE, "no-value-set", "--set NAME=VALUE, for example 1/10"),
             Error::NotAmongSymbols { .. } => {
                 (USAGE, "not-among-symbols", "set all parameters, or leave this one open")
             }

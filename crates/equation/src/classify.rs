@@ -431,6 +431,27 @@ pub fn linear_stiffness(equation: &Expression) -> Option<Expression> {
     Some(all.coefficient(|m| m.order == 0 && m.is_power(1, 0)))
 }
 
+/// The coefficients of small^i x^j x'^k by [i, j, k], x'' left out, of an equation that is a
+/// polynomial with numbers for coefficients; nothing for another one, or when it is too long to
+/// multiply out.
+///
+/// ```
+/// use lindstedt_equation::{Expression, classify::polynomial};
+/// let x = Expression::Displacement;
+/// let duffing = Expression::Acceleration + 2 * x.clone() + 3 * Expression::Small * x.pow(3);
+/// let terms: Vec<_> = polynomial(&duffing).into_iter().flatten().collect();
+/// assert_eq!(terms, [([0, 1, 0], 2.into()), ([1, 3, 0], 3.into())]);
+/// ```
+pub fn polynomial(equation: &Expression) -> Option<BTreeMap<[u32; 3], Rational>> {
+    let without = |e: &Expression| (*e == Expression::Acceleration).then(|| Expression::integer(0));
+    let all = expand(&equation.substitute(&without))?;
+    let plain = |(m, q): (&Monomial, &Rational)| {
+        (m.atoms.is_empty() && m.parameters.is_empty())
+            .then(|| ([m.order, m.x, m.velocity], q.clone()))
+    };
+    all.terms.iter().map(plain).collect()
+}
+
 /// How an expression changes under (x, x') -> (-x, -x'), or under x' -> -x' alone.
 pub(crate) fn parity(e: &Expression, both: bool) -> Option<Parity> {
     use Parity::{Even, Odd};

@@ -61,6 +61,14 @@ pub enum Error {
         /// The parameter.
         name: String,
     },
+    /// A parameter without a value.
+    #[error("{name} has no value in {problem}: set it")]
+    Unset {
+        /// The problem.
+        problem: String,
+        /// The parameter.
+        name: String,
+    },
     /// A value outside the domain of a parameter.
     #[error("{name} = {value} is outside its domain {domain}")]
     OutsideDomain {

@@ -113,7 +113,7 @@ impl Report<'_> {
             None => "not one digit".to_owned(),
             Some(number) => match &number.error {
                 Some(error) => format!("{} +- {error} (estimated)", number.decimal),
-                None => number.decimal.clone(),
+                None => format!("{} (no estimate from so few coefficients)", number.decimal),
             },
         };
         let mut lines = vec![

@@ -88,7 +88,7 @@ fn exceeds(a: &Value, b: &Value) -> bool {
 
 /// Whether the equation needs the Lobachevsky ring, or exp, which the route over many primes does
 /// not take.
-pub(super) fn has_logarithms(expression: &Expression) -> bool {
+pub(crate) fn has_logarithms(expression: &Expression) -> bool {
     match expression {
         Expression::Sum(list) | Expression::Product(list) => list.iter().any(has_logarithms),
         Expression::Power(base, exponent) => {

@@ -1,7 +1,7 @@
 //! From a problem to a checked expansion: the call behind `lindstedt derive`.
 
 pub(crate) mod limits;
-mod prepare;
+pub(crate) mod prepare;
 mod series;
 
 use crate::multimodular::{self, RationalBinding};

@@ -13,7 +13,7 @@ use rug::Rational;
 use std::collections::BTreeMap;
 
 /// A problem ready for the driver.
-pub(super) struct Prepared {
+pub(crate) struct Prepared {
     /// The problem with the equation that is expanded.
     pub problem: Problem,
     /// Values that were put in.
@@ -23,7 +23,7 @@ pub(super) struct Prepared {
 }
 
 /// Prepares a problem. With a free amplitude parameters stay symbols and nothing is scaled.
-pub(super) fn prepare(problem: &Problem, settings: &Settings) -> Result<Prepared, Error> {
+pub(crate) fn prepare(problem: &Problem, settings: &Settings) -> Result<Prepared, Error> {
     let mut prepared = Prepared {
         problem: problem.clone(),
         bound: BTreeMap::new(),

@@ -3,18 +3,21 @@
 
 mod closed;
 mod coefficients;
+mod few;
+pub(crate) mod setting;
 mod solution;
-mod source;
+pub(crate) mod source;
 
 use crate::number::{Number, Status, certified};
 use crate::{Error, Progress, Value};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::digits::{decimal, error_string};
-use lindstedt_equation::{AmplitudeRole, Problem};
+use lindstedt_equation::{Condition, Problem};
 use lindstedt_series::resummation::{
     Growth, Kind, Method, Pade, Picture, ResummationError, Resummed, resum,
 };
 use rug::Float;
+use setting::{Form, Setting};
 pub use solution::{Displacement, Trajectory};
 use source::Source;
 use std::collections::BTreeMap;
@@ -26,7 +29,9 @@ pub struct EvaluateSettings {
     pub order: Option<usize>,
     /// The method; nothing is `auto`, the one with the least error estimate.
     pub method: Option<Method>,
-    /// Values of parameters by name.
+    /// The normalisation; the problem's default if nothing.
+    pub condition: Option<Condition>,
+    /// Values of parameters by name, the small one included.
     pub parameters: BTreeMap<String, Value>,
     /// Digits asked for; an estimate has as many of them as its error allows.
     pub digits: usize,
@@ -36,7 +41,14 @@ pub struct EvaluateSettings {
 
 impl Default for EvaluateSettings {
     fn default() -> Self {
-        Self { order: None, method: None, parameters: BTreeMap::new(), digits: 30, memory: 8 << 30 }
+        Self {
+            order: None,
+            method: None,
+            condition: None,
+            parameters: BTreeMap::new(),
+            digits: 30,
+            memory: 8 << 30,
+        }
     }
 }
 
@@ -44,12 +56,13 @@ impl Default for EvaluateSettings {
 #[derive(Debug)]
 pub struct Evaluation {
     /// The parameters, the derived ones included.
-    pub at: Vec<(&'static str, Value)>,
+    pub at: Vec<(String, Value)>,
     /// The variable of the series.
-    pub variable: &'static str,
+    pub variable: String,
     /// The order of the expansion in the small parameter.
     pub order: usize,
-    /// The period by resummation; nothing where not one digit is supported.
+    /// The period by resummation; nothing where not one digit is supported. Without an error
+    /// where the coefficients are too few for an estimate.
     pub period: Option<Number>,
     /// 2 pi over the period.
     pub frequency: Option<Number>,
@@ -65,6 +78,8 @@ pub struct Evaluation {
     pub radius: Option<(f64, &'static str)>,
     /// The best that is known of the period: the closed form, else the estimate.
     best_period: Ball,
+    /// Whether an error of the period is known.
+    is_estimated: bool,
     /// In words.
     pub verdict: String,
     /// Poles and zeros of the diagonal Pade approximant of the highest order.
@@ -72,12 +87,14 @@ pub struct Evaluation {
 }
 
 /// The order that takes well below a second.
-fn default_order(problem: &Problem) -> usize {
-    match problem.amplitude {
-        AmplitudeRole::ScalesFrequency { .. } => 20,
-        AmplitudeRole::InSums => 24,
-        AmplitudeRole::InSmallParameter => 30,
-        AmplitudeRole::Determined | AmplitudeRole::Free | AmplitudeRole::Scaled => 60,
+fn default_order(form: &Form) -> usize {
+    match form {
+        Form::PowerLaw { .. } => 20,
+        Form::Sums => 24,
+        Form::Cubic { .. } => 30,
+        Form::Relaxation => 60,
+        Form::Conservative | Form::Polynomial => 24,
+        Form::Logarithmic => 8,
     }
 }
 
@@ -86,14 +103,16 @@ fn bits_for(digits: usize) -> u32 {
     u32::try_from(digits).unwrap_or(u32::MAX / 8).saturating_mul(4).saturating_add(32)
 }
 
-/// Evaluates the period of a problem.
+/// Evaluates the period of a problem: of the library, of a file, or built from an equation.
 ///
 /// The series of T/2pi in the small parameter is summed; which quantity is truncated matters, and
-/// it is always this one. `period` and `frequency` are estimated; `exact_period` is certified.
+/// it is always this one. `period` and `frequency` are estimated; `exact_period` is certified, and
+/// there for x'' + k x (x^2)^delta, x'' + k x + c eps x^3 and the pendulum with a given amplitude.
 ///
 /// # Errors
-/// [`Error::NotEvaluated`] for a problem whose period has no known series,
-/// [`Error::OutsideDomain`] and [`Error::UnknownParameter`] for parameters,
+/// [`Error::NotEvaluated`] for a problem without a periodic solution that is expanded (no
+/// condition, a free amplitude, a wall); [`Error::Unset`] where the small parameter or another one
+/// has no value; [`Error::OutsideDomain`] and [`Error::UnknownParameter`] for parameters,
 /// [`Error::Resummation`] where the method asked for does not apply, and what
 /// [`crate::derive()`] returns.
 ///
@@ -113,20 +132,22 @@ pub fn evaluate(
     settings: &EvaluateSettings,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Evaluation, Error> {
-    let order = settings.order.unwrap_or_else(|| default_order(problem));
-    let source = source::source(problem, &settings.parameters, order, settings.memory, observer)?;
+    let setting = Setting::new(problem, settings.condition, &settings.parameters)?;
+    let order = settings.order.unwrap_or_else(|| default_order(&setting.form));
+    let source = Source::new(&setting, order, settings.memory, observer)?;
     if !observer(Progress::Checking) {
         return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
     }
     let accuracy = bits_for(settings.digits);
     let sample = |bits: u32| source.sample(bits);
-    let resummed = resum(&sample, settings.method, accuracy);
+    let few = few::partial_sum(&sample, source.known, settings.method, accuracy);
+    let resummed = few.unwrap_or_else(|| resum(&sample, settings.method, accuracy));
     let resummed = resummed
         .map_err(|reason| Error::Resummation { problem: problem.name.to_string(), reason })?;
     let exact_period = match &source.closed {
         None => None,
         Some((form, formula)) => {
-            Some(certified(Some((*form).to_owned()), settings.digits, formula)?)
+            Some(certified(Some(form.clone()), settings.digits, formula)?)
         }
     };
     let balls = Balls::new(resummed.bits).with_guard(64);
@@ -143,23 +164,32 @@ pub fn evaluate(
         // the error.
         period = balls.add_error(&value, error);
     }
+    let is_estimated = period.is_finite();
+    let number = |ball: &Ball| match is_estimated || !few::has_no_estimate(source.known) {
+        true => estimated(ball, settings.digits),
+        false => few::plain(ball, settings.digits),
+    };
+    if !is_estimated && few::has_no_estimate(source.known) {
+        period = value;
+    }
     let frequency = balls.div(&balls.mul_i64(&balls.pi(), 2), &period);
     let best = best_truncation(&sample, &resummed, &scale, settings.digits);
     let picture = picture(&sample, resummed.bits);
     let mut result = Evaluation {
-        at: source.at,
-        variable: source.variable,
         order,
-        period: estimated(&period, settings.digits),
-        frequency: frequency.and_then(|f| estimated(&f, settings.digits)),
+        period: number(&period),
+        frequency: frequency.and_then(|f| number(&f)),
         exact_period,
         true_error: difference.map(|error| short(&error)),
         resummed,
         best_truncation: best,
         radius: source.radius,
         best_period: closed.unwrap_or(period),
+        is_estimated,
         verdict: String::new(),
         picture,
+        at: source.at,
+        variable: source.variable,
     };
     result.verdict = result.describe();
     Ok(result)
@@ -204,7 +234,7 @@ fn picture(
     bits: u32,
 ) -> Option<Picture> {
     let sample = sample(bits)?;
-    let order = sample.coefficients.len().checked_sub(1)?;
+    let order = sample.coefficients.len().checked_sub(1).filter(|order| *order > 1)?;
     Pade::new(&sample.coefficients, order - order / 2, order / 2, bits)?.picture()
 }
 
@@ -239,7 +269,7 @@ impl Evaluation {
     fn describe(&self) -> String {
         let outcome = &self.resummed.outcome;
         let mut parts = Vec::new();
-        let name = self.variable;
+        let name = &self.variable;
         parts.push(match (self.radius, self.resummed.growth) {
             (Some((0.0, why)), _) => {
                 format!("the series in {name} diverges for every {name} but 0 ({why}): it is asymptotic")
@@ -274,10 +304,10 @@ impl Evaluation {
             String::new()
         };
         parts.push(match &self.period {
-            Some(number) => format!(
-                "summed by {method}{degrees}{choice}, estimated error {}",
-                number.error.as_deref().unwrap_or("unknown")
-            ),
+            Some(Number { error: Some(error), .. }) => {
+                format!("summed by {method}{degrees}{choice}, estimated error {error}")
+            }
+            Some(_) => format!("{method}{degrees}, no estimate from so few coefficients"),
             None => format!(
                 "{method}{degrees} gives not one digit: neighbouring approximants do not agree"
             ),

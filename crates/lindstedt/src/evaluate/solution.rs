@@ -1,15 +1,17 @@
 //! The solution x(t) at given times: the expansion at the phase omega t, order by order, and its
 //! series in the small parameter summed there.
 
-use super::{EvaluateSettings, Evaluation, bits_for, estimated, source};
+use super::setting::{Form, Setting};
+use super::{EvaluateSettings, Evaluation, bits_for, estimated, few};
 use crate::number::Number;
-use crate::{Derivation, Error, Progress, Settings, Solution, Value, derive};
+use crate::{Derivation, Error, Progress, Solution, Value};
 use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_equation::{AmplitudeRole, Problem};
+use lindstedt_equation::Problem;
 use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
 use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
 use lindstedt_series::resummation::{Method, Resummed, Sample, UniformMap, resum};
-use rug::Float;
+use rayon::prelude::*;
+use rug::{Float, Rational};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -31,11 +33,11 @@ pub struct Trajectory {
     derivation: Derivation,
     /// The frequency with its uncertainty.
     frequency: Ball,
-    /// a in x = a y; 1 where the expansion contains its amplitude.
-    amplitude: Value,
-    /// The small parameter.
-    small: Box<dyn Fn(Balls) -> Option<Ball> + Send + Sync>,
-    /// A bound of |x'|, for the error that an uncertain frequency makes.
+    /// Whether anything is known about its error.
+    is_estimated: bool,
+    /// The small parameter, and a in x = a y (1 where the expansion contains its amplitude).
+    setting: Setting,
+    /// An estimated bound of |x'|, for the error that an uncertain frequency makes.
     speed: f64,
     /// x(t) = X(omega t + phase).
     phase: Value,
@@ -46,14 +48,19 @@ pub struct Trajectory {
 }
 
 /// The order of a solution that takes about a second.
-fn default_order(problem: &Problem) -> usize {
-    match problem.amplitude {
-        AmplitudeRole::ScalesFrequency { .. } => 10,
-        AmplitudeRole::InSums => 8,
-        AmplitudeRole::InSmallParameter => 24,
-        AmplitudeRole::Determined | AmplitudeRole::Free | AmplitudeRole::Scaled => 40,
+fn default_order(form: &Form) -> usize {
+    match form {
+        Form::PowerLaw { .. } => 10,
+        Form::Sums | Form::Logarithmic => 8,
+        Form::Cubic { .. } => 24,
+        Form::Relaxation => 40,
+        Form::Conservative | Form::Polynomial => 20,
     }
 }
+
+/// Phases at which the speed is looked at, and its safety factor.
+const PHASES: u32 = 64;
+const SAFETY: f64 = 2.0;
 
 impl Trajectory {
     /// Derives the solution of a problem, x(0) = a, x'(0) = 0 at phase 0.
@@ -70,24 +77,14 @@ impl Trajectory {
         phase: Value,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Self, Error> {
-        let order = settings.order.unwrap_or_else(|| default_order(problem));
+        let setting = Setting::new(problem, settings.condition, &settings.parameters)?;
+        let order = settings.order.unwrap_or_else(|| default_order(&setting.form));
         let digits = settings.digits.min(30);
-        let point = source::point(problem, &settings.parameters)?;
         let balls = Balls::new(bits_for(digits).saturating_add(64));
         let period = evaluation.best_period.clone();
         let two_pi = balls.mul_i64(&balls.pi(), 2);
         let frequency = balls.div(&two_pi, &period).ok_or(Error::NoValue)?;
-        let mut parameters = settings.parameters.clone();
-        if !matches!(problem.amplitude, AmplitudeRole::InSums) {
-            // The amplitude is scaled out; only the sums S_n depend on it.
-            parameters.remove("amplitude");
-        }
-        let derived =
-            Settings { order, parameters, memory: settings.memory, ..Settings::default() };
-        let derivation = derive(problem, &derived, observer)?;
-        let one = || Value::Rational(rug::Rational::from(1));
-        let given = |name: &str| point.at.iter().find(|(n, _)| *n == name).map(|(_, v)| v.clone());
-        let eps = given("eps").map_or(0.0, |v| v.ball(balls).midpoint().to_f64().abs());
+        let derivation = setting.derive(order, settings.memory, observer)?;
         let methods = match settings.method {
             Some(
                 method @ (Method::PartialSum
@@ -98,25 +95,40 @@ impl Trajectory {
             ) => vec![method],
             _ => vec![Method::Pade, Method::UniformPade],
         };
-        let limit_cycle = matches!(problem.amplitude, AmplitudeRole::Determined);
-        Ok(Self {
+        let mut trajectory = Self {
             derivation,
             frequency,
-            amplitude: if limit_cycle { one() } else { given("amplitude").unwrap_or_else(one) },
-            small: if limit_cycle {
-                // The period is a series in eps^2, the solution in eps.
-                let eps = given("eps").ok_or(Error::NoValue)?;
-                Box::new(move |balls| Some(eps.ball(balls)))
-            } else {
-                point.point
-            },
-            // Van der Pol: |x| <= about 2, |x'| <= (2/3) eps + ... in Lienard's plane.
-            speed: 3.0 + 2.0 * eps,
+            is_estimated: evaluation.is_estimated || evaluation.exact_period.is_some(),
+            setting,
+            speed: 0.0,
             phase,
             methods,
             digits,
             period: period.midpoint().to_f64(),
-        })
+        };
+        trajectory.speed = trajectory.largest_speed();
+        Ok(trajectory)
+    }
+
+    /// The largest difference quotient of x over neighbouring phases, times a safety factor.
+    fn largest_speed(&self) -> f64 {
+        let frequency = self.frequency.midpoint().to_f64();
+        if self.frequency.relative_accuracy_bits() >= i64::from(bits_for(self.digits)) {
+            // Known so well that no factor of this size matters.
+            let balls = Balls::new(64);
+            return 16.0 * frequency * self.setting.amplitude.ball(balls).abs_upper().to_f64();
+        }
+        let point = |k: u32| Point::PiTimes(Rational::from((2 * k + 1, PHASES)));
+        let x: Vec<f64> = (0..PHASES)
+            .into_par_iter()
+            .map(|k| self.sum(&point(k)).map_or(f64::NAN, |(_, x)| x))
+            .collect();
+        let step = std::f64::consts::TAU / f64::from(PHASES);
+        let next = x.iter().cycle().skip(1);
+        let quotients = x.iter().zip(next).map(|(a, b)| (b - a).abs() / step);
+        // Where the series has no value at some phase nothing bounds the speed.
+        let top = quotients.fold(0.0, |top: f64, q| if q >= 0.0 { top.max(q) } else { f64::INFINITY });
+        SAFETY * top * frequency
     }
 
     /// The methods that sum the series in the small parameter; at every phase the one with the
@@ -155,6 +167,20 @@ impl Trajectory {
         let drift = balls.mul(&t, &self.frequency).radius().to_f64()
             / self.frequency.midpoint().to_f64().abs();
         let point = Point::Rational(tau.midpoint().to_rational()?);
+        let (ball, double) = self.sum(&point)?;
+        if !self.is_estimated || !ball.is_finite() && few::has_no_estimate(self.order() + 1) {
+            let balls = Balls::new(ball.midpoint().prec());
+            let value = few::plain(&balls.from_parts(ball.midpoint(), &Float::new(53)), self.digits);
+            let error = f64::INFINITY;
+            return Some(Displacement { time: time.clone(), value, double, error });
+        }
+        let ball = balls.add_error(&ball, &Float::with_val(53, drift * self.speed));
+        let value = estimated(&ball, self.digits);
+        Some(Displacement { time: time.clone(), value, double, error: ball.radius().to_f64() })
+    }
+
+    /// X at a phase with its estimated error, and as a double.
+    fn sum(&self, point: &Point) -> Option<(Ball, f64)> {
         // The methods ask for the same precisions: each is computed once.
         let known: RefCell<BTreeMap<u32, Sample>> = RefCell::default();
         let source = |bits: u32| {
@@ -167,13 +193,13 @@ impl Trajectory {
                 prefactor: Float::new(bits),
                 radius: None,
             };
-            let coefficients = self.coefficients(&point, balls)?;
+            let coefficients = self.coefficients(point, balls)?;
             let sample = Sample {
                 coefficients: coefficients
                     .iter()
                     .map(|c| Float::with_val(bits, c.midpoint()))
                     .collect(),
-                point: Float::with_val(bits, (self.small)(balls)?.midpoint()),
+                point: Float::with_val(bits, self.setting.small(balls).midpoint()),
                 map: Some(map),
                 radius: None,
                 bits,
@@ -181,23 +207,22 @@ impl Trajectory {
             known.borrow_mut().insert(bits, sample.clone());
             Some(sample)
         };
-        let sums = self.methods.iter();
-        let sums = sums.filter_map(|m| resum(&source, Some(*m), bits_for(self.digits)).ok());
-        let error = |found: &Resummed| found.outcome.estimate.error.clone();
-        let found = sums.min_by(|a, b| error(a).total_cmp(&error(b)))?;
+        let accuracy = bits_for(self.digits);
+        let found = match few::partial_sum(&source, self.order() + 1, None, accuracy) {
+            Some(few) => few.ok()?,
+            None => {
+                let sums = self.methods.iter();
+                let sums = sums.filter_map(|m| resum(&source, Some(*m), accuracy).ok());
+                let error = |found: &Resummed| found.outcome.estimate.error.clone();
+                sums.min_by(|a, b| error(a).total_cmp(&error(b)))?
+            }
+        };
         let balls = Balls::new(found.bits);
         let estimate = &found.outcome.estimate;
-        let ball = balls.from_parts(&estimate.value, &estimate.error);
-        let ball = balls.mul(&ball, &self.amplitude.ball(balls));
-        let ball = balls.add_error(&ball, &Float::with_val(53, drift * self.speed));
-        let value = balls
-            .mul(&balls.from_parts(&estimate.value, &Float::new(53)), &self.amplitude.ball(balls));
-        Some(Displacement {
-            time: time.clone(),
-            value: estimated(&ball, self.digits),
-            double: value.midpoint().to_f64(),
-            error: ball.radius().to_f64(),
-        })
+        let amplitude = self.setting.amplitude.ball(balls);
+        let ball = balls.mul(&balls.from_parts(&estimate.value, &estimate.error), &amplitude);
+        let value = balls.mul(&balls.from_parts(&estimate.value, &Float::new(53)), &amplitude);
+        Some((ball, value.midpoint().to_f64()))
     }
 
     /// x_n at a phase.
@@ -227,7 +252,7 @@ impl Trajectory {
         let sample = |offset: f64| -> Option<Vec<f64>> {
             let one = |i: usize| {
                 let time = (i as f64 + offset) / count as f64 * self.period;
-                let time = Value::Rational(rug::Rational::from_f64(time)?);
+                let time = Value::Rational(Rational::from_f64(time)?);
                 let x = self.at(&time).double;
                 x.is_finite().then_some(x)
             };

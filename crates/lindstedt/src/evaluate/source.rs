@@ -1,26 +1,27 @@
 //! The series of a problem at a point: what is summed, in which variable, and what the period
 //! is by a closed form.
 
+use super::setting::{Form, Setting};
 use super::{closed, coefficients};
-use crate::derivation::limits::check_parameters;
-use crate::{Error, Progress, Settings, Value, derive};
-use lindstedt_algebra::RationalAlgebra;
+use crate::{Derivation, Error, Progress, Value};
+use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_equation::{AmplitudeRole, Condition, Problem};
-use lindstedt_series::resummation::{Sample, UniformMap};
+use lindstedt_series::resummation::{Growth, Sample, UniformMap, growth};
+use rayon::prelude::*;
 use rug::{Float, Rational};
-use std::collections::BTreeMap;
 
-/// A formula for the value of T/2pi = factor * sum t_n x^n.
-type Formula = Box<dyn Fn(Balls) -> Option<Ball> + Send + Sync>;
+/// A formula for a value.
+pub(crate) type Formula = Box<dyn Fn(Balls) -> Option<Ball> + Send + Sync>;
 type Coefficients = Box<dyn Fn(u32) -> Option<Vec<Float>> + Send + Sync>;
 
-/// The series of T/2pi at a point.
-pub(super) struct Source {
-    /// The variable of the series as it is printed.
-    pub variable: &'static str,
+/// The series of T/2pi = factor * sum t_n x^n at a point.
+pub(crate) struct Source {
+    /// The variable x of the series as it is printed.
+    pub variable: String,
     /// The parameters, as they stand.
-    pub at: Vec<(&'static str, Value)>,
+    pub at: Vec<(String, Value)>,
+    /// The number of coefficients t_n.
+    pub known: usize,
     /// t_n to so many bits.
     pub coefficients: Coefficients,
     /// x.
@@ -28,21 +29,57 @@ pub(super) struct Source {
     /// The factor in front.
     pub factor: Formula,
     /// The period in closed form, with its formula.
-    pub closed: Option<(&'static str, Formula)>,
+    pub closed: Option<(String, Formula)>,
     /// What is proved about the radius of convergence: its value, and why.
     pub radius: Option<(f64, &'static str)>,
-    /// (scale, prefactor, radius) of the change of variable u = x/(scale + x).
-    map: Option<(u32, Rational, Option<f64>)>,
+    /// The change of variable u = x/(scale + x).
+    map: Option<ChangeOfVariable>,
+}
+
+/// u = x/(scale + x), and the power of x that f is compared with.
+struct ChangeOfVariable {
+    scale: Rational,
+    prefactor: Rational,
+    radius: Option<f64>,
 }
 
 impl Source {
+    /// The series of a problem to an order in its small parameter.
+    ///
+    /// x'' + kappa x (x^2)^delta and x'' + x S(delta ln x^2) have their coefficients by the energy
+    /// integral when asked for, in O(N^2) and O(N^5/120) products; everything else is derived here.
+    ///
+    /// # Errors
+    /// [`Error::OutsideDomain`] beyond a separatrix, and those of [`crate::derive()`].
+    pub(crate) fn new(
+        setting: &Setting,
+        order: usize,
+        memory: u64,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Self, Error> {
+        match &setting.form {
+            Form::PowerLaw { stiffness } => power_law(setting, stiffness, order),
+            Form::Sums => Ok(sums(setting, order)),
+            Form::Cubic { stiffness, coefficient } => {
+                let ratio = Rational::from(coefficient / stiffness);
+                let closed = cubic(setting, stiffness, &ratio)?;
+                let series = Series::new(setting.derive(order, memory, observer)?)?;
+                Ok(closed.finish(setting, series))
+            }
+            _ => {
+                let series = Series::new(setting.derive(order, memory, observer)?)?;
+                Ok(derived(setting, series))
+            }
+        }
+    }
+
     /// The sample at a precision.
-    pub fn sample(&self, bits: u32) -> Option<Sample> {
+    pub(crate) fn sample(&self, bits: u32) -> Option<Sample> {
         let point = (self.point)(Balls::new(bits).with_guard(64))?;
-        let map = self.map.as_ref().map(|(scale, prefactor, radius)| UniformMap {
-            scale: Float::with_val(bits, scale),
-            prefactor: Float::with_val(bits, prefactor),
-            radius: *radius,
+        let map = self.map.as_ref().map(|map| UniformMap {
+            scale: Float::with_val(bits, &map.scale),
+            prefactor: Float::with_val(bits, &map.prefactor),
+            radius: map.radius,
         });
         Some(Sample {
             coefficients: (self.coefficients)(bits)?,
@@ -54,214 +91,256 @@ impl Source {
     }
 }
 
-/// The parameters given, and the defaults of the others; n and delta determine each other.
-struct Given<'a> {
-    problem: &'a Problem,
-    values: &'a BTreeMap<String, Value>,
+fn outside(name: &str, value: &Ball, domain: &'static str) -> Error {
+    let value = value.midpoint().to_f64().to_string();
+    Error::OutsideDomain { name: name.to_owned(), value, domain }
 }
 
-impl Given<'_> {
-    fn get(&self, name: &str) -> Result<Value, Error> {
-        if let Some(value) = self.values.get(name) {
-            return Ok(value.clone());
-        }
-        let card = self.problem.parameters.iter().find(|card| card.name == name);
-        card.map_or(Err(Error::NoValue), |card| Value::parse(&card.default))
+fn power_law(setting: &Setting, stiffness: &Rational, order: usize) -> Result<Source, Error> {
+    let probe = Balls::new(200);
+    let delta = setting.small(probe);
+    if !probe.add(&probe.one(), &delta).is_positive() {
+        return Err(outside(&setting.problem.small, &delta, "greater than -1"));
     }
-
-    fn rational(&self, name: &'static str) -> Result<Rational, Error> {
-        let value = self.get(name)?;
-        value.as_rational().cloned().ok_or_else(|| Error::OutsideDomain {
-            name: name.to_owned(),
-            value: value.to_string(),
-            domain: "the rational numbers",
-        })
-    }
-}
-
-/// As [`source`] without coefficients: the point, and the closed form.
-pub(super) fn point(problem: &Problem, values: &BTreeMap<String, Value>) -> Result<Source, Error> {
-    check_known(problem)?;
-    check_parameters(problem, values)?;
-    let given = Given { problem, values };
-    match problem.amplitude {
-        AmplitudeRole::ScalesFrequency { .. } => power_law(&given, 0),
-        AmplitudeRole::InSums => pendulum(&given, 0),
-        AmplitudeRole::InSmallParameter => duffing(&given, Vec::new()),
-        AmplitudeRole::Determined => limit_cycle(&given, Vec::new()),
-        AmplitudeRole::Free | AmplitudeRole::Scaled => Err(not_evaluated(problem)),
-    }
-}
-
-/// The maps and closed forms below belong to the equations of the library; another equation with
-/// the same role of its amplitude has others.
-fn check_known(problem: &Problem) -> Result<(), Error> {
-    let known = lindstedt_problems::find(&problem.name)
-        .is_some_and(|known| known.equation == problem.equation);
-    if known { Ok(()) } else { Err(not_evaluated(problem)) }
-}
-
-fn not_evaluated(problem: &Problem) -> Error {
-    Error::NotEvaluated { problem: problem.name.to_string() }
-}
-
-/// The series of a problem. Problems over Q are derived by the driver to `order`; the others
-/// have their coefficients by the energy integral when asked for.
-pub(super) fn source(
-    problem: &Problem,
-    values: &BTreeMap<String, Value>,
-    order: usize,
-    memory: u64,
-    observer: &mut dyn FnMut(Progress) -> bool,
-) -> Result<Source, Error> {
-    check_known(problem)?;
-    check_parameters(problem, values)?;
-    let given = Given { problem, values };
-    match problem.amplitude {
-        AmplitudeRole::ScalesFrequency { .. } => power_law(&given, order),
-        AmplitudeRole::InSums => pendulum(&given, order),
-        AmplitudeRole::InSmallParameter => {
-            let series = over_rationals(problem, order, memory, observer)?;
-            duffing(&given, series)
-        }
-        AmplitudeRole::Determined => {
-            let series = over_rationals(problem, order, memory, observer)?;
-            limit_cycle(&given, series)
-        }
-        AmplitudeRole::Free | AmplitudeRole::Scaled => Err(not_evaluated(problem)),
-    }
-}
-
-fn power_law(given: &Given<'_>, order: usize) -> Result<Source, Error> {
-    let delta = if given.values.contains_key("n") {
-        (given.rational("n")? - 1u32) / 2u32
-    } else {
-        given.rational("delta")?
+    let (factor, closed, point) = (setting.clone(), setting.clone(), setting.clone());
+    let root = {
+        let stiffness = stiffness.clone();
+        move |balls: Balls| balls.sqrt(&balls.from_rational(&stiffness))
     };
-    let amplitude = given.get("amplitude")?;
-    let n = Rational::from(&delta * 2u32) + 1u32;
-    let at = vec![
-        ("n", Value::Rational(n)),
-        ("delta", Value::Rational(delta.clone())),
-        ("amplitude", amplitude.clone()),
-    ];
-    let point = delta.clone();
-    let (exponent, base) = (delta.clone(), amplitude.clone());
-    let closed = move |balls: Balls| {
-        closed::power_law(balls, &balls.from_rational(&delta), &amplitude.ball(balls))
-    };
+    let divisor = root.clone();
+    let mut text = "4*sqrt(pi*(1+delta))*Gamma(1+y)/Gamma(1/2+y)*a^(-delta), y = 1/(2+2*delta)"
+        .replace("delta", &setting.problem.small);
+    if *stiffness != 1 {
+        text = format!("({stiffness})^(-1/2)*{text}");
+    }
     Ok(Source {
-        variable: "delta",
-        at,
+        variable: setting.small.name.clone(),
+        at: setting.at.clone(),
+        known: order + 1,
         coefficients: Box::new(move |bits| coefficients::power_law(order, bits)),
-        point: Box::new(move |balls| Some(balls.from_rational(&point))),
+        point: Box::new(move |balls| Some(point.small(balls))),
         factor: Box::new(move |balls| {
-            let log = balls.ln(&base.ball(balls))?;
-            Some(balls.exp(&balls.neg(&balls.mul_rational(&log, &exponent))))
+            let log = balls.ln(&factor.amplitude.ball(balls))?;
+            let power = balls.exp(&balls.neg(&balls.mul(&log, &factor.small(balls))));
+            balls.div(&power, &root(balls)?)
         }),
         closed: Some((
-            "4*sqrt(pi*(1+delta))*Gamma(1+y)/Gamma(1/2+y)*a^(-delta), y = 1/(2+2*delta)",
-            Box::new(closed),
+            text,
+            Box::new(move |balls| {
+                let (delta, a) = (closed.small(balls), closed.amplitude.ball(balls));
+                balls.div(&closed::power_law(balls, &delta, &a)?, &divisor(balls)?)
+            }),
         )),
         radius: Some((1.0, "the period is singular at delta = -1")),
         // sqrt(1 - u) T/2pi = Gamma(2-u) 2^u/Gamma(1-u/2)^2 has its nearest pole at u = 3.
-        map: Some((1, Rational::from((1, 2)), Some(3.0))),
+        map: Some(ChangeOfVariable {
+            scale: Rational::from(1),
+            prefactor: Rational::from((1, 2)),
+            radius: Some(3.0),
+        }),
     })
 }
 
-fn pendulum(given: &Given<'_>, order: usize) -> Result<Source, Error> {
-    let (delta, amplitude) = (given.rational("delta")?, given.get("amplitude")?);
-    let at = vec![("amplitude", amplitude.clone()), ("delta", Value::Rational(delta.clone()))];
-    let closed: Option<(&'static str, Formula)> = (delta == 1).then(|| {
+fn sums(setting: &Setting, order: usize) -> Source {
+    let amplitude = setting.amplitude.clone();
+    let point = setting.clone();
+    // The whole sine at delta = 1.
+    let probe = Balls::new(200);
+    let whole = setting.small(probe).is_exact() && *setting.small(probe).midpoint() == 1;
+    let closed = whole.then(|| {
         let amplitude = amplitude.clone();
         let formula = move |balls: Balls| closed::pendulum(balls, &amplitude.ball(balls));
-        ("4*K(k), k = sin(a/2)", Box::new(formula) as Formula)
+        ("4*K(k), k = sin(a/2)".to_owned(), Box::new(formula) as Formula)
     });
-    Ok(Source {
-        variable: "delta",
-        at,
+    Source {
+        variable: setting.small.name.clone(),
+        at: setting.at.clone(),
+        known: order + 1,
         coefficients: Box::new(move |bits| {
             coefficients::pendulum(&|balls| amplitude.ball(balls), order, bits)
         }),
-        point: Box::new(move |balls| Some(balls.from_rational(&delta))),
+        point: Box::new(move |balls| Some(point.small(balls))),
         factor: Box::new(|balls| Some(balls.one())),
         closed,
         // int x^(1 + 2 k delta) dx: a pole of the potential for every k.
         radius: Some((0.0, "the potential has poles at delta = -1/k for all k")),
         map: None,
-    })
-}
-
-/// The rational coefficients of T/2pi in the small parameter, by the driver.
-fn over_rationals(
-    problem: &Problem,
-    order: usize,
-    memory: u64,
-    observer: &mut dyn FnMut(Progress) -> bool,
-) -> Result<Vec<Rational>, Error> {
-    let condition = problem.conditions.first().copied();
-    let condition = condition.filter(|c| *c != Condition::FundamentalAmplitude);
-    let settings = Settings { order, condition, memory, ..Settings::default() };
-    let result = derive(problem, &settings, observer)?;
-    let series = result.named("period_over_2pi").ok_or(Error::NoValue)?;
-    let value = |c| result.ring.as_rational(c).ok_or(Error::NoValue);
-    series.coefficients.iter().map(value).collect()
-}
-
-fn floats(list: Vec<Rational>) -> Coefficients {
-    Box::new(move |bits| Some(list.iter().map(|q| Float::with_val(bits, q)).collect()))
-}
-
-fn duffing(given: &Given<'_>, series: Vec<Rational>) -> Result<Source, Error> {
-    let (eps, amplitude) = (given.get("eps")?, given.get("amplitude")?);
-    let at = vec![("eps", eps.clone()), ("amplitude", amplitude.clone())];
-    let rho = move |balls: Balls| {
-        Some(balls.mul(&eps.ball(balls), &balls.square(&amplitude.ball(balls))))
-    };
-    let probe = Balls::new(200);
-    let below = rho(probe).map(|rho| balls_above_minus_one(probe, &rho));
-    if below != Some(true) {
-        return Err(Error::OutsideDomain {
-            name: "eps*amplitude^2".to_owned(),
-            value: rho(probe).map_or_else(String::new, |r| r.midpoint().to_f64().to_string()),
-            domain: "greater than -1 (at -1 the amplitude is that of the saddle)",
-        });
     }
-    let closed = rho.clone();
-    Ok(Source {
-        variable: "rho = eps*amplitude^2",
-        at,
-        coefficients: floats(series),
-        point: Box::new(rho),
-        factor: Box::new(|balls| Some(balls.one())),
-        closed: Some((
-            "4*K(k)/sqrt(1+rho), k^2 = rho/(2+2*rho)",
-            Box::new(move |balls| closed::duffing(balls, &closed(balls)?)),
-        )),
-        radius: Some((1.0, "the separatrix at rho = -1")),
-        // sqrt(1 + rho) T/4 = K(k), 2 k^2 = u: analytic for |u| < 2; T ~ rho^(-1/2).
-        map: Some((1, Rational::from((-1, 2)), Some(2.0))),
-    })
 }
 
-fn balls_above_minus_one(balls: Balls, rho: &Ball) -> bool {
-    balls.add(&balls.one(), rho).is_positive()
+/// The derived coefficients of T/2pi in the small parameter.
+struct Series {
+    derivation: Derivation,
+    /// As rational numbers, where they are.
+    exact: Option<Vec<Rational>>,
+    /// All exponents with a coefficient are multiples of this.
+    step: usize,
+    known: usize,
 }
 
-fn limit_cycle(given: &Given<'_>, series: Vec<Rational>) -> Result<Source, Error> {
-    let eps = given.get("eps")?;
-    let at = vec![("eps", eps.clone())];
-    // The period is even in eps (t -> -t): a series in eps^2.
-    let even = series.into_iter().step_by(2).collect();
-    Ok(Source {
-        variable: "eps^2",
-        at,
-        coefficients: floats(even),
-        point: Box::new(move |balls| Some(balls.square(&eps.ball(balls)))),
+impl Series {
+    fn new(derivation: Derivation) -> Result<Self, Error> {
+        let series = derivation.named("period_over_2pi").ok_or(Error::NoValue)?;
+        let ring = &derivation.ring;
+        let rational = |c| ring.as_rational(c).filter(|_| series.half_power == 0);
+        let exact = series.coefficients.iter().map(rational).collect();
+        let occurs = series.coefficients.iter().enumerate().filter(|(_, c)| !ring.is_zero(c));
+        let step = occurs.fold(0, |step, (n, _)| gcd(step, n)).max(1);
+        let known = series.coefficients.len().div_ceil(step);
+        Ok(Self { derivation, exact, step, known })
+    }
+
+    /// t_n ratio^-n for n = 0, step, 2 step, ...
+    fn floats(self, ratio: Rational) -> Coefficients {
+        let step = self.step;
+        if let Some(exact) = self.exact {
+            let mut list: Vec<Rational> = exact.into_iter().step_by(step).collect();
+            let inverse = power(&ratio, step).recip();
+            let mut factor = Rational::from(1);
+            for c in &mut list {
+                *c *= &factor;
+                factor *= &inverse;
+            }
+            return Box::new(move |bits| {
+                Some(list.iter().map(|q| Float::with_val(bits, q)).collect())
+            });
+        }
+        let (derivation, known) = (self.derivation, self.known);
+        Box::new(move |bits| {
+            let series = derivation.named("period_over_2pi")?;
+            let one = |k: usize| {
+                let scale = power(&ratio, k * step).recip();
+                let mut work = bits;
+                // Polynomials in constants cancel; a coefficient that is zero is so exactly.
+                loop {
+                    let balls = Balls::new(work).with_guard(64);
+                    let ball = derivation.ball(series, k * step, balls)?;
+                    let ball = balls.mul_rational(&ball, &scale);
+                    let zero = ball.is_exact() && ball.midpoint().is_zero();
+                    if zero || ball.relative_accuracy_bits() >= i64::from(bits) {
+                        return Some(Float::with_val(bits, ball.midpoint()));
+                    }
+                    work = work.checked_mul(2).filter(|work| work / 32 <= bits)?;
+                }
+            };
+            (0..known).into_par_iter().map(one).collect()
+        })
+    }
+}
+
+fn gcd(mut a: usize, mut b: usize) -> usize {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
+fn power(q: &Rational, n: usize) -> Rational {
+    rug::ops::Pow::pow(q.clone(), u32::try_from(n).unwrap_or(u32::MAX))
+}
+
+/// Everything but the coefficients of y'' + kappa y + c small y^3 in rho = (c/kappa) small.
+struct Cubic {
+    ratio: Rational,
+    rho: Formula,
+    closed: (String, Formula),
+}
+
+fn cubic(setting: &Setting, stiffness: &Rational, ratio: &Rational) -> Result<Cubic, Error> {
+    let value = |setting: Setting, ratio: Rational| {
+        move |balls: Balls| Some(balls.mul_rational(&setting.small(balls), &ratio))
+    };
+    let rho = value(setting.clone(), ratio.clone());
+    let probe = Balls::new(200);
+    if let Some(rho) = rho(probe).filter(|rho| !probe.add(&probe.one(), rho).is_positive()) {
+        let name = variable(setting, ratio);
+        let name = name.split(" = ").last().unwrap_or(&name);
+        return Err(outside(
+            name,
+            &rho,
+            "greater than -1 (at -1 the amplitude is that of the saddle)",
+        ));
+    }
+    let (closed, kappa) = (value(setting.clone(), ratio.clone()), stiffness.clone());
+    let text = match *stiffness == 1 {
+        true => "4*K(k)/sqrt(1+rho), k^2 = rho/(2+2*rho)".to_owned(),
+        false => format!("4*K(k)/sqrt({stiffness}*(1+rho)), k^2 = rho/(2+2*rho)"),
+    };
+    let formula = move |balls: Balls| {
+        let period = closed::duffing(balls, &closed(balls)?)?;
+        balls.div(&period, &balls.sqrt(&balls.from_rational(&kappa))?)
+    };
+    let closed = (text, Box::new(formula) as Formula);
+    Ok(Cubic { ratio: ratio.clone(), rho: Box::new(rho), closed })
+}
+
+/// The variable of the series: `rho = eps*amplitude^2`, `eps`, `rho = 1/4*eps`.
+fn variable(setting: &Setting, ratio: &Rational) -> String {
+    let name = &setting.small.name;
+    if *ratio == 1 { name.clone() } else { format!("rho = {ratio}*{name}") }
+}
+
+impl Cubic {
+    fn finish(self, setting: &Setting, series: Series) -> Source {
+        let known = series.known;
+        Source {
+            variable: variable(setting, &self.ratio),
+            at: setting.at.clone(),
+            known,
+            coefficients: series.floats(self.ratio),
+            point: self.rho,
+            factor: Box::new(|balls| Some(balls.one())),
+            closed: Some(self.closed),
+            radius: Some((1.0, "the separatrix at rho = -1")),
+            // sqrt(1 + rho) T/4 = K(k), 2 k^2 = u: analytic for |u| < 2; T ~ rho^(-1/2).
+            map: Some(ChangeOfVariable {
+                scale: Rational::from(1),
+                prefactor: Rational::from((-1, 2)),
+                radius: Some(2.0),
+            }),
+        }
+    }
+}
+
+/// The series of any other problem, in small^step; nothing more is known than its coefficients
+/// and, by scaling, a power of the small parameter for large ones.
+fn derived(setting: &Setting, series: Series) -> Source {
+    let (step, known) = (series.step, series.known);
+    let name = &setting.small.name;
+    let variable = if step == 1 { name.clone() } else { format!("{name}^{step}") };
+    let coefficients = series.floats(Rational::from(1));
+    let step_power = i64::try_from(step).unwrap_or(1);
+    // T ~ small for relaxation oscillations; small f(x) alone makes the time scale small^(-1/2).
+    let power = match setting.form {
+        Form::Relaxation => Rational::from((1, step_power)),
+        Form::Conservative => Rational::from((-1, 2 * step_power)),
+        _ => Rational::new(),
+    };
+    let scale = match setting.form {
+        // Damping and stiffness are equal at small = 1.
+        Form::Relaxation => Rational::from(1),
+        _ => coefficients(64).map_or_else(|| Rational::from(1), |c| scale(&c)),
+    };
+    let point = setting.clone();
+    Source {
+        variable,
+        at: setting.at.clone(),
+        known,
+        coefficients,
+        point: Box::new(move |balls| balls.powi(&point.small(balls), step_power)),
         factor: Box::new(|balls| Some(balls.one())),
         closed: None,
         radius: None,
-        // T ~ (3 - 2 ln 2) eps for eps -> infinity: relaxation oscillations.
-        map: Some((1, Rational::from((1, 2)), None)),
-    })
+        map: Some(ChangeOfVariable { scale, prefactor: power, radius: None }),
+    }
+}
+
+/// The power of two next to the radius of convergence, 1 where there is none.
+fn scale(coefficients: &[Float]) -> Rational {
+    let exponent = match growth(coefficients) {
+        Growth::Radius(radius) => radius.log2().round().clamp(-2000.0, 2000.0) as i32,
+        _ => 0,
+    };
+    let two = Rational::from(2);
+    rug::ops::Pow::pow(two, exponent)
 }
