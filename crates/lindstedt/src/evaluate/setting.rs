@@ -134,15 +134,7 @@ impl Setting {
             });
         }
         let at = values.all(&small);
-        Ok(Self {
-            problem: problem.clone(),
-            condition,
-            form,
-            at,
-            small,
-            amplitude,
-            parameters,
-        })
+        Ok(Self { problem: problem.clone(), condition, form, at, small, amplitude, parameters })
     }
 
     /// The value of the small parameter.
@@ -192,10 +184,12 @@ impl Values<'_> {
         let scales = matches!(self.problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
         let listed = self.problem.parameters.iter().any(|card| card.name == "n");
         let value = self.given.get("n").filter(|_| scales && listed)?;
-        Some(value.as_rational().cloned().ok_or_else(|| Error::Irrational {
-            name: "n".to_owned(),
-            value: value.to_string(),
-        }))
+        Some(
+            value.as_rational().cloned().ok_or_else(|| Error::Irrational {
+                name: "n".to_owned(),
+                value: value.to_string(),
+            }),
+        )
     }
 
     fn small(&self, equation: &Expression) -> Result<Small, Error> {
@@ -222,11 +216,10 @@ impl Values<'_> {
     /// one that the equation does not mention.
     fn coefficient(&self) -> Option<(String, Value)> {
         let mentioned = self.problem.equation.parameters();
-        let mut others = self
-            .problem
-            .parameters
-            .iter()
-            .filter(|card| card.name != "amplitude" && !mentioned.contains(&card.name.to_string()));
+        let mut others =
+            self.problem.parameters.iter().filter(|card| {
+                card.name != "amplitude" && !mentioned.contains(&card.name.to_string())
+            });
         let card = others.next()?;
         others.next().is_none().then_some(())?;
         Some((card.name.to_string(), self.get(&card.name)?))
@@ -320,4 +313,19 @@ fn power_law(equation: &Expression) -> Option<Rational> {
     };
     let count = |wanted: &Expression| factors.iter().filter(|f| *f == wanted).count();
     (equation.terms().len() == 2 && count(&x) == 1 && count(&power) == 1).then_some(stiffness)
+}
+
+impl Setting {
+    /// What [`derive()`] is told.
+    pub(crate) fn parameters(&self) -> &BTreeMap<String, Value> {
+        &self.parameters
+    }
+
+    /// The value of the small parameter, where it is rational.
+    pub(crate) fn rational_small(&self) -> Option<Rational> {
+        let (coefficient, amplitude) =
+            (self.small.coefficient.as_rational()?, self.amplitude.as_rational()?);
+        let power = rug::ops::Pow::pow(amplitude.clone(), self.small.power);
+        Some(Rational::from(coefficient * power))
+    }
 }
