@@ -30,16 +30,23 @@ fn spread(list: &[Float], value: &Float) -> Option<Float> {
 
 /// The last of a sequence of approximants, with an estimate of its error.
 ///
+/// Two judgments, of which the smaller counts, but at least the distance from the two approximants
+/// before:
+///
 /// The logarithms of the two-step differences |v_k - v_(k-2)| (neighbours on a staircase are of
 /// two kinds) are fitted by a line a + b k. For errors that fall like q^k on the whole it has the
 /// slope ln q, and the error is the sum of the differences to come,
 ///
-///   |error| <= 4 exp(a + b (N + 1) + 3 s)/(1 - exp b),
+///   |error| <= 4 exp(a + b (N + 1) + 3 d)/(1 - exp b),
 ///
-/// s the standard deviation of the logarithms from the line: approximants whose differences
-/// fall evenly are believed more than those that agree by luck. The line is read at N + 1, where
-/// the difference is about the error of the approximant before the last one. At least the
-/// distance from the two approximants before.
+/// d the standard deviation of a prediction at N + 1 from the n points, s sqrt(1 + 1/n +
+/// (N + 1 - m)^2/sum (k - m)^2), s that of the points from the line: approximants whose
+/// differences fall evenly are believed more than those that agree by luck. The line is read at
+/// N + 1, where the difference is about the error of the approximant before the last one.
+///
+/// One value that stands apart spoils the line, but not the spread s1 of the four values before
+/// the last one: with the spread s2 of the four before these, s2/s1 - 1 = q^-4 and the error is
+/// s1/(s2/s1 - 2). Sixteen times s1 times the larger of 1 and 1/(s2/s1 - 2), with N as the most.
 ///
 /// Infinite for b >= 0 (the sequence does not settle) and for approximants below number six.
 /// Nothing for fewer than two values.
@@ -68,14 +75,27 @@ pub(super) fn settle(values: &[Float], number: usize) -> Option<Estimate> {
     let points: Vec<(f64, f64)> =
         points.filter_map(|(d, k)| Some((f64::from(k), log2(d)?))).collect();
     let Some(line) = Line::through(&points) else { return estimate(infinity()) };
-    let next = line.at(differences.len() as f64) + 3.0 * line.deviation;
+    let end = differences.len() as f64;
+    let next = line.at(end) + 3.0 * line.deviation_at(end);
     let ratio = line.slope.exp2();
     if ratio >= 1.0 || !next.is_finite() {
         return estimate(infinity());
     }
-    let error = Float::with_val(53, next).exp2() * 4u32 / (1.0 - ratio);
+    let by_line = Float::with_val(53, next).exp2() * 4u32 / (1.0 - ratio);
+    let error = by_spread(before, value, number).map_or(by_line.clone(), |s| s.min(&by_line));
     let near = before.get(before.len().saturating_sub(2)..).unwrap_or(before);
     estimate(spread(near, value).map_or_else(infinity, |near| error.max(&near)))
+}
+
+/// The second judgment of [`settle`]; nothing with fewer than eight values before the last one.
+fn by_spread(before: &[Float], value: &Float, number: usize) -> Option<Float> {
+    let near = before.len().checked_sub(4)?;
+    let far = near.checked_sub(4)?;
+    let first = spread(before.get(near..)?, value)?;
+    let second = spread(before.get(far..near)?, value)?;
+    let ratio = Float::with_val(53, &second / &first).to_f64();
+    let factor = 1.0 / (ratio - 2.0).max(1.0 / number as f64);
+    (ratio >= 1.0).then(|| first * (16.0 * factor.max(1.0)))
 }
 
 fn infinity() -> Float {
@@ -87,6 +107,9 @@ struct Line {
     centre: (f64, f64),
     slope: f64,
     deviation: f64,
+    count: f64,
+    /// The mean of (x - mean x)^2.
+    width: f64,
 }
 
 impl Line {
@@ -100,10 +123,16 @@ impl Line {
         let centre = (mean(&|p| p.0), mean(&|p| p.1));
         let width = mean(&|p| (p.0 - centre.0).powi(2));
         let slope = mean(&|p| (p.0 - centre.0) * (p.1 - centre.1)) / width;
-        let mut line = Self { centre, slope, deviation: 0.0 };
+        let mut line = Self { centre, slope, deviation: 0.0, count, width };
         let squares: f64 = points.iter().map(|p| (p.1 - line.at(p.0)).powi(2)).sum();
         line.deviation = (squares / (count - 2.0)).sqrt();
         Some(line)
+    }
+
+    /// The standard deviation of a prediction at x.
+    fn deviation_at(&self, x: f64) -> f64 {
+        let lever = (x - self.centre.0).powi(2) / self.width;
+        self.deviation * (1.0 + (1.0 + lever) / self.count).sqrt()
     }
 
     fn at(&self, x: f64) -> f64 {
@@ -111,14 +140,15 @@ impl Line {
     }
 }
 
-/// The last of a sequence of approximants; the error is four times the largest distance from it
-/// in the sequence. For methods that converge slower than a geometric sequence, as Borel's with
-/// Pade approximants of a transform with singularities near the path, where [`settle`]'s line is
-/// too steep.
+/// The last of a sequence of approximants; the error is the largest distance from it in the
+/// sequence, times its number: for methods that converge slower than a geometric sequence, as
+/// Borel's with Pade approximants of a transform with singularities near the path, where
+/// [`settle`]'s line is too steep (after errors k^-p the rest is about k/p last differences).
 pub(super) fn widest(values: &[Float], number: usize) -> Option<Estimate> {
     let (value, before) = values.split_last()?;
     let mut estimate = settle(values, number)?;
-    estimate.error = estimate.error.max(&(spread(before, value)? * 4u32));
+    let factor = u32::try_from(number.max(4)).unwrap_or(u32::MAX);
+    estimate.error = estimate.error.max(&(spread(before, value)? * factor));
     Some(estimate)
 }
 
@@ -132,7 +162,7 @@ pub(super) fn widest(values: &[Float], number: usize) -> Option<Estimate> {
 /// result; infinite for q >= 1.
 ///
 /// Where the radius is not known, N terms do not tell q from 1 - 1/N: 1/(1 - q) is at least N, the
-/// result is doubled once more, and sums below number six have no estimate.
+/// result is doubled twice more, and sums below number six have no estimate.
 pub(super) fn geometric_tail(sums: &[Float], ratio: &Float, known: bool) -> Float {
     let terms: Vec<Float> = sums.windows(2).map(|pair| distance(&pair[1], &pair[0])).collect();
     let last = terms.len();
@@ -162,7 +192,7 @@ pub(super) fn geometric_tail(sums: &[Float], ratio: &Float, known: bool) -> Floa
     let mut rest = Float::with_val(53, 1 - &ratio);
     if !known {
         rest = rest.min(&Float::with_val(53, 1.0 / last.max(1) as f64));
-        rest /= 2u32;
+        rest /= 4u32;
     }
     if rest <= 0 || !rest.is_finite() {
         return infinity();
