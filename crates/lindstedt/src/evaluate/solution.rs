@@ -127,8 +127,7 @@ impl Trajectory {
         let next = x.iter().cycle().skip(1);
         let quotients = x.iter().zip(next).map(|(a, b)| (b - a).abs() / step);
         // Where the series has no value at some phase nothing bounds the speed.
-        let top =
-            quotients.fold(0.0, |top: f64, q| if q >= 0.0 { top.max(q) } else { f64::INFINITY });
+        let top = quotients.fold(0.0, |top: f64, q| if q >= 0.0 { top.max(q) } else { f64::INFINITY });
         SAFETY * top * frequency
     }
 
@@ -171,8 +170,7 @@ impl Trajectory {
         let (ball, double) = self.sum(&point)?;
         if !self.is_estimated || !ball.is_finite() && few::has_no_estimate(self.order() + 1) {
             let balls = Balls::new(ball.midpoint().prec());
-            let value =
-                few::plain(&balls.from_parts(ball.midpoint(), &Float::new(53)), self.digits);
+            let value = few::plain(&balls.from_parts(ball.midpoint(), &Float::new(53)), self.digits);
             let error = f64::INFINITY;
             return Some(Displacement { time: time.clone(), value, double, error });
         }
