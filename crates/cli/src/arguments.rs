@@ -131,8 +131,14 @@ pub struct EvaluateOptions {
     /// x(t) = X(omega t + PHASE).
     #[arg(long, value_name = "PHASE", default_value = "0", allow_hyphen_values = true)]
     pub phase: String,
+    /// The averaged motion (free amplitude) from a(0) = A, psi(0) = PSI.
+    #[arg(long, value_name = "A,PSI", allow_hyphen_values = true, conflicts_with = "state")]
+    pub start: Option<String>,
+    /// The averaged motion (free amplitude) from x(0) = X, x'(0) = V.
+    #[arg(long, value_name = "X,V", allow_hyphen_values = true)]
+    pub state: Option<String>,
     /// A figure of the solution (.svg) or a table (.csv); may be given twice. One period without
-    /// --times.
+    /// --times, ten of an averaged motion.
     #[arg(long, value_name = "FILE")]
     pub plot: Vec<PathBuf>,
     /// The solution as a function in this language instead of the report.

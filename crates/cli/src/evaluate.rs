@@ -1,13 +1,15 @@
 //! `lindstedt evaluate`: numbers from the expansion.
 
+mod averaged;
 mod code;
+mod figure;
 mod report;
 mod trajectory;
 
 use crate::Outcome;
 use crate::arguments::{EvaluateOptions, Format, Normalisation, Resum};
 use crate::classification;
-use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
+use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
 use crate::session::{Loaded, Session, digits, load, parameters};
 use lindstedt::equation::{Condition, Expression};
@@ -32,6 +34,18 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         classification::check(&parts, file, condition, &options.problem)?;
     }
     set_order_parameter(&loaded, &mut given);
+    let free = condition.or(loaded.problem.conditions.first().copied());
+    if free == Some(Condition::FreeAmplitude)
+        && loaded.problem.conditions.contains(&Condition::FreeAmplitude)
+    {
+        return averaged::run(options, &loaded, given, session);
+    }
+    if options.start.is_some() || options.state.is_some() {
+        let message = "--start and --state belong to averaged motions".to_owned();
+        let hint = "--normalisation free averages; else --set amplitude=A, --phase PHASE";
+        return Err(Failure::usage("start", message, hint));
+    }
+    use_initial_data(&loaded, free, &mut given)?;
     let problem = loaded.problem;
     let settings = EvaluateSettings {
         order: options.order.map(|order| order as usize),
@@ -126,6 +140,32 @@ pub fn set_order_parameter(loaded: &Loaded, given: &mut BTreeMap<String, Value>)
         let one = || Value::Rational(Rational::from(1));
         given.entry(problem.small.to_string()).or_insert_with(one);
     }
+}
+
+/// x(0) of a file is its amplitude where the condition is an initial amplitude.
+fn use_initial_data(
+    loaded: &Loaded,
+    condition: Option<Condition>,
+    given: &mut BTreeMap<String, Value>,
+) -> Result<(), Failure> {
+    let Some([x, velocity]) = loaded.file.as_ref().and_then(|file| file.initial.as_ref()) else {
+        return Ok(());
+    };
+    if condition != Some(Condition::InitialAmplitude) || given.contains_key("amplitude") {
+        return Ok(());
+    }
+    let still = Value::parse(velocity)?.as_rational().is_some_and(|v| v.is_zero());
+    let listed = loaded.problem.parameters.iter().any(|card| card.name == "amplitude");
+    if !still || !listed {
+        return Err(Failure {
+            exit: NO_ANSWER,
+            code: "initial-data",
+            message: "the expansion starts at rest: x(0) = amplitude, x'(0) = 0".into(),
+            hint: "--set amplitude=A and --phase PHASE, or change [initial] of the file".into(),
+        });
+    }
+    given.insert("amplitude".to_owned(), Value::parse(x)?);
+    Ok(())
 }
 
 fn failure(error: Error, session: &Session<'_>) -> Failure {

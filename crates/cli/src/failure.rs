@@ -78,6 +78,9 @@ impl From<Error> for Failure {
             }
             Error::NotEnoughBits { .. } => (UNDECIDED, "not-enough-digits", "ask for fewer digits"),
             Error::Simulate(_) => (NO_ANSWER, "no-trajectory", ""),
+            Error::NoSuchStart { .. } => {
+                (NO_ANSWER, "no-start", "give amplitude and phase: --start")
+            }
             Error::NoPeriodicOrbit { .. } => (NO_ANSWER, "no-periodic-orbit", "smaller --small"),
             Error::Resummation { .. } => {
                 (NO_ANSWER, "no-such-resummation", "try --resum auto, or another order")

@@ -99,22 +99,189 @@ fn every_format_and_every_refusal() {
         let output = run(&["duffing", "--order", "8", "--times", "0..1:3", "--format", format]);
         assert!(output.status.success() && !output.stdout.is_empty());
     }
-    let cases: [(&[&str], i32); 11] = [
+    let cases: [(&[&str], i32); 17] = [
         (&["power-law", "--set", "n=-1/2", "--resum", "uniform"], 3),
         (&["power-law", "--set", "n=-1"], 3),
         (&["pendulum", "--resum", "uniform"], 3),
         (&["pendulum", "--set", "amplitude=pi"], 3),
         (&["duffing", "--set", "eps=-1"], 3),
-        (&["power-law", "--order", "1"], 3),
+        (&["power-law", "--order", "1", "--resum", "pade"], 3),
         (&["duffing", "--set", "x=1"], 2),
         (&["duffing", "--times", "0..1"], 2),
         (&["duffing", "--plot", "x.png"], 2),
         (&["nothing"], 2),
         (&["stick-slip"], 3),
+        (&["duffing", "--start", "1,0"], 2),
+        (&["van-der-pol", "--normalisation", "free", "--times", "0..1:2"], 2),
+        (&["van-der-pol", "--normalisation", "free", "--start", "-1,0"], 2),
+        (&["van-der-pol", "--normalisation", "free", "--resum", "pade"], 2),
+        (&["van-der-pol", "--normalisation", "free", "--code", "rust"], 2),
+        (&["power-law", "--normalisation", "free"], 2),
     ];
     for (arguments, code) in cases {
         let output = run(arguments);
         assert_eq!(output.status.code(), Some(code), "{arguments:?}");
         assert!(!output.stderr.is_empty());
     }
+}
+
+fn example(name: &str) -> String {
+    format!("{}/../../docs/examples/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A file in the folder for temporary files.
+fn file(name: &str, text: &str) -> String {
+    let name = format!("lindstedt-evaluate-{}-{name}.toml", std::process::id());
+    let path = std::env::temp_dir().join(name);
+    std::fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+/// The printed file of a built-in problem gives the identical result, x(t) included.
+#[test]
+fn a_printed_file_is_the_built_in_problem() {
+    for (name, set) in [
+        ("power-law", "n=5/2"),
+        ("power-law", "amplitude=3"),
+        ("pendulum", "amplitude=1/2"),
+        ("duffing", "eps=1/3"),
+        ("van-der-pol", "eps=1/2"),
+    ] {
+        let shown = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+            .args(["problems", "--show", name])
+            .output()
+            .unwrap();
+        let path =
+            file(&format!("{name}-{}", set.len()), &String::from_utf8(shown.stdout).unwrap());
+        let run = |problem: &str| {
+            let arguments = ["--set", set, "--order", "8", "--times", "0..2:3"];
+            let mut found = json(&[&[problem], &arguments[..]].concat());
+            found["seconds"] = 0.into();
+            found
+        };
+        assert_eq!(run(name), run(&path), "{name} {set}");
+        let _ = std::fs::remove_file(path);
+    }
+    // The same equation under other names.
+    let built_in = json(&["power-law", "--set", "delta=1/2", "--set", "amplitude=2"]);
+    for name in ["power-law.toml", "sign-power.toml"] {
+        let set = ["--set", "delta=1/2", "--set", "amplitude=2"];
+        let found = json(&[&[&*example(name)], &set[..]].concat());
+        for key in ["period", "frequency", "tried", "resum"] {
+            assert_eq!(found[key], built_in[key], "{name} {key}");
+        }
+        assert_eq!(found["exact_period"]["decimal"], built_in["exact_period"]["decimal"]);
+    }
+}
+
+/// Every example that has an expansion has a value; the others say why not.
+#[test]
+fn all_examples() {
+    for (name, set) in [
+        ("duffing.toml", "eps=1/5"),
+        ("van-der-pol.toml", "eps=1/5"),
+        ("rayleigh.toml", "eps=1/5"),
+        ("duffing-van-der-pol.toml", "eps=1/10"),
+        ("helmholtz-duffing.toml", "eps=1/5"),
+        ("pendulum.toml", "eps=1"),
+    ] {
+        let found = json(&[&example(name), "--set", set, "--order", "12"]);
+        assert_eq!(found["period"]["status"], "estimated", "{name}");
+        assert!(found["period"]["error"].is_string(), "{name}");
+        let small = set.split_once('=').unwrap();
+        assert_eq!(found["at"][small.0], small.1, "{name}");
+    }
+    for name in ["delayed-duffing.toml", "vibro-impact.toml", "wright.toml"] {
+        let set = if name == "wright.toml" { "eps=1/10" } else { "T=1" };
+        let set: &[&str] = if name == "vibro-impact.toml" { &[] } else { &["--set", set] };
+        let start = ["--order", "3", "--start", "1/2,0", "--times", "0..1:2"];
+        let found = json(&[&[&*example(name)], set, &start[..]].concat());
+        assert_eq!(found["solution"]["values"].as_array().unwrap().len(), 2, "{name}");
+    }
+    // No value for the small parameter: named; no expansion: why.
+    let output = run(&[&example("duffing.toml")]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("eps has no value"));
+    let output = run(&[&example("stick-slip.toml")]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("not smooth"));
+    let quartic = "name = 'a'\nequation = \"x'' + x + eps*x^3 = 0\"\n";
+    let path = file("initial", &format!("{quartic}[initial]\nx = '1/2'\nvelocity = '0'\n"));
+    let found = json(&[&path, "--set", "eps=4"]);
+    assert_eq!(found["at"]["amplitude"], "1/2");
+    // 2 pi/agm(sqrt 2, sqrt(3/2)), mpmath 1.3.0: the period of rho = 1.
+    assert_eq!(found["exact_period"]["decimal"], "4.76802202910246080630451847006");
+    let path = file("initial", &format!("{quartic}[initial]\nx = '1/2'\nvelocity = '1'\n"));
+    assert_eq!(run(&[&path, "--set", "eps=4"]).status.code(), Some(3));
+    let _ = std::fs::remove_file(path);
+}
+
+/// Orders 0 and 1: the partial sum, its error by the closed form or none.
+#[test]
+fn few_coefficients() {
+    let found = json(&["power-law", "--set", "n=3", "--order", "1", "--resum", "none"]);
+    let decimal = found["period"]["decimal"].as_str().unwrap();
+    // 2 pi (1 + ln 2 - 1/2).
+    assert!(decimal.starts_with("7.49676483419699749946"), "{decimal}");
+    let error: f64 = found["period"]["error"].as_str().unwrap().parse().unwrap();
+    assert!((error - 0.0805).abs() < 1e-3, "{error}");
+    assert!(found["verdict"].as_str().unwrap().contains("no estimate from so few coefficients"));
+    let found = json(&["power-law", "--order", "0"]);
+    assert!(found["period"]["decimal"].as_str().unwrap().starts_with("6.28318530717958"));
+    for order in ["0", "1", "3"] {
+        let found = json(&["van-der-pol", "--order", order, "--times", "0..1:2"]);
+        assert!(found["period"]["error"].is_null() && found["period"]["decimal"].is_string());
+        assert!(found["verdict"].as_str().unwrap().contains("no estimate"), "{order}");
+        let x = &found["solution"]["values"][0]["x"];
+        assert!(x["error"].is_null() && x["decimal"].is_string(), "{order}: {x}");
+    }
+}
+
+/// a(t), psi(t), x(t) as table, figure and comma-separated values.
+#[test]
+fn averaged_motions() {
+    let free = ["van-der-pol", "--normalisation", "free", "--set", "eps=1/10"];
+    let set = ["--order", "8", "--state", "1,0", "--times", "0..60:7", "--digits", "16"];
+    let arguments = [&free[..], &set[..]].concat();
+    let found = json(&arguments);
+    let number = |value: &Value, key: &str| value[key].as_str().unwrap().parse::<f64>().unwrap();
+    let values = found["solution"]["values"].as_array().unwrap();
+    // Taylor integration with tolerance 1e-18 (mpmath 1.3.0, odefun).
+    let expected = [
+        1.0,
+        -1.128305538500262,
+        0.6490678955318142,
+        0.3233492099058716,
+        -1.350797988542573,
+        1.936387410324992,
+        -1.868066746685336,
+    ];
+    for (value, expected) in values.iter().zip(expected) {
+        let x = &value["x"];
+        let error = (number(x, "decimal") - expected).abs();
+        assert!(error <= number(x, "error") + 1e-16 && error < 1e-8, "{x} {expected}");
+        assert!(value["a"]["decimal"].is_string() && value["psi"]["decimal"].is_string());
+    }
+    assert_eq!(values.len(), 7);
+    for format in ["text", "latex", "markdown"] {
+        let output = run(&[&arguments[..], &["--format", format]].concat());
+        assert!(output.status.success() && output.stdout.len() > 500, "{format}");
+    }
+    let folder = std::env::temp_dir();
+    let name =
+        |kind: &str| folder.join(format!("lindstedt-averaged-{}.{kind}", std::process::id()));
+    let (svg, csv) = (name("svg"), name("csv"));
+    let plots = ["--plot", svg.to_str().unwrap(), "--plot", csv.to_str().unwrap()];
+    assert!(run(&[&free[..], &["--start", "1,0"], &plots[..]].concat()).status.success());
+    let drawn = std::fs::read_to_string(&svg).unwrap();
+    assert_eq!(drawn.matches("stroke=\"#969696\"").count(), 2, "{drawn}");
+    let table = std::fs::read_to_string(&csv).unwrap();
+    assert!(table.starts_with("t,a,a_error,psi,psi_error,x,x_error\n0.0,1.0,"));
+    assert_eq!(table.lines().count(), 130);
+    let _ = (std::fs::remove_file(svg), std::fs::remove_file(csv));
+    // A series whose terms grow has no estimate, and says so.
+    let wild = ["van-der-pol", "--normalisation", "free", "--set", "eps=20", "--start", "2,0"];
+    let found = json(&[&wild[..], &["--times", "0..1:2"]].concat());
+    assert!(found["verdict"].as_str().unwrap().contains("do not decrease"));
+    assert!(found["solution"]["values"][1]["x"]["error"].is_null());
 }

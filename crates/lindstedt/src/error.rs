@@ -61,6 +61,18 @@ pub enum Error {
         /// The parameter.
         name: String,
     },
+    /// Newton's method found no amplitude and phase for the state asked for.
+    #[error(
+        "{problem}: no amplitude and phase were found with x(0) = {displacement}, x'(0) = {velocity}"
+    )]
+    NoSuchStart {
+        /// The problem.
+        problem: String,
+        /// x(0).
+        displacement: String,
+        /// x'(0).
+        velocity: String,
+    },
     /// A parameter without a value.
     #[error("{name} has no value in {problem}: set it")]
     Unset {

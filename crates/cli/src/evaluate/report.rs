@@ -112,6 +112,9 @@ impl Report<'_> {
         let shown = |number: &Option<Number>| match number {
             None => "not one digit".to_owned(),
             Some(number) => match &number.error {
+                Some(error) if result.has_no_estimate() => {
+                    format!("{} +- {error} (by the closed form)", number.decimal)
+                }
                 Some(error) => format!("{} +- {error} (estimated)", number.decimal),
                 None => format!("{} (no estimate from so few coefficients)", number.decimal),
             },

@@ -1,15 +1,15 @@
 //! x(t) at asked times: table, comma-separated values, figure.
 
-use super::flag;
+use super::{figure, flag};
 use crate::arguments::EvaluateOptions;
 use crate::derive::number_json;
-use crate::failure::{Failure, NO_ANSWER};
+use crate::failure::Failure;
 use crate::session::Session;
 use lindstedt::Value;
 use lindstedt::coeff::ball::Balls;
 use lindstedt::equation::Problem;
 use lindstedt::evaluate::{Displacement, Trajectory};
-use plotters::prelude::*;
+use plotters::prelude::BLUE;
 use rayon::prelude::*;
 use rug::Rational;
 use serde_json::{Value as Json, json};
@@ -22,7 +22,6 @@ const MOST_TIMES: u32 = 100_000;
 const POINTS: u32 = 129;
 /// Times between two looks at the clock.
 const BLOCK: usize = 16;
-const SIZE: (u32, u32) = (960, 540);
 
 /// The times asked for.
 pub struct Request {
@@ -68,10 +67,12 @@ impl Request {
         Ok(Some(Self { range: Some((rational(low)?, rational(high)?)), count }))
     }
 
-    fn times(&self, trajectory: &Trajectory) -> Vec<Value> {
-        let (low, high) = self.range.clone().unwrap_or_else(|| {
-            (Rational::new(), Rational::from_f64(trajectory.period).unwrap_or_default())
-        });
+    /// The times, from 0 to `last` where none were given.
+    pub fn times(&self, last: f64) -> Vec<Value> {
+        let (low, high) = self
+            .range
+            .clone()
+            .unwrap_or_else(|| (Rational::new(), Rational::from_f64(last).unwrap_or_default()));
         let width = (high - &low) / Rational::from(self.count.saturating_sub(1).max(1));
         (0..self.count).map(|i| Value::Rational(Rational::from(&width * i) + &low)).collect()
     }
@@ -91,7 +92,7 @@ impl Table {
         trajectory: &Trajectory,
         session: &Session<'_>,
     ) -> Result<Self, Failure> {
-        let times = request.times(trajectory);
+        let times = request.times(trajectory.period);
         let mut points = Vec::new();
         for block in times.chunks(BLOCK) {
             if !session.goes_on() {
@@ -152,38 +153,9 @@ impl Table {
             }
             return Ok(text);
         }
-        let mut svg = String::new();
-        self.draw(problem, &mut svg).map_err(|error| Failure {
-            exit: NO_ANSWER,
-            code: "figure",
-            message: format!("nothing to draw: {error}"),
-            hint: String::new(),
-        })?;
-        Ok(svg)
-    }
-
-    fn draw(&self, problem: &Problem, svg: &mut String) -> Result<(), Box<dyn std::error::Error>> {
         let at = |point: &Displacement| point.time.ball(Balls::new(64)).midpoint().to_f64();
-        let points: Vec<(f64, f64)> = self
-            .points
-            .iter()
-            .filter(|point| point.double.is_finite())
-            .map(|point| (at(point), point.double))
-            .collect();
-        let (first, last) = points.first().zip(points.last()).ok_or("no finite value")?;
-        let top = points.iter().fold(0.0f64, |top, p| top.max(p.1.abs())).max(1e-300) * 1.05;
-        let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
-        root.fill(&WHITE)?;
+        let points = self.points.iter().map(|point| (at(point), point.double)).collect();
         let caption = format!("{}: x(t), order {}, {}", problem.name, self.order, self.resum);
-        let mut chart = ChartBuilder::on(&root)
-            .margin(16)
-            .caption(caption, ("sans-serif", 18))
-            .x_label_area_size(44)
-            .y_label_area_size(64)
-            .build_cartesian_2d(first.0..last.0.max(first.0 + 1e-9), -top..top)?;
-        chart.configure_mesh().x_desc("t").y_desc("x").light_line_style(WHITE).draw()?;
-        chart.draw_series(LineSeries::new(points.iter().copied(), BLUE.stroke_width(2)))?;
-        root.present()?;
-        Ok(())
+        figure::draw(&caption, "x", &[(points, BLUE)])
     }
 }

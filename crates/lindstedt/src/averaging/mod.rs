@@ -1,6 +1,7 @@
 //! Averaging of a problem: rates of amplitude and phase as formulas or as numbers.
 
 mod coefficients;
+pub(crate) mod numbers;
 mod values;
 
 use crate::number::rational;
@@ -326,10 +327,10 @@ impl<'a> Task<'a> {
     }
 
     /// Over Q; nothing when a square root or an angle is irrational.
-    fn rational(
+    fn over_rationals(
         &self,
         observer: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Option<Averaging>, Error> {
+    ) -> Result<Option<Over<Rationals>>, Error> {
         let values = |name: &str| match self.value(name)? {
             Given::Value(value) => value.as_rational().cloned(),
             Given::Period(..) => None,
@@ -343,7 +344,14 @@ impl<'a> Task<'a> {
             }
             other => other?,
         };
-        let over = self.derive(algebra, &values, observer)?;
+        self.derive(algebra, &values, observer).map(Some)
+    }
+
+    fn rational(
+        &self,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Option<Averaging>, Error> {
+        let Some(over) = self.over_rationals(observer)? else { return Ok(None) };
         let number = |q: &Rational| rational(q, self.settings.digits).map(Coefficient::Number);
         self.finish(&over, true, &number).map(Some)
     }
@@ -398,6 +406,18 @@ impl<'a> Task<'a> {
         self.finish(&over, true, &formula)
     }
 
+    /// With enclosures.
+    fn over_balls(
+        &self,
+        balls: Balls,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Over<BallRing>, Error> {
+        let ring = BallRing { balls };
+        let values = |name: &str| Some(Enclosure(self.value(name)?.ball(balls)?));
+        let algebra = self.algebra(&ring, &values, &|ring, _| *ring)?;
+        self.derive(algebra, &values, observer)
+    }
+
     /// With enclosures; the precision doubles until every coefficient has its digits.
     fn certified(&self, observer: &mut dyn FnMut(Progress) -> bool) -> Result<Averaging, Error> {
         let digits = self.settings.digits;
@@ -406,10 +426,7 @@ impl<'a> Task<'a> {
         let mut bits =
             wanted + 40 + 8 * u32::try_from(self.settings.order).unwrap_or(u32::MAX / 16);
         loop {
-            let ring = BallRing { balls: Balls::new(bits) };
-            let values = |name: &str| Some(Enclosure(self.value(name)?.ball(ring.balls)?));
-            let algebra = self.algebra(&ring, &values, &|ring, _| *ring)?;
-            let over = self.derive(algebra, &values, observer)?;
+            let over = self.over_balls(Balls::new(bits), observer)?;
             let result = self.finish(&over, false, &|c| enclosed(&c.0, digits, bits));
             match result {
                 Err(Error::NotEnoughBits { .. }) if bits < MOST_BITS => bits *= 2,

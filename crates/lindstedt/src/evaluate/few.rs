@@ -1,8 +1,8 @@
 //! Sums of so few terms that nothing can be said about their error.
 
 use crate::number::{Number, Status};
-use lindstedt_coeff::ball::Ball;
-use lindstedt_coeff::digits::decimal;
+use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_coeff::digits::{decimal, error_string};
 use lindstedt_series::resummation::{
     Estimate, Growth, Method, Outcome, ResummationError, Resummed, Sample, partial_sums,
 };
@@ -17,6 +17,11 @@ const FEWEST_FOR_AN_ESTIMATE: usize = 7;
 /// Whether a missing estimate is the fault of the number of coefficients.
 pub(super) fn has_no_estimate(known: usize) -> bool {
     known < FEWEST_FOR_AN_ESTIMATE
+}
+
+/// Whether no method but the partial sum gives a value.
+pub(super) fn is_few(known: usize) -> bool {
+    known < FEWEST
 }
 
 /// The partial sum, its error unknown, of a series too short for [`Sample::sum`]; nothing for a
@@ -45,9 +50,12 @@ pub(super) fn partial_sum(
     Some(Ok(Resummed { method, outcome, growth, singularity, tried, bits }))
 }
 
-/// The midpoint with all digits asked for and without an error: what was computed is known, how
-/// far it is from the truth is not.
-pub(super) fn plain(ball: &Ball, digits: usize) -> Option<Number> {
-    let decimal = decimal(ball, digits)?;
-    Some(Number { exact: None, decimal, error: None, status: Status::Estimated })
+/// The midpoint with all digits asked for: what was computed is known. How far it is from the truth
+/// is the radius where it was measured; else nothing.
+pub(super) fn plain(ball: &Ball, digits: usize, is_measured: bool) -> Option<Number> {
+    let balls = Balls::new(ball.midpoint().prec());
+    let middle = balls.from_parts(ball.midpoint(), &Float::new(53));
+    let decimal = decimal(&middle, digits)?;
+    let error = is_measured.then(|| error_string(ball, &decimal));
+    Some(Number { exact: None, decimal, error, status: Status::Estimated })
 }

@@ -1,6 +1,7 @@
 //! Values from an expansion: period and frequency at given parameters, by resummation of the
 //! series of T/2pi, beside the closed form where there is one.
 
+pub mod averaged;
 mod closed;
 mod coefficients;
 mod few;
@@ -80,6 +81,8 @@ pub struct Evaluation {
     best_period: Ball,
     /// Whether an error of the period is known.
     is_estimated: bool,
+    /// Whether the coefficients are too few for an estimate: all digits of the sum are shown.
+    no_estimate: bool,
     /// In words.
     pub verdict: String,
     /// Poles and zeros of the diagonal Pade approximant of the highest order.
@@ -162,14 +165,15 @@ pub fn evaluate(
         // the error.
         period = balls.add_error(&value, error);
     }
+    let no_estimate = !estimate.error.is_finite() && few::has_no_estimate(source.known);
     let is_estimated = period.is_finite();
-    let number = |ball: &Ball| match is_estimated || !few::has_no_estimate(source.known) {
-        true => estimated(ball, settings.digits),
-        false => few::plain(ball, settings.digits),
-    };
-    if !is_estimated && few::has_no_estimate(source.known) {
+    if !is_estimated && no_estimate {
         period = value;
     }
+    let number = |ball: &Ball| match no_estimate {
+        false => estimated(ball, settings.digits),
+        true => few::plain(ball, settings.digits, is_estimated),
+    };
     let frequency = balls.div(&balls.mul_i64(&balls.pi(), 2), &period);
     let best = best_truncation(&sample, &resummed, &scale, settings.digits);
     let picture = picture(&sample, resummed.bits);
@@ -184,6 +188,7 @@ pub fn evaluate(
         radius: source.radius,
         best_period: closed.unwrap_or(period),
         is_estimated,
+        no_estimate,
         verdict: String::new(),
         picture,
         at: source.at,
@@ -302,15 +307,30 @@ impl Evaluation {
             String::new()
         };
         parts.push(match &self.period {
+            Some(Number { error: Some(error), .. }) if self.no_estimate => format!(
+                "{method}{degrees} of order {}, no estimate from so few coefficients; against the \
+                 closed form the error is {error}",
+                self.order
+            ),
             Some(Number { error: Some(error), .. }) => {
                 format!("summed by {method}{degrees}{choice}, estimated error {error}")
             }
-            Some(_) => format!("{method}{degrees}, no estimate from so few coefficients"),
+            Some(_) => format!(
+                "{method}{degrees} of order {}, no estimate from so few coefficients",
+                self.order
+            ),
             None => format!(
                 "{method}{degrees} gives not one digit: neighbouring approximants do not agree"
             ),
         });
         parts.join("; ")
+    }
+
+    /// Whether the coefficients are too few for an estimate of the error; the error of the period,
+    /// if there is one, is then measured by the closed form.
+    #[must_use]
+    pub fn has_no_estimate(&self) -> bool {
+        self.no_estimate
     }
 
     /// Why a method gave nothing, or its error estimate relative to 2 pi times the factor.

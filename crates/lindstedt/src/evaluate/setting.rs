@@ -65,6 +65,49 @@ pub(crate) struct Setting {
     parameters: BTreeMap<String, Value>,
 }
 
+/// Refuses a name that is neither on the card nor the small parameter.
+pub(super) fn check_names(problem: &Problem, given: &BTreeMap<String, Value>) -> Result<(), Error> {
+    let mut known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
+    if !known.contains(&&*problem.small) && problem.amplitude != AmplitudeRole::InSmallParameter {
+        known.push(&problem.small);
+    }
+    let unknown = |name: &&String| !known.contains(&name.as_str()) && ***name != *problem.small;
+    match given.keys().find(unknown) {
+        None => Ok(()),
+        Some(name) => Err(Error::UnknownParameter {
+            problem: problem.name.to_string(),
+            name: name.clone(),
+            known: known.join(", "),
+        }),
+    }
+}
+
+/// The value of the small parameter of an averaged problem, its amplitude being free, and all
+/// values in the order of the card.
+pub(super) fn small_value(
+    problem: &Problem,
+    given: &BTreeMap<String, Value>,
+) -> Result<(Value, Vec<(String, Value)>), Error> {
+    let values = Values { problem, given };
+    let small = match problem.amplitude {
+        // eps A^power at A = 1: the displacement is not scaled.
+        AmplitudeRole::InSmallParameter => {
+            values.get(&problem.small).or_else(|| values.coefficient().map(|(_, value)| value))
+        }
+        _ => values.get(&problem.small),
+    };
+    let coefficient = small.ok_or_else(|| unset(problem, &problem.small))?;
+    let small = Small { coefficient, power: 0, name: problem.small.to_string() };
+    let listed = matches!(problem.amplitude, AmplitudeRole::InSmallParameter)
+        && values.get(&problem.small).is_none();
+    let mut all = values.all(&small);
+    if listed {
+        // It stands there under the name of its coefficient.
+        all.retain(|(name, _)| **name != *problem.small);
+    }
+    Ok((small.coefficient, all))
+}
+
 fn one() -> Value {
     Value::Rational(Rational::from(1))
 }
@@ -86,6 +129,7 @@ impl Setting {
         condition: Option<Condition>,
         given: &BTreeMap<String, Value>,
     ) -> Result<Self, Error> {
+        check_names(problem, given)?;
         let listed = |name: &str| problem.parameters.iter().any(|card| card.name == name);
         let mut parameters = given.clone();
         if !listed(&problem.small) {

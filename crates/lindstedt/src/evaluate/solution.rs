@@ -9,7 +9,7 @@ use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::Problem;
 use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
 use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
-use lindstedt_series::resummation::{Method, Resummed, Sample, UniformMap, resum};
+use lindstedt_series::resummation::{Method, Resummed, Sample, UniformMap, partial_sums, resum};
 use rayon::prelude::*;
 use rug::{Float, Rational};
 use std::cell::RefCell;
@@ -85,6 +85,7 @@ impl Trajectory {
         let two_pi = balls.mul_i64(&balls.pi(), 2);
         let frequency = balls.div(&two_pi, &period).ok_or(Error::NoValue)?;
         let derivation = setting.derive(order, settings.memory, observer)?;
+        let few = few::is_few(derivation.order + 1);
         let methods = match settings.method {
             Some(
                 method @ (Method::PartialSum
@@ -93,6 +94,7 @@ impl Trajectory {
                 | Method::UniformPade
                 | Method::BorelPade),
             ) => vec![method],
+            _ if few => vec![Method::PartialSum],
             _ => vec![Method::Pade, Method::UniformPade],
         };
         let mut trajectory = Self {
@@ -121,13 +123,14 @@ impl Trajectory {
         let point = |k: u32| Point::PiTimes(Rational::from((2 * k + 1, PHASES)));
         let x: Vec<f64> = (0..PHASES)
             .into_par_iter()
-            .map(|k| self.sum(&point(k)).map_or(f64::NAN, |(_, x)| x))
+            .map(|k| self.rough(&point(k)).unwrap_or(f64::NAN))
             .collect();
         let step = std::f64::consts::TAU / f64::from(PHASES);
         let next = x.iter().cycle().skip(1);
         let quotients = x.iter().zip(next).map(|(a, b)| (b - a).abs() / step);
         // Where the series has no value at some phase nothing bounds the speed.
-        let top = quotients.fold(0.0, |top: f64, q| if q >= 0.0 { top.max(q) } else { f64::INFINITY });
+        let top =
+            quotients.fold(0.0, |top: f64, q| if q >= 0.0 { top.max(q) } else { f64::INFINITY });
         SAFETY * top * frequency
     }
 
@@ -167,43 +170,57 @@ impl Trajectory {
         let drift = balls.mul(&t, &self.frequency).radius().to_f64()
             / self.frequency.midpoint().to_f64().abs();
         let point = Point::Rational(tau.midpoint().to_rational()?);
-        let (ball, double) = self.sum(&point)?;
-        if !self.is_estimated || !ball.is_finite() && few::has_no_estimate(self.order() + 1) {
-            let balls = Balls::new(ball.midpoint().prec());
-            let value = few::plain(&balls.from_parts(ball.midpoint(), &Float::new(53)), self.digits);
-            let error = f64::INFINITY;
+        let (value, error) = self.sum(&point)?;
+        let double = value.midpoint().to_f64();
+        if !self.is_estimated || !error.is_finite() && few::has_no_estimate(self.order() + 1) {
+            let (value, error) = (few::plain(&value, self.digits, false), f64::INFINITY);
             return Some(Displacement { time: time.clone(), value, double, error });
         }
+        let ball = Balls::new(value.midpoint().prec()).add_error(&value, &error);
         let ball = balls.add_error(&ball, &Float::with_val(53, drift * self.speed));
         let value = estimated(&ball, self.digits);
         Some(Displacement { time: time.clone(), value, double, error: ball.radius().to_f64() })
     }
 
-    /// X at a phase with its estimated error, and as a double.
-    fn sum(&self, point: &Point) -> Option<(Ball, f64)> {
+    /// X at a phase to some digits, by one sequence of Pade approximants or the partial sum.
+    fn rough(&self, point: &Point) -> Option<f64> {
+        let order = u32::try_from(self.order()).ok()?;
+        let bits = 128 + 4 * order;
+        let sample = self.sample(point, bits)?;
+        let sum = sample.sum(Method::Pade, None, 53).map(|found| found.estimate.value).ok();
+        let partial = || partial_sums(&sample.coefficients, &sample.point, bits).pop();
+        let value = sum.or_else(partial)?;
+        let balls = Balls::new(bits);
+        let scaled = balls
+            .mul(&balls.from_parts(&value, &Float::new(53)), &self.setting.amplitude.ball(balls));
+        Some(scaled.midpoint().to_f64())
+    }
+
+    /// The coefficients of X at a phase and the small parameter.
+    fn sample(&self, point: &Point, bits: u32) -> Option<Sample> {
+        let balls = Balls::new(bits).with_guard(64);
+        let scale = Float::with_val(bits, 1);
+        let map = UniformMap { scale, prefactor: Float::new(bits), radius: None };
+        let coefficients = self.coefficients(point, balls)?;
+        let float = |c: &Ball| Float::with_val(bits, c.midpoint());
+        Some(Sample {
+            coefficients: coefficients.iter().map(float).collect(),
+            point: Float::with_val(bits, self.setting.small(balls).midpoint()),
+            map: Some(map),
+            radius: None,
+            bits,
+        })
+    }
+
+    /// X at a phase, and its estimated error.
+    fn sum(&self, point: &Point) -> Option<(Ball, Float)> {
         // The methods ask for the same precisions: each is computed once.
         let known: RefCell<BTreeMap<u32, Sample>> = RefCell::default();
         let source = |bits: u32| {
             if let Some(sample) = known.borrow().get(&bits) {
                 return Some(sample.clone());
             }
-            let balls = Balls::new(bits).with_guard(64);
-            let map = UniformMap {
-                scale: Float::with_val(bits, 1),
-                prefactor: Float::new(bits),
-                radius: None,
-            };
-            let coefficients = self.coefficients(point, balls)?;
-            let sample = Sample {
-                coefficients: coefficients
-                    .iter()
-                    .map(|c| Float::with_val(bits, c.midpoint()))
-                    .collect(),
-                point: Float::with_val(bits, self.setting.small(balls).midpoint()),
-                map: Some(map),
-                radius: None,
-                bits,
-            };
+            let sample = self.sample(point, bits)?;
             known.borrow_mut().insert(bits, sample.clone());
             Some(sample)
         };
@@ -220,9 +237,9 @@ impl Trajectory {
         let balls = Balls::new(found.bits);
         let estimate = &found.outcome.estimate;
         let amplitude = self.setting.amplitude.ball(balls);
-        let ball = balls.mul(&balls.from_parts(&estimate.value, &estimate.error), &amplitude);
-        let value = balls.mul(&balls.from_parts(&estimate.value, &Float::new(53)), &amplitude);
-        Some((ball, value.midpoint().to_f64()))
+        let value = balls.from_parts(&estimate.value, &Float::new(53));
+        let error = Float::with_val(53, &estimate.error * amplitude.abs_upper());
+        Some((balls.mul(&value, &amplitude), error))
     }
 
     /// x_n at a phase.

@@ -1,0 +1,131 @@
+//! a(t) and psi(t): exponentials where the rates are linear, else integrated.
+
+use super::truncated::Truncated;
+use lindstedt_equation::Expression;
+use lindstedt_simulate::{
+    Digits, Integrator, Model, Parameters, Settings, SimulateError, Trajectory,
+};
+use rug::Float;
+use std::ops::ControlFlow;
+
+/// Digits of the second integration beyond those of the first.
+const MORE: u32 = 8;
+
+/// a and psi at one time.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    pub values: [Float; 2],
+    /// The estimated errors of the integration.
+    pub errors: [f64; 2],
+}
+
+/// a and psi at the times asked for.
+#[derive(Clone, Debug)]
+pub(super) struct Flow {
+    /// In the order of the times; nothing beyond the end of the integration.
+    pub states: Vec<Option<State>>,
+    /// Why it ended early.
+    pub ended: Option<SimulateError>,
+}
+
+impl Flow {
+    pub(super) fn new(
+        system: &Truncated,
+        times: &[Float],
+        digits: usize,
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Self {
+        if let Some([growth, frequency]) = system.linear() {
+            let state = |t: &Float| {
+                let bits = growth.prec();
+                let power = Float::with_val(bits, &growth * t).exp() * &system.start[0];
+                let turn = Float::with_val(bits, &frequency * t) + &system.start[1];
+                Some(State { values: [power, turn], errors: [0.0; 2] })
+            };
+            return Self { states: times.iter().map(state).collect(), ended: None };
+        }
+        let digits = u32::try_from(digits).unwrap_or(u32::MAX / 8).saturating_add(4);
+        let (mut states, mut ended) = (vec![None; times.len()], None);
+        for backward in [false, true] {
+            let chosen: Vec<usize> =
+                (0..times.len()).filter(|i| (times[*i] < 0) == backward).collect();
+            if chosen.is_empty() {
+                continue;
+            }
+            let wanted: Vec<Float> = chosen.iter().map(|i| times[*i].clone().abs()).collect();
+            let mut run = |digits| integrate(system, (&wanted[..], backward), digits, goes_on);
+            let (coarse, fine) = (run(digits), run(digits + MORE));
+            for (place, (a, b)) in chosen.into_iter().zip(coarse.0.into_iter().zip(fine.0)) {
+                let (Some(a), Some(b)) = (a, b) else { continue };
+                let errors = [0, 1].map(|k| Float::with_val(53, &a[k] - &b[k]).to_f64().abs());
+                states[place] = Some(State { values: b, errors });
+            }
+            ended = ended.or(fine.1);
+        }
+        Self { states, ended }
+    }
+}
+
+type Values = Vec<Option<[Float; 2]>>;
+
+/// The states at |t|, t = 0 included, and what ended the integration early.
+fn integrate(
+    system: &Truncated,
+    (times, backward): (&[Float], bool),
+    digits: u32,
+    goes_on: &mut dyn FnMut() -> bool,
+) -> (Values, Option<SimulateError>) {
+    let real = Digits::for_digits(digits);
+    let mut trajectory = Trajectory::new(real);
+    let last = times.iter().fold(Float::new(53), |top, t| top.max(t));
+    let outcome = if last.is_zero() {
+        Ok(())
+    } else {
+        run(system, (&last, backward), digits, (&mut trajectory, goes_on))
+    };
+    let bits = real_bits(&real);
+    let start = system.start.clone();
+    let value = |t: &Float| {
+        if t.is_zero() {
+            return Some(start.clone());
+        }
+        let t = Float::with_val(bits, t);
+        Some([trajectory.value(0, &t)?, trajectory.value(1, &t)?])
+    };
+    (times.iter().map(value).collect(), outcome.err())
+}
+
+fn real_bits(real: &Digits) -> u32 {
+    lindstedt_simulate::Real::bits(real)
+}
+
+fn run(
+    system: &Truncated,
+    (last, backward): (&Float, bool),
+    digits: u32,
+    (trajectory, goes_on): (&mut Trajectory<Digits>, &mut dyn FnMut() -> bool),
+) -> Result<(), SimulateError> {
+    let real = Digits::for_digits(digits);
+    let bits = real_bits(&real);
+    let mut parameters = Parameters::new();
+    let mut sides = Vec::new();
+    for (name, terms) in ["A", "B"].iter().zip(&system.rates) {
+        let mut sum = vec![Expression::integer(0)];
+        for (n, c) in terms {
+            let symbol = format!("{name}{n}").replace('-', "m");
+            let c = if backward { Float::with_val(c.prec(), -c) } else { c.clone() };
+            parameters.set(&symbol, c);
+            sum.push(Expression::parameter(&symbol) * Expression::Displacement.pow(i64::from(*n)));
+        }
+        sides.push(Expression::Sum(sum).canonical());
+    }
+    let compiled = Model::first_order(&["a", "psi"], &sides)?.compile(real, &parameters)?;
+    let start: Vec<Float> = system.start.iter().map(|x| Float::with_val(bits, x)).collect();
+    let settings = Settings::for_digits(digits);
+    let mut flow = Integrator::new(&compiled, &Float::new(bits), &start, settings)?;
+    flow.advance(&Float::with_val(bits, last), &mut |report| {
+        let _ = trajectory.record(report);
+        if goes_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    })?;
+    Ok(())
+}
