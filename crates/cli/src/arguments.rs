@@ -230,7 +230,7 @@ pub struct StabilityOptions {
 
 #[derive(Debug, Args)]
 pub struct TradeOptions {
-    /// power-law, pendulum, duffing or van-der-pol.
+    /// power-law, pendulum, duffing, van-der-pol, or a problem file (.toml).
     pub problem: String,
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
@@ -256,6 +256,10 @@ pub struct TradeOptions {
     /// Recommend the fastest run that states at most this relative error.
     #[arg(long = "for", value_name = "ERROR", value_parser = seconds)]
     pub wanted: Option<f64>,
+    /// Recommend the run that states the least error in at most this time; with --for also a
+    /// limit for that.
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub within: Option<f64>,
     /// A figure (.svg) or a table (.csv); may be given twice.
     #[arg(long, value_name = "FILE")]
     pub plot: Vec<PathBuf>,

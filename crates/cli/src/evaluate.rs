@@ -126,7 +126,7 @@ fn condition(normalisation: Normalisation) -> Condition {
 
 /// Where the small parameter only counts orders (the equation as it was written does not mention
 /// it, a table of orders puts it in) it is 1, unless it is set.
-fn set_order_parameter(loaded: &Loaded, given: &mut BTreeMap<String, Value>) {
+pub fn set_order_parameter(loaded: &Loaded, given: &mut BTreeMap<String, Value>) {
     let problem = &loaded.problem;
     let written = loaded.file.as_ref().map(|file| parse_equation(&file.equation, &file.names));
     let mentions = |e: &Expression| e.contains(&Expression::Small);

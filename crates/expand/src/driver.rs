@@ -100,8 +100,8 @@ pub fn leading_amplitude<A: PhaseAlgebra>(
 
 /// Derives the expansion up to the order of the request.
 ///
-/// After each order `observer` is told the work; when it returns `false` the driver stops and
-/// returns the orders that are finished.
+/// After each order `observer` is told the work; when it returns `false`, or when the algebra is
+/// interrupted within an order, the driver stops and returns the orders that are finished.
 ///
 /// # Errors
 /// [`ExpandError`] says at which order and why no expansion of the asked form exists or could
@@ -136,16 +136,6 @@ pub fn leading_amplitude<A: PhaseAlgebra>(
 /// assert_eq!(check(&algebra, &equation, &found)?, 2);
 /// # Ok::<(), lindstedt_expand::ExpandError>(())
 /// ```
-<<<<<<< HEAD
-///
-/// After each order `observer` is told the work; when it returns `false`, or when the algebra is
-/// interrupted within an order, the driver stops and returns the orders that are finished.
-///
-/// # Errors
-/// [`ExpandError`] says at which order and why no expansion of the asked form exists or could
-/// be found in this algebra.
-=======
->>>>>>> book
 pub fn expand<A: PhaseAlgebra>(
     algebra: &A,
     equation: &Equation<A>,

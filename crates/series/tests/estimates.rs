@@ -5,6 +5,7 @@
 use lindstedt_series::resummation::{Method, Sample, UniformMap, resum};
 use rug::Float;
 use rug::ops::Pow;
+use std::collections::BTreeMap;
 
 /// The precision of the exact values.
 const BITS: u32 = 700;
@@ -162,8 +163,30 @@ struct Count {
     refused: usize,
     infinite: usize,
     violated: usize,
-    /// log_10 of estimate over true error, summed over the useful ones.
-    pessimism: f64,
+    /// log_10 of estimate over true error of the useful ones that are above the accuracy asked
+    /// for, by method and least order of the band.
+    ratios: BTreeMap<(String, usize), Vec<f64>>,
+}
+
+/// The least orders of the bands.
+const BANDS: [usize; 4] = [4, 10, 20, 30];
+
+impl Count {
+    /// Median and 95 % of estimate over true error, by method and order.
+    fn print(&mut self) {
+        let Self { held, useful, refused, infinite, violated, .. } = self;
+        println!(
+            "{held} held, {useful} useful, {refused} refused, {infinite} infinite, {violated} violated"
+        );
+        for ((method, order), list) in &mut self.ratios {
+            list.sort_by(f64::total_cmp);
+            let at = |part: f64| 10f64.powf(list[(part * (list.len() - 1) as f64) as usize]);
+            let (count, median, high) = (list.len(), at(0.5), at(0.95));
+            println!(
+                "  {method:14} order {order:2}.. {count:4}: median {median:8.1e}, 95 % {high:8.1e}"
+            );
+        }
+    }
 }
 
 /// One random function by `auto` and all methods.
@@ -198,8 +221,12 @@ fn check(g: &mut Generator, count: &mut Count, failures: &mut Vec<String>) {
             count.held += 1;
             if estimate.error < 1e-3 {
                 count.useful += 1;
-                let ratio = Float::with_val(53, &estimate.error / &error).log10().to_f64();
-                count.pessimism += ratio.min(30.0);
+                if estimate.error > 1e-20 {
+                    let ratio = Float::with_val(53, &estimate.error / &error).log10().to_f64();
+                    let band = BANDS.into_iter().rev().find(|b| *b <= order).unwrap();
+                    let name = method.map_or("auto".to_owned(), |m| format!("{m:?}"));
+                    count.ratios.entry((name, band)).or_default().push(ratio);
+                }
             }
         } else {
             count.violated += 1;
@@ -211,19 +238,20 @@ fn check(g: &mut Generator, count: &mut Count, failures: &mut Vec<String>) {
     }
 }
 
-fn run(seed: u64, cases: usize) -> (Count, Vec<String>) {
+fn run(seed: u64, cases: usize, count: &mut Count) -> Vec<String> {
     let mut g = Generator(seed);
-    let (mut count, mut failures) = (Count::default(), Vec::new());
+    let mut failures = Vec::new();
     for _ in 0..cases {
-        check(&mut g, &mut count, &mut failures);
+        check(&mut g, count, &mut failures);
     }
-    println!("{count:?}, mean pessimism 10^{:.2}", count.pessimism / count.useful as f64);
-    (count, failures)
+    failures
 }
 
 #[test]
 fn estimates_hold() {
-    let (count, failures) = run(2, 24);
+    let mut count = Count::default();
+    let failures = run(2, 24, &mut count);
+    count.print();
     assert!(failures.is_empty(), "{failures:#?}");
     assert!(count.useful > 50, "{count:?}");
 }
@@ -232,12 +260,18 @@ fn estimates_hold() {
 #[test]
 #[ignore = "minutes"]
 fn every_estimate() {
+    let mut count = Count::default();
+    let mut failures = Vec::new();
     for seed in 100..108 {
-        let (_, failures) = run(seed, 100);
-        for line in &failures {
-            println!("{line}");
-        }
+        failures.extend(run(seed, 100, &mut count));
+        println!(
+            "{} sums, {} violated",
+            count.held + count.infinite + count.violated,
+            count.violated
+        );
     }
+    count.print();
+    assert!(failures.is_empty(), "{failures:#?}");
 }
 
 /// The closed forms against the convergent series.

@@ -1,7 +1,7 @@
 //! Time against true error, both logarithmic, with the Pareto front.
 
 use crate::failure::{Failure, NO_ANSWER};
-use lindstedt::trade::{Row, Trade, pareto};
+use lindstedt::trade::{Row, Summation, Trade, pareto};
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (960, 640);
@@ -51,7 +51,11 @@ fn paint(trade: &Trade, svg: &mut String) -> Result<(), Box<dyn std::error::Erro
     root.fill(&WHITE)?;
     let parameters: Vec<String> =
         trade.truth.at.iter().map(|(k, v)| format!("{k} = {v}")).collect();
-    let caption = format!("{} at {}: period", trade.problem.name, parameters.join(", "));
+    let caption = format!(
+        "{} at {}: period (hollow: partial sums, full: resummed)",
+        trade.problem.name,
+        parameters.join(", ")
+    );
     let mut chart = ChartBuilder::on(&root)
         .margin(16)
         .caption(caption, ("sans-serif", 18))
@@ -94,8 +98,16 @@ fn paint(trade: &Trade, svg: &mut String) -> Result<(), Box<dyn std::error::Erro
         let (group, tail) = rest.split_at(count);
         rest = tail;
         let colour = colour(name);
-        chart.draw_series(LineSeries::new(group.iter().map(at), colour.stroke_width(1)))?;
-        let points = group.iter().map(|row| Circle::new(at(row), 4, colour.filled()));
+        // Partial sums are hollow, resummations and the integrator full.
+        let is_partial = |row: &&Row| row.summation == Some(Summation::PartialSum);
+        let partial = group.iter().filter(is_partial);
+        let line = LineSeries::new(partial.clone().map(at), colour.mix(0.4).stroke_width(1));
+        chart.draw_series(line)?;
+        let points = partial.map(|row| Circle::new(at(row), 4, colour.stroke_width(1)));
+        chart.draw_series(points)?;
+        let full = || group.iter().filter(|row| !is_partial(row));
+        chart.draw_series(LineSeries::new(full().map(at), colour.stroke_width(1)))?;
+        let points = full().map(|row| Circle::new(at(row), 4, colour.filled()));
         let drawn = chart.draw_series(points)?;
         if !named.contains(&name) {
             named.push(name);

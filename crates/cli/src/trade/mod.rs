@@ -5,15 +5,63 @@ mod report;
 
 use crate::Outcome;
 use crate::arguments::{Format, TradeOptions};
+use crate::evaluate::set_order_parameter;
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
 use crate::session::{self, Session};
 use lindstedt::Error;
-use lindstedt::trade::{Plan, measure};
+use lindstedt::trade::{Plan, Row, measure, most_accurate, recommend, recommend_for_many};
+
+/// What a recommendation is asked for.
+#[derive(Clone, Copy)]
+pub struct Wanted {
+    /// A relative error.
+    pub error: Option<f64>,
+    /// A time.
+    pub seconds: Option<f64>,
+}
+
+impl Wanted {
+    pub fn is_some(self) -> bool {
+        self.error.is_some() || self.seconds.is_some()
+    }
+
+    fn in_time(self, rows: &[Row], found: Option<usize>) -> Option<usize> {
+        let most = self.seconds.unwrap_or(f64::INFINITY);
+        found.filter(|i| rows.get(*i).is_some_and(|row| row.seconds <= most))
+    }
+
+    /// The fastest run that states the error, if it is fast enough.
+    pub fn best(self, rows: &[Row]) -> Option<usize> {
+        self.in_time(rows, recommend(rows, self.error?))
+    }
+
+    /// The same for one more value of the small parameter: that time may be bought with a longer
+    /// derivation.
+    pub fn best_for_many(self, rows: &[Row]) -> Option<usize> {
+        let most = self.seconds.unwrap_or(f64::INFINITY);
+        let found = recommend_for_many(rows, self.error?);
+        found.filter(|i| rows.get(*i).is_some_and(|row| row.seconds_again <= most))
+    }
+
+    /// The run that states the least error in the time.
+    pub fn within(self, rows: &[Row]) -> Option<usize> {
+        most_accurate(rows, self.seconds?)
+    }
+
+    /// Whether there is a recommendation for all that was asked.
+    fn is_met(self, rows: &[Row]) -> bool {
+        self.error.is_none_or(|_| self.best(rows).is_some())
+            && self.seconds.is_none_or(|_| self.within(rows).is_some())
+    }
+}
 
 pub fn run(options: &TradeOptions, session: &Session<'_>) -> Outcome {
-    let problem = session::problem(&options.problem)?;
-    let parameters = session::parameters(&options.set)?;
+    let loaded = session::load(&options.problem)?;
+    let mut parameters = session::parameters(&options.set)?;
+    set_order_parameter(&loaded, &mut parameters);
+    let problem = loaded.problem;
+    let wanted = Wanted { error: options.wanted, seconds: options.within };
     output::check_writable(session)?;
     for path in &options.plot {
         output::check_file(path)?;
@@ -32,11 +80,13 @@ pub fn run(options: &TradeOptions, session: &Session<'_>) -> Outcome {
         session.goes_on()
     });
     let trade = trade.map_err(|error| match error {
-        Error::NoValue => Failure {
+        Error::NoValue | Error::NotEvaluated { .. } => Failure {
             exit: NO_ANSWER,
             code: "no-reference",
             message: format!("{}: the true period at these parameters is not known", problem.name),
-            hint: "power-law, pendulum, duffing, van-der-pol at eps=1".to_owned(),
+            hint: "oscillators with a periodic solution that starts at rest: power-law, pendulum, \
+                   duffing, van-der-pol, files"
+                .to_owned(),
         },
         other => other.into(),
     })?;
@@ -47,14 +97,13 @@ pub fn run(options: &TradeOptions, session: &Session<'_>) -> Outcome {
         output::write_file(path, &text)?;
     }
     let text = match session.format() {
-        Format::Json => format!("{:#}\n", report::json(&trade, &plan, options.wanted)),
-        format => report::text(&trade, &plan, options.wanted, format),
+        Format::Json => format!("{:#}\n", report::json(&trade, &plan, wanted)),
+        format => report::text(&trade, &plan, wanted, format),
     };
     output::write(session, &text)?;
     if !trade.finished {
         output::warn("not finished: the rows above are");
         return Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED });
     }
-    let met = options.wanted.is_none_or(|e| lindstedt::trade::recommend(&trade.rows, e).is_some());
-    Ok(if met { 0 } else { UNDECIDED })
+    Ok(if wanted.is_met(&trade.rows) { 0 } else { UNDECIDED })
 }

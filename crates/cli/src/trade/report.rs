@@ -1,8 +1,9 @@
 //! The measured rows as text, JSON and CSV.
 
+use super::Wanted;
 use crate::arguments::Format;
 use lindstedt::equation::print::Style;
-use lindstedt::trade::{LeftOut, Plan, Reason, Row, Trade, pareto, recommend, recommend_for_many};
+use lindstedt::trade::{LeftOut, Plan, Reason, Row, Summation, Trade, pareto};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
@@ -18,24 +19,33 @@ fn harmonics(row: &Row) -> Option<usize> {
     }
 }
 
+/// How the series is summed, as after `--resum`.
+fn summed(row: &Row) -> Option<&'static str> {
+    row.summation.as_ref().map(Summation::name)
+}
+
 fn row_json(row: &Row, on_front: bool) -> Json {
     json!({
         "tier": row.method.name(),
         "order": row.order,
         "digits": row.method.digits(),
         "harmonics": harmonics(row),
+        "summed": summed(row),
         "seconds": row.seconds,
         "seconds_again": row.seconds_again,
         "memory_bytes": row.bytes,
         "period": period(row),
         "true_error": row.true_error,
-        "stated_error": row.stated_error,
+        "stated_error": row.stated_error.is_finite().then_some(row.stated_error),
         "pareto": on_front,
     })
 }
 
-/// The digits that the stated error supports, and two more.
+/// The digits that the stated error supports, and two more; without one, all.
 fn period(row: &Row) -> String {
+    if !row.stated_error.is_finite() {
+        return row.period.to_string_radix(10, None);
+    }
     let digits = (-row.stated_error.max(1e-300).log10()).max(0.0) as usize + 3;
     row.period.to_string_radix(10, Some(digits.min(row.period.prec() as usize * 3 / 10).max(2)))
 }
@@ -52,7 +62,13 @@ fn reason(reason: &Reason, plan: &Plan) -> String {
     }
 }
 
-pub fn json(trade: &Trade, plan: &Plan, wanted: Option<f64>) -> Json {
+/// The value of the small parameter, exact where it is rational.
+fn small(trade: &Trade) -> String {
+    let decimal = || trade.truth.small.to_string_radix(10, Some(30));
+    trade.truth.rational_small.as_ref().map_or_else(decimal, ToString::to_string)
+}
+
+pub fn json(trade: &Trade, plan: &Plan, wanted: Wanted) -> Json {
     let front = pareto(&trade.rows);
     let rows: Vec<Json> =
         trade.rows.iter().enumerate().map(|(i, row)| row_json(row, front.contains(&i))).collect();
@@ -66,21 +82,25 @@ pub fn json(trade: &Trade, plan: &Plan, wanted: Option<f64>) -> Json {
     };
     let at: serde_json::Map<String, Json> =
         trade.truth.at.iter().map(|(k, v)| (k.clone(), json!(v.to_string()))).collect();
-    let recommendation = wanted.map(|error| {
-        let many = recommend_for_many(&trade.rows, error);
-        let (one, many) = (recommend(&trade.rows, error), many);
-        let row = |i: Option<usize>| {
-            let i = i?;
-            Some(row_json(trade.rows.get(i)?, front.contains(&i)))
-        };
-        json!({"error": error, "row": row(one), "for_many": row(many)})
+    let row = |i: Option<usize>| {
+        let i = i?;
+        Some(row_json(trade.rows.get(i)?, front.contains(&i)))
+    };
+    let recommendation = wanted.is_some().then(|| {
+        json!({
+            "error": wanted.error,
+            "seconds": wanted.seconds,
+            "row": row(wanted.best(&trade.rows)),
+            "for_many": row(wanted.best_for_many(&trade.rows)),
+            "within": row(wanted.within(&trade.rows)),
+        })
     });
     let digits = trade.truth.period.prec() as usize * 3 / 10 - 18;
     json!({
         "problem": trade.problem.name,
         "at": at,
         "parameter": trade.problem.small,
-        "small": trade.truth.small.to_string(),
+        "small": small(trade),
         "period": trade.truth.period.to_string_radix(10, Some(digits)),
         "period_error": trade.truth.uncertainty,
         "source": trade.truth.source,
@@ -98,17 +118,18 @@ pub fn json(trade: &Trade, plan: &Plan, wanted: Option<f64>) -> Json {
 pub fn csv(trade: &Trade) -> String {
     let front = pareto(&trade.rows);
     let mut text =
-        "tier,order,digits,harmonics,seconds,seconds_again,memory_bytes,true_error,stated_error,pareto\n"
+        "tier,order,digits,harmonics,summed,seconds,seconds_again,memory_bytes,true_error,stated_error,pareto\n"
             .to_owned();
     let number = |n: Option<usize>| n.map_or(String::new(), |n| n.to_string());
     for (i, row) in trade.rows.iter().enumerate() {
         let _ = writeln!(
             text,
-            "{},{},{},{},{:e},{:e},{},{:e},{:e},{}",
+            "{},{},{},{},{},{:e},{:e},{},{:e},{:e},{}",
             row.method.name(),
             number(row.order),
             row.method.digits(),
             number(harmonics(row)),
+            summed(row).unwrap_or(""),
             row.seconds,
             row.seconds_again,
             row.bytes,
@@ -142,7 +163,7 @@ fn precision(row: &Row) -> String {
         .map_or_else(|| format!("{} digits", row.method.digits()), |n| format!("{n} harm."))
 }
 
-pub fn text(trade: &Trade, plan: &Plan, wanted: Option<f64>, format: Format) -> String {
+pub fn text(trade: &Trade, plan: &Plan, wanted: Wanted, format: Format) -> String {
     let mut text = String::new();
     let at: Vec<String> = trade.truth.at.iter().map(|(k, v)| format!("{k} = {v}")).collect();
     let equation = trade.problem.equation.print(&trade.problem.small, Style::Text);
@@ -161,22 +182,31 @@ pub fn text(trade: &Trade, plan: &Plan, wanted: Option<f64>, format: Format) -> 
         _ => ("  ", ""),
     };
     let begin = if format == Format::Markdown { "| " } else { "" };
-    let line = |cells: [String; 8], text: &mut String| {
-        let widths = [16, 5, 10, 10, 10, 9, 11, 12];
+    let line = |cells: [String; 9], text: &mut String| {
+        let widths = [16, 5, 10, 12, 10, 10, 9, 11, 12];
         let cells: Vec<String> =
             cells.iter().zip(widths).map(|(c, w)| format!("{c:<w$}")).collect();
         let _ = writeln!(text, "{begin}{}{end}", cells.join(gap).trim_end());
     };
-    let titles =
-        ["tier", "order", "precision", "time", "again", "memory", "true error", "stated error"];
+    let titles = [
+        "tier",
+        "order",
+        "precision",
+        "summed",
+        "time",
+        "again",
+        "memory",
+        "true error",
+        "stated error",
+    ];
     match format {
         Format::Markdown => text.push('\n'),
-        Format::Latex => text.push_str("\\begin{tabular}{llllllll}\n"),
+        Format::Latex => text.push_str("\\begin{tabular}{lllllllll}\n"),
         _ => {}
     }
     line(titles.map(str::to_owned), &mut text);
     if format == Format::Markdown {
-        text.push_str("|---|---|---|---|---|---|---|---|\n");
+        text.push_str("|---|---|---|---|---|---|---|---|---|\n");
     }
     let front = pareto(&trade.rows);
     for (i, row) in trade.rows.iter().enumerate() {
@@ -185,11 +215,12 @@ pub fn text(trade: &Trade, plan: &Plan, wanted: Option<f64>, format: Format) -> 
             format!("{}{mark}", row.method.name()),
             row.order.map_or(String::new(), |n| n.to_string()),
             precision(row),
+            summed(row).unwrap_or("").to_owned(),
             duration(row.seconds),
             duration(row.seconds_again),
             size(row.bytes),
             format!("{:.1e}", row.true_error),
-            format!("{:.1e}", row.stated_error),
+            stated(row),
         ];
         line(cells, &mut text);
     }
@@ -202,29 +233,51 @@ pub fn text(trade: &Trade, plan: &Plan, wanted: Option<f64>, format: Format) -> 
         let why = reason(&left.reason, plan);
         let _ = writeln!(text, "Left out: {name}, {digits} digits{order}: {why}.");
     }
-    if let Some(error) = wanted {
-        let _ = writeln!(text, "{}", advice(trade, error));
+    if wanted.is_some() {
+        let _ = writeln!(text, "{}", advice(trade, wanted));
     }
     text
 }
 
-fn advice(trade: &Trade, error: f64) -> String {
+fn stated(row: &Row) -> String {
+    match row.stated_error {
+        e if e.is_finite() => format!("{e:.1e}"),
+        _ => "none".to_owned(),
+    }
+}
+
+fn advice(trade: &Trade, wanted: Wanted) -> String {
     let row = |i: Option<usize>| trade.rows.get(i?);
-    let (one, many) = (recommend(&trade.rows, error), recommend_for_many(&trade.rows, error));
-    let (Some(one), Some(many)) = (row(one), row(many)) else {
-        return format!("For {error:e}: no run here states so small an error.");
-    };
     let name = |row: &Row| {
         let order = row.order.map_or(String::new(), |n| format!(", order {n}"));
+        let sum = summed(row).map_or(String::new(), |s| format!(", summed by {s}"));
+        let sum = sum.replace("by none", "as it stands");
         let (name, precision) = (row.method.name(), precision(row));
-        format!("{name}{order}, {precision} (states {:.1e})", row.stated_error)
+        format!("{name}{order}, {precision}{sum} (states {})", stated(row))
     };
-    format!(
-        "For {error:e} in {}: {}.\nFor {error:e} at many values, {} each after {}: {}.",
-        duration(one.seconds),
-        name(one),
-        duration(many.seconds_again),
-        duration(many.seconds),
-        name(many)
-    )
+    let mut lines = Vec::new();
+    if let Some(error) = wanted.error {
+        match (row(wanted.best(&trade.rows)), row(wanted.best_for_many(&trade.rows))) {
+            (Some(one), Some(many)) => {
+                lines.push(format!("For {error:e} in {}: {}.", duration(one.seconds), name(one)));
+                lines.push(format!(
+                    "For {error:e} at many values, {} each after {}: {}.",
+                    duration(many.seconds_again),
+                    duration(many.seconds),
+                    name(many)
+                ));
+            }
+            _ if wanted.seconds.is_some() => {
+                lines.push(format!("For {error:e}: no run here states it in that time."));
+            }
+            _ => lines.push(format!("For {error:e}: no run here states so small an error.")),
+        }
+    }
+    if let Some(seconds) = wanted.seconds {
+        lines.push(match row(wanted.within(&trade.rows)) {
+            Some(best) => format!("Within {}: {}.", duration(seconds), name(best)),
+            None => format!("Within {}: no run here states an error.", duration(seconds)),
+        });
+    }
+    lines.join("\n")
 }

@@ -360,3 +360,18 @@ fn power_law(equation: &Expression) -> Option<Rational> {
     let count = |wanted: &Expression| factors.iter().filter(|f| *f == wanted).count();
     (equation.terms().len() == 2 && count(&x) == 1 && count(&power) == 1).then_some(stiffness)
 }
+
+impl Setting {
+    /// What [`derive()`] is told.
+    pub(crate) fn parameters(&self) -> &BTreeMap<String, Value> {
+        &self.parameters
+    }
+
+    /// The value of the small parameter, where it is rational.
+    pub(crate) fn rational_small(&self) -> Option<Rational> {
+        let (coefficient, amplitude) =
+            (self.small.coefficient.as_rational()?, self.amplitude.as_rational()?);
+        let power = rug::ops::Pow::pow(amplitude.clone(), self.small.power);
+        Some(Rational::from(coefficient * power))
+    }
+}

@@ -12,7 +12,7 @@ use rug::{Float, Rational};
 
 /// A formula for a value.
 pub(crate) type Formula = Box<dyn Fn(Balls) -> Option<Ball> + Send + Sync>;
-type Coefficients = Box<dyn Fn(u32) -> Option<Vec<Float>> + Send + Sync>;
+pub(crate) type Coefficients = Box<dyn Fn(u32) -> Option<Vec<Float>> + Send + Sync>;
 
 /// The series of T/2pi = factor * sum t_n x^n at a point.
 pub(crate) struct Source {
@@ -34,6 +34,10 @@ pub(crate) struct Source {
     pub radius: Option<(f64, &'static str)>,
     /// The change of variable u = x/(scale + x).
     map: Option<ChangeOfVariable>,
+    /// The coefficient of small^(n step) in T/2pi over the factor is t_n ratio^(n step).
+    pub step: usize,
+    /// See `step`.
+    pub ratio: Rational,
 }
 
 /// u = x/(scale + x), and the power of x that f is compared with.
@@ -73,8 +77,31 @@ impl Source {
         }
     }
 
+    /// A source without coefficients of its own, about which nothing is known.
+    pub(crate) fn plain(setting: &Setting) -> Self {
+        let point = setting.clone();
+        Self {
+            variable: setting.small.name.clone(),
+            at: setting.at.clone(),
+            known: 0,
+            coefficients: Box::new(|_| None),
+            point: Box::new(move |balls| Some(point.small(balls))),
+            factor: Box::new(|balls| Some(balls.one())),
+            closed: None,
+            radius: None,
+            map: None,
+            step: 1,
+            ratio: Rational::from(1),
+        }
+    }
+
     /// The sample at a precision.
     pub(crate) fn sample(&self, bits: u32) -> Option<Sample> {
+        self.sample_of((self.coefficients)(bits)?, bits)
+    }
+
+    /// The sample with coefficients from elsewhere.
+    pub(crate) fn sample_of(&self, coefficients: Vec<Float>, bits: u32) -> Option<Sample> {
         let point = (self.point)(Balls::new(bits).with_guard(64))?;
         let map = self.map.as_ref().map(|map| UniformMap {
             scale: Float::with_val(bits, &map.scale),
@@ -82,7 +109,7 @@ impl Source {
             radius: map.radius,
         });
         Some(Sample {
-            coefficients: (self.coefficients)(bits)?,
+            coefficients,
             point: Float::with_val(bits, point.midpoint()),
             map,
             radius: self.radius.map(|(radius, _)| radius),
@@ -143,6 +170,8 @@ fn power_law(
             prefactor: Rational::from((1, 2)),
             radius: Some(3.0),
         }),
+        step: 1,
+        ratio: Rational::from(1),
     })
 }
 
@@ -171,6 +200,8 @@ fn sums(setting: &Setting, order: usize, stop: &Stop) -> Source {
         // int x^(1 + 2 k delta) dx: a pole of the potential for every k.
         radius: Some((0.0, "the potential has poles at delta = -1/k for all k")),
         map: None,
+        step: 1,
+        ratio: Rational::from(1),
     }
 }
 
@@ -288,7 +319,7 @@ fn variable(setting: &Setting, ratio: &Rational) -> String {
 
 impl Cubic {
     fn finish(self, setting: &Setting, series: Series) -> Source {
-        let known = series.known;
+        let (known, step, ratio) = (series.known, series.step, self.ratio.clone());
         Source {
             variable: variable(setting, &self.ratio),
             at: setting.at.clone(),
@@ -304,6 +335,8 @@ impl Cubic {
                 prefactor: Rational::from((-1, 2)),
                 radius: Some(2.0),
             }),
+            step,
+            ratio,
         }
     }
 }
@@ -338,7 +371,25 @@ fn derived(setting: &Setting, series: Series) -> Source {
         closed: None,
         radius: None,
         map: Some(ChangeOfVariable { scale, prefactor: power, radius: None }),
+        step,
+        ratio: Rational::from(1),
     }
+}
+
+/// The coefficients t_0, t_1, ... that a derivation has, for a source with that `step` and `ratio`.
+pub(crate) fn coefficients_of(
+    derivation: Derivation,
+    step: usize,
+    ratio: &Rational,
+) -> Result<Coefficients, Error> {
+    let mut series = Series::new(derivation)?;
+    let length = series.derivation.named("period_over_2pi").map_or(0, |s| s.coefficients.len());
+    // A series that has one term only, or whose steps are longer as far as it goes.
+    if series.step % step != 0 && series.known > 1 {
+        return Err(Error::NoValue);
+    }
+    (series.step, series.known) = (step, length.div_ceil(step));
+    Ok(series.floats(ratio.clone()))
 }
 
 /// The power of two next to the radius of convergence, 1 where there is none.

@@ -38,6 +38,18 @@ pub fn recommend_for_many(rows: &[Row], error: f64) -> Option<usize> {
     fastest(rows, error, |row| row.seconds_again)
 }
 
+/// The row with the least stated error among those that take at most so many seconds; of equally
+/// accurate ones the fastest. Nothing where none of them states an error.
+#[must_use]
+pub fn most_accurate(rows: &[Row], seconds: f64) -> Option<usize> {
+    let good = rows.iter().enumerate();
+    let good = good.filter(|(_, row)| row.seconds <= seconds && row.stated_error.is_finite());
+    let order = |a: &Row, b: &Row| {
+        a.stated_error.total_cmp(&b.stated_error).then(a.seconds.total_cmp(&b.seconds))
+    };
+    good.min_by(|(_, a), (_, b)| order(a, b)).map(|(i, _)| i)
+}
+
 fn fastest(rows: &[Row], error: f64, time: impl Fn(&Row) -> f64) -> Option<usize> {
     let good = rows.iter().enumerate().filter(|(_, row)| row.stated_error <= error);
     good.min_by(|(_, a), (_, b)| time(a).total_cmp(&time(b))).map(|(i, _)| i)
@@ -53,6 +65,7 @@ mod tests {
         let row = |&(seconds, error): &(f64, f64)| Row {
             method: Method::Doubles,
             order: Some(1),
+            summation: None,
             seconds,
             seconds_again: 1.0 / seconds,
             bytes: 0,
@@ -101,5 +114,8 @@ mod tests {
         assert_eq!(recommend(&list, 1.0), Some(1));
         assert_eq!(recommend(&list, 1e-20), None);
         assert_eq!(recommend_for_many(&list, 1e-3), Some(0));
+        assert_eq!(most_accurate(&list, 2.5), Some(3));
+        assert_eq!(most_accurate(&list, 10.0), Some(0));
+        assert_eq!(most_accurate(&list, 0.5), None);
     }
 }

@@ -1,23 +1,28 @@
 //! Speed against accuracy: what every route to a period costs, and how wrong its result is.
 //!
-//! The period T of a problem with a closed form (or a reference of many digits: van der Pol's
-//! oscillator at eps = 1) is computed by every tier at every order and precision asked for, and by
-//! the integrator in the time domain, which shares no code with them. Of each run are kept the
+//! The period T of a problem is computed by every tier at every order and precision asked for, and
+//! by the integrator in the time domain, which shares no code with them. Of each run are kept the
 //! time, the memory, the true relative error, and the error that the run states without knowing
-//! the truth.
+//! the truth: a closed form where there is one, a reference of many digits (van der Pol's
+//! oscillator at eps = 1), else the integrator with more digits than any run.
 //!
-//! Series are summed as they stand (partial sums, broken off at the smallest term where the terms
-//! grow); so the parameter should lie inside the circle of convergence.
+//! Every series is summed twice: as it stands (a partial sum, of a divergent series to its
+//! smallest term), and by the resummation that [`lindstedt_series::resummation::resum`] chooses.
 
 mod front;
 mod run;
 mod simulation;
+mod sums;
 mod truth;
 
+use crate::evaluate::setting::Setting;
+use crate::evaluate::source::Source;
 use crate::{Error, Value};
-pub use front::{pareto, recommend, recommend_for_many};
+pub use front::{most_accurate, pareto, recommend, recommend_for_many};
+use lindstedt_algebra::Stop;
 use lindstedt_equation::Problem;
-use rug::Float;
+use lindstedt_series::resummation;
+use rug::{Float, Rational};
 use std::collections::BTreeMap;
 use std::time::Instant;
 pub use truth::Truth;
@@ -96,6 +101,31 @@ impl Method {
     }
 }
 
+/// How a series is summed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Summation {
+    /// As it stands; of a divergent series to its smallest term.
+    PartialSum,
+    /// By the method with the least error estimate.
+    Resummed(resummation::Method),
+}
+
+impl Summation {
+    /// As after `--resum`: `none`, `pade`, `uniform`, `uniform-pade`, `conformal`, `borel-pade`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::PartialSum | Self::Resummed(resummation::Method::PartialSum) => "none",
+            Self::Resummed(resummation::Method::Pade) => "pade",
+            Self::Resummed(resummation::Method::Uniform) => "uniform",
+            Self::Resummed(resummation::Method::UniformPade) => "uniform-pade",
+            Self::Resummed(resummation::Method::ConformalPade) => "conformal",
+            Self::Resummed(resummation::Method::BorelPade) => "borel-pade",
+            Self::Resummed(_) => "another",
+        }
+    }
+}
+
 /// What is run.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -134,10 +164,12 @@ pub struct Row {
     pub method: Method,
     /// The order of the series; nothing for the integrator.
     pub order: Option<usize>,
-    /// The time of the fastest run.
+    /// How the series is summed; nothing for the integrator.
+    pub summation: Option<Summation>,
+    /// The time of the fastest run: derivation and summation, with the choice of the method.
     pub seconds: f64,
-    /// The time for one more value of the small parameter: summing the series again; for the
-    /// integrator the same as `seconds`.
+    /// The time for one more value of the small parameter: summing the series again by the same
+    /// method; for the integrator the same as `seconds`.
     pub seconds_again: f64,
     /// Numbers kept at once times their size: an estimate of the memory in bytes.
     pub bytes: u64,
@@ -145,9 +177,10 @@ pub struct Row {
     pub period: Float,
     /// |period/T - 1|, up to [`Truth::uncertainty`].
     pub true_error: f64,
-    /// The estimate of the relative error that the run gives without knowing T: four times the
-    /// difference of two grids or two tolerances, and of a series the rest estimated from its last
-    /// terms.
+    /// The estimate of the relative error that the run gives without knowing T: of a sum that of
+    /// the resummation, with what the errors of the coefficients make of it (four times the
+    /// difference of two grids); four times the difference of two tolerances. Infinite where
+    /// there is no estimate (too few orders, outside of the circle of convergence).
     pub stated_error: f64,
 }
 
@@ -183,7 +216,7 @@ pub struct Trade {
     pub problem: Problem,
     /// The true period and where it is from.
     pub truth: Truth,
-    /// The rows in the order of [`Method`], digits, order.
+    /// The rows in the order of [`Method`], digits, order, summation.
     pub rows: Vec<Row>,
     /// The runs that were not made, in the same order.
     pub left_out: Vec<LeftOut>,
@@ -191,18 +224,18 @@ pub struct Trade {
     pub finished: bool,
 }
 
-/// Measures a problem: power-law, pendulum, duffing or van-der-pol.
+/// Measures a problem, of the library or of a file, with a periodic solution that is expanded.
 ///
-/// Parameters that are not given have values at which the series converges: delta = 1/4 for the
-/// power law, eps = 1/4 for Duffing's oscillator; for the pendulum delta = 1 and amplitude 1, where
-/// it does not; eps = 1 for van der Pol's, the only one with a reference (digits beyond it cannot be judged).
+/// Parameters that are not given have the defaults of [`crate::evaluate`], but delta = 1/4 for the
+/// power law and eps = 1/4 for Duffing's oscillator, where the series itself converges fast.
 ///
 /// `observer` is asked before every run and at every order of it; when it returns `false`, the
 /// rows finished so far are returned. It is told the run and the rows so far.
 ///
 /// # Errors
-/// [`Error::NoValue`] where the true period is unknown; [`Error::UnknownParameter`] and
-/// [`Error::OutsideDomain`] for parameters.
+/// [`Error::NotEvaluated`] for a problem without such a solution, [`Error::NoValue`] where the true
+/// period is unknown, [`Error::Simulate`] where the integrator has to tell it and refuses;
+/// [`Error::UnknownParameter`], [`Error::Unset`] and [`Error::OutsideDomain`] for parameters.
 ///
 /// ```
 /// use lindstedt::problems;
@@ -220,10 +253,18 @@ pub fn measure(
     plan: &Plan,
     observer: &mut dyn FnMut(&Method, &[Row]) -> bool,
 ) -> Result<Trade, Error> {
-    crate::derivation::check_parameters(problem, parameters)?;
+    let setting = Setting::new(problem, None, &defaults(problem, parameters))?;
     let most = plan.digits.iter().copied().max().unwrap_or(16).max(16);
     let bits = (f64::from(most) * std::f64::consts::LOG2_10).ceil() as u32 + 64;
-    let truth = truth::truth(problem, parameters, bits)?;
+    let source = template(&setting, plan.memory)?;
+    let first = Method::Simulation { digits: most };
+    let mut goes_on = || observer(&first, &[]);
+    let truth = truth::truth(&setting, &source, bits, most, &mut goes_on);
+    let truth = truth.map_err(|reason| match reason {
+        Reason::Refused(error) => error,
+        Reason::NotIntegrated(error) => error.into(),
+        _ => Error::NoValue,
+    })?;
     let methods = methods(problem, plan, most);
     let mut trade = Trade {
         problem: problem.clone(),
@@ -257,16 +298,19 @@ pub fn measure(
                 cancelled |= !observer(&method, &trade.rows);
                 !cancelled && start.elapsed().as_secs_f64() <= plan.run_seconds
             };
-            let job = run::Job { problem, truth: &trade.truth, memory: plan.memory, bits };
-            let outcome = job.best(&method, order.unwrap_or(0), plan.repeats, &mut goes_on);
+            let job = run::Job { setting: &setting, source: &source, memory: plan.memory, bits };
+            let outcome = job.run(&method, order.unwrap_or(0), plan.repeats, &mut goes_on);
             if cancelled {
                 trade.finished = false;
                 return Ok(trade);
             }
             match outcome {
-                Ok(found) => {
-                    times.push((order.unwrap_or(0), found.seconds));
-                    trade.rows.push(trade.truth.row(method, order, found));
+                Ok(list) => {
+                    let least = list.iter().map(|found| found.seconds).reduce(f64::min);
+                    times.push((order.unwrap_or(0), least.unwrap_or(0.0)));
+                    for found in list {
+                        trade.rows.push(trade.truth.row(method, order, found));
+                    }
                 }
                 Err(reason) => {
                     let reason = match reason {
@@ -284,6 +328,32 @@ pub fn measure(
         }
     }
     Ok(trade)
+}
+
+/// Values that are set where nothing is given.
+const DEFAULTS: [(&str, &str, [&str; 2]); 2] =
+    [("power-law", "delta", ["delta", "n"]), ("duffing", "eps", ["eps", "eps"])];
+
+fn defaults(problem: &Problem, given: &BTreeMap<String, Value>) -> BTreeMap<String, Value> {
+    let mut all = given.clone();
+    for (name, parameter, others) in DEFAULTS {
+        if *problem.name == *name && !others.iter().any(|other| given.contains_key(*other)) {
+            all.insert(parameter.to_owned(), Value::Rational(Rational::from((1, 4))));
+        }
+    }
+    all
+}
+
+/// Orders that tell in which power of the small parameter the series is.
+const FEW: usize = 4;
+
+/// What is known of the series without its coefficients; nothing for an equation that the exact
+/// driver does not take.
+fn template(setting: &Setting, memory: u64) -> Result<Source, Error> {
+    match Source::new(setting, FEW, (memory, &Stop::default()), &mut |_| true) {
+        Err(error @ Error::OutsideDomain { .. }) => Err(error),
+        found => Ok(found.unwrap_or_else(|_| Source::plain(setting))),
+    }
 }
 
 /// All methods in the order of the rows.

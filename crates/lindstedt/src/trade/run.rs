@@ -1,21 +1,23 @@
 //! One run of one method: the period, its stated error, its time and memory.
 
-use super::{Method, Reason, Truth, simulation};
+use super::sums::Series;
+use super::{Method, Reason, Summation, simulation};
+use crate::evaluate::setting::Setting;
+use crate::evaluate::source::{Source, coefficients_of};
 use crate::numeric::{self, Tier};
 use crate::{Error, Route, Settings, Solution, derive};
 use lindstedt_coeff::Polynomial;
-use lindstedt_coeff::ball::Balls;
 use lindstedt_equation::{AmplitudeRole, Problem};
 use lindstedt_expand::ExpandError;
-use rug::Float;
-use rug::float::Constant;
+use rug::{Float, Rational};
 use std::time::Instant;
 
 /// What a run found.
 pub(super) struct Found {
+    pub(super) summation: Option<Summation>,
     pub(super) seconds: f64,
-    /// For one more value of the small parameter; nothing where everything is done again.
-    pub(super) again: Option<f64>,
+    /// For one more value of the small parameter.
+    pub(super) again: f64,
     pub(super) bytes: u64,
     pub(super) period: Float,
     /// The stated absolute error.
@@ -23,17 +25,11 @@ pub(super) struct Found {
 }
 
 pub(super) struct Job<'a> {
-    pub(super) problem: &'a Problem,
-    pub(super) truth: &'a Truth,
+    pub(super) setting: &'a Setting,
+    /// What is known of the series; its own coefficients are not used.
+    pub(super) source: &'a Source,
     pub(super) memory: u64,
     pub(super) bits: u32,
-}
-
-/// Period, stated error, bytes, seconds of the summation.
-type Summed = (Float, Float, u64, Option<f64>);
-
-fn simulated((period, error, bytes): (Float, Float, u64)) -> Summed {
-    (period, error, bytes, None)
 }
 
 /// Longer runs are not repeated: noise is small beside them.
@@ -43,61 +39,76 @@ pub(super) fn has_energy_route(problem: &Problem) -> bool {
     matches!(problem.amplitude, AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::InSums)
 }
 
+/// The fastest of some runs.
+fn best<T>(
+    repeats: u32,
+    goes_on: &mut dyn FnMut() -> bool,
+    run: &dyn Fn(&mut dyn FnMut() -> bool) -> Result<T, Reason>,
+) -> Result<(T, f64), Reason> {
+    let once = |goes_on: &mut dyn FnMut() -> bool| {
+        let start = Instant::now();
+        run(goes_on).map(|found| (found, start.elapsed().as_secs_f64()))
+    };
+    let mut best = once(goes_on)?;
+    for _ in 1..repeats {
+        if best.1 > LONG || !goes_on() {
+            break;
+        }
+        // A repetition that runs out of time does not count.
+        match once(goes_on) {
+            Ok(again) if again.1 < best.1 => best = again,
+            _ => {}
+        }
+    }
+    Ok(best)
+}
+
 impl Job<'_> {
-    /// The fastest of some runs.
-    pub(super) fn best(
+    /// The fastest of some runs: one sum or two of the same series, or the integrated period.
+    pub(super) fn run(
         &self,
         method: &Method,
         order: usize,
         repeats: u32,
         goes_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Found, Reason> {
-        let mut best = self.once(method, order, goes_on)?;
-        for _ in 1..repeats {
-            if best.seconds > LONG || !goes_on() {
-                break;
-            }
-            // A repetition that runs out of time does not count.
-            match self.once(method, order, goes_on) {
-                Ok(again) if again.seconds < best.seconds => best = again,
-                _ => {}
-            }
-        }
-        Ok(best)
-    }
-
-    fn once(
-        &self,
-        method: &Method,
-        order: usize,
-        goes_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Found, Reason> {
-        let start = Instant::now();
-        let (period, error, bytes, again) = match *method {
-            Method::Exact { digits } => self.exact(Route::Driver, order, digits, goes_on)?,
-            Method::Energy { digits } => {
-                self.exact(Route::EnergyIntegral, order, digits, goes_on)?
-            }
+    ) -> Result<Vec<Found>, Reason> {
+        let derived = |goes_on: &mut dyn FnMut() -> bool| match *method {
+            Method::Exact { digits } => self.exact(Route::Driver, order, digits, goes_on),
+            Method::Energy { digits } => self.exact(Route::EnergyIntegral, order, digits, goes_on),
             Method::Collocation { digits } => {
-                self.numeric(Tier::Collocation { digits }, order, goes_on)?
+                self.numeric(Tier::Collocation { digits }, order, goes_on)
             }
-            Method::Doubles => self.numeric(Tier::Doubles, order, goes_on)?,
+            Method::Doubles => self.numeric(Tier::Doubles, order, goes_on),
             Method::Fourier { harmonics } => {
-                self.numeric(Tier::Fourier { harmonics }, order, goes_on)?
+                self.numeric(Tier::Fourier { harmonics }, order, goes_on)
             }
-            Method::SimulationInDoubles { digits } => {
-                simulated(simulation::in_doubles(self.problem, self.truth, digits, goes_on)?)
-            }
-            Method::Simulation { digits } => {
-                simulated(simulation::in_digits(self.problem, self.truth, digits, goes_on)?)
-            }
+            _ => Err(Reason::Refused(Error::NoValue)),
         };
-        Ok(Found { seconds: start.elapsed().as_secs_f64(), again, bytes, period, error })
+        let integrated = |goes_on: &mut dyn FnMut() -> bool| match *method {
+            Method::Simulation { digits } => simulation::in_digits(self.setting, digits, goes_on),
+            _ => simulation::in_doubles(self.setting, method.digits(), goes_on),
+        };
+        if !method.has_order() {
+            let ((period, error, bytes), seconds) = best(repeats, goes_on, &integrated)?;
+            let found = Found { summation: None, seconds, again: seconds, bytes, period, error };
+            return Ok(vec![found]);
+        }
+        let ((series, bytes), seconds) = best(repeats, goes_on, &derived)?;
+        let found = |sum: super::sums::Sum| Found {
+            summation: Some(sum.summation),
+            seconds: seconds + sum.seconds,
+            again: sum.again,
+            bytes,
+            period: sum.period,
+            error: sum.error,
+        };
+        Ok(series.sums(self.source, repeats)?.into_iter().map(found).collect())
     }
 
     fn settings(&self, order: usize, route: Route) -> Settings {
-        let parameters = self.truth.given.clone();
-        Settings { order, parameters, memory: self.memory, route, ..Settings::default() }
+        let parameters = self.setting.parameters().clone();
+        let condition = Some(self.setting.condition);
+        Settings { order, condition, parameters, memory: self.memory, route, ..Settings::default() }
     }
 
     fn exact(
@@ -106,22 +117,14 @@ impl Job<'_> {
         order: usize,
         digits: u32,
         goes_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Summed, Reason> {
+    ) -> Result<(Series, u64), Reason> {
         let settings = self.settings(order, route);
-        let result = derive(self.problem, &settings, &mut |_| goes_on());
+        let result = derive(&self.setting.problem, &settings, &mut |_| goes_on());
         let result = result.map_err(Reason::Refused)?;
         if result.order < order {
             let reason = ExpandError::Interrupted { order: result.order };
             return Err(Reason::Refused(reason.into()));
         }
-        let series = result.named("period_over_2pi").ok_or(Reason::Refused(Error::NoValue))?;
-        let bits = bits_for(digits);
-        let balls = Balls::new(bits).with_guard(order as u32 + 32);
-        let ball = |n| {
-            let ball = result.ball(series, n, balls).ok_or(Reason::Refused(Error::NoValue))?;
-            Ok((ball.midpoint().clone(), ball.radius().clone()))
-        };
-        let list = (0..=order).map(ball).collect::<Result<Vec<_>, Reason>>()?;
         let terms: usize = (0..=order).map(|n| result.terms(n)).sum();
         let all = || result.series.iter().flat_map(|s| &s.coefficients);
         let symbolic: usize = all().map(|p| p.terms().len()).sum();
@@ -129,7 +132,10 @@ impl Job<'_> {
         // x, x' and x'' are kept; a term is a fraction and its exponents.
         let copies = if matches!(result.solution, Solution::FrequencyOnly) { 1 } else { 3 };
         let bytes = (copies * terms + symbolic) as u64 * (96 + u64::from(size) / 8);
-        Ok(self.timed_sum(&list, bits, bytes))
+        let values = coefficients_of(result, self.source.step, &self.source.ratio);
+        let values = values.map_err(Reason::Refused)?;
+        let accuracy = bits_for(digits).min(self.bits);
+        Ok((Series { values, errors: None, accuracy }, bytes))
     }
 
     fn numeric(
@@ -137,44 +143,32 @@ impl Job<'_> {
         tier: Tier,
         order: usize,
         goes_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Summed, Reason> {
+    ) -> Result<(Series, u64), Reason> {
         let settings = self.settings(order, Route::Driver);
-        let result = numeric::derive(self.problem, &settings, tier, &mut |_| goes_on());
+        let result = numeric::derive(&self.setting.problem, &settings, tier, &mut |_| goes_on());
         let result = result.map_err(Reason::Refused)?;
         let series = result.named("period_over_2pi").ok_or(Reason::Refused(Error::NoValue))?;
         // As `numeric` predicts it: twelve lists of values per order.
         let value = if result.bits <= 53 { 8 } else { u64::from(result.bits) / 8 + 48 };
         let bytes = (order as u64 + 1) * result.nodes as u64 * value * 12;
-        Ok(self.timed_sum(&series.coefficients, result.bits.max(64), bytes))
-    }
-
-    fn timed_sum(&self, list: &[(Float, Float)], bits: u32, bytes: u64) -> Summed {
-        let start = Instant::now();
-        let (sum, error) = self.sum(list, bits);
-        (sum, error, bytes, Some(start.elapsed().as_secs_f64()))
-    }
-
-    /// 2 pi times the partial sum, and its error: of the coefficients, of rounding, of the rest.
-    fn sum(&self, coefficients: &[(Float, Float)], bits: u32) -> (Float, Float) {
-        let bits = bits.min(self.bits);
-        let x = Float::with_val(bits + 64, &self.truth.small);
-        let mut power = Float::with_val(bits + 64, 1);
-        let (mut terms, mut errors) = (Vec::new(), Vec::new());
-        for (value, error) in coefficients {
-            terms.push(Float::with_val(bits + 64, value * &power));
-            errors.push(Float::with_val(53, error * &power).abs());
-            power *= &x;
+        let step = self.source.step;
+        let skipped = series.coefficients.iter().enumerate().filter(|(n, _)| n % step != 0);
+        if skipped.into_iter().any(|(_, (c, e))| Float::with_val(53, c.abs_ref()) > *e) {
+            return Err(Reason::Refused(Error::NoValue));
         }
-        let (count, rest) = rest(&terms);
-        let sum = |list: &[Float], bits| {
-            let zero = Float::with_val(bits, 0);
-            list.iter().take(count).fold(zero, |sum, term| sum + term)
-        };
-        let period = sum(&terms, bits + 64) * Float::with_val(bits + 64, Constant::Pi) * 2u32;
-        let period = Float::with_val(bits, period);
-        let rounding = Float::with_val(53, period.abs_ref()) >> (bits - 2);
-        let error = (sum(&errors, 53) + rest) * std::f64::consts::TAU + rounding;
-        (period, error)
+        let inverse = Rational::from(self.source.ratio.recip_ref());
+        let mut scale = Rational::from(1);
+        let (mut values, mut errors) = (Vec::new(), Vec::new());
+        for (n, (c, e)) in series.coefficients.iter().enumerate() {
+            if n % step == 0 {
+                values.push(Float::with_val(c.prec().max(64) + 64, c * &scale));
+                errors.push(Float::with_val(53, e * &scale).abs());
+            }
+            scale *= &inverse;
+        }
+        let padded = move |bits| Some(values.iter().map(|c| Float::with_val(bits, c)).collect());
+        let accuracy = result.bits.max(64).min(self.bits);
+        Ok((Series { values: Box::new(padded), errors: Some(errors), accuracy }, bytes))
     }
 }
 
@@ -184,42 +178,6 @@ fn bits_for(digits: u32) -> u32 {
 
 /// Bits of the largest fraction.
 fn largest(p: &Polynomial) -> u32 {
-    let bits = |q: &rug::Rational| q.numer().significant_bits() + q.denom().significant_bits();
+    let bits = |q: &Rational| q.numer().significant_bits() + q.denom().significant_bits();
     p.terms().iter().map(|(_, q)| bits(q)).max().unwrap_or(0)
-}
-
-/// How many terms to sum, and the rest estimated: with b the largest of the last two terms that do
-/// not vanish and r the largest root |t_(k+2)/t_k|^(1/2) among the last ones, 4 b r/(1 - r); terms
-/// that do not decrease are broken off at the smallest, and it counts four times.
-fn rest(terms: &[Float]) -> (usize, Float) {
-    let sizes: Vec<(usize, f64)> = (terms.iter().enumerate())
-        .filter(|(_, t)| !t.is_zero())
-        .map(|(n, t)| (n, log2(t)))
-        .collect();
-    let two = |log: f64| Float::with_val(53, log).exp2();
-    let Some(&(_, first)) = sizes.first() else { return (terms.len(), Float::new(53)) };
-    if sizes.len() < 4 {
-        // Two or three terms tell little: the whole last one, or everything.
-        let last = sizes.last().map_or(first, |s| s.1);
-        let log = if sizes.len() < 2 { first } else { last + 2.0 };
-        return (terms.len(), two(log));
-    }
-    let start = (sizes.len() / 2).min(sizes.len() - 3);
-    let late = sizes.get(start..).unwrap_or(&[]);
-    let rate = |pair: (&(usize, f64), &(usize, f64))| (pair.1.1 - pair.0.1) / 2.0;
-    let rate = late.iter().zip(late.iter().skip(2)).map(rate).fold(f64::NEG_INFINITY, f64::max);
-    let ratio = rate.exp2();
-    if ratio < 0.95 {
-        let last = sizes.iter().rev().take(2).map(|s| s.1).fold(f64::NEG_INFINITY, f64::max);
-        return (terms.len(), two(last + 2.0 + (ratio / (1.0 - ratio)).max(0.01).log2()));
-    }
-    let smallest = sizes.iter().min_by(|a, b| a.1.total_cmp(&b.1)).copied();
-    let (n, log) = smallest.unwrap_or((terms.len(), first));
-    (n + 1, two(log + 2.0))
-}
-
-/// log2 |x|, also far outside of f64.
-fn log2(x: &Float) -> f64 {
-    let (mantissa, exponent) = x.to_f64_exp();
-    mantissa.abs().log2() + f64::from(exponent)
 }

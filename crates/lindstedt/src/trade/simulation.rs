@@ -1,14 +1,16 @@
 //! The competitor: the period from the equation in the time domain.
 
-use super::{Reason, Truth};
+use super::Reason;
 use crate::Error;
+use crate::evaluate::setting::Setting;
+use crate::verify::quantity;
 use lindstedt_coeff::ball::Balls;
-use lindstedt_equation::{AmplitudeRole, Expression, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression};
 use lindstedt_expand::ExpandError;
 use lindstedt_simulate::{
-    Digits, Doubles, EventKind, Integrator, Model, Parameters, Quantity, Real, Report, Settings,
+    Digits, Doubles, EventKind, Integrator, Model, Parameters, Real, Report, Settings,
 };
-use rug::{Float, Rational};
+use rug::Float;
 use std::ops::ControlFlow;
 
 /// Turns after which a limit cycle must have been reached.
@@ -19,35 +21,32 @@ const LESS: u32 = 3;
 type Outcome = Result<(Float, Float, u64), Reason>;
 
 pub(super) fn in_doubles(
-    problem: &Problem,
-    truth: &Truth,
+    setting: &Setting,
     digits: u32,
     goes_on: &mut dyn FnMut() -> bool,
 ) -> Outcome {
-    both(problem, truth, (Doubles, Doubles), digits, goes_on)
+    both(setting, (Doubles, Doubles), digits, goes_on)
 }
 
 pub(super) fn in_digits(
-    problem: &Problem,
-    truth: &Truth,
+    setting: &Setting,
     digits: u32,
     goes_on: &mut dyn FnMut() -> bool,
 ) -> Outcome {
     let less = Digits::for_digits(digits.saturating_sub(LESS).max(4));
-    both(problem, truth, (Digits::for_digits(digits), less), digits, goes_on)
+    both(setting, (Digits::for_digits(digits), less), digits, goes_on)
 }
 
 /// Two runs: the result of the finer, four times the difference as its error (which is that of
 /// the coarser one), and the rounding errors of some hundred steps.
 fn both<R: Real>(
-    problem: &Problem,
-    truth: &Truth,
+    setting: &Setting,
     (fine, coarse): (R, R),
     digits: u32,
     goes_on: &mut dyn FnMut() -> bool,
 ) -> Outcome {
-    let (value, bytes) = period(problem, truth, &fine, digits, goes_on)?;
-    let (other, _) = period(problem, truth, &coarse, digits.saturating_sub(LESS).max(4), goes_on)?;
+    let (value, bytes) = period(setting, &fine, digits, goes_on)?;
+    let (other, _) = period(setting, &coarse, digits.saturating_sub(LESS).max(4), goes_on)?;
     let difference = Float::with_val(53, &value - &other).abs() * 4u32;
     let rounding = (Float::with_val(53, value.abs_ref()) * 64u32) >> (fine.bits() - 1);
     let step = Float::with_val(53, value.abs_ref())
@@ -58,30 +57,34 @@ fn both<R: Real>(
 /// The time between turning points x' = 0 on the same side; of a limit cycle, when two turns take
 /// equally long.
 fn period<R: Real>(
-    problem: &Problem,
-    truth: &Truth,
+    setting: &Setting,
     real: &R,
     digits: u32,
     goes_on: &mut dyn FnMut() -> bool,
 ) -> Result<(Float, u64), Reason> {
     let bits = real.bits() + 16;
-    let quantity = |name: &str| match truth.at.get(name) {
-        Some(value) => Quantity::from(value.ball(Balls::new(bits)).midpoint().clone()),
-        None => Quantity::from(1),
-    };
+    let problem = &setting.problem;
+    let balls = Balls::new(bits);
     let mut parameters = Parameters::new();
-    let small = Rational::clone(&truth.small);
-    parameters.set(&problem.small, small);
-    for name in truth.at.keys() {
-        if *name != *problem.small {
-            parameters.set(name, quantity(name));
-        }
+    for (name, value) in setting.at.iter().filter(|(name, _)| *name != *problem.small) {
+        parameters.set(name, quantity(value));
     }
-    let cycle = problem.amplitude == AmplitudeRole::Determined;
-    // The pendulum's equation is in y = x/a, Duffing's in rho = eps a^2.
+    match setting.rational_small() {
+        Some(small) => parameters.set(&problem.small, small),
+        None => parameters.set(&problem.small, setting.small(balls).midpoint().clone()),
+    }
+    let cycle = match setting.condition {
+        Condition::LimitCycle => true,
+        Condition::InitialAmplitude => false,
+        // Where the solution starts is part of the expansion.
+        _ => return Err(Reason::Refused(Error::NoValue)),
+    };
+    // The pendulum's equation is in y = x/a, Duffing's in rho = eps a^2; those of files are in x.
     let start = match problem.amplitude {
-        AmplitudeRole::ScalesFrequency { .. } => quantity("amplitude").float(bits),
-        AmplitudeRole::Determined => Float::with_val(bits, 2),
+        _ if cycle => Float::with_val(bits, 2),
+        AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::Scaled => {
+            Float::with_val(bits, setting.amplitude.ball(balls).midpoint())
+        }
         _ => Float::with_val(bits, 1),
     };
     let failed = Reason::NotIntegrated;
@@ -109,14 +112,21 @@ fn period<R: Real>(
             .as_ref()
             .is_some_and(|before| Float::with_val(53, &turn - before).abs() <= 10.0 * tolerance);
         turns += 1;
-        if !cycle || settled || turns >= MOST_TURNS {
-            found = Some(turn);
+        if !cycle || settled {
+            found = Some(turn.clone());
+        }
+        if found.is_some() || turns >= MOST_TURNS {
             return ControlFlow::Break(());
         }
         (last, length) = (time, Some(turn));
         ControlFlow::Continue(())
     });
     outcome.map_err(failed)?;
+    if turns >= MOST_TURNS && found.is_none() {
+        let (parameter, value) = (problem.small.to_string(), setting.small(balls));
+        let value = value.midpoint().to_f64().to_string();
+        return Err(Reason::Refused(Error::NoPeriodicOrbit { parameter, value }));
+    }
     let interrupted = || Reason::Refused(Error::from(ExpandError::Interrupted { order: 0 }));
     let found = found.ok_or_else(interrupted)?;
     // Two states and some ten operations of the equation, each a Taylor polynomial.

@@ -1,14 +1,12 @@
-//! True periods.
+//! True periods, from a route that the runs do not take.
 
 use super::run::Found;
-use super::{Method, Row};
+use super::{Method, Reason, Row, simulation};
+use crate::evaluate::setting::Setting;
+use crate::evaluate::source::Source;
 use crate::{Error, Value};
 use lindstedt_coeff::ball::Balls;
-use lindstedt_equation::{AmplitudeRole, Problem};
-use rug::float::Constant;
-use rug::ops::Pow;
 use rug::{Float, Rational};
-use std::collections::BTreeMap;
 
 /// T(1) of x'' - (1 - x^2) x' + x = 0 to 98 digits: mpmath 1.3.0 with 125 digits, Taylor series of
 /// order 150 and the secant method on the section x' = 0; the integrator of this project agrees,
@@ -19,22 +17,27 @@ const VAN_DER_POL: &str = concat!(
 );
 /// Its relative error.
 const VAN_DER_POL_ERROR: f64 = 1e-97;
+/// Digits of the integrator beyond the most that are judged.
+const MORE: u32 = 8;
 
 /// The true period at given parameters.
 #[derive(Clone, Debug)]
 pub struct Truth {
     /// The period.
     pub period: Float,
-    /// Its relative error: rounding, or the digits of the reference.
+    /// Its relative error: rounding, the digits of a reference, the estimate of the integrator.
     pub uncertainty: f64,
     /// Its formula or source.
-    pub source: &'static str,
-    /// The parameters used, by name.
-    pub at: BTreeMap<String, Value>,
+    pub source: String,
+    /// Whether it is from the time domain: the integrator's own rows are then judged by the same
+    /// integrator with more digits.
+    pub from_time_domain: bool,
+    /// The parameters used.
+    pub at: Vec<(String, Value)>,
     /// The value of the small parameter of the series.
-    pub small: Rational,
-    /// Parameters of the equation that the series needs (the amplitude).
-    pub given: BTreeMap<String, Value>,
+    pub small: Float,
+    /// The same, where it is rational.
+    pub rational_small: Option<Rational>,
 }
 
 impl Truth {
@@ -44,8 +47,9 @@ impl Truth {
         Row {
             method,
             order,
+            summation: found.summation,
             seconds: found.seconds,
-            seconds_again: found.again.unwrap_or(found.seconds),
+            seconds_again: found.again,
             bytes: found.bytes,
             true_error: error(Float::with_val(bits, &found.period - &self.period)),
             stated_error: error(Float::with_val(53, &found.error)),
@@ -54,81 +58,42 @@ impl Truth {
     }
 }
 
-/// The closed form at the parameters given, others at their defaults.
+/// The closed form of `source`, else the reference (van der Pol at 1), else the time domain.
 pub(super) fn truth(
-    problem: &Problem,
-    given: &BTreeMap<String, Value>,
+    setting: &Setting,
+    source: &Source,
     bits: u32,
-) -> Result<Truth, Error> {
-    let quarter = || Rational::from((1, 4));
-    let get = |name: &str, default: Rational| match given.get(name) {
-        None => Ok(default),
-        Some(Value::Rational(q)) => Ok(q.clone()),
-        Some(Value::PiTimes(_)) => {
-            Err(Error::NotAmongSymbols { name: name.to_owned(), missing: Vec::new() })
-        }
+    digits: u32,
+    goes_on: &mut dyn FnMut() -> bool,
+) -> Result<Truth, Reason> {
+    let small = Float::with_val(bits, setting.small(Balls::new(bits)).midpoint());
+    let rounding = (8.0 - f64::from(bits)).exp2();
+    let truth = |period: Float, uncertainty: f64, source: String| Truth {
+        period,
+        uncertainty,
+        from_time_domain: source.starts_with(TIME_DOMAIN),
+        source,
+        at: setting.at.clone(),
+        small: small.clone(),
+        rational_small: setting.rational_small(),
     };
-    let pi = Float::with_val(bits, Constant::Pi);
-    let real = |q: &Rational| Float::with_val(bits, q);
-    let amplitude = match given.get("amplitude") {
-        Some(value) => value.clone(),
-        None => Value::Rational(Rational::from(1)),
-    };
-    let a = amplitude.ball(Balls::new(bits)).midpoint().clone();
-    let mut at = BTreeMap::new();
-    let mut series = BTreeMap::new();
-    let mut uncertainty = (-f64::from(bits) + 8.0).exp2();
-    let (period, source, small) = match problem.amplitude {
-        AmplitudeRole::ScalesFrequency { .. } => {
-            let delta = match given.get("n") {
-                Some(Value::Rational(n)) => (n.clone() - 1u32) / 2u32,
-                _ => get("delta", quarter())?,
-            };
-            // T = 4 sqrt(pi/(2 (n+1))) Gamma(y)/Gamma(y + 1/2), y = 1/(n + 1) = 1/(2 + 2 delta).
-            let y = real(&(delta.clone() * 2u32 + 2u32).recip());
-            let root = (Float::with_val(bits, &pi * &y) / 2u32).sqrt();
-            let half = Float::with_val(bits, &y + 0.5f64);
-            let scale = a.pow(-real(&delta));
-            at.insert("delta".to_owned(), Value::Rational(delta.clone()));
-            at.insert("amplitude".to_owned(), amplitude.clone());
-            series.insert("amplitude".to_owned(), amplitude);
-            (root * 4u32 * y.gamma() / half.gamma() * scale, "gamma functions", delta)
-        }
-        AmplitudeRole::InSums => {
-            let delta = get("delta", Rational::from(1))?;
-            if delta != 1 {
-                return Err(Error::NoValue);
-            }
-            let mean = (a / 2u32).cos().agm(&real(&delta));
-            at.insert("amplitude".to_owned(), amplitude.clone());
-            series.insert("amplitude".to_owned(), amplitude);
-            (pi * 2u32 / mean, "2 pi/agm(1, cos(a/2))", delta)
-        }
-        AmplitudeRole::InSmallParameter => {
-            let eps = get("eps", quarter())?;
-            let a = get("amplitude", Rational::from(1))?;
-            let rho = eps.clone() * &a * &a;
-            if rho <= -1 {
-                let (name, value) = ("eps".to_owned(), eps.to_string());
-                return Err(Error::OutsideDomain { name, value, domain: "eps amplitude^2 > -1" });
-            }
-            let root = |q: Rational| real(&(q + 1u32)).sqrt();
-            let mean = root(rho.clone()).agm(&root(rho.clone() / 2u32));
-            at.insert("eps".to_owned(), Value::Rational(eps));
-            at.insert("amplitude".to_owned(), Value::Rational(a));
-            (pi * 2u32 / mean, "2 pi/agm(sqrt(1 + rho), sqrt(1 + rho/2))", rho)
-        }
-        AmplitudeRole::Determined => {
-            let eps = get("eps", Rational::from(1))?;
-            if eps != 1 {
-                return Err(Error::NoValue);
-            }
-            let reference = Float::parse(VAN_DER_POL).map_err(|_| Error::NoValue)?;
-            uncertainty = uncertainty.max(VAN_DER_POL_ERROR);
-            at.insert("eps".to_owned(), Value::Rational(eps.clone()));
-            (Float::with_val(bits, reference), "reference of 98 digits", eps)
-        }
-        _ => return Err(Error::NoValue),
-    };
-    Ok(Truth { period, uncertainty, source, at, small, given: series })
+    if let Some((text, formula)) = &source.closed {
+        let ball = formula(Balls::new(bits).with_guard(64));
+        let ball = ball.filter(|b| b.is_finite()).ok_or(Reason::Refused(Error::NoValue))?;
+        return Ok(truth(Float::with_val(bits, ball.midpoint()), rounding, text.clone()));
+    }
+    let known = lindstedt_problems::find("van-der-pol");
+    let is_known = known.is_some_and(|known| known.equation == setting.problem.equation);
+    if is_known && small == 1 {
+        let reference = Float::parse(VAN_DER_POL).map_err(|_| Reason::Refused(Error::NoValue))?;
+        let uncertainty = rounding.max(VAN_DER_POL_ERROR);
+        return Ok(truth(Float::with_val(bits, reference), uncertainty, REFERENCE.to_owned()));
+    }
+    let (period, error, _) = simulation::in_digits(setting, digits + MORE, goes_on)?;
+    let uncertainty = Float::with_val(53, &error / &period).abs().to_f64();
+    let text = format!("{TIME_DOMAIN}: Taylor series to {} digits", digits + MORE);
+    Ok(truth(Float::with_val(bits, &period), uncertainty, text))
 }
+
+const REFERENCE: &str = "reference of 98 digits";
+const TIME_DOMAIN: &str = "time domain";

@@ -70,7 +70,6 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> LobachevskyElement<E>
     }
 }
 
-<<<<<<< HEAD
 /// The Lobachevsky ring C[cos, 1/cos, sin, l, Lambda_1, Lambda_2, ...] modulo sin^2 + cos^2 = 1 over a ring
 /// C of constants with moments: l = -ln|cos t|, Lambda_m = int_0^t (l^m/m! - mu_m), odd and pi-periodic.
 ///
@@ -78,10 +77,6 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> LobachevskyElement<E>
 /// it finds the response if it lies in the ring and says `NotIntegrable` if not
 /// (`docs/src/concepts/resonance.md`). A product costs one product of constants per pair of terms.
 #[derive(Clone, Debug, Default)]
-=======
-/// The Lobachevsky ring over a ring of constants with moments.
-#[derive(Clone, Copy, Debug, Default)]
->>>>>>> book
 pub struct Lobachevsky<C> {
     constants: C,
     stop: Stop,

@@ -95,17 +95,21 @@ pub fn resum(
     }
     match best {
         Some((method, mut outcome, bits)) => {
-            // The least of several estimates is more often too small than each: where another
-            // method with a comparable estimate disagrees, the disagreement is added.
+            // The least of several estimates is more often too small than each. Where another
+            // method with a comparable estimate disagrees by more than that estimate allows, the
+            // excess is added.
             let own = outcome.estimate.clone();
-            if tried.len() > 1 {
+            if tried.len() > 1 && !low.has_known_tail(method) {
                 outcome.estimate.error *= SELECTION;
             }
             for other in &values {
                 if other.estimate.error <= Float::with_val(53, &own.error * 100u32) {
                     let gap = distance(&other.estimate.value, &own.value);
-                    let sum = Float::with_val(53, &own.error + gap);
-                    outcome.estimate.error = outcome.estimate.error.max(&sum);
+                    let excess = gap - &other.estimate.error;
+                    if excess > own.error {
+                        let sum = Float::with_val(53, &own.error + excess);
+                        outcome.estimate.error = outcome.estimate.error.max(&sum);
+                    }
                 }
             }
             Ok(Resummed { method, outcome, growth, singularity, tried, bits })

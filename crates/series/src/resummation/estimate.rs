@@ -1,5 +1,6 @@
-//! Error estimates from the agreement of neighbouring approximants.
+//! Error estimates from the terms of a series and from the agreement of neighbouring approximants.
 
+use super::pade::log2;
 use rug::Float;
 use rug::float::Special;
 use rug::ops::Pow;
@@ -29,57 +30,125 @@ fn spread(list: &[Float], value: &Float) -> Option<Float> {
 
 /// The last of a sequence of approximants, with an estimate of its error.
 ///
-/// For errors e q^k the spread s1 of the `window` values before the last one and the spread s2
-/// of the `window` before these satisfy s2/s1 - 1 = q^-window, so that |error| = s1/(s2/s1 - 2);
-/// the estimate is that, but at least s1, and at most s1 times the number of the last approximant:
-/// then the sequence converges slower than a geometric one, and for an error k^-p
-/// the remainder is about s1 k/(p window). Four times the result, for luck in the differences.
+/// Two judgments, of which the smaller counts, but at least the distance from the two approximants
+/// before:
 ///
-/// Infinite where s2 < s1 (the sequence runs away) and for approximants below number six.
+/// The logarithms of the two-step differences |v_k - v_(k-2)| (neighbours on a staircase are of
+/// two kinds) are fitted by a line a + b k. For errors that fall like q^k on the whole it has the
+/// slope ln q, and the error is the sum of the differences to come,
+///
+///   |error| <= 4 exp(a + b (N + 1) + 3 d)/(1 - exp b),
+///
+/// d the standard deviation of a prediction at N + 1 from the n points, s sqrt(1 + 1/n +
+/// (N + 1 - m)^2/sum (k - m)^2), s that of the points from the line: approximants whose
+/// differences fall evenly are believed more than those that agree by luck. The line is read at
+/// N + 1, where the difference is about the error of the approximant before the last one.
+///
+/// One value that stands apart spoils the line, but not the spread s1 of the four values before
+/// the last one: with the spread s2 of the four before these, s2/s1 - 1 = q^-4 and the error is
+/// s1/(s2/s1 - 2). Sixteen times s1 times the larger of 1 and 1/(s2/s1 - 2), with N as the most.
+///
+/// Infinite for b >= 0 (the sequence does not settle) and for approximants below number six.
 /// Nothing for fewer than two values.
 ///
-/// What fools it: errors that oscillate with a period of more than some four windows and hardly
-/// decrease, as at the edge of a disc with a singularity at a small angle to the point.
-pub(super) fn settle(values: &[Float], window: usize, number: usize) -> Option<Estimate> {
+/// What fools it: errors that oscillate with a period of more than some ten approximants, and
+/// sequences that converge to something else.
+pub(super) fn settle(values: &[Float], number: usize) -> Option<Estimate> {
     let (value, before) = values.split_last()?;
     if before.is_empty() || !value.is_finite() {
         return None;
     }
-    let near = before.len().saturating_sub(window);
-    let far = near.saturating_sub(window);
-    let first = spread(before.get(near..)?, value)?;
-    let worst = (number.max(4) as f64).max(1.0);
-    let factor = match spread(before.get(far..near)?, value) {
-        Some(second) if !first.is_zero() => {
-            let ratio = Float::with_val(53, second / &first).to_f64();
-            if ratio < 1.0 {
-                f64::INFINITY
-            } else {
-                let factor = 1.0 / (ratio - 2.0).max(1.0 / worst);
-                factor.max(1.0)
-            }
-        }
-        Some(_) => 1.0,
-        None => worst,
+    let step = if values.len() > 2 { 2 } else { 1 };
+    let pairs = || values.iter().zip(values.iter().skip(step));
+    let differences: Vec<Float> = pairs().map(|(a, b)| distance(a, b)).collect();
+    let estimate = |error: Float| {
+        let error = if error.is_nan() { infinity() } else { error };
+        Some(Estimate { value: value.clone(), error })
     };
-    let factor = if number < FEWEST { f64::INFINITY } else { factor };
-    let error = if first.is_zero() && factor.is_finite() {
-        first
-    } else {
-        Float::with_val(53, first * (4.0 * factor))
-    };
-    let error = if error.is_nan() { Float::with_val(53, Special::Infinity) } else { error };
-    Some(Estimate { value: value.clone(), error })
+    if number < FEWEST {
+        return estimate(infinity());
+    }
+    if differences.iter().rev().take(2).all(Float::is_zero) {
+        return estimate(Float::new(53));
+    }
+    let points = differences.iter().zip(0u32..);
+    let points: Vec<(f64, f64)> =
+        points.filter_map(|(d, k)| Some((f64::from(k), log2(d)?))).collect();
+    let Some(line) = Line::through(&points) else { return estimate(infinity()) };
+    let end = differences.len() as f64;
+    let next = line.at(end) + 3.0 * line.deviation_at(end);
+    let ratio = line.slope.exp2();
+    if ratio >= 1.0 || !next.is_finite() {
+        return estimate(infinity());
+    }
+    let by_line = Float::with_val(53, next).exp2() * 4u32 / (1.0 - ratio);
+    let error = by_spread(before, value, number).map_or(by_line.clone(), |s| s.min(&by_line));
+    let near = before.get(before.len().saturating_sub(2)..).unwrap_or(before);
+    estimate(spread(near, value).map_or_else(infinity, |near| error.max(&near)))
 }
 
-/// The last of a sequence of approximants; the error is four times the largest distance from it
-/// in the sequence. For methods that converge slower than a geometric sequence, as Borel's with
-/// Pade approximants of a transform with singularities near the path, and where [`settle`]'s
-/// ratio of two windows would mean nothing.
+/// The second judgment of [`settle`]; nothing with fewer than eight values before the last one.
+fn by_spread(before: &[Float], value: &Float, number: usize) -> Option<Float> {
+    let near = before.len().checked_sub(4)?;
+    let far = near.checked_sub(4)?;
+    let first = spread(before.get(near..)?, value)?;
+    let second = spread(before.get(far..near)?, value)?;
+    let ratio = Float::with_val(53, &second / &first).to_f64();
+    let factor = 1.0 / (ratio - 2.0).max(1.0 / number as f64);
+    (ratio >= 1.0).then(|| first * (16.0 * factor.max(1.0)))
+}
+
+fn infinity() -> Float {
+    Float::with_val(53, Special::Infinity)
+}
+
+/// A line by least squares, with the standard deviation of the points from it.
+struct Line {
+    centre: (f64, f64),
+    slope: f64,
+    deviation: f64,
+    count: f64,
+    /// The mean of (x - mean x)^2.
+    width: f64,
+}
+
+impl Line {
+    /// Nothing for fewer than three points: two of them are no evidence.
+    fn through(points: &[(f64, f64)]) -> Option<Self> {
+        if points.len() < 3 {
+            return None;
+        }
+        let count = points.len() as f64;
+        let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / count;
+        let centre = (mean(&|p| p.0), mean(&|p| p.1));
+        let width = mean(&|p| (p.0 - centre.0).powi(2));
+        let slope = mean(&|p| (p.0 - centre.0) * (p.1 - centre.1)) / width;
+        let mut line = Self { centre, slope, deviation: 0.0, count, width };
+        let squares: f64 = points.iter().map(|p| (p.1 - line.at(p.0)).powi(2)).sum();
+        line.deviation = (squares / (count - 2.0)).sqrt();
+        Some(line)
+    }
+
+    /// The standard deviation of a prediction at x.
+    fn deviation_at(&self, x: f64) -> f64 {
+        let lever = (x - self.centre.0).powi(2) / self.width;
+        self.deviation * (1.0 + (1.0 + lever) / self.count).sqrt()
+    }
+
+    fn at(&self, x: f64) -> f64 {
+        self.centre.1 + self.slope * (x - self.centre.0)
+    }
+}
+
+/// The last of a sequence of approximants; the error is the largest distance from it in the
+/// sequence, times its number: for methods that converge slower than a geometric sequence, as
+/// Borel's with Pade approximants of a transform with singularities near the path, where
+/// [`settle`]'s line is too steep (after errors k^-p the rest is about k/p last differences).
 pub(super) fn widest(values: &[Float], number: usize) -> Option<Estimate> {
     let (value, before) = values.split_last()?;
-    let mut estimate = settle(values, before.len().div_ceil(2).clamp(1, 4), number)?;
-    estimate.error = estimate.error.max(&(spread(before, value)? * 4u32));
+    let mut estimate = settle(values, number)?;
+    let factor = u32::try_from(number.max(4)).unwrap_or(u32::MAX);
+    estimate.error = estimate.error.max(&(spread(before, value)? * factor));
     Some(estimate)
 }
 
@@ -89,12 +158,27 @@ pub(super) fn widest(values: &[Float], number: usize) -> Option<Estimate> {
 ///   sum_{n > N} A q^n = A q^(N+1)/(1 - q).
 ///
 /// q is the larger of `ratio` and the one between the largest terms of the middle and the last
-/// third; A comes from the last third. Twice the result; infinite for q >= 1.
-/// Where the radius is not known, N terms do not tell q from 1 - 1/N: 1/(1 - q) is at least N.
+/// third; A comes from the last third, at least three terms and two that do not vanish. Twice the
+/// result; infinite for q >= 1.
+///
+/// Where the radius is not known, N terms do not tell q from 1 - 1/N: 1/(1 - q) is at least N, the
+/// result is doubled twice more, and sums below number six have no estimate.
 pub(super) fn geometric_tail(sums: &[Float], ratio: &Float, known: bool) -> Float {
     let terms: Vec<Float> = sums.windows(2).map(|pair| distance(&pair[1], &pair[0])).collect();
     let last = terms.len();
-    let (early, late) = (last / 3, last * 2 / 3);
+    let nonzero =
+        |from: usize, to: usize| terms.iter().take(to).skip(from).filter(|t| !t.is_zero()).count();
+    let mut late = (last * 2 / 3).min(last.saturating_sub(3));
+    while late > 0 && nonzero(late, last) < 2 {
+        late -= 1;
+    }
+    let mut early = (last / 3).min(late / 2);
+    while early > 0 && nonzero(early, late) == 0 {
+        early -= 1;
+    }
+    if !known && (last < FEWEST || nonzero(early, late) == 0) {
+        return infinity();
+    }
     let largest = |from: usize, to: usize| {
         let list = terms.iter().take(to).skip(from);
         list.fold(Float::new(53), |a, b| a.max(b))
@@ -102,15 +186,16 @@ pub(super) fn geometric_tail(sums: &[Float], ratio: &Float, known: bool) -> Floa
     let (before, after) = (largest(early, late), largest(late, last));
     let mut ratio = Float::with_val(53, ratio);
     if !before.is_zero() {
-        let steps = (late - early).max(1) as f64;
+        let steps = late.saturating_sub(early).max(1) as f64;
         ratio = ratio.max(&(after / before).pow(1.0 / steps));
     }
     let mut rest = Float::with_val(53, 1 - &ratio);
     if !known {
         rest = rest.min(&Float::with_val(53, 1.0 / last.max(1) as f64));
+        rest /= 4u32;
     }
     if rest <= 0 || !rest.is_finite() {
-        return Float::with_val(53, Special::Infinity);
+        return infinity();
     }
     let scaled = terms.iter().enumerate().skip(late).map(|(i, term)| {
         let left = u32::try_from(last - i).unwrap_or(u32::MAX);
@@ -177,20 +262,24 @@ mod tests {
         }
         models.push(Box::new(|k| (1..=k as u32).map(|i| 1.0 / f64::from(i)).product()));
         let mut checked = 0;
-        for model in &models {
+        for (index, model) in models.iter().enumerate() {
             for number in 8..60usize {
-                for window in [3usize, 4] {
-                    let list: Vec<Float> = (number.saturating_sub(12).max(1)..=number)
+                for before in [9usize, 12] {
+                    let list: Vec<Float> = (number.saturating_sub(before).max(1)..=number)
                         .map(|k| Float::with_val(200, 1.0) + model(k as f64))
                         .collect();
-                    let found = settle(&list, window, number).unwrap();
+                    let found = settle(&list, number).unwrap();
                     let error = model(number as f64).abs();
                     // Not below the rounding, which the caller measures, and not before anything
                     // has converged.
                     if !(1e-55..0.1).contains(&error) {
                         continue;
                     }
-                    assert!(found.error >= error, "{number} {window}: {} < {error}", found.error);
+                    assert!(
+                        found.error >= error,
+                        "{number} {before} {index}: {} < {error}",
+                        found.error
+                    );
                     checked += 1;
                 }
             }

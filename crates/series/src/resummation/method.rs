@@ -77,10 +77,10 @@ pub struct Outcome {
     pub smallest_term: Option<usize>,
 }
 
-/// Approximants before the last one that enter the error estimate, for the partial sums of a
-/// convergent series and for Pade approximants.
-const SUMS: usize = 3;
-const APPROXIMANTS: usize = 4;
+/// Approximants before the last one that enter the error estimate.
+const APPROXIMANTS: usize = 9;
+/// Approximants with a pole between 0 and the point before that is taken for a cut.
+const CUT: usize = 3;
 
 impl Sample {
     /// The value by `method`.
@@ -101,10 +101,21 @@ impl Sample {
             return Err(ResummationError::TooFewCoefficients { known, needed: 3 });
         }
         let mut outcome = self.by(method, singularity, accuracy)?;
-        if self.is_unresolved() {
+        // An error as large as half the value leaves not one digit, and is no estimate.
+        let half = Float::with_val(53, outcome.estimate.value.abs_ref()) / 2u32;
+        if self.is_unresolved() || outcome.estimate.error > half {
             outcome.estimate.error = Float::with_val(53, Special::Infinity);
         }
         Ok(outcome)
+    }
+
+    /// Whether the error of `method` follows from the terms and a known radius of convergence.
+    pub(super) fn has_known_tail(&self, method: Method) -> bool {
+        match method {
+            Method::PartialSum => self.radius.is_some_and(|radius| radius > 0.0),
+            Method::Uniform => self.map.as_ref().is_some_and(|map| map.radius.is_some()),
+            _ => false,
+        }
     }
 
     /// Whether no agreement means anything: the terms of an entire function (or of one with too
@@ -160,7 +171,7 @@ impl Sample {
                 let mut asked = accuracy.min(128);
                 loop {
                     let nodes = Nodes::new(asked, self.bits);
-                    let value = |pade: &Pade| laplace(pade, &nodes);
+                    let value = |pade: &Pade| Ok((laplace(pade, &nodes)?, false));
                     let mut outcome = staircase(&b, self.bits, &widest, value)?;
                     let size = Float::with_val(53, outcome.estimate.value.abs_ref());
                     // What the integral was not asked for.
@@ -220,8 +231,9 @@ impl Sample {
             }
             _ => last_sum(&sums)?,
         };
-        if !asymptotic {
-            // Outside a disc of convergence nothing bounds the error by the terms.
+        if self.radius != Some(0.0) {
+            // Outside a disc of convergence nothing bounds the error by the terms, and a finite
+            // number of coefficients does not prove that a series is asymptotic.
             outcome.estimate.error = Float::with_val(53, Special::Infinity);
         } else if outcome.smallest_term.is_some() {
             // An asymptotic series has its error below the smallest term or near it.
@@ -262,14 +274,13 @@ fn scaled(mut outcome: Outcome, factor: &Float) -> Outcome {
     outcome
 }
 
-/// An estimated radius of convergence is taken this much smaller.
-const MARGIN: f64 = 0.95;
-
 /// The radius of convergence as far as it may be relied on; zero for a series that diverges
 /// everywhere, nothing for an entire function or too few coefficients.
+///
+/// N coefficients n^p R^-n with p not known to better than 2 give R to a factor 1 - 2/N.
 fn disc(c: &[Float], known: Option<f64>) -> Option<f64> {
     known.or(match growth(c) {
-        Growth::Radius(radius) => Some(radius * MARGIN),
+        Growth::Radius(radius) => Some(radius * (1.0 - 2.0 / c.len().max(3) as f64)),
         Growth::Factorial { .. } => Some(0.0),
         _ => None,
     })
@@ -278,8 +289,8 @@ fn disc(c: &[Float], known: Option<f64>) -> Option<f64> {
 /// The last partial sum, judged by those before it alone.
 fn last_sum(sums: &[Float]) -> Result<Outcome, ResummationError> {
     let order = sums.len() - 1;
-    let estimate = settle(sums, SUMS.min(order / 2).max(1), order);
-    let estimate = estimate.ok_or(ResummationError::Undefined)?;
+    let late = sums.get(order.saturating_sub(APPROXIMANTS)..).unwrap_or(sums);
+    let estimate = settle(late, order).ok_or(ResummationError::Undefined)?;
     Ok(Outcome { estimate, order, degrees: None, smallest_term: None })
 }
 
@@ -294,19 +305,27 @@ fn convergent(
     let sums = partial_sums(c, x, bits);
     let mut outcome = last_sum(&sums)?;
     let ratio = radius.map_or_else(|| Float::new(53), |r| Float::with_val(53, x.abs_ref()) / r);
-    outcome.estimate.error = outcome.estimate.error.max(&geometric_tail(&sums, &ratio, known));
+    outcome.estimate.error = geometric_tail(&sums, &ratio, known);
     Ok(outcome)
 }
 
 /// The approximants [n/n], [n-1/n] ... at x.
 fn diagonal(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationError> {
-    let window = |list: &[Float], order: usize| {
-        settle(list, APPROXIMANTS.min((list.len() - 1).div_ceil(2)).max(1), order)
-    };
-    staircase(c, bits, &window, |pade| pade.value(x).ok_or(ResummationError::Undefined))
+    staircase(c, bits, &settle, |pade| {
+        let (top, bottom) = pade.parts(x);
+        let behind = bottom.is_sign_negative();
+        let value = top / bottom;
+        value.is_finite().then_some((value, behind)).ok_or(ResummationError::Undefined)
+    })
 }
 
 /// A value from the last steps of the staircase [k - k/2 / k/2], k = N - 9 .. N.
+///
+/// `value` tells besides whether the denominator changes its sign between 0 and the point. Poles
+/// there that come and go with the degree are a cut across the path: that of a pair of branch
+/// points r exp(+-i phi) is an arc of the circle through 0, r and r exp(i phi), which meets the
+/// axis at r/cos phi (it is a straight line in 1/x: the set of least capacity, H. Stahl), and the
+/// approximants converge behind it to another branch. Then there is no estimate.
 ///
 /// A step whose value stands apart from both neighbours by more than a thousand times their
 /// distance is computed again without its spurious poles.
@@ -314,20 +333,22 @@ fn staircase(
     c: &[Float],
     bits: u32,
     judge: &dyn Fn(&[Float], usize) -> Option<Estimate>,
-    value: impl Fn(&Pade) -> Result<Float, ResummationError>,
+    value: impl Fn(&Pade) -> Result<(Float, bool), ResummationError>,
 ) -> Result<Outcome, ResummationError> {
     let order = c.len().saturating_sub(1);
-    let first = order.saturating_sub(2 * APPROXIMANTS + 1);
+    let first = order.saturating_sub(APPROXIMANTS);
     let degrees = |k: usize| (k - k / 2, k / 2);
     let mut values = Vec::new();
+    let mut behind = 0;
     let mut failure = ResummationError::Undefined;
     let mut last = None;
     for k in first..=order {
         let (l, m) = degrees(k);
         let Some(pade) = Pade::new(c, l, m, bits) else { continue };
         match value(&pade) {
-            Ok(v) => {
+            Ok((v, is_behind)) => {
                 values.push((k, v));
+                behind += usize::from(is_behind);
                 last = Some((k, pade.degrees()));
             }
             Err(error) => {
@@ -335,7 +356,7 @@ fn staircase(
                 // A pole next to the path: without the doublet it may be gone.
                 let robust = Pade::robust(c, l, m, bits).filter(|p| p.degrees() != pade.degrees());
                 if let Some(pade) = robust
-                    && let Ok(v) = value(&pade)
+                    && let Ok((v, _)) = value(&pade)
                 {
                     values.push((k, v));
                     last = Some((k, pade.degrees()));
@@ -356,12 +377,15 @@ fn staircase(
         if apart {
             let (l, m) = degrees(values[i].0);
             let again = Pade::robust(c, l, m, bits).and_then(|pade| value(&pade).ok());
-            if let Some(v) = again {
+            if let Some((v, _)) = again {
                 values[i].1 = v;
             }
         }
     }
     let list: Vec<Float> = values.into_iter().map(|(_, v)| v).collect();
-    let estimate = judge(&list, order).ok_or(ResummationError::Undefined)?;
+    let mut estimate = judge(&list, order).ok_or(ResummationError::Undefined)?;
+    if behind >= CUT {
+        estimate.error = Float::with_val(53, Special::Infinity);
+    }
     Ok(Outcome { estimate, order: used, degrees: Some(pade_degrees), smallest_term: None })
 }
