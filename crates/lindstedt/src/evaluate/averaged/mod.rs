@@ -136,8 +136,12 @@ impl Motion {
         let parameters =
             at.iter().filter(|(name, _)| listed(name)).cloned().collect::<BTreeMap<_, _>>();
         let bits = bits_for(settings.digits.saturating_add(16));
-        let averaging =
-            AveragingSettings { order: settings.order, parameters, digits: settings.digits, ..AveragingSettings::default() };
+        let averaging = AveragingSettings {
+            order: settings.order,
+            parameters,
+            digits: settings.digits,
+            ..AveragingSettings::default()
+        };
         let found = numbers(problem, &averaging, bits, observer)?;
         let small = Float::with_val(bits, small.ball(Balls::new(bits)).midpoint());
         Self::of_numbers(problem, settings, &found, &small, at)

@@ -101,7 +101,10 @@ fn follow(
         }
         for branch in branches {
             match branch.join() {
-                Ok(Ok(()) | Err(Error::Simulate(SimulateError::NoTangency { .. } | SimulateError::Stopped))) => {}
+                Ok(
+                    Ok(())
+                    | Err(Error::Simulate(SimulateError::NoTangency { .. } | SimulateError::Stopped)),
+                ) => {}
                 Ok(Err(error)) => return Err(error),
                 Err(panic) => std::panic::resume_unwind(panic),
             }
