@@ -140,6 +140,16 @@ fn power_law(given: &Given<'_>, order: usize, stop: &Stop) -> Result<Source, Err
     };
     let amplitude = given.get("amplitude")?;
     let n = Rational::from(&delta * 2u32) + 1u32;
+    // MPFR's exponents end at 2^30: beyond, no precision gives a^delta.
+    let probe = Balls::new(64);
+    let power = probe.ln(&amplitude.ball(probe)).map(|log| probe.mul_rational(&log, &delta));
+    if power.is_none_or(|power| power.abs_upper() > 7e8) {
+        return Err(Error::OutsideDomain {
+            name: "amplitude^delta".to_owned(),
+            value: format!("({amplitude})^({delta})"),
+            domain: "between 10^(-3*10^8) and 10^(3*10^8)",
+        });
+    }
     let at = vec![
         ("n", Value::Rational(n)),
         ("delta", Value::Rational(delta.clone())),
