@@ -260,15 +260,15 @@ pub fn derive(
         Solution::FrequencyOnly => settings.stop.clone(),
         _ => Stop::default(),
     };
+    let condition_and_stop = (condition, &stop);
     let mut series = series(
         problem,
         &ring,
-        condition,
+        condition_and_stop,
         powers,
         amplitudes,
         amplitude.as_ref(),
         &stiffness,
-        &stop,
     )?;
     prepare::undo_time_scale(&mut series, &ring, &time_scale);
     let default = problem.parameters.iter().find(|p| p.name == "amplitude");

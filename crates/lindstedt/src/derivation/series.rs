@@ -39,12 +39,11 @@ impl Powers {
 pub(super) fn series(
     problem: &Problem,
     ring: &PolynomialRing,
-    condition: Condition,
+    (condition, stop): (Condition, &Stop),
     powers: Powers,
     amplitudes: Vec<Polynomial>,
     amplitude: Option<&Value>,
     stiffness: &Polynomial,
-    stop: &Stop,
 ) -> Result<Vec<NamedSeries>, Error> {
     let order = powers.squared.len() - 1;
     // What is printed is the closed form where there is one; mu_m stay where S_n stand beside.
