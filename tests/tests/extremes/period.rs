@@ -146,7 +146,7 @@ fn judge(grid: &mut Grid, cell: &Cell<'_>, truth: Option<&(Float, u32)>) {
                 &format!("{label} sum {:?}", found.resummed.method),
                 &value,
                 &error,
-                &truth,
+                truth,
                 known - 4,
             );
         }
