@@ -35,6 +35,7 @@ pub fn run(
         parameters: settings.parameters.clone(),
         digits,
         stop: settings.stop.clone(),
+        memory: settings.memory,
     };
     let mut observer = |progress: Progress| {
         session.say(match progress {

@@ -13,7 +13,7 @@
 //! from B((1 - z)/2 + i, 1/2 - i) = B((1 - z)/2, 1/2) ((1 - z)/2)_i (-1)^i/(1/2)_i. The period is
 //! linear in the mu_m at every order.
 
-use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_coeff::sparse::Sparse;
 use lindstedt_coeff::{Polynomial, PolynomialRing, PowerProduct, Symbol};
 use lindstedt_series::Series;
@@ -29,6 +29,16 @@ pub fn period_over_2pi(
     ring: &PolynomialRing,
     sums: &[Polynomial],
     order: usize,
+) -> Option<Vec<Polynomial>> {
+    period_until(ring, sums, order, &Stop::default())
+}
+
+/// The same; nothing when stopped, too.
+pub(crate) fn period_until(
+    ring: &PolynomialRing,
+    sums: &[Polynomial],
+    order: usize,
+    stop: &Stop,
 ) -> Option<Vec<Polynomial>> {
     let inverse = ring.reciprocal(sums.first()?)?;
     let (k, l) = (ring.symbol(COTANGENT_SQUARED), ring.symbol(LOG_SECANT));
@@ -46,14 +56,19 @@ pub fn period_over_2pi(
         let ratio = ring.mul(sum, &inverse);
         radicand.push(ring.mul(&ratio, &ring.scale(&integral, &factor)));
     }
-    let root = Series::truncated(radicand).power(ring, &Rational::from((-1, 2)))?;
-    Some(root.coefficients.iter().map(|p| mean(ring, p)).collect())
+    let go_on = || !stop.asked();
+    let half = Rational::from((-1, 2));
+    let root = Series::truncated(radicand).power_while(ring, &half, &go_on)?;
+    root.coefficients.iter().map(|p| mean(ring, p, stop)).collect()
 }
 
-/// The mean of a polynomial in K and l.
-fn mean(ring: &PolynomialRing, p: &Polynomial) -> Polynomial {
+/// The mean of a polynomial in K and l; nothing when stopped.
+fn mean(ring: &PolynomialRing, p: &Polynomial, stop: &Stop) -> Option<Polynomial> {
     let mut sum = ring.zero();
     for (monomial, coefficient) in p.terms() {
+        if stop.asked() {
+            return None;
+        }
         let (mut i, mut m) = (0, 0);
         let mut rest = ring.rational(coefficient);
         for &(symbol, exponent) in monomial.factors() {
@@ -65,7 +80,7 @@ fn mean(ring: &PolynomialRing, p: &Polynomial) -> Polynomial {
         }
         sum = ring.add(&sum, &ring.mul(&rest, &mean_of_powers(i, m)));
     }
-    sum
+    Some(sum)
 }
 
 /// <K^i l^m>.
@@ -104,18 +119,31 @@ fn mean_of_powers(i: u16, m: u16) -> Polynomial {
 /// p = 2 is omega^2, p = -1 is T/2pi (linear in the mu_m). Cost: about 10^4 products at order
 /// 30, where omega^2 has 28 627 terms.
 pub fn power_law_frequency(ring: &PolynomialRing, power: i32, order: u16) -> Vec<Polynomial> {
+    frequency_until(ring, power, order, &Stop::default()).unwrap_or_default()
+}
+
+/// The same; nothing when stopped.
+pub(crate) fn frequency_until(
+    ring: &PolynomialRing,
+    power: i32,
+    order: u16,
+    stop: &Stop,
+) -> Option<Vec<Polynomial>> {
     let moment = |m: u16| if m == 0 { ring.one() } else { ring.symbol(Symbol::Moment(m)) };
     let moments = Series::truncated((0..=order).map(moment).collect());
-    let Some(of_u) = moments.power(ring, &Rational::from(-power)) else { return Vec::new() };
+    let of_u = moments.power_while(ring, &Rational::from(-power), &|| !stop.asked())?;
     let half = Rational::from((power, 2));
     let coefficient = |n: usize| {
         // [delta^n] (1 + delta)^(p/2) u^j = binomial(p/2 - j, n - j).
         let mut sum = ring.zero();
         for (j, y) in of_u.coefficients.iter().enumerate().take(n + 1) {
+            if stop.asked() {
+                return None;
+            }
             let top = &half - Rational::from(j);
             ring.add_assign(&mut sum, &ring.scale(y, &binomial(&top, n - j)));
         }
-        sum
+        Some(sum)
     };
     (0..=usize::from(order)).map(coefficient).collect()
 }
@@ -137,10 +165,10 @@ mod tests {
         let ones = vec![ring.one(); 9];
         let period = period_over_2pi(&ring, &ones, 8);
         let squared = period.and_then(|p| Series::truncated(p).power(&ring, &Rational::from(-2)));
-        let direct = power_law_frequency(&ring, 2, 8);
-        assert_eq!(squared.map(|s| s.coefficients), Some(direct));
-        let frequency = Series::truncated(power_law_frequency(&ring, 1, 8));
-        let period = Series::truncated(power_law_frequency(&ring, -1, 8));
+        let direct = |p| power_law_frequency(&ring, p, 8);
+        assert_eq!(squared.map(|s| s.coefficients), Some(direct(2)));
+        let frequency = Series::truncated(direct(1));
+        let period = Series::truncated(direct(-1));
         let one = frequency.mul(&ring, &period, 8).coefficients;
         assert!(one[0] == ring.one() && one[1..].iter().all(|c| ring.is_zero(c)));
     }

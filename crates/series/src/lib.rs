@@ -98,6 +98,16 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
         ring: &R,
         exponent: &Rational,
     ) -> Option<Self> {
+        self.power_while(ring, exponent, &|| true)
+    }
+
+    /// As [`Self::power`] as long as `go_on`, asked several times per order, says so; else nothing.
+    pub fn power_while<R: RationalAlgebra<Element = E>>(
+        &self,
+        ring: &R,
+        exponent: &Rational,
+        go_on: &dyn Fn() -> bool,
+    ) -> Option<Self> {
         let x = &self.coefficients;
         if *x.first()? != ring.one() {
             return None;
@@ -108,7 +118,14 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
                 |k: usize| Rational::from(exponent + 1u32) * Rational::from(k) - Rational::from(n);
             let weighted: Vec<E> = (1..=n).map(|k| ring.scale(&x[k], &factor(k))).collect();
             let pairs: Vec<_> = weighted.iter().zip(y.iter().rev()).collect();
-            y.push(ring.scale(&ring.sum_of_products(&pairs), &Rational::from((1, n))));
+            let mut sum = ring.zero();
+            for part in pairs.chunks(16) {
+                if !go_on() {
+                    return None;
+                }
+                ring.add_assign(&mut sum, &ring.sum_of_products(part));
+            }
+            y.push(ring.scale(&sum, &Rational::from((1, n))));
         }
         Some(Self::truncated(y))
     }

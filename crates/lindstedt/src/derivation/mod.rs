@@ -211,7 +211,7 @@ pub fn derive(
     let (solution, powers, amplitudes, stiffness, checked_orders) = if settings.route
         == Route::EnergyIntegral
     {
-        let (powers, stiffness) = energy_integral(problem, &ring, settings.order)?;
+        let (powers, stiffness) = energy_integral(problem, &ring, settings.order, &settings.stop)?;
         if !observer(Progress::Checking) || settings.stop.asked() {
             return Err(ExpandError::Interrupted { order: settings.order }.into());
         }
@@ -265,8 +265,21 @@ pub fn derive(
     if ring.as_rational(&stiffness).is_some_and(|kappa| kappa < 0) {
         return Err(ExpandError::NegativeStiffness.into());
     }
-    let mut series =
-        series(problem, &ring, condition, powers, amplitudes, amplitude.as_ref(), &stiffness)?;
+    // The driver's orders are few enough to be printed whenever it was stopped.
+    let stop = match solution {
+        Solution::FrequencyOnly => settings.stop.clone(),
+        _ => Stop::default(),
+    };
+    let condition_and_stop = (condition, &stop);
+    let mut series = series(
+        problem,
+        &ring,
+        condition_and_stop,
+        powers,
+        amplitudes,
+        amplitude.as_ref(),
+        &stiffness,
+    )?;
     prepare::undo_time_scale(&mut series, &ring, &time_scale);
     let default = problem.parameters.iter().find(|p| p.name == "amplitude");
     let amplitude = match amplitude {

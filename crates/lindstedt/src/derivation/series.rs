@@ -2,12 +2,13 @@
 
 use super::limits::has_logarithms;
 use super::{FORMAL, NamedSeries};
-use crate::energy::{period_over_2pi, power_law_frequency};
+use crate::energy::{frequency_until, period_until};
 use crate::{Error, Value};
-use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_coeff::closed_forms::ClosedForms;
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
+use lindstedt_expand::ExpandError;
 use lindstedt_series::Series;
 use rayon::prelude::*;
 use rug::Rational;
@@ -38,7 +39,7 @@ impl Powers {
 pub(super) fn series(
     problem: &Problem,
     ring: &PolynomialRing,
-    condition: Condition,
+    (condition, stop): (Condition, &Stop),
     powers: Powers,
     amplitudes: Vec<Polynomial>,
     amplitude: Option<&Value>,
@@ -56,7 +57,12 @@ pub(super) fn series(
     let forms = closes.then(|| ClosedForms::new(moments.max().unwrap_or(0)));
     let close = |list: Vec<Polynomial>| -> Result<Vec<Polynomial>, Error> {
         let Some(forms) = &forms else { return Ok(list) };
-        let closed = |p: &Polynomial| forms.closed_form(ring, p).ok_or(Error::NoValue);
+        let closed = |p: &Polynomial| {
+            if stop.asked() {
+                return Err(ExpandError::Interrupted { order }.into());
+            }
+            forms.closed_form(ring, p).ok_or(Error::NoValue)
+        };
         list.par_iter().map(closed).collect()
     };
     // a^(exponent eps) = exp(exponent eps ln a) for an amplitude other than one.
@@ -110,7 +116,10 @@ pub(super) fn energy_integral(
     problem: &Problem,
     ring: &PolynomialRing,
     order: usize,
+    stop: &Stop,
 ) -> Result<(Powers, Polynomial), Error> {
+    // Nothing comes from an interruption only, once the equation is known.
+    let interrupted = || Error::from(ExpandError::Interrupted { order });
     let unavailable = || Error::NoSuchRoute { problem: problem.name.to_string() };
     // The formulas hold for these two equations, whatever the problem is called.
     let x = || Expression::Displacement;
@@ -127,16 +136,16 @@ pub(super) fn energy_integral(
     let size = u16::try_from(order).map_err(|_| unavailable())?;
     match problem.amplitude {
         AmplitudeRole::ScalesFrequency { exponent: 2 } => {
-            let power = |p| power_law_frequency(ring, p, size);
-            Ok((Powers { squared: power(2), first: power(1), inverse: power(-1) }, ring.one()))
+            let power = |p| frequency_until(ring, p, size, stop).ok_or_else(interrupted);
+            Ok((Powers { squared: power(2)?, first: power(1)?, inverse: power(-1)? }, ring.one()))
         }
         AmplitudeRole::InSums => {
             let sums: Vec<Polynomial> = (0..=size).map(|n| ring.symbol(Symbol::Sum(n))).collect();
-            let inverse = period_over_2pi(ring, &sums, order).ok_or_else(unavailable)?;
+            let inverse = period_until(ring, &sums, order, stop).ok_or_else(interrupted)?;
             let period = Series::truncated(inverse);
             let power = |p: i32| {
-                let power = period.power(ring, &Rational::from(p));
-                power.map(|s| s.coefficients).ok_or_else(unavailable)
+                let power = period.power_while(ring, &Rational::from(p), &|| !stop.asked());
+                power.map(|s| s.coefficients).ok_or_else(interrupted)
             };
             let (squared, first) = (power(-2)?, power(-1)?);
             let powers = Powers { squared, first, inverse: period.coefficients };

@@ -134,6 +134,16 @@ fn power_law(
     if !probe.add(&probe.one(), &delta).is_positive() {
         return Err(outside(&setting.problem.small, &delta, "greater than -1"));
     }
+    // MPFR's exponents end at 2^30: beyond, no precision gives a^delta.
+    let power = probe.ln(&setting.amplitude.ball(probe)).map(|log| probe.mul(&log, &delta));
+    if power.is_none_or(|power| power.abs_upper() > 7e8) {
+        let amplitude = setting.amplitude.to_string();
+        return Err(Error::OutsideDomain {
+            name: format!("amplitude^{}", setting.problem.small),
+            value: format!("({amplitude})^({:.3e})", delta.midpoint().to_f64()),
+            domain: "between 10^(-3*10^8) and 10^(3*10^8)",
+        });
+    }
     let (factor, closed, point) = (setting.clone(), setting.clone(), setting.clone());
     let root = {
         let stiffness = stiffness.clone();

@@ -116,9 +116,14 @@ const MOST_SWEEPS: usize = 400;
 /// All zeros of a real polynomial (coefficients from order 0; vanishing leading ones are
 /// dropped), in ascending modulus: Aberth's simultaneous iteration from the radii of the Newton
 /// polygon. Nothing where it does not settle to a quarter of the bits. O(n^2) per sweep, some
-/// ten sweeps for simple zeros.
+/// ten sweeps for simple zeros. More than 1024 bits and 32 per degree are not used: no zero is
+/// asked for to 300 digits.
 #[must_use]
 pub fn zeros(polynomial: &[Float], bits: u32) -> Option<Vec<Complex>> {
+    let degree = u32::try_from(polynomial.len()).unwrap_or(u32::MAX);
+    let bits = bits.min(degree.saturating_mul(32).saturating_add(1024));
+    let rounded: Vec<Float> = polynomial.iter().map(|c| Float::with_val(bits, c)).collect();
+    let polynomial = rounded.as_slice();
     let used = polynomial.iter().rposition(|c| !c.is_zero())? + 1;
     let at_origin = polynomial.iter().position(|c| !c.is_zero())?;
     let p = &polynomial[at_origin..used];
