@@ -1,7 +1,7 @@
 //! Section 2: the region of (17) against the stability of the delayed system.
 
 use super::super::vibro_impact::unstable_example;
-use super::super::{Reader, Section};
+use super::super::{Reader, Section, Verdict};
 use super::{Finding, percent};
 use crate::Error;
 use lindstedt_impact::characteristic::Kick;
@@ -60,6 +60,8 @@ pub struct Region {
     pub sample: Sample,
     /// The orbit of the charts: the first of the sample that is unstable without the loop.
     pub orbit: String,
+    /// The formulas (6), (7), (15), (16), (17), as far as they hold as printed.
+    pub formulas: Vec<String>,
     /// Two readings over the same plane: the orbit of (8) itself, the true orbit.
     pub charts: Vec<RegionChart>,
 }
@@ -68,9 +70,17 @@ pub struct Region {
 const REACH: f64 = 0.3;
 
 /// Draws the charts; the sample was counted before.
-pub(in super::super) fn read(reader: &mut Reader<'_>, _: &mut Section) -> Result<bool, Error> {
+pub(in super::super) fn read(
+    reader: &mut Reader<'_>,
+    section: &mut Section,
+) -> Result<bool, Error> {
     let Some(sample) = reader.sample.take() else { return Ok(true) };
     let Some((orbit, base)) = unstable_example() else { return Ok(true) };
+    let holds = |number: &String| {
+        let mut own = section.rows.iter().filter(|row| row.label.ends_with(number.as_str()));
+        own.all(|row| row.verdict == Verdict::Agrees || row.label.starts_with("below"))
+    };
+    let formulas = [6, 7, 15, 16, 17].map(|n| format!("({n})")).into_iter().filter(holds).collect();
     let count = reader.options.chart.max(2);
     let axis = |parameter| Axis { parameter, low: -REACH, high: REACH, count };
     let mut charts = Vec::new();
@@ -85,7 +95,7 @@ pub(in super::super) fn read(reader: &mut Reader<'_>, _: &mut Section) -> Result
         let chart = chart(&base, &plan, &|_| true).map_err(|_| Error::NoValue)?;
         charts.push(RegionChart { rule, chart });
     }
-    reader.trust.region = Some(Region { sample, orbit, charts });
+    reader.trust.region = Some(Region { sample, orbit, formulas, charts });
     Ok(true)
 }
 
@@ -111,12 +121,15 @@ impl Region {
             section: 2,
             method: "KBM with the delay loop, stability by (17)",
             trusted: vec![
-                "(6), (7), (15), (16) and (17) themselves: exact as printed, at any order of the \
-                 averaging"
-                    .to_owned(),
+                format!(
+                    "the formulas {} as printed (with a = F): (6) and (7) are the first order in the \
+                     loop, (15) to (17) are exact for the motion (8)",
+                    self.formulas.join(", ")
+                ),
                 format!(
                     "the characteristic function G, where z(t - T) = z(t)/gamma takes the impact \
-                     inside the delay into account: right at {} of {} points, {} orbits",
+                     inside the delay into account: right at {} of {} points, {} orbits (for B = 0 \
+                     it defines the truth; B other than 0 tests it)",
                     share("G"),
                     self.sample.points,
                     super::super::vibro_impact::SAMPLED
