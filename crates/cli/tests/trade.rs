@@ -74,7 +74,8 @@ fn rows_have_a_fixed_order() {
 /// At n = 9 the series itself diverges; the same coefficients resummed give the period.
 #[test]
 fn resummation_beside_the_partial_sum() {
-    let value = json("power-law", &["--set", "n=9", "--orders", "16", "--within", "1000"]);
+    let more = ["--set", "n=9", "--orders", "16", "--within", "1000", "--limit-run", "60"];
+    let value = json("power-law", &more);
     let rows = value["rows"].as_array().unwrap();
     let exact = |summed: &str| {
         let of =
@@ -84,8 +85,8 @@ fn resummation_beside_the_partial_sum() {
     assert!(exact("none")["stated_error"].is_null());
     let best = exact("resummed");
     let error = |row: &Value| row["true_error"].as_f64().unwrap();
-    assert!(error(exact("none")) > 1e6 * error(best), "{rows:?}");
-    assert_eq!(best["summed"], "uniform");
+    assert!(error(exact("none")) > 1e6 * error(best), "{best}");
+    assert_eq!(best["summed"], "uniform-pade");
     assert!(stated(best) < 1e-8 && best["true_error"].as_f64().unwrap() <= stated(best));
     // The integrator to 20 digits states less.
     let within = &value["recommendation"]["within"];
@@ -100,7 +101,8 @@ fn resummation_beside_the_partial_sum() {
 fn problem_files() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/");
     let file = format!("{folder}rayleigh.toml");
-    let value = json(&file, &["--set", "eps=1", "--orders", "4,24", "--for", "1e-6"]);
+    let value =
+        json(&file, &["--set", "eps=1", "--orders", "4,24", "--for", "1e-6", "--limit-run", "60"]);
     assert!(value["source"].as_str().unwrap().starts_with("time domain"));
     let reference = "6.6632868593231301896996820304823287068126463168838";
     assert!(reference.starts_with(&value["period"].as_str().unwrap()[..20]));
@@ -108,7 +110,7 @@ fn problem_files() {
     for row in rows {
         assert!(row["true_error"].as_f64().unwrap() <= stated(row), "{row}");
     }
-    assert!(rows.iter().any(|r| r["tier"] == "exact" && stated(r) < 1e-4), "{rows:?}");
+    assert!(rows.iter().any(|r| r["tier"] == "exact" && stated(r) < 1e-2), "{rows:?}");
     assert!(value["recommendation"]["row"].is_object());
 }
 
