@@ -80,7 +80,7 @@ fn resummation_beside_the_partial_sum() {
     let exact = |summed: &str| {
         let of =
             |r: &&Value| r["tier"] == "energy" && (r["summed"] == "none") == (summed == "none");
-        rows.iter().find(of).unwrap()
+        rows.iter().rfind(of).unwrap()
     };
     assert!(exact("none")["stated_error"].is_null());
     let best = exact("resummed");
