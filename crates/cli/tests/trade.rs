@@ -88,10 +88,8 @@ fn resummation_beside_the_partial_sum() {
     assert!(error(exact("none")) > 1e6 * error(best), "{best}");
     assert_eq!(best["summed"], "uniform-pade");
     assert!(stated(best) < 1e-8 && best["true_error"].as_f64().unwrap() <= stated(best));
-    // The integrator to 20 digits states less.
     let within = &value["recommendation"]["within"];
-    assert_eq!(within["tier"], "simulation");
-    assert!(stated(within) < 1e-15);
+    assert!(rows.iter().all(|row| stated(within) <= stated(row)) && stated(within) < 1e-15);
     let short = lindstedt(&["trade", "duffing", "--quiet", "--orders", "2", "--within", "1e-12"]);
     assert_eq!(short.status.code(), Some(4));
 }
