@@ -96,7 +96,11 @@ impl NumericOrbit {
         }
     }
 
+    /// f(x); nothing where it is not finite, and when the watch has ended the work.
     fn f(&self, x: &Float) -> Option<Float> {
+        if !self.watch.goes_on() {
+            return None;
+        }
         evaluate(&self.force, x).filter(Float::is_finite)
     }
 
