@@ -12,7 +12,6 @@ use crate::arguments::{Format, ThresholdOptions};
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
 use crate::session::{Session, digits};
-use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::MelnikovError;
 use request::Request;
 
@@ -20,8 +19,7 @@ pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
     let digits = digits(&options.precision)?;
     let request = Request::read(options)?;
     output::check_writable(session)?;
-    let stop = session.stop();
-    let request = request.watched(&Watch::new(std::sync::Arc::new(move || !stop.asked())));
+    let request = request.watched(&session.stop());
     let mut answer = report::Answer::new(&request, digits, session).map_err(|failure| {
         // An orbit that was not followed to its end looks undecided.
         match failure.exit {

@@ -6,7 +6,7 @@
 //! gamma together with kappa. At N = infinity this is the zero of [`crate::characteristic`] that
 //! grows out of the uncontrolled multiplier.
 
-use crate::characteristic::{Kick, Watch};
+use crate::characteristic::{Kick, check};
 use crate::complex::Complex;
 use crate::error::ImpactError;
 use crate::map::{ImpactMap, Verdict};
@@ -14,6 +14,7 @@ use crate::orbit::Orbit;
 use crate::parameters::Parameters;
 use crate::prediction::uncontrolled_map;
 use crate::real::Real;
+use lindstedt_algebra::Stop;
 
 /// The impact-aware prediction.
 #[derive(Clone, Debug)]
@@ -47,7 +48,7 @@ struct Truncated<'a, S> {
     orbit: &'a Orbit<S>,
     chi: S,
     order: usize,
-    watch: &'a Watch,
+    stop: &'a Stop,
 }
 
 impl<S: Real> Truncated<'_, S> {
@@ -105,7 +106,7 @@ impl<S: Real> Truncated<'_, S> {
         let mut f_before = self.at(&before, gain);
         let mut last = f64::INFINITY;
         for _ in 0..rounds {
-            if !self.watch.goes_on() {
+            if self.stop.asked() {
                 return None;
             }
             let f = self.at(&w, gain);
@@ -140,7 +141,7 @@ impl<S: Real> Truncated<'_, S> {
             let rounds = if target < 1.0 { 30 } else { 60 };
             match self.solve(&w, &at(target), 0.3, rounds) {
                 Some(next) => (w, t, step) = (next, target, step * 1.5),
-                None if step > 1e-4 && self.watch.goes_on() => step *= 0.5,
+                None if step > 1e-4 && !self.stop.asked() => step *= 0.5,
                 None => return None,
             }
         }
@@ -161,29 +162,29 @@ pub fn impact_aware<S: Real>(
     kick: Kick,
     order: usize,
 ) -> Result<AwarePrediction<S>, ImpactError> {
-    watched_prediction(parameters, orbit, kick, order, &Watch::default())
+    watched_prediction(parameters, orbit, kick, order, &Stop::default())
 }
 
-/// [`impact_aware`], stopped by a watch.
+/// [`impact_aware`], that can be stopped.
 pub(crate) fn watched_prediction<S: Real>(
     parameters: &Parameters<S>,
     orbit: &Orbit<S>,
     kick: Kick,
     order: usize,
-    watch: &Watch,
+    stop: &Stop,
 ) -> Result<AwarePrediction<S>, ImpactError> {
     if order == 0 {
         return Err(ImpactError::OrderZero);
     }
     let chi = kick.factor(&parameters.restitution);
-    let truncated = Truncated { parameters, orbit, chi, order, watch };
+    let truncated = Truncated { parameters, orbit, chi, order, stop };
     let map: ImpactMap<S> = uncontrolled_map(parameters, orbit);
     let mut multipliers = Vec::with_capacity(2);
     for gamma in map.multipliers() {
         if gamma.to_f64().modulus() == 0.0 {
             continue;
         }
-        watch.check()?;
+        check(stop)?;
         let start = gamma.inverse().centre();
         let lost = ImpactError::NoConvergence { what: "the impact-aware multiplier" };
         let w =

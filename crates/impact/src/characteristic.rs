@@ -21,8 +21,7 @@ use crate::orbit::Orbit;
 use crate::parameters::Parameters;
 use crate::propagator::propagator;
 use crate::real::Real;
-use std::fmt;
-use std::sync::Arc;
+use lindstedt_algebra::Stop;
 
 /// The velocity kick of the B term between an impact and its delayed image, as the factor chi.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,31 +48,9 @@ impl Kick {
     }
 }
 
-/// Asks whether the work should go on; work that it ends returns no result.
-#[derive(Clone, Default)]
-pub struct Watch(Option<Arc<dyn Fn() -> bool + Send + Sync>>);
-
-impl Watch {
-    /// A watch that asks this function, some thousand times per second.
-    #[must_use]
-    pub fn new(goes_on: Arc<dyn Fn() -> bool + Send + Sync>) -> Self {
-        Self(Some(goes_on))
-    }
-    /// Whether the work should go on.
-    #[must_use]
-    pub fn goes_on(&self) -> bool {
-        self.0.as_ref().is_none_or(|goes_on| goes_on())
-    }
-    /// The error of work that was stopped.
-    pub(crate) fn check(&self) -> Result<(), ImpactError> {
-        if self.goes_on() { Ok(()) } else { Err(ImpactError::Cancelled) }
-    }
-}
-
-impl fmt::Debug for Watch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if self.0.is_some() { "Watch" } else { "no Watch" })
-    }
+/// The error of work that was stopped.
+pub(crate) fn check(stop: &Stop) -> Result<(), ImpactError> {
+    if stop.asked() { Err(ImpactError::Cancelled) } else { Ok(()) }
 }
 
 /// G(w) with its coefficients.
@@ -89,7 +66,7 @@ pub struct Characteristic<S> {
     period: S,
     /// m^2 = z_0 + z_1 w + z_2 w^2
     stiffness: [S; 3],
-    watch: Watch,
+    stop: Stop,
 }
 
 impl<S: Real> Characteristic<S> {
@@ -116,16 +93,16 @@ impl<S: Real> Characteristic<S> {
             kick: kick.factor(restitution) * b * jump,
             period: orbit.period.clone(),
             stiffness,
-            watch: Watch::default(),
+            stop: Stop::default(),
         }
     }
-    /// The same function, the search for whose zeros ends without a result when the watch says so.
+    /// The same function, the search for whose zeros ends without a result when asked to stop.
     #[must_use]
-    pub fn watched(self, watch: &Watch) -> Self {
-        Self { watch: watch.clone(), ..self }
+    pub fn watched(self, stop: &Stop) -> Self {
+        Self { stop: stop.clone(), ..self }
     }
     pub(crate) fn goes_on(&self) -> bool {
-        self.watch.goes_on()
+        !self.stop.asked()
     }
     /// Whether G is a quadratic polynomial (A = B = 0), with two zeros and no more.
     pub fn is_quadratic(&self) -> bool {
@@ -228,7 +205,7 @@ impl<S: Real> Characteristic<S> {
             kick: self.kick.to_f64(),
             period: self.period.to_f64(),
             stiffness: [0, 1, 2].map(|n| self.stiffness[n].to_f64()),
-            watch: self.watch.clone(),
+            stop: self.stop.clone(),
         }
     }
 }

@@ -11,11 +11,12 @@
 //!
 //! Such a map has no Floquet multipliers; its growth rate over many flights decides.
 
-use crate::characteristic::Watch;
+use crate::characteristic::check;
 use crate::error::ImpactError;
 use crate::map::Verdict;
 use crate::orbit::Orbit;
 use crate::parameters::Parameters;
+use lindstedt_algebra::Stop;
 use nalgebra::{DMatrix, DVector};
 
 /// Half width of the band around 1 in which a growth rate counts as neutral.
@@ -176,22 +177,22 @@ pub fn piecewise_growth(
     orbit: &Orbit<f64>,
     flights: usize,
 ) -> Result<Growth, ImpactError> {
-    watched_growth(parameters, orbit, flights, &Watch::default())
+    watched_growth(parameters, orbit, flights, &Stop::default())
 }
 
-/// [`piecewise_growth`], stopped by a watch.
+/// [`piecewise_growth`], that can be stopped.
 pub(crate) fn watched_growth(
     parameters: &Parameters<f64>,
     orbit: &Orbit<f64>,
     flights: usize,
-    watch: &Watch,
+    stop: &Stop,
 ) -> Result<Growth, ImpactError> {
     let mut map = ReturnMap::new(parameters, orbit)?;
     let v = orbit.velocity;
     let mut growth = Growth { rate: 0.0, spread: 0.0 };
     for start in [[1.0, 0.3], [-1.0, -0.3], [0.2, 1.0], [-0.2, -1.0]] {
         map.start(start.map(|part| part * v));
-        let found = growth_of_run(&mut map, flights, watch)?;
+        let found = growth_of_run(&mut map, flights, stop)?;
         if found.rate > growth.rate {
             growth = found;
         }
@@ -200,15 +201,11 @@ pub(crate) fn watched_growth(
 }
 
 /// The first quarter of the run is left out.
-fn growth_of_run(
-    map: &mut ReturnMap,
-    flights: usize,
-    watch: &Watch,
-) -> Result<Growth, ImpactError> {
+fn growth_of_run(map: &mut ReturnMap, flights: usize, stop: &Stop) -> Result<Growth, ImpactError> {
     let skip = flights / 4;
     let mut logarithms = [0.0, 0.0];
     for l in 0..flights {
-        watch.check()?;
+        check(stop)?;
         map.fly();
         let size = map.normalise();
         if size == 0.0 || !size.is_finite() {

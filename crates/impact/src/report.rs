@@ -1,7 +1,7 @@
 //! One parameter point: the true orbit, the prediction and the truth side by side.
 
 use crate::aware::{AwarePrediction, watched_prediction};
-use crate::characteristic::{Characteristic, Kick, Watch};
+use crate::characteristic::{Characteristic, Kick, check};
 use crate::convergence::{Convergence, convergence};
 use crate::equivalent::{Drive, equivalent_orbit};
 use crate::error::ImpactError;
@@ -14,6 +14,7 @@ use crate::parameters::{ExactParameters, Parameters};
 use crate::prediction::{Prediction, Variant, mismatch, predict, predicted_flow, uncontrolled_map};
 use crate::real::{Certified, Real};
 use crate::zeros::{Multipliers, exact_verdict, multipliers};
+use lindstedt_algebra::Stop;
 
 /// Flights of the piecewise linear return map that decide for B != 0.
 const FLIGHTS: usize = 800;
@@ -148,17 +149,17 @@ pub fn stability<S: Real>(
     parameters: &Parameters<S>,
     request: &Request,
 ) -> Result<StabilityReport<S>, ImpactError> {
-    stability_watched(parameters, request, &Watch::default())
+    stability_watched(parameters, request, &Stop::default())
 }
 
-/// [`stability`] that a watch can stop.
+/// [`stability`] that can be stopped.
 ///
 /// # Errors
 /// As [`stability`]; [`ImpactError::Cancelled`].
 pub fn stability_watched<S: Real>(
     parameters: &Parameters<S>,
     request: &Request,
-    watch: &Watch,
+    stop: &Stop,
 ) -> Result<StabilityReport<S>, ImpactError> {
     parameters.validate()?;
     if request.order == 0 {
@@ -174,16 +175,15 @@ pub fn stability_watched<S: Real>(
         let prediction = predict(request.variant, parameters, &flow, found.as_ref().ok())?;
         Ok(PredictionReport { verdict: prediction.map.verdict(), prediction })
     });
-    let aware = |orbit: &Orbit<S>| {
-        watched_prediction(parameters, orbit, request.kick, request.order, watch)
-    };
+    let aware =
+        |orbit: &Orbit<S>| watched_prediction(parameters, orbit, request.kick, request.order, stop);
     let report = StabilityReport {
         kbm,
         impact_aware: match &found {
             Ok(orbit) if request.impact_aware => Some(aware(orbit)),
             _ => None,
         },
-        exact: found.as_ref().ok().map(|orbit| exact_report(parameters, orbit, request, watch)),
+        exact: found.as_ref().ok().map(|orbit| exact_report(parameters, orbit, request, stop)),
         mismatch: map.map(|map| mismatch(parameters, &map, &parameters.period())),
         convergence: convergence(&midpoint, &doubles),
         residual: flow.as_ref().ok().map(|flow| flow.residual(parameters)),
@@ -191,7 +191,7 @@ pub fn stability_watched<S: Real>(
         orbit: found.and_then(|orbit| orbit_report(parameters, orbit)),
     };
     // What was stopped on the way looks undecided.
-    watch.check()?;
+    check(stop)?;
     Ok(report)
 }
 
@@ -219,13 +219,13 @@ fn exact_report<S: Real>(
     parameters: &Parameters<S>,
     orbit: &Orbit<S>,
     request: &Request,
-    watch: &Watch,
+    stop: &Stop,
 ) -> ExactReport<S> {
-    let g = Characteristic::new(parameters, orbit, request.kick).watched(watch);
+    let g = Characteristic::new(parameters, orbit, request.kick).watched(stop);
     let (verdict, zeros_in_unit_disc) = exact_verdict(&g);
     let kicked = !parameters.velocity_gain.sign().is_some_and(|sign| sign.is_eq());
     let growth =
-        kicked.then(|| watched_growth(&parameters.to_f64(), &orbit.to_f64(), FLIGHTS, watch));
+        kicked.then(|| watched_growth(&parameters.to_f64(), &orbit.to_f64(), FLIGHTS, stop));
     ExactReport {
         verdict,
         zeros_in_unit_disc,
@@ -246,10 +246,10 @@ pub fn certified_stability(
     request: &Request,
     digits: u32,
 ) -> Result<StabilityReport<Certified>, ImpactError> {
-    certified_stability_watched(parameters, request, digits, &Watch::default())
+    certified_stability_watched(parameters, request, digits, &Stop::default())
 }
 
-/// [`certified_stability`] that a watch can stop.
+/// [`certified_stability`] that can be stopped.
 ///
 /// # Errors
 /// As [`stability`]; [`ImpactError::Cancelled`].
@@ -257,13 +257,13 @@ pub fn certified_stability_watched(
     parameters: &ExactParameters,
     request: &Request,
     digits: u32,
-    watch: &Watch,
+    stop: &Stop,
 ) -> Result<StabilityReport<Certified>, ImpactError> {
     let wanted = digits.saturating_mul(4).saturating_add(8);
     let mut bits = wanted.saturating_add(64);
     let mut rounds = 0;
     loop {
-        let report = stability_watched(&parameters.certified(bits), request, watch)?;
+        let report = stability_watched(&parameters.certified(bits), request, stop)?;
         rounds += 1;
         if rounds > 3 || report.has_bits(i64::from(wanted) * 5 / 6) {
             return Ok(report);

@@ -12,7 +12,6 @@ use crate::output;
 use crate::session::{Session, digits};
 use chart::Grid;
 use lindstedt_impact::ImpactError;
-use lindstedt_impact::characteristic::Watch;
 use lindstedt_impact::report::{certified_stability_watched, stability_watched};
 use report::{Answer, certified_number, double_number};
 use request::Request;
@@ -25,7 +24,6 @@ pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
         output::check_file(path)?;
     }
     let stop = session.stop();
-    let watch = Watch::new(std::sync::Arc::new(move || !stop.asked()));
     let stopped = |error| match error {
         ImpactError::Cancelled if !session.interrupted() => Failure {
             exit: UNDECIDED,
@@ -37,13 +35,13 @@ pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
     };
     let answer = if options.precision.f64 {
         let point = request.parameters.to_f64();
-        let report = stability_watched(&point, &request.point(), &watch).map_err(stopped)?;
+        let report = stability_watched(&point, &request.point(), &stop).map_err(stopped)?;
         Answer::new(&request, &report, &|x| double_number(*x))
     } else {
         let asked = u32::try_from(digits).unwrap_or(u32::MAX);
         let point = (&request.parameters, &request.point());
         let report =
-            certified_stability_watched(point.0, point.1, asked, &watch).map_err(stopped)?;
+            certified_stability_watched(point.0, point.1, asked, &stop).map_err(stopped)?;
         Answer::new(&request, &report, &|x| certified_number(x.ball(), digits))
     };
     let grid = Grid::compute(&request, session)?;

@@ -5,11 +5,11 @@ use crate::failure::Failure;
 use crate::recognised::Source;
 use crate::session::parameters;
 use lindstedt::Value;
+use lindstedt::algebra::Stop;
 use lindstedt::coeff::ball::{Ball, Balls};
 use lindstedt::equation::Text;
 use lindstedt::problems::stick_slip;
 use lindstedt::recognise::MelnikovProblem;
-use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::{Axis, Class, Real, StickSlip};
 use rug::Rational;
 use std::path::Path;
@@ -162,9 +162,9 @@ impl Request {
         Ok(Self { problem, point, file, gamma, eps, at, sweeps, zeros })
     }
 
-    /// The same request, whose orbits of files are followed no longer than the watch says.
-    pub fn watched(mut self, watch: &Watch) -> Self {
-        self.file = self.file.map(|(source, found)| (source, found.watched(watch)));
+    /// The same request, whose orbits of files are followed until asked to stop.
+    pub fn watched(mut self, stop: &Stop) -> Self {
+        self.file = self.file.map(|(source, found)| (source, found.watched(stop)));
         self
     }
 

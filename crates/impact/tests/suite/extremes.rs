@@ -384,18 +384,18 @@ fn parameters_outside_their_domain_are_named() {
     ));
 }
 
-/// A watch ends the work, and what was stopped is not called undecided.
+/// A stop ends the work, and what was stopped is not called undecided.
 #[test]
-fn a_watch_stops_the_work() {
-    use lindstedt_impact::characteristic::Watch;
+fn a_stop_ends_the_work() {
+    use lindstedt_algebra::Stop;
     use lindstedt_impact::report::certified_stability_watched;
     use std::sync::Arc;
     use std::sync::atomic::{AtomicU32, Ordering};
     let p = ExactParameters { velocity_gain: exact("50"), ..base_exact() };
     let asked = Arc::new(AtomicU32::new(0));
     let counter = Arc::clone(&asked);
-    let watch = Watch::new(Arc::new(move || counter.fetch_add(1, Ordering::SeqCst) < 100));
-    let stopped = certified_stability_watched(&p, &Request::default(), 30, &watch);
+    let stop = Stop::new(move || counter.fetch_add(1, Ordering::SeqCst) >= 100);
+    let stopped = certified_stability_watched(&p, &Request::default(), 30, &stop);
     assert!(matches!(stopped, Err(ImpactError::Cancelled)));
     let asked = asked.load(Ordering::SeqCst);
     assert!((101..500).contains(&asked), "{asked}");

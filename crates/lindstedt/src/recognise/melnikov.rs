@@ -6,10 +6,10 @@ use super::law::FrictionLaw;
 use super::numeric::NumericOrbit;
 use super::{Refusal, Why, bind, missing, multiply_out, named, potential, rest};
 use crate::Value;
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::monomials::{Monomial, Monomials};
 use lindstedt_equation::{Expression, Problem};
-use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::{
     Axis, Branch, Class, Forcing, Friction, MelnikovError, Potential, Real, StickSlip, System,
     Threshold, Verdict,
@@ -146,11 +146,11 @@ impl MelnikovProblem {
         Ok(found)
     }
 
-    /// The same problem, whose numeric orbits end undecided when the watch says so.
+    /// The same problem, whose numeric orbits end undecided when asked to stop.
     #[must_use]
-    pub fn watched(self, watch: &Watch) -> Self {
+    pub fn watched(self, stop: &Stop) -> Self {
         let unperturbed = match self.unperturbed {
-            Unperturbed::Numeric(orbit) => Unperturbed::Numeric(Box::new(orbit.watched(watch))),
+            Unperturbed::Numeric(orbit) => Unperturbed::Numeric(Box::new(orbit.watched(stop))),
             closed @ Unperturbed::Closed { .. } => closed,
         };
         Self { unperturbed, ..self }

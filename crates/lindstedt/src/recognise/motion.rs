@@ -1,8 +1,8 @@
 //! A motion on an orbit, and the integrals of Melnikov's function along it.
 
 use super::in_pi::times;
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_melnikov::{Forcing, ForcingWork, Friction, MelnikovError, Real};
 use lindstedt_simulate::{Digits, Trajectory};
@@ -20,12 +20,12 @@ pub(super) struct Motion {
     pub saddle: Float,
     pub bits: u32,
     pub work: u32,
-    pub watch: Watch,
+    pub stop: Stop,
 }
 
 impl Motion {
     pub fn state(&self, t: &Float) -> Option<(Float, Float)> {
-        if !self.watch.goes_on() {
+        if self.stop.asked() {
             return None;
         }
         let (trajectory, flip) = match (&self.backward, t.is_sign_negative()) {

@@ -5,10 +5,10 @@ use super::law::evaluate;
 use super::melnikov::OrbitThreshold;
 use super::motion::Motion;
 use super::{PI, Refusal, potential};
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::Monomials;
-use lindstedt_impact::characteristic::Watch;
 use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_melnikov::{Class, Forcing, Friction, MelnikovError, Real, Threshold};
 use lindstedt_simulate::{
@@ -46,7 +46,7 @@ struct Path {
 pub struct NumericOrbit {
     force: Expression,
     paths: Vec<Path>,
-    watch: Watch,
+    stop: Stop,
 }
 
 /// What is known of an orbit.
@@ -71,16 +71,16 @@ impl NumericOrbit {
     pub(super) fn find(force: &Monomials) -> Result<Self, Refusal> {
         let terms = force.terms.iter().map(|(m, q)| force.tree(m, q));
         let force_of_x = Expression::Sum(terms.collect()).canonical();
-        let found = Self { force: force_of_x, paths: Vec::new(), watch: Watch::default() };
+        let found = Self { force: force_of_x, paths: Vec::new(), stop: Stop::default() };
         let reach = potential::polynomial(force).map_or(REACH, |f| cauchy_bound(&f));
         let paths = found.search(reach).unwrap_or_default();
         if paths.is_empty() { Err(Refusal::NoOrbit) } else { Ok(Self { paths, ..found }) }
     }
 
-    /// The same orbits, whose computation ends undecided when the watch says so.
+    /// The same orbits, whose computation ends undecided when asked to stop.
     #[must_use]
-    pub fn watched(self, watch: &Watch) -> Self {
-        Self { watch: watch.clone(), ..self }
+    pub fn watched(self, stop: &Stop) -> Self {
+        Self { stop: stop.clone(), ..self }
     }
 
     /// Whether f has a positive derivative at a zero: its difference quotients agree. Near other
@@ -96,9 +96,9 @@ impl NumericOrbit {
         }
     }
 
-    /// f(x); nothing where it is not finite, and when the watch has ended the work.
+    /// f(x); nothing where it is not finite, and when the work was stopped.
     fn f(&self, x: &Float) -> Option<Float> {
-        if !self.watch.goes_on() {
+        if self.stop.asked() {
             return None;
         }
         evaluate(&self.force, x).filter(Float::is_finite)
@@ -281,19 +281,15 @@ impl NumericOrbit {
             let mut trajectory = Trajectory::new(real);
             let mut keep = |report: &Report<'_, Digits>| {
                 let _ = trajectory.record(report);
-                if self.watch.goes_on() {
-                    ControlFlow::Continue(())
-                } else {
-                    ControlFlow::Break(())
-                }
+                if !self.stop.asked() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
             };
             flow.advance(&end, &mut keep).ok()?;
-            self.watch.goes_on().then_some(trajectory)
+            (!self.stop.asked()).then_some(trajectory)
         };
         let two = path.other.is_some();
         let forward = run(speed.clone() * path.sign)?;
         let backward = if two { Some(run(-speed * path.sign)?) } else { None };
-        Some(Motion { forward, backward, end, rate, saddle, bits, work, watch: self.watch.clone() })
+        Some(Motion { forward, backward, end, rate, saddle, bits, work, stop: self.stop.clone() })
     }
 
     /// The thresholds on all orbits, each number with an estimated error in its radius.
