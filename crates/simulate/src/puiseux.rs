@@ -38,6 +38,11 @@ impl Ord for Exponent {
 /// A series: the coefficients that are not zero, by increasing exponent.
 pub(crate) type Terms<E> = BTreeMap<Exponent, E>;
 
+/// Functions with more terms have exponents too close together (theta near 0) to be worth while.
+const MOST_TERMS: usize = 2000;
+/// Powers of the argument of a sine, likewise.
+const MOST_POWERS: u32 = 200;
+
 /// The same as a list.
 type List<E> = Vec<(Exponent, E)>;
 
@@ -219,6 +224,9 @@ impl<R: Real> Lattice<R> {
                 real.increase(place, &part);
             }
             done.insert(e, known);
+            if done.len() > MOST_TERMS {
+                return None;
+            }
         }
         Some(done)
     }
@@ -267,7 +275,8 @@ impl<R: Real> Lattice<R> {
         Some(total)
     }
 
-    /// (sin a, cos a), with sin(a_0 + u) and so on from the series of sin u and cos u in u.
+    /// (sin a, cos a), with sin(a_0 + u) and so on from the series of sin u and cos u in u; nothing
+    /// with too many terms.
     pub(crate) fn sine(&self, a: &Terms<R::Element>) -> Option<[Terms<R::Element>; 2]> {
         let real = &self.real;
         let (constant, rest) = self.split(a)?;
@@ -278,6 +287,9 @@ impl<R: Real> Lattice<R> {
             term = self.product(&term, &u);
             if term.is_empty() {
                 break;
+            }
+            if term.len() > MOST_TERMS || k > MOST_POWERS {
+                return None;
             }
             for c in term.values_mut() {
                 real.over_integer(c, k);
