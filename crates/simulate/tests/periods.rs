@@ -220,7 +220,7 @@ fn what_happens_next_to_a_branch_point() {
         (kept, state)
     }
     let (rough, fine) = (run(Doubles, 16), run(Digits::for_digits(40), 40));
-    let quarter = 5.816_789_202_060_242_562_6 / 4.0;
+    let quarter = 5.816_789_202_060_242 / 4.0;
     let times = |kinds: Vec<(EventKind, f64)>, section: usize| -> Vec<f64> {
         let wanted =
             |k: &EventKind| matches!(k, EventKind::Section { section: s, .. } if *s == section);

@@ -372,6 +372,6 @@ impl Setting {
         let (coefficient, amplitude) =
             (self.small.coefficient.as_rational()?, self.amplitude.as_rational()?);
         let power = rug::ops::Pow::pow(amplitude.clone(), self.small.power);
-        Some(Rational::from(coefficient * power))
+        Some(coefficient * power)
     }
 }

@@ -39,11 +39,14 @@ pub(super) fn has_energy_route(problem: &Problem) -> bool {
     matches!(problem.amplitude, AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::InSums)
 }
 
+/// Work that asks whether to go on.
+type Work<'w, T> = dyn Fn(&mut dyn FnMut() -> bool) -> Result<T, Reason> + 'w;
+
 /// The fastest of some runs.
 fn best<T>(
     repeats: u32,
     goes_on: &mut dyn FnMut() -> bool,
-    run: &dyn Fn(&mut dyn FnMut() -> bool) -> Result<T, Reason>,
+    run: &Work<'_, T>,
 ) -> Result<(T, f64), Reason> {
     let once = |goes_on: &mut dyn FnMut() -> bool| {
         let start = Instant::now();
