@@ -133,12 +133,19 @@ fn every_json_key_is_documented() -> Outcome {
         "simulate duffing --periods 1 --digits 8",
         "simulate vibro-impact --perturb 1e-6 --impacts 4 --digits 10",
         "simulate duffing --sweep eps=0..1:2 --section velocity --skip 2 --periods 4 --digits 8",
+        "evaluate vibro-impact --order 1 --start 1,0 --times 0..1:2",
+        "threshold docs/examples/forced-pendulum.toml --digits 8",
+        "threshold stick-slip --digits 8 --subharmonics 2 --sweep b=1,2 --sweep vstar=0..1:3",
+        "stability docs/examples/impact-spring.toml --f64",
+        "simulate duffing --periods 2 --digits 8 --section velocity",
+        "simulate docs/examples/holmes-duffing.toml --set eps=1 --lyapunov --zero-one --periods 100 --skip 10",
+        "trade duffing --orders 2 --digits 16 --harmonics 16 --repeats 1 --for 1 --within 1",
         "verify duffing --order 1",
         "problems",
         "paper --quick",
     ] {
         let arguments = command.split_whitespace().chain(["--format", "json", "--quiet"]);
-        let output = Command::new(&binary).args(arguments).output()?;
+        let output = Command::new(&binary).args(arguments).current_dir(root()).output()?;
         let value: serde_json::Value = serde_json::from_slice(&output.stdout)?;
         for key in value.as_object().ok_or("no object")?.keys() {
             assert!(page.contains(&format!("`{key}`")), "{command}: {key}");
