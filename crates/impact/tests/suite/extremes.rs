@@ -366,7 +366,7 @@ fn parameters_outside_their_domain_are_named() {
     ));
     assert!(matches!(
         refused(Parameters { damping: -0.1, ..base() }),
-        ImpactError::OutOfRange { name: "c", .. }
+        ImpactError::Negative { name: "c", .. }
     ));
     assert_eq!(
         refused(Parameters { wall: f64::NAN, ..base() }),
