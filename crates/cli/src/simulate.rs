@@ -92,8 +92,12 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
     })
 }
 
+/// The logarithm of an error that leaves not one digit.
+const NOT_ONE_DIGIT: f64 = -1.0;
+
 /// Two integrations, the second with more digits, both with so many that their difference leaves
-/// the digits asked for. In doubles there is one try; no second motion where it met other events.
+/// the digits asked for. In doubles there is one try; no second motion where it has
+/// not one digit or met other events.
 fn integrate(
     plan: &Plan,
     digits: u32,
@@ -132,7 +136,8 @@ fn integrate(
         let comparable = answer.comparable();
         same = comparable;
         lost = answer.log10_error() + f64::from(digits);
-        if comparable && (doubles || lost <= 0.0) {
+        let has_digits = if doubles { answer.log10_error() < NOT_ONE_DIGIT } else { lost <= 0.0 };
+        if comparable && has_digits {
             return Ok((motion, Some(finer), working));
         }
         if doubles {

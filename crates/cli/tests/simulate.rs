@@ -346,6 +346,22 @@ fn chattering_is_named() {
     assert!(error.abs() < 1e-13, "{error:e}");
 }
 
+/// A chaotic motion without events: the doubles have not one digit at the end, and say so.
+#[test]
+fn doubles_that_lost_every_digit_are_no_answer() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/holmes-duffing.toml");
+    let at =
+        ["simulate", path, "--f64", "--set", "eps=1", "--quiet", "--format", "json", "--periods"];
+    let end = |periods: &str| run(&[&at[..], &[periods]].concat());
+    let early = end("2");
+    assert_eq!(early.status.code(), Some(0));
+    let late = end("200");
+    assert_eq!(late.status.code(), Some(4));
+    let late: Value = serde_json::from_slice(&late.stdout).unwrap();
+    assert!(late["final"]["x"]["error"].is_null(), "{late}");
+    assert!(late["verdict"].as_str().unwrap().starts_with("chaotic"));
+}
+
 #[test]
 fn exponents_and_the_zero_one_test() {
     let at = |gamma: &str, periods: &str| {

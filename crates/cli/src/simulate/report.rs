@@ -157,7 +157,7 @@ impl<'a> Answer<'a> {
         let motion = self.motion;
         let time = motion.last.time.to_f64();
         let chaotic = if self.chaotic {
-            "chaotic: other events than with 24 digits, a picture without digits; "
+            "chaotic: not the motion with 24 digits, a picture without digits; "
         } else {
             ""
         };
