@@ -3,7 +3,6 @@
 use super::estimate::distance;
 use super::{Growth, Method, Outcome, ResummationError, Sample, Singularity, growth};
 use rug::Float;
-use rug::float::Special;
 
 /// What was found.
 #[derive(Clone, Debug)]
@@ -22,8 +21,6 @@ pub struct Resummed {
     pub bits: u32,
 }
 
-/// A value that may be behind a cut counts where another method has it to this relative error.
-const CONFIRMED: f64 = 1e-2;
 /// What the least of several estimates is multiplied by.
 const SELECTION: u32 = 4;
 /// Doublings of the precision before the rounding is added to the error as it is.
@@ -77,19 +74,11 @@ pub fn resum(
     let methods = method.map_or_else(|| Method::ALL.to_vec(), |method| vec![method]);
     let mut tried = Vec::new();
     let mut best: Option<(Method, Outcome, u32)> = None;
-    let all: Vec<_> = methods
-        .into_iter()
-        .map(|method| {
-            (method, settled(&sample, [&low, &high], method, singularity.as_ref(), accuracy))
-        })
-        .collect();
-    let values: Vec<Outcome> =
-        all.iter().filter_map(|(_, found)| Some(found.as_ref().ok()?.0.clone())).collect();
-    for (method, mut found) in all {
-        if let Ok((outcome, bits)) = &mut found {
-            if outcome.behind_cut && !values.iter().any(|other| confirms(other, outcome)) {
-                outcome.estimate.error = Float::with_val(53, Special::Infinity);
-            }
+    let mut values: Vec<Outcome> = Vec::new();
+    for method in methods {
+        let found = settled(&sample, [&low, &high], method, singularity.as_ref(), accuracy);
+        if let Ok((outcome, bits)) = &found {
+            values.push(outcome.clone());
             let error = &outcome.estimate.error;
             let better = best.as_ref().is_none_or(|(_, best, _)| {
                 // Below the accuracy asked for there is no better.
@@ -113,7 +102,7 @@ pub fn resum(
             if tried.len() > 1 && !low.has_known_tail(method) {
                 outcome.estimate.error *= SELECTION;
             }
-            for other in values.iter().filter(|other| !other.behind_cut) {
+            for other in &values {
                 if other.estimate.error <= Float::with_val(53, &own.error * 100u32) {
                     let gap = distance(&other.estimate.value, &own.value);
                     let excess = gap - &other.estimate.error;
@@ -127,15 +116,6 @@ pub fn resum(
         }
         None => Err(tried.pop().and_then(|(_, r)| r.err()).unwrap_or(ResummationError::Undefined)),
     }
-}
-
-/// Whether a value that is on the right branch has the other one within its error: another branch
-/// is farther away, unless the cut is as weak as that error.
-fn confirms(known: &Outcome, other: &Outcome) -> bool {
-    let error = &known.estimate.error;
-    let size = Float::with_val(53, known.estimate.value.abs_ref()) * CONFIRMED;
-    let gap = distance(&known.estimate.value, &other.estimate.value);
-    !known.behind_cut && *error <= size && gap <= *error
 }
 
 /// One method at p and 2p bits, until the rounding does not matter.

@@ -75,9 +75,6 @@ pub struct Outcome {
     pub degrees: Option<(usize, usize)>,
     /// The order of the smallest term, where the series was cut there because it diverges.
     pub smallest_term: Option<usize>,
-    /// Poles of the approximants between 0 and the point look like a cut: the value may be that of
-    /// another branch, unless another method confirms it.
-    pub behind_cut: bool,
 }
 
 /// Approximants before the last one that enter the error estimate.
@@ -229,13 +226,9 @@ impl Sample {
             late.as_ref().is_some_and(|late| *late > Float::with_val(53, &estimate.error * 4u32))
         };
         let mut outcome = match best {
-            Some((order, estimate)) if grows(&estimate) => Outcome {
-                estimate,
-                order,
-                degrees: None,
-                smallest_term: Some(order),
-                behind_cut: false,
-            },
+            Some((order, estimate)) if grows(&estimate) => {
+                Outcome { estimate, order, degrees: None, smallest_term: Some(order) }
+            }
             _ => last_sum(&sums)?,
         };
         if self.radius != Some(0.0) {
@@ -298,7 +291,7 @@ fn last_sum(sums: &[Float]) -> Result<Outcome, ResummationError> {
     let order = sums.len() - 1;
     let late = sums.get(order.saturating_sub(APPROXIMANTS)..).unwrap_or(sums);
     let estimate = settle(late, order).ok_or(ResummationError::Undefined)?;
-    Ok(Outcome { estimate, order, degrees: None, smallest_term: None, behind_cut: false })
+    Ok(Outcome { estimate, order, degrees: None, smallest_term: None })
 }
 
 /// The last partial sum of a series that converges, |x| below the radius (and whether that is
@@ -332,7 +325,7 @@ fn diagonal(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationErr
 /// there that come and go with the degree are a cut across the path: that of a pair of branch
 /// points r exp(+-i phi) is an arc of the circle through 0, r and r exp(i phi), which meets the
 /// axis at r/cos phi (it is a straight line in 1/x: the set of least capacity, H. Stahl), and the
-/// approximants converge behind it to another branch: [`Outcome::behind_cut`].
+/// approximants converge behind it to another branch. Then there is no estimate.
 ///
 /// A step whose value stands apart from both neighbours by more than a thousand times their
 /// distance is computed again without its spurious poles.
@@ -390,7 +383,9 @@ fn staircase(
         }
     }
     let list: Vec<Float> = values.into_iter().map(|(_, v)| v).collect();
-    let estimate = judge(&list, order).ok_or(ResummationError::Undefined)?;
-    let (degrees, behind_cut) = (Some(pade_degrees), behind >= CUT);
-    Ok(Outcome { estimate, order: used, degrees, smallest_term: None, behind_cut })
+    let mut estimate = judge(&list, order).ok_or(ResummationError::Undefined)?;
+    if behind >= CUT {
+        estimate.error = Float::with_val(53, Special::Infinity);
+    }
+    Ok(Outcome { estimate, order: used, degrees: Some(pade_degrees), smallest_term: None })
 }
