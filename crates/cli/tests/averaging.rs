@@ -120,7 +120,7 @@ fn refusals_have_their_reason() {
         (&["vibro-impact", "--set", "alpha=pi"], 2, "alpha can only be set"),
         (&["vibro-impact", "--set", "z=1"], 2, "z"),
         (&["vibro-impact", "--normalisation", "initial"], 2, "does not offer"),
-        (&["vibro-impact", "--set", "branch=+"], 2, "+"),
+        (&["vibro-impact", "--set", "branch=+"], 2, "branch has no meaning here"),
         (&["power-law", "--normalisation", "free"], 2, "does not offer"),
     ];
     for (arguments, code, words) in cases {

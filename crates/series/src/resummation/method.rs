@@ -171,7 +171,7 @@ impl Sample {
                 let mut asked = accuracy.min(128);
                 loop {
                     let nodes = Nodes::new(asked, self.bits);
-                    let value = |pade: &Pade| Ok((laplace(pade, &nodes)?, false));
+                    let value = |pade: &Pade| Ok((laplace(pade, &nodes)?, None));
                     let mut outcome = staircase(&b, self.bits, &widest, value)?;
                     let size = Float::with_val(53, outcome.estimate.value.abs_ref());
                     // What the integral was not asked for.
@@ -313,9 +313,8 @@ fn convergent(
 fn diagonal(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationError> {
     staircase(c, bits, &settle, |pade| {
         let (top, bottom) = pade.parts(x);
-        let behind = bottom.is_sign_negative();
         let value = top / bottom;
-        value.is_finite().then_some((value, behind)).ok_or(ResummationError::Undefined)
+        value.is_finite().then(|| (value, pade.jump(x))).ok_or(ResummationError::Undefined)
     })
 }
 
@@ -325,7 +324,8 @@ fn diagonal(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationErr
 /// there that come and go with the degree are a cut across the path: that of a pair of branch
 /// points r exp(+-i phi) is an arc of the circle through 0, r and r exp(i phi), which meets the
 /// axis at r/cos phi (it is a straight line in 1/x: the set of least capacity, H. Stahl), and the
-/// approximants converge behind it to another branch. Then there is no estimate.
+/// approximants converge behind it to another branch. The error is then at least the jump of the
+/// cut, as large as any of these poles makes it.
 ///
 /// A step whose value stands apart from both neighbours by more than a thousand times their
 /// distance is computed again without its spurious poles.
@@ -333,22 +333,22 @@ fn staircase(
     c: &[Float],
     bits: u32,
     judge: &dyn Fn(&[Float], usize) -> Option<Estimate>,
-    value: impl Fn(&Pade) -> Result<(Float, bool), ResummationError>,
+    value: impl Fn(&Pade) -> Result<(Float, Option<Float>), ResummationError>,
 ) -> Result<Outcome, ResummationError> {
     let order = c.len().saturating_sub(1);
     let first = order.saturating_sub(APPROXIMANTS);
     let degrees = |k: usize| (k - k / 2, k / 2);
     let mut values = Vec::new();
-    let mut behind = 0;
+    let mut jumps = Vec::new();
     let mut failure = ResummationError::Undefined;
     let mut last = None;
     for k in first..=order {
         let (l, m) = degrees(k);
         let Some(pade) = Pade::new(c, l, m, bits) else { continue };
         match value(&pade) {
-            Ok((v, is_behind)) => {
+            Ok((v, jump)) => {
                 values.push((k, v));
-                behind += usize::from(is_behind);
+                jumps.extend(jump);
                 last = Some((k, pade.degrees()));
             }
             Err(error) => {
@@ -384,8 +384,10 @@ fn staircase(
     }
     let list: Vec<Float> = values.into_iter().map(|(_, v)| v).collect();
     let mut estimate = judge(&list, order).ok_or(ResummationError::Undefined)?;
-    if behind >= CUT {
-        estimate.error = Float::with_val(53, Special::Infinity);
+    if jumps.len() >= CUT
+        && let Some(jump) = jumps.into_iter().reduce(|a, b| a.max(&b))
+    {
+        estimate.error = estimate.error.max(&jump);
     }
     Ok(Outcome { estimate, order: used, degrees: Some(pade_degrees), smallest_term: None })
 }

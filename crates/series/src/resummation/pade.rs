@@ -10,6 +10,9 @@ use super::linear::Echelon;
 use rug::Float;
 use rug::ops::Pow;
 
+/// Halvings of the interval that holds a pole.
+const BISECTIONS: u32 = 100;
+
 /// p(x)/q(x), q(0) = 1.
 #[derive(Clone, Debug)]
 pub struct Pade {
@@ -173,6 +176,28 @@ impl Pade {
         let horner =
             |p: &[Float]| p.iter().rev().fold(Float::new(self.bits), |sum, c| sum * &y + c);
         (horner(&self.numerator), horner(&self.denominator))
+    }
+
+    /// Where the denominator changes its sign between 0 and x: the jump across a cut that the poles
+    /// there may stand for. Poles with residue r at distances s along a cut through R are the
+    /// trapezoidal sum of Cauchy's integral over the jump: |jump| = 2 pi r/s, with s near R/m for m
+    /// poles. A spurious pole, next to a zero, has almost no residue and makes almost no jump.
+    pub(super) fn jump(&self, x: &Float) -> Option<Float> {
+        let at = |t: &Float| self.parts(&Float::with_val(self.bits, x * t));
+        let (mut near, mut far) = (Float::new(self.bits), Float::with_val(self.bits, 1));
+        if !at(&far).1.is_sign_negative() {
+            return None;
+        }
+        for _ in 0..BISECTIONS {
+            let middle = Float::with_val(self.bits, &near + &far) / 2u32;
+            if at(&middle).1.is_sign_negative() { far = middle } else { near = middle }
+        }
+        let ((top, q), (_, r)) = (at(&far), at(&near));
+        let slope = Float::with_val(self.bits, r - q) / Float::with_val(self.bits, &far - &near);
+        // The residue in t = x/r; r and the spacing are measured in the same unit.
+        let residue = Float::with_val(53, top / slope).abs();
+        let (_, poles) = self.degrees();
+        Some(residue * (std::f64::consts::TAU * poles as f64) / far)
     }
 
     /// The poles and zeros, with the doublets marked. Nothing where the iteration for the
