@@ -125,6 +125,10 @@ fn judge(grid: &mut Grid, cell: &Cell<'_>, truth: Option<&(Float, u32)>) {
             grid.number(&label, exact, truth, *known);
         }
         match &found.period {
+            // A partial sum of too few terms claims nothing about its error, and says so.
+            Some(period) if period.error.is_none() && found.has_no_estimate() => {
+                return grid.refused(&"NoEstimate");
+            }
             Some(period) => grid.number(&label, period, truth, *known),
             None => grid.refused(&"Digitless"),
         }

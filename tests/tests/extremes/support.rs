@@ -64,6 +64,9 @@ impl Grid {
     pub fn number(&mut self, label: &str, found: &Number, truth: &Float, bits: u32) {
         let parse = |text: &str| Float::with_val(truth.prec() + 64, Float::parse(text).unwrap());
         let value = parse(&found.decimal);
+        if found.error.is_none() && found.status == Status::Estimated {
+            return self.defect(label, format!("{} without an error", found.decimal));
+        }
         let error = found.error.as_deref().map_or_else(|| Float::new(64), parse);
         let distance = Float::with_val(64, &value - truth).abs();
         let allowed = Float::with_val(64, &error + blur(truth, bits));

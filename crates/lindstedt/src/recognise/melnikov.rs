@@ -53,7 +53,7 @@ pub enum Unperturbed {
 /// let pendulum = MelnikovProblem::new(&file.problem, &values)?;
 /// let gamma = &pendulum.thresholds(Balls::new(120))?[0].threshold.gamma;
 /// // 4 delta cosh(pi omega/2)/pi
-/// assert_eq!(decimal(gamma, 12).as_deref(), Some("3.19484844803"));
+/// assert_eq!(decimal(gamma, 12).as_deref(), Some("3.19478526383"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
