@@ -350,8 +350,7 @@ fn chattering_is_named() {
 #[test]
 fn doubles_that_lost_every_digit_are_no_answer() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/holmes-duffing.toml");
-    let at =
-        ["simulate", path, "--f64", "--set", "eps=1", "--quiet", "--format", "json", "--periods"];
+    let at = [path, "--f64", "--set", "eps=1", "--format", "json", "--periods"];
     let end = |periods: &str| run(&[&at[..], &[periods]].concat());
     let early = end("2");
     assert_eq!(early.status.code(), Some(0));
