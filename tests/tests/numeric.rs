@@ -270,3 +270,34 @@ fn tiers_agree_within_their_errors() {
 fn tiers_agree_within_their_errors_in_1000_combinations() {
     random_combinations(1000, 2);
 }
+
+/// Amplitudes that are scaled out, parameters with defaults, time that is scaled: as in the exact
+/// tier.
+#[test]
+fn files_in_the_numeric_tiers() {
+    let text = "name = \"q\"\nequation = \"x'' + k x + eps (q x^2 + c x^3 + b (x^2 - 1) x') = 0\"\n\
+                [parameters]\nk = { value = \"4\" }\nq = { value = \"1\" }\nc = { value = \"2/5\" }\n\
+                b = { value = \"0\" }\namplitude = { value = \"1/2\" }\n";
+    let free = text.replace("b = { value = \"0\" }", "b = { value = \"1/3\" }");
+    let cycle = free.replace("amplitude = { value = \"1/2\" }\n", "");
+    let initial = text.replace("[parameters]", "condition = \"initial-amplitude\"\n[parameters]");
+    for text in
+        [initial, cycle.replace("[parameters]", "condition = \"limit-cycle\"\n[parameters]")]
+    {
+        let problem = lindstedt::ProblemFile::parse(&text).unwrap().problem;
+        let settings = Settings { order: 4, ..Settings::default() };
+        let exact = lindstedt::derive(&problem, &settings, &mut |_| true).unwrap();
+        for tier in [Tier::Collocation { digits: 20 }, Tier::Doubles] {
+            let found = derive(&problem, &settings, tier, &mut |_| true).unwrap();
+            for name in ["frequency", "period_over_2pi"] {
+                let (series, known) = (found.named(name).unwrap(), exact.named(name).unwrap());
+                for (n, (value, error)) in series.coefficients.iter().enumerate() {
+                    let ball = exact.ball(known, n, Balls::new(200)).unwrap();
+                    let distance = Float::with_val(64, value - ball.midpoint()).abs();
+                    assert!(distance <= *error, "{text}{tier:?} {name} {n}: {distance} > {error}");
+                    assert!(*error < 1e-4, "{tier:?} {name} {n}: {error}");
+                }
+            }
+        }
+    }
+}

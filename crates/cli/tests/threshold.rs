@@ -305,6 +305,12 @@ fn terms_that_do_not_fit_are_named() {
         ("x'' - x + x^3 = eps (gamma cos(omega t) - sign(x' - v) - sign(x'))", ":2:", "jumps"),
         ("x'' + x + x^3 = eps (gamma cos(omega t) - delta x')", "", "no homoclinic"),
         ("x'' - x + x^3 = -eps delta x'", "", "no harmonic force"),
+        // Its threshold is another than with the opposite sign.
+        (
+            "x'' - x - x^2/2 + x^3 = eps (-gamma cos(omega t) - gamma sin(2 omega t) - delta x')",
+            "",
+            "negative coefficient",
+        ),
         // Nothing decays exponentially at a saddle without slope.
         ("x'' = x (x^2)^(1/3) - x^3 + eps (gamma cos(omega t) - delta x')", "", "no homoclinic"),
     ];

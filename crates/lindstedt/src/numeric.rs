@@ -6,6 +6,7 @@
 //! largest difference of the two results up to that order stands beside each number.
 
 use crate::derivation::Settings;
+use crate::derivation::prepare::prepare;
 use crate::{Error, Number, Status, Value, number::sine_sum};
 use lindstedt_algebra::{PhaseAlgebra, Rationals};
 use lindstedt_coeff::ball::{Ball, Balls};
@@ -127,35 +128,70 @@ pub fn derive(
     crate::derivation::check_parameters(problem, &settings.parameters)?;
     let condition = crate::derivation::condition(problem, settings.condition)?;
     limit_memory(settings, 32, 64)?;
+    // The amplitude that is scaled out is part of the equation; a limit cycle's is found exactly.
+    let changed = problem.amplitude == AmplitudeRole::Scaled || condition == Condition::LimitCycle;
+    let asked = Settings { condition: Some(condition), ..settings.clone() };
+    let prepared = if changed { Some(prepare(problem, &asked)?) } else { None };
+    let problem = prepared.as_ref().map_or(problem, |prepared| &prepared.problem);
     let mut job = Job { problem, settings, condition, observer };
-    match tier {
-        Tier::Collocation { digits } => job.refine(tier, digits),
-        Tier::Doubles => {
-            let run = |job: &mut Job<'_>, (accuracy, end)| {
-                let algebra = Collocation::new(Doubles, Grid::new(accuracy, end));
-                let algebra = algebra.with_stop(job.settings.stop.clone());
-                job.run(&algebra, algebra.nodes())
-            };
-            // A solution is known to about 1e-16: where cos psi is smaller than that, x_n/x_0 is
-            // noise, and its powers must not enter. So the grids end before.
-            let coarse = run(&mut job, (55.0, 30.0))?;
-            let fine = run(&mut job, (62.0, 32.0))?;
-            let estimate = job.compare(tier, &[coarse], fine, 53);
-            Ok(job.scaled_to_amplitude(estimate))
+    let mut estimate = job.estimate(tier)?;
+    if let Some(prepared) = &prepared {
+        estimate.undo_time_scale(&prepared.time_scale);
+    }
+    Ok(estimate)
+}
+
+impl Estimate {
+    /// Powers of the frequency in the time of the problem: omega = w Omega.
+    fn undo_time_scale(&mut self, w: &Rational) {
+        if *w == 1 {
+            return;
         }
-        Tier::Fourier { harmonics } => {
-            let run = |job: &mut Job<'_>, harmonics| {
-                let algebra = Collocation::fourier(Doubles, harmonics);
-                job.run(&algebra.with_stop(job.settings.stop.clone()), harmonics)
+        for named in &mut self.series {
+            let factor = match named.name {
+                "frequency_squared" => Rational::from(w * w),
+                "frequency" => w.clone(),
+                "period_over_2pi" => Rational::from(w.recip_ref()),
+                _ => continue,
             };
-            let harmonics = harmonics.clamp(4, MOST_NODES);
-            limit_memory(settings, harmonics, 64)?;
-            // Algebraic convergence is uneven at high orders: three numbers of harmonics.
-            let coarse =
-                [run(&mut job, harmonics.div_ceil(4))?, run(&mut job, harmonics.div_ceil(2))?];
-            let fine = run(&mut job, harmonics)?;
-            let estimate = job.compare(tier, &coarse, fine, 53);
-            Ok(job.scaled_to_amplitude(estimate))
+            for (value, error) in &mut named.coefficients {
+                *value *= &factor;
+                *error *= &factor;
+            }
+        }
+    }
+}
+
+impl Job<'_> {
+    fn estimate(&mut self, tier: Tier) -> Result<Estimate, Error> {
+        match tier {
+            Tier::Collocation { digits } => self.refine(tier, digits),
+            Tier::Doubles => {
+                let run = |job: &mut Job<'_>, (accuracy, end)| {
+                    let algebra = Collocation::new(Doubles, Grid::new(accuracy, end));
+                    let algebra = algebra.with_stop(job.settings.stop.clone());
+                    job.run(&algebra, algebra.nodes())
+                };
+                // A solution is known to about 1e-16: where cos psi is smaller than that, x_n/x_0 is
+                // noise, and its powers must not enter. So the grids end before.
+                let coarse = run(self, (55.0, 30.0))?;
+                let fine = run(self, (62.0, 32.0))?;
+                let estimate = self.compare(tier, &[coarse], fine, 53);
+                Ok(self.scaled_to_amplitude(estimate))
+            }
+            Tier::Fourier { harmonics } => {
+                let run = |job: &mut Job<'_>, harmonics| {
+                    let algebra = Collocation::fourier(Doubles, harmonics);
+                    job.run(&algebra.with_stop(job.settings.stop.clone()), harmonics)
+                };
+                let harmonics = harmonics.clamp(4, MOST_NODES);
+                limit_memory(self.settings, harmonics, 64)?;
+                // Algebraic convergence is uneven at high orders: three numbers of harmonics.
+                let coarse = [run(self, harmonics.div_ceil(4))?, run(self, harmonics.div_ceil(2))?];
+                let fine = run(self, harmonics)?;
+                let estimate = self.compare(tier, &coarse, fine, 53);
+                Ok(self.scaled_to_amplitude(estimate))
+            }
         }
     }
 }

@@ -142,6 +142,10 @@ pub(super) fn forcing(terms: &[Term]) -> Result<(Forcing, Real), Why> {
         let list = terms.iter().zip(weights).map(|(t, w)| (t.omega.clone(), Real::Rational(w)));
         return Ok((Forcing::Incommensurate(list.collect()), first.size.clone()));
     };
+    // The work of several harmonics has other extrema below than above.
+    if first.size.sign().is_lt() {
+        return Err(Why::NegativeForce);
+    }
     // omega_i = ratio_i omega_1 = k_i omega with the largest omega.
     let common = ratios.iter().fold(Integer::from(1), |c, r| c.lcm(r.denom()));
     let whole: Vec<Integer> =

@@ -45,6 +45,9 @@ pub enum Why {
     NotHarmonic,
     /// A parametric force beside another force, or where the orbit does not take it.
     Parametric,
+    /// The lowest of several harmonics has a negative coefficient: the thresholds of the two signs
+    /// differ.
+    NegativeForce,
     /// It jumps at another speed than the jump before.
     OtherSpeed,
     /// A coefficient that is neither rational nor a rational multiple of pi.
@@ -68,6 +71,7 @@ impl fmt::Display for Why {
             Self::DependsOnPosition => "depends on x; the perturbation is a function of x' or a force",
             Self::NotHarmonic => "is no harmonic force cos(omega*t + phase)",
             Self::Parametric => "is a parametric force; alone, on a polynomial potential about x = 0 it can be taken",
+            Self::NegativeForce => "has a negative coefficient beside other harmonics; shift the time so that the lowest one is positive",
             Self::OtherSpeed => "jumps or bends elsewhere than at one speed x' = v*, the same for all terms",
             Self::Irrational => "has a coefficient that is neither rational nor a rational multiple of pi",
             Self::NotLinear => "is not linear in x, x', x(t - T), x'(t - T)",
