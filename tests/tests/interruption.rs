@@ -7,7 +7,9 @@ use lindstedt::averaging::{Averaging, AveragingSettings, average};
 use lindstedt::evaluate::{EvaluateSettings, evaluate};
 use lindstedt::expand::ExpandError;
 use lindstedt::numeric::{Tier, derive as derive_numbers};
+use lindstedt::series::resummation::{Method, ResummationError, Sample, UniformMap, resum_until};
 use lindstedt::{Derivation, Error, Progress, Settings, Value, derive, problems};
+use rug::Float;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -173,9 +175,57 @@ fn averaged_rates() {
     }
 }
 
+/// Sums of van der Pol's period: questions in every elimination, zero, node and re-expansion of
+/// every method, and nothing of a sum that was broken off.
+#[test]
+fn resummations() {
+    let coefficient = |n: u32, bits: u32| {
+        // sqrt(1 + x + x^2) e^(-x/3) has a pair of branch points, as the period has.
+        let mut y = vec![Float::with_val(bits, 1), Float::with_val(bits, 1) / 2u32];
+        for k in 2..=n {
+            let last = Float::with_val(bits, &y[k as usize - 1] * (3 - 2 * i64::from(k)));
+            let before = Float::with_val(bits, &y[k as usize - 2] * (6 - 2 * i64::from(k)));
+            y.push((last + before) / (2 * k));
+        }
+        y.swap_remove(n as usize)
+    };
+    let source = |bits: u32| {
+        Some(Sample {
+            coefficients: (0..=16).map(|n| coefficient(n, bits)).collect(),
+            point: Float::with_val(bits, 1) / 3u32,
+            map: Some(UniformMap {
+                scale: Float::with_val(bits, 1),
+                prefactor: Float::with_val(bits, 0.5),
+                radius: None,
+            }),
+            radius: None,
+            bits,
+        })
+    };
+    for method in std::iter::once(None).chain(Method::ALL.map(Some)) {
+        let (stop, asked) = after(u64::MAX);
+        let whole = resum_until(&source, method, 200, &stop).unwrap();
+        let total = asked.load(Ordering::SeqCst);
+        // The search for the singularity has eight eliminations of 17 rows, an approximant one of
+        // eight: (17 + 8)*... rows at least, with their zeros several times as many.
+        assert!(total > 500, "{method:?}: {total} questions");
+        let step = total / 40;
+        for limit in (0..40).map(|i| i * step).chain([1, 2, total - 2, total - 1]) {
+            let (stop, asked) = after(limit);
+            let broken = resum_until(&source, method, 200, &stop);
+            assert!(matches!(broken, Err(ResummationError::Stopped)), "{method:?} {limit}");
+            assert_eq!(asked.load(Ordering::SeqCst), limit + 1, "{method:?}");
+        }
+        let (stop, _) = after(total);
+        let again = resum_until(&source, method, 200, &stop).unwrap();
+        assert_eq!(again.outcome.estimate.value, whole.outcome.estimate.value);
+    }
+}
+
+/// Whole evaluations: most of their questions are those of the resummation.
 #[test]
 fn evaluations() {
-    for name in ["power-law", "pendulum", "duffing"] {
+    for name in ["power-law", "pendulum", "duffing", "van-der-pol"] {
         let run = |stop| {
             let settings = EvaluateSettings { order: Some(9), stop, ..EvaluateSettings::default() };
             evaluate(&problems::find(name).unwrap(), &settings, &mut |_| true)
@@ -183,9 +233,9 @@ fn evaluations() {
         let (stop, asked) = after(u64::MAX);
         assert!(run(stop).is_ok());
         let total = asked.load(Ordering::SeqCst);
-        assert!(total > 9, "{name}: {total} questions");
-        for i in 0..10 {
-            let (stop, _) = after(total * i / 10);
+        assert!(total > 500, "{name}: {total} questions");
+        for i in 0..20 {
+            let (stop, _) = after(total * i / 20);
             assert!(interrupted(&run(stop)), "{name} {i} of {total}");
         }
     }

@@ -16,7 +16,7 @@ use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::digits::{decimal, error_string};
 use lindstedt_equation::{Condition, Problem};
 use lindstedt_series::resummation::{
-    Growth, Kind, Method, Pade, Picture, ResummationError, Resummed, resum,
+    Growth, Kind, Method, Pade, Picture, ResummationError, Resummed, resum_until,
 };
 use rug::Float;
 use setting::{Form, Setting};
@@ -149,7 +149,8 @@ pub fn evaluate(
     let accuracy = bits_for(settings.digits);
     let sample = |bits: u32| if settings.stop.asked() { None } else { source.sample(bits) };
     let few = few::partial_sum(&sample, source.known, settings.method, accuracy);
-    let resummed = few.unwrap_or_else(|| resum(&sample, settings.method, accuracy));
+    let resummed =
+        few.unwrap_or_else(|| resum_until(&sample, settings.method, accuracy, &settings.stop));
     if settings.stop.asked() {
         return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
     }
@@ -184,7 +185,7 @@ pub fn evaluate(
     };
     let frequency = balls.div(&balls.mul_i64(&balls.pi(), 2), &period);
     let best = best_truncation(&sample, &resummed, &scale, settings.digits);
-    let picture = picture(&sample, resummed.bits);
+    let picture = picture(&sample, resummed.bits, &settings.stop);
     if settings.stop.asked() {
         return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
     }
@@ -246,10 +247,12 @@ fn best_truncation(
 fn picture(
     sample: &dyn Fn(u32) -> Option<lindstedt_series::resummation::Sample>,
     bits: u32,
+    stop: &Stop,
 ) -> Option<Picture> {
     let sample = sample(bits)?;
     let order = sample.coefficients.len().checked_sub(1).filter(|order| *order > 1)?;
-    Pade::new(&sample.coefficients, order - order / 2, order / 2, bits)?.picture()
+    let half = order / 2;
+    Pade::until(stop, &sample.coefficients, order - half, half, bits)?.picture_until(stop)
 }
 
 /// The name of a method in words.

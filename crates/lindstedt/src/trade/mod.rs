@@ -298,7 +298,10 @@ pub fn measure(
                 cancelled |= !observer(&method, &trade.rows);
                 !cancelled && start.elapsed().as_secs_f64() <= plan.run_seconds
             };
-            let job = run::Job { setting: &setting, source: &source, memory: plan.memory, bits };
+            let limit = plan.run_seconds;
+            let stop = Stop::new(move || start.elapsed().as_secs_f64() > limit);
+            let memory = plan.memory;
+            let job = run::Job { setting: &setting, source: &source, memory, bits, stop };
             let outcome = job.run(&method, order.unwrap_or(0), plan.repeats, &mut goes_on);
             if cancelled {
                 trade.finished = false;

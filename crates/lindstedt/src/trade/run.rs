@@ -6,6 +6,7 @@ use crate::evaluate::setting::Setting;
 use crate::evaluate::source::{Source, coefficients_of};
 use crate::numeric::{self, Tier};
 use crate::{Error, Route, Settings, Solution, derive};
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::Polynomial;
 use lindstedt_equation::{AmplitudeRole, Problem};
 use lindstedt_expand::ExpandError;
@@ -30,6 +31,8 @@ pub(super) struct Job<'a> {
     pub(super) source: &'a Source,
     pub(super) memory: u64,
     pub(super) bits: u32,
+    /// A sum that takes longer than the whole run may is broken off.
+    pub(super) stop: Stop,
 }
 
 /// Longer runs are not repeated: noise is small beside them.
@@ -105,7 +108,7 @@ impl Job<'_> {
             period: sum.period,
             error: sum.error,
         };
-        Ok(series.sums(self.source, repeats)?.into_iter().map(found).collect())
+        Ok(series.sums(self.source, repeats, &self.stop)?.into_iter().map(found).collect())
     }
 
     fn settings(&self, order: usize, route: Route) -> Settings {

@@ -3,9 +3,10 @@
 use super::{Reason, Summation};
 use crate::Error;
 use crate::evaluate::source::{Coefficients, Source};
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::ball::Balls;
 use lindstedt_series::resummation::{
-    Estimate, Method, ResummationError, Sample, Singularity, partial_sums, resum,
+    Estimate, Method, ResummationError, Sample, Singularity, partial_sums, resum_until,
 };
 use rug::Float;
 use rug::float::Special;
@@ -47,9 +48,14 @@ impl Series {
 
     /// The partial sum, and the value by the method that `auto` chooses where it is another one
     /// and has an error estimate.
-    pub(super) fn sums(&self, source: &Source, repeats: u32) -> Result<Vec<Sum>, Reason> {
+    pub(super) fn sums(
+        &self,
+        source: &Source,
+        repeats: u32,
+        stop: &Stop,
+    ) -> Result<Vec<Sum>, Reason> {
         let mut list = vec![timed(repeats, || self.partial_sum(source))?];
-        list.extend(timed(repeats, || self.resummed(source)).ok());
+        list.extend(timed(repeats, || self.resummed(source, stop)).ok());
         Ok(list)
     }
 
@@ -75,9 +81,9 @@ impl Series {
         Ok(Sum { summation, period, error, seconds, again: seconds })
     }
 
-    fn resummed(&self, source: &Source) -> Result<Sum, Reason> {
+    fn resummed(&self, source: &Source, stop: &Stop) -> Result<Sum, Reason> {
         let start = Instant::now();
-        let found = resum(&|bits| self.sample(source, bits), None, self.accuracy);
+        let found = resum_until(&|bits| self.sample(source, bits), None, self.accuracy, stop);
         let found = found.map_err(failed)?;
         let estimate = &found.outcome.estimate;
         if found.method == Method::PartialSum || !estimate.error.is_finite() {

@@ -3,6 +3,7 @@
 
 use super::estimate::distance;
 use super::{Pade, ResummationError};
+use lindstedt_algebra::Stop;
 use rug::Float;
 use rug::float::Constant;
 use std::cell::RefCell;
@@ -35,13 +36,14 @@ struct Node {
 pub(super) struct Nodes {
     accuracy: u32,
     bits: u32,
+    stop: Stop,
     levels: RefCell<Vec<Rc<Vec<Node>>>>,
 }
 
 impl Nodes {
-    /// For integrals to about 2^-`accuracy` relative.
-    pub fn new(accuracy: u32, bits: u32) -> Self {
-        Self { accuracy, bits, levels: RefCell::default() }
+    /// For integrals to about 2^-`accuracy` relative, as long as `stop` does not say so.
+    pub fn new(accuracy: u32, bits: u32, stop: &Stop) -> Self {
+        Self { accuracy, bits, stop: stop.clone(), levels: RefCell::default() }
     }
 
     /// The step of a level.
@@ -71,7 +73,9 @@ impl Nodes {
             let weight = Float::with_val(bits, -&s).exp() * slope;
             Node { s, weight }
         };
-        let new = (first..=end).filter(|k| level == 0 || k % 2 != 0).map(node).collect();
+        let goes_on = |_: &i64| !self.stop.asked();
+        let indices = (first..=end).filter(|k| level == 0 || k % 2 != 0);
+        let new = indices.take_while(goes_on).map(node).collect();
         let new = Rc::new(new);
         self.levels.borrow_mut().push(Rc::clone(&new));
         new
@@ -84,7 +88,8 @@ impl Nodes {
 /// positive axis; a simple zero of the denominator there is met as a change of its sign.
 ///
 /// # Errors
-/// [`ResummationError::PoleOnPath`], [`ResummationError::NotSettled`] after nine halvings.
+/// [`ResummationError::PoleOnPath`], [`ResummationError::NotSettled`] after nine halvings,
+/// [`ResummationError::Stopped`].
 pub(super) fn laplace(pade: &Pade, nodes: &Nodes) -> Result<Float, ResummationError> {
     let bits = nodes.bits;
     let mut sum = Float::new(bits);
@@ -92,11 +97,17 @@ pub(super) fn laplace(pade: &Pade, nodes: &Nodes) -> Result<Float, ResummationEr
     // q(0) = 1: a node where q is not positive lies behind a pole.
     for level in 0..=LEVELS {
         for node in nodes.level(level).iter() {
+            if nodes.stop.asked() {
+                return Err(ResummationError::Stopped);
+            }
             let (top, bottom) = pade.parts(&node.s);
             if bottom <= 0 {
                 return Err(ResummationError::PoleOnPath);
             }
             sum += top / bottom * &node.weight;
+        }
+        if nodes.stop.asked() {
+            return Err(ResummationError::Stopped);
         }
         let value = Float::with_val(bits, &sum * Nodes::step(level));
         if let Some(before) = &last {
@@ -128,7 +139,7 @@ mod tests {
         let one = Float::with_val(bits, 1);
         let sum = |sign: i32| {
             let b = borel_transform(&c(sign), &one, bits);
-            laplace(&Pade::new(&b, 10, 10, bits).unwrap(), &Nodes::new(200, bits))
+            laplace(&Pade::new(&b, 10, 10, bits).unwrap(), &Nodes::new(200, bits, &Stop::default()))
         };
         let gompertz =
             Float::parse("0.596347362323194074341078499369279376074177860152548781573485").unwrap();

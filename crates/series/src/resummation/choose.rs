@@ -2,6 +2,7 @@
 
 use super::estimate::distance;
 use super::{Growth, Method, Outcome, ResummationError, Sample, Singularity, growth};
+use lindstedt_algebra::Stop;
 use rug::Float;
 
 /// What was found.
@@ -62,6 +63,32 @@ pub fn resum(
     method: Option<Method>,
     accuracy: u32,
 ) -> Result<Resummed, ResummationError> {
+    resum_until(source, method, accuracy, &Stop::default())
+}
+
+/// As [`resum`], or [`ResummationError::Stopped`] once `stop` said so. It is asked for every row of
+/// an elimination, every zero of a polynomial and every node of an integral; what was computed with
+/// one of them broken off is thrown away.
+///
+/// # Errors
+/// As [`resum`].
+pub fn resum_until(
+    source: &dyn Fn(u32) -> Option<Sample>,
+    method: Option<Method>,
+    accuracy: u32,
+    stop: &Stop,
+) -> Result<Resummed, ResummationError> {
+    // Once it was yes the answer stays yes: nothing broken off passes this question.
+    let found = chosen(source, method, accuracy, stop);
+    if stop.asked() { Err(ResummationError::Stopped) } else { found }
+}
+
+fn chosen(
+    source: &dyn Fn(u32) -> Option<Sample>,
+    method: Option<Method>,
+    accuracy: u32,
+    stop: &Stop,
+) -> Result<Resummed, ResummationError> {
     let sample = |bits: u32| source(bits).ok_or(ResummationError::NoCoefficients { bits });
     let first = sample(accuracy.saturating_add(128))?;
     // Pade approximants of order N lose a few bits per order.
@@ -70,13 +97,17 @@ pub fn resum(
     let low = if first.bits >= bits { first } else { sample(bits)? };
     let high = sample(low.bits.saturating_mul(2))?;
     let growth = growth(&low.coefficients);
-    let singularity = high.singularity();
+    let singularity = high.singularity_until(stop);
     let methods = method.map_or_else(|| Method::ALL.to_vec(), |method| vec![method]);
     let mut tried = Vec::new();
     let mut best: Option<(Method, Outcome, u32)> = None;
     let mut values: Vec<Outcome> = Vec::new();
     for method in methods {
-        let found = settled(&sample, [&low, &high], method, singularity.as_ref(), accuracy);
+        if stop.asked() {
+            return Err(ResummationError::Stopped);
+        }
+        let limits = (accuracy, stop);
+        let found = settled(&sample, [&low, &high], method, singularity.as_ref(), limits);
         if let Ok((outcome, bits)) = &found {
             values.push(outcome.clone());
             let error = &outcome.estimate.error;
@@ -124,12 +155,12 @@ fn settled(
     first: [&Sample; 2],
     method: Method,
     singularity: Option<&Singularity>,
-    accuracy: u32,
+    (accuracy, stop): (u32, &Stop),
 ) -> Result<(Outcome, u32), ResummationError> {
     let [low, high] = first;
-    let mut before = low.sum(method, singularity, accuracy)?;
+    let mut before = low.sum_until(method, singularity, accuracy, stop)?;
     let mut bits = high.bits;
-    let mut after = high.sum(method, singularity, accuracy)?;
+    let mut after = high.sum_until(method, singularity, accuracy, stop)?;
     for _ in 0..DOUBLINGS {
         let rounding = distance(&before.estimate.value, &after.estimate.value);
         let size = Float::with_val(53, after.estimate.value.abs_ref()) >> accuracy;
@@ -138,7 +169,7 @@ fn settled(
         }
         bits = bits.saturating_mul(2);
         before = after;
-        after = sample(bits)?.sum(method, singularity, accuracy)?;
+        after = sample(bits)?.sum_until(method, singularity, accuracy, stop)?;
     }
     let rounding = distance(&before.estimate.value, &after.estimate.value);
     // An error of exactly 0 is a rational function, known to the rounding.

@@ -1,5 +1,6 @@
 //! Complex numbers as pairs of floats, and the zeros of a real polynomial.
 
+use lindstedt_algebra::Stop;
 use rug::Float;
 use rug::float::Constant;
 
@@ -120,6 +121,11 @@ const MOST_SWEEPS: usize = 400;
 /// asked for to 300 digits.
 #[must_use]
 pub fn zeros(polynomial: &[Float], bits: u32) -> Option<Vec<Complex>> {
+    zeros_until(polynomial, bits, &Stop::default())
+}
+
+/// As [`zeros`]; nothing once `stop` said so, which is asked for every zero of every sweep.
+pub(super) fn zeros_until(polynomial: &[Float], bits: u32, stop: &Stop) -> Option<Vec<Complex>> {
     let degree = u32::try_from(polynomial.len()).unwrap_or(u32::MAX);
     let bits = bits.min(degree.saturating_mul(32).saturating_add(1024));
     let rounded: Vec<Float> = polynomial.iter().map(|c| Float::with_val(bits, c)).collect();
@@ -137,6 +143,9 @@ pub fn zeros(polynomial: &[Float], bits: u32) -> Option<Vec<Complex>> {
         for i in 0..list.len() {
             if settled[i] {
                 continue;
+            }
+            if stop.asked() {
+                return None;
             }
             let z = list[i].clone();
             // Newton's correction, repelled by the other approximations.

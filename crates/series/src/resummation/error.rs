@@ -40,6 +40,9 @@ pub enum ResummationError {
     /// The approximants have a pole at the point or do not exist.
     #[error("the approximants are not defined at the point")]
     Undefined,
+    /// It was told to stop.
+    #[error("stopped before the sum was finished")]
+    Stopped,
     /// The coefficients are not known to the precision needed.
     #[error("the coefficients are not known to {bits} bits")]
     NoCoefficients {

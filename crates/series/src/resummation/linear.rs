@@ -1,5 +1,6 @@
 //! Gaussian elimination with complete pivoting, which reveals the rank.
 
+use lindstedt_algebra::Stop;
 use rug::Float;
 
 /// The pivots below 2^-(7/8 bits) of the first are zero: the rest is the rounding of the data.
@@ -17,8 +18,8 @@ pub(super) struct Echelon {
 }
 
 impl Echelon {
-    /// Eliminates; O(rows^2 columns).
-    pub fn new(mut rows: Vec<Vec<Float>>, bits: u32) -> Self {
+    /// Eliminates; O(rows^2 columns). Means nothing once `stop` said so, which is asked per row.
+    pub fn new(mut rows: Vec<Vec<Float>>, bits: u32, stop: &Stop) -> Self {
         let width = rows.first().map_or(0, Vec::len);
         let mut columns: Vec<usize> = (0..width).collect();
         let mut threshold: Option<Float> = None;
@@ -35,7 +36,7 @@ impl Echelon {
             let size = Float::with_val(bits, rows[best.0][best.1].abs_ref());
             let least = threshold
                 .get_or_insert_with(|| size.clone() >> (bits / RANK_DENOMINATOR * RANK_NUMERATOR));
-            if size.is_zero() || size <= *least || !size.is_finite() {
+            if size.is_zero() || size <= *least || !size.is_finite() || stop.asked() {
                 break;
             }
             rows.swap(rank, best.0);
@@ -46,7 +47,7 @@ impl Echelon {
             let (done, rest) = rows.split_at_mut(rank + 1);
             let Some(pivot) = done.last() else { break };
             for row in rest {
-                if row[rank].is_zero() {
+                if row[rank].is_zero() || stop.asked() {
                     continue;
                 }
                 let factor = Float::with_val(bits, &row[rank] / &pivot[rank]);

@@ -1,8 +1,12 @@
 //! Changes of variable x = x(w), w = 0 at x = 0, and the series re-expanded in w.
 
 use super::ResummationError;
+use lindstedt_algebra::Stop;
 use rug::Float;
 use rug::ops::Pow;
+
+/// Bits to which w is bisected before Newton's rule doubles them.
+const BISECTED: u32 = 64;
 
 /// A change of variable.
 #[derive(Clone, Debug)]
@@ -57,6 +61,19 @@ impl Map {
         Float::with_val(bits, modulus * 4u32) * power(fraction) * power(&rest)
     }
 
+    /// (x/(x'(0) w))^p at x = x(w): what [`Self::expand`] divides by.
+    pub(super) fn factor(&self, x: &Float, w: &Float, p: &Float, bits: u32) -> Float {
+        let slope = match self {
+            Self::Rational { scale } => scale.clone(),
+            Self::Wedge { modulus, fraction } => Self::constant(modulus, fraction, bits),
+        };
+        if w.is_zero() {
+            return Float::with_val(bits, 1);
+        }
+        let ratio = Float::with_val(bits, x / w) / slope;
+        Float::with_val(bits, ratio.pow(p))
+    }
+
     /// The coefficients of x(w).
     fn series(&self, order: usize, bits: u32) -> Vec<Float> {
         let mut list = match self {
@@ -80,6 +97,16 @@ impl Map {
     /// # Errors
     /// [`ResummationError::OutsideMap`] for x <= -s, and where w is +-1 to a quarter of the bits.
     pub fn inverse(&self, x: &Float, bits: u32) -> Result<Float, ResummationError> {
+        self.inverse_until(x, bits, &Stop::default())
+    }
+
+    /// As [`Self::inverse`], or [`ResummationError::Stopped`].
+    pub(super) fn inverse_until(
+        &self,
+        x: &Float,
+        bits: u32,
+        stop: &Stop,
+    ) -> Result<Float, ResummationError> {
         let (modulus, fraction) = match self {
             Self::Rational { scale } => {
                 let denominator = Float::with_val(bits, x + scale);
@@ -114,6 +141,19 @@ impl Map {
         low = low.min(&(Float::with_val(bits, 1) >> 5u32));
         let mut width = Float::with_val(bits, &high - &low);
         while width > Float::with_val(53, &low) >> bits {
+            if stop.asked() {
+                return Err(ResummationError::Stopped);
+            }
+            let rest = Float::with_val(53, 1 - &high).min(&Float::with_val(53, &low));
+            if width < rest >> BISECTED {
+                for _ in 0..(bits / BISECTED).max(1).ilog2() + 2 {
+                    let slope = Float::with_val(bits, low.recip_ref())
+                        + Float::with_val(bits, ahead / Float::with_val(bits, 1 - &low))
+                        + Float::with_val(bits, behind / Float::with_val(bits, &low + 1u32));
+                    low -= (height(&low) - &goal) / slope;
+                }
+                break;
+            }
             let middle = Float::with_val(bits, &low + &high) >> 1u32;
             if middle == low || middle == high {
                 break;
@@ -131,14 +171,37 @@ impl Map {
         Ok(if negative { -low } else { low })
     }
 
-    /// The coefficients in w of (1 - w)^p sum c_n x(w)^n: the same order, O(N^3) products.
+    /// The coefficients in w of (x'(0) w/x)^p sum c_n x(w)^n, bounded for f ~ x^p: the same order,
+    /// O(N^3) products. The first factor is (1 - w)^p for the rational map.
     #[must_use]
     pub fn expand(&self, c: &[Float], prefactor: &Float, bits: u32) -> Vec<Float> {
+        self.expand_until(c, prefactor, bits, &Stop::default())
+    }
+
+    /// As [`Self::expand`]; means nothing once `stop` said so.
+    pub(super) fn expand_until(
+        &self,
+        c: &[Float],
+        prefactor: &Float,
+        bits: u32,
+        stop: &Stop,
+    ) -> Vec<Float> {
         let order = c.len().saturating_sub(1);
         let x = self.series(order, bits);
-        let mut power = binomial_series(prefactor, -1, order, bits);
+        let mut power = match self {
+            Self::Rational { .. } => binomial_series(prefactor, -1, order, bits),
+            Self::Wedge { fraction, .. } => {
+                let upper = Float::with_val(bits, fraction * prefactor) << 1u32;
+                let lower = Float::with_val(bits, prefactor << 1u32) - &upper;
+                let lower = binomial_series(&lower, 1, order, bits);
+                multiply(&binomial_series(&upper, -1, order, bits), &lower, bits)
+            }
+        };
         let mut sum = vec![Float::new(bits); c.len()];
         for coefficient in c {
+            if stop.asked() {
+                break;
+            }
             for (total, p) in sum.iter_mut().zip(&power) {
                 *total += Float::with_val(bits, coefficient * p);
             }
@@ -191,6 +254,20 @@ mod tests {
         let terms = map.expand(&c, &float(0.0), BITS);
         let value = terms.iter().rev().fold(Float::new(BITS), |sum, c| sum * &w + c);
         assert!((value * 6u32 - 1u32).abs() < 1e-15);
+        // sqrt(1 + x + x^2) ~ x, bounded by the prefactor; its branch points by the wedge.
+        let mut c = vec![float(1.0), float(0.5)];
+        for n in 2..61usize {
+            let k = n as f64;
+            let next = float(3.0 - 2.0 * k) * &c[n - 1] + float(6.0 - 2.0 * k) * &c[n - 2];
+            c.push(next / (2.0 * k));
+        }
+        let map = Map::Wedge { modulus: float(1.0), fraction: float(2.0) / 3u32 };
+        let (x, p) = (float(20.0), float(1.0));
+        let w = map.inverse(&x, BITS).unwrap();
+        let terms = map.expand(&c, &p, BITS);
+        let value = terms.iter().rev().fold(Float::new(BITS), |sum, c| sum * &w + c);
+        let value = value * map.factor(&x, &w, &p, BITS);
+        assert!((value - float(421.0).sqrt()).abs() < 1e-8);
         let rational = Map::Rational { scale: float(1.0) };
         assert_eq!(rational.inverse(&float(-1.0), BITS), Err(ResummationError::OutsideMap));
     }

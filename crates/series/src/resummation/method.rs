@@ -2,8 +2,9 @@
 
 use super::borel::{Nodes, borel_transform, laplace};
 use super::estimate::{best_truncation, distance, geometric_tail, settle, widest};
-use super::{Estimate, Growth, Map, Pade, ResummationError, growth, partial_sums};
-use super::{Singularity, nearest_singularity};
+use super::singularity::nearest_singularity_until;
+use super::{Estimate, Growth, Map, Pade, ResummationError, Singularity, growth, partial_sums};
+use lindstedt_algebra::Stop;
 use rug::Float;
 use rug::float::Special;
 
@@ -19,7 +20,8 @@ pub enum Method {
     Uniform,
     /// Diagonal Pade approximants in u.
     UniformPade,
-    /// Pade approximants after the conformal map of the plane cut at the nearest singularities.
+    /// Pade approximants after the conformal map of the plane cut at the nearest singularities, with
+    /// the prefactor of the change of variable where one is known.
     ConformalPade,
     /// Pade approximants of the Borel transform and Laplace's integral.
     BorelPade,
@@ -42,7 +44,8 @@ impl Method {
 pub struct UniformMap {
     /// s in u = x/(s + x).
     pub scale: Float,
-    /// p: the series of (1 - u)^p f is re-expanded; f ~ x^p for x -> infinity makes it bounded.
+    /// p: the series of (1 - u)^p f, and of the like for the conformal map, is re-expanded;
+    /// f ~ x^p for x -> infinity makes it bounded.
     pub prefactor: Float,
     /// The radius of convergence in u where it is known; else it is estimated.
     pub radius: Option<f64>,
@@ -85,7 +88,7 @@ const CUT: usize = 3;
 impl Sample {
     /// The value by `method`.
     ///
-    /// `singularity` is needed for [`Method::ConformalPade`] (see [`nearest_singularity`]).
+    /// `singularity` is needed for [`Method::ConformalPade`] (see [`Self::singularity`]).
     /// `accuracy` is the number of bits beyond which a Laplace integral need not go.
     ///
     /// # Errors
@@ -96,11 +99,37 @@ impl Sample {
         singularity: Option<&Singularity>,
         accuracy: u32,
     ) -> Result<Outcome, ResummationError> {
+        self.sum_until(method, singularity, accuracy, &Stop::default())
+    }
+
+    /// As [`Self::sum`], or [`ResummationError::Stopped`] once `stop` said so: it is asked in all
+    /// long loops, and nothing that was computed with one broken off is returned.
+    ///
+    /// # Errors
+    /// As [`Self::sum`].
+    pub fn sum_until(
+        &self,
+        method: Method,
+        singularity: Option<&Singularity>,
+        accuracy: u32,
+        stop: &Stop,
+    ) -> Result<Outcome, ResummationError> {
+        let found = self.judged(method, singularity, accuracy, stop);
+        if stop.asked() { Err(ResummationError::Stopped) } else { found }
+    }
+
+    fn judged(
+        &self,
+        method: Method,
+        singularity: Option<&Singularity>,
+        accuracy: u32,
+        stop: &Stop,
+    ) -> Result<Outcome, ResummationError> {
         let known = self.coefficients.len();
         if known < 3 {
             return Err(ResummationError::TooFewCoefficients { known, needed: 3 });
         }
-        let mut outcome = self.by(method, singularity, accuracy)?;
+        let mut outcome = self.by(method, singularity, accuracy, stop)?;
         // An error as large as half the value leaves not one digit, and is no estimate.
         let half = Float::with_val(53, outcome.estimate.value.abs_ref()) / 2u32;
         if self.is_unresolved() || outcome.estimate.error > half {
@@ -139,12 +168,13 @@ impl Sample {
         method: Method,
         singularity: Option<&Singularity>,
         accuracy: u32,
+        stop: &Stop,
     ) -> Result<Outcome, ResummationError> {
         match method {
             Method::PartialSum => self.partial_sum(),
-            Method::Pade => diagonal(&self.coefficients, &self.point, self.bits),
+            Method::Pade => diagonal(&self.coefficients, &self.point, self.bits, stop),
             Method::Uniform => {
-                let (c, u, factor) = self.uniform()?;
+                let (c, u, factor) = self.uniform(stop)?;
                 let known = self.map.as_ref().and_then(|map| map.radius);
                 let radius = disc(&c, known);
                 if let Some(radius) = radius.filter(|radius| u.clone().abs() >= *radius) {
@@ -154,15 +184,17 @@ impl Sample {
                     .map(|outcome| scaled(outcome, &factor))
             }
             Method::UniformPade => {
-                let (c, u, factor) = self.uniform()?;
-                diagonal(&c, &u, self.bits).map(|outcome| scaled(outcome, &factor))
+                let (c, u, factor) = self.uniform(stop)?;
+                diagonal(&c, &u, self.bits, stop).map(|outcome| scaled(outcome, &factor))
             }
             Method::ConformalPade => {
                 let singularity = singularity.ok_or(ResummationError::NoSingularity)?;
                 let map = wedge(singularity, self.bits);
-                let w = map.inverse(&self.point, self.bits)?;
-                let c = map.expand(&self.coefficients, &Float::new(self.bits), self.bits);
-                diagonal(&c, &w, self.bits)
+                let w = map.inverse_until(&self.point, self.bits, stop)?;
+                let p = self.map.as_ref().map_or_else(|| Float::new(53), |m| m.prefactor.clone());
+                let c = map.expand_until(&self.coefficients, &p, self.bits, stop);
+                let factor = map.factor(&self.point, &w, &p, self.bits);
+                diagonal(&c, &w, self.bits, stop).map(|outcome| scaled(outcome, &factor))
             }
             Method::BorelPade => {
                 let b = borel_transform(&self.coefficients, &self.point, self.bits);
@@ -170,9 +202,9 @@ impl Sample {
                 // agree to as many.
                 let mut asked = accuracy.min(128);
                 loop {
-                    let nodes = Nodes::new(asked, self.bits);
+                    let nodes = Nodes::new(asked, self.bits, stop);
                     let value = |pade: &Pade| Ok((laplace(pade, &nodes)?, None));
-                    let mut outcome = staircase(&b, self.bits, &widest, value)?;
+                    let mut outcome = staircase(&b, self.bits, &widest, value, stop)?;
                     let size = Float::with_val(53, outcome.estimate.value.abs_ref());
                     // What the integral was not asked for.
                     let rest = size >> asked;
@@ -191,10 +223,15 @@ impl Sample {
     /// growth by more than a half, and for a series that diverges everywhere.
     #[must_use]
     pub fn singularity(&self) -> Option<Singularity> {
+        self.singularity_until(&Stop::default())
+    }
+
+    /// As [`Self::singularity`]; nothing once `stop` said so.
+    pub(super) fn singularity_until(&self, stop: &Stop) -> Option<Singularity> {
         if self.radius == Some(0.0) {
             return None;
         }
-        let found = nearest_singularity(&self.coefficients, self.bits)?;
+        let found = nearest_singularity_until(&self.coefficients, self.bits, stop)?;
         match growth(&self.coefficients) {
             Growth::Radius(radius) => {
                 let ratio = found.at.abs().to_f64() / radius;
@@ -243,11 +280,11 @@ impl Sample {
     }
 
     /// The coefficients in u, u itself, and (1 - u)^-p.
-    fn uniform(&self) -> Result<(Vec<Float>, Float, Float), ResummationError> {
+    fn uniform(&self, stop: &Stop) -> Result<(Vec<Float>, Float, Float), ResummationError> {
         let map = self.map.as_ref().ok_or(ResummationError::NoMap)?;
         let change = Map::Rational { scale: map.scale.clone() };
         let u = change.inverse(&self.point, self.bits)?;
-        let c = change.expand(&self.coefficients, &map.prefactor, self.bits);
+        let c = change.expand_until(&self.coefficients, &map.prefactor, self.bits, stop);
         // 1 - u = s/(s + x), without the cancellation for x -> infinity.
         let rest = Float::with_val(self.bits, &self.point + &map.scale);
         let rest = Float::with_val(self.bits, rest / &map.scale);
@@ -310,12 +347,13 @@ fn convergent(
 }
 
 /// The approximants [n/n], [n-1/n] ... at x.
-fn diagonal(c: &[Float], x: &Float, bits: u32) -> Result<Outcome, ResummationError> {
-    staircase(c, bits, &settle, |pade| {
+fn diagonal(c: &[Float], x: &Float, bits: u32, stop: &Stop) -> Result<Outcome, ResummationError> {
+    let value = |pade: &Pade| {
         let (top, bottom) = pade.parts(x);
         let value = top / bottom;
         value.is_finite().then(|| (value, pade.jump(x))).ok_or(ResummationError::Undefined)
-    })
+    };
+    staircase(c, bits, &settle, value, stop)
 }
 
 /// A value from the last steps of the staircase [k - k/2 / k/2], k = N - 9 .. N.
@@ -334,6 +372,7 @@ fn staircase(
     bits: u32,
     judge: &dyn Fn(&[Float], usize) -> Option<Estimate>,
     value: impl Fn(&Pade) -> Result<(Float, Option<Float>), ResummationError>,
+    stop: &Stop,
 ) -> Result<Outcome, ResummationError> {
     let order = c.len().saturating_sub(1);
     let first = order.saturating_sub(APPROXIMANTS);
@@ -344,7 +383,10 @@ fn staircase(
     let mut last = None;
     for k in first..=order {
         let (l, m) = degrees(k);
-        let Some(pade) = Pade::new(c, l, m, bits) else { continue };
+        if stop.asked() {
+            return Err(ResummationError::Stopped);
+        }
+        let Some(pade) = Pade::until(stop, c, l, m, bits) else { continue };
         match value(&pade) {
             Ok((v, jump)) => {
                 values.push((k, v));
@@ -354,7 +396,8 @@ fn staircase(
             Err(error) => {
                 failure = error;
                 // A pole next to the path: without the doublet it may be gone.
-                let robust = Pade::robust(c, l, m, bits).filter(|p| p.degrees() != pade.degrees());
+                let robust = Pade::robust_until(stop, c, l, m, bits);
+                let robust = robust.filter(|p| p.degrees() != pade.degrees());
                 if let Some(pade) = robust
                     && let Ok((v, _)) = value(&pade)
                 {
@@ -376,7 +419,8 @@ fn staircase(
             [far(i - 1), far(i + 1)].into_iter().flatten().all(|d| d > between.clone() * 1000u32);
         if apart {
             let (l, m) = degrees(values[i].0);
-            let again = Pade::robust(c, l, m, bits).and_then(|pade| value(&pade).ok());
+            let again = Pade::robust_until(stop, c, l, m, bits);
+            let again = again.and_then(|pade| value(&pade).ok());
             if let Some((v, _)) = again {
                 values[i].1 = v;
             }

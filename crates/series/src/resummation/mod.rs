@@ -17,7 +17,7 @@ mod pade;
 mod singularity;
 
 pub use borel::borel_transform;
-pub use choose::{Resummed, resum};
+pub use choose::{Resummed, resum, resum_until};
 pub use complex::Complex;
 pub use error::ResummationError;
 pub use estimate::Estimate;

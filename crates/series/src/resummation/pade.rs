@@ -5,8 +5,9 @@
 //! approximant has smaller degrees, and these are used (P. Gonnet, S. Guttel, L. N. Trefethen,
 //! SIAM Review 55 (2013) 101): a rational function is recovered as such.
 
-use super::complex::{Complex, derivative, evaluate, zeros};
+use super::complex::{Complex, derivative, evaluate, zeros_until};
 use super::linear::Echelon;
+use lindstedt_algebra::Stop;
 use rug::Float;
 use rug::ops::Pow;
 
@@ -101,6 +102,12 @@ impl Pade {
     /// ```
     #[must_use]
     pub fn new(c: &[Float], l: usize, m: usize, bits: u32) -> Option<Self> {
+        Self::until(&Stop::default(), c, l, m, bits)
+    }
+
+    /// As [`Self::new`]; nothing once `stop` said so.
+    #[must_use]
+    pub fn until(stop: &Stop, c: &[Float], l: usize, m: usize, bits: u32) -> Option<Self> {
         let c = c.get(..=l.checked_add(m)?)?;
         if !c.iter().all(Float::is_finite) {
             return None;
@@ -121,7 +128,10 @@ impl Pade {
             if m == 0 {
                 break vec![Float::with_val(bits, 1)];
             }
-            let echelon = Echelon::new(rows, bits);
+            let echelon = Echelon::new(rows, bits, stop);
+            if stop.asked() {
+                return None;
+            }
             if echelon.rank < m {
                 l = l.saturating_sub(m - echelon.rank);
                 m = echelon.rank;
@@ -204,8 +214,14 @@ impl Pade {
     /// zeros of a polynomial does not settle.
     #[must_use]
     pub fn picture(&self) -> Option<Picture> {
+        self.picture_until(&Stop::default())
+    }
+
+    /// As [`Self::picture`]; nothing once `stop` said so.
+    #[must_use]
+    pub fn picture_until(&self, stop: &Stop) -> Option<Picture> {
         let at = |p: &[Float]| -> Option<Vec<Complex>> {
-            if p.len() < 2 { Some(Vec::new()) } else { zeros(p, self.bits) }
+            if p.len() < 2 { Some(Vec::new()) } else { zeros_until(p, self.bits, stop) }
         };
         let (zeros, poles) = (at(&self.numerator)?, at(&self.denominator)?);
         let slope = derivative(&self.denominator);
@@ -232,11 +248,26 @@ impl Pade {
     /// [l/m] with the doublets removed by lowering both degrees until none is left.
     #[must_use]
     pub fn robust(c: &[Float], l: usize, m: usize, bits: u32) -> Option<Self> {
+        Self::robust_until(&Stop::default(), c, l, m, bits)
+    }
+
+    /// As [`Self::robust`]; nothing once `stop` said so.
+    pub(super) fn robust_until(
+        stop: &Stop,
+        c: &[Float],
+        l: usize,
+        m: usize,
+        bits: u32,
+    ) -> Option<Self> {
         let (mut l, mut m) = (l, m);
         loop {
-            let pade = Self::new(c, l, m, bits)?;
+            let pade = Self::until(stop, c, l, m, bits)?;
+            let picture = pade.picture_until(stop);
+            if stop.asked() {
+                return None;
+            }
             let doublets =
-                pade.picture().map_or(0, |p| p.poles.iter().filter(|pole| pole.doublet).count());
+                picture.map_or(0, |p| p.poles.iter().filter(|pole| pole.doublet).count());
             let (upper, lower) = pade.degrees();
             if doublets == 0 || lower == 0 {
                 return Some(pade);

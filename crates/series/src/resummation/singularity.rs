@@ -10,10 +10,11 @@
 //! not. Zeros that other degrees do not reproduce are spurious.
 
 use super::Complex;
-use super::complex::{derivative, evaluate, zeros};
+use super::complex::{derivative, evaluate, zeros_until};
 use super::estimate::distance;
 use super::linear::Echelon;
 use super::maps::multiply;
+use lindstedt_algebra::Stop;
 use rug::Float;
 
 /// What kind of singularity an exponent means.
@@ -53,7 +54,12 @@ const SAME: f64 = 0.02;
 const CONFIRMATIONS: usize = 4;
 
 /// The zeros of P_1 with their exponents, in ascending modulus, in the upper half plane.
-fn approximant(c: &[Float], degrees: [usize; 3], bits: u32) -> Option<Vec<(Complex, Complex)>> {
+fn approximant(
+    c: &[Float],
+    degrees: [usize; 3],
+    bits: u32,
+    stop: &Stop,
+) -> Option<Vec<(Complex, Complex)>> {
     let [top, middle, rest] = degrees;
     let rows = top + middle + rest + 2;
     let slope = derivative(c);
@@ -70,13 +76,13 @@ fn approximant(c: &[Float], degrees: [usize; 3], bits: u32) -> Option<Vec<(Compl
             row
         })
         .collect();
-    let echelon = Echelon::new(matrix, bits);
+    let echelon = Echelon::new(matrix, bits, stop);
     // A larger kernel belongs to a function that satisfies such an equation exactly.
     let vector = if echelon.rank < width { echelon.kernel()? } else { return None };
     let (p1, others) = vector.split_at_checked(top + 1)?;
     let p0 = others.get(..=middle)?;
     let slope = derivative(p1);
-    let found = zeros(p1, bits)?;
+    let found = zeros_until(p1, bits, stop)?;
     let exponent = |z: &Complex| evaluate(p0, z).div(&evaluate(&slope, z));
     let upper = found.into_iter().filter(|z| !z.im.is_sign_negative() || z.im.is_zero() || tiny(z));
     let list = upper.map(|z| {
@@ -97,6 +103,15 @@ fn tiny(z: &Complex) -> bool {
 /// disagreement; estimated, not proved. Cost: eight eliminations of N^3/3 products.
 #[must_use]
 pub fn nearest_singularity(c: &[Float], bits: u32) -> Option<Singularity> {
+    nearest_singularity_until(c, bits, &Stop::default())
+}
+
+/// As [`nearest_singularity`]; nothing once `stop` said so.
+pub(super) fn nearest_singularity_until(
+    c: &[Float],
+    bits: u32,
+    stop: &Stop,
+) -> Option<Singularity> {
     if c.len() < 12 {
         return None;
     }
@@ -116,7 +131,7 @@ pub fn nearest_singularity(c: &[Float], bits: u32) -> Option<Singularity> {
             _ => (third, third.saturating_sub(1)),
         };
         let top = free - middle - rest;
-        if let Some(list) = approximant(&scaled, [top, middle, rest], bits) {
+        if let Some(list) = approximant(&scaled, [top, middle, rest], bits, stop) {
             lists.push(list);
         }
     }
@@ -149,10 +164,14 @@ pub fn nearest_singularity(c: &[Float], bits: u32) -> Option<Singularity> {
             continue;
         }
         let kind = kind(&exponent, &exponent_error)?;
-        let refined = if kind == Kind::SquareRoot { square_root(&scaled, z, bits) } else { None };
+        let refined =
+            if kind == Kind::SquareRoot { square_root(&scaled, z, bits, stop) } else { None };
         let (at, error) = refined
             .filter(|(at, _)| at.sub(z).abs() < Float::with_val(53, &modulus * SAME))
             .unwrap_or((z.clone(), error));
+        if stop.asked() {
+            return None;
+        }
         return Some(Singularity {
             at: at.shift(shift),
             error: error << shift,
@@ -169,7 +188,7 @@ pub fn nearest_singularity(c: &[Float], bits: u32) -> Option<Singularity> {
 /// points themselves and converge faster than the differential ones (R. E. Shafer, SIAM J.
 /// Numer. Anal. 11 (1974) 447). Returned: that of the highest order, and the largest distance of
 /// the others from it.
-fn square_root(c: &[Float], start: &Complex, bits: u32) -> Option<(Complex, Float)> {
+fn square_root(c: &[Float], start: &Complex, bits: u32, stop: &Stop) -> Option<(Complex, Float)> {
     let square = multiply(c, c, bits);
     let order = c.len().checked_sub(1)?;
     let mut list: Vec<Complex> = Vec::new();
@@ -189,7 +208,7 @@ fn square_root(c: &[Float], start: &Complex, bits: u32) -> Option<(Complex, Floa
             row.extend((0..=r).map(|j| Float::with_val(bits, u32::from(i == j))));
             row
         };
-        let echelon = Echelon::new((0..rows).map(row).collect(), bits);
+        let echelon = Echelon::new((0..rows).map(row).collect(), bits, stop);
         let Some(vector) = echelon.kernel() else { continue };
         let (left, rest) = vector.split_at_checked(p + 1)?;
         let (middle, right) = rest.split_at_checked(q + 1)?;
