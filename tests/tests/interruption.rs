@@ -206,8 +206,7 @@ fn resummations() {
         let (stop, asked) = after(u64::MAX);
         let whole = resum_until(&source, method, 200, &stop).unwrap();
         let total = asked.load(Ordering::SeqCst);
-        // The search for the singularity has eight eliminations of 17 rows, an approximant one of
-        // eight: (17 + 8)*... rows at least, with their zeros several times as many.
+        // The search for the singularity alone has eight eliminations of up to 17 rows.
         assert!(total > 500, "{method:?}: {total} questions");
         let step = total / 40;
         for limit in (0..40).map(|i| i * step).chain([1, 2, total - 2, total - 1]) {

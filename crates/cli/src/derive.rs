@@ -9,6 +9,7 @@ use crate::output;
 use crate::problems::{condition_name, condition_text};
 use crate::session::{Loaded, Session, digits, load, parameters};
 use lindstedt::coeff::print::Style;
+use lindstedt::equation::classify::polynomial;
 use lindstedt::equation::{AmplitudeRole, Condition, print};
 use lindstedt::expand::ExpandError;
 use lindstedt::{Derivation, Error, Number, Progress, Route, Settings, Solution, Status};
@@ -64,7 +65,11 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     if options.tier != arguments::TierName::Exact {
         return crate::derive_numeric::run(options, &problem, &settings, digits, session);
     }
+    let mut primes = 0;
     let mut observer = |progress: Progress| {
+        if let Progress::Primes(n) = progress {
+            primes = n;
+        }
         session.say(match progress {
             Progress::Order(n, terms) => format!("order {n} of {}: {terms} terms", settings.order),
             Progress::Primes(n) => format!("{n} primes done"),
@@ -78,8 +83,8 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         // Over Q all orders are finished together, so there is nothing to show.
         Error::Expand(ExpandError::Interrupted { .. }) if !session.interrupted() => Failure {
             exit: UNDECIDED,
-            code: "time-limit",
-            message: "the time limit was reached before the expansion was finished".to_owned(),
+            code: "limit-seconds",
+            message: unfinished(primes > 0 || polynomial(&problem.equation).is_some(), primes),
             hint: "raise --limit-seconds or lower --order".to_owned(),
         },
         other => other.into(),
@@ -104,6 +109,20 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     Ok(0)
 }
 
+/// The message of an expansion without a single order. Over Q every order is reconstructed from all
+/// primes together and proved by substitution at the end.
+fn unfinished(over_q: bool, primes: usize) -> String {
+    let message = "the time limit was reached before the expansion was finished";
+    if over_q {
+        format!(
+            "{message}: over Q all orders are reconstructed together from many primes ({primes} \
+             done) and proved at the end; before that no order is"
+        )
+    } else {
+        message.to_owned()
+    }
+}
+
 /// A number of the JSON contract.
 pub fn number_json(number: &Number) -> Json {
     json!({
@@ -114,6 +133,7 @@ pub fn number_json(number: &Number) -> Json {
             Status::Exact => "exact",
             Status::Certified => "certified",
             Status::Estimated => "estimated",
+            Status::NoEstimate => "no-estimate",
         },
     })
 }

@@ -38,7 +38,7 @@ pub fn run(
     let result = result.map_err(|error| match error {
         Error::Expand(ExpandError::Interrupted { .. }) if !session.interrupted() => Failure {
             exit: UNDECIDED,
-            code: "time-limit",
+            code: "limit-seconds",
             message: "the time limit was reached before two grids were finished".to_owned(),
             hint: "raise --limit-seconds or lower --order or --digits".to_owned(),
         },

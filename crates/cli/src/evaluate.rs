@@ -173,7 +173,7 @@ fn failure(error: Error, session: &Session<'_>) -> Failure {
     match error {
         Error::Expand(ExpandError::Interrupted { .. }) if !session.interrupted() => Failure {
             exit: UNDECIDED,
-            code: "time-limit",
+            code: "limit-seconds",
             message: "the time limit was reached before the expansion was finished".to_owned(),
             hint: "raise --limit-seconds or lower --order".to_owned(),
         },

@@ -55,6 +55,9 @@ impl Failure {
 
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
+        if let Error::Simulate(error) = error {
+            return error.into();
+        }
         let (exit, code, hint): (u8, &'static str, &str) = match &error {
             Error::BadValue { .. } => {
                 (USAGE, "bad-value", "values are exact: 3, -1/3, 0.1, 2.5e-3, pi/4, 2*pi/3")
@@ -77,7 +80,6 @@ impl From<Error> for Failure {
                 (UNDECIDED, "too-large", "lower --order or raise --limit-memory")
             }
             Error::NotEnoughBits { .. } => (UNDECIDED, "not-enough-digits", "ask for fewer digits"),
-            Error::Simulate(_) => (NO_ANSWER, "no-trajectory", ""),
             Error::NoSuchStart { .. } => {
                 (NO_ANSWER, "no-start", "give amplitude and phase: --start")
             }

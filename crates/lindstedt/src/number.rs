@@ -23,17 +23,20 @@ pub enum Status {
     Certified,
     /// Estimated; how is said beside it.
     Estimated,
+    /// Computed, but nothing is known of its error: too few orders, or terms that do not decrease.
+    NoEstimate,
 }
 
 /// A number as it leaves the program. |decimal - true value| <= error where the status is exact or
-/// certified; the decimal has the digits asked for, or fewer where the error of an estimate says so.
+/// certified; the decimal has the digits asked for, or fewer where the error of an estimate says so,
+/// and a few only where there is no estimate.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Number {
     /// The closed form, if there is one.
     pub exact: Option<String>,
     /// Its decimal value.
     pub decimal: String,
-    /// A bound on |decimal - true value|; nothing when they are equal.
+    /// A bound on |decimal - true value|; nothing when they are equal, and without an estimate.
     pub error: Option<String>,
     /// The class.
     pub status: Status,

@@ -5,7 +5,7 @@ use super::trajectory::Request;
 use crate::Outcome;
 use crate::arguments::{EvaluateOptions, Format, Resum};
 use crate::derive::number_json;
-use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
+use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
 use crate::output;
 use crate::session::{Loaded, Session, digits};
 use lindstedt::coeff::ball::Balls;
@@ -83,7 +83,8 @@ pub fn run(
         });
         return Ok(match (session.interrupted(), &motion.ended) {
             (true, _) => INTERRUPTED,
-            (false, Some(_)) => NO_ANSWER,
+            // No step short enough is no proof that there is no motion: 4, as for `simulate`.
+            (false, Some(reason)) => Failure::from(reason.clone()).exit,
             (false, None) => UNDECIDED,
         });
     }
@@ -205,7 +206,7 @@ impl Report<'_> {
         if let Some([growth, frequency]) = &motion.linear {
             let shown = |number: &Number| match &number.error {
                 Some(error) => format!("{} +- {error} (estimated)", number.decimal),
-                None => number.decimal.clone(),
+                None => format!("{} (no estimate)", number.decimal),
             };
             lines.push(("growth rate a'/a".to_owned(), shown(growth)));
             lines.push(("frequency psi'".to_owned(), shown(frequency)));
@@ -224,7 +225,7 @@ impl Report<'_> {
         let shown = |q: &Quantity| match &q.value {
             Some(number) => match &number.error {
                 Some(error) => format!("{} +- {error}", number.decimal),
-                None => number.decimal.clone(),
+                None => format!("{} (no estimate)", number.decimal),
             },
             None => format!("{:.1e} +- {:.1e}", q.double, q.error),
         };

@@ -3,7 +3,7 @@
 use crate::arguments::Language;
 use crate::failure::{Failure, UNDECIDED};
 use lindstedt::equation::Problem;
-use lindstedt::evaluate::Trajectory;
+use lindstedt::evaluate::{Fourier, Trajectory};
 use std::fmt::Write;
 
 /// One harmonic: k, coefficient of cos, coefficient of sin.
@@ -16,14 +16,15 @@ pub fn write(
     harmonics: u32,
 ) -> Result<String, Failure> {
     let found = trajectory.fourier(harmonics as usize);
-    let (list, deviation) = found.ok_or_else(|| Failure {
+    let Fourier { coefficients: list, deviation, error } = found.ok_or_else(|| Failure {
         exit: UNDECIDED,
         code: "no-value",
         message: "the expansion has no value at some phase".to_owned(),
         hint: "lower or raise --order, or --resum none".to_owned(),
     })?;
     let size = list.iter().fold(0.0f64, |m, (c, s)| m.max(c.abs()).max(s.abs()));
-    let small = size * trajectory.negligible();
+    // Below the error of the expansion a coefficient is noise.
+    let small = (size * trajectory.negligible()).max(error.unwrap_or(0.0));
     let keep = |x: f64| if x.abs() > small { x } else { 0.0 };
     let terms: Vec<Term> = list
         .iter()
@@ -34,9 +35,13 @@ pub fn write(
     let omega = trajectory.frequency();
     let note = format!(
         "{}: x(t), expansion of order {}, its first {harmonics} harmonics; deviation from the \
-         expansion {deviation:.1e}",
+         expansion {deviation:.1e}; {}",
         problem.name,
-        trajectory.order()
+        trajectory.order(),
+        match error {
+            Some(_) => format!("terms below the error of the expansion, {small:.1e}, are left out"),
+            None => "no estimate of the error of the expansion".to_owned(),
+        }
     );
     Ok(match language {
         Language::Rust => rust(&note, omega, &terms),

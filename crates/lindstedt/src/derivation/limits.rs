@@ -121,13 +121,14 @@ pub(crate) fn limit_memory(problem: &Problem, settings: &Settings) -> Result<(),
     } else {
         0.42f64.log2() + 4.0 * (order / 164.0).log2()
     };
-    let bits = gibibytes + 30.0;
-    if bits > (settings.memory.max(1) as f64).log2() {
-        return Err(Error::TooLarge {
-            order: settings.order,
-            exponent: (bits * 2f64.log10()).round() as u64,
-            limit: settings.memory >> 20,
-        });
+    refuse_above(settings.memory, settings.order, gibibytes + 30.0)
+}
+
+/// Refuses an order that needs 2^`bits` bytes, if that is more than `memory`.
+pub(crate) fn refuse_above(memory: u64, order: usize, bits: f64) -> Result<(), Error> {
+    if bits <= (memory.max(1) as f64).log2() {
+        return Ok(());
     }
-    Ok(())
+    let exponent = (bits * 2f64.log10()).round() as u64;
+    Err(Error::TooLarge { order, exponent, limit: memory >> 20 })
 }

@@ -20,7 +20,7 @@ use lindstedt_series::resummation::{
 };
 use rug::Float;
 use setting::{Form, Setting};
-pub use solution::{Displacement, Trajectory};
+pub use solution::{Displacement, Fourier, Trajectory};
 use source::Source;
 use std::collections::BTreeMap;
 
@@ -85,8 +85,10 @@ pub struct Evaluation {
     best_period: Ball,
     /// Whether an error of the period is known.
     is_estimated: bool,
-    /// Whether the coefficients are too few for an estimate: all digits of the sum are shown.
+    /// Whether the coefficients are too few for an estimate: a few digits of the sum are shown.
     no_estimate: bool,
+    /// Bits asked for.
+    accuracy: u32,
     /// In words.
     pub verdict: String,
     /// Poles and zeros of the diagonal Pade approximant of the highest order.
@@ -142,11 +144,12 @@ pub fn evaluate(
     let setting = Setting::new(problem, settings.condition, &settings.parameters)?;
     let order = settings.order.unwrap_or_else(|| default_order(&setting.form));
     let limits = (settings.memory, &settings.stop);
+    let accuracy = bits_for(settings.digits);
+    source::limit_memory(&setting.form, order, accuracy, settings.memory)?;
     let source = Source::new(&setting, order, limits, observer)?;
     if !observer(Progress::Checking) {
         return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
     }
-    let accuracy = bits_for(settings.digits);
     let sample = |bits: u32| if settings.stop.asked() { None } else { source.sample(bits) };
     let few = few::partial_sum(&sample, source.known, settings.method, accuracy);
     let resummed =
@@ -201,6 +204,7 @@ pub fn evaluate(
         best_period: closed.unwrap_or(period),
         is_estimated,
         no_estimate,
+        accuracy,
         verdict: String::new(),
         picture,
         at: source.at,
@@ -314,12 +318,7 @@ impl Evaluation {
         }
         let method = method_name(self.resummed.method);
         let degrees = outcome.degrees.map_or_else(String::new, |(l, m)| format!(" [{l}/{m}]"));
-        let tried = self.resummed.tried.len();
-        let choice = if tried > 1 {
-            format!(", the least error estimate of {tried} methods")
-        } else {
-            String::new()
-        };
+        let choice = self.choice();
         parts.push(match &self.period {
             Some(Number { error: Some(error), .. }) if self.no_estimate => format!(
                 "{method}{degrees} of order {}, no estimate from so few coefficients; against the \
@@ -338,6 +337,31 @@ impl Evaluation {
             ),
         });
         parts.join("; ")
+    }
+
+    /// Why the method was taken, where there was a choice.
+    fn choice(&self) -> String {
+        let Resummed { tried, method, outcome, .. } = &self.resummed;
+        let errors = || tried.iter().filter_map(|(m, e)| Some((m, e.as_ref().ok()?)));
+        let finite = || errors().filter(|(_, error)| error.is_finite());
+        let Some((_, own)) = errors().find(|(m, _)| *m == method).filter(|_| tried.len() > 1)
+        else {
+            return String::new();
+        };
+        let count = finite().count();
+        let floor = Float::with_val(53, outcome.estimate.value.abs_ref()) >> self.accuracy;
+        if count == 1 {
+            format!(", the only one of {} methods with an error estimate", tried.len())
+        } else if *own <= floor {
+            format!(", the simplest of {} methods that reaches the digits asked for", tried.len())
+        } else if finite().all(|(_, error)| own <= error) {
+            format!(", the least error estimate of {count} methods")
+        } else {
+            format!(
+                ", the simplest of {count} methods whose error estimate is within a factor 10 of \
+                 the least"
+            )
+        }
     }
 
     /// Whether the coefficients are too few for an estimate of the error; the error of the period,

@@ -28,6 +28,17 @@ pub struct Displacement {
     pub error: f64,
 }
 
+/// x as a Fourier series in omega t.
+#[derive(Clone, Debug)]
+pub struct Fourier {
+    /// (c_k, s_k) of c_k cos(k omega t) + s_k sin(k omega t).
+    pub coefficients: Vec<(f64, f64)>,
+    /// The largest deviation of the sum from x, at points between those that were used.
+    pub deviation: f64,
+    /// What the estimated errors of x allow a coefficient to be wrong by; nothing without estimates.
+    pub error: Option<f64>,
+}
+
 /// x(t), to be evaluated at any time.
 pub struct Trajectory {
     derivation: Derivation,
@@ -292,15 +303,15 @@ impl Trajectory {
     /// omega t, by the trapezoidal rule on 4 (harmonics + 1) points, and the largest deviation of
     /// their sum from x at as many points between.
     #[must_use]
-    pub fn fourier(&self, harmonics: usize) -> Option<(Vec<(f64, f64)>, f64)> {
+    pub fn fourier(&self, harmonics: usize) -> Option<Fourier> {
         let count = 4 * (harmonics + 1);
         let turn = std::f64::consts::TAU / count as f64;
-        let sample = |offset: f64| -> Option<Vec<f64>> {
+        let sample = |offset: f64| -> Option<Vec<Displacement>> {
             let one = |i: usize| {
                 let time = (i as f64 + offset) / count as f64 * self.period;
                 let time = Value::Rational(Rational::from_f64(time)?);
-                let x = self.at(&time).double;
-                x.is_finite().then_some(x)
+                let x = self.at(&time);
+                x.double.is_finite().then_some(x)
             };
             (0..count).map(one).collect()
         };
@@ -309,9 +320,11 @@ impl Trajectory {
             let weight = if k == 0 { 1.0 } else { 2.0 } / count as f64;
             nodes.iter().enumerate().fold((0.0, 0.0), |(c, s), (i, x)| {
                 let angle = k as f64 * (i as f64 + 0.25) * turn;
-                (c + weight * x * angle.cos(), s + weight * x * angle.sin())
+                (c + weight * x.double * angle.cos(), s + weight * x.double * angle.sin())
             })
         };
+        // |c_k| changes by less than the mean of |2 error cos|.
+        let error = nodes.iter().map(|x| x.error).sum::<f64>() * 2.0 / count as f64;
         let list: Vec<(f64, f64)> = (0..=harmonics).map(coefficient).collect();
         let sum = |angle: f64| {
             let term = |(k, (c, s)): (usize, &(f64, f64))| {
@@ -321,10 +334,12 @@ impl Trajectory {
             list.iter().enumerate().map(term).sum::<f64>()
         };
         let between = sample(0.75)?;
-        let deviation =
-            between.iter().enumerate().map(|(i, x)| (sum((i as f64 + 0.75) * turn) - x).abs());
+        let deviation = between
+            .iter()
+            .enumerate()
+            .map(|(i, x)| (sum((i as f64 + 0.75) * turn) - x.double).abs());
         let deviation = deviation.fold(0.0, f64::max);
-        Some((list, deviation))
+        Some(Fourier { coefficients: list, deviation, error: error.is_finite().then_some(error) })
     }
 
     /// omega as a double.

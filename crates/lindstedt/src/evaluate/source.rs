@@ -3,6 +3,7 @@
 
 use super::setting::{Form, Setting};
 use super::{closed, coefficients};
+use crate::derivation::limits::refuse_above;
 use crate::{Derivation, Error, Progress, Value};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_coeff::ball::{Ball, Balls};
@@ -400,6 +401,25 @@ pub(crate) fn coefficients_of(
     }
     (series.step, series.known) = (step, length.div_ceil(step));
     Ok(series.floats(ratio.clone()))
+}
+
+/// Refuses before allocating what is not derived but computed in numbers, at twice the bits of
+/// [`lindstedt_series::resummation::resum`]: for the power law N coefficients, for the sums N grids
+/// of n^2 of them each, and the matrix of an approximant of half the order.
+pub(super) fn limit_memory(
+    form: &Form,
+    order: usize,
+    accuracy: u32,
+    memory: u64,
+) -> Result<(), Error> {
+    let n = order as f64;
+    let bits = 2.0 * (f64::from(accuracy) + 4.0 * n + 68.0) + 16.0 * n + 64.0;
+    let numbers = match form {
+        Form::PowerLaw { .. } => n * n / 4.0 + 2.0 * n,
+        Form::Sums => n * n / 4.0 + n * n * n / 3.0,
+        _ => return Ok(()),
+    };
+    refuse_above(memory, order, (numbers * (bits / 8.0 + 32.0)).log2())
 }
 
 /// The power of two next to the radius of convergence, 1 where there is none.

@@ -31,8 +31,8 @@ pub(super) struct Job<'a> {
     pub(super) source: &'a Source,
     pub(super) memory: u64,
     pub(super) bits: u32,
-    /// A sum that takes longer than the whole run may is broken off.
-    pub(super) stop: Stop,
+    /// A derivation or a sum that takes longer is broken off.
+    pub(super) seconds: f64,
 }
 
 /// Longer runs are not repeated: noise is small beside them.
@@ -108,13 +108,21 @@ impl Job<'_> {
             period: sum.period,
             error: sum.error,
         };
-        Ok(series.sums(self.source, repeats, &self.stop)?.into_iter().map(found).collect())
+        Ok(series.sums(self.source, repeats, &self.stop())?.into_iter().map(found).collect())
+    }
+
+    /// Says stop after the seconds of a run from now.
+    fn stop(&self) -> Stop {
+        let (start, seconds) = (Instant::now(), self.seconds);
+        Stop::new(move || start.elapsed().as_secs_f64() > seconds)
     }
 
     fn settings(&self, order: usize, route: Route) -> Settings {
+        let stop = self.stop();
         let parameters = self.setting.parameters().clone();
         let condition = Some(self.setting.condition);
-        Settings { order, condition, parameters, memory: self.memory, route, ..Settings::default() }
+        let memory = self.memory;
+        Settings { order, condition, parameters, memory, route, stop, ..Settings::default() }
     }
 
     fn exact(

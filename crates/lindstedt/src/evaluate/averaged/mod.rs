@@ -87,8 +87,8 @@ pub struct Motion {
     /// The ratio of the last two terms of x at the start: below one they decrease.
     pub ratio: Option<f64>,
     /// The largest difference of two integrations, with the digits asked for and with more, among
-    /// the times evaluated.
-    pub integration_error: f64,
+    /// the times evaluated; nothing while no time but 0 was, 0 where a is an exponential.
+    pub integration_error: Option<f64>,
     /// Why the integration ended before the last time, if it did.
     pub ended: Option<lindstedt_simulate::SimulateError>,
     /// Whether delayed values occur: then the past before t = 0 is the averaged motion's own.
@@ -205,7 +205,7 @@ impl Motion {
             start: start.map(|x| x.to_f64()),
             linear,
             ratio,
-            integration_error: 0.0,
+            integration_error: full.linear().map(|_| 0.0),
             ended: None,
             is_delayed: found.is_delayed,
             has_wall: problem.impact.is_some(),
@@ -252,8 +252,10 @@ impl Motion {
             let states: Vec<Option<&flow::State>> =
                 flows.iter().map(|flow| flow.states.get(i)?.as_ref()).collect();
             let Some(Some(state)) = states.first() else { continue };
-            self.integration_error =
-                state.errors.iter().fold(self.integration_error, |top, e| top.max(*e));
+            if !floats[i].is_zero() {
+                let known = self.integration_error.unwrap_or(0.0);
+                self.integration_error = Some(state.errors.iter().copied().fold(known, f64::max));
+            }
             let mut differs = |k: usize| {
                 let value = |j: usize| states.get(j).copied().flatten().map(|s| &s.values[k]);
                 let apart = |a: usize, b: usize| {
@@ -317,7 +319,15 @@ impl Motion {
         parts.push(if self.orders.first().is_some_and(|full| full.linear().is_some()) {
             "a is an exponential, without an error of integration".to_owned()
         } else {
-            format!("a and psi are integrated, error {:.0e}", self.integration_error)
+            match self.integration_error {
+                // Two integrations that agree in all their bits.
+                Some(0.0) => format!(
+                    "a and psi are integrated, with {} digits and with more: no difference",
+                    self.digits
+                ),
+                Some(error) => format!("a and psi are integrated, error {error:.0e}"),
+                None => "a and psi are not integrated: no time after 0 was asked for".to_owned(),
+            }
         });
         if self.is_delayed {
             parts.push("before t = 0 the motion is taken to be the same averaged one".to_owned());
