@@ -43,7 +43,8 @@ pub(super) fn partial_sum(
     let Some(value) = sum() else { return Some(Err(ResummationError::NoCoefficients { bits })) };
     let infinite = Float::with_val(53, Special::Infinity);
     let estimate = Estimate { value, error: infinite.clone() };
-    let outcome = Outcome { estimate, order: known - 1, degrees: None, smallest_term: None };
+    let order = known - 1;
+    let outcome = Outcome { estimate, order, degrees: None, tentative: None, smallest_term: None };
     let method = Method::PartialSum;
     let tried = vec![(method, Ok(infinite))];
     let (growth, singularity) = (Growth::Undecided, None);

@@ -18,6 +18,7 @@ mod rectangular;
 pub use double::lobachevsky_f64;
 pub use point::{Point, cosine, log_cosine, sine};
 
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::digits::{CertifyError, certify};
 use point::Reduced;
@@ -45,10 +46,19 @@ fn working(balls: Balls) -> Balls {
 /// Cost: max_m zeta values, max_m^2/2 products.
 #[must_use]
 pub fn means(max_m: usize, balls: Balls) -> Vec<Ball> {
+    means_until(max_m, balls, &Stop::default()).unwrap_or_default()
+}
+
+/// As [`means`]; nothing once `stop` said so, which is asked for every m.
+#[must_use]
+pub fn means_until(max_m: usize, balls: Balls, stop: &Stop) -> Option<Vec<Ball>> {
     let work = balls.with_guard(GUARD_BITS);
     let mut means = vec![work.one()];
     let mut eta = Vec::new();
     for m in 1..=max_m {
+        if stop.asked() {
+            return None;
+        }
         let index = u32::try_from(m).unwrap_or(u32::MAX);
         eta.push(eta_value(index, work));
         let sum = eta
@@ -58,7 +68,7 @@ pub fn means(max_m: usize, balls: Balls) -> Vec<Ball> {
         let mean = work.div_i64(&sum, i64::from(index));
         means.push(mean.unwrap_or_else(|| work.indeterminate()));
     }
-    means.iter().map(|mean| balls.round(mean)).collect()
+    Some(means.iter().map(|mean| balls.round(mean)).collect())
 }
 
 /// eta(k) = sum_j (-1)^(j+1) j^-k, k >= 1.

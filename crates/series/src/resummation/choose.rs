@@ -24,6 +24,8 @@ pub struct Resummed {
 
 /// What the least of several estimates is multiplied by.
 const SELECTION: u32 = 4;
+/// What the distance from an independent method is multiplied by.
+const AGREEMENT: u32 = 4;
 /// Doublings of the precision before the rounding is added to the error as it is.
 const DOUBLINGS: u32 = 4;
 
@@ -101,7 +103,7 @@ fn chosen(
     let methods = method.map_or_else(|| Method::ALL.to_vec(), |method| vec![method]);
     let mut tried = Vec::new();
     let mut best: Option<(Method, Outcome, u32)> = None;
-    let mut values: Vec<Outcome> = Vec::new();
+    let mut values: Vec<(Method, Outcome)> = Vec::new();
     for method in methods {
         if stop.asked() {
             return Err(ResummationError::Stopped);
@@ -109,7 +111,7 @@ fn chosen(
         let limits = (accuracy, stop);
         let found = settled(&sample, [&low, &high], method, singularity.as_ref(), limits);
         if let Ok((outcome, bits)) = &found {
-            values.push(outcome.clone());
+            values.push((method, outcome.clone()));
             let error = &outcome.estimate.error;
             let better = best.as_ref().is_none_or(|(_, best, _)| {
                 // Below the accuracy asked for there is no better.
@@ -133,7 +135,17 @@ fn chosen(
             if tried.len() > 1 && !low.has_known_tail(method) {
                 outcome.estimate.error *= SELECTION;
             }
-            for other in &values {
+            // Two sequences that share no approximants agree to the error of the worse one: where
+            // they do, the less cautious estimate of the better one counts.
+            let others = values.iter().filter(|(m, _)| Sample::are_independent(*m, method));
+            let gaps = others.map(|(_, o)| distance(&o.estimate.value, &own.value));
+            if let Some(tentative) = &outcome.tentative
+                && let Some(gap) = gaps.reduce(|a, b| a.min(&b))
+            {
+                let agreed = gap.max(tentative) * AGREEMENT;
+                outcome.estimate.error = outcome.estimate.error.min(&agreed);
+            }
+            for (_, other) in &values {
                 if other.estimate.error <= Float::with_val(53, &own.error * 100u32) {
                     let gap = distance(&other.estimate.value, &own.value);
                     let excess = gap - &other.estimate.error;
@@ -174,8 +186,10 @@ fn settled(
     let rounding = distance(&before.estimate.value, &after.estimate.value);
     // An error of exactly 0 is a rational function, known to the rounding.
     let size = Float::with_val(53, after.estimate.value.abs_ref()) >> (bits / 4);
-    after.estimate.error +=
-        rounding.max(&size.min(&(Float::with_val(53, after.estimate.value.abs_ref()) >> accuracy)));
+    let asked = Float::with_val(53, after.estimate.value.abs_ref()) >> accuracy;
+    let rounding = rounding.max(&size.min(&asked));
+    after.estimate.error += &rounding;
+    after.tentative = after.tentative.map(|error| error + rounding);
     Ok((after, bits))
 }
 

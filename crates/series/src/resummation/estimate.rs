@@ -48,7 +48,8 @@ fn spread(list: &[Float], value: &Float) -> Option<Float> {
 /// the last one: with the spread s2 of the four before these, s2/s1 - 1 = q^-4 and the error is
 /// s1/(s2/s1 - 2). Sixteen times s1 times the larger of 1 and 1/(s2/s1 - 2), with N as the most.
 ///
-/// Infinite for b >= 0 (the sequence does not settle) and for approximants below number six.
+/// Infinite where neither says anything (b >= 0 and s2 < s1: the sequence does not settle) and for
+/// approximants below number six.
 /// Nothing for fewer than two values.
 ///
 /// What fools it: errors that oscillate with a period of more than some ten approximants, and
@@ -74,17 +75,49 @@ pub(super) fn settle(values: &[Float], number: usize) -> Option<Estimate> {
     let points = differences.iter().zip(0u32..);
     let points: Vec<(f64, f64)> =
         points.filter_map(|(d, k)| Some((f64::from(k), log2(d)?))).collect();
-    let Some(line) = Line::through(&points) else { return estimate(infinity()) };
-    let end = differences.len() as f64;
-    let next = line.at(end) + 3.0 * line.deviation_at(end);
-    let ratio = line.slope.exp2();
-    if ratio >= 1.0 || !next.is_finite() {
-        return estimate(infinity());
-    }
-    let by_line = Float::with_val(53, next).exp2() * 4u32 / (1.0 - ratio);
+    let by_line = by_line(&points, differences.len() as f64).unwrap_or_else(infinity);
     let error = by_spread(before, value, number).map_or(by_line.clone(), |s| s.min(&by_line));
     let near = before.get(before.len().saturating_sub(2)..).unwrap_or(before);
     estimate(spread(near, value).map_or_else(infinity, |near| error.max(&near)))
+}
+
+/// The first judgment of [`settle`]; nothing for b >= 0.
+fn by_line(points: &[(f64, f64)], end: f64) -> Option<Float> {
+    let line = Line::through(points)?;
+    let next = line.at(end) + 3.0 * line.deviation_at(end);
+    let ratio = line.slope.exp2();
+    let falls = ratio < 1.0 && next.is_finite();
+    falls.then(|| Float::with_val(53, next).exp2() * 4u32 / (1.0 - ratio))
+}
+
+/// A less cautious judgment of the same sequence, for where another one, independent of it, agrees:
+///
+///   |error| <= 4 exp(a + b (N + 2) + r l)/(1 - exp b),
+///
+/// r the largest of the points above the line (differences that are small by accident lie below and
+/// do not count), l = sqrt(1 + 1/n + (N + 2 - m)^2/sum (k - m)^2); at least the distance from the two
+/// approximants before. Of 733 sums of random functions it alone is too small for 17.
+pub(super) fn tentative(values: &[Float], number: usize) -> Option<Float> {
+    let (value, before) = values.split_last()?;
+    if number < FEWEST || before.len() < 2 {
+        return None;
+    }
+    let pairs = values.iter().zip(values.iter().skip(2));
+    let points: Vec<(f64, f64)> = pairs
+        .zip(0u32..)
+        .filter_map(|((a, b), k)| Some((f64::from(k), log2(&distance(a, b))?)))
+        .collect();
+    let line = Line::through(&points)?;
+    let ratio = line.slope.exp2();
+    let above = points.iter().map(|p| p.1 - line.at(p.0)).fold(0.0, f64::max);
+    let end = (values.len() - 1) as f64;
+    let next = line.at(end) + above * line.lever(end);
+    if ratio >= 1.0 || !next.is_finite() {
+        return None;
+    }
+    let error = Float::with_val(53, next).exp2() * 4u32 / (1.0 - ratio);
+    let near = before.get(before.len() - 2..)?;
+    Some(error.max(&spread(near, value)?))
 }
 
 /// The second judgment of [`settle`]; nothing with fewer than eight values before the last one.
@@ -131,8 +164,12 @@ impl Line {
 
     /// The standard deviation of a prediction at x.
     fn deviation_at(&self, x: f64) -> f64 {
+        self.deviation * self.lever(x)
+    }
+
+    fn lever(&self, x: f64) -> f64 {
         let lever = (x - self.centre.0).powi(2) / self.width;
-        self.deviation * (1.0 + (1.0 + lever) / self.count).sqrt()
+        (1.0 + (1.0 + lever) / self.count).sqrt()
     }
 
     fn at(&self, x: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! The methods, one value with an error estimate each.
 
 use super::borel::{Nodes, borel_transform, laplace};
-use super::estimate::{best_truncation, distance, geometric_tail, settle, widest};
+use super::estimate::{best_truncation, distance, geometric_tail, settle, tentative, widest};
 use super::singularity::nearest_singularity_until;
 use super::{Estimate, Growth, Map, Pade, ResummationError, Singularity, growth, partial_sums};
 use lindstedt_algebra::Stop;
@@ -76,6 +76,9 @@ pub struct Outcome {
     pub order: usize,
     /// Degrees of the numerator and the denominator, for the methods with Pade approximants.
     pub degrees: Option<(usize, usize)>,
+    /// A less cautious estimate of the error, which means something only where a method that shares
+    /// no approximants with this one agrees; nothing where there is none.
+    pub tentative: Option<Float>,
     /// The order of the smallest term, where the series was cut there because it diverges.
     pub smallest_term: Option<usize>,
 }
@@ -134,8 +137,19 @@ impl Sample {
         let half = Float::with_val(53, outcome.estimate.value.abs_ref()) / 2u32;
         if self.is_unresolved() || outcome.estimate.error > half {
             outcome.estimate.error = Float::with_val(53, Special::Infinity);
+            outcome.tentative = None;
         }
         Ok(outcome)
+    }
+
+    /// Whether the approximants of two methods are different: diagonal ones of one series are the
+    /// same in x and in u = x/(s + x).
+    pub(super) fn are_independent(a: Method, b: Method) -> bool {
+        let kind = |m| if m == Method::UniformPade { Method::Pade } else { m };
+        let by_approximants =
+            |m| matches!(m, Method::Pade | Method::ConformalPade | Method::BorelPade);
+        let (a, b) = (kind(a), kind(b));
+        a != b && by_approximants(a) && by_approximants(b)
     }
 
     /// Whether the error of `method` follows from the terms and a known radius of convergence.
@@ -205,6 +219,7 @@ impl Sample {
                     let nodes = Nodes::new(asked, self.bits, stop);
                     let value = |pade: &Pade| Ok((laplace(pade, &nodes)?, None));
                     let mut outcome = staircase(&b, self.bits, &widest, value, stop)?;
+                    outcome.tentative = None;
                     let size = Float::with_val(53, outcome.estimate.value.abs_ref());
                     // What the integral was not asked for.
                     let rest = size >> asked;
@@ -264,7 +279,8 @@ impl Sample {
         };
         let mut outcome = match best {
             Some((order, estimate)) if grows(&estimate) => {
-                Outcome { estimate, order, degrees: None, smallest_term: Some(order) }
+                let smallest_term = Some(order);
+                Outcome { estimate, order, degrees: None, tentative: None, smallest_term }
             }
             _ => last_sum(&sums)?,
         };
@@ -307,7 +323,9 @@ fn wedge(singularity: &Singularity, bits: u32) -> Map {
 
 fn scaled(mut outcome: Outcome, factor: &Float) -> Outcome {
     outcome.estimate.value *= factor;
-    outcome.estimate.error *= Float::with_val(53, factor.abs_ref());
+    let size = Float::with_val(53, factor.abs_ref());
+    outcome.estimate.error *= &size;
+    outcome.tentative = outcome.tentative.map(|error| error * size);
     outcome
 }
 
@@ -328,7 +346,7 @@ fn last_sum(sums: &[Float]) -> Result<Outcome, ResummationError> {
     let order = sums.len() - 1;
     let late = sums.get(order.saturating_sub(APPROXIMANTS)..).unwrap_or(sums);
     let estimate = settle(late, order).ok_or(ResummationError::Undefined)?;
-    Ok(Outcome { estimate, order, degrees: None, smallest_term: None })
+    Ok(Outcome { estimate, order, degrees: None, tentative: None, smallest_term: None })
 }
 
 /// The last partial sum of a series that converges, |x| below the radius (and whether that is
@@ -427,11 +445,14 @@ fn staircase(
         }
     }
     let list: Vec<Float> = values.into_iter().map(|(_, v)| v).collect();
+    let mut tentative = tentative(&list, order);
     let mut estimate = judge(&list, order).ok_or(ResummationError::Undefined)?;
     if jumps.len() >= CUT
         && let Some(jump) = jumps.into_iter().reduce(|a, b| a.max(&b))
     {
         estimate.error = estimate.error.max(&jump);
+        tentative = None;
     }
-    Ok(Outcome { estimate, order: used, degrees: Some(pade_degrees), smallest_term: None })
+    let degrees = Some(pade_degrees);
+    Ok(Outcome { estimate, order: used, degrees, tentative, smallest_term: None })
 }
