@@ -163,3 +163,16 @@ fn problems_lists_what_is_built_in() {
         assert!(names.contains(&name));
     }
 }
+
+/// Over Q nothing is proved before the end, and the message says so; the code is that of all verbs.
+#[test]
+fn a_time_limit_over_the_rationals() {
+    let arguments = ["derive", "van-der-pol", "--order", "200", "--quiet"];
+    let limit = ["--limit-seconds", "0.2", "--format", "json"];
+    let output = lindstedt(&[&arguments[..], &limit].concat());
+    assert_eq!(output.status.code(), Some(4));
+    let error: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(error["error"]["code"], "limit-seconds");
+    let message = error["error"]["message"].as_str().unwrap();
+    assert!(message.contains("over Q") && message.contains("proved at the end"), "{message}");
+}
