@@ -23,8 +23,9 @@ pub fn write(
         hint: "lower or raise --order, or --resum none".to_owned(),
     })?;
     let size = list.iter().fold(0.0f64, |m, (c, s)| m.max(c.abs()).max(s.abs()));
-    // Below the error of the expansion a coefficient is noise.
-    let small = (size * trajectory.negligible()).max(error.unwrap_or(0.0));
+    // Below the error of the expansion a coefficient is noise; where some phase has no estimate, the
+    // measured deviation stands for it.
+    let small = (size * trajectory.negligible()).max(error.unwrap_or(deviation));
     let keep = |x: f64| if x.abs() > small { x } else { 0.0 };
     let terms: Vec<Term> = list
         .iter()
@@ -40,7 +41,7 @@ pub fn write(
         trajectory.order(),
         match error {
             Some(_) => format!("terms below the error of the expansion, {small:.1e}, are left out"),
-            None => "no estimate of the error of the expansion".to_owned(),
+            None => "no estimate at some phases: terms below the deviation are left out".to_owned(),
         }
     );
     Ok(match language {
