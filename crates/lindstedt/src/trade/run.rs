@@ -122,7 +122,7 @@ impl Job<'_> {
         let parameters = self.setting.parameters().clone();
         let condition = Some(self.setting.condition);
         let memory = self.memory;
-        Settings { order, condition, parameters, memory, route, stop, ..Settings::default() }
+        Settings { order, condition, parameters, memory, route, stop }
     }
 
     fn exact(
