@@ -56,7 +56,8 @@ pub fn instructions(summary: &str) -> Option<f64> {
 /// The table as it is stored.
 #[must_use]
 pub fn table(rows: &Rows) -> String {
-    rows.iter().map(|(name, value)| format!("{name}\t{value:e}\n")).collect()
+    let shown = |v: f64| if v < 1e3 { format!("{v:.4e}") } else { format!("{v:.0}") };
+    rows.iter().map(|(name, value)| format!("{name}\t{}\n", shown(*value))).collect()
 }
 
 /// A stored table; lines that are none are left out.

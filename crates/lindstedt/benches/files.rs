@@ -55,7 +55,7 @@ fn classify_six_files(bencher: Bencher<'_, '_>) {
     bencher.bench(|| files.iter().filter(|f| one(f)).count());
 }
 
-#[divan::bench(sample_count = 20)]
+#[divan::bench(sample_count = 5, sample_size = 1)]
 fn recognise_a_threshold(bencher: Bencher<'_, '_>) {
     let problem = file(NUMERIC).problem;
     let values = all_values(&problem, &BTreeMap::new());
@@ -63,7 +63,7 @@ fn recognise_a_threshold(bencher: Bencher<'_, '_>) {
 }
 
 /// The orbit by integration, the integrals by quadrature.
-#[divan::bench(args = [16, 30], sample_count = 3, sample_size = 1)]
+#[divan::bench(args = [16, 30], sample_count = 2, sample_size = 1)]
 fn numeric_threshold(bencher: Bencher<'_, '_>, digits: u32) {
     let problem = file(NUMERIC).problem;
     let values = all_values(&problem, &BTreeMap::new());
