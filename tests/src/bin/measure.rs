@@ -72,7 +72,10 @@ fn main() -> Outcome<()> {
             let read = |path: &str| std::fs::read_to_string(path).map(|text| stored(&text));
             print!("{}", comparison(&read(before)?, &read(after)?));
         }
-        _ => return Err(USAGE.into()),
+        _ => {
+            eprintln!("{USAGE}");
+            std::process::exit(2);
+        }
     }
     Ok(())
 }
