@@ -1,6 +1,7 @@
 //! Shared helpers of the integration tests.
 
 pub mod mathematics;
+pub mod measure;
 
 use lindstedt::{Derivation, Settings, derive, problems};
 

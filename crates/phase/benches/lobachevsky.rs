@@ -24,7 +24,7 @@ fn digits_above_pi_over_4(bencher: Bencher<'_, '_>, digits: usize) {
     bencher.bench(|| lobachevsky_digits(&x, digits).is_ok());
 }
 
-#[divan::bench(sample_count = 5, sample_size = 1)]
+#[divan::bench(sample_count = 20, sample_size = 1)]
 fn million_doubles(bencher: Bencher<'_, '_>) {
     let points: Vec<f64> = (0..1_000_000).map(|k| f64::from(k) * 1e-5 - 3.0).collect();
     bencher.bench(|| points.iter().map(|&x| lobachevsky_f64(x)).sum::<f64>());

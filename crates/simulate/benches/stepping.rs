@@ -46,19 +46,19 @@ fn periods<R: Real>(system: &System<R>, digits: u32, count: u32) -> u64 {
 }
 
 /// 600 periods: one column of the bifurcation diagram.
-#[divan::bench]
+#[divan::bench(sample_count = 10, sample_size = 1)]
 fn stick_slip_600_periods(bencher: divan::Bencher) {
     let system = system(Doubles, false);
     bencher.bench(|| periods(&system, 16, 600));
 }
 
-#[divan::bench]
+#[divan::bench(sample_count = 10, sample_size = 1)]
 fn stick_slip_600_periods_linearised(bencher: divan::Bencher) {
     let system = system(Doubles, true);
     bencher.bench(|| periods(&system, 16, 600));
 }
 
-#[divan::bench]
+#[divan::bench(sample_count = 10, sample_size = 1)]
 fn stick_slip_6_periods_at_30_digits(bencher: divan::Bencher) {
     let system = system(Digits::for_digits(30), false);
     bencher.bench(|| periods(&system, 30, 6));

@@ -1,0 +1,59 @@
+//! Thresholds: a surface in doubles, certified ones by digits, zeros, a subharmonic.
+
+#![allow(clippy::expect_used)]
+
+use divan::Bencher;
+use lindstedt_coeff::ball::Balls;
+use lindstedt_melnikov::{
+    Axis, FastPoint, PolynomialFriction, Real, Region, StickSlip, subharmonic, surface,
+};
+
+fn main() {
+    divan::main();
+}
+
+/// 2000 x 2000 thresholds over omega and the speed of the belt.
+#[divan::bench(sample_count = 5, sample_size = 1)]
+fn surface_four_million(bencher: Bencher<'_, '_>) {
+    let point =
+        FastPoint { a: 1.0, b: 1.0, dry: 0.3, alpha: 0.3, beta: 0.3, omega: 2.0, belt_speed: 0.4 };
+    let axis = |low: f64| (0..2000u32).map(|k| low + f64::from(k) / 1000.0).collect::<Vec<_>>();
+    let (rows, columns) = (axis(0.5), axis(-1.0));
+    let mut table = vec![0.0; rows.len() * columns.len()];
+    bencher.bench_local(|| {
+        surface(&point, (Axis::Omega, &rows), (Axis::BeltSpeed, &columns), &mut table)
+    });
+}
+
+fn balls(digits: u32) -> Balls {
+    Balls::new(digits * 10 / 3 + 40)
+}
+
+#[divan::bench(args = [40, 1000, 10_000], sample_count = 10)]
+fn certified(bencher: Bencher<'_, '_>, digits: u32) {
+    let paper = StickSlip::paper();
+    bencher.bench(|| paper.signed_threshold(balls(digits)).expect("a threshold"));
+}
+
+/// The complete list of zeros in 0 <= v* <= 1.
+#[divan::bench(args = [40, 1000], sample_count = 5)]
+fn zeros(bencher: Bencher<'_, '_>, digits: u32) {
+    let soft = StickSlip { b: Real::from(5), ..StickSlip::paper() };
+    let (low, high) = (Real::from(0), Real::from(1));
+    bencher.bench(|| {
+        soft.zeros_in(balls(digits), Axis::BeltSpeed, &low, &high).expect("the zeros").zeros.len()
+    });
+}
+
+/// Period 2 inside one well: the orbit by bisection, then elliptic functions.
+#[divan::bench(args = [40, 200], sample_count = 5)]
+fn resonance(bencher: Bencher<'_, '_>, digits: u32) {
+    let p = StickSlip::paper();
+    let friction = PolynomialFriction::paper(p.dry.clone(), &p.alpha, p.beta.clone());
+    bencher.bench(|| period_two(balls(digits), &p, &friction));
+}
+
+fn period_two(balls: Balls, p: &StickSlip, friction: &PolynomialFriction) -> bool {
+    let region = Region::Inside;
+    subharmonic(balls, &p.a, &p.b, &p.omega, friction, &p.belt_speed, region, 2).is_ok()
+}
