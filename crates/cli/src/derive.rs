@@ -361,7 +361,10 @@ impl<'a> Report<'a> {
                      at orders 0 to {last}."
                 );
             }
-            _ => text += "\nBy the energy integral; no solution, so nothing to substitute.\n",
+            (Solution::FrequencyOnly, None) => {
+                text += "\nBy the energy integral; no solution, so nothing to substitute.\n";
+            }
+            (_, None) => text += "\nNot substituted into the equation: not checked.\n",
         }
         text
     }

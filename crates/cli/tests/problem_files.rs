@@ -201,7 +201,7 @@ const REFUSED: [(&str, &str); 16] = [
 ];
 
 /// Whole files that are wrong.
-const FILES: [(i32, &str, &str); 31] = [
+const FILES: [(i32, &str, &str); 33] = [
     (
         2,
         "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[initial]\nx = '1'",
@@ -277,7 +277,66 @@ const FILES: [(i32, &str, &str); 31] = [
         "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[impact]\nposition = 's'\ncrossing = 'up'\nrestitution = '1'",
         "crossing cannot be",
     ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\namplitude = 'scales-frequency'",
+        "x is not x*(x^2)^(small parameter)",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\namplitude = 'in-small-parameter'",
+        "one other that the equation does not mention",
+    ),
 ];
+
+/// A quantity of a file beyond its domain, whatever the verb: amplitudes and delays that are not
+/// positive.
+#[test]
+fn values_of_a_file_are_judged_like_those_given() {
+    let folder = Folder::new("domain");
+    let file = |equation: &str, name: &str, value: &str| {
+        let text = format!(
+            "name = \"a\"\nequation = \"{equation}\"\n[parameters]\n{name} = {{ value = \"{value}\" }}\n"
+        );
+        folder.file("a.toml", text.as_bytes())
+    };
+    let check = |path: &str, verbs: &[&str], message: &str| {
+        for verb in verbs {
+            let output = lindstedt(&[verb, path, "--order", "2"]);
+            let error = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(3), "{verb}: {error}");
+            assert!(error.contains(message), "{verb}: {error}");
+        }
+    };
+    let all = ["derive", "evaluate", "verify"];
+    for equation in ["x'' + x + eps*x^3 = 0", "x'' + x*(x^2)^eps = 0"] {
+        for value in ["0", "-1"] {
+            let path = file(equation, "amplitude", value);
+            check(&path, &all, "amplitude > 0");
+        }
+    }
+    for value in ["0", "-1"] {
+        let path = file("x'' + x + eps*x(t - T) = 0", "T", value);
+        check(&path, &["derive"], "it is a delay");
+    }
+}
+
+/// The exact text of a coefficient means its decimal: a root of the stiffness is written with
+/// parentheses, and taken where it is rational.
+#[test]
+fn roots_of_the_stiffness_are_written_as_they_are_meant() {
+    let folder = Folder::new("stiffness");
+    for (stiffness, first) in
+        [("2/3", "(2/3)^(1/2)"), ("4/9", "2/3"), ("3", "3^(1/2)"), ("1/3", "(1/3)^(1/2)")]
+    {
+        let text = format!("name = \"a\"\nequation = \"x'' + {stiffness}*x + eps*x^3 = 0\"\n");
+        let path = folder.file("a.toml", text.as_bytes());
+        let shown = lindstedt(&["derive", &path, "--order", "1", "--format", "json"]);
+        let value: Value = serde_json::from_slice(&shown.stdout).unwrap();
+        let series = value["series"]["frequency"][0]["exact"].as_str().unwrap();
+        assert_eq!(series, first);
+    }
+}
 
 fn with_parameters(equation: &str) -> String {
     format!(

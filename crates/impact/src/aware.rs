@@ -178,6 +178,16 @@ pub(crate) fn watched_prediction<S: Real>(
     }
     let chi = kick.factor(&parameters.restitution);
     let truncated = Truncated { parameters, orbit, chi, order, stop };
+    // The way in doubles, its end in full precision: the multipliers are simple where they are
+    // not lost, so the secant method needs no more than the place.
+    let scout = (parameters.to_f64(), orbit.to_f64());
+    let in_doubles = Truncated {
+        parameters: &scout.0,
+        orbit: &scout.1,
+        chi: kick.factor(&scout.0.restitution),
+        order,
+        stop,
+    };
     let map: ImpactMap<S> = uncontrolled_map(parameters, orbit);
     let mut multipliers = Vec::with_capacity(2);
     for gamma in map.multipliers() {
@@ -185,10 +195,13 @@ pub(crate) fn watched_prediction<S: Real>(
             continue;
         }
         check(stop)?;
-        let start = gamma.inverse().centre();
+        let start = gamma.inverse().to_f64();
         let lost = ImpactError::NoConvergence { what: "the impact-aware multiplier" };
-        let w =
-            [0.0, 0.3, -0.7].iter().find_map(|&bend| truncated.follow(&start, bend)).ok_or(lost)?;
+        let place = [0.0, 0.3, -0.7].iter().find_map(|&bend| in_doubles.follow(&start, bend));
+        let number = |x| orbit.period.number(x);
+        let place = place.map(|w| Complex::new(number(w.re), number(w.im)));
+        let full = Complex::real(number(1.0));
+        let w = place.and_then(|w| truncated.solve(&w, &full, 1e-3, 60)).ok_or(lost)?;
         multipliers.push(w.inverse());
     }
     multipliers.sort_by(|a, b| b.to_f64().norm_squared().total_cmp(&a.to_f64().norm_squared()));

@@ -27,8 +27,29 @@ pub struct ZeroCount {
 /// Counts the zeros of G in |w| < radius; `None` where a zero on or near the circle leaves the
 /// count undecided.
 ///
-/// For balls the count is proved: radius and angles are exact, every bound is rounded up.
+/// For balls the count is proved: radius and angles are exact, every bound is rounded up. Doubles
+/// walk ahead of them: where these run out of steps, more digits would not shorten the way.
 pub fn zero_count<S: Real>(g: &Characteristic<S>, radius: f64) -> Option<ZeroCount> {
+    if g.period().precision() > f64::MANTISSA_DIGITS
+        && walk(&g.to_f64(), radius) == Walk::OutOfSteps
+    {
+        return None;
+    }
+    match walk(g, radius) {
+        Walk::Around(count) => Some(count),
+        Walk::Undecided | Walk::OutOfSteps => None,
+    }
+}
+
+/// How the way around the circle ended.
+#[derive(PartialEq, Eq)]
+enum Walk {
+    Around(ZeroCount),
+    Undecided,
+    OutOfSteps,
+}
+
+fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
     let unit = g.period();
     let size = unit.number(radius);
     // The angle is a multiple of pi, exactly representable as a part of it.
@@ -38,25 +59,29 @@ pub fn zero_count<S: Real>(g: &Characteristic<S>, radius: f64) -> Option<ZeroCou
     let mut angle = 0.0_f64;
     for evaluations in 1..=STEPS {
         if !g.goes_on() {
-            return None;
+            return Walk::Undecided;
         }
         let here = value.to_f64();
         let floor = value.magnitude_below();
         if !here.is_finite() || floor <= 1e-12 * radius.min(1.0) * slope.magnitude_above() {
-            return None;
+            return Walk::Undecided;
         }
         if part >= 1.0 {
             let turns = angle / std::f64::consts::PI;
             let zeros = turns.round();
             let whole = (turns - zeros).abs() < 1e-3 && zeros >= 0.0;
             let evaluations = u32::try_from(evaluations).unwrap_or(u32::MAX);
-            return whole.then_some(ZeroCount { zeros: zeros as u32, evaluations });
+            return if whole {
+                Walk::Around(ZeroCount { zeros: zeros as u32, evaluations })
+            } else {
+                Walk::Undecided
+            };
         }
         let step = safe_step(g, &centre, floor, slope.magnitude_above());
         // The centre is known in doubles to a few ulp of the radius.
         let next = (part + step * (1.0 - 1e-9) / (radius * std::f64::consts::PI)).min(1.0);
         if next <= part {
-            return None;
+            return Walk::Undecided;
         }
         part = next;
         let w = if part >= 1.0 {
@@ -71,7 +96,7 @@ pub fn zero_count<S: Real>(g: &Characteristic<S>, radius: f64) -> Option<ZeroCou
         let turn = there * &here.conjugate();
         angle += turn.im.atan2(turn.re);
     }
-    None
+    Walk::OutOfSteps
 }
 
 /// A length h with |G'| h + M (h/R)^2/(1 - h/R) <= 0.9 |G|, h <= R/2.

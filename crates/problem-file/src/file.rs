@@ -1,7 +1,7 @@
 //! From the text of a problem file to a problem.
 
 use crate::error::{ParseError, ParseErrorKind, excerpt, position};
-use crate::file_error::{FileError, FileErrorKind};
+use crate::file_error::{FileError, FileErrorKind, RoleReason};
 use crate::grammar::{locate, parse_equation, parse_expression};
 use crate::history::{History, is_range, ranges, start};
 use crate::names::{Names, canonical_name, is_parameter_name};
@@ -81,6 +81,48 @@ pub fn usual_condition(equation: &Expression) -> Condition {
     } else {
         Condition::LimitCycle
     }
+}
+
+/// Why an amplitude cannot enter in this way. The roles of the built-in problems are claims about
+/// the equation, and a claim is checked.
+fn misplaced(
+    role: AmplitudeRole,
+    equation: &Expression,
+    small: &str,
+    declared: &BTreeSet<String>,
+) -> Option<RoleReason> {
+    match role {
+        AmplitudeRole::ScalesFrequency { .. } => {
+            let equation = equation.canonical();
+            let fits = |e: &&Expression| **e == Expression::Acceleration || is_power_law(e);
+            let odd = equation.terms().iter().find(|e| !fits(e))?;
+            Some(RoleReason::Scaling { term: excerpt(&odd.print(small, Style::Text)) })
+        }
+        AmplitudeRole::InSmallParameter => {
+            let mentioned = equation.parameters();
+            let free = declared.iter().filter(|name| !mentioned.contains(*name));
+            let others = free.filter(|name| *name != "amplitude").count();
+            (others != 1 || !declared.contains("amplitude")).then_some(RoleReason::Parts)
+        }
+        _ => None,
+    }
+}
+
+/// Whether a term is c x (x^2)^small with c free of x, so that x = a y makes it a (a^2)^small times as
+/// large.
+fn is_power_law(term: &Expression) -> bool {
+    let factors = match term {
+        Expression::Product(list) => list.clone(),
+        other => vec![other.clone()],
+    };
+    let x = Expression::Displacement;
+    let power = x.clone().pow(2).pow(Expression::Small).canonical();
+    let moving = |e: &&Expression| {
+        e.find(&|e| matches!(e, Expression::Displacement | Expression::Velocity)).is_some()
+    };
+    let mut moving: Vec<&Expression> = factors.iter().filter(moving).collect();
+    moving.sort_by_key(|e| **e != x);
+    moving == [&x, &power]
 }
 
 /// How the amplitude enters under a condition.
@@ -251,6 +293,12 @@ fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {
         None => usual_amplitude(conditions.first()),
         Some(word) => reader.word("amplitude", word.get_ref(), word.span(), &AMPLITUDES, known)?,
     };
+    if let Some(reason) = misplaced(amplitude, &equation, &small, &declared) {
+        let (role, at) =
+            schema.amplitude.as_ref().map_or(("", 0..0), |w| (&**w.get_ref(), w.span()));
+        let kind = FileErrorKind::Role { role: excerpt(role), reason };
+        return Err(reader.error(kind, at.start));
+    }
     if amplitude == AmplitudeRole::Scaled && !declared.contains("amplitude") {
         let meaning = "a: x(0), or the first harmonic; x = a y is expanded";
         cards.push(ParameterCard {

@@ -3,6 +3,21 @@
 use crate::error::{ParseError, ParseErrorKind};
 use thiserror::Error;
 
+/// Why an amplitude cannot enter in a way.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum RoleReason {
+    /// x = a y does not make a term a (a^2)^small times as large.
+    #[error("{term} is not x*(x^2)^(small parameter) times a factor without x")]
+    Scaling {
+        /// The term.
+        term: String,
+    },
+    /// The small parameter is not amplitude and one other parameter together.
+    #[error("needs the parameter amplitude and one other that the equation does not mention")]
+    Parts,
+}
+
 /// What is wrong with a problem file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
@@ -51,6 +66,14 @@ pub enum FileErrorKind {
     Twice {
         /// The name.
         name: String,
+    },
+    /// An amplitude that cannot enter in the way claimed.
+    #[error("amplitude = \"{role}\": {reason}")]
+    Role {
+        /// The way claimed.
+        role: String,
+        /// Why not.
+        reason: RoleReason,
     },
     /// A quantity that the problem does not have.
     #[error("{key} mentions {name}, which is not declared")]

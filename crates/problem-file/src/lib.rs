@@ -22,7 +22,7 @@ pub use error::{Expectation, Limit, ParseError, ParseErrorKind, position};
 pub use file::{
     AMPLITUDES, CONDITIONS, LARGEST_FILE, ProblemFile, usual_amplitude, usual_condition,
 };
-pub use file_error::{FileError, FileErrorKind};
+pub use file_error::{FileError, FileErrorKind, RoleReason};
 pub use grammar::{locate, parse_equation, parse_expression};
 pub use history::History;
 pub use names::{Names, canonical_name, is_parameter_name};

@@ -270,19 +270,59 @@ fn van_der_pol_periods() {
     van_der_pol_grid(&axes).finish("van der Pol periods");
 }
 
+/// High orders, where resummation is most tempted to believe itself.
+fn high_orders(orders: &[usize], methods: &[Option<Method>]) -> Grid {
+    let mut grid = Grid::default();
+    let axes = Axes { orders, digits: &[30], methods };
+    for n in ["-0.49", "1/3", "3", "1e10"] {
+        let truth = |bits| Some((power_law(&rational(n), &rational("1"), bits)?, bits - 8));
+        sweep(&mut grid, &axes, "power-law", &[("n", n)], &truth);
+    }
+    for eps in ["-1/3", "1", "1e10"] {
+        let truth = |bits| Some((duffing(&rational(eps), &rational("1"), bits)?, bits - 8));
+        sweep(&mut grid, &axes, "duffing", &[("eps", eps)], &truth);
+    }
+    for eps in ["15/100", "115/100", "568/100"] {
+        sweep(&mut grid, &axes, "van-der-pol", &[("eps", eps)], &|bits| van_der_pol(eps, bits));
+    }
+    for a in ["1/3", "1", "3"] {
+        let truth = |bits| Some((pendulum(&rational(a), bits), bits - 8));
+        sweep(&mut grid, &axes, "pendulum", &[("amplitude", a)], &truth);
+    }
+    grid
+}
+
+#[test]
+fn periods_at_order_40() {
+    high_orders(&[40], &AUTO).finish("periods at order 40");
+}
+
 #[test]
 #[ignore = "minutes"]
-fn every_period() {
-    let methods = every_method();
-    let orders = [0, 1, 2, 5, 10, 20, 50];
-    for digits in [&[1usize, 3, 16, 20, 30][..], &[300]] {
-        let axes = Axes { orders: &orders, digits, methods: &methods };
-        power_law_grid(&axes).finish("power-law periods");
-        duffing_grid(&axes).finish("Duffing periods");
-        van_der_pol_grid(&axes).finish("van der Pol periods");
-        let axes = Axes { orders: &[0, 1, 2, 5, 10, 20], digits, methods: &methods };
-        pendulum_grid(&axes).finish("pendulum periods");
-    }
+fn periods_at_high_orders() {
+    high_orders(&[50, 100], &AUTO).finish("periods at orders 50 and 100");
+    let methods = [Some(Method::PartialSum), Some(Method::Pade)];
+    high_orders(&[100], &methods).finish("periods at order 100, two methods");
+}
+
+fn every_problem(axes: &Axes<'_>) {
+    power_law_grid(axes).finish("power-law periods");
+    duffing_grid(axes).finish("Duffing periods");
+    van_der_pol_grid(axes).finish("van der Pol periods");
+    pendulum_grid(axes).finish("pendulum periods");
+}
+
+#[test]
+#[ignore = "minutes"]
+fn periods_by_every_method() {
+    every_problem(&Axes { orders: &[1, 5, 16], digits: &[16], methods: &every_method() });
+}
+
+#[test]
+#[ignore = "minutes"]
+fn periods_at_every_precision() {
+    every_problem(&Axes { orders: &[0, 3, 12], digits: &[2, 16, 100], methods: &AUTO });
+    every_problem(&Axes { orders: &[6], digits: &[1_000], methods: &AUTO });
 }
 
 /// 100 000 bits: the closed forms where the truth is an arithmetic-geometric mean or a root.

@@ -28,6 +28,9 @@ impl Grid {
         if start.elapsed() > self.slowest.0 {
             self.slowest = (start.elapsed(), label.to_owned());
         }
+        if start.elapsed() > Duration::from_secs(20) {
+            eprintln!("{:.1?} {label}", start.elapsed());
+        }
     }
 
     pub fn defect(&mut self, label: &str, what: impl Into<String>) {

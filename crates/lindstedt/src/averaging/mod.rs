@@ -5,6 +5,7 @@ mod enclosures;
 pub(crate) mod numbers;
 mod values;
 
+use crate::derivation::check_delays;
 use crate::number::rational;
 use crate::{Error, Number, Progress, Value};
 use coefficients::{Coefficients, with_angles};
@@ -221,6 +222,7 @@ impl<'a> Task<'a> {
                 known: known.join(", "),
             });
         }
+        check_delays(&problem.equation, &settings.parameters)?;
         let mut names = BTreeSet::new();
         collect(&problem.equation, &mut names);
         let excitation = Excitation::of(&problem.equation)?;

@@ -9,15 +9,24 @@ use std::collections::BTreeMap;
 
 /// Names and domains of the parameters given.
 pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> Result<(), Error> {
-    for (name, value) in given {
-        if !problem.parameters.iter().any(|card| card.name == *name) {
-            let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
-            return Err(Error::UnknownParameter {
-                problem: problem.name.to_string(),
-                name: name.clone(),
-                known: known.join(", "),
-            });
+    let unknown = given.keys().find(|name| problem.parameters.iter().all(|c| c.name != **name));
+    if let Some(name) = unknown {
+        let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
+        return Err(Error::UnknownParameter {
+            problem: problem.name.to_string(),
+            name: name.clone(),
+            known: known.join(", "),
+        });
+    }
+    // The values of the card are no better than those given: a file may hold any.
+    let mut values = given.clone();
+    for card in problem.parameters.iter().filter(|card| !card.default.is_empty()) {
+        if !values.contains_key(&*card.name) {
+            values.insert(card.name.to_string(), Value::parse(&card.default)?);
         }
+    }
+    check_delays(&problem.equation, &values)?;
+    for (name, value) in &values {
         let outside =
             |domain| Error::OutsideDomain { name: name.clone(), value: value.to_string(), domain };
         let scales = matches!(problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
@@ -55,6 +64,24 @@ pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> R
         });
     }
     Ok(())
+}
+
+/// Refuses x(t - T) with T <= 0, which is no delay.
+pub(crate) fn check_delays(e: &Expression, values: &BTreeMap<String, Value>) -> Result<(), Error> {
+    let delay = |e: &Expression| matches!(e, Expression::Delayed(_, _));
+    let Some(Expression::Delayed(_, by)) = e.find(&delay) else { return Ok(()) };
+    let (name, value) = match &**by {
+        Expression::Parameter(name) => (name.to_string(), values.get(&**name).cloned()),
+        Expression::Number(q) => ("delay".to_owned(), Some(Value::Rational(q.clone()))),
+        _ => return Ok(()),
+    };
+    match value {
+        Some(value) if !exceeds(&value, &Value::Rational(Rational::new())) => {
+            let domain = "greater than 0 (it is a delay)";
+            Err(Error::OutsideDomain { name, value: value.to_string(), domain })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Whether a > b, decided: rational numbers and multiples of pi are compared exactly, and a

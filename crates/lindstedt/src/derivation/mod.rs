@@ -7,12 +7,14 @@ mod series;
 use crate::multimodular::{self, RationalBinding};
 use crate::number::{Constants, Number, certified};
 use crate::{Error, Value};
+pub(crate) use limits::check_delays;
 pub use limits::check_parameters;
 use limits::{has_logarithms, limit_memory};
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
+use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::{Condition, Problem};
 use lindstedt_expand::{
     Binding, ExpandError, Expansion, Request, check, compile, expand, leading_amplitude,
@@ -324,10 +326,20 @@ impl Derivation {
         if series.half_power == 2 {
             return self.ring.print(&self.ring.mul(coefficient, &self.stiffness), style);
         }
+        let power = series.half_power;
+        // The root of a square is taken.
+        if let Some(root) = self.ring.as_rational(&self.stiffness).and_then(|q| rational_root(&q)) {
+            let root = if power < 0 { root.recip() } else { root };
+            let factor = rug::ops::Pow::pow(root, power.unsigned_abs());
+            return self.ring.print(&self.ring.scale(coefficient, &factor), style);
+        }
         let kappa = self.ring.print(&self.stiffness, style);
+        let single = kappa.chars().all(char::is_alphanumeric);
         let factor = match style {
-            Style::Text => format!("{kappa}^({}/2)", series.half_power),
-            Style::Latex => format!("{kappa}^{{{}/2}}", series.half_power),
+            Style::Text if single => format!("{kappa}^({power}/2)"),
+            Style::Text => format!("({kappa})^({power}/2)"),
+            Style::Latex if single => format!("{kappa}^{{{power}/2}}"),
+            Style::Latex => format!(r"\left({kappa}\right)^{{{power}/2}}"),
         };
         if *coefficient == self.ring.one() {
             return factor;
