@@ -160,6 +160,10 @@ impl<'s, R: Real> PoincareMap<'s, R> {
                     stopped |= tick().is_break();
                     if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
                 }
+                Report::Busy => {
+                    stopped |= tick().is_break();
+                    if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                }
                 Report::Event(event) => {
                     after(event.kind, &mut modes, &mut contact);
                     if !matches(event.kind, wanted) {
