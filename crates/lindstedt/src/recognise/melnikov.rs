@@ -342,11 +342,16 @@ impl MelnikovProblem {
         }
         let speed = self.belt_speed.abs().ball(balls);
         let distance = balls.abs(&balls.sub(&self.largest_speed(balls)?, &speed));
-        let dry = match &self.friction {
+        Some((speed, distance, self.jumps()))
+    }
+
+    /// Whether friction jumps or bends.
+    #[must_use]
+    pub fn jumps(&self) -> bool {
+        match &self.friction {
             Friction::Polynomial(law) => law.dry.sign().is_ne(),
             other => !other.kinks().is_empty(),
-        };
-        Some((speed, distance, dry))
+        }
     }
 
     /// The verdict on the theory for this eps, as of [`lindstedt_melnikov::Validity`].
