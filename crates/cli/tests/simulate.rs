@@ -415,3 +415,31 @@ fn chaos_in_doubles_says_what_to_do() {
     let text = String::from_utf8_lossy(&output.stderr);
     assert!(text.contains("--lyapunov") && text.contains("without --f64"), "{text}");
 }
+
+/// The orbit starts just after an impact and has the period of the force: looked at once per period
+/// an impact is met every time. ln |multiplier|/T with a complex pair of determinant
+/// R^2 exp(-c T): ln(R)/T - c/2.
+#[test]
+fn diagnostics_of_a_periodic_impact_orbit() {
+    let exact = 0.6f64.ln() / (2.0 * std::f64::consts::PI / 3.3) - 0.1;
+    let from = |start: &[&str]| {
+        let all = ["vibro-impact", "--lyapunov", "--zero-one", "--skip", "100", "--periods", "800"];
+        json(&[&all[..], start].concat())
+    };
+    for start in [&[][..], &["--state", "-0.5,0.1"]] {
+        let found = from(start);
+        assert!((float(&found["lyapunov"]) - exact).abs() < 5e-3, "{start:?} {found}");
+        let verdict = found["verdict"].as_str().unwrap();
+        assert!(verdict.contains("regular: perturbations decay"), "{verdict}");
+        assert!(verdict.contains("0-1 test regular"), "{verdict}");
+    }
+}
+
+/// The powers of the series at x = 0 are too close together.
+#[test]
+fn a_power_near_minus_one_is_refused() {
+    let output = run(&["power-law", "--set", "n=-0.999", "--digits", "20"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(4), "{message}");
+    assert!(message.contains("too near an integer"), "{message}");
+}

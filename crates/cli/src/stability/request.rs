@@ -393,27 +393,37 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
     let of_names = shared.clone();
     let names = move |name: &str| {
         let (source, found) = &*of_names;
-        match source.values.get(name) {
-            Some(value) if !whole(name) && name != "branch" => {
-                let swept = found.names(&source.problem, &source.values, name, periods);
-                Ok((swept, Exact::from(value.clone()).to_f64()))
-            }
-            _ => {
-                let known = source.at().into_iter().map(|(name, _)| name);
-                let known: Vec<String> =
-                    known.filter(|name| !whole(name) && name != "branch").collect();
-                Err(not_swept(name, if whole(name) { WHOLE } else { "" }, &known))
-            }
-        }
+        let is_free = |name: &str| !whole(name) && name != "branch";
+        // Another delay than a period of the force has no such orbit.
+        let moves = |name: &str, value: &Value| {
+            let beside = Rational::from((1010, 1009));
+            let beside = match value {
+                Value::Rational(q) if q.is_zero() => Value::Rational(beside - 1u32),
+                Value::Rational(q) => Value::Rational(beside * q),
+                Value::PiTimes(q) => Value::PiTimes(beside * q),
+            };
+            computed_parameters(source, periods, branch, &[(name, beside)]).is_some()
+        };
+        let swept = |name: &str| {
+            let value = source.values.get(name).filter(|_| is_free(name))?;
+            let swept = found.names(&source.problem, &source.values, name, periods);
+            let is_known = swept.is_some() || moves(name, value);
+            is_known.then(|| (swept, Exact::from(value.clone()).to_f64()))
+        };
+        swept(name).ok_or_else(|| {
+            let known = source.at().into_iter().map(|(name, _)| name);
+            let known: Vec<String> = known.filter(|name| swept(name).is_some()).collect();
+            let why = match source.values.contains_key(name) {
+                _ if whole(name) => WHOLE,
+                true => ": with another value it is not this oscillator",
+                false => "",
+            };
+            not_swept(name, why, &known)
+        })
     };
     let of_text = shared.clone();
     let computed = move |changes: &[(&str, Value)]| {
-        let (source, _) = &*shared;
-        let mut values = source.values.clone();
-        values.extend(changes.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
-        let found = ImpactProblem::new(&source.problem, &values, periods, branch).ok()?;
-        let parameters = found.parameters.to_f64();
-        parameters.validate().ok().map(|()| parameters)
+        computed_parameters(&shared.0, periods, branch, changes)
     };
     Ok(Known {
         problem,
@@ -425,6 +435,20 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
         text: Box::new(move |text| of_text.0.sweep(text)),
         computed: Some(Box::new(computed)),
     })
+}
+
+/// The parameters of section 2 with other values of those of a file.
+fn computed_parameters(
+    source: &Source,
+    periods: Option<u32>,
+    branch: Branch,
+    changes: &[(&str, Value)],
+) -> Option<Parameters<f64>> {
+    let mut values = source.values.clone();
+    values.extend(changes.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
+    let found = ImpactProblem::new(&source.problem, &values, periods, branch).ok()?;
+    let parameters = found.parameters.to_f64();
+    parameters.validate().ok().map(|()| parameters)
 }
 
 /// NAME=LO..HI:COUNT.

@@ -1,14 +1,13 @@
 //! Averaging of a problem: rates of amplitude and phase as formulas or as numbers.
 
 mod coefficients;
-mod enclosures;
 pub(crate) mod numbers;
 mod values;
 
 use crate::number::rational;
 use crate::{Error, Number, Progress, Value};
 use coefficients::{Coefficients, with_angles};
-pub(crate) use enclosures::{Enclosures, defaults, enclosures};
+pub(crate) use numbers::defaults;
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials, AmplitudePower};

@@ -97,7 +97,10 @@ impl Force {
     }
 
     fn term(&self) -> Expression {
-        (Expression::Displacement.pow(i64::from(self.x)) * self.atom.clone()).canonical()
+        match self.x {
+            0 => self.atom.clone(),
+            x => (Expression::Displacement.pow(i64::from(x)) * self.atom.clone()).canonical(),
+        }
     }
 
     fn is_silent(&self, all: &Monomials, values: &BTreeMap<String, Value>) -> bool {
