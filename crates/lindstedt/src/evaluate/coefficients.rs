@@ -7,7 +7,7 @@
 use crate::number::sine_sum;
 use lindstedt_algebra::Stop;
 use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_phase::lobachevsky_function::means;
+use lindstedt_phase::lobachevsky_function::means_while;
 use rug::{Float, Integer, Rational};
 
 /// T/2pi of x'' + x (x^2)^delta = 0 at amplitude one: with x = cos^(1/(1+delta)) theta,
@@ -17,7 +17,7 @@ use rug::{Float, Integer, Rational};
 pub(super) fn power_law(order: usize, bits: u32, stop: &Stop) -> Option<Vec<Float>> {
     let guard = 16u32.checked_mul(u32::try_from(order).ok()?)?.checked_add(64)?;
     let balls = Balls::new(bits).with_guard(guard);
-    let moments = means(order, balls);
+    let moments = means_while(order, balls, &|| !stop.asked())?;
     let coefficient = |n: usize| -> Option<Float> {
         if stop.asked() {
             return None;
@@ -149,7 +149,7 @@ fn inverse_root(radicand: &[Radicand], bits: u32, stop: &Stop) -> Option<Vec<Gri
 
 /// <K^i l^m> = m! [z^m] prod_{r<i} -(1 + 2r - z)/(1 + 2r) sum_m mu_m z^m for i, m <= order.
 fn means_of_powers(order: usize, bits: u32, stop: &Stop) -> Option<Grid> {
-    let moments = means(order, Balls::new(bits));
+    let moments = means_while(order, Balls::new(bits), &|| !stop.asked())?;
     let mut product = vec![Rational::new(); order + 1];
     product[0] += 1;
     let mut table = Vec::new();

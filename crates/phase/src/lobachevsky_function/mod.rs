@@ -45,10 +45,19 @@ fn working(balls: Balls) -> Balls {
 /// Cost: max_m zeta values, max_m^2/2 products.
 #[must_use]
 pub fn means(max_m: usize, balls: Balls) -> Vec<Ball> {
+    means_while(max_m, balls, &|| true).unwrap_or_default()
+}
+
+/// The same as long as `go_on`, asked before every m, says so; else nothing.
+#[must_use]
+pub fn means_while(max_m: usize, balls: Balls, go_on: &dyn Fn() -> bool) -> Option<Vec<Ball>> {
     let work = balls.with_guard(GUARD_BITS);
     let mut means = vec![work.one()];
     let mut eta = Vec::new();
     for m in 1..=max_m {
+        if !go_on() {
+            return None;
+        }
         let index = u32::try_from(m).unwrap_or(u32::MAX);
         eta.push(eta_value(index, work));
         let sum = eta
@@ -58,7 +67,7 @@ pub fn means(max_m: usize, balls: Balls) -> Vec<Ball> {
         let mean = work.div_i64(&sum, i64::from(index));
         means.push(mean.unwrap_or_else(|| work.indeterminate()));
     }
-    means.iter().map(|mean| balls.round(mean)).collect()
+    Some(means.iter().map(|mean| balls.round(mean)).collect())
 }
 
 /// eta(k) = sum_j (-1)^(j+1) j^-k, k >= 1.
