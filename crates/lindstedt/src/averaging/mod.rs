@@ -7,7 +7,6 @@ mod values;
 use crate::number::rational;
 use crate::{Error, Number, Progress, Value};
 use coefficients::{Coefficients, with_angles};
-pub(crate) use numbers::defaults;
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials, AmplitudePower};
