@@ -394,3 +394,20 @@ fn what_has_no_effect_is_said() {
     let said = messages(&path, &["--set", "amplitude=2"]);
     assert!(said.is_empty(), "{said}");
 }
+
+/// x = sin t from x = 0, x' = 1.
+#[test]
+fn a_motion_begins_as_the_file_says() {
+    let folder = Folder::new("initial");
+    let text = "name = \"initial\"\nequation = \"x'' + x + eps*x^3\"\n[initial]\nx = \"0\"\n\
+                velocity = \"1\"\n";
+    let path = folder.file("initial.toml", text.as_bytes());
+    let all = ["simulate", &path, "--set", "eps=0", "--until", "pi/2", "--format", "json"];
+    let found: Value = serde_json::from_str(&text_of(&all)).unwrap();
+    let x: f64 = found["final"]["x"]["decimal"].as_str().unwrap().parse().unwrap();
+    assert!((x - 1.0).abs() < 1e-12, "{found}");
+}
+
+fn text_of(arguments: &[&str]) -> String {
+    text(&[arguments, &["--quiet"]].concat())
+}

@@ -424,7 +424,8 @@ fn chaos_in_doubles_says_what_to_do() {
 fn diagnostics_of_a_periodic_impact_orbit() {
     let period = 2.0 * std::f64::consts::PI / 3.3;
     let from = |start: &[&str], skip: &str, periods: &str| {
-        let all = ["vibro-impact", "--lyapunov", "--zero-one", "--skip", skip, "--periods", periods];
+        let all =
+            ["vibro-impact", "--lyapunov", "--zero-one", "--skip", skip, "--periods", periods];
         json(&[&all[..], start].concat())
     };
     let orbit = from(&[], "30", "100");

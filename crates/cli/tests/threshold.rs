@@ -6,6 +6,8 @@ use std::process::{Command, Output};
 
 #[path = "threshold/files.rs"]
 mod files;
+#[path = "threshold/forms.rs"]
+mod forms;
 
 fn run(arguments: &[&str]) -> Output {
     let command = [&["threshold", "stick-slip"], arguments].concat();

@@ -72,7 +72,11 @@ impl<R: Real> Iteration<'_, '_, R> {
         if local.lattice.is_dense() {
             return Err(Halt::Dense(MOST_TERMS));
         }
-        if terms > MOST_TERMS || self.work > MOST_WORK { Err(Halt::Dense(terms)) } else { Ok(exists) }
+        if terms > MOST_TERMS || self.work > MOST_WORK {
+            Err(Halt::Dense(terms))
+        } else {
+            Ok(exists)
+        }
     }
 }
 

@@ -106,7 +106,10 @@ fn impacts_at_the_ends_of_the_intervals() {
     assert!((exponent(0.0, [1.0, 0.0]).value - expected).abs() < 1e-12);
     // ln 2 more or less, once.
     let at_impacts = exponent(0.0, [0.0, 1.0]);
-    assert!((at_impacts.value - expected).abs() < 2f64.ln() / (400.0 * PI) + 1e-12, "{at_impacts:?}");
+    assert!(
+        (at_impacts.value - expected).abs() < 2f64.ln() / (400.0 * PI) + 1e-12,
+        "{at_impacts:?}"
+    );
     let system = bouncing().compile(Doubles, &Parameters::new()).unwrap();
     let start = [0.0, 1.0];
     let mut map =
@@ -137,16 +140,11 @@ fn exponents_are_numbers_or_errors() {
         model.compile(Doubles, &Parameters::new()).unwrap()
     };
     let integration = Settings::for_digits(16);
-    let settings = |interval, averaged| LyapunovSettings {
-        interval,
-        transient: 0,
-        averaged,
-        integration,
-    };
+    let settings =
+        |interval, averaged| LyapunovSettings { interval, transient: 0, averaged, integration };
     let slow = growth(1);
-    let mut run = |system, settings| {
-        largest_lyapunov_exponent(system, &0.0, &[0.0, 0.0], &settings, go_on)
-    };
+    let mut run =
+        |system, settings| largest_lyapunov_exponent(system, &0.0, &[0.0, 0.0], &settings, go_on);
     assert_eq!(run(&slow, settings(1.0, 0)), Ok(None));
     let once = run(&slow, settings(1.0, 1)).unwrap().unwrap();
     assert!(once.value.is_finite() && once.error == f64::INFINITY);

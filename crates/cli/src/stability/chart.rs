@@ -206,12 +206,8 @@ fn general(
     observer: &(dyn Fn(usize) -> bool + Sync),
 ) -> Result<Chart, ImpactError> {
     let (width, height) = (plan.columns.count, plan.rows.count);
-    let empty = Point {
-        predicted: None,
-        exact: None,
-        predicted_radius: f64::NAN,
-        exact_radius: f64::NAN,
-    };
+    let empty =
+        Point { predicted: None, exact: None, predicted_radius: f64::NAN, exact_radius: f64::NAN };
     let point = |column: usize, row: usize| -> Result<Point, ImpactError> {
         let places = request.sweeps.iter().zip([column, row]);
         let changes: Option<Vec<(&str, Value)>> =
@@ -230,7 +226,11 @@ fn general(
     for row in 0..height {
         let line: Vec<Point> = (0..width)
             .into_par_iter()
-            .map(|column| if observer(row) { point(column, row) } else { Err(ImpactError::Cancelled) })
+            .map(
+                |column| {
+                    if observer(row) { point(column, row) } else { Err(ImpactError::Cancelled) }
+                },
+            )
             .collect::<Result<_, _>>()?;
         points.extend(line);
     }

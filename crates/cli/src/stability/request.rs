@@ -169,10 +169,9 @@ impl Request {
         for sweep in sweeps.iter_mut().filter(|_| !general) {
             sweep.base = *parameters_of_section_2.slot(sweep.axis.parameter);
         }
-        if general
-            && let Some(sweep) = sweeps.iter().find(|sweep| sweep.exact(0).is_none())
-        {
-            let message = format!("the ends of {} are not both multiples of pi, or neither", sweep.name);
+        if general && let Some(sweep) = sweeps.iter().find(|sweep| sweep.exact(0).is_none()) {
+            let message =
+                format!("the ends of {} are not both multiples of pi, or neither", sweep.name);
             return Err(Failure::usage("range", message, ""));
         }
         if sweeps.len() > 2 {
@@ -422,9 +421,8 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
         })
     };
     let of_text = shared.clone();
-    let computed = move |changes: &[(&str, Value)]| {
-        computed_parameters(&shared.0, periods, branch, changes)
-    };
+    let computed =
+        move |changes: &[(&str, Value)]| computed_parameters(&shared.0, periods, branch, changes);
     Ok(Known {
         problem,
         parameters,

@@ -159,20 +159,18 @@ fn check(found: &MelnikovProblem, check: Option<&OrbitCheck>) -> Json {
                 "{kind}, {family} with {parameters}: the residual of the equation is 0 identically"
             ))
         }
-        Unperturbed::Numeric(_) => {
-            check.map_or(Json::Null, |c| {
-                let (kind, end) = if c.homoclinic {
-                    ("homoclinic", "turning point")
-                } else {
-                    ("heteroclinic", "other saddle")
-                };
-                Json::from(format!(
-                    "{kind}, numeric: saddle {:.9}, {end} {:.9}, energy residual {:.1e}, \
+        Unperturbed::Numeric(_) => check.map_or(Json::Null, |c| {
+            let (kind, end) = if c.homoclinic {
+                ("homoclinic", "turning point")
+            } else {
+                ("heteroclinic", "other saddle")
+            };
+            Json::from(format!(
+                "{kind}, numeric: saddle {:.9}, {end} {:.9}, energy residual {:.1e}, \
                      distance to the saddle at the end {:.1e}",
-                    c.saddle, c.end, c.energy_residual, c.decay
-                ))
-            })
-        }
+                c.saddle, c.end, c.energy_residual, c.decay
+            ))
+        }),
     }
 }
 

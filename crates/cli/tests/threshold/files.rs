@@ -17,15 +17,11 @@ fn number(value: &serde_json::Value) -> f64 {
 fn the_term_and_the_parameter_are_named() {
     let parameters = [("m", "2"), ("gamma", "1"), ("h", "3"), ("omega", "1"), ("delta", "1/5")];
     let file = |name: &str, force: &str| {
-        let equation =
-            format!("m x'' - m x + m x^3 = eps ({force} cos(omega t + 1) - m delta x')");
+        let equation = format!("m x'' - m x + m x^3 = eps ({force} cos(omega t + 1) - m delta x')");
         File::new(name, &equation, &parameters)
     };
-    let plain = File::new(
-        "plain",
-        "x'' - x + x^3 = eps (gamma cos(omega t) - delta x')",
-        &parameters[1..],
-    );
+    let plain =
+        File::new("plain", "x'' - x + x^3 = eps (gamma cos(omega t) - delta x')", &parameters[1..]);
     let expected = plain.json(&["--digits", "20"]);
     assert_eq!(expected["harmonic"]["term"], "cos(omega*t)");
     assert_eq!(expected["harmonic"]["parameter"], "gamma");
@@ -63,7 +59,8 @@ fn forces_that_are_zero() {
     let values = |gamma: &'static str, h: &'static str| {
         [("gamma", gamma), ("h", h), ("omega", "1"), ("delta", "1/5")]
     };
-    let equation = "x'' - x - x^2/2 + x^3 = eps (gamma cos(omega t) + gamma/2 cos(2 omega t) - delta x')";
+    let equation =
+        "x'' - x - x^2/2 + x^3 = eps (gamma cos(omega t) + gamma/2 cos(2 omega t) - delta x')";
     let loud = File::new("loud", equation, &values("1", "0")).json(&["--digits", "12"]);
     let silent = File::new("silent", equation, &values("0", "0")).json(&["--digits", "12"]);
     assert_eq!(silent["gamma_c"], loud["gamma_c"]);
@@ -103,15 +100,11 @@ fn the_small_parameter_is_said_to_have_no_effect() {
 /// series of the motion (odefun).
 #[test]
 fn orbits_of_all_saddles() {
-    let parameters = [
-        ("gamma", "1"),
-        ("omega", "1"),
-        ("delta", "1/5"),
-        ("mu", "1/10"),
-        ("v", "3/10"),
-    ];
+    let parameters =
+        [("gamma", "1"), ("omega", "1"), ("delta", "1/5"), ("mu", "1/10"), ("v", "3/10")];
     // Saddles at -1 and 1 on one level, centres at -2, 0, 2.
-    let equation = "x'' = -x (x^2 - 1)(x^2 - 4) + eps (gamma cos(omega t) - delta (x' - v) - mu sign(x' - v))";
+    let equation =
+        "x'' = -x (x^2 - 1)(x^2 - 4) + eps (gamma cos(omega t) - delta (x' - v) - mu sign(x' - v))";
     let three = [
         ("right loop at x = 1", 0.816_401_019_892),
         ("left loop at x = -1", 0.816_401_019_892),

@@ -120,7 +120,13 @@ impl NumericOrbit {
             if n > 0 && before > 0 && w < 0 {
                 let name = if direction > 0 { "right loop" } else { "left loop" };
                 let start = self.turning_point(saddle, &next, COARSE)?;
-                return Some(vec![Path { name, saddle: saddle.clone(), start, other: None, sign: 1 }]);
+                return Some(vec![Path {
+                    name,
+                    saddle: saddle.clone(),
+                    start,
+                    other: None,
+                    sign: 1,
+                }]);
             }
             n += 1;
         }

@@ -191,7 +191,8 @@ impl Drifting {
         let keys: BTreeSet<_> = solution.iter().flatten().map(key).collect();
         let part = |wanted, which: usize| {
             let orders = solution.iter();
-            let term = orders.map(|u| Some(&u.iter().find(|h| key(h) == wanted)?.amplitudes[which]));
+            let term =
+                orders.map(|u| Some(&u.iter().find(|h| key(h) == wanted)?.amplitudes[which]));
             self.sum(term, small)
         };
         Truncated {
@@ -245,7 +246,9 @@ impl Drifting {
     /// x_N(t) before t = 0 as an expression in t, where there is a delay: a and psi by their Taylor
     /// polynomials about 0, which converge on the slow scale 1/eps.
     fn history(&self, truncated: &Truncated, digits: u32) -> Result<Option<Expression>, Error> {
-        let Some(longest) = self.numbers.delays.iter().max_by(|a, b| a.total_cmp(b)) else { return Ok(None) };
+        let Some(longest) = self.numbers.delays.iter().max_by(|a, b| a.total_cmp(b)) else {
+            return Ok(None);
+        };
         let real = Digits::for_digits(digits);
         let system = truncated.flow(real, false)?;
         let start = [real.float(&self.start), real.zero()];
