@@ -289,6 +289,9 @@ impl Request {
 /// The parameter of section 2 that a name stands for, if it is one, and its value.
 type Names = dyn Fn(&str) -> Result<(Option<Swept>, f64), Failure>;
 
+/// A sweep as it is meant.
+type Meaning = dyn Fn(&str) -> Result<String, Failure>;
+
 /// Parameters of section 2 from values of a file's; nothing where there is no such oscillator.
 pub type Computed = dyn Fn(&[(&str, Value)]) -> Option<Parameters<f64>> + Sync;
 
@@ -302,7 +305,7 @@ struct Known {
     /// The swept parameter of a name, or why it cannot be swept.
     names: Box<Names>,
     /// A sweep as it is meant: without a range the one of the file.
-    text: Box<dyn Fn(&str) -> Result<String, Failure>>,
+    text: Box<Meaning>,
     computed: Option<Box<Computed>>,
 }
 
