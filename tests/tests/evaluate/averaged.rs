@@ -1,6 +1,6 @@
 //! Averaged motions against the integrator.
 
-use crate::support::{example, integrated, written};
+use crate::support::integrated;
 use lindstedt::equation::Problem;
 use lindstedt::evaluate::averaged::{Motion, MotionSettings, Start};
 use lindstedt::{Value, problems};

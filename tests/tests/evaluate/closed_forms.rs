@@ -4,6 +4,7 @@ use crate::support::{relative_error, relative_estimate, run, settings};
 use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
 use lindstedt::series::resummation::{Kind, Method, ResummationError};
 use lindstedt::{Error, Value, problems};
+use rug::Float;
 
 /// Section 3 of the numbers: exponent and relative error of T at orders 2, 4, 8, 12, 20 by the
 /// change of variable.

@@ -1,12 +1,14 @@
 //! Problem files: limit cycles, conservative oscillators, solutions, refusals.
 
-use crate::support::{example, integrated, quantity, settings, written};
+use crate::support::{
+    example, integrated, quantity, relative_error, relative_estimate, settings, written,
+};
 use lindstedt::equation::{Condition, Problem};
 use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
 use lindstedt::simulate::{
     Digits, EventKind, Integrator, Model, Parameters, Real, Report, Settings as Precision,
 };
-use lindstedt::{Error, Value};
+use lindstedt::{Error, Value, problems};
 use rug::Float;
 use std::ops::ControlFlow;
 
