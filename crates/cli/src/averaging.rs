@@ -3,7 +3,7 @@
 
 use crate::Outcome;
 use crate::arguments::Format;
-use crate::derive::number_json;
+use crate::derive::{number_json, say_missing};
 use crate::failure::{INTERRUPTED, UNDECIDED};
 use crate::output;
 use crate::problems::{condition_name, condition_text};
@@ -13,7 +13,7 @@ use lindstedt::coeff::ball::Balls;
 use lindstedt::coeff::print::Style;
 use lindstedt::coeff::print::{latex_name, power};
 use lindstedt::equation::{Condition, Problem, print};
-use lindstedt::{Progress, Settings, problems};
+use lindstedt::{ProblemFile, Progress, Settings, problems};
 use lindstedt_impact::complex::Complex;
 use lindstedt_impact::convergence::{Convergence, convergence};
 use lindstedt_impact::parameters::{Branch, Parameters};
@@ -29,6 +29,7 @@ pub fn run(
     digits: usize,
     header: &str,
     session: &Session<'_>,
+    file: Option<&ProblemFile>,
 ) -> Outcome {
     let asked = AveragingSettings {
         order: settings.order,
@@ -46,6 +47,11 @@ pub fn run(
     };
     let result = average(problem, &asked, &mut observer)?;
     session.done();
+    let names: &[&str] = match result.is_linear() {
+        true => &["growth_rate", "frequency", "solution"],
+        false => &["solution"],
+    };
+    say_missing(file, &|name| names.contains(&name));
     let convergence = series_convergence(&result, settings);
     if let Some(found) = convergence.as_ref().filter(|found| found.diverges()) {
         output::warn(&divergence(found));

@@ -12,7 +12,9 @@ use lindstedt::coeff::print::Style;
 use lindstedt::equation::classify::polynomial;
 use lindstedt::equation::{AmplitudeRole, Condition, print};
 use lindstedt::expand::ExpandError;
-use lindstedt::{Derivation, Error, Number, Progress, Route, Settings, Solution, Status};
+use lindstedt::{
+    Derivation, Error, Number, ProblemFile, Progress, Route, Settings, Solution, Status, Value,
+};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
@@ -57,10 +59,10 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         let mut settings = settings;
         if file.is_some() {
             let known = lindstedt::known_values(&problem, &settings.parameters);
-            let known = known.into_iter().map(|(name, q)| (name, lindstedt::Value::Rational(q)));
+            let known = known.into_iter().map(|(name, q)| (name, Value::Rational(q)));
             settings.parameters = known.chain(settings.parameters).collect();
         }
-        return averaging::run(&problem, &settings, digits, &header, session);
+        return averaging::run(&problem, &settings, digits, &header, session, file.as_ref());
     }
     if options.tier != arguments::TierName::Exact {
         return crate::derive_numeric::run(options, &problem, &settings, digits, session);
@@ -91,6 +93,11 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     })?;
     let report = Report::new(&result, digits)?;
     session.done();
+    other_start(file.as_ref(), &result);
+    say_missing(file.as_ref(), &|name| {
+        result.series.iter().any(|series| series.name == name)
+            || name == "solution" && report.solved() > 0
+    });
     let text = match session.format() {
         Format::Json => format!("{:#}\n", report.json(session)),
         Format::Text => header + &report.board(Style::Text, &Frame::TEXT),
@@ -120,6 +127,32 @@ fn unfinished(over_q: bool, primes: usize) -> String {
         )
     } else {
         message.to_owned()
+    }
+}
+
+/// Says what a problem file asks for and the derivation does not have.
+pub fn say_missing(file: Option<&ProblemFile>, has: &dyn Fn(&str) -> bool) {
+    let Some(file) = file else { return };
+    let missing: Vec<&str> =
+        file.asked.iter().map(String::as_str).filter(|name| !has(name)).collect();
+    if !missing.is_empty() {
+        output::warn(&format!(
+            "asked for in the file, but not in this result: {}",
+            missing.join(", ")
+        ));
+    }
+}
+
+/// Says that a start at another amplitude is not the one that was expanded about.
+fn other_start(file: Option<&ProblemFile>, result: &Derivation) {
+    let start = file.and_then(|file| file.initial.as_ref()).map(|[x, _]| x);
+    let given = result.condition == Condition::InitialAmplitude;
+    if let (Some(x), Some(amplitude), true) = (start, &result.amplitude, given)
+        && Value::parse(x).ok().as_ref() != Some(amplitude)
+    {
+        output::warn(&format!(
+            "x = {x} of [initial] has no effect here: the amplitude is {amplitude} (--set amplitude={x})"
+        ));
     }
 }
 

@@ -54,6 +54,20 @@ impl Source {
         at
     }
 
+    /// `NAME=RANGE` as it is meant: NAME alone has the range that the file says (`swept`); what the
+    /// file calls `fixed` is not varied.
+    pub fn sweep(&self, text: &str) -> Result<String, Failure> {
+        let name = text.split('=').next().unwrap_or_default().trim();
+        if self.file.fixed.iter().any(|fixed| fixed == name) {
+            let message = format!("{name:?} cannot be varied: it is fixed in {}", self.path);
+            return Err(Failure::usage("unknown-parameter", message, "--set changes it"));
+        }
+        match self.file.ranges.get(text.trim()) {
+            Some(range) => Ok(format!("{name}={range}")),
+            None => Ok(text.to_owned()),
+        }
+    }
+
     /// A refusal with the place of its term.
     pub fn refuse(&self, refusal: Refusal) -> Failure {
         let small = &self.problem.small;

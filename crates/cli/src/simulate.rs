@@ -248,6 +248,9 @@ impl From<SimulateError> for Failure {
                 "could-not-decide",
                 "more --digits; not at all where w reaches zero without speed, or for p near -1",
             ),
+            SimulateError::DenseBranchPoint { .. } => {
+                (UNDECIDED, "too-large", "fewer --digits, or a power farther from -1")
+            }
             SimulateError::Grazing { .. } | SimulateError::StepTooSmall { .. } => (
                 UNDECIDED,
                 "could-not-decide",

@@ -426,3 +426,47 @@ fn a_hundred_bad_files_get_one_clear_line_each() {
     let path = folder.0.join("folder.toml");
     assert_eq!(refused(path.to_str().unwrap(), 5, "it is not a file", "file"), None);
 }
+
+/// What a file asks for and the derivation does not have, and a start that it does not use.
+#[test]
+fn what_has_no_effect_is_said() {
+    let folder = Folder::new("asked");
+    let file = |asked: &str, x: &str| {
+        let text = format!(
+            "name = \"asked\"\nequation = \"x'' + x + eps*x^3\"\nasked = [{asked}]\n\
+             [parameters]\namplitude = {{ value = \"2\" }}\n[initial]\nx = \"{x}\"\nvelocity = \"0\"\n"
+        );
+        folder.file("asked.toml", text.as_bytes())
+    };
+    let messages = |path: &str, more: &[&str]| {
+        let output = lindstedt(&[&["derive", path, "--order", "2", "--quiet"], more].concat());
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let path = file("\"frequency\", \"growth_rate\"", "3");
+    let said = messages(&path, &[]);
+    assert!(said.contains("not in this result: growth_rate\n"), "{said}");
+    assert!(said.contains("x = 3 of [initial] has no effect here: the amplitude is"), "{said}");
+    let said = messages(&path, &["--set", "amplitude=3"]);
+    assert!(!said.contains("[initial]"), "{said}");
+    let path = file("\"frequency\", \"solution\"", "2");
+    let said = messages(&path, &["--set", "amplitude=2"]);
+    assert!(said.is_empty(), "{said}");
+}
+
+/// x = sin t from x = 0, x' = 1.
+#[test]
+fn a_motion_begins_as_the_file_says() {
+    let folder = Folder::new("initial");
+    let text = "name = \"initial\"\nequation = \"x'' + x + eps*x^3\"\n[initial]\nx = \"0\"\n\
+                velocity = \"1\"\n";
+    let path = folder.file("initial.toml", text.as_bytes());
+    let all = ["simulate", &path, "--set", "eps=0", "--until", "pi/2", "--format", "json"];
+    let found: Value = serde_json::from_str(&text_of(&all)).unwrap();
+    let x: f64 = found["final"]["x"]["decimal"].as_str().unwrap().parse().unwrap();
+    assert!((x - 1.0).abs() < 1e-12, "{found}");
+}
+
+fn text_of(arguments: &[&str]) -> String {
+    text(&[arguments, &["--quiet"]].concat())
+}

@@ -415,3 +415,41 @@ fn chaos_in_doubles_says_what_to_do() {
     let text = String::from_utf8_lossy(&output.stderr);
     assert!(text.contains("--lyapunov") && text.contains("without --f64"), "{text}");
 }
+
+/// The orbit starts just after an impact and has the period of the force: looked at once per period
+/// an impact is met every time. It is unstable, gamma = -1.167783795500397 (the characteristic
+/// function, `lindstedt stability`); it leaves after some 150 periods for a stable orbit, where
+/// ln |gamma|/T = ln(R)/T - c/2 of a complex pair of determinant R^2 exp(-c T).
+#[test]
+fn diagnostics_of_a_periodic_impact_orbit() {
+    let period = 2.0 * std::f64::consts::PI / 3.3;
+    let from = |start: &[&str], skip: &str, periods: &str| {
+        let all =
+            ["vibro-impact", "--lyapunov", "--zero-one", "--skip", skip, "--periods", periods];
+        json(&[&all[..], start].concat())
+    };
+    let orbit = from(&[], "30", "100");
+    let unstable = 1.167_783_795_500_397_5_f64.ln() / period;
+    assert!((float(&orbit["lyapunov"]) - unstable).abs() < 1e-4, "{orbit}");
+    // The same point once per period, to rounding errors.
+    let k = orbit["zero_one"]["k"][0]["decimal"].as_str().unwrap();
+    assert!(k.parse::<f64>().unwrap().abs() < 0.3, "{orbit}");
+    for start in [&[][..], &["--state", "-0.5,0.1"]] {
+        let found = from(start, "1000", "2000");
+        let stable = 0.6f64.ln() / period - 0.1;
+        assert!((float(&found["lyapunov"]) - stable).abs() < 3e-3, "{start:?} {found}");
+        let verdict = found["verdict"].as_str().unwrap();
+        assert!(verdict.contains("regular: perturbations decay"), "{verdict}");
+        let k = found["zero_one"]["k"][0]["decimal"].as_str().unwrap();
+        assert!(k.parse::<f64>().unwrap().abs() < 0.3, "{found}");
+    }
+}
+
+/// The powers of the series at x = 0 are too close together.
+#[test]
+fn a_power_near_minus_one_is_refused() {
+    let output = run(&["power-law", "--set", "n=-0.999", "--digits", "20"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(4), "{message}");
+    assert!(message.contains("too near an integer"), "{message}");
+}

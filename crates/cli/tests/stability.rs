@@ -180,3 +180,37 @@ fn small_things() {
     let output = lindstedt(&["derive", "vibro-impact", "--set", "alpha=pi", "--order", "1"]);
     assert!(String::from_utf8_lossy(&output.stderr).contains("without a value: omega, k, c"));
 }
+
+/// Parameters that those of section 2 are computed from: a chart over them is made of the verdicts
+/// at its points.
+#[test]
+fn charts_over_the_parameters_of_a_file() {
+    let spring = example("impact-spring");
+    let sweeps = ["--sweep", "m=1..3:3", "--sweep", "g=-1/2..1/2:5"];
+    let found = of_file(&spring, &sweeps);
+    assert_eq!(found["grid"]["columns"]["name"], "m");
+    assert_eq!(found["grid"]["rows"]["values"], serde_json::json!([-0.5, -0.25, 0.0, 0.25, 0.5]));
+    let mut kinds = std::collections::BTreeSet::new();
+    for (row, g) in ["-1/2", "-1/4", "0", "1/4", "1/2"].iter().enumerate() {
+        for (column, m) in ["1", "2", "3"].iter().enumerate() {
+            let (m, g) = (format!("m={m}"), format!("g={g}"));
+            let command =
+                ["stability", &spring, "--set", &m, "--set", &g, "--f64", "--format", "json"];
+            let point: Value = serde_json::from_slice(&lindstedt(&command).stdout).unwrap();
+            for key in ["kbm", "exact"] {
+                let cell = &found["grid"][key][row][column];
+                assert_eq!(*cell, point[key]["stable"], "{key} at {m} {g}: {point}");
+                kinds.insert(cell.to_string());
+            }
+        }
+    }
+    assert!(kinds.len() > 1, "{kinds:?}");
+    // One that is a parameter of section 2 under another name, beside one that is not.
+    let both = of_file(&spring, &["--sweep", "r=0.5..0.7:2", "--sweep", "d=0.2..0.6:2"]);
+    let alone = of_file(&spring, &["--sweep", "r=0.5..0.7:2", "--set", "d=0.6"]);
+    assert_eq!(both["grid"]["exact"][1], alone["grid"]["exact"][0]);
+    let refused = lindstedt(&["stability", &spring, "--sweep", "n=1..3:3"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert!(message.contains("whole number") && message.contains("m, d, k1"), "{message}");
+}

@@ -1,8 +1,13 @@
 //! `lindstedt threshold`: the contract's keys, the numbers of the issue, sweeps, figures, refusals.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use serde_json::Value;
 use std::process::{Command, Output};
+
+#[path = "threshold/files.rs"]
+mod files;
+#[path = "threshold/forms.rs"]
+mod forms;
 
 fn run(arguments: &[&str]) -> Output {
     let command = [&["threshold", "stick-slip"], arguments].concat();

@@ -13,9 +13,10 @@ use crate::error::SimulateError;
 use crate::integrator::{Integrator, Observer};
 use crate::local::{Local, Piece, ShapeRef};
 use crate::past::Clock;
-use crate::puiseux::Lattice;
+use crate::puiseux::{Lattice, MOST_TERMS};
 use crate::real::Real;
 use crate::report::{Event, EventKind, Report, Segment};
+use crate::system::System;
 use std::ops::ControlFlow;
 
 /// Exponents between which terms count as the tail.
@@ -36,6 +37,48 @@ struct Crossing<R: Real> {
 
 /// Looks for sign changes of a section per side.
 const LOOKS: u32 = 16;
+/// Products of coefficients that one crossing may take: some ten seconds.
+const MOST_WORK: u64 = 100_000_000;
+
+/// Why a series was not finished.
+enum Halt {
+    /// The observer broke it off.
+    Stopped,
+    /// It has so many terms that it takes too long.
+    Dense(usize),
+}
+
+/// Picard's iteration for one crossing: the work so far, and who is asked whether to go on.
+struct Iteration<'a, 'o, R: Real> {
+    work: u64,
+    observer: &'a mut Observer<'o, R>,
+}
+
+impl<R: Real> Iteration<'_, '_, R> {
+    /// One step; whether the right sides have such series.
+    fn sweep(
+        &mut self,
+        local: &mut Local<R>,
+        system: &System<R>,
+        start: &[R::Element],
+        time: &R::Element,
+    ) -> Result<bool, Halt> {
+        if (self.observer)(&Report::Busy).is_break() {
+            return Err(Halt::Stopped);
+        }
+        let exists = local.sweep(system, start, time).is_some();
+        self.work += local.work();
+        let terms = local.longest();
+        if local.lattice.is_dense() {
+            return Err(Halt::Dense(MOST_TERMS));
+        }
+        if terms > MOST_TERMS || self.work > MOST_WORK {
+            Err(Halt::Dense(terms))
+        } else {
+            Ok(exists)
+        }
+    }
+}
 
 impl<R: Real> Integrator<'_, R> {
     /// Crosses the branch point, if its series converges; nothing otherwise.
@@ -73,13 +116,25 @@ impl<R: Real> Integrator<'_, R> {
             let band = (cut - 1.5 * spacing, cut);
             let beyond = cut + 3.0 + spacing.abs();
             let Some(lattice) = Lattice::new(real, &power, beyond) else { return Ok(None) };
+            let mut iteration = Iteration { work: 0, observer };
             let found = if here {
-                self.depart_from(index, lattice, &rates, band)
+                self.depart_from(index, lattice, (&rates, band), &mut iteration)
             } else {
-                self.meet((index, &branch.after), lattice, &rates, band)
+                self.meet((index, &branch.after), lattice, (&rates, band), &mut iteration)
             };
-            if let Some(crossing) = found {
-                return Ok(Some(self.carry_out(index, &crossing, remaining, observer)));
+            match found {
+                Ok(None) => {}
+                Ok(Some(crossing)) => {
+                    return Ok(Some(self.carry_out(index, &crossing, remaining, observer)));
+                }
+                Err(Halt::Stopped) => {
+                    self.expand()?;
+                    return Ok(Some(ControlFlow::Break(())));
+                }
+                Err(Halt::Dense(terms)) => {
+                    let time = self.seconds();
+                    return Err(SimulateError::DenseBranchPoint { switch: index, time, terms });
+                }
             }
         }
         Ok(None)
@@ -90,9 +145,9 @@ impl<R: Real> Integrator<'_, R> {
         &self,
         (index, after): (usize, &R::Element),
         lattice: Lattice<R>,
-        rates: &[R::Element],
-        band: Band,
-    ) -> Option<Crossing<R>> {
+        (rates, band): (&[R::Element], Band),
+        iteration: &mut Iteration<'_, '_, R>,
+    ) -> Result<Option<Crossing<R>>, Halt> {
         let system = self.system;
         let real = &system.real;
         let mode = self.phase.modes[index];
@@ -114,12 +169,14 @@ impl<R: Real> Integrator<'_, R> {
             clock
         };
         for _ in 0..64 + real.bits() {
-            before.sweep(system, &start, &at(&length).high)?;
-            let slope = before.slope(system)?;
+            if !iteration.sweep(&mut before, system, &start, &at(&length).high)? {
+                return Ok(None);
+            }
+            let Some(slope) = before.slope(system) else { return Ok(None) };
             let shift = real.quotient(&before.offset, &slope);
             real.increase(&mut length, &shift);
             if real.sign(&slope) != mode || real.sign(&length) <= 0 {
-                return None;
+                return Ok(None);
             }
             let next = back(&before, &length);
             let scale = start.iter().map(|x| real.log2(x)).fold(f64::NEG_INFINITY, f64::max);
@@ -135,7 +192,7 @@ impl<R: Real> Integrator<'_, R> {
         }
         let ends = before.ends(system, &start, &length, (band, self.log2_tolerance));
         if settled < 3 || !ends || !self.alone(index, &before, &length) {
-            return None;
+            return Ok(None);
         }
         if let Some(w) = start.get_mut(system.switches[index].row) {
             real.set_zero(w);
@@ -146,11 +203,12 @@ impl<R: Real> Integrator<'_, R> {
             .collect();
         let clock = at(&length);
         let lattice = before.lattice.clone();
-        let after = self.leave((index, -mode), lattice, (&start, &rates), &clock)?;
+        let after = self.leave((index, -mode), lattice, (&start, &rates), &clock, iteration)?;
+        let Some(after) = after else { return Ok(None) };
         let ends = after.ends(system, &start, &length, (band, self.log2_tolerance));
         let ends = ends && self.alone(index, &after, &length);
         let before = Some((before, length.clone()));
-        ends.then_some(Crossing { before, after, length, start, clock, direction: -mode })
+        Ok(ends.then_some(Crossing { before, after, length, start, clock, direction: -mode }))
     }
 
     /// The series after a branch point that is here.
@@ -158,24 +216,26 @@ impl<R: Real> Integrator<'_, R> {
         &self,
         index: usize,
         lattice: Lattice<R>,
-        rates: &[R::Element],
-        band: Band,
-    ) -> Option<Crossing<R>> {
+        (rates, band): (&[R::Element], Band),
+        iteration: &mut Iteration<'_, '_, R>,
+    ) -> Result<Option<Crossing<R>>, Halt> {
         let system = self.system;
         let real = &system.real;
         let direction = real.sign(self.series.rows.at(system.switches[index].row, 1));
         let (start, clock) = (self.state.clone(), self.clock.clone());
-        let after = self.leave((index, direction), lattice, (&start, rates), &clock)?;
+        let after = self.leave((index, direction), lattice, (&start, rates), &clock, iteration)?;
+        let Some(after) = after else { return Ok(None) };
         let mut length = real.double(1.0);
         for _ in 0..4 * real.bits() {
             if after.ends(system, &start, &length, (band, self.log2_tolerance))
                 && self.alone(index, &after, &length)
             {
-                return Some(Crossing { before: None, after, length, start, clock, direction });
+                let crossing = Crossing { before: None, after, length, start, clock, direction };
+                return Ok(Some(crossing));
             }
             real.scale(&mut length, &real.double(0.25));
         }
-        None
+        Ok(None)
     }
 
     /// The series after a branch point where w grows into `direction`.
@@ -185,23 +245,27 @@ impl<R: Real> Integrator<'_, R> {
         lattice: Lattice<R>,
         (start, rates): (&[R::Element], &[R::Element]),
         clock: &Clock<R::Element>,
-    ) -> Option<Local<R>> {
+        iteration: &mut Iteration<'_, '_, R>,
+    ) -> Result<Option<Local<R>>, Halt> {
         let system = self.system;
         let mut modes = self.phase.modes.clone();
         modes[index] = direction;
         let mut after = Local::new(system, lattice, (index, 1, modes), rates);
         for _ in 0..64 + system.real.bits() {
             let known = after.states.clone();
-            after.sweep(system, start, &clock.high)?;
-            if system.real.sign(&after.slope(system)?) != direction {
-                return None;
+            if !iteration.sweep(&mut after, system, start, &clock.high)? {
+                return Ok(None);
+            }
+            let Some(slope) = after.slope(system) else { return Ok(None) };
+            if system.real.sign(&slope) != direction {
+                return Ok(None);
             }
             // Every coefficient follows from those before it, so they settle to the last bit.
             if after.states == known {
-                return Some(after);
+                return Ok(Some(after));
             }
         }
-        None
+        Ok(None)
     }
 
     /// Whether no wall and no other switch is met.

@@ -70,6 +70,19 @@ pub enum SimulateError {
         /// Where.
         time: f64,
     },
+    /// |w|^p with p near an integer: the powers of its series are too close together.
+    #[error(
+        "branch point of switch {switch} at t = {time}: its series needs more than {terms} terms \
+         (p is too near an integer)"
+    )]
+    DenseBranchPoint {
+        /// The switch.
+        switch: usize,
+        /// Where.
+        time: f64,
+        /// How many terms are too many for these digits.
+        terms: usize,
+    },
     /// Steps became too short to move the time: a singularity of the solution.
     #[error("no step is short enough at t = {time}")]
     StepTooSmall {

@@ -4,8 +4,12 @@ use crate::error::{SimulateError, Surface};
 use crate::integrator::{Hit, Integrator, Observer};
 use crate::real::Real;
 use crate::report::{Event, EventKind, Report};
+use crate::roots::AtCluster;
 use crate::tape::{LEAP, Op};
 use std::ops::ControlFlow;
+
+/// The first root, and no cluster before it.
+const FIRST: (usize, AtCluster) = (1, AtCluster::Stop);
 
 impl<R: Real> Integrator<'_, R> {
     /// The classification of the start: signs of the switches, walls.
@@ -150,12 +154,12 @@ impl<R: Real> Integrator<'_, R> {
             let row = system.right_sides[1];
             // The force itself starts anywhere, not on the surface.
             let skip = std::mem::replace(&mut self.vanishing[wall], 0);
-            let outcome = self.search(row, wall, h, 1);
+            let outcome = self.search(row, wall, h, FIRST);
             self.vanishing[wall] = skip;
             self.keep(Surface::Contact(wall), outcome.err(), &mut first, &mut cluster)?;
         } else {
             for wall in 0..walls {
-                let outcome = self.search(system.walls[wall].row, wall, h, 1);
+                let outcome = self.search(system.walls[wall].row, wall, h, FIRST);
                 self.keep(Surface::Wall(wall), outcome.err(), &mut first, &mut cluster)?;
             }
         }
@@ -165,7 +169,7 @@ impl<R: Real> Integrator<'_, R> {
             }
             if self.phase.modes[switch] != 0 {
                 let row = system.switches[switch].row;
-                let outcome = self.search(row, walls + switch, h, 1);
+                let outcome = self.search(row, walls + switch, h, FIRST);
                 self.keep(Surface::Switch(switch), outcome.err(), &mut first, &mut cluster)?;
                 continue;
             }
@@ -182,7 +186,7 @@ impl<R: Real> Integrator<'_, R> {
                 // Released when it grows beyond the limit; exactly on it: skip the zero.
                 let start = usize::from(system.real.sign(&shifted) == 0);
                 self.polynomial[0] = shifted;
-                let outcome = self.finder.search(&system.real, &self.polynomial[start..], h, 1);
+                let outcome = self.finder.search(&system.real, &self.polynomial[start..], h, FIRST);
                 self.keep(Surface::Limit(switch), outcome.err(), &mut first, &mut cluster)?;
             }
         }

@@ -279,7 +279,9 @@ impl<'s, R: Real> Integrator<'s, R> {
         }
         let shortest = real.log2(&self.clock.high).max(-1000.0) - f64::from(real.bits());
         loop {
-            if real.log2(&h) < shortest || real.log2(&h).is_nan() {
+            // What remains to the target may be less than a rounding error of the time: an event
+            // fell on the target.
+            if !last && (real.log2(&h) < shortest || real.log2(&h).is_nan()) {
                 return Err(self.stuck(time));
             }
             let end = real.sum(&self.clock.high, &h);

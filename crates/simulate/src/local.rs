@@ -123,6 +123,16 @@ impl<R: Real> Local<R> {
         Self { lattice, states, rows, side, offset, switch, modes }
     }
 
+    /// The terms of the longest row.
+    pub(crate) fn longest(&self) -> usize {
+        self.rows.iter().map(Terms::len).max().unwrap_or(0)
+    }
+
+    /// Products of coefficients in one sweep, to an order of magnitude.
+    pub(crate) fn work(&self) -> u64 {
+        self.rows.iter().map(|row| (row.len() as u64).pow(2)).sum()
+    }
+
     /// The power p of the |w|^p of a switch (the first one).
     pub(crate) fn exponent(system: &System<R>, switch: usize) -> Option<&R::Element> {
         let modulus = |row: usize| {

@@ -25,7 +25,7 @@ pub struct LyapunovExponent {
     /// The average; minus infinity if everything is forgotten (a rigid orbit).
     pub value: f64,
     /// An estimate: the standard error of the mean, from up to 20 blocks of the average (it tells
-    /// of chaotic fluctuations, not of slow transients); NaN for fewer than 2.
+    /// of chaotic fluctuations, not of slow transients); infinite for fewer than 2.
     pub error: f64,
 }
 
@@ -35,7 +35,9 @@ pub struct LyapunovExponent {
 /// every interval.
 ///
 /// The system must be compiled from a model with [`crate::Model::linearised`]. The observer is
-/// asked after every interval; nothing if it breaks off. Errors: as of [`Integrator::advance`].
+/// asked after every interval; nothing if it breaks off, or if no interval is averaged over. Errors:
+/// as of [`Integrator::advance`]; [`SimulateError::NotFinite`] where a direction overflows, or for
+/// an interval of length 0.
 ///
 /// ```
 /// use lindstedt_equation::Expression;
@@ -74,20 +76,31 @@ pub fn largest_lyapunov_exponent<R: Real>(
         real.times_integer(&mut target, interval as i32);
         flow.advance(&real.sum(time, &target), &mut |_| ControlFlow::Continue(()))?;
         let growth = flow.normalise_directions(&mut left);
-        if interval > settings.transient {
-            growths.push(growth);
-        }
-        if growth == f64::NEG_INFINITY || growth.is_nan() {
+        if growth == f64::NEG_INFINITY {
             // All directions are zero, for good.
             return Ok(Some(LyapunovExponent { value: growth, error: 0.0 }));
+        }
+        if !growth.is_finite() {
+            return Err(SimulateError::NotFinite { time: flow.seconds() });
+        }
+        if interval > settings.transient {
+            growths.push(growth);
         }
         if observer(interval).is_break() {
             return Ok(None);
         }
     }
+    if growths.is_empty() {
+        return Ok(None);
+    }
     let (value, error) = mean(&growths);
     let interval = real.to_f64(&settings.interval);
-    Ok(Some(LyapunovExponent { value: value / interval, error: error / interval }))
+    let (value, error) = (value / interval, error / interval);
+    if value.is_finite() && !error.is_nan() {
+        Ok(Some(LyapunovExponent { value, error }))
+    } else {
+        Err(SimulateError::NotFinite { time: flow.seconds() })
+    }
 }
 
 impl<R: Real> Integrator<'_, R> {
@@ -96,7 +109,8 @@ impl<R: Real> Integrator<'_, R> {
     fn normalise_directions(&mut self, left: &mut f64) -> f64 {
         let real = &self.system.real;
         let directions = &mut self.state[self.system.variables..];
-        let largest = directions.iter().map(|x| real.log2(x)).fold(f64::NEG_INFINITY, f64::max);
+        let larger = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) };
+        let largest = directions.iter().map(|x| real.log2(x)).fold(f64::NEG_INFINITY, larger);
         let power = largest.round().clamp(-900.0, 900.0);
         let factor = real.double((-power).exp2());
         directions.iter_mut().for_each(|x| real.scale(x, &factor));
@@ -105,12 +119,15 @@ impl<R: Real> Integrator<'_, R> {
     }
 }
 
-/// The mean and its standard error from at most 20 blocks.
+/// The mean and its standard error from at most 20 blocks; infinite for one.
 fn mean(values: &[f64]) -> (f64, f64) {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let size = values.len().div_ceil(20).max(1);
     let blocks: Vec<f64> =
         values.chunks_exact(size).map(|block| block.iter().sum::<f64>() / size as f64).collect();
+    if blocks.len() < 2 {
+        return (mean, f64::INFINITY);
+    }
     let count = blocks.len() as f64;
     let variance = blocks.iter().map(|block| (block - mean).powi(2)).sum::<f64>() / (count - 1.0);
     (mean, (variance / count).sqrt())

@@ -14,6 +14,14 @@ use std::ops::ControlFlow;
 pub enum Section<E> {
     /// Stroboscopic: at start + k period, k = 1, 2, ...
     Period(E),
+    /// Stroboscopic with another phase: at start + first + k period, k = 0, 1, 2, ...; first >= 0.
+    /// Off the impacts of an orbit with the same period, where left and right limits differ.
+    Strobe {
+        /// When the first point is.
+        first: E,
+        /// Between the others.
+        period: E,
+    },
     /// At the events of a surface, the state after the event: impacts for a wall, switchings
     /// (entry, release, crossing) for a switch, crossings for a section of the model.
     Events {
@@ -99,7 +107,8 @@ impl<'s, R: Real> PoincareMap<'s, R> {
         tick: &Tick<'_>,
     ) -> Result<Option<Point<R::Element>>, SimulateError> {
         match self.section.clone() {
-            Section::Period(period) => self.strobe(period, tick).map(Some),
+            Section::Period(period) => self.strobe(&period.clone(), period, tick).map(Some),
+            Section::Strobe { first, period } => self.strobe(&first, period, tick).map(Some),
             Section::Events { surface, rising, patience } => {
                 self.event((surface, rising), &patience, tick)
             }
@@ -114,13 +123,17 @@ impl<'s, R: Real> PoincareMap<'s, R> {
 
     fn strobe(
         &mut self,
+        first: &R::Element,
         mut period: R::Element,
         tick: &Tick<'_>,
     ) -> Result<Point<R::Element>, SimulateError> {
         let real = &self.flow.system.real;
+        // One rounding for k periods: first = period is the multiple k + 1.
+        let same = *first == period;
+        real.times_integer(&mut period, self.count + i32::from(same));
         self.count += 1;
-        real.times_integer(&mut period, self.count);
-        let target = real.sum(&self.start, &period);
+        let since = if same { period } else { real.sum(first, &period) };
+        let target = real.sum(&self.start, &since);
         self.flow.advance_while(&target, tick)?;
         let state = self.flow.state()[..self.flow.system.variables].to_vec();
         let (modes, contact) = (self.flow.modes().to_vec(), self.flow.contact());
@@ -144,6 +157,10 @@ impl<'s, R: Real> PoincareMap<'s, R> {
                 Report::Segment(segment) => {
                     modes = segment.modes.to_vec();
                     contact = segment.contact;
+                    stopped |= tick().is_break();
+                    if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                }
+                Report::Busy => {
                     stopped |= tick().is_break();
                     if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
                 }

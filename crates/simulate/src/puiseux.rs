@@ -8,6 +8,8 @@
 use crate::real::Real;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// i + j theta.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +41,7 @@ impl Ord for Exponent {
 pub(crate) type Terms<E> = BTreeMap<Exponent, E>;
 
 /// Functions with more terms have exponents too close together (theta near 0) to be worth while.
-const MOST_TERMS: usize = 2000;
+pub(crate) const MOST_TERMS: usize = 2000;
 /// Powers of the argument of a sine, likewise.
 const MOST_POWERS: u32 = 200;
 
@@ -55,6 +57,8 @@ pub(crate) struct Lattice<R: Real> {
     /// theta = a/b with small b: j is reduced to 0..b, so that no exponent has two names.
     ratio: Option<(i32, i32)>,
     pub(crate) cut: f64,
+    /// Whether a function has had too many terms.
+    dense: Arc<AtomicBool>,
 }
 
 impl<R: Real> Lattice<R> {
@@ -73,7 +77,13 @@ impl<R: Real> Lattice<R> {
             let rest = real.log2(&real.difference(&multiple, &real.double(a)));
             (rest < 8.0 - f64::from(real.bits())).then_some((a as i32, b))
         });
-        Some(Self { real: real.clone(), theta, value, ratio, cut })
+        let dense = Arc::default();
+        Some(Self { real: real.clone(), theta, value, ratio, cut, dense })
+    }
+
+    /// Whether a function was refused for having too many terms.
+    pub(crate) fn is_dense(&self) -> bool {
+        self.dense.load(Relaxed)
     }
 
     fn exponent(&self, whole: i32, parts: i32) -> Exponent {
@@ -225,6 +235,7 @@ impl<R: Real> Lattice<R> {
             }
             done.insert(e, known);
             if done.len() > MOST_TERMS {
+                self.dense.store(true, Relaxed);
                 return None;
             }
         }
@@ -289,6 +300,7 @@ impl<R: Real> Lattice<R> {
                 break;
             }
             if term.len() > MOST_TERMS || k > MOST_POWERS {
+                self.dense.store(term.len() > MOST_TERMS, Relaxed);
                 return None;
             }
             for c in term.values_mut() {

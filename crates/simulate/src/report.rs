@@ -100,6 +100,8 @@ pub enum Report<'a, R: Real> {
     Segment(Segment<'a, R>),
     /// An event.
     Event(Event<'a, R>),
+    /// Nothing new: a step takes its time, and asks whether to go on.
+    Busy,
 }
 
 /// How an integration ended.

@@ -22,6 +22,17 @@ pub(crate) struct Root<E> {
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster<E> {
     pub(crate) at: E,
+    /// The signs before and after it: the same where the zero is touched, or passed twice.
+    signs: (i8, i8),
+}
+
+/// What a search does at a cluster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum AtCluster {
+    /// It ends there.
+    Stop,
+    /// It goes on: a cluster with different signs before and after it is a root, others are none.
+    Pass,
 }
 
 /// Places to compute in, kept from one search to the next.
@@ -57,13 +68,13 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
     }
 
     /// Finds the roots of sum_k c_k s^k in (0, length], at most `most` of them, into `found`;
-    /// c_0 is not zero. Stops at a cluster, with the roots before it found.
+    /// c_0 is not zero. At a cluster it stops, with the roots before it found, or passes.
     pub(crate) fn search<R: Real<Element = E>>(
         &mut self,
         real: &R,
         coefficients: &[E],
         length: &E,
-        most: usize,
+        (most, at_cluster): (usize, AtCluster),
     ) -> Result<(), Cluster<E>> {
         self.found.clear();
         if self.excluded(real, coefficients, length) {
@@ -80,10 +91,37 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
             match outcome {
                 Ok(()) if self.found.len() >= most => return Ok(()),
                 Ok(()) => {}
-                Err(cluster) => return Err(cluster),
+                Err(cluster) if at_cluster == AtCluster::Stop => return Err(cluster),
+                Err(Cluster { at, signs: (before, after) }) => {
+                    if before * after < 0 {
+                        self.found.push(Root { at, after });
+                    }
+                }
             }
         }
+        if at_cluster == AtCluster::Pass {
+            self.drop_pairs(real, length);
+        }
         Ok(())
+    }
+
+    /// Leaves out two roots so near to each other that rounding errors may have made them of a
+    /// double one.
+    fn drop_pairs<R: Real<Element = E>>(&mut self, real: &R, length: &E) {
+        let resolved = real.log2(length) + 4.0 - f64::from(real.bits() / 2);
+        let mut kept: Vec<Root<E>> = Vec::with_capacity(self.found.len());
+        for root in self.found.drain(..) {
+            match kept.last() {
+                Some(last)
+                    if last.after != root.after
+                        && real.log2(&real.difference(&root.at, &last.at)) <= resolved =>
+                {
+                    kept.pop();
+                }
+                _ => kept.push(root),
+            }
+        }
+        self.found = kept;
     }
 
     /// c_k length^k into `scaled`; whether |c_0| outweighs all other terms.
@@ -161,7 +199,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
         } else if changes > 0 {
             if depth + 4 > real.bits() / 2 {
                 self.pool.push(bernstein);
-                return Err(Cluster { at: real.product(&left, length) });
+                return Err(Cluster { at: real.product(&left, length), signs: (first, end) });
             }
             let half = real.product(&width, &real.double(0.5));
             let mut right = self.pool.pop().unwrap_or_default();
@@ -256,7 +294,7 @@ mod tests {
 
     fn roots(c: &[f64], length: f64, most: usize) -> Result<Vec<f64>, f64> {
         let mut finder = RootFinder::new();
-        let outcome = finder.search(&Doubles, c, &length, most);
+        let outcome = finder.search(&Doubles, c, &length, (most, AtCluster::Stop));
         outcome.map_err(|cluster| cluster.at)?;
         Ok(finder.found.iter().map(|root| root.at).collect())
     }
@@ -297,12 +335,31 @@ mod tests {
     }
 
     #[test]
+    fn a_search_passes_clusters_if_told_to() {
+        let mut finder = RootFinder::new();
+        let mut places = |roots: &[f64]| {
+            let c = polynomial(roots);
+            finder.search(&Doubles, &c, &1.0, (9, AtCluster::Pass)).unwrap();
+            finder.found.iter().map(|root| (root.at, root.after)).collect::<Vec<_>>()
+        };
+        let found = places(&[0.3, 0.6, 0.6, 0.8]);
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!((found[0].0 - 0.3).abs() < 1e-12 && (found[1].0 - 0.8).abs() < 1e-12);
+        // Through a triple root the sign changes.
+        let found = places(&[0.6, 0.6, 0.6]);
+        assert_eq!(found.len(), 1, "{found:?}");
+        // These are two.
+        assert_eq!(places(&[0.6, 0.6 + 1e-6]).len(), 2);
+        assert!((found[0].0 - 0.6).abs() < 1e-4 && found[0].1 > 0);
+    }
+
+    #[test]
     fn last_digits_at_high_precision() {
         let real = Digits::for_digits(60);
         let mut finder = RootFinder::new();
         // s^3 - 2 s - 1/4 on (0, 2].
         let c: Vec<_> = [-0.25, -2.0, 0.0, 1.0].map(|x| real.double(x)).to_vec();
-        finder.search(&real, &c, &real.double(2.0), 9).unwrap();
+        finder.search(&real, &c, &real.double(2.0), (9, AtCluster::Stop)).unwrap();
         let s = finder.found[0].at.clone();
         let mut value = real.zero();
         horner(&real, &mut value, &c, &s);

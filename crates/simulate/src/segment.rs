@@ -1,11 +1,11 @@
 //! The end of a step: the segment is reported and kept, sections are crossed.
 
-use crate::error::{SimulateError, Surface};
+use crate::error::SimulateError;
 use crate::integrator::{Integrator, Observer};
 use crate::local::ShapeRef;
 use crate::real::Real;
 use crate::report::{Event, EventKind, Report, Segment};
-use crate::roots::Cluster;
+use crate::roots::{AtCluster, Cluster};
 use std::ops::ControlFlow;
 
 impl<R: Real> Integrator<'_, R> {
@@ -48,11 +48,14 @@ impl<R: Real> Integrator<'_, R> {
         let offset = system.walls.len() + system.switches.len();
         let mut told = ControlFlow::Continue(());
         for (section, row) in system.sections.iter().enumerate() {
-            self.search(*row, offset + section, h, usize::MAX)
-                .map_err(|cluster| self.grazing(Surface::Section(section), &cluster.at))?;
+            // A section only looks on: where it is touched nothing happens.
+            let _ = self.search(*row, offset + section, h, (usize::MAX, AtCluster::Pass));
             self.vanishing[offset + section] = 0;
             for index in 0..self.finder.found.len() {
                 let root = self.finder.found[index].clone();
+                if root.after == self.sides[section] {
+                    continue;
+                }
                 // Within rounding errors of the end: the next step starts on the section.
                 let rest = system.real.log2(&system.real.difference(h, &root.at));
                 if rest < system.real.log2(h) - f64::from(system.real.bits()) + 8.0 {
@@ -83,7 +86,7 @@ impl<R: Real> Integrator<'_, R> {
         row: usize,
         surface: usize,
         h: &R::Element,
-        most: usize,
+        how: (usize, AtCluster),
     ) -> Result<(), Cluster<R::Element>> {
         self.finder.found.clear();
         let skip = self.vanishing[surface];
@@ -91,6 +94,6 @@ impl<R: Real> Integrator<'_, R> {
         if row.iter().skip(skip).all(|c| self.system.real.sign(c) == 0) {
             return Ok(());
         }
-        self.finder.search(&self.system.real, row.get(skip..).unwrap_or_default(), h, most)
+        self.finder.search(&self.system.real, row.get(skip..).unwrap_or_default(), h, how)
     }
 }

@@ -70,6 +70,7 @@ impl<R: Real> Trajectory<R> {
                 before: event.before.to_vec(),
                 after: event.after.to_vec(),
             }),
+            Report::Busy => {}
         }
         std::ops::ControlFlow::Continue(())
     }

@@ -100,6 +100,36 @@ fn sections_in_order() {
     }
 }
 
+/// x = -cos t touches the sections x = 1 and x = -1 for ever: they only look on, and a section that
+/// is crossed meanwhile misses nothing.
+#[test]
+fn a_touched_section_does_not_end_the_run() {
+    let model = oscillator()
+        .with_section(Expression::Displacement - Expression::integer(1))
+        .with_section(Expression::Displacement + Expression::integer(1))
+        .with_section(Expression::Displacement);
+    let (log, state) = run(&model, &[-1.0, 0.0], 100.0).unwrap();
+    assert!((state[0] + 100f64.cos()).abs() < 1e-13);
+    let of = |wanted: usize| -> Vec<f64> {
+        let is = |kind: &EventKind| matches!(kind, EventKind::Section { section, .. } if *section == wanted);
+        log.iter().filter(|(kind, _)| is(kind)).map(|(_, time)| *time).collect()
+    };
+    let crossings = of(2);
+    assert_eq!(crossings.len(), 32);
+    for (n, time) in (0..).zip(&crossings) {
+        assert!((time - (f64::from(n) + 0.5) * std::f64::consts::PI).abs() < 1e-13);
+    }
+    // In rounding errors it may be passed out and back.
+    for (section, phase) in [(0, 1.0), (1, 0.0)] {
+        let touched = of(section);
+        assert!(touched.len() % 2 == 0, "{touched:?}");
+        for time in touched {
+            let turns = (time / std::f64::consts::PI - phase) / 2.0;
+            assert!((turns - turns.round()).abs() < 1e-6, "{section} {time}");
+        }
+    }
+}
+
 #[test]
 fn starts_at_a_wall() {
     let floor = |restitution| wall(Expression::integer(0), restitution, Crossing::Falling);

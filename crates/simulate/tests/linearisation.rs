@@ -3,6 +3,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod common;
+
 use lindstedt_equation::{Crossing, Expression, Function, Impact};
 use lindstedt_simulate::{
     Digits, Doubles, EventKind, Integrator, Model, Parameters, Quantity, Real, Report, Settings,
@@ -58,22 +60,7 @@ fn multipliers_of_the_uncontrolled_impact_orbit() {
 }
 
 fn stick_slip(gamma: &str) -> (Model, Parameters) {
-    let model = Model::second_order(&lindstedt_problems::stick_slip::equation()).unwrap();
-    let mut parameters = Parameters::new();
-    for (name, value) in [
-        ("a", "1"),
-        ("b", "1"),
-        ("T0", "0.3"),
-        ("alpha", "0.3"),
-        ("beta", "0.3"),
-        ("omega", "2"),
-        ("vstar", "0.4"),
-        ("eps", "1"),
-        ("gamma", gamma),
-    ] {
-        parameters.set(name, Quantity::parse(value).unwrap());
-    }
-    (model.with_small("eps"), parameters)
+    (common::stick_slip(), common::parameters(&[("gamma", gamma)]))
 }
 
 /// Runs to `end`; returns the end state and the switchings met.

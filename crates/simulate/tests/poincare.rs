@@ -90,3 +90,67 @@ fn the_exponent_of_the_bouncing_oscillator() {
     });
     assert_eq!(outcome, Err(SimulateError::WrongDimension { states: 2, given: 0 }));
 }
+
+/// The impacts at (n + 1/2) pi fall on the ends of the intervals, to rounding errors: on either
+/// side of them.
+#[test]
+fn impacts_at_the_ends_of_the_intervals() {
+    let linearised = bouncing().linearised().compile(Doubles, &Parameters::new()).unwrap();
+    let integration = Settings::for_digits(16);
+    let settings = LyapunovSettings { interval: PI, transient: 5, averaged: 400, integration };
+    let exponent = |time: f64, state: [f64; 2]| {
+        let go_on = &mut |_: u32| ControlFlow::Continue(());
+        largest_lyapunov_exponent(&linearised, &time, &state, &settings, go_on).unwrap().unwrap()
+    };
+    let expected = -2f64.ln() / PI;
+    assert!((exponent(0.0, [1.0, 0.0]).value - expected).abs() < 1e-12);
+    // ln 2 more or less, once.
+    let at_impacts = exponent(0.0, [0.0, 1.0]);
+    assert!(
+        (at_impacts.value - expected).abs() < 2f64.ln() / (400.0 * PI) + 1e-12,
+        "{at_impacts:?}"
+    );
+    let system = bouncing().compile(Doubles, &Parameters::new()).unwrap();
+    let start = [0.0, 1.0];
+    let mut map =
+        PoincareMap::new(&system, &0.0, &start, Section::Period(PI), integration).unwrap();
+    for n in 1..=200 {
+        let point = map.next_point().unwrap().unwrap();
+        let size = point.state[1].abs() * f64::from(n).exp2();
+        assert!(point.state[0].abs() * f64::from(n).exp2() < 1e-10 && size > 0.99 && size < 2.01);
+    }
+    // Half a period later nothing happens.
+    let section = Section::Strobe { first: PI / 2.0, period: PI };
+    let mut map = PoincareMap::new(&system, &0.0, &start, section, integration).unwrap();
+    for n in 0..200 {
+        let point = map.next_point().unwrap().unwrap();
+        assert!((point.time - (f64::from(n) + 0.5) * PI).abs() < 1e-12 * point.time);
+        assert!((point.state[0] * f64::from(n).exp2() - 1.0).abs() < 1e-10);
+    }
+}
+
+/// No exponent is not a number.
+#[test]
+fn exponents_are_numbers_or_errors() {
+    let go_on = &mut |_: u32| ControlFlow::Continue(());
+    let growth = |rate: i64| {
+        let equation =
+            Expression::Acceleration - Expression::integer(rate) * Expression::Displacement;
+        let model = Model::second_order(&equation).unwrap().linearised();
+        model.compile(Doubles, &Parameters::new()).unwrap()
+    };
+    let integration = Settings::for_digits(16);
+    let settings =
+        |interval, averaged| LyapunovSettings { interval, transient: 0, averaged, integration };
+    let slow = growth(1);
+    let mut run =
+        |system, settings| largest_lyapunov_exponent(system, &0.0, &[0.0, 0.0], &settings, go_on);
+    assert_eq!(run(&slow, settings(1.0, 0)), Ok(None));
+    let once = run(&slow, settings(1.0, 1)).unwrap().unwrap();
+    assert!(once.value.is_finite() && once.error == f64::INFINITY);
+    let outcome = run(&slow, settings(0.0, 10));
+    assert!(matches!(outcome, Err(SimulateError::NotFinite { .. })), "{outcome:?}");
+    // e^1000 is no double.
+    let outcome = run(&growth(1_000_000), settings(1.0, 10));
+    assert!(matches!(outcome, Err(SimulateError::NotFinite { .. })), "{outcome:?}");
+}

@@ -21,6 +21,8 @@ const KEPT: u32 = 2000;
 const SKIPPED: u32 = 500;
 /// Fewer tell nothing.
 const LEAST: u32 = 100;
+/// A part of the period with no simple fraction near: impacts of orbits of few periods are elsewhere.
+const PHASE: f64 = 0.381_966;
 /// Every m-th point, m up to this: an attractor in m bands looks regular to the 0-1 test.
 const STRIDES: usize = 4;
 
@@ -29,6 +31,9 @@ pub struct Diagnosis {
     setup: Setup,
     /// Time between two renormalisations and, with a force, between two points.
     interval: f64,
+    /// When the first interval begins: with a force and a wall off the impacts of the orbit, which
+    /// begins just after one and may have the period of the force.
+    phase: f64,
     forced: bool,
     skipped: u32,
     kept: u32,
@@ -66,6 +71,7 @@ impl Diagnosis {
         let period = setup.forcing.as_ref().map(|q| q.float(53).to_f64());
         let mut diagnosis = Self {
             interval: period.unwrap_or(1.0),
+            phase: period.filter(|_| setup.wall).map_or(0.0, |period| PHASE * period),
             forced: period.is_some(),
             skipped: options.skip.unwrap_or(SKIPPED),
             kept,
@@ -86,6 +92,21 @@ impl Diagnosis {
         self.setup.start.each_ref().map(|q| q.float(53).to_f64())
     }
 
+    /// The state at the beginning of the first interval.
+    fn shifted(&self, session: &Session<'_>) -> Result<(f64, Vec<f64>), Failure> {
+        let start = self.start().to_vec();
+        if self.phase == 0.0 {
+            return Ok((0.0, start));
+        }
+        let system = self.setup.model.compile(Doubles, &self.setup.parameters).map_err(refused)?;
+        let (section, settings) = (simulate::Section::Period(self.phase), Settings::for_digits(16));
+        let mut map = PoincareMap::new(&system, &0.0, &start, section, settings)?;
+        match map.next_point_while(&|| flow(session)) {
+            Err(SimulateError::Stopped) => Err(stopped(session)),
+            point => Ok(point?.map_or((0.0, start), |point| (point.time, point.state))),
+        }
+    }
+
     fn lyapunov(&self, session: &Session<'_>) -> Result<LyapunovExponent, Failure> {
         let system = self.setup.model.clone().linearised();
         let system = system.compile(Doubles, &self.setup.parameters).map_err(refused)?;
@@ -95,7 +116,8 @@ impl Diagnosis {
             averaged: self.kept,
             integration: Settings::for_digits(16),
         };
-        let found = largest_lyapunov_exponent(&system, &0.0, &self.start(), &settings, &mut |n| {
+        let (time, state) = self.shifted(session)?;
+        let found = largest_lyapunov_exponent(&system, &time, &state, &settings, &mut |n| {
             session.say(format!("interval {n} of {}", self.skipped.saturating_add(self.kept)));
             flow(session)
         });
@@ -104,7 +126,9 @@ impl Diagnosis {
 
     fn zero_one(&self, session: &Session<'_>) -> Result<Vec<(usize, ZeroOne)>, Failure> {
         let mut model = self.setup.model.clone();
-        let section = if self.forced {
+        let section = if self.forced && self.phase > 0.0 {
+            simulate::Section::Strobe { first: self.phase, period: self.interval }
+        } else if self.forced {
             simulate::Section::Period(self.interval)
         } else {
             model = model.with_section(Expression::Velocity);

@@ -284,6 +284,7 @@ impl<R: Real> Keeper<'_, R> {
                 self.segment(segment);
                 false
             }
+            Report::Busy => false,
             Report::Event(_) if self.ended.is_some() => true,
             Report::Event(event) => {
                 let pair = |states: &[R::Element]| match states {

@@ -1,8 +1,9 @@
 //! Charts: two parameters, the prediction and the truth at every point.
 
-use super::request::{Request, Sweep};
+use super::request::{Computed, Request, Sweep};
 use crate::failure::{Failure, UNDECIDED};
 use crate::session::Session;
+use lindstedt::Value;
 use lindstedt_impact::ImpactError;
 use lindstedt_impact::chart::{Agreement, Axis, Chart, Plan, Point, Swept, chart};
 use lindstedt_impact::flip::flip_boundary;
@@ -92,7 +93,11 @@ impl Grid {
         let names = [name(first), name(second)];
         let values = [along(first, &plan.columns), along(second, &plan.rows)];
         let two = second.is_some();
-        let chart = match chart(&base, &plan, &observer) {
+        let found = match &request.computed {
+            Some(computed) => general(request, &**computed, &plan, &observer),
+            None => chart(&base, &plan, &observer),
+        };
+        let chart = match found {
             Ok(chart) => chart,
             // Rows are finished in any order: nothing of a stopped chart is shown.
             Err(ImpactError::Cancelled) => {
@@ -114,7 +119,7 @@ impl Grid {
             Err(error) => return Err(error.into()),
         };
         let agreement = chart.agreement();
-        let flip = flip(request, &plan);
+        let flip = if request.computed.is_none() { flip(request, &plan) } else { Vec::new() };
         Ok(Some(Self { names, two, values, plan, chart, agreement, flip, finished: true }))
     }
 
@@ -191,6 +196,45 @@ impl Grid {
             100.0 * self.agreement.rate(),
         )
     }
+}
+
+/// A chart over parameters of a file that those of section 2 are computed from: point by point.
+fn general(
+    request: &Request,
+    computed: &Computed,
+    plan: &Plan,
+    observer: &(dyn Fn(usize) -> bool + Sync),
+) -> Result<Chart, ImpactError> {
+    let (width, height) = (plan.columns.count, plan.rows.count);
+    let empty =
+        Point { predicted: None, exact: None, predicted_radius: f64::NAN, exact_radius: f64::NAN };
+    let point = |column: usize, row: usize| -> Result<Point, ImpactError> {
+        let places = request.sweeps.iter().zip([column, row]);
+        let changes: Option<Vec<(&str, Value)>> =
+            places.map(|(sweep, n)| Some((sweep.name.as_str(), sweep.exact(n)?))).collect();
+        let Some(parameters) = changes.and_then(|changes| computed(&changes)) else {
+            return Ok(empty);
+        };
+        let axis = |parameter, value| Axis { parameter, low: value, high: value, count: 1 };
+        let columns = axis(Swept::DisplacementGain, parameters.displacement_gain);
+        let rows = axis(Swept::VelocityGain, parameters.velocity_gain);
+        let one = Plan { columns, rows, ..*plan };
+        let found = chart(&parameters, &one, &|_| observer(row))?;
+        Ok(found.points.first().copied().unwrap_or(empty))
+    };
+    let mut points = Vec::with_capacity(width.saturating_mul(height));
+    for row in 0..height {
+        let line: Vec<Point> = (0..width)
+            .into_par_iter()
+            .map(
+                |column| {
+                    if observer(row) { point(column, row) } else { Err(ImpactError::Cancelled) }
+                },
+            )
+            .collect::<Result<_, _>>()?;
+        points.extend(line);
+    }
+    Ok(Chart { plan: *plan, points })
 }
 
 /// The flip curve, where A is one of the axes: A as a function of the other axis.

@@ -134,7 +134,8 @@ fn paint(
     chart.draw_series(cells)?;
     let point = |&(x, y): &(f64, f64)| Circle::new((x, y), 2, BLACK.filled());
     chart.draw_series(grid.flip.iter().map(point))?;
-    let asked = (request.base(columns.parameter), request.base(rows.parameter));
+    let base = |n: usize| request.sweeps.get(n).map_or(f64::NAN, |sweep| sweep.base);
+    let asked = (base(0), base(1));
     if range(columns).contains(&asked.0) && range(rows).contains(&asked.1) {
         chart.draw_series([Cross::new(asked, 7, BLACK.stroke_width(3))])?;
     }

@@ -10,28 +10,43 @@ use lindstedt::problems::vibro_impact;
 use lindstedt::recognise::ImpactProblem;
 use lindstedt_impact::characteristic::Kick;
 use lindstedt_impact::chart::{Axis, Plan, Predictor, Swept};
-use lindstedt_impact::parameters::{Branch, Exact, ExactParameters};
+use lindstedt_impact::parameters::{Branch, Exact, ExactParameters, Parameters};
 use lindstedt_impact::prediction::Variant;
 use lindstedt_impact::report;
 use rug::{Float, Rational};
 use std::path::Path;
+use std::sync::Arc;
 
 /// A swept parameter: its name, its values as doubles, and its ends.
 pub struct Sweep {
     pub name: String,
+    /// Of a parameter of a file that is no parameter of section 2 the ends and the count only.
     pub axis: Axis,
+    /// The value at the point asked for.
+    pub base: f64,
     ends: [Value; 2],
 }
 
 impl Sweep {
     /// The n-th value as the double nearest to the exact one, which decimals of few digits are.
     pub fn value(&self, n: usize) -> f64 {
-        let [Value::Rational(low), Value::Rational(high)] = &self.ends else {
-            return self.axis.value(n);
-        };
+        match self.exact(n) {
+            Some(Value::Rational(q)) => Float::with_val(53, q).to_f64(),
+            _ => self.axis.value(n),
+        }
+    }
+
+    /// The n-th value, between ends of one kind.
+    pub fn exact(&self, n: usize) -> Option<Value> {
         let steps = self.axis.count.saturating_sub(1).max(1);
-        let q = Rational::from(high - low) * Rational::from((n, steps)) + low;
-        Float::with_val(53, q).to_f64()
+        let node = |low: &Rational, high: &Rational| {
+            Rational::from(high - low) * Rational::from((n, steps)) + low
+        };
+        Some(match &self.ends {
+            [Value::Rational(low), Value::Rational(high)] => Value::Rational(node(low, high)),
+            [Value::PiTimes(low), Value::PiTimes(high)] => Value::PiTimes(node(low, high)),
+            _ => return None,
+        })
     }
 }
 
@@ -46,6 +61,9 @@ pub struct Request {
     pub at: Vec<(String, String)>,
     /// Names and axes of the sweeps.
     pub sweeps: Vec<Sweep>,
+    /// The parameters of section 2 at other values of those of a file, where one is swept that these
+    /// are computed from.
+    pub computed: Option<Box<Computed>>,
     pub predictor: PredictorChoice,
     pub variant: VariantChoice,
     pub order: usize,
@@ -133,7 +151,7 @@ pub fn exact_parameters(
 
 impl Request {
     pub fn read(options: &StabilityOptions) -> Result<Self, Failure> {
-        let Known { problem, parameters, canonical, remark, at, names } =
+        let Known { problem, parameters, canonical, remark, at, names, text, computed } =
             if options.problem.ends_with(".toml") {
                 of_file(&options.problem, &options.set)?
             } else if options.problem == "vibro-impact" {
@@ -144,13 +162,24 @@ impl Request {
                 let hint = "known: vibro-impact, or the path of a problem file (.toml)";
                 return Err(Failure::usage("unknown-problem", message, hint));
             };
-        let sweeps: Vec<Sweep> =
-            options.sweep.iter().map(|text| sweep(text, &*names)).collect::<Result<_, _>>()?;
+        let mut sweeps: Vec<Sweep> =
+            options.sweep.iter().map(|t| sweep(&text(t)?, &*names)).collect::<Result<_, _>>()?;
+        let general = sweeps.iter().any(|sweep| names(&sweep.name).is_ok_and(|n| n.0.is_none()));
+        let mut parameters_of_section_2 = parameters.to_f64();
+        for sweep in sweeps.iter_mut().filter(|_| !general) {
+            sweep.base = *parameters_of_section_2.slot(sweep.axis.parameter);
+        }
+        if general && let Some(sweep) = sweeps.iter().find(|sweep| sweep.exact(0).is_none()) {
+            let message =
+                format!("the ends of {} are not both multiples of pi, or neither", sweep.name);
+            return Err(Failure::usage("range", message, ""));
+        }
         if sweeps.len() > 2 {
             return Err(Failure::usage("range", "at most two sweeps".to_owned(), ""));
         }
         if let [first, second] = sweeps.as_slice()
-            && first.axis.parameter == second.axis.parameter
+            && (first.name == second.name
+                || !general && first.axis.parameter == second.axis.parameter)
         {
             return Err(Failure::usage("range", format!("{} is swept twice", first.name), ""));
         }
@@ -177,6 +206,7 @@ impl Request {
             remark,
             at,
             sweeps,
+            computed: computed.filter(|_| general),
             predictor: options.predictor,
             variant: options.variant,
             order: options.order as usize,
@@ -237,11 +267,6 @@ impl Request {
         Axis { parameter, low: value, high: value, count: 1 }
     }
 
-    /// The value of a swept parameter at the point asked for.
-    pub fn base(&self, swept: Swept) -> f64 {
-        *self.parameters.to_f64().slot(swept)
-    }
-
     pub fn kick_name(&self) -> &'static str {
         match self.kick {
             Kick::None => "none",
@@ -261,7 +286,14 @@ impl Request {
     }
 }
 
-type Names = dyn Fn(&str) -> Result<Swept, Failure>;
+/// The parameter of section 2 that a name stands for, if it is one, and its value.
+type Names = dyn Fn(&str) -> Result<(Option<Swept>, f64), Failure>;
+
+/// A sweep as it is meant.
+type Meaning = dyn Fn(&str) -> Result<String, Failure>;
+
+/// Parameters of section 2 from values of a file's; nothing where there is no such oscillator.
+pub type Computed = dyn Fn(&[(&str, Value)]) -> Option<Parameters<f64>> + Sync;
 
 /// What the problem says.
 struct Known {
@@ -272,6 +304,9 @@ struct Known {
     at: Vec<(String, String)>,
     /// The swept parameter of a name, or why it cannot be swept.
     names: Box<Names>,
+    /// A sweep as it is meant: without a range the one of the file.
+    text: Box<Meaning>,
+    computed: Option<Box<Computed>>,
 }
 
 fn not_swept(name: &str, why: &str, known: &[String]) -> Failure {
@@ -287,7 +322,7 @@ fn built_in(set: &[String]) -> Result<Known, Failure> {
     let (parameters, at) = exact_parameters(set)?;
     let names = |name: &str| {
         let found = Swept::ALL.iter().find(|(known, _)| *known == name);
-        found.map(|(_, swept)| *swept).ok_or_else(|| {
+        found.map(|(_, swept)| (Some(*swept), f64::NAN)).ok_or_else(|| {
             let known: Vec<String> =
                 Swept::ALL.iter().map(|(name, _)| (*name).to_owned()).collect();
             not_swept(name, if name == "k" { WHOLE } else { "" }, &known)
@@ -300,6 +335,8 @@ fn built_in(set: &[String]) -> Result<Known, Failure> {
         remark: None,
         at,
         names: Box::new(names),
+        text: Box::new(|text| Ok(text.to_owned())),
+        computed: None,
     })
 }
 
@@ -353,23 +390,42 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
             .to_owned()
     });
     let (problem, parameters) = (source.problem.name.to_string(), found.parameters.clone());
+    let shared = Arc::new((source, found));
+    let whole = move |name: &str| name == "k" || tied.as_deref() == Some(name);
+    let of_names = shared.clone();
     let names = move |name: &str| {
-        let swept = found.names(&source.problem, &source.values, name, periods);
-        swept.ok_or_else(|| {
+        let (source, found) = &*of_names;
+        let is_free = |name: &str| !whole(name) && name != "branch";
+        // Another delay than a period of the force has no such orbit.
+        let moves = |name: &str, value: &Value| {
+            let beside = Rational::from((1010, 1009));
+            let beside = match value {
+                Value::Rational(q) if q.is_zero() => Value::Rational(beside - 1u32),
+                Value::Rational(q) => Value::Rational(beside * q),
+                Value::PiTimes(q) => Value::PiTimes(beside * q),
+            };
+            computed_parameters(source, periods, branch, &[(name, beside)]).is_some()
+        };
+        let swept = |name: &str| {
+            let value = source.values.get(name).filter(|_| is_free(name))?;
+            let swept = found.names(&source.problem, &source.values, name, periods);
+            let is_known = swept.is_some() || moves(name, value);
+            is_known.then(|| (swept, Exact::from(value.clone()).to_f64()))
+        };
+        swept(name).ok_or_else(|| {
             let known = source.at().into_iter().map(|(name, _)| name);
-            let known: Vec<String> = known
-                .filter(|name| {
-                    found.names(&source.problem, &source.values, name, periods).is_some()
-                })
-                .collect();
+            let known: Vec<String> = known.filter(|name| swept(name).is_some()).collect();
             let why = match source.values.contains_key(name) {
-                _ if name == "k" || tied.as_deref() == Some(name) => WHOLE,
-                true => ": it is not one of alpha, omega, R_r, s, c, P0, A, B under another name",
+                _ if whole(name) => WHOLE,
+                true => ": with another value it is not this oscillator",
                 false => "",
             };
             not_swept(name, why, &known)
         })
     };
+    let of_text = shared.clone();
+    let computed =
+        move |changes: &[(&str, Value)]| computed_parameters(&shared.0, periods, branch, changes);
     Ok(Known {
         problem,
         parameters,
@@ -377,7 +433,23 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
         remark,
         at,
         names: Box::new(names),
+        text: Box::new(move |text| of_text.0.sweep(text)),
+        computed: Some(Box::new(computed)),
     })
+}
+
+/// The parameters of section 2 with other values of those of a file.
+fn computed_parameters(
+    source: &Source,
+    periods: Option<u32>,
+    branch: Branch,
+    changes: &[(&str, Value)],
+) -> Option<Parameters<f64>> {
+    let mut values = source.values.clone();
+    values.extend(changes.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
+    let found = ImpactProblem::new(&source.problem, &values, periods, branch).ok()?;
+    let parameters = found.parameters.to_f64();
+    parameters.validate().ok().map(|()| parameters)
 }
 
 /// NAME=LO..HI:COUNT.
@@ -388,7 +460,8 @@ fn sweep(text: &str, names: &Names) -> Result<Sweep, Failure> {
     };
     let (name, range) = text.split_once('=').ok_or_else(bad)?;
     let name = name.trim();
-    let parameter = names(name)?;
+    let (parameter, base) = names(name)?;
+    let parameter = parameter.unwrap_or(Swept::VelocityGain);
     let (range, count) = range.rsplit_once(':').ok_or_else(bad)?;
     let (low, high) = range.split_once("..").ok_or_else(bad)?;
     let ends = [Value::parse(low)?, Value::parse(high)?];
@@ -401,5 +474,5 @@ fn sweep(text: &str, names: &Names) -> Result<Sweep, Failure> {
         return Err(bad());
     }
     let axis = Axis { parameter, low: number(&ends[0])?, high: number(&ends[1])?, count };
-    Ok(Sweep { name: name.to_owned(), axis, ends })
+    Ok(Sweep { name: name.to_owned(), axis, base, ends })
 }

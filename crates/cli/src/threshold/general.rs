@@ -1,6 +1,6 @@
 //! The answer for the equation of a file that is not the oscillator of section 3.
 
-use super::report::{Answer, SMOOTH, tangle, validity};
+use super::report::{Answer, Harmonic, SMOOTH, tangle, validity};
 use super::request::{Request, Sweep};
 use crate::derive::number_json;
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
@@ -11,7 +11,7 @@ use lindstedt::number::certified;
 use lindstedt::recognise::melnikov::Unperturbed;
 use lindstedt::recognise::{MelnikovProblem, OrbitCheck, OrbitThreshold};
 use lindstedt::{Number, Status};
-use lindstedt_melnikov::{Class, Friction, MelnikovError, Real};
+use lindstedt_melnikov::{Class, MelnikovError, Real};
 use rug::{Float, Rational};
 use serde_json::{Value as Json, json};
 
@@ -63,15 +63,36 @@ pub fn answer(
         Unperturbed::Closed { .. } => Vec::new(),
     };
     let mut listed = Vec::new();
+    let saddle = orbits.first().and_then(|orbit| orbit.saddle);
+    let several = orbits.iter().any(|orbit| orbit.saddle != saddle);
     for (n, orbit) in orbits.iter().enumerate() {
-        let check = check(found, orbit.name, &checks);
+        let name = match orbit.saddle {
+            Some(x) if several => format!("{} at x = {}", orbit.name, few_digits(x)),
+            _ => orbit.name.to_owned(),
+        };
         listed.push(json!({
-            "name": orbit.name,
+            "name": name,
             "gamma_c": number_json(&number(n, &gamma)?),
             "signed": number_json(&number(n, &|o| o.threshold.signed.clone())?),
-            "check": check,
+            "check": check(found, checks.get(n)),
+            "least": several.then_some(n == first),
         }));
     }
+    let mut remarks = request.remarks.clone();
+    if several {
+        remarks.push(format!(
+            "orbits of several saddles: gamma_c is the least of them; V and the validity are those of \
+             the {}",
+            listed.first().and_then(|orbit| orbit["name"].as_str()).unwrap_or_default()
+        ));
+    }
+    let harmonic = Harmonic::new(request, numbers.first(), &|factor: &Real| {
+        number(first, &|o| {
+            let balls = Balls::new(o.threshold.gamma.midpoint().prec().max(bits));
+            let quotient = balls.div(&gamma(o), &balls.abs(&factor.ball(balls)));
+            quotient.unwrap_or_else(|| gamma(o))
+        })
+    })?;
     let few = digits.min(17);
     let distance = |second: bool| {
         let pick = |(belt, tangency, _): (Ball, Ball, bool)| if second { tangency } else { belt };
@@ -82,11 +103,7 @@ pub fn answer(
         }
     };
     let verdict = found.verdict(Balls::new(ORDERING_BITS), request.eps.to_f64());
-    let jumps = match &found.friction {
-        Friction::Polynomial(law) => law.dry.sign().is_ne(),
-        other => !other.kinks().is_empty(),
-    };
-    let words = if jumps { validity(verdict) } else { SMOOTH };
+    let words = if found.jumps() { validity(verdict) } else { SMOOTH };
     let (zeros, zeros_of) = match &request.zeros {
         None => (Vec::new(), None),
         Some((_, name, low, high)) => {
@@ -106,7 +123,16 @@ pub fn answer(
         tangle: tangle(request, orbits.get(first).map(gamma)).to_owned(),
         orbits: listed,
         subharmonics: None,
+        remarks,
+        harmonic,
     })
+}
+
+/// x with six digits, without zeros behind.
+fn few_digits(x: f64) -> String {
+    let text = format!("{x:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 /// A number with the estimate of its error.
@@ -115,7 +141,7 @@ fn estimate(ball: &Ball, digits: usize) -> Number {
 }
 
 /// How the orbit was checked.
-fn check(found: &MelnikovProblem, name: &str, checks: &[OrbitCheck]) -> Json {
+fn check(found: &MelnikovProblem, check: Option<&OrbitCheck>) -> Json {
     match &found.unperturbed {
         Unperturbed::Closed { potential, .. } => {
             let kind = if potential.is_homoclinic() { "homoclinic" } else { "heteroclinic" };
@@ -133,21 +159,18 @@ fn check(found: &MelnikovProblem, name: &str, checks: &[OrbitCheck]) -> Json {
                 "{kind}, {family} with {parameters}: the residual of the equation is 0 identically"
             ))
         }
-        Unperturbed::Numeric(_) => {
-            let found = checks.iter().find(|check| check.name == name);
-            found.map_or(Json::Null, |c| {
-                let (kind, end) = if c.homoclinic {
-                    ("homoclinic", "turning point")
-                } else {
-                    ("heteroclinic", "other saddle")
-                };
-                Json::from(format!(
-                    "{kind}, numeric: saddle {:.9}, {end} {:.9}, energy residual {:.1e}, \
+        Unperturbed::Numeric(_) => check.map_or(Json::Null, |c| {
+            let (kind, end) = if c.homoclinic {
+                ("homoclinic", "turning point")
+            } else {
+                ("heteroclinic", "other saddle")
+            };
+            Json::from(format!(
+                "{kind}, numeric: saddle {:.9}, {end} {:.9}, energy residual {:.1e}, \
                      distance to the saddle at the end {:.1e}",
-                    c.saddle, c.end, c.energy_residual, c.decay
-                ))
-            })
-        }
+                c.saddle, c.end, c.energy_residual, c.decay
+            ))
+        }),
     }
 }
 

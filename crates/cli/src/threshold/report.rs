@@ -6,9 +6,10 @@ use crate::derive::number_json;
 use crate::failure::Failure;
 use crate::session::Session;
 use lindstedt::coeff::ball::{Ball, Balls};
-use lindstedt::equation::Text;
+use lindstedt::equation::print::Style;
+use lindstedt::equation::{Expression, Text};
 use lindstedt::number::{Number, certified};
-use lindstedt_melnikov::{Branch, MelnikovError, StickSlip, Verdict};
+use lindstedt_melnikov::{Branch, MelnikovError, Real, StickSlip, Verdict};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
@@ -37,6 +38,59 @@ pub struct Answer {
     pub orbits: Vec<Json>,
     /// Resonances, if asked for.
     pub subharmonics: Option<Vec<Json>>,
+    /// What gamma_c is in the symbols of the problem.
+    pub harmonic: Option<Harmonic>,
+    pub remarks: Vec<String>,
+}
+
+/// The force that gamma is the amplitude of.
+pub struct Harmonic {
+    term: String,
+    coefficient: String,
+    /// The parameter that the coefficient is a multiple of, and its threshold.
+    parameter: Option<(String, Number)>,
+}
+
+impl Harmonic {
+    /// `over`: gamma_c divided by the absolute value of a factor.
+    pub fn new(
+        request: &Request,
+        gamma: Option<&(&str, Number)>,
+        over: &dyn Fn(&Real) -> Result<Number, Failure>,
+    ) -> Result<Option<Self>, Failure> {
+        let Some(lowest) = &request.lowest else { return Ok(None) };
+        let shown = |e: &Expression| e.print(request.small(), Style::Text);
+        let parameter = match &lowest.parameter {
+            Some((name, factor)) => {
+                let unit = factor.abs().as_rational().is_some_and(|q| *q == 1);
+                let same = gamma.filter(|_| unit).map(|(_, number)| number.clone());
+                Some((name.clone(), same.map_or_else(|| over(factor), Ok)?))
+            }
+            None => None,
+        };
+        let (term, coefficient) = (shown(&lowest.term), shown(&lowest.coefficient));
+        Ok(Some(Self { term, coefficient, parameter }))
+    }
+
+    /// `gamma/m, the coefficient of cos(omega*t) in x''`.
+    fn words(&self) -> String {
+        let Self { term, coefficient, parameter } = self;
+        let alone = match parameter {
+            Some(_) => "",
+            None => " (a threshold of no single parameter of it)",
+        };
+        format!("{coefficient}, the coefficient of {term} in x''{alone}")
+    }
+
+    fn json(&self) -> Json {
+        let parameter = self.parameter.as_ref();
+        json!({
+            "term": self.term,
+            "coefficient": self.coefficient,
+            "parameter": parameter.map(|(name, _)| name),
+            "threshold": parameter.map(|(_, number)| number_json(number)),
+        })
+    }
 }
 
 impl Answer {
@@ -78,6 +132,10 @@ impl Answer {
             ("V", certified(None, digits, |balls| point.loop_speed(balls))?),
             ("cusp", certified(None, digits, at_cusp)?),
         ];
+        let harmonic = Harmonic::new(request, numbers.first(), &|factor| {
+            let over = |balls: Balls| balls.div(&gamma(balls)?, &balls.abs(&factor.ball(balls)));
+            Ok(certified(None, digits, over)?)
+        })?;
         let (zeros, zeros_of) = match &request.zeros {
             None => (Vec::new(), None),
             Some((Some(axis), name, low, high)) => {
@@ -121,6 +179,8 @@ impl Answer {
             tangle: tangle(request, gamma(Balls::new(400))).to_owned(),
             orbits: Vec::new(),
             subharmonics: None,
+            harmonic,
+            remarks: request.remarks.clone(),
         })
     }
 
@@ -142,6 +202,8 @@ impl Answer {
             }
         }
         result.insert("amplitude".into(), self.amplitude.clone().into());
+        result.insert("harmonic".into(), self.harmonic.as_ref().map(Harmonic::json).into());
+        result.insert("remarks".into(), self.remarks.clone().into());
         result.insert("zeros".into(), self.zeros.iter().map(number_json).collect());
         if let Some((name, complete)) = &self.zeros_of {
             result.insert("zeros_of".into(), json!({"parameter": name, "complete": complete}));
@@ -210,6 +272,14 @@ impl Answer {
             };
             lines.push((label.to_owned(), shown(number)));
         }
+        if let Some(harmonic) = &self.harmonic {
+            lines.push(("gamma_c is a value of".to_owned(), harmonic.words()));
+            if let Some((name, number)) = &harmonic.parameter
+                && harmonic.coefficient != *name
+            {
+                lines.push((format!("gamma_c as a value of {name}"), shown(number)));
+            }
+        }
         if let Some(b) = &self.touching_b {
             lines.push(("cusp touches zero at b =".to_owned(), b.clone()));
         }
@@ -218,7 +288,8 @@ impl Answer {
                 Json::String(text) => text.clone(),
                 value => value["decimal"].as_str().map_or_else(|| value.to_string(), str::to_owned),
             };
-            lines.push((format!("gamma_c, {}", text("name")), text("gamma_c")));
+            let mark = if orbit["least"] == true { " (the least)" } else { "" };
+            lines.push((format!("gamma_c, {}", text("name")), text("gamma_c") + mark));
             lines.push((format!("orbit, {}", text("name")), text("check")));
         }
         for resonance in self.subharmonics.iter().flatten() {
@@ -234,6 +305,7 @@ impl Answer {
         }
         lines.push(("transversal homoclinic points at gamma".to_owned(), self.tangle.clone()));
         lines.push(("validity".to_owned(), self.validity.clone()));
+        lines.extend(self.remarks.iter().map(|remark| ("remark".to_owned(), remark.clone())));
         lines
     }
 

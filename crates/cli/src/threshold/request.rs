@@ -8,8 +8,9 @@ use lindstedt::Value;
 use lindstedt::algebra::Stop;
 use lindstedt::coeff::ball::{Ball, Balls};
 use lindstedt::equation::Text;
+use lindstedt::equation::print::Style;
 use lindstedt::problems::stick_slip;
-use lindstedt::recognise::MelnikovProblem;
+use lindstedt::recognise::{LowestHarmonic, MelnikovProblem, all_values};
 use lindstedt_melnikov::{Axis, Class, Real, StickSlip};
 use rug::Rational;
 use std::path::Path;
@@ -35,6 +36,10 @@ pub struct Request {
     pub file: Option<(Source, MelnikovProblem)>,
     pub gamma: Real,
     pub eps: Real,
+    /// What gamma and gamma_c are in the symbols of the problem.
+    pub lowest: Option<LowestHarmonic>,
+    /// What was set without an effect, or is zero.
+    pub remarks: Vec<String>,
     /// Every parameter as it stands, in the order of the data card.
     pub at: Vec<(Text, Real)>,
     /// One, or two: the first is the horizontal axis of a figure.
@@ -82,6 +87,9 @@ fn named<'a>(
         let message = format!("{name:?} cannot be varied");
         Failure::usage("unknown-parameter", message, known)
     };
+    if let Some((source, _)) = file {
+        source.sweep(text)?;
+    }
     let Some((source, found)) = file else {
         let axis = axis(name).ok_or_else(|| unknown("a, b, T0, alpha, beta, omega, vstar"))?;
         return Ok((Some(axis), name, range));
@@ -95,6 +103,10 @@ fn named<'a>(
 
 impl Sweep {
     fn read(text: &str, file: Option<&(Source, MelnikovProblem)>) -> Result<Self, Failure> {
+        let text = match file {
+            Some((source, _)) => &*source.sweep(text)?,
+            None => text,
+        };
         let (axis, name, range) = named("sweep", text, file)?;
         let name = name.to_owned();
         let Some((low, rest)) = range.split_once("..") else {
@@ -123,7 +135,7 @@ fn exact(value: &Real) -> Rational {
 
 impl Request {
     pub fn read(options: &ThresholdOptions) -> Result<Self, Failure> {
-        let Known { problem, point, file, gamma, eps, at } =
+        let Known { problem, point, file, gamma, eps, lowest, remarks, at } =
             if options.problem.ends_with(".toml") { of_file(options)? } else { built_in(options)? };
         if options.sweep.len() > 2 {
             let message = "at most two sweeps".to_owned();
@@ -159,7 +171,7 @@ impl Request {
                 Some((axis, name.to_owned(), parse(low)?, parse(high)?))
             }
         };
-        Ok(Self { problem, point, file, gamma, eps, at, sweeps, zeros })
+        Ok(Self { problem, point, file, gamma, eps, lowest, remarks, at, sweeps, zeros })
     }
 
     /// The same request, whose orbits of files are followed until asked to stop.
@@ -197,6 +209,11 @@ impl Request {
         least.map(|orbit| orbit.threshold.signed.clone())
     }
 
+    /// The name of the small parameter.
+    pub fn small(&self) -> &str {
+        self.file.as_ref().map_or("eps", |(source, _)| &source.problem.small)
+    }
+
     /// Whether every swept parameter is one of section 3.
     pub fn is_fast(&self) -> bool {
         self.point.is_some() && self.sweeps.iter().all(|sweep| sweep.axis.is_some())
@@ -215,7 +232,26 @@ struct Known {
     file: Option<(Source, MelnikovProblem)>,
     gamma: Real,
     eps: Real,
+    lowest: Option<LowestHarmonic>,
+    remarks: Vec<String>,
     at: Vec<(Text, Real)>,
+}
+
+/// That the small parameter was set, and forces that are zero.
+fn remarks(small: &str, jumps: bool, set: bool, lowest: Option<&LowestHarmonic>) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if set && jumps {
+        remarks.push(format!(
+            "{small} takes no part in gamma_c (of first order in it), only in the verdict on validity"
+        ));
+    } else if set {
+        remarks.push(format!("{small} has no effect: gamma_c is of first order in it"));
+    }
+    for force in lowest.iter().flat_map(|lowest| &lowest.silent) {
+        let force = force.print(small, Style::Text);
+        remarks.push(format!("{force} is zero at these values and left out"));
+    }
+    remarks
 }
 
 fn of_file(options: &ThresholdOptions) -> Result<Known, Failure> {
@@ -223,8 +259,14 @@ fn of_file(options: &ThresholdOptions) -> Result<Known, Failure> {
     let found = MelnikovProblem::new(&source.problem, &source.values)
         .map_err(|refusal| source.refuse(refusal))?;
     let at = source.at().into_iter().map(|(name, value)| (Text::from(name), real(value)));
-    let eps = source.values.get(&*source.problem.small).cloned();
+    let small = source.problem.small.to_string();
+    let eps = source.values.get(&small).cloned();
+    let lowest = LowestHarmonic::find(&source.problem, &source.values);
+    let set = parameters(&options.set)?.contains_key(&small);
+    let remarks = remarks(&small, found.jumps(), set, lowest.as_ref());
     Ok(Known {
+        lowest,
+        remarks,
         problem: source.problem.name.to_string(),
         point: found.stick_slip(),
         gamma: found.amplitude.clone(),
@@ -242,8 +284,11 @@ fn built_in(options: &ThresholdOptions) -> Result<Known, Failure> {
         return Err(Failure::usage("unknown-problem", message, hint));
     }
     let mut set = parameters(&options.set)?;
+    let card = stick_slip::problem();
+    let lowest = LowestHarmonic::find(&card, &all_values(&card, &set));
+    let eps_is_set = set.contains_key("eps");
     let mut at = Vec::new();
-    for card in stick_slip::problem().parameters {
+    for card in card.parameters {
         let value = match set.remove(&*card.name) {
             Some(value) => real(value),
             None => parse(&card.default)?,
@@ -268,5 +313,15 @@ fn built_in(options: &ThresholdOptions) -> Result<Known, Failure> {
         value.unwrap_or_else(|| Real::from(0))
     };
     let (gamma, eps) = (get("gamma"), get("eps"));
-    Ok(Known { problem: "stick-slip".to_owned(), point: Some(point), file: None, gamma, eps, at })
+    let remarks = remarks("eps", point.dry.sign().is_ne(), eps_is_set, lowest.as_ref());
+    Ok(Known {
+        problem: "stick-slip".to_owned(),
+        point: Some(point),
+        file: None,
+        gamma,
+        eps,
+        lowest,
+        remarks,
+        at,
+    })
 }

@@ -1,7 +1,6 @@
 //! Averaging of a problem: rates of amplitude and phase as formulas or as numbers.
 
 mod coefficients;
-mod enclosures;
 pub(crate) mod numbers;
 mod values;
 
@@ -9,7 +8,6 @@ use crate::derivation::check_delays;
 use crate::number::rational;
 use crate::{Error, Number, Progress, Value};
 use coefficients::{Coefficients, with_angles};
-pub(crate) use enclosures::{Enclosures, defaults, enclosures};
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials, AmplitudePower};

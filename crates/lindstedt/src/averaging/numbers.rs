@@ -2,13 +2,14 @@
 
 use super::values::constant;
 use super::{AveragingSettings, Over, Task};
-use crate::{Error, Progress};
+use crate::{Error, Progress, Value};
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePower};
 use lindstedt_coeff::ball::Balls;
 use lindstedt_coeff::ball::ring::{BallRing, Enclosure};
-use lindstedt_equation::Problem;
+use lindstedt_equation::{Expression, Problem};
 use rug::Float;
+use std::collections::BTreeMap;
 
 /// sum of c a^exponent.
 pub(crate) type Terms = Vec<(i32, Float)>;
@@ -35,8 +36,23 @@ pub(crate) struct Numbers {
     pub phase_rate: Vec<Terms>,
     /// u_0, u_1, ...
     pub solution: Vec<Vec<Harmonic>>,
-    /// Whether delayed values occur.
-    pub is_delayed: bool,
+    /// The delays.
+    pub delays: Vec<Float>,
+}
+
+/// Values of the parameters of the equation (and of a synchronous delay), given or by default;
+/// `amplitude`, if given or a parameter of the problem.
+pub(crate) fn defaults(
+    problem: &Problem,
+    given: &BTreeMap<String, Value>,
+) -> BTreeMap<String, Value> {
+    let mut values = given.clone();
+    for card in &problem.parameters {
+        if let Ok(value) = Value::parse(&card.default) {
+            values.entry(card.name.to_string()).or_insert(value);
+        }
+    }
+    values
 }
 
 /// Coefficients with `bits` bits relative, or as far as their enclosures allow; those that may
@@ -93,22 +109,21 @@ fn collect<K: RationalAlgebra>(
             };
         harmonics.map(one).collect::<Option<Vec<_>>>()
     });
-    // The frequency of the force is an expression in the parameters alone.
+    // The frequency of the force and the delays are expressions in the parameters alone.
     let ring = BallRing { balls: Balls::new(bits) };
     let values = |name: &str| Some(Enclosure(task.value(name)?.ball(ring.balls)?));
-    let forcing = match &task.excitation.frequency {
-        None => Float::new(bits),
-        Some(frequency) => {
-            let value = constant(&ring, frequency, &values).ok_or_else(failed)?;
-            Float::with_val(bits, value.0.midpoint())
-        }
+    let number = |e: &Expression| {
+        let value = constant(&ring, e, &values).ok_or_else(failed)?;
+        Ok::<_, Error>(Float::with_val(bits, value.0.midpoint()))
     };
+    let forcing = task.excitation.frequency.as_ref().map_or(Ok(Float::new(bits)), number)?;
+    let delays = task.excitation.delays.iter().map(number).collect::<Result<_, _>>()?;
     Ok(Numbers {
         frequency: value(&over.frequency).ok_or_else(failed)?,
         forcing,
         amplitude_rate: list(&over.expansion.amplitude_rate).ok_or_else(failed)?,
         phase_rate: list(&over.expansion.phase_rate).ok_or_else(failed)?,
         solution: solution.collect::<Option<_>>().ok_or_else(failed)?,
-        is_delayed: !task.excitation.delays.is_empty(),
+        delays,
     })
 }

@@ -73,11 +73,15 @@ fn sum(part: &Monomials) -> Option<InPi> {
     Some(sum)
 }
 
+/// omega of a bound sine or cosine of omega t + phase, with its sign.
+pub(super) fn frequency(atom: &Expression) -> Option<Real> {
+    Some(Real::from(sum(&angle(atom)?.0)?.value()?))
+}
+
 /// The frequency of a force whose amplitude is zero at the values given.
 pub(super) fn silent_frequency(bound: &Expression) -> Option<Real> {
     let term = bound.find(&|e| angle(e).is_some())?;
-    let omega = Real::from(sum(&angle(term)?.0)?.value()?);
-    Some(omega.abs())
+    Some(frequency(term)?.abs())
 }
 
 /// One harmonic force g x^p cos(omega t + phase).

@@ -3,6 +3,7 @@
 use super::forces::{Kind, Term, forcing, kind, silent_frequency};
 use super::in_pi::InPi;
 use super::law::FrictionLaw;
+use super::lowest::{common, forces};
 use super::numeric::NumericOrbit;
 use super::{Refusal, Why, bind, missing, multiply_out, named, potential, rest};
 use crate::Value;
@@ -76,6 +77,8 @@ pub struct MelnikovProblem {
 pub struct OrbitThreshold {
     /// Which orbit.
     pub name: &'static str,
+    /// The saddle it leaves, where it is followed numerically.
+    pub saddle: Option<f64>,
     /// gamma_c, D and F.
     pub threshold: Threshold,
 }
@@ -121,6 +124,9 @@ impl MelnikovProblem {
         };
         let (forcing, amplitude) = match terms.as_slice() {
             [] => {
+                if let Some(several) = Self::silent(problem, &rest, values)? {
+                    return Ok(several);
+                }
                 (Forcing::single(silent_frequency(&bound).ok_or(Refusal::NoForce)?), Real::from(0))
             }
             list => forcing(list).map_err(force_refusal)?,
@@ -144,6 +150,27 @@ impl MelnikovProblem {
             system.potential().check()?;
         }
         Ok(found)
+    }
+
+    /// Several forces that all vanish: in the proportions that they have with another value of a
+    /// parameter of which all are multiples.
+    fn silent(
+        problem: &Problem,
+        rest: &Expression,
+        values: &BTreeMap<String, Value>,
+    ) -> Result<Option<Self>, Refusal> {
+        let all = multiply_out(rest)?;
+        let forces = forces(&all, values).unwrap_or_default();
+        if forces.len() < 2 {
+            return Ok(None);
+        }
+        let is_zero = |name: &String| {
+            values.get(name).is_some_and(|value| Real::from(value.clone()).sign().is_eq())
+        };
+        let name = common(&all, &forces).into_iter().find(is_zero);
+        let mut values = values.clone();
+        values.insert(name.ok_or(Refusal::SilentForces)?, Value::Rational(Rational::from(1)));
+        Ok(Some(Self { amplitude: Real::from(0), ..Self::new(problem, &values)? }))
     }
 
     /// The same problem, whose numeric orbits end undecided when asked to stop.
@@ -268,7 +295,7 @@ impl MelnikovProblem {
                 continue;
             }
             let threshold = self.in_x(balls, system.threshold(balls, branch)?);
-            found.push(OrbitThreshold { name, threshold });
+            found.push(OrbitThreshold { name, saddle: None, threshold });
         }
         if *scale < 0 {
             found.reverse();
@@ -315,11 +342,16 @@ impl MelnikovProblem {
         }
         let speed = self.belt_speed.abs().ball(balls);
         let distance = balls.abs(&balls.sub(&self.largest_speed(balls)?, &speed));
-        let dry = match &self.friction {
+        Some((speed, distance, self.jumps()))
+    }
+
+    /// Whether friction jumps or bends.
+    #[must_use]
+    pub fn jumps(&self) -> bool {
+        match &self.friction {
             Friction::Polynomial(law) => law.dry.sign().is_ne(),
             other => !other.kinks().is_empty(),
-        };
-        Some((speed, distance, dry))
+        }
     }
 
     /// The verdict on the theory for this eps, as of [`lindstedt_melnikov::Validity`].

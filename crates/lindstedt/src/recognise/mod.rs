@@ -8,13 +8,16 @@ mod forces;
 pub mod impact;
 mod in_pi;
 mod law;
+mod lowest;
 pub mod melnikov;
 mod motion;
 mod numeric;
 mod potential;
+mod search;
 
 pub use impact::ImpactProblem;
 pub use in_pi::all_values;
+pub use lowest::LowestHarmonic;
 pub use melnikov::{MelnikovProblem, OrbitThreshold};
 pub use numeric::{NumericOrbit, OrbitCheck};
 
@@ -111,6 +114,9 @@ pub enum Refusal {
     /// No harmonic force.
     #[error("there is no harmonic force")]
     NoForce,
+    /// Several forces, all zero.
+    #[error("every harmonic force is zero at these values, and which of them grows is open")]
+    SilentForces,
     /// The unperturbed equation has no saddle with an orbit that returns or leads to another.
     #[error("no homoclinic or heteroclinic orbit of the unperturbed equation was found")]
     NoOrbit,

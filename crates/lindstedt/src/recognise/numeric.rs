@@ -17,27 +17,26 @@ use lindstedt_simulate::{
 use rug::{Float, Rational};
 use std::ops::ControlFlow;
 
-/// Points of the search for saddles and turning points.
-const POINTS: i32 = 4000;
 /// Half the width of the search where no bound of the zeros is known.
 const REACH: f64 = 20.0;
 /// Bits of the search.
-const COARSE: u32 = 128;
+pub(super) const COARSE: u32 = 128;
 
 /// One orbit from a saddle.
 #[derive(Clone, Debug)]
-struct Path {
-    name: &'static str,
-    saddle: Float,
+pub(super) struct Path {
+    pub name: &'static str,
+    pub saddle: Float,
     /// Where the motion starts: the turning point, or the centre between two saddles.
-    start: Float,
+    pub start: Float,
     /// The other saddle of a heteroclinic orbit.
-    other: Option<Float>,
+    pub other: Option<Float>,
     /// +1: x' >= 0 on a heteroclinic orbit.
-    sign: i32,
+    pub sign: i32,
 }
 
-/// The orbits of x'' = f(x) from the saddle nearest to x = 0.
+/// The orbits of x'' = f(x) from its saddles: those of the saddle nearest to x = 0 first, of several
+/// that are translations of each other (a periodic force) only one.
 ///
 /// Found by the signs of f and of W(x) = int f from the saddle on a grid, W = x'^2/2: a zero of W
 /// is a turning point, a double one another saddle. Refined, then followed in time from the middle
@@ -85,7 +84,7 @@ impl NumericOrbit {
 
     /// Whether f has a positive derivative at a zero: its difference quotients agree. Near other
     /// saddles nothing decays exponentially.
-    fn is_hyperbolic(&self, x: &Float) -> bool {
+    pub(super) fn is_hyperbolic(&self, x: &Float) -> bool {
         let quotient = |h: f64| -> Option<f64> {
             let ends = (Float::with_val(COARSE, x - h), Float::with_val(COARSE, x + h));
             Some(((self.f(&ends.1)? - self.f(&ends.0)?) / (2.0 * h)).to_f64())
@@ -97,7 +96,7 @@ impl NumericOrbit {
     }
 
     /// f(x); nothing where it is not finite, and when the work was stopped.
-    fn f(&self, x: &Float) -> Option<Float> {
+    pub(super) fn f(&self, x: &Float) -> Option<Float> {
         if self.stop.asked() {
             return None;
         }
@@ -105,13 +104,13 @@ impl NumericOrbit {
     }
 
     /// W between two points.
-    fn work(&self, from: &Float, to: &Float, bits: u32) -> Option<Float> {
+    pub(super) fn work(&self, from: &Float, to: &Float, bits: u32) -> Option<Float> {
         let estimate = tanh_sinh(bits, from, to, |x| self.f(x)).ok()?;
         Some(Float::with_val(bits, &estimate.value))
     }
 
     /// W over one cell of the search: Gauss and Legendre with five points, exact to 1e-16 there.
-    fn cell(&self, from: &Float, to: &Float) -> Option<Float> {
+    pub(super) fn cell(&self, from: &Float, to: &Float) -> Option<Float> {
         const NODES: [(f64, f64); 5] = [
             (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
             (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
@@ -130,7 +129,7 @@ impl NumericOrbit {
     }
 
     /// A zero of f between two points of opposite sign.
-    fn zero(&self, low: &Float, high: &Float, bits: u32) -> Option<Float> {
+    pub(super) fn zero(&self, low: &Float, high: &Float, bits: u32) -> Option<Float> {
         let (mut low, mut high) = (Float::with_val(bits, low), Float::with_val(bits, high));
         let rising = self.f(&high)? > 0;
         for _ in 0..bits + 8 {
@@ -140,86 +139,8 @@ impl NumericOrbit {
         Some(Float::with_val(bits, &low + &high) / 2u32)
     }
 
-    fn search(&self, reach: f64) -> Option<Vec<Path>> {
-        let step = 2.0 * reach / f64::from(POINTS);
-        // Off the symmetric points, where zeros like to be.
-        let at = |n: i32| Float::with_val(COARSE, step * (f64::from(n) + 0.137) - reach);
-        let value = |n: i32| self.f(&at(n));
-        let mut saddles = Vec::new();
-        for n in 0..POINTS {
-            if let (Some(a), Some(b)) = (value(n), value(n + 1))
-                && a < 0
-                && b > 0
-            {
-                saddles.push((n, self.zero(&at(n), &at(n + 1), COARSE)?));
-            }
-        }
-        saddles.sort_by(|a, b| a.1.clone().abs().total_cmp(&b.1.clone().abs()));
-        for (_, saddle) in saddles.iter().filter(|(_, saddle)| self.is_hyperbolic(saddle)) {
-            let mut paths = Vec::new();
-            for direction in [1, -1] {
-                self.follow(saddle, direction, step, reach, &mut paths);
-            }
-            if !paths.is_empty() {
-                return Some(paths);
-            }
-        }
-        None
-    }
-
-    /// Walks away from the saddle until W vanishes.
-    fn follow(&self, saddle: &Float, direction: i32, step: f64, reach: f64, paths: &mut Vec<Path>) {
-        let at = |n: i32| Float::with_val(COARSE, saddle + step * f64::from(n * direction));
-        let mut w = Float::new(COARSE);
-        let mut top = Float::new(COARSE);
-        let mut centre = None;
-        let mut n = 0;
-        while (at(n).to_f64()).abs() <= 1.5 * reach {
-            let (here, next) = (at(n), at(n + 1));
-            let Some(piece) = self.cell(&here, &next) else { return };
-            let before = w.clone();
-            w += piece;
-            if w > top {
-                top = w.clone();
-            }
-            let (Some(a), Some(b)) = (self.f(&here), self.f(&next)) else { return };
-            let (a, b) = (a * direction, b * direction);
-            if n > 0 && a > 0 && b <= 0 && centre.is_none() {
-                centre = self.zero(&here, &next, COARSE);
-            }
-            if n > 0 && a < 0 && b >= 0 {
-                // A minimum of W: another saddle, on the same level or higher.
-                let Some(other) = self.zero(&here, &next, COARSE) else { return };
-                let Some(level) = self.work(saddle, &other, 80) else { return };
-                let flat = Float::with_val(53, level.abs_ref()) < Float::with_val(53, &top * 1e-18);
-                if flat {
-                    let toward = (saddle.to_f64() > 0.0) == (direction < 0);
-                    if let Some(start) = centre.filter(|_| toward || *saddle == 0) {
-                        let path = |name, sign| Path {
-                            name,
-                            saddle: saddle.clone(),
-                            start: start.clone(),
-                            other: Some(other.clone()),
-                            sign,
-                        };
-                        paths.push(path("upper orbit", 1));
-                        paths.push(path("lower orbit", -1));
-                    }
-                    return;
-                }
-            }
-            if n > 0 && before > 0 && w < 0 {
-                let name = if direction > 0 { "right loop" } else { "left loop" };
-                let Some(start) = self.turning_point(saddle, &next, COARSE) else { return };
-                paths.push(Path { name, saddle: saddle.clone(), start, other: None, sign: 1 });
-                return;
-            }
-            n += 1;
-        }
-    }
-
     /// The simple zero of W near x, by Newton's method.
-    fn turning_point(&self, saddle: &Float, near: &Float, bits: u32) -> Option<Float> {
+    pub(super) fn turning_point(&self, saddle: &Float, near: &Float, bits: u32) -> Option<Float> {
         let mut x = Float::with_val(bits, near);
         for _ in 0..60 {
             let step = self.work(saddle, &x, bits)? / self.f(&x)?;
@@ -314,6 +235,7 @@ impl NumericOrbit {
             let class = Class::Estimated;
             Ok(OrbitThreshold {
                 name: path.name,
+                saddle: Some(path.saddle.to_f64()),
                 threshold: Threshold { gamma, signed, dissipation, forcing, class },
             })
         };

@@ -1,11 +1,10 @@
 //! Averaged expansions against the time domain: x_N(t) by the truncated rates of a and psi.
 
 use super::{Comparison, VerifySettings, quantities};
-use crate::averaging::{AveragingSettings, Enclosures, enclosures};
+use crate::averaging::AveragingSettings;
+use crate::averaging::numbers::{Harmonic, Numbers, Terms, defaults, numbers};
 use crate::{Error, Progress};
-use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePower};
 use lindstedt_coeff::ball::Balls;
-use lindstedt_coeff::ball::ring::Enclosure;
 use lindstedt_equation::{Expression, Function, Problem};
 use lindstedt_expand::ExpandError;
 use lindstedt_simulate::{
@@ -14,7 +13,7 @@ use lindstedt_simulate::{
 };
 use rug::ops::Pow;
 use rug::{Float, Rational};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 
 /// A Laurent polynomial in a.
@@ -102,7 +101,7 @@ impl Truncated {
 /// An averaged expansion and its judge.
 pub(super) struct Drifting {
     bits: u32,
-    enclosures: Enclosures,
+    numbers: Numbers,
     /// a(0).
     start: Float,
     times: Vec<Float>,
@@ -120,7 +119,7 @@ impl Drifting {
     ) -> Result<Self, Error> {
         let bits = Digits::for_digits(digits + 16).bits();
         let balls = Balls::new(bits);
-        let mut parameters = crate::averaging::defaults(problem, &settings.parameters);
+        let mut parameters = defaults(problem, &settings.parameters);
         let start = match parameters.remove("amplitude") {
             Some(value) => Float::with_val(bits, value.ball(balls).midpoint()),
             None => Float::with_val(bits, 1),
@@ -136,11 +135,16 @@ impl Drifting {
             digits: usize::try_from(digits).unwrap_or(usize::MAX),
             ..AveragingSettings::default()
         };
-        let enclosures = enclosures(problem, &asked, bits, observer)?;
+        // Half of the bits are sure.
+        let numbers = numbers(problem, &asked, bits.saturating_mul(2), observer)?;
+        let order = numbers.solution.len().saturating_sub(1);
+        if order < settings.order {
+            return Err(ExpandError::Interrupted { order }.into());
+        }
         let samples = settings.samples.max(2);
         let window = Float::with_val(bits, rug::float::Constant::Pi)
             * (2 * settings.periods.max(1))
-            / enclosures.frequency.0.midpoint();
+            / &numbers.frequency;
         // Not at a whole part of the period, where delays end too.
         let time = |j: u32| {
             let part = (1009 * u64::from(j) - 505, 1009 * u64::from(samples));
@@ -155,22 +159,22 @@ impl Drifting {
             model: Model::of_problem(&judged)?,
             parameters: quantities(problem, &settings.parameters),
             small: problem.small.to_string(),
-            enclosures,
+            numbers,
         })
     }
 
     /// sum_n eps^n f_n.
     fn sum<'a>(
         &self,
-        orders: impl Iterator<Item = &'a AmplitudePolynomial<Enclosure>>,
+        orders: impl Iterator<Item = Option<&'a Terms>>,
         small: &Rational,
     ) -> Polynomial {
         let mut sum = Polynomial::new();
         for (n, f) in orders.enumerate() {
             let power = Rational::from(small.pow(n as u32));
-            for (AmplitudePower(exponent), c) in f.terms() {
+            for (exponent, c) in f.into_iter().flatten() {
                 let entry = sum.entry(*exponent).or_insert_with(|| Float::new(self.bits));
-                *entry += Float::with_val(self.bits, c.0.midpoint()) * &power;
+                *entry += Float::with_val(self.bits, c * &power);
             }
         }
         sum.retain(|_, c| !c.is_zero());
@@ -178,27 +182,24 @@ impl Drifting {
     }
 
     fn truncated(&self, small: &Rational) -> Truncated {
-        let expansion = &self.enclosures.expansion;
-        let mut phase_rate = self.sum(expansion.phase_rate.iter(), small);
-        let frequency = self.enclosures.frequency.0.midpoint();
+        let Numbers { frequency, forcing, amplitude_rate, phase_rate, solution, .. } =
+            &self.numbers;
+        let rate = |orders: &[Terms]| self.sum(orders.iter().map(Some), small);
+        let mut phase_rate = rate(phase_rate);
         *phase_rate.entry(0).or_insert_with(|| Float::new(self.bits)) += frequency;
-        let keys: std::collections::BTreeSet<_> =
-            expansion.solution.iter().flat_map(|x| x.harmonics().keys().copied()).collect();
-        let empty = AmplitudePolynomial::default();
-        let part = |key, which: usize| {
-            let orders = expansion.solution.iter();
-            let term = orders.map(|x| x.harmonics().get(key).map_or(&empty, |pair| &pair[which]));
+        let key = |h: &Harmonic| (h.free, h.forced);
+        let keys: BTreeSet<_> = solution.iter().flatten().map(key).collect();
+        let part = |wanted, which: usize| {
+            let orders = solution.iter();
+            let term =
+                orders.map(|u| Some(&u.iter().find(|h| key(h) == wanted)?.amplitudes[which]));
             self.sum(term, small)
         };
-        let forcing = self.enclosures.forcing.as_ref();
         Truncated {
             bits: self.bits,
-            rates: [self.sum(expansion.amplitude_rate.iter(), small), phase_rate],
-            harmonics: keys.iter().map(|key| (*key, [part(key, 0), part(key, 1)])).collect(),
-            forcing: forcing.map_or_else(
-                || Float::new(self.bits),
-                |w| Float::with_val(self.bits, w.0.midpoint()),
-            ),
+            rates: [rate(amplitude_rate), phase_rate],
+            harmonics: keys.into_iter().map(|key| (key, [part(key, 0), part(key, 1)])).collect(),
+            forcing: Float::with_val(self.bits, forcing),
         }
     }
 
@@ -245,8 +246,9 @@ impl Drifting {
     /// x_N(t) before t = 0 as an expression in t, where there is a delay: a and psi by their Taylor
     /// polynomials about 0, which converge on the slow scale 1/eps.
     fn history(&self, truncated: &Truncated, digits: u32) -> Result<Option<Expression>, Error> {
-        let longest = self.enclosures.delays.iter().map(|t| t.0.midpoint());
-        let Some(longest) = longest.max_by(|a, b| a.total_cmp(b)) else { return Ok(None) };
+        let Some(longest) = self.numbers.delays.iter().max_by(|a, b| a.total_cmp(b)) else {
+            return Ok(None);
+        };
         let real = Digits::for_digits(digits);
         let system = truncated.flow(real, false)?;
         let start = [real.float(&self.start), real.zero()];
@@ -321,7 +323,7 @@ impl Drifting {
             if goes_on() { trajectory.record(report) } else { ControlFlow::Break(()) }
         })?;
         if outcome == Outcome::Stopped {
-            let order = self.enclosures.expansion.order();
+            let order = self.numbers.solution.len().saturating_sub(1);
             return Err(ExpandError::Interrupted { order }.into());
         }
         let mut lists = states.map(|_| Vec::new());

@@ -207,7 +207,7 @@ impl Motion {
             ratio,
             integration_error: full.linear().map(|_| 0.0),
             ended: None,
-            is_delayed: found.is_delayed,
+            is_delayed: !found.delays.is_empty(),
             has_wall: problem.impact.is_some(),
             orders,
             digits: settings.digits,

@@ -1,0 +1,167 @@
+//! Which term of an equation the threshold is about: its lowest harmonic force, with the coefficient
+//! as it is written.
+
+use super::forces::{Kind, frequency, kind};
+use super::in_pi::InPi;
+use super::{bind, rest};
+use crate::Value;
+use lindstedt_equation::monomials::{Monomial, Monomials, expand};
+use lindstedt_equation::{Expression, Problem};
+use lindstedt_melnikov::Real;
+use rug::Rational;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The lowest harmonic force of x'' = f(x) + eps (gamma cos(omega t + phase) + ...): what gamma and
+/// its threshold are in the symbols of the problem.
+///
+/// ```
+/// use lindstedt::recognise::{LowestHarmonic, all_values};
+/// use lindstedt::ProblemFile;
+///
+/// let file = ProblemFile::parse(
+///     r#"
+///     name = "pendulum"
+///     equation = "m x'' + m sin x = eps (gamma cos(omega t) - delta x')"
+///     condition = []
+///     [parameters]
+///     m = { value = "2" }
+///     gamma = { value = "1" }
+///     omega = { value = "1" }
+///     delta = { value = "1" }
+///     "#,
+/// )?;
+/// let values = all_values(&file.problem, &Default::default());
+/// let found = LowestHarmonic::find(&file.problem, &values).expect("there is a force");
+/// let (name, factor) = found.parameter.expect("it is gamma/m");
+/// assert_eq!((name.as_str(), factor.to_f64()), ("gamma", 0.5));
+/// # Ok::<(), lindstedt::problem_file::FileError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct LowestHarmonic {
+    /// cos(omega t + phase), or with a factor x.
+    pub term: Expression,
+    /// Its whole coefficient on the right of x'' = ..., without the small parameter.
+    pub coefficient: Expression,
+    /// Where the coefficients of all forces are multiples of just one parameter, which occurs
+    /// nowhere else: its name, and the factor of it in `coefficient`.
+    pub parameter: Option<(String, Real)>,
+    /// Forces whose coefficient is zero at the values, with that coefficient.
+    pub silent: Vec<Expression>,
+}
+
+/// The terms with one harmonic function.
+#[derive(Debug)]
+pub(super) struct Force {
+    atom: Expression,
+    x: u32,
+    /// |omega|, and what orders forces of one frequency.
+    frequency: f64,
+    key: String,
+    terms: Vec<(Monomial, Rational)>,
+}
+
+/// The harmonic forces of an equation without values, by frequency; nothing if one has none.
+pub(super) fn forces(all: &Monomials, values: &BTreeMap<String, Value>) -> Option<Vec<Force>> {
+    let mut list: Vec<Force> = Vec::new();
+    for (m, q) in &all.terms {
+        if !matches!(kind(all, m), Ok(Kind::Harmonic)) {
+            continue;
+        }
+        let atom = bind(all.atoms.get(m.atoms.keys().next()?)?, values);
+        let key = expand(&atom)?.atoms.keys().next()?.clone();
+        let x = m.x;
+        let place = list.iter().position(|force| force.key == key && force.x == x);
+        let place = match place {
+            Some(place) => place,
+            None => {
+                let frequency = frequency(&atom)?.to_f64().abs();
+                let atom = all.atoms.get(m.atoms.keys().next()?)?.clone();
+                list.push(Force { atom, x, frequency, key, terms: Vec::new() });
+                list.len() - 1
+            }
+        };
+        list.get_mut(place)?.terms.push((m.clone(), Rational::from(-q)));
+    }
+    // The order of the bound equation.
+    list.sort_by(|a, b| a.frequency.total_cmp(&b.frequency).then_with(|| a.key.cmp(&b.key)));
+    Some(list)
+}
+
+impl Force {
+    fn coefficient(&self, all: &Monomials) -> Expression {
+        let constant = |(m, q): &(Monomial, Rational)| {
+            let bare = Monomial { parameters: m.parameters.clone(), ..Monomial::default() };
+            all.tree(&bare, q)
+        };
+        Expression::Sum(self.terms.iter().map(constant).collect()).canonical()
+    }
+
+    fn term(&self) -> Expression {
+        match self.x {
+            0 => self.atom.clone(),
+            x => (Expression::Displacement.pow(i64::from(x)) * self.atom.clone()).canonical(),
+        }
+    }
+
+    fn is_silent(&self, all: &Monomials, values: &BTreeMap<String, Value>) -> bool {
+        InPi::of(&bind(&self.coefficient(all), values)).is_some_and(|c| c.is_zero())
+    }
+
+    /// Whether every term is a multiple of the parameter, and depends on it in no other way.
+    fn is_multiple(&self, all: &Monomials, name: &str) -> bool {
+        let symbol = Expression::parameter(name);
+        self.terms.iter().all(|(m, _)| {
+            let inside = |key: &String| all.atoms.get(key).is_some_and(|e| e.contains(&symbol));
+            m.parameters.get(name) == Some(&1)
+                && !m.parameters.keys().any(inside)
+                && !m.atoms.keys().any(inside)
+        })
+    }
+}
+
+/// The parameters of which all forces are multiples.
+pub(super) fn common(all: &Monomials, forces: &[Force]) -> Vec<String> {
+    let names: BTreeSet<&String> = forces
+        .iter()
+        .flat_map(|force| force.terms.iter().flat_map(|(m, _)| m.parameters.keys()))
+        .collect();
+    let multiple = |name: &&String| forces.iter().all(|force| force.is_multiple(all, name));
+    names.into_iter().filter(multiple).cloned().collect()
+}
+
+impl LowestHarmonic {
+    /// Reads the equation of a problem; nothing where it has no such force.
+    #[must_use]
+    pub fn find(problem: &Problem, values: &BTreeMap<String, Value>) -> Option<Self> {
+        let all = expand(&rest(problem).ok()?)?;
+        let (silent, sounding): (Vec<Force>, Vec<Force>) =
+            forces(&all, values)?.into_iter().partition(|force| force.is_silent(&all, values));
+        let whole = |force: &Force| (force.coefficient(&all) * force.term()).canonical();
+        let mut unheard: Vec<Expression> = silent.iter().map(whole).collect();
+        let heard = if sounding.is_empty() {
+            unheard.clear();
+            silent
+        } else {
+            sounding
+        };
+        let lowest = heard.first()?;
+        let coefficient = lowest.coefficient(&all);
+        let symbols = common(&all, &heard);
+        let others = |name: &String| {
+            let symbol = Expression::parameter(name);
+            let is_force = |m: &Monomial| matches!(kind(&all, m), Ok(Kind::Harmonic));
+            !all.terms.iter().any(|(m, q)| !is_force(m) && all.tree(m, q).contains(&symbol))
+        };
+        let parameter = match symbols.as_slice() {
+            [name] if others(name) => {
+                let mut unit = values.clone();
+                unit.insert(name.clone(), Value::Rational(Rational::from(1)));
+                let factor = InPi::of(&bind(&coefficient, &unit)).and_then(|c| c.value());
+                let factor = factor.map(Real::from).filter(|factor| factor.sign().is_ne());
+                factor.map(|factor| (name.clone(), factor))
+            }
+            _ => None,
+        };
+        Some(Self { term: lowest.term(), coefficient, parameter, silent: unheard })
+    }
+}
