@@ -18,11 +18,12 @@ pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> R
             known: known.join(", "),
         });
     }
-    // The values of the card are no better than those given: a file may hold any.
+    // The values of the card are no better than those given: a file may hold any. What is no
+    // number ("+") is no quantity.
     let mut values = given.clone();
-    for card in problem.parameters.iter().filter(|card| !card.default.is_empty()) {
-        if !values.contains_key(&*card.name) {
-            values.insert(card.name.to_string(), Value::parse(&card.default)?);
+    for card in &problem.parameters {
+        if let (false, Ok(value)) = (given.contains_key(&*card.name), Value::parse(&card.default)) {
+            values.insert(card.name.to_string(), value);
         }
     }
     check_delays(&problem.equation, &values)?;

@@ -334,7 +334,7 @@ impl Derivation {
             return self.ring.print(&self.ring.scale(coefficient, &factor), style);
         }
         let kappa = self.ring.print(&self.stiffness, style);
-        let single = kappa.chars().all(char::is_alphanumeric);
+        let single = kappa.chars().all(|c| c.is_alphanumeric() || "_{}".contains(c));
         let factor = match style {
             Style::Text if single => format!("{kappa}^({power}/2)"),
             Style::Text => format!("({kappa})^({power}/2)"),
