@@ -93,7 +93,7 @@ fn misplaced(
 ) -> Option<RoleReason> {
     match role {
         AmplitudeRole::ScalesFrequency { .. } => {
-            let equation = equation.canonical();
+            let equation = equation.smooth_powers().canonical();
             let fits = |e: &&Expression| **e == Expression::Acceleration || is_power_law(e);
             let odd = equation.terms().iter().find(|e| !fits(e))?;
             Some(RoleReason::Scaling { term: excerpt(&odd.print(small, Style::Text)) })
