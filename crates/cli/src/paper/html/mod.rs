@@ -98,7 +98,7 @@ fn footer() -> String {
         (
             "misprint",
             "a slip of the pen: one factor, sign, symbol, exponent, bracket or digit changed, two symbols \
-             interchanged, or one term added makes it hold, and nothing in the paper rests on the error; \
+             interchanged, or one term added or struck makes it hold, and nothing in the paper rests on the error; \
              where there are such slips at two places, both are named or have a row each",
         ),
         (
