@@ -132,8 +132,7 @@ fn is_plain_number(cell: &str) -> bool {
 }
 
 /// What the numbers of the report are worth.
-const CLASSES: &str =
-    "Every decimal is certified to the last digit shown, except where it says (estimated).";
+const CLASSES: &str = "Every decimal is certified to the last digit shown, except in entries and tables that say estimated.";
 
 /// "44 statements: 30 agrees, ..." in one line.
 fn summary(section: &Section) -> String {

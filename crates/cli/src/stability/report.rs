@@ -76,6 +76,9 @@ impl<S: Real> Writer<'_, S> {
     }
 }
 
+const RETURN_MAP: &str = "The truth: growth of the piecewise linear return map (B is not 0: the \
+                          characteristic function G and its multipliers are an approximation)";
+
 const PENETRATES: &str = "no orbit: the flight passes through the wall";
 
 fn word(verdict: Verdict) -> &'static str {
@@ -189,6 +192,9 @@ impl Answer {
         ];
         for (key, title) in titles {
             if let Some(Json::Object(map)) = self.body.get(key) {
+                // For B != 0 the return map is only piecewise linear: it decides.
+                let mapped = map.contains_key("return_map");
+                let title = if mapped { RETURN_MAP } else { title };
                 let _ = writeln!(text, "{title}");
                 for (name, value) in map {
                     let _ = writeln!(text, "  {name}: {}", plain(value));

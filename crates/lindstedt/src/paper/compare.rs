@@ -13,10 +13,12 @@ use rug::{Integer, Rational};
 ///
 /// 1. It holds as printed (exactly, or the printed decimals are the value rounded or cut off) and
 ///    no other statement of the paper rests on what was cut off: it agrees.
-/// 2. One change of one term (its factor, what it multiplies, a term left out) or of one digit
-///    makes it hold, and no other statement of the paper holds only with the error: a misprint.
-///    Where several terms of a formula have such a slip, each has a row of its own. A number that
-///    is printed again with the same digits is no slip of a digit.
+/// 2. A slip of the pen: one change of one place (a factor, sign, symbol, exponent, bracket or
+///    digit, two symbols interchanged, a term left out) makes it hold, and no other statement of
+///    the paper holds only with the error: a misprint. Where two places of a formula have such a
+///    slip, both are named, or each has a row of its own. One term with two changes in it, or a
+///    change beside a term left out, is no slip. A number that is printed again with the same
+///    digits is no slip of a digit.
 /// 3. It is a number that no formula of the paper gives, neither as printed nor as derived here
 ///    nor through another quantity at that order: not reproducible.
 /// 4. Everything else is wrong.

@@ -35,9 +35,9 @@ use lindstedt_coeff::digits::decimal;
 pub enum Verdict {
     /// It holds as printed.
     Agrees,
-    /// One term, sign, factor or digit must change, and nothing in the paper rests on the error.
+    /// A slip of the pen (or one at each of two places), on which nothing in the paper rests.
     Misprint,
-    /// It does not hold, and no single change repairs it, or later statements rest on the error.
+    /// It does not hold, and no slip of the pen explains it, or later statements rest on the error.
     Wrong,
     /// A number that follows from no formula, printed or corrected.
     NotReproducible,
@@ -64,7 +64,8 @@ pub struct Row {
     pub printed: String,
     /// What the engine derives.
     pub derived: String,
-    /// What a route that shares nothing with the derivation says.
+    /// What another route says, empty where there is none. A residual shares the algebra with the
+    /// derivation, other routes share nothing.
     pub independent: String,
     /// The verdict.
     pub verdict: Verdict,

@@ -195,8 +195,8 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
             ),
             slight.is_chaotic() && slight.growth > 0.9,
             &format!(
-                "in one well only: {:.3} < x < {:.3}, by period doubling; not the tangle that (27) \
-                 is about",
+                "in one well only: {:.3} < x < {:.3} (estimated), by period doubling; not the tangle \
+                 that (27) is about",
                 slight.least, slight.largest
             ),
         ),
@@ -290,7 +290,7 @@ pub(super) fn agreement(onset: &Onset) -> Result<Row, Error> {
         verdict: findings.verdict(),
         evidence: format!(
             "the orbit that becomes chaotic near 0.65 stays in the right well, whose loop is first \
-             tangent at {}; what is seen near 0.65 is not what (27) predicts",
+             tangent at {} (estimated); what is seen near 0.65 is not what (27) predicts",
             shown(last.right)
         ),
     })

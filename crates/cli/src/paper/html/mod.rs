@@ -50,10 +50,10 @@ fn header(paper: &Paper) -> String {
     format!(
         "<header>\n<p class=\"kind\">lindstedt {}</p>\n\
          <h1>Asymptotic approaches to strongly nonlinear and <span class=\"g\">non-smooth</span> systems, <span class=\"g\">re-read</span> by machine</h1>\n\
-         <p class=\"lead\">{rows} statements of the paper by J. Awrejcewicz and I. Andrianov: all of its \
-         formulas (1) to (51) and every number in its text. For each: what is printed, what is derived \
-         from the equations, what a route that shares nothing with the derivation says, and the verdict \
-         that follows.</p>\n{unfinished}{}</header>\n",
+         <p class=\"lead\">{rows} statements of the paper by J. Awrejcewicz and I. V. Andrianov, <cite>Asymptotic approaches \
+         to analysis of strongly non-linear and non-smooth systems</cite>: all of its formulas (1) to (51) and every number in its text. For each: what is printed, what is derived \
+         from the equations, what another route says where there is one, and the verdict that \
+         follows.</p>\n{unfinished}{}</header>\n",
         env!("CARGO_PKG_VERSION"),
         contents(paper)
     )
@@ -97,11 +97,13 @@ fn footer() -> String {
         ),
         (
             "misprint",
-            "one change of one term or digit makes it hold, and nothing in the paper rests on the error",
+            "a slip of the pen: one factor, sign, symbol, exponent, bracket or digit changed, two symbols \
+             interchanged, or one term added or struck makes it hold, and nothing in the paper rests on the error; \
+             where there are such slips at two places, both are named or have a row each",
         ),
         (
             "wrong",
-            "it does not hold, and no single change repairs it, or later statements rest on the error",
+            "it does not hold, and no slip of the pen explains it, or later statements rest on the error",
         ),
         ("not reproducible", "a number that follows from no formula, printed or corrected"),
     ];
@@ -116,7 +118,8 @@ fn footer() -> String {
     text += "</dl>\n";
     let _ = writeln!(
         text,
-        "<p>{} Certified numbers carry an enclosure, so every digit shown is a digit of the value; \
+        "<p>The independent route shares nothing with the derivation; where it is a residual, it shares \
+         the algebra of functions. {} Certified numbers carry an enclosure, so every digit shown is a digit of the value; \
          estimated ones come from floating point or from differences, and their error is measured, \
          not proved.</p>",
         super::CLASSES

@@ -144,6 +144,11 @@ fn branch(
     Ok(())
 }
 
+/// Three decimals, cut off: what holds up to eps holds up to the number shown, too.
+fn cut_off(eps: f64) -> String {
+    format!("{:.3}", (1e3 * eps).floor() / 1e3)
+}
+
 impl Onset {
     /// The eps up to which both loops keep within this share of the threshold, linear between the
     /// points computed; nothing when all of them do.
@@ -171,7 +176,7 @@ impl Onset {
         let reach = |share: f64| {
             let eps = self
                 .reach(share)
-                .map_or("every eps computed".to_owned(), |eps| format!("eps = {eps:.2}"));
+                .map_or("every eps computed".to_owned(), |eps| format!("eps = {}", cut_off(eps)));
             format!("to {:.0} % up to {eps}", 100.0 * share)
         };
         let limit = self.limit().map_or_else(String::new, |(eps, mean)| {

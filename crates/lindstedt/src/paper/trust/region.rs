@@ -122,8 +122,9 @@ impl Region {
             method: "KBM with the delay loop, stability by (17)",
             trusted: vec![
                 format!(
-                    "the formulas {} as printed (with a = F): (6) and (7) are the first order in the \
-                     loop, (15) to (17) are exact for the motion (8)",
+                    "the formulas {}, read with the amplitude a = F and not with that printed in \
+                     (8): (6) and (7), without an amplitude, are the first order in the loop, (15) \
+                     to (17) are exact for the motion (8)",
                     self.formulas.join(", ")
                 ),
                 format!(

@@ -211,7 +211,7 @@ fn uncontrolled(found: &Averaged, order: usize) -> Result<Row, Error> {
             "the orders up to {order} {roots} the expansion of the roots of l^2 + c l + alpha^2"
         ),
         exact && is_root,
-        "(6) is the uncontrolled solution to O(eps) only: alpha in the place of \
-         sqrt(alpha^2 - c^2/4)",
+        "(6) is the uncontrolled solution to O(eps) only, the order in which the paper works: to \
+         first order in c it agrees; exactly it has alpha in the place of sqrt(alpha^2 - c^2/4)",
     ))
 }

@@ -254,7 +254,10 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
             independent: "squares compared; both parts of l^2 + c l + alpha^2 = 0 at \
                           l = -c/2 + i lambda"
                 .to_owned(),
-            remark: "the printed root is imaginary for omega > alpha".to_owned(),
+            remark:
+                "the symbol and a factor of one term are wrong, c^2/4 is no slip for omega^2; the \
+                     printed root is imaginary for omega > alpha"
+                    .to_owned(),
             ..statement(
                 "lambda",
                 "lambda = ",

@@ -258,8 +258,9 @@ fn statements(counts: &Counts, rates: [f64; RULES.len()]) -> [Row; 2] {
             verdict: simulated.verdict(),
             evidence: format!(
                 "the region of (17) is not the stability region of (1): to ignore the loop is \
-                 right at {nothing:.3}. (6) puts e^(-lambda T) z(t) for z(t - T), as if no impact \
-                 lay between; with z(t)/gamma in its place (G) the verdict is right at {g:.3}. The \
+                 right at {nothing:.3} (estimated). (6) puts e^(-lambda T) z(t) for z(t - T), as if no impact \
+                 lay between; with z(t)/gamma in its place (G) the verdict is right at {g:.3} \
+                 (estimated). The \
                  parameters of the cited simulations are not given"
             ),
         },
