@@ -165,6 +165,9 @@ pub struct Loaded {
 pub fn load(name: &str) -> Result<Loaded, Failure> {
     if name.ends_with(".toml") {
         let file = ProblemFile::parse(&read(name)?).map_err(|error| at_path(name, error))?;
+        for name in &file.unused {
+            crate::output::warn(&format!("parameter {name} is declared and occurs nowhere"));
+        }
         return Ok(Loaded { problem: file.problem.clone(), file: Some(file) });
     }
     problem(name).map(|problem| Loaded { problem, file: None })
