@@ -363,8 +363,7 @@ fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {
     occurring.extend(texts.iter().flat_map(|text| words(text)));
     // The amplitude, and the parts of a small parameter that is composed, stand in no equation.
     let parts = amplitude == AmplitudeRole::InSmallParameter;
-    let is_unused =
-        |name: &&String| !parts && **name != "amplitude" && !occurring.contains(*name);
+    let is_unused = |name: &&String| !parts && **name != "amplitude" && !occurring.contains(*name);
     let unused = declared.iter().filter(is_unused).cloned().collect();
     Ok(ProblemFile {
         unused,

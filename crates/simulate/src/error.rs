@@ -86,7 +86,7 @@ pub enum SimulateError {
         terms: usize,
     },
     /// x and x' grow beyond all bounds in a finite time, with steps that become too short.
-    #[error("the motion escapes to infinity near t = {time} (x = {displacement:.1e} there)")]
+    #[error("the motion escapes to infinity near t = {time:.6} (x = {displacement:.1e} there)")]
     Escape {
         /// Where.
         time: f64,

@@ -278,12 +278,14 @@ pub fn rounded(value: f64, error: f64) -> [String; 2] {
     let exponent = error.log10().floor();
     let unit = 10f64.powi(exponent as i32);
     let error = (error / unit * (1.0 - 1e-9)).ceil() * unit;
-    if !(-5.0..1.0).contains(&exponent) || value.abs() >= 1e6 {
-        let digits = (value.abs().max(error).log10().floor() - exponent).clamp(0.0, 17.0) as usize;
+    let size = value.abs().max(error);
+    if exponent > 0.0 || !(1e-4..1e6).contains(&size) {
+        let digits = (size.log10().floor() - exponent).clamp(0.0, 17.0) as usize;
         return [format!("{value:.digits$e}"), format!("{error:.0e}")];
     }
     let places = (-exponent).clamp(0.0, 17.0) as usize;
-    [format!("{value:.places$}"), format!("{error:.places$}")]
+    let error = if exponent < -4.0 { format!("{error:.0e}") } else { format!("{error:.places$}") };
+    [format!("{value:.places$}"), error]
 }
 
 /// The name of a method in words.
@@ -379,7 +381,8 @@ impl Evaluation {
     #[must_use]
     pub fn estimated_radius(&self) -> Option<(f64, f64)> {
         let found = self.resummed.singularity.as_ref();
-        let modulus = found.map(|s| (s.at.abs().to_f64(), s.error.to_f64()));
+        // The disagreement of a few approximants is no bound: twice as much.
+        let modulus = found.map(|s| (s.at.abs().to_f64(), 2.0 * s.error.to_f64()));
         match self.resummed.growth {
             Growth::Radius { radius, error } => {
                 let agrees = |pair: &(f64, f64)| (pair.0 - radius).abs() <= error + pair.1;
