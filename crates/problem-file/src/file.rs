@@ -362,8 +362,15 @@ fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {
     let mut occurring = equation.parameters();
     occurring.extend(texts.iter().flat_map(|text| words(text)));
     // The amplitude, and the parts of a small parameter that is composed, stand in no equation.
-    let parts = amplitude == AmplitudeRole::InSmallParameter;
-    let is_unused = |name: &&String| !parts && **name != "amplitude" && !occurring.contains(*name);
+    let parts = match amplitude {
+        AmplitudeRole::InSmallParameter => &declared,
+        // n = 1 + 2 delta.
+        AmplitudeRole::ScalesFrequency { .. } => &BTreeSet::from(["n".to_owned()]),
+        _ => &BTreeSet::new(),
+    };
+    let is_unused = |name: &&String| {
+        !parts.contains(*name) && **name != "amplitude" && !occurring.contains(*name)
+    };
     let unused = declared.iter().filter(is_unused).cloned().collect();
     Ok(ProblemFile {
         unused,
