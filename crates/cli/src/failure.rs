@@ -84,6 +84,9 @@ impl From<Error> for Failure {
                 (NO_ANSWER, "no-start", "give amplitude and phase: --start")
             }
             Error::NoPeriodicOrbit { .. } => (NO_ANSWER, "no-periodic-orbit", "smaller --small"),
+            Error::NoTruncatedFrequency { .. } => {
+                (NO_ANSWER, "no-truncated-frequency", "smaller --small, or another --order")
+            }
             Error::Resummation { .. } => {
                 (NO_ANSWER, "no-such-resummation", "try --resum auto, or another order")
             }

@@ -43,7 +43,10 @@ fn main() -> ExitCode {
         Command::Paper(options) => paper::run(options, &session),
     };
     match outcome {
-        Ok(code) => ExitCode::from(code),
+        Ok(code) => {
+            session::name_unused_parameters();
+            ExitCode::from(code)
+        }
         Err(failure) => failure.report(session.format()),
     }
 }

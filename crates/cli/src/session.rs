@@ -10,8 +10,8 @@ use lindstedt::{ProblemFile, Value};
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// No result is printed with more digits than this: the contract of exact evaluation.
@@ -161,10 +161,22 @@ pub struct Loaded {
     pub file: Option<ProblemFile>,
 }
 
+/// Parameters of the file that occur nowhere. They are named once there is an answer: a refusal is one
+/// line.
+static UNUSED: OnceLock<Vec<String>> = OnceLock::new();
+
+/// Warns of parameters of the file that occur nowhere.
+pub fn name_unused_parameters() {
+    for name in UNUSED.get().into_iter().flatten() {
+        crate::output::warn(&format!("parameter {name} is declared and occurs nowhere"));
+    }
+}
+
 /// The built-in problem of that name, or the one in a file `NAME.toml`.
 pub fn load(name: &str) -> Result<Loaded, Failure> {
     if name.ends_with(".toml") {
         let file = ProblemFile::parse(&read(name)?).map_err(|error| at_path(name, error))?;
+        let _ = UNUSED.set(file.unused.clone());
         return Ok(Loaded { problem: file.problem.clone(), file: Some(file) });
     }
     problem(name).map(|problem| Loaded { problem, file: None })

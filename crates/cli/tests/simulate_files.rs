@@ -171,7 +171,7 @@ fn walls() {
     assert!(code == Some(2) && error.contains("cannot be varied"), "{error}");
     // A start behind the wall, and a restitution above one.
     let (code, error) = refusal(&[&path, "--state=-1,0"]);
-    assert!(code == Some(3) && error.contains("behind wall"), "{error}");
+    assert!(code == Some(3) && error.contains("behind the wall at x = "), "{error}");
     let (code, error) = refusal(&[&path, "--set", "R=2"]);
     assert!(code == Some(3) && error.contains("restitution"), "{error}");
 }

@@ -227,7 +227,8 @@ fn classical_thresholds() {
         let found = example(name, &["--digits", "20"]);
         assert_eq!(decimal(&found["gamma_c"]), gamma, "{name}");
         assert_ne!(found["gamma_c"]["status"], "estimated", "{name}");
-        assert_eq!(found["validity"]["verdict"], "holds: the perturbation is smooth", "{name}");
+        let verdict = found["validity"]["verdict"].as_str().unwrap_or_default();
+        assert!(verdict.ends_with("smooth; no bound on eps is known here"), "{name}: {verdict}");
     }
     let pendulum = example("forced-pendulum", &["--sweep", "delta=0.1..0.2:3"]);
     assert_eq!(pendulum["orbits"][1]["name"], "lower orbit");

@@ -83,10 +83,21 @@ pub struct Point {
     pub predicted_radius: f64,
     /// Exact max |gamma|; NaN if not asked for or not found.
     pub exact_radius: f64,
+    /// Whether the flight of the periodic solution passes through the wall, so that `exact` is
+    /// `None`.
+    pub penetrates: bool,
 }
 
-const EMPTY: Point =
-    Point { predicted: None, exact: None, predicted_radius: f64::NAN, exact_radius: f64::NAN };
+impl Point {
+    /// A point of which nothing is known.
+    pub const EMPTY: Self = Self {
+        predicted: None,
+        exact: None,
+        predicted_radius: f64::NAN,
+        exact_radius: f64::NAN,
+        penetrates: false,
+    };
+}
 
 /// A chart: the points row by row.
 #[derive(Clone, Debug)]
@@ -118,7 +129,7 @@ pub fn chart(
     if order == 0 {
         return Err(ImpactError::OrderZero);
     }
-    let mut points = vec![EMPTY; width.checked_mul(height).ok_or(ImpactError::BadAxes)?];
+    let mut points = vec![Point::EMPTY; width.checked_mul(height).ok_or(ImpactError::BadAxes)?];
     let done = AtomicUsize::new(0);
     points.par_chunks_mut(width).enumerate().try_for_each_init(
         || Scratch::new(order),
@@ -190,7 +201,7 @@ fn evaluate(
     scratch: &mut Scratch<f64>,
     seeds: &mut Vec<Complex<f64>>,
 ) -> Point {
-    let mut point = EMPTY;
+    let mut point = Point { penetrates: fixed.penetrates, ..Point::EMPTY };
     match (plan.predictor, fixed.orbit()) {
         (Some((Predictor::Kbm(variant), order)), _) => {
             if let Ok(map) = predicted_map(parameters, fixed, variant, order, scratch) {
@@ -248,6 +259,19 @@ pub struct Agreement {
     pub false_unstable: usize,
 }
 
+/// Why points were not compared; each counts once, by the first reason in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct LeftOut {
+    /// The flight passes through the wall.
+    pub penetrating: usize,
+    /// No periodic solution with one impact, or values that were refused.
+    pub no_orbit: usize,
+    /// No predicted orbit or flow.
+    pub no_prediction: usize,
+    /// One of the verdicts is neutral.
+    pub undecided: usize,
+}
+
 impl Agreement {
     /// equal/compared; NaN if nothing was compared.
     #[must_use]
@@ -264,6 +288,24 @@ impl Chart {
             return None;
         }
         self.points.get(row.checked_mul(self.plan.columns.count)? + column)
+    }
+    /// Why the points that [`Self::agreement`] does not count are left out, where both prediction
+    /// and truth were asked for.
+    #[must_use]
+    pub fn left_out(&self) -> LeftOut {
+        let mut left_out = LeftOut::default();
+        for point in &self.points {
+            match (point.predicted, point.exact) {
+                (_, None) if point.penetrates => left_out.penetrating += 1,
+                (_, None) => left_out.no_orbit += 1,
+                (None, _) => left_out.no_prediction += 1,
+                (Some(Verdict::Neutral), _) | (_, Some(Verdict::Neutral)) => {
+                    left_out.undecided += 1;
+                }
+                _ => {}
+            }
+        }
+        left_out
     }
     /// Counts of agreement between prediction and exact verdict.
     #[must_use]

@@ -52,8 +52,16 @@ enum Walk {
 fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
     let unit = g.period();
     let size = unit.number(radius);
-    // The angle is a multiple of pi, exactly representable as a part of it.
-    let mut part = 0.0_f64;
+    // The angle is a multiple of pi, exactly representable as a part of it: counted from w = radius
+    // on the first quarter, from w = -radius on the second. Steps are short near a zero, flips and
+    // tangent bifurcations lie on the axis, and near 0 a double resolves the shortest.
+    let (mut part, mut left) = (0.0_f64, 1.0_f64);
+    // Doubles do not know their error; balls do, and are cut where they have half their digits.
+    let precision = unit.precision();
+    let least = match precision > f64::MANTISSA_DIGITS {
+        true => 0.5_f64.powi(i32::try_from(precision / 2).unwrap_or(i32::MAX)),
+        false => 1e-12,
+    };
     let (mut value, mut slope) = g.value_and_slope(&Complex::real(size.clone()));
     let mut centre = Complex::new(radius, 0.0);
     let mut angle = 0.0_f64;
@@ -63,10 +71,10 @@ fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
         }
         let here = value.to_f64();
         let floor = value.magnitude_below();
-        if !here.is_finite() || floor <= 1e-12 * radius.min(1.0) * slope.magnitude_above() {
+        if !here.is_finite() || floor <= least * radius.min(1.0) * slope.magnitude_above() {
             return Walk::Undecided;
         }
-        if part >= 1.0 {
+        if left <= 0.0 {
             let turns = angle / std::f64::consts::PI;
             let zeros = turns.round();
             let whole = (turns - zeros).abs() < 1e-3 && zeros >= 0.0;
@@ -79,16 +87,25 @@ fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
         }
         let step = safe_step(g, &centre, floor, slope.magnitude_above());
         // The centre is known in doubles to a few ulp of the radius.
-        let next = (part + step * (1.0 - 1e-9) / (radius * std::f64::consts::PI)).min(1.0);
-        if next <= part {
+        let ahead = step * (1.0 - 1e-9) / (radius * std::f64::consts::PI);
+        let before = (part, left);
+        if part < 0.5 {
+            part = (part + ahead).min(0.5);
+            left = 1.0 - part;
+        } else {
+            left = (left - ahead).max(0.0);
+        }
+        if before == (part, left) {
             return Walk::Undecided;
         }
-        part = next;
-        let w = if part >= 1.0 {
+        let w = if left <= 0.0 {
             Complex::real(-size.clone())
-        } else {
+        } else if part < 0.5 {
             let (sin, cos) = (unit.pi() * unit.number(part)).sin_cos();
             Complex::new(cos, sin).scaled(&size)
+        } else {
+            let (sin, cos) = (unit.pi() * unit.number(left)).sin_cos();
+            Complex::new(-cos, sin).scaled(&size)
         };
         centre = w.to_f64();
         (value, slope) = g.value_and_slope(&w);

@@ -22,6 +22,21 @@ pub enum Error {
         /// Its value.
         value: String,
     },
+    /// The truncated series of omega^2 is not positive.
+    #[error(
+        "omega^2 of order {order} is {square} at {parameter} = {value}: the truncated expansion has \
+         no period"
+    )]
+    NoTruncatedFrequency {
+        /// N.
+        order: usize,
+        /// omega^2, rounded.
+        square: String,
+        /// The small parameter.
+        parameter: String,
+        /// Its value.
+        value: String,
+    },
     /// The averaged solution has no one Taylor polynomial over a delay.
     #[error("over the delay {delay} the slow motion has no single Taylor polynomial")]
     LongDelay {

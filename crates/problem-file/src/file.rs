@@ -39,6 +39,8 @@ pub struct ProblemFile {
     pub ranges: BTreeMap<String, String>,
     /// Quantities that are asked for.
     pub asked: Vec<String>,
+    /// Parameters that are declared and occur nowhere.
+    pub unused: Vec<String>,
     /// The names that the equation may mention.
     pub names: Names,
     /// The equation as it was written.
@@ -343,7 +345,35 @@ fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {
         reader.word("asked", word.get_ref(), word.span(), &known, ASKED)?;
         asked.push(word.get_ref().clone());
     }
+    let mut texts = vec![schema.equation.get_ref().clone()];
+    texts.extend(schema.time_domain.iter().map(|text| text.get_ref().clone()));
+    if let Some(impact) = &schema.impact {
+        texts.extend([impact.position.get_ref().clone(), impact.restitution.get_ref().clone()]);
+    }
+    if let Some(tie) = &schema.synchronous {
+        texts.extend([&tie.delay, &tie.periods, &tie.frequency].map(|word| word.get_ref().clone()));
+    }
+    if let Some(initial) = &schema.initial {
+        let exact = [&initial.x, &initial.velocity].into_iter().flatten();
+        texts.extend(exact.map(|value| value.get_ref().0.clone()));
+        texts.extend(initial.history.iter().map(|text| text.get_ref().clone()));
+    }
+    texts.extend(follows.values().cloned());
+    let mut occurring = equation.parameters();
+    occurring.extend(texts.iter().flat_map(|text| words(text)));
+    // The amplitude, and the parts of a small parameter that is composed, stand in no equation.
+    let parts = match amplitude {
+        AmplitudeRole::InSmallParameter => &declared,
+        // n = 1 + 2 delta.
+        AmplitudeRole::ScalesFrequency { .. } => &BTreeSet::from(["n".to_owned()]),
+        _ => &BTreeSet::new(),
+    };
+    let is_unused = |name: &&String| {
+        !parts.contains(*name) && **name != "amplitude" && !occurring.contains(*name)
+    };
+    let unused = declared.iter().filter(is_unused).cloned().collect();
     Ok(ProblemFile {
+        unused,
         start: reader.content(&schema.equation),
         equation: schema.equation.get_ref().clone(),
         text: reader.text.to_owned(),
@@ -371,6 +401,12 @@ fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {
         asked,
         names,
     })
+}
+
+/// The words of an expression as names.
+fn words(text: &str) -> impl Iterator<Item = String> {
+    let parts = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+    parts.filter(|word| !word.is_empty()).map(canonical_name)
 }
 
 /// The order table; names must be parameters, orders at most 100.

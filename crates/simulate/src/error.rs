@@ -51,10 +51,12 @@ pub enum SimulateError {
     #[error("no monodromy matrix: the equation has a delay")]
     LinearisationWithDelay,
     /// The start lies behind a wall.
-    #[error("the start lies behind wall {wall}")]
+    #[error("the start lies behind the wall at x = {position}")]
     BehindWall {
         /// Its number.
         wall: usize,
+        /// Its position, rounded.
+        position: f64,
     },
     /// A value is infinite or not a number: a pole, a logarithm or power of what is not positive.
     #[error("the right side is not finite at t = {time}")]
@@ -82,6 +84,14 @@ pub enum SimulateError {
         time: f64,
         /// How many terms are too many for these digits.
         terms: usize,
+    },
+    /// x and x' grow beyond all bounds in a finite time, with steps that become too short.
+    #[error("the motion escapes to infinity near t = {time:.6} (x = {displacement:.1e} there)")]
+    Escape {
+        /// Where.
+        time: f64,
+        /// x at the last step.
+        displacement: f64,
     },
     /// Steps became too short to move the time: a singularity of the solution.
     #[error("no step is short enough at t = {time}")]

@@ -19,7 +19,8 @@ impl<R: Real> Integrator<'_, R> {
         for (index, wall) in system.walls.iter().enumerate() {
             let side = system.real.sign(self.series.rows.at(wall.row, 0));
             if side * wall.direction > 0 {
-                return Err(SimulateError::BehindWall { wall: index });
+                let position = system.real.to_f64(&wall.position);
+                return Err(SimulateError::BehindWall { wall: index, position });
             }
         }
         self.classify(f64::NEG_INFINITY)

@@ -71,6 +71,8 @@ pub struct Integrator<'s, R: Real> {
     pub(crate) rebound: Option<usize>,
     pub(crate) smooth: bool,
     stalled: u32,
+    /// log2 of the largest state of the start; 0 for a start in zero.
+    log2_start: f64,
     pub(crate) work: Work,
 }
 
@@ -116,6 +118,7 @@ impl<'s, R: Real> Integrator<'s, R> {
         for direction in 0..system.directions() {
             all.extend((0..n).map(|k| real.double(if k == direction { 1.0 } else { 0.0 })));
         }
+        let log2_start = state.iter().map(|x| real.log2(x)).fold(f64::NEG_INFINITY, f64::max);
         let order = settings.order();
         let clock = Clock::new(real, time);
         let past = (!system.delays.is_empty()).then(|| Past::new(system, &clock, order));
@@ -137,6 +140,7 @@ impl<'s, R: Real> Integrator<'s, R> {
             rebound: None,
             smooth: false,
             stalled: 0,
+            log2_start: if log2_start.is_finite() { log2_start } else { 0.0 },
             work: Work::default(),
         };
         flow.begin()?;
@@ -259,6 +263,7 @@ impl<'s, R: Real> Integrator<'s, R> {
         let step = step.ok_or_else(|| match &branch {
             // Coefficients near the branch point overflow before it can be leapt over.
             Some(_) => self.stuck(time),
+            None if self.escapes() => self.stuck(time),
             None => SimulateError::NotFinite { time },
         })?;
         let mut h = real.double(step.min(f64::MAX));
@@ -313,6 +318,16 @@ impl<'s, R: Real> Integrator<'s, R> {
         Ok(if told.is_break() { told } else { event })
     }
 
+    /// Whether x has left its start by 2^10 and the largest state by 2^20: where steps end, a pole
+    /// of x(t). In a collision x' grows beyond bounds and x does not.
+    fn escapes(&self) -> bool {
+        let real = &self.system.real;
+        let size = |x: &R::Element| real.log2(x);
+        let largest = self.state.iter().map(size).fold(f64::NEG_INFINITY, f64::max);
+        let displacement = self.state.first().map_or(f64::NEG_INFINITY, size);
+        displacement > self.log2_start + 10.0 && largest > self.log2_start + 20.0
+    }
+
     /// |w|^p near w = 0 or another singularity.
     fn stuck(&self, time: f64) -> SimulateError {
         let real = &self.system.real;
@@ -325,6 +340,10 @@ impl<'s, R: Real> Integrator<'s, R> {
             });
         match nearest {
             Some(switch) => SimulateError::BranchPoint { switch, time },
+            None if self.escapes() => {
+                let displacement = self.state.first().map_or(f64::NAN, |x| real.to_f64(x));
+                SimulateError::Escape { time, displacement }
+            }
             None => SimulateError::StepTooSmall { time },
         }
     }

@@ -185,7 +185,12 @@ impl Report<'_> {
             "growth_rate": growth,
             "exact_period": null,
             "start": {"a": motion.start[0], "psi": motion.start[1]},
-            "rates": {"amplitude": motion.rates()[0], "phase": motion.rates()[1]},
+            "rates": {
+                "amplitude": motion.rates()[0],
+                "phase": motion.rates()[1],
+                "amplitude_number": optional(motion.rate_numbers[0].as_ref()),
+                "phase_number": optional(motion.rate_numbers[1].as_ref()),
+            },
             "term_ratio": motion.ratio,
             "integration_error": motion.integration_error,
             "verdict": motion.verdict(),
@@ -196,12 +201,18 @@ impl Report<'_> {
 
     fn lines(&self) -> Vec<(String, String)> {
         let motion = self.motion;
-        let [rate, turn] = motion.rates();
+        let rate = |k: usize| match motion.rate_numbers.get(k).and_then(Option::as_ref) {
+            Some(number) => match &number.error {
+                Some(error) => format!("{} +- {error} (estimated)", number.decimal),
+                None => format!("{} (no estimate)", number.decimal),
+            },
+            None => "not one digit".to_owned(),
+        };
         let [a, psi] = motion.start;
         let mut lines = vec![
             ("start".to_owned(), format!("a = {a}, psi = {psi}")),
-            ("a' there".to_owned(), format!("{rate:e}")),
-            ("psi' there".to_owned(), format!("{turn}")),
+            ("a' there".to_owned(), rate(0)),
+            ("psi' there".to_owned(), rate(1)),
         ];
         if let Some([growth, frequency]) = &motion.linear {
             let shown = |number: &Number| match &number.error {

@@ -7,7 +7,7 @@ use crate::derive::number_json;
 use crate::session::Session;
 use lindstedt::Number;
 use lindstedt::equation::Problem;
-use lindstedt::evaluate::{Evaluation, kind_name, method_name};
+use lindstedt::evaluate::{Evaluation, kind_name, method_name, rounded};
 use lindstedt::series::resummation::{Complex, Growth};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
@@ -51,7 +51,13 @@ impl Report<'_> {
             .collect();
         let growth = match resummed.growth {
             Growth::Entire => json!({"kind": "entire"}),
-            Growth::Radius(radius) => json!({"kind": "radius", "radius": radius}),
+            Growth::Radius { .. } => {
+                let [radius, error] = result
+                    .estimated_radius()
+                    .map_or_else(Default::default, |(radius, error)| rounded(radius, error));
+                let double = |text: &str| text.parse::<f64>().ok();
+                json!({"kind": "radius", "radius": double(&radius), "error": double(&error)})
+            }
             Growth::Factorial { rate } => json!({"kind": "factorial", "rate": rate}),
             _ => json!({"kind": "undecided"}),
         };

@@ -6,6 +6,7 @@ use crate::arguments::SimulateOptions;
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::session::Session;
 use lindstedt::equation::Expression;
+use lindstedt::evaluate::with_error;
 use lindstedt::simulate::{
     self, Doubles, LyapunovExponent, LyapunovSettings, PoincareMap, Settings, SimulateError,
     Surface, ZeroOne, largest_lyapunov_exponent, zero_one_while,
@@ -195,7 +196,7 @@ impl Diagnosis {
                     }
                     _ => "undecided: no exponential growth, no decay",
                 };
-                format!("{word}, largest Lyapunov exponent {value:.4} +- {error:.4}")
+                format!("{word}, largest Lyapunov exponent {}", with_error(value, error))
             });
         }
         if let Some((stride, ZeroOne { k, .. })) = self.largest() {
@@ -269,8 +270,8 @@ impl Diagnosis {
         }
         let (exponent, growth) = self.how();
         if let Some(LyapunovExponent { value, error }) = self.exponent {
-            let (value, error) = (decimal(value), bound(&Float::with_val(53, error)));
-            let _ = writeln!(text, "\nlargest Lyapunov exponent\n  {value} +- {error}");
+            let shown = if value.is_finite() { with_error(value, error) } else { decimal(value) };
+            let _ = writeln!(text, "\nlargest Lyapunov exponent\n  {shown}");
             let _ = writeln!(
                 text,
                 "  ({} intervals of {} after {}; {exponent})",

@@ -5,7 +5,7 @@ use crate::failure::{Failure, UNDECIDED};
 use crate::session::Session;
 use lindstedt::Value;
 use lindstedt_impact::ImpactError;
-use lindstedt_impact::chart::{Agreement, Axis, Chart, Plan, Point, Swept, chart};
+use lindstedt_impact::chart::{Agreement, Axis, Chart, LeftOut, Plan, Point, Swept, chart};
 use lindstedt_impact::flip::flip_boundary;
 use lindstedt_impact::map::Verdict;
 use lindstedt_impact::parameters::Exact;
@@ -176,9 +176,14 @@ impl Grid {
     fn agreement_json(&self) -> Json {
         let Agreement { compared, equal, false_stable, false_unstable } = self.agreement;
         let rate = (compared > 0).then(|| self.agreement.rate());
+        let left_out = self.left_out();
         json!({
             "compared": compared, "equal": equal, "rate": rate,
             "false_stable": false_stable, "false_unstable": false_unstable,
+            "left_out": {
+                "penetrating": left_out.penetrating, "no_orbit": left_out.no_orbit,
+                "no_prediction": left_out.no_prediction, "undecided": left_out.undecided,
+            },
         })
     }
 
@@ -187,14 +192,38 @@ impl Grid {
         let Agreement { compared, equal, false_stable, false_unstable } = self.agreement;
         let points = self.chart.points.len();
         if compared == 0 {
-            return format!("chart: {points} points; prediction and truth were not compared");
+            let why = self.reasons();
+            return format!("chart: {points} points; prediction and truth were not compared{why}");
         }
         format!(
             "chart: {points} points, {compared} compared: prediction and truth agree in {equal} \
              ({:.1} %); predicted stable but unstable {false_stable}, predicted unstable but \
-             stable {false_unstable}",
+             stable {false_unstable}{}",
             100.0 * self.agreement.rate(),
+            self.reasons(),
         )
+    }
+
+    /// Nothing is left out where not both verdicts were asked for.
+    fn left_out(&self) -> LeftOut {
+        match (self.plan.predictor, self.plan.exact) {
+            (Some(_), Some(_)) => self.chart.left_out(),
+            _ => LeftOut::default(),
+        }
+    }
+
+    /// Why points are not compared, in words.
+    fn reasons(&self) -> String {
+        let LeftOut { penetrating, no_orbit, no_prediction, undecided } = self.left_out();
+        let counts = [
+            ("no orbit", no_orbit),
+            ("flight through the wall", penetrating),
+            ("no prediction", no_prediction),
+            ("undecided", undecided),
+        ];
+        let some = counts.iter().filter(|(_, count)| *count > 0);
+        let list: Vec<String> = some.map(|(why, count)| format!("{why} {count}")).collect();
+        if list.is_empty() { String::new() } else { format!("; the rest: {}", list.join(", ")) }
     }
 }
 
@@ -206,8 +235,7 @@ fn general(
     observer: &(dyn Fn(usize) -> bool + Sync),
 ) -> Result<Chart, ImpactError> {
     let (width, height) = (plan.columns.count, plan.rows.count);
-    let empty =
-        Point { predicted: None, exact: None, predicted_radius: f64::NAN, exact_radius: f64::NAN };
+    let empty = Point::EMPTY;
     let point = |column: usize, row: usize| -> Result<Point, ImpactError> {
         let places = request.sweeps.iter().zip([column, row]);
         let changes: Option<Vec<(&str, Value)>> =

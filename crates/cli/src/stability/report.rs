@@ -261,7 +261,10 @@ fn prediction<S: Real>(
         warnings.push(divergence(convergence));
     }
     let mismatch = report.mismatch.as_ref().map(Real::to_f64);
-    if mismatch.is_some_and(|m| m > 1.0) {
+    let at = &request.parameters;
+    // Without gains there is no loop whose delay an impact could fall in.
+    let has_loop = [&at.displacement_gain, &at.velocity_gain].iter().any(|k| k.to_f64() != 0.0);
+    if has_loop && mismatch.is_some_and(|m| m > 1.0) {
         warnings.push(
             "the mismatch is above 1: averaging ignores the impact within the delay and is not \
              to be believed here"

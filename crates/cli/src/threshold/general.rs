@@ -1,6 +1,6 @@
 //! The answer for the equation of a file that is not the oscillator of section 3.
 
-use super::report::{Answer, Harmonic, SMOOTH, tangle, validity};
+use super::report::{Answer, Harmonic, tangle, validity};
 use super::request::{Request, Sweep};
 use crate::derive::number_json;
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
@@ -103,7 +103,7 @@ pub fn answer(
         }
     };
     let verdict = found.verdict(Balls::new(ORDERING_BITS), request.eps.to_f64());
-    let words = if found.jumps() { validity(verdict) } else { SMOOTH };
+    let words = validity(request, found.jumps(), verdict);
     let (zeros, zeros_of) = match &request.zeros {
         None => (Vec::new(), None),
         Some((_, name, low, high)) => {

@@ -170,11 +170,7 @@ impl Answer {
             zeros,
             zeros_of,
             touching_b: point.touching_b().map(|b| b.to_string()),
-            validity: match point.dry.sign().is_eq() {
-                true => SMOOTH,
-                false => validity(verdict),
-            }
-            .to_owned(),
+            validity: validity(request, point.dry.sign().is_ne(), verdict).to_owned(),
             distances: [distance(0)?, distance(1)?],
             tangle: tangle(request, gamma(Balls::new(400))).to_owned(),
             orbits: Vec::new(),
@@ -352,11 +348,18 @@ impl Answer {
 }
 
 /// Without a jump there is nothing to be far from.
-pub const SMOOTH: &str = "holds: the perturbation is smooth";
+const SMOOTH: &str =
+    "holds to first order in eps: the perturbation is smooth; no bound on eps is known here";
+
+/// Without a perturbation there is nothing to be valid.
+const UNPERTURBED: &str =
+    "no statement: at eps = 0 nothing is perturbed, the stable and unstable manifolds coincide";
 
 /// The verdict on the theory in words.
-pub fn validity(verdict: Option<Verdict>) -> &'static str {
+pub fn validity(request: &Request, jumps: bool, verdict: Option<Verdict>) -> &'static str {
     match verdict {
+        _ if request.eps.sign().is_eq() => UNPERTURBED,
+        _ if !jumps => SMOOTH,
         Some(Verdict::Holds) => "holds: |v*| and ||v*| - V| exceed 10 eps",
         Some(Verdict::Doubtful) => {
             "doubtful: |v*| or ||v*| - V| is below 10 eps, corrections of order eps count"
@@ -370,6 +373,8 @@ pub fn tangle(request: &Request, threshold: Option<Ball>) -> &'static str {
     let balls = Balls::new(400);
     let excess = threshold.map(|t| balls.sub(&request.gamma.abs().ball(balls), &t));
     match excess {
+        // Coinciding manifolds do not cross.
+        _ if request.eps.sign().is_eq() => "none",
         Some(ball) if ball.is_positive() => "crossing",
         Some(ball) if ball.is_negative() => "none",
         _ => "undecided",

@@ -182,7 +182,11 @@ pub fn evaluate(
     if !is_estimated && no_estimate {
         period = value;
     }
+    // A measured error above the value leaves no digit.
+    let has_no_digit =
+        no_estimate && is_estimated && *period.radius() >= period.midpoint().clone().abs();
     let number = |ball: &Ball| match no_estimate {
+        _ if has_no_digit => None,
         false => estimated(ball, settings.digits),
         true => few::plain(ball, settings.digits, is_estimated),
     };
@@ -259,6 +263,31 @@ fn picture(
     Pade::until(stop, &sample.coefficients, order - half, half, bits)?.picture_until(stop)
 }
 
+/// A double with the digits that its error leaves, and the error rounded up to one digit.
+#[must_use]
+pub fn with_error(value: f64, error: f64) -> String {
+    let [value, error] = rounded(value, error);
+    format!("{value} +- {error}")
+}
+
+/// A double to the place of the first digit of its error, and the error rounded up to that digit.
+#[must_use]
+pub fn rounded(value: f64, error: f64) -> [String; 2] {
+    let least = value.abs().max(f64::MIN_POSITIVE) * f64::EPSILON;
+    let error = error.abs().max(least);
+    let exponent = error.log10().floor();
+    let unit = 10f64.powi(exponent as i32);
+    let error = (error / unit * (1.0 - 1e-9)).ceil() * unit;
+    let size = value.abs().max(error);
+    if exponent > 0.0 || !(1e-4..1e6).contains(&size) {
+        let digits = (size.log10().floor() - exponent).clamp(0.0, 17.0) as usize;
+        return [format!("{value:.digits$e}"), format!("{error:.0e}")];
+    }
+    let places = (-exponent).clamp(0.0, 17.0) as usize;
+    let error = if exponent < -4.0 { format!("{error:.0e}") } else { format!("{error:.places$}") };
+    [format!("{value:.places$}"), error]
+}
+
 /// The name of a method in words.
 #[must_use]
 pub fn method_name(method: Method) -> &'static str {
@@ -302,15 +331,16 @@ impl Evaluation {
                 "the series in {name} seems to diverge for every {name} but 0 (coefficients grow like \
                  n!^{rate:.1}): asymptotic"
             ),
-            (None, Growth::Radius(radius)) => {
-                let found = self.resummed.singularity.as_ref();
-                let radius = found.map_or(radius, |s| s.at.abs().to_f64());
-                format!("the series in {name} has radius of convergence {radius:.4e} (estimated)")
-            }
             (None, Growth::Entire) => {
                 format!("the coefficients in {name} fall like those of an entire function")
             }
-            _ => "too few coefficients to estimate the radius of convergence".to_owned(),
+            _ => match self.estimated_radius() {
+                Some((radius, error)) => {
+                    let radius = with_error(radius, error);
+                    format!("the series in {name} has radius of convergence {radius} (estimated)")
+                }
+                None => "too few coefficients to estimate the radius of convergence".to_owned(),
+            },
         });
         if let Some((order, number)) = &self.best_truncation {
             let value = number.as_ref().map_or_else(String::new, |n| format!(": {}", n.decimal));
@@ -332,11 +362,35 @@ impl Evaluation {
                 "{method}{degrees} of order {}, no estimate from so few coefficients",
                 self.order
             ),
+            None if self.no_estimate => format!(
+                "{method}{degrees} of order {} gives not one digit: against the closed form the \
+                 error is {}",
+                self.order,
+                self.true_error.as_deref().unwrap_or("larger than the value")
+            ),
             None => format!(
                 "{method}{degrees} gives not one digit: neighbouring approximants do not agree"
             ),
         });
         parts.join("; ")
+    }
+
+    /// The radius of convergence and its error, both estimated, where the coefficients have one:
+    /// the modulus of the nearest singularity where that is found and agrees with the slope of
+    /// log |c_n|, else that slope.
+    #[must_use]
+    pub fn estimated_radius(&self) -> Option<(f64, f64)> {
+        let found = self.resummed.singularity.as_ref();
+        // The disagreement of a few approximants is no bound: twice as much.
+        let modulus = found.map(|s| (s.at.abs().to_f64(), 2.0 * s.error.to_f64()));
+        match self.resummed.growth {
+            Growth::Radius { radius, error } => {
+                let agrees = |pair: &(f64, f64)| (pair.0 - radius).abs() <= error + pair.1;
+                Some(modulus.filter(agrees).unwrap_or((radius, error)))
+            }
+            Growth::Undecided => modulus,
+            _ => None,
+        }
     }
 
     /// Why the method was taken, where there was a choice.

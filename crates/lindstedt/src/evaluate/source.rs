@@ -425,7 +425,7 @@ pub(super) fn limit_memory(
 /// The power of two next to the radius of convergence, 1 where there is none.
 fn scale(coefficients: &[Float]) -> Rational {
     let exponent = match growth(coefficients) {
-        Growth::Radius(radius) => radius.log2().round().clamp(-2000.0, 2000.0) as i32,
+        Growth::Radius { radius, .. } => radius.log2().round().clamp(-2000.0, 2000.0) as i32,
         _ => 0,
     };
     let two = Rational::from(2);

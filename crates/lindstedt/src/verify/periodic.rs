@@ -134,7 +134,12 @@ impl Periodic {
     ) -> Result<Comparison, Error> {
         let square = self.sum(&self.frequency_squared, small);
         if !(square.is_finite() && square > 0) {
-            return Err(self.no_orbit(small));
+            return Err(Error::NoTruncatedFrequency {
+                order: self.order,
+                square: format!("{:.2e}", square.to_f64()),
+                parameter: self.small.clone(),
+                value: small.to_string(),
+            });
         }
         let frequency = square.sqrt();
         let pi = Float::with_val(self.bits, rug::float::Constant::Pi);

@@ -11,8 +11,14 @@ pub enum Growth {
     Undecided,
     /// |c_n| falls like 1/n!^g, g > 0: no singularity.
     Entire,
-    /// A finite radius, estimated from the slope of log |c_n| (a few per cent).
-    Radius(f64),
+    /// A finite radius, estimated from the slope of log |c_n|.
+    Radius {
+        /// The radius.
+        radius: f64,
+        /// What it may be wrong by, estimated: its spread over shorter lists of coefficients, and
+        /// 3/N of it for the power of n that a singularity adds to the slope.
+        error: f64,
+    },
     /// |c_n| grows like n!^g, g > 0: the series diverges for every argument, it is asymptotic.
     Factorial {
         /// g, estimated.
@@ -48,7 +54,8 @@ pub fn growth(c: &[Float]) -> Growth {
     }
     let Some((rate, radius)) = rate_and_radius(&logs) else { return Growth::Undecided };
     let shorter = (logs.len() - logs.len() / 4..=logs.len()).filter_map(|n| logs.get(..n));
-    let rates: Vec<f64> = shorter.filter_map(|list| Some(rate_and_radius(list)?.0)).collect();
+    let fits: Vec<(f64, f64)> = shorter.filter_map(rate_and_radius).collect();
+    let rates: Vec<f64> = fits.iter().map(|fit| fit.0).collect();
     let long = logs.len() >= FEWEST_TO_EXCLUDE_A_RADIUS;
     if long && rates.iter().all(|g| *g > LEAST_WITHOUT) {
         Growth::Factorial { rate }
@@ -57,7 +64,8 @@ pub fn growth(c: &[Float]) -> Growth {
     } else if rates.iter().all(|g| g.abs() < MOST_WITH_A_RADIUS)
         || long && rate.abs() < MOST_WITH_A_RADIUS
     {
-        Growth::Radius(radius)
+        let spread = fits.iter().map(|fit| (fit.1 - radius).abs()).fold(0.0, f64::max);
+        Growth::Radius { radius, error: spread + 3.0 * radius / logs.len() as f64 }
     } else {
         Growth::Undecided
     }
@@ -156,13 +164,13 @@ mod tests {
                 c.push(float((k - p) / (k + 1.0) / 3.0) * &c[n as usize - 1]);
             }
             let found = growth(&c);
-            let Growth::Radius(radius) = found else { panic!("{p}: {found:?}") };
-            assert!((radius - 3.0).abs() < 0.1, "{p}: {radius}");
+            let Growth::Radius { radius, error } = found else { panic!("{p}: {found:?}") };
+            assert!((radius - 3.0).abs() < error.min(0.1), "{p}: {radius} +- {error}");
         }
         for phi in [0.3, 1.0, 1.79, 2.9] {
             let found = growth(&list(|n| float((f64::from(n) * phi).cos() / 2f64.powi(n as i32))));
-            let Growth::Radius(radius) = found else { panic!("{phi}: {found:?}") };
-            assert!((radius - 2.0).abs() < 0.2, "{phi}: {radius}");
+            let Growth::Radius { radius, error } = found else { panic!("{phi}: {found:?}") };
+            assert!((radius - 2.0).abs() < error.min(0.2), "{phi}: {radius} +- {error}");
         }
         // Factorial ones, too few to tell.
         let few: Vec<Float> = list(|n| factorial(n).pow(2.0f64)).into_iter().take(15).collect();

@@ -248,7 +248,7 @@ impl Sample {
         }
         let found = nearest_singularity_until(&self.coefficients, self.bits, stop)?;
         match growth(&self.coefficients) {
-            Growth::Radius(radius) => {
+            Growth::Radius { radius, .. } => {
                 let ratio = found.at.abs().to_f64() / radius;
                 (0.67..1.5).contains(&ratio).then_some(found)
             }
@@ -335,7 +335,7 @@ fn scaled(mut outcome: Outcome, factor: &Float) -> Outcome {
 /// N coefficients n^p R^-n with p not known to better than 2 give R to a factor 1 - 2/N.
 fn disc(c: &[Float], known: Option<f64>) -> Option<f64> {
     known.or(match growth(c) {
-        Growth::Radius(radius) => Some(radius * (1.0 - 2.0 / c.len().max(3) as f64)),
+        Growth::Radius { radius, .. } => Some(radius * (1.0 - 2.0 / c.len().max(3) as f64)),
         Growth::Factorial { .. } => Some(0.0),
         _ => None,
     })

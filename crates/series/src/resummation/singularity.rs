@@ -50,6 +50,8 @@ pub struct Singularity {
 
 /// Zeros of different approximants within this relative distance are one singularity.
 const SAME: f64 = 0.02;
+/// By so much better is a farther singularity known than a spurious nearer one.
+const SHARPER: u32 = 10;
 /// The number of approximants that must agree.
 const CONFIRMATIONS: usize = 4;
 
@@ -136,6 +138,7 @@ pub(super) fn nearest_singularity_until(
         }
     }
     let (first, others) = lists.split_first()?;
+    let mut nearest: Option<Singularity> = None;
     for (z, alpha) in first {
         let modulus = z.abs();
         let near = others.iter().filter_map(|list| {
@@ -172,15 +175,22 @@ pub(super) fn nearest_singularity_until(
         if stop.asked() {
             return None;
         }
-        return Some(Singularity {
-            at: at.shift(shift),
-            error: error << shift,
-            exponent,
-            exponent_error,
-            kind,
-        });
+        // Coefficients tell less of a farther singularity: a near one that is known worse by far
+        // than one behind it mocks a cut between approximants.
+        let better = |old: &Singularity| {
+            Float::with_val(53, &error * SHARPER) < (old.error.clone() >> shift)
+        };
+        if nearest.as_ref().is_none_or(better) {
+            nearest = Some(Singularity {
+                at: at.shift(shift),
+                error: error << shift,
+                exponent,
+                exponent_error,
+                kind,
+            });
+        }
     }
-    None
+    nearest
 }
 
 /// A square root branch point near `start`, from quadratic approximants p f^2 + q f + r =

@@ -84,6 +84,9 @@ pub struct Motion {
     /// The growth rate R of a = a(0) exp(R t) and the frequency psi', where neither depends on a;
     /// nothing, too, where not one digit of them is supported.
     pub linear: Option<[Number; 2]>,
+    /// a' and psi' at the start with their errors, estimated; nothing where not one digit is
+    /// supported.
+    pub rate_numbers: [Option<Number>; 2],
     /// The ratio of the last two terms of x at the start: below one they decrease.
     pub ratio: Option<f64>,
     /// The largest difference of two integrations, with the digits asked for and with more, among
@@ -179,31 +182,33 @@ impl Motion {
         let sizes = [order, order.saturating_sub(1)].map(|n| full.size(n, &start[0]));
         let ratio = (order > 0 && !sizes[1].is_zero())
             .then(|| Float::with_val(53, &sizes[0] / &sizes[1]).to_f64());
-        let rates: Vec<_> = orders.iter().map(Truncated::linear).collect();
-        let linear = full.linear().and_then(|rates_of_full| {
-            let number = |k: usize| {
-                let x = &rates_of_full[k];
-                let apart = |i: usize, j: usize| {
-                    let (a, b) = (rates.get(i)?.as_ref()?, rates.get(j)?.as_ref()?);
-                    Some(Float::with_val(53, &a[k] - &b[k]).abs())
-                };
-                let quotient = ratio.filter(|ratio| *ratio < 1.0 && order > 1);
-                let balls = Balls::new(bits);
-                match quotient.zip(apart(0, 1)) {
-                    Some((quotient, last)) => {
-                        let before = apart(1, 2).unwrap_or_else(|| Float::new(53)) * quotient;
-                        estimated(&balls.from_parts(x, &last.max(&before)), settings.digits)
-                    }
-                    None => plain(&balls.from_parts(x, &Float::new(53)), settings.digits, false),
-                }
+        // A rate of order N with what the last orders add to it, N, N - 1, N - 2 in `rates`.
+        let number = |rates: &[Option<[Float; 2]>], k: usize| {
+            let x = &rates.first()?.as_ref()?[k];
+            let apart = |i: usize, j: usize| {
+                let (a, b) = (rates.get(i)?.as_ref()?, rates.get(j)?.as_ref()?);
+                Some(Float::with_val(53, &a[k] - &b[k]).abs())
             };
-            Some([number(0)?, number(1)?])
-        });
+            let quotient = ratio.filter(|ratio| *ratio < 1.0 && order > 1);
+            let balls = Balls::new(bits);
+            match quotient.zip(apart(0, 1)) {
+                Some((quotient, last)) => {
+                    let before = apart(1, 2).unwrap_or_else(|| Float::new(53)) * quotient;
+                    estimated(&balls.from_parts(x, &last.max(&before)), settings.digits)
+                }
+                None => plain(&balls.from_parts(x, &Float::new(53)), settings.digits, false),
+            }
+        };
+        let rates: Vec<_> = orders.iter().map(Truncated::linear).collect();
+        let linear = number(&rates, 0).zip(number(&rates, 1)).map(|(a, psi)| [a, psi]);
+        let rates: Vec<_> = orders.iter().map(|order| Some(order.rate(&start[0]))).collect();
+        let rate_numbers = [number(&rates, 0), number(&rates, 1)];
         Ok(Self {
             at,
             order,
             start: start.map(|x| x.to_f64()),
             linear,
+            rate_numbers,
             ratio,
             integration_error: full.linear().map(|_| 0.0),
             ended: None,
