@@ -201,7 +201,7 @@ const REFUSED: [(&str, &str); 16] = [
 ];
 
 /// Whole files that are wrong.
-const FILES: [(i32, &str, &str); 33] = [
+const FILES: [(i32, &str, &str); 34] = [
     (
         2,
         "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[initial]\nx = '1'",
@@ -281,6 +281,11 @@ const FILES: [(i32, &str, &str); 33] = [
         2,
         "name = 'a'\nequation = \"x'' + x + eps*x^3\"\namplitude = 'scales-frequency'",
         "x is not x*(x^2)^(small parameter)",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x*(x^2)^(2*eps)\"\namplitude = 'scales-frequency'",
+        "x*(x^2)^(2*eps) is not",
     ),
     (
         2,

@@ -50,7 +50,9 @@ pub struct Singularity {
 
 /// Zeros of different approximants within this relative distance are one singularity.
 const SAME: f64 = 0.02;
-/// By so much better is a farther singularity known than a spurious nearer one.
+/// A singularity known no better than to this part of its modulus may be spurious: then one farther
+/// away that is known so many times better counts.
+const POOR: f64 = 1e-3;
 const SHARPER: u32 = 10;
 /// The number of approximants that must agree.
 const CONFIRMATIONS: usize = 4;
@@ -175,10 +177,11 @@ pub(super) fn nearest_singularity_until(
         if stop.asked() {
             return None;
         }
-        // Coefficients tell less of a farther singularity: a near one that is known worse by far
-        // than one behind it mocks a cut between approximants.
+        // Coefficients tell less of a farther singularity: a near one that is known badly, and
+        // worse by far than one behind it, is where the approximants imitate a cut.
         let better = |old: &Singularity| {
-            Float::with_val(53, &error * SHARPER) < (old.error.clone() >> shift)
+            let near = Float::with_val(53, old.at.abs() * POOR);
+            old.error > near && Float::with_val(53, &error * SHARPER) < (old.error.clone() >> shift)
         };
         if nearest.as_ref().is_none_or(better) {
             nearest = Some(Singularity {
