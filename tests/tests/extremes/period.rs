@@ -73,7 +73,10 @@ fn van_der_pol(eps: &str, bits: u32) -> Option<(Float, u32)> {
     if q.clone().abs() < 1e-6 {
         let series =
             Float::with_val(bits, &e2 / 16u32) + 1u32 - e2.clone().square() * 5u32 / 3072u32;
-        return Some((series * two_pi(bits), bits.min(if q < 1e-100 { bits - 8 } else { 190 })));
+        return Some((
+            series * two_pi(bits),
+            bits.min(if q.clone().abs() < 1e-100 { bits - 8 } else { 190 }),
+        ));
     }
     if q > 1e6 {
         let e = Float::with_val(bits, &q);
