@@ -33,6 +33,10 @@ pub fn write(
         .map(|(k, &(c, s))| (k, keep(c), keep(s)))
         .filter(|(_, c, s)| *c != 0.0 || *s != 0.0)
         .collect();
+    // What is left out deviates, too.
+    let left_out = |x: f64| x - keep(x);
+    let deviation =
+        list.iter().fold(deviation, |d, &(c, s)| d + left_out(c).abs() + left_out(s).abs());
     let omega = trajectory.frequency();
     let note = format!(
         "{}: x(t), expansion of order {}, its first {harmonics} harmonics; deviation from the \
