@@ -72,8 +72,9 @@ fn report(
 ) -> Json {
     let mut series = serde_json::Map::new();
     for named in &result.series {
-        let numbers = (0..named.coefficients.len()).filter_map(|n| named.number(n, digits));
-        series.insert(named.name.to_owned(), numbers.map(|n| number_json(&n)).collect());
+        let numbers = (0..named.coefficients.len()).map(|n| named.number(n, digits));
+        let list = numbers.map(|found| found.map_or(Json::Null, |n| number_json(&n))).collect();
+        series.insert(named.name.to_owned(), list);
     }
     let at: serde_json::Map<String, Json> =
         settings.parameters.iter().map(|(k, v)| (k.clone(), json!(v.to_string()))).collect();
@@ -114,7 +115,10 @@ fn table(problem: &Problem, result: &Estimate, digits: usize, heading: &str, gap
         let name = named.name.replace('_', " ");
         let _ = writeln!(text, "{gap}{name} in powers of {}:{gap}", problem.small);
         for n in 0..named.coefficients.len() {
-            let Some(number) = named.number(n, digits) else { continue };
+            let Some(number) = named.number(n, digits) else {
+                let _ = writeln!(text, "  {n}: not one digit");
+                continue;
+            };
             let error = number.error.as_deref().unwrap_or("0");
             let _ = writeln!(text, "  {n}: {}  (+- {error})", number.decimal);
         }

@@ -100,6 +100,8 @@ fn resummation_beside_the_partial_sum() {
     assert!(rows.iter().all(|row| stated(within) <= stated(row)) && stated(within) < 1e-15);
     let short = lindstedt(&["trade", "duffing", "--quiet", "--orders", "2", "--within", "1e-12"]);
     assert_eq!(short.status.code(), Some(4));
+    let text = String::from_utf8(short.stdout).unwrap();
+    assert!(text.contains("Within 1.0e-12 s: no run here; the fastest that states"), "{text}");
 }
 
 /// Files are judged in the time domain; Rayleigh's limit cycle has van der Pol's period.

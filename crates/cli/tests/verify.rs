@@ -34,6 +34,19 @@ fn duffing_and_van_der_pol() {
     slopes("van-der-pol", 1..=6, &[]);
 }
 
+/// Slopes that still rise are no wrong order: 2.67, 2.81, 2.90, 2.95 tends to 3.
+#[test]
+fn slopes_that_rise_slowly_do_not_disagree() {
+    let found = json(&["duffing", "--order", "2", "--small", "1/2,1/4,1/8,1/16,1/32"]);
+    assert_eq!((&found["verdict"], &found["settled"]), (&"agrees".into(), &true.into()));
+    for few in ["1/4,1/8,1/16", "1/2,1/4,1/8"] {
+        let output = run(&["duffing", "--order", "3", "--small", few]);
+        assert_eq!(output.status.code(), Some(4), "{few}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(text.contains("has not settled"), "{text}");
+    }
+}
+
 #[test]
 fn power_law() {
     slopes("power-law", 1..=6, &[]);

@@ -62,6 +62,14 @@ fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
         true => 0.5_f64.powi(i32::try_from(precision / 2).unwrap_or(i32::MAX)),
         false => 1e-12,
     };
+    // Where |G| leaves the range of doubles the walk ends undecided. It is largest far from w = R,
+    // where the walk starts: looked at first, not after thousands of steps.
+    let zero = unit.integer(0);
+    for far in [Complex::new(zero, size.clone()), Complex::real(-size.clone())] {
+        if !g.value_and_slope(&far).0.to_f64().is_finite() {
+            return Walk::Undecided;
+        }
+    }
     let (mut value, mut slope) = g.value_and_slope(&Complex::real(size.clone()));
     let mut centre = Complex::new(radius, 0.0);
     let mut angle = 0.0_f64;
@@ -109,7 +117,9 @@ fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
         };
         centre = w.to_f64();
         (value, slope) = g.value_and_slope(&w);
+        // Of unit size, lest the product leave the range of doubles.
         let there = value.to_f64();
+        let there = there.scaled(&there.re.hypot(there.im).recip());
         let turn = there * &here.conjugate();
         angle += turn.im.atan2(turn.re);
     }
@@ -175,5 +185,49 @@ mod tests {
             }
         }
         assert!(longest > 0.3, "the steps are needlessly short: {longest}");
+    }
+
+    fn flight_with_gain(displacement_gain: f64) -> Characteristic<f64> {
+        let parameters = Parameters {
+            alpha: 1.0,
+            omega: 2.6,
+            periods: 1,
+            restitution: 0.8,
+            wall: 0.0,
+            damping: 0.1,
+            force: 1.0,
+            displacement_gain,
+            velocity_gain: 0.0,
+            branch: Branch::Plus,
+        };
+        Characteristic::new(&parameters, &orbit(&parameters).unwrap(), Kick::None)
+    }
+
+    /// |G| up to 1e200: the product of two values is out of range. Against steps of equal length.
+    #[test]
+    fn large_values_are_counted() {
+        let g = flight_with_gain(4000.0);
+        let steps = 100_000;
+        let argument = |n: i32| {
+            let (sin, cos) = (std::f64::consts::PI * f64::from(n) / f64::from(steps)).sin_cos();
+            let value = g.value_and_slope(&Complex::new(10.0 * cos, 10.0 * sin)).0;
+            assert!(value.re.hypot(value.im) < 1e300);
+            value.im.atan2(value.re)
+        };
+        let whole = std::f64::consts::TAU;
+        let turn = |n: i32| {
+            let change = argument(n + 1) - argument(n);
+            change - whole * (change / whole).round()
+        };
+        let angle: f64 = (0..steps).map(turn).sum();
+        let zeros = (2.0 * angle / whole).round() as u32;
+        assert!(zeros > 20, "{zeros}");
+        assert_eq!(zero_count(&g, 10.0).map(|count| count.zeros), Some(zeros));
+    }
+
+    /// exp(1e10) on the circle ends the walk before it begins.
+    #[test]
+    fn values_out_of_range_are_found_at_once() {
+        assert!(walk(&flight_with_gain(1e20), 1.0) == Walk::Undecided);
     }
 }

@@ -19,6 +19,7 @@ use lindstedt_expand::{
 use lindstedt_phase::Trigonometric;
 use lindstedt_phase::collocation::{Collocation, Grid};
 use lindstedt_series::Series;
+use rug::float::Special;
 use rug::{Float, Rational};
 
 /// How the numbers are computed.
@@ -78,10 +79,11 @@ impl Estimate {
 }
 
 impl EstimatedSeries {
-    /// Coefficient n with at most `digits` digits, as many as the estimate supports and two more.
+    /// Coefficient n with at most `digits` digits, as many as the estimate supports and two more;
+    /// nothing where its error is infinite.
     #[must_use]
     pub fn number(&self, n: usize, digits: usize) -> Option<Number> {
-        let (value, error) = self.coefficients.get(n)?;
+        let (value, error) = self.coefficients.get(n).filter(|(_, error)| error.is_finite())?;
         let balls = Balls::new(value.prec().max(64));
         let sure = match (value.get_exp(), error.get_exp()) {
             (Some(v), Some(e)) => (f64::from(v - e) * 2f64.log10()).max(0.0) as usize + 2,
@@ -276,11 +278,16 @@ impl Job<'_> {
     /// relative to the largest coefficient so far.
     /// Sixteen times for the truncated Fourier series, which converges algebraically: far from
     /// resolution two truncations are wrong together.
+    ///
+    /// Two grids may round a coefficient to the same double, and the recurrence then amplifies the
+    /// same error in both: where the error has reached the largest coefficient, nothing is said of
+    /// this one and of those that follow from it (an infinite error).
     fn compare(&self, tier: Tier, coarse: &[Run], fine: Run, bits: u32) -> Estimate {
         let estimated = |(index, (name, values)): (usize, (&'static str, Vec<Float>))| {
             let mut error = rounding(&Float::with_val(53, 1), bits);
             let safety = if matches!(tier, Tier::Fourier { .. }) { 16u32 } else { 4 };
             let mut coefficients = Vec::new();
+            let mut largest = Float::with_val(53, 1);
             for (n, value) in values.into_iter().enumerate() {
                 let others = coarse.iter().filter_map(|run| run.series.get(index)?.1.get(n));
                 for other in others {
@@ -290,6 +297,10 @@ impl Job<'_> {
                     }
                 }
                 error = error.max(&rounding(&value, bits));
+                largest = largest.max(&Float::with_val(53, value.abs_ref()));
+                if error >= largest || error.is_nan() {
+                    error = Float::with_val(53, Special::Infinity);
+                }
                 coefficients.push((value, error.clone()));
             }
             EstimatedSeries { name, coefficients }
@@ -384,7 +395,9 @@ impl Job<'_> {
                 let (mut sum, mut error) = (Float::new(work), Float::new(53));
                 for ((value, uncertainty), f) in terms {
                     sum += value * f;
-                    error += Float::with_val(53, uncertainty * f).abs();
+                    if !f.is_zero() {
+                        error += Float::with_val(53, uncertainty * f).abs();
+                    }
                 }
                 let value = Float::with_val(estimate.bits, &sum);
                 let error = error + rounding(&value, estimate.bits);

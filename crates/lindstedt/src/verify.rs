@@ -97,10 +97,10 @@ pub struct Comparison {
 /// What the comparison says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The observed order is N + 1 within [`TOLERANCE`], or it has settled above: the terms that
-    /// were left out begin later.
+    /// The observed order is N + 1 within [`TOLERANCE`], or it has settled there or at a whole
+    /// number above: the terms that were left out begin later.
     Agrees,
-    /// It has settled below N + 1.
+    /// It has settled at a whole number below N + 1.
     Disagrees,
     /// The errors are not above those of the integration, there are fewer than two, or the slopes
     /// have not settled: the small parameter is not small enough.
@@ -120,7 +120,8 @@ pub struct Verification {
     pub comparisons: Vec<Comparison>,
     /// The slope between the last two values.
     pub observed: Option<f64>,
-    /// The slopes agree so far that their limit is known within [`TOLERANCE`] (three values).
+    /// The last slope is within [`TOLERANCE`] of the limit that it and the one before extrapolate to
+    /// (three values).
     pub settled: bool,
     /// The errors of the last two values are above those of the integration.
     pub resolved: bool,
@@ -289,31 +290,29 @@ fn conclude(
     let observed = comparisons.last().and_then(|last| last.slope);
     let drowned = |c: &Comparison| c.simulation_error.clone() * 1000u32 > c.error;
     let resolved = !comparisons.iter().rev().take(2).any(drowned);
-    // slope(eps) = limit + c eps + ...: from two slopes the rest c eps follows.
-    let settled = match &comparisons[..] {
-        [.., before, middle, last] => match (middle.slope, last.slope) {
-            (Some(first), Some(second)) => {
-                let ratio = (size(last) - size(middle)).exp();
-                let ratio_before = (size(middle) - size(before)).exp();
-                let rest = (second - first) * ratio / (1.0 / ratio_before - ratio);
-                (second - first).abs() <= 2.0 * TOLERANCE && rest.abs() <= TOLERANCE
-            }
-            _ => false,
-        },
-        _ => false,
+    // e = C eps^n (1 + c eps + ...) has ln e(eps_1)/e(eps_2) = n ln eps_1/eps_2 + c (eps_1 - eps_2):
+    // from two slopes n and what the last slope lacks.
+    let limit = match &comparisons[..] {
+        [.., before, middle, last] => middle.slope.zip(last.slope).map(|(first, second)| {
+            let steps = [size(before) - size(middle), size(middle) - size(last)];
+            let falls = [steps[0].exp_m1(), -(-steps[1]).exp_m1()];
+            let [far, near] = [falls[0] / steps[0], falls[1] / steps[1]];
+            second - (second - first) * near / (near - far)
+        }),
+        _ => None,
     };
+    let limit = limit.filter(|n| observed.is_some_and(|slope| (slope - n).abs() <= TOLERANCE));
+    let settled = limit.is_some();
     let expected = order as f64 + 1.0;
-    let verdict = match observed {
-        Some(slope) if resolved && (slope - expected).abs() <= TOLERANCE => Verdict::Agrees,
-        Some(slope) if resolved && settled => {
-            let whole = (slope - slope.round()).abs() <= TOLERANCE;
-            match (slope > expected, whole) {
-                (true, true) => Verdict::Agrees,
-                (true, false) => Verdict::Undecided,
-                (false, _) => Verdict::Disagrees,
-            }
-        }
-        _ => Verdict::Undecided,
+    // The error of a wrong order is C eps^n with a whole n: another limit is not one yet.
+    let power = limit.filter(|n| (n - n.round()).abs() <= TOLERANCE);
+    let near = |n: f64| (n - expected).abs() <= TOLERANCE;
+    let verdict = match power {
+        _ if !resolved => Verdict::Undecided,
+        _ if observed.is_some_and(near) => Verdict::Agrees,
+        Some(n) if n < expected && !near(n) => Verdict::Disagrees,
+        Some(_) => Verdict::Agrees,
+        None => Verdict::Undecided,
     };
     let parameter = problem.small.to_string();
     Verification {

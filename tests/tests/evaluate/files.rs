@@ -230,3 +230,28 @@ fn refusals_of_files() {
     walled.impact = problems::vibro_impact::problem().impact;
     assert!(matches!(run(&walled, &[("eps", "1")]), Err(Error::NotEvaluated { .. })));
 }
+
+/// The nearest singularity lies on the circle of convergence: at every order that finds it the same
+/// square root (a pole at -1.27 was reported at order 60), and for the power law, whose radius is
+/// known to be 1, none of the poles at -1.25 and -1.5 that imitate the cut.
+#[test]
+fn the_nearest_singularity_does_not_depend_on_the_order() {
+    let mixture = written("x'' + x = eps (1 - x^2/2 - x'^2/6) x'", "condition = 'limit-cycle'\n");
+    let mut before: Option<f64> = None;
+    for order in [40, 60, 70] {
+        let found = evaluate(&mixture, &settings(order, None, &[("eps", "1")]), &mut |_| true);
+        let found = found.unwrap().resummed.singularity.unwrap();
+        assert!((found.exponent.to_f64() - 0.5).abs() < 2e-2, "{order} {}", found.exponent);
+        let place = found.at.re.to_f64();
+        assert!(found.at.im.to_f64().abs() < 1e-9 && found.error < 1e-3, "{order} {place}");
+        assert!(before.is_none_or(|before| (place - before).abs() < 1e-3), "{order} {place}");
+        before = Some(place);
+    }
+    for order in [30, 40] {
+        let law = problems::find("power-law").unwrap();
+        let found = evaluate(&law, &settings(order, None, &[("n", "5")]), &mut |_| true).unwrap();
+        if let Some(found) = found.resummed.singularity {
+            assert!((found.at.re.to_f64() + 1.0).abs() < 0.03, "{order} {}", found.at.re);
+        }
+    }
+}

@@ -155,7 +155,10 @@ impl Report<'_> {
             let kind = kind_name(found.kind);
             lines.push((
                 "nearest singularity".to_owned(),
-                format!("{place}, {kind} (exponent {exponent})"),
+                format!(
+                    "{place}, {kind} (exponent {exponent}), error {:.0e}",
+                    found.error.to_f64()
+                ),
             ));
         }
         if let Some(picture) = &result.picture {

@@ -144,6 +144,7 @@ pub fn csv(trade: &Trade) -> String {
 /// 1.2 us, 34 ms, 5.6 s.
 fn duration(seconds: f64) -> String {
     match seconds {
+        s if s < 1e-6 => format!("{s:.1e} s"),
         s if s < 1e-3 => format!("{:.0} us", s * 1e6),
         s if s < 1.0 => format!("{:.2} ms", s * 1e3),
         s => format!("{s:.2} s"),
@@ -246,6 +247,13 @@ fn stated(row: &Row) -> String {
     }
 }
 
+/// The fastest run that states an error.
+fn fastest(rows: &[Row]) -> Option<usize> {
+    let states = |i: &usize| rows.get(*i).is_some_and(|row| row.stated_error.is_finite());
+    let seconds = |i: &usize| rows.get(*i).map_or(f64::INFINITY, |row| row.seconds);
+    (0..rows.len()).filter(states).min_by(|a, b| seconds(a).total_cmp(&seconds(b)))
+}
+
 fn advice(trade: &Trade, wanted: Wanted) -> String {
     let row = |i: Option<usize>| trade.rows.get(i?);
     let name = |row: &Row| {
@@ -276,7 +284,15 @@ fn advice(trade: &Trade, wanted: Wanted) -> String {
     if let Some(seconds) = wanted.seconds {
         lines.push(match row(wanted.within(&trade.rows)) {
             Some(best) => format!("Within {}: {}.", duration(seconds), name(best)),
-            None => format!("Within {}: no run here states an error.", duration(seconds)),
+            None => match row(fastest(&trade.rows)) {
+                Some(fast) => format!(
+                    "Within {}: no run here; the fastest that states an error takes {}: {}.",
+                    duration(seconds),
+                    duration(fast.seconds),
+                    name(fast)
+                ),
+                None => format!("Within {}: no run here states an error.", duration(seconds)),
+            },
         });
     }
     lines.join("\n")

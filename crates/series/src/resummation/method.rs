@@ -234,8 +234,8 @@ impl Sample {
         }
     }
 
-    /// The nearest singularity in the coefficients; nothing where its modulus contradicts their
-    /// growth by more than a half, and for a series that diverges everywhere.
+    /// The nearest singularity in the coefficients, on the circle of convergence where that is known
+    /// (see [`nearest_singularity`](super::nearest_singularity)).
     #[must_use]
     pub fn singularity(&self) -> Option<Singularity> {
         self.singularity_until(&Stop::default())
@@ -243,18 +243,7 @@ impl Sample {
 
     /// As [`Self::singularity`]; nothing once `stop` said so.
     pub(super) fn singularity_until(&self, stop: &Stop) -> Option<Singularity> {
-        if self.radius == Some(0.0) {
-            return None;
-        }
-        let found = nearest_singularity_until(&self.coefficients, self.bits, stop)?;
-        match growth(&self.coefficients) {
-            Growth::Radius { radius, .. } => {
-                let ratio = found.at.abs().to_f64() / radius;
-                (0.67..1.5).contains(&ratio).then_some(found)
-            }
-            Growth::Undecided => Some(found),
-            _ => None,
-        }
+        nearest_singularity_until(&self.coefficients, self.radius, self.bits, stop)
     }
 
     fn partial_sum(&self) -> Result<Outcome, ResummationError> {

@@ -9,11 +9,11 @@
 //! and B regular: poles, branch points with any exponent, logarithms (alpha = 0), in pairs or
 //! not. Zeros that other degrees do not reproduce are spurious.
 
-use super::Complex;
 use super::complex::{derivative, evaluate, zeros_until};
 use super::estimate::distance;
 use super::linear::Echelon;
 use super::maps::multiply;
+use super::{Complex, Growth, growth};
 use lindstedt_algebra::Stop;
 use rug::Float;
 
@@ -50,8 +50,8 @@ pub struct Singularity {
 
 /// Zeros of different approximants within this relative distance are one singularity.
 const SAME: f64 = 0.02;
-/// A singularity known no better than to this part of its modulus may be spurious: then one farther
-/// away that is known so many times better counts.
+/// Of those that agree with the growth, one known no better than to this part of its modulus gives
+/// way to one farther away that is known so many times better.
 const POOR: f64 = 1e-3;
 const SHARPER: u32 = 10;
 /// The number of approximants that must agree.
@@ -103,20 +103,31 @@ fn tiny(z: &Complex) -> bool {
 
 /// The nearest singularity that several approximants from the last coefficients agree upon.
 ///
-/// Nothing for fewer than 12 coefficients, and where no zero is stable. The error is the largest
-/// disagreement; estimated, not proved. Cost: eight eliminations of N^3/3 products.
+/// Its modulus is the radius of convergence: a zero that contradicts `radius`, where that is known,
+/// or else the growth of the coefficients ([`growth`], within the error of both) is spurious.
+/// Nothing for fewer than 12 coefficients, where no zero is stable, and for coefficients that grow
+/// or fall factorially. The error is the largest disagreement; estimated, not proved. Cost: eight
+/// eliminations of N^3/3 products.
 #[must_use]
-pub fn nearest_singularity(c: &[Float], bits: u32) -> Option<Singularity> {
-    nearest_singularity_until(c, bits, &Stop::default())
+pub fn nearest_singularity(c: &[Float], radius: Option<f64>, bits: u32) -> Option<Singularity> {
+    nearest_singularity_until(c, radius, bits, &Stop::default())
 }
 
 /// As [`nearest_singularity`]; nothing once `stop` said so.
 pub(super) fn nearest_singularity_until(
     c: &[Float],
+    radius: Option<f64>,
     bits: u32,
     stop: &Stop,
 ) -> Option<Singularity> {
-    if c.len() < 12 {
+    // With the error of the radius.
+    let circle = match (radius, growth(c)) {
+        (Some(radius), _) => Some((radius, radius * SAME)),
+        (None, Growth::Radius { radius, error }) => Some((radius, error)),
+        (None, Growth::Undecided) => None,
+        (None, _) => return None,
+    };
+    if c.len() < 12 || radius == Some(0.0) {
         return None;
     }
     // In y = x/2^k the coefficients neither grow nor fall.
@@ -177,20 +188,19 @@ pub(super) fn nearest_singularity_until(
         if stop.asked() {
             return None;
         }
+        let (at, error) = (at.shift(shift), error << shift);
+        let off = |radius: f64| (at.abs().to_f64() - radius).abs() - 2.0 * error.to_f64();
+        if circle.is_some_and(|(radius, margin)| off(radius) > margin) {
+            continue;
+        }
         // Coefficients tell less of a farther singularity: a near one that is known badly, and
         // worse by far than one behind it, is where the approximants imitate a cut.
         let better = |old: &Singularity| {
             let near = Float::with_val(53, old.at.abs() * POOR);
-            old.error > near && Float::with_val(53, &error * SHARPER) < (old.error.clone() >> shift)
+            old.error > near && Float::with_val(53, &error * SHARPER) < old.error
         };
         if nearest.as_ref().is_none_or(better) {
-            nearest = Some(Singularity {
-                at: at.shift(shift),
-                error: error << shift,
-                exponent,
-                exponent_error,
-                kind,
-            });
+            nearest = Some(Singularity { at, error, exponent, exponent_error, kind });
         }
     }
     nearest
@@ -306,7 +316,7 @@ mod tests {
             for (x, y) in c.iter_mut().zip(power(-1.0, -5.0, order)) {
                 *x += y;
             }
-            let found = nearest_singularity(&c, BITS).unwrap();
+            let found = nearest_singularity(&c, None, BITS).unwrap();
             let true_error = (found.at.re.clone() + 2u32).abs();
             assert!(true_error < 1e-8, "{p}: {true_error}");
             assert!(true_error <= found.error.clone(), "{p}: {true_error} {}", found.error);
@@ -329,7 +339,7 @@ mod tests {
         let exponential = |n: u32| Float::with_val(BITS, Float::factorial(n)).recip();
         let log: Vec<Float> = (0..=order).map(term).collect();
         let smooth: Vec<Float> = (0..=order).map(exponential).collect();
-        let found = nearest_singularity(&multiply(&log, &smooth, BITS), BITS);
+        let found = nearest_singularity(&multiply(&log, &smooth, BITS), None, BITS);
         let found = found.unwrap();
         assert!((found.at.re.to_f64() + 3.0).abs() < 1e-8);
         assert_eq!(found.kind, Kind::Logarithm);
