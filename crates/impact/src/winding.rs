@@ -37,7 +37,7 @@ pub fn zero_count<S: Real>(g: &Characteristic<S>, radius: f64) -> Option<ZeroCou
     }
     match walk(g, radius) {
         Walk::Around(count) => Some(count),
-        Walk::Undecided | Walk::OutOfSteps => None,
+        Walk::Undecided | Walk::OutOfSteps | Walk::OutOfRange => None,
     }
 }
 
@@ -47,6 +47,8 @@ enum Walk {
     Around(ZeroCount),
     Undecided,
     OutOfSteps,
+    /// |G| leaves the range of doubles.
+    OutOfRange,
 }
 
 fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
@@ -62,12 +64,12 @@ fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
         true => 0.5_f64.powi(i32::try_from(precision / 2).unwrap_or(i32::MAX)),
         false => 1e-12,
     };
-    // Where |G| leaves the range of doubles the walk ends undecided. It is largest far from w = R,
+    // Where |G| leaves the range of doubles the walk cannot go on. It is largest far from w = R,
     // where the walk starts: looked at first, not after thousands of steps.
     let zero = unit.integer(0);
     for far in [Complex::new(zero, size.clone()), Complex::real(-size.clone())] {
         if !g.value_and_slope(&far).0.to_f64().is_finite() {
-            return Walk::Undecided;
+            return Walk::OutOfRange;
         }
     }
     let (mut value, mut slope) = g.value_and_slope(&Complex::real(size.clone()));
@@ -228,6 +230,6 @@ mod tests {
     /// exp(1e10) on the circle ends the walk before it begins.
     #[test]
     fn values_out_of_range_are_found_at_once() {
-        assert!(walk(&flight_with_gain(1e20), 1.0) == Walk::Undecided);
+        assert!(walk(&flight_with_gain(1e20), 1.0) == Walk::OutOfRange);
     }
 }
