@@ -58,7 +58,7 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
     if figure == crate::arguments::Figure::Section && plan.section.is_none() {
         plan.section = request::section(options, &plan.setup)?;
     }
-    let (motion, finer, working) = integrate(&plan, digits, doubles, session)?;
+    let (motion, finer, working) = integrate(&mut plan, digits, doubles, session)?;
     let chaotic = finer.is_none();
     let half = if plan.perturbed() && !chaotic {
         let half = plan.run_half(working, doubles, &|| session.goes_on());
@@ -85,6 +85,9 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
              --lyapunov and --zero-one tell how chaotic)",
         );
     }
+    if let Some(reason) = &plan.cut {
+        output::warn(&format!("{reason}: the motion up to there"));
+    }
     Ok(match (motion.complete, chaotic) {
         (false, _) => NO_ANSWER,
         (true, true) => UNDECIDED,
@@ -98,8 +101,10 @@ const NOT_ONE_DIGIT: f64 = -1.0;
 /// Two integrations, the second with more digits, both with so many that their difference leaves
 /// the digits asked for. In doubles there is one try; no second motion where it has
 /// not one digit or met other events.
+///
+/// Where the motion ends in a singularity, the plan is cut shortly before it.
 fn integrate(
-    plan: &Plan,
+    plan: &mut Plan,
     digits: u32,
     doubles: bool,
     session: &Session<'_>,
@@ -120,6 +125,10 @@ fn integrate(
             Ok((motion, finer))
         });
         let (mut motion, mut finer) = match pair {
+            Err(error) if plan.cut.is_none() && singular(&error).is_some() => {
+                plan.cut_before(singular(&error).unwrap_or_default(), error.to_string());
+                continue;
+            }
             // Near a branch point, or a double root to working precision: more digits may tell.
             Err(error) if !doubles && degenerate(&error) && left > 0 => {
                 working = working.saturating_mul(2);
@@ -152,6 +161,16 @@ fn integrate(
         format!("{digits} digits were not reached: with {MORE} more the events are others")
     };
     Err(undecided(message, "a shorter time, or fewer --digits"))
+}
+
+/// The time of a singularity that ends the motion.
+fn singular(error: &SimulateError) -> Option<f64> {
+    match error {
+        SimulateError::Escape { time, .. } | SimulateError::UnboundedVelocity { time, .. } => {
+            Some(*time)
+        }
+        _ => None,
+    }
 }
 
 fn degenerate(error: &SimulateError) -> bool {

@@ -207,3 +207,23 @@ fn determined_parameters() {
     let (code, error) = refusal(&[&path]);
     assert!(code == Some(3) && error.contains("k has no value"), "{error}");
 }
+
+/// x'' + x = 2 (x^2 + x'^2) from rest at 1: p = x'^2 obeys dp/dx = 4 p + 4 x^2 - 2 x, so
+/// x'^2 = e^(4 (x - 1)) - x^2, and x grows like a logarithm up to
+/// t = int_1^oo dx/sqrt(e^(4 (x - 1)) - x^2) = 0.97653202 by quadrature.
+#[test]
+fn a_motion_that_ends_is_shown_up_to_its_end() {
+    let folder = Folder::new("ends");
+    let file = folder.file("ends", "equation = \"x'' + x + eps*(x^2 + x'^2) = 0\"\n");
+    let command = ["simulate", &file, "--set", "eps=-2", "--periods", "2", "--digits", "15"];
+    let output = lindstedt(&[&command[..], &["--quiet", "--format", "json"]].concat());
+    assert_eq!(output.status.code(), Some(3));
+    let warning = String::from_utf8(output.stderr).unwrap();
+    assert!(warning.contains("x' grows beyond all bounds near t = 0.976532 "), "{warning}");
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["complete"], false);
+    let [x, v] = end(&found);
+    let energy = (4.0 * (x - 1.0)).exp() - x * x;
+    assert!(v > 100.0, "{v}");
+    assert!((v * v / energy - 1.0).abs() < 1e-11, "{x} {v}");
+}

@@ -86,8 +86,21 @@ pub enum SimulateError {
         terms: usize,
     },
     /// x and x' grow beyond all bounds in a finite time, with steps that become too short.
-    #[error("the motion escapes to infinity near t = {time:.6} (x = {displacement:.1e} there)")]
+    #[error(
+        "the motion escapes to infinity near t = {time:.6} (x = {displacement:.1e} at the last step)"
+    )]
     Escape {
+        /// Where.
+        time: f64,
+        /// x at the last step.
+        displacement: f64,
+    },
+    /// x' grows beyond all bounds in a finite time and x does not (a collision), or hardly (like a
+    /// logarithm), with steps that become too short.
+    #[error(
+        "x' grows beyond all bounds near t = {time:.6} (x = {displacement:.6} at the last step)"
+    )]
+    UnboundedVelocity {
         /// Where.
         time: f64,
         /// x at the last step.

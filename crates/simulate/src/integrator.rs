@@ -318,14 +318,11 @@ impl<'s, R: Real> Integrator<'s, R> {
         Ok(if told.is_break() { told } else { event })
     }
 
-    /// Whether x has left its start by 2^10 and the largest state by 2^20: where steps end, a pole
-    /// of x(t). In a collision x' grows beyond bounds and x does not.
+    /// Whether the state has left its start by 2^20: where steps end, a singularity of x(t).
     fn escapes(&self) -> bool {
         let real = &self.system.real;
-        let size = |x: &R::Element| real.log2(x);
-        let largest = self.state.iter().map(size).fold(f64::NEG_INFINITY, f64::max);
-        let displacement = self.state.first().map_or(f64::NEG_INFINITY, size);
-        displacement > self.log2_start + 10.0 && largest > self.log2_start + 20.0
+        let largest = self.state.iter().map(|x| real.log2(x)).fold(f64::NEG_INFINITY, f64::max);
+        largest > self.log2_start + 20.0
     }
 
     /// |w|^p near w = 0 or another singularity.
@@ -341,8 +338,15 @@ impl<'s, R: Real> Integrator<'s, R> {
         match nearest {
             Some(switch) => SimulateError::BranchPoint { switch, time },
             None if self.escapes() => {
-                let displacement = self.state.first().map_or(f64::NAN, |x| real.to_f64(x));
-                SimulateError::Escape { time, displacement }
+                // x has left its start by 2^10 at a pole; in a collision, or where x grows like a
+                // logarithm, x' alone is unbounded.
+                let x = self.state.first();
+                let displacement = x.map_or(f64::NAN, |x| real.to_f64(x));
+                if x.is_some_and(|x| real.log2(x) > self.log2_start + 10.0) {
+                    SimulateError::Escape { time, displacement }
+                } else {
+                    SimulateError::UnboundedVelocity { time, displacement }
+                }
             }
             None => SimulateError::StepTooSmall { time },
         }

@@ -33,6 +33,8 @@ pub struct Plan {
     pub section: Option<Section>,
     /// Whether the line of a figure is kept.
     pub drawn: bool,
+    /// Why the motion ends before it should.
+    pub cut: Option<String>,
 }
 
 /// A state at a time.
@@ -80,6 +82,14 @@ pub struct Motion {
 impl Plan {
     fn watches_velocity(&self) -> bool {
         self.section == Some(Section::Velocity) || matches!(self.end, End::Maxima(_))
+    }
+
+    /// Ends the motion at a thousandth of its time before the singularity.
+    pub fn cut_before(&mut self, singularity: f64, reason: String) {
+        let end = singularity * (1.0 - 1.0 / 1024.0);
+        self.times.retain(|time| time.float(64) <= end);
+        self.end = End::Time(Quantity::Float(Float::with_val(53, end)));
+        self.cut = Some(reason);
     }
 
     /// The end, or a time that is long for the events that are to end it.
@@ -191,6 +201,7 @@ impl Plan {
         keeper.rest(flow.time(), [x, v], stuck);
         let (mut motion, ended) = (keeper.motion, keeper.ended);
         motion.complete = !stopped
+            && self.cut.is_none()
             && match self.end {
                 End::Time(_) => outcome == Outcome::Reached,
                 _ => ended.is_some(),

@@ -164,6 +164,8 @@ impl<'a> Answer<'a> {
         let mut text = chaotic.to_owned();
         text += &if motion.complete {
             format!("reached t = {time:.6}")
+        } else if let Some(reason) = &self.plan.cut {
+            format!("{reason}; shown up to t = {time:.6}")
         } else {
             format!("the events that end the motion did not come before t = {time:.6}")
         };

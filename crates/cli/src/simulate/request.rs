@@ -147,7 +147,7 @@ pub fn plan(options: &SimulateOptions, setup: Setup) -> Result<Plan, Failure> {
     }
     let section = section(options, &setup)?;
     let drawn = !options.plot.is_empty();
-    Ok(Plan { setup, end, times: sampled, section, drawn })
+    Ok(Plan { setup, end, times: sampled, section, drawn, cut: None })
 }
 
 fn scaled(q: &Quantity, factor: Rational) -> Quantity {

@@ -21,7 +21,7 @@ use lindstedt_series::resummation::{
 use rug::Float;
 use setting::{Form, Setting};
 pub use solution::{Displacement, Fourier, Trajectory};
-use source::Source;
+use source::{Source, remembered};
 use std::collections::BTreeMap;
 
 /// What to evaluate.
@@ -150,7 +150,7 @@ pub fn evaluate(
     if !observer(Progress::Checking) {
         return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
     }
-    let sample = |bits: u32| if settings.stop.asked() { None } else { source.sample(bits) };
+    let sample = remembered(|bits| if settings.stop.asked() { None } else { source.sample(bits) });
     let few = few::partial_sum(&sample, source.known, settings.method, accuracy);
     let resummed =
         few.unwrap_or_else(|| resum_until(&sample, settings.method, accuracy, &settings.stop));
@@ -211,8 +211,8 @@ pub fn evaluate(
         accuracy,
         verdict: String::new(),
         picture,
-        at: source.at,
-        variable: source.variable,
+        at: source.at.clone(),
+        variable: source.variable.clone(),
     };
     result.verdict = result.describe();
     Ok(result)

@@ -2,6 +2,7 @@
 //! series in the small parameter summed there.
 
 use super::setting::{Form, Setting};
+use super::source::remembered;
 use super::{EvaluateSettings, Evaluation, bits_for, estimated, few};
 use crate::number::Number;
 use crate::{Derivation, Error, Progress, Solution, Value};
@@ -12,8 +13,6 @@ use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
 use lindstedt_series::resummation::{Estimate, Method, Sample, UniformMap, partial_sums};
 use rayon::prelude::*;
 use rug::{Float, Rational};
-use std::cell::RefCell;
-use std::collections::BTreeMap;
 
 /// x at one time.
 #[derive(Clone, Debug)]
@@ -255,16 +254,7 @@ impl Trajectory {
 
     /// X at a phase, and its estimated error.
     fn sum(&self, point: &Point) -> Option<(Ball, Float)> {
-        // The methods ask for the same precisions: each is computed once.
-        let known: RefCell<BTreeMap<u32, Sample>> = RefCell::default();
-        let source = |bits: u32| {
-            if let Some(sample) = known.borrow().get(&bits) {
-                return Some(sample.clone());
-            }
-            let sample = self.sample(point, bits)?;
-            known.borrow_mut().insert(bits, sample.clone());
-            Some(sample)
-        };
+        let source = remembered(|bits| self.sample(point, bits));
         let accuracy = bits_for(self.digits);
         let known = self.order() + 1;
         let (estimate, bits) = match few::partial_sum(&source, known, None, accuracy) {

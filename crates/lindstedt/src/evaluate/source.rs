@@ -10,6 +10,8 @@ use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_series::resummation::{Growth, Sample, UniformMap, growth};
 use rayon::prelude::*;
 use rug::{Float, Rational};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 /// A formula for a value.
 pub(crate) type Formula = Box<dyn Fn(Balls) -> Option<Ball> + Send + Sync>;
@@ -39,6 +41,21 @@ pub(crate) struct Source {
     pub step: usize,
     /// See `step`.
     pub ratio: Rational,
+}
+
+/// The methods of summation ask for the same precisions: each sample is computed once.
+pub(super) fn remembered(
+    compute: impl Fn(u32) -> Option<Sample>,
+) -> impl Fn(u32) -> Option<Sample> {
+    let known: RefCell<BTreeMap<u32, Sample>> = RefCell::default();
+    move |bits| {
+        if let Some(sample) = known.borrow().get(&bits) {
+            return Some(sample.clone());
+        }
+        let sample = compute(bits)?;
+        known.borrow_mut().insert(bits, sample.clone());
+        Some(sample)
+    }
 }
 
 /// u = x/(scale + x), and the power of x that f is compared with.
