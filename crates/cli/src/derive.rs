@@ -1,13 +1,14 @@
 //! `lindstedt derive`: the expansion, order by order, as one would write it on the board.
 
 use crate::Outcome;
-use crate::arguments::{self, DeriveOptions, Format, Normalisation};
+use crate::arguments::{self, DeriveOptions, Format};
 use crate::averaging;
 use crate::classification;
 use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
 use crate::output;
 use crate::problems::{condition_name, condition_text};
 use crate::session::{Loaded, Session, digits, load, parameters};
+use crate::start::{self, Taken};
 use lindstedt::coeff::print::Style;
 use lindstedt::equation::classify::polynomial;
 use lindstedt::equation::{AmplitudeRole, Condition, print};
@@ -23,15 +24,14 @@ use std::fmt::Write;
 const PRINTED_TERMS: usize = 60;
 
 pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
-    let Loaded { problem, file } = load(&options.problem)?;
+    let mut loaded = load(&options.problem)?;
+    let condition =
+        classification::condition(options.normalisation, &mut loaded, &options.problem)?;
+    let Loaded { problem, file } = loaded;
     let digits = digits(&options.precision)?;
     let settings = Settings {
         order: options.order as usize,
-        condition: options.normalisation.map(|normalisation| match normalisation {
-            Normalisation::Initial => Condition::InitialAmplitude,
-            Normalisation::Fundamental => Condition::FundamentalAmplitude,
-            Normalisation::Free => Condition::FreeAmplitude,
-        }),
+        condition,
         parameters: parameters(&options.set)?,
         memory: session.memory(),
         route: match options.route {
@@ -62,10 +62,12 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
             let known = known.into_iter().map(|(name, q)| (name, Value::Rational(q)));
             settings.parameters = known.chain(settings.parameters).collect();
         }
-        return averaging::run(&problem, &settings, digits, &header, session, file.as_ref());
+        let read = file.as_ref().map(|file| (file, &*options.problem));
+        return averaging::run(&problem, &settings, digits, &header, session, read);
     }
     if options.tier != arguments::TierName::Exact {
-        return crate::derive_numeric::run(options, &problem, &settings, digits, session);
+        let file = file.as_ref();
+        return crate::derive_numeric::run(options, (&problem, file), &settings, digits, session);
     }
     let mut primes = 0;
     let mut observer = |progress: Progress| {
@@ -89,11 +91,13 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
             message: unfinished(primes > 0 || polynomial(&problem.equation).is_some(), primes),
             hint: "raise --limit-seconds or lower --order".to_owned(),
         },
-        other => other.into(),
+        other => classification::refusal(other, file.as_ref(), &options.problem),
     })?;
     let report = Report::new(&result, digits)?;
     session.done();
-    other_start(file.as_ref(), &result);
+    if result.condition == Condition::InitialAmplitude {
+        start::compare(&problem, file.as_ref(), &settings.parameters, Taken::Amplitude);
+    }
     say_missing(file.as_ref(), &|name| {
         result.series.iter().any(|series| series.name == name)
             || name == "solution" && report.solved() > 0
@@ -139,19 +143,6 @@ pub fn say_missing(file: Option<&ProblemFile>, has: &dyn Fn(&str) -> bool) {
         output::warn(&format!(
             "asked for in the file, but not in this result: {}",
             missing.join(", ")
-        ));
-    }
-}
-
-/// Says that a start at another amplitude is not the one that was expanded about.
-fn other_start(file: Option<&ProblemFile>, result: &Derivation) {
-    let start = file.and_then(|file| file.initial.as_ref()).map(|[x, _]| x);
-    let given = result.condition == Condition::InitialAmplitude;
-    if let (Some(x), Some(amplitude), true) = (start, &result.amplitude, given)
-        && Value::parse(x).ok().as_ref() != Some(amplitude)
-    {
-        output::warn(&format!(
-            "x = {x} of [initial] has no effect here: the amplitude is {amplitude} (--set amplitude={x})"
         ));
     }
 }
