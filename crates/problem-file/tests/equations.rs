@@ -111,7 +111,7 @@ fn errors_say_where_and_what_instead() {
         assert_eq!(printed(text), expected, "{text}");
     }
     let only = Names::only("eps", ["omega", "k"]);
-    let message = |text| {
+    let message = |text: &str| {
         let e = parse_equation(text, &only).unwrap_err();
         format!("{e} ({})", e.hint())
     };
