@@ -3,6 +3,7 @@
 
 use crate::Outcome;
 use crate::arguments::Format;
+use crate::classification::refusal;
 use crate::derive::{number_json, say_missing};
 use crate::failure::{INTERRUPTED, UNDECIDED};
 use crate::output;
@@ -29,7 +30,7 @@ pub fn run(
     digits: usize,
     header: &str,
     session: &Session<'_>,
-    file: Option<&ProblemFile>,
+    file: Option<(&ProblemFile, &str)>,
 ) -> Outcome {
     let asked = AveragingSettings {
         order: settings.order,
@@ -45,7 +46,9 @@ pub fn run(
         });
         session.goes_on()
     };
-    let result = average(problem, &asked, &mut observer)?;
+    let (file, path) = file.map_or((None, ""), |(file, path)| (Some(file), path));
+    let result = average(problem, &asked, &mut observer);
+    let result = result.map_err(|error| refusal(error, file, path))?;
     session.done();
     let names: &[&str] = match result.is_linear() {
         true => &["growth_rate", "frequency", "solution"],

@@ -6,19 +6,39 @@ use lindstedt::equation::classify::{
 };
 use lindstedt::equation::print::Style;
 use lindstedt::equation::{Condition, Expression, Problem};
-use lindstedt::{Value, known_values};
+use lindstedt::expand::ExpandError;
+use lindstedt::{Error, Value, check_parameters, known_values};
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use crate::arguments::Normalisation;
 use crate::failure::{Failure, NO_ANSWER};
+use crate::problems::condition_name;
+use crate::session::Loaded;
 
-/// Classifies a problem with the values given and the defaults.
+/// Classifies a problem with the values given and the defaults. A value outside its domain is against
+/// every method that looks at it: Melnikov's looks at no amplitude, averaging asks for another start.
 pub fn of(
     problem: &Problem,
     given: &BTreeMap<String, Value>,
 ) -> Result<Classification, ClassifyError> {
-    classify(problem, &known_values(problem, given))
+    let mut parts = classify(problem, &known_values(problem, given))?;
+    if let Err(error) = check_parameters(problem, given)
+        && let Error::OutsideDomain { name, .. } = &error
+    {
+        let looks = |method| match method {
+            Method::Melnikov => false,
+            Method::Averaging => name != "amplitude",
+            _ => true,
+        };
+        let applies =
+            |(method, against): &&mut (Method, Vec<Reason>)| against.is_empty() && looks(*method);
+        for (_, against) in parts.methods.iter_mut().filter(applies) {
+            against.push(Reason::OutsideDomain(error.to_string()));
+        }
+    }
+    Ok(parts)
 }
 
 fn method_name(method: Method) -> &'static str {
@@ -50,9 +70,8 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
         }
         Reason::NoLinearPart => format!("without {small} there is no term in x"),
         Reason::NegativeStiffness => "the linear stiffness is negative".into(),
-        Reason::IrrationalFrequency => {
-            "x' occurs and omega_0 is irrational or without a value: scale time in the file".into()
-        }
+        Reason::IrrationalFrequency => "x' occurs and omega_0 is irrational".into(),
+        Reason::UnknownFrequency => "x' occurs and omega_0 has no value".into(),
         Reason::Forced(e) => format!("{} depends on t", show(e)),
         Reason::Resonant(e, (k, m)) => {
             format!("{} is of order zero and in resonance {k}:{m} with the linear part", show(e))
@@ -69,16 +88,14 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
         ),
         Reason::Impact => "there is a wall".into(),
         Reason::Drift(e) => {
-            format!(
-                "{} works on x', so the amplitude drifts (condition = \"limit-cycle\"?)",
-                show(e)
-            )
+            format!("{} works on x', so the amplitude drifts", show(e))
         }
         Reason::Condition => "the condition of the problem belongs to another method".into(),
         Reason::Form => format!("the form x*F({small}*ln(x^2)) is needed"),
         Reason::NoSaddle => "no integrable equation with a saddle at order zero".into(),
         Reason::NoSmallParameter => format!("the small parameter {small} does not occur"),
         Reason::Formal(e) => format!("{} is a formal function", show(e)),
+        Reason::OutsideDomain(what) => what.clone(),
         _ => "not applicable".into(),
     }
 }
@@ -215,8 +232,48 @@ pub fn as_json(parts: &Classification, small: &str) -> Json {
     })
 }
 
+/// The condition asked for. Averaging needs nothing of a file that was written for a constant amplitude,
+/// so a free one need not be listed; what an amplitude is under the other conditions only the file can
+/// say.
+pub fn condition(
+    asked: Option<Normalisation>,
+    loaded: &mut Loaded,
+    path: &str,
+) -> Result<Option<Condition>, Failure> {
+    let condition = asked.map(|normalisation| match normalisation {
+        Normalisation::Initial => Condition::InitialAmplitude,
+        Normalisation::Fundamental => Condition::FundamentalAmplitude,
+        Normalisation::Free => Condition::FreeAmplitude,
+    });
+    let conditions = &mut loaded.problem.conditions;
+    match condition.filter(|asked| loaded.file.is_some() && !conditions.contains(asked)) {
+        None => Ok(condition),
+        Some(Condition::FreeAmplitude) => {
+            conditions.push(Condition::FreeAmplitude);
+            Ok(condition)
+        }
+        Some(other) => {
+            let line = format!("condition = \"{}\" in the file asks for it", condition_name(other));
+            let message = format!("{path} does not offer this normalisation");
+            Err(Failure::usage("unknown-normalisation", message, &line))
+        }
+    }
+}
+
+/// What a file says for the amplitude to be averaged.
+const AVERAGES: &str =
+    "averaging takes it: condition = \"free-amplitude\" in the file, or --normalisation free";
+
+/// The path of a file with the place of a term of its equation, or of the equation.
+fn place(file: &ProblemFile, path: &str, term: Option<&Expression>) -> String {
+    let place = term.and_then(|term| file.locate(term)).or_else(|| file.locate_equation());
+    let place = place.map_or(String::new(), |(line, column)| format!(":{line}:{column}"));
+    format!("{path}{place}")
+}
+
 /// Refuses, before any work, a file whose equation the expansion with the condition asked for does
-/// not take, with the term and its place. Free amplitudes are left to their driver.
+/// not take, with the term and its place. Free amplitudes and values outside their domain are left to
+/// their driver.
 pub fn check(
     parts: &Classification,
     file: &ProblemFile,
@@ -224,24 +281,62 @@ pub fn check(
     path: &str,
 ) -> Result<(), Failure> {
     let condition = condition.or(file.problem.conditions.first().copied());
-    let lindstedt = parts.methods.iter().find(|(m, _)| *m == Method::LindstedtPoincare);
-    let mut against = lindstedt.into_iter().flat_map(|(_, against)| against);
-    let Some(reason) = against.find(|r| !matches!(r, Reason::Condition)) else {
+    let against = |method: Method| {
+        let listed = parts.methods.iter().filter(move |(m, _)| *m == method);
+        let reasons = listed.flat_map(|(_, against)| against);
+        reasons.filter(|r| !matches!(r, Reason::Condition | Reason::OutsideDomain(_)))
+    };
+    let Some(reason) = against(Method::LindstedtPoincare).next() else {
         return Ok(());
     };
     if condition == Some(Condition::FreeAmplitude) {
         return Ok(());
     }
-    let place = reason.term().and_then(|term| file.locate(term));
-    let place = place.map_or(String::new(), |(line, column)| format!(":{line}:{column}"));
+    let at = match reason {
+        // The equation is not to blame.
+        Reason::Impact => path.to_owned(),
+        _ => place(file, path, reason.term()),
+    };
     Err(Failure {
         exit: NO_ANSWER,
         code: "no-method",
-        message: format!("{path}{place}: {}", reason_text(reason, &file.problem.small)),
+        message: format!("{at}: {}", reason_text(reason, &file.problem.small)),
         hint: if parts.takes(Method::Melnikov) {
             "Melnikov's method takes equations of this kind: lindstedt threshold FILE".into()
+        } else if *reason == Reason::UnknownFrequency {
+            "--set NAME=VALUE gives it one".into()
+        } else if against(Method::Averaging).next().is_none()
+            && parts.forcing.iter().all(|force| force.resonance.is_none())
+        {
+            AVERAGES.into()
         } else {
             "`lindstedt problems --show FILE` lists the methods".into()
         },
     })
+}
+
+/// A refusal of the engine; of the equation of a file with its place. Where no amplitude is constant,
+/// or none that is known exactly, averaging is what takes the equation.
+pub fn refusal(error: Error, file: Option<&ProblemFile>, path: &str) -> Failure {
+    let averages = matches!(
+        error,
+        Error::Expand(
+            ExpandError::AmplitudeDrifts { .. }
+                | ExpandError::NoLimitCycle
+                | ExpandError::IrrationalAmplitude
+                | ExpandError::SeveralLimitCycles { .. }
+                | ExpandError::DegenerateLimitCycle
+        )
+    );
+    let no_root = matches!(error, Error::Expand(ExpandError::StiffnessNotSquare));
+    let mut failure = Failure::from(error);
+    if let (Some(file), "no-expansion") = (file, failure.code) {
+        failure.message = format!("{}: {}", place(file, path, None), failure.message);
+        if averages {
+            failure.hint = AVERAGES.to_owned();
+        } else if no_root {
+            failure.hint = "--set gives the parameters of omega_0 values".to_owned();
+        }
+    }
+    failure
 }

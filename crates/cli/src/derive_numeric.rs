@@ -2,6 +2,7 @@
 
 use crate::Outcome;
 use crate::arguments::{DeriveOptions, Format, Route, TierName};
+use crate::classification::refusal;
 use crate::derive::number_json;
 use crate::failure::{Failure, UNDECIDED};
 use crate::output;
@@ -10,13 +11,13 @@ use crate::session::Session;
 use lindstedt::equation::{Problem, print};
 use lindstedt::expand::ExpandError;
 use lindstedt::numeric::{self, Estimate, Tier};
-use lindstedt::{Error, Settings};
+use lindstedt::{Error, ProblemFile, Settings};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
 pub fn run(
     options: &DeriveOptions,
-    problem: &Problem,
+    (problem, file): (&Problem, Option<&ProblemFile>),
     settings: &Settings,
     digits: usize,
     session: &Session<'_>,
@@ -42,7 +43,7 @@ pub fn run(
             message: "the time limit was reached before two grids were finished".to_owned(),
             hint: "raise --limit-seconds or lower --order or --digits".to_owned(),
         },
-        other => other.into(),
+        other => refusal(other, file, &options.problem),
     })?;
     session.done();
     let text = match session.format() {

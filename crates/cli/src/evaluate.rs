@@ -7,16 +7,17 @@ mod report;
 mod trajectory;
 
 use crate::Outcome;
-use crate::arguments::{EvaluateOptions, Format, Normalisation, Resum};
-use crate::classification;
+use crate::arguments::{EvaluateOptions, Format, Resum};
+use crate::classification::{self, refusal};
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
 use crate::session::{Loaded, Session, digits, load, parameters};
+use crate::start::{self, Taken};
 use lindstedt::equation::{Condition, Expression};
 use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
 use lindstedt::problem_file::parse_equation;
 use lindstedt::series::resummation::Method;
-use lindstedt::{Error, Progress, Value, expand::ExpandError};
+use lindstedt::{Error, ProblemFile, Progress, Value, expand::ExpandError};
 use report::Report;
 use rug::Rational;
 use std::collections::BTreeMap;
@@ -25,8 +26,9 @@ use std::collections::BTreeMap;
 const DOUBLE: usize = 16;
 
 pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
-    let loaded = load(&options.problem)?;
-    let condition = options.normalisation.map(condition);
+    let mut loaded = load(&options.problem)?;
+    let condition =
+        classification::condition(options.normalisation, &mut loaded, &options.problem)?;
     let mut given = parameters(&options.set)?;
     if let Some(file) = &loaded.file
         && let Ok(parts) = classification::of(&loaded.problem, &given)
@@ -46,7 +48,7 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         return Err(Failure::usage("start", message, hint));
     }
     use_initial_data(&loaded, free, &mut given)?;
-    let problem = loaded.problem;
+    let Loaded { problem, file } = loaded;
     let settings = EvaluateSettings {
         order: options.order.map(|order| order as usize),
         method: method(options.resum),
@@ -64,7 +66,7 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
         }
         session.goes_on()
     };
-    let fail = |error| failure(error, session);
+    let fail = |error| failure(error, file.as_ref(), &options.problem, session);
     let result = evaluate(&problem, &settings, &mut observer).map_err(fail)?;
     let solution = match &times {
         None => None,
@@ -116,14 +118,6 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     Ok(0)
 }
 
-fn condition(normalisation: Normalisation) -> Condition {
-    match normalisation {
-        Normalisation::Initial => Condition::InitialAmplitude,
-        Normalisation::Fundamental => Condition::FundamentalAmplitude,
-        Normalisation::Free => Condition::FreeAmplitude,
-    }
-}
-
 /// Where the small parameter only counts orders (the equation as it was written does not mention
 /// it, a table of orders puts it in) it is 1, unless it is set.
 pub fn set_order_parameter(loaded: &Loaded, given: &mut BTreeMap<String, Value>) {
@@ -152,7 +146,13 @@ fn use_initial_data(
     let Some([x, velocity]) = loaded.file.as_ref().and_then(|file| file.initial.as_ref()) else {
         return Ok(());
     };
-    if condition != Some(Condition::InitialAmplitude) || given.contains_key("amplitude") {
+    if condition != Some(Condition::InitialAmplitude) {
+        return Ok(());
+    }
+    let set = given.contains_key("amplitude");
+    let taken = if set { Taken::Amplitude } else { Taken::Initial("--set amplitude=AMPLITUDE") };
+    start::compare(&loaded.problem, loaded.file.as_ref(), given, taken);
+    if set {
         return Ok(());
     }
     let still = Value::parse(velocity)?.as_rational().is_some_and(|v| v.is_zero());
@@ -169,7 +169,7 @@ fn use_initial_data(
     Ok(())
 }
 
-fn failure(error: Error, session: &Session<'_>) -> Failure {
+fn failure(error: Error, file: Option<&ProblemFile>, path: &str, session: &Session<'_>) -> Failure {
     match error {
         Error::Expand(ExpandError::Interrupted { .. }) if !session.interrupted() => Failure {
             exit: UNDECIDED,
@@ -177,7 +177,7 @@ fn failure(error: Error, session: &Session<'_>) -> Failure {
             message: "the time limit was reached before the expansion was finished".to_owned(),
             hint: "raise --limit-seconds or lower --order".to_owned(),
         },
-        other => other.into(),
+        other => refusal(other, file, path),
     }
 }
 

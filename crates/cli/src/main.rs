@@ -15,6 +15,7 @@ mod recognised;
 mod session;
 mod simulate;
 mod stability;
+mod start;
 mod threshold;
 mod trade;
 mod verify;
@@ -44,7 +45,7 @@ fn main() -> ExitCode {
     };
     match outcome {
         Ok(code) => {
-            session::name_unused_parameters();
+            session::say_notes();
             ExitCode::from(code)
         }
         Err(failure) => failure.report(session.format()),

@@ -68,16 +68,20 @@ impl Source {
         }
     }
 
-    /// A refusal with the place of its term.
-    pub fn refuse(&self, refusal: Refusal) -> Failure {
-        let small = &self.problem.small;
-        let text = match &refusal {
+    /// A refusal in words.
+    pub fn reason(&self, refusal: &Refusal) -> String {
+        match refusal {
             Refusal::Term { term, why } => {
-                let shown: String = term.print(small, Style::Text).chars().take(80).collect();
-                format!("{shown} {why}")
+                let text = term.print(&self.problem.small, Style::Text);
+                format!("{} {why}", text.chars().take(80).collect::<String>())
             }
             other => other.to_string(),
-        };
+        }
+    }
+
+    /// A refusal with the place of its term.
+    pub fn refuse(&self, refusal: Refusal) -> Failure {
+        let text = self.reason(&refusal);
         // As it occurs multiplied out, without its factors eps and -1, or what it is a product of.
         let place = refusal.term().and_then(|term| {
             let factors = match term {

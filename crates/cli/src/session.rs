@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// No result is printed with more digits than this: the contract of exact evaluation.
@@ -161,14 +161,20 @@ pub struct Loaded {
     pub file: Option<ProblemFile>,
 }
 
-/// Parameters of the file that occur nowhere. They are named once there is an answer: a refusal is one
-/// line.
-static UNUSED: OnceLock<Vec<String>> = OnceLock::new();
+/// What is said once there is an answer: a refusal is one line.
+static NOTES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Warns of parameters of the file that occur nowhere.
-pub fn name_unused_parameters() {
-    for name in UNUSED.get().into_iter().flatten() {
-        crate::output::warn(&format!("parameter {name} is declared and occurs nowhere"));
+/// Keeps a warning for [`say_notes`].
+pub fn note(text: String) {
+    if let Ok(mut notes) = NOTES.lock() {
+        notes.push(text);
+    }
+}
+
+/// Says the warnings that were kept.
+pub fn say_notes() {
+    for text in NOTES.lock().iter().flat_map(|notes| notes.iter()) {
+        crate::output::warn(text);
     }
 }
 
@@ -176,7 +182,9 @@ pub fn name_unused_parameters() {
 pub fn load(name: &str) -> Result<Loaded, Failure> {
     if name.ends_with(".toml") {
         let file = ProblemFile::parse(&read(name)?).map_err(|error| at_path(name, error))?;
-        let _ = UNUSED.set(file.unused.clone());
+        for name in &file.unused {
+            note(format!("parameter {name} is declared and occurs nowhere"));
+        }
         return Ok(Loaded { problem: file.problem.clone(), file: Some(file) });
     }
     problem(name).map(|problem| Loaded { problem, file: None })

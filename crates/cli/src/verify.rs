@@ -1,13 +1,14 @@
 //! `lindstedt verify`: the expansion against the time domain.
 
 use crate::Outcome;
-use crate::arguments::{Format, Normalisation, VerifyOptions};
-use crate::classification;
+use crate::arguments::{Format, VerifyOptions};
+use crate::classification::{self, refusal};
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
 use crate::problems::condition_name;
 use crate::session::{Loaded, Session, load, parameters};
 use crate::simulate::plot;
+use crate::start::{self, Taken};
 use lindstedt::equation::{AmplitudeRole, Condition, Problem};
 use lindstedt::expand::ExpandError;
 use lindstedt::verify::{Comparison, TOLERANCE, Verdict, Verification, VerifySettings, verify};
@@ -18,12 +19,10 @@ use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
 pub fn run(options: &VerifyOptions, session: &Session<'_>) -> Outcome {
-    let Loaded { problem, file } = load(&options.problem)?;
-    let condition = options.normalisation.map(|normalisation| match normalisation {
-        Normalisation::Initial => Condition::InitialAmplitude,
-        Normalisation::Fundamental => Condition::FundamentalAmplitude,
-        Normalisation::Free => Condition::FreeAmplitude,
-    });
+    let mut loaded = load(&options.problem)?;
+    let condition =
+        classification::condition(options.normalisation, &mut loaded, &options.problem)?;
+    let Loaded { problem, file } = loaded;
     let parameters = parameters(&options.set)?;
     if let Some(name) = parameters.keys().find(|name| !is_free(&problem, condition, name)) {
         if problem.parameters.iter().any(|card| card.name == **name) {
@@ -82,9 +81,13 @@ pub fn run(options: &VerifyOptions, session: &Session<'_>) -> Outcome {
         Err(Error::Expand(ExpandError::Interrupted { .. })) => {
             return stopped("stopped before the comparison was finished".to_owned());
         }
-        found => found?,
+        found => found.map_err(|error| refusal(error, file.as_ref(), &options.problem))?,
     };
     session.done();
+    let drifts_or_given = [Condition::InitialAmplitude, Condition::FreeAmplitude];
+    if drifts_or_given.contains(&found.condition) {
+        start::compare(&problem, file.as_ref(), &settings.parameters, Taken::Amplitude);
+    }
     if found.order < settings.order {
         return stopped(format!("stopped after order {} of the expansion", found.order));
     }

@@ -402,3 +402,28 @@ fn generated_code_deviates_as_it_says() {
     assert!((start - 1.0).abs() > 1e-8, "nothing is left out here: {start}");
     let _ = std::fs::remove_file(path);
 }
+
+/// The flight is linear at every order: where not one digit of the growth rate is known, that is said.
+#[test]
+fn a_growth_rate_without_a_digit_is_said_to_have_none() {
+    let shown = |gain: &str| {
+        let output = run(&["vibro-impact", "--order", "2", "--set", gain]);
+        assert!(output.status.success());
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let line = |text: &str, label: &str| {
+        text.lines().find(|line| line.trim().starts_with(label)).unwrap().to_owned()
+    };
+    for label in ["growth rate a'/a", "frequency psi'"] {
+        assert!(line(&shown("B=1/10"), label).contains("(estimated)"), "{label}");
+        let without = line(&shown("B=1"), label);
+        assert!(without.ends_with("not one digit: the last orders differ by more than its size"));
+    }
+    let found = json(&["vibro-impact", "--order", "2", "--set", "B=1"]);
+    for key in ["growth_rate", "frequency"] {
+        assert!(found[key].is_object() && found[key]["decimal"].is_null(), "{found}");
+    }
+    // Where the rate depends on the amplitude there is no such number.
+    let drifting = ["van-der-pol", "--normalisation", "free", "--set", "eps=1/10"];
+    assert!(json(&drifting)["growth_rate"].is_null());
+}

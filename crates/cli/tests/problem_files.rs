@@ -315,11 +315,29 @@ fn values_of_a_file_are_judged_like_those_given() {
     };
     let all = ["derive", "evaluate", "verify"];
     for equation in ["x'' + x + eps*x^3 = 0", "x'' + x*(x^2)^eps = 0"] {
-        for value in ["0", "-1"] {
+        for (value, reason) in
+            [("0", "at amplitude 0"), ("-1", "the equation with -x in place of x")]
+        {
             let path = file(equation, "amplitude", value);
-            check(&path, &all, "amplitude > 0");
+            check(&path, &all, &format!("amplitude = {value} is outside its domain amplitude > 0"));
+            check(&path, &all, reason);
+            // What would be refused does not apply.
+            let shown = text(&["problems", "--show", &path]);
+            for method in ["Lindstedt-Poincare", "time domain"] {
+                let line =
+                    shown.lines().find(|line| line.starts_with(&format!("# {method}"))).unwrap();
+                assert!(line.contains(" no: amplitude = ") && line.contains(reason), "{line}");
+            }
         }
+        let path = file(equation, "amplitude", "1");
+        let output = lindstedt(&["derive", &path, "--set", "amplitude=-1/2"]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(error.contains("in place of x"), "{error}");
+        assert!(text(&["problems", "--show", &path]).contains("# Lindstedt-Poincare  applies"));
     }
+    let output = lindstedt(&["derive", "pendulum", "--set", "amplitude=-1/2"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(error.contains("in place of x") && !error.contains("at pi"), "{error}");
     for value in ["0", "-1"] {
         let path = file("x'' + x + eps*x(t - T) = 0", "T", value);
         check(&path, &["derive"], "it is a delay");
@@ -474,4 +492,163 @@ fn a_motion_begins_as_the_file_says() {
 
 fn text_of(arguments: &[&str]) -> String {
     text(&[arguments, &["--quiet"]].concat())
+}
+
+/// Equations without a constant amplitude, or without one that is known exactly, and their condition: the
+/// place and the reason.
+const AVERAGED: [(&str, &str, &str); 6] = [
+    (
+        "x'' + x = eps*(1 - x^2/2 - x'^2/3)*x'",
+        "limit-cycle",
+        "2:13: the leading amplitude of the limit cycle is irrational",
+    ),
+    ("x'' + 2*x + eps*(x^2-1)*x' = 0", "limit-cycle", "2:13: x' occurs and omega_0 is irrational"),
+    ("x'' + x + eps*x' = 0", "limit-cycle", "2:13: no limit cycle"),
+    ("x'' + x + eps*x' = 0", "initial-amplitude", "2:23: eps*x' works on x'"),
+    ("x'' + x = eps*(1 - x^2)*x'", "initial-amplitude", "2:13: order 1: the secular term"),
+    (
+        "x'' + x = eps*(x^2 - 1)*(x^2 - 9)*x'",
+        "limit-cycle",
+        "2:13: 2 limit cycles exist at order 1",
+    ),
+];
+
+/// What a hint says to do is done, in both ways.
+#[test]
+fn averaging_takes_what_its_hint_is_given_for() {
+    let folder = Folder::new("averaged");
+    let file = |equation: &str, condition: &str| {
+        let content = with_parameters(equation).replace("initial-amplitude", condition);
+        folder.file("averaged.toml", content.as_bytes())
+    };
+    let hint =
+        "(averaging takes it: condition = \"free-amplitude\" in the file, or --normalisation free)";
+    let refused = |path: &str, verb: &str| {
+        let output = lindstedt(&[verb, path, "--order", "1"]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(3), "{verb}: {error}");
+        error
+    };
+    let works = |path: &str, more: &[&str]| {
+        for verb in ["derive", "verify", "evaluate"] {
+            let all = [&[verb, path, "--order", "1", "--quiet"], more].concat();
+            let small: &[&str] = if verb == "evaluate" { &["--set", "eps=1/10"] } else { &[] };
+            assert!(!text(&[&all, small].concat()).is_empty());
+        }
+    };
+    for (equation, condition, message) in AVERAGED {
+        let path = file(equation, condition);
+        for verb in ["derive", "verify"] {
+            let error = refused(&path, verb);
+            assert!(error.contains(&format!("averaged.toml:{message}")), "{verb}: {error}");
+            assert!(error.trim_end().ends_with(hint), "{verb}: {error}");
+        }
+        works(&path, &["--normalisation", "free"]);
+        works(&file(equation, "free-amplitude"), &[]);
+    }
+    let mut hints = 0;
+    for (equation, _) in REFUSED {
+        let path = file(equation, "initial-amplitude");
+        if refused(&path, "derive").contains("free-amplitude") {
+            hints += 1;
+            text(&["derive", &path, "--order", "1", "--normalisation", "free", "--quiet"]);
+            text(&["derive", &file(equation, "free-amplitude"), "--order", "1", "--quiet"]);
+        }
+    }
+    assert_eq!(hints, 3, "a drift, a delay, an irrational omega_0");
+    // A force in resonance is no case for averaging.
+    let path = file("x'' + x + eps*x^3 = eps*F*cos(t)", "initial-amplitude");
+    assert!(!refused(&path, "derive").contains("free-amplitude"));
+    // omega_0 without a value.
+    let equation = "x'' + q*x + eps*(x^2 - 1)*x' = 0";
+    let open = |condition: &str| {
+        let content =
+            with_parameters(equation).replace("initial-amplitude", condition) + "q = {}\n";
+        folder.file("open.toml", content.as_bytes())
+    };
+    let error = refused(&open("limit-cycle"), "derive");
+    assert!(error.contains("2:13: x' occurs and omega_0 has no value (--set"), "{error}");
+    text(&["derive", &open("limit-cycle"), "--set", "q=4", "--quiet"]);
+    let error = refused(&open("free-amplitude"), "derive");
+    assert!(error.contains("2:13: the linear stiffness") && error.contains("--set"), "{error}");
+    text(&["derive", &open("free-amplitude"), "--set", "q=2", "--order", "1", "--quiet"]);
+    // What another amplitude is only the file can say.
+    let output =
+        lindstedt(&["derive", &file(equation, "limit-cycle"), "--normalisation", "initial"]);
+    assert_eq!(output.status.code(), Some(2));
+    let path = file("x'' + x + eps*x^3 = 0", "fundamental-amplitude");
+    let output = lindstedt(&["derive", &path, "--normalisation", "initial"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        error.contains("(condition = \"initial-amplitude\" in the file asks for it)"),
+        "{error}"
+    );
+}
+
+/// All keys are named, however long the one that is not known.
+#[test]
+fn the_list_of_keys_is_whole() {
+    let folder = Folder::new("keys");
+    for key in ["conditions".to_owned(), "k".repeat(5000)] {
+        let content = format!("name = 'a'\nequation = \"x'' + x + eps*x^3\"\n{key} = 'x'\n");
+        let output = lindstedt(&["derive", &folder.file("keys.toml", content.as_bytes())]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(error.contains(":3:1: unknown field `") && error.len() < 600, "{error}");
+        for known in ["name", "title", "condition", "impact", "initial", "notes", "source"] {
+            assert!(error.contains(&format!("`{known}`")), "{known}: {error}");
+        }
+    }
+}
+
+/// Every command says which of two starts it takes, and takes it.
+#[test]
+fn starts_that_contradict_each_other_are_said() {
+    let folder = Folder::new("starts");
+    let file = |amplitude: &str, x: &str, velocity: &str| {
+        let text = format!(
+            "name = \"starts\"\nequation = \"x'' + x + eps*x^3\"\n[parameters]\n{amplitude}\n\
+             [initial]\nx = \"{x}\"\nvelocity = \"{velocity}\"\n"
+        );
+        folder.file("starts.toml", text.as_bytes())
+    };
+    let half = "amplitude = { value = \"1/2\" }";
+    let commands: [(&[&str], bool); 5] = [
+        (&["derive", "--order", "1"], true),
+        (&["verify", "--order", "1"], true),
+        (&["evaluate", "--order", "1", "--set", "eps=1/10"], false),
+        (&["evaluate", "--order", "1", "--set", "eps=1/10", "--normalisation", "free"], false),
+        (&["simulate", "--until", "1"], false),
+    ];
+    let said = |path: &str, command: &[&str], more: &[&str]| {
+        let output = lindstedt(&[&[command[0], path, "--quiet"], &command[1..], more].concat());
+        assert!(output.status.success(), "{command:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    for (command, amplitude) in commands {
+        let message = said(&file(half, "3/4", "0"), command, &[]);
+        let expected = match amplitude {
+            true => "x = 3/4 of [initial] has no effect here: the amplitude is 1/2",
+            false => "amplitude = 1/2 is not the start here: x = 3/4, velocity = 0 of [initial] is",
+        };
+        assert!(
+            message.contains(expected) && message.lines().count() == 1,
+            "{command:?}: {message}"
+        );
+        // The option that is named has the other start.
+        let option = message.rsplit_once(" (--").map(|(_, option)| option.trim_end());
+        let option = format!("--{}", option.and_then(|o| o.strip_suffix(')')).unwrap());
+        let words: Vec<&str> = option.split(' ').collect();
+        let message = said(&file(half, "3/4", "0"), command, &words);
+        let silent = message.is_empty() || command[0] == "evaluate" && words[0] == "--set";
+        assert!(silent, "{command:?} {words:?}: {message}");
+        assert_eq!(said(&file(half, "1/2", "0"), command, &[]), "", "{command:?}");
+        let moving = said(&file(half, "1/2", "1"), &["simulate", "--until", "1"], &[]);
+        assert!(moving.contains("velocity = 1 of [initial] is"), "{moving}");
+        if !amplitude {
+            // A default that nobody wrote contradicts nothing.
+            assert_eq!(said(&file("", "3/4", "0"), command, &[]), "", "{command:?}");
+        }
+    }
+    let moving = said(&file(half, "1/2", "1"), &["derive", "--order", "1"], &[]);
+    assert!(moving.contains("velocity = 1 of [initial] has no effect here"), "{moving}");
 }

@@ -214,3 +214,18 @@ fn charts_over_the_parameters_of_a_file() {
     let message = String::from_utf8(refused.stderr).unwrap();
     assert!(message.contains("whole number") && message.contains("m, d, k1"), "{message}");
 }
+
+/// For B != 0 the zeros of G are certified, but as zeros of G; a spread of 0 has no digits to show.
+#[test]
+fn multipliers_of_an_approximation_are_called_so() {
+    let text = |arguments: &[&str]| String::from_utf8(run(arguments).stdout).unwrap();
+    let found = json(&["--set", "B=1/10"]);
+    assert!(found["exact"]["multipliers_of"].as_str().unwrap().starts_with("zeros of G"));
+    let shown = text(&["--set", "B=1/10"]);
+    assert!(shown.contains("multipliers_of: zeros of G, which approximates"), "{shown}");
+    let line = shown.lines().find(|line| line.contains("growth_per_impact")).unwrap();
+    assert_eq!(found["exact"]["return_map"]["spread"], 0.0);
+    assert!(!line.contains("spread") && !line.contains("error"), "{line}");
+    // Without a kick G is exact.
+    assert!(json(&["--set", "A=1/10"])["exact"]["multipliers_of"].is_null());
+}

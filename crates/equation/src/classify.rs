@@ -86,6 +86,8 @@ pub enum Reason {
     NegativeStiffness,
     /// The velocity occurs and omega_0 is irrational, so that time cannot be scaled exactly.
     IrrationalFrequency,
+    /// The velocity occurs and omega_0 has no value, so that time cannot be scaled.
+    UnknownFrequency,
     /// A function of t.
     Forced(Expression),
     /// A force of order zero in resonance with the linear part, k : m.
@@ -112,6 +114,8 @@ pub enum Reason {
     NoSmallParameter,
     /// A formal function, and no equation for integration in time.
     Formal(Expression),
+    /// A value outside its domain, with the domain; found by who knows the values.
+    OutsideDomain(String),
 }
 
 /// The parts of an equation and the methods that take it.

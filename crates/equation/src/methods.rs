@@ -119,9 +119,14 @@ fn lindstedt(
         }
     }
     let has_velocity = rest.contains(&Expression::Velocity);
-    let irrational = stiffness.is_none_or(|kappa| crate::classify::rational_root(kappa).is_none());
-    if has_velocity && irrational && against.is_empty() {
-        against.push(Reason::IrrationalFrequency);
+    if has_velocity && against.is_empty() {
+        match stiffness {
+            None => against.push(Reason::UnknownFrequency),
+            Some(kappa) if crate::classify::rational_root(kappa).is_none() => {
+                against.push(Reason::IrrationalFrequency);
+            }
+            _ => {}
+        }
     }
     against
 }

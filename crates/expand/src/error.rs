@@ -59,7 +59,7 @@ pub enum ExpandError {
     #[error("no limit cycle: the averaged amplitude equation of order 1 has no positive root")]
     NoLimitCycle,
     /// The leading amplitude is not a rational number.
-    #[error("the leading amplitude of the limit cycle is irrational; scale x")]
+    #[error("the leading amplitude of the limit cycle is irrational")]
     IrrationalAmplitude,
     /// More than one limit cycle bifurcates.
     #[error("{count} limit cycles exist at order 1; only one can be expanded at a time")]

@@ -175,16 +175,24 @@ impl ProblemFile {
         let found = locate(&self.equation, &self.names, term)?;
         Some(position(&self.text, self.start? + found.start))
     }
+
+    /// Line and column of the equation; nothing when it contains escapes.
+    pub fn locate_equation(&self) -> Option<(usize, usize)> {
+        Some(position(&self.text, self.start?))
+    }
 }
 
-/// A message of another library in one line of limited length.
+/// A message of another library in one line of limited length. It begins with what stands in the
+/// file, which may be long, and ends with what is expected, which is not: it is cut in the middle.
 fn excerpt_long(text: &str) -> String {
-    let one_line = text.replace('\n', ", ");
-    let mut shown: String = one_line.chars().take(160).collect();
-    if shown.len() < one_line.len() {
-        shown.push_str("...");
+    const BEGIN: usize = 80;
+    const END: usize = 280;
+    let one_line: Vec<char> = text.replace('\n', ", ").chars().collect();
+    if one_line.len() <= BEGIN + END {
+        return one_line.into_iter().collect();
     }
-    shown
+    let [begin, end] = [&one_line[..BEGIN], &one_line[one_line.len() - END..]];
+    begin.iter().chain(&['.'; 3]).chain(end).collect()
 }
 
 fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {

@@ -121,14 +121,17 @@ impl Names {
         Self { small: canonical_name(small), parameters, formal: BTreeSet::new() }
     }
 
-    /// The declared name that is spelled most like this one.
+    /// The declared name that is spelled most like this one, if one is near: of a name with one
+    /// letter every other letter is as near.
     pub(crate) fn nearest(&self, name: &str) -> Option<String> {
         let known = self.parameters.iter().flatten().chain([&self.small]);
         let reserved = ["x", "t", "sin", "cos", "exp", "ln", "abs", "sign", "sqrt"];
         let all = known.map(String::as_str).chain(reserved);
-        let limit = if name.chars().count() > 3 { 2 } else { 1 };
+        let length = |word: &str| word.chars().count();
+        let limit = if length(name) > 5 { 2 } else { 1 };
+        let long = all.filter(|k| length(k).min(length(name)) > 1);
         let close = |k: &str| (distance(k, name), k.to_owned());
-        all.map(close).filter(|(d, _)| *d <= limit).min().map(|(_, k)| k)
+        long.map(close).filter(|(d, _)| *d <= limit).min().map(|(_, k)| k)
     }
 }
 

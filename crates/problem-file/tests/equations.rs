@@ -111,11 +111,16 @@ fn errors_say_where_and_what_instead() {
         assert_eq!(printed(text), expected, "{text}");
     }
     let only = Names::only("eps", ["omega", "k"]);
-    let message = |text| {
+    let message = |text: &str| {
         let e = parse_equation(text, &only).unwrap_err();
         format!("{e} ({})", e.hint())
     };
     assert_eq!(message("x'' + omga^2 x"), "the name omga is not declared (did you mean omega?)");
+    // Not near: every other letter is as near to y as t, and gamma is not omega.
+    for name in ["y", "kk", "gamma"] {
+        let declare = format!("the name {name} is not declared (declare it: [parameters] {name} =");
+        assert!(message(&format!("x'' + {name} x")).starts_with(&declare), "{name}");
+    }
     assert_eq!(
         message("x'' + foo(x)"),
         "the function foo is not taken (what would work: sin, cos, exp, ln, abs, sign, sqrt; a product needs `*`)"

@@ -76,7 +76,7 @@ fn averaged_free_flight() {
     }
     let on = [("eps", "1"), ("A", "1/10"), ("B", "1/20")];
     let mut flight = motion(&problem, 10, &on, state("-1/2", "1/3"));
-    let [growth, frequency] = flight.linear.clone().unwrap();
+    let [growth, frequency] = flight.linear.clone().unwrap().map(Option::unwrap);
     // mpmath 1.3.0, findroot.
     let (r, w) = (-0.016_832_789_994_242_716, 0.959_070_214_690_621_9);
     let near = |number: &lindstedt::Number, exact: f64| {

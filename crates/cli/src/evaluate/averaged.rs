@@ -8,6 +8,7 @@ use crate::derive::number_json;
 use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
 use crate::output;
 use crate::session::{Loaded, Session, digits};
+use crate::start::{Taken, compare};
 use lindstedt::coeff::ball::Balls;
 use lindstedt::evaluate::averaged::{Moment, Motion, MotionSettings, Quantity, Start};
 use lindstedt::{Number, Progress, Value};
@@ -57,7 +58,8 @@ pub fn run(
         session.goes_on()
     };
     let motion = Motion::new(problem, &settings, &mut observer);
-    let mut motion = motion.map_err(|error| super::failure(error, session))?;
+    let mut motion = motion
+        .map_err(|error| super::failure(error, loaded.file.as_ref(), &options.problem, session))?;
     let asked = times.map(|request| request.times(PERIODS * motion.turn()));
     let moments = asked.as_ref().map(|times| motion.at(times, &mut || session.goes_on()));
     session.done();
@@ -124,6 +126,8 @@ fn start(
         return Ok(Start::State(x, v));
     }
     if let Some([x, v]) = loaded.file.as_ref().and_then(|file| file.initial.as_ref()) {
+        let taken = Taken::Initial("--start AMPLITUDE,0");
+        compare(&loaded.problem, loaded.file.as_ref(), parameters, taken);
         return Ok(Start::State(Value::parse(x)?, Value::parse(v)?));
     }
     let card = loaded.problem.parameters.iter().find(|card| card.name == "amplitude");
@@ -171,7 +175,7 @@ impl Report<'_> {
             moments.iter().map(one).collect()
         });
         let [growth, frequency] = match &motion.linear {
-            Some([growth, frequency]) => [number_json(growth), number_json(frequency)],
+            Some(numbers) => numbers.each_ref().map(|number| optional(number.as_ref())),
             None => [Json::Null, Json::Null],
         };
         json!({
@@ -201,24 +205,21 @@ impl Report<'_> {
 
     fn lines(&self) -> Vec<(String, String)> {
         let motion = self.motion;
-        let rate = |k: usize| match motion.rate_numbers.get(k).and_then(Option::as_ref) {
+        let shown = |number: &Option<Number>| match number {
             Some(number) => match &number.error {
                 Some(error) => format!("{} +- {error} (estimated)", number.decimal),
                 None => format!("{} (no estimate)", number.decimal),
             },
-            None => "not one digit".to_owned(),
+            None => "not one digit: the last orders differ by more than its size".to_owned(),
         };
+        let [amplitude, phase] = motion.rate_numbers.each_ref().map(shown);
         let [a, psi] = motion.start;
         let mut lines = vec![
             ("start".to_owned(), format!("a = {a}, psi = {psi}")),
-            ("a' there".to_owned(), rate(0)),
-            ("psi' there".to_owned(), rate(1)),
+            ("a' there".to_owned(), amplitude),
+            ("psi' there".to_owned(), phase),
         ];
         if let Some([growth, frequency]) = &motion.linear {
-            let shown = |number: &Number| match &number.error {
-                Some(error) => format!("{} +- {error} (estimated)", number.decimal),
-                None => format!("{} (no estimate)", number.decimal),
-            };
             lines.push(("growth rate a'/a".to_owned(), shown(growth)));
             lines.push(("frequency psi'".to_owned(), shown(frequency)));
         }

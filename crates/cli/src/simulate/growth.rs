@@ -60,13 +60,31 @@ pub fn grows(shifts: &[Float]) -> Option<bool> {
     }
 }
 
+/// The mean growth where single ratios tell nothing: a return map that is linear on either side of the
+/// orbit only (B is not 0) has other ratios there, and the deviation may change sides every time.
+fn mean(shifts: &[Float]) -> String {
+    let size = |x: &Float| Float::with_val(64, x).abs().ln().to_f64();
+    let [.., first, second, third] = shifts else { return String::new() };
+    let [before, last] = [size(second) - size(first), size(third) - size(second)];
+    // Even, so that both sides count equally.
+    let count = shifts.len() / 4 * 2;
+    let Some(start) = shifts.len().checked_sub(count + 1).and_then(|n| shifts.get(n)) else {
+        return String::new();
+    };
+    if count == 0 || (last - before).abs() < CHANGE {
+        return String::new();
+    }
+    let growth = ((size(third) - size(start)) / count as f64).exp();
+    format!(" (the ratios vary; geometric mean of the last {count}: {growth:.6} per impact)")
+}
+
 /// In words.
 pub fn verdict(shifts: &[Float], linear: usize) -> String {
     let used = shifts.get(..linear).unwrap_or_default();
     let last = match used {
         [.., before, last] => {
             let ratio = Float::with_val(last.prec(), last / before);
-            format!(", last ratio {:.8}", ratio.to_f64())
+            format!(", last ratio {:.8}{}", ratio.to_f64(), mean(used))
         }
         _ => String::new(),
     };
@@ -102,6 +120,17 @@ mod tests {
         assert_eq!(grows(&series(0.9, 40)), Some(false));
         assert_eq!(grows(&series(-1.0, 40)), None);
         assert_eq!(grows(&series(2.0, 11)), None);
+    }
+
+    /// Ratios -1.6 and -1.2 in turn: 1.6*1.2 = 1.3856^2. A constant ratio needs no mean.
+    #[test]
+    fn alternating_ratios_have_a_mean() {
+        let at = |n: i32| 1e-6 * (-1.6f64).powi((n + 1) / 2) * (-1.2f64).powi(n / 2);
+        let turns: Vec<Float> = (0..21).map(|n| Float::with_val(80, at(n))).collect();
+        let words = verdict(&turns, turns.len());
+        assert!(words.contains("grows, last ratio -1.20000000"), "{words}");
+        assert!(words.contains("geometric mean of the last 10: 1.385641 per impact"), "{words}");
+        assert!(!verdict(&series(-1.05, 40), 40).contains("mean"));
     }
 
     /// Saturated at one: half the perturbation comes there later, and only what is before counts.

@@ -3,8 +3,9 @@
 use super::case::Case;
 use super::orbit::on_orbit;
 use crate::failure::Failure;
-use crate::session::{Loaded, load};
-use lindstedt::equation::Problem;
+use crate::session::{Loaded, load, parameters};
+use crate::start::{Taken, compare};
+use lindstedt::equation::{Condition, Problem};
 use lindstedt::problem_file::{History, Names, ProblemFile};
 use lindstedt::problems::{stick_slip, vibro_impact};
 use lindstedt::simulate::{Model, Parameters, Quantity};
@@ -83,6 +84,11 @@ impl Setup {
         let impacting = same(&problem, &vibro_impact::problem());
         let state = match (&start.state, file.and_then(|f| f.initial.as_ref())) {
             (None, Some([x, v])) => {
+                // What is wrong with --set is said below. A first harmonic is no start.
+                let given = parameters(set).unwrap_or_default();
+                if problem.conditions.first() != Some(&Condition::FundamentalAmplitude) {
+                    compare(&problem, file, &given, Taken::Initial("--state AMPLITUDE,0"));
+                }
                 Some([quantity(&Value::parse(x)?), quantity(&Value::parse(v)?)])
             }
             (state, _) => state.clone(),

@@ -79,6 +79,10 @@ impl<S: Real> Writer<'_, S> {
 const RETURN_MAP: &str = "The truth: growth of the piecewise linear return map (B is not 0: the \
                           characteristic function G and its multipliers are an approximation)";
 
+/// What the multipliers are for B != 0, whatever is known of their digits.
+const ROOTS_OF_G: &str = "zeros of G, which approximates the return map; their digits are those of \
+                          the zeros, not of multipliers of the map";
+
 const PENETRATES: &str = "no orbit: the flight passes through the wall";
 
 fn word(verdict: Verdict) -> &'static str {
@@ -330,6 +334,9 @@ fn exact<S: Real>(w: &Writer<'_, S>, request: &Request, report: &StabilityReport
         Ok(list) => {
             let pairs: Vec<Json> = list.values.iter().map(|z| w.pair(z)).collect();
             map.insert("multipliers".to_owned(), json!(pairs));
+            if kicked.is_some() {
+                map.insert("multipliers_of".to_owned(), json!(ROOTS_OF_G));
+            }
             map.insert("complete_to_modulus".to_owned(), json!(list.complete_to));
         }
         Err(error) => {
@@ -374,7 +381,12 @@ fn plain(value: &Json) -> String {
         Json::Object(map) => match map.get("decimal").and_then(Json::as_str) {
             Some(decimal) => decimal.to_owned(),
             None => {
-                let items = map.iter().map(|(name, inner)| format!("{name} {}", plain(inner)));
+                // A difference of two doubles that agree says nothing of digits.
+                let says = |(name, inner): &(&String, &Json)| {
+                    !(["spread", "error"].contains(&name.as_str()) && inner.as_f64() == Some(0.0))
+                };
+                let items = map.iter().filter(says);
+                let items = items.map(|(name, inner)| format!("{name} {}", plain(inner)));
                 items.collect::<Vec<_>>().join(", ")
             }
         },

@@ -199,7 +199,7 @@ pub fn zeros(
     let bits = (digits as f64 * 3.33) as u32 + 64;
     let sign = |q: &Rational| -> Option<bool> {
         let value = Real::Rational(q.clone());
-        let ball = request.signed(Balls::new(bits), &[(&sweep, &value)])?;
+        let ball = request.signed(Balls::new(bits), &[(&sweep, &value)]).ok()?;
         (!ball.contains_zero()).then(|| ball.is_positive())
     };
     let width = Rational::from(high - low);

@@ -11,6 +11,7 @@ use lindstedt::equation::{Expression, Text};
 use lindstedt::number::{Number, certified};
 use lindstedt_melnikov::{Branch, MelnikovError, Real, StickSlip, Verdict};
 use serde_json::{Value as Json, json};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The widest table printed in text.
@@ -242,6 +243,14 @@ impl Answer {
         if let Some(table) = table {
             let status = if table.certified { "certified" } else { "estimated" };
             result.insert("curve_status".into(), status.into());
+            let width = table.columns.len().max(1);
+            let point = |index: &usize| match one {
+                Some(_) => json!([table.columns[*index]]),
+                None => json!([table.columns[index % width], table.rows[index / width]]),
+            };
+            let blank = |(reason, entries): (&String, &Vec<usize>)| json!({"reason": reason, "points": entries.iter().map(point).collect::<Vec<_>>()});
+            let blanks: Vec<Json> = table.blanks.iter().map(blank).collect();
+            result.insert("blanks".into(), blanks.into());
             if one.is_some() {
                 result.insert("curve_signed".into(), curve(|signed| signed));
             } else {
@@ -315,10 +324,20 @@ impl Answer {
         }
         let Some(table) = table else { return text };
         let status = if table.certified { "certified" } else { "f64" };
-        let _ = writeln!(text, "\n  {} points ({status})", table.signed.len());
-        for (row, column, signed) in table.entries().take(PRINTED_POINTS) {
+        let mut reasons: BTreeMap<usize, &str> = BTreeMap::new();
+        for (reason, entries) in &table.blanks {
+            let shown = entries.iter().take_while(|index| **index < PRINTED_POINTS);
+            reasons.extend(shown.map(|index| (*index, reason.as_str())));
+        }
+        let blank: usize = table.blanks.values().map(Vec::len).sum();
+        let without = if blank == 0 { String::new() } else { format!(", {blank} without a value") };
+        let _ = writeln!(text, "\n  {} points ({status}){without}", table.signed.len());
+        for (index, (row, column, signed)) in table.entries().take(PRINTED_POINTS).enumerate() {
             let row = if row.is_nan() { String::new() } else { format!("{row:<12} ") };
-            let _ = writeln!(text, "  {row}{column:<20} {signed:?}");
+            let _ = match reasons.get(&index) {
+                Some(reason) => writeln!(text, "  {row}{column:<20} - ({reason})"),
+                None => writeln!(text, "  {row}{column:<20} {signed:?}"),
+            };
         }
         if table.signed.len() > PRINTED_POINTS {
             let _ = writeln!(text, "  ... (--plot FILE.csv has all of them)");
@@ -351,14 +370,21 @@ impl Answer {
 const SMOOTH: &str =
     "holds to first order in eps: the perturbation is smooth; no bound on eps is known here";
 
+/// The perturbation need not be smooth: where its slope is bounded, what it does on the perturbed orbit
+/// differs by O(eps) from what it does on the unperturbed one.
+const BENT: &str = "holds to first order in eps: the slope of friction jumps, friction does not; no bound on \
+                    eps is known here";
+
 /// Without a perturbation there is nothing to be valid.
 const UNPERTURBED: &str =
     "no statement: at eps = 0 nothing is perturbed, the stable and unstable manifolds coincide";
 
 /// The verdict on the theory in words.
 pub fn validity(request: &Request, jumps: bool, verdict: Option<Verdict>) -> &'static str {
+    let bends = request.file.as_ref().is_some_and(|(_, found)| found.bends());
     match verdict {
         _ if request.eps.sign().is_eq() => UNPERTURBED,
+        _ if bends => BENT,
         _ if !jumps => SMOOTH,
         Some(Verdict::Holds) => "holds: |v*| and ||v*| - V| exceed 10 eps",
         Some(Verdict::Doubtful) => {

@@ -180,20 +180,27 @@ impl Request {
         self
     }
 
-    /// The signed threshold with other values of swept parameters; of several orbits that of the
-    /// least threshold.
-    pub fn signed(&self, balls: Balls, changes: &[(&Sweep, &Real)]) -> Option<Ball> {
-        if let Some(point) = &self.point
-            && changes.iter().all(|(sweep, _)| sweep.axis.is_some())
-        {
-            let change = |point: StickSlip, (sweep, value): &(&Sweep, &Real)| match sweep.axis {
-                Some(axis) => point.with(axis, (*value).clone()),
-                None => point,
-            };
-            let point = changes.iter().fold(point.clone(), change);
-            return point.check().ok().and_then(|()| point.signed_threshold(balls));
+    /// The oscillator of section 3 with other values of swept parameters, where all of them are its own.
+    pub fn changed(&self, changes: &[(&Sweep, &Real)]) -> Option<StickSlip> {
+        let change = |point: StickSlip, (sweep, value): &(&Sweep, &Real)| {
+            Some(point.with(sweep.axis?, (*value).clone()))
+        };
+        changes.iter().try_fold(self.point.clone()?, change)
+    }
+
+    /// The signed threshold with other values of swept parameters, or why there is none; of several
+    /// orbits that of the least threshold.
+    pub fn signed(&self, balls: Balls, changes: &[(&Sweep, &Real)]) -> Result<Ball, String> {
+        let undecided = || format!("not decided with {} bits", balls.bits());
+        if let Some(point) = self.changed(changes) {
+            match (point.check(), &self.file) {
+                (Ok(()), _) => return point.signed_threshold(balls).ok_or_else(undecided),
+                (Err(error), None) => return Err(error.to_string()),
+                // With these values the equation of the file may be another one that is taken.
+                (Err(_), Some(_)) => {}
+            }
         }
-        let (source, _) = self.file.as_ref()?;
+        let (source, _) = self.file.as_ref().ok_or_else(undecided)?;
         let mut values = source.values.clone();
         for (sweep, value) in changes {
             let value = match value {
@@ -202,11 +209,12 @@ impl Request {
             };
             values.insert(sweep.name.clone(), value);
         }
-        let found = MelnikovProblem::new(&source.problem, &values).ok()?;
-        let orbits = found.thresholds(balls).ok()?;
+        let found = MelnikovProblem::new(&source.problem, &values);
+        let found = found.map_err(|refusal| source.reason(&refusal))?;
+        let orbits = found.thresholds(balls).map_err(|error| error.to_string())?;
         let least = |a: &Ball, b: &Ball| a.midpoint().total_cmp(b.midpoint());
         let least = orbits.iter().min_by(|a, b| least(&a.threshold.gamma, &b.threshold.gamma));
-        least.map(|orbit| orbit.threshold.signed.clone())
+        least.map(|orbit| orbit.threshold.signed.clone()).ok_or_else(undecided)
     }
 
     /// The name of the small parameter.
@@ -214,9 +222,15 @@ impl Request {
         self.file.as_ref().map_or("eps", |(source, _)| &source.problem.small)
     }
 
-    /// Whether every swept parameter is one of section 3.
+    /// Whether every swept parameter is one of section 3, and the equation of a file stays that of
+    /// section 3.
     pub fn is_fast(&self) -> bool {
-        self.point.is_some() && self.sweeps.iter().all(|sweep| sweep.axis.is_some())
+        let positive = |sweep: &Sweep| sweep.values.iter().all(|value| value.sign().is_gt());
+        let stays = |sweep: &Sweep| match sweep.axis {
+            Some(Axis::A | Axis::B | Axis::Omega) => self.file.is_none() || positive(sweep),
+            axis => axis.is_some(),
+        };
+        self.point.is_some() && self.sweeps.iter().all(stays)
     }
 
     /// How the numbers are known.

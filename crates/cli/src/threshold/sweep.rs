@@ -7,6 +7,7 @@ use crate::session::Session;
 use lindstedt::coeff::ball::Balls;
 use lindstedt_melnikov::{Class, FastPoint, Real, surface};
 use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 /// Curves of up to so many points are certified point by point.
@@ -15,14 +16,18 @@ const CERTIFIED_POINTS: usize = 20_000;
 const BLOCK: usize = 64;
 /// Bits of a certified point: its midpoint is the nearest double but for ties.
 const BITS: u32 = 140;
+/// Of a value that no double holds.
+const NO_DOUBLE: &str = "beyond the largest double";
 
 /// Signed thresholds on a grid; the first sweep runs along the columns.
 pub struct Table {
     pub columns: Vec<f64>,
     /// A single row with value NaN where there is one sweep.
     pub rows: Vec<f64>,
-    /// rows x columns; NaN outside the domain and in rows not reached.
+    /// rows x columns; NaN where there is no value.
     pub signed: Vec<f64>,
+    /// The entries without a value, by the reason.
+    pub blanks: BTreeMap<String, Vec<usize>>,
     pub certified: bool,
     pub finished: bool,
 }
@@ -50,6 +55,7 @@ impl Table {
         }
         let mut table = Self {
             signed: vec![f64::NAN; points],
+            blanks: BTreeMap::new(),
             certified: request.class() == Class::Certified,
             finished: true,
             columns,
@@ -61,7 +67,31 @@ impl Table {
         } else {
             table.certify(request, session);
         }
+        table.give_reasons(request);
         Ok(Some(table))
+    }
+
+    /// A reason for every entry without a value, where there is none yet.
+    fn give_reasons(&mut self, request: &Request) {
+        let known: BTreeSet<usize> = self.blanks.values().flatten().copied().collect();
+        let width = self.columns.len().max(1);
+        for (index, entry) in self.signed.iter_mut().enumerate() {
+            if entry.is_finite() || known.contains(&index) {
+                continue;
+            }
+            let places = [index % width, index / width];
+            let values = request.sweeps.iter().zip(places);
+            let changes: Vec<(&Sweep, &Real)> =
+                values.filter_map(|(sweep, i)| Some((sweep, sweep.values.get(i)?))).collect();
+            let refused = request.changed(&changes).and_then(|point| point.check().err());
+            let reason = match refused {
+                Some(error) => error.to_string(),
+                None if entry.is_nan() && !self.finished => "not reached".to_owned(),
+                None => NO_DOUBLE.to_owned(),
+            };
+            *entry = f64::NAN;
+            self.blanks.entry(reason).or_default().push(index);
+        }
     }
 
     fn certify(&mut self, request: &Request, session: &Session<'_>) {
@@ -69,6 +99,7 @@ impl Table {
         let width = first.values.len();
         // An orbit that is followed numerically takes its time: look at the clock in between.
         let block = if self.certified { 256 } else { 4 };
+        let mut index = 0;
         for (i, row) in self.signed.chunks_mut(width).enumerate() {
             let second = request.sweeps.get(1);
             let second = second.and_then(|sweep| Some((sweep, sweep.values.get(i)?)));
@@ -77,13 +108,20 @@ impl Table {
                     self.finished = false;
                     return;
                 }
-                entries.par_iter_mut().zip(values).for_each(|(entry, value)| {
+                let value = |value: &Real| {
                     let changes: Vec<(&Sweep, &Real)> =
                         second.into_iter().chain([(first, value)]).collect();
-                    let ball = request.signed(Balls::new(BITS), &changes);
-                    let ball = ball.filter(|b| b.is_finite());
-                    *entry = ball.map_or(f64::NAN, |b| b.midpoint().to_f64());
-                });
+                    let double = request.signed(Balls::new(BITS), &changes)?.midpoint().to_f64();
+                    if double.is_finite() { Ok(double) } else { Err(NO_DOUBLE.to_owned()) }
+                };
+                let found: Vec<Result<f64, String>> = values.par_iter().map(value).collect();
+                for (entry, found) in entries.iter_mut().zip(found) {
+                    match found {
+                        Ok(double) => *entry = double,
+                        Err(reason) => self.blanks.entry(reason).or_default().push(index),
+                    }
+                    index += 1;
+                }
             }
         }
     }
@@ -155,7 +193,10 @@ pub fn csv(request: &Request, table: Option<&Table>, answer: &Answer) -> String 
         if names.len() == 2 {
             let _ = write!(text, "{row:?},");
         }
-        let _ = writeln!(text, "{column:?},{:?},{signed:?}", signed.abs());
+        let _ = match signed.is_nan() {
+            true => writeln!(text, "{column:?},,"),
+            false => writeln!(text, "{column:?},{:?},{signed:?}", signed.abs()),
+        };
     }
     text
 }

@@ -164,3 +164,76 @@ fn keys_of_the_file_hold_for_sweeps() {
         assert!(message.contains("fixed"), "{message}");
     }
 }
+
+/// A frequency through zero: a cosine has the same threshold at -omega, and none at 0, with the reason.
+#[test]
+fn values_without_a_threshold_are_blank_with_the_reason() {
+    let parameters = [("gamma", "1"), ("omega", "1"), ("delta", "1/5")];
+    let equation = "x'' - x + x^3 = eps (gamma cos(omega t) - delta x')";
+    let file = File::new("through-zero", equation, &parameters);
+    let sweep = ["--sweep", "omega=-1..1:5"];
+    let doubles = [&sweep[..], &["--f64"]].concat();
+    for arguments in [&sweep[..], &doubles] {
+        let found = file.json(arguments);
+        let value = |n: usize| found["curve"][n][1].as_f64();
+        assert_eq!((value(0), value(1), value(2)), (value(4), value(3), None), "{found}");
+        assert_eq!(found["curve_status"], "certified");
+        let blank = &found["blanks"][0];
+        assert_eq!(blank["points"], serde_json::json!([[0.0]]));
+        assert_eq!(blank["reason"], "there is no harmonic force");
+        let shown = text(&file, arguments);
+        assert!(shown.contains("5 points (certified), 1 without a value\n"), "{shown}");
+        assert!(shown.contains("  0                    - (there is no harmonic force)"), "{shown}");
+        assert!(!shown.contains("NaN"), "{shown}");
+    }
+    // A potential without a loop, along the second sweep.
+    let found = file.json(&["--sweep", "omega=1..2:2", "--sweep", "delta=0..1:2"]);
+    assert_eq!(found["blanks"], serde_json::json!([]));
+    // Section 3 by its name: outside the domain of its formula.
+    for more in [&[][..], &["--f64"]] {
+        let all = [&["threshold", "stick-slip", "--sweep", "omega=-1..1:5"], more].concat();
+        let output = crate::lindstedt(&all);
+        let shown = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(shown.matches("- (omega must be positive)").count(), 3, "{shown}");
+        assert!(shown.contains(", 3 without a value") && !shown.contains("NaN"), "{shown}");
+    }
+    let table = std::env::temp_dir().join(format!("lindstedt-blank-{}.csv", std::process::id()));
+    text(&file, &[&sweep[..], &["--plot", table.to_str().unwrap()]].concat());
+    let rows = std::fs::read_to_string(&table).unwrap();
+    assert!(rows.contains("\n0.0,,\n") && !rows.contains("NaN"), "{rows}");
+    let _ = std::fs::remove_file(table);
+}
+
+/// Friction without a belt and without a jump has no condition on v*.
+#[test]
+fn the_validity_is_that_of_the_law() {
+    let parameters = [("gamma", "1"), ("omega", "1"), ("d", "1/5"), ("v", "3/10")];
+    let verdict = |name: &str, friction: &str| {
+        let equation = format!("x'' - x + x^3 = eps (gamma cos(omega t) - {friction})");
+        let found = File::new(name, &equation, &parameters).json(&["--digits", "8"]);
+        found["validity"]["verdict"].as_str().unwrap().to_owned()
+    };
+    let bends = "holds to first order in eps: the slope of friction jumps, friction does not";
+    for (name, friction) in [
+        ("square", "d x' |x'|"),
+        ("bend", "d |x'|"),
+        ("belt", "d (x' - v) |x' - v|"),
+        ("soft", "d x'/(1 + |x'|)"),
+        ("start", "d sign(x') (1 - exp(-|x'|))"),
+        ("round", "d x' (1 + |x'|)^(1/2)"),
+    ] {
+        let words = verdict(name, friction);
+        assert!(words.starts_with(bends), "{friction}: {words}");
+    }
+    // A jump at rest, also in a law that is more than a sign; a slope without bound.
+    for (name, friction) in [
+        ("dry", "d sign(x')"),
+        ("stribeck", "d sign(x') (1 + exp(-|x'|))"),
+        ("root", "d sign(x') |x'|^(1/2)"),
+    ] {
+        let words = verdict(name, friction);
+        assert!(words.starts_with("fails: v* = 0"), "{friction}: {words}");
+    }
+    let words = verdict("viscous", "d x'");
+    assert!(words.contains("the perturbation is smooth"), "{words}");
+}

@@ -7,6 +7,11 @@ use lindstedt_equation::{AmplitudeRole, Expression, Function, Problem};
 use rug::Rational;
 use std::collections::BTreeMap;
 
+/// x = -y: what starts at x(0) = -a starts at y(0) = a. An equation that is odd in x is that of y,
+/// too, and moves at -a as at a half a period later; another one moves on another orbit.
+const NEGATIVE: &str = "amplitude > 0 (a start at -a is a start at a of the equation with -x in place of \
+                        x, which is the same equation if it is odd)";
+
 /// Names and domains of the parameters given.
 pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> Result<(), Error> {
     let unknown = given.keys().find(|name| problem.parameters.iter().all(|c| c.name != **name));
@@ -32,22 +37,24 @@ pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> R
             |domain| Error::OutsideDomain { name: name.clone(), value: value.to_string(), domain };
         let scales = matches!(problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
         match name.as_str() {
-            "amplitude" => match problem.amplitude {
-                AmplitudeRole::InSums
-                    if !exceeds(value, &Value::Rational(Rational::new()))
-                        || !exceeds(&Value::PiTimes(Rational::from(1)), value) =>
-                {
+            "amplitude" => {
+                let zero = Value::Rational(Rational::new());
+                let bounded = matches!(problem.amplitude, AmplitudeRole::InSums);
+                let enters = matches!(
+                    problem.amplitude,
+                    AmplitudeRole::InSums
+                        | AmplitudeRole::ScalesFrequency { .. }
+                        | AmplitudeRole::InSmallParameter
+                        | AmplitudeRole::Scaled
+                );
+                if enters && exceeds(&zero, value) {
+                    return Err(outside(NEGATIVE));
+                } else if enters && !exceeds(value, &zero) {
+                    return Err(outside("amplitude > 0 (there is no oscillation at amplitude 0)"));
+                } else if bounded && !exceeds(&Value::PiTimes(Rational::from(1)), value) {
                     return Err(outside("0 < amplitude < pi (at pi the period is infinite)"));
                 }
-                AmplitudeRole::ScalesFrequency { .. }
-                | AmplitudeRole::InSmallParameter
-                | AmplitudeRole::Scaled
-                    if !exceeds(value, &Value::Rational(Rational::new())) =>
-                {
-                    return Err(outside("amplitude > 0 (there is no oscillation at amplitude 0)"));
-                }
-                _ => {}
-            },
+            }
             "n" | "delta" if scales && !exceeds(value, &Value::Rational(Rational::from(-1))) => {
                 return Err(outside("greater than -1"));
             }

@@ -22,6 +22,14 @@ pub(super) struct FrictionLaw {
     whole: Option<Expression>,
 }
 
+/// Bits in which the limits of a law from both sides are compared.
+const LIMIT_BITS: u32 = 200;
+
+/// A function that is not smooth.
+fn bends(e: &Expression) -> bool {
+    matches!(e, Expression::Function(Function::Abs | Function::Sign, _))
+}
+
 /// v* from the sign(p x' + q) and |p x' + q| of an expression: -q/p, the same for all of them.
 /// Read before the values of coefficients can make a term vanish.
 fn belt_speed(perturbation: &Expression) -> Result<Option<InPi>, Refusal> {
@@ -101,6 +109,19 @@ fn homogeneous(e: &Expression) -> Expression {
     }
 }
 
+/// The expression on one side of w = 0: with that sign of w.
+fn beside(e: &Expression, side: i64) -> Expression {
+    let all = |list: &[Expression]| list.iter().map(|e| beside(e, side)).collect();
+    match e {
+        Expression::Sum(list) => Expression::Sum(all(list)),
+        Expression::Product(list) => Expression::Product(all(list)),
+        Expression::Power(a, b) => beside(a, side).pow(beside(b, side)),
+        Expression::Function(Function::Sign, _) => Expression::integer(side),
+        Expression::Function(function, z) => beside(z, side).apply(*function),
+        other => other.clone(),
+    }
+}
+
 impl FrictionLaw {
     /// The law of the bound terms of first order without t, `perturbation` being all of them as
     /// they were written.
@@ -154,6 +175,29 @@ impl FrictionLaw {
         })
     }
 
+    /// Whether the law jumps at w = 0, or may have no bounded slope there: in a root, or where no value
+    /// is found.
+    pub fn jumps(&self) -> bool {
+        let Some(whole) = &self.whole else { return self.dry.sign().is_ne() };
+        if whole.find(&bends).is_none() {
+            return false;
+        }
+        // The limits from both sides.
+        let at = |e: &Expression| {
+            [1, -1].map(|side| {
+                evaluate(&beside(e, side), &Float::new(LIMIT_BITS)).filter(Float::is_finite)
+            })
+        };
+        let [right, left] = at(whole);
+        let is_steep = |e: &Expression| match e {
+            Expression::Power(base, n) if !n.as_number().is_some_and(|n| n.is_integer()) => {
+                at(base).iter().any(|value| value.as_ref().is_none_or(Float::is_zero))
+            }
+            _ => false,
+        };
+        whole.find(&is_steep).is_some() || !right.zip(left).is_some_and(|(r, l)| r == l)
+    }
+
     /// The law for y with x = s y: T(s w)/s, and the speed of the belt v*/s.
     pub fn scaled(&self, s: &Rational) -> (Friction, Real) {
         let inverse = Rational::from(s.recip_ref());
@@ -176,8 +220,6 @@ impl FrictionLaw {
             let value = evaluate(&whole, &argument);
             value.unwrap_or_else(|| Float::with_val(w.prec(), f64::NAN)) / &s
         });
-        let bends =
-            |e: &Expression| matches!(e, Expression::Function(Function::Abs | Function::Sign, _));
         let smooth = self.whole.iter().all(|whole| whole.find(&bends).is_none());
         (Friction::Custom { law, kinks: if smooth { Vec::new() } else { vec![0.0] } }, belt)
     }

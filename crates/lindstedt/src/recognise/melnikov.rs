@@ -70,6 +70,8 @@ pub struct MelnikovProblem {
     /// gamma as it stands in the equation for x: the whole coefficient of the lowest harmonic, the
     /// others being in proportion to it.
     pub amplitude: Real,
+    /// Whether friction jumps.
+    jumps: bool,
 }
 
 /// The threshold on one orbit, in x.
@@ -141,8 +143,9 @@ impl MelnikovProblem {
                 (Unperturbed::Numeric(Box::new(NumericOrbit::find(&force)?)), Rational::from(1))
             }
         };
+        let jumps = law.jumps();
         let (friction, belt_speed) = law.scaled(&scale);
-        let found = Self { unperturbed, friction, forcing, belt_speed, amplitude };
+        let found = Self { unperturbed, friction, forcing, belt_speed, amplitude, jumps };
         if matches!(found.forcing, Forcing::Parametric { .. }) && !found.takes_parametric(&force) {
             return Err(force_refusal(Why::Parametric));
         }
@@ -338,20 +341,27 @@ impl MelnikovProblem {
         let by = |ball: &Ball| balls.mul_rational(ball, &self.size());
         if let Ok(Some(system)) = self.system() {
             let validity = system.validity(balls)?;
-            return Some((by(&validity.belt_speed), by(&validity.tangency_distance), validity.dry));
+            return Some((by(&validity.belt_speed), by(&validity.tangency_distance), self.jumps));
         }
         let speed = self.belt_speed.abs().ball(balls);
         let distance = balls.abs(&balls.sub(&self.largest_speed(balls)?, &speed));
-        Some((speed, distance, self.jumps()))
+        Some((speed, distance, self.jumps))
     }
 
-    /// Whether friction jumps or bends.
+    /// Whether friction jumps at v*, or may have no bounded slope there.
     #[must_use]
     pub fn jumps(&self) -> bool {
-        match &self.friction {
-            Friction::Polynomial(law) => law.dry.sign().is_ne(),
-            other => !other.kinks().is_empty(),
-        }
+        self.jumps
+    }
+
+    /// Whether the slope of friction jumps at v*, but friction does not.
+    #[must_use]
+    pub fn bends(&self) -> bool {
+        let is_smooth = match &self.friction {
+            Friction::Polynomial(_) => true,
+            other => other.kinks().is_empty(),
+        };
+        !self.jumps && !is_smooth
     }
 
     /// The verdict on the theory for this eps, as of [`lindstedt_melnikov::Validity`].

@@ -82,8 +82,8 @@ pub struct Motion {
     /// a(0), psi(0) of order N.
     pub start: [f64; 2],
     /// The growth rate R of a = a(0) exp(R t) and the frequency psi', where neither depends on a;
-    /// nothing, too, where not one digit of them is supported.
-    pub linear: Option<[Number; 2]>,
+    /// nothing in place of one of which not one digit is supported.
+    pub linear: Option<[Option<Number>; 2]>,
     /// a' and psi' at the start with their errors, estimated; nothing where not one digit is
     /// supported.
     pub rate_numbers: [Option<Number>; 2],
@@ -200,7 +200,8 @@ impl Motion {
             }
         };
         let rates: Vec<_> = orders.iter().map(Truncated::linear).collect();
-        let linear = number(&rates, 0).zip(number(&rates, 1)).map(|(a, psi)| [a, psi]);
+        let is_linear = rates.first().is_some_and(Option::is_some);
+        let linear = is_linear.then(|| [number(&rates, 0), number(&rates, 1)]);
         let rates: Vec<_> = orders.iter().map(|order| Some(order.rate(&start[0]))).collect();
         let rate_numbers = [number(&rates, 0), number(&rates, 1)];
         Ok(Self {
