@@ -1,7 +1,7 @@
 //! The coefficients of T/2pi as floats, by the energy integral in numbers.
 //!
 //! The exact polynomials of [`crate::energy`] have tens of thousands of terms at order 30; their
-//! values satisfy the same recurrences and cost O(N^2) for the power law, O(N^5/120) products for
+//! values satisfy the same recurrences and cost O(N^2) for the power law, O(N^4/6) products for
 //! forces x F(delta ln x^2).
 
 use crate::number::sine_sum;
@@ -74,8 +74,7 @@ pub(super) fn pendulum(
         .iter()
         .map(|s| Some(Float::with_val(work, balls.div(s, sums.first()?)?.midpoint())))
         .collect::<Option<_>>()?;
-    let radicand = radicand(&ratios, work);
-    let powers = inverse_root(&radicand, work, stop)?;
+    let powers = inverse_root(&ratios, work, stop)?;
     let table = means_of_powers(order, work, stop)?;
     let scale = Float::with_val(work, root.midpoint());
     let coefficient = |y: &Grid| {
@@ -93,53 +92,46 @@ pub(super) fn pendulum(
 /// c[i][m] of K^i l^m.
 type Grid = Vec<Vec<Float>>;
 
-/// One order of the radicand: a constant, and the coefficients of K l^i for i = 1, 2, ...
-struct Radicand {
-    constant: Float,
-    logs: Vec<Float>,
-}
-
-/// (F_j/F_0) w_j/sin^2 with w_j/sin^2 = (2^(j+1)/j!) I_j/sin^2 and
-/// I_j/sin^2 = -K (-l)^j/2 - (j/2) I_{j-1}/sin^2.
-fn radicand(ratios: &[Float], bits: u32) -> Vec<Radicand> {
-    let mut constant = Rational::from((1, 2));
-    let mut logs: Vec<Rational> = Vec::new();
-    let mut factor = Rational::from(2);
-    let mut list = Vec::new();
-    for (j, ratio) in ratios.iter().enumerate().skip(1) {
-        let step = Rational::from((-(j as i64), 2));
-        constant *= &step;
-        for c in &mut logs {
-            *c *= &step;
-        }
-        logs.push(Rational::from((if j % 2 == 0 { -1 } else { 1 }, 2)));
-        factor *= Rational::from((2, j));
-        let value = |c: &Rational| Float::with_val(bits, Rational::from(c * &factor)) * ratio;
-        list.push(Radicand { constant: value(&constant), logs: logs.iter().map(value).collect() });
+/// y = x^(-1/2) of the radicand, n y_n = sum_{k=1}^n (k/2 - n) x_k y_{n-k}.
+///
+/// x_k = (F_k/F_0) w_k/sin^2 with w_k/sin^2 = (2^(k+1)/k!) I_k/sin^2 and
+/// I_k/sin^2 = -K (-l)^k/2 - (k/2) I_{k-1}/sin^2, I_0/sin^2 = 1/2, that is
+///
+///   x_k = (-1)^k (F_k/F_0) (1 - K sum_{j=1}^k (2 l)^j/j!).
+///
+/// The sums over k <= n of weights w_k = (k/2 - n)/n (-1)^k F_k/F_0 are exchanged,
+///
+///   y_n = z_1 - K sum_{j=1}^n (2 l)^j/j! z_j,   z_j = sum_{k=j}^n w_k y_{n-k},
+///
+/// and z_n, z_{n-1}, ... z_1 grow by one term each: N^4/6 products in all.
+fn inverse_root(ratios: &[Float], bits: u32, stop: &Stop) -> Option<Vec<Grid>> {
+    let order = ratios.len().checked_sub(1)?;
+    let square = |n: usize| -> Grid { vec![vec![Float::new(bits); n]; n] };
+    let mut exponential = vec![Float::with_val(bits, 1)];
+    for j in 1..=order {
+        let next = Float::with_val(bits, &exponential[j - 1] << 1u32) / j as u64;
+        exponential.push(next);
     }
-    list
-}
-
-/// n y_n = sum_{k=1}^n (k/2 - n) x_k y_{n-k}, y = x^(-1/2).
-fn inverse_root(radicand: &[Radicand], bits: u32, stop: &Stop) -> Option<Vec<Grid>> {
     let mut list: Vec<Grid> = vec![vec![vec![Float::with_val(bits, 1)]]];
-    for n in 1..=radicand.len() {
-        let mut y: Grid = (0..=n).map(|_| vec![Float::new(bits); n + 1]).collect();
-        for (k, x) in (1..=n).zip(radicand) {
+    for n in 1..=order {
+        let (mut y, mut z) = (square(n + 1), square(n));
+        for (known, k) in list.iter().zip((1..=n).rev()) {
             if stop.asked() {
                 return None;
             }
+            let sign = if k % 2 == 0 { 1 } else { -1 };
             let weight = Float::with_val(bits, k as f64 / 2.0 - n as f64) / n as u64;
-            let constant = Float::with_val(bits, &x.constant * &weight);
-            let logs: Vec<Float> =
-                x.logs.iter().map(|c| Float::with_val(bits, c * &weight)).collect();
-            for (i, row) in list[n - k].iter().enumerate() {
-                for (m, c) in row.iter().enumerate().filter(|(_, c)| !c.is_zero()) {
-                    y[i][m] += c * &constant;
-                    for (j, log) in logs.iter().enumerate() {
-                        y[i + 1][m + j + 1] += c * log;
-                    }
+            let weight = weight * &ratios[k] * sign;
+            for (i, row) in known.iter().enumerate() {
+                for (m, c) in row.iter().enumerate() {
+                    z[i][m] += c * &weight;
+                    y[i + 1][m + k] -= &z[i][m] * &exponential[k];
                 }
+            }
+        }
+        for (row, sums) in y.iter_mut().zip(z) {
+            for (c, sum) in row.iter_mut().zip(sums) {
+                *c += sum;
             }
         }
         list.push(y);

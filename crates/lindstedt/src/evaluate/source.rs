@@ -69,7 +69,7 @@ impl Source {
     /// The series of a problem to an order in its small parameter.
     ///
     /// x'' + kappa x (x^2)^delta and x'' + x S(delta ln x^2) have their coefficients by the energy
-    /// integral when asked for, in O(N^2) and O(N^5/120) products; everything else is derived here.
+    /// integral when asked for, in O(N^2) and O(N^4/6) products; everything else is derived here.
     ///
     /// # Errors
     /// [`Error::OutsideDomain`] beyond a separatrix, and those of [`crate::derive()`].
