@@ -288,7 +288,7 @@ fn high_orders(orders: &[usize], methods: &[Option<Method>]) -> Grid {
     for eps in ["15/100", "115/100", "568/100"] {
         sweep(&mut grid, &axes, "van-der-pol", &[("eps", eps)], &|bits| van_der_pol(eps, bits));
     }
-    // O(N^5) products for each precision.
+    // Minutes each at order 100.
     let most: Vec<usize> = orders.iter().map(|order| *order.min(&50)).collect();
     let axes = Axes { orders: &most[..1], ..axes };
     for a in ["1/3", "1", "3"] {
