@@ -1,7 +1,8 @@
 //! Periods in closed form, as balls.
 
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::ball::{Ball, Balls};
-use rug::Float;
+use rug::{Float, Rational};
 
 /// The arithmetic-geometric mean of two positive numbers; the mean lies between the iterates.
 /// O(log p) square roots after O(log |log a/b|) first ones.
@@ -37,19 +38,73 @@ fn ln_gamma(balls: Balls, x: &Ball) -> Option<Ball> {
     ball.is_finite().then(|| balls.add_error(&ball, &slope.abs_upper()))
 }
 
-/// T = 4 sqrt(pi (1 + d)) Gamma(1 + y)/Gamma(1/2 + y) a^(-d), y = 1/(2 + 2d), of
-/// x'' + x (x^2)^d = 0, d > -1, x(0) = a. The logarithms of the gamma functions keep the ratio
-/// for y -> infinity.
-pub(super) fn power_law(balls: Balls, delta: &Ball, amplitude: &Ball) -> Option<Ball> {
-    let growth = balls.add(&balls.one(), delta);
-    let y = balls.div(&balls.one(), &balls.mul_i64(&growth, 2))?;
+/// The terms of [`half_beta`] swell by (3/2)^y before they fall: up to this y so many bits do.
+const LARGEST_SHARE: u32 = 64;
+const SWELLING: u32 = 48;
+
+/// Gamma(1 + y)/Gamma(1/2 + y) by MPFR, whose Bernoulli numbers take minutes at 10 000 digits; the
+/// logarithms keep the ratio for y -> infinity.
+fn gamma_ratio(balls: Balls, y: &Ball) -> Option<Ball> {
     let half = balls.mul_power_of_two(&balls.one(), -1);
-    let upper = ln_gamma(balls, &balls.add(&balls.one(), &y))?;
-    let lower = ln_gamma(balls, &balls.add(&half, &y))?;
-    let scale = balls.mul(delta, &balls.ln(amplitude)?);
-    let exponent = balls.sub(&balls.sub(&upper, &lower), &scale);
+    let upper = ln_gamma(balls, &balls.add(&balls.one(), y))?;
+    let lower = ln_gamma(balls, &balls.add(&half, y))?;
+    Some(balls.exp(&balls.sub(&upper, &lower)))
+}
+
+/// The same for a rational y: sqrt(pi)/B(1/2, 1/2 + y), B(p, q) = H(p, q) + H(q, p), halves of the
+/// integral that converge geometrically. O(p^2) for p bits.
+fn gamma_ratio_of_rational(balls: Balls, y: &Rational, stop: &Stop) -> Option<Ball> {
+    let balls = Balls::new(balls.bits().saturating_add(SWELLING));
+    let half = Rational::from((1, 2));
+    let other = Rational::from(y + &half);
+    let one_way = half_beta(balls, &half, &other, stop)?;
+    let beta = balls.add(&one_way, &half_beta(balls, &other, &half, stop)?);
+    balls.div(&balls.sqrt(&balls.pi())?, &beta)
+}
+
+/// H(p, q) = int_0^(1/2) t^(p-1) (1 - t)^(q-1) dt = 2^-p sum_k (1 - q)_k/k! 2^-k/(p + k) for p, q
+/// >= 1/2. From k >= q on |c_k| = |(1 - q)_k|/(2^k k!) at least halves: the rest is below
+/// |c_k|/p <= 2 |c_k|.
+fn half_beta(balls: Balls, p: &Rational, q: &Rational, stop: &Stop) -> Option<Ball> {
+    let (mut c, mut sum) = (balls.one(), balls.zero());
+    let small = Float::with_val(53, Float::i_exp(1, -(i32::try_from(balls.bits()).ok()?) - 8));
+    for k in 0u32.. {
+        if k % 64 == 0 && stop.asked() {
+            return None;
+        }
+        let place = Rational::from(p + k).recip();
+        sum = balls.add(&sum, &balls.mul_rational(&c, &place));
+        let size = c.abs_upper();
+        if *q <= k && size <= small {
+            sum = balls.add_error(&sum, &(size * 2u32));
+            break;
+        }
+        let next = k + 1;
+        c = balls.mul_rational(&c, &((Rational::from(next) - q) / (2 * u64::from(next))));
+    }
+    let power = balls.mul_rational(&balls.ln_2(), p);
+    Some(balls.mul(&balls.exp(&balls.neg(&power)), &sum))
+}
+
+/// T = 4 sqrt(pi (1 + d)) Gamma(1 + y)/Gamma(1/2 + y) a^(-d), y = 1/(2 + 2d), of
+/// x'' + x (x^2)^d = 0, d > -1, x(0) = a; d besides as a rational number, if it is one.
+pub(super) fn power_law(
+    balls: Balls,
+    delta: &Ball,
+    rational: Option<&Rational>,
+    amplitude: &Ball,
+    stop: &Stop,
+) -> Option<Ball> {
+    let growth = balls.add(&balls.one(), delta);
+    let share = rational.map(|d| Rational::from(d + 1u32) * 2u32).filter(|s| !s.is_zero());
+    let share = share.map(Rational::recip).filter(|y| *y <= LARGEST_SHARE);
+    let ratio = match share {
+        Some(y) => gamma_ratio_of_rational(balls, &y, stop)?,
+        None => gamma_ratio(balls, &balls.div(&balls.one(), &balls.mul_i64(&growth, 2))?)?,
+    };
+    let scale = balls.exp(&balls.neg(&balls.mul(delta, &balls.ln(amplitude)?)));
     let root = balls.sqrt(&balls.mul(&balls.pi(), &growth))?;
-    Some(balls.mul_i64(&balls.mul(&root, &balls.exp(&exponent)), 4))
+    Some(balls.mul_i64(&balls.mul(&root, &balls.mul(&ratio, &scale)), 4))
 }
 
 /// T = 4 K(sin(a/2)) = 2 pi/agm(1, cos(a/2)) of x'' + sin x = 0, x(0) = a < pi.
@@ -70,9 +125,10 @@ pub(super) fn duffing(balls: Balls, rho: &Ball) -> Option<Ball> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
     use super::*;
     use lindstedt_coeff::digits::certify;
-    use rug::Rational;
 
     /// mpmath 1.3.0: 4 ellipk(sin(a/2)^2), gamma, 4 ellipk(r/(2+2r))/sqrt(1+r).
     #[test]
@@ -83,12 +139,32 @@ mod tests {
         let p = of(1, 1);
         let value = digits(&|balls| pendulum(balls, &p(balls)));
         assert_eq!(value.as_deref(), Ok("6.699975664370452712701211"));
-        let value = digits(&|balls| power_law(balls, &balls.one(), &balls.one()));
+        let never = Stop::default();
+        let value = digits(&|balls| power_law(balls, &balls.one(), None, &balls.one(), &never));
         assert_eq!(value.as_deref(), Ok("7.416298709205487673735401"));
         // x'' + sgn x = 0: 4 sqrt 2, and with amplitude 4 twice as long.
-        let value = digits(&|balls| power_law(balls, &of(-1, 2)(balls), &balls.from_i64(4)));
+        let four = |balls: Balls| balls.from_i64(4);
+        let value = digits(&|balls| {
+            power_law(balls, &of(-1, 2)(balls), Some(&q(-1, 2)), &four(balls), &never)
+        });
         assert_eq!(value.as_deref(), Ok("11.31370849898476039041351"));
         let value = digits(&|balls| duffing(balls, &balls.from_i64(1)));
         assert_eq!(value.as_deref(), Ok("4.768022029102460806304518"));
+    }
+
+    /// Two routes: MPFR's gamma function, and the halves of the beta integral.
+    #[test]
+    fn gamma_ratios() {
+        for bits in [2, 60, 400, 2000] {
+            let balls = Balls::new(bits).with_guard(32);
+            for (n, d) in [(0, 1), (1, 1 << 30), (1, 4), (1, 3), (1, 2), (1, 1), (7, 2), (64, 1)] {
+                let y = Rational::from((n, d));
+                let one = gamma_ratio(balls, &balls.from_rational(&y)).unwrap();
+                let two = gamma_ratio_of_rational(balls, &y, &Stop::default()).unwrap();
+                let size = two.abs_upper();
+                assert!(one.overlaps(&two), "{y} {bits}");
+                assert!(*two.radius() < size >> (bits - 2), "{y} {bits}: {}", two.radius());
+            }
+        }
     }
 }

@@ -161,7 +161,13 @@ pub fn evaluate(
         .map_err(|reason| Error::Resummation { problem: problem.name.to_string(), reason })?;
     let exact_period = match &source.closed {
         None => None,
-        Some((form, formula)) => Some(certified(Some(form.clone()), settings.digits, formula)?),
+        Some((form, formula)) => {
+            let found = certified(Some(form.clone()), settings.digits, formula);
+            if settings.stop.asked() {
+                return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
+            }
+            Some(found?)
+        }
     };
     let balls = Balls::new(resummed.bits).with_guard(64);
     let scale = period_scale(&source, balls)?;

@@ -189,6 +189,11 @@ impl Setting {
         power.map_or_else(|| balls.indeterminate(), |power| balls.mul(&coefficient, &power))
     }
 
+    /// The small parameter where it is a rational number of its own.
+    pub fn small_rational(&self) -> Option<&Rational> {
+        self.small.coefficient.as_rational().filter(|_| self.small.power == 0)
+    }
+
     /// The expansion.
     ///
     /// # Errors

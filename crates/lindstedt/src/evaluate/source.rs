@@ -167,7 +167,7 @@ fn power_law(
         let stiffness = stiffness.clone();
         move |balls: Balls| balls.sqrt(&balls.from_rational(&stiffness))
     };
-    let (divisor, stop) = (root.clone(), stop.clone());
+    let (divisor, stop, asked) = (root.clone(), stop.clone(), stop.clone());
     let mut text = "4*sqrt(pi*(1+delta))*Gamma(1+y)/Gamma(1/2+y)*a^(-delta), y = 1/(2+2*delta)"
         .replace("delta", &setting.problem.small);
     if *stiffness != 1 {
@@ -188,7 +188,9 @@ fn power_law(
             text,
             Box::new(move |balls| {
                 let (delta, a) = (closed.small(balls), closed.amplitude.ball(balls));
-                balls.div(&closed::power_law(balls, &delta, &a)?, &divisor(balls)?)
+                let rational = closed.small_rational();
+                let period = closed::power_law(balls, &delta, rational, &a, &asked)?;
+                balls.div(&period, &divisor(balls)?)
             }),
         )),
         radius: Some((1.0, "the period is singular at delta = -1")),
