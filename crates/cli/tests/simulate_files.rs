@@ -214,7 +214,8 @@ fn determined_parameters() {
 #[test]
 fn a_motion_that_ends_is_shown_up_to_its_end() {
     let folder = Folder::new("ends");
-    let file = folder.file("ends", "equation = \"x'' + x + eps*(x^2 + x'^2) = 0\"\n");
+    let file =
+        folder.file("ends", "name = \"ends\"\nequation = \"x'' + x + eps*(x^2 + x'^2) = 0\"\n");
     let command = ["simulate", &file, "--set", "eps=-2", "--periods", "2", "--digits", "15"];
     let output = lindstedt(&[&command[..], &["--quiet", "--format", "json"]].concat());
     assert_eq!(output.status.code(), Some(3));
