@@ -12,7 +12,7 @@ use crate::session::{Loaded, Session, digits, load, parameters};
 use crate::start::{self, Taken};
 use lindstedt::coeff::print::Style;
 use lindstedt::equation::Condition;
-use lindstedt::equation::classify::polynomial;
+use lindstedt::equation::classify::{Reason, polynomial};
 use lindstedt::expand::ExpandError;
 use lindstedt::{Error, Number, ProblemFile, Progress, Route, Settings, Solution, Status, Value};
 use report::{Frame, Report};
@@ -39,8 +39,14 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     // The equation of a file is looked at before any work starts; built-in ones are known.
     let mut header = String::new();
     if let Some(file) = &file
-        && let Ok(parts) = classification::of(&problem, &settings.parameters)
+        && let Ok(mut parts) = classification::of(&problem, &settings.parameters)
     {
+        if options.tier != arguments::TierName::Exact {
+            // To values at nodes every force is alike; what is not finite there is refused later.
+            for (_, against) in &mut parts.methods {
+                against.retain(|r| !matches!(r, Reason::NonSmooth(_) | Reason::NotPolynomial(_)));
+            }
+        }
         classification::check(&parts, file, settings.condition, &options.problem)?;
         if session.format() == Format::Text {
             header = classification::text(&parts, &problem.small) + "\n";
@@ -53,8 +59,9 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         // A file gives its values; the parameters of a built-in problem stay symbols.
         let mut settings = settings;
         if file.is_some() {
-            let known = lindstedt::known_values(&problem, &settings.parameters);
-            let known = known.into_iter().map(|(name, q)| (name, Value::Rational(q)));
+            let cards = problem.parameters.iter();
+            let known =
+                cards.filter_map(|c| Some((c.name.to_string(), Value::parse(&c.default).ok()?)));
             settings.parameters = known.chain(settings.parameters).collect();
         }
         let read = file.as_ref().map(|file| (file, &*options.problem));

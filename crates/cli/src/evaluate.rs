@@ -70,6 +70,15 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     let result = evaluate(&problem, &settings, &mut observer).map_err(fail)?;
     let solution = match &times {
         None => None,
+        Some(_) if result.period.is_none() && result.exact_period.is_none() => {
+            return Err(Failure {
+                exit: UNDECIDED,
+                code: "no-value",
+                message: "the period has not one digit at these parameters, so x(t) has none"
+                    .to_owned(),
+                hint: "a higher --order, another --resum, or `lindstedt simulate`".to_owned(),
+            });
+        }
         Some(request) => {
             let phase = Value::parse(&options.phase)?;
             // A figure or a function in doubles needs no more than these.

@@ -173,6 +173,9 @@ impl Report<'_> {
                     "disagrees: observed order {slope:.4}, expected {expected} within {TOLERANCE}"
                 )
             }
+            (Verdict::Undecided, Some(_)) if self.found.resolved && !self.found.small_enough => {
+                "undecided: the difference is as large as the motion; smaller --small".to_owned()
+            }
             (Verdict::Undecided, Some(slope)) if self.found.resolved => format!(
                 "undecided: observed order {slope:.4} has not settled, expected {expected}; smaller --small{}",
                 if self.found.comparisons.len() < 3 { ", at least three of them" } else { "" }

@@ -652,3 +652,23 @@ fn starts_that_contradict_each_other_are_said() {
     let moving = said(&file(half, "1/2", "1"), &["derive", "--order", "1"], &[]);
     assert!(moving.contains("velocity = 1 of [initial] has no effect here"), "{moving}");
 }
+
+/// A value with pi on the card is taken like one with --set. lambda = i omega_0 + eps lambda_1 of
+/// lambda^2 + 2 + eps k lambda e^(-lambda T): lambda_1 = -(k/2) e^(-i omega_0 T).
+#[test]
+fn a_delay_with_pi_on_the_card() {
+    let folder = Folder::new("card");
+    let text = "name = \"card\"\nequation = \"x'' + 2*x + eps*k*x'(t - T) = 0\"\n\
+                condition = \"free-amplitude\"\n[parameters]\nk = { value = \"1/2\" }\n\
+                T = { value = \"pi/3\" }\n";
+    let path = folder.file("card.toml", text.as_bytes());
+    let output = lindstedt(&["derive", &path, "--order", "1", "--quiet"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let number = |name: &str| -> f64 {
+        let line = text.lines().find_map(|line| line.trim().strip_prefix(name)).unwrap();
+        line.trim_end_matches("*a").trim().parse().unwrap()
+    };
+    let (sin, cos) = (2f64.sqrt() * std::f64::consts::FRAC_PI_3).sin_cos();
+    assert!((number("A_1 =") + cos / 4.0).abs() < 1e-15, "{text}");
+    assert!((number("B_1 =") - sin / 4.0).abs() < 1e-15, "{text}");
+}

@@ -91,3 +91,33 @@ fn bad_combinations_are_refused() {
         assert_eq!(value["error"]["code"], code, "{arguments:?}");
     }
 }
+
+/// Files with forces that no exact ring has. T/2pi from the energy integral: for x + eps |x| x by
+/// mpmath 1.3.0, for x + eps sgn x it is (2/pi) arccos(eps/(1 + eps)) = 1 - (2/pi)(eps - eps^2 + ...).
+#[test]
+fn forces_of_files_that_are_not_smooth() {
+    let folder = std::env::temp_dir().join(format!("lindstedt-tiers-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let two_over_pi = std::f64::consts::FRAC_2_PI;
+    let cases = [
+        ("abs(x)*x", [-0.424_413_181_578_387_56, 0.275_195_606_140_537_5]),
+        ("sign(x)", [-two_over_pi, two_over_pi]),
+    ];
+    for (force, expected) in cases {
+        let file = folder.join("force.toml");
+        let text = format!(
+            "name = \"force\"\nequation = \"x'' + x + eps*{force} = 0\"\n\
+             condition = \"initial-amplitude\"\n"
+        );
+        std::fs::write(&file, text).unwrap();
+        let path = file.to_str().unwrap();
+        assert!(!lindstedt(&["derive", path, "--quiet"]).status.success(), "exact");
+        let found = json(&["derive", path, "--order", "2", "--tier", "collocation"]);
+        for (n, truth) in expected.iter().enumerate() {
+            let number = &found["series"]["period_over_2pi"][n + 1];
+            let value = float(&number["decimal"]).to_f64();
+            assert!((value - truth).abs() < 1e-14, "{force} {n}: {value}");
+        }
+    }
+    std::fs::remove_dir_all(folder).unwrap();
+}

@@ -47,6 +47,16 @@ fn slopes_that_rise_slowly_do_not_disagree() {
     }
 }
 
+/// Next to the separatrix the series in delta says nothing at these values: 10^7 times the motion.
+#[test]
+fn differences_as_large_as_the_motion_have_no_order() {
+    let near = ["pendulum", "--order", "5", "--set", "amplitude=314159/100000"];
+    let output = run(&near);
+    assert_eq!(output.status.code(), Some(4));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("the difference is as large as the motion"), "{text}");
+}
+
 #[test]
 fn power_law() {
     slopes("power-law", 1..=6, &[]);

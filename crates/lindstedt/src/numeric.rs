@@ -12,7 +12,7 @@ use lindstedt_algebra::{PhaseAlgebra, Rationals};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::digits::{decimal, error_string};
 use lindstedt_coeff::floats::{Doubles, Floats, Reals};
-use lindstedt_equation::{AmplitudeRole, Condition, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, Function, Problem};
 use lindstedt_expand::{
     Binding, ExpandError, OrderWork, Request, compile, expand, leading_amplitude,
 };
@@ -324,7 +324,7 @@ impl Job<'_> {
         let reals = algebra.constants();
         let given = Given { settings: self.settings, problem: self.problem, reals };
         let order = self.settings.order;
-        let equation = compile(algebra, &self.problem.equation, &given, order)?;
+        let equation = compile(algebra, &as_powers(&self.problem.equation), &given, order)?;
         let leading_amplitude = match self.condition {
             // Found exactly: a root of an averaged polynomial.
             Condition::LimitCycle => {
@@ -412,6 +412,26 @@ impl Job<'_> {
 /// The series of powers of the frequency.
 const POWERS: [(&str, i32); 3] =
     [("frequency_squared", 2), ("frequency", 1), ("period_over_2pi", -1)];
+
+/// |z| = (z^2)^(1/2) and sgn z = z (z^2)^(-1/2), which are powers of values like others.
+fn as_powers(equation: &Expression) -> Expression {
+    let power = |z: &Expression, twice: i32| {
+        z.clone().pow(2).pow(Expression::Number(Rational::from((twice, 2))))
+    };
+    let all = |list: &[Expression]| list.iter().map(as_powers).collect();
+    match equation {
+        Expression::Sum(terms) => Expression::Sum(all(terms)),
+        Expression::Product(factors) => Expression::Product(all(factors)),
+        Expression::Power(base, exponent) => as_powers(base).pow((**exponent).clone()),
+        Expression::Function(Function::Abs, z) => power(&as_powers(z), 1),
+        Expression::Function(Function::Sign, z) => {
+            let z = as_powers(z);
+            power(&z, -1) * z
+        }
+        Expression::Function(function, z) => as_powers(z).apply(*function),
+        other => other.clone(),
+    }
+}
 
 /// 64 roundings at so many bits.
 fn rounding(value: &Float, bits: u32) -> Float {

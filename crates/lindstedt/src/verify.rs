@@ -90,6 +90,8 @@ pub struct Comparison {
     pub error: Float,
     /// The estimated error of the integration (against one with 8 digits more).
     pub simulation_error: Float,
+    /// max |x| on the same points: no order is observed where the difference is as large.
+    pub size: Float,
     /// ln(error/previous error)/ln(small/previous small); nothing for the first.
     pub slope: Option<f64>,
 }
@@ -102,8 +104,8 @@ pub enum Verdict {
     Agrees,
     /// It has settled at a whole number below N + 1.
     Disagrees,
-    /// The errors are not above those of the integration, there are fewer than two, or the slopes
-    /// have not settled: the small parameter is not small enough.
+    /// The errors are not above those of the integration, or as large as the motion, there are
+    /// fewer than two, or the slopes have not settled: the small parameter is not small enough.
     Undecided,
 }
 
@@ -125,6 +127,8 @@ pub struct Verification {
     pub settled: bool,
     /// The errors of the last two values are above those of the integration.
     pub resolved: bool,
+    /// The last errors are smaller than the motion.
+    pub small_enough: bool,
     /// The verdict.
     pub verdict: Verdict,
     /// The digits of the integration.
@@ -290,6 +294,7 @@ fn conclude(
     let observed = comparisons.last().and_then(|last| last.slope);
     let drowned = |c: &Comparison| c.simulation_error.clone() * 1000u32 > c.error;
     let resolved = !comparisons.iter().rev().take(2).any(drowned);
+    let small_enough = !comparisons.iter().rev().take(2).any(|c| c.error >= c.size);
     // e = C eps^n (1 + c eps + ...) has ln e(eps_1)/e(eps_2) = n ln eps_1/eps_2 + c (eps_1 - eps_2):
     // from two slopes n and what the last slope lacks.
     let limit = match &comparisons[..] {
@@ -308,7 +313,7 @@ fn conclude(
     let power = limit.filter(|n| (n - n.round()).abs() <= TOLERANCE);
     let near = |n: f64| (n - expected).abs() <= TOLERANCE;
     let verdict = match power {
-        _ if !resolved => Verdict::Undecided,
+        _ if !resolved || !small_enough => Verdict::Undecided,
         _ if observed.is_some_and(near) => Verdict::Agrees,
         Some(n) if n < expected && !near(n) => Verdict::Disagrees,
         Some(_) => Verdict::Agrees,
@@ -323,6 +328,7 @@ fn conclude(
         observed,
         settled,
         resolved,
+        small_enough,
         verdict,
         digits,
     }

@@ -318,11 +318,16 @@ impl<'s, R: Real> Integrator<'s, R> {
         Ok(if told.is_break() { told } else { event })
     }
 
-    /// Whether the state has left its start by 2^20: where steps end, a singularity of x(t).
+    /// Whether steps end at a singularity of x(t): x has left its start by 2^10 and the largest state
+    /// by 2^20, or x' alone by 2^20.
     fn escapes(&self) -> bool {
         let real = &self.system.real;
-        let largest = self.state.iter().map(|x| real.log2(x)).fold(f64::NEG_INFINITY, f64::max);
-        largest > self.log2_start + 20.0
+        let size = |x: &R::Element| real.log2(x);
+        let largest = self.state.iter().map(size).fold(f64::NEG_INFINITY, f64::max);
+        let above = |index: usize, bits: f64| {
+            self.state.get(index).is_some_and(|x| size(x) > self.log2_start + bits)
+        };
+        above(0, 10.0) && largest > self.log2_start + 20.0 || above(1, 20.0)
     }
 
     /// |w|^p near w = 0 or another singularity.

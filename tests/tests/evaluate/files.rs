@@ -255,3 +255,21 @@ fn the_nearest_singularity_does_not_depend_on_the_order() {
         }
     }
 }
+
+/// A vanishing first coefficient and few orders: [0/0], [1/0] and a block of the Pade table agreed
+/// on 1 where all others had a pole on the path, and 2 pi +- 1e-30 was the answer. The truth by the
+/// energy integral, mpmath 1.3.0.
+#[test]
+fn approximants_of_the_lowest_orders_alone_are_no_value() {
+    let set = [("eps", "1/10"), ("alpha_2", "1/2")];
+    let initial = Some(Condition::InitialAmplitude);
+    for order in [6, 7, 8] {
+        let asked = EvaluateSettings { condition: initial, ..settings(order, None, &set) };
+        let found = evaluate(&example("helmholtz-duffing"), &asked, &mut |_| true).unwrap();
+        let period = found.period.unwrap();
+        let number = |text: &str| text.parse::<f64>().unwrap();
+        let distance = (number(&period.decimal) - 6.265_546_653_426_539).abs();
+        let error = number(period.error.as_deref().unwrap());
+        assert!(distance <= error && error < 1e-2, "{order} {period:?}");
+    }
+}

@@ -107,17 +107,17 @@ impl Table {
         Ok(Self { points, order, resum, finished })
     }
 
-    /// Time, value, error as text.
+    /// Time, value, error as text; the last is empty where no digit is known.
     pub fn rows(&self) -> impl Iterator<Item = [String; 3]> {
         self.points.iter().map(|point| {
             let time = point.time.ball(Balls::new(64)).midpoint().to_f64();
-            let value = match &point.value {
-                Some(number) => number.decimal.clone(),
-                None => format!("{:.1e}", point.double),
+            let Some(number) = &point.value else {
+                return [format!("{time:?}"), "not one digit".to_owned(), String::new()];
             };
             // The bound belongs to the digits that are printed.
-            let error = point.value.as_ref().and_then(|number| number.error.clone());
-            [format!("{time:?}"), value, error.unwrap_or_else(|| format!("{:.1e}", point.error))]
+            let error = number.error.clone();
+            let error = error.unwrap_or_else(|| format!("{:.1e}", point.error));
+            [format!("{time:?}"), number.decimal.clone(), error]
         })
     }
 
@@ -138,7 +138,9 @@ impl Table {
     pub fn text(&self) -> String {
         let mut text = format!("\n  x(t), order {}, summed by {}\n", self.order, self.resum);
         for [time, value, error] in self.rows() {
-            let _ = writeln!(text, "  {time:<22} {value:<34} +- {error}");
+            let bound = if error.is_empty() { error } else { format!("+- {error}") };
+            let line = format!("  {time:<22} {value:<34} {bound}");
+            let _ = writeln!(text, "{}", line.trim_end());
         }
         text
     }

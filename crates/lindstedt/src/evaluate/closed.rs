@@ -62,9 +62,9 @@ fn gamma_ratio_of_rational(balls: Balls, y: &Rational, stop: &Stop) -> Option<Ba
     balls.div(&balls.sqrt(&balls.pi())?, &beta)
 }
 
-/// H(p, q) = int_0^(1/2) t^(p-1) (1 - t)^(q-1) dt = 2^-p sum_k (1 - q)_k/k! 2^-k/(p + k) for p, q
-/// >= 1/2. From k >= q on |c_k| = |(1 - q)_k|/(2^k k!) at least halves: the rest is below
-/// |c_k|/p <= 2 |c_k|.
+/// H(p, q) = int_0^(1/2) t^(p-1) (1 - t)^(q-1) dt = 2^-p sum_k (1 - q)_k/k! 2^-k/(p + k) for p
+/// and q of 1/2 or more. From k >= q on |c_k| = |(1 - q)_k|/(2^k k!) at least halves: the rest is
+/// below |c_k|/p <= 2 |c_k|.
 fn half_beta(balls: Balls, p: &Rational, q: &Rational, stop: &Stop) -> Option<Ball> {
     let (mut c, mut sum) = (balls.one(), balls.zero());
     let small = Float::with_val(53, Float::i_exp(1, -(i32::try_from(balls.bits()).ok()?) - 8));

@@ -216,12 +216,13 @@ impl Drifting {
         let history = self.history(&truncated, digits + 16)?;
         let coarse = self.run(small, &start, history.as_ref(), digits, goes_on)?;
         let fine = self.run(small, &start, history.as_ref(), digits + 8, goes_on)?;
-        let (mut error, mut simulation_error) = (Float::new(64), Float::new(64));
+        let [mut error, mut simulation_error, mut size] = [0; 3].map(|_| Float::new(64));
         for ((x, coarse), fine) in expected.iter().zip(&coarse).zip(&fine) {
             error.max_mut(&Float::with_val(64, x - fine).abs());
             simulation_error.max_mut(&Float::with_val(64, fine - coarse).abs());
+            size.max_mut(&Float::with_val(64, fine.abs_ref()));
         }
-        Ok(Comparison { small: small.clone(), error, simulation_error, slope: None })
+        Ok(Comparison { small: small.clone(), error, simulation_error, size, slope: None })
     }
 
     /// x_N at the times.

@@ -147,13 +147,14 @@ impl Periodic {
             self.turns.iter().map(|q| Float::with_val(self.bits, &pi * q) / &frequency).collect();
         let coarse = self.run(small, &frequency, &times, digits, goes_on)?;
         let fine = self.run(small, &frequency, &times, digits + 8, goes_on)?;
-        let (mut error, mut simulation_error) = (Float::new(64), Float::new(64));
+        let [mut error, mut simulation_error, mut size] = [0; 3].map(|_| Float::new(64));
         for ((terms, coarse), fine) in self.values.iter().zip(&coarse).zip(&fine) {
             let x = self.sum(terms, small);
             error.max_mut(&Float::with_val(64, &x - fine).abs());
             simulation_error.max_mut(&Float::with_val(64, fine - coarse).abs());
+            size.max_mut(&Float::with_val(64, fine.abs_ref()));
         }
-        Ok(Comparison { small: small.clone(), error, simulation_error, slope: None })
+        Ok(Comparison { small: small.clone(), error, simulation_error, size, slope: None })
     }
 
     /// x at the times.

@@ -394,6 +394,10 @@ fn staircase(
             return Err(ResummationError::Stopped);
         }
         let Some(pade) = Pade::until(stop, c, l, m, bits) else { continue };
+        // Inside a block of the table there is none: one of lower degree ignores coefficients.
+        if pade.degrees() != (l, m) && !pade.begins_with(&c[..=k]) {
+            continue;
+        }
         match value(&pade) {
             Ok((v, jump)) => {
                 values.push((k, v));
@@ -414,7 +418,11 @@ fn staircase(
             }
         }
     }
-    let Some((used, pade_degrees)) = last.filter(|_| values.len() > 1) else { return Err(failure) };
+    // Where the last of them have no value those before agree about something else.
+    let Some((used, pade_degrees)) = last.filter(|(used, _)| values.len() > 1 && used + 1 >= order)
+    else {
+        return Err(failure);
+    };
     for i in 1..values.len() {
         let far = |j: usize| Some(distance(&values.get(j)?.1, &values[i].1));
         let between = match values.get(i + 1) {

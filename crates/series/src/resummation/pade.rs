@@ -166,6 +166,29 @@ impl Pade {
         Some(Self { numerator, denominator, exponent, bits })
     }
 
+    /// Whether the series of p/q begins with the coefficients c: not inside a block of the table,
+    /// where the approximant next to it stands for one that does not exist.
+    pub(super) fn begins_with(&self, c: &[Float]) -> bool {
+        let scaled: Vec<Float> = c
+            .iter()
+            .zip(0i32..)
+            .map(|(x, n)| x.clone() << self.exponent.saturating_mul(n))
+            .collect();
+        let size = |list: &[Float]| {
+            let sizes = list.iter().map(|x| Float::with_val(53, x.abs_ref()));
+            sizes.reduce(|a, b| a.max(&b)).unwrap_or_else(|| Float::new(53))
+        };
+        let noise = (size(&scaled) * size(&self.denominator)) >> (self.bits / 2);
+        (0..c.len()).all(|n| {
+            let mut rest =
+                self.numerator.get(n).map_or_else(|| Float::new(self.bits), |p| -p.clone());
+            for (q, c) in self.denominator.iter().take(n + 1).zip(scaled[..=n].iter().rev()) {
+                rest += q * c;
+            }
+            rest.abs() <= noise
+        })
+    }
+
     /// The degrees of numerator and denominator, after a loss of rank.
     #[must_use]
     pub fn degrees(&self) -> (usize, usize) {
