@@ -125,7 +125,8 @@ pub struct EvaluateOptions {
     /// How the series is summed; auto takes the least error estimate and says why.
     #[arg(long, value_enum, default_value_t = Resum::Auto)]
     pub resum: Resum,
-    /// The solution x(t) at these times, x(0) = amplitude, x'(0) = 0 but for --phase.
+    /// The solution x(t) at these times; x'(0) = 0, but for --phase, and x(0) or the first harmonic
+    /// is the amplitude.
     #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
     pub times: Option<String>,
     /// x(t) = X(omega t + PHASE).
@@ -235,6 +236,9 @@ pub struct TradeOptions {
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
+    /// What the amplitude is; the true period is sought from x(0).
+    #[arg(long, value_enum)]
+    pub normalisation: Option<Normalisation>,
     /// Orders of the series.
     #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [2, 4, 8, 16, 32])]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=1000))]

@@ -79,7 +79,7 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
         Reason::Delay(e) => format!("{} is a delay", show(e)),
         Reason::NonSmooth(e) => format!("{} is not smooth", show(e)),
         Reason::NotPolynomial(e) => format!(
-            "{} is no polynomial in x, x' and ln x^2 (taylor(f(z), 9) asks for a polynomial)",
+            "{} is no polynomial in x, x' and ln x^2 (of f regular at 0, taylor(f(z), 9) asks for one)",
             show(e)
         ),
         Reason::NotReal(e) => format!(
@@ -108,8 +108,8 @@ fn shortened(text: &str) -> String {
     shown
 }
 
-/// The classification in lines of text.
-pub fn text(parts: &Classification, small: &str) -> String {
+/// The classification in lines of text, of the equation of a file or of a built-in problem.
+pub fn text(parts: &Classification, small: &str, is_file: bool) -> String {
     let show = |e: &Expression| shortened(&e.print(small, Style::Text));
     let mut text = String::new();
     let mut line = |name: &str, what: String| {
@@ -179,6 +179,9 @@ pub fn text(parts: &Classification, small: &str) -> String {
     for (method, against) in &parts.methods {
         let verdict = match &against[..] {
             [] => "applies".to_owned(),
+            [Reason::Condition] if *method == Method::Averaging && is_file => {
+                "applies with --normalisation free".to_owned()
+            }
             reasons => {
                 let reasons: Vec<String> = reasons.iter().map(|r| reason_text(r, small)).collect();
                 format!("no: {}", reasons.join("; "))
@@ -309,6 +312,11 @@ pub fn check(
             && parts.forcing.iter().all(|force| force.resonance.is_none())
         {
             AVERAGES.into()
+        } else if matches!(reason, Reason::NonSmooth(_) | Reason::NotPolynomial(_))
+            && parts.takes(Method::TimeDomain)
+        {
+            "in numbers: `lindstedt simulate`, and `derive --tier collocation` for forces of x alone"
+                .into()
         } else {
             "`lindstedt problems --show FILE` lists the methods".into()
         },

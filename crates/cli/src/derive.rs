@@ -12,7 +12,7 @@ use crate::session::{Loaded, Session, digits, load, parameters};
 use crate::start::{self, Taken};
 use lindstedt::coeff::print::Style;
 use lindstedt::equation::Condition;
-use lindstedt::equation::classify::{Reason, polynomial};
+use lindstedt::equation::classify::{Method, Reason, polynomial};
 use lindstedt::expand::ExpandError;
 use lindstedt::{Error, Number, ProblemFile, Progress, Route, Settings, Solution, Status, Value};
 use report::{Frame, Report};
@@ -43,13 +43,15 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     {
         if options.tier != arguments::TierName::Exact {
             // To values at nodes every force is alike; what is not finite there is refused later.
-            for (_, against) in &mut parts.methods {
+            let expansion =
+                parts.methods.iter_mut().filter(|(m, _)| *m == Method::LindstedtPoincare);
+            for (_, against) in expansion {
                 against.retain(|r| !matches!(r, Reason::NonSmooth(_) | Reason::NotPolynomial(_)));
             }
         }
         classification::check(&parts, file, settings.condition, &options.problem)?;
         if session.format() == Format::Text {
-            header = classification::text(&parts, &problem.small) + "\n";
+            header = classification::text(&parts, &problem.small, true) + "\n";
         }
     }
     let condition = settings.condition.or(problem.conditions.first().copied());

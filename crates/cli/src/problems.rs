@@ -52,7 +52,7 @@ fn show(name: &str, session: &Session<'_>) -> Outcome {
     let text = match session.format() {
         Format::Text => {
             let lines = match &parts {
-                Ok(parts) => classification::text(parts, &problem.small),
+                Ok(parts) => classification::text(parts, &problem.small, loaded.file.is_some()),
                 Err(error) => format!("{error}\n"),
             };
             let comments: String = lines.lines().map(|line| format!("# {line}\n")).collect();

@@ -243,7 +243,8 @@ pub fn problem(name: &str) -> Result<Problem, Failure> {
                 hint: "Melnikov's method takes it: lindstedt threshold stick-slip".into(),
             };
         }
-        let names: Vec<_> = lindstedt::problems::all().into_iter().map(|p| p.name).collect();
+        let mut names: Vec<_> = lindstedt::problems::all().into_iter().map(|p| p.name).collect();
+        names.push(lindstedt::problems::stick_slip::problem().name);
         let shown: String = name.chars().take(60).collect();
         let message = format!("there is no problem {shown:?}");
         Failure::usage("unknown-problem", message, &format!("known: {}", names.join(", ")))

@@ -73,7 +73,19 @@ pub struct Integrator<'s, R: Real> {
     stalled: u32,
     /// log2 of the largest state of the start; 0 for a start in zero.
     log2_start: f64,
+    /// Where the present run towards infinity began.
+    runaway: Option<Runaway>,
     pub(crate) work: Work,
+}
+
+/// The step at which x, on its way from zero, counted as escaping (see [`Integrator::escapes`]).
+#[derive(Clone, Copy, Debug)]
+struct Runaway {
+    steps: u64,
+    /// log2 |x|.
+    size: f64,
+    /// log2 |x/x'|.
+    time: f64,
 }
 
 /// The observer of an integration: told of every segment and event; breaks it off if it likes.
@@ -141,6 +153,7 @@ impl<'s, R: Real> Integrator<'s, R> {
             smooth: false,
             stalled: 0,
             log2_start: if log2_start.is_finite() { log2_start } else { 0.0 },
+            runaway: None,
             work: Work::default(),
         };
         flow.begin()?;
@@ -251,6 +264,9 @@ impl<'s, R: Real> Integrator<'s, R> {
             return self.accumulate(&duration, log2_error, observer);
         }
         self.rebound = None;
+        if let Some(error) = self.runs_away() {
+            return Err(error);
+        }
         let branch = self.branch_ahead();
         if let Some(branch) = &branch
             && let Some(told) = self.leap(branch, remaining, observer)?
@@ -328,6 +344,32 @@ impl<'s, R: Real> Integrator<'s, R> {
             self.state.get(index).is_some_and(|x| size(x) > self.log2_start + bits)
         };
         above(0, 10.0) && largest > self.log2_start + 20.0 || above(1, 20.0)
+    }
+
+    /// A pole of x(t) that steps do not come near to, because the motion is stiff there: after
+    /// x = C (t* - t)^-p, |x/x'| = (t* - t)/p, while |x| grows by a factor 2^g the time |x/x'|
+    /// shrinks by 2^s with g = p s. Said where s is four or more with p up to 10 (a double
+    /// exponential has a larger one by then) and more steps were taken on the way than to a pole
+    /// that is not stiff.
+    fn runs_away(&mut self) -> Option<SimulateError> {
+        let real = &self.system.real;
+        let [x, velocity] = self.state.get(..2)? else { return None };
+        let outwards = real.sign(x) * real.sign(velocity) > 0;
+        let size = real.log2(x);
+        let time = size - real.log2(velocity);
+        if !outwards || size <= self.log2_start + 10.0 || !self.escapes() {
+            self.runaway = None;
+            return None;
+        }
+        let steps = self.work.steps;
+        let began = *self.runaway.get_or_insert(Runaway { steps, size, time });
+        let (grown, shrunk) = (size - began.size, began.time - time);
+        let many = 1000 + 16 * u64::from(real.bits());
+        let is_pole = shrunk >= 4.0 && grown > 0.0 && grown <= 10.0 * shrunk;
+        (steps - began.steps > many && is_pole).then(|| SimulateError::Escape {
+            time: self.seconds() + time.exp2() * grown / shrunk,
+            displacement: real.to_f64(x),
+        })
     }
 
     /// |w|^p near w = 0 or another singularity.

@@ -239,6 +239,46 @@ fn a_pole_and_missing_values_are_named() {
     assert_eq!(Model::second_order(&y).err(), Some(SimulateError::NotSecondOrder));
 }
 
+/// x'' = 2 x x' - x^2 (x' - x^2) from x = x' = 1 has the solution 1/(1 - t). The motion is stiff
+/// there: the explicit steps shrink like (1 - t)^2, and none comes near to the pole.
+#[test]
+fn a_stiff_pole_is_called_one_in_few_steps() {
+    let (x, v) = (Expression::Displacement, Expression::Velocity);
+    let off = v.clone() - x.clone().pow(2);
+    let right = number(2, 1) * x.clone() * v - x.pow(2) * off;
+    let model = Model::second_order(&(Expression::Acceleration - right)).unwrap();
+    let real = Digits::for_digits(8);
+    let system = model.compile(real, &Parameters::new()).unwrap();
+    let start = [real.double(1.0), real.double(1.0)];
+    let settings = Settings::for_digits(8);
+    let mut flow = Integrator::new(&system, &real.zero(), &start, settings).unwrap();
+    let outcome = flow.advance(&real.double(2.0), &mut |_| ControlFlow::Continue(()));
+    let Err(SimulateError::Escape { time, displacement }) = outcome else { panic!("{outcome:?}") };
+    assert!((time - 1.0).abs() < 1e-6 && displacement > 1e4, "{time} {displacement}");
+    assert!(flow.work().steps < 50_000, "{:?}", flow.work());
+}
+
+/// Growth without a pole is integrated to the end: x = exp(t^2), and an oscillation that is fed,
+/// x'' - x' + x^3 = 0.
+#[test]
+fn growth_is_no_escape() {
+    let (x, v, t) = (Expression::Displacement, Expression::Velocity, Expression::Time);
+    let gauss = (number(2, 1) + number(4, 1) * t.pow(2)) * x.clone();
+    let fed = v - x.pow(3);
+    for (right, start, end) in [(gauss, [1.0, 0.0], 5.0), (fed, [0.01, 0.01], 14.0)] {
+        let model = Model::second_order(&(Expression::Acceleration - right)).unwrap();
+        let real = Digits::for_digits(8);
+        let system = model.compile(real, &Parameters::new()).unwrap();
+        let start = start.map(|x| real.double(x));
+        let settings = Settings { order: Some(3), ..Settings::for_digits(8) };
+        let mut flow = Integrator::new(&system, &real.zero(), &start, settings).unwrap();
+        let outcome = flow.advance(&real.double(end), &mut |_| ControlFlow::Continue(()));
+        assert_eq!(outcome, Ok(Outcome::Reached));
+        let x = real.to_f64(&flow.state()[0]).hypot(real.to_f64(&flow.state()[1]));
+        assert!(x > 20.0 && flow.work().steps > 3000, "{x} {:?}", flow.work());
+    }
+}
+
 /// The observer stops the integration in the middle; going on gives the same result.
 #[test]
 fn stopping_and_going_on() {

@@ -114,7 +114,9 @@ fn marks(request: &Request, row: usize, xs: &std::ops::Range<f64>) -> (Vec<f64>,
     let value = point.threshold_at_cusp(balls).map(|ball| ball.midpoint().to_f64().abs());
     let speed = point.loop_speed(balls).map(|ball| ball.midpoint().to_f64());
     let cusps = match (speed, value) {
-        (Some(x), Some(y)) if y.is_finite() => both(x).map(|x| (x, y)).collect(),
+        (Some(x), Some(y)) if y.is_finite() && point.dry.sign().is_ne() => {
+            both(x).map(|x| (x, y)).collect()
+        }
         _ => Vec::new(),
     };
     (zeros, cusps)

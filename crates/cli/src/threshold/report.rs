@@ -125,14 +125,17 @@ impl Answer {
             // G at |v*| = V: the dry term is gone, v*^2 = V^2.
             point.threshold_at_cusp(balls)
         };
-        let numbers = vec![
+        let has_cusp = point.dry.sign().is_ne();
+        let mut numbers = vec![
             ("gamma_c", certified(point.exact_threshold(), digits, gamma)?),
             ("signed", certified(None, digits, signed)?),
             ("D", certified(None, digits, d)?),
             ("F", certified(None, digits, f)?),
             ("V", certified(None, digits, |balls| point.loop_speed(balls))?),
-            ("cusp", certified(None, digits, at_cusp)?),
         ];
+        if has_cusp {
+            numbers.push(("cusp", certified(None, digits, at_cusp)?));
+        }
         let harmonic = Harmonic::new(request, numbers.first(), &|factor| {
             let over = |balls: Balls| balls.div(&gamma(balls)?, &balls.abs(&factor.ball(balls)));
             Ok(certified(None, digits, over)?)
@@ -170,8 +173,8 @@ impl Answer {
             numbers,
             zeros,
             zeros_of,
-            touching_b: point.touching_b().map(|b| b.to_string()),
-            validity: validity(request, point.dry.sign().is_ne(), verdict).to_owned(),
+            touching_b: point.touching_b().filter(|_| has_cusp).map(|b| b.to_string()),
+            validity: validity(request, has_cusp, verdict).to_owned(),
             distances: [distance(0)?, distance(1)?],
             tangle: tangle(request, gamma(Balls::new(400))).to_owned(),
             orbits: Vec::new(),
@@ -266,12 +269,14 @@ impl Answer {
     fn lines(&self) -> Vec<(String, String)> {
         let shown = |number: &Number| number.decimal.clone();
         let mut lines = Vec::new();
+        let has_cusp = self.numbers.iter().any(|(name, _)| *name == "cusp");
         for (name, number) in &self.numbers {
             let label = match *name {
                 "signed" => "gamma_c with the sign of D",
                 "D" => "D, work of friction",
                 "F" => "F, work of the forcing",
-                "V" => "V, largest speed, cusp at |v*| = V",
+                "V" if has_cusp => "V, largest speed, cusp at |v*| = V",
+                "V" => "V, largest speed",
                 "cusp" => "signed threshold at the cusp",
                 other => other,
             };

@@ -5,11 +5,13 @@ mod report;
 
 use crate::Outcome;
 use crate::arguments::{Format, TradeOptions};
+use crate::classification;
 use crate::evaluate::set_order_parameter;
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
 use crate::session::{self, Session};
 use lindstedt::Error;
+use lindstedt::equation::Condition;
 use lindstedt::trade::{Plan, Row, measure, most_accurate, recommend, recommend_for_many};
 
 /// What a recommendation is asked for.
@@ -57,7 +59,9 @@ impl Wanted {
 }
 
 pub fn run(options: &TradeOptions, session: &Session<'_>) -> Outcome {
-    let loaded = session::load(&options.problem)?;
+    let mut loaded = session::load(&options.problem)?;
+    let condition =
+        classification::condition(options.normalisation, &mut loaded, &options.problem)?;
     let mut parameters = session::parameters(&options.set)?;
     set_order_parameter(&loaded, &mut parameters);
     let problem = loaded.problem;
@@ -74,7 +78,9 @@ pub fn run(options: &TradeOptions, session: &Session<'_>) -> Outcome {
         run_seconds: options.limit_run,
         repeats: options.repeats,
         memory: session.memory(),
+        condition,
     };
+    let first = condition.or(problem.conditions.first().copied());
     let trade = measure(&problem, &parameters, &plan, &mut |method, rows| {
         session.say(format!("{} rows finished; {}", rows.len(), method.name()));
         session.goes_on()
@@ -84,9 +90,17 @@ pub fn run(options: &TradeOptions, session: &Session<'_>) -> Outcome {
             exit: NO_ANSWER,
             code: "no-reference",
             message: format!("{}: the true period at these parameters is not known", problem.name),
-            hint: "oscillators with a periodic solution that starts at rest: power-law, pendulum, \
-                   duffing, van-der-pol, files"
-                .to_owned(),
+            hint: match first {
+                Some(Condition::FundamentalAmplitude) => {
+                    "it is sought from x(0), not from the first harmonic: --normalisation initial, \
+                     where the problem offers it"
+                }
+                _ => {
+                    "oscillators with a periodic solution that starts at rest: power-law, \
+                     pendulum, duffing, van-der-pol, files"
+                }
+            }
+            .to_owned(),
         },
         other => other.into(),
     })?;

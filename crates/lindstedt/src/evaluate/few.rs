@@ -24,7 +24,7 @@ pub(super) fn is_few(known: usize) -> bool {
     known < FEWEST
 }
 
-/// The partial sum, its error unknown, of a series too short for [`Sample::sum`]; nothing for a
+/// The partial sum, its error unknown except at 0, of a series too short for [`Sample::sum`]; nothing for a
 /// longer one and for a method that needs more.
 pub(super) fn partial_sum(
     sample: &dyn Fn(u32) -> Option<Sample>,
@@ -38,15 +38,15 @@ pub(super) fn partial_sum(
     let bits = accuracy.saturating_add(64);
     let sum = || {
         let sample = sample(bits)?;
-        partial_sums(&sample.coefficients, &sample.point, bits).pop()
+        let value = partial_sums(&sample.coefficients, &sample.point, bits).pop()?;
+        let unknown = if sample.point.is_zero() { Special::Zero } else { Special::Infinity };
+        Some(Estimate { value, error: Float::with_val(53, unknown) })
     };
-    let Some(value) = sum() else { return Some(Err(ResummationError::NoCoefficients { bits })) };
-    let infinite = Float::with_val(53, Special::Infinity);
-    let estimate = Estimate { value, error: infinite.clone() };
+    let Some(estimate) = sum() else { return Some(Err(ResummationError::NoCoefficients { bits })) };
     let order = known - 1;
     let outcome = Outcome { estimate, order, degrees: None, tentative: None, smallest_term: None };
     let method = Method::PartialSum;
-    let tried = vec![(method, Ok(infinite))];
+    let tried = vec![(method, Ok(outcome.estimate.error.clone()))];
     let (growth, singularity) = (Growth::Undecided, None);
     Some(Ok(Resummed { method, outcome, growth, singularity, tried, bits }))
 }

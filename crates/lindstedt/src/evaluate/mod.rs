@@ -417,8 +417,13 @@ impl Evaluation {
         } else if finite().all(|(_, error)| own <= error) {
             format!(", the least error estimate of {count} methods")
         } else {
+            let least = finite().map(|(_, error)| error.clone()).reduce(|a, b| a.min(&b));
+            let near = least.map_or(count, |least| {
+                let bound = least * 10u32;
+                finite().filter(|(_, error)| **error <= bound).count()
+            });
             format!(
-                ", the simplest of {count} methods whose error estimate is within a factor 10 of \
+                ", the simplest of {near} methods whose error estimate is within a factor 10 of \
                  the least"
             )
         }

@@ -20,7 +20,7 @@ use crate::evaluate::source::Source;
 use crate::{Error, Value};
 pub use front::{most_accurate, pareto, recommend, recommend_for_many};
 use lindstedt_algebra::Stop;
-use lindstedt_equation::Problem;
+use lindstedt_equation::{Condition, Problem};
 use lindstedt_series::resummation;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
@@ -141,6 +141,9 @@ pub struct Plan {
     pub repeats: u32,
     /// The memory that may be used, in bytes.
     pub memory: u64,
+    /// What the amplitude is; the first condition of the problem if not given. The true period is
+    /// sought from the initial amplitude and on the limit cycle.
+    pub condition: Option<Condition>,
 }
 
 impl Default for Plan {
@@ -153,6 +156,7 @@ impl Default for Plan {
             run_seconds: 5.0,
             repeats: 3,
             memory: 8 << 30,
+            condition: None,
         }
     }
 }
@@ -253,7 +257,7 @@ pub fn measure(
     plan: &Plan,
     observer: &mut dyn FnMut(&Method, &[Row]) -> bool,
 ) -> Result<Trade, Error> {
-    let setting = Setting::new(problem, None, &defaults(problem, parameters))?;
+    let setting = Setting::new(problem, plan.condition, &defaults(problem, parameters))?;
     let most = plan.digits.iter().copied().max().unwrap_or(16).max(16);
     let bits = (f64::from(most) * std::f64::consts::LOG2_10).ceil() as u32 + 64;
     let source = template(&setting, plan.memory)?;

@@ -30,7 +30,8 @@ const AGREEMENT: u32 = 4;
 const DOUBLINGS: u32 = 4;
 
 /// Sums a series by one method, or with `None` by the one whose error estimate is least (`auto`;
-/// among estimates within a factor ten the simpler method is taken).
+/// among estimates within a factor ten the simpler method is taken, unless it has hardly
+/// two digits).
 ///
 /// `source` gives coefficients and point at a precision. Everything is computed at p and 2p bits,
 /// p doubled until the two values differ by less than an eighth of the error estimate or by less
@@ -115,9 +116,11 @@ fn chosen(
             let error = &outcome.estimate.error;
             let better = best.as_ref().is_none_or(|(_, best, _)| {
                 // Below the accuracy asked for there is no better.
-                let floor = Float::with_val(53, best.estimate.value.abs_ref()) >> accuracy;
+                let size = Float::with_val(53, best.estimate.value.abs_ref());
                 let least = best.estimate.error.clone();
-                least > floor && Float::with_val(53, error * 10u32) < least
+                let has_digits = Float::with_val(53, &least * (100 * SELECTION)) < size;
+                let factor = if has_digits { 10u32 } else { 1u32 };
+                least > size >> accuracy && Float::with_val(53, error * factor) < least
                     || error.is_finite() && !least.is_finite()
             });
             if better {

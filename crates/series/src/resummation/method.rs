@@ -1,7 +1,9 @@
 //! The methods, one value with an error estimate each.
 
 use super::borel::{Nodes, borel_transform, laplace};
-use super::estimate::{best_truncation, distance, geometric_tail, settle, tentative, widest};
+use super::estimate::{
+    best_truncation, distance, geometric_tail, settle, sizes, tentative, widest,
+};
 use super::singularity::nearest_singularity_until;
 use super::{Estimate, Growth, Map, Pade, ResummationError, Singularity, growth, partial_sums};
 use lindstedt_algebra::Stop;
@@ -132,6 +134,12 @@ impl Sample {
         if known < 3 {
             return Err(ResummationError::TooFewCoefficients { known, needed: 3 });
         }
+        if self.point.is_zero() {
+            let value = Float::with_val(self.bits, &self.coefficients[0]);
+            let estimate = Estimate { value, error: Float::new(53) };
+            let (degrees, tentative, smallest_term) = (None, None, None);
+            return Ok(Outcome { estimate, order: 0, degrees, tentative, smallest_term });
+        }
         let mut outcome = self.by(method, singularity, accuracy, stop)?;
         // An error as large as half the value leaves not one digit, and is no estimate.
         let half = Float::with_val(53, outcome.estimate.value.abs_ref()) / 2u32;
@@ -169,8 +177,7 @@ impl Sample {
         if self.radius.is_some() || !of_unknown_kind {
             return false;
         }
-        let sums = partial_sums(&self.coefficients, &self.point, self.bits);
-        let terms: Vec<Float> = sums.windows(2).map(|p| distance(&p[1], &p[0])).collect();
+        let terms = sizes(&self.coefficients, &self.point);
         let third = terms.len().div_ceil(3);
         let largest = |list: &[Float]| list.iter().cloned().reduce(|a, b| a.max(&b));
         let (early, late) = (terms.get(..third), terms.get(terms.len() - third..));
@@ -259,10 +266,10 @@ impl Sample {
         let inside = |order: usize| {
             if asymptotic { order + 2 < sums.len() } else { 3 * order < 2 * sums.len() }
         };
-        let best = best_truncation(&sums).filter(|(order, _)| inside(*order));
+        let terms = sizes(&self.coefficients, &self.point);
+        let best = best_truncation(&sums, &terms).filter(|(order, _)| inside(*order));
         // Terms that do not grow well beyond the smallest ones are no divergence yet.
-        let terms = sums.windows(2).map(|pair| distance(&pair[1], &pair[0]));
-        let late = terms.skip(sums.len() * 2 / 3).reduce(|a, b| a.max(&b));
+        let late = terms.into_iter().skip(sums.len() * 2 / 3).reduce(|a, b| a.max(&b));
         let grows = |estimate: &Estimate| {
             late.as_ref().is_some_and(|late| *late > Float::with_val(53, &estimate.error * 4u32))
         };
@@ -349,7 +356,7 @@ fn convergent(
     let sums = partial_sums(c, x, bits);
     let mut outcome = last_sum(&sums)?;
     let ratio = radius.map_or_else(|| Float::new(53), |r| Float::with_val(53, x.abs_ref()) / r);
-    outcome.estimate.error = geometric_tail(&sums, &ratio, known);
+    outcome.estimate.error = geometric_tail(&sizes(c, x), &ratio, known);
     Ok(outcome)
 }
 

@@ -332,6 +332,9 @@ impl Motion {
                     self.digits
                 ),
                 Some(error) => format!("a and psi are integrated, error {error:.0e}"),
+                None if self.ended.is_some() => {
+                    "a and psi are integrated to none of the times after 0".to_owned()
+                }
                 None => "a and psi are not integrated: no time after 0 was asked for".to_owned(),
             }
         });
