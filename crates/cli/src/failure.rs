@@ -91,6 +91,12 @@ impl From<Error> for Failure {
                 (NO_ANSWER, "no-such-resummation", "try --resum auto, or another order")
             }
             Error::NotEvaluated { .. } => (NO_ANSWER, "not-evaluated", ""),
+            Error::MovingSingularity { .. } => (
+                NO_ANSWER,
+                "no-method",
+                "`lindstedt simulate` takes it; here the equation would have to be odd in x, and \
+                 the same backwards in time",
+            ),
             Error::NoValue => (NO_ANSWER, "no-value", ""),
             Error::OutOfPrimes => (UNDECIDED, "out-of-primes", "lower --order"),
             Error::Expand(ExpandError::Interrupted { .. }) => (INTERRUPTED, "interrupted", ""),

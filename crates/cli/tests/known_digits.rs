@@ -64,8 +64,8 @@ fn rates_of_an_averaged_motion_have_errors() {
     let set = ["--normalisation", "free", "--start", "1,0", "--set"];
     let found = json(&[&["evaluate", "van-der-pol"], &set[..], &["eps=1/10"]].concat());
     assert!(found["rates"]["phase_number"]["error"].is_string(), "{found}");
-    let found = text(&[&["evaluate", "van-der-pol"], &set[..], &["eps=1"]].concat());
-    assert!(found.contains("0.3422 (no estimate)"), "{found}");
+    let found = text(&[&["evaluate", "van-der-pol"], &set[..], &["eps=4"]].concat());
+    assert!(found.contains("(no estimate)") && !found.contains("+-"), "{found}");
 }
 
 #[test]

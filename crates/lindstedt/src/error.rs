@@ -163,6 +163,16 @@ pub enum Error {
         /// The problem.
         problem: String,
     },
+    /// A force whose derivatives hold delta functions at places that the motion passes at times that
+    /// change from order to order: an expansion by values would drop them.
+    #[error(
+        "{term} is singular where the motion passes at times that change with the small parameter: the \
+         expansion has terms there that values at nodes do not see"
+    )]
+    MovingSingularity {
+        /// The function.
+        term: String,
+    },
     /// The value does not exist.
     #[error("the value does not exist")]
     NoValue,

@@ -12,6 +12,8 @@ use lindstedt_algebra::{PhaseAlgebra, Rationals};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::digits::{decimal, error_string};
 use lindstedt_coeff::floats::{Doubles, Floats, Reals};
+use lindstedt_equation::classify::moving_singularity;
+use lindstedt_equation::print::Style;
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, Function, Problem};
 use lindstedt_expand::{
     Binding, ExpandError, OrderWork, Request, compile, expand, leading_amplitude,
@@ -107,7 +109,8 @@ const MOST_NODES: usize = 1 << 14;
 /// ends with an error (one grid alone has no error estimate).
 ///
 /// # Errors
-/// [`Error`] with the reason; [`Error::NotEnoughBits`] when refining the grid does not reach the
+/// [`Error`] with the reason; [`Error::MovingSingularity`] for forces like |x| that are not part of an
+/// odd equation which can be run backwards; [`Error::NotEnoughBits`] when refining the grid does not reach the
 /// digits (a force that is singular inside the quarter period, for example).
 ///
 /// # Example
@@ -129,6 +132,10 @@ pub fn derive(
 ) -> Result<Estimate, Error> {
     crate::derivation::check_parameters(problem, &settings.parameters)?;
     let condition = crate::derivation::condition(problem, settings.condition)?;
+    if let Some(term) = moving_singularity(&problem.equation) {
+        let term = term.print(&problem.small, Style::Text);
+        return Err(Error::MovingSingularity { term });
+    }
     limit_memory(settings, 32, 64)?;
     // The amplitude that is scaled out is part of the equation; a limit cycle's is found exactly.
     let changed = problem.amplitude == AmplitudeRole::Scaled || condition == Condition::LimitCycle;

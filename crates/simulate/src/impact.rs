@@ -79,6 +79,9 @@ impl<R: Real> Integrator<'_, R> {
     /// tau = 2 v/(a (1 - R)). A varying acceleration changes them by the relative amount
     /// eta = sum_{k>2} k (k-1) |x_k| tau^{k-2}/(2 |x_2|); the error of tau is about eta tau.
     /// Returns tau and log2 of this error, relative to the time.
+    ///
+    /// Nothing as long as the velocity of the impact is above the tolerance relative to the start:
+    /// the flights before are part of the motion, however exactly their sum is known.
     pub(crate) fn accumulation(&self, remaining: &R::Element) -> Option<(R::Element, f64)> {
         let real = &self.system.real;
         let wall = &self.system.walls[self.rebound?];
@@ -107,7 +110,9 @@ impl<R: Real> Integrator<'_, R> {
         // the velocity for this time.
         let seen = if self.past.is_some() { real.log2(&row[1]) + log } else { f64::NEG_INFINITY };
         let unresolved = log < time - f64::from(real.bits());
-        let accurate = !jumps && error <= self.log2_tolerance && seen <= self.log2_tolerance;
+        let settled = real.log2(&row[1]) <= self.log2_tolerance + self.log2_start;
+        let accurate =
+            settled && !jumps && error <= self.log2_tolerance && seen <= self.log2_tolerance;
         (accurate || unresolved)
             .then_some((duration, error.max(if unresolved { log - time } else { error })))
     }

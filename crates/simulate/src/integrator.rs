@@ -72,7 +72,7 @@ pub struct Integrator<'s, R: Real> {
     pub(crate) smooth: bool,
     stalled: u32,
     /// log2 of the largest state of the start; 0 for a start in zero.
-    log2_start: f64,
+    pub(crate) log2_start: f64,
     /// Where the present run towards infinity began.
     runaway: Option<Runaway>,
     pub(crate) work: Work,

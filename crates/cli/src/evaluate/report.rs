@@ -29,6 +29,18 @@ fn optional(number: Option<&Number>) -> Json {
     number.map_or(Json::Null, number_json)
 }
 
+/// One decimal more than the first that is in doubt: what rounding adds is below the error.
+fn decimals(error: &rug::Float) -> usize {
+    let places = if error.is_zero() { 30.0 } else { 1.0 - error.clone().log10().to_f64() };
+    places.floor().clamp(0.0, 30.0) as usize
+}
+
+/// The error with that of rounding the value to [`decimals`], rounded up.
+fn stated(error: &rug::Float) -> String {
+    let rounding = 0.5 * 10f64.powi(-(decimals(error) as i32));
+    format!("{:.1e}", (error.to_f64() + rounding) * 1.06)
+}
+
 impl Report<'_> {
     pub fn json(&self, session: &Session<'_>) -> Json {
         let result = self.result;
@@ -93,18 +105,16 @@ impl Report<'_> {
         let Some(found) = &self.result.resummed.singularity else { return Json::Null };
         json!({
             "at": [self.digits(&found.at.re, &found.error), self.digits(&found.at.im, &found.error)],
-            "error": format!("{:.1e}", found.error),
+            "error": stated(&found.error),
             "exponent": self.digits(&found.exponent, &found.exponent_error),
-            "exponent_error": format!("{:.1e}", found.exponent_error),
+            "exponent_error": stated(&found.exponent_error),
             "kind": kind_name(found.kind),
             "status": "estimated",
         })
     }
 
     fn digits(&self, x: &rug::Float, error: &rug::Float) -> String {
-        // Decimals up to the first that is in doubt.
-        let places = if error.is_zero() { 30.0 } else { -error.clone().log10().to_f64() };
-        let places = places.floor().clamp(0.0, 30.0) as usize;
+        let places = decimals(error);
         let scaled = rug::Float::with_val(x.prec(), x);
         if scaled.clone().abs() <= error.clone() {
             "0".to_owned()
@@ -155,10 +165,7 @@ impl Report<'_> {
             let kind = kind_name(found.kind);
             lines.push((
                 "nearest singularity".to_owned(),
-                format!(
-                    "{place}, {kind} (exponent {exponent}), error {:.0e}",
-                    found.error.to_f64()
-                ),
+                format!("{place}, {kind} (exponent {exponent}), error {}", stated(&found.error)),
             ));
         }
         if let Some(picture) = &result.picture {

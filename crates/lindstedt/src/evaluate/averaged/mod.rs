@@ -4,12 +4,13 @@
 //!
 //! (`Krylov, Bogoliubov, Mitropolsky`). Everything is estimated. The error has two parts: that of
 //! integrating a' and psi', which is measured with more digits (for linear problems a is an
-//! exponential and there is none), and that of breaking off the series at order N, which is taken
-//! from the difference to the motions of order N - 1 and N - 2 with the same initial data. The
+//! exponential and there is none), and that of breaking off the series at order N: the rates are
+//! changed by what the orders to come are estimated to add (`rest.rs`), and the motions compared. The
 //! series is asymptotic: the estimate means something only while its terms decrease, and is
 //! withheld otherwise.
 
 mod flow;
+mod rest;
 mod truncated;
 
 use super::few::plain;
@@ -21,7 +22,9 @@ use crate::number::Number;
 use crate::{Error, Progress, Value};
 use flow::Flow;
 use lindstedt_coeff::ball::Balls;
+use lindstedt_equation::classify::is_reversible;
 use lindstedt_equation::{Condition, Problem};
+use rest::{Rest, looked_at};
 use rug::Float;
 use std::collections::BTreeMap;
 use truncated::Truncated;
@@ -87,7 +90,8 @@ pub struct Motion {
     /// a' and psi' at the start with their errors, estimated; nothing where not one digit is
     /// supported.
     pub rate_numbers: [Option<Number>; 2],
-    /// The ratio of the last two terms of x at the start: below one they decrease.
+    /// By how much the terms of x, a' and psi' fall per order, at the start and then at the largest
+    /// amplitude evaluated; nothing where none is known.
     pub ratio: Option<f64>,
     /// The largest difference of two integrations, with the digits asked for and with more, among
     /// the times evaluated; nothing while no time but 0 was, 0 where a is an exponential.
@@ -98,9 +102,15 @@ pub struct Motion {
     pub is_delayed: bool,
     /// Whether there is a wall, which the averaged motion does not see: it holds between impacts.
     pub has_wall: bool,
-    orders: Vec<Truncated>,
+    full: Truncated,
+    rest: Rest,
+    /// What the start may be off by, where it was computed from x and x'.
+    start_error: [f64; 2],
     digits: usize,
 }
+
+/// Orders without which nothing is known of the rest.
+const FEWEST: usize = 2;
 
 impl Motion {
     /// The averaged expansion with its start.
@@ -160,50 +170,52 @@ impl Motion {
         let bits = small.prec();
         let order = found.solution.len().saturating_sub(1);
         let float = |value: &Value| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
-        // N, N - 1, N - 2.
-        let mut orders = Vec::new();
-        for n in (0..=order).rev().take(3) {
-            let mut truncated = Truncated::new(found, small, n);
-            truncated.start = match &settings.start {
-                Start::Amplitude(a, psi) => [float(a), float(psi)],
-                Start::State(x, v) => {
-                    let state = [float(x), float(v)];
-                    truncated.invert(&state).ok_or_else(|| Error::NoSuchStart {
-                        problem: problem.name.to_string(),
-                        displacement: x.to_string(),
-                        velocity: v.to_string(),
-                    })?
-                }
-            };
-            orders.push(truncated);
-        }
-        let full = orders.first().ok_or(Error::NoValue)?;
-        let start = full.start.clone();
-        let sizes = [order, order.saturating_sub(1)].map(|n| full.size(n, &start[0]));
-        let ratio = (order > 0 && !sizes[1].is_zero())
-            .then(|| Float::with_val(53, &sizes[0] / &sizes[1]).to_f64());
-        // A rate of order N with what the last orders add to it, N, N - 1, N - 2 in `rates`.
-        let number = |rates: &[Option<[Float; 2]>], k: usize| {
-            let x = &rates.first()?.as_ref()?[k];
-            let apart = |i: usize, j: usize| {
-                let (a, b) = (rates.get(i)?.as_ref()?, rates.get(j)?.as_ref()?);
-                Some(Float::with_val(53, &a[k] - &b[k]).abs())
-            };
-            let quotient = ratio.filter(|ratio| *ratio < 1.0 && order > 1);
-            let balls = Balls::new(bits);
-            match quotient.zip(apart(0, 1)) {
-                Some((quotient, last)) => {
-                    let before = apart(1, 2).unwrap_or_else(|| Float::new(53)) * quotient;
-                    estimated(&balls.from_parts(x, &last.max(&before)), settings.digits)
-                }
-                None => plain(&balls.from_parts(x, &Float::new(53)), settings.digits, false),
+        let mut full = Truncated::new(found, small, order);
+        full.start = match &settings.start {
+            Start::Amplitude(a, psi) => [float(a), float(psi)],
+            Start::State(x, v) => {
+                let state = [float(x), float(v)];
+                full.invert(&state).ok_or_else(|| Error::NoSuchStart {
+                    problem: problem.name.to_string(),
+                    displacement: x.to_string(),
+                    velocity: v.to_string(),
+                })?
             }
         };
-        let rates: Vec<_> = orders.iter().map(Truncated::linear).collect();
-        let is_linear = rates.first().is_some_and(Option::is_some);
-        let linear = is_linear.then(|| [number(&rates, 0), number(&rates, 1)]);
-        let rates: Vec<_> = orders.iter().map(|order| Some(order.rate(&start[0]))).collect();
-        let rate_numbers = [number(&rates, 0), number(&rates, 1)];
+        let start = full.start.clone();
+        let is_autonomous = found.forcing.is_zero() && found.delays.is_empty();
+        let is_reversible = is_autonomous && is_reversible(&problem.equation);
+        let rest = Rest::new(found, small, is_reversible);
+        let near = looked_at(std::iter::once(start[0].clone()));
+        let ratio = Some(rest.quotient(&full, &near)).filter(|q| !q.is_nan());
+        let known = ratio.filter(|q| *q < 1.0 && order >= FEWEST);
+        let errors = known.map(|q| rest.rates(q, &near));
+        let number = |rates: &[Float; 2], k: usize, scale: f64| {
+            let balls = Balls::new(bits);
+            match errors {
+                Some(errors) => {
+                    let error = Float::with_val(53, errors[k] * if k == 0 { scale } else { 1.0 });
+                    estimated(&balls.from_parts(&rates[k], &error), settings.digits)
+                }
+                None => {
+                    plain(&balls.from_parts(&rates[k], &Float::new(53)), settings.digits, false)
+                }
+            }
+        };
+        let numbers =
+            |rates: [Float; 2], scale: f64| [number(&rates, 0, scale), number(&rates, 1, scale)];
+        let linear = full.linear().map(|rates| numbers(rates, 1.0));
+        let rate_numbers = numbers(full.rate(&start[0]), start[0].to_f64());
+        let start_error = match (&settings.start, ratio) {
+            (Start::Amplitude(..), _) => [0.0; 2],
+            (Start::State(..), None) => [f64::INFINITY; 2],
+            (Start::State(..), Some(q)) => {
+                // x and x'/omega_0 are off by about the rest of x; the turn to a and a psi adds
+                // at most a factor sqrt 2.
+                let error = 2.0 * rest.displacement(&full, q, &near);
+                [error, if start[0].is_zero() { 0.0 } else { error / start[0].to_f64() }]
+            }
+        };
         Ok(Self {
             at,
             order,
@@ -215,7 +227,9 @@ impl Motion {
             ended: None,
             is_delayed: !found.delays.is_empty(),
             has_wall: problem.impact.is_some(),
-            orders,
+            full,
+            rest,
+            start_error,
             digits: settings.digits,
         })
     }
@@ -223,8 +237,7 @@ impl Motion {
     /// a' and psi' of order N at the start.
     #[must_use]
     pub fn rates(&self) -> [f64; 2] {
-        let rate = |order: &Truncated| order.rate(&order.start[0]).map(|x| x.to_f64());
-        self.orders.first().map_or([f64::NAN; 2], rate)
+        self.full.rate(&self.full.start[0]).map(|x| x.to_f64())
     }
 
     /// 2 pi over psi' at the start.
@@ -233,60 +246,66 @@ impl Motion {
         std::f64::consts::TAU / self.rates()[1]
     }
 
-    /// Whether the last terms say something about the rest: those of x decrease at the start, and
-    /// there are three orders (corrections of a or psi alone may vanish at every other order).
+    /// Whether the known terms say something about the rest: they decrease, and there are two of
+    /// them.
     #[must_use]
     pub fn has_estimate(&self) -> bool {
-        self.orders.len() > 2 && self.ratio.is_some_and(|ratio| ratio < 1.0)
+        self.order >= FEWEST && self.ratio.is_some_and(|ratio| ratio < 1.0)
     }
 
     /// The motion at times in increasing order. Times that the integration does not reach, because
     /// it ends or `goes_on` says no (asked at every step), are left out.
     pub fn at(&mut self, times: &[Value], goes_on: &mut dyn FnMut() -> bool) -> Vec<Moment> {
-        let Some(full) = self.orders.first() else { return Vec::new() };
-        let bits = full.start[0].prec();
+        let bits = self.full.start[0].prec();
         let float = |value: &Value| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
         let floats: Vec<Float> = times.iter().map(float).collect();
-        let mut flow = |order| Flow::new(order, &floats, self.digits, goes_on);
-        let flows: Vec<Flow> = self.orders.iter().map(&mut flow).collect();
-        self.ended = flows.first().and_then(|flow| flow.ended.clone());
+        let mut flow = |system: &Truncated| Flow::new(system, &floats, self.digits, goes_on);
+        let found = flow(&self.full);
+        let amplitudes = found.states.iter().flatten().map(|state| state.values[0].clone());
+        let near = looked_at(amplitudes.chain(std::iter::once(self.full.start[0].clone())));
+        self.ratio = Some(self.rest.quotient(&self.full, &near)).filter(|q| !q.is_nan());
+        let quotient = self.ratio.unwrap_or(1.0);
+        let rest_of_x = self.rest.displacement(&self.full, quotient, &near);
+        self.ended = found.ended.clone();
+        // With a' too large and too small by the estimated rest.
+        let mut changed = Vec::new();
+        if let Some(q) = self.ratio.filter(|_| self.has_estimate()) {
+            let [of_a, of_psi] = self.rest.rates(q, &near);
+            for sign in [1.0, -1.0] {
+                let mut system = self.full.changed([sign * of_a, of_psi]);
+                system.start[0] += sign * self.start_error[0];
+                system.start[1] += self.start_error[1];
+                changed.push(flow(&system));
+            }
+        }
         let mut list = Vec::new();
         // Errors accumulate: the largest difference so far.
         let mut truncation = [0.0f64; 2];
-        let quotient = self.ratio.unwrap_or(1.0).min(1.0);
         for (i, time) in times.iter().enumerate() {
-            let states: Vec<Option<&flow::State>> =
-                flows.iter().map(|flow| flow.states.get(i)?.as_ref()).collect();
-            let Some(Some(state)) = states.first() else { continue };
+            let Some(Some(state)) = found.states.get(i) else { continue };
             if !floats[i].is_zero() {
                 let known = self.integration_error.unwrap_or(0.0);
                 self.integration_error = Some(state.errors.iter().copied().fold(known, f64::max));
             }
-            let mut differs = |k: usize| {
-                let value = |j: usize| states.get(j).copied().flatten().map(|s| &s.values[k]);
-                let apart = |a: usize, b: usize| {
-                    let both = value(a).zip(value(b));
-                    both.map(|(a, b)| Float::with_val(53, a - b).to_f64().abs())
-                };
-                let last = apart(0, 1).unwrap_or(f64::INFINITY);
-                let before = apart(1, 2).unwrap_or(0.0) * quotient;
-                truncation[k] = truncation[k].max(last).max(before);
-                truncation[k]
-            };
-            let errors = [differs(0), differs(1)];
-            let full = &self.orders[0];
-            let at = full.value(&state.values, &floats[i]);
-            let [of_amplitude, of_phase] = full.sensitivity(&state.values[0]);
-            let sizes = [self.order, self.order.saturating_sub(1)]
-                .map(|n| full.size(n, &state.values[0]).to_f64());
-            let last = sizes[0].max(sizes[1] * quotient * quotient);
-            let numeric = [state.errors[0], state.errors[1]];
-            let total = [errors[0] + numeric[0], errors[1] + numeric[1]];
-            let of_x = of_amplitude * total[0] + of_phase * total[1] + last;
+            for (k, truncation) in truncation.iter_mut().enumerate() {
+                for flow in &changed {
+                    let other = flow.states.get(i).and_then(Option::as_ref);
+                    let apart = other.map_or(f64::INFINITY, |other| {
+                        let difference = &other.values[k] - &state.values[k];
+                        Float::with_val(53, difference).to_f64().abs()
+                    });
+                    *truncation = truncation.max(apart);
+                }
+            }
+            let [a, _] = &state.values;
+            let at = self.full.value(&state.values, &floats[i]);
+            let [of_amplitude, of_phase] = self.full.sensitivity(a);
+            let total = [0, 1].map(|k| truncation[k] + state.errors[k]);
+            let of_x = of_amplitude * total[0] + of_phase * total[1] + rest_of_x;
             let quantity = |x: &Float, error: f64| self.quantity(x, error);
             list.push(Moment {
                 time: time.clone(),
-                amplitude: quantity(&state.values[0], total[0]),
+                amplitude: quantity(a, total[0]),
                 phase: quantity(&state.values[1], total[1]),
                 displacement: quantity(&at, of_x),
             });
@@ -309,20 +328,19 @@ impl Motion {
     #[must_use]
     pub fn verdict(&self) -> String {
         let mut parts = vec![format!("averaged to order {}", self.order)];
-        let ratio = self.ratio.filter(|_| self.orders.len() > 2);
-        parts.push(match ratio {
+        parts.push(match self.ratio {
+            _ if self.order < FEWEST => "no estimate from so few orders".to_owned(),
+            Some(0.0) => "all orders known vanish".to_owned(),
             Some(ratio) if ratio < 1.0 => format!(
-                "the error of breaking off is estimated by the last two orders (the last term of \
-                 x is {ratio:.1e} of the one before), the series being asymptotic"
+                "the error of breaking off is estimated: the terms fall by {ratio:.1e} per order, \
+                 the series being asymptotic"
             ),
-            Some(ratio) => format!(
-                "no estimate: the last term of x is {ratio:.1} times the one before, the terms do \
-                 not decrease"
-            ),
-            None if self.orders.len() > 2 => "no estimate: the last terms vanish".to_owned(),
-            None => "no estimate from so few orders".to_owned(),
+            Some(ratio) => {
+                format!("no estimate: the terms do not decrease, they grow by {ratio:.1} per order")
+            }
+            None => "no estimate of the error of breaking off".to_owned(),
         });
-        parts.push(if self.orders.first().is_some_and(|full| full.linear().is_some()) {
+        parts.push(if self.full.linear().is_some() {
             "a is an exponential, without an error of integration".to_owned()
         } else {
             match self.integration_error {

@@ -76,6 +76,18 @@ impl Truncated {
         }
     }
 
+    /// The same with other rates: `rest` is added to a'/a and psi'.
+    pub(super) fn changed(&self, rest: [f64; 2]) -> Self {
+        let mut changed = self.clone();
+        for ((rates, rest), exponent) in changed.rates.iter_mut().zip(rest).zip([1, 0]) {
+            match rates.iter_mut().find(|(n, _)| *n == exponent) {
+                Some((_, known)) => *known += rest,
+                None => rates.push((exponent, Float::with_val(self.bits, rest))),
+            }
+        }
+        changed
+    }
+
     /// R and psi' where a' = R a and psi' is free of a.
     pub(super) fn linear(&self) -> Option<[Float; 2]> {
         let only = |terms: &Terms, exponent: i32| {
