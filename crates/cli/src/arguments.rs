@@ -173,7 +173,7 @@ pub enum Resum {
     Conformal,
     /// Pade approximants of the Borel transform.
     BorelPade,
-    /// The least error estimate of all.
+    /// The least error estimate, or a simpler method within a factor ten of it.
     Auto,
 }
 
@@ -314,7 +314,7 @@ pub enum Route {
 /// With --out DIR the report and its data are written into that directory.
 #[derive(Debug, Args)]
 pub struct PaperOptions {
-    /// Lower orders, a few seconds.
+    /// Lower orders, some ten seconds.
     #[arg(long)]
     pub quick: bool,
 }
@@ -348,13 +348,15 @@ pub struct SimulateOptions {
     /// The end.
     #[arg(long, value_name = "T", conflicts_with_all = ["periods", "impacts"])]
     pub until: Option<String>,
-    /// The end: periods of the force, or of the motion (maxima of x) without one.
+    /// The end: periods of the force, or without one maxima of x after the start; with --sweep the
+    /// points kept after --skip.
     #[arg(long, value_name = "N", conflicts_with = "impacts")]
     pub periods: Option<u32>,
     /// The end: the N-th impact.
     #[arg(long, value_name = "N")]
     pub impacts: Option<u32>,
-    /// Times at which the state is given; by default 21 of equal distance.
+    /// Times at which the state is given; by default 21 of equal distance. Without an end the last of
+    /// them is the end.
     #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
     pub times: Option<String>,
     /// The section whose points are listed.

@@ -185,6 +185,13 @@ pub fn load(name: &str) -> Result<Loaded, Failure> {
         for name in &file.unused {
             note(format!("parameter {name} is declared and occurs nowhere"));
         }
+        if file.equation.to_lowercase().contains("taylor") {
+            note(
+                "taylor(...) is a polynomial: all results are those of the polynomial, not of the \
+                 function"
+                    .to_owned(),
+            );
+        }
         return Ok(Loaded { problem: file.problem.clone(), file: Some(file) });
     }
     problem(name).map(|problem| Loaded { problem, file: None })

@@ -137,6 +137,9 @@ fn integrate(
             pair => pair?,
         };
         align(&mut motion, &mut finer);
+        for motion in [&mut motion, &mut finer] {
+            motion.points.drain(..plan.skip.min(motion.points.len()));
+        }
         if !session.goes_on() {
             return Err(stopped(session));
         }

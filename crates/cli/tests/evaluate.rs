@@ -427,3 +427,27 @@ fn a_growth_rate_without_a_digit_is_said_to_have_none() {
     let drifting = ["van-der-pol", "--normalisation", "free", "--set", "eps=1/10"];
     assert!(json(&drifting)["growth_rate"].is_null());
 }
+
+/// x'' + x + eps (x^2 + x'^2) = 0 has B_3 = B_4 = B_5 = 0: the last orders add nothing to psi' = 1 -
+/// eps^2 a^2, and the sixth does.
+#[test]
+fn orders_that_vanish_are_no_error_of_zero() {
+    let path = std::env::temp_dir().join(format!("lindstedt-{}-vanish.toml", std::process::id()));
+    let file = "name = \"vanish\"\nequation = \"x'' + x + eps*(x^2 + x'^2) = 0\"\ncondition = \"free-amplitude\"\n";
+    std::fs::write(&path, file).unwrap();
+    let rate = |order: &str| {
+        let arguments = [path.to_str().unwrap(), "--order", order, "--start", "1,0"];
+        let found = json(&[&arguments[..], &["--set", "eps=1/10", "--digits", "20"]].concat());
+        let number = &found["rates"]["phase_number"];
+        let text = |key: &str| number[key].as_str().unwrap().parse::<f64>().unwrap();
+        (text("decimal"), text("error"), found["rates"]["amplitude_number"]["error"].clone())
+    };
+    let (truth, _, drift) = rate("10");
+    // It can be run backwards: a' = 0.
+    assert_eq!(drift.as_str().unwrap().parse::<f64>().unwrap(), 0.0);
+    assert!((truth - 0.99).abs() > 1e-7, "{truth}");
+    for order in ["2", "3", "4", "5", "6"] {
+        let (value, error, _) = rate(order);
+        assert!((value - truth).abs() <= error && error < 0.1, "{order}: {value} +- {error}");
+    }
+}

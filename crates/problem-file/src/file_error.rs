@@ -131,7 +131,7 @@ impl FileError {
             FileErrorKind::HalfAStart => "give both, or a history alone".into(),
             FileErrorKind::Range { .. } => "NAME=LO..HI:COUNT, as in \"gamma=1/2..1:100\"".into(),
             FileErrorKind::Undeclared { .. } => "declare it under [parameters]".into(),
-            _ => "see `lindstedt problems --show duffing` for a complete file".into(),
+            _ => "see `lindstedt problems --show vibro-impact` for a complete file".into(),
         }
     }
 

@@ -31,6 +31,8 @@ pub struct Plan {
     /// Times of the samples, in order.
     pub times: Vec<Quantity>,
     pub section: Option<Section>,
+    /// Points of the section left out at the beginning.
+    pub skip: usize,
     /// Whether the line of a figure is kept.
     pub drawn: bool,
     /// Why the motion ends before it should.

@@ -119,6 +119,7 @@ pub fn plan(options: &SimulateOptions, setup: Setup) -> Result<Plan, Failure> {
         Some(period) => End::Time(times(period, n)),
         None => End::Maxima(n),
     };
+    let asked = options.times.as_deref().map_or(Ok(Vec::new()), |text| range("times", text))?;
     let end = match (&options.until, options.periods, options.impacts) {
         (Some(text), ..) => End::Time(number("until", text)?),
         (_, Some(n), _) => periods(n),
@@ -126,6 +127,10 @@ pub fn plan(options: &SimulateOptions, setup: Setup) -> Result<Plan, Failure> {
             return usage("impacts", "there is no wall; use --until or --periods");
         }
         (.., Some(n)) => End::Impacts(n),
+        // As long as it takes.
+        _ if asked.last().is_some_and(|last| last.float(64) > 0) => {
+            End::Time(asked.last().cloned().unwrap_or_else(|| Quantity::from(0)))
+        }
         _ if setup.wall => End::Impacts(IMPACTS),
         _ if setup.forcing.is_some() => periods(PERIODS),
         _ => End::Time(Quantity::from(i64::from(PERIODS))),
@@ -137,8 +142,13 @@ pub fn plan(options: &SimulateOptions, setup: Setup) -> Result<Plan, Failure> {
     if empty {
         return usage("until", "the end is not after the start");
     }
+    if let (Some(last), End::Time(time)) = (asked.last(), &end)
+        && last.float(64) > time.float(64)
+    {
+        return usage("times", "times go on after the end: --until, --periods");
+    }
     let sampled = match (&options.times, &end) {
-        (Some(text), _) => range("times", text)?,
+        (Some(_), _) => asked,
         (None, End::Time(time)) => (0..=INTERVALS).map(|k| part(time, k)).collect(),
         _ => Vec::new(),
     };
@@ -147,7 +157,8 @@ pub fn plan(options: &SimulateOptions, setup: Setup) -> Result<Plan, Failure> {
     }
     let section = section(options, &setup)?;
     let drawn = !options.plot.is_empty();
-    Ok(Plan { setup, end, times: sampled, section, drawn, cut: None })
+    let skip = options.skip.unwrap_or(0) as usize;
+    Ok(Plan { setup, end, times: sampled, section, skip, drawn, cut: None })
 }
 
 fn scaled(q: &Quantity, factor: Rational) -> Quantity {

@@ -55,7 +55,10 @@ impl Diagram {
         };
         let name = name.trim().to_owned();
         if !setup.sweepable.contains(&name) {
-            let hint = format!("it can be one of: {}", setup.sweepable.join(", "));
+            let hint = format!(
+                "it can be one of: {}; what the times of section, force or delays depend on is fixed",
+                setup.sweepable.join(", ")
+            );
             return Err(usage(format!("{name:?} cannot be varied here"), &hint));
         }
         if options.until.is_some() || options.times.is_some() {

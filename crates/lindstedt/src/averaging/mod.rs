@@ -4,7 +4,7 @@ mod coefficients;
 pub(crate) mod numbers;
 mod values;
 
-use crate::derivation::check_delays;
+use crate::derivation::{check_delays, unknown_parameter};
 use crate::number::rational;
 use crate::{Error, Number, Progress, Value};
 use coefficients::{Coefficients, with_angles};
@@ -214,11 +214,7 @@ impl<'a> Task<'a> {
         let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
         if let Some(name) = settings.parameters.keys().find(|name| !known.contains(&name.as_str()))
         {
-            return Err(Error::UnknownParameter {
-                problem: problem.name.to_string(),
-                name: name.clone(),
-                known: known.join(", "),
-            });
+            return Err(unknown_parameter(problem, name));
         }
         check_delays(&problem.equation, &settings.parameters)?;
         let mut names = BTreeSet::new();

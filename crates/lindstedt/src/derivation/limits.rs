@@ -12,16 +12,21 @@ use std::collections::BTreeMap;
 const NEGATIVE: &str = "amplitude > 0 (a start at -a is a start at a of the equation with -x in place of \
                         x, which is the same equation if it is odd)";
 
+/// The parameters there are, in place of one that is none.
+pub(crate) fn unknown_parameter(problem: &Problem, name: &str) -> Error {
+    let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
+    let mut known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    if *name == *problem.small {
+        known += &format!(" ({name} is the small parameter: no coefficient depends on it)");
+    }
+    Error::UnknownParameter { problem: problem.name.to_string(), name: name.to_owned(), known }
+}
+
 /// Names and domains of the parameters given.
 pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> Result<(), Error> {
     let unknown = given.keys().find(|name| problem.parameters.iter().all(|c| c.name != **name));
     if let Some(name) = unknown {
-        let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
-        return Err(Error::UnknownParameter {
-            problem: problem.name.to_string(),
-            name: name.clone(),
-            known: known.join(", "),
-        });
+        return Err(unknown_parameter(problem, name));
     }
     // The values of the card are no better than those given: a file may hold any. What is no
     // number ("+") is no quantity.

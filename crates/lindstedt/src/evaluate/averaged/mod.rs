@@ -264,8 +264,6 @@ impl Motion {
         let amplitudes = found.states.iter().flatten().map(|state| state.values[0].clone());
         let near = looked_at(amplitudes.chain(std::iter::once(self.full.start[0].clone())));
         self.ratio = Some(self.rest.quotient(&self.full, &near)).filter(|q| !q.is_nan());
-        let quotient = self.ratio.unwrap_or(1.0);
-        let rest_of_x = self.rest.displacement(&self.full, quotient, &near);
         self.ended = found.ended.clone();
         // With a' too large and too small by the estimated rest.
         let mut changed = Vec::new();
@@ -300,6 +298,9 @@ impl Motion {
             let [a, _] = &state.values;
             let at = self.full.value(&state.values, &floats[i]);
             let [of_amplitude, of_phase] = self.full.sensitivity(a);
+            let here = looked_at(std::iter::once(a.clone()));
+            let quotient = self.ratio.unwrap_or(1.0);
+            let rest_of_x = self.rest.displacement(&self.full, quotient, &here);
             let total = [0, 1].map(|k| truncation[k] + state.errors[k]);
             let of_x = of_amplitude * total[0] + of_phase * total[1] + rest_of_x;
             let quantity = |x: &Float, error: f64| self.quantity(x, error);
