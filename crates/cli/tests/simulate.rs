@@ -453,3 +453,36 @@ fn a_power_near_minus_one_is_refused() {
     assert_eq!(output.status.code(), Some(4), "{message}");
     assert!(message.contains("too near an integer"), "{message}");
 }
+
+/// The end is the last time asked for where no other is given; `--skip` leaves out the first points.
+#[test]
+fn times_and_points_asked_for() {
+    let found = json(&["duffing", "--times", "0..50:3", "--digits", "10"]);
+    let samples = found["samples"].as_array().unwrap();
+    assert_eq!(samples.len(), 3);
+    assert!((float(&samples[2]["t"]) - 50.0).abs() < 1e-9, "{samples:?}");
+    let late = run(&["duffing", "--times", "0..50:3", "--until", "5"]);
+    assert_eq!(late.status.code(), Some(2));
+    let strobe = ["stick-slip", "--periods", "5", "--section", "stroboscopic", "--f64"];
+    let points = |more: &[&str]| {
+        let found = json(&[&strobe[..], more].concat());
+        found["section"]["points"].as_array().unwrap().clone()
+    };
+    assert_eq!(points(&["--skip", "3"])[..], points(&[])[3..]);
+}
+
+/// x'' = -1 above a wall at 0 with R = 9/10 from rest at 1: at t = 3 the body flies, 0.761 high, though
+/// the impacts add up at 19 sqrt 2.
+#[test]
+fn a_ball_is_seen_between_its_impacts() {
+    let path = std::env::temp_dir().join(format!("lindstedt-{}-ball.toml", std::process::id()));
+    let wall = "[impact]\nposition = \"0\"\ncrossing = \"falling\"\nrestitution = \"9/10\"\n";
+    let file = format!("name = \"ball\"\nequation = \"x'' = -1\"\ncondition = []\n{wall}");
+    std::fs::write(&path, file).unwrap();
+    let ball = [path.to_str().unwrap(), "--state", "1,0", "--digits", "10"];
+    let found = json(&[&ball[..], &["--until", "30", "--times", "3..3:1"]].concat());
+    // The first flight after the impact at sqrt 2 with velocity 9/10 sqrt 2.
+    let t = 3.0 - 2f64.sqrt();
+    let truth = 0.9 * 2f64.sqrt() * t - t * t / 2.0;
+    assert!((float(&found["samples"][0]["x"]) - truth).abs() < 1e-9, "{}", found["samples"]);
+}
