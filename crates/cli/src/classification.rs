@@ -289,8 +289,25 @@ pub fn check(
         let reasons = listed.flat_map(|(_, against)| against);
         reasons.filter(|r| !matches!(r, Reason::Condition | Reason::OutsideDomain(_)))
     };
+    let small = &file.problem.small;
+    let nothing_small = !file.problem.equation.contains(&Expression::Small);
+    let marks = format!("a factor {small} marks the small terms; `simulate` takes it as it is");
     let Some(reason) = against(Method::LindstedtPoincare).next() else {
-        return Ok(());
+        if condition.is_some() {
+            return Ok(());
+        }
+        let (what, hint) = if nothing_small {
+            (reason_text(&Reason::NoSmallParameter, small), marks)
+        } else {
+            let hint = "\"initial-amplitude\", \"limit-cycle\", \"free-amplitude\"";
+            ("condition = [] asks for no expansion".to_owned(), hint.to_owned())
+        };
+        return Err(Failure {
+            exit: NO_ANSWER,
+            code: "no-method",
+            message: format!("{}: {what}", place(file, path, None)),
+            hint,
+        });
     };
     if condition == Some(Condition::FreeAmplitude) {
         return Ok(());
@@ -304,7 +321,9 @@ pub fn check(
         exit: NO_ANSWER,
         code: "no-method",
         message: format!("{at}: {}", reason_text(reason, &file.problem.small)),
-        hint: if parts.takes(Method::Melnikov) {
+        hint: if nothing_small && matches!(reason, Reason::NotWeaklyNonlinear(_)) {
+            marks
+        } else if parts.takes(Method::Melnikov) {
             "Melnikov's method takes equations of this kind: lindstedt threshold FILE".into()
         } else if *reason == Reason::UnknownFrequency {
             "--set NAME=VALUE gives it one".into()

@@ -2,6 +2,7 @@
 
 mod case;
 mod chaos;
+mod column;
 mod figure;
 mod growth;
 mod history;
@@ -23,7 +24,6 @@ use motion::{Motion, Plan, align};
 use report::Answer;
 use serde_json::json;
 use setup::{Setup, Start};
-use std::fmt::Write;
 
 /// Digits more, in which the second integration is made.
 const MORE: u32 = 8;
@@ -67,6 +67,9 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
         None
     };
     session.done();
+    if plan.skip > 0 && motion.points.is_empty() {
+        output::warn(&format!("--skip {} leaves out every point of the section", plan.skip));
+    }
     let finer = finer.as_ref().unwrap_or(&motion);
     let answer = Answer { plan: &plan, motion: &motion, finer, digits, chaotic, half };
     let text = match session.format() {
@@ -228,7 +231,7 @@ fn bifurcation(
     let text = if session.format() == Format::Json {
         let at: serde_json::Map<_, _> =
             diagram.setup.at.iter().map(|(n, v)| (n.clone(), v.clone().into())).collect();
-        let column = |line: &sweep::Line| json!({"value": line.value, "exact": line.exact, "points": line.points, "failure": line.failure});
+        let column = |line: &column::Line| json!({"value": line.value, "exact": line.exact, "points": line.points, "failure": line.failure});
         let result = json!({
             "problem": diagram.setup.name,
             "at": at,
@@ -247,12 +250,7 @@ fn bifurcation(
         });
         format!("{result:#}\n")
     } else {
-        let mut text = format!("{}: {verdict}\n", diagram.setup.name);
-        for line in diagram.lines.iter().filter(|line| line.failure.is_some()) {
-            let reason = line.failure.as_deref().unwrap_or_default();
-            let _ = writeln!(text, "  {} = {}: {reason}", diagram.name, line.exact);
-        }
-        text
+        diagram.text(&verdict)
     };
     output::write(session, &text)?;
     if complete {

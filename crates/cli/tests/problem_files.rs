@@ -230,7 +230,11 @@ const FILES: [(i32, &str, &str); 34] = [
     (2, "name = 3\nequation = \"x'' + x + eps*x^3\"", "invalid type"),
     (2, "name = 'a'\nequation = 7", "invalid type"),
     (2, "name = 'a\nequation = \"x''\"", "invalid"),
-    (2, "name = 'a'\nequation = \"x'' + x\"", "the small parameter eps does not occur"),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x\"\ncondition = 'limit-cycle'",
+        "the small parameter eps does not occur",
+    ),
     (2, "name = 'a'\nsmall = 'mu'\nequation = \"x'' + x + eps*x^3\"", "not declared"),
     (2, "name = 'a'\nsmall = 'x'\nequation = \"x'' + x\"", "is not a name for a small parameter"),
     (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\ncondition = 'none'", "condition cannot be"),

@@ -210,7 +210,7 @@ fn a_diagram_doubles_its_period() {
 
 #[test]
 fn refusals_have_their_exit_code() {
-    let cases: [(&[&str], i32); 25] = [
+    let cases: [(&[&str], i32); 28] = [
         (&["nonsense"], 2),
         // The lower branch of orbit O3 passes through the wall.
         (&["vibro-impact", "--set", "branch=-", "--impacts", "3"], 3),
@@ -231,7 +231,11 @@ fn refusals_have_their_exit_code() {
         (&["duffing", "--resume", "x"], 2),
         (&["duffing", "--plot", "x.png"], 2),
         (&["duffing", "--until", "1", "--plot", "/nonexistent/x.svg"], 5),
-        (&["stick-slip", "--sweep", "omega=1..2:3"], 2),
+        (&["stick-slip", "--sweep", "omega=0..2:3"], 3),
+        (&["duffing", "--skip", "3"], 2),
+        (&["duffing", "--figure", "phase"], 2),
+        // x' jumps where the section would lie.
+        (&["vibro-impact", "--section", "stroboscopic"], 2),
         (&["stick-slip", "--sweep", "gamma=1..0:3"], 2),
         (&["stick-slip", "--set", "omega=0"], 3),
         (&["vibro-impact", "--set", "c=3"], 3),
@@ -469,6 +473,35 @@ fn times_and_points_asked_for() {
         found["section"]["points"].as_array().unwrap().clone()
     };
     assert_eq!(points(&["--skip", "3"])[..], points(&[])[3..]);
+}
+
+/// A column of a sweep is the section of one motion: at impacts the state just before, stroboscopically
+/// with the period that belongs to the value, also of the frequency of the force itself.
+#[test]
+fn a_column_is_the_section_of_one_motion() {
+    let pairs = |list: &Value| -> Vec<[f64; 2]> {
+        let pair = |p: &Value| {
+            let all: Vec<f64> = p.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+            [all[all.len() - 2], all[all.len() - 1]]
+        };
+        list.as_array().unwrap().iter().map(pair).collect()
+    };
+    let walled = ["vibro-impact", "--state", "-0.5,0.1", "--section", "impact", "--impacts", "4"];
+    let forced = ["stick-slip", "--section", "stroboscopic", "--periods", "4"];
+    for (common, name, values) in
+        [(&walled[..], "A", ["0", "1/10"]), (&forced[..], "omega", ["1", "3"])]
+    {
+        let sweep = format!("{name}={}..{}:2", values[0], values[1]);
+        let swept = json(&[common, &["--skip", "0", "--sweep", &sweep]].concat());
+        for (value, column) in values.iter().zip(swept["sweep"]["columns"].as_array().unwrap()) {
+            let one = json(&[common, &["--set", &format!("{name}={value}")]].concat());
+            let (one, column) = (pairs(&one["section"]["points"]), pairs(&column["points"]));
+            assert_eq!((one.len(), column.len()), (4, 4));
+            for ([x, v], [y, w]) in one.into_iter().zip(column) {
+                assert!((x - y).abs() < 1e-9 && (v - w).abs() < 1e-9, "{name}={value}: {v} {w}");
+            }
+        }
+    }
 }
 
 /// x'' = -1 above a wall at 0 with R = 9/10 from rest at 1: at t = 3 the body flies, 0.761 high, though

@@ -162,7 +162,7 @@ fn walls() {
     assert!((float(&events[0]["v_after"]) - 0.8 * 0.75f64.sqrt()).abs() < 1e-14, "{}", events[0]);
     // Sweeps of the wall's own parameter, fixed ones, ranges of the file.
     let (code, error) = refusal(&[&path, "--sweep", "k"]);
-    assert!(code == Some(2) && error.contains("is not NAME=LO..HI:COUNT"), "{error}");
+    assert!(code == Some(2) && error.contains("gives no range for k"), "{error}");
     let ranged = text.replace("condition", "swept = ['R=1/2..4/5:3']\nfixed = ['k']\ncondition");
     let path = folder.file("ranged", &ranged);
     let swept = simulate(&[&path, "--sweep", "R", "--skip", "0", "--impacts", "2"]);
@@ -174,6 +174,28 @@ fn walls() {
     assert!(code == Some(3) && error.contains("behind the wall at x = "), "{error}");
     let (code, error) = refusal(&[&path, "--set", "R=2"]);
     assert!(code == Some(3) && error.contains("restitution"), "{error}");
+}
+
+/// An equation without a small parameter moves as it is: x'^2/2 - cos x = -cos 2. Expansions say what they
+/// miss.
+#[test]
+fn without_a_small_parameter() {
+    let folder = Folder::new("plain");
+    let file = |force: &str| format!("name = 'plain'\nequation = \"x'' + {force} = 0\"\n");
+    let found = simulate(&[&folder.file("pendulum", &file("sin(x)")), "--until", "7"]);
+    let [x, v] = ["x", "v"].map(|name| float(&found["final"][name]));
+    assert!((v * v / 2.0 - x.cos() + 2f64.cos()).abs() < 1e-14, "{x} {v}");
+    for (force, reason) in
+        [("x", "the small parameter eps does not occur"), ("x + x^3", "x^3 has no factor eps")]
+    {
+        let path = folder.file("bare", &file(force));
+        for verb in ["derive", "evaluate", "verify"] {
+            let output = lindstedt(&[verb, "--quiet", &path]);
+            let error = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(3), "{error}");
+            assert!(error.contains(reason) && error.contains("marks the small terms"), "{error}");
+        }
+    }
 }
 
 /// x'' + x = -m sign x' from (1, 0), m = 3/10: turning points -2/5 and, |x| > m no more after

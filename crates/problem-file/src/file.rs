@@ -291,7 +291,15 @@ fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {
     };
     let known = "initial-amplitude, fundamental-amplitude, limit-cycle, free-amplitude";
     let conditions = match &schema.condition {
-        None => vec![usual_condition(&equation)],
+        None => match usual_condition(&equation) {
+            // Nothing to expand in: for the time domain.
+            Condition::InitialAmplitude | Condition::LimitCycle
+                if !equation.contains(&Expression::Small) =>
+            {
+                Vec::new()
+            }
+            usual => vec![usual],
+        },
         Some(list) => {
             let one =
                 |word: &String| reader.word("condition", word, list.span(), &CONDITIONS, known);

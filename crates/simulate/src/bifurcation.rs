@@ -50,6 +50,9 @@ pub struct DiagramSettings<E> {
     pub start: Vec<E>,
     /// Where the state is looked at.
     pub section: Section<E>,
+    /// Columns with a stroboscopic section of their own: one period each, where the frequency of
+    /// the force varies; empty where `section` is that of every column.
+    pub periods: Vec<E>,
     /// Points thrown away.
     pub transient: u32,
     /// Points kept.
@@ -102,6 +105,7 @@ pub struct Column<E> {
 ///     time: 0.0,
 ///     start: vec![0.0, 0.0],
 ///     section: Section::Period(2.0 * std::f64::consts::PI),
+///     periods: Vec::new(),
 ///     transient: 12,
 ///     kept: 1,
 ///     follow: false,
@@ -164,7 +168,11 @@ fn column<R: Real>(
 ) -> Option<Column<R::Element>> {
     let points = sweep.system(real.clone(), index)?;
     let points = match points {
-        Ok(system) => collect(&system, settings, start, tick).transpose()?,
+        Ok(system) => {
+            let own = settings.periods.get(index).map(|period| Section::Period(period.clone()));
+            let section = own.unwrap_or_else(|| settings.section.clone());
+            collect(&system, settings, section, start, tick).transpose()?
+        }
         Err(error) => Err(error),
     };
     Some(Column { index, points })
@@ -175,10 +183,10 @@ type Points<E> = Vec<Point<E>>;
 fn collect<R: Real>(
     system: &System<R>,
     settings: &DiagramSettings<R::Element>,
+    section: Section<R::Element>,
     start: &[R::Element],
     tick: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> Result<Option<Points<R::Element>>, SimulateError> {
-    let section = settings.section.clone();
     let mut map = PoincareMap::new(system, &settings.time, start, section, settings.integration)?;
     let mut points = Vec::new();
     for count in 0..u64::from(settings.transient) + u64::from(settings.kept) {

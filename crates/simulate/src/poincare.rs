@@ -22,7 +22,7 @@ pub enum Section<E> {
         /// Between the others.
         period: E,
     },
-    /// At the events of a surface, the state after the event: impacts for a wall, switchings
+    /// At the events of a surface, the state after the event (and that before it): impacts for a wall, switchings
     /// (entry, release, crossing) for a switch, crossings for a section of the model.
     Events {
         /// The surface: [`Surface::Wall`], [`Surface::Switch`] or [`Surface::Section`].
@@ -39,8 +39,10 @@ pub enum Section<E> {
 pub struct Point<E> {
     /// When.
     pub time: E,
-    /// The states, without the linearisation.
+    /// The states, without the linearisation; after an event.
     pub state: Vec<E>,
+    /// The states just before: others than `state` only at an impact.
+    pub before: Vec<E>,
     /// The signs of the switches; 0: sliding.
     pub modes: Vec<i8>,
     /// The wall that the body rests at.
@@ -137,7 +139,8 @@ impl<'s, R: Real> PoincareMap<'s, R> {
         self.flow.advance_while(&target, tick)?;
         let state = self.flow.state()[..self.flow.system.variables].to_vec();
         let (modes, contact) = (self.flow.modes().to_vec(), self.flow.contact());
-        Ok(Point { time: target, state, modes, contact })
+        let before = state.clone();
+        Ok(Point { time: target, state, before, modes, contact })
     }
 
     fn event(
@@ -172,6 +175,7 @@ impl<'s, R: Real> PoincareMap<'s, R> {
                     waiting.push_back(Point {
                         time: event.time.clone(),
                         state: event.after[..n].to_vec(),
+                        before: event.before[..n].to_vec(),
                         modes: modes.clone(),
                         contact,
                     });

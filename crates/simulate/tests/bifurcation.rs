@@ -16,6 +16,7 @@ fn settings(transient: u32, kept: u32, follow: bool) -> DiagramSettings<f64> {
         time: 0.0,
         start: vec![0.11, 0.05],
         section: Section::Period(std::f64::consts::PI),
+        periods: Vec::new(),
         transient,
         kept,
         follow,

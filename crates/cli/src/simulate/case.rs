@@ -13,7 +13,7 @@ use lindstedt::problem_file::{History, ProblemFile, parse_expression};
 use lindstedt::problems::stick_slip;
 use lindstedt::simulate::{Digits, Model, Parameters, Quantity, Real as _};
 use lindstedt::verify::quantities;
-use rug::{Float, Rational};
+use rug::Rational;
 use std::collections::BTreeMap;
 
 type Given = BTreeMap<String, Value>;
@@ -85,7 +85,11 @@ impl Case<'_> {
             }
             (None, _) => self.start(&problem, &evaluator, &mut remarks),
         };
-        let forcing = self.forcing(&equation, &evaluator)?;
+        let frequency = Excitation::of(&equation).ok().and_then(|force| force.frequency);
+        let forcing = match &frequency {
+            Some(frequency) => evaluator.period(frequency)?.map(Quantity::Float),
+            None => None,
+        };
         let wall = problem.impact.is_some();
         problem.time_domain = None;
         problem.small = small.clone().into();
@@ -122,6 +126,7 @@ impl Case<'_> {
             at,
             start: state,
             forcing,
+            frequency: frequency.map(|frequency| (frequency, small)),
             wall,
             sticks: rubs(&problem.equation),
             orbit: None,
@@ -217,37 +222,11 @@ impl Case<'_> {
         [Quantity::from(2), rest]
     }
 
-    /// The period of the force, where there is one.
-    fn forcing(
-        &self,
-        equation: &Expression,
-        evaluator: &Evaluator<'_>,
-    ) -> Result<Option<Quantity>, Failure> {
-        let Ok(Excitation { frequency: Some(frequency), .. }) = Excitation::of(equation) else {
-            return Ok(None);
-        };
-        let Some(omega) = evaluator.value(&frequency) else { return Ok(None) };
-        if omega > 0 {
-            let pi = Float::with_val(evaluator.bits, rug::float::Constant::Pi);
-            return Ok(Some(Quantity::Float(pi * 2u32 / omega)));
-        }
-        let name = frequency.parameters().join("*");
-        Err(Failure {
-            exit: NO_ANSWER,
-            code: "outside-domain",
-            message: format!("{name} is outside its domain > 0"),
-            hint: String::new(),
-        })
-    }
-
-    /// The parameters on which neither the start nor the period of the force depends, nor what
-    /// was computed for the history.
+    /// The parameters on which neither the start depends, nor what was computed for the history.
     fn sweepable(&self, problem: &Problem, held: &[String]) -> Vec<String> {
         if self.impacting {
             return vec!["A".to_owned(), "B".to_owned()];
         }
-        let frequency = Excitation::of(&problem.equation).ok().and_then(|e| e.frequency);
-        let frequency = frequency.map_or_else(Vec::new, |e| e.parameters());
         let mut mentioned = problem.equation.parameters();
         mentioned.push(problem.small.to_string());
         if let Some(wall) = &problem.impact {
@@ -263,7 +242,7 @@ impl Case<'_> {
                 let bound = ["amplitude", "pi"].contains(&name.as_str())
                     || (linked && *name == *problem.small);
                 let contains = |list: &[String]| list.contains(name);
-                contains(&mentioned) && !contains(&frequency) && !contains(held) && !tied && !bound
+                contains(&mentioned) && !contains(held) && !tied && !bound
             })
             .collect()
     }

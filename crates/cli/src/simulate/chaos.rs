@@ -50,7 +50,7 @@ pub fn wanted(options: &SimulateOptions) -> bool {
 impl Diagnosis {
     pub fn compute(
         options: &SimulateOptions,
-        setup: Setup,
+        mut setup: Setup,
         session: &Session<'_>,
     ) -> Result<Self, Failure> {
         let usage = |message: &str, hint: &str| Failure::usage("chaos", message.to_owned(), hint);
@@ -68,6 +68,13 @@ impl Diagnosis {
         if kept < LEAST {
             let message = format!("{kept} periods tell nothing, at least {LEAST} do");
             return Err(Failure::usage("chaos", message, "--periods 2000"));
+        }
+        if setup.orbit.is_some() {
+            setup.remarks.push(
+                "an unstable orbit is left by rounding errors alone: few periods tell of the orbit, \
+                 many of where the motion ends; --state starts elsewhere"
+                    .to_owned(),
+            );
         }
         let period = setup.forcing.as_ref().map(|q| q.float(53).to_f64());
         let mut diagnosis = Self {

@@ -18,6 +18,22 @@ impl Evaluator<'_> {
         Float::with_val(self.bits, x.into())
     }
 
+    /// 2 pi/frequency; nothing when the frequency has no value.
+    pub fn period(&self, frequency: &Expression) -> Result<Option<Float>, Failure> {
+        let Some(omega) = self.value(frequency) else { return Ok(None) };
+        if omega > 0 {
+            let pi = Float::with_val(self.bits, rug::float::Constant::Pi);
+            return Ok(Some(pi * 2u32 / omega));
+        }
+        let name = frequency.parameters().join("*");
+        Err(Failure {
+            exit: NO_ANSWER,
+            code: "outside-domain",
+            message: format!("{name} is outside its domain > 0"),
+            hint: String::new(),
+        })
+    }
+
     /// f(0) and f'(0); nothing when the expression has a state in it or no value.
     pub fn value_and_rate(&self, e: &Expression) -> Option<[Float; 2]> {
         let constant = |x: Float| [x, self.number(0)];

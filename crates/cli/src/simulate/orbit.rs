@@ -112,6 +112,7 @@ pub fn on_orbit(
         at,
         start: [Quantity::Float(x), Quantity::Float(v)],
         forcing: Some(Quantity::Float(forcing)),
+        frequency: None,
         wall: true,
         sticks: false,
         orbit: Some((period, velocity)),

@@ -10,7 +10,7 @@ use serde_json::{Value as Json, json};
 use std::fmt::Write;
 
 /// Lines of a list that are printed; files have all.
-const PRINTED: usize = 40;
+pub const PRINTED: usize = 40;
 
 /// Title, heading, rows.
 type Table = (&'static str, Vec<&'static str>, Vec<Vec<String>>);

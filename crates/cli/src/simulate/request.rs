@@ -52,6 +52,10 @@ pub fn range(what: &'static str, text: &str) -> Result<Vec<Quantity>, Failure> {
 
 /// What a figure shows where nothing is said.
 pub fn figure(options: &SimulateOptions, setup: &Setup) -> Result<Figure, Failure> {
+    if options.figure.is_some() && options.plot.is_empty() {
+        let message = "a figure needs a file".to_owned();
+        return Err(Failure::usage("figure", message, "--plot FILE.svg"));
+    }
     let usual = match (&options.sweep, options.section) {
         (Some(_), _) => Figure::Bifurcation,
         (None, Some(_)) => Figure::Section,
@@ -75,6 +79,10 @@ pub fn section(options: &SimulateOptions, setup: &Setup) -> Result<Option<Sectio
         None => Section::Velocity,
     };
     let section = options.section.or(wanted.then_some(usual));
+    if section == Some(Section::Stroboscopic) && setup.orbit.is_some() {
+        let message = "the impacts of the orbit come at the times of this section, where x' jumps";
+        return Err(Failure::usage("section", message.to_owned(), "--section impact, or --state"));
+    }
     let reason = match section {
         Some(Section::Stroboscopic) if setup.forcing.is_none() => "no force that gives a period",
         Some(Section::Impact) if !setup.wall => "no wall",
@@ -156,6 +164,9 @@ pub fn plan(options: &SimulateOptions, setup: Setup) -> Result<Plan, Failure> {
         return usage("times", "times begin at 0");
     }
     let section = section(options, &setup)?;
+    if options.skip.is_some() && section.is_none() {
+        return usage("skip", "--skip leaves out points of a section: --section");
+    }
     let drawn = !options.plot.is_empty();
     let skip = options.skip.unwrap_or(0) as usize;
     Ok(Plan { setup, end, times: sampled, section, skip, drawn, cut: None })

@@ -1,11 +1,12 @@
 //! What is integrated: the problem's equation with values, start and history.
 
 use super::case::Case;
+use super::history::Evaluator;
 use super::orbit::on_orbit;
 use crate::failure::Failure;
 use crate::session::{Loaded, load, parameters};
 use crate::start::{Taken, compare};
-use lindstedt::equation::{Condition, Problem};
+use lindstedt::equation::{Condition, Expression, Problem};
 use lindstedt::problem_file::{History, Names, ProblemFile};
 use lindstedt::problems::{stick_slip, vibro_impact};
 use lindstedt::simulate::{Model, Parameters, Quantity};
@@ -25,6 +26,8 @@ pub struct Setup {
     pub start: [Quantity; 2],
     /// The period of the force.
     pub forcing: Option<Quantity>,
+    /// Its frequency in the parameters, where that can be swept, and the small parameter's name.
+    pub frequency: Option<(Expression, String)>,
     /// A wall bounds the motion.
     pub wall: bool,
     /// Dry friction makes the body stick.
@@ -125,6 +128,20 @@ impl Setup {
             setup.keep_to(file);
         }
         Ok(setup)
+    }
+
+    /// The period of the force where the parameter has this value, if it is one on which the
+    /// frequency depends.
+    pub fn period_at(&self, name: &str, value: &Quantity) -> Option<Result<f64, Failure>> {
+        let (frequency, small) = self.frequency.as_ref()?;
+        if !frequency.parameters().iter().any(|parameter| parameter == name) {
+            return None;
+        }
+        let mut parameters = self.parameters.clone();
+        parameters.set(name, value.clone());
+        let evaluator = Evaluator { parameters: &parameters, small, bits: 64 };
+        let period = evaluator.period(frequency).transpose()?;
+        Some(period.map(|period| period.to_f64()))
     }
 
     /// What a file says about its parameters and its questions.

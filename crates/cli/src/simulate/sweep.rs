@@ -4,7 +4,9 @@
 //! written in order, each with one write, so whatever ends the program leaves whole lines but for
 //! the last; what is not whole is computed again, with the same numbers.
 
+use super::column::Line;
 use super::plot::{BLUE, FINE, chart};
+use super::report::PRINTED;
 use super::request::{range, section};
 use super::setup::Setup;
 use crate::arguments::{Section, SimulateOptions};
@@ -12,11 +14,9 @@ use crate::failure::{FILE, Failure};
 use crate::output::trouble;
 use crate::session::Session;
 use lindstedt::simulate::{
-    self, Column, DiagramSettings, Doubles, Quantity, Settings, Surface, Sweep, diagram,
+    self, DiagramSettings, Doubles, Quantity, Settings, Surface, Sweep, diagram,
 };
 use plotters::prelude::*;
-use rug::Rational;
-use rug::ops::Pow;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::ops::ControlFlow;
@@ -38,25 +38,23 @@ pub struct Diagram {
     pub lines: Vec<Line>,
 }
 
-/// The points over one value, or why there are none.
-pub struct Line {
-    pub value: f64,
-    /// As the user would write it.
-    pub exact: String,
-    pub points: Vec<[f64; 2]>,
-    pub failure: Option<String>,
-}
-
 impl Diagram {
     pub fn read(options: &SimulateOptions, setup: Setup, text: &str) -> Result<Self, Failure> {
         let usage = |message: String, hint: &str| Failure::usage("sweep", message, hint);
         let Some((name, values)) = text.split_once('=') else {
-            return Err(usage(format!("{text:?} is not NAME=LO..HI:COUNT"), "gamma=0.5..1:400"));
+            let name = text.trim();
+            let (message, hint) = if setup.sweepable.iter().any(|known| known == name) {
+                let message = format!("{} gives no range for {name}", setup.name);
+                (message, format!("--sweep {name}=LO..HI:COUNT"))
+            } else {
+                (format!("{text:?} is not NAME=LO..HI:COUNT"), "gamma=0.5..1:400".to_owned())
+            };
+            return Err(usage(message, &hint));
         };
         let name = name.trim().to_owned();
         if !setup.sweepable.contains(&name) {
             let hint = format!(
-                "it can be one of: {}; what the times of section, force or delays depend on is fixed",
+                "it can be one of: {}; what the start or the delays depend on is fixed",
                 setup.sweepable.join(", ")
             );
             return Err(usage(format!("{name:?} cannot be varied here"), &hint));
@@ -91,7 +89,7 @@ impl Diagram {
         let ends = ends.map(|q| q.map_or(f64::NAN, |q| q.float(64).to_f64()));
         let start = self.setup.start.each_ref().map(|q| q.float(64).to_f64());
         format!(
-            "# lindstedt bifurcation 1: {} {}; {} = {:?}..{:?}:{}; start {start:?}; {:?}; skip {}, keep {}; x,v per point\n",
+            "# lindstedt bifurcation 2: {} {}; {} = {:?}..{:?}:{}; start {start:?}; {:?}; skip {}, keep {}; x,v per point\n",
             self.setup.name,
             list.join(" "),
             self.name,
@@ -130,13 +128,14 @@ impl Diagram {
             time: 0.0,
             start: self.setup.start.iter().map(|q| q.float(64).to_f64()).collect(),
             section: place,
+            periods: self.periods()?,
             transient: self.transient,
             kept: self.kept,
             follow: false,
             integration: Settings { most_impacts: 10_000_000, ..Settings::for_digits(16) },
         };
         let parameters = self.setup.parameters.clone();
-        let (values, name) = (self.values.clone(), self.name.clone());
+        let (values, name, section) = (self.values.clone(), self.name.clone(), self.section);
         let sweep = Sweep { model: &model, parameters: &parameters, name: &name, values: &values };
         let mut failed = None;
         let tick =
@@ -144,7 +143,7 @@ impl Diagram {
         let range = self.lines.len()..values.len();
         let next = diagram(&sweep, &Doubles, &settings, range, &tick, &mut |column| {
             session.say(format!("{name}: {} of {}", column.index + 1, values.len()));
-            let line = Line::of(&column, &values);
+            let line = Line::of(&column, &values, section);
             if let Some((path, file)) = &mut written
                 && let Err(error) = file.write_all(line.text(column.index).as_bytes())
             {
@@ -158,6 +157,14 @@ impl Diagram {
             Some(failure) => Err(failure),
             None => Ok(next >= values.len()),
         }
+    }
+
+    /// The period of the force per value, where it depends on the parameter.
+    fn periods(&self) -> Result<Vec<f64>, Failure> {
+        if self.section != Section::Stroboscopic {
+            return Ok(Vec::new());
+        }
+        self.values.iter().filter_map(|value| self.setup.period_at(&self.name, value)).collect()
     }
 
     /// Opens the file of the sweep: reads the whole lines, cuts off the rest.
@@ -200,7 +207,7 @@ impl Diagram {
     /// Which coordinate tells the points apart.
     fn ordinate(&self) -> (usize, &'static str) {
         match self.section {
-            Section::Impact => (1, "velocity x' after impact"),
+            Section::Impact => (1, "velocity x' before impact"),
             Section::Velocity => (0, "maximum of x"),
             Section::Stroboscopic => (0, "displacement x"),
         }
@@ -230,6 +237,28 @@ impl Diagram {
         })
     }
 
+    /// What the points span, per value; the points themselves belong into a file.
+    pub fn text(&self, verdict: &str) -> String {
+        let (k, what) = self.ordinate();
+        let mut text = format!("{}: {verdict}\n", self.setup.name);
+        let _ = writeln!(text, "  {:<24}  {:>6}  {what}: least, largest", self.name, "points");
+        for line in self.lines.iter().take(PRINTED) {
+            let _ = match (&line.failure, line.span(k)) {
+                (Some(reason), _) => writeln!(text, "  {:<24}  {reason}", line.exact),
+                (None, None) => writeln!(text, "  {:<24}  {:>6}", line.exact, 0),
+                (None, Some([least, largest])) => {
+                    let count = line.points.len();
+                    writeln!(text, "  {:<24}  {count:>6}  {least:.9}  {largest:.9}", line.exact)
+                }
+            };
+        }
+        if self.lines.len() > PRINTED {
+            let count = self.lines.len();
+            let _ = writeln!(text, "  ... {count} in all (--format json, --plot FILE.csv)");
+        }
+        text
+    }
+
     pub fn csv(&self) -> String {
         let mut text = self.heading();
         let _ = writeln!(text, "{},x,v", self.name);
@@ -245,111 +274,5 @@ impl Diagram {
             }
         }
         text
-    }
-}
-
-/// A decimal number where it ends after at most 17 digits, a fraction otherwise, a multiple of pi,
-/// or 17 digits.
-fn exact(q: &Quantity) -> String {
-    match q {
-        Quantity::Rational(q) => decimal(q).unwrap_or_else(|| q.to_string()),
-        Quantity::PiMultiple(q) => match (q.numer().to_string().as_str(), q.denom()) {
-            ("0", _) => "0".to_owned(),
-            ("1", d) if *d == 1 => "pi".to_owned(),
-            (_, d) if *d == 1 => format!("{}*pi", q.numer()),
-            ("1", d) => format!("pi/{d}"),
-            (n, d) => format!("{n}*pi/{d}"),
-        },
-        other => format!("{:?}", other.float(53).to_f64()),
-    }
-}
-
-/// The digits of a decimal number, exactly.
-fn decimal(q: &Rational) -> Option<String> {
-    let places = (0..=17u32).find(|n| {
-        let power = rug::Integer::from(10).pow(*n);
-        Rational::from(q * power).is_integer()
-    })?;
-    let scaled = Rational::from(q * rug::Integer::from(10).pow(places)).numer().clone();
-    let digits =
-        format!("{:0>width$}", scaled.clone().abs().to_string(), width = places as usize + 1);
-    let (whole, rest) = digits.split_at(digits.len() - places as usize);
-    let sign = if scaled < 0 { "-" } else { "" };
-    let point = if rest.is_empty() { "" } else { "." };
-    Some(format!("{sign}{whole}{point}{rest}"))
-}
-
-impl Line {
-    fn of(column: &Column<f64>, values: &[Quantity]) -> Self {
-        let quantity = values.get(column.index);
-        let value = quantity.map_or(f64::NAN, |q| q.float(53).to_f64());
-        let exact = quantity.map_or_else(String::new, exact);
-        let pair = |p: &simulate::Point<f64>| match p.state[..] {
-            [x, v, ..] => [x, v],
-            _ => [f64::NAN; 2],
-        };
-        match &column.points {
-            Ok(points) => {
-                let points = points.iter().map(pair).collect();
-                Self { value, exact, points, failure: None }
-            }
-            Err(error) => {
-                let failure = Some(error.to_string());
-                Self { value, exact, points: Vec::new(), failure }
-            }
-        }
-    }
-
-    /// `index value x,v x,v ...` or `index value ! reason`.
-    fn text(&self, index: usize) -> String {
-        let mut text = format!("{index} {:?}", self.value);
-        for [x, v] in &self.points {
-            let _ = write!(text, " {x:?},{v:?}");
-        }
-        if let Some(failure) = &self.failure {
-            let _ = write!(text, " ! {failure}");
-        }
-        text.push('\n');
-        text
-    }
-
-    /// A whole line of that index; nothing for any other text.
-    fn read(text: &str, index: usize, quantity: &Quantity) -> Option<Self> {
-        let (value, exact) = (quantity.float(53).to_f64(), exact(quantity));
-        let line = text.strip_suffix('\n')?;
-        let (body, failure) = match line.split_once(" ! ") {
-            Some((body, failure)) => (body, Some(failure.to_owned())),
-            None => (line, None),
-        };
-        let mut words = body.split(' ');
-        if words.next()? != index.to_string() || words.next()? != format!("{value:?}") {
-            return None;
-        }
-        let pair = |word: &str| -> Option<[f64; 2]> {
-            let (x, v) = word.split_once(',')?;
-            Some([x.parse().ok()?, v.parse().ok()?])
-        };
-        let points = words.map(pair).collect::<Option<Vec<_>>>()?;
-        Some(Self { value, exact, points, failure })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_as_they_are_written() {
-        let q = |p: i64, r: i64| Rational::from((p, r));
-        for (value, text) in
-            [(q(3, 5), "0.6"), (q(-1, 40), "-0.025"), (q(7, 1), "7"), (q(1, 3), "1/3")]
-        {
-            assert_eq!(exact(&Quantity::Rational(value)), text);
-        }
-        for (value, text) in
-            [(q(1, 1), "pi"), (q(0, 1), "0"), (q(3, 4), "3*pi/4"), (q(-2, 1), "-2*pi")]
-        {
-            assert_eq!(exact(&Quantity::PiMultiple(value)), text);
-        }
     }
 }
