@@ -29,6 +29,7 @@ pub use vibro_impact::reread;
 use crate::Error;
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::digits::decimal;
+use std::sync::mpsc::{SyncSender, channel, sync_channel};
 
 /// What the comparison of a printed statement with the truth came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -118,7 +119,7 @@ impl Section {
 pub struct Paper {
     /// Where the methods can be trusted.
     pub trust: Trust,
-    /// The sections, in the order of the paper; those begun, when the observer stopped the work.
+    /// The sections, in the order of the paper; with the rows finished when the observer stopped the work.
     pub sections: Vec<Section>,
     /// Whether everything is there (false when the observer stopped the work).
     pub complete: bool,
@@ -200,8 +201,8 @@ impl Reader<'_> {
 
 /// Reads the paper (sections 2 to 4): derives, compares, tabulates.
 ///
-/// `observer` is told what comes next; when it returns `false` the work stops with the rows
-/// finished so far.
+/// The sections are read side by side, one thread each. `observer` is told, on the calling thread, what
+/// comes next; when it returns `false` the work stops with the rows finished so far.
 ///
 /// # Errors
 /// [`Error`] when the engine cannot derive what the paper claims, or cannot reach the digits.
@@ -216,28 +217,65 @@ impl Reader<'_> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<Paper, Error> {
-    let balls = Balls::new(BITS);
-    let mut reader = Reader { options, balls, observer, trust: Trust::default(), sample: None };
-    let mut paper = Paper { trust: Trust::default(), sections: Vec::new(), complete: true };
-    for (number, title, parts) in SECTIONS {
-        let mut section = Section { number: *number, title, rows: Vec::new(), tables: Vec::new() };
-        for (what, part) in *parts {
-            paper.complete = reader.goes_on(what) && part(&mut reader, &mut section)?;
-            if !paper.complete {
-                break;
-            }
+    let mut goes_on = true;
+    let parts = std::thread::scope(|scope| {
+        let (sender, receiver) = channel::<(String, SyncSender<bool>)>();
+        let workers: Vec<_> = (SECTIONS.iter())
+            .map(|entry| {
+                let sender = sender.clone();
+                scope.spawn(move || {
+                    // The observer belongs to the thread that called: it is asked, and waited for.
+                    let mut ask = |what: &str| {
+                        let (answer, answered) = sync_channel(1);
+                        let asked = sender.send((what.to_owned(), answer));
+                        asked.is_ok() && answered.recv().unwrap_or(false)
+                    };
+                    read_section(options, entry, &mut ask)
+                })
+            })
+            .collect();
+        drop(sender);
+        for (what, answer) in receiver {
+            goes_on = goes_on && observer(&what);
+            // An error means that nobody waits any more.
+            let _ = answer.send(goes_on);
         }
-        paper.sections.push(section);
-        if !paper.complete {
-            break;
+        let join = |worker: std::thread::ScopedJoinHandle<'_, _>| match worker.join() {
+            Ok(section) => section,
+            Err(panic) => std::panic::resume_unwind(panic),
+        };
+        workers.into_iter().map(join).collect::<Result<Vec<_>, Error>>()
+    })?;
+    let mut paper = Paper { trust: Trust::default(), sections: Vec::new(), complete: true };
+    for (section, trust, complete) in parts {
+        paper.trust.add(trust);
+        paper.complete &= complete;
+        if !section.rows.is_empty() {
+            paper.sections.push(section);
         }
     }
-    paper.trust = reader.trust;
     Ok(paper)
 }
 
+/// One section, what it says about trust, and whether it is complete.
+fn read_section(
+    options: Options,
+    (number, title, parts): &Entry,
+    observer: &mut dyn FnMut(&str) -> bool,
+) -> Result<(Section, Trust, bool), Error> {
+    let balls = Balls::new(BITS);
+    let mut reader = Reader { options, balls, observer, trust: Trust::default(), sample: None };
+    let mut section = Section { number: *number, title, rows: Vec::new(), tables: Vec::new() };
+    for (what, part) in *parts {
+        if !reader.goes_on(what) || !part(&mut reader, &mut section)? {
+            return Ok((section, reader.trust, false));
+        }
+    }
+    Ok((section, reader.trust, true))
+}
+
 /// What is read: number and title of a section, and its parts with their names.
-const SECTIONS: &[(u32, &str, &[NamedPart])] = &[
+const SECTIONS: &[Entry] = &[
     (
         2,
         "Stability improvement of periodic vibro-impact processes",
@@ -280,6 +318,9 @@ type Part = fn(&mut Reader<'_>, &mut Section) -> Result<bool, Error>;
 
 /// A part with what the observer is told.
 type NamedPart = (&'static str, Part);
+
+/// Number, title and parts of a section.
+type Entry = (u32, &'static str, &'static [NamedPart]);
 
 /// A row whose statement holds or does not.
 fn plain(

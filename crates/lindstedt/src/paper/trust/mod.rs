@@ -47,6 +47,13 @@ pub struct Finding {
 }
 
 impl Trust {
+    /// Adds what another section measured.
+    pub(super) fn add(&mut self, other: Self) {
+        self.region = self.region.take().or(other.region);
+        self.onset = self.onset.take().or(other.onset);
+        self.truncations.extend(other.truncations);
+    }
+
     /// The findings, in the order of the paper; those of finished sections.
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {
