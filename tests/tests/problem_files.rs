@@ -259,7 +259,12 @@ fn classification_finds_forces_delays_and_resonances() {
     let damped = parts("x'' + x + eps x' = 0", &[]);
     let condition = Oscillator::parse("x'' + x + eps x' = 0").unwrap();
     assert_eq!(condition.problem.conditions, [Condition::LimitCycle]);
-    assert!(!damped.reversible && damped.takes(Method::LindstedtPoincare));
+    assert!(!damped.reversible && matches!(damped.methods[0].1[..], [Reason::Drift(_)]));
+    // x x' does no work alone, but may with x^2; two terms that work may cancel.
+    for cycle in ["x' + x x' + x^2", "(x^2 - 1) x'", "x'^3 - x'"] {
+        let parts = parts(&format!("x'' + x + eps ({cycle}) = 0"), &[]);
+        assert!(parts.takes(Method::LindstedtPoincare), "{cycle}");
+    }
     let fixed = condition.under(Condition::InitialAmplitude).classify().unwrap();
     assert!(matches!(fixed.methods[0].1[..], [Reason::Drift(_)]));
     // x x' changes its sign with x -> -x, t -> -t: no drift.
@@ -268,6 +273,7 @@ fn classification_finds_forces_delays_and_resonances() {
     assert!(even.derive(3).is_ok());
     let saddle = parts("x'' - a x + b x^3 + eps (x' - gamma cos(omega t))", &[("a", "1")]);
     assert!(saddle.takes(Method::Melnikov));
+    assert!(!parts("x'' - a x + b x^3 + eps x'", &[("a", "1")]).takes(Method::Melnikov));
 }
 
 #[test]

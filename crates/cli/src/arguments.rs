@@ -346,7 +346,7 @@ pub struct SimulateOptions {
     #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
     pub history: Option<String>,
     /// The end.
-    #[arg(long, value_name = "T", conflicts_with_all = ["periods", "impacts"])]
+    #[arg(long, value_name = "T", allow_hyphen_values = true, conflicts_with_all = ["periods", "impacts"])]
     pub until: Option<String>,
     /// The end: periods of the force, or without one maxima of x after the start; with --sweep the
     /// points kept after --skip.

@@ -5,7 +5,7 @@ use crate::failure::{FILE, Failure, NO_ANSWER, UNDECIDED, USAGE};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::algebra::Stop;
 use lindstedt::equation::Problem;
-use lindstedt::problem_file::{FileError, LARGEST_FILE};
+use lindstedt::problem_file::{FileError, LARGEST_FILE, canonical_name};
 use lindstedt::{ProblemFile, Value};
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -145,7 +145,8 @@ pub fn parameters(list: &[String]) -> Result<BTreeMap<String, Value>, Failure> {
             return Err(Failure::usage("set", message.to_owned(), hint));
         }
         let value = Value::parse(value)?;
-        if parameters.insert(name.trim().to_owned(), value).is_some() {
+        // Greek letters as in a problem file.
+        if parameters.insert(canonical_name(name.trim()), value).is_some() {
             let message = format!("{name} is set twice");
             return Err(Failure::usage("set", message, ""));
         }

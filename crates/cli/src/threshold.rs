@@ -71,11 +71,9 @@ impl From<MelnikovError> for Failure {
             MelnikovError::NotFinite { .. } | MelnikovError::NotPositive { .. } => {
                 (NO_ANSWER, "outside-domain", "see `lindstedt threshold --help`")
             }
-            MelnikovError::Undecided { .. } | MelnikovError::Digits(_) => (
-                UNDECIDED,
-                "could-not-decide",
-                "ask for fewer digits, or move off the degenerate point",
-            ),
+            MelnikovError::Undecided { .. } | MelnikovError::Digits(_) => {
+                (UNDECIDED, "could-not-decide", "move off the degenerate point")
+            }
             _ => (NO_ANSWER, "no-answer", ""),
         };
         Self { exit, code, message: error.to_string(), hint: hint.to_owned() }

@@ -154,6 +154,11 @@ struct Report<'a> {
     found: &'a Verification,
 }
 
+/// The nearest double (`to_f64` cuts off), as short as it can be written.
+fn rounded(q: &Rational) -> String {
+    format!("{:e}", Float::with_val(53, q).to_f64())
+}
+
 fn short(x: &Float) -> String {
     x.to_string_radix(10, Some(6))
 }
@@ -197,7 +202,7 @@ impl Report<'_> {
     fn json(&self, session: &Session<'_>) -> Json {
         let row = |c: &Comparison| {
             json!({
-                "small": {"exact": c.small.to_string(), "decimal": format!("{:e}", c.small.to_f64()),
+                "small": {"exact": c.small.to_string(), "decimal": rounded(&c.small),
                           "error": null, "status": "exact"},
                 "difference": {"exact": null, "decimal": short(&c.error),
                                "error": short(&c.simulation_error), "status": "estimated"},

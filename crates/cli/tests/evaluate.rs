@@ -86,6 +86,16 @@ fn solution_as_table_figure_and_code() {
         let text = code(language);
         assert!(text.contains(start), "{text}");
     }
+    // An even motion has no sines, however few harmonics are asked for.
+    let few = run(&["duffing", "--code", "python", "--harmonics", "2"]);
+    let few = String::from_utf8(few.stdout).unwrap();
+    let lines: Vec<&str> =
+        few.lines().filter(|line| line.trim().starts_with('(') && line.contains(", ")).collect();
+    assert!(!lines.is_empty() && lines.iter().all(|line| line.ends_with(", 0.0),")), "{few}");
+    // Too few coefficients for an estimate: said, not an infinite error.
+    let rough = run(&["pendulum", "--order", "4", "--times", "0..1:2", "--digits", "10"]);
+    let rough = String::from_utf8(rough.stdout).unwrap();
+    assert!(rough.contains("(no estimate)") && !rough.contains("+- inf"), "{rough}");
     // The harmonics of the printed function sum to x(0) = 1.
     let python = code("python");
     let terms = python.lines().filter_map(|line| line.trim().strip_prefix('('));

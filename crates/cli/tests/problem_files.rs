@@ -500,14 +500,15 @@ fn text_of(arguments: &[&str]) -> String {
 
 /// Equations without a constant amplitude, or without one that is known exactly, and their condition: the
 /// place and the reason.
-const AVERAGED: [(&str, &str, &str); 6] = [
+const AVERAGED: [(&str, &str, &str); 7] = [
     (
         "x'' + x = eps*(1 - x^2/2 - x'^2/3)*x'",
         "limit-cycle",
         "2:13: the leading amplitude of the limit cycle is irrational",
     ),
     ("x'' + 2*x + eps*(x^2-1)*x' = 0", "limit-cycle", "2:13: x' occurs and omega_0 is irrational"),
-    ("x'' + x + eps*x' = 0", "limit-cycle", "2:13: no limit cycle"),
+    ("x'' + x + eps*(1 + x^2)*x' = 0", "limit-cycle", "2:13: no limit cycle"),
+    ("x'' + x + eps*x' = 0", "limit-cycle", "2:23: eps*x' works on x'"),
     ("x'' + x + eps*x' = 0", "initial-amplitude", "2:23: eps*x' works on x'"),
     ("x'' + x = eps*(1 - x^2)*x'", "initial-amplitude", "2:13: order 1: the secular term"),
     (

@@ -10,6 +10,7 @@ pub mod print;
 mod problem;
 mod saddle;
 mod smooth;
+pub mod symmetry;
 
 pub use canonical::AccelerationFault;
 pub use expression::{Expression, Function};

@@ -1,7 +1,8 @@
 //! Which methods take an equation, and what is against the others.
 
-use crate::classify::{Algebra, Classification, Method, Parity, Reason, parity, parity_in_x};
+use crate::classify::{Algebra, Classification, Method, Reason};
 use crate::saddle::has_saddle;
+use crate::symmetry::{Parity, parity, parity_in_x};
 use crate::{Condition, Expression, Function, Problem};
 use rug::Rational;
 use std::cmp::Ordering;
@@ -29,9 +30,9 @@ pub(crate) fn decide(
     };
     let energy = if is_energy_form(rest) { Vec::new() } else { vec![Reason::Form] };
     let saddle_at_zero = stiffness.is_some_and(|kappa| kappa.cmp0() == Ordering::Less);
-    // Without a force a saddle elsewhere is no reason to think of Melnikov.
-    let elsewhere = || !parts.forcing.is_empty() && has_saddle(rest, values) == Some(true);
-    let saddle = (saddle_at_zero || elsewhere())
+    // Without a force nothing splits, and a saddle is no reason to think of Melnikov.
+    let saddle = !parts.forcing.is_empty()
+        && (saddle_at_zero || has_saddle(rest, values) == Some(true))
         && parts.strong.iter().all(|t| parity(&t.term, false) == Some(Parity::Even))
         && parts.delays.is_empty()
         && parts.forcing.iter().all(|f| f.order > 0)
@@ -108,13 +109,19 @@ fn lindstedt(
     let cycle = problem.conditions.contains(&Condition::LimitCycle);
     if matches!(condition, None | Some(Condition::FreeAmplitude)) {
         against.push(Reason::Condition);
-    } else if !cycle && against.is_empty() {
-        // The only term that works on x' has nothing to cancel against.
-        let works = |e: &Expression| {
-            parity(e, false) == Some(Parity::Odd) && parity_in_x(e) == Some(Parity::Even)
+    } else if against.is_empty() {
+        // The only term that works on x' has nothing to cancel against. Terms odd in x' that do no work
+        // can do some together with others, and make a limit cycle.
+        let odd = |e: &Expression| parity(e, false) == Some(Parity::Odd);
+        let works = |e: &Expression| odd(e) && parity_in_x(e) == Some(Parity::Even);
+        let counts = |e: &Expression| {
+            if cycle { parity(e, false) != Some(Parity::Even) } else { works(e) }
         };
-        let mut drift = parts.weak.iter().filter(|t| works(&t.term));
-        if let (Some(only), None) = (drift.next(), drift.next()) {
+        let mut drift = parts.weak.iter().filter(|t| counts(&t.term));
+        if let (Some(only), None) = (drift.next(), drift.next())
+            && works(&only.term)
+            && (!cycle || only.term.find(&|e| matches!(e, Expression::Sum(_))).is_none())
+        {
             against.push(Reason::Drift(only.term.clone()));
         }
     }

@@ -12,8 +12,8 @@ use lindstedt_algebra::{PhaseAlgebra, Rationals};
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::digits::{decimal, error_string};
 use lindstedt_coeff::floats::{Doubles, Floats, Reals};
-use lindstedt_equation::classify::moving_singularity;
 use lindstedt_equation::print::Style;
+use lindstedt_equation::symmetry::moving_singularity;
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, Function, Problem};
 use lindstedt_expand::{
     Binding, ExpandError, OrderWork, Request, compile, expand, leading_amplitude,

@@ -78,7 +78,7 @@ pub fn usual_condition(equation: &Expression) -> Condition {
     let outside = |e: &Expression| matches!(e, Expression::Time | Expression::Delayed(..));
     if equation.find(&outside).is_some() {
         Condition::FreeAmplitude
-    } else if lindstedt_equation::classify::is_reversible(equation) {
+    } else if lindstedt_equation::symmetry::is_reversible(equation) {
         Condition::InitialAmplitude
     } else {
         Condition::LimitCycle

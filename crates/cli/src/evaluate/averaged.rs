@@ -239,7 +239,8 @@ impl Report<'_> {
                 Some(error) => format!("{} +- {error}", number.decimal),
                 None => format!("{} (no estimate)", number.decimal),
             },
-            None => format!("{:.1e} +- {:.1e}", q.double, q.error),
+            // Without the sign of a zero.
+            None => format!("{:.1e} +- {:.1e}", q.double + 0.0, q.error),
         };
         let row = |m: &Moment| {
             let time = format!("{:?}", double(&m.time));
@@ -259,8 +260,12 @@ impl Report<'_> {
         }
         let heads = ["t", "a", "psi", "x"].map(str::to_owned);
         text.push('\n');
+        let width = |k: usize, least: usize| {
+            rows.iter().map(|row: &[String; 4]| row[k].len()).max().unwrap_or(0).max(least)
+        };
+        let [first, second, third] = [width(0, 10), width(1, 30), width(2, 30)];
         for [t, a, psi, x] in std::iter::once(&heads).chain(&rows) {
-            let line = format!("  {t:<10} {a:<30} {psi:<30} {x}");
+            let line = format!("  {t:<first$} {a:<second$} {psi:<third$} {x}");
             let _ = writeln!(text, "{}", line.trim_end());
         }
         text

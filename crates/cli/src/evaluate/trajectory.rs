@@ -107,7 +107,7 @@ impl Table {
         Ok(Self { points, order, resum, finished })
     }
 
-    /// Time, value, error as text; the last is empty where no digit is known.
+    /// Time, value, `+- error` as text; the last is empty where no digit is known.
     pub fn rows(&self) -> impl Iterator<Item = [String; 3]> {
         self.points.iter().map(|point| {
             let time = point.time.ball(Balls::new(64)).midpoint().to_f64();
@@ -115,8 +115,10 @@ impl Table {
                 return [format!("{time:?}"), "not one digit".to_owned(), String::new()];
             };
             // The bound belongs to the digits that are printed.
-            let error = number.error.clone();
-            let error = error.unwrap_or_else(|| format!("{:.1e}", point.error));
+            let error = match &number.error {
+                Some(error) => format!("+- {error}"),
+                None => "(no estimate)".to_owned(),
+            };
             [format!("{time:?}"), number.decimal.clone(), error]
         })
     }
@@ -138,8 +140,7 @@ impl Table {
     pub fn text(&self) -> String {
         let mut text = format!("\n  x(t), order {}, summed by {}\n", self.order, self.resum);
         for [time, value, error] in self.rows() {
-            let bound = if error.is_empty() { error } else { format!("+- {error}") };
-            let line = format!("  {time:<22} {value:<34} {bound}");
+            let line = format!("  {time:<22} {value:<34} {error}");
             let _ = writeln!(text, "{}", line.trim_end());
         }
         text

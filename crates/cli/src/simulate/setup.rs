@@ -118,7 +118,8 @@ impl Setup {
             } else {
                 format!("{} has no periodic impact orbit to perturb", problem.name)
             };
-            let hint = if impacting { "leave out --state and --history" } else { "use --state" };
+            let hint =
+                if impacting { "leave out --state and --history" } else { "--state X,V alone" };
             return Err(Failure::usage("perturb", message, hint));
         } else {
             let case = Case { problem: &problem, file, impacting, digits };

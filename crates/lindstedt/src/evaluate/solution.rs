@@ -68,6 +68,9 @@ fn default_order(form: &Form) -> usize {
     }
 }
 
+/// Points at which a Fourier series is taken, at least; a multiple of 4.
+const FEWEST_NODES: usize = 64;
+
 /// Phases at which the speed is looked at, and its safety factor.
 const PHASES: u32 = 64;
 const SAFETY: f64 = 2.0;
@@ -290,11 +293,15 @@ impl Trajectory {
     }
 
     /// The Fourier coefficients (c_k, s_k), k = 0 .. `harmonics`, of x as a function of
-    /// omega t, by the trapezoidal rule on 4 (harmonics + 1) points, and the largest deviation of
-    /// their sum from x at as many points between.
+    /// omega t, by the trapezoidal rule on 4 (harmonics + 1) points, 64 at least, and the largest
+    /// deviation of their sum from x at as many points between.
+    ///
+    /// The points lie half a step off the phase 0 and their number is a multiple of 4, so the harmonics
+    /// that fold onto lower ones keep their parity: no sine appears in an even motion, no even harmonic
+    /// in an odd one.
     #[must_use]
     pub fn fourier(&self, harmonics: usize) -> Option<Fourier> {
-        let count = 4 * (harmonics + 1);
+        let count = (4 * (harmonics + 1)).max(FEWEST_NODES);
         let turn = std::f64::consts::TAU / count as f64;
         let sample = |offset: f64| -> Option<Vec<Displacement>> {
             let one = |i: usize| {
@@ -305,11 +312,11 @@ impl Trajectory {
             };
             (0..count).map(one).collect()
         };
-        let nodes = sample(0.25)?;
+        let nodes = sample(0.5)?;
         let coefficient = |k: usize| {
             let weight = if k == 0 { 1.0 } else { 2.0 } / count as f64;
             nodes.iter().enumerate().fold((0.0, 0.0), |(c, s), (i, x)| {
-                let angle = k as f64 * (i as f64 + 0.25) * turn;
+                let angle = k as f64 * (i as f64 + 0.5) * turn;
                 (c + weight * x.double * angle.cos(), s + weight * x.double * angle.sin())
             })
         };
@@ -323,11 +330,9 @@ impl Trajectory {
             };
             list.iter().enumerate().map(term).sum::<f64>()
         };
-        let between = sample(0.75)?;
-        let deviation = between
-            .iter()
-            .enumerate()
-            .map(|(i, x)| (sum((i as f64 + 0.75) * turn) - x.double).abs());
+        let between = sample(0.0)?;
+        let deviation =
+            between.iter().enumerate().map(|(i, x)| (sum(i as f64 * turn) - x.double).abs());
         let deviation = deviation.fold(0.0, f64::max);
         Some(Fourier { coefficients: list, deviation, error: error.is_finite().then_some(error) })
     }

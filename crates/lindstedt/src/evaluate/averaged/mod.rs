@@ -22,7 +22,7 @@ use crate::number::Number;
 use crate::{Error, Progress, Value};
 use flow::Flow;
 use lindstedt_coeff::ball::Balls;
-use lindstedt_equation::classify::is_reversible;
+use lindstedt_equation::symmetry::is_reversible;
 use lindstedt_equation::{Condition, Problem};
 use rest::{Rest, looked_at};
 use rug::Float;
