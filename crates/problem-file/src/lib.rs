@@ -13,6 +13,7 @@ mod lexer;
 mod names;
 mod operands;
 mod reader;
+mod reading;
 mod schema;
 mod taylor;
 mod trees;
