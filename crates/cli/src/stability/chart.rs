@@ -19,6 +19,9 @@ use std::fmt::Write;
 const FLIP_BITS: u32 = 96;
 /// At most so many points of the flip curve are computed.
 const FLIP_POINTS: usize = 201;
+/// The largest chart in characters.
+const WIDEST: usize = 100;
+const TALLEST: usize = 50;
 
 pub struct Grid {
     pub names: [String; 2],
@@ -61,6 +64,16 @@ pub fn standing(point: &Point, plan: &Plan) -> Standing {
         (Some(Unstable), Some(Stable)) => Standing::FalseUnstable,
         (Some(Stable), None) | (None, Some(Stable)) => Standing::OnlyStable,
         (Some(Unstable), None) | (None, Some(Unstable)) => Standing::OnlyUnstable,
+    }
+}
+
+fn sign(standing: Standing) -> char {
+    match standing {
+        Standing::BothStable | Standing::OnlyStable => '#',
+        Standing::BothUnstable | Standing::OnlyUnstable => '.',
+        Standing::FalseStable => '!',
+        Standing::FalseUnstable => 'o',
+        Standing::Open => '?',
     }
 }
 
@@ -202,6 +215,32 @@ impl Grid {
             100.0 * self.agreement.rate(),
             self.reasons(),
         )
+    }
+
+    /// The chart in characters, the largest row value on top, with a legend; nothing where it does not
+    /// fit on a screen.
+    pub fn picture(&self) -> Option<String> {
+        let [columns, rows] = &self.values;
+        let fits =
+            !self.chart.points.is_empty() && columns.len() <= WIDEST && rows.len() <= TALLEST;
+        let (low, high) = columns.first().zip(columns.last()).filter(|_| fits)?;
+        let [first, second] = &self.names;
+        let mut text = format!("  {first} from {low} to {high}\n");
+        let lines = self.chart.points.chunks(columns.len());
+        for (value, line) in rows.iter().zip(lines).rev() {
+            let signs: String =
+                line.iter().map(|point| sign(standing(point, &self.plan))).collect();
+            let label = if self.two { format!("{second} = {value:.6}") } else { String::new() };
+            let _ = writeln!(text, "  {label:<20} {signs}");
+        }
+        let both = self.plan.predictor.is_some() && self.plan.exact.is_some();
+        text += if both {
+            "  # both stable, . both unstable, ! predicted stable but unstable, \
+             o predicted unstable but stable, ? open"
+        } else {
+            "  # stable, . unstable, ? open"
+        };
+        Some(text)
     }
 
     /// Nothing is left out where not both verdicts were asked for.

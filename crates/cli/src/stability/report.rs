@@ -208,6 +208,9 @@ impl Answer {
         }
         if let Some(grid) = grid {
             let _ = writeln!(text, "{}", grid.summary());
+            if let Some(picture) = grid.picture() {
+                let _ = writeln!(text, "{picture}");
+            }
         }
         text += match format {
             Format::Markdown => "```\n",
