@@ -68,7 +68,7 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
         Reason::NotWeaklyNonlinear(e) => {
             format!("{} has no factor {small}, so the equation is not weakly nonlinear", show(e))
         }
-        Reason::NoLinearPart => format!("without {small} there is no term in x"),
+        Reason::NoLinearPart => format!("no term k*x stands in the equation without {small}"),
         Reason::NegativeStiffness => "the linear stiffness is negative".into(),
         Reason::IrrationalFrequency => "x' occurs and omega_0 is irrational".into(),
         Reason::UnknownFrequency => "x' occurs and omega_0 has no value".into(),
@@ -92,6 +92,7 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
         }
         Reason::Condition => "the condition of the problem belongs to another method".into(),
         Reason::Form => format!("the form x*F({small}*ln(x^2)) is needed"),
+        Reason::NoForce => "there is no force".into(),
         Reason::NoSaddle => "no integrable equation with a saddle at order zero".into(),
         Reason::NoSmallParameter => format!("the small parameter {small} does not occur"),
         Reason::Formal(e) => format!("{} is a formal function", show(e)),
@@ -274,6 +275,11 @@ fn place(file: &ProblemFile, path: &str, term: Option<&Expression>) -> String {
     format!("{path}{place}")
 }
 
+/// What an equation without a small parameter misses.
+pub fn marks(small: &str) -> String {
+    format!("a factor {small} marks the small terms; `simulate` takes it as it is")
+}
+
 /// Refuses, before any work, a file whose equation the expansion with the condition asked for does
 /// not take, with the term and its place. Free amplitudes and values outside their domain are left to
 /// their driver.
@@ -291,7 +297,7 @@ pub fn check(
     };
     let small = &file.problem.small;
     let nothing_small = !file.problem.equation.contains(&Expression::Small);
-    let marks = format!("a factor {small} marks the small terms; `simulate` takes it as it is");
+    let marks = marks(small);
     let Some(reason) = against(Method::LindstedtPoincare).next() else {
         if condition.is_some() {
             return Ok(());
@@ -321,9 +327,7 @@ pub fn check(
         exit: NO_ANSWER,
         code: "no-method",
         message: format!("{at}: {}", reason_text(reason, &file.problem.small)),
-        hint: if nothing_small && matches!(reason, Reason::NotWeaklyNonlinear(_)) {
-            marks
-        } else if parts.takes(Method::Melnikov) {
+        hint: if parts.takes(Method::Melnikov) {
             "Melnikov's method takes equations of this kind: lindstedt threshold FILE".into()
         } else if *reason == Reason::UnknownFrequency {
             "--set NAME=VALUE gives it one".into()
@@ -331,6 +335,8 @@ pub fn check(
             && parts.forcing.iter().all(|force| force.resonance.is_none())
         {
             AVERAGES.into()
+        } else if nothing_small {
+            marks
         } else if matches!(reason, Reason::NonSmooth(_) | Reason::NotPolynomial(_))
             && parts.takes(Method::TimeDomain)
         {
@@ -350,6 +356,7 @@ pub fn refusal(error: Error, file: Option<&ProblemFile>, path: &str) -> Failure 
         Error::Expand(
             ExpandError::AmplitudeDrifts { .. }
                 | ExpandError::NoLimitCycle
+                | ExpandError::AmplitudeOfHigherOrder
                 | ExpandError::IrrationalAmplitude
                 | ExpandError::SeveralLimitCycles { .. }
                 | ExpandError::DegenerateLimitCycle
@@ -361,6 +368,8 @@ pub fn refusal(error: Error, file: Option<&ProblemFile>, path: &str) -> Failure 
         failure.message = format!("{}: {}", place(file, path, None), failure.message);
         if averages {
             failure.hint = AVERAGES.to_owned();
+        } else if !file.problem.equation.contains(&Expression::Small) {
+            failure.hint = marks(&file.problem.small);
         } else if no_root {
             failure.hint = "--set gives the parameters of omega_0 values".to_owned();
         }

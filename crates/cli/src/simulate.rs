@@ -84,7 +84,7 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
     output::write(session, &text)?;
     if chaotic {
         output::warn(
-            "chaotic in doubles: no digits (without --f64 there are some, over a shorter time; \
+            "no digit is left in doubles (without --f64 there are some, over a shorter time; \
              --lyapunov and --zero-one tell how chaotic)",
         );
     }
@@ -166,7 +166,7 @@ fn integrate(
     } else {
         format!("{digits} digits were not reached: with {MORE} more the events are others")
     };
-    Err(undecided(message, "a shorter time, or fewer --digits"))
+    Err(undecided(message, "a shorter time, or more --digits; --f64 for a picture"))
 }
 
 /// The time of a singularity that ends the motion.
@@ -220,7 +220,7 @@ fn bifurcation(
     for path in &options.plot {
         plot::write(path, || Ok(diagram.csv()), || diagram.figure())?;
     }
-    let failed = diagram.lines.iter().filter(|line| line.failure.is_some()).count();
+    let failed = diagram.lines.iter().filter(|line| line.points.is_empty()).count();
     let verdict = format!(
         "{} of {} values of {}, {failed} without points, {} points in all",
         diagram.lines.len(),
@@ -235,7 +235,8 @@ fn bifurcation(
         let result = json!({
             "problem": diagram.setup.name,
             "at": at,
-            "digits": 16,
+            "digits": null,
+            "tier": "doubles, without an error: a section of a motion with perturbations that grow is typical of it",
             "sweep": {
                 "parameter": diagram.name,
                 "section": format!("{:?}", diagram.section).to_lowercase(),
@@ -246,6 +247,7 @@ fn bifurcation(
             },
             "complete": complete,
             "verdict": verdict,
+            "remarks": diagram.setup.remarks,
             "seconds": session.elapsed().as_secs_f64(),
         });
         format!("{result:#}\n")

@@ -113,6 +113,8 @@ pub enum Reason {
     NoSaddle,
     /// The small parameter does not occur.
     NoSmallParameter,
+    /// Nothing depends on t.
+    NoForce,
     /// A formal function, and no equation for integration in time.
     Formal(Expression),
     /// A value outside its domain, with the domain; found by who knows the values.

@@ -37,7 +37,11 @@ pub(crate) fn decide(
         && parts.delays.is_empty()
         && parts.forcing.iter().all(|f| f.order > 0)
         && !parts.impact;
-    let melnikov = if saddle { Vec::new() } else { vec![Reason::NoSaddle] };
+    let melnikov = match saddle {
+        true => Vec::new(),
+        false if parts.forcing.is_empty() => vec![Reason::NoForce],
+        false => vec![Reason::NoSaddle],
+    };
     parts.methods = vec![
         (Method::LindstedtPoincare, lindstedt),
         (Method::Averaging, averaging),
@@ -106,21 +110,21 @@ fn lindstedt(
         against.push(Reason::Impact);
     }
     let condition = problem.conditions.first();
-    let cycle = problem.conditions.contains(&Condition::LimitCycle);
-    if matches!(condition, None | Some(Condition::FreeAmplitude)) {
+    if condition.is_none() && !rest.contains(&Expression::Small) {
+        against.push(Reason::NoSmallParameter);
+    } else if matches!(condition, None | Some(Condition::FreeAmplitude)) {
         against.push(Reason::Condition);
     } else if against.is_empty() {
         // The only term that works on x' has nothing to cancel against. Terms odd in x' that do no work
         // can do some together with others, and make a limit cycle.
         let odd = |e: &Expression| parity(e, false) == Some(Parity::Odd);
         let works = |e: &Expression| odd(e) && parity_in_x(e) == Some(Parity::Even);
-        let counts = |e: &Expression| {
-            if cycle { parity(e, false) != Some(Parity::Even) } else { works(e) }
-        };
-        let mut drift = parts.weak.iter().filter(|t| counts(&t.term));
+        // The work of a monomial has one sign.
+        let several = |e: &Expression| matches!(e, Expression::Sum(_) | Expression::Function(..));
+        let mut drift = parts.weak.iter().filter(|t| parity(&t.term, false) != Some(Parity::Even));
         if let (Some(only), None) = (drift.next(), drift.next())
             && works(&only.term)
-            && (!cycle || only.term.find(&|e| matches!(e, Expression::Sum(_))).is_none())
+            && only.term.find(&several).is_none()
         {
             against.push(Reason::Drift(only.term.clone()));
         }

@@ -5,7 +5,7 @@
 //! node, so that x^3 costs x*x and (x*x)*x, and x^2 + x^4 costs no square twice.
 
 use crate::ExpandError;
-use crate::excitation::Excitation;
+use crate::excitation::{Excitation, is_constant};
 use lindstedt_algebra::{Elementary, FunctionAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
@@ -77,6 +77,10 @@ pub trait Binding<C: Ring> {
     fn parameter(&self, name: &str) -> Option<C::Element>;
     /// F_n of a formal function F.
     fn formal(&self, name: &str, n: usize) -> Option<C::Element>;
+    /// A power of constants that is no natural one, as 1/m; nothing where the ring has none.
+    fn power(&self, _: &Expression) -> Option<C::Element> {
+        None
+    }
 }
 
 /// x'' + F(x, x'; eps) = 0 as a graph of operations with known recurrences in eps; equal subexpressions
@@ -278,6 +282,12 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
             if !natural && self.offered(&Elementary::Power(q.clone())) {
                 let base = self.node(base)?;
                 return Ok(self.push(Node::Power(base, q.clone())));
+            }
+            if !natural && is_constant(base) {
+                let whole = Expression::Power(Box::new(base.clone()), Box::new(exponent.clone()));
+                if let Some(value) = self.binding.power(&whole) {
+                    return Ok(self.push(Node::Constant(value)));
+                }
             }
             // Multiplying repeatedly: a power as long as the expansion is a different problem.
             let n = integer.filter(|&n| n <= 1000).ok_or_else(unsupported)?;

@@ -58,6 +58,12 @@ pub enum ExpandError {
     /// No limit cycle: the first-order averaged equation has no positive root.
     #[error("no limit cycle: the averaged amplitude equation of order 1 has no positive root")]
     NoLimitCycle,
+    /// The averaged amplitude equation of order 1 vanishes for every amplitude.
+    #[error(
+        "the averaged amplitude equation of order 1 vanishes: a limit cycle is decided at a higher order, \
+         which this expansion does not do"
+    )]
+    AmplitudeOfHigherOrder,
     /// The leading amplitude is not a rational number.
     #[error("the leading amplitude of the limit cycle is irrational")]
     IrrationalAmplitude,

@@ -125,7 +125,7 @@ fn flatten<'a>(expression: &'a Expression, factors: &mut Vec<&'a Expression>) {
 }
 
 /// Whether an expression contains numbers and parameters only.
-fn is_constant(expression: &Expression) -> bool {
+pub(crate) fn is_constant(expression: &Expression) -> bool {
     match expression {
         Expression::Number(_) | Expression::Parameter(_) => true,
         Expression::Sum(list) | Expression::Product(list) => list.iter().all(is_constant),

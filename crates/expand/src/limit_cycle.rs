@@ -24,6 +24,9 @@ pub(crate) fn leading_amplitude<A: PhaseAlgebra>(
     while polynomial.first().is_some_and(Rational::is_zero) {
         polynomial.remove(0);
     }
+    if polynomial.is_empty() {
+        return Err(ExpandError::AmplitudeOfHigherOrder);
+    }
     match count_positive_roots(&polynomial) {
         0 => Err(ExpandError::NoLimitCycle),
         1 => rational_root(&polynomial).ok_or(ExpandError::IrrationalAmplitude),

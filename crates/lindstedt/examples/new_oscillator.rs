@@ -13,6 +13,12 @@ fn main() -> Result<(), Error> {
     let checked = rayleigh.checked_orders.ok_or(Error::NoValue)?;
     println!("substituted into the equation: vanishes identically at orders 0 to {checked}");
 
+    // At a value: the series of the period, summed, with its estimated error.
+    let period = oscillator.clone().set("eps", "1/2")?.evaluate(None)?.period;
+    let period = period.ok_or(Error::NoValue)?;
+    let error = period.error.unwrap_or_default();
+    println!("period at eps = 1/2: {} +- {error}", period.decimal);
+
     let (problem, settings) = (&oscillator.problem, VerifySettings::default());
     let judge = verify_derivation(problem, &rayleigh, &settings, &mut |_| true)?;
     let observed = judge.observed.ok_or(Error::NoValue)?;

@@ -1,5 +1,6 @@
 //! The short way from an equation to its expansion.
 
+use crate::evaluate::{EvaluateSettings, Evaluation, evaluate};
 use crate::{Derivation, Error, Progress, Settings, Value, derive};
 use lindstedt_equation::classify::{Classification, ClassifyError, classify};
 use lindstedt_equation::{Condition, Expression, ParameterCard, Problem};
@@ -109,6 +110,29 @@ impl Oscillator {
     /// [`ClassifyError`].
     pub fn classify(&self) -> Result<Classification, ClassifyError> {
         classify(&self.problem, &known_values(&self.problem, &self.settings.parameters))
+    }
+
+    /// The period by resummation, with the values set; the order is a quick one if nothing.
+    ///
+    /// # Errors
+    /// As [`evaluate`].
+    ///
+    /// ```
+    /// use lindstedt::Oscillator;
+    /// let quintic = Oscillator::parse("x'' + x + eps*x^5 = 0")?.set("eps", "1/2")?;
+    /// let period = quintic.evaluate(None)?.period.map(|period| period.decimal);
+    /// // 4 times the integral of dx/sqrt(1 - x^2 + (1 - x^6)/6) from 0 to 1.
+    /// assert!(period.is_some_and(|period| period.starts_with("5.50107565725")));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn evaluate(&self, order: Option<usize>) -> Result<Evaluation, Error> {
+        let settings = EvaluateSettings {
+            order,
+            condition: self.settings.condition,
+            parameters: self.settings.parameters.clone(),
+            ..EvaluateSettings::default()
+        };
+        evaluate(&self.problem, &settings, &mut |_: Progress| true)
     }
 
     /// The checked expansion up to an order.

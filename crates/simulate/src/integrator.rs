@@ -389,6 +389,10 @@ impl<'s, R: Real> Integrator<'s, R> {
                 // logarithm, x' alone is unbounded.
                 let x = self.state.first();
                 let displacement = x.map_or(f64::NAN, |x| real.to_f64(x));
+                // Doubles end at 2^1024: no pole, however large.
+                if self.system.real.bits() <= 53 && x.is_some_and(|x| real.log2(x) > 900.0) {
+                    return SimulateError::NotFinite { time };
+                }
                 if x.is_some_and(|x| real.log2(x) > self.log2_start + 10.0) {
                     SimulateError::Escape { time, displacement }
                 } else {

@@ -94,6 +94,7 @@ pub fn largest_lyapunov_exponent<R: Real>(
         return Ok(None);
     }
     let (value, error) = mean(&growths);
+    let error = error.max(wandering(&growths, value));
     let interval = real.to_f64(&settings.interval);
     let (value, error) = (value / interval, error / interval);
     if value.is_finite() && !error.is_nan() {
@@ -117,6 +118,19 @@ impl<R: Real> Integrator<'_, R> {
         let before = std::mem::replace(left, (largest - power) * std::f64::consts::LN_2);
         largest * std::f64::consts::LN_2 - before
     }
+}
+
+/// How far the sums of the values go from those of their mean, per value: what an oscillation of the
+/// growth leaves in a mean over a time that is no multiple of its period, which blocks of nearly whole
+/// periods do not show. For independent values it is about as large as the standard error.
+fn wandering(values: &[f64], mean: f64) -> f64 {
+    let mut sum = 0.0;
+    let (mut least, mut largest) = (0.0f64, 0.0f64);
+    for value in values {
+        sum += value - mean;
+        (least, largest) = (least.min(sum), largest.max(sum));
+    }
+    (largest - least) / values.len() as f64
 }
 
 /// The mean and its standard error from at most 20 blocks; infinite for one.

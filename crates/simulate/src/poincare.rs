@@ -169,7 +169,9 @@ impl<'s, R: Real> PoincareMap<'s, R> {
                 }
                 Report::Event(event) => {
                     after(event.kind, &mut modes, &mut contact);
-                    if !matches(event.kind, wanted) {
+                    // A hit without rebound is an impact, too.
+                    let hit = event.before.get(1) != event.after.get(1);
+                    if !matches(event.kind, hit, wanted) {
                         return ControlFlow::Continue(());
                     }
                     waiting.push_back(Point {
@@ -204,9 +206,10 @@ fn after(kind: EventKind, modes: &mut [i8], contact: &mut Option<usize>) {
     }
 }
 
-fn matches(kind: EventKind, (surface, direction): (Surface, Option<bool>)) -> bool {
+fn matches(kind: EventKind, hit: bool, (surface, direction): (Surface, Option<bool>)) -> bool {
     let (found, upwards) = match kind {
         EventKind::Impact { wall } => (Surface::Wall(wall), direction),
+        EventKind::Rest { wall } if hit => (Surface::Wall(wall), direction),
         EventKind::Switching { switch, from, to } => (Surface::Switch(switch), Some(to > from)),
         EventKind::Section { section, rising } => (Surface::Section(section), Some(rising)),
         _ => return false,

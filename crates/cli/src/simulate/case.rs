@@ -1,12 +1,12 @@
 //! A problem with values, start, history and forcing, read off its equation.
 
 use super::history::{Evaluator, constant, free_flight};
-use super::setup::{Setup, same};
+use super::setup::{Setup, identity, same};
 use crate::failure::{Failure, NO_ANSWER};
 use crate::session::parameters;
 use crate::stability::request::exact_parameters;
 use lindstedt::Value;
-use lindstedt::equation::Function::{Abs, Sign, Sin};
+use lindstedt::equation::Function::{Abs, Cos, Sign, Sin};
 use lindstedt::equation::{AmplitudeRole, Condition, Crossing, Expression, ParameterCard, Problem};
 use lindstedt::expand::Excitation;
 use lindstedt::problem_file::{History, ProblemFile, parse_expression};
@@ -85,7 +85,8 @@ impl Case<'_> {
             }
             (None, _) => self.start(&problem, &evaluator, &mut remarks),
         };
-        let frequency = Excitation::of(&equation).ok().and_then(|force| force.frequency);
+        let force = Excitation::of(&without_phases(&equation)).ok();
+        let frequency = force.and_then(|force| force.frequency);
         let forcing = match &frequency {
             Some(frequency) => evaluator.period(frequency)?.map(Quantity::Float),
             None => None,
@@ -96,7 +97,7 @@ impl Case<'_> {
         problem.equation = equation;
         let mut model = Model::of_problem(&problem)?;
         let delayed = |e: &Expression| matches!(e, Expression::Delayed(..));
-        let mut held = Vec::new();
+        let (mut held, mut past) = (Vec::new(), None);
         if problem.equation.find(&delayed).is_some() {
             let usual = || if self.impacting { History::FreeFlight } else { History::Constant };
             let start = state.each_ref().map(|q| q.float(bits));
@@ -114,12 +115,14 @@ impl Case<'_> {
                 History::Expression(e) => (e, "the expression given, x(t) before t = 0"),
             };
             remarks.push(format!("history: {remark}"));
-            model = model.with_history(&[expression]);
+            model = model.with_history(std::slice::from_ref(&expression));
+            past = Some(expression);
         } else if history.is_some() {
             remarks.push("history: not used, there is no delay".to_owned());
         }
         let sweepable = self.sweepable(&problem, &held);
         Ok(Setup {
+            identity: identity(&problem, past.as_ref()),
             name: problem.name.to_string(),
             model,
             parameters: bindings,
@@ -128,9 +131,11 @@ impl Case<'_> {
             forcing,
             frequency: frequency.map(|frequency| (frequency, small)),
             wall,
+            linear: !wall && degree(&problem.equation).is_some_and(|degree| degree <= 1),
             sticks: rubs(&problem.equation),
             orbit: None,
             sweepable,
+            fixed: Vec::new(),
             ranges: BTreeMap::new(),
             remarks,
         })
@@ -233,18 +238,89 @@ impl Case<'_> {
             mentioned.extend(wall.position.parameters());
             mentioned.extend(wall.restitution.parameters());
         }
+        // A delay that was put in moves with what it follows from.
+        let tie = problem.synchronous.as_ref();
+        let tie = tie.filter(|tie| mentioned.iter().any(|name| *name == *tie.delay));
         let cards = problem.parameters.iter().map(|card| card.name.to_string());
         let linked = problem.parameters.iter().any(|card| card.name == "n");
         cards
             .filter(|name| {
-                let tied = problem.synchronous.as_ref();
-                let tied = tied.is_some_and(|t| t.frequency == **name || t.periods == **name);
+                let tied = tie.is_some_and(|t| t.frequency == **name || t.periods == **name);
                 let bound = ["amplitude", "pi"].contains(&name.as_str())
                     || (linked && *name == *problem.small);
                 let contains = |list: &[String]| list.contains(name);
                 contains(&mentioned) && !contains(held) && !tied && !bound
             })
             .collect()
+    }
+}
+
+/// The equation with cos(omega t) for cos(omega t + p) and the same for sin: the period of a force does
+/// not depend on its phase.
+fn without_phases(e: &Expression) -> Expression {
+    let out = |e: Expression| {
+        let e = e.canonical();
+        e.multiplied_out().unwrap_or(e).canonical()
+    };
+    let plain = |e: &Expression| {
+        let Expression::Function(function @ (Cos | Sin), z) = e else {
+            return None;
+        };
+        let at = |time: i64| {
+            z.substitute(&|e| (*e == Expression::Time).then(|| Expression::integer(time)))
+        };
+        let bend = out(at(2) - 2 * at(1) + at(0));
+        let moves = |e: &Expression| {
+            matches!(e, Expression::Displacement | Expression::Velocity | Expression::Delayed(..))
+        };
+        if !z.contains(&Expression::Time)
+            || bend != Expression::integer(0)
+            || z.find(&moves).is_some()
+        {
+            return None;
+        }
+        Some((out(at(1) - at(0)) * Expression::Time).apply(*function))
+    };
+    rewritten(e, &plain)
+}
+
+/// The expression with every subexpression, from the outside, that `change` has something for replaced.
+fn rewritten(e: &Expression, change: &dyn Fn(&Expression) -> Option<Expression>) -> Expression {
+    if let Some(new) = change(e) {
+        return new;
+    }
+    let again = |e: &Expression| rewritten(e, change);
+    let list = |l: &[Expression]| l.iter().map(again).collect();
+    match e {
+        Expression::Sum(l) => Expression::Sum(list(l)),
+        Expression::Product(l) => Expression::Product(list(l)),
+        Expression::Power(a, b) => again(a).pow(again(b)),
+        Expression::Function(f, z) => again(z).apply(*f),
+        Expression::Formal(name, z) => again(z).formal(name),
+        Expression::Delayed(inner, delay) => again(inner).delayed(again(delay)),
+        leaf => leaf.clone(),
+    }
+}
+
+/// The degree in x, x', x'' and their delayed values; nothing for what is no polynomial in them.
+fn degree(e: &Expression) -> Option<i64> {
+    match e {
+        Expression::Displacement | Expression::Velocity | Expression::Acceleration => Some(1),
+        Expression::Delayed(inner, _) => degree(inner),
+        Expression::Sum(list) => list.iter().map(degree).try_fold(0, |m, d| Some(m.max(d?))),
+        Expression::Product(list) => list.iter().map(degree).try_fold(0, |m, d| Some(m + d?)),
+        Expression::Power(base, exponent) => match (degree(base)?, degree(exponent)?) {
+            (0, 0) => Some(0),
+            (d, 0) => {
+                let n = exponent.as_number().filter(|n| n.is_integer() && *n >= 0)?;
+                d.checked_mul(n.numer().to_i64()?)
+            }
+            _ => None,
+        },
+        Expression::Function(_, z) | Expression::Formal(_, z) => {
+            degree(z).filter(|degree| *degree == 0)
+        }
+        _ => Some(0),
     }
 }
 
@@ -278,7 +354,7 @@ fn flying(e: &Expression) -> Expression {
         Expression::Delayed(inner, _) => Some((**inner).clone()),
         _ => None,
     };
-    e.substitute(&inner).canonical()
+    rewritten(e, &inner).canonical()
 }
 
 /// Whether a sign or absolute value has the velocity in its argument: dry friction.

@@ -194,6 +194,9 @@ impl Diagnosis {
                 let share = f64::from(self.kept) / f64::from(self.skipped.max(1));
                 let power = 3.0 * share.ln_1p() + 3.0;
                 let word = match value {
+                    _ if self.setup.linear && value > 0.0 => {
+                        "a linear equation is not chaotic: its motions and perturbations grow alike"
+                    }
                     value if value > 4.0 * error && growth > power => "chaotic: perturbations grow",
                     value if value < -4.0 * error && growth < -3.0 => {
                         "regular: perturbations decay"
@@ -206,9 +209,11 @@ impl Diagnosis {
                 format!("{word}, largest Lyapunov exponent {}", with_error(value, error))
             });
         }
-        if let Some((stride, ZeroOne { k, .. })) = self.largest() {
+        if let Some((stride, ZeroOne { k, quartiles })) = self.largest() {
             let word = match *k {
-                k if k > 0.8 => "chaotic",
+                _ if self.setup.linear => "says nothing of a linear equation, which is not chaotic",
+                // One wide distribution of K is no growth at all frequencies.
+                k if k > 0.8 && quartiles.0 > 0.5 => "chaotic",
                 k if k < 0.3 => "regular",
                 _ => "undecided",
             };

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, NO_ANSWER};
 use lindstedt::equation::Function::{Cos, Exp, Sin};
+use lindstedt::equation::print::Style;
 use lindstedt::equation::{Expression, Function};
 use lindstedt::simulate::Parameters;
 use rug::Float;
@@ -25,11 +26,11 @@ impl Evaluator<'_> {
             let pi = Float::with_val(self.bits, rug::float::Constant::Pi);
             return Ok(Some(pi * 2u32 / omega));
         }
-        let name = frequency.parameters().join("*");
+        let frequency = frequency.print(self.small, Style::Text);
         Err(Failure {
             exit: NO_ANSWER,
             code: "outside-domain",
-            message: format!("{name} is outside its domain > 0"),
+            message: format!("the frequency of the force, {frequency}, is outside its domain > 0"),
             hint: String::new(),
         })
     }

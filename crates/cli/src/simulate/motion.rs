@@ -56,6 +56,17 @@ pub struct Happening {
     pub after: [Float; 2],
 }
 
+impl Happening {
+    /// An impact, or a hit without rebound.
+    pub fn is_impact(&self) -> bool {
+        match self.kind {
+            EventKind::Impact { .. } => true,
+            EventKind::Rest { .. } => self.before[1] != self.after[1],
+            _ => false,
+        }
+    }
+}
+
 /// A point of a figure.
 #[derive(Clone, Copy)]
 pub struct Dot {
@@ -258,6 +269,9 @@ pub fn align(a: &mut Motion, b: &mut Motion) {
                 events.push(event);
                 points.extend(point);
             }
+            if at_impacts && event.is_impact() {
+                points.extend(old_points.next());
+            }
             events.push(event);
         }
         for (event, point) in run {
@@ -309,7 +323,9 @@ impl<R: Real> Keeper<'_, R> {
                 let (section, end) = (self.plan.section, &self.plan.end);
                 let here = Moment { time: time.clone(), state: after.clone(), stuck: false };
                 let maximum = matches!(event.kind, EventKind::Section { rising: false, .. });
-                let impact = matches!(event.kind, EventKind::Impact { .. });
+                // A hit without rebound is an impact, too.
+                let hit = matches!(event.kind, EventKind::Rest { .. }) && before[1] != after[1];
+                let impact = matches!(event.kind, EventKind::Impact { .. }) || hit;
                 if (maximum && section == Some(Section::Velocity))
                     || (impact && section == Some(Section::Impact))
                 {

@@ -1,6 +1,6 @@
 //! The start on the periodic impact orbit of the vibro-impact oscillator.
 
-use super::setup::Setup;
+use super::setup::{Setup, identity};
 use crate::failure::{Failure, NO_ANSWER};
 use crate::stability::request::exact_parameters;
 use lindstedt::Value;
@@ -100,12 +100,13 @@ pub fn on_orbit(
     let history = symbol("F") * angle.apply(Cos) + (symbol("R") * since()).apply(Exp) * free;
     let mut shifted = problem.clone();
     shifted.equation = advanced(&problem.equation);
-    let model = Model::of_problem(&shifted)?.with_history(&[history]);
+    let model = Model::of_problem(&shifted)?.with_history(std::slice::from_ref(&history));
     if let Some(delta) = perturbation {
         v += Float::with_val(bits, &velocity * delta);
     }
     let forcing = Float::with_val(bits, rug::float::Constant::Pi) * 2u32 / &omega;
     Ok(Setup {
+        identity: identity(problem, Some(&history)),
         name: problem.name.to_string(),
         model,
         parameters,
@@ -114,10 +115,12 @@ pub fn on_orbit(
         forcing: Some(Quantity::Float(forcing)),
         frequency: None,
         wall: true,
+        linear: false,
         sticks: false,
         orbit: Some((period, velocity)),
         // The orbit does not depend on the gains.
         sweepable: vec!["A".into(), "B".into()],
+        fixed: Vec::new(),
         ranges: std::collections::BTreeMap::new(),
         remarks: vec![
             "start and history: the periodic orbit, t = 0 just after an impact".to_owned(),

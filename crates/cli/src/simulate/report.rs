@@ -157,7 +157,8 @@ impl<'a> Answer<'a> {
         let motion = self.motion;
         let time = motion.last.time.to_f64();
         let chaotic = if self.chaotic {
-            "chaotic: not the motion with 24 digits, a picture without digits; "
+            "no digit is left in doubles, a motion with more digits goes elsewhere (chaos, or an unstable \
+             motion); a picture; "
         } else {
             ""
         };
@@ -169,7 +170,13 @@ impl<'a> Answer<'a> {
         } else {
             format!("the events that end the motion did not come before t = {time:.6}")
         };
-        let count = |wanted: &str| motion.events.iter().filter(|e| name(e.kind) == wanted).count();
+        let count = |wanted: &str| {
+            let is = |e: &&Happening| match wanted {
+                "impact" => e.is_impact(),
+                _ => name(e.kind) == wanted,
+            };
+            motion.events.iter().filter(is).count()
+        };
         for what in ["impact", "accumulation", "stick"] {
             match count(what) {
                 0 => {}

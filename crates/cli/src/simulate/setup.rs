@@ -6,7 +6,8 @@ use super::orbit::on_orbit;
 use crate::failure::Failure;
 use crate::session::{Loaded, load, parameters};
 use crate::start::{Taken, compare};
-use lindstedt::equation::{Condition, Expression, Problem};
+use lindstedt::equation::print::Style;
+use lindstedt::equation::{Condition, Expression, Impact, Problem};
 use lindstedt::problem_file::{History, Names, ProblemFile};
 use lindstedt::problems::{stick_slip, vibro_impact};
 use lindstedt::simulate::{Model, Parameters, Quantity};
@@ -30,14 +31,21 @@ pub struct Setup {
     pub frequency: Option<(Expression, String)>,
     /// A wall bounds the motion.
     pub wall: bool,
+    /// The equation is linear, without a wall.
+    pub linear: bool,
     /// Dry friction makes the body stick.
     pub sticks: bool,
     /// Period and impact velocity of the periodic impact orbit that the motion starts on.
     pub orbit: Option<(Float, Float)>,
     /// Parameters that can be swept (nothing else depends on them).
     pub sweepable: Vec<String>,
+    /// Parameters that a file holds fixed.
+    pub fixed: Vec<String>,
     /// Ranges LO..HI:COUNT of parameters that a file says.
     pub ranges: BTreeMap<String, String>,
+    /// Equation, wall and history in one line: with the parameters and the start, all that determines a
+    /// motion.
+    pub identity: String,
     /// What was chosen, in words.
     pub remarks: Vec<String>,
 }
@@ -54,6 +62,19 @@ pub struct Start<'a> {
     /// A parameter is swept: on the orbit itself nothing but rounding errors would tell stable
     /// from unstable, so the start is perturbed.
     pub sweep: bool,
+}
+
+/// See [`Setup::identity`].
+pub fn identity(problem: &Problem, history: Option<&Expression>) -> String {
+    let print = |e: &Expression| e.print(&problem.small, Style::Text);
+    let mut text = print(&problem.equation);
+    if let Some(Impact { position, crossing, restitution }) = &problem.impact {
+        text += &format!("; {crossing:?} to {}, {}", print(position), print(restitution));
+    }
+    if let Some(history) = history {
+        text += &format!("; before {}", print(history));
+    }
+    text
 }
 
 /// Whether two problems are the same equation with the same wall and delay.
@@ -147,7 +168,7 @@ impl Setup {
 
     /// What a file says about its parameters and its questions.
     fn keep_to(&mut self, file: &ProblemFile) {
-        self.sweepable.retain(|name| !file.fixed.contains(name));
+        self.fixed = file.fixed.clone();
         self.ranges = file.ranges.clone();
         if !file.asked.is_empty() {
             let list = file.asked.join(", ");

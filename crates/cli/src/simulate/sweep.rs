@@ -52,6 +52,9 @@ impl Diagram {
             return Err(usage(message, &hint));
         };
         let name = name.trim().to_owned();
+        if setup.fixed.contains(&name) {
+            return Err(usage(format!("{name:?} is fixed in the file"), "take it out of `fixed`"));
+        }
         if !setup.sweepable.contains(&name) {
             let hint = format!(
                 "it can be one of: {}; what the start or the delays depend on is fixed",
@@ -89,7 +92,7 @@ impl Diagram {
         let ends = ends.map(|q| q.map_or(f64::NAN, |q| q.float(64).to_f64()));
         let start = self.setup.start.each_ref().map(|q| q.float(64).to_f64());
         format!(
-            "# lindstedt bifurcation 2: {} {}; {} = {:?}..{:?}:{}; start {start:?}; {:?}; skip {}, keep {}; x,v per point\n",
+            "# lindstedt bifurcation 3: {} {}; {} = {:?}..{:?}:{}; start {start:?}; {:?}; skip {}, keep {}; x,v per point; {}\n",
             self.setup.name,
             list.join(" "),
             self.name,
@@ -99,6 +102,7 @@ impl Diagram {
             self.section,
             self.transient,
             self.kept,
+            self.setup.identity,
         )
     }
 
@@ -241,14 +245,25 @@ impl Diagram {
     pub fn text(&self, verdict: &str) -> String {
         let (k, what) = self.ordinate();
         let mut text = format!("{}: {verdict}\n", self.setup.name);
+        let [x, v] = self.setup.start.each_ref().map(|q| q.float(64).to_f64());
+        let _ = writeln!(text, "  start of every column: x = {x:?}, x' = {v:?}");
+        for remark in &self.setup.remarks {
+            let _ = writeln!(text, "  {remark}");
+        }
         let _ = writeln!(text, "  {:<24}  {:>6}  {what}: least, largest", self.name, "points");
         for line in self.lines.iter().take(PRINTED) {
             let _ = match (&line.failure, line.span(k)) {
                 (Some(reason), _) => writeln!(text, "  {:<24}  {reason}", line.exact),
-                (None, None) => writeln!(text, "  {:<24}  {:>6}", line.exact, 0),
+                (None, None) => {
+                    let why = "the events of the section cease before";
+                    writeln!(text, "  {:<24}  {:>6}  {why}", line.exact, 0)
+                }
                 (None, Some([least, largest])) => {
                     let count = line.points.len();
-                    writeln!(text, "  {:<24}  {count:>6}  {least:.9}  {largest:.9}", line.exact)
+                    let few = count < self.kept as usize;
+                    let ceased = if few { "  then the events cease" } else { "" };
+                    let span = format!("{least:.9}  {largest:.9}");
+                    writeln!(text, "  {:<24}  {count:>6}  {span}{ceased}", line.exact)
                 }
             };
         }

@@ -64,6 +64,13 @@ pub fn run(options: &TradeOptions, session: &Session<'_>) -> Outcome {
         classification::condition(options.normalisation, &mut loaded, &options.problem)?;
     let mut parameters = session::parameters(&options.set)?;
     set_order_parameter(&loaded, &mut parameters);
+    if condition.is_none()
+        && loaded.problem.conditions.is_empty()
+        && let Some(file) = &loaded.file
+        && let Ok(parts) = classification::of(&loaded.problem, &parameters)
+    {
+        classification::check(&parts, file, condition, &options.problem)?;
+    }
     let problem = loaded.problem;
     let wanted = Wanted { error: options.wanted, seconds: options.within };
     output::check_writable(session)?;

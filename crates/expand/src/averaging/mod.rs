@@ -142,7 +142,10 @@ impl<A: AveragingAlgebra> Scheme for Averaging<'_, A> {
 
 impl<'a, A: AveragingAlgebra> Averaging<'a, A> {
     fn start(algebra: &'a A, equation: &'a Equation<A>) -> Result<Self, ExpandError> {
-        let (evaluator, linear, sensitive) = linearise(algebra, equation)?;
+        let (linear, sensitive) = linearise(algebra, equation)?;
+        // Anew: with a force at order zero x_0 is not a cos psi, at which the linear part was found, and
+        // coefficients of order 1 that were needed for it depend on x_0.
+        let evaluator = Evaluator::new(algebra, equation);
         let generating = algebra.generating_solution();
         let zero = || vec![algebra.constants().zero()];
         let mut averaging = Self {
@@ -237,13 +240,11 @@ impl<'a, A: AveragingAlgebra> Averaging<'a, A> {
     }
 }
 
-/// The evaluator at a cos psi, the linear part there, and the nodes that depend on order n of x.
-type Linearised<'a, A> = (Evaluator<'a, A>, LinearPart<Constant<A>>, Vec<bool>);
-
-fn linearise<'a, A: AveragingAlgebra>(
-    algebra: &'a A,
-    equation: &'a Equation<A>,
-) -> Result<Linearised<'a, A>, ExpandError> {
+/// The linear part at a cos psi, and the nodes whose order n depends on order n of x.
+fn linearise<A: AveragingAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+) -> Result<(LinearPart<Constant<A>>, Vec<bool>), ExpandError> {
     let mut evaluator = Evaluator::new(algebra, equation);
     let generating = algebra.generating_solution();
     evaluator.assign(&Node::Displacement, 0, generating.clone());
@@ -273,7 +274,7 @@ fn linearise<'a, A: AveragingAlgebra>(
             })
             .collect::<Result<_, ExpandError>>()?,
     };
-    Ok((evaluator, linear, sensitive))
+    Ok((linear, sensitive))
 }
 
 /// The linear part of an equation at order zero; needs no frequency.
@@ -284,7 +285,7 @@ pub fn linear_part<A: AveragingAlgebra>(
     algebra: &A,
     equation: &Equation<A>,
 ) -> Result<LinearPart<Constant<A>>, ExpandError> {
-    linearise(algebra, equation).map(|(_, linear, _)| linear)
+    linearise(algebra, equation).map(|(linear, _)| linear)
 }
 
 /// -T/i as a constant of the algebra.

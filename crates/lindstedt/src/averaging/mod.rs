@@ -195,6 +195,9 @@ impl<K: RationalAlgebra> Binding<AmplitudePolynomials<K>> for Bound<'_, K> {
     fn formal(&self, _: &str, _: usize) -> Option<AmplitudePolynomial<K::Element>> {
         None
     }
+    fn power(&self, power: &Expression) -> Option<AmplitudePolynomial<K::Element>> {
+        constant(&self.ring.coefficients, power, self.values).map(|value| self.ring.embed(value))
+    }
 }
 
 /// Beyond this precision "not enough bits" is answered.

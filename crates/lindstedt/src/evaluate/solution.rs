@@ -32,7 +32,8 @@ pub struct Displacement {
 pub struct Fourier {
     /// (c_k, s_k) of c_k cos(k omega t) + s_k sin(k omega t).
     pub coefficients: Vec<(f64, f64)>,
-    /// The largest deviation of the sum from x, at points between those that were used.
+    /// The largest deviation of the sum from x at four times as many points as were used, and near the
+    /// largest of these at 16 more.
     pub deviation: f64,
     /// What the estimated errors of x allow a coefficient to be wrong by; nothing without estimates.
     pub error: Option<f64>,
@@ -294,7 +295,7 @@ impl Trajectory {
 
     /// The Fourier coefficients (c_k, s_k), k = 0 .. `harmonics`, of x as a function of
     /// omega t, by the trapezoidal rule on 4 (harmonics + 1) points, 64 at least, and the largest
-    /// deviation of their sum from x at as many points between.
+    /// deviation of their sum from x that was found.
     ///
     /// The points lie half a step off the phase 0 and their number is a multiple of 4, so the harmonics
     /// that fold onto lower ones keep their parity: no sine appears in an even motion, no even harmonic
@@ -303,16 +304,14 @@ impl Trajectory {
     pub fn fourier(&self, harmonics: usize) -> Option<Fourier> {
         let count = (4 * (harmonics + 1)).max(FEWEST_NODES);
         let turn = std::f64::consts::TAU / count as f64;
-        let sample = |offset: f64| -> Option<Vec<Displacement>> {
-            let one = |i: usize| {
-                let time = (i as f64 + offset) / count as f64 * self.period;
-                let time = Value::Rational(Rational::from_f64(time)?);
-                let x = self.at(&time);
-                x.double.is_finite().then_some(x)
-            };
-            (0..count).map(one).collect()
+        let at = |place: f64| {
+            let time = place / count as f64 * self.period;
+            let time = Value::Rational(Rational::from_f64(time)?);
+            let x = self.at(&time);
+            x.double.is_finite().then_some(x)
         };
-        let nodes = sample(0.5)?;
+        let nodes: Vec<Displacement> =
+            (0..count).into_par_iter().map(|i| at(i as f64 + 0.5)).collect::<Option<_>>()?;
         let coefficient = |k: usize| {
             let weight = if k == 0 { 1.0 } else { 2.0 } / count as f64;
             nodes.iter().enumerate().fold((0.0, 0.0), |(c, s), (i, x)| {
@@ -330,10 +329,15 @@ impl Trajectory {
             };
             list.iter().enumerate().map(term).sum::<f64>()
         };
-        let between = sample(0.0)?;
-        let deviation =
-            between.iter().enumerate().map(|(i, x)| (sum(i as f64 * turn) - x.double).abs());
-        let deviation = deviation.fold(0.0, f64::max);
+        let deviation = |places: Vec<f64>| -> Option<(f64, f64)> {
+            let one = |place: f64| Some(((sum(place * turn) - at(place)?.double).abs(), place));
+            let all: Vec<(f64, f64)> = places.into_par_iter().map(one).collect::<Option<_>>()?;
+            all.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let quarters = (0..4 * count).map(|i| i as f64 / 4.0).collect();
+        let (coarse, place) = deviation(quarters)?;
+        let (fine, _) = deviation((-8..=8).map(|i| place + f64::from(i) / 32.0).collect())?;
+        let deviation = coarse.max(fine);
         Some(Fourier { coefficients: list, deviation, error: error.is_finite().then_some(error) })
     }
 

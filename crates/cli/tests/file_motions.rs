@@ -1,0 +1,237 @@
+//! Motions and expansions of problem files against closed forms: forces with a phase, masses, parameters that
+//! follow, sweeps that are resumed, inelastic walls, exponents of motions that are no chaos.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+fn lindstedt(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).arg("--quiet").output().unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = lindstedt(&[arguments, &["--format", "json"]].concat());
+    assert!(output.status.success(), "{arguments:?} {}", String::from_utf8_lossy(&output.stdout));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn text(arguments: &[&str]) -> String {
+    let output = lindstedt(arguments);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?} {error}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn refusal(arguments: &[&str]) -> (Option<i32>, String) {
+    let output = lindstedt(arguments);
+    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+}
+
+fn float(number: &Value) -> f64 {
+    number["decimal"].as_str().unwrap().parse().unwrap()
+}
+
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let name = format!("lindstedt-motions-{}-{name}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    /// An equation with parameters `name = value` and what else the file says.
+    fn file(&self, equation: &str, parameters: &[(&str, &str)], rest: &str) -> String {
+        let path = self.0.join("problem.toml");
+        let mut text =
+            format!("name = \"problem\"\nequation = \"{equation}\"\n{rest}\n[parameters]\n");
+        for (name, value) in parameters {
+            text += &format!("{name} = {{ value = \"{value}\" }}\n");
+        }
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// x'' + x'/5 + x = cos(w t): |H| = 1/sqrt((1 - w^2)^2 + w^2/25) at every phase; the file of a sweep
+/// belongs to one equation.
+#[test]
+fn a_resumed_sweep_belongs_to_one_equation() {
+    let folder = Folder::new("resume");
+    let points = folder.0.join("points");
+    let points = points.to_str().unwrap();
+    let sweep =
+        ["--sweep", "w=1/2..1:2", "--section", "velocity", "--skip", "300", "--periods", "2"];
+    let run = |damping: &str, resume: &str| {
+        let path = folder.file(&format!("x'' + x + {damping}*x' = cos(w*t)"), &[("w", "1")], "");
+        let all = [&["simulate", &path], &sweep[..], &["--resume", resume]].concat();
+        lindstedt(&all)
+    };
+    let found = run("1/5", points);
+    let found = String::from_utf8(found.stdout).unwrap();
+    assert!(found.contains("1.321637201") && found.contains("5.000000000"), "{found}");
+    let other = run("1/2", points);
+    assert_eq!(other.status.code(), Some(5));
+    let fresh = run("1/2", folder.0.join("fresh").to_str().unwrap());
+    let fresh = String::from_utf8(fresh.stdout).unwrap();
+    assert!(fresh.contains("1.264911064") && fresh.contains("2.000000000"), "{fresh}");
+}
+
+/// cos(w t + p) has the period of cos(w t), whatever the frequency is made of.
+#[test]
+fn forces_with_a_phase_have_their_period() {
+    let folder = Folder::new("phase");
+    let frequencies = [("w1", "1/4"), ("w2", "1/4"), ("p", "1")];
+    for force in ["cos(t/2 + 1)", "cos((w1 + w2)*t + p)", "sin(w1*(t + 4*p) + w2*t + pi/2)"] {
+        let equation = format!("x'' + x + x'/5 = {force}").replace("pi/2", "1.5");
+        let path = folder.file(&equation, &frequencies, "");
+        let found = json(&["simulate", &path, "--section", "stroboscopic", "--periods", "2"]);
+        let points = found["section"]["points"].as_array().unwrap();
+        let time = points[0][0].as_f64().unwrap();
+        assert!((time - 4.0 * std::f64::consts::PI).abs() < 1e-12, "{force}: {time}");
+    }
+    let path = folder.file("x'' + x + x'/5 = cos((w1 + w2)*t)", &frequencies, "");
+    let (code, error) = refusal(&["simulate", &path, "--set", "w1=-1"]);
+    assert!(code == Some(3) && error.contains("(w1 + w2), is outside its domain"), "{error}");
+}
+
+/// m x'' + eps c x' + k x + eps k3 x^3 = p cos(w t) averaged: A_1 = -c a/(2 m), and B_1 =
+/// (3 k3/(8 m w0)) (a^2 + 2 P^2), P = p/(k - m w^2); the motion in time agrees. Also a factor that is
+/// not multiplied out, with a force at order zero in it.
+#[test]
+fn masses_are_averaged() {
+    let folder = Folder::new("mass");
+    let all = [("m", "2"), ("c", "1"), ("k", "8"), ("k3", "1"), ("p", "1"), ("w", "5")];
+    let equation = "m x'' + eps c x' + k x + eps k3 x^3 = p cos(w t)";
+    let typed = "2*x'' + eps*x' + 8*x + eps*x^3 = cos(5*t)";
+    let factored = "x'' + (1/m)*(eps*x' + k*x + eps*x^3 - cos(5*t)) = 0";
+    let derived = |equation: &str| {
+        let path = folder.file(equation, &all, "");
+        let found = text(&["derive", &path, "--order", "2"]);
+        let start = found.find("  u_0").unwrap();
+        assert!(found.contains("A_1 = -1/4*a\n"), "{found}");
+        found[start..].to_owned()
+    };
+    let expected = derived(typed);
+    assert_eq!(derived(equation), expected);
+    assert_eq!(derived(factored), expected);
+    // No rational frequency: in balls.
+    let path = folder.file(equation, &all, "");
+    let judged = text(&["verify", &path, "--set", "m=3", "--order", "1"]);
+    assert!(judged.contains("agrees: observed order"), "{judged}");
+    let spring = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/impact-spring.toml");
+    assert!(text(&["derive", spring, "--order", "1"]).contains("encloses zero at orders 0 to 1"));
+}
+
+/// b = 2 a is put in its place by every command.
+#[test]
+fn parameters_that_follow() {
+    let folder = Folder::new("follows");
+    let path = folder.file("x'' + x + eps*b*x^3 = 0", &[("a", "1/2")], "");
+    let file = std::fs::read_to_string(&path).unwrap() + "b = { follows = \"2*a\" }\n";
+    std::fs::write(&path, file).unwrap();
+    let sets = ["--set", "eps=1/2", "--digits", "12"];
+    let own = json(&[&["evaluate", &path], &sets[..]].concat());
+    let duffing = json(&[&["evaluate", "duffing"], &sets[..]].concat());
+    assert_eq!(own["period"]["decimal"], duffing["period"]["decimal"]);
+    let other = json(&[&["evaluate", &path, "--set", "a=1"], &sets[..]].concat());
+    assert_ne!(other["period"]["decimal"], duffing["period"]["decimal"]);
+}
+
+/// With restitution 0 a hit is an impact, too, though the body may stay at the wall after it.
+#[test]
+fn inelastic_impacts_are_impacts() {
+    let spring = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/impact-spring.toml");
+    let found = json(&["simulate", spring, "--set", "r=0", "--until", "8", "--section", "impact"]);
+    let points = found["section"]["points"].as_array().unwrap();
+    let events = found["events"].as_array().unwrap();
+    let hits = events.iter().filter(|e| float(&e["v_before"]) < -1e-3).count();
+    assert_eq!((points.len(), hits), (4, 4), "{events:?}");
+    assert!(found["verdict"].as_str().unwrap().contains("4 impacts"));
+    let ended = json(&["simulate", spring, "--set", "r=0", "--impacts", "3"]);
+    assert!((float(&ended["final"]["t"]) - points[2][0].as_f64().unwrap()).abs() < 1e-9);
+    let sweep = ["--sweep", "r=0..1/10:2", "--section", "impact", "--skip", "0", "--impacts", "4"];
+    let swept = json(&[&["simulate", spring], &sweep[..]].concat());
+    let column = swept["sweep"]["columns"][0]["points"].as_array().unwrap();
+    for (one, many) in points.iter().zip(column) {
+        assert!((one[2].as_f64().unwrap() - many[1].as_f64().unwrap()).abs() < 1e-9);
+    }
+}
+
+/// A cycle has the exponent 0, within the error also over a time that is no whole number of periods;
+/// what is linear is not chaotic, however its motions grow.
+#[test]
+fn growth_is_not_chaos() {
+    let folder = Folder::new("growth");
+    let cycle = folder.file("x'' + x + (x^2 - 1)*x' = 0", &[], "");
+    for (periods, skip) in [("200", "20"), ("200", "500")] {
+        let found = json(&["simulate", &cycle, "--lyapunov", "--periods", periods, "--skip", skip]);
+        let error: f64 = found["lyapunov"]["error"].as_str().unwrap().parse().unwrap();
+        let value = float(&found["lyapunov"]);
+        assert!(value.abs() <= error && error < 0.05, "{periods} {skip}: {value} +- {error}");
+    }
+    for equation in ["x'' - x'/10 + x = 0", "x'' + (1 + cos(2*t)/2)*x + x'/5 = 1"] {
+        let path = folder.file(equation, &[], "");
+        let run = ["--lyapunov", "--zero-one", "--periods", "300", "--skip", "10"];
+        let found = json(&[&["simulate", &path], &run[..]].concat());
+        let verdict = found["verdict"].as_str().unwrap();
+        assert!(verdict.starts_with("a linear equation is not chaotic"), "{verdict}");
+        assert!(!verdict.contains("test chaotic"), "{verdict}");
+    }
+    // Beyond the largest double, not at a pole.
+    let path = folder.file("x'' - x + x'/5 = 0", &[], "");
+    let (code, error) = refusal(&["simulate", &path, "--lyapunov"]);
+    assert!(code == Some(3) && error.contains("not finite"), "{error}");
+}
+
+/// Cycles that order 1 does not decide are said to be decided elsewhere, and a centre is none.
+#[test]
+fn cycles_of_second_order() {
+    let folder = Folder::new("cycles");
+    for rest in ["", "eps*x^2 + ", "eps*x*x' + "] {
+        let path = folder.file(&format!("x'' + x + {rest}eps^2*(x^2 - 1)*x' = 0"), &[], "");
+        let (code, error) = refusal(&["derive", &path]);
+        assert!(code == Some(3) && error.contains("of order 1 vanishes"), "{error}");
+        let found = text(&["derive", &path, "--normalisation", "free", "--order", "2"]);
+        assert!(found.contains("A_1 = 0") && found.contains("A_2 = 1/2*a - 1/8*a^3"), "{found}");
+    }
+    // v dv/(1 + eps v) = -g dx: all orbits are closed.
+    let centre = "x'' + (x + eps*x^2) + eps*(x + eps*x^2)*x' = 0";
+    let path = folder.file(centre, &[], "condition = \"initial-amplitude\"");
+    assert!(text(&["derive", &path, "--order", "4"]).contains("at orders 0 to 4"));
+}
+
+/// The function that --code writes deviates from the expansion by no more than it says, also where the force
+/// is not smooth.
+#[test]
+fn the_deviation_of_code_is_found() {
+    for (n, t) in [("1/2", 1.4369), ("1/10", 1.4), ("5", 0.5)] {
+        let set = format!("n={n}");
+        let code = text(&["evaluate", "power-law", "--set", &set, "--code", "python"]);
+        let stated = code.split("deviation from the expansion ").nth(1).unwrap();
+        let stated: f64 = stated.split(';').next().unwrap().parse().unwrap();
+        let omega: f64 =
+            code.split("phase = ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+        let terms = code.lines().filter_map(|line| line.trim().strip_prefix('('));
+        let term = |line: &str| -> Option<f64> {
+            let mut parts = line.split(", ");
+            let k: f64 = parts.next()?.parse().ok()?;
+            Some(parts.next()?.parse::<f64>().ok()? * (k * omega * t).cos())
+        };
+        let sum: f64 = terms.filter_map(term).sum();
+        let times = format!("{t}..{t}:1");
+        let found = json(&["evaluate", "power-law", "--set", &set, "--times", &times]);
+        let number = &found["solution"]["values"][0]["x"];
+        let error: f64 = number["error"].as_str().unwrap().parse().unwrap();
+        let deviation = (sum - float(number)).abs();
+        assert!(deviation <= 1.1 * stated + error, "{n}: {deviation} > {stated}");
+    }
+}
