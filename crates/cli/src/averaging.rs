@@ -52,7 +52,8 @@ pub fn run(
     session.done();
     let names: &[&str] = match result.is_linear() {
         true => &["growth_rate", "frequency", "solution"],
-        false => &["solution"],
+        // A_n(a)/a and B_n(a).
+        false => &["solution", "growth_rate", "frequency"],
     };
     say_missing(file, &|name| names.contains(&name));
     let convergence = series_convergence(&result, settings);
@@ -263,8 +264,13 @@ impl Board<'_> {
         } else {
             writeln!(
                 text,
-                "\nResidual: the expansion substituted into the equation encloses zero at orders 0 to {};\nall digits printed are certain.",
-                result.checked_orders
+                "\nResidual: the expansion substituted into the equation encloses zero at orders 0 to {};\n{}.",
+                result.checked_orders,
+                if result.checked_orders < result.order {
+                    "the orders above were not checked"
+                } else {
+                    "all digits printed are certain"
+                }
             )
         };
         text

@@ -327,7 +327,9 @@ pub fn check(
         exit: NO_ANSWER,
         code: "no-method",
         message: format!("{at}: {}", reason_text(reason, &file.problem.small)),
-        hint: if parts.takes(Method::Melnikov) {
+        hint: if nothing_small && *reason == Reason::NoSmallParameter {
+            marks
+        } else if parts.takes(Method::Melnikov) {
             "Melnikov's method takes equations of this kind: lindstedt threshold FILE".into()
         } else if *reason == Reason::UnknownFrequency {
             "--set NAME=VALUE gives it one".into()

@@ -108,6 +108,14 @@ impl Source {
             Refusal::Melnikov(error) => return Failure { message, ..error.into() },
             _ => (NO_ANSWER, "no-method", "`lindstedt problems --show FILE` lists the methods"),
         };
-        Failure { exit, code, message, hint: hint.to_owned() }
+        // Without it every term is one of order zero.
+        let unmarked = code == "no-method" && !self.problem.equation.contains(&Expression::Small);
+        let small = &self.problem.small;
+        let hint = if unmarked {
+            format!("a factor {small}, or orders = {{ NAME = 1 }}, marks the small terms")
+        } else {
+            hint.to_owned()
+        };
+        Failure { exit, code, message, hint }
     }
 }

@@ -168,7 +168,7 @@ fn walls() {
     let swept = simulate(&[&path, "--sweep", "R", "--skip", "0", "--impacts", "2"]);
     assert_eq!(swept["sweep"]["columns"].as_array().unwrap().len(), 3);
     let (code, error) = refusal(&[&path, "--sweep", "k=1..2:3"]);
-    assert!(code == Some(2) && error.contains("cannot be varied"), "{error}");
+    assert!(code == Some(2) && error.contains("is fixed in the file"), "{error}");
     // A start behind the wall, and a restitution above one.
     let (code, error) = refusal(&[&path, "--state=-1,0"]);
     assert!(code == Some(3) && error.contains("behind the wall at x = "), "{error}");
