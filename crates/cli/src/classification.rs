@@ -316,7 +316,17 @@ pub fn check(
         });
     };
     if condition == Some(Condition::FreeAmplitude) {
-        return Ok(());
+        let plain = |r: &&Reason| matches!(r, Reason::NoLinearPart | Reason::NotWeaklyNonlinear(_));
+        let Some(reason) = against(Method::Averaging).find(plain).filter(|_| nothing_small) else {
+            return Ok(());
+        };
+        let at = place(file, path, reason.term());
+        return Err(Failure {
+            exit: NO_ANSWER,
+            code: "no-method",
+            message: format!("{at}: {}", reason_text(reason, small)),
+            hint: marks,
+        });
     }
     let at = match reason {
         // The equation is not to blame.

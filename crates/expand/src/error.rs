@@ -58,6 +58,9 @@ pub enum ExpandError {
     /// No limit cycle: the first-order averaged equation has no positive root.
     #[error("no limit cycle: the averaged amplitude equation of order 1 has no positive root")]
     NoLimitCycle,
+    /// The leading amplitude of a limit cycle is a root of a polynomial only for polynomial equations.
+    #[error("a limit cycle is expanded only where the equation is a polynomial in x and x'")]
+    CycleNotPolynomial,
     /// The averaged amplitude equation of order 1 vanishes for every amplitude.
     #[error(
         "the averaged amplitude equation of order 1 vanishes: a limit cycle is decided at a higher order, \

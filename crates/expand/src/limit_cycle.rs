@@ -43,10 +43,7 @@ fn degree_in_amplitude<A: PhaseAlgebra>(equation: &Equation<A>) -> Result<usize,
             Node::Displacement | Node::Velocity => 1,
             Node::Sum(terms) => terms.iter().map(|(_, t)| degrees[*t]).max().unwrap_or(0),
             Node::Product(a, b) => degrees[*a] + degrees[*b],
-            _ => {
-                let term = "a limit cycle of an equation that is not polynomial".into();
-                return Err(ExpandError::UnsupportedTerm { term });
-            }
+            _ => return Err(ExpandError::CycleNotPolynomial),
         });
     }
     Ok(degrees[equation.root])
