@@ -185,9 +185,12 @@ fn without_a_small_parameter() {
     let found = simulate(&[&folder.file("pendulum", &file("sin(x)")), "--until", "7"]);
     let [x, v] = ["x", "v"].map(|name| float(&found["final"][name]));
     assert!((v * v / 2.0 - x.cos() + 2f64.cos()).abs() < 1e-14, "{x} {v}");
-    for (force, reason) in
-        [("x", "the small parameter eps does not occur"), ("x + x^3", "x^3 has no factor eps")]
-    {
+    for (force, reason) in [
+        ("x", "the small parameter eps does not occur"),
+        ("x + x^3", "x^3 has no factor eps"),
+        ("x'/10 + x - 2*cos(3*t/2)", "1/10*x' has no factor eps"),
+        ("1 - cos(t)", "no term k*x stands in the equation without eps"),
+    ] {
         let path = folder.file("bare", &file(force));
         for verb in ["derive", "evaluate", "verify"] {
             let output = lindstedt(&[verb, "--quiet", &path]);
