@@ -111,7 +111,16 @@ impl Source {
         // Without it every term is one of order zero.
         let unmarked = code == "no-method" && !self.problem.equation.contains(&Expression::Small);
         let small = &self.problem.small;
-        let hint = if unmarked {
+        let follows = match code {
+            "missing-value" => self.file.follows.iter().find(|(name, _)| text.contains(&**name)),
+            _ => None,
+        };
+        let hint = if let Some((name, how)) = follows {
+            format!(
+                "{name} follows: {how}; with pi only `simulate` computes it, a delay of whole periods is \
+                 tied to the force by [synchronous]"
+            )
+        } else if unmarked {
             format!("a factor {small}, or orders = {{ NAME = 1 }}, marks the small terms")
         } else {
             hint.to_owned()

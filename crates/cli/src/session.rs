@@ -203,9 +203,18 @@ pub fn load(name: &str) -> Result<Loaded, Failure> {
 fn followed(file: &ProblemFile) -> Problem {
     let mut problem = file.problem.clone();
     let delay = problem.synchronous.as_ref().map(|tie| tie.delay.clone());
+    // Parameters are as small as the file says, here as in the equation.
+    let small = |e: &Expression| match e {
+        Expression::Parameter(name) => {
+            let order = file.orders.get(&**name).filter(|order| **order > 0)?;
+            Some(Expression::Small.pow(i64::from(*order)) * e.clone())
+        }
+        _ => None,
+    };
     let known: Vec<(&String, Expression)> = (file.follows.iter())
         .filter(|(name, _)| delay.as_ref().is_none_or(|delay| **name != **delay))
         .filter_map(|(name, text)| Some((name, parse_expression(text, &file.names).ok()?)))
+        .map(|(name, value)| (name, value.substitute(&small)))
         .collect();
     let put_in = |e: &Expression| match e {
         Expression::Parameter(name) => {

@@ -144,6 +144,12 @@ fn parameters_that_follow() {
     assert_eq!(own["period"]["decimal"], duffing["period"]["decimal"]);
     let other = json(&[&["evaluate", &path, "--set", "a=1"], &sets[..]].concat());
     assert_ne!(other["period"]["decimal"], duffing["period"]["decimal"]);
+    // c = 2 z is as small as z.
+    let path = folder.file("x'' + x + c*x' = 0", &[("z", "1")], "orders = { z = 1 }");
+    let file = std::fs::read_to_string(&path).unwrap() + "c = { follows = \"2*z\" }\n";
+    std::fs::write(&path, file).unwrap();
+    let found = text(&["derive", &path, "--normalisation", "free", "--order", "1"]);
+    assert!(found.contains("A_1 = -a\n"), "{found}");
 }
 
 /// With restitution 0 a hit is an impact, too, though the body may stay at the wall after it.

@@ -115,7 +115,7 @@ fn files_with_delays_are_averaged() {
 }
 
 /// Equations that are wrong: exit code, equation, a piece of the message.
-const EQUATIONS: [(i32, &str, &str); 62] = [
+const EQUATIONS: [(i32, &str, &str); 67] = [
     (2, "", "expected a number, a name or a parenthesis, found the end"),
     (2, "   ", "found the end"),
     (2, "= 0", "found `=`"),
@@ -224,6 +224,31 @@ const FILES: [(i32, &str, &str); 34] = [
     (2, "name = 'a'\nname = 'b'\nequation = \"x'' + eps*x\"", "duplicate key"),
     (2, "name = 'a'\nequation = \"x'' + eps*x\"\nequation = \"x''\"", "duplicate key"),
     (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\ncolour = 'red'", "unknown field `colour`"),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\namplitude = { follows = '1/2' }",
+        "follows of amplitude: the amplitude and",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + x + eps*x^3\"\n[parameters]\neps = { follows = '1/2' }",
+        "follows of eps: the amplitude and",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + b*x + eps*x^3\"\n[parameters]\nb = { follows = 'c' }\nc = { follows = '2*b' }",
+        "follows from itself in the end",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + b*x + eps*x^3\"\n[parameters]\nb = { follows = '2*q' }",
+        "the name q is not declared",
+    ),
+    (
+        2,
+        "name = 'a'\nequation = \"x'' + b*x + eps*x^3\"\n[parameters]\nb = { value = '1', follows = '2' }",
+        "it has a value, too",
+    ),
     (2, "name = '../../x'\nequation = \"x'' + x + eps*x^3\"", "is not a name for a problem"),
     (2, "name = 'A b'\nequation = \"x'' + x + eps*x^3\"", "is not a name for a problem"),
     (2, "name = ''\nequation = \"x'' + x + eps*x^3\"", "is not a name for a problem"),

@@ -23,6 +23,8 @@ pub struct ProblemFile {
     pub units: BTreeMap<String, String>,
     /// Parameters of the equation that are determined by others, with how.
     pub follows: BTreeMap<String, String>,
+    /// The powers of the small parameter that parameters are multiplied by.
+    pub orders: BTreeMap<String, u32>,
     /// x(0) and x'(0) as exact text.
     pub initial: Option<[String; 2]>,
     /// The motion before t = 0, and as it was written.

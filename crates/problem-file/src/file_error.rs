@@ -92,6 +92,14 @@ pub enum FileErrorKind {
         /// The text.
         text: String,
     },
+    /// What determines a parameter cannot do so.
+    #[error("follows of {name}: {reason}")]
+    Follows {
+        /// The name.
+        name: String,
+        /// Why not.
+        reason: String,
+    },
     /// The small parameter does not occur in the equation.
     #[error("the small parameter {name} does not occur in the equation")]
     NoSmallParameter {
@@ -127,6 +135,9 @@ impl FileError {
             }
             FileErrorKind::NoSmallParameter { .. } => {
                 "small = \"...\" names it; [orders] can give parameters an order".into()
+            }
+            FileErrorKind::Follows { .. } => {
+                "an expression in parameters with a value and pi, as in \"2*pi*k/omega\"".into()
             }
             FileErrorKind::HalfAStart => "give both, or a history alone".into(),
             FileErrorKind::Range { .. } => "NAME=LO..HI:COUNT, as in \"gamma=1/2..1:100\"".into(),

@@ -32,9 +32,10 @@ struct Parameters {
 pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {
     let name = problem_name(reader, &schema)?;
     let small = small_name(reader, &schema)?;
-    let Parameters { mut cards, units, follows, declared } = parameters(reader, &schema)?;
+    let Parameters { mut cards, units, follows, declared } = parameters(reader, &schema, &small)?;
     let mut names = Names::only(&small, declared.iter().map(String::as_str));
     names.formal = formal_names(reader, &schema)?;
+    check_follows(reader, &schema, &names, &follows)?;
     let orders = orders(reader, &schema, &declared)?;
     let equation = equation(reader, &schema.equation, &names, &orders)?;
     let alone = |text| self::equation(reader, text, &names, &BTreeMap::new());
@@ -93,6 +94,7 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
         initial,
         history,
         fixed,
+        orders,
         ranges: ranges(&schema.swept),
         swept,
         names,
@@ -134,7 +136,7 @@ fn formal_names(reader: &Reader<'_>, schema: &Schema) -> Result<BTreeSet<String>
     schema.formal.iter().map(|word| parameter_name(reader, word, "formal function")).collect()
 }
 
-fn parameters(reader: &Reader<'_>, schema: &Schema) -> Result<Parameters, FileError> {
+fn parameters(reader: &Reader<'_>, schema: &Schema, small: &str) -> Result<Parameters, FileError> {
     let (mut cards, mut units, mut follows) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
     let mut declared = BTreeSet::new();
     for (key, parameter) in &schema.parameters.0 {
@@ -145,7 +147,18 @@ fn parameters(reader: &Reader<'_>, schema: &Schema) -> Result<Parameters, FileEr
         if !parameter.unit.is_empty() {
             units.insert(name.clone(), parameter.unit.clone());
         }
-        if let (Some(how), None) = (&parameter.follows, &parameter.value) {
+        if let Some(how) = &parameter.follows {
+            let wrong = if parameter.value.is_some() {
+                Some("it has a value, too")
+            } else if name == "amplitude" || name == small {
+                Some("the amplitude and the small parameter have values of their own")
+            } else {
+                None
+            };
+            if let Some(reason) = wrong {
+                let kind = FileErrorKind::Follows { name, reason: reason.to_owned() };
+                return Err(reader.error(kind, key.span().start));
+            }
             follows.insert(name, how.clone());
             continue;
         }
@@ -157,6 +170,41 @@ fn parameters(reader: &Reader<'_>, schema: &Schema) -> Result<Parameters, FileEr
         });
     }
     Ok(Parameters { cards, units, follows, declared })
+}
+
+/// What determines a parameter mentions declared names and pi, and in the end only such with a value.
+fn check_follows(
+    reader: &Reader<'_>,
+    schema: &Schema,
+    names: &Names,
+    follows: &BTreeMap<String, String>,
+) -> Result<(), FileError> {
+    let mut with_pi = names.clone();
+    with_pi.parameters.iter_mut().for_each(|set| {
+        set.insert("pi".to_owned());
+    });
+    let refused = |name: &str, reason: String| {
+        let at = schema.parameters.0.iter().find(|(key, _)| canonical_name(key.get_ref()) == name);
+        let at = at.map_or(0, |(key, _)| key.span().start);
+        reader.error(FileErrorKind::Follows { name: name.to_owned(), reason }, at)
+    };
+    let mut open: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for (name, text) in follows {
+        let found = parse_expression(text, &with_pi)
+            .map_err(|error| refused(name, format!("{}", error.kind)))?;
+        open.insert(name, found.parameters());
+    }
+    // What follows from values only is known, then what follows from that.
+    while let Some(known) =
+        open.iter().find(|(_, of)| of.iter().all(|n| !open.contains_key(n.as_str())))
+    {
+        let known = *known.0;
+        open.remove(known);
+    }
+    match open.keys().next() {
+        None => Ok(()),
+        Some(name) => Err(refused(name, "it follows from itself in the end".to_owned())),
+    }
 }
 
 fn impact(reader: &Reader<'_>, wall: &schema::Impact, names: &Names) -> Result<Impact, FileError> {

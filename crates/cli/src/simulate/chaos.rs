@@ -202,7 +202,7 @@ impl Diagnosis {
                         "regular: perturbations decay"
                     }
                     _ if !self.forced => {
-                        "no exponential growth (without a force the exponent of regular motion is 0)"
+                        "no exponential growth (the exponent of a regular motion that no force drives is 0)"
                     }
                     _ => "undecided: no exponential growth, no decay",
                 };

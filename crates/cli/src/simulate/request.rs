@@ -84,7 +84,7 @@ pub fn section(options: &SimulateOptions, setup: &Setup) -> Result<Option<Sectio
         return Err(Failure::usage("section", message.to_owned(), "--section impact, or --state"));
     }
     let reason = match section {
-        Some(Section::Stroboscopic) if setup.forcing.is_none() => "no force that gives a period",
+        Some(Section::Stroboscopic) if setup.forcing.is_none() => "no force with one period",
         Some(Section::Impact) if !setup.wall => "no wall",
         _ => return Ok(section),
     };

@@ -8,7 +8,7 @@ use crate::session::Session;
 use lindstedt::coeff::ball::{Ball, Balls};
 use lindstedt::equation::print::Style;
 use lindstedt::equation::{Expression, Text};
-use lindstedt::number::{Number, certified};
+use lindstedt::number::{Number, Status, certified};
 use lindstedt_melnikov::{Branch, MelnikovError, Real, StickSlip, Verdict};
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
@@ -267,7 +267,12 @@ impl Answer {
     }
 
     fn lines(&self) -> Vec<(String, String)> {
-        let shown = |number: &Number| number.decimal.clone();
+        let shown = |number: &Number| match (&number.error, number.status) {
+            (Some(error), Status::Estimated) => {
+                format!("{} +- {error} (estimated)", number.decimal)
+            }
+            _ => number.decimal.clone(),
+        };
         let mut lines = Vec::new();
         let has_cusp = self.numbers.iter().any(|(name, _)| *name == "cusp");
         for (name, number) in &self.numbers {

@@ -413,7 +413,10 @@ impl Evaluation {
         if count == 1 {
             format!(", the only one of {} methods with an error estimate", tried.len())
         } else if *own <= floor {
-            format!(", the simplest of {} methods that reaches the digits asked for", tried.len())
+            format!(
+                ", the simplest of {} methods whose error is below the working precision",
+                tried.len()
+            )
         } else if finite().all(|(_, error)| own <= error) {
             format!(", the least error estimate of {count} methods")
         } else {

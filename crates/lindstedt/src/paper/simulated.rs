@@ -279,8 +279,8 @@ pub(super) fn agreement(onset: &Onset) -> Result<Row, Error> {
                   prediction"
                 .to_owned(),
         derived: format!(
-            "gamma_c = {:.5}; first tangency at eps = {}: gamma = {} (right loop), {} (left loop) \
-             (estimated)",
+            "gamma_c = {:.5}; the tangency that is the first one at small eps, followed to eps = {}: \
+             gamma = {} (right loop), {} (left loop) (estimated)",
             onset.threshold,
             last.eps,
             shown(last.right),
