@@ -188,8 +188,10 @@ fn check_follows(
         let at = at.map_or(0, |(key, _)| key.span().start);
         reader.error(FileErrorKind::Follows { name: name.to_owned(), reason }, at)
     };
+    // A delay of whole periods follows from the tie.
+    let tied = schema.synchronous.as_ref().map(|tie| canonical_name(tie.delay.get_ref()));
     let mut open: BTreeMap<&str, Vec<String>> = BTreeMap::new();
-    for (name, text) in follows {
+    for (name, text) in follows.iter().filter(|(name, _)| tied.as_ref() != Some(*name)) {
         let found = parse_expression(text, &with_pi)
             .map_err(|error| refused(name, format!("{}", error.kind)))?;
         open.insert(name, found.parameters());
