@@ -92,6 +92,10 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
         }
         Reason::Condition => "the condition of the problem belongs to another method".into(),
         Reason::Form => format!("the form x*F({small}*ln(x^2)) is needed"),
+        Reason::Frequency(e) => format!(
+            "{}: forces are cos or sin of multiples of one omega*t by numbers, without a phase",
+            show(e)
+        ),
         Reason::NoForce => "there is no force".into(),
         Reason::NoSaddle => "no integrable equation with a saddle at order zero".into(),
         Reason::NoSmallParameter => format!("the small parameter {small} does not occur"),
@@ -316,16 +320,18 @@ pub fn check(
         });
     };
     if condition == Some(Condition::FreeAmplitude) {
-        let plain = |r: &&Reason| matches!(r, Reason::NoLinearPart | Reason::NotWeaklyNonlinear(_));
-        let Some(reason) = against(Method::Averaging).find(plain).filter(|_| nothing_small) else {
-            return Ok(());
+        let plain = |r: &&Reason| match r {
+            Reason::NoLinearPart | Reason::NotWeaklyNonlinear(_) => nothing_small,
+            Reason::Frequency(_) => true,
+            _ => false,
         };
+        let Some(reason) = against(Method::Averaging).find(plain) else { return Ok(()) };
         let at = place(file, path, reason.term());
         return Err(Failure {
             exit: NO_ANSWER,
             code: "no-method",
             message: format!("{at}: {}", reason_text(reason, small)),
-            hint: marks,
+            hint: if nothing_small { marks } else { String::new() },
         });
     }
     let at = match reason {

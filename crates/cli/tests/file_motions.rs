@@ -98,6 +98,20 @@ fn forces_with_a_phase_have_their_period() {
         let time = points[0][0].as_f64().unwrap();
         assert!((time - 4.0 * std::f64::consts::PI).abs() < 1e-12, "{force}: {time}");
     }
+    // Averaging takes harmonics of one frequency, and says so.
+    for (force, taken) in [
+        ("cos(3*w1*t) + sin(t*w1/2)", true),
+        ("cos(w1*t) + cos(w2*t)", false),
+        ("cos(w1*t + 1)", false),
+    ] {
+        let path = folder.file(&format!("x'' + x + eps*x' = {force}"), &frequencies, "");
+        let output = lindstedt(&["derive", &path, "--order", "1"]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.success(), taken, "{force}: {error}");
+        assert!(taken || error.contains("multiples of one omega*t"), "{error}");
+        let shown = text(&["problems", "--show", &path]);
+        assert_eq!(shown.contains("averaging (KBM)     applies"), taken, "{shown}");
+    }
     let path = folder.file("x'' + x + x'/5 = cos((w1 + w2)*t)", &frequencies, "");
     let (code, error) = refusal(&["simulate", &path, "--set", "w1=-1"]);
     assert!(code == Some(3) && error.contains("(w1 + w2), is outside its domain"), "{error}");

@@ -115,6 +115,8 @@ pub enum Reason {
     NoSmallParameter,
     /// Nothing depends on t.
     NoForce,
+    /// A force with a phase, or of another frequency than one before it.
+    Frequency(Expression),
     /// A formal function, and no equation for integration in time.
     Formal(Expression),
     /// A value outside its domain, with the domain; found by who knows the values.
@@ -182,6 +184,7 @@ impl Reason {
             | Self::NotPolynomial(e)
             | Self::NotReal(e)
             | Self::Formal(e)
+            | Self::Frequency(e)
             | Self::Drift(e) => Some(e),
             _ => None,
         }

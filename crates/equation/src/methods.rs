@@ -1,6 +1,7 @@
 //! Which methods take an equation, and what is against the others.
 
 use crate::classify::{Algebra, Classification, Method, Reason};
+use crate::monomials::expand;
 use crate::saddle::has_saddle;
 use crate::symmetry::{Parity, parity, parity_in_x};
 use crate::{Condition, Expression, Function, Problem};
@@ -161,6 +162,16 @@ fn averaging(
             _ => {}
         }
     }
+    // Forces are harmonics of one omega t.
+    let mut angles = parts.forcing.iter().map(|force| (force, angle(&force.term)));
+    let first = angles.next().map(|(_, angle)| angle);
+    let other = parts.forcing.iter().find(|force| {
+        let own = angle(&force.term);
+        own.is_none() || first.as_ref() != Some(&own)
+    });
+    if let Some(force) = other.filter(|force| force.frequency.is_some()) {
+        against.push(Reason::Frequency(force.term.clone()));
+    }
     if let Some(e) = rest.find(&is_logarithmic) {
         against.push(Reason::NotPolynomial(e.clone()));
     }
@@ -168,6 +179,18 @@ fn averaging(
         against.push(Reason::Condition);
     }
     against
+}
+
+/// The factors of t, numbers apart, in the angle of a force; nothing for an angle with a phase.
+fn angle(force: &Expression) -> Option<BTreeMap<String, i32>> {
+    let harmonic = |e: &Expression| {
+        matches!(e, Expression::Function(Function::Sin | Function::Cos, z)
+            if z.contains(&Expression::Time))
+    };
+    let Some(Expression::Function(_, z)) = force.find(&harmonic) else { return None };
+    let all = expand(z)?;
+    let [(monomial, _)] = all.terms.iter().collect::<Vec<_>>()[..] else { return None };
+    Some(monomial.parameters.clone())
 }
 
 /// The equations of the energy integral: x (x^2)^small and x S(small ln x^2).
