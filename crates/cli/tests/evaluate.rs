@@ -325,10 +325,10 @@ fn choice_of_the_method() {
         let least = list.iter().copied().fold(f64::INFINITY, f64::min);
         let said = if list.len() == 1 {
             "the only one of 6 methods with an error estimate"
-        } else if verdict.contains("reaches the digits asked for") {
+        } else if verdict.contains("below the working precision") {
             let digits: i32 = arguments[6].parse().unwrap();
             assert!(own < 10f64.powi(-digits), "{verdict}");
-            "the simplest of 6 methods that reaches the digits asked for"
+            "the simplest of 6 methods whose error is below the working precision"
         } else if own <= least {
             "the least error estimate of"
         } else {

@@ -255,3 +255,29 @@ fn the_deviation_of_code_is_found() {
         assert!(deviation <= 1.1 * stated + error, "{n}: {deviation} > {stated}");
     }
 }
+
+/// A stiffness called k is a parameter like others; then `periods` says how many periods of the force lie
+/// between two impacts.
+#[test]
+fn a_stiffness_named_k() {
+    let folder = Folder::new("stiffness");
+    let path = |k: &str| {
+        let equation = format!("m*x'' + c*x' + {k}*x = F*cos(Omega*t)");
+        let wall = "[impact]\nposition = '1/10'\ncrossing = 'rising'\nrestitution = '7/10'";
+        let all = [("m", "2"), ("c", "0.4"), (k, "8"), ("F", "3"), ("Omega", "5")];
+        folder.file(&equation, &all, wall)
+    };
+    let of = |k: &str, periods: &str| {
+        let set = format!("{periods}=2");
+        let found = json(&["stability", &path(k), "--f64", "--set", &set]);
+        (found["orbit"]["impact_velocity"].clone(), found["exact"]["multipliers"].clone())
+    };
+    assert_eq!(of("k", "periods"), of("K", "k"));
+    let chart = |k: &str| {
+        let sweep = format!("{k}=6..10:5");
+        json(&["stability", &path(k), "--f64", "--sweep", &sweep])["grid"]["exact"].clone()
+    };
+    assert_eq!(chart("k"), chart("K"));
+    let (code, error) = refusal(&["stability", &path("K"), "--set", "periods=2"]);
+    assert!(code == Some(2) && error.contains("has no parameter"), "{error}");
+}

@@ -340,18 +340,27 @@ fn built_in(set: &[String]) -> Result<Known, Failure> {
     })
 }
 
+/// The name for k where a file has another k.
+const PERIODS: &str = "periods";
+
 /// A problem file with one impact in k periods of its force.
 fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
     let (branch, numbers) = branch_of(set)?;
-    let source = Source::read(path, &numbers, &["k"])?;
+    let source = Source::read(path, &numbers, &["k", PERIODS])?;
     let card = |name: &str| source.problem.parameters.iter().find(|card| card.name == name);
     let default = card("branch").filter(|card| card.default == "-").map(|_| Branch::Minus);
     let branch = branch.or(default).unwrap_or(Branch::Plus);
     let tied = source.problem.synchronous.as_ref().map(|tie| tie.periods.to_string());
-    let k = source.values.get("k").filter(|_| card("k").is_none());
+    // The file may use the name k for something else, a stiffness.
+    let count = if card("k").is_some() { PERIODS } else { "k" };
+    if count != PERIODS && card(PERIODS).is_none() && source.values.contains_key(PERIODS) {
+        let message = format!("{} has no parameter {PERIODS:?}", source.problem.name);
+        return Err(Failure::usage("unknown-parameter", message, "--set k=N"));
+    }
+    let k = source.values.get(count).filter(|_| card(count).is_none());
     let delayed = |e: &Expression| matches!(e, Expression::Delayed(..));
     if k.is_some() && (tied.is_some() || source.problem.equation.find(&delayed).is_some()) {
-        let message = format!("{} has no parameter \"k\"", source.problem.name);
+        let message = format!("{} has no parameter {count:?}", source.problem.name);
         let hint = "the periods between impacts follow from its delay or its [synchronous]";
         return Err(Failure::usage("unknown-parameter", message, hint));
     }
@@ -370,7 +379,7 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
     }
     let small = &*source.problem.small;
     let unlisted = |name: &str| source.values.get(name).filter(|_| card(name).is_none());
-    for name in [small, "k"] {
+    for name in [small, count] {
         at.extend(unlisted(name).map(|value| (name.to_owned(), value.to_string())));
     }
     if card("branch").is_none() {
@@ -391,7 +400,7 @@ fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
     });
     let (problem, parameters) = (source.problem.name.to_string(), found.parameters.clone());
     let shared = Arc::new((source, found));
-    let whole = move |name: &str| name == "k" || tied.as_deref() == Some(name);
+    let whole = move |name: &str| name == count || tied.as_deref() == Some(name);
     let of_names = shared.clone();
     let names = move |name: &str| {
         let (source, found) = &*of_names;
