@@ -230,7 +230,7 @@ fn determined_parameters() {
     assert!((x + 1.0).abs() < 1e-14, "{x}");
     let path = folder.file("words", &text.replace("4*pi^2/p^2", "see the notes"));
     let (code, error) = refusal(&[&path]);
-    assert!(code == Some(3) && error.contains("k has no value"), "{error}");
+    assert!(code == Some(2) && error.contains("follows of k: the name see"), "{error}");
 }
 
 /// x'' + x = 2 (x^2 + x'^2) from rest at 1: p = x'^2 obeys dp/dx = 4 p + 4 x^2 - 2 x, so
