@@ -206,6 +206,9 @@ fn growth_is_not_chaos() {
         assert!(verdict.starts_with("a linear equation is not chaotic"), "{verdict}");
         assert!(!verdict.contains("test chaotic"), "{verdict}");
     }
+    let path = folder.file("x'' + x = 0", &[], "");
+    let still = json(&["simulate", &path, "--lyapunov", "--periods", "300", "--skip", "10"]);
+    assert!(still["verdict"].as_str().unwrap().starts_with("no exponential growth"), "{still}");
     // Beyond the largest double, not at a pole.
     let path = folder.file("x'' - x + x'/5 = 0", &[], "");
     let (code, error) = refusal(&["simulate", &path, "--lyapunov"]);

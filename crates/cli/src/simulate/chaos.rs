@@ -194,7 +194,7 @@ impl Diagnosis {
                 let share = f64::from(self.kept) / f64::from(self.skipped.max(1));
                 let power = 3.0 * share.ln_1p() + 3.0;
                 let word = match value {
-                    _ if self.setup.linear && value > 0.0 => {
+                    value if value > 4.0 * error && growth > power && self.setup.linear => {
                         "a linear equation is not chaotic: its motions and perturbations grow alike"
                     }
                     value if value > 4.0 * error && growth > power => "chaotic: perturbations grow",

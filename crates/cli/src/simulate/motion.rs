@@ -323,13 +323,13 @@ impl<R: Real> Keeper<'_, R> {
                 let (section, end) = (self.plan.section, &self.plan.end);
                 let here = Moment { time: time.clone(), state: after.clone(), stuck: false };
                 let maximum = matches!(event.kind, EventKind::Section { rising: false, .. });
-                // A hit without rebound is an impact, too.
-                let hit = matches!(event.kind, EventKind::Rest { .. }) && before[1] != after[1];
-                let impact = matches!(event.kind, EventKind::Impact { .. }) || hit;
+                let happening = Happening { kind: event.kind, time, before, after };
+                let impact = happening.is_impact();
                 if (maximum && section == Some(Section::Velocity))
                     || (impact && section == Some(Section::Impact))
                 {
-                    let point = Moment { time: time.clone(), state: before.clone(), stuck: false };
+                    let (time, state) = (happening.time.clone(), happening.before.clone());
+                    let point = Moment { time, state, stuck: false };
                     self.motion.points.push(point);
                 }
                 // Where a fractional power passes zero nothing happens that could be told in time:
@@ -340,7 +340,7 @@ impl<R: Real> Keeper<'_, R> {
                     _ => false,
                 };
                 if !silent {
-                    self.motion.events.push(Happening { kind: event.kind, time, before, after });
+                    self.motion.events.push(happening);
                 }
                 let (counts, most) = match end {
                     End::Time(_) => (false, u32::MAX),
