@@ -12,6 +12,6 @@ mod ring;
 mod stop;
 
 pub use averaging::{Averaged, AveragingAlgebra, LinearPart};
-pub use phase::{Elementary, FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution};
+pub use phase::{Elementary, FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution, combination};
 pub use ring::{RationalAlgebra, Rationals, Ring};
 pub use stop::Stop;

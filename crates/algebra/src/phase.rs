@@ -139,6 +139,31 @@ pub enum PhaseError {
     },
 }
 
+/// The phase k psi + m eta as text: `2*psi - eta` from \[2, -1\]; `times` stands between number and name.
+///
+/// ```
+/// use lindstedt_algebra::combination;
+/// assert_eq!(combination([2, -1], ["psi", "eta"], "*"), "2*psi - eta");
+/// assert_eq!(combination([0, -3], ["psi", "eta"], "*"), "-3*eta");
+/// ```
+#[must_use]
+pub fn combination(factors: [i32; 2], names: [&str; 2], times: &str) -> String {
+    let mut phase = String::new();
+    for (n, name) in factors.into_iter().zip(names).filter(|(n, _)| *n != 0) {
+        phase += match (phase.is_empty(), n < 0) {
+            (true, true) => "-",
+            (true, false) => "",
+            (false, true) => " - ",
+            (false, false) => " + ",
+        };
+        phase += &match n.unsigned_abs() {
+            1 => name.to_owned(),
+            n => format!("{n}{times}{name}"),
+        };
+    }
+    phase
+}
+
 impl std::fmt::Display for PhaseError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -147,14 +172,14 @@ impl std::fmt::Display for PhaseError {
             }
             Self::Resonance { free, forced } => {
                 let harmonic = "resonance with the harmonic";
-                write!(f, "{harmonic} cos({free} psi + {forced} eta) of the response and the force")
+                let phase = combination([*free, *forced], ["psi", "eta"], "*");
+                write!(f, "{harmonic} cos({phase}) of the response and the force")
             }
             Self::Indivisible { free, forced } => {
                 let harmonic = "could not divide by the response of the harmonic";
-                write!(
-                    f,
-                    "{harmonic} cos({free} psi + {forced} eta): zero is not excluded, or the parameters must be numbers"
-                )
+                let phase = combination([*free, *forced], ["psi", "eta"], "*");
+                let why = "zero is not excluded, or the parameters must be numbers";
+                write!(f, "{harmonic} cos({phase}): {why}")
             }
         }
     }

@@ -302,6 +302,10 @@ pub fn check(
     let small = &file.problem.small;
     let nothing_small = !file.problem.equation.contains(&Expression::Small);
     let marks = marks(small);
+    let refused = |at: String, what: String, hint: String| {
+        let message = format!("{at}: {what}");
+        Err(Failure { exit: NO_ANSWER, code: "no-method", message, hint })
+    };
     let Some(reason) = against(Method::LindstedtPoincare).next() else {
         if condition.is_some() {
             return Ok(());
@@ -312,12 +316,7 @@ pub fn check(
             let hint = "\"initial-amplitude\", \"limit-cycle\", \"free-amplitude\"";
             ("condition = [] asks for no expansion".to_owned(), hint.to_owned())
         };
-        return Err(Failure {
-            exit: NO_ANSWER,
-            code: "no-method",
-            message: format!("{}: {what}", place(file, path, None)),
-            hint,
-        });
+        return refused(place(file, path, None), what, hint);
     };
     if condition == Some(Condition::FreeAmplitude) {
         let plain = |r: &&Reason| match r {
@@ -327,43 +326,36 @@ pub fn check(
         };
         let Some(reason) = against(Method::Averaging).find(plain) else { return Ok(()) };
         let at = place(file, path, reason.term());
-        return Err(Failure {
-            exit: NO_ANSWER,
-            code: "no-method",
-            message: format!("{at}: {}", reason_text(reason, small)),
-            hint: if nothing_small { marks } else { String::new() },
-        });
+        let hint = if nothing_small { marks } else { String::new() };
+        return refused(at, reason_text(reason, small), hint);
     }
     let at = match reason {
         // The equation is not to blame.
         Reason::Impact => path.to_owned(),
         _ => place(file, path, reason.term()),
     };
-    Err(Failure {
-        exit: NO_ANSWER,
-        code: "no-method",
-        message: format!("{at}: {}", reason_text(reason, &file.problem.small)),
-        hint: if nothing_small && *reason == Reason::NoSmallParameter {
-            marks
-        } else if parts.takes(Method::Melnikov) {
-            "Melnikov's method takes equations of this kind: lindstedt threshold FILE".into()
-        } else if *reason == Reason::UnknownFrequency {
-            "--set NAME=VALUE gives it one".into()
-        } else if against(Method::Averaging).next().is_none()
+    let averages = || {
+        against(Method::Averaging).next().is_none()
             && parts.forcing.iter().all(|force| force.resonance.is_none())
-        {
-            AVERAGES.into()
-        } else if nothing_small {
-            marks
-        } else if matches!(reason, Reason::NonSmooth(_) | Reason::NotPolynomial(_))
-            && parts.takes(Method::TimeDomain)
-        {
-            "in numbers: `lindstedt simulate`, and `derive --tier collocation` for forces of x alone"
-                .into()
-        } else {
-            "`lindstedt problems --show FILE` lists the methods".into()
-        },
-    })
+    };
+    let in_numbers = matches!(reason, Reason::NonSmooth(_) | Reason::NotPolynomial(_))
+        && parts.takes(Method::TimeDomain);
+    let hint = if nothing_small && *reason == Reason::NoSmallParameter {
+        &*marks
+    } else if parts.takes(Method::Melnikov) {
+        "Melnikov's method takes equations of this kind: lindstedt threshold FILE"
+    } else if *reason == Reason::UnknownFrequency {
+        "--set NAME=VALUE gives it one"
+    } else if averages() {
+        AVERAGES
+    } else if in_numbers {
+        "in numbers: `lindstedt simulate`, and `derive --tier collocation` for forces of x alone"
+    } else if nothing_small {
+        &*marks
+    } else {
+        "`lindstedt problems --show FILE` lists the methods"
+    };
+    refused(at, reason_text(reason, small), hint.to_owned())
 }
 
 /// A refusal of the engine; of the equation of a file with its place. Where no amplitude is constant,

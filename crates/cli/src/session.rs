@@ -4,8 +4,8 @@ use crate::arguments::{Common, Format, Precision};
 use crate::failure::{FILE, Failure, NO_ANSWER, UNDECIDED, USAGE};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::algebra::Stop;
-use lindstedt::equation::{Expression, Problem};
-use lindstedt::problem_file::{FileError, LARGEST_FILE, canonical_name, parse_expression};
+use lindstedt::equation::Problem;
+use lindstedt::problem_file::{FileError, LARGEST_FILE, canonical_name};
 use lindstedt::{ProblemFile, Value};
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -193,48 +193,9 @@ pub fn load(name: &str) -> Result<Loaded, Failure> {
                     .to_owned(),
             );
         }
-        return Ok(Loaded { problem: followed(&file), file: Some(file) });
+        return Ok(Loaded { problem: file.problem.clone(), file: Some(file) });
     }
     problem(name).map(|problem| Loaded { problem, file: None })
-}
-
-/// The problem with what determines a parameter (`follows`) in its place, as far as that is an expression in
-/// the others; a delay of whole periods keeps its name, and so does what contains pi.
-fn followed(file: &ProblemFile) -> Problem {
-    let mut problem = file.problem.clone();
-    let delay = problem.synchronous.as_ref().map(|tie| tie.delay.clone());
-    // Parameters are as small as the file says, here as in the equation.
-    let small = |e: &Expression| match e {
-        Expression::Parameter(name) => {
-            let order = file.orders.get(&**name).filter(|order| **order > 0)?;
-            Some(Expression::Small.pow(i64::from(*order)) * e.clone())
-        }
-        _ => None,
-    };
-    let known: Vec<(&String, Expression)> = (file.follows.iter())
-        .filter(|(name, _)| delay.as_ref().is_none_or(|delay| **name != **delay))
-        .filter_map(|(name, text)| Some((name, parse_expression(text, &file.names).ok()?)))
-        .map(|(name, value)| (name, value.substitute(&small)))
-        .collect();
-    let put_in = |e: &Expression| match e {
-        Expression::Parameter(name) => {
-            known.iter().find(|(known, _)| **known == **name).map(|(_, value)| value.clone())
-        }
-        _ => None,
-    };
-    // One may follow from another one.
-    for _ in 0..known.len() {
-        problem.equation = problem.equation.substitute(&put_in);
-        problem.time_domain = problem.time_domain.as_ref().map(|e| e.substitute(&put_in));
-        if let Some(wall) = &mut problem.impact {
-            wall.position = wall.position.substitute(&put_in);
-            wall.restitution = wall.restitution.substitute(&put_in);
-        }
-    }
-    if !known.is_empty() {
-        problem.equation = problem.equation.canonical();
-    }
-    problem
 }
 
 /// An error of a problem file with the path in front.

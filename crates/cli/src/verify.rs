@@ -25,12 +25,20 @@ pub fn run(options: &VerifyOptions, session: &Session<'_>) -> Outcome {
     let Loaded { problem, file } = loaded;
     let parameters = parameters(&options.set)?;
     if let Some(name) = parameters.keys().find(|name| !is_free(&problem, condition, name)) {
-        if problem.parameters.iter().any(|card| card.name == **name) {
+        if *name == problem.small || problem.parameters.iter().any(|card| card.name == **name) {
             let message = format!("{name} is not free here: {} is varied", problem.small);
             return Err(Failure::usage("parameter", message, "--small V1,V2,..."));
         }
         let message = format!("{} has no parameter {name:?}", problem.name);
-        return Err(Failure::usage("unknown-parameter", message, "see `lindstedt problems`"));
+        let free = problem.parameters.iter().map(|card| &*card.name);
+        let free: Vec<&str> = free.filter(|name| is_free(&problem, condition, name)).collect();
+        let hint = match free.as_slice() {
+            [] => {
+                format!("it has none that is free; {} is varied: --small V1,V2,...", problem.small)
+            }
+            list => format!("free are {}", list.join(", ")),
+        };
+        return Err(Failure::usage("unknown-parameter", message, &hint));
     }
     // The equation of a file is looked at before any work starts.
     if let Some(file) = &file

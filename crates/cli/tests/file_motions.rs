@@ -247,7 +247,11 @@ fn the_deviation_of_code_is_found() {
         let term = |line: &str| -> Option<f64> {
             let mut parts = line.split(", ");
             let k: f64 = parts.next()?.parse().ok()?;
-            Some(parts.next()?.parse::<f64>().ok()? * (k * omega * t).cos())
+            let cosine: f64 = parts.next()?.parse().ok()?;
+            // x(-t) = x(t).
+            let sine: f64 = parts.next()?.trim_end_matches("),").parse().ok()?;
+            assert!(sine.abs() < 1e-13, "{line}");
+            Some(cosine * (k * omega * t).cos())
         };
         let sum: f64 = terms.filter_map(term).sum();
         let times = format!("{t}..{t}:1");

@@ -212,4 +212,8 @@ fn refusals_have_their_exit_code() {
         assert_eq!(output.status.code(), Some(code), "{arguments:?}");
         assert!(!output.stderr.is_empty(), "{arguments:?}");
     }
+    for (set, hint) in [("rho=1/10", "--small V1,V2,..."), ("rh=1", "it has none that is free")] {
+        let error = String::from_utf8(run(&["duffing", "--set", set]).stderr).unwrap();
+        assert!(error.contains(hint), "{error}");
+    }
 }

@@ -4,6 +4,7 @@ use crate::error::{excerpt, position};
 use crate::file_error::{FileError, FileErrorKind, RoleReason};
 use crate::grammar::locate;
 use crate::history::History;
+use crate::meaning::Meanings;
 use crate::names::Names;
 use crate::reader::Reader;
 use crate::schema::Schema;
@@ -17,14 +18,13 @@ pub const LARGEST_FILE: u64 = 256 * 1024;
 /// A problem with everything that its file says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProblemFile {
-    /// The problem; parameters with an order are multiplied by the small parameter to that power.
+    /// The problem; parameters with an order are multiplied by the small parameter to that power, and what
+    /// determines a parameter stands in its place, unless it contains pi.
     pub problem: Problem,
     /// Units as text, by parameter.
     pub units: BTreeMap<String, String>,
-    /// Parameters of the equation that are determined by others, with how.
+    /// Parameters that are determined by others, with how.
     pub follows: BTreeMap<String, String>,
-    /// The powers of the small parameter that parameters are multiplied by.
-    pub orders: BTreeMap<String, u32>,
     /// x(0) and x'(0) as exact text.
     pub initial: Option<[String; 2]>,
     /// The motion before t = 0, and as it was written.
@@ -45,6 +45,7 @@ pub struct ProblemFile {
     pub equation: String,
     /// Where it starts, in bytes of the file; nothing when it contains escapes.
     pub(crate) start: Option<usize>,
+    pub(crate) meanings: Meanings,
     pub(crate) text: String,
 }
 
@@ -166,6 +167,20 @@ impl ProblemFile {
             reader.error(FileErrorKind::Toml { message }, at)
         })?;
         crate::reading::read(&reader, schema)
+    }
+
+    /// An expression in the parameters of the file as the problem has it: with the orders of its parameters
+    /// and with what determines them in their place.
+    #[must_use]
+    pub fn put_in(&self, e: &Expression) -> Expression {
+        self.meanings.put_in(e)
+    }
+
+    /// What determines the parameters that keep their name in the problem: expressions in the others and in
+    /// the parameter `pi`, which has the value pi.
+    #[must_use]
+    pub fn determined(&self) -> &BTreeMap<String, Expression> {
+        &self.meanings.with_pi
     }
 
     /// Line and column of a term of the equation; nothing if it cannot be found.

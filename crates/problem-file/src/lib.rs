@@ -10,6 +10,7 @@ mod file_error;
 mod grammar;
 mod history;
 mod lexer;
+mod meaning;
 mod names;
 mod operands;
 mod reader;

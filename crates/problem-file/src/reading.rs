@@ -7,6 +7,7 @@ use crate::file::{
 use crate::file_error::{FileError, FileErrorKind};
 use crate::grammar::{locate, parse_equation, parse_expression};
 use crate::history::{is_range, ranges, start};
+use crate::meaning::Meanings;
 use crate::names::{Names, canonical_name, is_parameter_name};
 use crate::reader::Reader;
 use crate::schema::{self, Schema};
@@ -35,15 +36,16 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     let Parameters { mut cards, units, follows, declared } = parameters(reader, &schema, &small)?;
     let mut names = Names::only(&small, declared.iter().map(String::as_str));
     names.formal = formal_names(reader, &schema)?;
-    check_follows(reader, &schema, &names, &follows)?;
     let orders = orders(reader, &schema, &declared)?;
-    let equation = equation(reader, &schema.equation, &names, &orders)?;
-    let alone = |text| self::equation(reader, text, &names, &BTreeMap::new());
-    let time_domain = schema.time_domain.as_ref().map(alone).transpose()?;
-    let wall = schema.impact.as_ref();
-    let impact = wall.map(|wall| impact(reader, wall, &names)).transpose()?;
     let tie = schema.synchronous.as_ref();
     let synchronous = tie.map(|tie| synchronous(reader, tie, &declared)).transpose()?;
+    let tie = synchronous.as_ref();
+    let meanings = Meanings::read(reader, &schema, &names, &follows, &orders, tie)?;
+    let read = |text| read_equation(reader, text, &names, &meanings);
+    let equation = read(&schema.equation)?;
+    let time_domain = schema.time_domain.as_ref().map(read).transpose()?;
+    let wall = schema.impact.as_ref();
+    let impact = wall.map(|wall| impact(reader, wall, &names, &meanings)).transpose()?;
     let conditions = conditions(reader, &schema, &equation)?;
     let amplitude = amplitude(reader, &schema, (&equation, &small), &conditions, &declared)?;
     if amplitude == AmplitudeRole::Scaled && !declared.contains("amplitude") {
@@ -94,7 +96,7 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
         initial,
         history,
         fixed,
-        orders,
+        meanings,
         ranges: ranges(&schema.swept),
         swept,
         names,
@@ -172,46 +174,15 @@ fn parameters(reader: &Reader<'_>, schema: &Schema, small: &str) -> Result<Param
     Ok(Parameters { cards, units, follows, declared })
 }
 
-/// What determines a parameter mentions declared names and pi, and in the end only such with a value.
-fn check_follows(
+fn impact(
     reader: &Reader<'_>,
-    schema: &Schema,
+    wall: &schema::Impact,
     names: &Names,
-    follows: &BTreeMap<String, String>,
-) -> Result<(), FileError> {
-    let mut with_pi = names.clone();
-    with_pi.parameters.iter_mut().for_each(|set| {
-        set.insert("pi".to_owned());
-    });
-    let refused = |name: &str, reason: String| {
-        let at = schema.parameters.0.iter().find(|(key, _)| canonical_name(key.get_ref()) == name);
-        let at = at.map_or(0, |(key, _)| key.span().start);
-        reader.error(FileErrorKind::Follows { name: name.to_owned(), reason }, at)
-    };
-    // A delay of whole periods follows from the tie.
-    let tied = schema.synchronous.as_ref().map(|tie| canonical_name(tie.delay.get_ref()));
-    let mut open: BTreeMap<&str, Vec<String>> = BTreeMap::new();
-    for (name, text) in follows.iter().filter(|(name, _)| tied.as_ref() != Some(*name)) {
-        let found = parse_expression(text, &with_pi)
-            .map_err(|error| refused(name, format!("{}", error.kind)))?;
-        open.insert(name, found.parameters());
-    }
-    // What follows from values only is known, then what follows from that.
-    while let Some(known) =
-        open.iter().find(|(_, of)| of.iter().all(|n| !open.contains_key(n.as_str())))
-    {
-        let known = *known.0;
-        open.remove(known);
-    }
-    match open.keys().next() {
-        None => Ok(()),
-        Some(name) => Err(refused(name, "it follows from itself in the end".to_owned())),
-    }
-}
-
-fn impact(reader: &Reader<'_>, wall: &schema::Impact, names: &Names) -> Result<Impact, FileError> {
+    meanings: &Meanings,
+) -> Result<Impact, FileError> {
     let expression = |text: &Spanned<String>| {
-        parse_expression(text.get_ref(), names).map_err(|error| reader.inside(text, error))
+        let found = parse_expression(text.get_ref(), names);
+        found.map(|e| meanings.put_in(&e)).map_err(|error| reader.inside(text, error))
     };
     let crossings = [("rising", Crossing::Rising), ("falling", Crossing::Falling)];
     let (word, at) = (wall.crossing.get_ref(), wall.crossing.span());
@@ -387,12 +358,12 @@ fn orders(
     Ok(orders)
 }
 
-/// An equation with x'' alone and the orders of its parameters.
-fn equation(
+/// An equation with x'' alone and what stands for its parameters.
+fn read_equation(
     reader: &Reader<'_>,
     text: &Spanned<String>,
     names: &Names,
-    orders: &BTreeMap<String, u32>,
+    meanings: &Meanings,
 ) -> Result<Expression, FileError> {
     let equation = parse_equation(text.get_ref(), names).map_err(|e| reader.inside(text, e))?;
     let alone = equation.acceleration_alone().map_err(|fault| {
@@ -407,16 +378,5 @@ fn equation(
         };
         reader.inside(text, ParseError::new(kind, at))
     })?;
-    let order = |e: &Expression| match e {
-        Expression::Parameter(name) => match orders.get(name)? {
-            0 => None,
-            1 => Some(Expression::Small * e.clone()),
-            n => Some(Expression::Small.pow(i64::from(*n)) * e.clone()),
-        },
-        _ => None,
-    };
-    if orders.is_empty() {
-        return Ok(alone);
-    }
-    Ok(alone.substitute(&order).canonical())
+    Ok(meanings.put_in(&alone))
 }

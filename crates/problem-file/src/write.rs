@@ -87,8 +87,14 @@ fn render(problem: &Problem, file: Option<&ProblemFile>) -> String {
         let _ = writeln!(text, "{} = {{ {value}{unit}meaning = {meaning} }}", card.name);
     }
     for name in undeclared {
-        let how = file.and_then(|f| f.follows.get(&name)).map_or("see the notes", String::as_str);
-        let _ = writeln!(text, "{name} = {{ follows = {} }}", quoted(how));
+        // The delay of whole periods follows from its tie, also without a file.
+        let tie = problem.synchronous.as_ref().filter(|tie| tie.delay == *name);
+        let tied = tie.map(|tie| format!("2*pi*{}/{}", tie.periods, tie.frequency));
+        let value = || file.and_then(|f| f.determined().get(&name));
+        let printed = || value().map(|value| value.print(&problem.small, Style::Text));
+        let how = tied.or_else(printed);
+        let how = how.map_or_else(String::new, |how| format!("follows = {} ", quoted(&how)));
+        let _ = writeln!(text, "{name} = {{ {how}}}");
     }
     let (initial, history) =
         file.map_or((None, None), |f| (f.initial.as_ref(), f.history.as_ref()));

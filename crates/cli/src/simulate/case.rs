@@ -9,7 +9,7 @@ use lindstedt::Value;
 use lindstedt::equation::Function::{Abs, Cos, Sign, Sin};
 use lindstedt::equation::{AmplitudeRole, Condition, Crossing, Expression, ParameterCard, Problem};
 use lindstedt::expand::Excitation;
-use lindstedt::problem_file::{History, ProblemFile, parse_expression};
+use lindstedt::problem_file::{History, ProblemFile};
 use lindstedt::problems::stick_slip;
 use lindstedt::simulate::{Digits, Model, Parameters, Quantity, Real as _};
 use lindstedt::verify::quantities;
@@ -71,7 +71,7 @@ impl Case<'_> {
             };
             at = values(&problem.parameters, &given).into_iter().map(text).collect();
         }
-        self.determined(&mut problem, &mut bindings)?;
+        let history = self.determined(&mut problem, history, &mut bindings);
         let (equation, small) = self.time_domain(&problem, &bindings);
         let bits = Digits::for_digits(self.digits + 40).bits();
         let mut remarks = Vec::new();
@@ -141,34 +141,33 @@ impl Case<'_> {
         })
     }
 
-    /// Puts in what determines a parameter that has no value of its own (`follows`).
-    fn determined(&self, problem: &mut Problem, bindings: &mut Parameters) -> Result<(), Failure> {
-        let Some(file) = self.file else { return Ok(()) };
-        let mut names = file.names.clone();
-        names.parameters.iter_mut().for_each(|set| {
-            set.insert("pi".to_owned());
-        });
-        for (name, text) in &file.follows {
-            if bindings.get(name).is_some() {
-                continue;
-            }
-            let follows = parse_expression(text, &names).map_err(|error| Failure {
-                exit: NO_ANSWER,
-                code: "no-value",
-                message: format!("{name} has no value: {error} in {text:?}"),
-                hint: "follows = \"...\" needs an expression in parameters and pi".into(),
-            })?;
+    /// Puts in what determines the parameters that have no value of their own because it contains pi.
+    fn determined(
+        &self,
+        problem: &mut Problem,
+        history: Option<History>,
+        bindings: &mut Parameters,
+    ) -> Option<History> {
+        let Some(file) = self.file else { return history };
+        if !file.determined().is_empty() {
             bindings.set("pi", Quantity::PiMultiple(Rational::from(1)));
-            let put_in =
-                |e: &Expression| (*e == Expression::parameter(name)).then(|| follows.clone());
-            problem.equation = problem.equation.substitute(&put_in);
-            problem.time_domain = problem.time_domain.as_ref().map(|e| e.substitute(&put_in));
-            if let Some(wall) = &mut problem.impact {
-                wall.position = wall.position.substitute(&put_in);
-                wall.restitution = wall.restitution.substitute(&put_in);
-            }
         }
-        Ok(())
+        let value = |e: &Expression| match e {
+            Expression::Parameter(name) => file.determined().get(&**name).cloned(),
+            _ => None,
+        };
+        problem.equation = problem.equation.substitute(&value);
+        problem.time_domain = problem.time_domain.as_ref().map(|e| e.substitute(&value));
+        if let Some(wall) = &mut problem.impact {
+            wall.position = wall.position.substitute(&value);
+            wall.restitution = wall.restitution.substitute(&value);
+        }
+        match history {
+            Some(History::Expression(e)) => {
+                Some(History::Expression(file.put_in(&e).substitute(&value)))
+            }
+            other => other,
+        }
     }
 
     /// The equation for x itself, and the name of its small parameter.

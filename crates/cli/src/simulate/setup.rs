@@ -137,7 +137,11 @@ impl Setup {
             let message = if impacting {
                 "--perturb starts on the orbit".to_owned()
             } else {
-                format!("{} has no periodic impact orbit to perturb", problem.name)
+                format!(
+                    "{} starts at a state: only vibro-impact begins on its periodic impact orbit, which \
+                     --perturb leaves",
+                    problem.name
+                )
             };
             let hint =
                 if impacting { "leave out --state and --history" } else { "--state X,V alone" };

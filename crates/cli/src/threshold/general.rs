@@ -187,11 +187,16 @@ pub fn zeros(
         .file
         .as_ref()
         .is_some_and(|(_, found)| matches!(found.unperturbed, Unperturbed::Numeric(_)));
+    let what = if numeric {
+        "zeros are enclosed on orbits in closed form, and this one is numeric"
+    } else {
+        "zeros are enclosed between rational ends"
+    };
     let (Some(low), Some(high), false) = (low.as_rational(), high.as_rational(), numeric) else {
         return Err(Failure {
             exit: NO_ANSWER,
             code: "no-answer",
-            message: "zeros are found between rational ends, on orbits in closed form".to_owned(),
+            message: what.to_owned(),
             hint: "--sweep shows where the sign changes".to_owned(),
         });
     };

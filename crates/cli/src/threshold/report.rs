@@ -333,7 +333,7 @@ impl Answer {
             let _ = writeln!(text, "\n  gamma_c = {exact}");
         }
         let Some(table) = table else { return text };
-        let status = if table.certified { "certified" } else { "f64" };
+        let status = if table.certified { "certified" } else { "estimated, in doubles" };
         let mut reasons: BTreeMap<usize, &str> = BTreeMap::new();
         for (reason, entries) in &table.blanks {
             let shown = entries.iter().take_while(|index| **index < PRINTED_POINTS);
@@ -342,6 +342,12 @@ impl Answer {
         let blank: usize = table.blanks.values().map(Vec::len).sum();
         let without = if blank == 0 { String::new() } else { format!(", {blank} without a value") };
         let _ = writeln!(text, "\n  {} points ({status}){without}", table.signed.len());
+        let heads = match table.names.as_slice() {
+            [name] => format!("{name:<20}"),
+            [name, row] => format!("{row:<12} {name:<20}"),
+            _ => String::new(),
+        };
+        let _ = writeln!(text, "  {heads} gamma_c with the sign of D");
         for (index, (row, column, signed)) in table.entries().take(PRINTED_POINTS).enumerate() {
             let row = if row.is_nan() { String::new() } else { format!("{row:<12} ") };
             let _ = match reasons.get(&index) {

@@ -21,6 +21,8 @@ const NO_DOUBLE: &str = "beyond the largest double";
 
 /// Signed thresholds on a grid; the first sweep runs along the columns.
 pub struct Table {
+    /// What is swept: along the columns, then along the rows.
+    pub names: Vec<String>,
     pub columns: Vec<f64>,
     /// A single row with value NaN where there is one sweep.
     pub rows: Vec<f64>,
@@ -54,6 +56,7 @@ impl Table {
             });
         }
         let mut table = Self {
+            names: request.sweeps.iter().map(|sweep| sweep.name.clone()).collect(),
             signed: vec![f64::NAN; points],
             blanks: BTreeMap::new(),
             certified: request.class() == Class::Certified,

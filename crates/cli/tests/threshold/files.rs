@@ -182,7 +182,9 @@ fn values_without_a_threshold_are_blank_with_the_reason() {
         assert_eq!(blank["points"], serde_json::json!([[0.0]]));
         assert_eq!(blank["reason"], "there is no harmonic force");
         let shown = text(&file, arguments);
-        assert!(shown.contains("5 points (certified), 1 without a value\n"), "{shown}");
+        let head = "  omega                gamma_c with the sign of D\n";
+        let count = "5 points (certified), 1 without a value\n";
+        assert!(shown.contains(&format!("{count}{head}")), "{shown}");
         assert!(shown.contains("  0                    - (there is no harmonic force)"), "{shown}");
         assert!(!shown.contains("NaN"), "{shown}");
     }

@@ -1,7 +1,7 @@
 //! Functions of two phases as text and as LaTeX: `a*cos(psi) - 1/32*a^3*cos(3*psi) + p*cos(eta)`.
 
 use super::{Harmonic, Torus, TorusElement};
-use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Ring};
+use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Ring, combination};
 use lindstedt_coeff::print::{Print, Style, Term, latex_name, print_sum};
 
 impl<K: RationalAlgebra + Print> Torus<K> {
@@ -29,24 +29,12 @@ impl<K: RationalAlgebra + Print> Torus<K> {
 
 /// cos(k psi + m eta).
 fn wave(function: &str, (k, m): Harmonic, style: Style) -> String {
-    let mut angle = String::new();
-    for (n, phase) in [(k, "psi"), (m, "eta")] {
-        if n == 0 {
-            continue;
-        }
-        angle += match (angle.is_empty(), n < 0) {
-            (true, true) => "-",
-            (true, false) => "",
-            (false, true) => " - ",
-            (false, false) => " + ",
-        };
-        let phase = if style == Style::Latex { latex_name(phase) } else { phase.to_owned() };
-        let times = if style == Style::Latex { r"\," } else { "*" };
-        angle += &match n.unsigned_abs() {
-            1 => phase,
-            n => format!("{n}{times}{phase}"),
-        };
-    }
+    let angle = if style == Style::Latex {
+        let names = ["psi", "eta"].map(latex_name);
+        combination([k, m], names.each_ref().map(String::as_str), r"\,")
+    } else {
+        combination([k, m], ["psi", "eta"], "*")
+    };
     let backslash = if style == Style::Latex { r"\" } else { "" };
     format!("{backslash}{function}({angle})")
 }

@@ -1,0 +1,163 @@
+//! Sections, sweeps and bifurcation diagrams of `simulate`.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
+    command.args(["simulate", "--quiet"]).args(arguments);
+    command
+}
+
+fn run(arguments: &[&str]) -> Output {
+    command(arguments).output().unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = run(&[arguments, &["--format", "json"]].concat());
+    assert!(output.status.success(), "{arguments:?} {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn float(number: &Value) -> f64 {
+    number["decimal"].as_str().unwrap().parse().unwrap()
+}
+
+fn file(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("lindstedt-simulate-{}-{name}", std::process::id()))
+}
+
+/// Killed in the middle and begun again, the file, the table and the figure are the same bytes.
+#[test]
+fn a_killed_diagram_goes_on() {
+    let sweep =
+        ["stick-slip", "--sweep", "gamma=0.58..0.66:60", "--skip", "150", "--periods", "60"];
+    let go = |name: &str, kill: bool| -> [Vec<u8>; 3] {
+        let paths = ["dat", "csv", "svg"].map(|kind| file(&format!("{name}.{kind}")));
+        let [resume, csv, svg] = paths.each_ref().map(|p| p.to_str().unwrap());
+        let all = [&sweep[..], &["--resume", resume, "--plot", csv, "--plot", svg]].concat();
+        if kill {
+            let mut child =
+                command(&all).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+            // As soon as some values are there.
+            let lines = || std::fs::read_to_string(&paths[0]).map_or(0, |t| t.lines().count());
+            while lines() < 5 && child.try_wait().unwrap().is_none() {
+                std::thread::sleep(Duration::from_millis(2));
+            }
+            child.kill().unwrap();
+            child.wait().unwrap();
+            assert!(!paths[2].exists() && lines() < 61, "killed too late");
+            // A line that was cut in the middle.
+            let mut torn = std::fs::read(&paths[0]).unwrap();
+            torn.truncate(torn.len() - 7);
+            std::fs::write(&paths[0], torn).unwrap();
+        }
+        assert!(command(&all).output().unwrap().status.success());
+        paths.map(|path| {
+            let bytes = std::fs::read(&path).unwrap();
+            let _ = std::fs::remove_file(path);
+            bytes
+        })
+    };
+    let (whole, resumed) = (go("whole", false), go("killed", true));
+    assert!(whole == resumed);
+    assert_eq!(String::from_utf8_lossy(&whole[0]).lines().count(), 61);
+}
+
+#[test]
+fn a_diagram_doubles_its_period() {
+    let sweep = ["--sweep", "gamma=0.6..0.65:2", "--skip", "600", "--periods", "40"];
+    let found = json(&[&["stick-slip"], &sweep[..]].concat());
+    let distinct = |n: usize| {
+        let points = found["sweep"]["columns"][n]["points"].as_array().unwrap();
+        let mut list: Vec<i64> =
+            points.iter().map(|p| (p[0].as_f64().unwrap() * 1e3).round() as i64).collect();
+        list.sort_unstable();
+        list.dedup();
+        list.len()
+    };
+    // Period 2 at 0.6, chaos at 0.65.
+    assert!(distinct(0) <= 2 && distinct(1) > 20, "{} {}", distinct(0), distinct(1));
+    let gains =
+        json(&["vibro-impact", "--sweep", "A=-0.04..-0.02:3", "--skip", "50", "--impacts", "10"]);
+    assert_eq!(gains["sweep"]["section"], "impact");
+    assert_eq!(gains["sweep"]["columns"][0]["points"].as_array().unwrap().len(), 10);
+}
+
+#[test]
+fn values_of_a_sweep_are_exact() {
+    let path = file("exact.csv");
+    let sweep = ["stick-slip", "--sweep", "gamma=0.5..0.8:10", "--skip", "0", "--periods", "1"];
+    let found = json(&[&sweep[..], &["--plot", path.to_str().unwrap()]].concat());
+    let columns = found["sweep"]["columns"].as_array().unwrap();
+    let exact: Vec<&str> = columns.iter().map(|c| c["exact"].as_str().unwrap()).collect();
+    assert_eq!(exact[..4], ["0.5", "8/15", "17/30", "0.6"]);
+    let table = std::fs::read_to_string(&path).unwrap();
+    assert!(table.contains("\n0.6,") && table.contains("\n0.5666666666666667,"));
+    let _ = std::fs::remove_file(path);
+}
+
+/// The end is the last time asked for where no other is given; `--skip` leaves out the first points.
+#[test]
+fn times_and_points_asked_for() {
+    let found = json(&["duffing", "--times", "0..50:3", "--digits", "10"]);
+    let samples = found["samples"].as_array().unwrap();
+    assert_eq!(samples.len(), 3);
+    assert!((float(&samples[2]["t"]) - 50.0).abs() < 1e-9, "{samples:?}");
+    let late = run(&["duffing", "--times", "0..50:3", "--until", "5"]);
+    assert_eq!(late.status.code(), Some(2));
+    let strobe = ["stick-slip", "--periods", "5", "--section", "stroboscopic", "--f64"];
+    let points = |more: &[&str]| {
+        let found = json(&[&strobe[..], more].concat());
+        found["section"]["points"].as_array().unwrap().clone()
+    };
+    assert_eq!(points(&["--skip", "3"])[..], points(&[])[3..]);
+}
+
+/// A column of a sweep is the section of one motion: at impacts the state just before, stroboscopically
+/// with the period that belongs to the value, also of the frequency of the force itself.
+#[test]
+fn a_column_is_the_section_of_one_motion() {
+    let pairs = |list: &Value| -> Vec<[f64; 2]> {
+        let pair = |p: &Value| {
+            let all: Vec<f64> = p.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+            [all[all.len() - 2], all[all.len() - 1]]
+        };
+        list.as_array().unwrap().iter().map(pair).collect()
+    };
+    let walled = ["vibro-impact", "--state", "-0.5,0.1", "--section", "impact", "--impacts", "4"];
+    let forced = ["stick-slip", "--section", "stroboscopic", "--periods", "4"];
+    for (common, name, values) in
+        [(&walled[..], "A", ["0", "1/10"]), (&forced[..], "omega", ["1", "3"])]
+    {
+        let sweep = format!("{name}={}..{}:2", values[0], values[1]);
+        let swept = json(&[common, &["--skip", "0", "--sweep", &sweep]].concat());
+        for (value, column) in values.iter().zip(swept["sweep"]["columns"].as_array().unwrap()) {
+            let one = json(&[common, &["--set", &format!("{name}={value}")]].concat());
+            let (one, column) = (pairs(&one["section"]["points"]), pairs(&column["points"]));
+            assert_eq!((one.len(), column.len()), (4, 4));
+            for ([x, v], [y, w]) in one.into_iter().zip(column) {
+                assert!((x - y).abs() < 1e-9 && (v - w).abs() < 1e-9, "{name}={value}: {v} {w}");
+            }
+        }
+    }
+}
+
+/// x'' = -1 above a wall at 0 with R = 9/10 from rest at 1: at t = 3 the body flies, 0.761 high, though
+/// the impacts add up at 19 sqrt 2.
+#[test]
+fn a_ball_is_seen_between_its_impacts() {
+    let path = std::env::temp_dir().join(format!("lindstedt-{}-ball.toml", std::process::id()));
+    let wall = "[impact]\nposition = \"0\"\ncrossing = \"falling\"\nrestitution = \"9/10\"\n";
+    let file = format!("name = \"ball\"\nequation = \"x'' = -1\"\ncondition = []\n{wall}");
+    std::fs::write(&path, file).unwrap();
+    let ball = [path.to_str().unwrap(), "--state", "1,0", "--digits", "10"];
+    let found = json(&[&ball[..], &["--until", "30", "--times", "3..3:1"]].concat());
+    // The first flight after the impact at sqrt 2 with velocity 9/10 sqrt 2.
+    let t = 3.0 - 2f64.sqrt();
+    let truth = 0.9 * 2f64.sqrt() * t - t * t / 2.0;
+    assert!((float(&found["samples"][0]["x"]) - truth).abs() < 1e-9, "{}", found["samples"]);
+}
