@@ -146,7 +146,7 @@ fn refuse(residual: &Hyperbolic) -> Result<(), MelnikovError> {
     }
 }
 
-/// Checks that angle velocity v, sine s and cosine c solve x'' = -sin x in z = w0 t:
+/// Checks that angle velocity v, sine s and cosine c solve x'' = -sin x in z = sqrt(a) t:
 /// s' = v c, c' = -v s, v' = -s and s^2 + c^2 = 1.
 ///
 /// # Errors

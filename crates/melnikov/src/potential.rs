@@ -54,10 +54,10 @@ pub enum Potential {
         /// b > 0.
         b: Real,
     },
-    /// x'' = -w0^2 sin x, x0 = 2 gd(w0 t), x0' = 2 w0 sech(w0 t): heteroclinic.
+    /// x'' = -a sin x, x0 = 2 gd(sqrt(a) t), x0' = 2 sqrt(a) sech(sqrt(a) t): heteroclinic.
     Pendulum {
-        /// w0 > 0.
-        w0: Real,
+        /// a > 0, the square of the frequency of small swings.
+        a: Real,
     },
     /// Any polynomial force with an orbit in the hyperbolic algebra; what the others have in closed
     /// form is found by certified crossings here.
@@ -69,11 +69,11 @@ pub enum Potential {
         /// b > 0 (1 where the description does not use it).
         b: Real,
     },
-    /// x'' = kappa^2 x (1 - x^2)(1 - 3 x^2), x0 = (1 + e^{-2 kappa t})^{-1/2}, from the saddle 0
-    /// to the saddle 1.
+    /// x'' = a x (1 - x^2)(1 - 3 x^2), x0 = (1 + e^{-2 kappa t})^{-1/2}, kappa = sqrt(a), from the
+    /// saddle 0 to the saddle 1.
     PhiSix {
-        /// kappa > 0.
-        kappa: Real,
+        /// a > 0.
+        a: Real,
     },
 }
 
@@ -117,8 +117,7 @@ impl Potential {
             | Self::Described { a, b, .. } => {
                 vec![("a", a), ("b", b)]
             }
-            Self::Pendulum { w0 } => vec![("w0", w0)],
-            Self::PhiSix { kappa } => vec![("kappa", kappa)],
+            Self::Pendulum { a } | Self::PhiSix { a } => vec![("a", a)],
         }
     }
 
@@ -176,13 +175,14 @@ impl Potential {
     #[must_use]
     pub fn rate(&self, balls: Balls) -> Option<Ball> {
         match self {
-            Self::DoubleWell { a, .. } => balls.sqrt(&a.ball(balls)),
+            Self::DoubleWell { a, .. } | Self::Pendulum { a } | Self::PhiSix { a } => {
+                balls.sqrt(&a.ball(balls))
+            }
             Self::SoftDuffing { a, .. } => balls.sqrt(&balls.mul_power_of_two(&a.ball(balls), -1)),
             Self::Helmholtz { a, .. } => {
                 Some(balls.mul_power_of_two(&balls.sqrt(&a.ball(balls))?, -1))
             }
             Self::Described { orbit, a, b } => balls.sqrt(&orbit.rate_squared.ball(balls, a, b)?),
-            Self::Pendulum { w0: rate } | Self::PhiSix { kappa: rate } => Some(rate.ball(balls)),
         }
     }
 
@@ -296,28 +296,46 @@ impl Potential {
         Some((scaled(&transform.cosine)?, scaled(&transform.sine)?))
     }
 
-    /// 1 - |v|/V without cancellation for the double well: with V = a/sqrt(2b),
-    /// (a^2 - 2 b v^2) / (a (a + sqrt(2b) |v|)).
+    /// 1 - |v|/V. Without cancellation for the double well, with V = a/sqrt(2b),
+    /// (a^2 - 2 b v^2)/(a (a + sqrt(2b) |v|)), and for the pendulum, with V = 2 sqrt(a),
+    /// (4 a - v^2)/(V (V + |v|)).
     pub(crate) fn speed_gap(&self, balls: Balls, v: &Real) -> Option<Ball> {
-        if let Self::DoubleWell { a, b } = self {
-            let numerator = match (a.as_rational(), b.as_rational(), v.as_rational()) {
-                (Some(a), Some(b), Some(v)) => {
-                    let (a2, bv2) =
-                        (Rational::from(a.square_ref()), Rational::from(v.square_ref()) * b);
-                    balls.from_rational(&(a2 - bv2 * 2u32))
-                }
-                _ => {
-                    let square = balls.mul(&balls.square(&v.ball(balls)), &b.ball(balls));
-                    balls.sub(&balls.square(&a.ball(balls)), &balls.mul_power_of_two(&square, 1))
-                }
-            };
-            let a = a.ball(balls);
-            let root = balls.sqrt(&balls.mul_power_of_two(&b.ball(balls), 1))?;
-            let sum = balls.add(&a, &balls.mul(&root, &v.abs().ball(balls)));
-            return balls.div(&numerator, &balls.mul(&a, &sum));
+        let square = |x: &Real| balls.square(&x.ball(balls));
+        let speed = v.abs().ball(balls);
+        match self {
+            Self::DoubleWell { a, b } => {
+                let numerator = match (a.as_rational(), b.as_rational(), v.as_rational()) {
+                    (Some(a), Some(b), Some(v)) => {
+                        let (a2, bv2) =
+                            (Rational::from(a.square_ref()), Rational::from(v.square_ref()) * b);
+                        balls.from_rational(&(a2 - bv2 * 2u32))
+                    }
+                    _ => {
+                        let bv2 = balls.mul(&square(v), &b.ball(balls));
+                        balls.sub(&square(a), &balls.mul_power_of_two(&bv2, 1))
+                    }
+                };
+                let a = a.ball(balls);
+                let root = balls.sqrt(&balls.mul_power_of_two(&b.ball(balls), 1))?;
+                let sum = balls.add(&a, &balls.mul(&root, &speed));
+                balls.div(&numerator, &balls.mul(&a, &sum))
+            }
+            Self::Pendulum { a } => {
+                let numerator = match (a.as_rational(), v.as_rational()) {
+                    (Some(a), Some(v)) => {
+                        let four = Rational::from(a * 4u32);
+                        balls.from_rational(&(four - Rational::from(v.square_ref())))
+                    }
+                    _ => balls.sub(&balls.mul_power_of_two(&a.ball(balls), 2), &square(v)),
+                };
+                let largest = self.largest_speed(balls)?;
+                balls.div(&numerator, &balls.mul(&largest, &balls.add(&largest, &speed)))
+            }
+            _ => {
+                let y = balls.div(&speed, &self.largest_speed(balls)?)?;
+                Some(balls.sub(&balls.one(), &y))
+            }
         }
-        let y = balls.div(&v.abs().ball(balls), &self.largest_speed(balls)?)?;
-        Some(balls.sub(&balls.one(), &y))
     }
 
     /// int v0 sgn(v0 - v) dt on the positive branch: twice the distance travelled faster than v,

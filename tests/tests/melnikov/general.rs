@@ -1,6 +1,6 @@
 //! Polynomial friction of any degree, friction laws, several harmonics, other potentials.
 
-use crate::support::{Random, assert_agrees, decimal, oracle, real};
+use crate::support::{Random, assert_agrees, decimal, number, oracle, real};
 use lindstedt::coeff::ball::Balls;
 use lindstedt_melnikov::{
     Branch, Class, Forcing, Friction, Harmonic, MelnikovError, Monomial, PolynomialFriction,
@@ -99,15 +99,20 @@ fn several_harmonics() {
     }
 }
 
+/// The square of a field.
+fn squared(row: &Value, name: &str) -> Real {
+    Real::Rational(number(row, name).square())
+}
+
 #[test]
 fn potentials() {
     let balls = Balls::new(BALLS);
     for row in oracle("potentials.json").as_array().unwrap() {
         let potential = match row["potential"].as_str().unwrap() {
-            "pendulum" => Potential::Pendulum { w0: real(row, "w0") },
+            "pendulum" => Potential::Pendulum { a: squared(row, "w0") },
             "kink" => Potential::SoftDuffing { a: real(row, "a"), b: real(row, "b") },
             "helmholtz" => Potential::Helmholtz { a: real(row, "a"), b: real(row, "b") },
-            _ => Potential::PhiSix { kappa: real(row, "kappa") },
+            _ => Potential::PhiSix { a: squared(row, "kappa") },
         };
         potential.check().unwrap();
         let omega = real(row, "omega").ball(balls);
@@ -144,8 +149,8 @@ fn potentials_by_quadrature() {
             0 => Potential::DoubleWell { a, b },
             1 => Potential::SoftDuffing { a, b },
             2 => Potential::Helmholtz { a, b },
-            3 => Potential::Pendulum { w0: a },
-            _ => Potential::PhiSix { kappa: a },
+            3 => Potential::Pendulum { a },
+            _ => Potential::PhiSix { a },
         };
         let law = PolynomialFriction {
             dry: q(-1.0, 1.0),
@@ -202,7 +207,7 @@ fn incommensurate_and_parametric() {
     let (n, _) =
         parametric.melnikov(balls, Branch::Negative, &Real::from(1), &Real::from((1, 2))).unwrap();
     assert!(m.overlaps(&n) && m.relative_accuracy_bits() > 100);
-    let pendulum = Potential::Pendulum { w0: Real::from(1) };
+    let pendulum = Potential::Pendulum { a: Real::from(1) };
     let forcing = Forcing::Parametric { omega: omega() };
     let refused = System::new(pendulum, law(), forcing, Real::from((1, 5))).unwrap();
     let refused = refused.threshold(balls, Branch::Positive);

@@ -2,7 +2,7 @@
 
 use super::setup::{Setup, identity};
 use crate::failure::{Failure, NO_ANSWER};
-use crate::stability::request::exact_parameters;
+use crate::stability::known::exact_parameters;
 use lindstedt::Value;
 use lindstedt::equation::Expression;
 use lindstedt::equation::Function::{Cos, Exp, Sin};

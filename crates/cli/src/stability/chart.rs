@@ -1,6 +1,7 @@
 //! Charts: two parameters, the prediction and the truth at every point.
 
-use super::request::{Computed, Request, Sweep};
+use super::known::Computed;
+use super::request::{Request, Sweep};
 use crate::failure::{Failure, UNDECIDED};
 use crate::session::Session;
 use lindstedt::Value;

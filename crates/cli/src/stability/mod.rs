@@ -2,6 +2,7 @@
 
 mod chart;
 mod figure;
+pub mod known;
 pub mod report;
 pub mod request;
 

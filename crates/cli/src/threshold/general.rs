@@ -151,8 +151,8 @@ fn check(found: &MelnikovProblem, check: Option<&OrbitCheck>) -> Json {
                 lindstedt_melnikov::Potential::DoubleWell { .. } => "x'' = a*x - b*x^3",
                 lindstedt_melnikov::Potential::SoftDuffing { .. } => "x'' = -a*x + b*x^3",
                 lindstedt_melnikov::Potential::Helmholtz { .. } => "x'' = a*x - b*x^2",
-                lindstedt_melnikov::Potential::Pendulum { .. } => "x'' = -w0^2*sin(x)",
-                _ => "x'' = kappa^2*x*(1 - x^2)*(1 - 3*x^2)",
+                lindstedt_melnikov::Potential::Pendulum { .. } => "x'' = -a*sin(x)",
+                _ => "x'' = a*x*(1 - x^2)*(1 - 3*x^2)",
             };
             let parameters = parameters.join(", ");
             Json::from(format!(

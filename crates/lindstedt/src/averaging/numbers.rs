@@ -1,7 +1,8 @@
 //! The averaged expansion with a value for every parameter, as floats.
 
+use super::AveragingSettings;
+use super::task::{Over, Task};
 use super::values::constant;
-use super::{AveragingSettings, Over, Task};
 use crate::{Error, Progress, Value};
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePower};

@@ -83,14 +83,14 @@ fn cubic(f0: &Real, f1: &Real, f2: &Real, f3: &Real) -> Option<(Potential, Ratio
     Some((potential, Rational::from(1)))
 }
 
-/// x'' = f1 x + f3 x^3 + f5 x^5 is kappa^2 y (1 - y^2)(1 - 3 y^2) with x = s y where
-/// 16 f1 f5 = 3 f3^2: kappa^2 = f1, s^2 = -4 f1/f3.
+/// x'' = f1 x + f3 x^3 + f5 x^5 is f1 y (1 - y^2)(1 - 3 y^2) with x = s y where 16 f1 f5 = 3 f3^2:
+/// s^2 = -4 f1/f3.
 fn quintic(f1: &Real, f3: &Real, f5: &Real) -> Option<(Potential, Rational)> {
     let (f1, f3, f5) = (f1.as_rational()?, f3.as_rational()?, f5.as_rational()?);
     let tied = Rational::from(f1 * f5) * 16u32 == Rational::from(f3.square_ref()) * 3u32;
     (tied && !f3.is_zero()).then_some(())?;
     let s = rational_root(&(Rational::from(f1 * -4i32) / f3))?;
-    Some((Potential::PhiSix { kappa: Real::Rational(rational_root(f1)?) }, s))
+    f1.is_positive().then(|| (Potential::PhiSix { a: Real::Rational(f1.clone()) }, s))
 }
 
 /// x'' = A sin(k x + phase), or with a cosine: y = k x + constant has y'' = -|A k| sin y.
@@ -113,7 +113,6 @@ fn sine(force: &Monomials) -> Option<(Potential, Rational)> {
     (!k.is_zero()).then_some(())?;
     let mut size = InPi::default();
     size.add(m, q)?;
-    let square = times(&Real::from(size.value()?), &k).abs();
-    let w0 = Real::Rational(rational_root(square.as_rational()?)?);
-    Some((Potential::Pendulum { w0 }, k.recip()))
+    let a = times(&Real::from(size.value()?), &k).abs();
+    a.sign().is_gt().then(|| (Potential::Pendulum { a }, k.recip()))
 }
