@@ -20,6 +20,7 @@ use serde_json::{Value as Json, json};
 
 pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     let mut loaded = load(&options.problem)?;
+    loaded.without_pi(&options.problem)?;
     let condition =
         classification::condition(options.normalisation, &mut loaded, &options.problem)?;
     let Loaded { problem, file } = loaded;

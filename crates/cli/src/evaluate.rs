@@ -27,6 +27,7 @@ const DOUBLE: usize = 16;
 
 pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     let mut loaded = load(&options.problem)?;
+    loaded.without_pi(&options.problem)?;
     let condition =
         classification::condition(options.normalisation, &mut loaded, &options.problem)?;
     let mut given = parameters(&options.set)?;

@@ -198,6 +198,28 @@ pub fn load(name: &str) -> Result<Loaded, Failure> {
     problem(name).map(|problem| Loaded { problem, file: None })
 }
 
+impl Loaded {
+    /// Refuses a parameter that follows from pi: expansions take expressions over the rational numbers, and
+    /// the delay of whole periods by its tie.
+    pub fn without_pi(&self, path: &str) -> Result<(), Failure> {
+        let tied = self.problem.synchronous.as_ref().map(|tie| &*tie.delay);
+        let Some(file) = &self.file else { return Ok(()) };
+        let Some(name) = file.determined().keys().find(|name| Some(name.as_str()) != tied) else {
+            return Ok(());
+        };
+        let how = file.follows.get(name).map_or("", String::as_str);
+        Err(Failure {
+            exit: NO_ANSWER,
+            code: "no-value-set",
+            message: format!(
+                "{}: {name} follows: {how}; with pi only `simulate` computes it",
+                shown(path)
+            ),
+            hint: format!("a value for {name} in its place, as in value = \"5*pi\" or \"157/10\""),
+        })
+    }
+}
+
 /// An error of a problem file with the path in front.
 fn at_path(path: &str, error: FileError) -> Failure {
     let FileError { kind, line, column } = &error;

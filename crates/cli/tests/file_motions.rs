@@ -288,3 +288,28 @@ fn a_stiffness_named_k() {
     let (code, error) = refusal(&["stability", &path("K"), "--set", "periods=2"]);
     assert!(code == Some(2) && error.contains("has no parameter"), "{error}");
 }
+
+/// A constant force of order zero moves the centre, and averaging takes it; a frequency in hertz is refused with
+/// the reason by what computes with rational numbers.
+#[test]
+fn preload_and_hertz() {
+    let folder = Folder::new("preload");
+    let path = folder.file("x'' + x + eps*x^3 = F", &[("F", "1")], "");
+    let shown = text(&["problems", "--show", &path]);
+    assert!(shown.contains("averaging (KBM)     applies"), "{shown}");
+    let (code, error) = refusal(&["derive", &path]);
+    assert!(code == Some(3) && error.contains("--normalisation free"), "{error}");
+    // (1 + a cos psi)^3: B_1 = 3/2 + 3 a^2/8.
+    let found = text(&["derive", &path, "--normalisation", "free", "--order", "1"]);
+    assert!(found.contains("B_1 = 3/2 + 3/8*a^2"), "{found}");
+    let path = folder.file("x'' + 4*x + eps*x' = cos(Omega*t)", &[("f", "5/2")], "");
+    let file = std::fs::read_to_string(&path).unwrap() + "Omega = { follows = \"2*pi*f\" }\n";
+    std::fs::write(&path, file).unwrap();
+    for verb in ["derive", "evaluate", "verify"] {
+        let (code, error) = refusal(&[verb, &path]);
+        assert!(
+            code == Some(3) && error.contains("Omega follows: 2*pi*f; with pi only"),
+            "{error}"
+        );
+    }
+}

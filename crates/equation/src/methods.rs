@@ -150,6 +150,14 @@ fn averaging(
     weak: &[Reason],
 ) -> Vec<Reason> {
     let mut against = weak.to_vec();
+    // A constant force of order zero moves the centre: the response to it is no expansion's first term, but
+    // part of u_0.
+    let strong = parts.strong.iter().find(|term| !term.term.is_constant());
+    let first = parts.strong.first().map(|term| &term.term);
+    if strong.map(|term| &term.term) != first {
+        against.retain(|reason| !matches!(reason, Reason::NotWeaklyNonlinear(_)));
+        against.extend(strong.map(|term| Reason::NotWeaklyNonlinear(term.term.clone())));
+    }
     for force in &parts.forcing {
         match (&force.frequency, force.resonance) {
             (None, _) => against.push(Reason::Forced(force.term.clone())),

@@ -33,7 +33,7 @@ pub use fast::{Axis, FastPoint, FastThreshold, surface};
 pub use forcing::{Forcing, ForcingWork, Harmonic};
 pub use friction::{Friction, LARGEST_DEGREE, Law, PolynomialFriction};
 pub use orbit::{Monomial, OrbitDescription, check_pendulum, check_phi_six};
-pub use paper::{Comparison, PaperVerdict, paper_comparison};
+pub use paper::{COMPARED_AT, Comparison, PaperVerdict, paper_comparison};
 pub use potential::{Branch, Potential};
 pub use real::Real;
 pub use root::enclose_root;

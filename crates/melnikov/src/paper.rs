@@ -64,6 +64,10 @@ const POINT: Point = Point {
     t0: 0.6,
 };
 
+/// The point at which (22) to (27) are compared, in words.
+pub const COMPARED_AT: &str = "a = 1.7, b = 2.3, T0 = 0.4, alpha = 0.35, beta = 0.25, v* = 0.5, gamma = 0.8, \
+                               omega = 1.4, t0 = 0.6";
+
 /// A decimal of at most 6 places as the rational number it stands for.
 fn exact(x: f64) -> Real {
     Real::Rational(Rational::from(((x * 1e6).round() as i64, 1_000_000)))
@@ -100,6 +104,31 @@ impl Point {
         let sech = (PI * self.omega / (2.0 * self.a.sqrt())).cosh().recip();
         -PI * self.gamma * self.omega * (2.0 / self.b).sqrt() * sech * phase.sin()
     }
+    /// int f(sech z tanh z) dz over the line; f(0) = 0. The trapezoidal rule, which converges
+    /// exponentially where f is entire.
+    fn over_loop(f: impl Fn(f64) -> f64) -> f64 {
+        let step = 1.0 / 64.0;
+        let at = |n: i32| {
+            let z = f64::from(n) * step;
+            f(z.tanh() / z.cosh())
+        };
+        (-3200..=3200).map(at).sum::<f64>() * step
+    }
+    /// (25) with sin t0 or sin(omega t0), the integral beside T0, and whether the brace closes after the
+    /// other terms; without the term that it lacks.
+    fn form_25(&self, phase: f64, dry: f64, brace_over_all: bool) -> f64 {
+        let slope = self.alpha - 3.0 * self.beta * self.v * self.v;
+        let root = self.a.sqrt();
+        // int sech^2 tanh^2 dz = 2/3; the odd powers vanish.
+        let smooth = 2.0 * slope * self.a * self.a / self.b * (2.0 / 3.0) / root;
+        let scale = self.dry * self.a * (2.0 / self.b).sqrt();
+        let smooth = if brace_over_all { -scale * smooth } else { smooth };
+        self.forced(phase) - scale * dry / root + smooth
+    }
+    /// What (25) lacks: -4 beta (a^4/b^2) int sech^4 tanh^4.
+    fn quartic(&self) -> f64 {
+        -16.0 / 35.0 * self.beta * self.a.powi(4) / (self.a.sqrt() * self.b * self.b)
+    }
     /// (26) with the given cubic and linear coefficients and bracket.
     fn form_26(&self, cubic: f64, linear: f64, bracket: f64) -> f64 {
         let slope = self.alpha - 3.0 * self.beta * self.v * self.v;
@@ -109,11 +138,14 @@ impl Point {
     }
     /// The right side of (27) with the factor of T0 [...] given.
     fn form_27(&self, dry_factor: f64) -> f64 {
+        self.smooth_27() + dry_factor * self.dry * self.bracket()
+    }
+    /// Its first two terms.
+    fn smooth_27(&self) -> f64 {
         let slope = self.alpha - 3.0 * self.beta * self.v * self.v;
         let root = (2.0 * self.a * self.b).sqrt();
         16.0 / 35.0 * self.beta * self.a.powi(4) / (self.b * root)
             - 4.0 / 3.0 * slope * self.a * self.a / root
-            + dry_factor * self.dry * self.bracket()
     }
 }
 
@@ -252,8 +284,21 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
     let by_quadrature = quadrature_of_24(p, true)?;
     let without_quartic = quadrature_of_24(p, false)?;
     let sin_t0 = by_quadrature - p.forced(p.omega * p.t0) + p.forced(p.t0);
-    // sin(sech tanh - v*) in place of the sign: no function of v0 - v* at all.
-    let (a, b) = (p.a, p.b);
+    let (a, b, phase) = (p.a, p.b, p.omega * p.t0);
+    let sine_of_loop = Point::over_loop(|s| s * (s - p.v).sin());
+    // (26) has it in closed form: 2 sqrt(2a/b) [...] = a sqrt(2/b)/sqrt(a) int s sign(...) dz.
+    let sign_of_loop = 2.0 * p.bracket();
+    // The term linear in v of -v (-alpha (v - v*) + beta (v - v*)^3), at the scale of v0.
+    let linear_in_v = {
+        let smooth = |v: f64| {
+            let w = v - p.v;
+            -v * (w * w * w * p.beta - w * p.alpha)
+        };
+        let h = 1e-3;
+        // The difference that is exact for degree 4.
+        let d = |h: f64| (smooth(h) - smooth(-h)) / (2.0 * h);
+        speed * (4.0 * d(h) - d(2.0 * h)) / 3.0
+    };
     let cubic = a.powi(4) / (root * b * b);
     let linear = a * a / (root * b);
     let bracket = p.bracket();
@@ -264,13 +309,30 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
     list.extend([
         compare(
             "(24)",
-            "M(t0) with v0 = +a sqrt(2/b) sech tanh",
+            "M(t0) = int {gamma v0(t - t0) cos(omega t) - v0(t - t0) [T0 sign(v0(t - t0) - v*) - alpha (v0(t - \
+             t0) - v*) + beta (v0(t - t0) - v*)^3]} dt",
             Some(by_quadrature),
             m,
-            "as printed; it is the left loop",
+            "with v0 = +a sqrt(2/b) sech tanh as (23) prints it, which is the left loop",
         ),
-        compare("(25)", "gamma sin t0", Some(sin_t0), m, "gamma sin(omega t0)")
+        compare("(25)", "gamma sin t0 ...", Some(sin_t0), m, "gamma sin(omega t0)")
             .repaired_by(sin_t0 - p.forced(p.t0) + p.forced(p.omega * p.t0)),
+        compare(
+            "(25)",
+            "... sin(sech tanh - v*) ...",
+            Some(p.form_25(phase, sine_of_loop, false) + p.quartic()),
+            m,
+            "sign(a sqrt(2/b) sech tanh - v*)",
+        )
+        .repaired_by(p.form_25(phase, sign_of_loop, false) + p.quartic()),
+        compare(
+            "(25)",
+            "the brace after T0 a sqrt(2/b) closes behind all terms",
+            Some(p.form_25(phase, sign_of_loop, true) + p.quartic()),
+            m,
+            "it closes behind the integral of the sign",
+        )
+        .repaired_by(p.form_25(phase, sign_of_loop, false) + p.quartic()),
         compare(
             "(25)",
             "no term beta int sech^4 tanh^4",
@@ -278,7 +340,23 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
             m,
             "add -4 beta (a^4/b^2) int sech^4 tanh^4",
         )
-        .repaired_by(without_quartic - 16.0 / 35.0 * p.beta * cubic),
+        .repaired_by(without_quartic + p.quartic()),
+        compare(
+            "(25)",
+            "+ (alpha - beta v*^2) v* a sqrt(2/b), the factor of int sech tanh",
+            Some(-linear_in_v),
+            linear_in_v,
+            "- in the place of +; without effect, since the integral is 0",
+        )
+        .repaired_by(-(p.alpha - p.beta * p.v * p.v) * p.v * speed),
+        compare(
+            "(25)",
+            "all of it as printed",
+            Some(p.form_25(p.t0, sine_of_loop, true)),
+            m,
+            "the changes above together",
+        )
+        .repaired_by(p.form_25(phase, sign_of_loop, false) + p.quartic()),
         compare(
             "(26)",
             "16/35 beta a^4/sqrt(a b^2)",
@@ -297,27 +375,21 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
         .repaired_by(p.form_26(cubic, linear, bracket)),
         compare(
             "(26)",
-            "both fractions as printed",
-            Some(p.form_26(printed_cubic, printed_linear, bracket)),
-            m,
-            "see the two lines above",
-        )
-        .repaired_by(p.form_26(cubic, linear, bracket)),
-        compare(
-            "(26)",
             "second root sqrt(1/2 - sqrt(1/2) - sqrt(1/4 - ...))",
             Some(p.form_26(cubic, linear, second_radical)),
             m,
-            "sqrt(1/2 - sqrt(1/4 - b v*^2/(2a^2)))",
+            "sqrt(1/2 - sqrt(1/4 - b v*^2/(2a^2))); the text read here comes from a scan, whose reading may \
+             have lost the grouping of the roots",
         )
         .repaired_by(p.form_26(cubic, linear, bracket)),
         compare(
             "(26)",
-            "with all of the above corrected",
-            Some(p.form_26(cubic, linear, bracket)),
+            "all of it as printed",
+            Some(p.form_26(printed_cubic, printed_linear, second_radical)),
             m,
-            "sqrt(1/2+q) - sqrt(1/2-q) = sqrt(1 - |v*|/V)",
-        ),
+            "the changes above together; then sqrt(1/2+q) - sqrt(1/2-q) = sqrt(1 - |v*|/V)",
+        )
+        .repaired_by(p.form_26(cubic, linear, bracket)),
     ]);
     // To 6 places, as `exact` takes it.
     let fast = Point { v: (-1.3e6 * a / (2.0 * b).sqrt()).round() / 1e6, ..POINT };
@@ -330,7 +402,7 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
     list.push(
         compare(
             "(26)",
-            "first branch for all v* < a/sqrt(2b), at v* = -1.3 V",
+            "first branch for all v* < a/sqrt(2b), at v* = -1.030418 (V = 0.792629)",
             Some(fast.form_26(cubic, linear, fast.bracket())),
             m_fast.midpoint().to_f64(),
             "for |v*| < a/sqrt(2b)",
@@ -340,16 +412,32 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
     // (27) multiplied by sqrt(2/b) must be D.
     let g = f64_of(p.stick_slip().g(balls))? * p.a.sqrt();
     list.push(
-        compare("(27)", "2 T0 a [...]", Some(p.form_27(2.0 * a)), g, "2 T0 sqrt(a) [...]")
-            .repaired_by(p.form_27(2.0 * root)),
+        compare(
+            "(27)",
+            "... + 2 T0 a [...]",
+            Some(p.form_27(2.0 * a)),
+            g,
+            "2 T0 sqrt(a) [...]; with it the right side is D sqrt(b/2)",
+        )
+        .repaired_by(p.form_27(2.0 * root)),
     );
-    list.push(compare("(27)", "corrected", Some(p.form_27(2.0 * root)), g, "D sqrt(b/2)"));
+    let g_fast = f64_of(fast.stick_slip().g(balls))? * p.a.sqrt();
+    list.push(
+        compare(
+            "(27)",
+            "first branch for all v* < a/sqrt(2b), at v* = -1.030418 (V = 0.792629)",
+            Some(fast.form_27(2.0 * root)),
+            g_fast,
+            "for |v*| < a/sqrt(2b)",
+        )
+        .repaired_by(fast.smooth_27()),
+    );
     let five = |v: f64| StickSlip { b: Real::from(5), belt_speed: exact(v), ..StickSlip::paper() };
     // As printed, a negative right side lets every gamma > 0 pass: a threshold of 0.
     let gained = f64_of(five(0.45).signed_threshold(balls))?.abs();
     list.push(compare(
         "(27)",
-        "LHS > RHS: at b = 5, v* = 0.45 every gamma > 0",
+        "... > ..., without a modulus on the right: at b = 5, v* = 0.45 every gamma > 0 passes",
         Some(0.0),
         gained,
         "gamma F > |D|",

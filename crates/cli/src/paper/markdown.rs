@@ -1,12 +1,17 @@
 //! The report as Markdown.
 
 use super::figures::Figure;
-use super::{CLASSES, summary};
+use super::{CLASSES, RULES, SYMBOLS, summary};
 use lindstedt::paper::Paper;
 use std::fmt::Write;
 
 pub fn report(paper: &Paper, figures: &[Figure]) -> String {
-    let mut text = trust(paper, figures);
+    let mut text = format!(
+        "Statements of J. Awrejcewicz and I. V. Andrianov, *Asymptotic approaches to analysis of strongly \
+         non-linear and non-smooth systems*, re-read by machine (lindstedt {}).\n\n",
+        env!("CARGO_PKG_VERSION")
+    );
+    text += &trust(paper, figures);
     for section in &paper.sections {
         let _ = writeln!(text, "# Section {}: {}\n", section.number, section.title);
         let _ = writeln!(text, "{}. {CLASSES}\n", summary(section));
@@ -35,6 +40,14 @@ pub fn report(paper: &Paper, figures: &[Figure]) -> String {
                 let _ = writeln!(text, "| {} |", row.join(" | "));
             }
         }
+    }
+    text += "# Notes\n\n";
+    for (name, meaning) in RULES {
+        let _ = writeln!(text, "- **{name}**: {}", cell(meaning));
+    }
+    text.push('\n');
+    for (letters, meaning) in SYMBOLS {
+        let _ = writeln!(text, "- `{letters}`: {}", cell(meaning));
     }
     text
 }

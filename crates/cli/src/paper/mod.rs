@@ -134,6 +134,44 @@ fn is_plain_number(cell: &str) -> bool {
 /// What the numbers of the report are worth.
 const CLASSES: &str = "Every decimal is certified to the last digit shown, except in entries and tables that say estimated.";
 
+/// What the verdicts mean.
+const RULES: [(&str, &str); 4] = [
+    (
+        "agrees",
+        "it holds as printed: exactly, or the printed decimals are the value, rounded or cut off",
+    ),
+    (
+        "misprint",
+        "a slip of the pen: one factor, sign, symbol, exponent, bracket or digit changed, two symbols \
+     interchanged, or one term added or struck makes it hold, and nothing in the paper rests on the error; \
+     where there are such slips at two places, both are named or have a row each",
+    ),
+    (
+        "wrong",
+        "it does not hold, and no slip of the pen explains it, or later statements rest on the error",
+    ),
+    ("not reproducible", "a number that follows from no formula, printed or corrected"),
+];
+
+/// What the letters of the derived formulas mean that the paper does not have.
+const SYMBOLS: [(&str, &str); 6] = [
+    ("v", "x'_-, the velocity before the impact"),
+    (
+        "E, theta, Delta",
+        "E = exp(-beta c), theta = 2 beta lambda, Delta = E + 1/E - 2 cos(theta) in the rows C to sin phi; E = exp(2 beta R), theta = 2 beta alpha0 in (11) to (16)",
+    ),
+    (
+        "G",
+        "the characteristic function of the delayed system, with z(t)/gamma in the place of z(t - T)",
+    ),
+    (
+        "l, mu_m, Lambda_m",
+        "l = -ln|cos tau|, mu_m the mean of l^m/m! (mu_1 = ln 2), Lambda_m' = l^m/m! - mu_m, Lambda_m(0) = 0; Lambda_1 = L(tau) - tau ln 2",
+    ),
+    ("S_n", "sum_k (-1)^k k^n/(2k+1)!: S_0 = sin 1"),
+    ("kappa", "the factor of x at order zero"),
+];
+
 /// "44 statements: 30 agrees, ..." in one line.
 fn summary(section: &Section) -> String {
     let counts: Vec<String> =

@@ -60,6 +60,7 @@ impl Wanted {
 
 pub fn run(options: &TradeOptions, session: &Session<'_>) -> Outcome {
     let mut loaded = session::load(&options.problem)?;
+    loaded.without_pi(&options.problem)?;
     let condition =
         classification::condition(options.normalisation, &mut loaded, &options.problem)?;
     let mut parameters = session::parameters(&options.set)?;

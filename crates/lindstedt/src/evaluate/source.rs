@@ -376,7 +376,11 @@ impl Cubic {
 fn derived(setting: &Setting, series: Series) -> Source {
     let (step, known) = (series.step, series.known);
     let name = &setting.small.name;
-    let variable = if step == 1 { name.clone() } else { format!("{name}^{step}") };
+    let variable = match name.split_once(" = ") {
+        _ if step == 1 => name.clone(),
+        Some((small, meaning)) => format!("{small}^{step}, {small} = {meaning}"),
+        None => format!("{name}^{step}"),
+    };
     let coefficients = series.floats(Rational::from(1));
     let step_power = i64::try_from(step).unwrap_or(1);
     // T ~ small for relaxation oscillations; small f(x) alone makes the time scale small^(-1/2).

@@ -161,14 +161,20 @@ impl Decimal {
 
     /// Whether the printed decimals are the value, rounded or cut off.
     pub fn shows(&self, value: &Ball) -> bool {
-        let ends = [value.lower().to_rational(), value.upper().to_rational()];
-        let [Some(low), Some(high)] = ends else { return false };
+        self.shows_as(value).is_some()
+    }
+
+    /// How the printed decimals are the value, if they are: "rounded" or "cut off".
+    pub fn shows_as(&self, value: &Ball) -> Option<&'static str> {
+        let (low, high) = (value.lower().to_rational()?, value.upper().to_rational()?);
         let half = self.unit() / 2u32;
         let below = Rational::from(&self.value - &half);
         let above = Rational::from(&self.value + &half);
-        let rounded = low >= below && high <= above;
-        let cut_off = low >= self.value && high < Rational::from(&self.value + &self.unit());
-        rounded || cut_off
+        if low >= below && high <= above {
+            return Some("rounded");
+        }
+        let next = Rational::from(&self.value + &self.unit());
+        (low >= self.value && high < next).then_some("cut off")
     }
 
     /// The value rounded to as many decimals as are printed, when both ends of the ball round

@@ -4,8 +4,8 @@ use super::{Decimal, Findings, Reader, Row, Section, plain, show};
 use crate::Error;
 use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_melnikov::{
-    Branch, Comparison, Friction, MelnikovError, PaperVerdict, PolynomialFriction, Real, StickSlip,
-    paper_comparison, quadrature_dissipation,
+    Branch, COMPARED_AT, Comparison, Friction, MelnikovError, PaperVerdict, PolynomialFriction,
+    Real, StickSlip, paper_comparison, quadrature_dissipation,
 };
 use rug::Rational;
 
@@ -68,7 +68,14 @@ fn row(label: String, comparison: &Comparison, quadrature: Option<f64>) -> Row {
         derived: estimate(derived),
         independent,
         verdict: findings.verdict(),
-        evidence: format!("{gives}; {}", comparison.correct),
+        evidence: if comparison.printed.contains("b = 5") {
+            format!("{gives}; {}", comparison.correct)
+        } else if comparison.printed.contains("at v* =") {
+            let others = COMPARED_AT.replace("v* = 0.5, ", "");
+            format!("{gives}; {}; at this v* and {others}", comparison.correct)
+        } else {
+            format!("{gives}; {}; at {COMPARED_AT}", comparison.correct)
+        },
     }
 }
 
@@ -161,7 +168,10 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
         evidence: format!(
             "0.65 is {}; {}; near v* = 0.4 the curve is flat, its smooth extrema are {}",
             source.map_or_else(
-                || format!("given by none of the {} formulas tried", sources.len()),
+                || {
+                    let tried: Vec<&str> = sources.iter().map(|(name, _)| name.as_str()).collect();
+                    format!("given by none of the formulas tried: {}", tried.join("; "))
+                },
                 |(name, _)| name.clone()
             ),
             digit.map_or_else(
@@ -247,9 +257,13 @@ fn cusps(printed: &[&'static str; 2], balls: Balls) -> Result<Row, Error> {
         "two cusps",
         "b = 5: two cusps, at v* = 0.310429 and v* = 0.557204",
         format!("the cusp is at v* = V = a/sqrt(2b) = {}", show(&cusp, DIGITS)),
-        format!("slopes of the signed curve left and right: {}", found.join("; ")),
+        format!(
+            "difference quotients of the signed curve to the left and to the right, step 1e-9 (estimated): {}",
+            found.join("; ")
+        ),
         holds,
-        "there gamma has zeros and the signed curve is smooth: they are corners of |gamma|",
+        "there gamma has zeros and the signed curve is smooth: they are corners of |gamma|; at V its slope \
+         from the left is infinite",
     ))
 }
 

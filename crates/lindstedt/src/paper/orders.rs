@@ -177,13 +177,18 @@ impl Case {
             return Err(contradiction());
         }
         let show = |ball: &Ball| decimal(ball, 12).unwrap_or_else(|| "?".to_owned());
-        let mut text = self.algebra.print(&derived, "tau", Style::Text);
-        if text.len() > 160 {
-            text = format!("{} terms", self.algebra.terms(&derived));
-        }
+        let text = self.algebra.print(&derived, "tau", Style::Text);
         let evidence = match &findings.correction {
             _ if findings.holds => "equal in the Lobachevsky ring".to_owned(),
-            Some(correction) => format!("{correction}; at tau = 1 as printed {}", show(&theirs)),
+            Some(correction) => {
+                // The paper writes squares of logarithms as [ln(x^2)]^2.
+                let read = if printed.contains("ln(x_0)^2") {
+                    "; right if ln(x_0)^2 is read as ln((x_0)^2)"
+                } else {
+                    ""
+                };
+                format!("{correction}; at tau = 1 as printed {}{read}", show(&theirs))
+            }
             None => format!("at tau = 1 as printed {}", show(&theirs)),
         };
         Ok(Row {

@@ -37,7 +37,7 @@ fn statement_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     let mut rows = vec![plain(
         "(28)",
         "x'' + x^n = 0",
-        "periodic for odd n, with the period of the beta integral".to_owned(),
+        "periodic for odd n, with the period by Euler's integral".to_owned(),
         format!("n = 3: T = {} by Gamma, {} by the AGM", show(&beta, 16), show(&lemniscate, 16)),
         beta.overlaps(&lemniscate),
         "two closed forms of the period enclose the same number to 70 digits",

@@ -7,7 +7,7 @@ use lindstedt_equation::Expression;
 use lindstedt_problems::stick_slip;
 use lindstedt_simulate::{
     Doubles, Integrator, LyapunovSettings, Model, Parameters, PoincareMap, Quantity, Report,
-    Settings, System, largest_lyapunov_exponent, zero_one,
+    Segment, Settings, System, largest_lyapunov_exponent, zero_one,
 };
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -75,7 +75,7 @@ impl Orbit {
         let first = points.first().copied().ok_or(Error::NoValue)?;
         let near = |p: &[f64; 2]| (p[0] - first[0]).abs() + (p[1] - first[1]).abs() < SAME;
         let period = (1..=LONGEST).find(|n| points.get(*n).is_some_and(near));
-        let (stuck, least, largest) = on_the_way(&system, first, kept.min(300))?;
+        let (stuck, least, largest) = on_the_way(&system, first, kept.min(WATCHED))?;
         let every_second: Vec<f64> = points.iter().step_by(2).map(|p| p[0]).collect();
         let integration = settings;
         let averaging = LyapunovSettings { interval: PI, transient, averaged: kept, integration };
@@ -136,14 +136,32 @@ fn on_the_way(
             if segment.modes.contains(&0) {
                 stuck += *segment.length;
             }
-            let x = segment.value(0, segment.length);
-            least = least.min(x);
-            largest = largest.max(x);
+            for x in [segment.value(0, segment.length), turning_point(segment)] {
+                least = least.min(x);
+                largest = largest.max(x);
+            }
         }
         ControlFlow::Continue(())
     })?;
     Ok((stuck / end, least, largest))
 }
+
+/// x where x' changes its sign within a step, by bisection; x at its end where it does not.
+fn turning_point(segment: &Segment<'_, Doubles>) -> f64 {
+    let (mut low, mut high) = (0.0, *segment.length);
+    let rising = |s: &f64| segment.value(1, s) > 0.0;
+    let before = rising(&low);
+    if rising(&high) != before {
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if rising(&middle) == before { low = middle } else { high = middle }
+        }
+    }
+    segment.value(0, &high)
+}
+
+/// Periods over which the share stuck and the range of x are taken.
+const WATCHED: u32 = 300;
 
 /// How many orbits are followed.
 pub(super) const ORBITS: usize = 4;
@@ -195,16 +213,23 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
             ),
             slight.is_chaotic() && slight.growth > 0.9,
             &format!(
-                "in one well only: {:.3} < x < {:.3} (estimated), by period doubling; not the tangle \
-                 that (27) is about",
-                slight.least, slight.largest
+                "in one well only: {:.3} < x < {:.3} over {} periods (estimated), by period doubling; not \
+                 the tangle that (27) is about",
+                slight.least,
+                slight.largest,
+                kept.min(WATCHED)
             ),
         ),
         plain(
             "gamma = 1.2",
             "for gamma = 1.2 two-well potential chaos is shown",
             exponent(wells),
-            format!("{:.3} < x < {:.3}: both wells (estimated)", wells.least, wells.largest),
+            format!(
+                "{:.3} < x < {:.3} over {} periods: both wells (estimated)",
+                wells.least,
+                wells.largest,
+                kept.min(WATCHED)
+            ),
             wells.is_chaotic() && wells.visits_both_wells(),
             EPS,
         ),
@@ -257,6 +282,7 @@ fn table(orbits: &[Orbit], transient: u32, kept: u32) -> Table {
             "the period is in periods of the forcing, the exponent per unit of time with its \
              standard error; K of every second stroboscopic point, near 1 for chaos"
                 .to_owned(),
+            format!("stuck, least and largest x over {} periods", kept.min(WATCHED)),
         ],
     }
 }

@@ -14,6 +14,10 @@ pub fn draw(region: &Region) -> Result<Figure, Failure> {
     let rates = &region.sample.rates;
     let mut svg = String::new();
     paint(rates, &mut svg).map_err(|error| failed(&error))?;
+    // A rule that says something at a part of the points is judged there.
+    let parts: Vec<String> = (rates.iter().filter(|rate| rate.compared < region.sample.points))
+        .map(|rate| format!(" {}: of the {} points where it exists.", rate.rule, rate.compared))
+        .collect();
     let large = format!("width=\"{}\" height=\"{}\"", SIZE.0 * FINE, HEIGHT * FINE);
     let small = format!("width=\"{}\" height=\"{HEIGHT}\"", SIZE.0);
     Ok(Figure {
@@ -21,8 +25,10 @@ pub fn draw(region: &Region) -> Result<Figure, Failure> {
         section: 2,
         caption: format!(
             "Share of {} points (8 orbits, gains |A|, |B| <= 0.3) at which a rule has the verdict of \
-             the delayed system; {} of them are truly stable.",
-            region.sample.points, region.sample.stable
+             the delayed system; {} of them are truly stable.{}",
+            region.sample.points,
+            region.sample.stable,
+            parts.concat()
         ),
         svg: svg.replacen(&large, &small, 1),
     })

@@ -26,7 +26,7 @@ pub fn draw(onset: &Onset) -> Result<Figure, Failure> {
     ];
     let mut points = [right.clone(), left.clone()].concat();
     points.extend([(0.0, (1.0 - BAND) * level), (last, (1.0 + BAND) * level)]);
-    let labels = ("eps".to_owned(), "gamma at the first tangency".to_owned());
+    let labels = ("eps".to_owned(), "gamma at the tangency".to_owned());
     let title = "Where the tangle begins";
     let svg = sized(SIZE, (title, &labels, &legend), &points, |chart| {
         let frame = [(0.0, (1.0 - BAND) * level), (last, (1.0 + BAND) * level)];
@@ -42,9 +42,10 @@ pub fn draw(onset: &Onset) -> Result<Figure, Failure> {
     Ok(Figure {
         name: "onset",
         section: 3,
-        caption: "First homoclinic tangency of the stick-slip oscillator against Melnikov's \
-                  threshold, which does not depend on eps (a = b = 1, alpha = beta = T0 = 0.3, \
-                  omega = 2, v* = 0.4)."
+        caption: "The homoclinic tangency of the stick-slip oscillator that is the first one at small \
+                  eps, followed to eps = 1, where on the left loop others have come before it, against \
+                  Melnikov's threshold, which does not depend on eps (a = b = 1, alpha = beta = T0 = \
+                  0.3, omega = 2, v* = 0.4)."
             .to_owned(),
         svg,
     })

@@ -25,13 +25,15 @@ pub fn draw(region: &Region) -> Result<Figure, Failure> {
     paint(region, &mut svg).map_err(|error| failed(&error))?;
     let large = format!("width=\"{}\" height=\"{}\"", SIZE.0 * FINE, SIZE.1 * FINE);
     let small = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
+    let silent = region.charts.iter().any(|c| c.chart.points.iter().any(|p| standing(p).is_none()));
     Ok(Figure {
         name: "region",
         section: 2,
         caption: format!(
             "The plane of the gains for {}, the first of the sample that is unstable without the \
-             loop. White: (17) predicts nothing, its orbit does not exist.",
-            region.orbit
+             loop: (17) against the zeros of G with the mean kick. The cross is the orbit without loop.{}",
+            region.orbit,
+            if silent { " White: (17) predicts nothing, its orbit does not exist." } else { "" }
         ),
         svg: svg.replacen(&large, &small, 1),
     })

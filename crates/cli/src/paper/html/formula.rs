@@ -143,6 +143,11 @@ impl<'t, 'a> Parser<'t, 'a> {
             let group = self.group("(", ")");
             nodes.push(self.scripts(group));
         }
+        // A factorial belongs to what stands before it: 1/3! is 1/(3!).
+        if self.peek().is_some_and(|t| t.is("!") && !t.spaced) {
+            self.at += 1;
+            nodes.push(Node::Operator("!".to_owned(), false));
+        }
         nodes
     }
 

@@ -90,25 +90,8 @@ fn section_text(section: &Section) -> String {
 }
 
 fn footer() -> String {
-    let rules = [
-        (
-            "agrees",
-            "it holds as printed: exactly, or the printed decimals are the value, rounded or cut off",
-        ),
-        (
-            "misprint",
-            "a slip of the pen: one factor, sign, symbol, exponent, bracket or digit changed, two symbols \
-             interchanged, or one term added or struck makes it hold, and nothing in the paper rests on the error; \
-             where there are such slips at two places, both are named or have a row each",
-        ),
-        (
-            "wrong",
-            "it does not hold, and no slip of the pen explains it, or later statements rest on the error",
-        ),
-        ("not reproducible", "a number that follows from no formula, printed or corrected"),
-    ];
     let mut text = String::from("<section id=\"notes\">\n<h2>Notes</h2>\n<dl class=\"rules\">\n");
-    for (name, meaning) in rules {
+    for (name, meaning) in super::RULES {
         let class = rows::class(name);
         let _ = writeln!(
             text,
@@ -119,11 +102,17 @@ fn footer() -> String {
     let _ = writeln!(
         text,
         "<p>The independent route shares nothing with the derivation; where it is a residual, it shares \
-         the algebra of functions. {} Certified numbers carry an enclosure, so every digit shown is a digit of the value; \
+         the algebra of functions. {} Certified numbers carry an enclosure: what is shown is right to one unit of its last digit; \
          estimated ones come from floating point or from differences, and their error is measured, \
          not proved.</p>",
         super::CLASSES
     );
+    text += "<dl class=\"rules\">\n";
+    for (letters, meaning) in super::SYMBOLS {
+        let (letters, meaning) = (prose::line(letters), prose::line(meaning));
+        let _ = writeln!(text, "<dt>{letters}</dt><dd>{meaning}</dd>");
+    }
+    text += "</dl>\n";
     text += "<p>A formula is written as in the report's data: primes are derivatives, \
              <math><msub><mi>x</mi><mi>T</mi></msub></math> is <math><mi>x</mi></math> at \
              <math><mi>t</mi><mo>\u{2212}</mo><mi>T</mi></math>, <math><mi>\u{3b4}C</mi></math> a small \

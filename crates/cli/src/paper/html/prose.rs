@@ -80,7 +80,14 @@ fn is_math(list: &[Token<'_>], at: usize, depth: i32, begun: bool) -> bool {
                 && list
                     .get(at + 2)
                     .is_some_and(|t| t.kind == Kind::Word && !t.spaced && name(t.text).is_none());
-            (name(token.text).is_some() && !hyphen && token.text != "I")
+            // 0.65 a very slight: the article.
+            let after_number =
+                at.checked_sub(1).and_then(|n| list.get(n)).is_some_and(|t| t.kind == Kind::Number);
+            let before_word = list.get(at + 1).is_some_and(|t| {
+                t.kind == Kind::Word && t.spaced && t.text.len() > 2 && name(t.text).is_none()
+            });
+            let article = token.text == "a" && token.spaced && after_number && before_word;
+            (name(token.text).is_some() && !hyphen && !article && token.text != "I")
                 || (operator(token.text).is_some() && (begun || follows("_")))
                 || (depth > 0 && begun && token.text.len() <= 2 && !ENGLISH.contains(&token.text))
                 || (begun && follows("_"))

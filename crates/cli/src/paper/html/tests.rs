@@ -29,6 +29,7 @@ fn words_stay_words() {
         "neither sufficient (96 points are unstable) nor necessary",
         "the engine's law, sliding in both directions; a minute",
         "0-1 test of the series, 20000 polynomials",
+        "close to 0.65 a very slight chaotic behaviour",
     ] {
         assert_eq!(formulas(text), 0, "{}", line(text));
         assert_eq!(bare(&line(text)), text);
@@ -72,6 +73,12 @@ fn structure() {
     );
     let html = line("x = sqrt(2a/b)");
     assert!(html.contains("<mfrac><mrow><mn>2</mn><mi>a</mi></mrow><mi>b</mi></mfrac>"), "{html}");
+    let html = line("S = 1 - 1/3! + x^2/(2k+1)!");
+    assert!(html.contains("<mfrac><mn>1</mn><mrow><mn>3</mn><mo"), "{html}");
+    assert!(
+        html.contains("<mo>)</mo></mrow><mo") || html.contains(">!</mo></mrow></mfrac>"),
+        "{html}"
+    );
     let html = line("lambda = sqrt(alpha^2 - c^2/4)");
     assert!(html.contains("<msqrt>") && html.contains("<mfrac><msup>"), "{html}");
     let html = line("alpha0 and x_0'' and T_(l+1)");

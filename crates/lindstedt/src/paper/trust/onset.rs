@@ -190,8 +190,9 @@ impl Onset {
         let last = self.points.iter().rev().find_map(|p| Some((p.eps, p.right?.0, p.left?.0)));
         let end = last.map_or_else(String::new, |(eps, right, left)| {
             format!(
-                "at the eps = {eps} at which the paper's observations are found the tangencies lie at \
-                 {} for the right loop and {} for the left one",
+                "at the eps = {eps} at which the paper's observations are found the tangencies that are the \
+                 first ones at small eps lie at {} for the right loop and {} for the left one, where others \
+                 have come before it",
                 ratio(right),
                 ratio(left)
             )
@@ -243,7 +244,7 @@ impl Onset {
             ["eps", "gamma, right loop", "deviation %", "gamma, left loop", "deviation %"];
         Table {
             name: "tangencies".to_owned(),
-            title: "First homoclinic tangency against Melnikov's threshold (estimated)".to_owned(),
+            title: "The homoclinic tangency that is the first one at small eps, against Melnikov's threshold (estimated)".to_owned(),
             columns: columns.map(str::to_owned).to_vec(),
             rows: self.points.iter().map(row).collect(),
             notes: vec![
@@ -252,8 +253,8 @@ impl Onset {
                      every eps",
                     self.threshold
                 ),
-                "followed from the smallest eps on: at larger eps another tangency may have come \
-                 before (it has on the left loop at eps = 1)"
+                "followed from the smallest eps on, so at larger eps other tangencies may come before it: \
+                 on the left loop they do at eps = 1"
                     .to_owned(),
             ],
         }

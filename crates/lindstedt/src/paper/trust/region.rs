@@ -42,6 +42,10 @@ impl Sample {
     fn share(&self, rule: &str) -> f64 {
         self.rates.iter().find(|rate| rate.rule == rule).map_or(f64::NAN, Rate::share)
     }
+
+    fn compared(&self, rule: &str) -> usize {
+        self.rates.iter().find(|rate| rate.rule == rule).map_or(0, |rate| rate.compared)
+    }
 }
 
 /// The plane of the gains A, B of one orbit, for one reading of (17).
@@ -49,7 +53,8 @@ impl Sample {
 pub struct RegionChart {
     /// The reading.
     pub rule: &'static str,
-    /// The verdicts, predicted and true (zeros of G with the mean kick).
+    /// The verdicts: predicted, and by the zeros of G with the mean kick, which is the truth for B = 0
+    /// and nearly so otherwise.
     pub chart: Chart,
 }
 
@@ -139,21 +144,24 @@ impl Region {
             not_trusted: vec![
                 format!(
                     "the region of (17) as the stability region of (1): the true verdict at {} of \
-                     the points to the letter, {} with the orbit of (8) itself, {} with the true \
-                     orbit; to ignore the loop is right at {}",
+                     the points to the letter, {} with the orbit of (8) itself (of the {} points where \
+                     it exists), {} with the true orbit; to ignore the loop is right at {}",
                     share(LETTER),
                     share(OWN),
+                    self.sample.compared(OWN),
                     share(TRUE),
                     share("no loop")
                 ),
-                format!("R < 0 as a rule: {}", share("R < 0")),
-                format!("in the plane of the gains of {}: {}", self.orbit, {
-                    let list: Vec<String> = charts.collect();
-                    list.join("; ")
-                }),
+                format!("the sign of R as a rule, which the paper does not claim: {}", share("R < 0")),
+                format!(
+                    "in the plane of the gains of {}, against the zeros of G with the mean kick: {}",
+                    self.orbit,
+                    charts.collect::<Vec<_>>().join("; ")
+                ),
             ],
-            class: "estimated: doubles; zeros of G on the unit disc by their winding number, the \
-                    growth of the piecewise linear return map for B other than 0"
+            class: "estimated: doubles; zeros of G on the unit disc by their winding number; in the \
+                    sample the growth of the piecewise linear return map for B other than 0, in the \
+                    plane of the gains zeros of G throughout"
                 .to_owned(),
         }
     }

@@ -142,12 +142,15 @@ pub(super) fn finding(list: &[Truncation]) -> Option<Finding> {
             ),
             format!(
                 "the same coefficients in u = delta/(1 + delta) with the factor sqrt(1 - u), for \
-                 every n: at order {highest} {}",
+                 every n computed: at order {highest} {}",
                 resummed.join(", ")
             ),
         ],
         not_trusted: vec![
-            format!("outside the circle |delta| = 1 nothing converges: {}", outside.join("; ")),
+            format!(
+                "outside the circle |delta| = 1 the series in delta diverges: {}",
+                outside.join("; ")
+            ),
             format!(
                 "the pendulum beyond order {best}: the series is asymptotic, at order {last} the \
                  error is {}",

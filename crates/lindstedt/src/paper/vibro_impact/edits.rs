@@ -35,9 +35,11 @@ fn place(tree: &Tree, path: &[usize]) -> String {
     for length in (0..path.len()).rev() {
         let node = path.get(..length).and_then(|path| tree.at(path));
         if let Some(node @ Tree::Product(_)) = node {
+            let above = length.checked_sub(1).and_then(|n| tree.at(path.get(..n)?));
+            let sign = if matches!(above, Some(Tree::Negative(_))) { "-" } else { "" };
             let text = node.print();
             if text.len() < 60 {
-                return format!(" in {text}");
+                return format!(" in {sign}{text}");
             }
         }
     }

@@ -324,10 +324,25 @@ pub(super) fn rows() -> Result<Vec<Row>, Error> {
                     };
                     again.rows()
                 }));
+                rows.push(Row {
+                    label: "x_(1-)".to_owned(),
+                    printed: "before the impact number 1, the mass possesses the velocity x_(1-)".to_owned(),
+                    derived: "x_(1-) = s, the place of the wall; the velocity is x'_(1-)".to_owned(),
+                    independent: "the end conditions of (8) and (10)".to_owned(),
+                    verdict: Findings {
+                        holds: false,
+                        correction: same.then(|| "x'_(1-)".to_owned()),
+                        ..Findings::default()
+                    }
+                    .verdict(),
+                    evidence: "a dot is missing: with x_- = s and x'_- the velocity the map of the impacts \
+                               follows"
+                        .to_owned(),
+                });
                 rows.push(plain(
                     "(10)",
-                    "l: tau = 0, dtau = 0, dx = 0, dx'_+ = -R_r dx'_-; l+1: tau = 2 pi k/omega, \
-                     dtau = dT, dx = 0, dx' = dx'_-",
+                    "l: tau = 0, dtau = 0, dx = 0, dx'_+ = -R_r dx'_-; l+1: tau = 2 pi k/omega + \
+                     dtau, dtau = dT, dx = 0, dx' = dx'_-",
                     "the end conditions of the impact map".to_owned(),
                     "the implicit function theorem on (phi, x'_+) -> (phi', x'_+')".to_owned(),
                     same,

@@ -222,7 +222,7 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
 fn statements(counts: &Counts, rates: [f64; RULES.len()]) -> [Row; 2] {
     let [nothing, letter, own, true_orbit, by_rate, g] = rates;
     let [false_stable, false_unstable] = counts.against_rate;
-    let decides = false_stable == 0 && false_unstable == 0;
+    let own_points = counts.compared[2];
     let best = letter.max(own).max(true_orbit);
     let simulated =
         Findings { holds: best >= GOOD, reproduced: Some(best >= GOOD), ..Findings::default() };
@@ -233,16 +233,20 @@ fn statements(counts: &Counts, rates: [f64; RULES.len()]) -> [Row; 2] {
     [
         Row {
             label: "R < 0".to_owned(),
-            printed: "from (8) it is seen that for R < 0 the solution is stabilised more quickly"
+            printed: "from (8) it is seen that when R < 0 the assumed solution is stabilised more quickly \
+                      in comparison to R = 0; however, a problem of stability investigation of the \
+                      vibro-impact state is much more subtle"
                 .to_owned(),
             derived: format!(
-                "R < 0 and stability of (1) agree at {by_rate:.3} of the points (estimated)"
+                "e^(R T) < 1 in the flight (8) where R < 0; as a rule for the stability of (1) the sign of \
+                 R would agree at {by_rate:.3} of the points (estimated)"
             ),
             independent: grid.clone(),
-            verdict: Findings::holds(decides).verdict(),
+            // What the paper calls more subtle must not be decided by the sign of R.
+            verdict: Findings::holds(false_stable > 0 || false_unstable > 0).verdict(),
             evidence: format!(
-                "neither sufficient ({false_stable} points with R < 0 are unstable) nor necessary \
-                 ({false_unstable} with R >= 0 are stable)"
+                "it is more subtle: R < 0 is neither sufficient ({false_stable} points with R < 0 are \
+                 unstable) nor necessary ({false_unstable} with R >= 0 are stable)"
             ),
         },
         Row {
@@ -252,7 +256,8 @@ fn statements(counts: &Counts, rates: [f64; RULES.len()]) -> [Row; 2] {
                 .to_owned(),
             derived: format!(
                 "(17) has the verdict of (1) at {letter:.3} (to the letter), {own:.3} (orbit of \
-                 (8) with its own R, alpha0) and {true_orbit:.3} (true orbit) of the points (estimated)"
+                 (8) with its own R, alpha0, of the {own_points} points where it exists) and \
+                 {true_orbit:.3} (true orbit) of the points (estimated)"
             ),
             independent: grid,
             verdict: simulated.verdict(),
