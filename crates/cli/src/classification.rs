@@ -381,7 +381,7 @@ pub fn refusal(error: Error, file: Option<&ProblemFile>, path: &str) -> Failure 
         } else if !file.problem.equation.contains(&Expression::Small) {
             failure.hint = marks(&file.problem.small);
         } else if no_root {
-            failure.hint = "--set gives the parameters of omega_0 values".to_owned();
+            failure.hint = "--set gives all parameters values, that of the force included; or write omega_0^2*x".to_owned();
         }
     }
     failure

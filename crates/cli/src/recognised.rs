@@ -117,8 +117,9 @@ impl Source {
         };
         let hint = if let Some((name, how)) = follows {
             format!(
-                "{name} follows: {how}; with pi only `simulate` computes it, a delay of whole periods is \
-                 tied to the force by [synchronous]"
+                "{name} follows: {how}; with pi only `simulate` computes it: in the file {name} = {{ value = \
+                 \"5*pi\" }} in the place of follows; a delay of whole periods is tied to the force by \
+                 [synchronous]"
             )
         } else if unmarked {
             format!("a factor {small}, or orders = {{ NAME = 1 }}, marks the small terms")

@@ -209,13 +209,13 @@ impl Loaded {
         };
         let how = file.follows.get(name).map_or("", String::as_str);
         Err(Failure {
-            exit: NO_ANSWER,
+            exit: USAGE,
             code: "no-value-set",
             message: format!(
                 "{}: {name} follows: {how}; with pi only `simulate` computes it",
                 shown(path)
             ),
-            hint: format!("a value for {name} in its place, as in value = \"5*pi\" or \"157/10\""),
+            hint: format!("in the file: {name} = {{ value = \"5*pi\" }} in the place of follows"),
         })
     }
 }

@@ -308,7 +308,7 @@ fn preload_and_hertz() {
     for verb in ["derive", "evaluate", "verify"] {
         let (code, error) = refusal(&[verb, &path]);
         assert!(
-            code == Some(3) && error.contains("Omega follows: 2*pi*f; with pi only"),
+            code == Some(2) && error.contains("Omega follows: 2*pi*f; with pi only"),
             "{error}"
         );
     }

@@ -200,6 +200,11 @@ impl ParseError {
             K::Character { character: ':' | ';' } => "one equation, in one line".into(),
             K::Character { .. } => "operators are + - * / ^ ( ) [ ] | =".into(),
             K::UnknownName { nearest: Some(nearest), .. } => format!("did you mean {nearest}?"),
+            K::UnknownName { name, .. } if name == "pi" => {
+                "pi stands in values and in what determines a parameter: w = { value = \"3*pi\" }, \
+                 w = { follows = \"2*pi*f\" }"
+                    .into()
+            }
             K::UnknownName { name, .. } => {
                 let name: String = name.chars().take(20).collect();
                 format!("declare it: [parameters] {name} = {{ value = \"1\" }}; products need `*`")

@@ -316,7 +316,10 @@ impl Answer {
             let label = format!("zero in {name}");
             lines.extend(self.zeros.iter().map(|zero| (label.clone(), shown(zero))));
             let note = if *complete { "complete" } else { "sign changes on a grid" };
-            lines.push((format!("zeros in {name}"), format!("{} ({note})", self.zeros.len())));
+            lines.push((
+                format!("zeros in {name}, number"),
+                format!("{} ({note})", self.zeros.len()),
+            ));
         }
         lines.push(("transversal homoclinic points at gamma".to_owned(), self.tangle.clone()));
         lines.push(("validity".to_owned(), self.validity.clone()));
