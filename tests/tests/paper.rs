@@ -432,3 +432,12 @@ fn thresholds() {
     let notes = table.notes.join("\n");
     assert!(notes.contains("129/70"));
 }
+
+/// The range of x on the periodic orbit at gamma = 0.6, whose extremes lie within steps of the integration: a
+/// Runge-Kutta integration of fourth order with step 5e-4 and 1e-4 gives 0.1123 and 1.4748.
+#[test]
+fn extremes_lie_within_steps() {
+    let table = numbered(3).tables.iter().find(|t| t.name == "simulations").unwrap();
+    let number = |column: usize| -> f64 { table.rows[0][column].parse().unwrap() };
+    assert!((number(5) - 0.1123).abs() < 1.5e-4 && (number(6) - 1.4748).abs() < 1.5e-4);
+}

@@ -299,6 +299,10 @@ fn preload_and_hertz() {
     assert!(shown.contains("averaging (KBM)     applies"), "{shown}");
     let (code, error) = refusal(&["derive", &path]);
     assert!(code == Some(3) && error.contains("--normalisation free"), "{error}");
+    let path_pi = folder.file("x'' + x + eps*x^3 = cos(pi*t)", &[], "");
+    let (_, error) = refusal(&["derive", &path_pi]);
+    assert!(error.contains("w = { value = \"3*pi\" }"), "{error}");
+    let path = folder.file("x'' + x + eps*x^3 = F", &[("F", "1")], "");
     // (1 + a cos psi)^3: B_1 = 3/2 + 3 a^2/8.
     let found = text(&["derive", &path, "--normalisation", "free", "--order", "1"]);
     assert!(found.contains("B_1 = 3/2 + 3/8*a^2"), "{found}");

@@ -1,6 +1,9 @@
 //! Problem files on the command line: what they print and what they say.
 #![allow(clippy::unwrap_used)]
 
+#[path = "problem_files/bad.rs"]
+mod bad;
+
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

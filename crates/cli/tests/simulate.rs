@@ -1,6 +1,9 @@
 //! `lindstedt simulate`: events, digits, figures, exponents, refusals.
 #![allow(clippy::unwrap_used)]
 
+#[path = "simulate/sections.rs"]
+mod sections;
+
 use serde_json::Value;
 use std::path::PathBuf;
 use std::process::{Command, Output};

@@ -172,7 +172,7 @@ impl Motion {
         };
         let found = match forcing {
             Forcing::Harmonics { omega, harmonics } => match harmonics.as_slice() {
-                [only] if only.order == 1 => size(omega, &only.weight)?,
+                [only] => size(&times(omega, &Rational::from(only.order)), &only.weight)?,
                 _ => {
                     let of = |k: u32| transform(&times(omega, &Rational::from(k)));
                     ForcingWork::from_transforms(balls, harmonics, &of)?

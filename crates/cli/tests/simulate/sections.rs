@@ -1,34 +1,9 @@
 //! Sections, sweeps and bifurcation diagrams of `simulate`.
-#![allow(clippy::unwrap_used)]
 
+use super::{command, file, float, json, run};
 use serde_json::Value;
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::Stdio;
 use std::time::Duration;
-
-fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
-    command.args(["simulate", "--quiet"]).args(arguments);
-    command
-}
-
-fn run(arguments: &[&str]) -> Output {
-    command(arguments).output().unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = run(&[arguments, &["--format", "json"]].concat());
-    assert!(output.status.success(), "{arguments:?} {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn float(number: &Value) -> f64 {
-    number["decimal"].as_str().unwrap().parse().unwrap()
-}
-
-fn file(name: &str) -> PathBuf {
-    std::env::temp_dir().join(format!("lindstedt-simulate-{}-{name}", std::process::id()))
-}
 
 /// Killed in the middle and begun again, the file, the table and the figure are the same bytes.
 #[test]

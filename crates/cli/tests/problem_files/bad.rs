@@ -1,42 +1,10 @@
 //! A hundred problem files that are wrong, or that a method does not take: one clear line each, and the exit
 //! code.
-#![allow(clippy::unwrap_used)]
 
+use super::{Folder, lindstedt, text};
 use serde_json::Value;
-use std::path::PathBuf;
 use std::process::{Command, Output};
 
-fn lindstedt(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap()
-}
-
-fn text(arguments: &[&str]) -> String {
-    let output = lindstedt(arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// A folder of this test that is removed with it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("lindstedt-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-    fn file(&self, name: &str, content: &[u8]) -> String {
-        let path = self.0.join(name);
-        std::fs::write(&path, content).unwrap();
-        path.to_str().unwrap().to_owned()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
 /// Equations that are wrong: exit code, equation, a piece of the message.
 const EQUATIONS: [(i32, &str, &str); 62] = [
     (2, "", "expected a number, a name or a parenthesis, found the end"),
