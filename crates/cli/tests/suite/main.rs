@@ -1,0 +1,17 @@
+//! The program as it is run: what it prints, writes and refuses.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
+
+mod averaging;
+mod derive;
+mod evaluate;
+mod file_motions;
+mod interrupt;
+mod known_digits;
+mod problem_files;
+mod simulate;
+mod simulate_files;
+mod stability;
+mod threshold;
+mod tiers;
+mod trade;
+mod verify;

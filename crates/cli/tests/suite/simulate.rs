@@ -1,0 +1,392 @@
+//! `lindstedt simulate`: events, digits, figures, exponents, refusals.
+#![allow(clippy::unwrap_used)]
+
+mod sections;
+
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
+    command.args(["simulate", "--quiet"]).args(arguments);
+    command
+}
+
+fn run(arguments: &[&str]) -> Output {
+    command(arguments).output().unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = run(&[arguments, &["--format", "json"]].concat());
+    assert!(output.status.success(), "{arguments:?} {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn float(number: &Value) -> f64 {
+    number["decimal"].as_str().unwrap().parse().unwrap()
+}
+
+fn file(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("lindstedt-simulate-{}-{name}", std::process::id()))
+}
+
+/// The period 4 K(sin(a/2)) of the pendulum and B(1/4, 1/2) sqrt(2) of x'' + x^3 = 0 (both from
+/// mpmath 1.3.0).
+#[test]
+fn periods_to_thirty_digits() {
+    let cases: [(&[&str], &str); 2] = [
+        (&["pendulum", "--set", "amplitude=3"], PENDULUM),
+        (&["power-law", "--set", "n=3"], CUBIC),
+    ];
+    for (arguments, period) in cases {
+        let found = json(&[arguments, &["--periods", "1"]].concat());
+        assert_eq!(found["final"]["t"]["decimal"], period, "{arguments:?}");
+        assert_eq!(found["final"]["t"]["status"], "estimated");
+    }
+}
+const PENDULUM: &str = "16.1555393723933747637602761155";
+const CUBIC: &str = "7.41629870920548767373540138878";
+
+/// tests/data/stick-slip/trajectories.json, first case: an independent event code.
+#[test]
+fn stick_slip_events() {
+    let data =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/stick-slip/trajectories.json");
+    let data: Value = serde_json::from_str(&std::fs::read_to_string(data).unwrap()).unwrap();
+    let case = &data["trajectories"][0];
+    let start = format!("{},{}", case["x0"].as_str().unwrap(), case["v0"].as_str().unwrap());
+    let end = case["t_end"].as_str().unwrap();
+    let found = json(&[
+        "stick-slip",
+        "--set",
+        "gamma=0.6",
+        "--state",
+        &start,
+        "--until",
+        end,
+        "--digits",
+        "25",
+    ]);
+    let (known, events) = (case["events"].as_array().unwrap(), found["events"].as_array().unwrap());
+    assert_eq!(known.len(), events.len());
+    let head = |text: &Value| text.as_str().unwrap().chars().take(20).collect::<String>();
+    let mut sticks = 0;
+    for (known, event) in known.iter().zip(events) {
+        assert_eq!(head(&known["t"]), head(&event["t"]["decimal"]));
+        sticks += u32::from(event["kind"] == "stick");
+    }
+    assert!(sticks > 0 && float(&found["sticking_time"]) > 0.0);
+    let x: f64 = case["final"]["x"].as_str().unwrap().parse().unwrap();
+    assert!((float(&found["final"]["x"]) - x).abs() < 1e-14);
+}
+
+/// The uncontrolled orbit O3 repeats; at the flip gain perturbations alternate with ratio -1.
+#[test]
+fn vibro_impact_orbit_and_flip() {
+    let orbit = json(&["vibro-impact", "--impacts", "5"]);
+    let times: Vec<f64> =
+        orbit["events"].as_array().unwrap().iter().map(|e| float(&e["t"])).collect();
+    let period = 2.0 * std::f64::consts::PI / 3.3;
+    for (n, time) in (1..).zip(&times) {
+        assert!((time - f64::from(n) * period).abs() < 1e-13, "{n} {time}");
+    }
+    let at = ["--set", "A=-0.0292903246974", "--perturb", "1e-8", "--impacts", "40"];
+    let flip = json(&[&["vibro-impact"], &at[..]].concat());
+    let growth = flip["growth"].as_array().unwrap();
+    assert_eq!(growth.len(), 39);
+    assert!((float(&growth[38]) + 1.0).abs() < 2e-6, "{}", growth[38]);
+    assert!(flip["verdict"].as_str().unwrap().contains("last ratio -"));
+    // From any other state too, with the flight before it as history.
+    let free = json(&["vibro-impact", "--state", "-1/2,0", "--impacts", "3", "--set", "A=1/20"]);
+    assert_eq!(free["events"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn samples_and_sections() {
+    let found = json(&["duffing", "--set", "eps=0", "--until", "10", "--times", "0..10:11"]);
+    let samples = found["samples"].as_array().unwrap();
+    assert_eq!(samples.len(), 11);
+    for (t, sample) in (0..).zip(samples) {
+        assert!((float(&sample["x"]) - f64::from(t).cos()).abs() < 1e-15);
+    }
+    let strobe =
+        ["stick-slip", "--set", "gamma=0.6", "--section", "stroboscopic", "--periods", "90"];
+    let strobe = json(&[&strobe[..], &["--f64"]].concat());
+    let points = strobe["section"]["points"].as_array().unwrap();
+    assert_eq!(points.len(), 90);
+    // The orbit of period two: every second point the same.
+    let x = |n: usize| points[n][1].as_f64().unwrap();
+    assert!((x(89) - x(87)).abs() < 1e-3 && (x(89) - x(88)).abs() > 1.0, "{} {}", x(88), x(89));
+    let cycle = json(&["van-der-pol", "--periods", "8", "--section", "velocity", "--digits", "15"]);
+    assert_eq!(cycle["section"]["points"].as_array().unwrap().len(), 8);
+}
+
+#[test]
+fn figures_show_what_happens() {
+    let belt = ["stick-slip", "--f64", "--set", "gamma=0.6", "--periods", "10"];
+    let bounce = ["vibro-impact", "--f64", "--impacts", "6"];
+    let cases: [(&[&str], &str, &[&str]); 4] = [
+        (&belt, "phase", &["sticking", "stick begins", "velocity x&apos;|velocity x'"]),
+        (&belt, "section", &["Poincare section", "displacement x"]),
+        (&bounce, "time", &["impact", "<polygon", "time t"]),
+        (&bounce, "phase", &["impact", "phase portrait"]),
+    ];
+    for (arguments, figure, words) in cases {
+        let path = file(&format!("{figure}.svg"));
+        let plot = ["--figure", figure, "--plot", path.to_str().unwrap()];
+        assert!(run(&[arguments, &plot].concat()).status.success());
+        let drawn = std::fs::read_to_string(&path).unwrap();
+        assert!(drawn.trim_end().ends_with("</svg>") && drawn.contains("width=\"960\""));
+        for word in words {
+            assert!(word.split('|').any(|word| drawn.contains(word)), "{figure}: {word}");
+        }
+        let _ = std::fs::remove_file(path);
+    }
+    let path = file("table.csv");
+    assert!(run(&[&belt[..], &["--plot", path.to_str().unwrap()]].concat()).status.success());
+    let table = std::fs::read_to_string(&path).unwrap();
+    assert!(
+        table.contains("\nsticking,") && table.contains("\nstick,") && table.contains("\nslip,")
+    );
+    let _ = std::fs::remove_file(path);
+}
+
+#[test]
+fn refusals_have_their_exit_code() {
+    let cases: [(&[&str], i32); 28] = [
+        (&["nonsense"], 2),
+        // The lower branch of orbit O3 passes through the wall.
+        (&["vibro-impact", "--set", "branch=-", "--impacts", "3"], 3),
+        (&["duffing", "--set", "x=1"], 2),
+        (&["duffing", "--state", "1"], 2),
+        (&["duffing", "--state", "1,nan"], 2),
+        (&["duffing", "--until", "0"], 2),
+        (&["duffing", "--until", "-1"], 2),
+        (&["duffing", "--until", "x"], 2),
+        (&["duffing", "--until", "1", "--periods", "2"], 2),
+        (&["duffing", "--impacts", "3"], 2),
+        (&["duffing", "--section", "impact"], 2),
+        (&["duffing", "--section", "stroboscopic"], 2),
+        (&["duffing", "--times", "0..1"], 2),
+        (&["duffing", "--times=-1..1:3"], 2),
+        (&["duffing", "--figure", "bifurcation"], 2),
+        (&["duffing", "--perturb", "1e-3"], 2),
+        (&["duffing", "--resume", "x"], 2),
+        (&["duffing", "--plot", "x.png"], 2),
+        (&["duffing", "--until", "1", "--plot", "/nonexistent/x.svg"], 5),
+        (&["stick-slip", "--sweep", "omega=0..2:3"], 3),
+        (&["duffing", "--skip", "3"], 2),
+        (&["duffing", "--figure", "phase"], 2),
+        // x' jumps where the section would lie.
+        (&["vibro-impact", "--section", "stroboscopic"], 2),
+        (&["stick-slip", "--sweep", "gamma=1..0:3"], 2),
+        (&["stick-slip", "--set", "omega=0"], 3),
+        (&["vibro-impact", "--set", "c=3"], 3),
+        (&["vibro-impact", "--set", "R_r=2"], 2),
+        (&["duffing", "--until", "1e9", "--limit-seconds", "0.2"], 4),
+    ];
+    for (arguments, code) in cases {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        assert!(!output.stderr.is_empty(), "{arguments:?}");
+    }
+    // A file of another sweep is not overwritten.
+    let path = file("other");
+    std::fs::write(&path, "mine\n").unwrap();
+    let other = ["--sweep", "gamma=0.6..0.7:2", "--resume", path.to_str().unwrap()];
+    assert_eq!(run(&[&["stick-slip"], &other[..]].concat()).status.code(), Some(5));
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "mine\n");
+    let _ = std::fs::remove_file(path);
+}
+
+/// A problem file is integrated with its small parameter set (Duffing's first integral holds at
+/// the end), and what it contains is never ignored: a wall makes impacts, a delay has a history.
+#[test]
+fn problem_files() {
+    let example = |name: &str| {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/");
+        format!("{folder}{name}.toml")
+    };
+    let duffing = example("duffing");
+    let result = json(&[&duffing, "--set", "eps=1/10", "--until", "3"]);
+    let last = result["samples"].as_array().unwrap().last().unwrap();
+    let (x, v) = (float(&last["x"]), float(&last["v"]));
+    let energy = |x: f64, v: f64| 0.5 * v * v + 0.5 * x * x + 0.025 * x.powi(4);
+    assert!((energy(x, v) - energy(1.0, 0.0)).abs() < 1e-14);
+    let refused = run(&[&duffing, "--perturb", "1/1000"]);
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("only vibro-impact begins on its"));
+    for (name, word) in
+        [("vibro-impact", "impacts"), ("delayed-duffing", "history: the expression given")]
+    {
+        let output = run(&[&example(name)]);
+        assert!(output.status.success(), "{name}");
+        assert!(String::from_utf8_lossy(&output.stdout).contains(word), "{name}");
+    }
+}
+
+/// 4 sqrt(pi/(2 (n+1))) Gamma(1/(n+1))/Gamma(1/(n+1) + 1/2), from mpmath 1.3.0: forces that are
+/// singular at x = 0, a sign, or of infinite slope there.
+#[test]
+fn periods_of_singular_forces() {
+    for (n, period) in SINGULAR {
+        for digits in [10, 30] {
+            let set = format!("n={n}");
+            let digits = digits.to_string();
+            let found = json(&["power-law", "--set", &set, "--periods", "1", "--digits", &digits]);
+            let decimal = found["final"]["t"]["decimal"].as_str().unwrap();
+            let known: f64 = period.parse().unwrap();
+            assert!(period.starts_with(&decimal[..decimal.len() - 1]), "{n} {decimal} {period}");
+            assert!(decimal.len() + 1 >= digits.parse::<usize>().unwrap());
+            assert!((float(&found["final"]["t"]) - known).abs() < 1e-8);
+        }
+        let doubles = json(&["power-law", "--set", &format!("n={n}"), "--periods", "1", "--f64"]);
+        let error = float(&doubles["final"]["t"]) - period.parse::<f64>().unwrap();
+        assert!(error.abs() < 1e-13, "{n} {error:e}");
+    }
+}
+const SINGULAR: [(&str, &str); 5] = [
+    ("-2/5", "5.39816481648534820381952219966689769"),
+    ("-1/4", "5.49540909521411535810152198281491242"),
+    ("0", "5.65685424949238019520675489683879231"),
+    ("1/8", "5.73705073589736300094902269672529676"),
+    ("1/4", "5.81678920206024256262887253196809302"),
+];
+
+/// A verdict only from deviations that are linear: at A = 0.05 the orbit is unstable (multiplier
+/// -1.405), and what is left after it has grown decays to another orbit.
+#[test]
+fn growth_is_judged_in_the_linear_regime() {
+    let verdict = |gain: &str, perturbation: &str| -> (String, Value) {
+        let gain = format!("A={gain}");
+        let at = ["vibro-impact", "--set", &gain, "--perturb", perturbation, "--impacts", "60"];
+        let found = json(&at);
+        (found["verdict"].as_str().unwrap().to_owned(), found["linear_regime"]["grows"].clone())
+    };
+    let (text, grows) = verdict("0.05", "1e-2");
+    assert!(text.contains("undecided") && grows.is_null(), "{text}");
+    for gain in ["0.05", "-0.02"] {
+        let (text, grows) = verdict(gain, "1e-6");
+        assert!(text.contains("the perturbation grows") && grows == true, "{text}");
+    }
+    let (text, grows) = verdict("-0.04", "1e-2");
+    assert!(text.contains("the perturbation decays") && grows == false, "{text}");
+}
+
+/// Infinitely many impacts in a finite time are named, to the digits and in doubles.
+#[test]
+fn chattering_is_named() {
+    let at = ["vibro-impact", "--set", "R_r=3/10", "--set", "omega=1/3", "--state=-0.4,0"];
+    let exact = json(&[&at[..], &["--until", "40", "--digits", "15"]].concat());
+    assert!(exact["verdict"].as_str().unwrap().contains("chattering: infinitely many impacts"));
+    let doubles = json(&[&at[..], &["--until", "40", "--f64"]].concat());
+    let (a, b) = (&exact["chattering"], &doubles["chattering"]);
+    assert!(
+        a.as_array().unwrap().len() >= 2
+            && a.as_array().unwrap().len() == b.as_array().unwrap().len()
+    );
+    for (a, b) in a.as_array().unwrap().iter().zip(b.as_array().unwrap()) {
+        assert!((float(&a["t"]) - float(&b["t"])).abs() < 1e-7);
+    }
+    // The hundredth impact is among those that accumulate.
+    let hundred = json(&[&at[..], &["--impacts", "100", "--digits", "15"]].concat());
+    assert!(hundred["complete"] == true);
+    assert!(hundred["verdict"].as_str().unwrap().contains("among them"));
+    let error = float(&hundred["final"]["t"]) - float(&exact["chattering"][0]["t"]);
+    assert!(error.abs() < 1e-13, "{error:e}");
+}
+
+/// A chaotic motion without events: the doubles have not one digit at the end, and say so.
+#[test]
+fn doubles_that_lost_every_digit_are_no_answer() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/holmes-duffing.toml");
+    let at = [path, "--f64", "--set", "eps=1", "--format", "json", "--periods"];
+    let end = |periods: &str| run(&[&at[..], &[periods]].concat());
+    let early = end("2");
+    assert_eq!(early.status.code(), Some(0));
+    let late = end("200");
+    assert_eq!(late.status.code(), Some(4));
+    let late: Value = serde_json::from_slice(&late.stdout).unwrap();
+    assert!(late["final"]["x"]["error"].is_null(), "{late}");
+    assert!(late["verdict"].as_str().unwrap().starts_with("no digit is left in doubles"));
+}
+
+#[test]
+fn exponents_and_the_zero_one_test() {
+    let at = |gamma: &str, periods: &str| {
+        let gamma = format!("gamma={gamma}");
+        let both = ["--lyapunov", "--zero-one", "--periods", periods];
+        json(&[&["stick-slip", "--set", &gamma], &both[..]].concat())
+    };
+    let chaotic = at("0.65", "2000");
+    let exponent = &chaotic["lyapunov"];
+    let error: f64 = exponent["error"].as_str().unwrap().parse().unwrap();
+    assert!((float(exponent) - 0.0719).abs() < 4.0 * error && error < 0.01, "{exponent}");
+    // Two bands: every second point looks chaotic.
+    assert!(float(&chaotic["zero_one"]["k"][1]) > 0.95, "{}", chaotic["zero_one"]);
+    assert!(chaotic["verdict"].as_str().unwrap().starts_with("chaotic"));
+    let regular = at("0.6", "500");
+    assert!((float(&regular["lyapunov"]) + 0.0185).abs() < 1e-3);
+    assert!(regular["verdict"].as_str().unwrap().starts_with("regular"));
+    // Duffing's oscillator: perturbations grow like t.
+    let linear = json(&["duffing", "--lyapunov", "--periods", "300", "--skip", "100"]);
+    assert!(linear["verdict"].as_str().unwrap().starts_with("no exponential growth"));
+    // A delay has no finite linearisation; too few periods tell nothing.
+    for (arguments, code) in [
+        (&["vibro-impact", "--set", "A=1/50", "--lyapunov"][..], 3),
+        (&["stick-slip", "--lyapunov", "--periods", "10"], 2),
+        (&["stick-slip", "--lyapunov", "--until", "10"], 2),
+        (&["stick-slip", "--lyapunov", "--sweep", "gamma=0.6..0.7:2"], 2),
+    ] {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        assert!(!output.stderr.is_empty());
+    }
+}
+
+/// Chaos in doubles: no digits, exit code 4, and what to do.
+#[test]
+fn chaos_in_doubles_says_what_to_do() {
+    let output = run(&["stick-slip", "--f64", "--set", "gamma=1.2", "--periods", "400"]);
+    assert_eq!(output.status.code(), Some(4));
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(text.contains("--lyapunov") && text.contains("without --f64"), "{text}");
+}
+
+/// The orbit starts just after an impact and has the period of the force: looked at once per period
+/// an impact is met every time. It is unstable, gamma = -1.167783795500397 (the characteristic
+/// function, `lindstedt stability`); it leaves after some 150 periods for a stable orbit, where
+/// ln |gamma|/T = ln(R)/T - c/2 of a complex pair of determinant R^2 exp(-c T).
+#[test]
+fn diagnostics_of_a_periodic_impact_orbit() {
+    let period = 2.0 * std::f64::consts::PI / 3.3;
+    let from = |start: &[&str], skip: &str, periods: &str| {
+        let all =
+            ["vibro-impact", "--lyapunov", "--zero-one", "--skip", skip, "--periods", periods];
+        json(&[&all[..], start].concat())
+    };
+    let orbit = from(&[], "30", "100");
+    let unstable = 1.167_783_795_500_397_5_f64.ln() / period;
+    assert!((float(&orbit["lyapunov"]) - unstable).abs() < 1e-4, "{orbit}");
+    // The same point once per period, to rounding errors.
+    let k = orbit["zero_one"]["k"][0]["decimal"].as_str().unwrap();
+    assert!(k.parse::<f64>().unwrap().abs() < 0.3, "{orbit}");
+    for start in [&[][..], &["--state", "-0.5,0.1"]] {
+        let found = from(start, "1000", "2000");
+        let stable = 0.6f64.ln() / period - 0.1;
+        assert!((float(&found["lyapunov"]) - stable).abs() < 3e-3, "{start:?} {found}");
+        let verdict = found["verdict"].as_str().unwrap();
+        assert!(verdict.contains("regular: perturbations decay"), "{verdict}");
+        let k = found["zero_one"]["k"][0]["decimal"].as_str().unwrap();
+        assert!(k.parse::<f64>().unwrap().abs() < 0.3, "{found}");
+    }
+}
+
+/// The powers of the series at x = 0 are too close together.
+#[test]
+fn a_power_near_minus_one_is_refused() {
+    let output = run(&["power-law", "--set", "n=-0.999", "--digits", "20"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(4), "{message}");
+    assert!(message.contains("too near an integer"), "{message}");
+}

@@ -1,0 +1,4 @@
+//! Equations and problem files, read and refused.
+
+mod equations;
+mod follows;

@@ -1,0 +1,3 @@
+//! Sums of series against their functions.
+
+mod estimates;

@@ -1,0 +1,127 @@
+//! Bifurcation diagrams of the stick-slip oscillator: order, resumption, cancellation, speed.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use crate::common::{parameters, stick_slip};
+use lindstedt_simulate::{DiagramSettings, Doubles, Quantity, Section, Settings, Sweep, diagram};
+use rug::Rational;
+use std::fmt::Write;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+fn settings(transient: u32, kept: u32, follow: bool) -> DiagramSettings<f64> {
+    DiagramSettings {
+        time: 0.0,
+        start: vec![0.11, 0.05],
+        section: Section::Period(std::f64::consts::PI),
+        periods: Vec::new(),
+        transient,
+        kept,
+        follow,
+        integration: Settings::for_digits(16),
+    }
+}
+
+fn gammas(count: i32) -> Vec<Quantity> {
+    (0..count)
+        .map(|k| Rational::from((600 * (count - 1) + 700 * k, 1000 * (count - 1))).into())
+        .collect()
+}
+
+/// The lines of the columns from `first` on, until `most` columns have come.
+fn lines(
+    values: &[Quantity],
+    settings: &DiagramSettings<f64>,
+    first: usize,
+    most: usize,
+) -> (String, usize) {
+    let (model, parameters) = (stick_slip(), parameters(&[]));
+    let sweep = Sweep { model: &model, parameters: &parameters, name: "gamma", values };
+    let mut text = String::new();
+    let range = first..values.len();
+    let mut left = most;
+    let next =
+        diagram(&sweep, &Doubles, settings, range, &|| ControlFlow::Continue(()), &mut |column| {
+            for point in column.points.unwrap() {
+                let (x, v, stuck) = (point.state[0], point.state[1], point.stuck());
+                writeln!(text, "{} {x} {v} {stuck}", column.index).unwrap();
+            }
+            left -= 1;
+            if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+    (text, next)
+}
+
+#[test]
+fn broken_off_and_resumed_it_is_the_same_text() {
+    let values = gammas(11);
+    let settings = settings(5, 7, false);
+    let (whole, next) = lines(&values, &settings, 0, usize::MAX);
+    assert_eq!((whole.lines().count(), next), (77, 11));
+    let (start, next) = lines(&values, &settings, 0, 4);
+    assert_eq!(next, 4);
+    let (rest, next) = lines(&values, &settings, 4, usize::MAX);
+    assert_eq!(next, 11);
+    assert!(whole == start + &rest);
+}
+
+#[test]
+fn following_columns_resume_from_the_last_point() {
+    let values = gammas(6);
+    let mut settings = settings(3, 2, true);
+    let (whole, _) = lines(&values, &settings, 0, usize::MAX);
+    let (start, _) = lines(&values, &settings, 0, 3);
+    let last: Vec<f64> = start
+        .lines()
+        .last()
+        .unwrap()
+        .split(' ')
+        .skip(1)
+        .take(2)
+        .map(|x| x.parse().unwrap())
+        .collect();
+    settings.start = last;
+    let (rest, _) = lines(&values, &settings, 3, usize::MAX);
+    assert!(whole == start + &rest);
+}
+
+#[test]
+fn a_tick_cancels_inside_of_a_column() {
+    let (model, parameters, values) = (stick_slip(), parameters(&[]), gammas(5));
+    let sweep = Sweep { model: &model, parameters: &parameters, name: "gamma", values: &values };
+    let count = AtomicU32::new(0);
+    let tick = || match count.fetch_add(1, Ordering::Relaxed) {
+        0..100 => ControlFlow::Continue(()),
+        _ => ControlFlow::Break(()),
+    };
+    let settings = settings(1_000_000_000, 1, false);
+    let next = diagram(&sweep, &Doubles, &settings, 0..5, &tick, &mut |_| panic!());
+    assert_eq!(next, 0);
+}
+
+#[test]
+fn a_column_fails_alone() {
+    let (model, parameters) = (stick_slip(), parameters(&[("T0", "-3")]));
+    let values: Vec<Quantity> = vec![1.into(), 0.into()];
+    let sweep = Sweep { model: &model, parameters: &parameters, name: "vstar", values: &values };
+    let mut settings = settings(0, 2, false);
+    settings.start = vec![0.0, 0.0];
+    let mut outcomes = Vec::new();
+    diagram(&sweep, &Doubles, &settings, 0..9, &|| ControlFlow::Continue(()), &mut |column| {
+        outcomes.push(column.points.is_ok());
+        ControlFlow::Continue(())
+    });
+    // Negative friction on the switch: both sides lead away from it.
+    assert_eq!(outcomes.len(), 2);
+    assert!(!outcomes[1]);
+}
+
+/// 400 values of gamma, 600 periods each: prints the seconds it took.
+#[test]
+#[ignore = "half a minute"]
+fn four_hundred_values_of_six_hundred_periods() {
+    let clock = std::time::Instant::now();
+    let (text, _) = lines(&gammas(400), &settings(500, 100, false), 0, usize::MAX);
+    println!("{} s", clock.elapsed().as_secs_f64());
+    assert_eq!(text.lines().count(), 40_000);
+}

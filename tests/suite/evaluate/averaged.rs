@@ -1,0 +1,103 @@
+//! Averaged motions against the integrator.
+
+use super::support::integrated;
+use lindstedt::equation::Problem;
+use lindstedt::evaluate::averaged::{Motion, MotionSettings, Start};
+use lindstedt::{Value, problems};
+
+fn motion(problem: &Problem, order: usize, set: &[(&str, &str)], start: Start) -> Motion {
+    let parameters = set.iter().map(|(n, v)| ((*n).to_owned(), Value::parse(v).unwrap())).collect();
+    let settings = MotionSettings { order, parameters, digits: 14, start };
+    Motion::new(problem, &settings, &mut |_| true).unwrap()
+}
+
+fn state(x: &str, v: &str) -> Start {
+    Start::State(Value::parse(x).unwrap(), Value::parse(v).unwrap())
+}
+
+fn values(times: &[f64]) -> Vec<Value> {
+    times.iter().map(|t| Value::Rational(rug::Rational::from_f64(*t).unwrap())).collect()
+}
+
+/// The averaged van der Pol oscillator from rest at x = 1/2, 1 and 3, at many orders: the true
+/// error is below the estimate wherever there is one.
+#[test]
+fn averaged_van_der_pol() {
+    let problem = problems::find("van-der-pol").unwrap();
+    let times = [0.0, 1.0, 7.0, 15.0, 30.0, 50.0, 80.0];
+    let (mut checked, mut sharp) = (0, 0);
+    for (eps, x) in [("1/20", "1/2"), ("1/10", "1"), ("1/10", "3"), ("1/4", "1"), ("1/2", "2")] {
+        let start = [Value::parse(x).unwrap().ball(lindstedt::coeff::ball::Balls::new(60))];
+        let start = [start[0].midpoint().to_f64(), 0.0];
+        let expected = integrated(&problem, &[("eps", eps)], start, &times);
+        for order in 2..=9 {
+            let mut motion = motion(&problem, order, &[("eps", eps)], state(x, "0"));
+            let found = motion.at(&values(&times), &mut || true);
+            assert_eq!(found.len(), times.len());
+            for (moment, expected) in found.iter().zip(&expected) {
+                let x = &moment.displacement;
+                let error = (x.double - expected).abs();
+                let text = format!("eps {eps} order {order} t {}: {error:e}", moment.time);
+                assert!(error <= x.error + 1e-11, "{text} {:e}", x.error);
+                checked += i32::from(x.error.is_finite());
+                sharp += i32::from(x.error < 1e-5);
+            }
+        }
+    }
+    assert!(checked > 250 && sharp > 60, "{checked} {sharp}");
+}
+
+/// The impact oscillator between impacts. Without the loop against the integrator; with it against
+/// the root of alpha^2 + z^2 - (A + B z)(1 - exp(-z T)) + c z and the forced response, which the
+/// loop does not see (T is a period of the force).
+#[test]
+fn averaged_free_flight() {
+    let problem = problems::vibro_impact::problem();
+    let times = [0.0, 1.0, 2.5, 6.0];
+    let off = [("eps", "1"), ("c", "1/10")];
+    let mut free = problem.clone();
+    free.impact = None;
+    // Any delay will do: its gain is zero.
+    let still = [("eps", "1"), ("c", "1/10"), ("T", "1")];
+    let mut model_problem = free.clone();
+    let without = |e: &lindstedt::equation::Expression| match e {
+        lindstedt::equation::Expression::Parameter(name) if name == "A" || name == "B" => {
+            Some(lindstedt::equation::Expression::integer(0))
+        }
+        _ => None,
+    };
+    model_problem.equation = free.equation.substitute(&without).canonical();
+    let expected = integrated(&model_problem, &still, [-0.5, 0.25], &times);
+    let mut flight = motion(&problem, 10, &off, state("-1/2", "1/4"));
+    assert!(flight.has_wall && flight.verdict().contains("between impacts"));
+    for (moment, expected) in flight.at(&values(&times), &mut || true).iter().zip(expected) {
+        let error = (moment.displacement.double - expected).abs();
+        assert!(error <= moment.displacement.error + 1e-13 && error < 1e-9, "{error:e}");
+    }
+    let on = [("eps", "1"), ("A", "1/10"), ("B", "1/20")];
+    let mut flight = motion(&problem, 10, &on, state("-1/2", "1/3"));
+    let [growth, frequency] = flight.linear.clone().unwrap().map(Option::unwrap);
+    // mpmath 1.3.0, findroot.
+    let (r, w) = (-0.016_832_789_994_242_716, 0.959_070_214_690_621_9);
+    let near = |number: &lindstedt::Number, exact: f64| {
+        let value: f64 = number.decimal.parse().unwrap();
+        let error: f64 = number.error.as_ref().unwrap().parse().unwrap();
+        (value - exact).abs() <= error && error < 1e-8
+    };
+    assert!(near(&growth, r) && near(&frequency, w), "{growth:?} {frequency:?}");
+    let (omega, c): (f64, f64) = (3.3, 0.2);
+    let d = (1.0 - omega * omega).powi(2) + c * c * omega * omega;
+    let forced =
+        |t: f64| ((1.0 - omega * omega) * (omega * t).cos() + c * omega * (omega * t).sin()) / d;
+    let first = -0.5 - forced(0.0);
+    let second = (r * first - (1.0 / 3.0 - c * omega * omega / d)) / w;
+    let exact =
+        |t: f64| forced(t) + (r * t).exp() * (first * (w * t).cos() - second * (w * t).sin());
+    // Backwards too.
+    let times = [-3.0, 0.0, 2.0, 6.0];
+    for (moment, time) in flight.at(&values(&times), &mut || true).iter().zip(times) {
+        let error = (moment.displacement.double - exact(time)).abs();
+        assert!(error <= moment.displacement.error + 1e-13, "{time}: {error:e}");
+        assert!(error < 1e-8, "{time}: {error:e}");
+    }
+}

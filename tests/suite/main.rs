@@ -1,0 +1,18 @@
+//! What holds across the crates. One binary: it is linked once, and its tests share what they compute.
+
+mod averaging;
+mod book;
+mod browser;
+mod classics;
+mod estimates;
+mod evaluate;
+mod extremes;
+mod interruption;
+mod laws;
+mod melnikov;
+mod numeric;
+mod paper;
+mod paper_section_2;
+mod problem_files;
+mod small_delta;
+mod vibro_impact;

@@ -1,0 +1,152 @@
+//! The hyperbolic algebra: laws, exact integrals, J_{p,q} in balls and in f64.
+
+use super::support::{Random, assert_agrees, number, oracle};
+use lindstedt::algebra::{Ring, laws};
+use lindstedt::coeff::ball::{Ball, Balls};
+use lindstedt_melnikov::hyperbolic::{
+    Hyperbolic, HyperbolicRing, integral_f64, line_fourier, line_fourier_ball, line_fourier_f64,
+    line_fourier_real, line_integral, line_integral_real,
+};
+use lindstedt_melnikov::quadrature::{Strip, trapezoid};
+use rug::Rational;
+
+const BALLS: u32 = 200;
+
+#[test]
+fn laws_of_the_ring() {
+    let term = |n: i32, d: u32, p, tanh| Hyperbolic::term(Rational::from((n, d)), p, tanh);
+    let ring = HyperbolicRing;
+    let mut samples =
+        vec![Hyperbolic::sech(1), Hyperbolic::tanh(), ring.zero(), term(3, 2, 0, false)];
+    samples.push(ring.add(&term(-5, 7, 3, true), &term(1, 3, 2, false)));
+    assert_eq!(laws::rational_algebra(&ring, &samples), Ok(()));
+    for f in &samples {
+        for g in &samples {
+            let left = ring.derivative(&ring.mul(f, g));
+            let right =
+                ring.add(&ring.mul(&ring.derivative(f), g), &ring.mul(f, &ring.derivative(g)));
+            assert_eq!(left, right, "Leibniz for {f} and {g}");
+        }
+    }
+    // The integral of a derivative of something that decays on both sides is 0.
+    let integral = ring.derivative(&samples[4]).integrate().unwrap();
+    assert!(integral.rational.is_zero() && integral.pi.is_zero());
+}
+
+#[test]
+fn table_of_integrals() {
+    let balls = Balls::new(BALLS);
+    for row in oracle("I_pq.json")["table"].as_array().unwrap() {
+        let (p, q) = (number(row, "p"), row["q"].as_u64().unwrap() as u32);
+        let value = line_integral_real(balls, &p, q).unwrap();
+        assert_agrees(&value, &row["I"], 29, &format!("I_({p}, {q})"));
+        if p.is_integer() {
+            let p = p.numer().to_u32().unwrap();
+            let exact = line_integral(p, q).unwrap();
+            assert_agrees(&exact.ball(balls), &row["I"], 29, &format!("exact I_({p}, {q})"));
+            let double = integral_f64(p, q).unwrap();
+            let reference = exact.ball(balls).midpoint().to_f64();
+            assert!((double - reference).abs() <= 2e-14 * reference);
+        }
+    }
+    assert!(
+        line_integral(0, 2).is_none() && line_integral_real(balls, &Rational::new(), 0).is_none()
+    );
+}
+
+#[test]
+fn table_of_fourier_integrals() {
+    let balls = Balls::new(BALLS);
+    for row in oracle("J_pq.json")["table"].as_array().unwrap() {
+        let (p, q) = (number(row, "p"), row["q"].as_u64().unwrap() as u32);
+        let w = balls.from_rational(&number(row, "omega"));
+        let what = format!("J_({p}, {q})");
+        assert_agrees(&line_fourier_real(balls, &p, q, &w).unwrap(), &row["J"], 28, &what);
+        if p.is_integer() {
+            let p = p.numer().to_u32().unwrap();
+            let value = line_fourier_ball(balls, p, q, &w).unwrap();
+            assert_agrees(&value, &row["J"], 28, &what);
+            let exact = line_fourier(p, q).unwrap().ball(balls, &w).unwrap();
+            assert_agrees(&exact, &row["J"], 28, &what);
+        }
+    }
+}
+
+/// The oracle's J table has omega = 0 only; other frequencies are checked by the certified
+/// trapezoidal rule on the integrand itself, powers of tanh included.
+fn by_quadrature(balls: Balls, p: u32, q: u32, w: &Rational) -> Ball {
+    let half_width = Rational::from((1, 2));
+    // |tanh(x + iy)| <= 1 for |y| <= pi/4.
+    let edge = balls.powi(&balls.cos(&balls.from_rational(&half_width)), i64::from(p)).unwrap();
+    let frequency = balls.from_rational(w);
+    let growth = balls.cosh(&balls.mul_rational(&frequency, &half_width));
+    let integral = line_integral(p, 0).unwrap().ball(balls);
+    let strip = Strip {
+        edge_integral: balls.div(&balls.mul(&growth, &integral), &edge).unwrap(),
+        half_width,
+        decay: Rational::from(p),
+        amplitude: balls.powi(&balls.from_i64(2), i64::from(p)).unwrap(),
+    };
+    trapezoid(balls, &strip, |balls, z| {
+        let cosh = balls.cosh(z);
+        let tanh = balls.div(&balls.sinh(z), &cosh)?;
+        let shape =
+            balls.mul(&balls.powi(&cosh, -i64::from(p))?, &balls.powi(&tanh, i64::from(q))?);
+        let angle = balls.mul(&frequency, z);
+        let trig = if q.is_multiple_of(2) { balls.cos(&angle) } else { balls.sin(&angle) };
+        Some(balls.mul(&shape, &trig))
+    })
+    .unwrap()
+}
+
+#[test]
+fn fourier_integrals_by_quadrature() {
+    let balls = Balls::new(140);
+    let mut random = Random(1);
+    for round in 0..40 {
+        let p = 1 + (random.unit() * 8.0) as u32;
+        let q = (random.unit() * 24.0) as u32;
+        let w = random.rational(-3.0, 3.0);
+        let ball = balls.from_rational(&w);
+        let reference = by_quadrature(balls, p, q, &w);
+        let what = format!("round {round}: J_({p}, {q})({w})");
+        let value = line_fourier_ball(balls, p, q, &ball).unwrap();
+        assert!(value.overlaps(&reference), "{what}: {value:?} {reference:?}");
+        assert!(
+            value.relative_accuracy_bits() > 90 && reference.radius().to_f64() < 1e-38,
+            "{what}"
+        );
+        let exact = line_fourier(p, q).unwrap().ball(balls, &ball).unwrap();
+        assert!(exact.overlaps(&reference), "{what}");
+        let general = line_fourier_real(balls, &Rational::from(p), q, &ball).unwrap();
+        assert!(general.overlaps(&reference), "{what}");
+        let double = line_fourier_f64(p, q, w.to_f64()).unwrap();
+        // The recurrence is absolutely stable; J itself may be near one of its zeros.
+        let size = line_integral(p, 0).unwrap().ball(balls).midpoint().to_f64();
+        assert!((double - reference.midpoint().to_f64()).abs() < 2e-14 * size, "{what}");
+    }
+}
+
+#[test]
+fn no_cancellation_in_f64() {
+    let balls = Balls::new(400);
+    // The cases of section 4.3 that the expansion of tanh^2 = 1 - sech^2 destroys.
+    for (p, q, w) in [(4, 60, 1.0), (1, 100, 1.0), (2, 40, 0.5), (3, 80, 2.0)] {
+        let exact = line_fourier_ball(balls, p, q, &balls.from_f64(w).unwrap()).unwrap();
+        let reference = exact.midpoint().to_f64();
+        let double = line_fourier_f64(p, q, w).unwrap();
+        assert!(
+            (double - reference).abs() <= 2e-14 * reference.abs(),
+            "J_({p}, {q}): {double} {reference}"
+        );
+    }
+    // Large frequencies: the exponent in double-double.
+    for w in [100.0, 263.0, 400.0, 450.0] {
+        let exact = line_fourier_ball(balls, 1, 1, &balls.from_f64(w).unwrap()).unwrap();
+        let reference = exact.midpoint().to_f64();
+        let double = line_fourier_f64(1, 1, w).unwrap();
+        assert!((double / reference - 1.0).abs() < 1e-15, "w = {w}");
+    }
+    assert!(line_fourier_f64(1, 1, f64::NAN).is_none() && line_fourier_f64(0, 1, 1.0).is_none());
+    assert_eq!(line_fourier_f64(1, 1, 1e6), Some(0.0));
+}
