@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
 use lindstedt::algebra::{RationalAlgebra, Ring};
-use lindstedt::coeff::ball::Balls;
 use lindstedt::coeff::floats::Floats;
 use lindstedt::equation::{AmplitudeRole, Condition, Expression, Function, Problem};
+use lindstedt::number::ball::Balls;
 use lindstedt::numeric::{Estimate, Tier, derive};
 use lindstedt::phase::lobachevsky_function::means;
 use lindstedt::series::Series;

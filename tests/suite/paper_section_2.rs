@@ -3,9 +3,9 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "a test that panics has failed")]
 
-use lindstedt::coeff::ball::Balls;
-use lindstedt::coeff::ball::ring::{BallRing, Enclosure};
 use lindstedt::impact_map::{ImpactMap, characteristic, coefficient, replace};
+use lindstedt::number::ball::Balls;
+use lindstedt::number::ball::ring::{BallRing, Enclosure};
 use lindstedt::paper::{Options, Row, Section, Verdict, read, reread};
 use lindstedt::quotient::Quotient;
 use rug::{Float, Rational};

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 use lindstedt::algebra::{FunctionAlgebra, PhaseAlgebra, Ring};
-use lindstedt::coeff::ball::Balls;
 use lindstedt::coeff::closed_forms::ClosedForms;
 use lindstedt::coeff::{PolynomialRing, Symbol};
+use lindstedt::number::ball::Balls;
 use lindstedt::phase::Lobachevsky;
 use lindstedt::phase::evaluate;
 use lindstedt::phase::lobachevsky::Word;
@@ -196,9 +196,10 @@ fn alpha_to_order_30_by_the_energy_integral() {
     // coefficient of delta^30 for j = 0 and 1.
     assert_eq!(alpha[30].terms().len(), 28_629 - 2);
     let closed = ClosedForms::new(30).closed_form(&ring, &alpha[30]).unwrap();
-    let constants = lindstedt::number::Constants::default();
+    let constants = lindstedt::constants::Constants::default();
     let evaluate = |p: &lindstedt::coeff::Polynomial| {
-        let number = lindstedt::number::certified(None, 20, |balls| constants.evaluate(p, balls));
+        let number =
+            lindstedt::constants::certified(None, 20, |balls| constants.evaluate(p, balls));
         number.unwrap().decimal
     };
     assert_eq!(evaluate(&closed), evaluate(&alpha[30]));
@@ -324,7 +325,7 @@ fn the_solution_agrees_with_the_inverted_energy_integral() {
     let order = 7;
     let result = expansion("power-law", order);
     let Solution::Lobachevsky(solution) = &result.solution else { panic!("Lobachevsky ring") };
-    let constants = lindstedt::number::Constants::default();
+    let constants = lindstedt::constants::Constants::default();
     for (numerator, denominator) in [(7, 10), (19, 7)] {
         let tau = Rational::from((numerator, denominator));
         let at = Float::with_val(bits, &tau);

@@ -1,8 +1,8 @@
 //! The starts that a file may give twice: `[initial]` and `amplitude`.
 
 use crate::session::note;
-use lindstedt::coeff::ball::Balls;
 use lindstedt::equation::Problem;
+use lindstedt::number::ball::Balls;
 use lindstedt::{ProblemFile, Value};
 use std::collections::BTreeMap;
 

@@ -180,7 +180,7 @@ fn bernoulli_numbers(n: u16) -> Vec<Rational> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ball::{Ball, Balls};
+    use lindstedt_number::ball::{Ball, Balls};
 
     fn moment(m: u16) -> Polynomial {
         PolynomialRing::default().symbol(Symbol::Moment(m))

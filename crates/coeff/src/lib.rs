@@ -1,10 +1,7 @@
-//! Coefficients of expansions: polynomials in named constants over Q, their closed forms, and
-//! real balls (midpoint and rigorous radius) that evaluate them to any number of digits.
+//! Coefficients of expansions: polynomials in named constants over Q and their closed forms.
 
 pub mod amplitude;
-pub mod ball;
 pub mod closed_forms;
-pub mod digits;
 pub mod floats;
 pub mod parameters;
 pub mod polynomial;

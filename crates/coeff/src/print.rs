@@ -19,6 +19,8 @@
 
 use crate::polynomial::{Polynomial, PolynomialRing, PowerProduct, Symbol};
 use lindstedt_algebra::{Rationals, Ring};
+use lindstedt_number::ball::ring::{BallRing, Enclosure};
+use lindstedt_number::digits::decimal;
 use rug::Rational;
 use std::cmp::{Ordering, Reverse};
 
@@ -281,6 +283,26 @@ pub fn latex_name(name: &str) -> String {
         format!(r"\mathrm{{{name}}}")
     } else {
         name.to_owned()
+    }
+}
+
+/// Digits of a printed enclosure; the numbers of a result are printed with their errors instead.
+const PRINTED_DIGITS: usize = 17;
+
+impl Print for BallRing {
+    /// The midpoint, as far as it is known; `[0]` for an enclosure of zero.
+    fn print_terms(&self, a: &Enclosure, _: Style) -> Vec<Term> {
+        if self.is_zero(a) {
+            return Vec::new();
+        }
+        let known = a.0.relative_accuracy_bits().max(0) as f64 * std::f64::consts::LOG10_2;
+        let digits = (known as usize).clamp(1, PRINTED_DIGITS);
+        let shown = decimal(&a.0, digits).unwrap_or_else(|| "[0]".to_owned());
+        let (sign, magnitude) = match shown.strip_prefix('-') {
+            Some(rest) => (-1, rest.to_owned()),
+            None => (1, shown),
+        };
+        vec![Term { coefficient: Rational::from(sign), factors: vec![magnitude] }]
     }
 }
 

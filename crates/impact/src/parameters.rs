@@ -5,7 +5,7 @@
 
 use crate::error::ImpactError;
 use crate::real::{Certified, Real};
-use lindstedt_coeff::ball::Balls;
+use lindstedt_number::ball::Balls;
 use rug::Rational;
 
 /// The sign of the root in the quadratic equation for the impact velocity.

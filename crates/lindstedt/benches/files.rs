@@ -2,8 +2,8 @@
 //! along an orbit that has no closed form.
 
 use divan::Bencher;
-use lindstedt::coeff::ball::Balls;
 use lindstedt::equation::classify::classify;
+use lindstedt::number::ball::Balls;
 use lindstedt::recognise::{MelnikovProblem, all_values};
 use lindstedt::{ProblemFile, known_values};
 use std::collections::BTreeMap;

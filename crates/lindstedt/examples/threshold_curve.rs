@@ -1,8 +1,8 @@
 //! The threshold of stick-slip chaos over the speed of the belt, and where it vanishes.
 
-use lindstedt::coeff::ball::Balls;
-use lindstedt::coeff::digits::decimal;
 use lindstedt::melnikov::{Axis, FastPoint, MelnikovError, Real, StickSlip};
+use lindstedt::number::ball::Balls;
+use lindstedt::number::digits::decimal;
 
 fn main() -> Result<(), MelnikovError> {
     // Doubles for the curve.

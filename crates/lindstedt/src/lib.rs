@@ -14,13 +14,13 @@
 struct Readme;
 
 pub mod averaging;
+pub mod constants;
 mod derivation;
 pub mod energy;
 mod error;
 pub mod evaluate;
 pub mod impact_map;
 pub mod multimodular;
-pub mod number;
 pub mod numeric;
 mod oscillator;
 pub mod paper;
@@ -30,12 +30,12 @@ pub mod trade;
 mod value;
 pub mod verify;
 
+pub use constants::{Number, Status};
 pub use derivation::{
     Derivation, NamedSeries, Progress, Route, Settings, Solution, check_parameters, derive,
 };
 pub use error::Error;
 pub use lindstedt_problem_file::ProblemFile;
-pub use number::{Number, Status};
 pub use oscillator::{Oscillator, known_values};
 pub use value::Value;
 
@@ -45,6 +45,7 @@ pub use lindstedt_equation as equation;
 pub use lindstedt_expand as expand;
 pub use lindstedt_impact as impact;
 pub use lindstedt_melnikov as melnikov;
+pub use lindstedt_number as number;
 pub use lindstedt_phase as phase;
 pub use lindstedt_problem_file as problem_file;
 pub use lindstedt_problems as problems;

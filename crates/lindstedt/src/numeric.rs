@@ -7,10 +7,8 @@
 
 use crate::derivation::Settings;
 use crate::derivation::prepare::prepare;
-use crate::{Error, Number, Status, Value, number::sine_sum};
+use crate::{Error, Number, Status, Value, constants::sine_sum};
 use lindstedt_algebra::{PhaseAlgebra, Rationals};
-use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::digits::{decimal, error_string};
 use lindstedt_coeff::floats::{Doubles, Floats, Reals};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::symmetry::moving_singularity;
@@ -18,6 +16,8 @@ use lindstedt_equation::{AmplitudeRole, Condition, Expression, Function, Problem
 use lindstedt_expand::{
     Binding, ExpandError, OrderWork, Request, compile, expand, leading_amplitude,
 };
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::digits::{decimal, error_string};
 use lindstedt_phase::Trigonometric;
 use lindstedt_phase::collocation::{Collocation, Grid};
 use lindstedt_series::Series;

@@ -1,7 +1,7 @@
 //! Exact values of parameters, as a user writes them.
 
 use crate::Error;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::ops::Pow;
 use rug::{Integer, Rational};
 

@@ -3,10 +3,10 @@
 #![allow(clippy::expect_used)]
 
 use divan::Bencher;
-use lindstedt_coeff::ball::Balls;
 use lindstedt_melnikov::{
     Axis, FastPoint, PolynomialFriction, Real, Region, StickSlip, subharmonic, surface,
 };
+use lindstedt_number::ball::Balls;
 
 fn main() {
     divan::main();

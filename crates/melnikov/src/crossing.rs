@@ -3,7 +3,7 @@
 
 use crate::hyperbolic::{Hyperbolic, HyperbolicRing};
 use crate::root::enclose_root;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Float;
 
 /// Bits that decide which intervals hold nothing.

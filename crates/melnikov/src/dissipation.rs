@@ -6,7 +6,7 @@ use crate::quadrature::{Estimate, tanh_sinh};
 use crate::{
     Branch, Friction, MelnikovError, OrbitDescription, PolynomialFriction, Potential, Real,
 };
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::float::Constant;
 use rug::{Float, Integer, Rational};
 

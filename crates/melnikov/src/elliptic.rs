@@ -1,6 +1,6 @@
 //! Complete elliptic integrals by the arithmetic-geometric mean, in the complementary modulus.
 
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
 /// K(k), E(k) and the integrals of even powers of sn over a quarter period.

@@ -1,6 +1,6 @@
 //! Errors of the crate.
 
-use lindstedt_coeff::digits::CertifyError;
+use lindstedt_number::digits::CertifyError;
 use thiserror::Error;
 
 /// Why there is no answer.

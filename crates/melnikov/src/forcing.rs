@@ -2,7 +2,7 @@
 
 use crate::root::enclose_root;
 use crate::{Branch, MelnikovError, Potential, Real};
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Rational};
 
 /// One harmonic g cos(k omega t + phase).

@@ -155,7 +155,7 @@ impl Friction {
     /// T at floats of `bits` bits (the constants are enclosed once).
     #[must_use]
     pub fn law(&self, bits: u32) -> Law {
-        let balls = lindstedt_coeff::ball::Balls::new(bits);
+        let balls = lindstedt_number::ball::Balls::new(bits);
         let float = |x: &Real| x.ball(balls).midpoint().clone();
         let abs = move |w: &Float| Float::with_val(bits, w.abs_ref());
         // sgn(w) m, with sgn 0 = 0.

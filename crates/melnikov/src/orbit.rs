@@ -3,7 +3,7 @@
 use crate::hyperbolic::{Hyperbolic, HyperbolicRing};
 use crate::{MelnikovError, Real};
 use lindstedt_algebra::{RationalAlgebra, Ring};
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
 /// c a^i b^j: how a force coefficient or a scale depends on the two parameters of a potential.

@@ -5,7 +5,7 @@
 
 use crate::quadrature::tanh_sinh;
 use crate::{Branch, MelnikovError, Real, StickSlip};
-use lindstedt_coeff::ball::Balls;
+use lindstedt_number::ball::Balls;
 use rug::{Float, Rational};
 use std::f64::consts::PI;
 
@@ -240,7 +240,7 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
     let p = &POINT;
     let balls = Balls::new(120);
     let undecided = || MelnikovError::Undecided { bits: 120 };
-    let f64_of = |ball: Option<lindstedt_coeff::ball::Ball>| {
+    let f64_of = |ball: Option<lindstedt_number::ball::Ball>| {
         ball.map(|ball| ball.midpoint().to_f64()).ok_or_else(undecided)
     };
     let t = 0.7;

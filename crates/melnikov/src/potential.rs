@@ -7,7 +7,7 @@ use crate::quadrature::{Strip, trapezoid};
 use crate::root::sqrt_positive_part;
 use crate::{MelnikovError, Monomial, OrbitDescription, Real};
 use lindstedt_algebra::{RationalAlgebra, Ring};
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
 /// Which of the two mirror-image orbits.

@@ -1,7 +1,7 @@
 //! Quadrature: a certified trapezoidal rule on the line, and an estimated tanh-sinh rule.
 
 use crate::MelnikovError;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::float::Constant;
 use rug::{Float, Rational};
 

@@ -1,7 +1,7 @@
 //! Exact real parameters.
 
 use crate::MelnikovError;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 use std::cmp::Ordering;
 use std::fmt;

@@ -1,6 +1,6 @@
 //! Enclosures of roots by signs.
 
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Float;
 
 /// A ball that contains a root of the continuous function f in [low, high], proved by the

@@ -2,7 +2,7 @@
 
 use crate::root::{enclose_root, sqrt_positive_part};
 use crate::{Forcing, Friction, MelnikovError, PolynomialFriction, Potential, Real, System};
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Rational};
 
 /// x'' = a x - b x^3 + eps (gamma cos(omega t) - T(x' - v*)),

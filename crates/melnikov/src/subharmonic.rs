@@ -4,7 +4,7 @@
 use crate::elliptic::Elliptic;
 use crate::root::{enclose_root, sqrt_positive_part};
 use crate::{MelnikovError, PolynomialFriction, Real};
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Integer, Rational};
 
 /// Where the periodic orbit lies.

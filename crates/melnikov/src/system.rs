@@ -5,7 +5,7 @@ use crate::forcing::ForcingWork;
 use crate::hyperbolic::HyperbolicRing;
 use crate::{Branch, Forcing, Friction, MelnikovError, Potential, Real};
 use lindstedt_algebra::Ring;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Float;
 
 /// How a number is known.
@@ -21,7 +21,7 @@ pub enum Class {
 ///
 /// ```
 /// use lindstedt_melnikov::{Branch, Forcing, Friction, PolynomialFriction, Potential, Real, System};
-/// use lindstedt_coeff::{ball::Balls, digits::decimal};
+/// use lindstedt_number::{ball::Balls, digits::decimal};
 ///
 /// // The paper's point: a = b = 1, alpha = beta = T0 = 0.3, omega = 2, v* = 0.4.
 /// let coefficient = || Real::from((3, 10));

@@ -2,7 +2,7 @@
 
 use crate::root::enclose_root;
 use crate::{Axis, MelnikovError, Real, StickSlip};
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Float;
 use std::cmp::Ordering;
 

@@ -1,7 +1,7 @@
 //! The Lobachevsky function: digits, and a million doubles.
 
 use divan::Bencher;
-use lindstedt_coeff::ball::Balls;
+use lindstedt_number::ball::Balls;
 use lindstedt_phase::lobachevsky_function::{
     LambdaTable, Point, lobachevsky_digits, lobachevsky_f64,
 };

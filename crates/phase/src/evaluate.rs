@@ -3,7 +3,7 @@
 use crate::lobachevsky::LobachevskyElement;
 use crate::lobachevsky_function::{LambdaTable, Point, cosine, log_cosine, sine};
 use crate::trigonometric::TrigonometricPolynomial;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 use std::fmt::Debug;
 
@@ -105,7 +105,7 @@ mod tests {
             [(4, "-0.0787782056210015997202045188148"), (3, "-0.0929090169743008872791768684345")]
         {
             let value = lobachevsky(&x1, &Point::PiTimes(Rational::from((1, part))), &table, one);
-            let decimal = value.and_then(|v| lindstedt_coeff::digits::decimal(&v, 30));
+            let decimal = value.and_then(|v| lindstedt_number::digits::decimal(&v, 30));
             assert_eq!(decimal.as_deref(), Some(expected));
         }
         let pole = Point::PiTimes(Rational::from((1, 2)));

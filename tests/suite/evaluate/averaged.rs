@@ -27,7 +27,7 @@ fn averaged_van_der_pol() {
     let times = [0.0, 1.0, 7.0, 15.0, 30.0, 50.0, 80.0];
     let (mut checked, mut sharp) = (0, 0);
     for (eps, x) in [("1/20", "1/2"), ("1/10", "1"), ("1/10", "3"), ("1/4", "1"), ("1/2", "2")] {
-        let start = [Value::parse(x).unwrap().ball(lindstedt::coeff::ball::Balls::new(60))];
+        let start = [Value::parse(x).unwrap().ball(lindstedt::number::ball::Balls::new(60))];
         let start = [start[0].midpoint().to_f64(), 0.0];
         let expected = integrated(&problem, &[("eps", eps)], start, &times);
         for order in 2..=9 {

@@ -2,8 +2,8 @@
 
 use super::support::{Grid, rational, set};
 use lindstedt::algebra::Ring;
-use lindstedt::coeff::ball::Balls;
 use lindstedt::coeff::floats::Floats;
+use lindstedt::number::ball::Balls;
 use lindstedt::numeric::{Tier, derive as derive_numbers};
 use lindstedt::phase::lobachevsky_function::means;
 use lindstedt::series::Series;

@@ -1,7 +1,7 @@
 //! The Lobachevsky function and the elementary functions of balls.
 
 use super::support::{Grid, rational};
-use lindstedt::coeff::ball::{Ball, Balls};
+use lindstedt::number::ball::{Ball, Balls};
 use lindstedt::phase::lobachevsky_function::{Point, lobachevsky, lobachevsky_f64};
 use rug::float::Constant;
 use rug::{Float, Rational};

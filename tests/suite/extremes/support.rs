@@ -1,6 +1,6 @@
 //! Counting the cells of a grid and judging them.
 
-use lindstedt::coeff::ball::Ball;
+use lindstedt::number::ball::Ball;
 use lindstedt::{Number, Status, Value};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;

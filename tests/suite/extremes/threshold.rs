@@ -1,7 +1,7 @@
 //! The Melnikov threshold of the stick-slip oscillator.
 
 use super::support::{Grid, rational};
-use lindstedt::coeff::ball::Balls;
+use lindstedt::number::ball::Balls;
 use lindstedt_melnikov::{Real, StickSlip};
 use rug::Float;
 use rug::float::Constant;

@@ -1,8 +1,8 @@
 //! The paper's oscillator: thresholds, curves, zeros, cusps, M(t0).
 
 use super::support::{Random, assert_agrees, number, oracle, real, stick_slip};
-use lindstedt::coeff::ball::Balls;
-use lindstedt::coeff::digits::{certify, decimal};
+use lindstedt::number::ball::Balls;
+use lindstedt::number::digits::{certify, decimal};
 use lindstedt_melnikov::{
     Branch, Friction, PolynomialFriction, Real, StickSlip, quadrature_dissipation,
 };

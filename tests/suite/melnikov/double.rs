@@ -1,7 +1,7 @@
 //! The f64 path against the balls: random points, the extremes, the surface.
 
 use super::support::{Random, decimal, oracle};
-use lindstedt::coeff::ball::Balls;
+use lindstedt::number::ball::Balls;
 use lindstedt_melnikov::{Axis, FastPoint, MelnikovError, Real, StickSlip, surface};
 use rug::Float;
 

@@ -1,7 +1,7 @@
 //! Polynomial friction of any degree, friction laws, several harmonics, other potentials.
 
 use super::support::{Random, assert_agrees, decimal, number, oracle, real};
-use lindstedt::coeff::ball::Balls;
+use lindstedt::number::ball::Balls;
 use lindstedt_melnikov::{
     Branch, Class, Forcing, Friction, Harmonic, MelnikovError, Monomial, PolynomialFriction,
     Potential, Real, System, polynomial_dissipation, quadrature_dissipation,

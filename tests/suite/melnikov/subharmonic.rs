@@ -1,7 +1,7 @@
 //! Subharmonic Melnikov functions: the oracle, quadrature in time, the homoclinic limit.
 
 use super::support::{assert_agrees, oracle, real, stick_slip};
-use lindstedt::coeff::ball::Balls;
+use lindstedt::number::ball::Balls;
 use lindstedt_melnikov::{
     Elliptic, MelnikovError, PolynomialFriction, Real, Region, StickSlip, Subharmonic, subharmonic,
 };
@@ -93,7 +93,7 @@ fn elliptic_powers_by_quadrature() {
                 dn += (s * d).powi(2 * n as i32) / d;
             }
             let step = std::f64::consts::PI / f64::from(nodes) / 2.0;
-            let check = |exact: Option<lindstedt::coeff::ball::Ball>, sum: f64| {
+            let check = |exact: Option<lindstedt::number::ball::Ball>, sum: f64| {
                 let exact = exact.unwrap().midpoint().to_f64();
                 assert!(
                     (exact / (sum * step) - 1.0).abs() < 1e-12,

@@ -1,6 +1,6 @@
 //! Reading the oracles and comparing with them.
 
-use lindstedt::coeff::ball::Ball;
+use lindstedt::number::ball::Ball;
 use lindstedt_melnikov::{Real, StickSlip};
 use rug::{Integer, Rational, ops::Pow};
 use serde_json::Value;

@@ -3,7 +3,7 @@
 use super::growth::{self, shifts};
 use super::motion::{End, Happening, Moment, Motion, Plan};
 use crate::session::Session;
-use lindstedt::coeff::ball::Balls;
+use lindstedt::number::ball::Balls;
 use lindstedt::simulate::EventKind;
 use rug::Float;
 use serde_json::{Value as Json, json};
@@ -51,7 +51,7 @@ fn decimal(value: &Float, error: &Float, digits: u32) -> String {
     let lost = if error.is_zero() { f64::NEG_INFINITY } else { error.clone().log10().to_f64() };
     let supported = (size - lost).floor().clamp(1.0, f64::from(digits));
     let ball = Balls::new(value.prec()).from_parts(value, &Float::new(53));
-    let shown = lindstedt::coeff::digits::decimal(&ball, supported as usize);
+    let shown = lindstedt::number::digits::decimal(&ball, supported as usize);
     shown.unwrap_or_else(|| value.to_string_radix(10, Some(supported as usize)))
 }
 

@@ -3,7 +3,7 @@
 use super::request::Request;
 use super::sweep::Table;
 use crate::failure::Failure;
-use lindstedt::coeff::ball::Balls;
+use lindstedt::number::ball::Balls;
 use lindstedt_melnikov::Axis;
 use plotters::prelude::*;
 

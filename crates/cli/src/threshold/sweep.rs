@@ -4,7 +4,7 @@ use super::report::Answer;
 use super::request::{Request, Sweep};
 use crate::failure::{Failure, UNDECIDED};
 use crate::session::Session;
-use lindstedt::coeff::ball::Balls;
+use lindstedt::number::ball::Balls;
 use lindstedt_melnikov::{Class, FastPoint, Real, surface};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,9 +1,9 @@
 //! Reading reference numbers; comparison to a number of digits.
 
-use lindstedt_coeff::ball::Balls;
 use lindstedt_impact::complex::Complex;
 use lindstedt_impact::parameters::{Branch, Exact, ExactParameters};
 use lindstedt_impact::real::{Certified, Real};
+use lindstedt_number::ball::Balls;
 use rug::ops::Pow;
 use rug::{Float, Rational};
 use serde_json::Value;

@@ -1,10 +1,10 @@
 //! The rings of coefficients of an averaged expansion: numbers or parameters.
 
 use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
-use lindstedt_coeff::ball::ring::{BallRing, Enclosure};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{PolynomialRing, Symbol};
+use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use rug::Rational;
 
 /// What is asked of a ring of coefficients besides its operations.

@@ -6,9 +6,9 @@ use super::values::constant;
 use crate::{Error, Progress, Value};
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePower};
-use lindstedt_coeff::ball::Balls;
-use lindstedt_coeff::ball::ring::{BallRing, Enclosure};
 use lindstedt_equation::{Expression, Problem};
+use lindstedt_number::ball::Balls;
+use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use rug::Float;
 use std::collections::BTreeMap;
 

@@ -3,14 +3,12 @@
 use super::coefficients::{Coefficients, with_angles};
 use super::values::{Given, collect, constant, enclosed};
 use super::{Averaging, AveragingSettings, Coefficient, RateTerm};
+use crate::constants::rational;
 use crate::derivation::{check_delays, unknown_parameter};
-use crate::number::rational;
 use crate::{Error, Progress};
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials, AmplitudePower};
-use lindstedt_coeff::ball::Balls;
-use lindstedt_coeff::ball::ring::{BallRing, Enclosure};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_equation::{Expression, Problem};
@@ -18,6 +16,8 @@ use lindstedt_expand::{
     AveragedExpansion, Binding, Excitation, ExpandError, average as expand_average, check_averaged,
     compile, linear_part,
 };
+use lindstedt_number::ball::Balls;
+use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_phase::{Delay, Torus};
 use rug::Rational;
 use std::collections::BTreeSet;

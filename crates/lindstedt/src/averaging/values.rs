@@ -3,9 +3,9 @@
 use super::Coefficient;
 use crate::{Error, Number, Status, Value};
 use lindstedt_algebra::RationalAlgebra;
-use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::digits::{decimal, error_string};
 use lindstedt_equation::Expression;
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::digits::{decimal, error_string};
 use std::collections::BTreeSet;
 
 /// A number from its enclosure: all digits are certain, or it is zero to twice the digits.

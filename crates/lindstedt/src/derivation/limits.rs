@@ -2,8 +2,8 @@
 
 use super::{Route, Settings};
 use crate::{Error, Value};
-use lindstedt_coeff::ball::Balls;
 use lindstedt_equation::{AmplitudeRole, Expression, Function, Problem};
+use lindstedt_number::ball::Balls;
 use rug::Rational;
 use std::collections::BTreeMap;
 

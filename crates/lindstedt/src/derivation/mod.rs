@@ -4,14 +4,13 @@ pub(crate) mod limits;
 pub(crate) mod prepare;
 mod series;
 
+use crate::constants::{Constants, Number, certified};
 use crate::multimodular::{self, RationalBinding};
-use crate::number::{Constants, Number, certified};
 use crate::{Error, Value};
 pub use limits::check_parameters;
 pub(crate) use limits::{check_delays, unknown_parameter};
 use limits::{has_logarithms, limit_memory};
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring, Stop};
-use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_equation::classify::rational_root;
@@ -19,6 +18,7 @@ use lindstedt_equation::{Condition, Problem};
 use lindstedt_expand::{
     Binding, ExpandError, Expansion, Request, check, compile, expand, leading_amplitude,
 };
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::print::PrintPhase;
 use lindstedt_phase::{Lobachevsky, Trigonometric};
 use prepare::{Prepared, prepare};

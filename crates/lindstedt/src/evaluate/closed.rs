@@ -1,7 +1,7 @@
 //! Periods in closed form, as balls.
 
 use lindstedt_algebra::Stop;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Rational};
 
 /// The arithmetic-geometric mean of two positive numbers; the mean lies between the iterates.
@@ -128,7 +128,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
     use super::*;
-    use lindstedt_coeff::digits::certify;
+    use lindstedt_number::digits::certify;
 
     /// mpmath 1.3.0: 4 ellipk(sin(a/2)^2), gamma, 4 ellipk(r/(2+2r))/sqrt(1+r).
     #[test]

@@ -4,9 +4,9 @@
 //! values satisfy the same recurrences and cost O(N^2) for the power law, O(N^4/6) products for
 //! forces x F(delta ln x^2).
 
-use crate::number::sine_sum;
+use crate::constants::sine_sum;
 use lindstedt_algebra::Stop;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::lobachevsky_function::means_until;
 use rug::{Float, Integer, Rational};
 

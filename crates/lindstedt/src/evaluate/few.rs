@@ -1,8 +1,8 @@
 //! Sums of so few terms that nothing can be said about their error.
 
-use crate::number::{Number, Status};
-use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::digits::{decimal, error_string};
+use crate::constants::{Number, Status};
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::digits::{decimal, error_string};
 use lindstedt_series::resummation::{
     Estimate, Growth, Method, Outcome, ResummationError, Resummed, Sample, partial_sums,
 };

@@ -9,12 +9,12 @@ pub(crate) mod setting;
 mod solution;
 pub(crate) mod source;
 
-use crate::number::{Number, Status, certified};
+use crate::constants::{Number, Status, certified};
 use crate::{Error, Progress, Value};
 use lindstedt_algebra::Stop;
-use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::digits::{decimal, error_string};
 use lindstedt_equation::{Condition, Problem};
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::digits::{decimal, error_string};
 use lindstedt_series::resummation::{
     Growth, Kind, Method, Pade, Picture, ResummationError, Resummed, resum_until,
 };

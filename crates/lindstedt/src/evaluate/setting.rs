@@ -5,9 +5,9 @@ use crate::derivation::limits::{check_parameters, has_logarithms};
 use crate::derivation::prepare::prepare;
 use crate::{Error, Progress, Settings, Value, derive};
 use lindstedt_algebra::Stop;
-use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::classify::polynomial;
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 use std::collections::BTreeMap;
 

@@ -4,10 +4,10 @@
 use super::setting::{Form, Setting};
 use super::source::remembered;
 use super::{EvaluateSettings, Evaluation, bits_for, estimated, few};
-use crate::number::Number;
+use crate::constants::Number;
 use crate::{Derivation, Error, Progress, Solution, Value};
-use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::Problem;
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
 use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
 use lindstedt_series::resummation::{Estimate, Method, Sample, UniformMap, partial_sums};

@@ -6,7 +6,7 @@ use super::{closed, coefficients};
 use crate::derivation::limits::refuse_above;
 use crate::{Derivation, Error, Progress, Value};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_series::resummation::{Growth, Sample, UniformMap, growth};
 use rayon::prelude::*;
 use rug::{Float, Rational};

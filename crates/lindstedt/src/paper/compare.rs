@@ -3,7 +3,7 @@
 use super::Verdict;
 use crate::Value;
 use lindstedt_algebra::RationalAlgebra;
-use lindstedt_coeff::ball::Ball;
+use lindstedt_number::ball::Ball;
 use rug::ops::Pow;
 use rug::{Integer, Rational};
 

@@ -2,11 +2,11 @@
 
 use super::{Decimal, Findings, Reader, Row, Section, plain, show};
 use crate::Error;
-use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_melnikov::{
     Branch, COMPARED_AT, Comparison, Friction, MelnikovError, PaperVerdict, PolynomialFriction,
     Real, StickSlip, paper_comparison, quadrature_dissipation,
 };
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
 /// Digits of the numbers of the text.

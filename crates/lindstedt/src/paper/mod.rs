@@ -27,8 +27,8 @@ pub use trust::Trust;
 pub use vibro_impact::reread;
 
 use crate::Error;
-use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::digits::decimal;
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::digits::decimal;
 use std::sync::mpsc::{SyncSender, channel, sync_channel};
 
 /// What the comparison of a printed statement with the truth came to.

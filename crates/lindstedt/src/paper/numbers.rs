@@ -3,7 +3,7 @@
 use super::tables::{QUANTITIES, Truncations};
 use super::{Decimal, Findings, Reader, Row, Section, periods, show};
 use crate::Error;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
 /// Orders up to which truncations are tried as the source of a printed number.

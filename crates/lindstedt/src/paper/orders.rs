@@ -2,14 +2,14 @@
 
 use super::compare::{Ratio, Term, compare_sums};
 use super::{Findings, Reader, Row, periods};
-use crate::number::Constants;
+use crate::constants::Constants;
 use crate::{Derivation, Error, Progress, Settings, Solution, derive};
 use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
-use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::digits::decimal;
 use lindstedt_coeff::print::Style;
 use lindstedt_coeff::{Polynomial, PolynomialRing};
 use lindstedt_expand::{ExpandError, Expansion};
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::digits::decimal;
 use lindstedt_phase::evaluate::lobachevsky;
 use lindstedt_phase::lobachevsky::LobachevskyElement;
 use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};

@@ -7,11 +7,11 @@ use super::pendulum_results::{self, OMEGA_1, in_printed_symbols, results};
 use super::power_law::vocabulary;
 use super::{Findings, Reader, Row, Section, periods, plain, show};
 use crate::Error;
-use crate::number::sine_sum;
+use crate::constants::sine_sum;
 use lindstedt_algebra::{RationalAlgebra, Ring};
-use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{PolynomialRing, Symbol};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::{Integer, Rational};
 
 /// Terms of the sine series: 1/121! is below 10^-200.

@@ -3,7 +3,7 @@
 use super::numbers::{approximation, percent, times_two_pi, truncations};
 use super::tables::{QUANTITIES, Truncations};
 use super::{Decimal, Row, periods, plain, show};
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
 /// (51) as printed, at amplitude 1.

@@ -7,9 +7,9 @@ use super::tables::{QUANTITIES, Truncations};
 use super::{Row, periods, show};
 use crate::energy;
 use lindstedt_algebra::{RationalAlgebra, Ring};
-use lindstedt_coeff::ball::Balls;
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
+use lindstedt_number::ball::Balls;
 use rug::Rational;
 
 /// The printed symbols as formal parameters of the ring of results.

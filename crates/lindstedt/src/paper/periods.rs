@@ -1,6 +1,6 @@
 //! Periods and forces by routes that share nothing with the expansions.
 
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Integer, Rational};
 
 /// The exact period of x'' + x^n = 0, x(0) = 1, x'(0) = 0, for the exponent

@@ -3,8 +3,8 @@
 use super::melnikov::{failed, oscillator};
 use super::{Reader, Section, Table, plain, show};
 use crate::Error;
-use lindstedt_coeff::ball::Balls;
 use lindstedt_melnikov::{Monomial, OrbitDescription, PolynomialFriction, Real, StickSlip};
+use lindstedt_number::ball::Balls;
 use rug::{Complete, Rational};
 
 /// How many points each identity is evaluated at.

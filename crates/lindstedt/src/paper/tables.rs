@@ -1,12 +1,12 @@
 //! What the method really gives: partial sums against exact periods.
 
 use super::{Reader, Section, Table, periods};
-use crate::number::Constants;
+use crate::constants::Constants;
 use crate::{Error, Value, energy};
 use lindstedt_algebra::Ring;
-use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::digits::decimal;
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::digits::decimal;
 use rug::{Float, Rational};
 
 /// The quantity whose series is cut off.

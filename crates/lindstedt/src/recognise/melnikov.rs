@@ -8,13 +8,13 @@ use super::numeric::NumericOrbit;
 use super::{Refusal, Why, bind, missing, multiply_out, named, potential, rest};
 use crate::Value;
 use lindstedt_algebra::Stop;
-use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::monomials::{Monomial, Monomials};
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_melnikov::{
     Axis, Branch, Class, Forcing, Friction, MelnikovError, Potential, Real, StickSlip, System,
     Threshold, Verdict,
 };
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 use std::collections::BTreeMap;
 
@@ -36,7 +36,7 @@ pub enum Unperturbed {
 ///
 /// ```
 /// use lindstedt::recognise::MelnikovProblem;
-/// use lindstedt::coeff::{ball::Balls, digits::decimal};
+/// use lindstedt::number::{ball::Balls, digits::decimal};
 /// use lindstedt::{ProblemFile, recognise::all_values};
 ///
 /// let file = ProblemFile::parse(

@@ -2,9 +2,9 @@
 
 use super::in_pi::times;
 use lindstedt_algebra::Stop;
-use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_melnikov::{Forcing, ForcingWork, Friction, MelnikovError, Real};
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_simulate::{Digits, Trajectory};
 use rug::{Float, Rational};
 

@@ -6,11 +6,11 @@ use super::melnikov::OrbitThreshold;
 use super::motion::Motion;
 use super::{PI, Refusal, potential};
 use lindstedt_algebra::Stop;
-use lindstedt_coeff::ball::{Ball, Balls};
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::Monomials;
 use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_melnikov::{Class, Forcing, Friction, MelnikovError, Real, Threshold};
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_simulate::{
     Digits, Integrator, Model, Parameters, Quantity, Report, Settings, Trajectory,
 };

@@ -4,9 +4,9 @@ use super::Reason;
 use crate::Error;
 use crate::evaluate::setting::Setting;
 use crate::verify::quantity;
-use lindstedt_coeff::ball::Balls;
 use lindstedt_equation::{AmplitudeRole, Condition, Expression};
 use lindstedt_expand::ExpandError;
+use lindstedt_number::ball::Balls;
 use lindstedt_simulate::{
     Digits, Doubles, EventKind, Integrator, Model, Parameters, Real, Report, Settings,
 };

@@ -4,7 +4,7 @@ use super::{Reason, Summation};
 use crate::Error;
 use crate::evaluate::source::{Coefficients, Source};
 use lindstedt_algebra::Stop;
-use lindstedt_coeff::ball::Balls;
+use lindstedt_number::ball::Balls;
 use lindstedt_series::resummation::{
     Estimate, Method, ResummationError, Sample, Singularity, partial_sums, resum_until,
 };

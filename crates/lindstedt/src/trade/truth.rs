@@ -5,7 +5,7 @@ use super::{Method, Reason, Row, simulation};
 use crate::evaluate::setting::Setting;
 use crate::evaluate::source::Source;
 use crate::{Error, Value};
-use lindstedt_coeff::ball::Balls;
+use lindstedt_number::ball::Balls;
 use rug::{Float, Rational};
 
 /// T(1) of x'' - (1 - x^2) x' + x = 0 to 98 digits: mpmath 1.3.0 with 125 digits, Taylor series of

@@ -4,9 +4,9 @@ use super::{Comparison, VerifySettings, quantities};
 use crate::averaging::AveragingSettings;
 use crate::averaging::numbers::{Harmonic, Numbers, Terms, defaults, numbers};
 use crate::{Error, Progress};
-use lindstedt_coeff::ball::Balls;
 use lindstedt_equation::{Expression, Function, Problem};
 use lindstedt_expand::ExpandError;
+use lindstedt_number::ball::Balls;
 use lindstedt_simulate::{
     Digits, Integrator, Model, Outcome, Parameters, Real, Report, Settings as Precision, System,
     Trajectory,

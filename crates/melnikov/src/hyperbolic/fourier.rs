@@ -1,7 +1,7 @@
 //! Exact Fourier integrals over the line, and their values in balls.
 
 use super::Hyperbolic;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 use std::fmt;
 

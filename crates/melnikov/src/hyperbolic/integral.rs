@@ -1,7 +1,7 @@
 //! Exact integrals over the line.
 
 use super::Hyperbolic;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 use std::fmt;
 

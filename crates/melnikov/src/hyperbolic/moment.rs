@@ -1,7 +1,7 @@
 //! Integrals with powers of the argument.
 
 use super::line_fourier;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::{Integer, Rational};
 
 /// c_0 + c_1 pi + c_2 pi^2 + ... with rational coefficients, without trailing zeros.

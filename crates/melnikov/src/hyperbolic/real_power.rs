@@ -2,7 +2,7 @@
 
 use super::fourier::tanh_recurrence;
 use crate::quadrature::{Strip, trapezoid};
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Rational};
 
 /// Gamma(x) for rational x > 0; `None` otherwise or where it overflows.

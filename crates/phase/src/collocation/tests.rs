@@ -5,8 +5,8 @@
 use super::*;
 use crate::lobachevsky_function::{Point, lobachevsky};
 use lindstedt_algebra::{Elementary, FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
-use lindstedt_coeff::ball::Balls;
 use lindstedt_coeff::floats::{Doubles, Floats};
+use lindstedt_number::ball::Balls;
 use rug::{Float, Rational};
 
 fn doubles() -> Collocation<Doubles> {

@@ -11,7 +11,7 @@
 //! test against the certified function: at most 3.0 ulp, see `worst_error_in_ulps`.
 
 use super::{Point, lobachevsky};
-use lindstedt_coeff::ball::Balls;
+use lindstedt_number::ball::Balls;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Below this |x| the three-part reduction modulo pi is exact to about 2^-100.
@@ -197,7 +197,7 @@ mod tests {
 
     use super::super::log_cosine;
     use super::*;
-    use lindstedt_coeff::ball::Ball;
+    use lindstedt_number::ball::Ball;
     use rug::Float;
 
     fn point(x: f64) -> Point {

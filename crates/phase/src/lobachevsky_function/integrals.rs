@@ -28,7 +28,7 @@
 //!
 //! For |x| <= pi/4 and y <= pi/4 the ratio of both series is at most 1/2.
 
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Float;
 
 /// Ratios above this mean that the reduced argument is not known well enough to sum the series.

@@ -19,8 +19,8 @@ pub use double::lobachevsky_f64;
 pub use point::{Point, cosine, log_cosine, sine};
 
 use lindstedt_algebra::Stop;
-use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::digits::{CertifyError, certify};
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::digits::{CertifyError, certify};
 use point::Reduced;
 
 /// Guard bits on top of log2 of the number of terms: the series lose about 4 ulp per term, the
@@ -88,7 +88,7 @@ fn eta_value(k: u32, balls: Balls) -> Ball {
 /// and the reduction of x modulo pi, which takes as many more bits of pi as |x| has.
 ///
 /// ```
-/// use lindstedt_coeff::{ball::Balls, digits::decimal};
+/// use lindstedt_number::{ball::Balls, digits::decimal};
 /// use lindstedt_phase::lobachevsky_function::{Point, lobachevsky};
 /// use rug::Rational;
 ///
@@ -130,7 +130,7 @@ fn with_sign(value: Ball, reduced: &Reduced, balls: Balls) -> Ball {
 /// The functions Lambda_1, ..., Lambda_max_m at many points: owns the means mu_m.
 ///
 /// ```
-/// use lindstedt_coeff::{ball::Balls, digits::decimal};
+/// use lindstedt_number::{ball::Balls, digits::decimal};
 /// use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
 /// use rug::Rational;
 ///

@@ -1,6 +1,6 @@
 //! Points of the real line, given exactly, and their reduction modulo pi.
 
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::float::Round;
 use rug::{Float, Integer, Rational};
 

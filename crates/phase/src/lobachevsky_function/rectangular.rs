@@ -11,7 +11,7 @@
 //! products of full length and N multiplications and divisions by machine words remain
 //! (concurrent summation: D. M. Smith, Math. Comp. 52 (1989) 131).
 
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::float::Round;
 use rug::{Float, Integer};
 

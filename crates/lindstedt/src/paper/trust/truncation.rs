@@ -4,7 +4,7 @@ use super::super::tables::{Quantity, Truncations};
 use super::super::{Reader, Section, periods};
 use super::Finding;
 use crate::Error;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_series::resummation::Map;
 use rug::{Float, Rational};
 

@@ -5,7 +5,6 @@ use super::FAILED;
 use crate::Error;
 use crate::paper::trust::{Rate, Sample};
 use crate::paper::{Findings, Reader, Row, Section, Table};
-use lindstedt_coeff::digits::decimal;
 use lindstedt_impact::characteristic::{Characteristic, Kick};
 use lindstedt_impact::equivalent::{Drive, equivalent_orbit};
 use lindstedt_impact::flow::{Flow, rates};
@@ -16,6 +15,7 @@ use lindstedt_impact::parameters::{Branch, Exact, ExactParameters, Parameters};
 use lindstedt_impact::prediction::{Variant, predict, predicted_flow, uncontrolled_map};
 use lindstedt_impact::real::Certified;
 use lindstedt_impact::zeros::exact_verdict;
+use lindstedt_number::digits::decimal;
 use rayon::prelude::*;
 use rug::Rational;
 

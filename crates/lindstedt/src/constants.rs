@@ -1,9 +1,9 @@
 //! Numbers with their class, and the evaluation of exact constants.
 
 use crate::{Error, Value};
-use lindstedt_coeff::ball::{Ball, Balls};
-use lindstedt_coeff::digits::{CertifyError, certify};
 use lindstedt_coeff::{Polynomial, Symbol};
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::digits::{CertifyError, certify};
 use lindstedt_phase::lobachevsky_function::means;
 use rug::Rational;
 use std::collections::BTreeMap;

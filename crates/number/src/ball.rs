@@ -46,7 +46,7 @@ pub struct Ball {
 /// is counted in the radius.
 ///
 /// ```
-/// use lindstedt_coeff::ball::Balls;
+/// use lindstedt_number::ball::Balls;
 /// use rug::Rational;
 ///
 /// let balls = Balls::new(128);

@@ -5,8 +5,6 @@
 //! a coefficient it asks as `may_vanish` and `reciprocal`, both of which are honest here.
 
 use crate::ball::{Ball, Balls};
-use crate::digits::decimal;
-use crate::print::{Print, Style, Term};
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::Rational;
 
@@ -68,25 +66,5 @@ impl RationalAlgebra for BallRing {
     /// The midpoint of an exact ball.
     fn as_rational(&self, a: &Enclosure) -> Option<Rational> {
         a.0.is_exact().then(|| a.0.midpoint().to_rational()).flatten()
-    }
-}
-
-/// Digits of a printed enclosure; the numbers of a result are printed with their errors instead.
-const PRINTED_DIGITS: usize = 17;
-
-impl Print for BallRing {
-    /// The midpoint, as far as it is known; `[0]` for an enclosure of zero.
-    fn print_terms(&self, a: &Enclosure, _: Style) -> Vec<Term> {
-        if self.is_zero(a) {
-            return Vec::new();
-        }
-        let known = a.0.relative_accuracy_bits().max(0) as f64 * std::f64::consts::LOG10_2;
-        let digits = (known as usize).clamp(1, PRINTED_DIGITS);
-        let shown = decimal(&a.0, digits).unwrap_or_else(|| "[0]".to_owned());
-        let (sign, magnitude) = match shown.strip_prefix('-') {
-            Some(rest) => (-1, rest.to_owned()),
-            None => (1, shown),
-        };
-        vec![Term { coefficient: Rational::from(sign), factors: vec![magnitude] }]
     }
 }

@@ -20,7 +20,7 @@ pub struct Complex {
 /// The context of complex ball arithmetic: real balls of one precision.
 ///
 /// ```
-/// use lindstedt_coeff::ball::{Balls, ComplexBalls};
+/// use lindstedt_number::ball::{Balls, ComplexBalls};
 /// use rug::Rational;
 ///
 /// let complex = ComplexBalls::new(Balls::new(128));

@@ -1,7 +1,7 @@
 //! Elementary functions and constants of certified balls, by digits.
 
 use divan::Bencher;
-use lindstedt_coeff::ball::{Ball, Balls};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
 fn main() {

@@ -48,7 +48,7 @@ pub enum CertifyError {
 /// `None` where the radius is too large, or for more than 10^7 digits.
 ///
 /// ```
-/// use lindstedt_coeff::{ball::Balls, digits::decimal};
+/// use lindstedt_number::{ball::Balls, digits::decimal};
 ///
 /// let pi = Balls::new(64).pi();
 /// assert_eq!(decimal(&pi, 10).as_deref(), Some("3.141592654"));
@@ -98,12 +98,12 @@ pub fn error_string(ball: &Ball, printed: &str) -> String {
 /// last answer was `None`.
 ///
 /// ```
-/// use lindstedt_coeff::digits::certify;
+/// use lindstedt_number::digits::certify;
 ///
 /// let (digits, error) = certify(20, 1000, |balls| balls.zeta(3))?;
 /// assert_eq!(digits, "1.2020569031595942854");
 /// assert_eq!(error, "2.7e-22");
-/// # Ok::<(), lindstedt_coeff::digits::CertifyError>(())
+/// # Ok::<(), lindstedt_number::digits::CertifyError>(())
 /// ```
 pub fn certify(
     digits: usize,
