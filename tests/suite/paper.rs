@@ -3,7 +3,7 @@
 #![allow(clippy::panic, reason = "a test that panics has failed")]
 
 use lindstedt::number::ball::Balls;
-use lindstedt::paper::{Decimal, Findings, Options, Paper, Row, Section, Verdict, read};
+use lindstedt_paper::{Decimal, Findings, Options, Paper, Row, Section, Verdict, read};
 use rug::Rational;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;

@@ -6,8 +6,8 @@
 use lindstedt::impact_map::{ImpactMap, characteristic, coefficient, replace};
 use lindstedt::number::ball::Balls;
 use lindstedt::number::ball::ring::{BallRing, Enclosure};
-use lindstedt::paper::{Options, Row, Section, Verdict, read, reread};
 use lindstedt::quotient::Quotient;
+use lindstedt_paper::{Options, Row, Section, Verdict, read, reread};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;

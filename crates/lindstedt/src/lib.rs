@@ -23,7 +23,6 @@ pub mod impact_map;
 pub mod multimodular;
 pub mod numeric;
 mod oscillator;
-pub mod paper;
 pub mod quotient;
 pub mod recognise;
 pub mod trade;

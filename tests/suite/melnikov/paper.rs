@@ -1,6 +1,6 @@
 //! The misprints of section 3 are found by comparison.
 
-use lindstedt_melnikov::{PaperVerdict, paper_comparison};
+use lindstedt_paper::{PaperVerdict, paper_comparison};
 
 /// Independent values of `mathematics/stick-slip.md`, section 2 (quadrature to 26 digits there).
 #[test]

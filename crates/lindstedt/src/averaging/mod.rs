@@ -139,8 +139,21 @@ pub fn average(
     task.certified(observer)
 }
 
-/// The averaged expansion with every parameter a symbol, as elements of their field.
-pub(crate) fn formulas(
+/// The averaged expansion with every parameter a symbol: [`average`] as elements of the field of rational
+/// functions of the parameters, sines and cosines, exact and substituted into its equation.
+///
+/// x = a cos psi + ..., da/dt = sum eps^n A_n(a), dpsi/dt = sum eps^n B_n(a) with B_0 = omega_0, n up to `order`.
+///
+/// # Errors
+/// As [`average`]; the expansion grows with each symbol (see its memory limit).
+///
+/// ```
+/// use lindstedt::{averaging::formulas, problems};
+/// let (_, expansion) = formulas(&problems::vibro_impact::problem(), 1)?;
+/// assert_eq!(expansion.amplitude_rate.len(), 2);
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
+pub fn formulas(
     problem: &Problem,
     order: usize,
 ) -> Result<(ParameterField, AveragedExpansion<Torus<ParameterField>>), Error> {

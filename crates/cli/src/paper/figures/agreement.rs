@@ -3,7 +3,7 @@
 use super::{Figure, GREEN, GREY, PALE, SIZE, VERMILION, failed};
 use crate::failure::Failure;
 use crate::simulate::plot::{Drawn, FINE, stroke};
-use lindstedt::paper::trust::{Rate, Region};
+use lindstedt_paper::trust::{Rate, Region};
 use plotters::prelude::*;
 
 const HEIGHT: u32 = 250;

@@ -6,20 +6,9 @@ mod orders;
 mod region;
 
 use crate::failure::{Failure, NO_ANSWER};
-use lindstedt::paper::Trust;
+use lindstedt_paper::Trust;
+use lindstedt_paper::page::Figure;
 use plotters::prelude::RGBColor;
-
-/// A figure of the summary.
-pub struct Figure {
-    /// Its name as a file, without ".svg".
-    pub name: &'static str,
-    /// The section of the paper it belongs to.
-    pub section: u32,
-    /// What it shows.
-    pub caption: String,
-    /// The picture.
-    pub svg: String,
-}
 
 /// Letters stay readable when a page is narrow: the pictures are small and are scaled up.
 const SIZE: (u32, u32) = (640, 420);

@@ -3,7 +3,7 @@
 use super::{BLUE, Figure, GREY, SIZE, VERMILION};
 use crate::failure::Failure;
 use crate::simulate::plot::{FINE, Mark, sized, stroke};
-use lindstedt::paper::trust::{Onset, OnsetPoint};
+use lindstedt_paper::trust::{Onset, OnsetPoint};
 use plotters::prelude::*;
 
 /// The band in which a threshold is called right.

@@ -3,7 +3,7 @@
 use super::{BLUE, Figure, GREEN, ORANGE, PURPLE, SIZE, VERMILION};
 use crate::failure::Failure;
 use crate::simulate::plot::{FINE, Mark, sized, stroke};
-use lindstedt::paper::trust::Truncation;
+use lindstedt_paper::trust::Truncation;
 use plotters::prelude::*;
 
 /// The cases drawn: their name, whether re-expanded, and the colour.

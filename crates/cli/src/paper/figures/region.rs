@@ -3,9 +3,9 @@
 use super::{Figure, GREEN, PALE, SKY, VERMILION, failed};
 use crate::failure::Failure;
 use crate::simulate::plot::{Drawn, FINE, stroke};
-use lindstedt::impact::chart::{Chart, Point};
-use lindstedt::impact::map::Verdict;
-use lindstedt::paper::trust::Region;
+use lindstedt_impact::chart::{Chart, Point};
+use lindstedt_impact::map::Verdict;
+use lindstedt_paper::trust::Region;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 

@@ -1,0 +1,323 @@
+//! What section 3 reports of its simulations, simulated again.
+
+use super::trust::Onset;
+use super::{Findings, Reader, Row, Section, Table, plain};
+use lindstedt::Error;
+use lindstedt_equation::Expression;
+use lindstedt_problems::stick_slip;
+use lindstedt_simulate::{
+    Doubles, Integrator, LyapunovSettings, Model, Parameters, PoincareMap, Quantity, Report,
+    Segment, Settings, System, largest_lyapunov_exponent, zero_one,
+};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+
+/// The equation of the data card.
+pub(super) fn model() -> Result<Model, Error> {
+    let equation: Expression = stick_slip::equation();
+    Ok(Model::second_order(&equation)?.with_small("eps"))
+}
+
+/// The paper's values: the defaults of the data card (eps = 1: the paper names none).
+pub(super) fn parameters() -> Result<Parameters, Error> {
+    let mut parameters = Parameters::new();
+    for card in stick_slip::problem().parameters {
+        parameters.set(&card.name, Quantity::parse(&card.default).ok_or(Error::NoValue)?);
+    }
+    Ok(parameters)
+}
+
+/// Attractors coexist: this is on the side of the large orbit in the right well, which sticks.
+const START: [f64; 2] = [0.11, 0.05];
+/// Two points of the section that are so near are the same.
+const SAME: f64 = 1e-5;
+/// The longest period looked for, in periods of the forcing.
+const LONGEST: usize = 64;
+
+/// A long orbit at one gamma.
+struct Orbit {
+    gamma: &'static str,
+    /// Periods of the forcing after which it closes; nothing if it does not.
+    period: Option<usize>,
+    exponent: f64,
+    /// Its estimated standard error.
+    error: f64,
+    /// Share of the time stuck.
+    stuck: f64,
+    least: f64,
+    largest: f64,
+    /// Growth rate of the 0-1 test, of every second point of the section.
+    growth: f64,
+}
+
+fn compile(gamma: &str, linearised: bool) -> Result<System<Doubles>, Error> {
+    let mut parameters = parameters()?;
+    parameters.set("gamma", Quantity::parse(gamma).ok_or(Error::NoValue)?);
+    let model = model()?;
+    let model = if linearised { model.linearised() } else { model };
+    Ok(model.compile(Doubles, &parameters)?)
+}
+
+impl Orbit {
+    fn follow(gamma: &'static str, transient: u32, kept: u32) -> Result<Self, Error> {
+        let settings = Settings::for_digits(16);
+        let system = compile(gamma, false)?;
+        let section = lindstedt_simulate::Section::Period(PI);
+        let mut map = PoincareMap::new(&system, &0.0, &START, section, settings)?;
+        let mut points = Vec::new();
+        for n in 0..transient + kept.max(1) {
+            let point = map.next_point()?.ok_or(Error::NoValue)?;
+            if n >= transient {
+                points.push([point.state[0], point.state[1]]);
+            }
+        }
+        let first = points.first().copied().ok_or(Error::NoValue)?;
+        let near = |p: &[f64; 2]| (p[0] - first[0]).abs() + (p[1] - first[1]).abs() < SAME;
+        let period = (1..=LONGEST).find(|n| points.get(*n).is_some_and(near));
+        let (stuck, least, largest) = on_the_way(&system, first, kept.min(WATCHED))?;
+        let every_second: Vec<f64> = points.iter().step_by(2).map(|p| p[0]).collect();
+        let integration = settings;
+        let averaging = LyapunovSettings { interval: PI, transient, averaged: kept, integration };
+        let exponent = largest_lyapunov_exponent(
+            &compile(gamma, true)?,
+            &0.0,
+            &START,
+            &averaging,
+            &mut |_| ControlFlow::Continue(()),
+        )?;
+        let exponent = exponent.ok_or(Error::NoValue)?;
+        Ok(Self {
+            gamma,
+            period,
+            exponent: exponent.value,
+            error: exponent.error,
+            stuck,
+            least,
+            largest,
+            growth: zero_one(&every_second).map_or(f64::NAN, |test| test.k),
+        })
+    }
+
+    /// An exponent is positive when it is many standard errors above zero.
+    fn is_chaotic(&self) -> bool {
+        self.period.is_none() && self.exponent > 5.0 * self.error
+    }
+
+    fn is_periodic(&self) -> bool {
+        self.period.is_some() && self.exponent < 0.0
+    }
+
+    /// Both wells are at +-1.
+    fn visits_both_wells(&self) -> bool {
+        self.least < -0.5 && self.largest > 0.5
+    }
+
+    fn shown_period(&self) -> String {
+        self.period.map_or("none".to_owned(), |n| n.to_string())
+    }
+
+    fn shown_exponent(&self) -> String {
+        format!("{:+.4} +- {:.0e}", self.exponent, self.error)
+    }
+}
+
+/// The share of time stuck, and the range of x, over some periods of the forcing.
+fn on_the_way(
+    system: &System<Doubles>,
+    start: [f64; 2],
+    periods: u32,
+) -> Result<(f64, f64, f64), Error> {
+    let mut flow = Integrator::new(system, &0.0, &start, Settings::for_digits(16))?;
+    let (mut stuck, mut least, mut largest) = (0.0, f64::INFINITY, f64::NEG_INFINITY);
+    let end = PI * f64::from(periods.max(1));
+    flow.advance(&end, &mut |report| {
+        if let Report::Segment(segment) = report {
+            if segment.modes.contains(&0) {
+                stuck += *segment.length;
+            }
+            for x in [segment.value(0, segment.length), turning_point(segment)] {
+                least = least.min(x);
+                largest = largest.max(x);
+            }
+        }
+        ControlFlow::Continue(())
+    })?;
+    Ok((stuck / end, least, largest))
+}
+
+/// x where x' changes its sign within a step, by bisection; x at its end where it does not.
+fn turning_point(segment: &Segment<'_, Doubles>) -> f64 {
+    let (mut low, mut high) = (0.0, *segment.length);
+    let rising = |s: &f64| segment.value(1, s) > 0.0;
+    let before = rising(&low);
+    if rising(&high) != before {
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if rising(&middle) == before { low = middle } else { high = middle }
+        }
+    }
+    segment.value(0, &high)
+}
+
+/// Periods over which the share stuck and the range of x are taken.
+const WATCHED: u32 = 300;
+
+/// How many orbits are followed.
+pub(super) const ORBITS: usize = 4;
+/// The values of gamma: those of the paper, and one after the first doubling.
+const GAMMAS: [&str; ORBITS] = ["0.6", "0.615", "0.65", "1.2"];
+const EPS: &str = "at eps = 1: the paper names no value";
+
+/// Reads what is reported of the simulations.
+pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
+    let (transient, kept) = reader.options.periods;
+    for gamma in GAMMAS {
+        if !reader.goes_on(&format!("simulation at gamma = {gamma}")) {
+            return Ok(false);
+        }
+    }
+    let follow = |gamma| Orbit::follow(gamma, transient, kept);
+    let orbits: Vec<Orbit> = GAMMAS.into_par_iter().map(follow).collect::<Result<_, _>>()?;
+    let [periodic, doubled, slight, wells] = &orbits[..] else { return Err(Error::NoValue) };
+    let exponent =
+        |o: &Orbit| format!("largest Lyapunov exponent {} (estimated)", o.shown_exponent());
+    let closes = |o: &Orbit| {
+        let shown = o.shown_period();
+        format!("at gamma = {} the orbit closes after {shown} periods of the forcing", o.gamma)
+    };
+    section.rows.extend([
+        plain(
+            "gamma = 0.6",
+            "for gamma = 0.6 we have obtained a periodic orbit",
+            closes(periodic),
+            exponent(periodic),
+            periodic.is_periodic(),
+            &format!("{EPS}; x(0) = {}, x'(0) = {}: attractors coexist", START[0], START[1]),
+        ),
+        plain(
+            "doubling",
+            "with an increase in gamma it doubles its period",
+            format!("{}; {}", closes(periodic), closes(doubled)),
+            exponent(doubled),
+            doubled.period == periodic.period.map(|n| 2 * n),
+            "the same attractor at two values of gamma",
+        ),
+        plain(
+            "gamma = 0.65",
+            "closely to 0.65 a very slight chaotic behaviour has been observed",
+            exponent(slight),
+            format!(
+                "0-1 test on every second point of the section: K = {:.3} (estimated)",
+                slight.growth
+            ),
+            slight.is_chaotic() && slight.growth > 0.9,
+            &format!(
+                "in one well only: {:.3} < x < {:.3} over {} periods (estimated), by period doubling; not \
+                 the tangle that (27) is about",
+                slight.least,
+                slight.largest,
+                kept.min(WATCHED)
+            ),
+        ),
+        plain(
+            "gamma = 1.2",
+            "for gamma = 1.2 two-well potential chaos is shown",
+            exponent(wells),
+            format!(
+                "{:.3} < x < {:.3} over {} periods: both wells (estimated)",
+                wells.least,
+                wells.largest,
+                kept.min(WATCHED)
+            ),
+            wells.is_chaotic() && wells.visits_both_wells(),
+            EPS,
+        ),
+        plain(
+            "sticks",
+            "in all of the phase portraits the cusps corresponding to the sticks are visible",
+            format!(
+                "share of the time stuck: {:.3}, {:.3} and {:.3} at gamma = 0.6, 0.65 and 1.2 \
+                 (estimated)",
+                periodic.stuck, slight.stuck, wells.stuck
+            ),
+            "events of the integration: sticking where x' = v* and the force is below eps T0"
+                .to_owned(),
+            [periodic, slight, wells].iter().all(|o| o.stuck > 0.0),
+            "Fig. 1 itself prints no parameters",
+        ),
+    ]);
+    section.tables.push(table(&orbits, transient, kept));
+    Ok(true)
+}
+
+fn table(orbits: &[Orbit], transient: u32, kept: u32) -> Table {
+    let columns = [
+        "gamma",
+        "period",
+        "Lyapunov exponent",
+        "K of the 0-1 test",
+        "stuck",
+        "least x",
+        "largest x",
+    ];
+    let row = |o: &Orbit| {
+        vec![
+            o.gamma.to_owned(),
+            o.shown_period(),
+            o.shown_exponent(),
+            format!("{:.3}", o.growth),
+            format!("{:.3}", o.stuck),
+            format!("{:.4}", o.least),
+            format!("{:.4}", o.largest),
+        ]
+    };
+    Table {
+        name: "simulations".to_owned(),
+        title: "The orbits of the text, simulated at eps = 1 (estimated)".to_owned(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: orbits.iter().map(row).collect(),
+        notes: vec![
+            format!("{transient} periods of the forcing left out, {kept} averaged over; doubles"),
+            "the period is in periods of the forcing, the exponent per unit of time with its \
+             standard error; K of every second stroboscopic point, near 1 for chaos"
+                .to_owned(),
+            format!("stuck, least and largest x over {} periods", kept.min(WATCHED)),
+        ],
+    }
+}
+
+/// What agreement of an onset with the prediction is worth the name.
+const GOOD: f64 = 0.1;
+
+/// The row of the conclusion: whether the onset at eps = 1 is the predicted one.
+pub(super) fn agreement(onset: &Onset) -> Result<Row, Error> {
+    let last = onset.points.last().ok_or(Error::NoValue)?;
+    let shown =
+        |side: Option<(f64, f64)>| side.map_or("none".to_owned(), |s| format!("{:.5}", s.0));
+    let far =
+        |side: Option<(f64, f64)>| side.is_none_or(|s| (s.0 / onset.threshold - 1.0).abs() > GOOD);
+    let findings = Findings::holds(!far(last.right) && !far(last.left));
+    Ok(Row {
+        label: "good agreement".to_owned(),
+        printed:
+            "the obtained results illustrate practically a good agreement with the analytical \
+                  prediction"
+                .to_owned(),
+        derived: format!(
+            "gamma_c = {:.5}; the tangency that is the first one at small eps, followed to eps = {}: \
+             gamma = {} (right loop), {} (left loop) (estimated)",
+            onset.threshold,
+            last.eps,
+            shown(last.right),
+            shown(last.left)
+        ),
+        independent: "unstable manifold of the saddle orbit, followed event by event".to_owned(),
+        verdict: findings.verdict(),
+        evidence: format!(
+            "the orbit that becomes chaotic near 0.65 stays in the right well, whose loop is first \
+             tangent at {} (estimated); what is seen near 0.65 is not what (27) predicts",
+            shown(last.right)
+        ),
+    })
+}

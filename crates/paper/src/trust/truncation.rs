@@ -1,0 +1,164 @@
+//! Section 4: the true error of the period against the order of the delta expansion.
+
+use super::super::tables::{Quantity, Truncations};
+use super::super::{Reader, Section, periods};
+use super::Finding;
+use lindstedt::Error;
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_series::resummation::Map;
+use rug::{Float, Rational};
+
+/// The error of T, cut off after each order, at one value of delta.
+#[derive(Clone, Debug)]
+pub struct Truncation {
+    /// "n = 3" or "pendulum".
+    pub name: String,
+    /// delta.
+    pub delta: Rational,
+    /// |T_N/T - 1| of the partial sum of order N, at index N. Certified, rounded to a double.
+    pub errors: Vec<f64>,
+    /// The same coefficients, re-expanded in u = delta/(1 + delta) with the factor sqrt(1 - u);
+    /// empty for the pendulum. Estimated: no rounding errors are bounded.
+    pub resummed: Vec<f64>,
+}
+
+impl Truncation {
+    /// The order with the smallest error of the partial sum.
+    #[must_use]
+    pub fn best(&self) -> Option<(usize, f64)> {
+        self.errors.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    fn last(&self) -> Option<(usize, f64)> {
+        self.errors.iter().copied().enumerate().next_back()
+    }
+}
+
+fn errors(
+    sums: impl Iterator<Item = Option<Ball>>,
+    exact: &Ball,
+    balls: Balls,
+) -> Option<Vec<f64>> {
+    sums.map(|sum| Some(balls.div(&balls.sub(&sum?, exact), exact)?.abs_upper().to_f64())).collect()
+}
+
+/// The errors of n = 3, 5, 7, 9 and of the pendulum.
+pub(in super::super) fn read(reader: &mut Reader<'_>, _: &mut Section) -> Result<bool, Error> {
+    let balls = reader.balls;
+    let order = reader.options.table_order.max(6);
+    let series = Truncations::power_law(order, balls).ok_or(Error::NoValue)?;
+    let mut list = Vec::new();
+    for n in [3, 5, 7, 9] {
+        let exact = periods::power_law_period(&Rational::from(n), balls).ok_or(Error::NoValue)?;
+        let delta = Rational::from((n - 1, 2));
+        let sums = (0..=order).map(|k| series.period(Quantity::Period, k, &delta));
+        list.push(Truncation {
+            name: format!("n = {n}"),
+            errors: errors(sums, &exact, balls).ok_or(Error::NoValue)?,
+            resummed: uniform(&series, &delta, &exact, balls),
+            delta,
+        });
+    }
+    let one = Rational::from(1);
+    let order = order.min(super::super::tables::PENDULUM_ORDER);
+    let series = Truncations::pendulum(order, balls).ok_or(Error::NoValue)?;
+    let exact = periods::pendulum_period(&one, balls).ok_or(Error::NoValue)?;
+    let sums = (0..=order).map(|k| series.period(Quantity::Period, k, &one));
+    list.push(Truncation {
+        name: "pendulum".to_owned(),
+        errors: errors(sums, &exact, balls).ok_or(Error::NoValue)?,
+        resummed: Vec::new(),
+        delta: one,
+    });
+    reader.trust.truncations = list;
+    Ok(true)
+}
+
+/// Partial sums of sqrt(1 - u) T(u), u = delta/(1 + delta), divided by sqrt(1 - u).
+fn uniform(series: &Truncations, delta: &Rational, exact: &Ball, balls: Balls) -> Vec<f64> {
+    let bits = balls.bits();
+    let coefficients: Vec<Float> =
+        series.coefficients(Quantity::Period).iter().map(Ball::midpoint).cloned().collect();
+    let map = Map::Rational { scale: Float::with_val(bits, 1) };
+    let half = Float::with_val(bits, 0.5);
+    let terms = map.expand(&coefficients, &half, bits);
+    let u = Float::with_val(bits, delta / Rational::from(delta + 1u32));
+    let root = Float::with_val(bits, 1 - &u).sqrt();
+    let turn = Float::with_val(bits, rug::float::Constant::Pi) * 2u32;
+    let (mut sum, mut power) = (Float::new(bits), Float::with_val(bits, 1));
+    let error = |term: Float| {
+        sum += Float::with_val(bits, &term * &power);
+        power *= &u;
+        let period = Float::with_val(bits, &sum / &root) * &turn;
+        (period / exact.midpoint() - 1u32).abs().to_f64()
+    };
+    terms.into_iter().map(error).collect()
+}
+
+pub(super) fn finding(list: &[Truncation]) -> Option<Finding> {
+    let named = |name: &str| list.iter().find(|t| t.name == name);
+    let (cubic, pendulum) = (named("n = 3")?, named("pendulum")?);
+    let share = |error: f64| match error {
+        e if e < 1e-4 => format!("{e:.0e}"),
+        e if e < 2.0 => format!("{:.2} %", 100.0 * e),
+        e => format!("{e:.0} times T"),
+    };
+    let at =
+        |t: &Truncation, order: usize| t.errors.get(order).map_or("?".to_owned(), |e| share(*e));
+    let (best, least) = pendulum.best()?;
+    let (last, error) = pendulum.last()?;
+    let outside: Vec<String> = list
+        .iter()
+        .filter(|t| t.delta > 1)
+        .filter_map(|t| {
+            let ((best, least), (last, error)) = (t.best()?, t.last()?);
+            let (least, error) = (share(least), share(error));
+            Some(format!("{}: {least} at order {best}, {error} at order {last}", t.name))
+        })
+        .collect();
+    let resummed: Vec<String> = list
+        .iter()
+        .filter_map(|t| {
+            let last = t.resummed.last()?;
+            Some(format!("{} at {}", share(*last), t.name))
+        })
+        .collect();
+    let highest = cubic.last()?.0;
+    Some(Finding {
+        section: 4,
+        method: "The small delta method, T cut off after order N",
+        trusted: vec![
+            format!(
+                "n = 3 (delta = 1, on the circle of convergence): {} at order 1, {} at order 2, {} \
+                 at order {highest}",
+                at(cubic, 1),
+                at(cubic, 2),
+                at(cubic, highest)
+            ),
+            format!(
+                "the pendulum at amplitude 1 up to order {best}: {} there, {} at order 1",
+                share(least),
+                at(pendulum, 1)
+            ),
+            format!(
+                "the same coefficients in u = delta/(1 + delta) with the factor sqrt(1 - u), for \
+                 every n computed: at order {highest} {}",
+                resummed.join(", ")
+            ),
+        ],
+        not_trusted: vec![
+            format!(
+                "outside the circle |delta| = 1 the series in delta diverges: {}",
+                outside.join("; ")
+            ),
+            format!(
+                "the pendulum beyond order {best}: the series is asymptotic, at order {last} the \
+                 error is {}",
+                share(error)
+            ),
+        ],
+        class: "errors of partial sums certified, of the re-expanded series estimated (rounding \
+                errors not bounded)"
+            .to_owned(),
+    })
+}

@@ -1,0 +1,247 @@
+//! (1)-(4): the equation of motion, by substitution in the engine's equation.
+
+use super::FAILED;
+use super::formula::Tree;
+use super::judge::Statement;
+use super::setting::Setting;
+use lindstedt::Error;
+use lindstedt::quotient::{Quotient, Quotients};
+use lindstedt_equation::{Expression, Function};
+use lindstedt_problems::vibro_impact;
+use std::sync::Arc;
+
+/// Displacements x and z, delayed ones with T; the time t occurs in angles only.
+const NAMES: [&str; 32] = [
+    "alpha",
+    "omega",
+    "c",
+    "P0",
+    "A",
+    "B",
+    "T",
+    "eps",
+    "t",
+    "x",
+    "x'",
+    "x''",
+    "xT",
+    "xT'",
+    "z",
+    "z'",
+    "z''",
+    "zT",
+    "zT'",
+    "cos(omega*t)",
+    "sin(omega*t)",
+    "cos(omega*(t - T))",
+    "sin(omega*(t - T))",
+    "m",
+    "c_1",
+    "k_1",
+    "k_2",
+    "a_1",
+    "b_1",
+    "y_0",
+    "p",
+    "R_r",
+];
+
+/// The words of (1)-(4).
+fn setting() -> Setting {
+    let pairs = [("cos(omega*t)", "sin(omega*t)"), ("cos(omega*(t - T))", "sin(omega*(t - T))")];
+    let plain = Setting::new(Quotients::new(&NAMES, &pairs));
+    let value = |name: &str| plain.field.parameter(name);
+    let [late_cos, late_sin] = [value(pairs[1].0), value(pairs[1].1)];
+    let [cos, sin] = [value(pairs[0].0), value(pairs[0].1)];
+    let mut setting = plain;
+    for (angle, cos, sin) in [("omega*t", cos, sin), ("omega*(t - T)", late_cos, late_sin)] {
+        if let Some(angle) = setting.read(angle) {
+            setting.meaning.angles.push([angle, cos, sin]);
+        }
+    }
+    setting
+}
+
+/// The engine's expression as a formula in the words above.
+fn formula(expression: &Expression) -> Option<Tree> {
+    let symbol = |name: &str| Some(Tree::Symbol(name.to_owned()));
+    let all = |list: &[Expression]| list.iter().map(formula).collect::<Option<Vec<_>>>();
+    match expression {
+        Expression::Number(q) => Some(Tree::Number(q.clone())),
+        Expression::Parameter(name) => symbol(name),
+        Expression::Small => symbol("eps"),
+        Expression::Displacement => symbol("x"),
+        Expression::Velocity => symbol("x'"),
+        Expression::Acceleration => symbol("x''"),
+        Expression::Time => symbol("t"),
+        Expression::Delayed(inner, _) if **inner == Expression::Displacement => symbol("xT"),
+        Expression::Delayed(inner, _) if **inner == Expression::Velocity => symbol("xT'"),
+        Expression::Sum(list) => Some(Tree::Sum(all(list)?)),
+        Expression::Product(list) => Some(Tree::Product(all(list)?)),
+        Expression::Power(base, exponent) => {
+            let Expression::Number(n) = &**exponent else { return None };
+            let n = n.is_integer().then(|| n.numer().to_i32()).flatten()?;
+            Some(Tree::Power(Box::new(formula(base)?), n))
+        }
+        Expression::Function(Function::Cos, inner) => {
+            Some(Tree::Apply("cos".to_owned(), Box::new(formula(inner)?)))
+        }
+        _ => None,
+    }
+}
+
+/// What (1)-(4) must be.
+struct Derived {
+    /// Left side less right side, with eps.
+    equation: Quotient,
+    /// The same with eps = 1.
+    unscaled: Quotient,
+    /// The same from the masses and springs, times 1/m.
+    mechanical: Quotient,
+    /// eps f: z'' + alpha^2 z on the motion.
+    f: Quotient,
+    /// P0/(alpha^2 - omega^2), by the response to the force at order zero.
+    response: Quotient,
+}
+
+fn derive(setting: &Setting) -> Option<Derived> {
+    let q = &setting.field;
+    let equation = formula(&vibro_impact::problem().equation)?;
+    let unscaled = setting.clone().means("eps", q.integer(1)).value(&equation)?;
+    // The base moves as y_0 cos(omega t) and by the loop, the spring k_2 hangs on it.
+    let newton = "(m*x'' + c_1*x' + k_1*x \
+                  - k_2*(y_0*cos(omega*t) + a_1*(x - xT) + b_1*(x' - xT') - x))/m";
+    let mechanical = setting.read(newton)?;
+    // z = p cos(omega t) satisfies the equation for eps = 0, z = 0: linear in p.
+    let (free, slope) = ("-omega^2*p*cos(omega*t)", "-p*omega*sin(omega*t)");
+    let alone = setting
+        .clone()
+        .word("x", "p*cos(omega*t)")
+        .word("x'", slope)
+        .word("x''", free)
+        .means("eps", q.integer(0))
+        .value(&equation)?;
+    let by_p = lindstedt::impact_map::coefficient(q, &alone, "p");
+    let constant = lindstedt::impact_map::replace(q, &alone, &[("p", q.integer(0))])?;
+    let response = q.neg(&q.div(&constant, &by_p)?);
+    // z'' + alpha^2 z less the equation with x = z + p cos(omega t).
+    let shifted = setting
+        .clone()
+        .means("p", response.clone())
+        .word("x", "z + p*cos(omega*t)")
+        .word("x'", "z' - p*omega*sin(omega*t)")
+        .word("x''", "z'' - p*omega^2*cos(omega*t)")
+        .word("xT", "zT + p*cos(omega*(t - T))")
+        .word("xT'", "zT' - p*omega*sin(omega*(t - T))");
+    let f = q.sub(&shifted.read("z'' + alpha^2*z")?, &shifted.value(&equation)?);
+    Some(Derived { equation: setting.value(&equation)?, unscaled, mechanical, f, response })
+}
+
+/// Whether the averaged expansion has the response of (3) at order zero.
+fn response_is_averaged() -> Result<bool, Error> {
+    let found = super::averaged::averaged(1)?;
+    let q = &found.setting.field;
+    let printed = found.setting.read("P0/(alpha^2 - omega^2)").ok_or(FAILED)?;
+    let first = found.response.first().ok_or(FAILED)?;
+    Ok(q.equal(&first[0], &printed) && q.is_zero(&first[1]))
+}
+
+/// (1)-(4).
+pub(super) fn statements() -> Result<Vec<Statement>, Error> {
+    let setting = setting();
+    let derived = derive(&setting).ok_or(FAILED)?;
+    let q = setting.field.clone();
+    let words = ["alpha", "omega", "c", "P0", "A", "B", "T", "eps", "t"];
+    let of_x = [&words[..], &["x", "x'", "x''", "xT", "xT'"]].concat();
+    let of_z = [&words[..], &["z", "z'", "z''", "zT", "zT'"]].concat();
+    let masses = setting.clone();
+    let defined = masses
+        .word("P0", "y_0*k_2/m")
+        .word("c", "c_1/m")
+        .word("omega_0^2", "(k_1 + k_2)/m")
+        .word("A", "k_2*a_1/m")
+        .word("B", "k_2*b_1/m");
+    let x = Arc::new(setting.clone().only(&of_x));
+    let z = Arc::new(setting.clone().only(&of_z));
+    let shown = |text: &str| text.to_owned();
+    let by_substitution = "exact, as polynomials in x, x', x(t-T), x'(t-T)";
+    let amplitude = q.mul(&derived.response, &q.parameter("cos(omega*t)"));
+    Ok(vec![
+        Statement {
+            label: "(1)".to_owned(),
+            left: String::new(),
+            printed: "x'' + c*x' + alpha^2*x = P0*cos(omega*t) + A*[x - xT] + B*[x' - xT']"
+                .to_owned(),
+            setting: Arc::clone(&x),
+            derived: derived.unscaled,
+            shown: shown("the engine's equation with eps = 1; x' -> -R_r x' at x = s"),
+            squared: false,
+            independent: shown(by_substitution),
+            remark: shown("xT, xT' stand for x, x' at t - T"),
+        },
+        Statement {
+            label: "parameters of (1)".to_owned(),
+            left: shown(
+                "P0 = y_0 k_2/m, c = c_1/m, alpha^2 = (k_1 + k_2)/m, A = k_2 a_1/m, \
+                         B = k_2 b_1/m: ",
+            ),
+            printed: "x'' + c*x' + (k_1 + k_2)/m*x = P0*cos(omega*t) + A*[x - xT] + B*[x' - xT']"
+                .to_owned(),
+            setting: Arc::new(defined),
+            derived: derived.mechanical,
+            shown: shown(
+                "m x'' + c_1 x' + k_1 x = k_2 (y_0 cos(omega t) + a_1 (x - xT) + \
+                          b_1 (x' - xT') - x), over m",
+            ),
+            squared: false,
+            independent: shown("Newton's law, the loop moving the base of the spring k_2"),
+            remark: String::new(),
+        },
+        Statement {
+            label: "(2)".to_owned(),
+            left: String::new(),
+            printed: "x'' + alpha^2*x = P0*cos(omega*t) + eps*A*[x - xT] + \
+                      eps*B*[(1 - c/B)*x' - xT']"
+                .to_owned(),
+            setting: x,
+            derived: derived.equation,
+            shown: shown("the engine's equation"),
+            squared: false,
+            independent: shown(by_substitution),
+            remark: shown("dividing by B is cosmetic: B x' - c x' holds for B = 0 too"),
+        },
+        Statement {
+            label: "(3)".to_owned(),
+            left: shown("x = "),
+            printed: "z + P0/(alpha^2 - omega^2)*cos(omega*t)".to_owned(),
+            setting: Arc::clone(&z),
+            derived: q.add(&q.parameter("z"), &amplitude),
+            shown: shown(
+                "z + P0/((alpha - omega)*(alpha + omega)) cos(omega t), the response at \
+                          eps = 0",
+            ),
+            squared: false,
+            independent: shown(if response_is_averaged()? {
+                "order zero of the averaged expansion: the same"
+            } else {
+                "order zero of the averaged expansion: another"
+            }),
+            remark: shown("damping leaves it to order eps; the exact response is F, see there"),
+        },
+        Statement {
+            label: "f, (4)".to_owned(),
+            left: shown("eps f = "),
+            printed: "eps*A*[z + P0/(alpha^2 - omega^2)*cos(omega*t) - zT \
+                      - P0/(alpha^2 - omega^2)*cos(omega*(t - T))] \
+                      + eps*B*[(1 - c/B*(z' - P0*omega/(alpha^2 - omega^2)*sin(omega*t)) - zT' \
+                      + P0*omega/(alpha^2 - omega^2)*sin(omega*(t - T))]"
+                .to_owned(),
+            setting: z,
+            derived: derived.f,
+            shown: shown("eps A [x - xT] + eps [(B - c) x' - B xT'] with x of (3)"),
+            squared: false,
+            independent: shown("(3) substituted in (2), exactly"),
+            remark: shown("z'' + alpha^2 z = eps f itself holds by construction"),
+        },
+    ])
+}

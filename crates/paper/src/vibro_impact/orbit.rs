@@ -1,0 +1,339 @@
+//! (8) and what follows it: the periodic orbit with one impact in T.
+
+use super::FAILED;
+use super::averaged::averaged;
+use super::judge::Statement;
+use super::setting::Setting;
+use crate::Row;
+use lindstedt::Error;
+use lindstedt::impact_map::{ImpactMap, coefficient, replace};
+use lindstedt::quotient::{Quotient, Quotients};
+use rug::Rational;
+use std::sync::Arc;
+
+/// The map's field with the words of this page behind.
+pub(super) fn extended(map: &ImpactMap) -> Quotients {
+    let mut field = map.field.clone();
+    let more = [
+        "alpha",
+        "c",
+        "lambda",
+        "beta",
+        "P0",
+        "F",
+        "pi",
+        "k",
+        "l",
+        "T",
+        "t",
+        "tau",
+        "phi",
+        "C0",
+        "theta0",
+        "cos(theta0)",
+        "sin(theta0)",
+        "dT",
+        "R_tau",
+    ];
+    field.field.ring.parameters.extend(more.map(str::to_owned));
+    let [cos, sin] = ["cos(theta0)", "sin(theta0)"].map(|name| field.field.position(name));
+    if let (Some(cos), Some(sin)) = (cos, sin) {
+        field.field.pairs.push((cos, sin));
+    }
+    field
+}
+
+/// Adds an angle whose cosine and sine are parameters.
+pub(super) fn with_pair(mut setting: Setting, angle: &str, cos: &str, sin: &str) -> Setting {
+    if let Some(angle) = setting.read(angle) {
+        let [cos, sin] = [cos, sin].map(|name| setting.field.parameter(name));
+        setting.meaning.angles.push([angle, cos, sin]);
+    }
+    setting
+}
+
+/// What is derived here.
+struct Derived {
+    q: Quotients,
+    /// C, D, cos phi, sin phi for any R, alpha0.
+    any: [Quotient; 4],
+    /// The same for R = -c/2, alpha0 = lambda.
+    uncontrolled: [Quotient; 4],
+    /// Whether the orbit meets the end conditions.
+    closes: bool,
+    /// lambda^2.
+    lambda_squared: Quotient,
+    /// F^2 by the equation with damping.
+    amplitude_squared: Quotient,
+}
+
+fn derive() -> Option<Derived> {
+    let map = ImpactMap::derive()?;
+    let q = extended(&map);
+    let p = |name: &str| q.parameter(name);
+    let found = map.periodic_orbit()?;
+    let closes = map.is_periodic(&found);
+    let [c, d, cos, sin] = found;
+    let over = |f: &Quotient| q.div(f, &p("a"));
+    let named = |f: &Quotient| replace(&q, f, &[("a", p("F"))]);
+    let any = [named(&c)?, named(&d)?, named(&over(&cos)?)?, named(&over(&sin)?)?];
+    // (R + i W)^2 + c (R + i W) + alpha^2 = 0: imaginary part 2 R + c, real part W^2.
+    let minus_half = q.mul(&q.rational(&Rational::from((-1, 2))), &p("c"));
+    let lambda_squared = q.sum(&[
+        &q.mul(&p("alpha"), &p("alpha")),
+        &q.mul(&minus_half, &minus_half),
+        &q.mul(&p("c"), &minus_half),
+    ]);
+    let images = [("R", minus_half), ("alpha0", p("lambda"))];
+    let special = |f: &Quotient| replace(&q, f, &images);
+    let [c, d, cos, sin] = &any;
+    let uncontrolled = [special(c)?, special(d)?, special(cos)?, special(sin)?];
+    // x = X cos + Y sin in x'' + c x' + alpha^2 x = P0 cos: (d X + l Y, d Y - l X) = (P0, 0) with
+    // d = alpha^2 - omega^2, l = c omega; X = P0 d/n, Y = P0 l/n, n = d^2 + l^2.
+    let square = |name: &str| q.mul(&p(name), &p(name));
+    let detuning = q.sub(&square("alpha"), &square("omega"));
+    let loss = q.mul(&p("c"), &p("omega"));
+    let norm = q.add(&q.mul(&detuning, &detuning), &q.mul(&loss, &loss));
+    let [x, y] = [q.mul(&p("P0"), &detuning), q.mul(&p("P0"), &loss)];
+    let sum = q.add(&q.mul(&x, &x), &q.mul(&y, &y));
+    let amplitude_squared = q.div(&q.div(&sum, &norm)?, &norm)?;
+    Some(Derived { q, closes, any, uncontrolled, lambda_squared, amplitude_squared })
+}
+
+/// The words of the formulas after (8) for a flight with these C, D, cos phi, sin phi.
+fn words(q: &Quotients, orbit: &[Quotient; 4], angle: &str, exponent: &str) -> Setting {
+    let words = ["c", "lambda", "omega", "s", "F", "v", "R_r", "beta", "phi", "R", "alpha0"];
+    let mut setting = Setting::new(q.clone());
+    setting = with_pair(setting, angle, "cos(theta)", "sin(theta)");
+    let [c, _, cos, sin] = orbit.clone();
+    setting = setting.means("C", c);
+    if let Some(phi) = setting.read("phi") {
+        setting.meaning.angles.push([phi, cos, sin]);
+    }
+    if let Some(base) = setting.read(exponent) {
+        setting.meaning.exponentials.push([base, q.parameter("E")]);
+    }
+    setting.only(&[&words[..], &["C"]].concat())
+}
+
+const D_PRINTED: &str = "C/sin(2*beta*lambda)*(exp(beta*c) - cos(2*beta*lambda))";
+
+/// The formulas around (8).
+pub(super) fn statements() -> Result<Vec<Statement>, Error> {
+    let derived = derive().ok_or(FAILED)?;
+    let q = &derived.q;
+    let p = |name: &str| q.parameter(name);
+    let residuals = if derived.closes {
+        "the solution put into the four end conditions: exact"
+    } else {
+        "the solution does not meet the end conditions"
+    };
+    let statement =
+        |label: &str, left: &str, printed: &str, setting: &Arc<Setting>, value| Statement {
+            label: label.to_owned(),
+            left: left.to_owned(),
+            printed: printed.to_owned(),
+            setting: Arc::clone(setting),
+            derived: value,
+            shown: String::new(),
+            squared: false,
+            independent: String::new(),
+            remark: String::new(),
+        };
+    // The polar form: C_0 cos(alpha0 t + theta_0) by the product of two rotations.
+    let polar = Arc::new(
+        with_pair(Setting::new(q.clone()), "theta0", "cos(theta0)", "sin(theta0)")
+            .only(&["C0", "theta0"]),
+    );
+    let rotation = q.sub(
+        &q.mul(&p("cos(theta0)"), &p("cos(alpha0*tau)")),
+        &q.mul(&p("sin(theta0)"), &p("sin(alpha0*tau)")),
+    );
+    let free = q.mul(&p("C0"), &rotation);
+    let [of_cos, of_sin] =
+        ["cos(alpha0*tau)", "sin(alpha0*tau)"].map(|name| coefficient(q, &free, name));
+    let parts = Arc::new(
+        Setting::new(q.clone())
+            .means("C", of_cos.clone())
+            .means("D", of_sin.clone())
+            .only(&["C", "D", "R"]),
+    );
+    let own = Arc::new(words(q, &derived.uncontrolled, "2*beta*lambda", "-beta*c"));
+    // e^(beta c) and the functions of 2 beta lambda are independent of those of (R, alpha0).
+    let mut mixed = words(q, &derived.any, "2*beta*alpha0", "2*beta*R");
+    mixed = with_pair(mixed, "2*beta*lambda", "cos(theta0)", "sin(theta0)");
+    if let Some(base) = mixed.read("beta*c") {
+        mixed.meaning.exponentials.push([base, p("C0")]);
+    }
+    let mixed = Arc::new(mixed);
+    let literal = Arc::new(
+        Setting::new(q.clone())
+            .only(&["P0", "alpha", "alpha0", "omega", "c", "pi", "k", "R_r", "s"]),
+    );
+    let [c, d, cos, sin] = derived.uncontrolled.clone();
+    let delta = "Delta = E + 1/E - 2 cos(theta), E = e^(-beta c), theta = 2 beta lambda";
+    let mut list = vec![
+        Statement {
+            squared: true,
+            shown: "F = P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)".to_owned(),
+            independent: "squares compared; linear equations for the cosine and the sine"
+                .to_owned(),
+            ..statement(
+                "(8)",
+                "amplitude ",
+                "P0/(alpha^2 - omega^2)",
+                &literal,
+                derived.amplitude_squared.clone(),
+            )
+        },
+        statement("C, polar", "C = ", "C0*cos(theta0)", &polar, of_cos),
+        statement("D, polar", "D = ", "-C0*sin(theta0)", &polar, of_sin),
+        Statement {
+            squared: true,
+            shown: "C0".to_owned(),
+            ..statement("C_0", "C_0 = ", "sqrt(C^2 + D^2)", &parts, q.mul(&p("C0"), &p("C0")))
+        },
+        Statement {
+            shown: "-(1 + R_r) sin(theta) v/(lambda Delta)".to_owned(),
+            independent: residuals.to_owned(),
+            remark: delta.to_owned(),
+            ..statement("C", "C = ", "s - F*cos(phi)", &own, c)
+        },
+        Statement {
+            shown: "-(1 + R_r) (1/E - cos(theta)) v/(lambda Delta)".to_owned(),
+            independent: residuals.to_owned(),
+            remark: "the printed form is 0/0 where sin(2 beta lambda) = 0, the derived one is not"
+                .to_owned(),
+            ..statement("D", "D = ", D_PRINTED, &own, d)
+        },
+        Statement {
+            shown: "(s + (1 + R_r) sin(theta) v/(lambda Delta))/F".to_owned(),
+            independent: residuals.to_owned(),
+            remark: "v = x'_-, before the impact".to_owned(),
+            ..statement(
+                "cos phi",
+                "cos phi = ",
+                "s/F - (R_r + 1)*v*sin(2*beta*lambda)\
+                 /(lambda*F*(2*cos(2*beta*lambda) - exp(-beta*c) - exp(beta*c)))",
+                &own,
+                cos,
+            )
+        },
+        Statement {
+            shown:
+                "{lambda [R_r (E - cos theta) - (1/E - cos theta)] + (1 + R_r) (c/2) sin theta} \
+                    v/(omega lambda F Delta)"
+                    .to_owned(),
+            independent: residuals.to_owned(),
+            remark: "equal only for c = 0 as printed".to_owned(),
+            ..statement(
+                "sin phi",
+                "sin phi = ",
+                "(-1/2*(R_r + 1)*c*sin(2*beta*lambda) + lambda*[(R_r - 1)*cos(2*beta*lambda) \
+                 + exp(-beta*c) - R_r*exp(beta*c))\
+                 /(lambda*F*omega*(2*cos(2*beta*lambda) - exp(-beta*c) - exp(beta*c)))*v",
+                &own,
+                sin,
+            )
+        },
+        Statement {
+            squared: true,
+            shown: "P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)".to_owned(),
+            independent: "squares compared; the response sees neither A nor B".to_owned(),
+            ..statement(
+                "F",
+                "F = ",
+                "P0/sqrt((alpha0^2 - omega^2)^2 + c^2*omega^2)",
+                &literal,
+                derived.amplitude_squared.clone(),
+            )
+        },
+        Statement {
+            squared: true,
+            shown: "sqrt(alpha^2 - c^2/4)".to_owned(),
+            independent: "squares compared; both parts of l^2 + c l + alpha^2 = 0 at \
+                          l = -c/2 + i lambda"
+                .to_owned(),
+            remark:
+                "the symbol and a factor of one term are wrong, c^2/4 is no slip for omega^2; the \
+                     printed root is imaginary for omega > alpha"
+                    .to_owned(),
+            ..statement(
+                "lambda",
+                "lambda = ",
+                "sqrt(alpha^2 - omega^2)",
+                &literal,
+                derived.lambda_squared.clone(),
+            )
+        },
+        statement(
+            "beta",
+            "beta = ",
+            "pi*k/omega",
+            &literal,
+            q.div(&q.mul(&p("pi"), &p("k")), &p("omega")).ok_or(FAILED)?,
+        ),
+    ];
+    let [_, d, _, _] = derived.any.clone();
+    for statement in &mut list {
+        if statement.independent.is_empty() {
+            "exact, as polynomials".clone_into(&mut statement.independent);
+        }
+    }
+    list.push(Statement {
+        shown: "D with alpha0 and -2 R in the places of lambda and c".to_owned(),
+        remark: "the amplitudes printed with (c, lambda) meet the end conditions of the flight \
+                 with (-c/2, lambda), not of (8) with (R, alpha0): for A, B other than zero the \
+                 orbit of (8) is another"
+            .to_owned(),
+        independent: residuals.to_owned(),
+        ..statement("C, D in (8)", "D = ", D_PRINTED, &mixed, d)
+    });
+    Ok(list)
+}
+
+/// (8) and the formulas after it.
+pub(super) fn rows() -> Result<Vec<Row>, Error> {
+    let mut rows: Vec<Row> = statements()?.iter().flat_map(Statement::rows).collect();
+    if let Some(first) = rows.first_mut() {
+        // The averaged response: its square is F^2 order by order in c.
+        let orders = response_orders()?;
+        first.evidence = format!(
+            "{}; the averaged response has the same square in orders 0 to {orders} of the \
+             damping; with this amplitude and F in the phase the multipliers are wrong, see the \
+             table of multipliers",
+            first.evidence
+        );
+    }
+    Ok(rows)
+}
+
+/// The orders to which X^2 + Y^2 of the averaged response is the expansion of F^2: each order of
+/// (X^2 + Y^2) ((alpha^2 - omega^2)^2 + c^2 omega^2) = P0^2.
+fn response_orders() -> Result<usize, Error> {
+    const ORDER: usize = 3;
+    let found = averaged(ORDER)?;
+    let q = &found.setting.field;
+    let square_at = |n: usize| {
+        let mut sum = q.integer(0);
+        for (m, first) in found.response.iter().enumerate().take(n + 1) {
+            if let Some(second) = found.response.get(n - m) {
+                for (a, b) in first.iter().zip(second) {
+                    sum = q.add(&sum, &q.mul(a, b));
+                }
+            }
+        }
+        sum
+    };
+    let read = |text: &str| found.setting.read(text).ok_or(FAILED);
+    let [detuning, loss, force] =
+        [read("(alpha^2 - omega^2)^2")?, read("c^2*omega^2")?, read("P0^2")?];
+    let holds = |n: usize| {
+        let mut sum = q.mul(&square_at(n), &detuning);
+        if n >= 2 {
+            sum = q.add(&sum, &q.mul(&square_at(n - 2), &loss));
+        }
+        if n == 0 { q.equal(&sum, &force) } else { q.is_zero(&sum) }
+    };
+    Ok((0..=ORDER).take_while(|n| holds(*n)).count().saturating_sub(1))
+}

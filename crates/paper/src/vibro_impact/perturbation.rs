@@ -1,0 +1,399 @@
+//! (9)-(16): the perturbed flight, the map of one flight and impact, its characteristic equation.
+
+use super::FAILED;
+use super::judge::Statement;
+use super::orbit::{extended, with_pair};
+use super::setting::Setting;
+use crate::{Findings, Row, plain};
+use lindstedt::Error;
+use lindstedt::impact_map::{ImpactMap, characteristic, coefficient, replace};
+use lindstedt::quotient::{Quotient, Quotients};
+use std::sync::Arc;
+
+/// Symbols of the perturbation in formulas.
+const WORDS: [&str; 16] = [
+    "R", "alpha0", "omega", "C", "D", "a", "dC", "dD", "dphi", "dtau", "tau", "phi", "dC'", "dD'",
+    "dphi'", "R_r",
+];
+
+/// In the interior of a flight: functions of tau.
+fn in_flight(q: &Quotients) -> Setting {
+    let mut setting = Setting::new(q.clone());
+    setting = with_pair(setting, "alpha0*tau", "cos(alpha0*tau)", "sin(alpha0*tau)");
+    setting = with_pair(setting, "omega*tau + phi", "cos(omega*tau + phi)", "sin(omega*tau + phi)");
+    setting = with_exponential(setting, "R*tau", "exp(R*tau)");
+    setting.word("R*tau", "R*tau")
+}
+
+fn with_exponential(mut setting: Setting, exponent: &str, parameter: &str) -> Setting {
+    if let Some(base) = setting.read(exponent) {
+        let value = setting.field.parameter(parameter);
+        setting.meaning.exponentials.push([base, value]);
+    }
+    setting
+}
+
+/// At the ends of a flight; what is multiplied by a perturbation is taken at dT = 0.
+fn at_ends(q: &Quotients) -> Setting {
+    let mut setting = Setting::new(q.clone());
+    for time in ["2*beta", "(2*pi*k/omega + dT)"] {
+        let angle = format!("{time}*alpha0");
+        setting = with_pair(setting, &angle, "cos(theta)", "sin(theta)");
+        setting = with_exponential(setting, &format!("{time}*R"), "E");
+    }
+    for angle in ["phi", "(2*pi*k/omega + dT)*omega + phi"] {
+        setting = with_pair(setting, angle, "cos(phi)", "sin(phi)");
+    }
+    setting
+}
+
+/// A form with dT for dtau.
+fn with_length(q: &Quotients, f: &Quotient) -> Option<Quotient> {
+    replace(q, f, &[("dtau", q.parameter("dT"))])
+}
+
+/// The same form of the next flight.
+fn of_next(q: &Quotients, f: &Quotient) -> Option<Quotient> {
+    let names = ["dC", "dD", "dphi"];
+    let images = names.map(|name| (name, q.parameter(&format!("{name}'"))));
+    replace(q, f, &images)
+}
+
+const THIRD: &str = "R_r*exp(2*beta*R)*[dC*(R*cos(2*beta*alpha0) - alpha0*sin(2*beta*alpha0)) \
+     + dD*(R*sin(2*beta*alpha0) + alpha0*cos(2*beta*alpha0)) \
+     + 1/omega*(dphi' - dphi)*[(R^2*C - alpha0^2*C + 2*R*alpha0*D)*cos(2*beta*alpha0) \
+     + (R^2*D - alpha0^2*D - 2*R*alpha0*D)*sin(2*beta*alpha0)]] \
+     + R*dC' + alpha0*dD' - (R_r + 1)*a*omega*dphi'*cos(phi)";
+
+const END_VELOCITY: &str = "exp((2*pi*k/omega + dT)*R)*[\
+     R*alpha0*dT*[D*cos((2*pi*k/omega + dT)*alpha0) - C*sin((2*pi*k/omega + dT)*alpha0)] \
+     + R*dC*cos((2*pi*k/omega + dT)*alpha0) + R*dD*sin((2*pi*k/omega + dT)*alpha0) \
+     + R^2*dT*C*cos((2*pi*k/omega + dT)*alpha0) + R^2*dT*D*sin((2*pi*k/omega + dT)*alpha0) \
+     - alpha0^2*dT*[C*cos((2*pi*k/omega + dT)*alpha0) + D*sin((2*pi*k/omega + dT)*alpha0)] \
+     - dC*alpha0*sin((2*pi*k/omega + dT)*alpha0) + dD*alpha0*cos((2*pi*k/omega + dT)*alpha0) \
+     - R*dT*C*alpha0*sin((2*pi*k/omega + dT)*alpha0) \
+     + R*dT*D*alpha0*cos((2*pi*k/omega + dT)*alpha0)] \
+     - a*omega*dphi*cos((2*pi*k/omega + dT)*omega + phi) \
+     - a*omega^2*dT*cos((2*pi*k/omega + dT)*omega + phi)";
+
+const END_DISPLACEMENT: &str = "exp((2*pi*k/omega + dT)*R)*[\
+     alpha0*dT*[D*cos((2*pi*k/omega + dT)*alpha0) - C*sin((2*pi*k/omega + dT)*alpha0)] \
+     + dC*cos((2*pi*k/omega + dT)*alpha0) + dD*sin((2*pi*k/omega + dT)*alpha0) \
+     + R*dT*C*cos((2*pi*k/omega + dT)*alpha0) + R*dT*D*sin((2*pi*k/omega + dT)*alpha0)] \
+     - a*dphi*sin((2*pi*k/omega + dT)*omega + phi) \
+     - a*omega*dT*sin((2*pi*k/omega + dT)*omega + phi)";
+
+const DISPLACEMENT: &str = "exp(R*tau)*[-C*alpha0*dtau*sin(alpha0*tau) + dC*cos(alpha0*tau) \
+     + D*alpha0*dtau*cos(alpha0*tau) + dD*sin(alpha0*tau) + R*C*dtau*cos(alpha0*tau) \
+     + R*D*dtau*sin(alpha0*tau)] - a*dphi*sin(omega*tau + phi) - a*omega*dtau*sin(omega*tau + phi)";
+
+const VELOCITY: &str = "exp(R*tau)*[-R*alpha0*dtau*(D*cos(alpha0*tau) - C*sin(alpha0*tau)) \
+     + R*dC*cos(alpha0*tau) + R*dD*sin(alpha0*tau) + R^2*C*dtau*cos(alpha0*tau) \
+     + R^2*D*dtau*sin(alpha0*tau) - alpha0^2*dtau*(C*cos(alpha0*tau) - D*sin(alpha0*tau)) \
+     - alpha0*dC*sin(alpha0*tau) + alpha0*dD*cos(alpha0*tau) - R*dtau*C*alpha0*sin(alpha0*tau) \
+     + R*dtau*D*alpha0*cos(alpha0*tau)] - a*omega*dphi*cos(omega*tau + phi) \
+     - a*omega^2*dtau*cos(omega*tau + phi)";
+
+/// b_2, b_1, b_0.
+const B: [&str; 3] = [
+    "alpha0*[a*sin(phi) - 1/omega*exp(2*beta*R)*[(alpha0*D + R*C)*cos(2*beta*alpha0) \
+     + (R*D - alpha0*C)*sin(2*beta*alpha0)]]",
+    "exp(2*beta*R)*[1/omega*alpha0*[(R*C + alpha0*D)*(cos(2*beta*alpha0) - R_r*exp(2*beta*R)) \
+     + (R*D - alpha0*C)*sin(2*beta*alpha0)] - (R_r + 1)*a*omega*cos(phi)*sin(2*beta*alpha0) \
+     + a*sin(phi)*[(R_r - 1)*alpha0*cos(2*beta*alpha0) + (R_r + 1)*R*sin(2*beta*alpha0)]]",
+    "R_r*alpha0*exp(4*beta*R)*[1/omega*(R*C + alpha0*D) - a*sin(phi)]",
+];
+
+/// (9), (11), (12), (16) and what stands between them.
+pub(super) fn statements() -> Result<Vec<Statement>, Error> {
+    let map = ImpactMap::derive().ok_or(FAILED)?;
+    let q = extended(&map);
+    let flight = Arc::new(in_flight(&q).only(&[&WORDS[..], &["R*tau"]].concat()));
+    let ends = Arc::new(at_ends(&q).only(&[&WORDS[..], &["beta", "pi", "k", "dT"]].concat()));
+    let by_differentiation = "formal derivatives of (8) by C, D, phi and tau";
+    let statement =
+        |label: &str, left: &str, printed: &str, setting: &Arc<Setting>, derived| Statement {
+            label: label.to_owned(),
+            left: left.to_owned(),
+            printed: printed.to_owned(),
+            setting: Arc::clone(setting),
+            derived,
+            shown: String::new(),
+            squared: false,
+            independent: String::new(),
+            remark: String::new(),
+        };
+    let mut list = vec![perturbed_flight(&q, &map)?];
+    let times = Arc::new(Setting::new(q.clone()).only(&["pi", "k", "l", "omega", "dT"]));
+    let period = times.read("2*pi*k/omega").ok_or(FAILED)?;
+    let length = q.add(&period, &q.parameter("dT"));
+    list.push(statement("tau, below (9)", "tau_(l+1) = ", "2*pi*l/omega + dT", &times, length));
+    list.push(statement("T, below (9)", "T = ", "2*pi/omega", &times, period));
+    let dx = map.displacement_variation.clone();
+    let dv = map.velocity_variation.clone();
+    for (label, left, printed, derived) in
+        [("dx", "delta x = ", DISPLACEMENT, dx), ("dx'", "delta x' = ", VELOCITY, dv)]
+    {
+        list.push(Statement {
+            independent: by_differentiation.to_owned(),
+            remark: if label == "dx'" {
+                "(11) has both terms right".to_owned()
+            } else {
+                String::new()
+            },
+            ..statement(label, left, printed, &flight, derived)
+        });
+    }
+    let start = [&map.start_displacement, &map.start_velocity];
+    let next = [of_next(&q, start[0]).ok_or(FAILED)?, of_next(&q, start[1]).ok_or(FAILED)?];
+    let [end_x, end_v] = [&map.end_displacement, &map.end_velocity].map(|f| with_length(&q, f));
+    let (end_x, end_v) = (end_x.ok_or(FAILED)?, end_v.ok_or(FAILED)?);
+    let six = [
+        ("(11), 1", "0 = ", "dC - a*dphi*sin(phi)", start[0].clone()),
+        ("(11), 2", "delta x'_+ = ", "R*dC + dD*alpha0 - a*omega*dphi*cos(phi)", start[1].clone()),
+        ("(11), 3", "0 = ", "dC' - a*dphi'*sin(phi)", next[0].clone()),
+        (
+            "(11), 4",
+            "delta x'_+' = ",
+            "R*dC' + dD'*alpha0 - a*omega*dphi'*cos(phi)",
+            next[1].clone(),
+        ),
+        ("(11), 5", "0 = ", END_DISPLACEMENT, end_x),
+        ("(11), 6", "delta x'_-' = ", END_VELOCITY, end_v),
+    ];
+    for (label, left, printed, derived) in six {
+        let inside = label.ends_with('5') || label.ends_with('6');
+        let remark = if inside { "dT inside the functions is of second order" } else { "" };
+        list.push(Statement {
+            remark: remark.to_owned(),
+            independent: by_differentiation.to_owned(),
+            ..statement(label, left, printed, &ends, derived)
+        });
+    }
+    let [first, second, third] = map.equations.clone();
+    let second_printed = "exp(2*beta*R)*[dC*cos(2*beta*alpha0) + dD*sin(2*beta*alpha0) \
+         + 1/omega*(dphi' - dphi)*[(alpha0*D + R*C)*cos(2*beta*alpha0) \
+         + (R*D - alpha0*C)*sin(2*beta*alpha0)]] - dC'";
+    let propagation = propagation(&map, &ends).ok_or(FAILED)?;
+    for (label, printed, derived, remark) in [
+        ("(12), 1", "dC - a*dphi*sin(phi)", first, String::new()),
+        ("(12), 2", second_printed, second, String::new()),
+        ("(12), 3", THIRD, third, propagation),
+    ] {
+        list.push(Statement {
+            remark,
+            independent: "(11) with omega dT = dphi' - dphi, dx'_+ = -R_r dx'_-".to_owned(),
+            ..statement(label, "0 = ", printed, &ends, derived)
+        });
+    }
+    let [b0, b1, b2] = map.characteristic.clone();
+    let checks = orbit_values(&map).ok_or(FAILED)?;
+    let jacobian = if same_characteristic(&map) { "has" } else { "does not have" };
+    for ((label, printed, derived), remark) in
+        [("b_2, (16)", B[0], b2), ("b_1, (16)", B[1], b1), ("b_0, (16)", B[2], b0)]
+            .into_iter()
+            .zip(checks)
+    {
+        let left = format!("{} = ", label.trim_end_matches(", (16)"));
+        list.push(Statement {
+            independent: format!(
+                "the Jacobian of (phi, x'_+) by the implicit function theorem {jacobian} trace \
+                 -b_1/b_2 and determinant b_0/b_2"
+            ),
+            remark,
+            ..statement(label, &left, printed, &ends, derived)
+        });
+    }
+    Ok(list)
+}
+
+/// (9), with the amplitude that the paper calls a.
+fn perturbed_flight(q: &Quotients, map: &ImpactMap) -> Result<Statement, Error> {
+    let p = |name: &str| q.parameter(name);
+    let setting = in_flight(q);
+    let mut setting = with_pair(setting, "omega*tau + phi + dphi", "cos(theta0)", "sin(theta0)");
+    let amplitude = setting.read("P0/(alpha^2 - omega^2)").ok_or(FAILED)?;
+    let images = [
+        ("C", q.add(&p("C"), &p("dC"))),
+        ("D", q.add(&p("D"), &p("dD"))),
+        ("cos(omega*tau + phi)", p("cos(theta0)")),
+    ];
+    // a stands for the amplitude, which is no polynomial.
+    let shifted = replace(q, &map.displacement, &images).ok_or(FAILED)?;
+    let by_a = coefficient(q, &shifted, "a");
+    let rest = replace(q, &shifted, &[("a", q.integer(0))]).ok_or(FAILED)?;
+    let derived = q.add(&rest, &q.mul(&by_a, &amplitude));
+    setting = setting.only(&[
+        "R", "alpha0", "alpha", "omega", "C", "D", "dC", "dD", "dphi", "tau", "phi", "R_tau",
+        "R*tau", "P0",
+    ]);
+    Ok(Statement {
+        label: "(9)".to_owned(),
+        left: "x + delta x = ".to_owned(),
+        printed: "exp(R_tau)*[(C + dC)*cos(alpha0*tau) + (D + dD)*sin(alpha0*tau)] \
+                  + P0/(alpha^2 - omega^2)*cos(omega*tau + phi + dphi)"
+            .to_owned(),
+        setting: Arc::new(setting),
+        derived,
+        shown: "(8) with C + dC, D + dD, phi + dphi".to_owned(),
+        squared: false,
+        independent: String::new(),
+        remark: "the exponent is printed as one symbol with an index; the amplitude is that of \
+                 (8), which has a row of its own"
+            .to_owned(),
+    })
+}
+
+/// What the third line of (12) does to the determinant as it is printed.
+fn propagation(map: &ImpactMap, ends: &Setting) -> Option<String> {
+    let q = &map.field;
+    let [first, second, _] = map.equations.clone();
+    let printed = ends.read(THIRD)?;
+    let found = characteristic(&ends.field, &[first, second, printed])?;
+    let names = ["b_0", "b_1", "b_2"];
+    let differ: Vec<&str> = names
+        .into_iter()
+        .zip(found.iter().zip(&map.characteristic))
+        .filter(|(_, (a, b))| !q.equal(a, b))
+        .map(|(name, _)| name)
+        .collect();
+    Some(format!(
+        "the determinant of (12) as printed would change {}; (16) is the determinant of the \
+         corrected lines, the slip did not go further",
+        differ.join(" and ")
+    ))
+}
+
+/// What the coefficients are in terms of the velocities; remarks for b_2, b_1, b_0.
+fn orbit_values(map: &ImpactMap) -> Option<[String; 3]> {
+    let q = &map.field;
+    let p = |name: &str| q.parameter(name);
+    let [b0, _, b2] = &map.characteristic;
+    let ratio = q.div(&p("alpha0"), &p("omega"))?;
+    let of_before = q.equal(b2, &q.neg(&q.mul(&ratio, &map.velocity_before)));
+    let factor = q.product(&[&p("R_r"), &p("E"), &p("E"), &ratio]);
+    let of_after = q.equal(b0, &q.mul(&factor, &map.velocity_after));
+    let say = |holds: bool, text: &str| if holds { text.to_owned() } else { String::new() };
+    Some([
+        say(of_before, "with a the amplitude of the flight, a = F; b_2 = -(alpha0/omega) x'_-"),
+        "with a = F".to_owned(),
+        say(
+            of_before && of_after,
+            "with a = F; b_0 = R_r (alpha0/omega) e^(4 beta R) x'_+, so that b_0/b_2 = \
+             R_r^2 e^(4 beta R) on the periodic orbit",
+        ),
+    ])
+}
+
+/// Whether the determinant of the equations and the Jacobian have the same roots.
+fn same_characteristic(map: &ImpactMap) -> bool {
+    let q = &map.field;
+    let [b0, b1, b2] = &map.characteristic;
+    q.equal(&q.mul(&map.trace, b2), &q.neg(b1)) && q.equal(&q.mul(&map.determinant, b2), b0)
+}
+
+/// Whether the equations are linear forms in the perturbations (Euler's relation of degree one)
+/// whose coefficients are free of them.
+fn is_linear(map: &ImpactMap) -> bool {
+    let q = &map.field;
+    let names = ["dC", "dD", "dphi", "dC'", "dD'", "dphi'"];
+    map.equations.iter().all(|form| {
+        let mut sum = q.integer(0);
+        for name in names {
+            sum = q.add(&sum, &q.mul(&coefficient(q, form, name), &q.parameter(name)));
+        }
+        q.equal(&sum, form)
+    })
+}
+
+/// (9)-(16) in the order of the paper.
+pub(super) fn rows() -> Result<Vec<Row>, Error> {
+    let map = ImpactMap::derive().ok_or(FAILED)?;
+    let same = same_characteristic(&map);
+    let amplitude = super::orbit::statements()?.into_iter().find(|s| s.label == "(8)");
+    let mut rows = Vec::new();
+    for statement in statements()? {
+        match statement.label.as_str() {
+            "(11), 1" => {
+                rows.extend(amplitude.iter().flat_map(|found| {
+                    let again = Statement {
+                        label: "a".to_owned(),
+                        left: "a = ".to_owned(),
+                        remark: "a must be the F of cos phi and sin phi".to_owned(),
+                        ..found.clone()
+                    };
+                    again.rows()
+                }));
+                rows.push(Row {
+                    label: "x_(1-)".to_owned(),
+                    printed: "before the impact number 1, the mass possesses the velocity x_(1-)".to_owned(),
+                    derived: "x_(1-) = s, the place of the wall; the velocity is x'_(1-)".to_owned(),
+                    independent: "the end conditions of (8) and (10)".to_owned(),
+                    verdict: Findings {
+                        holds: false,
+                        correction: same.then(|| "x'_(1-)".to_owned()),
+                        ..Findings::default()
+                    }
+                    .verdict(),
+                    evidence: "a dot is missing: with x_- = s and x'_- the velocity the map of the impacts \
+                               follows"
+                        .to_owned(),
+                });
+                rows.push(plain(
+                    "(10)",
+                    "l: tau = 0, dtau = 0, dx = 0, dx'_+ = -R_r dx'_-; l+1: tau = 2 pi k/omega + \
+                     dtau, dtau = dT, dx = 0, dx' = dx'_-",
+                    "the end conditions of the impact map".to_owned(),
+                    "the implicit function theorem on (phi, x'_+) -> (phi', x'_+')".to_owned(),
+                    same,
+                    "both have the same characteristic polynomial, exactly",
+                ));
+            }
+            "b_2, (16)" => {
+                rows.push(phase_sum());
+                rows.push(plain(
+                    "(14)",
+                    "dC_l = a_1 gamma^l, dD_l = a_2 gamma^l, dphi_l = a_3 gamma^l",
+                    "(12) is linear with constant coefficients".to_owned(),
+                    "Euler's relation of degree one for each line".to_owned(),
+                    is_linear(&map),
+                    "turns (12) into a linear system whose determinant must vanish",
+                ));
+                rows.push(plain(
+                    "(15)",
+                    "b_2 gamma^2 + b_1 gamma + b_0 = 0",
+                    "the determinant of the three lines has degree 2 in gamma".to_owned(),
+                    "the state (phi, x'_+) has two components".to_owned(),
+                    same,
+                    "b_2, b_1, b_0 derived; see (16)",
+                ));
+            }
+            _ => {}
+        }
+        rows.extend(statement.rows());
+    }
+    Ok(rows)
+}
+
+/// (13), dphi_l = dphi_0 + sum_(i=1)^l omega dT_i, against dphi_(l+1) = dphi_l + omega dT_l: both
+/// written out for the first l; the index of the summand is shifted until they agree.
+fn phase_sum() -> Row {
+    const LAST: i32 = 6;
+    // The indices of dT in dphi_l, by the recursion and by the sum with a shifted index.
+    let recursion = |l: i32| -> Vec<i32> { (0..l).collect() };
+    let sum = |l: i32, shift: i32| -> Vec<i32> { (1..=l).map(|i| i + shift).collect() };
+    let agrees = |shift: i32| (1..=LAST).all(|l| sum(l, shift) == recursion(l));
+    let correction = [-1, 1]
+        .into_iter()
+        .find(|shift| agrees(*shift))
+        .map(|shift| format!("the summand is dT_(i{shift:+}): the sum runs from 0 to l - 1"));
+    let findings = Findings { holds: agrees(0), correction, ..Findings::default() };
+    Row {
+        label: "(13)".to_owned(),
+        printed: "dphi_l = dphi_0 + sum_(i=1)^l omega dT_i".to_owned(),
+        derived: "dphi_(l+1) = dphi_l + omega dT_l: the phase at the end of a flight".to_owned(),
+        independent: "(12) uses omega dT_l = dphi_(l+1) - dphi_l".to_owned(),
+        verdict: findings.verdict(),
+        evidence: findings.correction.unwrap_or_default(),
+    }
+}
