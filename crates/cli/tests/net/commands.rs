@@ -28,6 +28,7 @@ impl Line {
     /// The name of the snapshot: the command with one `-` for what a file name had better not have.
     pub fn name(&self) -> String {
         let command = self.command.replace("docs/examples/", "").replace("docs/src/guide/", "");
+        let command = command.replace(" --", " ").replace(" -", " minus");
         let mut name = String::new();
         for c in command.replace(".toml", " file").replace("=-", "=minus").chars() {
             let kept = c.is_ascii_alphanumeric() || matches!(c, '.' | '=' | ',' | '_');

@@ -168,7 +168,7 @@ impl Reader<'_> {
     }
 
     fn dollar(&mut self) {
-        let double = self.rest.starts_with('$');
+        let double = self.place().end != "$" && self.rest.starts_with('$');
         if double {
             self.rest = &self.rest[1..];
         }
@@ -274,7 +274,7 @@ impl Reader<'_> {
 #[test]
 fn what_is_well_formed_passes() {
     for good in [
-        r"Text with $x_1^{2}$ and \[ \ddot{x} + x = \frac{1}{2}\cos 3\tau \]",
+        r"Text with $x_1^{2}$$y$ and \[ \ddot{x} + x = \frac{1}{2}\cos 3\tau \]",
         r"\begin{tabular}{p{0.2\textwidth}l} a & $b$ \\ \end{tabular} 3\% a\_b",
         r"\[ x_{1}'' + x_1'^2 + \text{at rest, 100 of them} + \operatorname{sign} x^{a^{b}} \]",
         r"\[ \begin{aligned} a &= b \\ c &= d \end{aligned} \] x\^{}2",

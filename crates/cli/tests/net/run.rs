@@ -32,12 +32,10 @@ pub fn run_all(lines: &[Line]) -> Vec<Vec<Output>> {
     let next = AtomicUsize::new(0);
     let done: Vec<Mutex<Option<Output>>> = jobs.iter().map(|_| Mutex::new(None)).collect();
     let work = || {
-        while let Some((job, slot)) = {
+        loop {
             let job = next.fetch_add(1, Ordering::Relaxed);
-            jobs.get(job).zip(done.get(job))
-        } {
-            let output = run(&lines[job.0].command, job.1);
-            *slot.lock().unwrap() = Some(output);
+            let Some(((n, format), slot)) = jobs.get(job).zip(done.get(job)) else { break };
+            *slot.lock().unwrap() = Some(run(&lines[*n].command, format));
         }
     };
     let threads = std::thread::available_parallelism().map_or(2, usize::from);
