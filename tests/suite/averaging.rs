@@ -14,7 +14,7 @@ use lindstedt::expand::{AveragedExpansion, Binding, average, check_averaged, com
 use lindstedt::number::ball::Balls;
 use lindstedt::number::ball::ring::{BallRing, Enclosure};
 use lindstedt::phase::{Delay, Torus};
-use lindstedt::{Error, Settings, Value, derive as derive_problem, problems};
+use lindstedt::{Error, Exact, Settings, derive as derive_problem, problems};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
@@ -277,7 +277,7 @@ fn characteristic_root(
 fn averaged_loop(values: &[(&str, &str)], order: usize, digits: usize) -> Averaging {
     let mut parameters = BTreeMap::new();
     for (name, text) in values {
-        parameters.insert((*name).to_owned(), Value::parse(text).unwrap());
+        parameters.insert((*name).to_owned(), Exact::parse(text).unwrap());
     }
     let settings = AveragingSettings { order, parameters, digits, ..AveragingSettings::default() };
     average_problem(&delay_loop(), &settings, &mut |_| true).unwrap()
@@ -304,7 +304,7 @@ fn rates_to_order_50_are_the_characteristic_root() {
     assert_eq!(result.checked_orders, 50);
     let bits = 300;
     let parsed = values.map(|text| {
-        let Value::Rational(q) = Value::parse(text).unwrap() else { panic!("rational") };
+        let Exact::Rational(q) = Exact::parse(text).unwrap() else { panic!("rational") };
         Float::with_val(bits, q)
     });
     let root = characteristic_root(&parsed, 50, bits);
@@ -406,7 +406,7 @@ fn amplitude_equation_at_hopf_points() {
 fn refusals() {
     let problem = delay_loop();
     let set = |pairs: &[(&str, &str)]| {
-        let list = pairs.iter().map(|(n, v)| ((*n).to_owned(), Value::parse(v).unwrap()));
+        let list = pairs.iter().map(|(n, v)| ((*n).to_owned(), Exact::parse(v).unwrap()));
         AveragingSettings { parameters: list.collect(), digits: 20, ..AveragingSettings::default() }
     };
     let run = |pairs: &[(&str, &str)]| average_problem(&problem, &set(pairs), &mut |_| true).err();

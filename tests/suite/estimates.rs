@@ -5,7 +5,7 @@
 use lindstedt::algebra::RationalAlgebra;
 use lindstedt::evaluate::{EvaluateSettings, evaluate};
 use lindstedt::series::resummation::{Method, Resummed, Sample, UniformMap, resum};
-use lindstedt::{Error, Settings, Value, derive, problems};
+use lindstedt::{Error, Exact, Settings, derive, problems};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
@@ -139,7 +139,7 @@ fn closed_forms(seed: u64, cases: usize, most: u64, count: &mut Count) {
         let order = 5 + g.below(most - 5) as usize;
         for method in [None, g.method(), g.method()] {
             let parameters =
-                [(parameter.to_owned(), Value::parse(&value).unwrap())].into_iter().collect();
+                [(parameter.to_owned(), Exact::parse(&value).unwrap())].into_iter().collect();
             let settings = EvaluateSettings {
                 order: Some(order),
                 method,

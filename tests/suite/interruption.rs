@@ -8,7 +8,7 @@ use lindstedt::evaluate::{EvaluateSettings, evaluate};
 use lindstedt::expand::ExpandError;
 use lindstedt::numeric::{Tier, derive as derive_numbers};
 use lindstedt::series::resummation::{Method, ResummationError, Sample, UniformMap, resum_until};
-use lindstedt::{Derivation, Error, Progress, Settings, Value, derive, problems};
+use lindstedt::{Derivation, Error, Exact, Progress, Settings, derive, problems};
 use rug::Float;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -149,7 +149,7 @@ fn averaged_rates() {
             ("P0", "1"),
         ];
         let list = list.iter().filter(|_| values);
-        let parameters = list.map(|(n, v)| ((*n).to_owned(), Value::parse(v).unwrap())).collect();
+        let parameters = list.map(|(n, v)| ((*n).to_owned(), Exact::parse(v).unwrap())).collect();
         let settings =
             AveragingSettings { order: 3, parameters, stop, ..AveragingSettings::default() };
         average(&problem, &settings, &mut |_| true)

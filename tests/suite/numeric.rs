@@ -9,7 +9,7 @@ use lindstedt::number::ball::Balls;
 use lindstedt::numeric::{Estimate, Tier, derive};
 use lindstedt::phase::lobachevsky_function::means;
 use lindstedt::series::Series;
-use lindstedt::{Error, Settings, Value, problems};
+use lindstedt::{Error, Exact, Settings, problems};
 use rug::{Float, Rational};
 
 /// omega^power of the power law from T/2pi = (1 + delta)^(-1/2) M(u), M(u) = sum_m mu_m u^m,
@@ -222,7 +222,7 @@ fn random_combinations(count: usize, seed: u64) {
         let mut settings = Settings { order, ..Settings::default() };
         if name == "pendulum" {
             let a = Rational::from((random.between(1, 30), 10));
-            settings.parameters.insert("amplitude".to_owned(), Value::Rational(a));
+            settings.parameters.insert("amplitude".to_owned(), Exact::Rational(a));
         }
         let digits = random.between(3, 40) as u32;
         let other = random.between(3, 40) as u32;

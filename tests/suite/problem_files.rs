@@ -102,7 +102,7 @@ fn published_coefficients() {
     {
         let mut settings = Settings { order: 2, ..Settings::default() };
         for (name, value) in [("omega_0", omega), ("alpha_2", alpha_2), ("alpha_3", alpha_3)] {
-            settings.parameters.insert(name.into(), lindstedt::Value::parse(value).unwrap());
+            settings.parameters.insert(name.into(), lindstedt::Exact::parse(value).unwrap());
         }
         let result = derive(&problem, &settings, &mut |_| true).unwrap();
         assert_eq!(list(&result, "frequency", &[1, 2]), ["0", expected]);
@@ -113,7 +113,7 @@ fn published_coefficients() {
     for (beta, first, second) in [("1", "3/2", None), ("2/3", "1", None), ("0", "0", Some("-1/16"))]
     {
         let mut settings = Settings { order: 2, ..Settings::default() };
-        settings.parameters.insert("beta".into(), lindstedt::Value::parse(beta).unwrap());
+        settings.parameters.insert("beta".into(), lindstedt::Exact::parse(beta).unwrap());
         let result = derive(&problem, &settings, &mut |_| true).unwrap();
         assert_eq!(result.exact("frequency", 1).as_deref(), Some(first));
         assert_eq!(result.exact("amplitude", 0).as_deref(), Some("2"));

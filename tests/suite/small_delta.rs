@@ -10,7 +10,7 @@ use lindstedt::phase::Lobachevsky;
 use lindstedt::phase::evaluate;
 use lindstedt::phase::lobachevsky::Word;
 use lindstedt::phase::lobachevsky_function::{LambdaTable, Point};
-use lindstedt::{Settings, Solution, Value, energy};
+use lindstedt::{Exact, Settings, Solution, energy};
 use lindstedt_tests::{decimal, expansion, with};
 use rug::float::Constant;
 use rug::ops::Pow;
@@ -198,8 +198,7 @@ fn alpha_to_order_30_by_the_energy_integral() {
     let closed = ClosedForms::new(30).closed_form(&ring, &alpha[30]).unwrap();
     let constants = lindstedt::constants::Constants::default();
     let evaluate = |p: &lindstedt::coeff::Polynomial| {
-        let number =
-            lindstedt::constants::certified(None, 20, |balls| constants.evaluate(p, balls));
+        let number = lindstedt::number::certified(None, 20, |balls| constants.evaluate(p, balls));
         number.unwrap().decimal
     };
     assert_eq!(evaluate(&closed), evaluate(&alpha[30]));
@@ -243,7 +242,7 @@ fn pendulum_at_other_amplitudes() {
     for (value, amplitude) in
         [("1/10", 0.1f64), ("2", 2.0), ("3", 3.0), ("pi/2", std::f64::consts::FRAC_PI_2)]
     {
-        let parameters = [("amplitude".to_owned(), Value::parse(value).unwrap())].into();
+        let parameters = [("amplitude".to_owned(), Exact::parse(value).unwrap())].into();
         let result = with("pendulum", Settings { order: 2, parameters, ..Settings::default() });
         // S_n by their definition in doubles.
         let s = |n: i32| -> f64 {
@@ -269,7 +268,7 @@ fn pendulum_at_other_amplitudes() {
 fn an_amplitude_of_the_power_law_scales_the_frequency() {
     // omega^2 is multiplied by a^(2 delta) = exp(2 delta ln a).
     let a = Rational::from((3, 2));
-    let parameters = [("amplitude".to_owned(), Value::Rational(a))].into();
+    let parameters = [("amplitude".to_owned(), Exact::Rational(a))].into();
     let scaled = with("power-law", Settings { order: 3, parameters, ..Settings::default() });
     let plain = expansion("power-law", 3);
     let value = |r: &lindstedt::Derivation, n| -> f64 {

@@ -7,7 +7,7 @@ use lindstedt::equation::classify::{
 use lindstedt::equation::print::Style;
 use lindstedt::equation::{Condition, Expression, Problem};
 use lindstedt::expand::ExpandError;
-use lindstedt::{Error, Value, check_parameters, known_values};
+use lindstedt::{Error, Exact, check_parameters, known_values};
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -21,7 +21,7 @@ use crate::session::Loaded;
 /// every method that looks at it: Melnikov's looks at no amplitude, averaging asks for another start.
 pub fn of(
     problem: &Problem,
-    given: &BTreeMap<String, Value>,
+    given: &BTreeMap<String, Exact>,
 ) -> Result<Classification, ClassifyError> {
     let mut parts = classify(problem, &known_values(problem, given))?;
     if let Err(error) = check_parameters(problem, given)

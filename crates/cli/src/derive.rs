@@ -14,7 +14,7 @@ use lindstedt::coeff::print::Style;
 use lindstedt::equation::Condition;
 use lindstedt::equation::classify::{Method, Reason, polynomial};
 use lindstedt::expand::ExpandError;
-use lindstedt::{Error, Number, ProblemFile, Progress, Route, Settings, Solution, Status, Value};
+use lindstedt::{Error, Exact, Number, ProblemFile, Progress, Route, Settings, Solution};
 use report::{Frame, Report};
 use serde_json::{Value as Json, json};
 
@@ -64,7 +64,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         if file.is_some() {
             let cards = problem.parameters.iter();
             let known =
-                cards.filter_map(|c| Some((c.name.to_string(), Value::parse(&c.default).ok()?)));
+                cards.filter_map(|c| Some((c.name.to_string(), Exact::parse(&c.default).ok()?)));
             settings.parameters = known.chain(settings.parameters).collect();
         }
         let read = file.as_ref().map(|file| (file, &*options.problem));
@@ -154,15 +154,5 @@ pub fn say_missing(file: Option<&ProblemFile>, has: &dyn Fn(&str) -> bool) {
 
 /// A number of the JSON contract.
 pub fn number_json(number: &Number) -> Json {
-    json!({
-        "exact": number.exact,
-        "decimal": number.decimal,
-        "error": number.error,
-        "status": match number.status {
-            Status::Exact => "exact",
-            Status::Certified => "certified",
-            Status::Estimated => "estimated",
-            Status::NoEstimate => "no-estimate",
-        },
-    })
+    json!(number)
 }

@@ -17,7 +17,7 @@ use lindstedt::equation::{Condition, Expression};
 use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
 use lindstedt::problem_file::parse_equation;
 use lindstedt::series::resummation::Method;
-use lindstedt::{Error, ProblemFile, Progress, Value, expand::ExpandError};
+use lindstedt::{Error, Exact, ProblemFile, Progress, expand::ExpandError};
 use report::Report;
 use rug::Rational;
 use std::collections::BTreeMap;
@@ -81,7 +81,7 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
             });
         }
         Some(request) => {
-            let phase = Value::parse(&options.phase)?;
+            let phase = Exact::parse(&options.phase)?;
             // A figure or a function in doubles needs no more than these.
             let digits = if options.times.is_some() { settings.digits } else { DOUBLE };
             let settings = EvaluateSettings { digits, ..settings.clone() };
@@ -130,7 +130,7 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
 
 /// Where the small parameter only counts orders (the equation as it was written does not mention
 /// it, a table of orders puts it in) it is 1, unless it is set.
-pub fn set_order_parameter(loaded: &Loaded, given: &mut BTreeMap<String, Value>) {
+pub fn set_order_parameter(loaded: &Loaded, given: &mut BTreeMap<String, Exact>) {
     let problem = &loaded.problem;
     let written = loaded.file.as_ref().map(|file| parse_equation(&file.equation, &file.names));
     let mentions = |e: &Expression| e.contains(&Expression::Small);
@@ -142,7 +142,7 @@ pub fn set_order_parameter(loaded: &Loaded, given: &mut BTreeMap<String, Value>)
     };
     let listed = problem.parameters.iter().any(|card| card.name == problem.small);
     if counts_only && !listed {
-        let one = || Value::Rational(Rational::from(1));
+        let one = || Exact::Rational(Rational::from(1));
         given.entry(problem.small.to_string()).or_insert_with(one);
     }
 }
@@ -151,7 +151,7 @@ pub fn set_order_parameter(loaded: &Loaded, given: &mut BTreeMap<String, Value>)
 fn use_initial_data(
     loaded: &Loaded,
     condition: Option<Condition>,
-    given: &mut BTreeMap<String, Value>,
+    given: &mut BTreeMap<String, Exact>,
 ) -> Result<(), Failure> {
     let Some([x, velocity]) = loaded.file.as_ref().and_then(|file| file.initial.as_ref()) else {
         return Ok(());
@@ -165,7 +165,7 @@ fn use_initial_data(
     if set {
         return Ok(());
     }
-    let still = Value::parse(velocity)?.as_rational().is_some_and(|v| v.is_zero());
+    let still = Exact::parse(velocity)?.as_rational().is_some_and(|v| v.is_zero());
     let listed = loaded.problem.parameters.iter().any(|card| card.name == "amplitude");
     if !still || !listed {
         return Err(Failure {
@@ -175,7 +175,7 @@ fn use_initial_data(
             hint: "--set amplitude=A and --phase PHASE, or change [initial] of the file".into(),
         });
     }
-    given.insert("amplitude".to_owned(), Value::parse(x)?);
+    given.insert("amplitude".to_owned(), Exact::parse(x)?);
     Ok(())
 }
 

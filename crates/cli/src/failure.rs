@@ -2,9 +2,9 @@
 
 use crate::arguments::Format;
 use crate::output::warn;
-use lindstedt::Error;
 use lindstedt::algebra::PhaseError;
 use lindstedt::expand::ExpandError;
+use lindstedt::{Error, NumberError};
 use serde_json::json;
 use std::io::Write;
 use std::process::ExitCode;
@@ -50,6 +50,12 @@ impl Failure {
             warn(&format!("{} ({})", self.message, self.hint));
         }
         ExitCode::from(self.exit)
+    }
+}
+
+impl From<NumberError> for Failure {
+    fn from(error: NumberError) -> Self {
+        Error::from(error).into()
     }
 }
 

@@ -5,7 +5,7 @@ use crate::session::{Loaded, load, parameters};
 use lindstedt::equation::print::Style;
 use lindstedt::equation::{Expression, Problem};
 use lindstedt::recognise::{Refusal, all_values};
-use lindstedt::{ProblemFile, Value};
+use lindstedt::{Exact, ProblemFile};
 use std::collections::BTreeMap;
 
 /// A problem file with the values of its parameters.
@@ -14,7 +14,7 @@ pub struct Source {
     pub problem: Problem,
     file: ProblemFile,
     /// The small parameter among them.
-    pub values: BTreeMap<String, Value>,
+    pub values: BTreeMap<String, Exact>,
 }
 
 impl Source {
@@ -43,7 +43,7 @@ impl Source {
     }
 
     /// The parameters as they stand, in the order of the file.
-    pub fn at(&self) -> Vec<(String, Value)> {
+    pub fn at(&self) -> Vec<(String, Exact)> {
         let cards = self.problem.parameters.iter();
         let value = |name: &str| Some((name.to_owned(), self.values.get(name)?.clone()));
         let mut at: Vec<_> = cards.filter_map(|card| value(&card.name)).collect();

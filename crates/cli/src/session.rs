@@ -6,7 +6,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::algebra::Stop;
 use lindstedt::equation::Problem;
 use lindstedt::problem_file::{FileError, LARGEST_FILE, canonical_name};
-use lindstedt::{ProblemFile, Value};
+use lindstedt::{Exact, ProblemFile};
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
@@ -131,7 +131,7 @@ pub fn digits(precision: &Precision) -> Result<usize, Failure> {
 }
 
 /// Reads the `--set NAME=VALUE` arguments.
-pub fn parameters(list: &[String]) -> Result<BTreeMap<String, Value>, Failure> {
+pub fn parameters(list: &[String]) -> Result<BTreeMap<String, Exact>, Failure> {
     let mut parameters = BTreeMap::new();
     for item in list {
         let Some((name, value)) = item.split_once('=') else {
@@ -144,7 +144,7 @@ pub fn parameters(list: &[String]) -> Result<BTreeMap<String, Value>, Failure> {
             let hint = "lindstedt stability and lindstedt simulate take it";
             return Err(Failure::usage("set", message.to_owned(), hint));
         }
-        let value = Value::parse(value)?;
+        let value = Exact::parse(value)?;
         // Greek letters as in a problem file.
         if parameters.insert(canonical_name(name.trim()), value).is_some() {
             let message = format!("{name} is set twice");

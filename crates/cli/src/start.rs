@@ -3,7 +3,7 @@
 use crate::session::note;
 use lindstedt::equation::Problem;
 use lindstedt::number::ball::Balls;
-use lindstedt::{ProblemFile, Value};
+use lindstedt::{Exact, ProblemFile};
 use std::collections::BTreeMap;
 
 /// Which of the two a command takes.
@@ -19,14 +19,14 @@ pub enum Taken {
 pub fn compare(
     problem: &Problem,
     file: Option<&ProblemFile>,
-    given: &BTreeMap<String, Value>,
+    given: &BTreeMap<String, Exact>,
     taken: Taken,
 ) {
     let Some(file) = file else { return };
     let Some([x, velocity]) = &file.initial else { return };
-    let value = |text: &String| Value::parse(text).ok();
+    let value = |text: &String| Exact::parse(text).ok();
     let card = problem.parameters.iter().find(|card| card.name == "amplitude");
-    let default = || card.and_then(|card| Value::parse(&card.default).ok());
+    let default = || card.and_then(|card| Exact::parse(&card.default).ok());
     let written = file.names.parameters.iter().any(|names| names.contains("amplitude"));
     let amplitude = match (given.get("amplitude"), &taken) {
         (Some(value), _) => Some(value.clone()),
@@ -38,7 +38,7 @@ pub fn compare(
     let same = value(x).as_ref() == Some(&amplitude);
     let rests = value(velocity).and_then(|v| Some(v.as_rational()?.is_zero())) == Some(true);
     // An amplitude that is refused is no advice.
-    let advice = |value: Option<Value>, option: &str| match value {
+    let advice = |value: Option<Exact>, option: &str| match value {
         Some(value) if value.ball(Balls::new(64)).is_positive() => {
             format!(" ({})", option.replace("AMPLITUDE", &value.to_string()))
         }

@@ -12,7 +12,7 @@ use crate::start::{self, Taken};
 use lindstedt::equation::{AmplitudeRole, Condition, Problem};
 use lindstedt::expand::ExpandError;
 use lindstedt::verify::{Comparison, TOLERANCE, Verdict, Verification, VerifySettings, verify};
-use lindstedt::{Error, Progress, Value};
+use lindstedt::{Error, Exact, Progress};
 use plotters::prelude::*;
 use rug::{Float, Rational};
 use serde_json::{Value as Json, json};
@@ -141,7 +141,7 @@ fn is_free(problem: &Problem, condition: Option<Condition>, name: &str) -> bool 
 fn small(text: &str) -> Result<Vec<Rational>, Failure> {
     let mut list: Vec<Rational> = Vec::new();
     for part in text.split(',') {
-        let value = Value::parse(part)?;
+        let value = Exact::parse(part)?;
         let wrong = |message: String| Err(Failure::usage("small", message, "1/100,1/200,1/400"));
         let Some(q) = value.as_rational().filter(|q| !q.is_zero()) else {
             return wrong(format!("{part:?} is no rational number other than zero"));

@@ -3,10 +3,11 @@
 use lindstedt_impact::characteristic::Kick;
 use lindstedt_impact::chart::{Axis, Chart, Plan, Predictor, Swept, chart};
 use lindstedt_impact::flow::{Rates, rates};
-use lindstedt_impact::parameters::{Branch, Exact, ExactParameters, Parameters};
+use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
 use lindstedt_impact::prediction::Variant;
-use lindstedt_impact::real::Certified;
 use lindstedt_impact::report::{Request, StabilityReport, certified_stability};
+use lindstedt_number::Exact;
+use lindstedt_number::real::Certified;
 
 fn main() {
     divan::main();

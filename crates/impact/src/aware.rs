@@ -7,14 +7,14 @@
 //! grows out of the uncontrolled multiplier.
 
 use crate::characteristic::{Kick, check};
-use crate::complex::Complex;
 use crate::error::ImpactError;
 use crate::map::{ImpactMap, Verdict};
 use crate::orbit::Orbit;
 use crate::parameters::Parameters;
 use crate::prediction::uncontrolled_map;
-use crate::real::Real;
 use lindstedt_algebra::Stop;
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::Real;
 
 /// The impact-aware prediction.
 #[derive(Clone, Debug)]

@@ -15,13 +15,13 @@
 //! and only if G has no zero in |w| <= 1. For B = 0 this is the truth; for B != 0 the return map
 //! is only piecewise linear (see [`crate::kick`]) and chi chooses the treatment of the kick.
 
-use crate::complex::Complex;
 use crate::error::ImpactError;
 use crate::orbit::Orbit;
 use crate::parameters::Parameters;
 use crate::propagator::propagator;
-use crate::real::Real;
 use lindstedt_algebra::Stop;
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::Real;
 
 /// The velocity kick of the B term between an impact and its delayed image, as the factor chi.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

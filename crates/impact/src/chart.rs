@@ -2,7 +2,6 @@
 
 use crate::aware::impact_aware;
 use crate::characteristic::{Characteristic, Kick};
-use crate::complex::Complex;
 use crate::equivalent::{Drive, equivalent_orbit};
 use crate::error::ImpactError;
 use crate::flight::clearance;
@@ -13,6 +12,7 @@ use crate::parameters::Parameters;
 pub use crate::parameters::Swept;
 use crate::prediction::{Variant, predict};
 use crate::zeros::{exact_verdict, leading_modulus};
+use lindstedt_number::complex::Complex;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -3,8 +3,8 @@
 //! lambda(eps) of [`crate::flow`] has branch points where lambda^2 + alpha^2 = eps g and
 //! 2 lambda = eps g' hold together; the nearest bounds the convergence of the series.
 
-use crate::complex::Complex;
 use crate::parameters::Parameters;
+use lindstedt_number::complex::Complex;
 
 type Point = Complex<f64>;
 

@@ -19,8 +19,8 @@ use crate::error::ImpactError;
 use crate::flow::Flow;
 use crate::orbit::{PERIODIC, refuse_sticking};
 use crate::parameters::{Branch, Parameters};
-use crate::real::Real;
 use crate::velocity::{VelocityEquation, impact_velocity};
+use lindstedt_number::real::Real;
 
 /// An orbit in the form (8), of the true equation (flow R = -c/2) or of a prediction.
 #[derive(Clone, Debug)]

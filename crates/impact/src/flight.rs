@@ -5,7 +5,7 @@ use crate::error::ImpactError;
 use crate::flow::Flow;
 use crate::orbit::Orbit;
 use crate::parameters::Parameters;
-use crate::real::Real;
+use lindstedt_number::real::Real;
 
 /// Smallest interval of the bisection, as a power of two of the period.
 const DEEPEST: u32 = 60;

@@ -4,12 +4,12 @@
 //! 2 chi B (1+R_r)) Sc) + R_r^2 e^2 with m^2 = (c - 2B)^2/4 - alpha^2 + 2A, e = e^(-(c-2B)T/2).
 
 use crate::characteristic::Kick;
-use crate::complex::Complex;
 use crate::error::ImpactError;
 use crate::orbit::orbit;
 use crate::parameters::ExactParameters;
 use crate::propagator::propagator;
-use crate::real::{Certified, Real};
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::{Certified, Real};
 
 /// Depth of the bisection: intervals of 2^-40 of the range.
 const DEEPEST: u32 = 40;

@@ -5,10 +5,10 @@
 //! lambda^2 + alpha^2 = eps g(lambda), g(l) = (A + B l)(1 - e^(-l T)) - c l, lambda(0) = i alpha.
 //! This recursion shares no code with the symbolic derivation and serves as its witness.
 
-use crate::complex::Complex;
 use crate::error::ImpactError;
 use crate::parameters::Parameters;
-use crate::real::Real;
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::Real;
 
 /// An equivalent free flow x'' - 2 R x' + (R^2 + Omega^2) x = 0.
 #[derive(Clone, Debug)]

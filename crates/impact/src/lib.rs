@@ -26,7 +26,8 @@
 //! agrees with the truth in 58 to 69% of the points of eight orbits ([`characteristic`] decides).
 //!
 //! ```
-//! use lindstedt_impact::parameters::{Branch, Exact, ExactParameters};
+//! use lindstedt_impact::parameters::{Branch, ExactParameters};
+//! use lindstedt_number::Exact;
 //! use lindstedt_impact::report::{Request, certified_stability};
 //!
 //! let number = |n, d| Exact::from((n, d));
@@ -45,7 +46,6 @@
 pub mod aware;
 pub mod characteristic;
 pub mod chart;
-pub mod complex;
 pub mod convergence;
 pub mod equivalent;
 mod error;
@@ -58,7 +58,6 @@ pub mod orbit;
 pub mod parameters;
 pub mod prediction;
 pub mod propagator;
-pub mod real;
 pub mod report;
 mod velocity;
 pub mod winding;

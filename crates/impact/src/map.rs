@@ -1,9 +1,9 @@
 //! The linear impact map: characteristic polynomial, multipliers, conditions of stability.
 
-use crate::complex::Complex;
 use crate::equivalent::{Drive, EquivalentOrbit};
 use crate::flow::Flow;
-use crate::real::Real;
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::Real;
 
 /// Stability of a fixed point of a linear map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

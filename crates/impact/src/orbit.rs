@@ -13,12 +13,12 @@
 //! This is linear in (cos psi, sin psi); their squares sum to 1, a quadratic for the impact
 //! velocity v. Valid at alpha = omega, c = 0, c = 2 alpha and above.
 
-use crate::complex::Complex;
 use crate::error::ImpactError;
 use crate::parameters::Parameters;
 use crate::propagator::{Propagator, phi1, propagator};
-use crate::real::Real;
 use crate::velocity::{VelocityEquation, impact_velocity};
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::Real;
 
 /// Delta (or the determinant over (P0 T)^2/omega) below which the free flow counts as T-periodic in doubles.
 pub(crate) const PERIODIC: f64 = 1e-24;

@@ -4,9 +4,9 @@
 //! x' -> -R_r x'; x_T = x(t - T), T = 2 pi k/omega. All numbers are dimensionless.
 
 use crate::error::ImpactError;
-use crate::real::{Certified, Real};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
-use rug::Rational;
+use lindstedt_number::real::{Certified, Real};
 
 /// The sign of the root in the quadratic equation for the impact velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -172,58 +172,6 @@ impl<S: Real> Parameters<S> {
     }
 }
 
-/// An exact real number as a user writes it: `1/3`, `0.1`, `pi/4`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Exact {
-    /// A rational number.
-    Rational(Rational),
-    /// A rational multiple of pi.
-    PiMultiple(Rational),
-    /// The positive square root of a positive rational number.
-    Root(Rational),
-}
-
-impl Exact {
-    /// An enclosure in the given context.
-    #[must_use]
-    pub fn certified(&self, balls: Balls) -> Certified {
-        match self {
-            Self::Rational(q) => Certified::from_rational(balls, q),
-            Self::PiMultiple(q) => Certified::new(balls, balls.mul_rational(&balls.pi(), q)),
-            Self::Root(q) => Certified::from_rational(balls, q).sqrt(),
-        }
-    }
-    /// The nearest double (within 1 ulp for multiples of pi).
-    #[must_use]
-    pub fn to_f64(&self) -> f64 {
-        self.certified(Balls::new(120)).to_f64()
-    }
-}
-
-impl std::fmt::Display for Exact {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Rational(q) => write!(f, "{q}"),
-            Self::PiMultiple(q) if *q == 1 => f.write_str("pi"),
-            Self::PiMultiple(q) => write!(f, "{q}*pi"),
-            Self::Root(q) => write!(f, "sqrt({q})"),
-        }
-    }
-}
-
-impl From<Rational> for Exact {
-    fn from(q: Rational) -> Self {
-        Self::Rational(q)
-    }
-}
-
-impl From<(i32, u32)> for Exact {
-    /// n/d; a denominator of 0 is read as 1.
-    fn from((n, d): (i32, u32)) -> Self {
-        Self::Rational(Rational::from((n, d.max(1))))
-    }
-}
-
 /// A parameter set with exact numbers, the input of the certified path.
 pub type ExactParameters = Parameters<Exact>;
 
@@ -246,11 +194,11 @@ impl ExactParameters {
     #[must_use]
     pub fn certified(&self, bits: u32) -> Parameters<Certified> {
         let balls = Balls::new(bits);
-        self.map(|number| number.certified(balls))
+        self.map(|number| Certified::new(balls, number.ball(balls)))
     }
     /// The nearest doubles.
     #[must_use]
-    pub fn to_f64(&self) -> Parameters<f64> {
+    pub fn nearest(&self) -> Parameters<f64> {
         self.map(Exact::to_f64)
     }
 }

@@ -5,14 +5,14 @@
 //! interval; exactly one does. These verdicts are predictions, not the stability of the delayed
 //! system: see [`crate::characteristic`].
 
-use crate::complex::Complex;
 use crate::equivalent::{Drive, EquivalentOrbit, equivalent_orbit};
 use crate::error::ImpactError;
 use crate::flow::{Flow, Rates};
 use crate::map::{Amplitudes, ImpactMap, Polynomial, polynomial};
 use crate::orbit::{Orbit, orbit};
 use crate::parameters::Parameters;
-use crate::real::Real;
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::Real;
 
 /// Which orbit meets which flow in the impact map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

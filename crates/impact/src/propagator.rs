@@ -3,8 +3,8 @@
 //! With m^2 = z: h(T) = e^(-dT/2) sinh(mT)/m is the solution with h(0) = 0, h'(0) = 1. Even in m,
 //! hence regular at m = 0 (critical damping) and through it.
 
-use crate::complex::Complex;
-use crate::real::Real;
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::Real;
 
 /// Below this |m T|^2 the series in (mT)^2 is used.
 const SERIES_BELOW: f64 = 0.25;

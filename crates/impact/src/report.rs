@@ -12,9 +12,9 @@ use crate::map::Verdict;
 use crate::orbit::{Orbit, orbit};
 use crate::parameters::{ExactParameters, Parameters};
 use crate::prediction::{Prediction, Variant, mismatch, predict, predicted_flow, uncontrolled_map};
-use crate::real::{Certified, Real};
 use crate::zeros::{Multipliers, exact_verdict, multipliers};
 use lindstedt_algebra::Stop;
+use lindstedt_number::real::{Certified, Real};
 
 /// Flights of the piecewise linear return map that decide for B != 0.
 const FLIGHTS: usize = 800;

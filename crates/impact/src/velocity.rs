@@ -2,7 +2,7 @@
 
 use crate::error::ImpactError;
 use crate::parameters::Branch;
-use crate::real::Real;
+use lindstedt_number::real::Real;
 
 /// Relative size of |kappa + i q| omega below which the orbit is at an impact resonance (doubles).
 const RESONANCE: f64 = 1e-12;

@@ -7,8 +7,8 @@
 //! axis, half the circle suffices. Certified for balls; doubles ignore their rounding errors.
 
 use crate::characteristic::Characteristic;
-use crate::complex::Complex;
-use crate::real::Real;
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::Real;
 
 /// Steps before giving up: a zero on the circle, or too near it for the precision.
 const STEPS: usize = 20_000;

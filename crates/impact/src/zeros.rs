@@ -1,11 +1,11 @@
 //! Floquet multipliers of the delayed impact system: the inverses of the zeros of G.
 
 use crate::characteristic::Characteristic;
-use crate::complex::Complex;
 use crate::error::ImpactError;
 use crate::map::Verdict;
-use crate::real::Real;
 use crate::winding::zero_count;
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::Real;
 
 /// Floquet multipliers down to some modulus.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@
 use divan::Bencher;
 use lindstedt::averaging::{AveragingSettings, average};
 use lindstedt::numeric::{self, Tier};
-use lindstedt::{Route, Settings, Value, derive, problems};
+use lindstedt::{Exact, Route, Settings, derive, problems};
 
 fn main() {
     divan::main();
@@ -91,7 +91,7 @@ fn averaging_in_numbers(bencher: Bencher<'_, '_>, order: usize) {
 
 fn averaging(bencher: Bencher<'_, '_>, order: usize, values: &[(&str, &str)]) {
     let problem = problems::find("vibro-impact").expect("a built-in problem");
-    let value = |text: &str| Value::parse(text).expect("a number");
+    let value = |text: &str| Exact::parse(text).expect("a number");
     let parameters = values.iter().map(|(name, text)| ((*name).to_owned(), value(text))).collect();
     let settings = AveragingSettings { order, parameters, ..AveragingSettings::default() };
     average(&problem, &settings, &mut |_| true).expect("an expansion");

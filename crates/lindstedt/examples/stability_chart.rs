@@ -1,13 +1,14 @@
 //! Where averaging predicts a stable impact orbit with a delay loop, and where it is stable.
 
+use lindstedt::Exact;
 use lindstedt::impact::ImpactError;
 use lindstedt::impact::characteristic::Kick;
 use lindstedt::impact::chart::{Axis, Plan, Point, Predictor, Swept, chart};
 use lindstedt::impact::flip::flip_boundary;
 use lindstedt::impact::map::Verdict::{Stable, Unstable};
-use lindstedt::impact::parameters::{Branch, Exact, ExactParameters};
+use lindstedt::impact::parameters::{Branch, ExactParameters};
 use lindstedt::impact::prediction::Variant;
-use lindstedt::impact::real::Real;
+use lindstedt::number::real::Real;
 
 fn symbol(point: Option<&Point>) -> char {
     match point.and_then(|p| Some((p.predicted?, p.exact?))) {
@@ -41,7 +42,7 @@ fn main() -> Result<(), ImpactError> {
         exact: Some(Kick::Mean),
         radius: false,
     };
-    let chart = chart(&orbit.to_f64(), &plan, &|_| true)?;
+    let chart = chart(&orbit.nearest(), &plan, &|_| true)?;
 
     println!("A from -0.3 to 0.3, B from 0.3 (top) to -0.3; # . right, X o wrong prediction");
     for row in (0..plan.rows.count).rev() {

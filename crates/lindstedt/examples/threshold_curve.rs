@@ -1,6 +1,7 @@
 //! The threshold of stick-slip chaos over the speed of the belt, and where it vanishes.
 
-use lindstedt::melnikov::{Axis, FastPoint, MelnikovError, Real, StickSlip};
+use lindstedt::Exact;
+use lindstedt::melnikov::{Axis, FastPoint, MelnikovError, StickSlip};
 use lindstedt::number::ball::Balls;
 use lindstedt::number::digits::decimal;
 
@@ -19,8 +20,8 @@ fn main() -> Result<(), MelnikovError> {
     let undecided = MelnikovError::Undecided { bits: 160 };
     let proved = StickSlip::paper().signed_threshold(balls).and_then(|g| decimal(&g, 30));
     println!("vstar = 2/5 with 30 digits: {}", proved.ok_or(undecided.clone())?);
-    let soft = StickSlip { b: Real::from(5), ..StickSlip::paper() };
-    let found = soft.zeros_in(balls, Axis::BeltSpeed, &Real::from(0), &Real::from(1))?;
+    let soft = StickSlip { b: Exact::from(5), ..StickSlip::paper() };
+    let found = soft.zeros_in(balls, Axis::BeltSpeed, &Exact::from(0), &Exact::from(1))?;
     for zero in &found.zeros {
         println!("b = 5: zero at vstar = {}", decimal(zero, 30).ok_or(undecided.clone())?);
     }

@@ -1,58 +1,25 @@
-//! Numbers with their class, and the evaluation of exact constants.
+//! The evaluation of exact constants: polynomials in named symbols as balls.
 
-use crate::{Error, Value};
+use crate::Exact;
 use lindstedt_coeff::{Polynomial, Symbol};
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::digits::{CertifyError, certify};
 use lindstedt_phase::lobachevsky_function::means;
 use rug::Rational;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::{Mutex, PoisonError};
 
-/// Precision is escalated up to this before "not enough bits" is answered: 10 000 digits and a
-/// generous cancellation.
-const MOST_BITS: u32 = 1 << 18;
-
-/// What is known about a number; the class only ever weakens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Status {
-    /// Known in closed form.
-    Exact,
-    /// Enclosed rigorously.
-    Certified,
-    /// Estimated; how is said beside it.
-    Estimated,
-    /// Computed, but nothing is known of its error: too few orders, or terms that do not decrease.
-    NoEstimate,
-}
-
-/// A number as it leaves the program. |decimal - true value| <= error where the status is exact or
-/// certified; the decimal has the digits asked for, or fewer where the error of an estimate says so,
-/// and a few only where there is no estimate.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Number {
-    /// The closed form, if there is one.
-    pub exact: Option<String>,
-    /// Its decimal value.
-    pub decimal: String,
-    /// A bound on |decimal - true value|; nothing when they are equal, and without an estimate.
-    pub error: Option<String>,
-    /// The class.
-    pub status: Status,
-}
-
 /// The values of named constants at any precision, each computed once per precision.
 #[derive(Debug, Default)]
 pub struct Constants {
     /// The amplitude a: formal parameter 0 is ln a, and S_n = sum_k (-1)^k a^(2k) k^n/(2k+1)!.
-    amplitude: Option<Value>,
+    amplitude: Option<Exact>,
     known: Mutex<BTreeMap<(u32, Symbol), Ball>>,
 }
 
 impl Constants {
     /// The constants that do not depend on an amplitude, and those that do if one is given.
-    pub fn new(amplitude: Option<Value>) -> Self {
+    pub fn new(amplitude: Option<Exact>) -> Self {
         Self { amplitude, known: Mutex::default() }
     }
 
@@ -143,38 +110,10 @@ pub fn sine_sum(n: u16, amplitude: &Ball, balls: Balls) -> Ball {
     sum
 }
 
-/// A number by certified evaluation.
-///
-/// # Errors
-/// [`Error::NotEnoughBits`] when the digits cannot be reached, [`Error::NoValue`] when the value
-/// does not exist.
-pub fn certified(
-    exact: Option<String>,
-    digits: usize,
-    evaluate: impl Fn(Balls) -> Option<Ball>,
-) -> Result<Number, Error> {
-    let status = if exact.is_some() { Status::Exact } else { Status::Certified };
-    match certify(digits, MOST_BITS, evaluate) {
-        Ok((decimal, error)) => {
-            let error = (error != "0").then_some(error);
-            Ok(Number { exact, decimal, error, status })
-        }
-        Err(CertifyError::NotEnoughBits { bits, best }) => Err(Error::NotEnoughBits { bits, best }),
-        Err(_) => Err(Error::NoValue),
-    }
-}
-
-/// A rational number.
-///
-/// # Errors
-/// As [`certified`].
-pub fn rational(q: &Rational, digits: usize) -> Result<Number, Error> {
-    certified(Some(q.to_string()), digits, |balls| Some(balls.from_rational(q)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lindstedt_number::certified;
 
     #[test]
     fn sine_sums() {

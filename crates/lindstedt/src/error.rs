@@ -1,6 +1,7 @@
 //! Errors of the facade.
 
 use lindstedt_expand::ExpandError;
+use lindstedt_number::NumberError;
 use lindstedt_problem_file::{FileError, ParseError};
 use thiserror::Error;
 
@@ -176,6 +177,16 @@ pub enum Error {
     /// The value does not exist.
     #[error("the value does not exist")]
     NoValue,
+}
+
+impl From<NumberError> for Error {
+    fn from(error: NumberError) -> Self {
+        match error {
+            NumberError::BadValue { text } => Self::BadValue { text },
+            NumberError::NotEnoughBits { bits, best } => Self::NotEnoughBits { bits, best },
+            _ => Self::NoValue,
+        }
+    }
 }
 
 /// Which values are missing.

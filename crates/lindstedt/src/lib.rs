@@ -26,17 +26,15 @@ mod oscillator;
 pub mod quotient;
 pub mod recognise;
 pub mod trade;
-mod value;
 pub mod verify;
 
-pub use constants::{Number, Status};
 pub use derivation::{
     Derivation, NamedSeries, Progress, Route, Settings, Solution, check_parameters, derive,
 };
 pub use error::Error;
+pub use lindstedt_number::{Exact, Number, NumberError, Status};
 pub use lindstedt_problem_file::ProblemFile;
 pub use oscillator::{Oscillator, known_values};
-pub use value::Value;
 
 pub use lindstedt_algebra as algebra;
 pub use lindstedt_coeff as coeff;

@@ -7,7 +7,7 @@
 
 use crate::derivation::Settings;
 use crate::derivation::prepare::prepare;
-use crate::{Error, Number, Status, Value, constants::sine_sum};
+use crate::{Error, Exact, Number, constants::sine_sum};
 use lindstedt_algebra::{PhaseAlgebra, Rationals};
 use lindstedt_coeff::floats::{Doubles, Floats, Reals};
 use lindstedt_equation::print::Style;
@@ -17,7 +17,6 @@ use lindstedt_expand::{
     Binding, ExpandError, OrderWork, Request, compile, expand, leading_amplitude,
 };
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::digits::{decimal, error_string};
 use lindstedt_phase::Trigonometric;
 use lindstedt_phase::collocation::{Collocation, Grid};
 use lindstedt_series::Series;
@@ -85,16 +84,8 @@ impl EstimatedSeries {
     /// nothing where its error is infinite.
     #[must_use]
     pub fn number(&self, n: usize, digits: usize) -> Option<Number> {
-        let (value, error) = self.coefficients.get(n).filter(|(_, error)| error.is_finite())?;
-        let balls = Balls::new(value.prec().max(64));
-        let sure = match (value.get_exp(), error.get_exp()) {
-            (Some(v), Some(e)) => (f64::from(v - e) * 2f64.log10()).max(0.0) as usize + 2,
-            _ => digits,
-        };
-        let centre = balls.from_parts(value, &Float::new(53));
-        let text = decimal(&centre, digits.min(sure).max(1))?;
-        let error = error_string(&balls.from_parts(value, error), &text);
-        Some(Number { exact: None, decimal: text, error: Some(error), status: Status::Estimated })
+        let (value, error) = self.coefficients.get(n)?;
+        Number::with_error(value, error, digits)
     }
 }
 
@@ -336,7 +327,8 @@ impl Job<'_> {
             // Found exactly: a root of an averaged polynomial.
             Condition::LimitCycle => {
                 let plain = Trigonometric::new(Rationals);
-                let exact = compile(&plain, &self.problem.equation, &Exact(self.settings), order)?;
+                let exact =
+                    compile(&plain, &self.problem.equation, &ExactValues(self.settings), order)?;
                 leading_amplitude(&plain, &exact, self.condition)?
             }
             _ => leading_amplitude(algebra, &equation, self.condition)?,
@@ -458,10 +450,10 @@ struct Given<'a, R> {
 }
 
 impl<R: Reals> Given<'_, R> {
-    fn value(&self, name: &str) -> Option<Value> {
+    fn value(&self, name: &str) -> Option<Exact> {
         let card = || self.problem.parameters.iter().find(|card| card.name == name);
         let given = self.settings.parameters.get(name).cloned();
-        given.or_else(|| Value::parse(&card()?.default).ok())
+        given.or_else(|| Exact::parse(&card()?.default).ok())
     }
 }
 
@@ -482,9 +474,9 @@ impl<R: Reals> Binding<R> for Given<'_, R> {
 }
 
 /// Exact values of parameters.
-struct Exact<'a>(&'a Settings);
+struct ExactValues<'a>(&'a Settings);
 
-impl Binding<Rationals> for Exact<'_> {
+impl Binding<Rationals> for ExactValues<'_> {
     fn parameter(&self, name: &str) -> Option<Rational> {
         self.0.parameters.get(name)?.as_rational().cloned()
     }

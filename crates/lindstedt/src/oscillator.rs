@@ -1,7 +1,7 @@
 //! The short way from an equation to its expansion.
 
 use crate::evaluate::{EvaluateSettings, Evaluation, evaluate};
-use crate::{Derivation, Error, Progress, Settings, Value, derive};
+use crate::{Derivation, Error, Exact, Progress, Settings, derive};
 use lindstedt_equation::classify::{Classification, ClassifyError, classify};
 use lindstedt_equation::{Condition, Expression, ParameterCard, Problem};
 use lindstedt_problem_file::{
@@ -100,7 +100,7 @@ impl Oscillator {
     /// # Errors
     /// [`Error::BadValue`].
     pub fn set(mut self, name: &str, value: &str) -> Result<Self, Error> {
-        self.settings.parameters.insert(name.to_owned(), Value::parse(value)?);
+        self.settings.parameters.insert(name.to_owned(), Exact::parse(value)?);
         Ok(self)
     }
 
@@ -148,13 +148,13 @@ impl Oscillator {
 /// The rational values of a problem's parameters: those given, else the defaults.
 pub fn known_values(
     problem: &Problem,
-    given: &BTreeMap<String, Value>,
+    given: &BTreeMap<String, Exact>,
 ) -> BTreeMap<String, Rational> {
     let mut values = BTreeMap::new();
     for card in &problem.parameters {
-        let default = || Value::parse(&card.default).ok();
+        let default = || Exact::parse(&card.default).ok();
         let value = given.get(&*card.name).cloned().or_else(default);
-        if let Some(q) = value.as_ref().and_then(Value::as_rational) {
+        if let Some(q) = value.as_ref().and_then(Exact::as_rational) {
             values.insert(card.name.to_string(), q.clone());
         }
     }

@@ -27,11 +27,11 @@ mod drifting;
 mod periodic;
 
 use crate::derivation::condition;
-use crate::{Derivation, Error, Progress, Settings, Value, derive};
+use crate::{Derivation, Error, Exact, Progress, Settings, derive};
 use drifting::Drifting;
 use lindstedt_equation::{Condition, Problem};
 use lindstedt_expand::ExpandError;
-use lindstedt_simulate::{Parameters, Quantity};
+use lindstedt_simulate::Parameters;
 use periodic::Periodic;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
@@ -60,7 +60,7 @@ pub struct VerifySettings {
     /// Digits of the integration; by default enough for the smallest error expected.
     pub digits: Option<u32>,
     /// Values of parameters by name; with a free amplitude, `amplitude` is a(0), by default 1.
-    pub parameters: BTreeMap<String, Value>,
+    pub parameters: BTreeMap<String, Exact>,
     /// The memory that may be used, in bytes.
     pub memory: u64,
 }
@@ -343,41 +343,32 @@ fn digits(order: usize, condition: Condition, settings: &VerifySettings) -> u32 
     ((order as f64 + 1.0) * decades + cycle).ceil() as u32 + 16
 }
 
-/// The value of a parameter for the integrator.
-#[must_use]
-pub fn quantity(value: &Value) -> Quantity {
-    match value {
-        Value::Rational(q) => Quantity::Rational(q.clone()),
-        Value::PiTimes(q) => Quantity::PiMultiple(q.clone()),
-    }
-}
-
 /// The parameters of a problem for the integrator: given, or by default, with the delay that is a
 /// number of periods of the force. What has no value is left out.
 #[must_use]
-pub fn quantities(problem: &Problem, given: &BTreeMap<String, Value>) -> Parameters {
+pub fn quantities(problem: &Problem, given: &BTreeMap<String, Exact>) -> Parameters {
     let mut parameters = Parameters::new();
     let value = |name: &str| {
         let card = problem.parameters.iter().find(|card| card.name == name);
-        let default = || Value::parse(&card?.default).ok();
+        let default = || Exact::parse(&card?.default).ok();
         given.get(name).cloned().or_else(default)
     };
     for card in &problem.parameters {
         if let Some(value) = value(&card.name) {
-            parameters.set(&card.name, quantity(&value));
+            parameters.set(&card.name, value);
         }
     }
     if let Some(tie) = &problem.synchronous
-        && let (Some(Value::Rational(k)), Some(omega)) =
+        && let (Some(Exact::Rational(k)), Some(omega)) =
             (value(&tie.periods), value(&tie.frequency))
     {
-        let (Value::Rational(q) | Value::PiTimes(q)) = &omega;
-        if !q.is_zero() {
-            let turns = k * 2u32 / q.clone();
-            let period = match omega {
-                Value::Rational(_) => Quantity::PiMultiple(turns),
-                Value::PiTimes(_) => Quantity::Rational(turns),
-            };
+        let two_k = k * 2u32;
+        let period = match &omega {
+            Exact::Rational(w) if !w.is_zero() => Some(Exact::pi_times(two_k / w)),
+            Exact::PiTimes(w) if !w.is_zero() => Some(Exact::from(two_k / w)),
+            _ => None,
+        };
+        if let Some(period) = period {
             parameters.set(&tie.delay, period);
         }
     }

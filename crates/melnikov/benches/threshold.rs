@@ -4,8 +4,9 @@
 
 use divan::Bencher;
 use lindstedt_melnikov::{
-    Axis, FastPoint, PolynomialFriction, Real, Region, StickSlip, subharmonic, surface,
+    Axis, FastPoint, PolynomialFriction, Region, StickSlip, subharmonic, surface,
 };
+use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
 
 fn main() {
@@ -38,8 +39,8 @@ fn certified(bencher: Bencher<'_, '_>, digits: u32) {
 /// The complete list of zeros in 0 <= v* <= 1.
 #[divan::bench(args = [40, 1000], sample_count = 5)]
 fn zeros(bencher: Bencher<'_, '_>, digits: u32) {
-    let soft = StickSlip { b: Real::from(5), ..StickSlip::paper() };
-    let (low, high) = (Real::from(0), Real::from(1));
+    let soft = StickSlip { b: Exact::from(5), ..StickSlip::paper() };
+    let (low, high) = (Exact::from(0), Exact::from(1));
     bencher.bench(|| {
         soft.zeros_in(balls(digits), Axis::BeltSpeed, &low, &high).expect("the zeros").zeros.len()
     });

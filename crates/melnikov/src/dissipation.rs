@@ -3,9 +3,8 @@
 use crate::crossing::level_crossings;
 use crate::hyperbolic::HyperbolicRing;
 use crate::quadrature::{Estimate, tanh_sinh};
-use crate::{
-    Branch, Friction, MelnikovError, OrbitDescription, PolynomialFriction, Potential, Real,
-};
+use crate::{Branch, Friction, MelnikovError, OrbitDescription, PolynomialFriction, Potential};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::float::Constant;
 use rug::{Float, Integer, Rational};
@@ -24,10 +23,10 @@ pub fn polynomial_dissipation(
     potential: &Potential,
     friction: &PolynomialFriction,
     branch: Branch,
-    belt_speed: &Real,
+    belt_speed: &Exact,
 ) -> Option<Ball> {
     let sigma = branch.sign();
-    let mirrored = if sigma < 0 { belt_speed.neg() } else { belt_speed.clone() };
+    let mirrored = if sigma < 0 { -belt_speed } else { belt_speed.clone() };
     let dry = friction.dry.ball(balls);
     let mut sum = if friction.dry.sign().is_eq() {
         balls.zero()
@@ -135,7 +134,7 @@ pub fn quadrature_dissipation(
     potential: &Potential,
     friction: &Friction,
     branch: Branch,
-    belt_speed: &Real,
+    belt_speed: &Exact,
 ) -> Result<Estimate, MelnikovError> {
     let undecided = MelnikovError::Undecided { bits };
     if let Potential::Described { orbit, .. } = potential {
@@ -186,7 +185,7 @@ fn in_time(
     orbit: &OrbitDescription,
     friction: &Friction,
     branch: Branch,
-    belt_speed: &Real,
+    belt_speed: &Exact,
 ) -> Result<Estimate, MelnikovError> {
     let undecided = || MelnikovError::Undecided { bits };
     let work = bits.saturating_mul(2).saturating_add(64);

@@ -1,6 +1,6 @@
 //! Errors of the crate.
 
-use lindstedt_number::digits::CertifyError;
+use lindstedt_number::{Exact, NumberError};
 use thiserror::Error;
 
 /// Why there is no answer.
@@ -77,5 +77,10 @@ pub enum MelnikovError {
     },
     /// The digits could not be certified.
     #[error(transparent)]
-    Digits(#[from] CertifyError),
+    Digits(#[from] NumberError),
+}
+
+/// Refuses a parameter that is not positive.
+pub(crate) fn positive(x: &Exact, name: &'static str) -> Result<(), MelnikovError> {
+    if x.sign().is_gt() { Ok(()) } else { Err(MelnikovError::NotPositive { name }) }
 }

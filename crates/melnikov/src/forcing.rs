@@ -1,7 +1,9 @@
 //! Forcing terms, their work along the orbit, and the extremes of that work over the phase.
 
+use crate::error::positive;
 use crate::root::enclose_root;
-use crate::{Branch, MelnikovError, Potential, Real};
+use crate::{Branch, MelnikovError, Potential};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Rational};
 
@@ -11,9 +13,9 @@ pub struct Harmonic {
     /// k >= 1.
     pub order: u32,
     /// g.
-    pub weight: Real,
+    pub weight: Exact,
     /// The phase in radians.
-    pub phase: Real,
+    pub phase: Exact,
 }
 
 /// The forcing eps gamma f(t).
@@ -23,25 +25,25 @@ pub enum Forcing {
     /// sum_k g_k cos(k omega t + psi_k).
     Harmonics {
         /// omega > 0.
-        omega: Real,
+        omega: Exact,
         /// The harmonics.
         harmonics: Vec<Harmonic>,
     },
     /// sum_i g_i cos(omega_i t + psi_i) with omega_i independent over Q: the phases sweep the
     /// torus, so only the sum of the amplitudes matters.
-    Incommensurate(Vec<(Real, Real)>),
+    Incommensurate(Vec<(Exact, Exact)>),
     /// x cos(omega t).
     Parametric {
         /// omega > 0.
-        omega: Real,
+        omega: Exact,
     },
 }
 
 impl Forcing {
     /// cos(omega t).
     #[must_use]
-    pub fn single(omega: Real) -> Self {
-        let one = Harmonic { order: 1, weight: Real::from(1), phase: Real::from(0) };
+    pub fn single(omega: Exact) -> Self {
+        let one = Harmonic { order: 1, weight: Exact::from(1), phase: Exact::from(0) };
         Self::Harmonics { omega, harmonics: vec![one] }
     }
     /// Positive frequencies and orders.
@@ -51,16 +53,16 @@ impl Forcing {
     pub fn check(&self) -> Result<(), MelnikovError> {
         match self {
             Self::Harmonics { omega, harmonics } => {
-                omega.positive("omega")?;
+                positive(omega, "omega")?;
                 if harmonics.iter().any(|h| h.order == 0) {
                     return Err(MelnikovError::NotPositive { name: "harmonic" });
                 }
                 Ok(())
             }
             Self::Incommensurate(terms) => {
-                terms.iter().try_for_each(|(omega, _)| omega.positive("omega"))
+                terms.iter().try_for_each(|(omega, _)| positive(omega, "omega"))
             }
-            Self::Parametric { omega } => omega.positive("omega"),
+            Self::Parametric { omega } => positive(omega, "omega"),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Friction laws T(w), w = v - v* the sliding speed: the force on the mass is -eps T.
 
-use crate::{MelnikovError, Real};
+use crate::MelnikovError;
+use crate::error::positive;
+use lindstedt_number::Exact;
 use rug::Float;
 use rug::ops::Pow;
 use std::fmt;
@@ -13,16 +15,16 @@ pub const LARGEST_DEGREE: usize = 1000;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PolynomialFriction {
     /// T0, of any sign.
-    pub dry: Real,
+    pub dry: Exact,
     /// t_k at index k.
-    pub coefficients: Vec<Real>,
+    pub coefficients: Vec<Exact>,
 }
 
 impl PolynomialFriction {
     /// The paper's (19): T(w) = T0 sgn w - alpha w + beta w^3.
     #[must_use]
-    pub fn paper(dry: Real, alpha: &Real, beta: Real) -> Self {
-        Self { dry, coefficients: vec![Real::from(0), alpha.neg(), Real::from(0), beta] }
+    pub fn paper(dry: Exact, alpha: &Exact, beta: Exact) -> Self {
+        Self { dry, coefficients: vec![Exact::from(0), -alpha, Exact::from(0), beta] }
     }
     pub(crate) fn check(&self) -> Result<(), MelnikovError> {
         let degree = self.coefficients.len().saturating_sub(1);
@@ -45,43 +47,43 @@ pub enum Friction {
     /// Stribeck: sgn(w) (F_c + (F_s - F_c) e^{-|w|/v_s}) + c w, v_s > 0.
     Stribeck {
         /// F_c, the Coulomb force.
-        coulomb: Real,
+        coulomb: Exact,
         /// F_s, the static force.
-        stiction: Real,
+        stiction: Exact,
         /// v_s > 0.
-        speed: Real,
+        speed: Exact,
         /// c.
-        viscous: Real,
+        viscous: Exact,
     },
     /// T0 sgn(w)/(1 + d|w|), d >= 0.
     Rational {
         /// T0.
-        dry: Real,
+        dry: Exact,
         /// d >= 0.
-        slope: Real,
+        slope: Exact,
     },
     /// T0 tanh(w/s), s > 0: smoothed dry friction.
     HyperbolicTangent {
         /// T0.
-        dry: Real,
+        dry: Exact,
         /// s > 0.
-        speed: Real,
+        speed: Exact,
     },
     /// T0 atan(w/s), s > 0.
     ArcTangent {
         /// T0.
-        dry: Real,
+        dry: Exact,
         /// s > 0.
-        speed: Real,
+        speed: Exact,
     },
     /// w/(1 + |w|).
     SoftSign,
     /// T0 sgn(w)|w|^p, p > -1.
     SignedPower {
         /// T0.
-        dry: Real,
+        dry: Exact,
         /// p > 0.
-        exponent: Real,
+        exponent: Exact,
     },
     /// Any law, with the sliding speeds where it is not smooth (0 is not implied).
     Custom {
@@ -130,11 +132,11 @@ impl Friction {
             Self::Polynomial(p) => p.check(),
             Self::Stribeck { speed, .. }
             | Self::HyperbolicTangent { speed, .. }
-            | Self::ArcTangent { speed, .. } => speed.positive("speed"),
+            | Self::ArcTangent { speed, .. } => positive(speed, "speed"),
             Self::Rational { slope, .. } if slope.sign().is_lt() => {
                 Err(MelnikovError::NotPositive { name: "slope" })
             }
-            Self::SignedPower { exponent, .. } => exponent.positive("exponent"),
+            Self::SignedPower { exponent, .. } => positive(exponent, "exponent"),
             Self::Custom { kinks, .. } if kinks.iter().any(|k| !k.is_finite()) => {
                 Err(MelnikovError::NotFinite { name: "kink" })
             }
@@ -156,7 +158,7 @@ impl Friction {
     #[must_use]
     pub fn law(&self, bits: u32) -> Law {
         let balls = lindstedt_number::ball::Balls::new(bits);
-        let float = |x: &Real| x.ball(balls).midpoint().clone();
+        let float = |x: &Exact| x.ball(balls).midpoint().clone();
         let abs = move |w: &Float| Float::with_val(bits, w.abs_ref());
         // sgn(w) m, with sgn 0 = 0.
         let signed = move |w: &Float, m: Float| match w.cmp0() {

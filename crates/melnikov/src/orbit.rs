@@ -1,8 +1,9 @@
 //! Orbits in the hyperbolic algebra, checked against their equation of motion.
 
+use crate::MelnikovError;
 use crate::hyperbolic::{Hyperbolic, HyperbolicRing};
-use crate::{MelnikovError, Real};
 use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
@@ -25,7 +26,7 @@ impl Monomial {
     }
     /// The value at the given parameters, for coefficient and powers as they are.
     #[must_use]
-    pub fn ball(&self, balls: Balls, a: &Real, b: &Real) -> Option<Ball> {
+    pub fn ball(&self, balls: Balls, a: &Exact, b: &Exact) -> Option<Ball> {
         let a = balls.powi(&a.ball(balls), i64::from(self.a))?;
         let b = balls.powi(&b.ball(balls), i64::from(self.b))?;
         Some(balls.mul_rational(&balls.mul(&a, &b), &self.coefficient))

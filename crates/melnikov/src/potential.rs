@@ -1,12 +1,14 @@
 //! Potentials with a known homoclinic or heteroclinic orbit.
 
 use crate::crossing::{self, largest_value};
+use crate::error::positive;
 use crate::hyperbolic::{Hyperbolic, HyperbolicRing, beta};
 use crate::orbit::{check_pendulum, check_phi_six};
 use crate::quadrature::{Strip, trapezoid};
 use crate::root::sqrt_positive_part;
-use crate::{MelnikovError, Monomial, OrbitDescription, Real};
+use crate::{MelnikovError, Monomial, OrbitDescription};
 use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
@@ -36,28 +38,28 @@ pub enum Potential {
     /// x'' = a x - b x^3, x0 = sqrt(2a/b) sech(sqrt(a) t): the paper's (20), corrected (23).
     DoubleWell {
         /// a > 0.
-        a: Real,
+        a: Exact,
         /// b > 0.
-        b: Real,
+        b: Exact,
     },
     /// x'' = -a x + b x^3, x0 = sqrt(a/b) tanh(sqrt(a/2) t): softening Duffing, heteroclinic.
     SoftDuffing {
         /// a > 0.
-        a: Real,
+        a: Exact,
         /// b > 0.
-        b: Real,
+        b: Exact,
     },
     /// x'' = a x - b x^2, x0 = (3a/2b) sech^2(sqrt(a) t/2): one loop only.
     Helmholtz {
         /// a > 0.
-        a: Real,
+        a: Exact,
         /// b > 0.
-        b: Real,
+        b: Exact,
     },
     /// x'' = -a sin x, x0 = 2 gd(sqrt(a) t), x0' = 2 sqrt(a) sech(sqrt(a) t): heteroclinic.
     Pendulum {
         /// a > 0, the square of the frequency of small swings.
-        a: Real,
+        a: Exact,
     },
     /// Any polynomial force with an orbit in the hyperbolic algebra; what the others have in closed
     /// form is found by certified crossings here.
@@ -65,15 +67,15 @@ pub enum Potential {
         /// Force, scales and shape, checked against each other.
         orbit: Box<OrbitDescription>,
         /// a > 0 (1 where the description does not use it).
-        a: Real,
+        a: Exact,
         /// b > 0 (1 where the description does not use it).
-        b: Real,
+        b: Exact,
     },
     /// x'' = a x (1 - x^2)(1 - 3 x^2), x0 = (1 + e^{-2 kappa t})^{-1/2}, kappa = sqrt(a), from the
     /// saddle 0 to the saddle 1.
     PhiSix {
         /// a > 0.
-        a: Real,
+        a: Exact,
     },
 }
 
@@ -109,7 +111,7 @@ impl Potential {
 
     /// The parameters with their names.
     #[must_use]
-    pub fn parameters(&self) -> Vec<(&'static str, &Real)> {
+    pub fn parameters(&self) -> Vec<(&'static str, &Exact)> {
         match self {
             Self::DoubleWell { a, b }
             | Self::SoftDuffing { a, b }
@@ -127,7 +129,7 @@ impl Potential {
     /// [`MelnikovError::NotPositive`] or [`MelnikovError::WrongOrbit`].
     pub fn check(&self) -> Result<(), MelnikovError> {
         for (name, value) in self.parameters() {
-            value.positive(name)?;
+            positive(value, name)?;
         }
         if let Some(description) = self.description() {
             return description.check();
@@ -299,8 +301,8 @@ impl Potential {
     /// 1 - |v|/V. Without cancellation for the double well, with V = a/sqrt(2b),
     /// (a^2 - 2 b v^2)/(a (a + sqrt(2b) |v|)), and for the pendulum, with V = 2 sqrt(a),
     /// (4 a - v^2)/(V (V + |v|)).
-    pub(crate) fn speed_gap(&self, balls: Balls, v: &Real) -> Option<Ball> {
-        let square = |x: &Real| balls.square(&x.ball(balls));
+    pub(crate) fn speed_gap(&self, balls: Balls, v: &Exact) -> Option<Ball> {
+        let square = |x: &Exact| balls.square(&x.ball(balls));
         let speed = v.abs().ball(balls);
         match self {
             Self::DoubleWell { a, b } => {
@@ -344,7 +346,7 @@ impl Potential {
     /// Double well: 2 sqrt(2a/b) sqrt(1 - |v|/V)_+, the short form of the bracket of (26). The
     /// others: the distance in closed form, potential by potential.
     #[must_use]
-    pub fn sign_integral(&self, balls: Balls, v: &Real) -> Option<Ball> {
+    pub fn sign_integral(&self, balls: Balls, v: &Exact) -> Option<Ball> {
         let amplitude = self.amplitude(balls)?;
         if let Self::Described { orbit, .. } = self {
             let level = balls.div(&v.ball(balls), &self.velocity_scale(balls)?)?;

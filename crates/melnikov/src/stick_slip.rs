@@ -1,7 +1,9 @@
 //! The paper's oscillator in closed form: G, the threshold, the cusp, the zeros.
 
+use crate::error::positive;
 use crate::root::{enclose_root, sqrt_positive_part};
-use crate::{Forcing, Friction, MelnikovError, PolynomialFriction, Potential, Real, System};
+use crate::{Forcing, Friction, MelnikovError, PolynomialFriction, Potential, System};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Rational};
 
@@ -10,34 +12,34 @@ use rug::{Float, Rational};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StickSlip {
     /// a > 0.
-    pub a: Real,
+    pub a: Exact,
     /// b > 0.
-    pub b: Real,
+    pub b: Exact,
     /// T0, the dry friction.
-    pub dry: Real,
+    pub dry: Exact,
     /// alpha.
-    pub alpha: Real,
+    pub alpha: Exact,
     /// beta.
-    pub beta: Real,
+    pub beta: Exact,
     /// omega > 0.
-    pub omega: Real,
+    pub omega: Exact,
     /// v*, the belt speed.
-    pub belt_speed: Real,
+    pub belt_speed: Exact,
 }
 
 impl StickSlip {
     /// a = b = 1, alpha = beta = T0 = 0.3, omega = 2, v* = 0.4: the point of section 3.
     #[must_use]
     pub fn paper() -> Self {
-        let three_tenths = || Real::from((3, 10));
+        let three_tenths = || Exact::from((3, 10));
         Self {
-            a: Real::from(1),
-            b: Real::from(1),
+            a: Exact::from(1),
+            b: Exact::from(1),
             dry: three_tenths(),
             alpha: three_tenths(),
             beta: three_tenths(),
-            omega: Real::from(2),
-            belt_speed: Real::from((2, 5)),
+            omega: Exact::from(2),
+            belt_speed: Exact::from((2, 5)),
         }
     }
 
@@ -46,9 +48,9 @@ impl StickSlip {
     /// # Errors
     /// [`MelnikovError::NotPositive`] with the name.
     pub fn check(&self) -> Result<(), MelnikovError> {
-        self.a.positive("a")?;
-        self.b.positive("b")?;
-        self.omega.positive("omega")
+        positive(&self.a, "a")?;
+        positive(&self.b, "b")?;
+        positive(&self.omega, "omega")
     }
 
     /// The same oscillator as a description for the general driver.
@@ -153,7 +155,7 @@ impl StickSlip {
     /// rational.
     #[must_use]
     pub fn exact_threshold(&self) -> Option<String> {
-        let rational = Real::as_rational;
+        let rational = Exact::as_rational;
         let (a, b) = (rational(&self.a)?, rational(&self.b)?);
         let (alpha, beta) = (rational(&self.alpha)?, rational(&self.beta)?);
         let v = rational(&self.belt_speed)?;

@@ -2,8 +2,10 @@
 //! cos(omega t), period 2 pi m/omega, inside one well or around both.
 
 use crate::elliptic::Elliptic;
+use crate::error::positive;
 use crate::root::{enclose_root, sqrt_positive_part};
-use crate::{MelnikovError, PolynomialFriction, Real};
+use crate::{MelnikovError, PolynomialFriction};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Integer, Rational};
 
@@ -48,17 +50,17 @@ const LARGEST_ORDER: u32 = 100_000;
 #[allow(clippy::too_many_arguments, reason = "the parameters of the problem, each with its name")]
 pub fn subharmonic(
     balls: Balls,
-    a: &Real,
-    b: &Real,
-    omega: &Real,
+    a: &Exact,
+    b: &Exact,
+    omega: &Exact,
     friction: &PolynomialFriction,
-    belt_speed: &Real,
+    belt_speed: &Exact,
     region: Region,
     m: u32,
 ) -> Result<Subharmonic, MelnikovError> {
-    a.positive("a")?;
-    b.positive("b")?;
-    omega.positive("omega")?;
+    positive(a, "a")?;
+    positive(b, "b")?;
+    positive(omega, "omega")?;
     friction.check()?;
     if m == 0 || m > LARGEST_ORDER {
         return Err(MelnikovError::NoResonance { m });
@@ -130,7 +132,7 @@ struct Parts {
 }
 
 impl Parts {
-    fn melnikov(&self, friction: &PolynomialFriction, belt: &Real, m: u32) -> Option<Subharmonic> {
+    fn melnikov(&self, friction: &PolynomialFriction, belt: &Exact, m: u32) -> Option<Subharmonic> {
         let balls = self.balls;
         let elliptic = Elliptic::new(balls, &self.complement)?;
         let modulus = balls.sqrt(&elliptic.square)?;
@@ -175,7 +177,7 @@ impl Parts {
         &self,
         elliptic: &Elliptic,
         friction: &PolynomialFriction,
-        belt: &Real,
+        belt: &Exact,
     ) -> Option<Ball> {
         let balls = self.balls;
         let dry = balls.mul(&friction.dry.ball(balls), &self.sign_integral(elliptic, belt)?);
@@ -232,7 +234,7 @@ impl Parts {
 
     /// int v sgn(v - v*) dt = 2 (x_b - x_a) inside, 4 (x_b - x_a) outside, x_{b,a}^2 = (a +- r)/b
     /// with r = sqrt(2b (v_m^2 - v*^2)), and x_a = 0 where v*^2 <= 2h.
-    fn sign_integral(&self, elliptic: &Elliptic, belt: &Real) -> Option<Ball> {
+    fn sign_integral(&self, elliptic: &Elliptic, belt: &Exact) -> Option<Ball> {
         let balls = self.balls;
         let (factor, _) = self.scale()?;
         let largest = self.largest_speed(elliptic, &factor)?;

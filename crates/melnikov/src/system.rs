@@ -3,8 +3,9 @@
 use crate::dissipation::{polynomial_dissipation, quadrature_dissipation};
 use crate::forcing::ForcingWork;
 use crate::hyperbolic::HyperbolicRing;
-use crate::{Branch, Forcing, Friction, MelnikovError, Potential, Real};
+use crate::{Branch, Forcing, Friction, MelnikovError, Potential};
 use lindstedt_algebra::Ring;
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Float;
 
@@ -20,17 +21,18 @@ pub enum Class {
 /// x'' = f(x) + eps (gamma * forcing - T(x' - v*)), with the orbit of the potential.
 ///
 /// ```
-/// use lindstedt_melnikov::{Branch, Forcing, Friction, PolynomialFriction, Potential, Real, System};
+/// use lindstedt_melnikov::{Branch, Forcing, Friction, PolynomialFriction, Potential, System};
+/// use lindstedt_number::Exact;
 /// use lindstedt_number::{ball::Balls, digits::decimal};
 ///
 /// // The paper's point: a = b = 1, alpha = beta = T0 = 0.3, omega = 2, v* = 0.4.
-/// let coefficient = || Real::from((3, 10));
+/// let coefficient = || Exact::from((3, 10));
 /// let law = PolynomialFriction::paper(coefficient(), &coefficient(), coefficient());
 /// let system = System::new(
-///     Potential::DoubleWell { a: Real::from(1), b: Real::from(1) },
+///     Potential::DoubleWell { a: Exact::from(1), b: Exact::from(1) },
 ///     Friction::Polynomial(law),
-///     Forcing::single(Real::from(2)),
-///     Real::from((2, 5)),
+///     Forcing::single(Exact::from(2)),
+///     Exact::from((2, 5)),
 /// )?;
 /// let threshold = system.threshold(Balls::new(160), Branch::Positive)?;
 /// assert_eq!(decimal(&threshold.gamma, 20).as_deref(), Some("0.63707134284816358297"));
@@ -41,7 +43,7 @@ pub struct System {
     potential: Potential,
     friction: Friction,
     forcing: Forcing,
-    belt_speed: Real,
+    belt_speed: Exact,
 }
 
 /// The threshold on one branch, for gamma > 0: simple zeros of M exist if and only if
@@ -114,7 +116,7 @@ impl System {
         potential: Potential,
         friction: Friction,
         forcing: Forcing,
-        belt_speed: Real,
+        belt_speed: Exact,
     ) -> Result<Self, MelnikovError> {
         potential.check()?;
         friction.check()?;
@@ -162,8 +164,8 @@ impl System {
         &self,
         balls: Balls,
         branch: Branch,
-        gamma: &Real,
-        t0: &Real,
+        gamma: &Exact,
+        t0: &Exact,
     ) -> Result<(Ball, Class), MelnikovError> {
         let (d, class) = self.dissipation(balls, branch)?;
         let omega = match &self.forcing {

@@ -1,7 +1,8 @@
 //! Zeros of the threshold in any parameter, and a parameter changed by name.
 
 use crate::root::enclose_root;
-use crate::{Axis, MelnikovError, Real, StickSlip};
+use crate::{Axis, MelnikovError, StickSlip};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Float;
 use std::cmp::Ordering;
@@ -22,7 +23,7 @@ pub struct ParameterZeros {
 impl StickSlip {
     /// The same oscillator with one parameter changed.
     #[must_use]
-    pub fn with(mut self, axis: Axis, value: Real) -> Self {
+    pub fn with(mut self, axis: Axis, value: Exact) -> Self {
         match axis {
             Axis::A => self.a = value,
             Axis::B => self.b = value,
@@ -37,7 +38,7 @@ impl StickSlip {
 
     /// The value of one parameter.
     #[must_use]
-    pub fn get(&self, axis: Axis) -> &Real {
+    pub fn get(&self, axis: Axis) -> &Exact {
         match axis {
             Axis::A => &self.a,
             Axis::B => &self.b,
@@ -60,8 +61,8 @@ impl StickSlip {
         &self,
         balls: Balls,
         axis: Axis,
-        low: &Real,
-        high: &Real,
+        low: &Exact,
+        high: &Exact,
     ) -> Result<ParameterZeros, MelnikovError> {
         let undecided = MelnikovError::Undecided { bits: balls.bits() };
         let mut changed = self.clone();
@@ -94,14 +95,14 @@ impl StickSlip {
         Ok(ParameterZeros { zeros, complete: false })
     }
 
-    fn scan(&self, balls: Balls, axis: Axis, low: &Real, high: &Real) -> Option<Vec<Ball>> {
+    fn scan(&self, balls: Balls, axis: Axis, low: &Exact, high: &Exact) -> Option<Vec<Ball>> {
         let (low, high) = (low.ball(balls), high.ball(balls));
         let step = balls.div_i64(&balls.sub(&high, &low), CELLS)?;
         if !step.is_positive() {
             return Some(Vec::new());
         }
         let at = |x: &Float| -> Option<Ball> {
-            let value = Real::Rational(x.to_rational()?);
+            let value = Exact::Rational(x.to_rational()?);
             self.clone().with(axis, value).g(balls)
         };
         // The ends are rounded inwards, so the domain is not left.

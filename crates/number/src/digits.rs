@@ -4,6 +4,7 @@
 //! first digit. [`decimal`] prints only if |printed - x| < 10^(E-D+1) follows from the ball;
 //! [`certify`] raises the precision of a computation until that happens.
 
+use crate::NumberError;
 use crate::ball::{Ball, Balls};
 use rug::Float;
 use rug::float::Round;
@@ -17,24 +18,6 @@ const GUARD_BITS: u32 = 32;
 /// Exponents E with this or more are printed in scientific notation, and those below the second.
 const PLAIN_BELOW: i64 = 21;
 const PLAIN_FROM: i64 = -7;
-
-/// Why digits could not be certified.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CertifyError {
-    /// Could not decide: the radius at the largest precision allowed is still too large. A value
-    /// that is exactly 0 but computed with a rounding error ends here at every precision.
-    #[error("not decided with {bits} bits; best enclosure: {}", best.as_deref().unwrap_or("none"))]
-    NotEnoughBits {
-        /// The precision of the last attempt.
-        bits: u32,
-        /// What is known, as `digits +/- error`.
-        best: Option<String>,
-    },
-    /// No such value, at the largest precision allowed.
-    #[error("the value is undefined")]
-    Undefined,
-}
 
 /// The number in the ball with `digits` significant digits (at least 1).
 ///
@@ -94,8 +77,8 @@ pub fn error_string(ball: &Ball, printed: &str) -> String {
 /// answers `None` (say, a divisor that still contains 0) is asked again with more bits.
 ///
 /// # Errors
-/// [`CertifyError::NotEnoughBits`] with the last enclosure (at once for more than 10^7 digits), or [`CertifyError::Undefined`] if the
-/// last answer was `None`.
+/// [`NumberError::NotEnoughBits`] with the last enclosure (at once for more than 10^7
+/// digits), or [`NumberError::Undefined`] if the last answer was `None`.
 ///
 /// ```
 /// use lindstedt_number::digits::certify;
@@ -103,15 +86,15 @@ pub fn error_string(ball: &Ball, printed: &str) -> String {
 /// let (digits, error) = certify(20, 1000, |balls| balls.zeta(3))?;
 /// assert_eq!(digits, "1.2020569031595942854");
 /// assert_eq!(error, "2.7e-22");
-/// # Ok::<(), lindstedt_number::digits::CertifyError>(())
+/// # Ok::<(), lindstedt_number::NumberError>(())
 /// ```
 pub fn certify(
     digits: usize,
     max_bits: u32,
     evaluate: impl Fn(Balls) -> Option<Ball>,
-) -> Result<(String, String), CertifyError> {
+) -> Result<(String, String), NumberError> {
     if digits > MAX_DIGITS {
-        return Err(CertifyError::NotEnoughBits { bits: 0, best: None });
+        return Err(NumberError::NotEnoughBits { bits: 0, best: None });
     }
     let wanted = bits_for(digits);
     let max_bits = Balls::new(max_bits).bits();
@@ -126,9 +109,9 @@ pub fn certify(
         }
         if bits >= max_bits {
             let Some(ball) = ball else {
-                return Err(CertifyError::Undefined);
+                return Err(NumberError::Undefined);
             };
-            return Err(CertifyError::NotEnoughBits { bits, best: enclosure(&ball, digits) });
+            return Err(NumberError::NotEnoughBits { bits, best: enclosure(&ball, digits) });
         }
         let known = ball.map_or(0, |ball| ball.relative_accuracy_bits());
         // A quarter more at least, so that the number of attempts stays logarithmic.
@@ -324,16 +307,16 @@ mod tests {
         let undecided = certify(10, 1000, zero);
         assert!(matches!(
             undecided,
-            Err(CertifyError::NotEnoughBits { bits: 1000, best: Some(best) })
+            Err(NumberError::NotEnoughBits { bits: 1000, best: Some(best) })
                 if best.starts_with("0 +/- ") && best.ends_with("e-301")
         ));
         let coarse = certify(100, 64, |balls| Some(balls.pi()));
-        let expected = CertifyError::NotEnoughBits {
+        let expected = NumberError::NotEnoughBits {
             bits: 64,
             best: Some("3.14159265358979324 +/- 1.6e-18".to_owned()),
         };
         assert_eq!(coarse, Err(expected));
         let negative = certify(10, 1000, |balls| balls.sqrt(&balls.from_i64(-2)));
-        assert_eq!(negative, Err(CertifyError::Undefined));
+        assert_eq!(negative, Err(NumberError::Undefined));
     }
 }

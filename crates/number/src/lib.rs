@@ -1,13 +1,24 @@
-//! Numbers, once for every crate: exact values as a user writes them, real and complex balls that
-//! enclose a number at any precision, the decimal digits that are known of it, and the number as it
-//! leaves the program, with its class.
+//! Numbers, once for every crate: exact values as a user writes them ([`Exact`]), real and complex
+//! balls that enclose a number at any precision ([`ball`]), the decimal digits that are known of it
+//! ([`digits`]), and the number as it leaves the program, with its class ([`Number`]).
 //!
 //! ```
-//! use lindstedt_number::{ball::Balls, digits::decimal};
+//! use lindstedt_number::{Exact, ball::Balls, certified};
 //!
-//! let balls = Balls::new(128);
-//! assert_eq!(decimal(&balls.pi(), 20).as_deref(), Some("3.1415926535897932385"));
+//! let angle: Exact = "pi/4".parse()?;
+//! let sine = certified(None, 20, |balls| Some(balls.sin(&angle.ball(balls))))?;
+//! assert_eq!(sine.decimal, "0.70710678118654752440");
+//! # Ok::<(), lindstedt_number::NumberError>(())
 //! ```
 
 pub mod ball;
+pub mod complex;
 pub mod digits;
+mod error;
+mod exact;
+mod number;
+pub mod real;
+
+pub use error::NumberError;
+pub use exact::{Exact, decimal};
+pub use number::{Number, Status, certified, rational};

@@ -1,7 +1,7 @@
 //! The rules by which a printed statement gets its verdict.
 
 use super::Verdict;
-use lindstedt::Value;
+use lindstedt::Exact;
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_number::ball::Ball;
 use rug::ops::Pow;
@@ -145,7 +145,7 @@ pub struct Decimal {
 impl Decimal {
     /// Reads a printed number; nothing if it is none.
     pub fn new(text: &'static str) -> Option<Self> {
-        let value = Value::parse(text).ok()?.as_rational()?.clone();
+        let value = Exact::parse(text).ok()?.as_rational()?.clone();
         let places = text.split_once('.').map_or(0, |(_, fraction)| fraction.len());
         Some(Self { text, value, places: u32::try_from(places).ok()? })
     }

@@ -4,8 +4,9 @@ use super::printed::{COMPARED_AT, Comparison, PaperVerdict, paper_comparison};
 use super::{Decimal, Findings, Reader, Row, Section, plain, show};
 use lindstedt::Error;
 use lindstedt_melnikov::{
-    Branch, Friction, MelnikovError, PolynomialFriction, Real, StickSlip, quadrature_dissipation,
+    Branch, Friction, MelnikovError, PolynomialFriction, StickSlip, quadrature_dissipation,
 };
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
@@ -80,8 +81,8 @@ fn row(label: String, comparison: &Comparison, quadrature: Option<f64>) -> Row {
 }
 
 /// The paper's oscillator with another b and v*.
-pub(super) fn oscillator(b: i32, belt_speed: Real) -> StickSlip {
-    StickSlip { b: Real::from(b), belt_speed, ..StickSlip::paper() }
+pub(super) fn oscillator(b: i32, belt_speed: Exact) -> StickSlip {
+    StickSlip { b: Exact::from(b), belt_speed, ..StickSlip::paper() }
 }
 
 /// D by quadrature, as an estimate.
@@ -105,7 +106,7 @@ fn work(oscillator: &StickSlip) -> Result<rug::Float, Error> {
 pub(super) fn read_numbers(reader: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
     let balls = reader.balls;
     section.rows.push(threshold(balls)?);
-    let zeros = oscillator(5, Real::from(0)).zeros(balls).map_err(failed)?;
+    let zeros = oscillator(5, Exact::from(0)).zeros(balls).map_err(failed)?;
     let printed = ["0.310429", "0.557204"];
     for (index, text) in printed.into_iter().enumerate() {
         section.rows.push(zero(text, zeros.get(index), zeros.len(), balls)?);
@@ -127,7 +128,7 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
     // What else might be meant: a term left out of (27). At a = b = 1 the factors that are
     // misprinted in (26) and (27) are all 1.
     let mut sources = vec![("(27)".to_owned(), value.clone())];
-    let none = || Real::from(0);
+    let none = || Exact::from(0);
     for (name, part) in [
         ("(25) as printed, without the beta sech^4 tanh^4 term", without_quartic(balls)),
         ("(27) without T0", StickSlip { dry: none(), ..paper.clone() }.signed_threshold(balls)),
@@ -148,7 +149,7 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
     let extremes: Option<Vec<String>> = stationary
         .iter()
         .map(|v| {
-            let v = Real::from(v.midpoint().to_rational()?);
+            let v = Exact::from(v.midpoint().to_rational()?);
             let there = StickSlip { belt_speed: v, ..paper.clone() };
             Some(show(&there.signed_threshold(balls)?, 6))
         })
@@ -188,7 +189,7 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
 /// alone.
 fn without_quartic(balls: Balls) -> Option<Ball> {
     let paper = StickSlip::paper();
-    let none = || Real::from(0);
+    let none = || Exact::from(0);
     let quartic = StickSlip { dry: none(), alpha: none(), belt_speed: none(), ..paper.clone() };
     Some(balls.sub(&paper.signed_threshold(balls)?, &quartic.signed_threshold(balls)?))
 }
@@ -199,12 +200,12 @@ fn zero(text: &'static str, zero: Option<&Ball>, count: usize, balls: Balls) -> 
     let zero = zero.ok_or(Error::NoValue)?;
     let near = Rational::from((1, 1_000_000));
     let sides = [
-        work(&oscillator(5, Real::from(Rational::from(printed.value() - &near))))?,
-        work(&oscillator(5, Real::from(Rational::from(printed.value() + &near))))?,
+        work(&oscillator(5, Exact::from(Rational::from(printed.value() - &near))))?,
+        work(&oscillator(5, Exact::from(Rational::from(printed.value() + &near))))?,
     ];
     let mut findings = printed.compare(zero);
     findings.holds &= sides[0].is_sign_negative() != sides[1].is_sign_negative();
-    let residual = oscillator(5, Real::from(printed.value().clone())).g(balls);
+    let residual = oscillator(5, Exact::from(printed.value().clone())).g(balls);
     let shown = |x: &rug::Float| x.to_string_radix(10, Some(3));
     Ok(Row {
         label: format!("v* = {text}"),
@@ -225,7 +226,7 @@ fn zero(text: &'static str, zero: Option<&Ball>, count: usize, balls: Balls) -> 
 
 /// "Two cusps": whether the slopes on both sides of a place differ.
 fn cusps(printed: &[&'static str; 2], balls: Balls) -> Result<Row, Error> {
-    let five = |v: Rational| oscillator(5, Real::from(v));
+    let five = |v: Rational| oscillator(5, Exact::from(v));
     let cusp = five(Rational::new()).loop_speed(balls).ok_or(Error::NoValue)?;
     let slopes = |v: &Rational| -> Option<[Ball; 2]> {
         let h = Rational::from((1, 1_000_000_000));
@@ -271,7 +272,8 @@ fn cusps(printed: &[&'static str; 2], balls: Balls) -> Result<Row, Error> {
 fn touching(balls: Balls) -> Option<Row> {
     let paper = StickSlip::paper();
     let b = paper.touching_b()?;
-    let at = |b: Rational| StickSlip { b: Real::from(b), ..paper.clone() }.threshold_at_cusp(balls);
+    let at =
+        |b: Rational| StickSlip { b: Exact::from(b), ..paper.clone() }.threshold_at_cusp(balls);
     let near = Rational::from((1, 1000));
     let below = at(Rational::from(&b - &near))?;
     let above = at(Rational::from(&b + &near))?;

@@ -48,7 +48,7 @@ impl Case {
     /// Derives a problem at amplitude 1; nothing when stopped before order 2.
     pub fn derive(name: &str, reader: &mut Reader<'_>) -> Result<Option<Self>, Error> {
         let problem = lindstedt_problems::find(name).ok_or(Error::NoValue)?;
-        let one = lindstedt::Value::Rational(Rational::from(1));
+        let one = lindstedt::Exact::from(1);
         let settings = Settings {
             order: reader.options.order.max(2),
             parameters: [("amplitude".to_owned(), one.clone())].into(),

@@ -4,7 +4,8 @@
 //! quantity by differentiation or quadrature. The verdict follows from the two numbers.
 
 use lindstedt_melnikov::quadrature::tanh_sinh;
-use lindstedt_melnikov::{Branch, MelnikovError, Real, StickSlip};
+use lindstedt_melnikov::{Branch, MelnikovError, StickSlip};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
 use rug::{Float, Rational};
 use std::f64::consts::PI;
@@ -69,8 +70,8 @@ pub const COMPARED_AT: &str = "a = 1.7, b = 2.3, T0 = 0.4, alpha = 0.35, beta = 
                                omega = 1.4, t0 = 0.6";
 
 /// A decimal of at most 6 places as the rational number it stands for.
-fn exact(x: f64) -> Real {
-    Real::Rational(Rational::from(((x * 1e6).round() as i64, 1_000_000)))
+fn exact(x: f64) -> Exact {
+    Exact::Rational(Rational::from(((x * 1e6).round() as i64, 1_000_000)))
 }
 
 impl Point {
@@ -432,7 +433,7 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
         )
         .repaired_by(fast.smooth_27()),
     );
-    let five = |v: f64| StickSlip { b: Real::from(5), belt_speed: exact(v), ..StickSlip::paper() };
+    let five = |v: f64| StickSlip { b: Exact::from(5), belt_speed: exact(v), ..StickSlip::paper() };
     // As printed, a negative right side lets every gamma > 0 pass: a threshold of 0.
     let gained = f64_of(five(0.45).signed_threshold(balls))?.abs();
     list.push(compare(

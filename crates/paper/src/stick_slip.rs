@@ -3,7 +3,8 @@
 use super::melnikov::{failed, oscillator};
 use super::{Reader, Section, Table, plain, show};
 use lindstedt::Error;
-use lindstedt_melnikov::{Monomial, OrbitDescription, PolynomialFriction, Real, StickSlip};
+use lindstedt_melnikov::{Monomial, OrbitDescription, PolynomialFriction, StickSlip};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
 use rug::{Complete, Rational};
 
@@ -88,9 +89,9 @@ fn reduction(points: &mut Points, orbit: &OrbitDescription) -> Option<Reduction>
     let per_mass = |q: &Rational| Rational::from(q / &m);
     let (a, b, gamma) = (per_mass(&k1), per_mass(&k2), per_mass(&forcing));
     let friction = PolynomialFriction::paper(
-        Real::from(per_mass(&dry)),
-        &Real::from(per_mass(&linear)),
-        Real::from(per_mass(&cubic)),
+        Exact::from(per_mass(&dry)),
+        &Exact::from(per_mass(&linear)),
+        Exact::from(per_mass(&cubic)),
     );
     let t = law(&friction, &w)?;
     // v' of (20), printed; and with the engine's force and law.
@@ -225,7 +226,7 @@ fn table(balls: Balls) -> Result<Table, Error> {
     let columns = ["b", "V", "gamma at v* = 0", "gamma at v* = V", "zero 1", "zero 2"];
     let mut rows = Vec::new();
     for b in [1, 2, 5, 10] {
-        let at_zero = oscillator(b, Real::from(0));
+        let at_zero = oscillator(b, Exact::from(0));
         let mut cells = vec![b.to_string()];
         for value in [
             at_zero.loop_speed(balls),

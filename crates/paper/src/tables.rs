@@ -2,7 +2,7 @@
 
 use super::{Reader, Section, Table, periods};
 use lindstedt::constants::Constants;
-use lindstedt::{Error, Value, energy};
+use lindstedt::{Error, Exact, energy};
 use lindstedt_algebra::Ring;
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_number::ball::{Ball, Balls};
@@ -52,7 +52,7 @@ impl Truncations {
         let ring = PolynomialRing::default();
         let sum = |n| Some(ring.symbol(Symbol::Sum(u16::try_from(n).ok()?)));
         let sums = (0..=order).map(sum).collect::<Option<Vec<_>>>()?;
-        let constants = Constants::new(Some(Value::Rational(Rational::from(1))));
+        let constants = Constants::new(Some(Exact::Rational(Rational::from(1))));
         let exact = energy::period_over_2pi(&ring, &sums, order)?;
         Self::new(sums.first()?, &exact, &constants, balls)
     }

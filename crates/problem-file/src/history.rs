@@ -7,6 +7,7 @@ use crate::names::{Names, canonical_name};
 use crate::reader::Reader;
 use crate::schema::Initial;
 use lindstedt_equation::Expression;
+use lindstedt_number::Exact;
 use std::collections::BTreeMap;
 use toml::Spanned;
 
@@ -98,7 +99,7 @@ pub(crate) fn is_range(text: &str) -> bool {
         let (high, count) = rest.rsplit_once(':')?;
         Some((low, high, count.trim()))
     });
-    let is_number = |text: &str| crate::reader::is_exact(text.trim());
+    let is_number = |text: &str| Exact::parse(text).is_ok();
     parts.is_some_and(|(low, high, count)| {
         is_number(low) && is_number(high) && count.parse::<u32>().is_ok_and(|n| n > 0)
     })

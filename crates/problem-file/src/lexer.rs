@@ -2,8 +2,7 @@
 
 use crate::error::{Limit, ParseError, ParseErrorKind};
 use crate::names::{canonical_name, is_greek, subscript};
-use rug::ops::Pow;
-use rug::{Integer, Rational};
+use rug::Rational;
 use std::ops::Range;
 use winnow::ascii::{digit0, digit1, multispace0};
 use winnow::combinator::{alt, opt, repeat};
@@ -165,15 +164,10 @@ pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, ParseError> {
 }
 
 /// A decimal number with optional exponent of ten, exactly; nothing if it is too long.
-pub(crate) fn exact(text: &str) -> Option<Rational> {
+fn exact(text: &str) -> Option<Rational> {
     let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
-    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let exponent: i64 = exponent.parse().ok()?;
-    let places = exponent.checked_sub(i64::try_from(fraction.len()).ok()?)?;
-    if mantissa.len() > MOST_DIGITS || places.unsigned_abs() > MOST_DIGITS as u64 {
-        return None;
-    }
-    let number = Rational::from([whole, fraction].concat().parse::<Integer>().ok()?);
-    let scale = Integer::from(10).pow(u32::try_from(places.unsigned_abs()).ok()?);
-    Some(if places >= 0 { number * scale } else { number / scale })
+    let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let places = exponent.parse::<i64>().ok()?.checked_sub(i64::try_from(decimals).ok()?)?;
+    let fits = mantissa.len() <= MOST_DIGITS && places.unsigned_abs() <= MOST_DIGITS as u64;
+    fits.then(|| lindstedt_number::decimal(text))?
 }

@@ -2,8 +2,8 @@
 
 use crate::error::{ParseError, excerpt, position};
 use crate::file_error::{FileError, FileErrorKind};
-use crate::lexer::exact;
-use crate::schema::Exact;
+use crate::schema::ExactText;
+use lindstedt_number::Exact;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -31,10 +31,10 @@ impl Reader<'_> {
         self.error(FileErrorKind::Equation(error), at)
     }
 
-    pub fn value(&self, value: &Spanned<Exact>) -> Result<String, FileError> {
+    pub fn value(&self, value: &Spanned<ExactText>) -> Result<String, FileError> {
         let text = value.get_ref().0.trim();
         let sign = matches!(text, "+" | "-");
-        if sign || is_exact(text) {
+        if sign || Exact::parse(text).is_ok() {
             return Ok(text.to_owned());
         }
         let kind = FileErrorKind::Value { text: excerpt(text) };
@@ -53,25 +53,4 @@ impl Reader<'_> {
         let kind = || FileErrorKind::Word { key, found: excerpt(word), known };
         found.ok_or_else(|| self.error(kind(), at.start))
     }
-}
-
-/// Whether a value reads as a rational number times at most one pi.
-pub(crate) fn is_exact(text: &str) -> bool {
-    let body = text.strip_prefix('-').unwrap_or(text);
-    let (mut pi, mut divide) = (0, false);
-    for token in body.split_inclusive(['*', '/']) {
-        let number = token.trim_end_matches(['*', '/']).trim();
-        let digits = number.starts_with(|c: char| c.is_ascii_digit() || c == '.')
-            && number.chars().all(|c| c.is_ascii_digit() || ".eE+-".contains(c));
-        match (number, divide) {
-            ("pi", false) => pi += 1,
-            _ if !digits => return false,
-            _ => match exact(number) {
-                Some(q) if !(divide && q.is_zero()) => {}
-                _ => return false,
-            },
-        }
-        divide = token.ends_with('/');
-    }
-    pi <= 1 && !body.is_empty() && !body.ends_with(['*', '/'])
 }

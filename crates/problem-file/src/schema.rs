@@ -60,14 +60,14 @@ pub(crate) struct Synchronous {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Initial {
-    pub x: Option<Spanned<Exact>>,
-    pub velocity: Option<Spanned<Exact>>,
+    pub x: Option<Spanned<ExactText>>,
+    pub velocity: Option<Spanned<ExactText>>,
     pub history: Option<Spanned<String>>,
 }
 
 /// A parameter: a value, or a table.
 pub(crate) struct Parameter {
-    pub value: Option<Spanned<Exact>>,
+    pub value: Option<Spanned<ExactText>>,
     pub unit: String,
     pub meaning: String,
     pub follows: Option<String>,
@@ -76,7 +76,7 @@ pub(crate) struct Parameter {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ParameterTable {
-    value: Option<Spanned<Exact>>,
+    value: Option<Spanned<ExactText>>,
     #[serde(default)]
     unit: String,
     #[serde(default)]
@@ -85,7 +85,7 @@ struct ParameterTable {
 }
 
 /// An exact number as text.
-pub(crate) struct Exact(pub String);
+pub(crate) struct ExactText(pub String);
 
 /// A word or a list of words.
 pub(crate) struct OneOrMany(pub Vec<String>);
@@ -99,19 +99,19 @@ impl<T> Default for Entries<T> {
     }
 }
 
-impl<'de> Deserialize<'de> for Exact {
+impl<'de> Deserialize<'de> for ExactText {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Words;
         impl Visitor<'_> for Words {
-            type Value = Exact;
+            type Value = ExactText;
             fn expecting(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
                 f.write_str("an exact value in quotes, for example \"1/3\"")
             }
-            fn visit_str<E: Error>(self, text: &str) -> Result<Exact, E> {
-                Ok(Exact(text.to_owned()))
+            fn visit_str<E: Error>(self, text: &str) -> Result<ExactText, E> {
+                Ok(ExactText(text.to_owned()))
             }
-            fn visit_i64<E: Error>(self, n: i64) -> Result<Exact, E> {
-                Ok(Exact(n.to_string()))
+            fn visit_i64<E: Error>(self, n: i64) -> Result<ExactText, E> {
+                Ok(ExactText(n.to_string()))
             }
         }
         deserializer.deserialize_any(Words)

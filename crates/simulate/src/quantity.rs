@@ -1,6 +1,6 @@
 //! Values of parameters, exact where they can be.
 
-use rug::float::Constant;
+use lindstedt_number::Exact;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
@@ -8,41 +8,24 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Quantity {
-    /// A rational number.
-    Rational(Rational),
-    /// A rational multiple of pi.
-    PiMultiple(Rational),
+    /// An exact number.
+    Exact(Exact),
     /// A float; the caller is responsible for its having enough digits.
     Float(Float),
 }
 
 impl Quantity {
-    /// Reads `3`, `-0.25`, `2.5e-3`, `1/3`, `pi`, `2*pi`, `pi/4`, `2/3*pi`, `3*pi/4`; nothing for
-    /// other text.
+    /// Reads an exact number, as [`Exact::parse`] does; nothing for other text.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
-        let compact: String = text.chars().filter(|c| !c.is_whitespace()).collect();
-        let Some((before, after)) = compact.split_once("pi") else {
-            return fraction(&compact).map(Self::Rational);
-        };
-        let factor = match before {
-            "" | "+" => Rational::from(1),
-            "-" => Rational::from(-1),
-            other => fraction(other.strip_suffix('*')?)?,
-        };
-        let divisor = match after {
-            "" => Rational::from(1),
-            other => decimal(other.strip_prefix('/')?)?,
-        };
-        (divisor.cmp0().is_ne()).then(|| Self::PiMultiple(factor / divisor))
+        Exact::parse(text).ok().map(Self::Exact)
     }
 
     /// The rational, if it is one.
     #[must_use]
     pub fn rational(&self) -> Option<Rational> {
         match self {
-            Self::Rational(q) => Some(q.clone()),
-            Self::PiMultiple(q) => q.is_zero().then(Rational::new),
+            Self::Exact(x) => x.as_rational().cloned(),
             Self::Float(_) => None,
         }
     }
@@ -51,22 +34,36 @@ impl Quantity {
     #[must_use]
     pub fn float(&self, bits: u32) -> Float {
         match self {
-            Self::Rational(q) => Float::with_val(bits, q),
-            Self::PiMultiple(q) => Float::with_val(bits, Constant::Pi) * q,
+            Self::Exact(x) => x.float(bits),
             Self::Float(x) => Float::with_val(bits, x),
+        }
+    }
+
+    /// q times the value; a float is rounded at its precision.
+    #[must_use]
+    pub fn times(&self, q: &Rational) -> Self {
+        match self {
+            Self::Exact(x) => Self::Exact(x.times(q)),
+            Self::Float(x) => Self::Float(Float::with_val(x.prec(), x * q)),
         }
     }
 }
 
-impl From<i64> for Quantity {
-    fn from(n: i64) -> Self {
-        Self::Rational(Rational::from(n))
+impl From<Exact> for Quantity {
+    fn from(x: Exact) -> Self {
+        Self::Exact(x)
     }
 }
 
 impl From<Rational> for Quantity {
     fn from(q: Rational) -> Self {
-        Self::Rational(q)
+        Self::Exact(q.into())
+    }
+}
+
+impl From<i64> for Quantity {
+    fn from(n: i64) -> Self {
+        Self::Exact(n.into())
     }
 }
 
@@ -74,33 +71,6 @@ impl From<Float> for Quantity {
     fn from(x: Float) -> Self {
         Self::Float(x)
     }
-}
-
-/// `a` or `a/b` with decimals a, b.
-fn fraction(text: &str) -> Option<Rational> {
-    let Some((above, below)) = text.split_once('/') else { return decimal(text) };
-    let below = decimal(below)?;
-    let above = decimal(above)?;
-    (below.cmp0().is_ne()).then(|| above / below)
-}
-
-/// A decimal number with an optional exponent (at most 10 000), exactly.
-fn decimal(text: &str) -> Option<Rational> {
-    let (mantissa, exponent) = match text.split_once(['e', 'E']) {
-        Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
-        None => (text, 0),
-    };
-    let (whole, decimals) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let places = i32::try_from(decimals.len()).ok()?;
-    let power = exponent.checked_sub(places)?;
-    let digits = format!("{whole}{decimals}");
-    let valid = digits.trim_start_matches(['+', '-']);
-    if valid.is_empty() || !valid.bytes().all(|b| b.is_ascii_digit()) || power.abs() > 10_000 {
-        return None;
-    }
-    let integer = rug::Integer::from_str_radix(digits.strip_prefix('+').unwrap_or(&digits), 10);
-    let ten = Rational::from(10);
-    Some(Rational::from(integer.ok()?) * rug::ops::Pow::pow(ten, power))
 }
 
 /// The values of the parameters of an equation, by name.
@@ -132,38 +102,5 @@ impl Parameters {
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&Quantity> {
         self.values.get(name)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_are_read_exactly() {
-        let q = |p: i64, q: i64| Rational::from((p, q));
-        let rational = |p, r| Some(Quantity::Rational(q(p, r)));
-        let multiple = |p, r| Some(Quantity::PiMultiple(q(p, r)));
-        for (text, value) in [
-            ("3", rational(3, 1)),
-            ("-0.25", rational(-1, 4)),
-            ("2.5e-3", rational(1, 400)),
-            (".5", rational(1, 2)),
-            ("+1.e2", rational(100, 1)),
-            ("1/3", rational(1, 3)),
-            ("pi", multiple(1, 1)),
-            ("-pi/4", multiple(-1, 4)),
-            ("3 * pi / 4", multiple(3, 4)),
-            ("2/3*pi", multiple(2, 3)),
-            ("", None),
-            ("-", None),
-            ("1/0", None),
-            ("pi/0", None),
-            ("x", None),
-            ("1e999999", None),
-            ("2pi", None),
-        ] {
-            assert_eq!(Quantity::parse(text), value, "{text}");
-        }
     }
 }

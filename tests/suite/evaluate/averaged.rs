@@ -3,20 +3,20 @@
 use super::support::integrated;
 use lindstedt::equation::Problem;
 use lindstedt::evaluate::averaged::{Motion, MotionSettings, Start};
-use lindstedt::{Value, problems};
+use lindstedt::{Exact, problems};
 
 fn motion(problem: &Problem, order: usize, set: &[(&str, &str)], start: Start) -> Motion {
-    let parameters = set.iter().map(|(n, v)| ((*n).to_owned(), Value::parse(v).unwrap())).collect();
+    let parameters = set.iter().map(|(n, v)| ((*n).to_owned(), Exact::parse(v).unwrap())).collect();
     let settings = MotionSettings { order, parameters, digits: 14, start };
     Motion::new(problem, &settings, &mut |_| true).unwrap()
 }
 
 fn state(x: &str, v: &str) -> Start {
-    Start::State(Value::parse(x).unwrap(), Value::parse(v).unwrap())
+    Start::State(Exact::parse(x).unwrap(), Exact::parse(v).unwrap())
 }
 
-fn values(times: &[f64]) -> Vec<Value> {
-    times.iter().map(|t| Value::Rational(rug::Rational::from_f64(*t).unwrap())).collect()
+fn values(times: &[f64]) -> Vec<Exact> {
+    times.iter().map(|t| Exact::Rational(rug::Rational::from_f64(*t).unwrap())).collect()
 }
 
 /// The averaged van der Pol oscillator from rest at x = 1/2, 1 and 3, at many orders: the true
@@ -27,7 +27,7 @@ fn averaged_van_der_pol() {
     let times = [0.0, 1.0, 7.0, 15.0, 30.0, 50.0, 80.0];
     let (mut checked, mut sharp) = (0, 0);
     for (eps, x) in [("1/20", "1/2"), ("1/10", "1"), ("1/10", "3"), ("1/4", "1"), ("1/2", "2")] {
-        let start = [Value::parse(x).unwrap().ball(lindstedt::number::ball::Balls::new(60))];
+        let start = [Exact::parse(x).unwrap().ball(lindstedt::number::ball::Balls::new(60))];
         let start = [start[0].midpoint().to_f64(), 0.0];
         let expected = integrated(&problem, &[("eps", eps)], start, &times);
         for order in 2..=9 {

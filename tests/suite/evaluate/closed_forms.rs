@@ -3,7 +3,7 @@
 use super::support::{relative_error, relative_estimate, run, settings};
 use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
 use lindstedt::series::resummation::{Kind, Method, ResummationError};
-use lindstedt::{Error, Value, problems};
+use lindstedt::{Error, Exact, problems};
 use rug::Float;
 
 /// Section 3 of the numbers: exponent and relative error of T at orders 2, 4, 8, 12, 20 by the
@@ -212,19 +212,19 @@ fn the_solution_at_asked_times() {
         let problem = problems::find(name).unwrap();
         let settings = EvaluateSettings { digits: 16, ..settings(order, None, &[]) };
         let period = evaluate(&problem, &settings, &mut |_| true).unwrap();
-        let phase = Value::parse("0").unwrap();
+        let phase = Exact::parse("0").unwrap();
         let path = Trajectory::new(&problem, &settings, &period, phase, &mut |_| true).unwrap();
         for (time, expected) in ["1/2", "1", "2", "3"].iter().zip(expected) {
-            let found = path.at(&Value::parse(time).unwrap());
+            let found = path.at(&Exact::parse(time).unwrap());
             let error = (found.double - expected).abs();
             assert!(error <= found.error + 1e-14, "{name} {time}: {error:e} {:e}", found.error);
             assert!(error < most, "{name} {time}: {error:e}");
         }
         // Half a period later with phase pi: the same, by symmetry with the other sign.
-        let half = Value::PiTimes(rug::Rational::from(1));
+        let half = Exact::PiTimes(rug::Rational::from(1));
         let shifted = Trajectory::new(&problem, &settings, &period, half, &mut |_| true).unwrap();
         let (a, b) =
-            (path.at(&Value::parse("1").unwrap()), shifted.at(&Value::parse("1").unwrap()));
+            (path.at(&Exact::parse("1").unwrap()), shifted.at(&Exact::parse("1").unwrap()));
         assert!((a.double + b.double).abs() < 1e-9);
     }
 }

@@ -8,7 +8,7 @@ use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
 use lindstedt::simulate::{
     Digits, EventKind, Integrator, Model, Parameters, Real, Report, Settings as Precision,
 };
-use lindstedt::{Error, Value, problems};
+use lindstedt::{Error, Exact, problems};
 use rug::Float;
 use std::ops::ControlFlow;
 
@@ -184,14 +184,14 @@ fn solutions_of_files() {
     for (problem, set) in cases {
         let settings = EvaluateSettings { digits: 16, ..settings(20, None, set) };
         let period = evaluate(&problem, &settings, &mut |_| true).unwrap();
-        let zero = Value::parse("0").unwrap();
+        let zero = Exact::parse("0").unwrap();
         let path =
             Trajectory::new(&problem, &settings, &period, zero.clone(), &mut |_| true).unwrap();
         let start = path.at(&zero).double;
         let times = [0.5, 1.0, 2.0, 5.0];
         let expected = integrated(&problem, set, [start, 0.0], &times);
         for (time, expected) in times.iter().zip(expected) {
-            let time = Value::Rational(rug::Rational::from_f64(*time).unwrap());
+            let time = Exact::Rational(rug::Rational::from_f64(*time).unwrap());
             let found = path.at(&time);
             let error = (found.double - expected).abs();
             assert!(error <= found.error + 1e-12, "{} {time}: {error:e}", problem.name);

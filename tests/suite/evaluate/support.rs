@@ -6,11 +6,11 @@ use lindstedt::series::resummation::Method;
 use lindstedt::simulate::{
     Doubles, Integrator, Model, Parameters, Quantity, Settings as Precision, Trajectory as Path,
 };
-use lindstedt::{Error, ProblemFile, Value, problems};
+use lindstedt::{Error, Exact, ProblemFile, problems};
 use rug::Float;
 
 pub fn settings(order: usize, method: Option<Method>, set: &[(&str, &str)]) -> EvaluateSettings {
-    let parameters = set.iter().map(|(n, v)| ((*n).to_owned(), Value::parse(v).unwrap())).collect();
+    let parameters = set.iter().map(|(n, v)| ((*n).to_owned(), Exact::parse(v).unwrap())).collect();
     EvaluateSettings { order: Some(order), method, parameters, ..EvaluateSettings::default() }
 }
 

@@ -1,10 +1,11 @@
 //! Averaged rates of the delay loop against the recursion for the characteristic root.
 
 use super::support::{Grid, rational, set};
+use lindstedt::Exact;
 use lindstedt::averaging::{AveragingSettings, Coefficient, RateTerm, average};
 use lindstedt::problems;
 use lindstedt_impact::flow::rates;
-use lindstedt_impact::parameters::{Branch, Exact, ExactParameters};
+use lindstedt_impact::parameters::{Branch, ExactParameters};
 use rug::Float;
 
 fn check(grid: &mut Grid, label: &str, found: &[RateTerm], truth: &Float, bits: u32) {
@@ -72,7 +73,7 @@ fn grid_of(orders: &[usize], digits: &[usize]) -> Grid {
                     assert_eq!(truth.len(), order + 1);
                     for (n, term) in truth.iter().enumerate() {
                         let rate = found.amplitude_rate.get(n).map_or(&[][..], Vec::as_slice);
-                        let middle = |x: &lindstedt_impact::real::Certified| {
+                        let middle = |x: &lindstedt_number::real::Certified| {
                             Float::with_val(bits, x.ball().midpoint())
                         };
                         if term.re.ball().relative_accuracy_bits() > 60 || term.re.ball().is_exact()

@@ -1,7 +1,7 @@
 //! Counting the cells of a grid and judging them.
 
 use lindstedt::number::ball::Ball;
-use lindstedt::{Number, Status, Value};
+use lindstedt::{Exact, Number, Status};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -129,10 +129,10 @@ fn blur(truth: &Float, bits: u32) -> Float {
     Float::with_val(64, truth.abs_ref()) >> bits
 }
 
-pub fn set(list: &[(&str, &str)]) -> BTreeMap<String, Value> {
-    list.iter().map(|(n, v)| ((*n).to_owned(), Value::parse(v).unwrap())).collect()
+pub fn set(list: &[(&str, &str)]) -> BTreeMap<String, Exact> {
+    list.iter().map(|(n, v)| ((*n).to_owned(), Exact::parse(v).unwrap())).collect()
 }
 
 pub fn rational(text: &str) -> Rational {
-    Value::parse(text).unwrap().as_rational().unwrap().clone()
+    Exact::parse(text).unwrap().as_rational().unwrap().clone()
 }

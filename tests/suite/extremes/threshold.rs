@@ -1,8 +1,9 @@
 //! The Melnikov threshold of the stick-slip oscillator.
 
 use super::support::{Grid, rational};
+use lindstedt::Exact;
 use lindstedt::number::ball::Balls;
-use lindstedt_melnikov::{Real, StickSlip};
+use lindstedt_melnikov::StickSlip;
 use rug::Float;
 use rug::float::Constant;
 
@@ -11,7 +12,7 @@ use rug::float::Constant;
 /// s = tanh, where it is a polynomial, the dry work by the turning points of v = v*, the force by
 /// the residue int v sin(omega t) dt = sqrt(2/b) pi omega sech(pi omega/(2 sqrt a)).
 fn truth(p: &StickSlip, bits: u32) -> Option<Float> {
-    let f = |x: &Real| Float::with_val(bits, x.ball(Balls::new(bits)).midpoint());
+    let f = |x: &Exact| Float::with_val(bits, x.ball(Balls::new(bits)).midpoint());
     let (a, b, dry, alpha, beta, omega, v) =
         (f(&p.a), f(&p.b), f(&p.dry), f(&p.alpha), f(&p.beta), f(&p.omega), f(&p.belt_speed));
     let root_a = a.clone().sqrt();
@@ -44,7 +45,7 @@ fn grid_of(precisions: &[u32]) -> Grid {
     let paper = StickSlip::paper();
     let mut points = vec![paper.clone()];
     for value in values {
-        let value = || Real::Rational(rational(value));
+        let value = || Exact::Rational(rational(value));
         points.push(StickSlip { a: value(), ..paper.clone() });
         points.push(StickSlip { b: value(), ..paper.clone() });
         points.push(StickSlip { dry: value(), ..paper.clone() });
@@ -55,7 +56,7 @@ fn grid_of(precisions: &[u32]) -> Grid {
         points.push(StickSlip {
             a: value(),
             b: value(),
-            belt_speed: Real::from(0),
+            belt_speed: Exact::from(0),
             ..paper.clone()
         });
     }

@@ -1,7 +1,8 @@
 //! The orbit of the vibro-impact oscillator and the verdict about its stability.
 
 use super::support::{Grid, rational};
-use lindstedt_impact::parameters::{Branch, Exact, ExactParameters};
+use lindstedt::Exact;
+use lindstedt_impact::parameters::{Branch, ExactParameters};
 use lindstedt_impact::report::{Request, certified_stability, stability};
 use rug::Float;
 use rug::float::Constant;
@@ -106,7 +107,7 @@ fn grid_of(digits: &[u32]) -> Grid {
                 });
                 let label = format!("{label} in doubles");
                 grid.cell(&label, |grid| {
-                    let report = match stability(&p.to_f64(), &Request::default()) {
+                    let report = match stability(&p.nearest(), &Request::default()) {
                         Ok(report) => report,
                         Err(error) => return grid.refused(&error),
                     };

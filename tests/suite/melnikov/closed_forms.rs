@@ -1,11 +1,10 @@
 //! The paper's oscillator: thresholds, curves, zeros, cusps, M(t0).
 
 use super::support::{Random, assert_agrees, number, oracle, real, stick_slip};
+use lindstedt::Exact;
 use lindstedt::number::ball::Balls;
 use lindstedt::number::digits::{certify, decimal};
-use lindstedt_melnikov::{
-    Branch, Friction, PolynomialFriction, Real, StickSlip, quadrature_dissipation,
-};
+use lindstedt_melnikov::{Branch, Friction, PolynomialFriction, StickSlip, quadrature_dissipation};
 use rug::Rational;
 use serde_json::Value;
 
@@ -28,7 +27,7 @@ fn paper_point_to_forty_digits() {
 
 #[test]
 fn zeros_at_b_five() {
-    let five = StickSlip { b: Real::from(5), ..StickSlip::paper() };
+    let five = StickSlip { b: Exact::from(5), ..StickSlip::paper() };
     let table = &oracle("thresholds.json")["zeros_b5"];
     let zeros = five.zeros(Balls::new(BALLS)).unwrap();
     assert_eq!(zeros.len(), 2);
@@ -48,7 +47,7 @@ fn zeros_at_b_five() {
     let step = Rational::from(10).recip();
     let tiny = (0..1000).fold(Rational::from(1), |power, _| power * &step);
     let sign = |at: &mut StickSlip, v: Rational| {
-        at.belt_speed = Real::Rational(v);
+        at.belt_speed = Exact::Rational(v);
         at.g(Balls::new(4000)).unwrap().is_positive()
     };
     assert!(sign(&mut at, Rational::from(&zero - &tiny)));
@@ -60,7 +59,7 @@ fn cusp_touches_zero() {
     let row = &oracle("thresholds.json")["cusp_touches_zero"];
     let b = StickSlip::paper().touching_b().unwrap();
     assert_eq!(b.to_string(), row["b_star"].as_str().unwrap());
-    let touching = StickSlip { b: Real::Rational(b), ..StickSlip::paper() };
+    let touching = StickSlip { b: Exact::Rational(b), ..StickSlip::paper() };
     let speed = touching.loop_speed(Balls::new(BALLS)).unwrap();
     assert_agrees(&speed, &row["vstar"], 44, "cusp at zero");
     // G at v* = V is 0 there: v*^2 = 35/129 exactly, so G/V = (172/35) beta V^2 - (4/3) alpha.
@@ -70,7 +69,7 @@ fn cusp_touches_zero() {
     let value = touching.threshold_at_cusp(Balls::new(BALLS)).unwrap();
     assert!(value.is_exact() && value.contains_zero());
     // A little above b* there are two zeros v1 < V < v2, a little below none.
-    let near = |n: i32| StickSlip { b: Real::from((129_000 + n, 70_000)), ..StickSlip::paper() };
+    let near = |n: i32| StickSlip { b: Exact::from((129_000 + n, 70_000)), ..StickSlip::paper() };
     assert_eq!(near(1).zeros(Balls::new(BALLS)).unwrap().len(), 2);
     assert_eq!(near(-1).zeros(Balls::new(BALLS)).unwrap().len(), 0);
 }
@@ -99,7 +98,7 @@ fn curves() {
     for (name, curve) in table["curves"].as_object().unwrap() {
         let mut point = stick_slip(curve);
         let mut at = |v: &Value| {
-            point.belt_speed = Real::Rational(super::support::decimal(v.as_str().unwrap()));
+            point.belt_speed = Exact::Rational(super::support::decimal(v.as_str().unwrap()));
             point.signed_threshold(balls).unwrap()
         };
         for row in curve["points"].as_array().unwrap() {
@@ -144,7 +143,7 @@ fn dissipation_by_quadrature() {
     let mut random = Random(3);
     let balls = Balls::new(120);
     for round in 0..25 {
-        let mut q = |low, high| Real::Rational(random.rational(low, high));
+        let mut q = |low, high| Exact::Rational(random.rational(low, high));
         let law = PolynomialFriction {
             dry: q(-1.0, 1.0),
             coefficients: (0..6).map(|_| q(-1.0, 1.0)).collect(),
@@ -181,21 +180,21 @@ fn no_panic_and_typed_refusals() {
     let balls = Balls::new(64);
     for (a, b, omega) in [(0, 1, 1), (-1, 1, 1), (1, 0, 1), (1, -2, 1), (1, 1, 0), (1, 1, -1)] {
         let point = StickSlip {
-            a: Real::from(a),
-            b: Real::from(b),
-            omega: Real::from(omega),
+            a: Exact::from(a),
+            b: Exact::from(b),
+            omega: Exact::from(omega),
             ..StickSlip::paper()
         };
         assert!(point.check().is_err() && point.system().is_err() && point.zeros(balls).is_err());
         let _ = point.signed_threshold(balls);
         let _ = point.touching_b();
     }
-    assert!(Real::from_f64(f64::NAN, "a").is_err() && Real::from_f64(f64::INFINITY, "a").is_err());
+    assert!(Exact::from_f64(f64::NAN).is_none() && Exact::from_f64(f64::INFINITY).is_none());
     // v* exactly at V (a = 2, b = 2: V = 1) keeps all its digits.
     let tangent = StickSlip {
-        a: Real::from(2),
-        b: Real::from(2),
-        belt_speed: Real::from(1),
+        a: Exact::from(2),
+        b: Exact::from(2),
+        belt_speed: Exact::from(1),
         ..StickSlip::paper()
     };
     let g = tangent.g(Balls::new(200)).unwrap();
@@ -209,10 +208,11 @@ fn no_panic_and_typed_refusals() {
 fn zeros_in_any_parameter() {
     use lindstedt_melnikov::Axis;
     let balls = Balls::new(200);
-    let five = StickSlip { b: Real::from(5), ..StickSlip::paper() };
-    let both = five.zeros_in(balls, Axis::BeltSpeed, &Real::from(-1), &Real::from(1)).unwrap();
+    let five = StickSlip { b: Exact::from(5), ..StickSlip::paper() };
+    let both = five.zeros_in(balls, Axis::BeltSpeed, &Exact::from(-1), &Exact::from(1)).unwrap();
     assert!(both.complete && both.zeros.len() == 4);
-    let right = five.zeros_in(balls, Axis::BeltSpeed, &Real::from((2, 5)), &Real::from(1)).unwrap();
+    let right =
+        five.zeros_in(balls, Axis::BeltSpeed, &Exact::from((2, 5)), &Exact::from(1)).unwrap();
     assert_eq!(right.zeros.len(), 1);
     // The same curve crossed in the other directions, at v* = 0.4 (inside or outside of V).
     let expected = [
@@ -224,13 +224,13 @@ fn zeros_in_any_parameter() {
         (Axis::Omega, 0),
     ];
     for (axis, count) in expected {
-        let found = five.zeros_in(balls, axis, &Real::from((1, 100)), &Real::from(6)).unwrap();
+        let found = five.zeros_in(balls, axis, &Exact::from((1, 100)), &Exact::from(6)).unwrap();
         assert_eq!(found.zeros.len(), count, "{axis:?}: {:?}", found.zeros);
         for zero in found.zeros {
-            let value = Real::Rational(zero.midpoint().to_rational().unwrap());
+            let value = Exact::Rational(zero.midpoint().to_rational().unwrap());
             let g = five.clone().with(axis, value).g(Balls::new(400)).unwrap();
             assert!(g.abs_upper().to_f64() < 1e-50, "{axis:?}");
         }
     }
-    assert!(five.zeros_in(balls, Axis::B, &Real::from(0), &Real::from(6)).is_err());
+    assert!(five.zeros_in(balls, Axis::B, &Exact::from(0), &Exact::from(6)).is_err());
 }

@@ -1,12 +1,13 @@
 //! The f64 path against the balls: random points, the extremes, the surface.
 
 use super::support::{Random, decimal, oracle};
+use lindstedt::Exact;
 use lindstedt::number::ball::Balls;
-use lindstedt_melnikov::{Axis, FastPoint, MelnikovError, Real, StickSlip, surface};
+use lindstedt_melnikov::{Axis, FastPoint, MelnikovError, StickSlip, surface};
 use rug::Float;
 
 fn exact(p: &FastPoint) -> StickSlip {
-    let real = |x| Real::from_f64(x, "x").unwrap();
+    let real = |x| Exact::from_f64(x).unwrap();
     StickSlip {
         a: real(p.a),
         b: real(p.b),

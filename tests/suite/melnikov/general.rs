@@ -1,10 +1,11 @@
 //! Polynomial friction of any degree, friction laws, several harmonics, other potentials.
 
 use super::support::{Random, assert_agrees, decimal, number, oracle, real};
+use lindstedt::Exact;
 use lindstedt::number::ball::Balls;
 use lindstedt_melnikov::{
     Branch, Class, Forcing, Friction, Harmonic, MelnikovError, Monomial, PolynomialFriction,
-    Potential, Real, System, polynomial_dissipation, quadrature_dissipation,
+    Potential, System, polynomial_dissipation, quadrature_dissipation,
 };
 use serde_json::Value;
 
@@ -20,7 +21,7 @@ fn polynomial_friction() {
     for row in oracle("general.json")["polynomial_friction"].as_array().unwrap() {
         let coefficients = row["t"].as_array().unwrap();
         let coefficients =
-            coefficients.iter().map(|t| Real::Rational(decimal(t.as_str().unwrap()))).collect();
+            coefficients.iter().map(|t| Exact::Rational(decimal(t.as_str().unwrap()))).collect();
         let law = PolynomialFriction { dry: real(row, "T0"), coefficients };
         for branch in [Branch::Positive, Branch::Negative] {
             let d =
@@ -32,7 +33,7 @@ fn polynomial_friction() {
 }
 
 fn law(name: &str) -> Friction {
-    let q = |n, d| Real::from((n, d));
+    let q = |n, d| Exact::from((n, d));
     match name {
         "stribeck1" => Friction::Stribeck {
             coulomb: q(1, 5),
@@ -100,8 +101,8 @@ fn several_harmonics() {
 }
 
 /// The square of a field.
-fn squared(row: &Value, name: &str) -> Real {
-    Real::Rational(number(row, name).square())
+fn squared(row: &Value, name: &str) -> Exact {
+    Exact::Rational(number(row, name).square())
 }
 
 #[test]
@@ -143,7 +144,7 @@ fn potentials_by_quadrature() {
     let balls = Balls::new(120);
     let mut random = Random(11);
     for round in 0..30 {
-        let mut q = |low, high| Real::Rational(random.rational(low, high));
+        let mut q = |low, high| Exact::Rational(random.rational(low, high));
         let (a, b) = (q(0.3, 3.0), q(0.3, 3.0));
         let potential = match round % 5 {
             0 => Potential::DoubleWell { a, b },
@@ -159,7 +160,7 @@ fn potentials_by_quadrature() {
         let friction = Friction::Polynomial(law.clone());
         let speed = potential.largest_speed(balls).unwrap().midpoint().to_f64();
         let fraction = q(-1.3, 1.3).to_f64();
-        let belt = Real::from_f64((fraction * speed * 1e6).round() / 1e6, "v").unwrap();
+        let belt = Exact::from_f64((fraction * speed * 1e6).round() / 1e6).unwrap();
         for branch in [Branch::Positive, Branch::Negative] {
             if branch == Branch::Negative && !potential.has_mirror_image() {
                 continue;
@@ -180,17 +181,17 @@ fn potentials_by_quadrature() {
 #[test]
 fn incommensurate_and_parametric() {
     let balls = Balls::new(BALLS);
-    let (a, b) = (Real::from((17, 10)), Real::from((23, 10)));
+    let (a, b) = (Exact::from((17, 10)), Exact::from((23, 10)));
     let potential = Potential::DoubleWell { a, b };
     let law = || {
         Friction::Polynomial(PolynomialFriction {
-            dry: Real::from((3, 10)),
+            dry: Exact::from((3, 10)),
             coefficients: Vec::new(),
         })
     };
     let system =
-        |forcing| System::new(potential.clone(), law(), forcing, Real::from((1, 5))).unwrap();
-    let omega = || Real::from((13, 10));
+        |forcing| System::new(potential.clone(), law(), forcing, Exact::from((1, 5))).unwrap();
+    let omega = || Exact::from((13, 10));
     // Amplitude pi omega^2/b csch(pi omega/(2 sqrt a)), the same sign on both loops.
     let parametric = system(Forcing::Parametric { omega: omega() });
     let right = parametric.threshold(balls, Branch::Positive).unwrap();
@@ -202,28 +203,30 @@ fn incommensurate_and_parametric() {
         &balls.mul(&balls.from_rational(&decimal("2.3")), &balls.sinh(&x)),
     );
     assert!(closed.unwrap().overlaps(&right.forcing));
-    let (m, _) =
-        parametric.melnikov(balls, Branch::Positive, &Real::from(1), &Real::from((1, 2))).unwrap();
-    let (n, _) =
-        parametric.melnikov(balls, Branch::Negative, &Real::from(1), &Real::from((1, 2))).unwrap();
+    let (m, _) = parametric
+        .melnikov(balls, Branch::Positive, &Exact::from(1), &Exact::from((1, 2)))
+        .unwrap();
+    let (n, _) = parametric
+        .melnikov(balls, Branch::Negative, &Exact::from(1), &Exact::from((1, 2)))
+        .unwrap();
     assert!(m.overlaps(&n) && m.relative_accuracy_bits() > 100);
-    let pendulum = Potential::Pendulum { a: Real::from(1) };
+    let pendulum = Potential::Pendulum { a: Exact::from(1) };
     let forcing = Forcing::Parametric { omega: omega() };
-    let refused = System::new(pendulum, law(), forcing, Real::from((1, 5))).unwrap();
+    let refused = System::new(pendulum, law(), forcing, Exact::from((1, 5))).unwrap();
     let refused = refused.threshold(balls, Branch::Positive);
     assert!(matches!(refused, Err(MelnikovError::NoClosedForm)));
     // Two incommensurate frequencies: the amplitudes add.
     let one = system(Forcing::single(omega())).threshold(balls, Branch::Positive).unwrap();
-    let other = system(Forcing::single(Real::from(2))).threshold(balls, Branch::Positive).unwrap();
+    let other = system(Forcing::single(Exact::from(2))).threshold(balls, Branch::Positive).unwrap();
     let both =
-        Forcing::Incommensurate(vec![(omega(), Real::from(1)), (Real::from(2), Real::from(-1))]);
+        Forcing::Incommensurate(vec![(omega(), Exact::from(1)), (Exact::from(2), Exact::from(-1))]);
     let both = system(both).threshold(balls, Branch::Negative).unwrap();
     assert!(both.forcing.overlaps(&balls.add(&one.forcing, &other.forcing)));
 }
 
 #[test]
 fn wrong_orbits_are_refused() {
-    let helmholtz = Potential::Helmholtz { a: Real::from(1), b: Real::from(1) };
+    let helmholtz = Potential::Helmholtz { a: Exact::from(1), b: Exact::from(1) };
     let good = helmholtz.description().unwrap();
     assert_eq!(good.check(), Ok(()));
     let mut wrong = good.clone();
@@ -235,9 +238,9 @@ fn wrong_orbits_are_refused() {
     unscaled.rate_squared = Monomial::new(1, 4, 0, 0);
     assert_eq!(unscaled.check(), Err(MelnikovError::NotScaled { power: 1 }));
     let friction =
-        Friction::Polynomial(PolynomialFriction { dry: Real::from(1), coefficients: Vec::new() });
+        Friction::Polynomial(PolynomialFriction { dry: Exact::from(1), coefficients: Vec::new() });
     let system =
-        System::new(helmholtz, friction, Forcing::single(Real::from(1)), Real::from(0)).unwrap();
+        System::new(helmholtz, friction, Forcing::single(Exact::from(1)), Exact::from(0)).unwrap();
     let mirror = system.threshold(Balls::new(80), Branch::Negative);
     assert!(matches!(mirror, Err(MelnikovError::NoMirrorImage)));
 }
@@ -249,7 +252,7 @@ fn described_orbits() {
     let balls = Balls::new(160);
     let mut random = Random(17);
     for round in 0..12 {
-        let mut q = |low, high| Real::Rational(random.rational(low, high));
+        let mut q = |low, high| Exact::Rational(random.rational(low, high));
         let (a, b) = (q(0.3, 3.0), q(0.3, 3.0));
         let known = match round % 3 {
             0 => Potential::DoubleWell { a: a.clone(), b: b.clone() },
@@ -267,7 +270,7 @@ fn described_orbits() {
             coefficients: vec![q(-1.0, 1.0), q(-1.0, 1.0), q(-1.0, 1.0)],
         };
         let fraction = q(-1.3, 1.3).to_f64() * speed.midpoint().to_f64();
-        let belt = Real::from_f64((fraction * 1e6).round() / 1e6, "v").unwrap();
+        let belt = Exact::from_f64((fraction * 1e6).round() / 1e6).unwrap();
         for branch in [Branch::Positive, Branch::Negative] {
             assert_eq!(known.has_mirror_image(), described.has_mirror_image());
             let closed = polynomial_dissipation(balls, &known, &law, branch, &belt).unwrap();
@@ -307,9 +310,9 @@ fn described_orbits() {
     let wrong = lindstedt_melnikov::OrbitDescription { amplitude_squared: zero(), ..orbit.clone() };
     assert!(wrong.check().is_err());
     let shifted =
-        Potential::Described { orbit: Box::new(orbit), a: Real::from(1), b: Real::from(1) };
-    let helmholtz = Potential::Helmholtz { a: Real::from(4), b: Real::from(3) };
-    let belt = Real::from((1, 3));
+        Potential::Described { orbit: Box::new(orbit), a: Exact::from(1), b: Exact::from(1) };
+    let helmholtz = Potential::Helmholtz { a: Exact::from(4), b: Exact::from(3) };
+    let belt = Exact::from((1, 3));
     let (left, right) =
         (shifted.sign_integral(balls, &belt), helmholtz.sign_integral(balls, &belt));
     assert!(left.unwrap().overlaps(&right.unwrap()));

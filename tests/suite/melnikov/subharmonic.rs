@@ -1,9 +1,10 @@
 //! Subharmonic Melnikov functions: the oracle, quadrature in time, the homoclinic limit.
 
 use super::support::{assert_agrees, oracle, real, stick_slip};
+use lindstedt::Exact;
 use lindstedt::number::ball::Balls;
 use lindstedt_melnikov::{
-    Elliptic, MelnikovError, PolynomialFriction, Real, Region, StickSlip, Subharmonic, subharmonic,
+    Elliptic, MelnikovError, PolynomialFriction, Region, StickSlip, Subharmonic, subharmonic,
 };
 
 fn solve(
@@ -61,7 +62,7 @@ fn converges_to_the_homoclinic_threshold() {
 
 #[test]
 fn refusals() {
-    let fast = StickSlip { omega: Real::from(3), ..StickSlip::paper() };
+    let fast = StickSlip { omega: Exact::from(3), ..StickSlip::paper() };
     assert!(matches!(
         solve(100, &fast, Region::Inside, 1),
         Err(MelnikovError::NoResonance { m: 1 })
@@ -71,7 +72,7 @@ fn refusals() {
         Err(MelnikovError::NoResonance { m: 0 })
     ));
     assert!(matches!(solve(100, &fast, Region::Outside, 2), Err(MelnikovError::NoForcing)));
-    assert!(solve(100, &StickSlip { b: Real::from(0), ..fast }, Region::Inside, 3).is_err());
+    assert!(solve(100, &StickSlip { b: Exact::from(0), ..fast }, Region::Inside, 3).is_err());
 }
 
 /// The integrals of (sn cn)^{2n}, (sn dn)^{2n} against the trapezoidal rule in phi = am u, which

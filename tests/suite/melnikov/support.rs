@@ -1,7 +1,8 @@
 //! Reading the oracles and comparing with them.
 
+use lindstedt::Exact;
 use lindstedt::number::ball::Ball;
-use lindstedt_melnikov::{Real, StickSlip};
+use lindstedt_melnikov::StickSlip;
 use rug::{Integer, Rational, ops::Pow};
 use serde_json::Value;
 
@@ -21,8 +22,8 @@ pub fn decimal(text: &str) -> Rational {
 }
 
 /// A field of an object, as an exact parameter.
-pub fn real(row: &Value, name: &str) -> Real {
-    Real::Rational(number(row, name))
+pub fn real(row: &Value, name: &str) -> Exact {
+    Exact::Rational(number(row, name))
 }
 
 /// A field of an object, as an exact number.
@@ -61,7 +62,7 @@ pub fn assert_agrees(ball: &Ball, expected: &Value, digits: i32, what: &str) {
 
 /// The oscillator of a row with a, b, T0, alpha, beta, omega, vstar (omega may be missing).
 pub fn stick_slip(row: &Value) -> StickSlip {
-    let omega = if row["omega"].is_null() { Real::from(1) } else { real(row, "omega") };
+    let omega = if row["omega"].is_null() { Exact::from(1) } else { real(row, "omega") };
     StickSlip {
         a: real(row, "a"),
         b: real(row, "b"),
@@ -69,7 +70,7 @@ pub fn stick_slip(row: &Value) -> StickSlip {
         alpha: real(row, "alpha"),
         beta: real(row, "beta"),
         omega,
-        belt_speed: if row["vstar"].is_null() { Real::from(0) } else { real(row, "vstar") },
+        belt_speed: if row["vstar"].is_null() { Exact::from(0) } else { real(row, "vstar") },
     }
 }
 

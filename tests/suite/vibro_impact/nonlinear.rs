@@ -47,7 +47,7 @@ fn examine(index: usize, random: &mut Random, with_velocity: bool) -> Option<Poi
     let a = random.thousandth(-300, 300);
     let b = if with_velocity { random.thousandth(-300, 300) } else { rug::Rational::new() };
     let label = format!("{} A {:.3} B {:.3}", ORBITS[index].0, a.to_f64(), b.to_f64());
-    let p = parameters(index, [a, b]).to_f64();
+    let p = parameters(index, [a, b]).nearest();
     let orbit = orbit(&p).unwrap();
     let predicted = prediction(&p, &orbit)?;
     let g = Characteristic::new(&p, &orbit, Kick::Mean);
@@ -206,7 +206,7 @@ fn return_map_of_plastic_impacts_is_that_of_the_simulation() {
     let mut random = Random(7);
     for _ in 0..4 {
         let [a, b] = [random.thousandth(-100, 100), random.thousandth(20, 100)];
-        let mut p = parameters(0, [a, b]).to_f64();
+        let mut p = parameters(0, [a, b]).nearest();
         p.restitution = 0.0;
         let orbit = orbit(&p).unwrap();
         let perturbation = -1e-5;

@@ -3,10 +3,10 @@
 
 use super::support::Random;
 use lindstedt::averaging::{Averaging, AveragingSettings, Coefficient, RateTerm, average};
-use lindstedt::{Value, problems};
+use lindstedt::{Exact, problems};
 use lindstedt_impact::flow::{characteristic_root, rates};
-use lindstedt_impact::parameters::{Branch, Exact, ExactParameters};
-use lindstedt_impact::real::Certified;
+use lindstedt_impact::parameters::{Branch, ExactParameters};
+use lindstedt_number::real::Certified;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
@@ -29,12 +29,12 @@ impl Case {
 
     fn averaged(&self, order: usize, digits: usize) -> Averaging {
         let names = ["alpha", "omega", "c", "A", "B"];
-        let mut parameters: BTreeMap<String, Value> = BTreeMap::new();
+        let mut parameters: BTreeMap<String, Exact> = BTreeMap::new();
         for (name, value) in names.iter().zip(&self.values) {
-            parameters.insert((*name).to_owned(), Value::Rational(value.clone()));
+            parameters.insert((*name).to_owned(), Exact::Rational(value.clone()));
         }
-        parameters.insert("k".to_owned(), Value::Rational(self.periods.into()));
-        parameters.insert("P0".to_owned(), Value::Rational(1.into()));
+        parameters.insert("k".to_owned(), Exact::Rational(self.periods.into()));
+        parameters.insert("P0".to_owned(), Exact::Rational(1.into()));
         let settings =
             AveragingSettings { order, parameters, digits, ..AveragingSettings::default() };
         average(&problems::vibro_impact::problem(), &settings, &mut |_| true).unwrap()

@@ -11,7 +11,7 @@ use crate::session::{Loaded, Session, digits};
 use crate::start::{Taken, compare};
 use lindstedt::evaluate::averaged::{Moment, Motion, MotionSettings, Quantity, Start};
 use lindstedt::number::ball::Balls;
-use lindstedt::{Number, Progress, Value};
+use lindstedt::{Exact, Number, Progress};
 use plotters::prelude::{BLUE, RGBColor};
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
@@ -27,7 +27,7 @@ const GREY: RGBColor = RGBColor(150, 150, 150);
 pub fn run(
     options: &EvaluateOptions,
     loaded: &Loaded,
-    parameters: BTreeMap<String, Value>,
+    parameters: BTreeMap<String, Exact>,
     session: &Session<'_>,
 ) -> Outcome {
     let problem = &loaded.problem;
@@ -94,13 +94,13 @@ pub fn run(
 }
 
 /// Two values separated by a comma.
-fn pair(name: &'static str, text: &str) -> Result<[Value; 2], Failure> {
+fn pair(name: &'static str, text: &str) -> Result<[Exact; 2], Failure> {
     let shown: String = text.chars().take(60).collect();
     let (first, second) = text.split_once(',').ok_or_else(|| {
         let message = format!("--{name} {shown:?} is not two values");
         Failure::usage(name, message, "for example 1,0")
     })?;
-    Ok([Value::parse(first)?, Value::parse(second)?])
+    Ok([Exact::parse(first)?, Exact::parse(second)?])
 }
 
 /// The start given, that of the file, or the amplitude of the card at phase 0; without times an
@@ -108,10 +108,10 @@ fn pair(name: &'static str, text: &str) -> Result<[Value; 2], Failure> {
 fn start(
     options: &EvaluateOptions,
     loaded: &Loaded,
-    parameters: &BTreeMap<String, Value>,
+    parameters: &BTreeMap<String, Exact>,
     needed: bool,
 ) -> Result<Start, Failure> {
-    let zero = || Value::parse("0");
+    let zero = || Exact::parse("0");
     if let Some(text) = &options.start {
         let [a, psi] = pair("start", text)?;
         let positive = a.ball(Balls::new(64)).is_positive();
@@ -128,11 +128,11 @@ fn start(
     if let Some([x, v]) = loaded.file.as_ref().and_then(|file| file.initial.as_ref()) {
         let taken = Taken::Initial("--start AMPLITUDE,0");
         compare(&loaded.problem, loaded.file.as_ref(), parameters, taken);
-        return Ok(Start::State(Value::parse(x)?, Value::parse(v)?));
+        return Ok(Start::State(Exact::parse(x)?, Exact::parse(v)?));
     }
     let card = loaded.problem.parameters.iter().find(|card| card.name == "amplitude");
     let amplitude = parameters.get("amplitude").cloned();
-    let default = || card.and_then(|card| Value::parse(&card.default).ok());
+    let default = || card.and_then(|card| Exact::parse(&card.default).ok());
     if let Some(a) = amplitude.or_else(default) {
         return Ok(Start::Amplitude(a, zero()?));
     }
@@ -140,7 +140,7 @@ fn start(
         let message = "the amplitude is free: where does the motion start?".to_owned();
         return Err(Failure::usage("start", message, "--start A,PSI or --state X,V"));
     }
-    Ok(Start::Amplitude(Value::parse("1")?, zero()?))
+    Ok(Start::Amplitude(Exact::parse("1")?, zero()?))
 }
 
 struct Report<'a> {
@@ -149,7 +149,7 @@ struct Report<'a> {
     moments: Option<&'a [Moment]>,
 }
 
-fn double(time: &Value) -> f64 {
+fn double(time: &Exact) -> f64 {
     time.ball(Balls::new(64)).midpoint().to_f64()
 }
 

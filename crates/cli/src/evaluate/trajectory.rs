@@ -5,7 +5,7 @@ use crate::arguments::EvaluateOptions;
 use crate::derive::number_json;
 use crate::failure::Failure;
 use crate::session::Session;
-use lindstedt::Value;
+use lindstedt::Exact;
 use lindstedt::equation::Problem;
 use lindstedt::evaluate::{Displacement, Trajectory};
 use lindstedt::number::ball::Balls;
@@ -38,7 +38,7 @@ fn usage(text: &str) -> Failure {
 
 /// The number, or the double next to a multiple of pi.
 fn rational(text: &str) -> Result<Rational, Failure> {
-    let value = Value::parse(text)?;
+    let value = Exact::parse(text)?;
     let nearest = || value.ball(Balls::new(200)).midpoint().to_rational();
     value.as_rational().cloned().or_else(nearest).ok_or_else(|| usage(text))
 }
@@ -68,13 +68,13 @@ impl Request {
     }
 
     /// The times, from 0 to `last` where none were given.
-    pub fn times(&self, last: f64) -> Vec<Value> {
+    pub fn times(&self, last: f64) -> Vec<Exact> {
         let (low, high) = self
             .range
             .clone()
             .unwrap_or_else(|| (Rational::new(), Rational::from_f64(last).unwrap_or_default()));
         let width = (high - &low) / Rational::from(self.count.saturating_sub(1).max(1));
-        (0..self.count).map(|i| Value::Rational(Rational::from(&width * i) + &low)).collect()
+        (0..self.count).map(|i| Exact::Rational(Rational::from(&width * i) + &low)).collect()
     }
 }
 

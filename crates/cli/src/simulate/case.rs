@@ -5,7 +5,7 @@ use super::setup::{Setup, identity, same};
 use crate::failure::{Failure, NO_ANSWER};
 use crate::session::parameters;
 use crate::stability::known::exact_parameters;
-use lindstedt::Value;
+use lindstedt::Exact;
 use lindstedt::equation::Function::{Abs, Cos, Sign, Sin};
 use lindstedt::equation::{AmplitudeRole, Condition, Crossing, Expression, ParameterCard, Problem};
 use lindstedt::expand::Excitation;
@@ -16,13 +16,13 @@ use lindstedt::verify::quantities;
 use rug::Rational;
 use std::collections::BTreeMap;
 
-type Given = BTreeMap<String, Value>;
+type Given = BTreeMap<String, Exact>;
 
 /// All parameters of a card: given, or by default; a default that is no number stands for itself.
-fn values(cards: &[ParameterCard], given: &Given) -> Vec<(String, Option<Value>)> {
+fn values(cards: &[ParameterCard], given: &Given) -> Vec<(String, Option<Exact>)> {
     let value = |card: &ParameterCard| {
         let value = given.get(&*card.name).cloned();
-        (card.name.to_string(), value.or_else(|| Value::parse(&card.default).ok()))
+        (card.name.to_string(), value.or_else(|| Exact::parse(&card.default).ok()))
     };
     cards.iter().map(value).collect()
 }
@@ -64,7 +64,7 @@ impl Case<'_> {
         if self.impacting {
             bindings.set(&problem.small, 1);
         } else {
-            let text = |(name, value): (String, Option<Value>)| {
+            let text = |(name, value): (String, Option<Exact>)| {
                 let card = problem.parameters.iter().find(|card| *card.name == *name);
                 let default = || card.map_or_else(String::new, |card| card.default.to_string());
                 (name, value.map_or_else(default, |value| value.to_string()))
@@ -150,7 +150,7 @@ impl Case<'_> {
     ) -> Option<History> {
         let Some(file) = self.file else { return history };
         if !file.determined().is_empty() {
-            bindings.set("pi", Quantity::PiMultiple(Rational::from(1)));
+            bindings.set("pi", Exact::PiTimes(Rational::from(1)));
         }
         let value = |e: &Expression| match e {
             Expression::Parameter(name) => file.determined().get(&**name).cloned(),
@@ -334,13 +334,13 @@ fn unknown_start(problem: &Problem) -> Failure {
 
 /// n = 1 + 2 delta: whichever is given determines the other.
 fn linked(mut given: Given) -> Given {
-    let rational = |name: &str| given.get(name).and_then(Value::as_rational).cloned();
+    let rational = |name: &str| given.get(name).and_then(Exact::as_rational).cloned();
     match (rational("n"), rational("delta")) {
         (Some(n), None) => {
-            given.insert("delta".into(), Value::Rational((n - 1u32) / 2u32));
+            given.insert("delta".into(), Exact::Rational((n - 1u32) / 2u32));
         }
         (None, Some(delta)) => {
-            given.insert("n".into(), Value::Rational(delta * 2u32 + 1u32));
+            given.insert("n".into(), Exact::Rational(delta * 2u32 + 1u32));
         }
         _ => {}
     }

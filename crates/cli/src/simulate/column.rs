@@ -1,6 +1,7 @@
 //! One column of a bifurcation diagram, and its line in the file of the sweep.
 
 use crate::arguments::Section;
+use lindstedt::Exact;
 use lindstedt::simulate::{Column, Point, Quantity};
 use rug::Rational;
 use rug::ops::Pow;
@@ -19,9 +20,8 @@ pub struct Line {
 /// or 17 digits.
 fn exact(q: &Quantity) -> String {
     match q {
-        Quantity::Rational(q) => decimal(q).unwrap_or_else(|| q.to_string()),
-        Quantity::PiMultiple(q) => match (q.numer().to_string().as_str(), q.denom()) {
-            ("0", _) => "0".to_owned(),
+        Quantity::Exact(Exact::Rational(q)) => decimal(q).unwrap_or_else(|| q.to_string()),
+        Quantity::Exact(Exact::PiTimes(q)) => match (q.numer().to_string().as_str(), q.denom()) {
             ("1", d) if *d == 1 => "pi".to_owned(),
             (_, d) if *d == 1 => format!("{}*pi", q.numer()),
             ("1", d) => format!("pi/{d}"),
@@ -121,12 +121,12 @@ mod tests {
         for (value, text) in
             [(q(3, 5), "0.6"), (q(-1, 40), "-0.025"), (q(7, 1), "7"), (q(1, 3), "1/3")]
         {
-            assert_eq!(exact(&Quantity::Rational(value)), text);
+            assert_eq!(exact(&value.into()), text);
         }
         for (value, text) in
             [(q(1, 1), "pi"), (q(0, 1), "0"), (q(3, 4), "3*pi/4"), (q(-2, 1), "-2*pi")]
         {
-            assert_eq!(exact(&Quantity::PiMultiple(value)), text);
+            assert_eq!(exact(&Exact::pi_times(value).into()), text);
         }
     }
 }

@@ -3,15 +3,14 @@
 use super::setup::{Setup, identity};
 use crate::failure::{Failure, NO_ANSWER};
 use crate::stability::known::exact_parameters;
-use lindstedt::Value;
+use lindstedt::Exact;
 use lindstedt::equation::Expression;
 use lindstedt::equation::Function::{Cos, Exp, Sin};
 use lindstedt::equation::Problem;
+use lindstedt::number::real::Real as _;
 use lindstedt::simulate::{Digits, Model, Parameters, Quantity, Real as _};
-use lindstedt::verify::quantity;
 use lindstedt_impact::flight::clearance;
 use lindstedt_impact::orbit::orbit;
-use lindstedt_impact::real::Real as _;
 use rug::{Float, Rational};
 
 /// The equation with t + psi/omega for t.
@@ -39,10 +38,10 @@ pub fn on_orbit(
     let (exact, at) = exact_parameters(set)?;
     let bits = Digits::for_digits(digits + 40).bits();
     let p = exact.certified(bits);
-    let real = |x: &lindstedt_impact::real::Certified| Float::with_val(bits, x.ball().midpoint());
+    let real = |x: &lindstedt::number::real::Certified| Float::with_val(bits, x.ball().midpoint());
     let mut parameters = Parameters::new().with(&problem.small, 1);
     for (name, text) in at.iter().filter(|(name, _)| name != "branch") {
-        parameters.set(name, quantity(&Value::parse(text)?));
+        parameters.set(name, Exact::parse(text)?);
     }
     let period = real(&p.period());
     parameters.set("T", period.clone());

@@ -4,10 +4,9 @@ use super::motion::{End, Plan};
 use super::setup::Setup;
 use crate::arguments::{Figure, Section, SimulateOptions};
 use crate::failure::Failure;
-use lindstedt::Value;
+use lindstedt::Exact;
 use lindstedt::simulate::Quantity;
-use lindstedt::verify::quantity;
-use rug::{Float, Rational};
+use rug::Rational;
 
 /// The most values of a range.
 const MOST_VALUES: u64 = 100_000;
@@ -22,7 +21,7 @@ fn number(what: &'static str, text: &str) -> Result<Quantity, Failure> {
         let message = format!("{:?} is no number", text.chars().take(60).collect::<String>());
         Failure::usage(what, message, "exact values: 3, -1/3, 0.1, pi/4")
     };
-    Value::parse(text).map(|value| quantity(&value)).map_err(wrong)
+    Exact::parse(text).map(Quantity::from).map_err(wrong)
 }
 
 /// `LO..HI:COUNT`, in order.
@@ -41,7 +40,7 @@ pub fn range(what: &'static str, text: &str) -> Result<Vec<Quantity>, Failure> {
     }
     let steps = count.saturating_sub(1).max(1);
     let node = |i: u64| match (low.rational(), high.rational()) {
-        (Some(a), Some(b)) => Quantity::Rational((b - &a) * Rational::from((i, steps)) + a),
+        (Some(a), Some(b)) => Quantity::from((b - &a) * Rational::from((i, steps)) + a),
         _ => {
             let (a, b) = (low.float(4000), high.float(4000));
             Quantity::Float((b - &a) * Rational::from((i, steps)) + a)
@@ -172,21 +171,10 @@ pub fn plan(options: &SimulateOptions, setup: Setup) -> Result<Plan, Failure> {
     Ok(Plan { setup, end, times: sampled, section, skip, drawn, cut: None })
 }
 
-fn scaled(q: &Quantity, factor: Rational) -> Quantity {
-    match q {
-        Quantity::Rational(q) => Quantity::Rational(factor * q),
-        Quantity::PiMultiple(q) => Quantity::PiMultiple(factor * q),
-        other => {
-            let x = other.float(4000);
-            Quantity::Float(Float::with_val(4000, &x * &factor))
-        }
-    }
-}
-
 fn times(q: &Quantity, n: u32) -> Quantity {
-    scaled(q, Rational::from(n))
+    q.times(&Rational::from(n))
 }
 
 fn part(q: &Quantity, k: u32) -> Quantity {
-    scaled(q, Rational::from((k, INTERVALS)))
+    q.times(&Rational::from((k, INTERVALS)))
 }

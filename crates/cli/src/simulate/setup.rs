@@ -11,8 +11,7 @@ use lindstedt::equation::{Condition, Expression, Impact, Problem};
 use lindstedt::problem_file::{History, Names, ProblemFile};
 use lindstedt::problems::{stick_slip, vibro_impact};
 use lindstedt::simulate::{Model, Parameters, Quantity};
-use lindstedt::verify::quantity;
-use lindstedt::{Error, Value};
+use lindstedt::{Error, Exact};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
@@ -113,7 +112,7 @@ impl Setup {
                 if problem.conditions.first() != Some(&Condition::FundamentalAmplitude) {
                     compare(&problem, file, &given, Taken::Initial("--state AMPLITUDE,0"));
                 }
-                Some([quantity(&Value::parse(x)?), quantity(&Value::parse(v)?)])
+                Some([Exact::parse(x)?.into(), Exact::parse(v)?.into()])
             }
             (state, _) => state.clone(),
         };

@@ -4,13 +4,12 @@ use super::known::Computed;
 use super::request::{Request, Sweep};
 use crate::failure::{Failure, UNDECIDED};
 use crate::session::Session;
-use lindstedt::Value;
+use lindstedt::Exact;
+use lindstedt::number::real::Real;
 use lindstedt_impact::ImpactError;
 use lindstedt_impact::chart::{Agreement, Axis, Chart, LeftOut, Plan, Point, Swept, chart};
 use lindstedt_impact::flip::flip_boundary;
 use lindstedt_impact::map::Verdict;
-use lindstedt_impact::parameters::Exact;
-use lindstedt_impact::real::Real;
 use rayon::prelude::*;
 use rug::Rational;
 use serde_json::{Value as Json, json};
@@ -91,7 +90,7 @@ impl Grid {
                 hint: "fewer values, or raise --limit-memory".into(),
             });
         }
-        let base = request.parameters.to_f64();
+        let base = request.parameters.nearest();
         let rows = plan.rows.count;
         let observer = |done: usize| {
             session.say(format!("row {done} of {rows}"));
@@ -278,7 +277,7 @@ fn general(
     let empty = Point::EMPTY;
     let point = |column: usize, row: usize| -> Result<Point, ImpactError> {
         let places = request.sweeps.iter().zip([column, row]);
-        let changes: Option<Vec<(&str, Value)>> =
+        let changes: Option<Vec<(&str, Exact)>> =
             places.map(|(sweep, n)| Some((sweep.name.as_str(), sweep.exact(n)?))).collect();
         let Some(parameters) = changes.and_then(|changes| computed(&changes)) else {
             return Ok(empty);

@@ -3,13 +3,14 @@
 use crate::failure::Failure;
 use crate::recognised::Source;
 use crate::session::parameters;
-use lindstedt::Value;
+use lindstedt::Exact;
 use lindstedt::equation::Expression;
 use lindstedt::problems::vibro_impact;
 use lindstedt::recognise::ImpactProblem;
 use lindstedt_impact::chart::Swept;
-use lindstedt_impact::parameters::{Branch, Exact, ExactParameters, Parameters};
+use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
 use rug::Rational;
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 /// The branch set, and the other settings.
@@ -32,7 +33,7 @@ fn branch_of(set: &[String]) -> Result<(Option<Branch>, Vec<String>), Failure> {
 }
 
 /// k as a number of periods.
-fn whole_periods(k: &Value) -> Result<u32, Failure> {
+fn whole_periods(k: &Exact) -> Result<u32, Failure> {
     let whole = k.as_rational().filter(|q| q.is_integer() && **q > 0).ok_or_else(|| {
         Failure::usage("parameter", "k must be a positive integer".to_owned(), "--set k=2")
     })?;
@@ -60,7 +61,7 @@ pub fn exact_parameters(
         }
         let value = match given.remove(&*card.name) {
             Some(value) => value,
-            None => Value::parse(&card.default)?,
+            None => Exact::parse(&card.default)?,
         };
         at.push((card.name.to_string(), value.to_string()));
         values.insert(card.name.to_string(), value);
@@ -71,10 +72,8 @@ pub fn exact_parameters(
         let hint = format!("it has {}; T = 2 pi k/omega follows", known.join(", "));
         return Err(Failure::usage("unknown-parameter", message, &hint));
     }
-    let get = |name: &str| {
-        values.get(name).map_or_else(|| Exact::from((0, 1)), |value| Exact::from(value.clone()))
-    };
-    let periods = whole_periods(values.get("k").unwrap_or(&Value::Rational(Rational::new())))?;
+    let get = |name: &str| values.get(name).cloned().unwrap_or_else(|| Exact::from(0));
+    let periods = whole_periods(values.get("k").unwrap_or(&Exact::from(0)))?;
     let parameters = ExactParameters {
         alpha: get("alpha"),
         omega: get("omega"),
@@ -87,7 +86,7 @@ pub fn exact_parameters(
         velocity_gain: get("B"),
         branch,
     };
-    parameters.to_f64().validate()?;
+    parameters.nearest().validate()?;
     Ok((parameters, at))
 }
 
@@ -98,7 +97,7 @@ pub type Names = dyn Fn(&str) -> Result<(Option<Swept>, f64), Failure>;
 pub type Meaning = dyn Fn(&str) -> Result<String, Failure>;
 
 /// Parameters of section 2 from values of a file's; nothing where there is no such oscillator.
-pub type Computed = dyn Fn(&[(&str, Value)]) -> Option<Parameters<f64>> + Sync;
+pub type Computed = dyn Fn(&[(&str, Exact)]) -> Option<Parameters<f64>> + Sync;
 
 /// What the problem says.
 pub struct Known {
@@ -172,7 +171,7 @@ pub fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
     let periods = k.map(whole_periods).transpose()?;
     let found = ImpactProblem::new(&source.problem, &source.values, periods, branch)
         .map_err(|refusal| source.refuse(refusal))?;
-    found.parameters.to_f64().validate()?;
+    found.parameters.nearest().validate()?;
     let sign = if branch == Branch::Plus { "+" } else { "-" };
     let mut at = Vec::new();
     for card in &source.problem.parameters {
@@ -211,12 +210,11 @@ pub fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
         let (source, found) = &*of_names;
         let is_free = |name: &str| !whole(name) && name != "branch";
         // Another delay than a period of the force has no such orbit.
-        let moves = |name: &str, value: &Value| {
+        let moves = |name: &str, value: &Exact| {
             let beside = Rational::from((1010, 1009));
-            let beside = match value {
-                Value::Rational(q) if q.is_zero() => Value::Rational(beside - 1u32),
-                Value::Rational(q) => Value::Rational(beside * q),
-                Value::PiTimes(q) => Value::PiTimes(beside * q),
+            let beside = match value.sign() {
+                Ordering::Equal => Exact::from(beside - 1u32),
+                _ => value.times(&beside),
             };
             computed_parameters(source, periods, branch, &[(name, beside)]).is_some()
         };
@@ -224,7 +222,7 @@ pub fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
             let value = source.values.get(name).filter(|_| is_free(name))?;
             let swept = found.names(&source.problem, &source.values, name, periods);
             let is_known = swept.is_some() || moves(name, value);
-            is_known.then(|| (swept, Exact::from(value.clone()).to_f64()))
+            is_known.then(|| (swept, value.to_f64()))
         };
         swept(name).ok_or_else(|| {
             let known = source.at().into_iter().map(|(name, _)| name);
@@ -239,7 +237,7 @@ pub fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
     };
     let of_text = shared.clone();
     let computed =
-        move |changes: &[(&str, Value)]| computed_parameters(&shared.0, periods, branch, changes);
+        move |changes: &[(&str, Exact)]| computed_parameters(&shared.0, periods, branch, changes);
     Ok(Known {
         problem,
         parameters,
@@ -257,11 +255,11 @@ fn computed_parameters(
     source: &Source,
     periods: Option<u32>,
     branch: Branch,
-    changes: &[(&str, Value)],
+    changes: &[(&str, Exact)],
 ) -> Option<Parameters<f64>> {
     let mut values = source.values.clone();
     values.extend(changes.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
     let found = ImpactProblem::new(&source.problem, &values, periods, branch).ok()?;
-    let parameters = found.parameters.to_f64();
+    let parameters = found.parameters.nearest();
     parameters.validate().ok().map(|()| parameters)
 }

@@ -12,9 +12,10 @@ use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
 use crate::session::{Session, digits};
 use chart::Grid;
+use lindstedt::Number;
 use lindstedt_impact::ImpactError;
 use lindstedt_impact::report::{certified_stability_watched, stability_watched};
-use report::{Answer, certified_number, double_number};
+use report::Answer;
 use request::Request;
 
 pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
@@ -35,15 +36,15 @@ pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
         other => other.into(),
     };
     let answer = if options.precision.f64 {
-        let point = request.parameters.to_f64();
+        let point = request.parameters.nearest();
         let report = stability_watched(&point, &request.point(), &stop).map_err(stopped)?;
-        Answer::new(&request, &report, &|x| double_number(*x))
+        Answer::new(&request, &report, &|x| Number::double(*x))
     } else {
         let asked = u32::try_from(digits).unwrap_or(u32::MAX);
         let point = (&request.parameters, &request.point());
         let report =
             certified_stability_watched(point.0, point.1, asked, &stop).map_err(stopped)?;
-        Answer::new(&request, &report, &|x| certified_number(x.ball(), digits))
+        Answer::new(&request, &report, &|x| Number::of_ball(x.ball(), digits))
     };
     let grid = Grid::compute(&request, session)?;
     session.done();

@@ -5,37 +5,14 @@ use super::request::Request;
 use crate::arguments::{Format, PredictorChoice};
 use crate::averaging::{convergence_json, divergence};
 use crate::derive::number_json;
-use lindstedt::number::ball::Ball;
-use lindstedt::number::digits::{decimal, error_string};
-use lindstedt::{Number, Status};
-use lindstedt_impact::complex::Complex;
+use lindstedt::Number;
+use lindstedt::number::complex::Complex;
+use lindstedt::number::real::Real;
 use lindstedt_impact::equivalent::EquivalentOrbit;
 use lindstedt_impact::map::Verdict;
-use lindstedt_impact::real::Real;
 use lindstedt_impact::report::StabilityReport;
 use serde_json::{Map, Value as Json, json};
 use std::fmt::Write;
-
-/// A number in doubles: rounding errors are not tracked.
-pub fn double_number(x: f64) -> Number {
-    // 0, not -0.
-    let decimal = format!("{:e}", x + 0.0);
-    Number { exact: None, decimal, error: None, status: Status::Estimated }
-}
-
-/// As many of the digits asked for as are certain; an enclosure of zero is 0 with its radius.
-pub fn certified_number(ball: &Ball, digits: usize) -> Number {
-    let known = ball.relative_accuracy_bits().max(0) as f64 * std::f64::consts::LOG10_2;
-    let certain = if ball.is_exact() { digits } else { digits.min((known as usize).max(1)) };
-    let decimal = decimal(ball, certain).unwrap_or_else(|| "0".to_owned());
-    let error = error_string(ball, &decimal);
-    let error = (error != "0").then_some(error);
-    if ball.is_exact() && error.is_none() {
-        let exact = Some(decimal.clone());
-        return Number { exact, decimal, error, status: Status::Exact };
-    }
-    Number { exact: None, decimal, error, status: Status::Certified }
-}
 
 pub struct Answer {
     problem: String,
@@ -125,7 +102,7 @@ impl Answer {
                 Ok(found) => json!({
                     "multipliers": found.multipliers.iter().map(|z| {
                         let z = z.to_f64();
-                        json!([number_json(&double_number(z.re)), number_json(&double_number(z.im))])
+                        json!([number_json(&Number::double(z.re)), number_json(&Number::double(z.im))])
                     }).collect::<Vec<_>>(),
                     "stable": stable(found.verdict()),
                     "order": request.order,

@@ -3,10 +3,10 @@
 use super::known::{Computed, Known, Names, built_in, of_file};
 use crate::arguments::{KickChoice, PredictorChoice, StabilityOptions, VariantChoice};
 use crate::failure::Failure;
-use lindstedt::Value;
+use lindstedt::Exact;
 use lindstedt_impact::characteristic::Kick;
 use lindstedt_impact::chart::{Axis, Plan, Predictor, Swept};
-use lindstedt_impact::parameters::{Exact, ExactParameters};
+use lindstedt_impact::parameters::ExactParameters;
 use lindstedt_impact::prediction::Variant;
 use lindstedt_impact::report;
 use rug::{Float, Rational};
@@ -19,27 +19,27 @@ pub struct Sweep {
     pub axis: Axis,
     /// The value at the point asked for.
     pub base: f64,
-    ends: [Value; 2],
+    ends: [Exact; 2],
 }
 
 impl Sweep {
     /// The n-th value as the double nearest to the exact one, which decimals of few digits are.
     pub fn value(&self, n: usize) -> f64 {
         match self.exact(n) {
-            Some(Value::Rational(q)) => Float::with_val(53, q).to_f64(),
+            Some(Exact::Rational(q)) => Float::with_val(53, q).to_f64(),
             _ => self.axis.value(n),
         }
     }
 
     /// The n-th value, between ends of one kind.
-    pub fn exact(&self, n: usize) -> Option<Value> {
+    pub fn exact(&self, n: usize) -> Option<Exact> {
         let steps = self.axis.count.saturating_sub(1).max(1);
         let node = |low: &Rational, high: &Rational| {
             Rational::from(high - low) * Rational::from((n, steps)) + low
         };
         Some(match &self.ends {
-            [Value::Rational(low), Value::Rational(high)] => Value::Rational(node(low, high)),
-            [Value::PiTimes(low), Value::PiTimes(high)] => Value::PiTimes(node(low, high)),
+            [Exact::Rational(low), Exact::Rational(high)] => Exact::Rational(node(low, high)),
+            [Exact::PiTimes(low), Exact::PiTimes(high)] => Exact::PiTimes(node(low, high)),
             _ => return None,
         })
     }
@@ -81,7 +81,7 @@ impl Request {
         let mut sweeps: Vec<Sweep> =
             options.sweep.iter().map(|t| sweep(&text(t)?, &*names)).collect::<Result<_, _>>()?;
         let general = sweeps.iter().any(|sweep| names(&sweep.name).is_ok_and(|n| n.0.is_none()));
-        let mut parameters_of_section_2 = parameters.to_f64();
+        let mut parameters_of_section_2 = parameters.nearest();
         for sweep in sweeps.iter_mut().filter(|_| !general) {
             sweep.base = *parameters_of_section_2.slot(sweep.axis.parameter);
         }
@@ -174,7 +174,7 @@ impl Request {
 
     /// A second axis of one point where there is one sweep.
     fn single_row(&self, swept: Swept) -> Axis {
-        let base = self.parameters.to_f64();
+        let base = self.parameters.nearest();
         let (parameter, value) = if swept == Swept::VelocityGain {
             (Swept::DisplacementGain, base.displacement_gain)
         } else {
@@ -214,9 +214,9 @@ fn sweep(text: &str, names: &Names) -> Result<Sweep, Failure> {
     let parameter = parameter.unwrap_or(Swept::VelocityGain);
     let (range, count) = range.rsplit_once(':').ok_or_else(bad)?;
     let (low, high) = range.split_once("..").ok_or_else(bad)?;
-    let ends = [Value::parse(low)?, Value::parse(high)?];
-    let number = |value: &Value| {
-        let double = Exact::from(value.clone()).to_f64();
+    let ends = [Exact::parse(low)?, Exact::parse(high)?];
+    let number = |value: &Exact| {
+        let double = value.to_f64();
         Some(double).filter(|x| x.is_finite()).ok_or_else(bad)
     };
     let count: usize = count.trim().parse().map_err(|_| bad())?;

@@ -5,13 +5,13 @@ use super::request::{Request, Sweep};
 use crate::derive::number_json;
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::session::Session;
-use crate::stability::report::certified_number;
-use lindstedt::constants::certified;
+use lindstedt::Exact;
 use lindstedt::number::ball::{Ball, Balls};
+use lindstedt::number::certified;
 use lindstedt::recognise::melnikov::Unperturbed;
 use lindstedt::recognise::{MelnikovProblem, OrbitCheck, OrbitThreshold};
 use lindstedt::{Number, Status};
-use lindstedt_melnikov::{Class, MelnikovError, Real};
+use lindstedt_melnikov::{Class, MelnikovError};
 use rug::{Float, Rational};
 use serde_json::{Value as Json, json};
 
@@ -86,7 +86,7 @@ pub fn answer(
             listed.first().and_then(|orbit| orbit["name"].as_str()).unwrap_or_default()
         ));
     }
-    let harmonic = Harmonic::new(request, numbers.first(), &|factor: &Real| {
+    let harmonic = Harmonic::new(request, numbers.first(), &|factor: &Exact| {
         number(first, &|o| {
             let balls = Balls::new(o.threshold.gamma.midpoint().prec().max(bits));
             let quotient = balls.div(&gamma(o), &balls.abs(&factor.ball(balls)));
@@ -137,7 +137,7 @@ fn few_digits(x: f64) -> String {
 
 /// A number with the estimate of its error.
 fn estimate(ball: &Ball, digits: usize) -> Number {
-    Number { status: Status::Estimated, exact: None, ..certified_number(ball, digits) }
+    Number::of_ball(ball, digits).weaken(Status::Estimated)
 }
 
 /// How the orbit was checked.
@@ -179,7 +179,7 @@ fn check(found: &MelnikovProblem, check: Option<&OrbitCheck>) -> Json {
 pub fn zeros(
     request: &Request,
     name: &str,
-    (low, high): (&Real, &Real),
+    (low, high): (&Exact, &Exact),
     digits: usize,
     session: &Session<'_>,
 ) -> Result<Vec<Number>, Failure> {
@@ -203,7 +203,7 @@ pub fn zeros(
     let sweep = Sweep { axis: None, name: name.to_owned(), values: Vec::new() };
     let bits = (digits as f64 * 3.33) as u32 + 64;
     let sign = |q: &Rational| -> Option<bool> {
-        let value = Real::Rational(q.clone());
+        let value = Exact::Rational(q.clone());
         let ball = request.signed(Balls::new(bits), &[(&sweep, &value)]).ok()?;
         (!ball.contains_zero()).then(|| ball.is_positive())
     };
@@ -236,9 +236,9 @@ pub fn zeros(
         }
         let balls = Balls::new(bits + 32);
         let ends = balls.hull(&balls.from_rational(&a), &balls.from_rational(&b));
-        let mut number = certified_number(&ends, digits);
+        let mut number = Number::of_ball(&ends, digits);
         if request.class() == Class::Estimated {
-            number.status = Status::Estimated;
+            number = number.weaken(Status::Estimated);
         }
         let zero = Float::with_val(53, ends.midpoint());
         if zero.is_finite() {

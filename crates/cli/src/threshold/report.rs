@@ -5,11 +5,13 @@ use super::sweep::Table;
 use crate::derive::number_json;
 use crate::failure::Failure;
 use crate::session::Session;
-use lindstedt::constants::{Number, Status, certified};
+use lindstedt::Exact;
 use lindstedt::equation::print::Style;
 use lindstedt::equation::{Expression, Text};
 use lindstedt::number::ball::{Ball, Balls};
-use lindstedt_melnikov::{Branch, MelnikovError, Real, StickSlip, Verdict};
+use lindstedt::number::certified;
+use lindstedt::{Number, Status};
+use lindstedt_melnikov::{Branch, MelnikovError, StickSlip, Verdict};
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -57,7 +59,7 @@ impl Harmonic {
     pub fn new(
         request: &Request,
         gamma: Option<&(&str, Number)>,
-        over: &dyn Fn(&Real) -> Result<Number, Failure>,
+        over: &dyn Fn(&Exact) -> Result<Number, Failure>,
     ) -> Result<Option<Self>, Failure> {
         let Some(lowest) = &request.lowest else { return Ok(None) };
         let shown = |e: &Expression| e.print(request.small(), Style::Text);

@@ -4,14 +4,14 @@ use crate::arguments::ThresholdOptions;
 use crate::failure::Failure;
 use crate::recognised::Source;
 use crate::session::parameters;
-use lindstedt::Value;
+use lindstedt::Exact;
 use lindstedt::algebra::Stop;
 use lindstedt::equation::Text;
 use lindstedt::equation::print::Style;
 use lindstedt::number::ball::{Ball, Balls};
 use lindstedt::problems::stick_slip;
 use lindstedt::recognise::{LowestHarmonic, MelnikovProblem, all_values};
-use lindstedt_melnikov::{Axis, Class, Real, StickSlip};
+use lindstedt_melnikov::{Axis, Class, StickSlip};
 use rug::Rational;
 use std::path::Path;
 
@@ -24,7 +24,7 @@ pub struct Sweep {
     pub axis: Option<Axis>,
     pub name: String,
     /// The values, exact where the ends are rational.
-    pub values: Vec<Real>,
+    pub values: Vec<Exact>,
 }
 
 /// What is asked.
@@ -34,18 +34,18 @@ pub struct Request {
     pub point: Option<StickSlip>,
     /// A problem file, and what was found in it.
     pub file: Option<(Source, MelnikovProblem)>,
-    pub gamma: Real,
-    pub eps: Real,
+    pub gamma: Exact,
+    pub eps: Exact,
     /// What gamma and gamma_c are in the symbols of the problem.
     pub lowest: Option<LowestHarmonic>,
     /// What was set without an effect, or is zero.
     pub remarks: Vec<String>,
     /// Every parameter as it stands, in the order of the data card.
-    pub at: Vec<(Text, Real)>,
+    pub at: Vec<(Text, Exact)>,
     /// One, or two: the first is the horizontal axis of a figure.
     pub sweeps: Vec<Sweep>,
     /// Parameter, its name, and the range.
-    pub zeros: Option<(Option<Axis>, String, Real, Real)>,
+    pub zeros: Option<(Option<Axis>, String, Exact, Exact)>,
 }
 
 pub fn axis(name: &str) -> Option<Axis> {
@@ -61,12 +61,8 @@ pub fn axis(name: &str) -> Option<Axis> {
     })
 }
 
-pub fn real(value: Value) -> Real {
-    value.into()
-}
-
-fn parse(text: &str) -> Result<Real, Failure> {
-    Ok(real(Value::parse(text)?))
+fn parse(text: &str) -> Result<Exact, Failure> {
+    Ok(Exact::parse(text)?)
 }
 
 fn usage(what: &str, text: &str) -> Failure {
@@ -122,13 +118,13 @@ impl Sweep {
         let (low, high) = (exact(&parse(low)?), exact(&parse(high)?));
         let steps = Rational::from(count.saturating_sub(1).max(1));
         let width = Rational::from(&high - &low) / steps;
-        let node = |i: u64| Real::Rational((&width * Rational::from(i)) + &low);
+        let node = |i: u64| Exact::Rational((&width * Rational::from(i)) + &low);
         Ok(Self { axis, name, values: (0..count).map(node).collect() })
     }
 }
 
 /// The number, or the double next to it where it is a multiple of pi.
-fn exact(value: &Real) -> Rational {
+fn exact(value: &Exact) -> Rational {
     let nearest = || Rational::from_f64(value.to_f64()).unwrap_or_default();
     value.as_rational().cloned().unwrap_or_else(nearest)
 }
@@ -181,8 +177,8 @@ impl Request {
     }
 
     /// The oscillator of section 3 with other values of swept parameters, where all of them are its own.
-    pub fn changed(&self, changes: &[(&Sweep, &Real)]) -> Option<StickSlip> {
-        let change = |point: StickSlip, (sweep, value): &(&Sweep, &Real)| {
+    pub fn changed(&self, changes: &[(&Sweep, &Exact)]) -> Option<StickSlip> {
+        let change = |point: StickSlip, (sweep, value): &(&Sweep, &Exact)| {
             Some(point.with(sweep.axis?, (*value).clone()))
         };
         changes.iter().try_fold(self.point.clone()?, change)
@@ -190,7 +186,7 @@ impl Request {
 
     /// The signed threshold with other values of swept parameters, or why there is none; of several
     /// orbits that of the least threshold.
-    pub fn signed(&self, balls: Balls, changes: &[(&Sweep, &Real)]) -> Result<Ball, String> {
+    pub fn signed(&self, balls: Balls, changes: &[(&Sweep, &Exact)]) -> Result<Ball, String> {
         let undecided = || format!("not decided with {} bits", balls.bits());
         if let Some(point) = self.changed(changes) {
             match (point.check(), &self.file) {
@@ -203,11 +199,7 @@ impl Request {
         let (source, _) = self.file.as_ref().ok_or_else(undecided)?;
         let mut values = source.values.clone();
         for (sweep, value) in changes {
-            let value = match value {
-                Real::Rational(q) => Value::Rational(q.clone()),
-                Real::PiMultiple(q) => Value::PiTimes(q.clone()),
-            };
-            values.insert(sweep.name.clone(), value);
+            values.insert(sweep.name.clone(), (*value).clone());
         }
         let found = MelnikovProblem::new(&source.problem, &values);
         let found = found.map_err(|refusal| source.reason(&refusal))?;
@@ -244,11 +236,11 @@ struct Known {
     problem: String,
     point: Option<StickSlip>,
     file: Option<(Source, MelnikovProblem)>,
-    gamma: Real,
-    eps: Real,
+    gamma: Exact,
+    eps: Exact,
     lowest: Option<LowestHarmonic>,
     remarks: Vec<String>,
-    at: Vec<(Text, Real)>,
+    at: Vec<(Text, Exact)>,
 }
 
 /// That the small parameter was set, and forces that are zero.
@@ -272,7 +264,7 @@ fn of_file(options: &ThresholdOptions) -> Result<Known, Failure> {
     let source = Source::read(&options.problem, &options.set, &[])?;
     let found = MelnikovProblem::new(&source.problem, &source.values)
         .map_err(|refusal| source.refuse(refusal))?;
-    let at = source.at().into_iter().map(|(name, value)| (Text::from(name), real(value)));
+    let at = source.at().into_iter().map(|(name, value)| (Text::from(name), value));
     let small = source.problem.small.to_string();
     let eps = source.values.get(&small).cloned();
     let lowest = LowestHarmonic::find(&source.problem, &source.values);
@@ -284,7 +276,7 @@ fn of_file(options: &ThresholdOptions) -> Result<Known, Failure> {
         problem: source.problem.name.to_string(),
         point: found.stick_slip(),
         gamma: found.amplitude.clone(),
-        eps: eps.map_or_else(|| Real::from(1), real),
+        eps: eps.unwrap_or_else(|| Exact::from(1)),
         at: at.collect(),
         file: Some((source, found)),
     })
@@ -304,7 +296,7 @@ fn built_in(options: &ThresholdOptions) -> Result<Known, Failure> {
     let mut at = Vec::new();
     for card in card.parameters {
         let value = match set.remove(&*card.name) {
-            Some(value) => real(value),
+            Some(value) => value,
             None => parse(&card.default)?,
         };
         at.push((card.name, value));
@@ -324,7 +316,7 @@ fn built_in(options: &ThresholdOptions) -> Result<Known, Failure> {
     point.check()?;
     let get = |wanted: &str| {
         let value = at.iter().find(|(name, _)| name == wanted).map(|(_, value)| value.clone());
-        value.unwrap_or_else(|| Real::from(0))
+        value.unwrap_or_else(|| Exact::from(0))
     };
     let (gamma, eps) = (get("gamma"), get("eps"));
     let remarks = remarks("eps", point.dry.sign().is_ne(), eps_is_set, lowest.as_ref());

@@ -5,8 +5,8 @@ use super::request::Request;
 use crate::derive::number_json;
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::session::Session;
-use lindstedt::constants::certified;
 use lindstedt::number::ball::{Ball, Balls};
+use lindstedt::number::certified;
 use lindstedt_melnikov::{MelnikovError, PolynomialFriction, Region, Subharmonic, subharmonic};
 use serde_json::{Value as Json, json};
 

@@ -4,8 +4,9 @@ use super::report::Answer;
 use super::request::{Request, Sweep};
 use crate::failure::{Failure, UNDECIDED};
 use crate::session::Session;
+use lindstedt::Exact;
 use lindstedt::number::ball::Balls;
-use lindstedt_melnikov::{Class, FastPoint, Real, surface};
+use lindstedt_melnikov::{Class, FastPoint, surface};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -42,7 +43,7 @@ impl Table {
     ) -> Result<Option<Self>, Failure> {
         let Some(first) = request.sweeps.first() else { return Ok(None) };
         let doubles =
-            |values: &[Real]| -> Vec<f64> { values.par_iter().map(Real::to_f64).collect() };
+            |values: &[Exact]| -> Vec<f64> { values.par_iter().map(Exact::to_f64).collect() };
         let columns = doubles(&first.values);
         let rows = request.sweeps.get(1).map_or_else(|| vec![f64::NAN], |s| doubles(&s.values));
         let points = rows.len().saturating_mul(columns.len());
@@ -84,7 +85,7 @@ impl Table {
             }
             let places = [index % width, index / width];
             let values = request.sweeps.iter().zip(places);
-            let changes: Vec<(&Sweep, &Real)> =
+            let changes: Vec<(&Sweep, &Exact)> =
                 values.filter_map(|(sweep, i)| Some((sweep, sweep.values.get(i)?))).collect();
             let refused = request.changed(&changes).and_then(|point| point.check().err());
             let reason = match refused {
@@ -111,8 +112,8 @@ impl Table {
                     self.finished = false;
                     return;
                 }
-                let value = |value: &Real| {
-                    let changes: Vec<(&Sweep, &Real)> =
+                let value = |value: &Exact| {
+                    let changes: Vec<(&Sweep, &Exact)> =
                         second.into_iter().chain([(first, value)]).collect();
                     let double = request.signed(Balls::new(BITS), &changes)?.midpoint().to_f64();
                     if double.is_finite() { Ok(double) } else { Err(NO_DOUBLE.to_owned()) }

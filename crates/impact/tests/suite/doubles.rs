@@ -12,7 +12,7 @@ use lindstedt_impact::zeros::multipliers;
 fn doubles_have_twelve_digits_where_the_orbit_is_well_conditioned() {
     for name in ["O1_A", "O2_k2_stabilised", "O5_false_stable", "O8_saddle", "k5", "plastic"] {
         let case = data(name);
-        let p = parameters(&case).to_f64();
+        let p = parameters(&case).nearest();
         let found = orbit(&p).unwrap();
         let reference = &case["orbit_uncontrolled"];
         close(name, found.velocity, &reference["v"], 1e-12);
@@ -65,7 +65,7 @@ fn doubles_have_twelve_digits_where_the_orbit_is_well_conditioned() {
 #[test]
 fn doubles_lose_three_digits_near_grazing() {
     let case = data("near_grazing");
-    let p = parameters(&case).to_f64();
+    let p = parameters(&case).nearest();
     let reference = &case["orbit_uncontrolled"];
     close("v", orbit(&p).unwrap().velocity, &reference["v"], 1e-12 * 300.0);
     let drive = Drive::new(&p).unwrap();

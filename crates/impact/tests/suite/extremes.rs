@@ -9,11 +9,12 @@ use lindstedt_impact::equivalent::{Drive, equivalent_orbit};
 use lindstedt_impact::flow::{Flow, rates};
 use lindstedt_impact::map::{ImpactMap, Verdict};
 use lindstedt_impact::orbit::orbit;
-use lindstedt_impact::parameters::{Branch, Exact, ExactParameters, Parameters};
+use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
 use lindstedt_impact::prediction::{Variant, predict, predicted_flow, uncontrolled_map};
-use lindstedt_impact::real::Real;
 use lindstedt_impact::report::{Request, stability};
 use lindstedt_impact::zeros::exact_verdict;
+use lindstedt_number::Exact;
+use lindstedt_number::real::Real;
 
 fn base() -> Parameters<f64> {
     Parameters {
@@ -124,7 +125,7 @@ fn resonance_of_the_force_costs_the_regular_form_nothing() {
             ..base_exact()
         };
         let reference = orbit(&p.certified(256)).unwrap();
-        let doubles = p.to_f64();
+        let doubles = p.nearest();
         let found = orbit(&doubles).unwrap();
         near(found.velocity, reference.velocity.to_f64(), 2e-14);
         near(found.saltation, reference.saltation.to_f64(), 1e-13);
@@ -311,7 +312,7 @@ fn grazing_diverges_as_predicted_and_is_refused_in_the_end() {
 
 #[test]
 fn two_orbits_merge_in_the_fold() {
-    let mut p = parameters(&data("O8_saddle")).to_f64();
+    let mut p = parameters(&data("O8_saddle")).nearest();
     // Bisect the wall position for the sign of the discriminant.
     let (mut exists, mut beyond) = (p.wall, 50.0);
     for _ in 0..200 {
@@ -339,7 +340,7 @@ fn two_orbits_merge_in_the_fold() {
 
 #[test]
 fn a_missing_equivalent_orbit_leaves_the_other_answers() {
-    let p = parameters(&data("O8_saddle")).to_f64();
+    let p = parameters(&data("O8_saddle")).nearest();
     let report = stability(&p, &Request::default()).unwrap();
     assert!(matches!(report.kbm, Err(ImpactError::BeyondFold { .. })));
     let exact = report.exact.unwrap();

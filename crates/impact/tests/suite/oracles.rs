@@ -9,8 +9,8 @@ use lindstedt_impact::map::{ImpactMap, Polynomial, Verdict};
 use lindstedt_impact::orbit::orbit;
 use lindstedt_impact::parameters::{Branch, Parameters};
 use lindstedt_impact::prediction::{Variant, predict, predicted_flow, uncontrolled_map};
-use lindstedt_impact::real::{Certified, Real};
 use lindstedt_impact::zeros::{exact_verdict, multipliers};
+use lindstedt_number::real::{Certified, Real};
 use serde_json::Value;
 
 const CASES: [&str; 8] = [

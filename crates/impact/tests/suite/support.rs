@@ -1,9 +1,10 @@
 //! Reading reference numbers; comparison to a number of digits.
 
-use lindstedt_impact::complex::Complex;
-use lindstedt_impact::parameters::{Branch, Exact, ExactParameters};
-use lindstedt_impact::real::{Certified, Real};
+use lindstedt_impact::parameters::{Branch, ExactParameters};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::{Certified, Real};
 use rug::ops::Pow;
 use rug::{Float, Rational};
 use serde_json::Value;

@@ -6,19 +6,20 @@ use lindstedt_impact::ImpactError;
 use lindstedt_impact::aware::impact_aware;
 use lindstedt_impact::characteristic::{Characteristic, Kick};
 use lindstedt_impact::chart::{Axis, Plan, Predictor, Swept, chart};
-use lindstedt_impact::complex::Complex;
 use lindstedt_impact::flight::clearance;
 use lindstedt_impact::flip::flip_boundary;
 use lindstedt_impact::flow::{Flow, characteristic_root, rates};
 use lindstedt_impact::kick::ReturnMap;
 use lindstedt_impact::map::Verdict;
 use lindstedt_impact::orbit::orbit;
-use lindstedt_impact::parameters::{Branch, Exact, ExactParameters, Parameters};
+use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
 use lindstedt_impact::prediction::{Variant, mismatch, predict, predicted_flow, uncontrolled_map};
-use lindstedt_impact::real::Real;
 use lindstedt_impact::report::{Request, certified_stability, stability};
 use lindstedt_impact::winding::zero_count;
 use lindstedt_impact::zeros::{exact_verdict, multipliers};
+use lindstedt_number::Exact;
+use lindstedt_number::complex::Complex;
+use lindstedt_number::real::Real;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn orbit_number(n: usize) -> ExactParameters {
@@ -52,7 +53,7 @@ fn flip_boundary_is_where_the_simulation_flips() {
         for a in &flips {
             assert!(a.ball().relative_accuracy_bits() > 120);
             // An independent method has a multiplier of modulus 1 there.
-            let p = Parameters { displacement_gain: a.to_f64(), ..p.to_f64() };
+            let p = Parameters { displacement_gain: a.to_f64(), ..p.nearest() };
             let (_, sigma) = orbit_by_exponential(&p).unwrap();
             let moduli = monodromy(&p, sigma, 0.0, 40);
             assert!(moduli.iter().any(|modulus| (modulus - 1.0).abs() < 1e-9), "{moduli:?}");
@@ -83,7 +84,7 @@ fn return_map_reproduces_the_nonlinear_simulation() {
     let file = data("delay_simulations");
     for case in file.as_array().unwrap() {
         let name = case["name"].as_str().unwrap();
-        let p = parameters(&data(name)).to_f64();
+        let p = parameters(&data(name)).nearest();
         let found = orbit(&p).unwrap();
         let perturbation = case["velocity_perturbation_over_v"].as_f64().unwrap();
         let mut map = ReturnMap::new(&p, &found).unwrap();
@@ -103,7 +104,7 @@ fn return_map_reproduces_the_nonlinear_simulation() {
 
 #[test]
 fn delay_never_stabilises_the_minus_branch() {
-    let base = parameters(&data("O8_saddle")).to_f64();
+    let base = parameters(&data("O8_saddle")).nearest();
     let found = orbit(&base).unwrap();
     let map = uncontrolled_map(&base, &found);
     let at_one = 1.0 - map.trace + map.determinant;
@@ -307,7 +308,7 @@ fn clearance_agrees_with_dense_sampling() {
 fn observed_order_of_the_series_is_the_order_plus_one() {
     let p = parameters(&data("O1_A"));
     let scaled = |eps: f64| {
-        let p = p.to_f64();
+        let p = p.nearest();
         Parameters {
             damping: p.damping * eps,
             displacement_gain: p.displacement_gain * eps,
@@ -405,7 +406,7 @@ fn enclosures_of_multipliers_contain_the_truth() {
 
 #[test]
 fn a_chart_equals_its_points() {
-    let base = orbit_number(5).to_f64();
+    let base = orbit_number(5).nearest();
     let axis = |parameter, count| Axis { parameter, low: -0.3, high: 0.3, count };
     let plan = Plan {
         columns: axis(Swept::DisplacementGain, 9),

@@ -5,7 +5,7 @@ pub(crate) mod numbers;
 mod task;
 mod values;
 
-use crate::{Error, Number, Progress, Value};
+use crate::{Error, Exact, Number, Progress};
 use lindstedt_algebra::Stop;
 use lindstedt_coeff::parameters::ParameterField;
 use lindstedt_equation::Problem;
@@ -20,7 +20,7 @@ pub struct AveragingSettings {
     /// The highest order.
     pub order: usize,
     /// Values of parameters by name. Parameters of the equation that are not listed stay symbols.
-    pub parameters: BTreeMap<String, Value>,
+    pub parameters: BTreeMap<String, Exact>,
     /// Digits of numbers that are not rational.
     pub digits: usize,
     /// Asked within the orders whether to stop.

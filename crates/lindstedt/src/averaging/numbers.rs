@@ -3,7 +3,7 @@
 use super::AveragingSettings;
 use super::task::{Over, Task};
 use super::values::constant;
-use crate::{Error, Progress, Value};
+use crate::{Error, Exact, Progress};
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePower};
 use lindstedt_equation::{Expression, Problem};
@@ -45,11 +45,11 @@ pub(crate) struct Numbers {
 /// `amplitude`, if given or a parameter of the problem.
 pub(crate) fn defaults(
     problem: &Problem,
-    given: &BTreeMap<String, Value>,
-) -> BTreeMap<String, Value> {
+    given: &BTreeMap<String, Exact>,
+) -> BTreeMap<String, Exact> {
     let mut values = given.clone();
     for card in &problem.parameters {
-        if let Ok(value) = Value::parse(&card.default) {
+        if let Ok(value) = Exact::parse(&card.default) {
             values.entry(card.name.to_string()).or_insert(value);
         }
     }

@@ -3,7 +3,6 @@
 use super::coefficients::{Coefficients, with_angles};
 use super::values::{Given, collect, constant, enclosed};
 use super::{Averaging, AveragingSettings, Coefficient, RateTerm};
-use crate::constants::rational;
 use crate::derivation::{check_delays, unknown_parameter};
 use crate::{Error, Progress};
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
@@ -18,6 +17,7 @@ use lindstedt_expand::{
 };
 use lindstedt_number::ball::Balls;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
+use lindstedt_number::rational;
 use lindstedt_phase::{Delay, Torus};
 use rug::Rational;
 use std::collections::BTreeSet;
@@ -242,7 +242,7 @@ impl<'a> Task<'a> {
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Option<Averaging>, Error> {
         let Some(over) = self.over_rationals(observer)? else { return Ok(None) };
-        let number = |q: &Rational| rational(q, self.settings.digits).map(Coefficient::Number);
+        let number = |q: &Rational| Ok(Coefficient::Number(rational(q, self.settings.digits)?));
         self.finish(&over, true, &number).map(Some)
     }
 
@@ -299,7 +299,7 @@ impl<'a> Task<'a> {
     ) -> Result<Averaging, Error> {
         let (field, over) = self.over_parameters(observer)?;
         let formula = |c: &ParameterFraction| match field.as_rational(c) {
-            Some(q) => rational(&q, self.settings.digits).map(Coefficient::Number),
+            Some(q) => Ok(Coefficient::Number(rational(&q, self.settings.digits)?)),
             None => Ok(Coefficient::Formula {
                 text: field.print(c, Style::Text),
                 latex: field.print(c, Style::Latex),

@@ -1,37 +1,22 @@
 //! Values: of parameters as they were given, of expressions in them, of enclosures as numbers.
 
 use super::Coefficient;
-use crate::{Error, Number, Status, Value};
+use crate::{Error, Exact, Number};
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_equation::Expression;
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::digits::{decimal, error_string};
 use std::collections::BTreeSet;
 
 /// A number from its enclosure: all digits are certain, or it is zero to twice the digits.
 pub(super) fn enclosed(ball: &Ball, digits: usize, bits: u32) -> Result<Coefficient, Error> {
-    let number = |decimal: String| {
-        let error = error_string(ball, &decimal);
-        let error = (error != "0").then_some(error);
-        Coefficient::Number(Number { exact: None, decimal, error, status: Status::Certified })
-    };
-    let small = ball.contains_zero()
-        && ball.abs_upper().get_exp().is_none_or(|e| f64::from(-e) > 6.66 * digits as f64 + 8.0);
-    if small && !ball.is_exact() {
-        return Ok(number("0".to_owned()));
-    }
-    let needed = (digits as f64 * std::f64::consts::LOG2_10).ceil() as i64 + 2;
-    let enough = ball.is_exact() || ball.relative_accuracy_bits() >= needed;
-    match decimal(ball, digits).filter(|_| enough) {
-        Some(decimal) => Ok(number(decimal)),
-        None => Err(Error::NotEnoughBits { bits, best: None }),
-    }
+    let number = Number::of_all_digits(ball, digits);
+    number.map(Coefficient::Number).ok_or(Error::NotEnoughBits { bits, best: None })
 }
 
 /// A value as it was given, or a delay of k periods.
 pub(super) enum Given {
-    Value(Value),
-    Period(Value, Value),
+    Value(Exact),
+    Period(Exact, Exact),
 }
 
 impl Given {

@@ -1,9 +1,8 @@
 //! What is refused before any work: parameters outside their domains, too much memory.
 
 use super::{Route, Settings};
-use crate::{Error, Value};
+use crate::{Error, Exact};
 use lindstedt_equation::{AmplitudeRole, Expression, Function, Problem};
-use lindstedt_number::ball::Balls;
 use rug::Rational;
 use std::collections::BTreeMap;
 
@@ -23,7 +22,7 @@ pub(crate) fn unknown_parameter(problem: &Problem, name: &str) -> Error {
 }
 
 /// Names and domains of the parameters given.
-pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> Result<(), Error> {
+pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Exact>) -> Result<(), Error> {
     let unknown = given.keys().find(|name| problem.parameters.iter().all(|c| c.name != **name));
     if let Some(name) = unknown {
         return Err(unknown_parameter(problem, name));
@@ -32,7 +31,7 @@ pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> R
     // number ("+") is no quantity.
     let mut values = given.clone();
     for card in &problem.parameters {
-        if let (false, Ok(value)) = (given.contains_key(&*card.name), Value::parse(&card.default)) {
+        if let (false, Ok(value)) = (given.contains_key(&*card.name), Exact::parse(&card.default)) {
             values.insert(card.name.to_string(), value);
         }
     }
@@ -43,7 +42,7 @@ pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> R
         let scales = matches!(problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
         match name.as_str() {
             "amplitude" => {
-                let zero = Value::Rational(Rational::new());
+                let zero = Exact::Rational(Rational::new());
                 let bounded = matches!(problem.amplitude, AmplitudeRole::InSums);
                 let enters = matches!(
                     problem.amplitude,
@@ -52,15 +51,15 @@ pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> R
                         | AmplitudeRole::InSmallParameter
                         | AmplitudeRole::Scaled
                 );
-                if enters && exceeds(&zero, value) {
+                if enters && *value < zero {
                     return Err(outside(NEGATIVE));
-                } else if enters && !exceeds(value, &zero) {
+                } else if enters && *value <= zero {
                     return Err(outside("amplitude > 0 (there is no oscillation at amplitude 0)"));
-                } else if bounded && !exceeds(&Value::PiTimes(Rational::from(1)), value) {
+                } else if bounded && Exact::PiTimes(Rational::from(1)) <= *value {
                     return Err(outside("0 < amplitude < pi (at pi the period is infinite)"));
                 }
             }
-            "n" | "delta" if scales && !exceeds(value, &Value::Rational(Rational::from(-1))) => {
+            "n" | "delta" if scales && *value <= Exact::from(-1) => {
                 return Err(outside("greater than -1"));
             }
             _ => {}
@@ -80,49 +79,20 @@ pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Value>) -> R
 }
 
 /// Refuses x(t - T) with T <= 0, which is no delay.
-pub(crate) fn check_delays(e: &Expression, values: &BTreeMap<String, Value>) -> Result<(), Error> {
+pub(crate) fn check_delays(e: &Expression, values: &BTreeMap<String, Exact>) -> Result<(), Error> {
     let delay = |e: &Expression| matches!(e, Expression::Delayed(_, _));
     let Some(Expression::Delayed(_, by)) = e.find(&delay) else { return Ok(()) };
     let (name, value) = match &**by {
         Expression::Parameter(name) => (name.to_string(), values.get(&**name).cloned()),
-        Expression::Number(q) => ("delay".to_owned(), Some(Value::Rational(q.clone()))),
+        Expression::Number(q) => ("delay".to_owned(), Some(Exact::Rational(q.clone()))),
         _ => return Ok(()),
     };
     match value {
-        Some(value) if !exceeds(&value, &Value::Rational(Rational::new())) => {
+        Some(value) if !value.sign().is_gt() => {
             let domain = "greater than 0 (it is a delay)";
             Err(Error::OutsideDomain { name, value: value.to_string(), domain })
         }
         _ => Ok(()),
-    }
-}
-
-/// Whether a > b, decided: rational numbers and multiples of pi are compared exactly, and a
-/// rational number differs from a multiple of pi (which is irrational) at some precision.
-fn exceeds(a: &Value, b: &Value) -> bool {
-    match (a, b) {
-        (Value::Rational(p), Value::Rational(q)) | (Value::PiTimes(p), Value::PiTimes(q)) => p > q,
-        (Value::Rational(p), Value::PiTimes(q)) | (Value::PiTimes(q), Value::Rational(p))
-            if q.is_zero() =>
-        {
-            // The multiple of pi is zero: p > 0, or 0 > p.
-            if matches!(a, Value::Rational(_)) { *p > 0 } else { *p < 0 }
-        }
-        _ => {
-            let mut bits = 64u32;
-            loop {
-                let balls = Balls::new(bits);
-                let difference = balls.sub(&a.ball(balls), &b.ball(balls));
-                if difference.is_positive() || difference.is_negative() {
-                    return difference.is_positive();
-                }
-                bits = bits.saturating_mul(2);
-                if balls.bits() < bits / 2 {
-                    // The largest precision there is; no number that can be typed needs it.
-                    return false;
-                }
-            }
-        }
     }
 }
 

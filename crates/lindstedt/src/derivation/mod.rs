@@ -4,9 +4,10 @@ pub(crate) mod limits;
 pub(crate) mod prepare;
 mod series;
 
-use crate::constants::{Constants, Number, certified};
+use crate::Number;
+use crate::constants::Constants;
 use crate::multimodular::{self, RationalBinding};
-use crate::{Error, Value};
+use crate::{Error, Exact};
 pub use limits::check_parameters;
 pub(crate) use limits::{check_delays, unknown_parameter};
 use limits::{has_logarithms, limit_memory};
@@ -19,6 +20,7 @@ use lindstedt_expand::{
     Binding, ExpandError, Expansion, Request, check, compile, expand, leading_amplitude,
 };
 use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::certified;
 use lindstedt_phase::print::PrintPhase;
 use lindstedt_phase::{Lobachevsky, Trigonometric};
 use prepare::{Prepared, prepare};
@@ -35,7 +37,7 @@ pub struct Settings {
     /// The normalisation; the problem's default if nothing.
     pub condition: Option<Condition>,
     /// Values of parameters by name.
-    pub parameters: BTreeMap<String, Value>,
+    pub parameters: BTreeMap<String, Exact>,
     /// The memory that may be used, in bytes.
     pub memory: u64,
     /// How the series are derived.
@@ -128,7 +130,7 @@ pub struct Derivation {
     /// The solution.
     pub solution: Solution,
     /// The amplitude that was asked for or is the default; nothing where there is none.
-    pub amplitude: Option<Value>,
+    pub amplitude: Option<Exact>,
     /// Parameters of the equation with the values that were put in.
     pub bound: BTreeMap<String, Rational>,
     /// Time is in units of 1/this: the solution's equation has linear stiffness 1 where x' occurs.
@@ -143,7 +145,7 @@ pub(crate) const FORMAL: &str = "S";
 /// Rational values given for parameters of the equation, and the formal sums.
 struct Given<'a> {
     ring: &'a PolynomialRing,
-    parameters: &'a BTreeMap<String, Value>,
+    parameters: &'a BTreeMap<String, Exact>,
 }
 
 impl Binding<PolynomialRing> for Given<'_> {
@@ -286,7 +288,7 @@ pub fn derive(
     let default = problem.parameters.iter().find(|p| p.name == "amplitude");
     let amplitude = match amplitude {
         Some(value) => Some(value),
-        None => default.map(|card| Value::parse(&card.default)).transpose()?,
+        None => default.map(|card| Exact::parse(&card.default)).transpose()?,
     };
     Ok(Derivation {
         problem: problem.clone(),
@@ -391,7 +393,7 @@ impl Derivation {
     /// [`Error::NotEnoughBits`] when the digits cannot be reached.
     pub fn number(&self, series: &NamedSeries, n: usize, digits: usize) -> Result<Number, Error> {
         let exact = self.print_coefficient(series, n, Style::Text);
-        certified(Some(exact), digits, |balls| self.ball(series, n, balls))
+        Ok(certified(Some(exact), digits, |balls| self.ball(series, n, balls))?)
     }
 
     /// All coefficients of a series as numbers.

@@ -2,7 +2,7 @@
 //! the amplitude, time scaled so that the linear stiffness is 1 where the velocity occurs.
 
 use super::{NamedSeries, Settings};
-use crate::{Error, Value};
+use crate::{Error, Exact};
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_equation::classify::{linear_stiffness, rational_root};
@@ -38,7 +38,7 @@ pub(crate) fn prepare(problem: &Problem, settings: &Settings) -> Result<Prepared
         let default = card.map(|card| &*card.default).filter(|text| !text.is_empty());
         let value = match (settings.parameters.get(name), default) {
             (Some(value), _) => value.clone(),
-            (None, Some(text)) => Value::parse(text)?,
+            (None, Some(text)) => Exact::parse(text)?,
             (None, None) => return Ok(None),
         };
         let irrational = || Error::Irrational { name: name.to_owned(), value: value.to_string() };

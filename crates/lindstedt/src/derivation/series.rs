@@ -3,7 +3,7 @@
 use super::limits::has_logarithms;
 use super::{FORMAL, NamedSeries};
 use crate::energy::{frequency_until, period_until};
-use crate::{Error, Value};
+use crate::{Error, Exact};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_coeff::closed_forms::ClosedForms;
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
@@ -42,7 +42,7 @@ pub(super) fn series(
     (condition, stop): (Condition, &Stop),
     powers: Powers,
     amplitudes: Vec<Polynomial>,
-    amplitude: Option<&Value>,
+    amplitude: Option<&Exact>,
     stiffness: &Polynomial,
 ) -> Result<Vec<NamedSeries>, Error> {
     let order = powers.squared.len() - 1;

@@ -1,8 +1,7 @@
 //! Sums of so few terms that nothing can be said about their error.
 
-use crate::constants::{Number, Status};
-use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::digits::{decimal, error_string};
+use crate::Number;
+use lindstedt_number::ball::Ball;
 use lindstedt_series::resummation::{
     Estimate, Growth, Method, Outcome, ResummationError, Resummed, Sample, partial_sums,
 };
@@ -51,43 +50,9 @@ pub(super) fn partial_sum(
     Some(Ok(Resummed { method, outcome, growth, singularity, tried, bits }))
 }
 
-/// The digits of a number whose error nothing is known of: more would look as if they were.
-const SHOWN: usize = 4;
-/// Digits beyond those that a measured error leaves.
-const BEYOND: usize = 2;
-
 /// The midpoint without regard to what is proved of it. How far it is from the truth is the radius
 /// where it was measured; else nothing is known, and four digits are shown.
 pub(super) fn plain(ball: &Ball, digits: usize, is_measured: bool) -> Option<Number> {
-    let balls = Balls::new(ball.midpoint().prec());
-    let middle = balls.from_parts(ball.midpoint(), &Float::new(53));
-    if !is_measured {
-        let decimal = decimal(&middle, digits.min(SHOWN))?;
-        return Some(Number { exact: None, decimal, error: None, status: Status::NoEstimate });
-    }
-    let known = ball.relative_accuracy_bits().clamp(0, 400_000) * 301 / 1000;
-    let most = usize::try_from(known).map_or(digits, |known| known + BEYOND).max(SHOWN);
-    let decimal = decimal(&middle, digits.min(most))?;
-    let error = Some(error_string(ball, &decimal));
-    Some(Number { exact: None, decimal, error, status: Status::Estimated })
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
-    use super::*;
-
-    /// pi with nothing known of its error, and with one of 1e-3.
-    #[test]
-    fn digits_shown() {
-        let balls = Balls::new(200);
-        let pi = balls.pi();
-        let unknown = plain(&pi, 30, false).unwrap();
-        assert_eq!((&*unknown.decimal, unknown.status), ("3.142", Status::NoEstimate));
-        assert_eq!(plain(&pi, 1, false).unwrap().decimal, "3");
-        let measured = plain(&balls.add_error(&pi, &Float::with_val(53, 1e-3)), 30, true).unwrap();
-        assert_eq!((&*measured.decimal, measured.status), ("3.1416", Status::Estimated));
-        assert!(measured.error.unwrap().parse::<f64>().unwrap() >= 1e-3);
-    }
+    let shown = if is_measured { Number::measured } else { Number::without_estimate };
+    shown(ball, digits)
 }

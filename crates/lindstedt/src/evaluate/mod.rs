@@ -9,12 +9,12 @@ pub(crate) mod setting;
 mod solution;
 pub(crate) mod source;
 
-use crate::constants::{Number, Status, certified};
-use crate::{Error, Progress, Value};
+use crate::Number;
+use crate::{Error, Exact, Progress};
 use lindstedt_algebra::Stop;
 use lindstedt_equation::{Condition, Problem};
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::digits::{decimal, error_string};
+use lindstedt_number::certified;
 use lindstedt_series::resummation::{
     Growth, Kind, Method, Pade, Picture, ResummationError, Resummed, resum_until,
 };
@@ -34,7 +34,7 @@ pub struct EvaluateSettings {
     /// The normalisation; the problem's default if nothing.
     pub condition: Option<Condition>,
     /// Values of parameters by name, the small one included.
-    pub parameters: BTreeMap<String, Value>,
+    pub parameters: BTreeMap<String, Exact>,
     /// Digits asked for; an estimate has as many of them as its error allows.
     pub digits: usize,
     /// The memory that may be used, in bytes.
@@ -61,7 +61,7 @@ impl Default for EvaluateSettings {
 #[derive(Debug)]
 pub struct Evaluation {
     /// The parameters, the derived ones included.
-    pub at: Vec<(String, Value)>,
+    pub at: Vec<(String, Exact)>,
     /// The variable of the series.
     pub variable: String,
     /// The order of the expansion in the small parameter.
@@ -193,7 +193,7 @@ pub fn evaluate(
         no_estimate && is_estimated && *period.radius() >= period.midpoint().clone().abs();
     let number = |ball: &Ball| match no_estimate {
         _ if has_no_digit => None,
-        false => estimated(ball, settings.digits),
+        false => Number::estimated(ball, settings.digits),
         true => few::plain(ball, settings.digits, is_estimated),
     };
     let frequency = balls.div(&balls.mul_i64(&balls.pi(), 2), &period);
@@ -230,15 +230,6 @@ fn period_scale(source: &Source, balls: Balls) -> Result<Ball, Error> {
     Ok(balls.mul(&balls.mul_i64(&balls.pi(), 2), &factor))
 }
 
-/// An estimated number with as many digits as its error allows, at most `digits`.
-fn estimated(ball: &Ball, digits: usize) -> Option<Number> {
-    let known = ball.relative_accuracy_bits().clamp(0, 40_000) * 302 / 1000 + 2;
-    let most = usize::try_from(known).unwrap_or(1).min(digits).max(1);
-    let decimal = (1..=most).rev().find_map(|d| decimal(ball, d))?;
-    let error = error_string(ball, &decimal);
-    Some(Number { exact: None, decimal, error: Some(error), status: Status::Estimated })
-}
-
 fn short(x: &Float) -> String {
     if x.is_zero() { "0".to_owned() } else { format!("{:.1e}", Float::with_val(53, x)) }
 }
@@ -254,7 +245,7 @@ fn best_truncation(
     let order = outcome.smallest_term?;
     let balls = Balls::new(resummed.bits);
     let ball = balls.from_parts(&outcome.estimate.value, &outcome.estimate.error);
-    Some((order, estimated(&balls.mul(&ball, scale), digits)))
+    Some((order, Number::estimated(&balls.mul(&ball, scale), digits)))
 }
 
 /// The poles and zeros of the diagonal approximant.

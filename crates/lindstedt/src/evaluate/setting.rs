@@ -3,7 +3,7 @@
 
 use crate::derivation::limits::{check_parameters, has_logarithms};
 use crate::derivation::prepare::prepare;
-use crate::{Error, Progress, Settings, Value, derive};
+use crate::{Error, Exact, Progress, Settings, derive};
 use lindstedt_algebra::Stop;
 use lindstedt_equation::classify::polynomial;
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
@@ -41,7 +41,7 @@ pub(crate) enum Form {
 /// The value of the small parameter, coefficient * amplitude^power.
 #[derive(Clone, Debug)]
 pub(crate) struct Small {
-    coefficient: Value,
+    coefficient: Exact,
     power: u32,
     /// As it is printed: `eps`, `rho = eps*amplitude^2`.
     pub name: String,
@@ -57,17 +57,17 @@ pub(crate) struct Setting {
     /// The form of the equation that is expanded: values put in, x scaled by the amplitude.
     pub form: Form,
     /// The parameters with their values, the small one included.
-    pub at: Vec<(String, Value)>,
+    pub at: Vec<(String, Exact)>,
     /// The small parameter.
     pub small: Small,
     /// a in x = a y, y the solution of the expanded equation.
-    pub amplitude: Value,
+    pub amplitude: Exact,
     /// What [`derive()`] is told.
-    parameters: BTreeMap<String, Value>,
+    parameters: BTreeMap<String, Exact>,
 }
 
 /// Refuses a name that is neither on the card nor the small parameter.
-pub(super) fn check_names(problem: &Problem, given: &BTreeMap<String, Value>) -> Result<(), Error> {
+pub(super) fn check_names(problem: &Problem, given: &BTreeMap<String, Exact>) -> Result<(), Error> {
     let mut known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
     if !known.contains(&&*problem.small) && problem.amplitude != AmplitudeRole::InSmallParameter {
         known.push(&problem.small);
@@ -87,8 +87,8 @@ pub(super) fn check_names(problem: &Problem, given: &BTreeMap<String, Value>) ->
 /// values in the order of the card.
 pub(super) fn small_value(
     problem: &Problem,
-    given: &BTreeMap<String, Value>,
-) -> Result<(Value, Vec<(String, Value)>), Error> {
+    given: &BTreeMap<String, Exact>,
+) -> Result<(Exact, Vec<(String, Exact)>), Error> {
     let values = Values { problem, given };
     let small = match problem.amplitude {
         // eps A^power at A = 1: the displacement is not scaled.
@@ -109,8 +109,8 @@ pub(super) fn small_value(
     Ok((small.coefficient, all))
 }
 
-fn one() -> Value {
-    Value::Rational(Rational::from(1))
+fn one() -> Exact {
+    Exact::Rational(Rational::from(1))
 }
 
 fn unset(problem: &Problem, name: &str) -> Error {
@@ -128,7 +128,7 @@ impl Setting {
     pub fn new(
         problem: &Problem,
         condition: Option<Condition>,
-        given: &BTreeMap<String, Value>,
+        given: &BTreeMap<String, Exact>,
     ) -> Result<Self, Error> {
         check_names(problem, given)?;
         let listed = |name: &str| problem.parameters.iter().any(|card| card.name == name);
@@ -219,14 +219,14 @@ impl Setting {
 /// The parameters given, and the defaults of the others.
 struct Values<'a> {
     problem: &'a Problem,
-    given: &'a BTreeMap<String, Value>,
+    given: &'a BTreeMap<String, Exact>,
 }
 
 impl Values<'_> {
-    fn get(&self, name: &str) -> Option<Value> {
+    fn get(&self, name: &str) -> Option<Exact> {
         let given = self.given.get(name).cloned();
         let card = || self.problem.parameters.iter().find(|card| card.name == name);
-        given.or_else(|| Value::parse(&card()?.default).ok())
+        given.or_else(|| Exact::parse(&card()?.default).ok())
     }
 
     /// n = 1 + 2 delta of the power law, where the card has both: whichever is given determines
@@ -247,7 +247,7 @@ impl Values<'_> {
         let name = &*self.problem.small;
         let plain = |coefficient| Small { coefficient, power: 0, name: name.to_owned() };
         if let Some(n) = self.exponent() {
-            return Ok(plain(Value::Rational((n? - 1u32) / 2u32)));
+            return Ok(plain(Exact::Rational((n? - 1u32) / 2u32)));
         }
         if let Some(value) = self.get(name) {
             return Ok(plain(value));
@@ -265,7 +265,7 @@ impl Values<'_> {
 
     /// The parameter that is part of the small one together with the amplitude: the only other
     /// one that the equation does not mention.
-    fn coefficient(&self) -> Option<(String, Value)> {
+    fn coefficient(&self) -> Option<(String, Exact)> {
         let mentioned = self.problem.equation.parameters();
         let mut others =
             self.problem.parameters.iter().filter(|card| {
@@ -277,7 +277,7 @@ impl Values<'_> {
     }
 
     /// All values in the order of the card.
-    fn all(&self, small: &Small) -> Vec<(String, Value)> {
+    fn all(&self, small: &Small) -> Vec<(String, Exact)> {
         let name = &*self.problem.small;
         let mut list = Vec::new();
         let scales = matches!(self.problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
@@ -285,7 +285,7 @@ impl Values<'_> {
             let value = match (&*card.name, small.coefficient.as_rational()) {
                 (of, _) if of == name => Some(small.coefficient.clone()),
                 ("n", Some(delta)) if scales => {
-                    Some(Value::Rational(Rational::from(delta * 2u32) + 1u32))
+                    Some(Exact::Rational(Rational::from(delta * 2u32) + 1u32))
                 }
                 (of, _) => self.get(of),
             };
@@ -368,7 +368,7 @@ fn power_law(equation: &Expression) -> Option<Rational> {
 
 impl Setting {
     /// What [`derive()`] is told.
-    pub(crate) fn parameters(&self) -> &BTreeMap<String, Value> {
+    pub(crate) fn parameters(&self) -> &BTreeMap<String, Exact> {
         &self.parameters
     }
 

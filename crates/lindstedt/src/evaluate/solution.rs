@@ -3,9 +3,9 @@
 
 use super::setting::{Form, Setting};
 use super::source::remembered;
-use super::{EvaluateSettings, Evaluation, bits_for, estimated, few};
-use crate::constants::Number;
-use crate::{Derivation, Error, Progress, Solution, Value};
+use super::{EvaluateSettings, Evaluation, bits_for, few};
+use crate::Number;
+use crate::{Derivation, Error, Exact, Progress, Solution};
 use lindstedt_equation::Problem;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
@@ -18,7 +18,7 @@ use rug::{Float, Rational};
 #[derive(Clone, Debug)]
 pub struct Displacement {
     /// The time.
-    pub time: Value,
+    pub time: Exact,
     /// x(t); nothing where not one digit is supported (or x vanishes within the error).
     pub value: Option<Number>,
     /// x(t) as a double, for pictures.
@@ -51,7 +51,7 @@ pub struct Trajectory {
     /// An estimated bound of |x'|, for the error that an uncertain frequency makes.
     speed: f64,
     /// x(t) = X(omega t + phase).
-    phase: Value,
+    phase: Exact,
     methods: Vec<Method>,
     digits: usize,
     /// The period.
@@ -118,7 +118,7 @@ impl Trajectory {
         problem: &Problem,
         settings: &EvaluateSettings,
         evaluation: &Evaluation,
-        phase: Value,
+        phase: Exact,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Self, Error> {
         let setting = Setting::new(problem, settings.condition, &settings.parameters)?;
@@ -196,7 +196,7 @@ impl Trajectory {
     /// The error is estimated from neighbouring approximants; to it the effect of the uncertain
     /// frequency is added.
     #[must_use]
-    pub fn at(&self, time: &Value) -> Displacement {
+    pub fn at(&self, time: &Exact) -> Displacement {
         let nothing = || Displacement {
             time: time.clone(),
             value: None,
@@ -206,7 +206,7 @@ impl Trajectory {
         self.value(time).unwrap_or_else(nothing)
     }
 
-    fn value(&self, time: &Value) -> Option<Displacement> {
+    fn value(&self, time: &Exact) -> Option<Displacement> {
         let bits = self.frequency.midpoint().prec();
         let balls = Balls::new(bits);
         let t = time.ball(balls);
@@ -222,7 +222,7 @@ impl Trajectory {
         }
         let ball = Balls::new(value.midpoint().prec()).add_error(&value, &error);
         let ball = balls.add_error(&ball, &Float::with_val(53, drift * self.speed));
-        let value = estimated(&ball, self.digits);
+        let value = Number::estimated(&ball, self.digits);
         Some(Displacement { time: time.clone(), value, double, error: ball.radius().to_f64() })
     }
 
@@ -306,7 +306,7 @@ impl Trajectory {
         let turn = std::f64::consts::TAU / count as f64;
         let at = |place: f64| {
             let time = place / count as f64 * self.period;
-            let time = Value::Rational(Rational::from_f64(time)?);
+            let time = Exact::Rational(Rational::from_f64(time)?);
             let x = self.at(&time);
             x.double.is_finite().then_some(x)
         };

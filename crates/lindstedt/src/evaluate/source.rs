@@ -4,7 +4,7 @@
 use super::setting::{Form, Setting};
 use super::{closed, coefficients};
 use crate::derivation::limits::refuse_above;
-use crate::{Derivation, Error, Progress, Value};
+use crate::{Derivation, Error, Exact, Progress};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_series::resummation::{Growth, Sample, UniformMap, growth};
@@ -22,7 +22,7 @@ pub(crate) struct Source {
     /// The variable x of the series as it is printed.
     pub variable: String,
     /// The parameters, as they stand.
-    pub at: Vec<(String, Value)>,
+    pub at: Vec<(String, Exact)>,
     /// The number of coefficients t_n.
     pub known: usize,
     /// t_n to so many bits.

@@ -1,10 +1,11 @@
 //! The terms of Melnikov's form, and the harmonic forces among them.
 
 use super::Why;
-use super::in_pi::{InPi, ratio, times};
+use super::in_pi::InPi;
+use crate::Exact;
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
 use lindstedt_equation::{Expression, Function};
-use lindstedt_melnikov::{Forcing, Harmonic, Real};
+use lindstedt_melnikov::{Forcing, Harmonic};
 use rug::{Integer, Rational};
 
 /// Harmonics k omega up to this k.
@@ -74,12 +75,12 @@ fn sum(part: &Monomials) -> Option<InPi> {
 }
 
 /// omega of a bound sine or cosine of omega t + phase, with its sign.
-pub(super) fn frequency(atom: &Expression) -> Option<Real> {
-    Some(Real::from(sum(&angle(atom)?.0)?.value()?))
+pub(super) fn frequency(atom: &Expression) -> Option<Exact> {
+    sum(&angle(atom)?.0)?.value()
 }
 
 /// The frequency of a force whose amplitude is zero at the values given.
-pub(super) fn silent_frequency(bound: &Expression) -> Option<Real> {
+pub(super) fn silent_frequency(bound: &Expression) -> Option<Exact> {
     let term = bound.find(&|e| angle(e).is_some())?;
     Some(frequency(term)?.abs())
 }
@@ -87,10 +88,10 @@ pub(super) fn silent_frequency(bound: &Expression) -> Option<Real> {
 /// One harmonic force g x^p cos(omega t + phase).
 #[derive(Clone, Debug)]
 pub(super) struct Term {
-    pub omega: Real,
+    pub omega: Exact,
     /// In radians; nothing where it is a sum of a rational number and a multiple of pi.
-    phase: Option<Real>,
-    size: Real,
+    phase: Option<Exact>,
+    size: Exact,
     parametric: bool,
 }
 
@@ -98,7 +99,7 @@ impl Term {
     pub fn new(all: &Monomials, m: &Monomial, q: &Rational) -> Option<Self> {
         let atom = all.atoms.get(m.atoms.keys().next()?)?;
         let (frequency, phase) = angle(atom)?;
-        let omega = Real::from(sum(&frequency)?.value()?);
+        let omega = sum(&frequency)?.value()?;
         let mut phase = sum(&phase)?;
         // cos(-z) = cos z.
         if omega.sign().is_lt() {
@@ -114,15 +115,15 @@ impl Term {
         size.add(m, q)?;
         Some(Self {
             omega: omega.abs(),
-            phase: phase.value().map(Real::from),
-            size: Real::from(size.value()?),
+            phase: phase.value(),
+            size: size.value()?,
             parametric: m.x == 1,
         })
     }
 }
 
 /// The force of unit lowest amplitude, and that amplitude; terms by rising frequency.
-pub(super) fn forcing(terms: &[Term]) -> Result<(Forcing, Real), Why> {
+pub(super) fn forcing(terms: &[Term]) -> Result<(Forcing, Exact), Why> {
     let first = terms.first().ok_or(Why::NotHarmonic)?;
     if terms.iter().any(|t| t.parametric) {
         return match terms {
@@ -133,17 +134,15 @@ pub(super) fn forcing(terms: &[Term]) -> Result<(Forcing, Real), Why> {
     if let [only] = terms {
         return Ok((Forcing::single(only.omega.clone()), only.size.clone()));
     }
-    let weights: Option<Vec<Rational>> =
-        terms.iter().map(|t| ratio(&t.size, &first.size)).collect();
+    let weights: Option<Vec<Rational>> = terms.iter().map(|t| t.size.ratio(&first.size)).collect();
     let weights = weights.ok_or(Why::Irrational)?;
-    let ratios: Option<Vec<Rational>> =
-        terms.iter().map(|t| ratio(&t.omega, &first.omega)).collect();
+    let ratios: Option<Vec<Rational>> = terms.iter().map(|t| t.omega.ratio(&first.omega)).collect();
     let Some(ratios) = ratios else {
         // A rational number and a rational multiple of pi have no common period.
         if terms.len() > 2 {
             return Err(Why::NotHarmonic);
         }
-        let list = terms.iter().zip(weights).map(|(t, w)| (t.omega.clone(), Real::Rational(w)));
+        let list = terms.iter().zip(weights).map(|(t, w)| (t.omega.clone(), Exact::Rational(w)));
         return Ok((Forcing::Incommensurate(list.collect()), first.size.clone()));
     };
     // The work of several harmonics has other extrema below than above.
@@ -155,13 +154,13 @@ pub(super) fn forcing(terms: &[Term]) -> Result<(Forcing, Real), Why> {
     let whole: Vec<Integer> =
         ratios.iter().map(|r| Integer::from(&common / r.denom()) * r.numer()).collect();
     let divisor = whole.iter().fold(Integer::new(), |d, k| d.gcd(k));
-    let omega = times(&first.omega, &Rational::from((divisor.clone(), common)));
+    let omega = first.omega.times(&Rational::from((divisor.clone(), common)));
     let mut harmonics = Vec::new();
     for ((term, k), weight) in terms.iter().zip(whole).zip(weights) {
         let order = (k / &divisor).to_u32().filter(|k| *k <= LARGEST_HARMONIC);
         harmonics.push(Harmonic {
             order: order.ok_or(Why::NotHarmonic)?,
-            weight: Real::Rational(weight),
+            weight: Exact::Rational(weight),
             phase: term.phase.clone().ok_or(Why::Irrational)?,
         });
     }

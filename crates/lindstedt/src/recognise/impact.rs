@@ -3,10 +3,10 @@
 
 use super::in_pi::InPi;
 use super::{Refusal, Why, bind, missing, multiply_out, named, rest};
-use crate::Value;
+use crate::Exact;
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
 use lindstedt_equation::{Crossing, Expression, Function, Problem};
-use lindstedt_impact::parameters::{Branch, Exact, ExactParameters};
+use lindstedt_impact::parameters::{Branch, ExactParameters};
 use rug::Rational;
 use std::collections::BTreeMap;
 
@@ -46,7 +46,7 @@ impl ImpactProblem {
     /// [`Refusal`], naming the term that does not fit.
     pub fn new(
         problem: &Problem,
-        values: &BTreeMap<String, Value>,
+        values: &BTreeMap<String, Exact>,
         periods: Option<u32>,
         branch: Branch,
     ) -> Result<Self, Refusal> {
@@ -71,7 +71,7 @@ impl ImpactProblem {
         let mut frequency: Option<InPi> = None;
         let (mut delay, mut angle): (Option<Expression>, Option<Expression>) = (None, None);
         // eps = 1 in the end, unless the file or its reader says otherwise.
-        let small = values.get(&*problem.small).and_then(Value::as_rational).cloned();
+        let small = values.get(&*problem.small).and_then(Exact::as_rational).cloned();
         let small = small.unwrap_or_else(|| Rational::from(1));
         for (m, q) in &all.terms {
             let q = &(0..m.order).fold(q.clone(), |q, _| q * &small);
@@ -116,7 +116,7 @@ impl ImpactProblem {
             let known = values.get(&*tie.frequency).and_then(|v| InPi::of(&super::of_value(v)));
             known.as_ref() == Some(&omega)
         });
-        let whole = |value: &Value| {
+        let whole = |value: &Exact| {
             let k = value.as_rational().filter(|q| q.is_integer()).and_then(|q| q.numer().to_u32());
             k.filter(|k| *k > 0).ok_or_else(|| Refusal::Periods { value: value.to_string() })
         };
@@ -126,10 +126,10 @@ impl ImpactProblem {
         };
         let periods = match (&delay, tied) {
             (Some(time), Some(tie)) if *time == Expression::parameter(&tie.delay) => {
-                whole(values.get(&*tie.periods).unwrap_or(&Value::Rational(Rational::new())))?
+                whole(values.get(&*tie.periods).unwrap_or(&Exact::Rational(Rational::new())))?
             }
             (None, Some(tie)) if values.contains_key(&*tie.periods) => {
-                whole(values.get(&*tie.periods).unwrap_or(&Value::Rational(Rational::new())))?
+                whole(values.get(&*tie.periods).unwrap_or(&Exact::Rational(Rational::new())))?
             }
             (Some(time), _) => periods_of(time, &omega).ok_or_else(|| other_delay(time))?,
             (None, _) => periods.unwrap_or(1),
@@ -143,11 +143,11 @@ impl ImpactProblem {
     pub fn names(
         &self,
         problem: &Problem,
-        values: &BTreeMap<String, Value>,
+        values: &BTreeMap<String, Exact>,
         name: &str,
         periods: Option<u32>,
     ) -> Option<lindstedt_impact::parameters::Swept> {
-        let known = Exact::from(values.get(name)?.clone());
+        let known = values.get(name)?.clone();
         let probes = [(1009, 733), (2003, 1511), (389, 617)].map(Rational::from);
         let renamed = |swept| {
             let same = |value: &Exact, found: &Self| {
@@ -158,7 +158,7 @@ impl ImpactProblem {
             same(&known, self)
                 && probes.iter().all(|q| {
                     let mut values = values.clone();
-                    values.insert(name.to_owned(), Value::Rational(q.clone()));
+                    values.insert(name.to_owned(), Exact::Rational(q.clone()));
                     let found = Self::new(problem, &values, periods, self.parameters.branch);
                     found.is_ok_and(|found| same(&Exact::Rational(q.clone()), &found))
                 })
@@ -172,7 +172,7 @@ impl Linear {
     fn parameters(
         &self,
         problem: &Problem,
-        values: &BTreeMap<String, Value>,
+        values: &BTreeMap<String, Exact>,
         omega: InPi,
         periods: u32,
         branch: Branch,
@@ -182,9 +182,7 @@ impl Linear {
             term: Box::new(term.clone()),
             why: Why::Irrational,
         };
-        let exact = |c: &InPi, term: &Expression| {
-            c.value().map(Exact::from).ok_or_else(|| irrational(term))
-        };
+        let exact = |c: &InPi, term: &Expression| c.value().ok_or_else(|| irrational(term));
         let square = self.stiffness.plus(&self.delayed);
         let stiffness = square.value().map_or_else(|| "?".into(), |v| v.to_string());
         let no_stiffness = || Refusal::NoStiffness { value: stiffness.clone() };
@@ -203,21 +201,16 @@ impl Linear {
         }
         let [cosine, sine] = &self.force;
         let force = match (cosine.value(), sine.value()) {
-            (Some(p), _) if sine.is_zero() => Exact::from(p),
-            (_, Some(q)) if cosine.is_zero() => Exact::from(q),
-            (Some(Value::Rational(p)), Some(Value::Rational(q))) => {
+            (Some(p), _) if sine.is_zero() => p,
+            (_, Some(q)) if cosine.is_zero() => q,
+            (Some(Exact::Rational(p)), Some(Exact::Rational(q))) => {
                 let square = Rational::from(p.square_ref()) + Rational::from(q.square_ref());
-                lindstedt_equation::classify::rational_root(&square)
-                    .map_or(Exact::Root(square), Exact::Rational)
+                Exact::root(square)
             }
             _ => return Err(Refusal::NoForce),
         };
         // A phase of pi.
-        let force = match force {
-            Exact::Rational(q) => Exact::Rational(q.abs()),
-            Exact::PiMultiple(q) => Exact::PiMultiple(q.abs()),
-            root => root,
-        };
+        let force = force.abs();
         let velocity = Expression::Velocity;
         let parameters = ExactParameters {
             alpha,
@@ -290,17 +283,14 @@ fn angular_frequency(argument: &Expression) -> Option<InPi> {
         }
     }
     let value = omega.value()?;
-    let negative = match &value {
-        Value::Rational(q) | Value::PiTimes(q) => *q < 0,
-    };
-    Some(if negative { omega.neg() } else { omega })
+    Some(if value.sign().is_lt() { omega.neg() } else { omega })
 }
 
 /// k of T = 2 pi k/omega.
 fn periods_of(delay: &Expression, omega: &InPi) -> Option<u32> {
     let time = InPi::of(delay)?.value()?;
     let turns = match (time, omega.value()?) {
-        (Value::PiTimes(t), Value::Rational(w)) | (Value::Rational(t), Value::PiTimes(w)) => {
+        (Exact::PiTimes(t), Exact::Rational(w)) | (Exact::Rational(t), Exact::PiTimes(w)) => {
             t * w / 2u32
         }
         _ => return None,

@@ -1,12 +1,10 @@
 //! Constants of a bound equation: polynomials in pi over Q.
 
 use super::PI;
-use crate::Value;
+use crate::Exact;
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::monomials::{Monomial, expand};
 use lindstedt_equation::{Expression, Problem};
-use lindstedt_impact::parameters::Exact;
-use lindstedt_melnikov::Real;
 use rug::Rational;
 use std::collections::BTreeMap;
 
@@ -43,22 +41,20 @@ impl InPi {
         self.0.is_empty()
     }
     /// The number, where it is rational or a rational multiple of pi.
-    pub fn value(&self) -> Option<Value> {
+    pub fn value(&self) -> Option<Exact> {
         match self.0.iter().collect::<Vec<_>>()[..] {
-            [] => Some(Value::Rational(Rational::new())),
-            [(0, q)] => Some(Value::Rational(q.clone())),
-            [(1, q)] => Some(Value::PiTimes(q.clone())),
+            [] => Some(Exact::from(0)),
+            [(0, q)] => Some(Exact::Rational(q.clone())),
+            [(1, q)] => Some(Exact::PiTimes(q.clone())),
             _ => None,
         }
     }
     /// The positive square root of q or q pi^2, q >= 0.
     pub fn root(&self) -> Option<Exact> {
         match self.0.iter().collect::<Vec<_>>()[..] {
-            [] => Some(Exact::from((0, 1))),
-            [(0, q)] if *q > 0 => {
-                Some(rational_root(q).map_or_else(|| Exact::Root(q.clone()), Exact::Rational))
-            }
-            [(2, q)] => rational_root(q).map(Exact::PiMultiple),
+            [] => Some(Exact::from(0)),
+            [(0, q)] if *q > 0 => Some(Exact::root(q.clone())),
+            [(2, q)] => rational_root(q).map(Exact::PiTimes),
             _ => None,
         }
     }
@@ -85,51 +81,12 @@ impl InPi {
     }
 }
 
-impl From<Value> for Real {
-    fn from(value: Value) -> Self {
-        match value {
-            Value::Rational(q) => Self::Rational(q),
-            Value::PiTimes(q) => Self::pi_multiple(q),
-        }
-    }
-}
-
-impl From<Value> for Exact {
-    fn from(value: Value) -> Self {
-        match value {
-            Value::Rational(q) => Self::Rational(q),
-            Value::PiTimes(q) if q.is_zero() => Self::Rational(q),
-            Value::PiTimes(q) => Self::PiMultiple(q),
-        }
-    }
-}
-
-/// q x, exactly.
-pub(super) fn times(x: &Real, q: &Rational) -> Real {
-    match x {
-        Real::Rational(x) => Real::Rational(Rational::from(x * q)),
-        Real::PiMultiple(x) => Real::pi_multiple(Rational::from(x * q)),
-    }
-}
-
-/// x/y, where it is rational.
-pub(super) fn ratio(x: &Real, y: &Real) -> Option<Rational> {
-    let quotient = |x: &Rational, y: &Rational| (!y.is_zero()).then(|| Rational::from(x / y));
-    match (x, y) {
-        (Real::Rational(x), Real::Rational(y)) | (Real::PiMultiple(x), Real::PiMultiple(y)) => {
-            quotient(x, y)
-        }
-        (Real::Rational(x), Real::PiMultiple(_)) if x.is_zero() => Some(Rational::new()),
-        _ => None,
-    }
-}
-
 /// The values of all parameters of a problem: those given, else the defaults; cards without a
 /// value are left out.
 #[must_use]
-pub fn all_values(problem: &Problem, given: &BTreeMap<String, Value>) -> BTreeMap<String, Value> {
+pub fn all_values(problem: &Problem, given: &BTreeMap<String, Exact>) -> BTreeMap<String, Exact> {
     let value =
-        |name: &str, default: &str| given.get(name).cloned().or_else(|| Value::parse(default).ok());
+        |name: &str, default: &str| given.get(name).cloned().or_else(|| Exact::parse(default).ok());
     let cards = problem.parameters.iter();
     cards.filter_map(|c| Some((c.name.to_string(), value(&c.name, &c.default)?))).collect()
 }

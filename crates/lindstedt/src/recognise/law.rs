@@ -1,10 +1,11 @@
 //! The friction law of an equation: T(x' - v*), with v* the speed at which it jumps or bends.
 
-use super::in_pi::{InPi, times};
+use super::in_pi::InPi;
 use super::{PI, Refusal, Why, multiply_out};
+use crate::Exact;
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
 use lindstedt_equation::{Expression, Function};
-use lindstedt_melnikov::{Friction, PolynomialFriction, Real};
+use lindstedt_melnikov::{Friction, PolynomialFriction};
 use rug::float::Constant;
 use rug::ops::Pow;
 use rug::{Float, Rational};
@@ -14,10 +15,10 @@ use std::sync::Arc;
 /// A friction law and the speed of the belt.
 #[derive(Clone, Debug)]
 pub(super) struct FrictionLaw {
-    pub belt_speed: Real,
-    dry: Real,
+    pub belt_speed: Exact,
+    dry: Exact,
     /// t_k at index k.
-    coefficients: Vec<Real>,
+    coefficients: Vec<Exact>,
     /// The whole law in w, which x' stands for, where it is more than a sign and a polynomial.
     whole: Option<Expression>,
 }
@@ -158,11 +159,11 @@ impl FrictionLaw {
         };
         let value = |c: &InPi, k: u32| {
             let refusal = || Refusal::Term { term: Box::new(term(k)), why: Why::Irrational };
-            c.value().map(Real::from).ok_or_else(refusal)
+            c.value().ok_or_else(refusal)
         };
         let degree = coefficients.keys().max().map_or(0, |k| k + 1);
         let list =
-            (0..degree).map(|k| coefficients.get(&k).map_or(Ok(Real::from(0)), |c| value(c, k)));
+            (0..degree).map(|k| coefficients.get(&k).map_or(Ok(Exact::from(0)), |c| value(c, k)));
         Ok(Self {
             belt_speed: value(&belt, 0)?,
             dry: value(&dry, 0)?,
@@ -199,18 +200,18 @@ impl FrictionLaw {
     }
 
     /// The law for y with x = s y: T(s w)/s, and the speed of the belt v*/s.
-    pub fn scaled(&self, s: &Rational) -> (Friction, Real) {
+    pub fn scaled(&self, s: &Rational) -> (Friction, Exact) {
         let inverse = Rational::from(s.recip_ref());
         let size = Rational::from(s.abs_ref());
         let mut power = inverse.clone();
         let mut coefficients = Vec::new();
         for c in &self.coefficients {
-            coefficients.push(times(c, &power));
+            coefficients.push(c.times(&power));
             power *= s;
         }
-        let dry = times(&self.dry, &Rational::from(size.recip_ref()));
+        let dry = self.dry.times(&Rational::from(size.recip_ref()));
         let polynomial = PolynomialFriction { dry, coefficients };
-        let belt = times(&self.belt_speed, &inverse);
+        let belt = self.belt_speed.times(&inverse);
         let Some(whole) = self.whole.clone() else {
             return (Friction::Polynomial(polynomial), belt);
         };

@@ -4,10 +4,9 @@
 use super::forces::{Kind, frequency, kind};
 use super::in_pi::InPi;
 use super::{bind, rest};
-use crate::Value;
+use crate::Exact;
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
 use lindstedt_equation::{Expression, Problem};
-use lindstedt_melnikov::Real;
 use rug::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -44,7 +43,7 @@ pub struct LowestHarmonic {
     pub coefficient: Expression,
     /// Where the coefficients of all forces are multiples of just one parameter, which occurs
     /// nowhere else: its name, and the factor of it in `coefficient`.
-    pub parameter: Option<(String, Real)>,
+    pub parameter: Option<(String, Exact)>,
     /// Forces whose coefficient is zero at the values, with that coefficient.
     pub silent: Vec<Expression>,
 }
@@ -61,7 +60,7 @@ pub(super) struct Force {
 }
 
 /// The harmonic forces of an equation without values, by frequency; nothing if one has none.
-pub(super) fn forces(all: &Monomials, values: &BTreeMap<String, Value>) -> Option<Vec<Force>> {
+pub(super) fn forces(all: &Monomials, values: &BTreeMap<String, Exact>) -> Option<Vec<Force>> {
     let mut list: Vec<Force> = Vec::new();
     for (m, q) in &all.terms {
         if !matches!(kind(all, m), Ok(Kind::Harmonic)) {
@@ -103,7 +102,7 @@ impl Force {
         }
     }
 
-    fn is_silent(&self, all: &Monomials, values: &BTreeMap<String, Value>) -> bool {
+    fn is_silent(&self, all: &Monomials, values: &BTreeMap<String, Exact>) -> bool {
         InPi::of(&bind(&self.coefficient(all), values)).is_some_and(|c| c.is_zero())
     }
 
@@ -132,7 +131,7 @@ pub(super) fn common(all: &Monomials, forces: &[Force]) -> Vec<String> {
 impl LowestHarmonic {
     /// Reads the equation of a problem; nothing where it has no such force.
     #[must_use]
-    pub fn find(problem: &Problem, values: &BTreeMap<String, Value>) -> Option<Self> {
+    pub fn find(problem: &Problem, values: &BTreeMap<String, Exact>) -> Option<Self> {
         let all = expand(&rest(problem).ok()?)?;
         let (silent, sounding): (Vec<Force>, Vec<Force>) =
             forces(&all, values)?.into_iter().partition(|force| force.is_silent(&all, values));
@@ -155,9 +154,9 @@ impl LowestHarmonic {
         let parameter = match symbols.as_slice() {
             [name] if others(name) => {
                 let mut unit = values.clone();
-                unit.insert(name.clone(), Value::Rational(Rational::from(1)));
+                unit.insert(name.clone(), Exact::Rational(Rational::from(1)));
                 let factor = InPi::of(&bind(&coefficient, &unit)).and_then(|c| c.value());
-                let factor = factor.map(Real::from).filter(|factor| factor.sign().is_ne());
+                let factor = factor.filter(|factor| factor.sign().is_ne());
                 factor.map(|factor| (name.clone(), factor))
             }
             _ => None,

@@ -6,13 +6,13 @@ use super::law::FrictionLaw;
 use super::lowest::{common, forces};
 use super::numeric::NumericOrbit;
 use super::{Refusal, Why, bind, missing, multiply_out, named, potential, rest};
-use crate::Value;
+use crate::Exact;
 use lindstedt_algebra::Stop;
 use lindstedt_equation::monomials::{Monomial, Monomials};
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_melnikov::{
-    Axis, Branch, Class, Forcing, Friction, MelnikovError, Potential, Real, StickSlip, System,
-    Threshold, Verdict,
+    Axis, Branch, Class, Forcing, Friction, MelnikovError, Potential, StickSlip, System, Threshold,
+    Verdict,
 };
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
@@ -66,10 +66,10 @@ pub struct MelnikovProblem {
     /// The force at unit amplitude of its lowest harmonic.
     pub forcing: Forcing,
     /// v* in y.
-    pub belt_speed: Real,
+    pub belt_speed: Exact,
     /// gamma as it stands in the equation for x: the whole coefficient of the lowest harmonic, the
     /// others being in proportion to it.
-    pub amplitude: Real,
+    pub amplitude: Exact,
     /// Whether friction jumps.
     jumps: bool,
 }
@@ -90,7 +90,7 @@ impl MelnikovProblem {
     ///
     /// # Errors
     /// [`Refusal`], naming the term that does not fit.
-    pub fn new(problem: &Problem, values: &BTreeMap<String, Value>) -> Result<Self, Refusal> {
+    pub fn new(problem: &Problem, values: &BTreeMap<String, Exact>) -> Result<Self, Refusal> {
         if problem.impact.is_some() {
             return Err(Refusal::Wall);
         }
@@ -129,7 +129,7 @@ impl MelnikovProblem {
                 if let Some(several) = Self::silent(problem, &rest, values)? {
                     return Ok(several);
                 }
-                (Forcing::single(silent_frequency(&bound).ok_or(Refusal::NoForce)?), Real::from(0))
+                (Forcing::single(silent_frequency(&bound).ok_or(Refusal::NoForce)?), Exact::from(0))
             }
             list => forcing(list).map_err(force_refusal)?,
         };
@@ -160,20 +160,18 @@ impl MelnikovProblem {
     fn silent(
         problem: &Problem,
         rest: &Expression,
-        values: &BTreeMap<String, Value>,
+        values: &BTreeMap<String, Exact>,
     ) -> Result<Option<Self>, Refusal> {
         let all = multiply_out(rest)?;
         let forces = forces(&all, values).unwrap_or_default();
         if forces.len() < 2 {
             return Ok(None);
         }
-        let is_zero = |name: &String| {
-            values.get(name).is_some_and(|value| Real::from(value.clone()).sign().is_eq())
-        };
+        let is_zero = |name: &String| values.get(name).is_some_and(|value| value.sign().is_eq());
         let name = common(&all, &forces).into_iter().find(is_zero);
         let mut values = values.clone();
-        values.insert(name.ok_or(Refusal::SilentForces)?, Value::Rational(Rational::from(1)));
-        Ok(Some(Self { amplitude: Real::from(0), ..Self::new(problem, &values)? }))
+        values.insert(name.ok_or(Refusal::SilentForces)?, Exact::Rational(Rational::from(1)));
+        Ok(Some(Self { amplitude: Exact::from(0), ..Self::new(problem, &values)? }))
     }
 
     /// The same problem, whose numeric orbits end undecided when asked to stop.
@@ -194,7 +192,7 @@ impl MelnikovProblem {
             && match &self.unperturbed {
                 // The saddle at x = 0.
                 Unperturbed::Closed { potential: Potential::Helmholtz { .. }, .. } => {
-                    let slope = f.get(1).and_then(InPi::value).map(Real::from);
+                    let slope = f.get(1).and_then(InPi::value);
                     slope.is_some_and(|f1| f1.sign().is_gt())
                 }
                 _ => zero(2),
@@ -225,7 +223,7 @@ impl MelnikovProblem {
         let Friction::Polynomial(law) = &self.friction else { return None };
         let Forcing::Harmonics { omega, harmonics } = &self.forcing else { return None };
         let [only] = harmonics.as_slice() else { return None };
-        let t = |k: usize| law.coefficients.get(k).cloned().unwrap_or_else(|| Real::from(0));
+        let t = |k: usize| law.coefficients.get(k).cloned().unwrap_or_else(|| Exact::from(0));
         let rest = (0..law.coefficients.len()).filter(|k| *k != 1 && *k != 3);
         if only.order != 1 || rest.into_iter().any(|k| t(k).sign().is_ne()) {
             return None;
@@ -234,7 +232,7 @@ impl MelnikovProblem {
             a: a.clone(),
             b: b.clone(),
             dry: law.dry.clone(),
-            alpha: t(1).neg(),
+            alpha: -&t(1),
             beta: t(3),
             omega: omega.clone(),
             belt_speed: self.belt_speed.clone(),
@@ -247,19 +245,19 @@ impl MelnikovProblem {
     pub fn axis(
         &self,
         problem: &Problem,
-        values: &BTreeMap<String, Value>,
+        values: &BTreeMap<String, Exact>,
         name: &str,
     ) -> Option<Axis> {
         let point = self.stick_slip()?;
-        let known = Real::from(values.get(name)?.clone());
+        let known = values.get(name)?.clone();
         let probes = [(1009, 733), (2003, 1511), (389, 617)].map(Rational::from);
         let renamed = |axis: &Axis| {
             point.clone().with(*axis, known.clone()) == point
                 && probes.iter().all(|q| {
                     let mut values = values.clone();
-                    values.insert(name.to_owned(), Value::Rational(q.clone()));
+                    values.insert(name.to_owned(), Exact::Rational(q.clone()));
                     let found = Self::new(problem, &values).ok().and_then(|f| f.stick_slip());
-                    found == Some(point.clone().with(*axis, Real::Rational(q.clone())))
+                    found == Some(point.clone().with(*axis, Exact::Rational(q.clone())))
                 })
         };
         let all =

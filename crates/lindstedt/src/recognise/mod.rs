@@ -21,10 +21,11 @@ pub use lowest::LowestHarmonic;
 pub use melnikov::{MelnikovProblem, OrbitThreshold};
 pub use numeric::{NumericOrbit, OrbitCheck};
 
-use crate::Value;
+use crate::Exact;
 use lindstedt_equation::monomials::{MOST_TERMS, Monomial, Monomials, expand};
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_melnikov::MelnikovError;
+use rug::Rational;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -158,15 +159,20 @@ impl Refusal {
 const PI: &str = "pi";
 
 /// The value of a parameter as an expression.
-fn of_value(value: &Value) -> Expression {
+fn of_value(value: &Exact) -> Expression {
     match value {
-        Value::Rational(q) => Expression::Number(q.clone()),
-        Value::PiTimes(q) => Expression::Number(q.clone()) * Expression::parameter(PI),
+        Exact::Rational(q) => Expression::Number(q.clone()),
+        Exact::PiTimes(q) => Expression::Number(q.clone()) * Expression::parameter(PI),
+        Exact::Root(q) => {
+            let root = Expression::Number(Rational::from(q.abs_ref()));
+            let root = root.pow(Expression::Number(Rational::from((1, 2))));
+            if *q < 0 { -root } else { root }
+        }
     }
 }
 
 /// The expression with the values of its parameters.
-fn bind(e: &Expression, values: &BTreeMap<String, Value>) -> Expression {
+fn bind(e: &Expression, values: &BTreeMap<String, Exact>) -> Expression {
     let value = |e: &Expression| match e {
         Expression::Parameter(name) => values.get(name).map(of_value),
         _ => None,
@@ -187,7 +193,7 @@ fn multiply_out(e: &Expression) -> Result<Monomials, Refusal> {
 }
 
 /// Names among `used` that have no value.
-fn missing(used: &[String], values: &BTreeMap<String, Value>) -> Result<(), Refusal> {
+fn missing(used: &[String], values: &BTreeMap<String, Exact>) -> Result<(), Refusal> {
     let mut names: Vec<String> = Vec::new();
     for name in used.iter().filter(|name| !values.contains_key(*name)) {
         if !names.contains(name) {
@@ -201,7 +207,7 @@ fn missing(used: &[String], values: &BTreeMap<String, Value>) -> Result<(), Refu
 /// that `fits` refuses and whose coefficient does not vanish at the values.
 fn named(
     rest: &Expression,
-    values: &BTreeMap<String, Value>,
+    values: &BTreeMap<String, Exact>,
     bound: (Expression, Why),
     fits: &dyn Fn(&Monomials, &Monomial) -> Option<Why>,
 ) -> Refusal {

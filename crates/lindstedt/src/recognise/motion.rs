@@ -1,9 +1,9 @@
 //! A motion on an orbit, and the integrals of Melnikov's function along it.
 
-use super::in_pi::times;
+use crate::Exact;
 use lindstedt_algebra::Stop;
 use lindstedt_melnikov::quadrature::tanh_sinh;
-use lindstedt_melnikov::{Forcing, ForcingWork, Friction, MelnikovError, Real};
+use lindstedt_melnikov::{Forcing, ForcingWork, Friction, MelnikovError};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_simulate::{Digits, Trajectory};
 use rug::{Float, Rational};
@@ -83,13 +83,13 @@ impl Motion {
         &self,
         balls: Balls,
         friction: &Friction,
-        belt: &Real,
+        belt: &Exact,
     ) -> Result<Ball, MelnikovError> {
         let undecided = || MelnikovError::Undecided { bits: self.bits };
         let belt = belt.ball(Balls::new(self.work)).midpoint().clone();
         if let Friction::Polynomial(law) = friction {
             let mut smooth = law.clone();
-            smooth.dry = Real::from(0);
+            smooth.dry = Exact::from(0);
             let smooth = Friction::Polynomial(smooth).law(self.work);
             let slide = |v: &Float| Float::with_val(self.work, v - &belt);
             let smooth = self.trapezoid(&|_, v| smooth(&slide(v)) * v);
@@ -157,14 +157,14 @@ impl Motion {
         forcing: &Forcing,
         down: bool,
     ) -> Result<Ball, MelnikovError> {
-        let transform = |omega: &Real| -> Result<(Ball, Ball), MelnikovError> {
+        let transform = |omega: &Exact| -> Result<(Ball, Ball), MelnikovError> {
             let omega = omega.ball(Balls::new(self.work)).midpoint().clone();
             let angle = |t: &Float| Float::with_val(self.work, t * &omega);
             let c = self.ball(balls, self.trapezoid(&|t, v| angle(t).cos() * v))?;
             let s = self.ball(balls, self.trapezoid(&|t, v| angle(t).sin() * v))?;
             Ok((c, s))
         };
-        let size = |omega: &Real, weight: &Real| -> Result<Ball, MelnikovError> {
+        let size = |omega: &Exact, weight: &Exact| -> Result<Ball, MelnikovError> {
             let (c, s) = transform(omega)?;
             let square = balls.add(&balls.square(&c), &balls.square(&s));
             let root = balls.sqrt(&square).ok_or(MelnikovError::Undecided { bits: self.bits })?;
@@ -172,9 +172,9 @@ impl Motion {
         };
         let found = match forcing {
             Forcing::Harmonics { omega, harmonics } => match harmonics.as_slice() {
-                [only] => size(&times(omega, &Rational::from(only.order)), &only.weight)?,
+                [only] => size(&omega.times(&Rational::from(only.order)), &only.weight)?,
                 _ => {
-                    let of = |k: u32| transform(&times(omega, &Rational::from(k)));
+                    let of = |k: u32| transform(&omega.times(&Rational::from(k)));
                     ForcingWork::from_transforms(balls, harmonics, &of)?
                         .extreme(balls, down)
                         .map(|value| if down { balls.neg(&value) } else { value })

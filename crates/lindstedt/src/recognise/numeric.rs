@@ -5,15 +5,14 @@ use super::law::evaluate;
 use super::melnikov::OrbitThreshold;
 use super::motion::Motion;
 use super::{PI, Refusal, potential};
+use crate::Exact;
 use lindstedt_algebra::Stop;
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::Monomials;
 use lindstedt_melnikov::quadrature::tanh_sinh;
-use lindstedt_melnikov::{Class, Forcing, Friction, MelnikovError, Real, Threshold};
+use lindstedt_melnikov::{Class, Forcing, Friction, MelnikovError, Threshold};
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_simulate::{
-    Digits, Integrator, Model, Parameters, Quantity, Report, Settings, Trajectory,
-};
+use lindstedt_simulate::{Digits, Integrator, Model, Parameters, Report, Settings, Trajectory};
 use rug::{Float, Rational};
 use std::ops::ControlFlow;
 
@@ -189,7 +188,7 @@ impl NumericOrbit {
         (rate > 0.0 && rate.is_finite()).then_some(())?;
         let equation = Expression::Acceleration - self.force.clone();
         let model = Model::second_order(&equation).ok()?;
-        let parameters = Parameters::new().with(PI, Quantity::PiMultiple(Rational::from(1)));
+        let parameters = Parameters::new().with(PI, Exact::PiTimes(Rational::from(1)));
         let system = model.compile(real, &parameters).ok()?;
         // e^(-rate t) = 2^-bits, and what it takes to come near the saddle.
         let end = (f64::from(bits) * std::f64::consts::LN_2 + 6.0) / rate;
@@ -223,7 +222,7 @@ impl NumericOrbit {
         balls: Balls,
         friction: &Friction,
         forcing: &Forcing,
-        belt_speed: &Real,
+        belt_speed: &Exact,
     ) -> Result<Vec<OrbitThreshold>, MelnikovError> {
         let one = |path: &Path| {
             let motion = self.motion(path, balls.bits())?;

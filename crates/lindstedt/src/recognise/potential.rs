@@ -1,10 +1,11 @@
 //! The unperturbed force f(x): which of the potentials with a closed orbit it is.
 
-use super::in_pi::{InPi, times};
+use super::in_pi::InPi;
+use crate::Exact;
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::monomials::{Monomials, expand};
 use lindstedt_equation::{Expression, Function};
-use lindstedt_melnikov::{Potential, Real};
+use lindstedt_melnikov::Potential;
 use rug::Rational;
 use std::cmp::Ordering;
 
@@ -31,8 +32,7 @@ pub(super) fn polynomial(force: &Monomials) -> Option<Vec<InPi>> {
 /// The potential of y and s, where x = s y + constant turns x'' = f(x) into one with a closed orbit.
 pub(super) fn closed(force: &Monomials) -> Option<(Potential, Rational)> {
     if let Some(coefficients) = polynomial(force) {
-        let list: Option<Vec<Real>> =
-            coefficients.iter().map(|c| c.value().map(Real::from)).collect();
+        let list: Option<Vec<Exact>> = coefficients.iter().map(|c| c.value()).collect();
         return match list?.as_slice() {
             [f0, f1, f2] => quadratic(f0, f1, f2),
             [f0, f1, f2, f3] => cubic(f0, f1, f2, f3),
@@ -47,20 +47,20 @@ pub(super) fn closed(force: &Monomials) -> Option<(Potential, Rational)> {
 
 /// x'' = f0 + f1 x + f2 x^2 about its saddle x_s: with y = -sgn(f2) (x - x_s),
 /// y'' = a y - |f2| y^2, a = sqrt(f1^2 - 4 f0 f2).
-fn quadratic(f0: &Real, f1: &Real, f2: &Real) -> Option<(Potential, Rational)> {
+fn quadratic(f0: &Exact, f1: &Exact, f2: &Exact) -> Option<(Potential, Rational)> {
     let a = if f0.sign().is_eq() {
         f1.abs()
     } else {
         let (f0, f1, f2) = (f0.as_rational()?, f1.as_rational()?, f2.as_rational()?);
         let square = Rational::from(f1.square_ref()) - Rational::from(f0 * f2) * 4u32;
-        Real::Rational(rational_root(&square)?)
+        Exact::Rational(rational_root(&square)?)
     };
     let s = if f2.sign().is_gt() { -1 } else { 1 };
     a.sign().is_gt().then(|| (Potential::Helmholtz { a, b: f2.abs() }, Rational::from(s)))
 }
 
 /// x'' = f0 + f1 x + f2 x^2 + f3 x^3, odd about x = -f2/(3 f3).
-fn cubic(f0: &Real, f1: &Real, f2: &Real, f3: &Real) -> Option<(Potential, Rational)> {
+fn cubic(f0: &Exact, f1: &Exact, f2: &Exact, f3: &Exact) -> Option<(Potential, Rational)> {
     let slope = if f0.sign().is_eq() && f2.sign().is_eq() {
         f1.clone()
     } else {
@@ -72,7 +72,7 @@ fn cubic(f0: &Real, f1: &Real, f2: &Real, f3: &Real) -> Option<(Potential, Ratio
         };
         at([f0, f1, f2, f3]).is_zero().then_some(())?;
         let (twice, thrice) = (Rational::from(f2 * 2u32), Rational::from(f3 * 3u32));
-        Real::Rational(at([f1, &twice, &thrice, &Rational::new()]))
+        Exact::Rational(at([f1, &twice, &thrice, &Rational::new()]))
     };
     let (a, b) = (slope.abs(), f3.abs());
     let potential = match (slope.sign(), f3.sign()) {
@@ -85,12 +85,12 @@ fn cubic(f0: &Real, f1: &Real, f2: &Real, f3: &Real) -> Option<(Potential, Ratio
 
 /// x'' = f1 x + f3 x^3 + f5 x^5 is f1 y (1 - y^2)(1 - 3 y^2) with x = s y where 16 f1 f5 = 3 f3^2:
 /// s^2 = -4 f1/f3.
-fn quintic(f1: &Real, f3: &Real, f5: &Real) -> Option<(Potential, Rational)> {
+fn quintic(f1: &Exact, f3: &Exact, f5: &Exact) -> Option<(Potential, Rational)> {
     let (f1, f3, f5) = (f1.as_rational()?, f3.as_rational()?, f5.as_rational()?);
     let tied = Rational::from(f1 * f5) * 16u32 == Rational::from(f3.square_ref()) * 3u32;
     (tied && !f3.is_zero()).then_some(())?;
     let s = rational_root(&(Rational::from(f1 * -4i32) / f3))?;
-    f1.is_positive().then(|| (Potential::PhiSix { a: Real::Rational(f1.clone()) }, s))
+    f1.is_positive().then(|| (Potential::PhiSix { a: Exact::Rational(f1.clone()) }, s))
 }
 
 /// x'' = A sin(k x + phase), or with a cosine: y = k x + constant has y'' = -|A k| sin y.
@@ -113,6 +113,6 @@ fn sine(force: &Monomials) -> Option<(Potential, Rational)> {
     (!k.is_zero()).then_some(())?;
     let mut size = InPi::default();
     size.add(m, q)?;
-    let a = times(&Real::from(size.value()?), &k).abs();
+    let a = size.value()?.times(&k).abs();
     a.sign().is_gt().then(|| (Potential::Pendulum { a }, k.recip()))
 }

@@ -17,7 +17,7 @@ mod truth;
 
 use crate::evaluate::setting::Setting;
 use crate::evaluate::source::Source;
-use crate::{Error, Value};
+use crate::{Error, Exact};
 pub use front::{most_accurate, pareto, recommend, recommend_for_many};
 use lindstedt_algebra::Stop;
 use lindstedt_equation::{Condition, Problem};
@@ -253,7 +253,7 @@ pub struct Trade {
 /// ```
 pub fn measure(
     problem: &Problem,
-    parameters: &BTreeMap<String, Value>,
+    parameters: &BTreeMap<String, Exact>,
     plan: &Plan,
     observer: &mut dyn FnMut(&Method, &[Row]) -> bool,
 ) -> Result<Trade, Error> {
@@ -339,11 +339,11 @@ pub fn measure(
 const DEFAULTS: [(&str, &str, [&str; 2]); 2] =
     [("power-law", "delta", ["delta", "n"]), ("duffing", "eps", ["eps", "eps"])];
 
-fn defaults(problem: &Problem, given: &BTreeMap<String, Value>) -> BTreeMap<String, Value> {
+fn defaults(problem: &Problem, given: &BTreeMap<String, Exact>) -> BTreeMap<String, Exact> {
     let mut all = given.clone();
     for (name, parameter, others) in DEFAULTS {
         if *problem.name == *name && !others.iter().any(|other| given.contains_key(*other)) {
-            all.insert(parameter.to_owned(), Value::Rational(Rational::from((1, 4))));
+            all.insert(parameter.to_owned(), Exact::Rational(Rational::from((1, 4))));
         }
     }
     all

@@ -3,7 +3,6 @@
 use super::Reason;
 use crate::Error;
 use crate::evaluate::setting::Setting;
-use crate::verify::quantity;
 use lindstedt_equation::{AmplitudeRole, Condition, Expression};
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::Balls;
@@ -67,7 +66,7 @@ fn period<R: Real>(
     let balls = Balls::new(bits);
     let mut parameters = Parameters::new();
     for (name, value) in setting.at.iter().filter(|(name, _)| *name != *problem.small) {
-        parameters.set(name, quantity(value));
+        parameters.set(name, value.clone());
     }
     match setting.rational_small() {
         Some(small) => parameters.set(&problem.small, small),

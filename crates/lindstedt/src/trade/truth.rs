@@ -4,7 +4,7 @@ use super::run::Found;
 use super::{Method, Reason, Row, simulation};
 use crate::evaluate::setting::Setting;
 use crate::evaluate::source::Source;
-use crate::{Error, Value};
+use crate::{Error, Exact};
 use lindstedt_number::ball::Balls;
 use rug::{Float, Rational};
 
@@ -33,7 +33,7 @@ pub struct Truth {
     /// integrator with more digits.
     pub from_time_domain: bool,
     /// The parameters used.
-    pub at: Vec<(String, Value)>,
+    pub at: Vec<(String, Exact)>,
     /// The value of the small parameter of the series.
     pub small: Float,
     /// The same, where it is rational.

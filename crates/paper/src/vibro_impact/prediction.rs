@@ -11,11 +11,12 @@ use lindstedt_impact::flow::{Flow, rates};
 use lindstedt_impact::kick::piecewise_growth;
 use lindstedt_impact::map::Verdict as Stability;
 use lindstedt_impact::orbit::orbit;
-use lindstedt_impact::parameters::{Branch, Exact, ExactParameters, Parameters};
+use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
 use lindstedt_impact::prediction::{Variant, predict, predicted_flow, uncontrolled_map};
-use lindstedt_impact::real::Certified;
 use lindstedt_impact::zeros::exact_verdict;
+use lindstedt_number::Exact;
 use lindstedt_number::digits::decimal;
+use lindstedt_number::real::Certified;
 use rayon::prelude::*;
 use rug::Rational;
 
@@ -41,7 +42,7 @@ pub(crate) const SAMPLED: usize = ORBITS_READ - 1;
 pub(crate) fn unstable_example() -> Option<(String, Parameters<f64>)> {
     ORBITS.into_iter().filter(|entry| entry.0 != LOWER).find_map(|entry| {
         let p = parameters(entry, Branch::Plus);
-        let base = p.to_f64();
+        let base = p.nearest();
         let found = orbit(&base).ok()?;
         let stable = uncontrolled_map(&base, &found).verdict() == Stability::Stable;
         let (_, omega, k, restitution, wall, damping) = entry;
@@ -202,7 +203,7 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
             return Ok(false);
         }
         let branch = if entry.0 == LOWER { Branch::Minus } else { Branch::Plus };
-        let counts = count(&parameters(entry, branch).to_f64(), side);
+        let counts = count(&parameters(entry, branch).nearest(), side);
         all.add(&counts);
         if branch == Branch::Plus {
             upper.add(&counts);

@@ -20,7 +20,7 @@ pub use point::{Point, cosine, log_cosine, sine};
 
 use lindstedt_algebra::Stop;
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::digits::{CertifyError, certify};
+use lindstedt_number::{NumberError, digits::certify};
 use point::Reduced;
 
 /// Guard bits on top of log2 of the number of terms: the series lose about 4 ulp per term, the
@@ -216,24 +216,24 @@ fn most_bits(digits: usize) -> u32 {
 /// L(x) with `digits` certified significant digits, and a bound of their error.
 ///
 /// # Errors
-/// [`CertifyError`] if the digits could not be decided.
-pub fn lobachevsky_digits(x: &Point, digits: usize) -> Result<(String, String), CertifyError> {
+/// [`NumberError`] if the digits could not be decided.
+pub fn lobachevsky_digits(x: &Point, digits: usize) -> Result<(String, String), NumberError> {
     certify(digits, most_bits(digits), |balls| Some(lobachevsky(x, balls)))
 }
 
 /// Lambda_m(x) with `digits` certified significant digits, and a bound of their error.
 ///
 /// # Errors
-/// [`CertifyError`] if the digits could not be decided.
-pub fn lambda_digits(m: usize, x: &Point, digits: usize) -> Result<(String, String), CertifyError> {
+/// [`NumberError`] if the digits could not be decided.
+pub fn lambda_digits(m: usize, x: &Point, digits: usize) -> Result<(String, String), NumberError> {
     certify(digits, most_bits(digits), |balls| Some(lambda(m, x, balls)))
 }
 
 /// ln|cos x| with `digits` certified significant digits, and a bound of their error.
 ///
 /// # Errors
-/// [`CertifyError::Undefined`] at the poles; another [`CertifyError`] if undecided.
-pub fn log_cosine_digits(x: &Point, digits: usize) -> Result<(String, String), CertifyError> {
+/// [`NumberError::Undefined`] at the poles; another [`NumberError`] if undecided.
+pub fn log_cosine_digits(x: &Point, digits: usize) -> Result<(String, String), NumberError> {
     certify(digits, most_bits(digits), |balls| log_cosine(x, balls))
 }
 

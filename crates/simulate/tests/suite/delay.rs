@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use lindstedt_equation::Expression;
+use lindstedt_number::Exact;
 use lindstedt_simulate::{
     Digits, Doubles, Integrator, Model, Parameters, Quantity, Real, Report, Settings,
 };
@@ -126,7 +127,7 @@ fn orbit(params: &Value, gains: Option<(&str, &str)>) -> Orbit {
         parameters.set("A", Quantity::parse(a).unwrap());
         parameters.set("B", Quantity::parse(b).unwrap());
     }
-    let turns = Quantity::PiMultiple(rational("k") * 2 / rational("omega"));
+    let turns = Exact::pi_times(rational("k") * 2 / rational("omega"));
     let period = turns.float(bits);
     parameters.set("T", turns);
     let float = |x: f64| Float::with_val(bits, x);

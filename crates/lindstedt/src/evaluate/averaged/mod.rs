@@ -13,13 +13,13 @@ mod flow;
 mod rest;
 mod truncated;
 
+use super::bits_for;
 use super::few::plain;
 use super::setting::{check_names, small_value};
-use super::{bits_for, estimated};
+use crate::Number;
 use crate::averaging::AveragingSettings;
 use crate::averaging::numbers::{Numbers, numbers};
-use crate::constants::Number;
-use crate::{Error, Progress, Value};
+use crate::{Error, Exact, Progress};
 use flow::Flow;
 use lindstedt_equation::symmetry::is_reversible;
 use lindstedt_equation::{Condition, Problem};
@@ -33,9 +33,9 @@ use truncated::Truncated;
 #[derive(Clone, Debug)]
 pub enum Start {
     /// a(0) and psi(0).
-    Amplitude(Value, Value),
+    Amplitude(Exact, Exact),
     /// x(0) and x'(0), which a(0) and psi(0) are computed from.
-    State(Value, Value),
+    State(Exact, Exact),
 }
 
 /// What to evaluate.
@@ -44,7 +44,7 @@ pub struct MotionSettings {
     /// N.
     pub order: usize,
     /// Values of parameters by name, the small one included.
-    pub parameters: BTreeMap<String, Value>,
+    pub parameters: BTreeMap<String, Exact>,
     /// Digits asked for.
     pub digits: usize,
     /// The start.
@@ -66,7 +66,7 @@ pub struct Quantity {
 #[derive(Clone, Debug)]
 pub struct Moment {
     /// The time.
-    pub time: Value,
+    pub time: Exact,
     /// a.
     pub amplitude: Quantity,
     /// psi, not reduced to one turn.
@@ -79,7 +79,7 @@ pub struct Moment {
 #[derive(Debug)]
 pub struct Motion {
     /// The parameters with their values, the small one included.
-    pub at: Vec<(String, Value)>,
+    pub at: Vec<(String, Exact)>,
     /// N.
     pub order: usize,
     /// a(0), psi(0) of order N.
@@ -122,13 +122,13 @@ impl Motion {
     ///
     /// ```
     /// use lindstedt::evaluate::averaged::{Motion, MotionSettings, Start};
-    /// use lindstedt::{Value, problems};
+    /// use lindstedt::{Exact, problems};
     /// let problem = problems::find("van-der-pol").ok_or("no such problem")?;
-    /// let start = Start::Amplitude(Value::parse("1")?, Value::parse("0")?);
-    /// let parameters = [("eps".to_owned(), Value::parse("1/10")?)].into();
+    /// let start = Start::Amplitude(Exact::parse("1")?, Exact::parse("0")?);
+    /// let parameters = [("eps".to_owned(), Exact::parse("1/10")?)].into();
     /// let settings = MotionSettings { order: 4, parameters, digits: 12, start };
     /// let mut motion = Motion::new(&problem, &settings, &mut |_| true)?;
-    /// let far = motion.at(&[Value::parse("100")?], &mut || true);
+    /// let far = motion.at(&[Exact::parse("100")?], &mut || true);
     /// // The limit cycle has amplitude 2 + O(eps^2).
     /// assert!((far[0].amplitude.double - 2.0).abs() < 1e-3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -165,11 +165,11 @@ impl Motion {
         settings: &MotionSettings,
         found: &Numbers,
         small: &Float,
-        at: Vec<(String, Value)>,
+        at: Vec<(String, Exact)>,
     ) -> Result<Self, Error> {
         let bits = small.prec();
         let order = found.solution.len().saturating_sub(1);
-        let float = |value: &Value| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
+        let float = |value: &Exact| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
         let mut full = Truncated::new(found, small, order);
         full.start = match &settings.start {
             Start::Amplitude(a, psi) => [float(a), float(psi)],
@@ -195,7 +195,7 @@ impl Motion {
             match errors {
                 Some(errors) => {
                     let error = Float::with_val(53, errors[k] * if k == 0 { scale } else { 1.0 });
-                    estimated(&balls.from_parts(&rates[k], &error), settings.digits)
+                    Number::estimated(&balls.from_parts(&rates[k], &error), settings.digits)
                 }
                 None => {
                     plain(&balls.from_parts(&rates[k], &Float::new(53)), settings.digits, false)
@@ -255,9 +255,9 @@ impl Motion {
 
     /// The motion at times in increasing order. Times that the integration does not reach, because
     /// it ends or `goes_on` says no (asked at every step), are left out.
-    pub fn at(&mut self, times: &[Value], goes_on: &mut dyn FnMut() -> bool) -> Vec<Moment> {
+    pub fn at(&mut self, times: &[Exact], goes_on: &mut dyn FnMut() -> bool) -> Vec<Moment> {
         let bits = self.full.start[0].prec();
-        let float = |value: &Value| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
+        let float = |value: &Exact| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
         let floats: Vec<Float> = times.iter().map(float).collect();
         let mut flow = |system: &Truncated| Flow::new(system, &floats, self.digits, goes_on);
         let found = flow(&self.full);
@@ -322,7 +322,7 @@ impl Motion {
             return Quantity { value, double, error: f64::INFINITY };
         }
         let ball = balls.from_parts(x, &Float::with_val(53, error));
-        Quantity { value: estimated(&ball, self.digits), double, error }
+        Quantity { value: Number::estimated(&ball, self.digits), double, error }
     }
 
     /// What the numbers are worth, in words.

@@ -1,6 +1,6 @@
 //! Real numbers for both paths: doubles for charts, certified balls for digits.
 
-use lindstedt_number::ball::{Ball, Balls};
+use crate::ball::{Ball, Balls};
 use rug::{Float, Rational};
 use std::cmp::Ordering;
 use std::fmt::Debug;
