@@ -96,7 +96,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
             message: unfinished(primes > 0 || polynomial(&problem.equation).is_some(), primes),
             hint: "raise --limit-seconds or lower --order".to_owned(),
         },
-        other => classification::refusal(other, file.as_ref(), &options.problem),
+        other => classification::refusal(other, file.as_ref(), &options.problem).into(),
     })?;
     let report = Report::new(&result, digits)?;
     session.done();
