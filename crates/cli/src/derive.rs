@@ -84,6 +84,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
             Progress::Primes(n) => format!("{n} primes done"),
             Progress::Integrating(n) => format!("{n} values compared"),
             Progress::Checking => "substituting into the equation".to_owned(),
+            _ => String::new(),
         });
         session.goes_on()
     };

@@ -106,12 +106,6 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// The same with the precision asked for.
-    pub fn precise_work(&self, precision: &Precision) -> Result<Work, Failure> {
-        let digits = u32::try_from(digits(precision)?).unwrap_or(u32::MAX);
-        Ok(Work { digits, doubles: precision.f64, ..self.work() })
-    }
-
     /// The oscillator of an argument, with the values and the normalisation asked for: an equation,
     /// the path of a problem file, or a built-in name.
     pub fn oscillator(

@@ -18,7 +18,8 @@ fn main() -> Result<(), Error> {
     let error = period.error.unwrap_or_default();
     println!("period at eps = 1/2: {} +- {error}", period.decimal);
 
-    let judge = oscillator.verify_derivation(&rayleigh, &Verify::default(), &Work::default())?.value;
+    let judge =
+        oscillator.verify_derivation(&rayleigh, &Verify::default(), &Work::default())?.value;
     let observed = judge.observed_order.ok_or(Error::NoValue)?;
     println!("against the motion in time: {:?}, observed order {observed:.2}", judge.verdict);
     Ok(())

@@ -1,9 +1,9 @@
 //! A problem with every value settled: what all questions are asked of.
 
 use crate::answer::{Header, SCHEMA};
-use crate::refusal::Refused;
 use crate::evaluate::{EvaluateSettings, Evaluation, evaluate};
-use crate::{Derivation, Error, Progress, Remark, Settings, Exact, classification};
+use crate::refusal::Refused;
+use crate::{Derivation, Error, Exact, Progress, Remark, Settings, classification};
 use lindstedt_equation::classify::{Classification, ClassifyError};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Condition, ParameterCard, Problem};
@@ -36,6 +36,8 @@ pub struct Oscillator {
     origin: String,
     values: BTreeMap<String, Exact>,
     condition: Option<Condition>,
+    /// Whether the file was made from an equation alone, which says nothing of the amplitude.
+    bare: bool,
     remarks: Vec<Remark>,
 }
 
@@ -73,8 +75,8 @@ impl Oscillator {
             remarks.push(Remark(polynomial.to_owned()));
         }
         let (problem, origin) = (file.problem.clone(), file.problem.name.to_string());
-        let (values, condition) = (BTreeMap::new(), None);
-        Ok(Self { problem, file, origin, values, condition, remarks })
+        let (values, condition, bare) = (BTreeMap::new(), None, false);
+        Ok(Self { problem, file, origin, values, condition, bare, remarks })
     }
 
     /// An oscillator from its equation in the small parameter `eps`; other names are parameters
@@ -89,7 +91,7 @@ impl Oscillator {
         for name in tree.parameters().into_iter().filter(|name| name != "amplitude") {
             let _ = writeln!(text, "{name} = {{}}");
         }
-        Self::file(&text)
+        Ok(Self { bare: true, ..Self::file(&text)? })
     }
 
     /// An oscillator from a problem made in Rust.
@@ -131,7 +133,10 @@ impl Oscillator {
     /// # Errors
     /// [`Refused`] where the problem does not offer it.
     pub fn under(mut self, condition: Condition) -> Result<Self, Error> {
-        if !self.problem.conditions.contains(&condition) {
+        if self.bare {
+            self.problem.conditions = vec![condition];
+            self.problem.amplitude = usual_amplitude(Some(&condition));
+        } else if !self.problem.conditions.contains(&condition) {
             if condition != Condition::FreeAmplitude {
                 let name = condition_name(condition);
                 let message = format!("{} does not offer this normalisation", self.origin);
@@ -139,9 +144,6 @@ impl Oscillator {
                 return Err(Refused::usage("unknown-normalisation", message, hint).into());
             }
             self.problem.conditions.push(condition);
-            if self.problem.conditions.len() == 1 {
-                self.problem.amplitude = usual_amplitude(Some(&condition));
-            }
         }
         self.condition = Some(condition);
         Ok(self)
