@@ -2,7 +2,7 @@
 
 use crate::arguments::Format;
 use crate::output::warn;
-use lindstedt::{Error, Kind, Refusal, Refused};
+use lindstedt::{Error, Kind, NumberError, Refusal, Refused};
 use serde_json::json;
 use std::io::Write;
 use std::process::ExitCode;

@@ -9,7 +9,7 @@ use lindstedt::algebra::Stop;
 use lindstedt::equation::{Condition, Problem};
 use lindstedt::problem_file::{FileError, LARGEST_FILE, canonical_name};
 use lindstedt::{
-    Answer, Error, Kind, Oscillator, ProblemFile, Progress, Refusal, Standing, Exact, Work,
+    Answer, Error, Exact, Kind, Oscillator, ProblemFile, Progress, Refusal, Standing, Work,
 };
 use lindstedt_report::{Format as Written, Present};
 use serde::Serialize;

@@ -2,7 +2,7 @@
 
 use crate::session::note;
 use lindstedt::equation::Problem;
-use lindstedt::{Oscillator, ProblemFile, Exact};
+use lindstedt::{Exact, Oscillator, ProblemFile};
 use std::collections::BTreeMap;
 
 pub use lindstedt::start::Taken;

@@ -1,7 +1,7 @@
 //! One or two swept parameters, and what was computed at their values.
 
 use crate::refusal::Refused;
-use crate::{Error, Progress, Exact, Work};
+use crate::{Error, Exact, Progress, Work};
 use lindstedt_problem_file::canonical_name;
 use rayon::prelude::*;
 use rug::Rational;

@@ -1,6 +1,6 @@
 //! The starts that a file may give twice: `[initial]` and `amplitude`.
 
-use crate::{Oscillator, Remark, Exact};
+use crate::{Exact, Oscillator, Remark};
 use lindstedt_number::ball::Balls;
 
 /// Which of the two a question takes.

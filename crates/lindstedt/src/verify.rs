@@ -31,7 +31,7 @@ use crate::oscillator::condition_name;
 use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{
-    Answer, Derivation, Error, Oscillator, Progress, Settings, Standing, Exact, Work, derive,
+    Answer, Derivation, Error, Exact, Oscillator, Progress, Settings, Standing, Work, derive,
 };
 use crate::{Number, Status};
 use drifting::Drifting;
