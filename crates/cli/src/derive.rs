@@ -84,7 +84,6 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
             Progress::Primes(n) => format!("{n} primes done"),
             Progress::Integrating(n) => format!("{n} values compared"),
             Progress::Checking => "substituting into the equation".to_owned(),
-            _ => String::new(),
         });
         session.goes_on()
     };
@@ -97,7 +96,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
             message: unfinished(primes > 0 || polynomial(&problem.equation).is_some(), primes),
             hint: "raise --limit-seconds or lower --order".to_owned(),
         },
-        other => classification::refusal(other, file.as_ref(), &options.problem).into(),
+        other => classification::refusal(other, file.as_ref(), &options.problem),
     })?;
     let report = Report::new(&result, digits)?;
     session.done();

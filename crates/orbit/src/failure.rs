@@ -1,0 +1,71 @@
+//! Why an orbit is not proved.
+
+use lindstedt_equation::{AccelerationFault, Expression};
+use thiserror::Error;
+
+/// Why an orbit is not proved: the question does not fit the equation, or a bound failed, with its
+/// number. That a bound failed says nothing against the orbit.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum Failure {
+    /// No such value: x'' does not stand alone with a constant factor.
+    #[error("x'' does not stand alone with a constant factor")]
+    Acceleration(AccelerationFault),
+    /// No such value: a name without a value.
+    #[error("the name {0} has no value")]
+    NoValue(String),
+    /// No such value: not a polynomial in x and x' with rational coefficients and a force of
+    /// cosines and sines with rational frequencies and without phases.
+    #[error("not a polynomial with rational coefficients")]
+    NotPolynomial(Expression),
+    /// The field has a force: [`Kind::Forced`](crate::Kind::Forced) is the question.
+    #[error("the equation is forced")]
+    Forced,
+    /// The field has no force.
+    #[error("the equation has no force")]
+    NotForced,
+    /// A family needs an equation that is even in x'.
+    #[error("the equation is not even in x'")]
+    NotReversible,
+    /// The guess has no harmonic, no positive frequency or values that are not finite.
+    #[error("the guess is no oscillation")]
+    NoStart,
+    /// DF has no inverse in doubles.
+    #[error("the linearised equation has no inverse on {modes} modes")]
+    Singular {
+        /// The modes.
+        modes: usize,
+    },
+    /// Newton's method found no solution near the guess.
+    #[error("Newton's method did not converge on {modes} modes")]
+    NotConverged {
+        /// The modes.
+        modes: usize,
+    },
+    /// Could not decide: Z0 + Z1 >= 1 with as many modes as were allowed. Z0 is the defect of the inverse
+    /// on its modes, Z1 what it neglects.
+    #[error("no contraction on {modes} modes: Z0 = {z0:.3e}, Z1 = {z1:.3e}")]
+    NoContraction {
+        /// The modes.
+        modes: usize,
+        /// |1 - A D|.
+        z0: f64,
+        /// The rest of |1 - A DF|.
+        z1: f64,
+    },
+    /// Could not decide: Y0 is too large for the curvature, 2 Z2 Y0 > (1 - Z0 - Z1)^2.
+    #[error(
+        "on {modes} modes the residual Y0 = {y0:.3e} is too large for the curvature Z2 = {z2:.3e}"
+    )]
+    Residual {
+        /// The modes.
+        modes: usize,
+        /// |A F|.
+        y0: f64,
+        /// The Lipschitz constant of A DF.
+        z2: f64,
+    },
+    /// Stopped by the [`Stop`](lindstedt_algebra::Stop) of the request.
+    #[error("stopped")]
+    Stopped,
+}

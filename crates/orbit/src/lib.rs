@@ -1,0 +1,60 @@
+//! Periodic orbits in Fourier space: Newton's method to any number of digits, and the proof that
+//! exactly one orbit is within a radius of the numbers.
+//!
+//! x'' = g(x, x', t) with a polynomial g ([`Field`]), tau = omega t, x = sum_k c_k e^(i k tau):
+//!
+//! F(omega, x) = omega^2 d^2x/dtau^2 - g(x, omega dx/dtau, tau) = 0.
+//!
+//! [`prove`] takes a guess ([`Start`]: an expansion's sum, a simulation, one harmonic), improves it by
+//! Newton's method and checks the hypotheses of a contraction argument ([`Bounds`]). A [`Proof`]
+//! encloses frequency, period, initial state, extrema, x(t) and the Floquet exponent; a
+//! [`Failure`] names the bound that failed, with its number. Whether any expansion converges plays
+//! no part.
+//!
+//! Three tiers of arithmetic. Coefficients of the solution are integers over a power of 2 and every
+//! residual is formed *exactly*, by products of long integers: no rounding to argue about. The
+//! linear algebra is in doubles with a-priori bounds of its rounding errors. What is enclosed at the end
+//! is in balls.
+//!
+//! ```
+//! use lindstedt_equation::Expression;
+//! use lindstedt_number::digits::decimal;
+//! use lindstedt_orbit::{Field, Kind, Request, Stability, Start, prove};
+//! // Van der Pol, x'' + x + (x^2 - 1) x' = 0, from the guess 2 cos(0.94 t).
+//! let (x, y) = (Expression::Displacement, Expression::Velocity);
+//! let field = Field::new(&(Expression::Acceleration + x.clone() + (x.pow(2) - 1) * y), "eps", &Default::default())?;
+//! let start = Start { frequency: 0.94, cosines: vec![0.0, 2.0], sines: vec![] };
+//! let request = Request { digits: 30, ..Request::default() };
+//! let proof = prove(&field, &Kind::LimitCycle, &start, &request)?;
+//! assert_eq!(decimal(&proof.period, 30).as_deref(), Some("6.66328685932313018969968203048"));
+//! assert_eq!(proof.stability, Stability::Stable);
+//! # Ok::<(), lindstedt_orbit::Failure>(())
+//! ```
+
+mod bounds;
+mod centre;
+mod failure;
+mod field;
+mod laurent;
+mod linear;
+mod newton;
+mod orbit;
+mod proof;
+mod radii;
+mod space;
+mod start;
+mod task;
+#[cfg(test)]
+mod tests;
+mod upward;
+mod write;
+
+pub use failure::Failure;
+pub use field::Field;
+pub use proof::{Proof, Stability, Status, prove};
+pub use radii::Bounds;
+pub use space::Parity;
+pub use start::Start;
+pub use task::{Kind, Request};
+
+pub(crate) use task::{Condition, Rows};

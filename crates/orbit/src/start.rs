@@ -1,0 +1,64 @@
+//! The guess from which Newton's method starts.
+
+use nalgebra::Complex;
+use std::f64::consts::TAU;
+
+/// A guess of a periodic orbit: x = sum_k (cosine_k cos k tau + sine_k sin k tau), tau = omega t;
+/// from an expansion's sum, or from a simulation ([`Start::from_samples`]).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Start {
+    /// omega > 0. Ignored for a forced orbit, whose frequency is the force's.
+    pub frequency: f64,
+    /// The coefficients of cos k tau, k = 0, 1, ...
+    pub cosines: Vec<f64>,
+    /// The coefficients of sin k tau, k = 0, 1, ...; the first is ignored.
+    pub sines: Vec<f64>,
+}
+
+impl Start {
+    /// The discrete Fourier transform of x(j T/n), j = 0..n, over one period T; n samples give the modes up
+    /// to n/4 (the others are left to Newton's method). Cost n^2/4.
+    ///
+    /// ```
+    /// use lindstedt_orbit::Start;
+    /// let samples: Vec<f64> = (0..32).map(|j| (j as f64 * std::f64::consts::TAU / 32.0).cos()).collect();
+    /// let start = Start::from_samples(std::f64::consts::TAU, &samples);
+    /// assert!((start.cosines[1] - 1.0).abs() < 1e-15 && (start.frequency - 1.0).abs() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn from_samples(period: f64, samples: &[f64]) -> Self {
+        let n = samples.len();
+        let coefficient = |k: usize, wave: fn(f64) -> f64| {
+            let angle = |j: usize| TAU * ((j * k % n) as f64) / n as f64;
+            let sum: f64 = samples.iter().enumerate().map(|(j, x)| x * wave(angle(j))).sum();
+            sum * if k == 0 { 1.0 } else { 2.0 } / n as f64
+        };
+        let modes = 0..=n / 4;
+        Self {
+            frequency: TAU / period,
+            cosines: modes.clone().map(|k| coefficient(k, f64::cos)).collect(),
+            sines: modes.map(|k| coefficient(k, f64::sin)).collect(),
+        }
+    }
+
+    /// c_k = (cosine_k - i sine_k)/2.
+    pub(crate) fn complex(&self) -> Vec<Complex<f64>> {
+        let modes = self.cosines.len().max(self.sines.len());
+        let at = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(0.0);
+        let one = |k| match k {
+            0 => Complex::new(at(&self.cosines, 0), 0.0),
+            k => Complex::new(at(&self.cosines, k), -at(&self.sines, k)) / 2.0,
+        };
+        (0..modes).map(one).collect()
+    }
+}
+
+/// The same orbit with its phase moved so that the first harmonic is a positive multiple of cos
+/// tau.
+pub(crate) fn in_phase(mut modes: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
+    let angle = modes.get(1).map_or(0.0, |c| c.arg());
+    for (k, c) in modes.iter_mut().enumerate() {
+        *c *= Complex::from_polar(1.0, -angle * k as f64);
+    }
+    modes
+}

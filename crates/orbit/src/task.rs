@@ -1,0 +1,172 @@
+//! What is asked: the kind of orbit, its symmetry and the equation that fixes its phase or its
+//! amplitude.
+
+use crate::Failure;
+use crate::centre::Centre;
+use crate::field::Field;
+use crate::space::{Parity, Wave};
+use crate::start::{Start, in_phase};
+use lindstedt_algebra::Stop;
+use nalgebra::Complex;
+use rug::{Float, Integer, Rational};
+
+/// Which periodic orbit of a field is meant.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Kind {
+    /// An isolated orbit of an autonomous equation, its frequency unknown. The phase: no sine in
+    /// the first harmonic.
+    LimitCycle,
+    /// A member of a family of an equation that is reversible (even in x'): even in time, x(0) = a.
+    InitialAmplitude(Rational),
+    /// The same with the first harmonic a cos tau.
+    FundamentalAmplitude(Rational),
+    /// The response to the force, with this many periods of the force as its period (1 for a
+    /// harmonic response).
+    Forced(u32),
+}
+
+/// How far to go.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// Significant digits of frequency and displacement that the radius shall confirm.
+    pub digits: u32,
+    /// The largest mode of the numerical inverse; its cost grows with the third power (400: a
+    /// second).
+    pub modes_limit: usize,
+    /// Asked between the parts of the work.
+    pub stop: Stop,
+}
+
+impl Default for Request {
+    fn default() -> Self {
+        Self { digits: 15, modes_limit: 800, stop: Stop::default() }
+    }
+}
+
+/// The row of F that fixes phase or amplitude: a linear form of the coefficients.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Condition {
+    /// The coefficient of sin tau.
+    Sine,
+    /// The coefficient of cos tau.
+    Cosine,
+    /// x at tau = 0.
+    AtZero,
+}
+
+impl Condition {
+    /// The form on a wave.
+    pub(crate) fn of(self, wave: Wave) -> f64 {
+        let holds = match self {
+            Self::Sine => wave.k == 1 && wave.sine,
+            Self::Cosine => wave.k == 1 && !wave.sine,
+            Self::AtZero => !wave.sine,
+        };
+        f64::from(u8::from(holds))
+    }
+}
+
+/// The rows of F.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rows {
+    pub(crate) parity: Parity,
+    pub(crate) condition: Option<Condition>,
+}
+
+/// A field, the rows, and the value that the condition has.
+#[derive(Clone, Debug)]
+pub(crate) struct Task {
+    pub(crate) field: Field,
+    pub(crate) rows: Rows,
+    pub(crate) value: Rational,
+}
+
+impl Task {
+    /// The task with the guess for it.
+    pub(crate) fn new(
+        field: &Field,
+        kind: &Kind,
+        start: &Start,
+    ) -> Result<(Self, Centre), Failure> {
+        let mut modes = start.complex();
+        if modes.iter().any(|c| !c.re.is_finite() || !c.im.is_finite()) || modes.len() < 2 {
+            return Err(Failure::NoStart);
+        }
+        let autonomous = !matches!(kind, Kind::Forced(_));
+        if autonomous != field.is_autonomous() {
+            return Err(if autonomous { Failure::Forced } else { Failure::NotForced });
+        }
+        let (condition, value) = match kind {
+            Kind::LimitCycle => (Some(Condition::Sine), Rational::new()),
+            Kind::InitialAmplitude(a) => (Some(Condition::AtZero), a.clone()),
+            Kind::FundamentalAmplitude(a) => (Some(Condition::Cosine), a.clone()),
+            Kind::Forced(_) => (None, Rational::new()),
+        };
+        let family = autonomous && *kind != Kind::LimitCycle;
+        if family && !field.is_reversible() {
+            return Err(Failure::NotReversible);
+        }
+        let mut frequency = start.frequency;
+        let mut field = field.clone();
+        let mut exact = None;
+        if let (Kind::Forced(periods), Some(force)) = (kind, &field.force) {
+            let periods = (*periods).max(1);
+            let rate = Rational::from(force / periods);
+            frequency = rate.to_f64();
+            exact = Some(rate);
+            field = field.over(periods);
+        } else {
+            modes = in_phase(modes);
+        }
+        if !(frequency.is_finite() && frequency > 0.0) {
+            return Err(Failure::NoStart);
+        }
+        let parity = parity(&field, family, &modes);
+        for (k, c) in modes.iter_mut().enumerate() {
+            *c = parity.waves(k).map(|w| w.complex(w.of(*c))).sum();
+        }
+        let mut centre = Centre::from_doubles(FAST_BITS, frequency, &modes);
+        if let Some(rate) = exact {
+            centre.frequency = rate;
+        }
+        Ok((Self { field, rows: Rows { parity, condition }, value }, centre))
+    }
+
+    /// Whether the frequency is an unknown.
+    pub(crate) fn is_free(&self) -> bool {
+        self.rows.condition.is_some()
+    }
+
+    /// The same with the frequency as it is, and nothing else fixed.
+    pub(crate) fn with_frequency_fixed(&self) -> Self {
+        Self { rows: Rows { condition: None, ..self.rows }, ..self.clone() }
+    }
+
+    /// What the condition misses its value by, exactly rounded.
+    pub(crate) fn condition(&self, centre: &Centre) -> Float {
+        let unit = Integer::from(1) << centre.bits;
+        let mode = |list: &[Integer]| list.get(1).map_or(Integer::new(), |c| Integer::from(c * 2));
+        let form = match self.rows.condition {
+            None => return Float::new(64),
+            Some(Condition::AtZero) => centre.at_zero(),
+            Some(Condition::Cosine) => Rational::from((mode(&centre.modes.re), unit)),
+            Some(Condition::Sine) => Rational::from((-mode(&centre.modes.im), unit)),
+        };
+        Float::with_val(64, form - &self.value)
+    }
+}
+
+/// Bits behind the point in the tier of doubles.
+pub(crate) const FAST_BITS: u32 = 72;
+/// Modes that a symmetry forbids are taken as noise below this fraction.
+const NOISE: f64 = 2e-2;
+
+/// The symmetries that the field keeps and the guess has.
+fn parity(field: &Field, family: bool, modes: &[Complex<f64>]) -> Parity {
+    let mut parity = field.parity(family);
+    let total: f64 = modes.iter().map(|c| c.norm()).sum();
+    let even: f64 = modes.iter().step_by(2).map(|c| c.norm()).sum();
+    parity.odd &= even <= NOISE * total;
+    parity
+}

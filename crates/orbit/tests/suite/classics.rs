@@ -1,0 +1,204 @@
+//! The classical oscillators: proved to thirty digits, against closed forms and against the
+//! integrator.
+
+use crate::common::{
+    digits, duffing, equation, field, guess, integrate, period, proved, q, samples, van_der_pol, x,
+    y,
+};
+use lindstedt_equation::{Expression, Function};
+use lindstedt_orbit::{Kind, Proof, Request, Stability, Start, prove};
+use rug::float::Constant;
+use rug::{Float, Rational};
+
+const BITS: u32 = 300;
+
+fn show(name: &str, proof: &Proof, seconds: f64) {
+    println!(
+        "{name}: {seconds:.3} s, N = {}, M = {}, nu - 1 = {:.1e}, r = {:.1e}, unique {:.1e}, Y0 {:.1e} Z0 {:.1e} Z1 {:.3} Z2 {:.1e}, T = {:.20} ({:.1} digits), max {:.12} ({:.1}), min {:.12} ({:.1}), exponent {:.8}",
+        proof.modes,
+        proof.solution_modes,
+        proof.weight - 1.0,
+        proof.radius.to_f64(),
+        proof.unique_within.to_f64(),
+        proof.bounds.y0.to_f64(),
+        proof.bounds.z0,
+        proof.bounds.z1,
+        proof.bounds.z2,
+        proof.period.midpoint(),
+        digits(&proof.period),
+        proof.maximum.midpoint().to_f64(),
+        digits(&proof.maximum),
+        proof.minimum.midpoint().to_f64(),
+        digits(&proof.minimum),
+        proof.exponent.midpoint().to_f64(),
+    );
+}
+
+/// Proves with 30 digits, checks what every proof must say, and returns it.
+fn thirty(name: &str, equation: &Expression, kind: &Kind, start: &Start) -> Proof {
+    let clock = std::time::Instant::now();
+    let proof = proved(equation, kind, start, 30).unwrap_or_else(|e| panic!("{name}: {e}"));
+    show(name, &proof, clock.elapsed().as_secs_f64());
+    assert!(digits(&proof.period) >= 30.0 && digits(&proof.maximum) >= 30.0, "{name}");
+    assert!(proof.bounds.z0 + proof.bounds.z1 < 1.0 && proof.unique_within > proof.radius);
+    proof
+}
+
+fn contains(ball: &lindstedt_number::ball::Ball, value: &Float) -> bool {
+    ball.contains(&value.to_rational().unwrap())
+}
+
+/// The period of x'' + p x + e x^3 = 0 with x(0) = a: 2 pi/(w agm(1, sqrt(1 - m))) with
+/// w^2 = p + e a^2 and m = e a^2/(2 w^2) (Gradshteyn, Ryzhik 8.112, 8.129).
+fn cubic_period(p: &Rational, e: &Rational, a: &Rational) -> Float {
+    let square = Rational::from(e * a) * a;
+    let w = Rational::from(p + &square);
+    let m = square / &w / 2;
+    let root = Float::with_val(BITS, Rational::from(1) - m).sqrt();
+    let mean = Float::with_val(BITS, 1).agm(&root);
+    Float::with_val(BITS, Constant::Pi) * 2u32 / (mean * Float::with_val(BITS, w).sqrt())
+}
+
+#[test]
+fn duffing_periods_lie_in_their_balls() {
+    for (n, d) in [(1, 2), (10, 1), (-9, 10), (-99, 100)] {
+        let eps = Rational::from((n, d));
+        let equation = duffing(q(n, d));
+        let start = guess(&equation, [1.0, 0.0], 0.0).unwrap();
+        let kind = Kind::InitialAmplitude(1.into());
+        let proof = thirty(&format!("Duffing {eps}"), &equation, &kind, &start);
+        let period = cubic_period(&1.into(), &eps, &1.into());
+        assert!(contains(&proof.period, &period), "{eps}");
+        assert!(proof.maximum.contains(&1.into()) && proof.minimum.contains(&(-1).into()));
+        assert!(proof.displacement.contains(&1.into()) && proof.velocity.contains(&0.into()));
+    }
+}
+
+/// u = sin(x/2) for x'' + sin x = 0: u'' + (1 + k^2) u - 2 u^3 = 0 with u(0) = k.
+#[test]
+fn swinging_pendulums_lie_in_their_balls() {
+    for k in [(1, 2), (997, 1000), (999_999, 1_000_000)] {
+        let k = Rational::from(k);
+        let stiffness = Rational::from(&k * &k) + 1;
+        let number = |q: &Rational| Expression::Number(q.clone());
+        let equation = equation(number(&stiffness) * x() - 2 * x().pow(3));
+        // The energy of u differs from the separatrix' by (1 - k)^2, that of x by 1 - k.
+        let pendulum = crate::common::equation(x().apply(Function::Sin));
+        let a = 2.0 * k.to_f64().asin();
+        let (time, _) = period(&pendulum, [a, 0.0], 0.0).unwrap();
+        let angles = samples(&pendulum, [a, 0.0], 0.0, time, 1024);
+        let halves: Vec<f64> = angles.iter().map(|x| (x / 2.0).sin()).collect();
+        let start = Start::from_samples(time, &halves);
+        let kind = Kind::InitialAmplitude(k.clone());
+        let proof = thirty(&format!("pendulum, k = {k}"), &equation, &kind, &start);
+        let period = cubic_period(&stiffness, &(-2).into(), &k);
+        assert!(contains(&proof.period, &period), "{k}");
+    }
+}
+
+/// Integrates over the proved period: the end must be the start as far as the digits go.
+fn closes(equation: &Expression, proof: &Proof, slack: f64) {
+    let state = [proof.displacement.midpoint(), proof.velocity.midpoint()];
+    let state = state.map(|v| Float::with_val(BITS, v));
+    let end = integrate(equation, &state, proof.period.midpoint(), 45);
+    for (a, b) in end.iter().zip(&state) {
+        let error = Float::with_val(BITS, a - b).abs();
+        assert!(error < slack, "{error}");
+    }
+}
+
+#[test]
+fn van_der_pol_cycles_close() {
+    // The periods by harmonic balance in doubles (numpy, 60 to 900 modes), 13 digits of them.
+    let periods = [
+        (1, 2, "6.3806758"),
+        (1, 1, "6.663286859323"),
+        (2, 1, "7.629874479674"),
+        (5, 1, "11.61223066771"),
+    ];
+    for (n, d, period) in periods {
+        let equation = van_der_pol(q(n, d));
+        let start = guess(&equation, [2.0, 0.0], 60.0).unwrap();
+        let proof = thirty(&format!("van der Pol {n}/{d}"), &equation, &Kind::LimitCycle, &start);
+        assert!(
+            proof.period.midpoint().to_string().starts_with(period),
+            "{}",
+            proof.period.midpoint()
+        );
+        assert_eq!(proof.stability, Stability::Stable);
+        closes(&equation, &proof, 1e-28);
+    }
+}
+
+#[test]
+fn other_cycles_and_families_close() {
+    // Rayleigh: x'' + x + (x'^3/3 - x') = 0.
+    let rayleigh = equation(x() + q(1, 3) * y().pow(3) - y());
+    let start = guess(&rayleigh, [2.0, 0.0], 60.0).unwrap();
+    let proof = thirty("Rayleigh 1", &rayleigh, &Kind::LimitCycle, &start);
+    closes(&rayleigh, &proof, 1e-28);
+    // The derivative of Rayleigh's cycle is van der Pol's: the same period.
+    assert!(proof.period.midpoint().to_string().starts_with("6.663286859323130"));
+    let helmholtz = equation(x() + x().pow(2));
+    let quintic = equation(x() + x().pow(5) * 3);
+    let mixed = equation(x() + x().pow(2) * q(1, 3) + x() * y().pow(2) * q(1, 2));
+    for (name, equation, a) in [
+        ("Helmholtz", helmholtz, (2, 5)),
+        ("quintic", quintic, (1, 1)),
+        ("inertial", mixed, (3, 5)),
+    ] {
+        let a = Rational::from(a);
+        let start = guess(&equation, [a.to_f64(), 0.0], 0.0).unwrap();
+        let proof = thirty(name, &equation, &Kind::InitialAmplitude(a), &start);
+        closes(&equation, &proof, 1e-28);
+    }
+}
+
+/// x'' + x'/10 + x + x^3/2 = (3/10) cos(13 t/10): the three responses of the first harmonic.
+#[test]
+fn forced_responses_on_all_branches() {
+    let angle = q(13, 10) * Expression::Time;
+    let force = q(3, 10) * angle.apply(Function::Cos);
+    let equation = equation(q(1, 10) * y() + x() + q(1, 2) * x().pow(3) - force);
+    let (damping, rate, push) = (0.1 * 1.3, 1.3f64, 0.3);
+    let detuning = |a: f64| 1.0 - rate * rate + 0.375 * a * a;
+    let miss = |a: f64| a * a * (detuning(a).powi(2) + damping * damping) - push * push;
+    let grid = (0..4000).map(|i| f64::from(i) * 1e-3);
+    let roots: Vec<f64> = grid.filter(|a| miss(*a) * miss(*a + 1e-3) < 0.0).collect();
+    assert_eq!(roots.len(), 3);
+    let mut proofs: Vec<Proof> = Vec::new();
+    for a in roots {
+        let size = push / a;
+        let start = Start {
+            frequency: 0.0,
+            cosines: vec![0.0, a * detuning(a) / size],
+            sines: vec![0.0, a * damping / size],
+        };
+        let proof = thirty(&format!("forced Duffing, {a:.3}"), &equation, &Kind::Forced(1), &start);
+        closes(&equation, &proof, 1e-28);
+        assert!(proofs.iter().all(|other| other.is_separate_from(&proof)));
+        // Liouville: the divergence is -1/10.
+        assert!(proof.exponent.contains(&Rational::from((-1, 10))));
+        proofs.push(proof);
+    }
+}
+
+#[test]
+#[ignore = "ten seconds"]
+fn van_der_pol_at_ten() {
+    let equation = van_der_pol(q(10, 1));
+    let start = guess(&equation, [2.0, 0.0], 60.0).unwrap();
+    let proof = thirty("van der Pol 10", &equation, &Kind::LimitCycle, &start);
+    closes(&equation, &proof, 1e-28);
+}
+
+#[test]
+fn a_proof_in_the_precision_of_doubles_is_quick() {
+    let equation = van_der_pol(q(1, 1));
+    let start = guess(&equation, [2.0, 0.0], 60.0).unwrap();
+    let field = field(&equation);
+    let clock = std::time::Instant::now();
+    let proof = prove(&field, &Kind::LimitCycle, &start, &Request::default()).unwrap();
+    show("van der Pol 1, 15 digits", &proof, clock.elapsed().as_secs_f64());
+    assert!(digits(&proof.period) >= 15.0);
+}

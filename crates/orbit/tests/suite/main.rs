@@ -1,0 +1,7 @@
+//! Proved orbits against closed forms, Taylor integration and themselves.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // a test fails by panicking
+
+mod classics;
+mod common;
+mod random;
+mod sharpness;
