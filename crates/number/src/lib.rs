@@ -17,8 +17,10 @@ pub mod digits;
 mod error;
 mod exact;
 mod number;
+mod ratio;
 pub mod real;
 
 pub use error::NumberError;
 pub use exact::{Exact, decimal};
 pub use number::{Number, Status, certified, rational};
+pub use ratio::{from_ratio, to_ratio};

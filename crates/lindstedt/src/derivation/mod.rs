@@ -20,9 +20,11 @@ use lindstedt_expand::{
     Binding, ExpandError, Expansion, Request, check, compile, expand, leading_amplitude,
 };
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::certified;
+use lindstedt_number::{certified, to_ratio};
 use lindstedt_phase::print::PrintPhase;
 use lindstedt_phase::{Lobachevsky, Trigonometric};
+use num_bigint::BigInt;
+use num_rational::Ratio;
 use prepare::{Prepared, prepare};
 use rayon::prelude::*;
 use rug::Rational;
@@ -319,22 +321,43 @@ impl Derivation {
         Some(self.print_coefficient(series, n, Style::Text))
     }
 
+    /// Coefficient n of a series as a fraction, where it is rational.
+    ///
+    /// ```
+    /// let oscillator = lindstedt::Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+    /// let first = oscillator.derive(2)?.ratio("frequency_squared", 1);
+    /// assert_eq!(first.map(|q| q.to_string()).as_deref(), Some("3/4"));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn ratio(&self, name: &str, n: usize) -> Option<Ratio<BigInt>> {
+        let series = self.named(name)?;
+        let product = self.with_prefactor(series, series.coefficients.get(n)?)?;
+        self.ring.as_rational(&product).map(|q| to_ratio(&q))
+    }
+
+    /// A coefficient times its power of the root of the stiffness, where that is in the ring: the
+    /// root of a square is taken.
+    fn with_prefactor(&self, series: &NamedSeries, coefficient: &Polynomial) -> Option<Polynomial> {
+        let power = series.half_power;
+        if power == 0 || self.ring.is_zero(coefficient) {
+            return Some(coefficient.clone());
+        }
+        if power == 2 {
+            return Some(self.ring.mul(coefficient, &self.stiffness));
+        }
+        let root = rational_root(&self.ring.as_rational(&self.stiffness)?)?;
+        let root = if power < 0 { root.recip() } else { root };
+        let factor = rug::ops::Pow::pow(root, power.unsigned_abs());
+        Some(self.ring.scale(coefficient, &factor))
+    }
+
     /// Coefficient n with its prefactor, printed.
     pub fn print_coefficient(&self, series: &NamedSeries, n: usize, style: Style) -> String {
         let Some(coefficient) = series.coefficients.get(n) else { return "0".to_owned() };
-        if self.ring.is_zero(coefficient) || series.half_power == 0 {
-            return self.ring.print(coefficient, style);
-        }
-        if series.half_power == 2 {
-            return self.ring.print(&self.ring.mul(coefficient, &self.stiffness), style);
+        if let Some(product) = self.with_prefactor(series, coefficient) {
+            return self.ring.print(&product, style);
         }
         let power = series.half_power;
-        // The root of a square is taken.
-        if let Some(root) = self.ring.as_rational(&self.stiffness).and_then(|q| rational_root(&q)) {
-            let root = if power < 0 { root.recip() } else { root };
-            let factor = rug::ops::Pow::pow(root, power.unsigned_abs());
-            return self.ring.print(&self.ring.scale(coefficient, &factor), style);
-        }
         let kappa = self.ring.print(&self.stiffness, style);
         let single = kappa.chars().all(|c| c.is_alphanumeric() || "_{}".contains(c));
         let factor = match style {
