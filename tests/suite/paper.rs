@@ -54,7 +54,7 @@ fn every_formula_has_a_row() {
         assert!(found, "no row {label}");
     }
     for section in &paper().sections {
-        let mut labels: Vec<&str> = section.rows.iter().map(|r| r.label.as_str()).collect();
+        let mut labels: Vec<&str> = section.rows.iter().map(|r| &*r.label).collect();
         labels.sort_unstable();
         let all = labels.len();
         labels.dedup();
@@ -92,7 +92,7 @@ fn simulations_of_section_3() {
     }
     let table = numbered(3).tables.iter().find(|t| t.name == "simulations");
     let Some(table) = table else { panic!("no table") };
-    let cell = |row: usize, column: usize| table.rows[row][column].as_str();
+    let cell = |row: usize, column: usize| &*table.rows[row][column];
     let number = |row, column| {
         let text: &str = cell(row, column);
         let first = text.split(' ').next().and_then(|text| text.parse::<f64>().ok());
@@ -130,7 +130,7 @@ fn where_the_methods_can_be_trusted() {
     assert_eq!(onset.reach(2.0), None);
     let share = |rule: &str| {
         let rate = region.sample.rates.iter().find(|r| r.rule == rule);
-        rate.map_or(f64::NAN, |r| r.share())
+        rate.map_or(f64::NAN, |r| r.rate)
     };
     for (rule, known, error) in [
         ("(17), letter", 0.579, 0.03),
@@ -150,7 +150,7 @@ fn where_the_methods_can_be_trusted() {
     let cubic = trust.truncations.iter().find(|t| t.name == "n = 3");
     // 2.3e-11 at order 12 of the series in u.
     assert!(cubic.is_some_and(|t| (t.resummed[12] / 2.3e-11 - 1.0).abs() < 0.03));
-    let sections: Vec<u32> = trust.findings().iter().map(|f| f.section).collect();
+    let sections: Vec<u32> = trust.findings.iter().map(|f| f.section).collect();
     assert_eq!(sections, [2, 3, 4]);
 }
 
@@ -177,7 +177,7 @@ fn verdicts() {
         ("n = 3, second", Verdict::NotReproducible),
     ]);
     for row in &section().rows {
-        let verdict = expected.get(row.label.as_str()).copied().unwrap_or(Verdict::Agrees);
+        let verdict = expected.get(&*row.label).copied().unwrap_or(Verdict::Agrees);
         assert_eq!(row.verdict, verdict, "{}: {}", row.label, row.evidence);
     }
     assert_eq!(section().rows.len() - expected.len(), section().count(Verdict::Agrees));

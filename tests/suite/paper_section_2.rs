@@ -58,7 +58,7 @@ fn verdicts() {
     ]);
     for row in &section().rows {
         let usual = (Verdict::Agrees, "");
-        let (verdict, evidence) = expected.get(row.label.as_str()).copied().unwrap_or(usual);
+        let (verdict, evidence) = expected.get(&*row.label).copied().unwrap_or(usual);
         assert_eq!(row.verdict, verdict, "{}: {}", row.label, row.evidence);
         assert!(row.evidence.contains(evidence), "{}: {}", row.label, row.evidence);
     }
@@ -158,7 +158,7 @@ fn spoiled_formulas_do_not() {
         assert!(printed.contains(from), "{label}: {printed}");
         // The label of an equation is its whole text; others have a left side in front.
         let right = match label {
-            "(1)" | "(2)" => printed.as_str(),
+            "(1)" | "(2)" => &**printed,
             _ => printed.split_once(" = ").unwrap().1,
         };
         let row = reread_one(label, &right.replacen(from, to, 1));
@@ -196,7 +196,7 @@ fn multipliers_of_the_printed_amplitude() {
 #[test]
 fn predictions_and_truth() {
     let table = section().tables.iter().find(|t| t.name == "agreement").unwrap();
-    let names: Vec<&str> = table.rows.iter().map(|row| row[0].as_str()).collect();
+    let names: Vec<&str> = table.rows.iter().map(|row| &*row[0]).collect();
     let expected = ["O1", "O2", "O3", "O4", "O5", "O6", "O7", "O8", "O9", "all but O8", "all"];
     assert_eq!(names, expected);
     // No loop, letter, own orbit, true orbit, R < 0, G: 21 x 21 points of the eight orbits.

@@ -1,59 +1,11 @@
-//! The rules by which a printed statement gets its verdict.
+//! Printed sums and printed decimals against the true ones.
 
-use super::Verdict;
+use super::Findings;
 use lindstedt::Exact;
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_number::ball::Ball;
 use rug::ops::Pow;
 use rug::{Integer, Rational};
-
-/// What the comparison of a printed statement found.
-///
-/// The rules, in this order:
-///
-/// 1. It holds as printed (exactly, or the printed decimals are the value rounded or cut off) and
-///    no other statement of the paper rests on what was cut off: it agrees.
-/// 2. A slip of the pen: one change of one place (a factor, sign, symbol, exponent, bracket or
-///    digit, two symbols interchanged, a term left out) makes it hold, and no other statement of
-///    the paper holds only with the error: a misprint. Where two places of a formula have such a
-///    slip, both are named, or each has a row of its own. One term with two changes in it, or a
-///    change beside a term left out, is no slip. A number that is printed again with the same
-///    digits is no slip of a digit.
-/// 3. It is a number that no formula of the paper gives, neither as printed nor as derived here
-///    nor through another quantity at that order: not reproducible.
-/// 4. Everything else is wrong.
-#[derive(Clone, Debug, Default)]
-pub struct Findings {
-    /// The statement holds as printed.
-    pub holds: bool,
-    /// The one change that makes it hold.
-    pub correction: Option<String>,
-    /// Another statement of the paper holds only if this one is taken as printed, not with the
-    /// true value.
-    pub propagates: bool,
-    /// For a number: whether some formula gives it.
-    pub reproduced: Option<bool>,
-}
-
-impl Findings {
-    /// A statement that holds or does not.
-    pub fn holds(holds: bool) -> Self {
-        Self { holds, ..Self::default() }
-    }
-
-    /// The verdict, by the rules above.
-    pub fn verdict(&self) -> Verdict {
-        if self.holds && !self.propagates {
-            Verdict::Agrees
-        } else if self.correction.is_some() && !self.propagates {
-            Verdict::Misprint
-        } else if self.reproduced == Some(false) {
-            Verdict::NotReproducible
-        } else {
-            Verdict::Wrong
-        }
-    }
-}
 
 /// A term of a printed sum: a rational factor times something with a name.
 pub(super) struct Term<E> {
@@ -103,22 +55,22 @@ pub(super) fn compare_sums<R: Ratio>(
     let rests: Vec<_> = (0..printed.len()).map(|i| all_but(Some(i))).collect();
     let own = printed.iter().zip(&rests).find_map(|(term, rest)| {
         let q = ring.ratio(&term.value, rest)?;
-        Some(format!("the factor of {} is {q}, printed {}", term.name, term.factor))
+        Some(format!("the factor of ${}$ is ${q}$, printed ${}$", term.name, term.factor))
     });
     let unneeded = || {
         let (term, _) = printed.iter().zip(&rests).find(|(_, rest)| ring.is_zero(rest))?;
-        Some(format!("the term with {} does not belong there", term.name))
+        Some(format!("the term with ${}$ does not belong there", term.name))
     };
     let other = || {
         printed.iter().zip(&rests).find_map(|(term, rest)| {
             let (v, q) = vocabulary.iter().find_map(|v| Some((v, ring.ratio(&v.value, rest)?)))?;
             let printed = product(&term.factor, &term.name);
-            Some(format!("{} in the place of {printed}", product(&q, &v.name)))
+            Some(format!("${}$ in the place of ${printed}$", product(&q, &v.name)))
         })
     };
     let left_out = || {
         let (v, q) = vocabulary.iter().find_map(|v| Some((v, ring.ratio(&v.value, &missing)?)))?;
-        Some(format!("the term {} is missing", product(&q, &v.name)))
+        Some(format!("the term ${}$ is missing", product(&q, &v.name)))
     };
     let correction = own.or_else(unneeded).or_else(left_out).or_else(other);
     Findings { correction, ..Findings::default() }

@@ -21,119 +21,24 @@ mod printed;
 mod simulated;
 mod stick_slip;
 mod tables;
+mod text;
 pub mod trust;
+mod values;
+mod verdict;
 mod vibro_impact;
 
-pub use compare::{Decimal, Findings};
-pub use printed::{COMPARED_AT, Comparison, PaperVerdict, paper_comparison};
+pub use compare::Decimal;
+pub use printed::{PrintedForm, printed_forms};
+pub use text::{Part, Text};
 pub use trust::Trust;
+pub use values::{Paper, Row, Section, Table};
+pub use verdict::{Findings, Verdict};
 pub use vibro_impact::reread;
 
 use lindstedt::Error;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::digits::decimal;
 use std::sync::mpsc::{SyncSender, channel, sync_channel};
-
-/// What the comparison of a printed statement with the truth came to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verdict {
-    /// It holds as printed.
-    Agrees,
-    /// A slip of the pen (or one at each of two places), on which nothing in the paper rests.
-    Misprint,
-    /// It does not hold, and no slip of the pen explains it, or later statements rest on the error.
-    Wrong,
-    /// A number that follows from no formula, printed or corrected.
-    NotReproducible,
-}
-
-impl Verdict {
-    /// The verdict in words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Agrees => "agrees",
-            Self::Misprint => "misprint",
-            Self::Wrong => "wrong",
-            Self::NotReproducible => "not reproducible",
-        }
-    }
-}
-
-/// One formula or number of the paper.
-#[derive(Clone, Debug)]
-pub struct Row {
-    /// The number of the formula, or where the statement stands.
-    pub label: String,
-    /// What is printed.
-    pub printed: String,
-    /// What the engine derives.
-    pub derived: String,
-    /// What another route says, empty where there is none. A residual shares the algebra with the
-    /// derivation, other routes share nothing.
-    pub independent: String,
-    /// The verdict.
-    pub verdict: Verdict,
-    /// Why.
-    pub evidence: String,
-}
-
-/// A table of numbers. Numbers are certified to the printed digits unless a note says otherwise.
-#[derive(Clone, Debug)]
-pub struct Table {
-    /// A short name for files.
-    pub name: String,
-    /// What it shows.
-    pub title: String,
-    /// The heads of the columns.
-    pub columns: Vec<String>,
-    /// The cells, row by row.
-    pub rows: Vec<Vec<String>>,
-    /// What must be said beside the numbers.
-    pub notes: Vec<String>,
-}
-
-/// A section of the paper.
-#[derive(Clone, Debug)]
-pub struct Section {
-    /// Its number.
-    pub number: u32,
-    /// Its title.
-    pub title: &'static str,
-    /// Its formulas and numbers, in the order of the paper.
-    pub rows: Vec<Row>,
-    /// What the method really gives.
-    pub tables: Vec<Table>,
-}
-
-impl Section {
-    /// The row with this label.
-    pub fn row(&self, label: &str) -> Option<&Row> {
-        self.rows.iter().find(|row| row.label == label)
-    }
-
-    /// How many rows have this verdict.
-    pub fn count(&self, verdict: Verdict) -> usize {
-        self.rows.iter().filter(|row| row.verdict == verdict).count()
-    }
-}
-
-/// What was read.
-#[derive(Clone, Debug)]
-pub struct Paper {
-    /// Where the methods can be trusted.
-    pub trust: Trust,
-    /// The sections, in the order of the paper; with the rows finished when the observer stopped the work.
-    pub sections: Vec<Section>,
-    /// Whether everything is there (false when the observer stopped the work).
-    pub complete: bool,
-}
-
-impl Paper {
-    /// The section with this number, if it was begun.
-    pub fn section(&self, number: u32) -> Option<&Section> {
-        self.sections.iter().find(|section| section.number == number)
-    }
-}
 
 /// How far to go.
 #[derive(Clone, Copy, Debug)]
@@ -257,6 +162,7 @@ pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<
             paper.sections.push(section);
         }
     }
+    paper.trust.conclude();
     Ok(paper)
 }
 
@@ -317,10 +223,10 @@ const SECTIONS: &[Entry] = &[
 ];
 
 /// A part of a section: adds to it; false when it was stopped.
-type Part = fn(&mut Reader<'_>, &mut Section) -> Result<bool, Error>;
+type Step = fn(&mut Reader<'_>, &mut Section) -> Result<bool, Error>;
 
 /// A part with what the observer is told.
-type NamedPart = (&'static str, Part);
+type NamedPart = (&'static str, Step);
 
 /// Number, title and parts of a section.
 type Entry = (u32, &'static str, &'static [NamedPart]);
@@ -329,18 +235,18 @@ type Entry = (u32, &'static str, &'static [NamedPart]);
 fn plain(
     label: &str,
     printed: &str,
-    derived: String,
-    independent: String,
+    derived: impl Into<Text>,
+    independent: impl Into<Text>,
     holds: bool,
     evidence: &str,
 ) -> Row {
     Row {
-        label: label.to_owned(),
-        printed: printed.to_owned(),
-        derived,
-        independent,
+        label: label.into(),
+        printed: printed.into(),
+        derived: derived.into(),
+        independent: independent.into(),
         verdict: Findings::holds(holds).verdict(),
-        evidence: evidence.to_owned(),
+        evidence: evidence.into(),
     }
 }
 

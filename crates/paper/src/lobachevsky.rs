@@ -35,12 +35,12 @@ pub(super) fn rows(reader: &Reader<'_>) -> Result<Vec<Row>, Error> {
                     holds,
                     evidence: String| {
         rows.push(Row {
-            label: label.to_owned(),
-            printed: printed.to_owned(),
-            derived,
-            independent,
+            label: label.into(),
+            printed: printed.into(),
+            derived: derived.into(),
+            independent: independent.into(),
             verdict: Findings::holds(holds).verdict(),
-            evidence,
+            evidence: evidence.into(),
         });
     };
     let show = |ball: &Ball| decimal(ball, 15).unwrap_or_else(|| "?".to_owned());
@@ -49,9 +49,9 @@ pub(super) fn rows(reader: &Reader<'_>) -> Result<Vec<Row>, Error> {
     let direct = quadrature(&zero, &third);
     let holds = points.iter().all(|q| near(&l(q), &quadrature(&zero, q)));
     push(
-        "L",
-        "L(x) = -int_0^x ln|cos t| dt",
-        format!("L(pi/3) = {}", show(&l(&third))),
+        "$L$",
+        "$L(x) = -int_0^x ln|cos t| dt$",
+        format!("$L(pi/3) = {}$", show(&l(&third))),
         format!("quadrature: {} (estimated)", direct.to_string_radix(10, Some(15))),
         holds,
         format!(
@@ -66,16 +66,16 @@ pub(super) fn rows(reader: &Reader<'_>) -> Result<Vec<Row>, Error> {
             near(&balls.neg(&l(q)), &quadrature(&zero, &mirrored))
         });
     push(
-        "L odd",
-        "L(x) = -L(-x) for -pi/2 <= x <= pi/2",
-        "L is odd on the whole line".to_owned(),
-        "quadrature from 0 to -x".to_owned(),
+        "$L$ odd",
+        "$L(x) = -L(-x)$ for $-pi/2 <= x <= pi/2$",
+        "$L$ is odd on the whole line".to_owned(),
+        "quadrature from 0 to $-x$".to_owned(),
         odd,
         "the integrand is even; compared at the test points".to_owned(),
     );
     for (label, printed, shift) in [
-        ("L(x - pi)", "L(x - pi) = L(x) - pi ln 2", -1),
-        ("L(x + pi)", "L(x + pi) = L(x) + pi ln 2", 1),
+        ("$L(x - pi)$", "$L(x - pi) = L(x) - pi ln 2$", -1),
+        ("$L(x + pi)$", "$L(x + pi) = L(x) + pi ln 2$", 1),
     ] {
         let step = balls.mul_i64(&balls.mul(&balls.pi(), &balls.ln_2()), shift);
         let holds = points.iter().all(|q| {
@@ -87,13 +87,13 @@ pub(super) fn rows(reader: &Reader<'_>) -> Result<Vec<Row>, Error> {
         push(
             label,
             printed,
-            format!("L(pi/3 {shift:+} pi) = {}", show(&l(&moved))),
+            format!("$L(pi/3 {shift:+} pi) = {}$", show(&l(&moved))),
             format!(
                 "quadrature: {} (estimated)",
                 quadrature(&zero, &moved).to_string_radix(10, Some(15))
             ),
             holds,
-            "the mean of -ln|cos| is mu_1 = ln 2; compared at the test points".to_owned(),
+            "the mean of $-ln|cos|$ is $mu_1 = ln 2$; compared at the test points".to_owned(),
         );
     }
     rows.push(series_row(reader));
@@ -101,12 +101,13 @@ pub(super) fn rows(reader: &Reader<'_>) -> Result<Vec<Row>, Error> {
     let printed = balls.mul_i64(&balls.mul(&balls.pi(), &balls.ln_2()), 2);
     let direct = quadrature(&zero, &Rational::from(2));
     rows.push(Row {
-        label: "L(2 pi)".to_owned(),
-        printed: "L(2 pi) = 2 pi ln 2".to_owned(),
-        derived: format!("L(2 pi) = {}", show(&double)),
-        independent: format!("quadrature: {} (estimated)", direct.to_string_radix(10, Some(15))),
+        label: "$L(2 pi)$".into(),
+        printed: "$L(2 pi) = 2 pi ln 2$".into(),
+        derived: format!("$L(2 pi) = {}$", show(&double)).into(),
+        independent: format!("quadrature: {} (estimated)", direct.to_string_radix(10, Some(15)))
+            .into(),
         verdict: Findings::holds(double.overlaps(&printed) && near(&printed, &direct)).verdict(),
-        evidence: "twice the pseudoperiod, by the printed properties".to_owned(),
+        evidence: "twice the pseudoperiod, by the printed properties".into(),
     });
     Ok(rows)
 }
@@ -143,19 +144,19 @@ fn series_row(reader: &Reader<'_>) -> Row {
     let show = |ball: &Ball, digits| decimal(ball, digits).unwrap_or_else(|| "?".to_owned());
     let first = exact.get(2).map_or("?".to_owned(), |c| ring.print(c, Style::Text));
     Row {
-        label: "L series".to_owned(),
-        printed: "L(x) = x ln 2 - 1/2 sum_{k>=1} (-1)^(k-1) sin(2kx)/k^2".to_owned(),
-        derived: format!("L(x) - x ln 2 = Lambda_1(x), first harmonic {first}*sin(2x)"),
+        label: "$L$ series".into(),
+        printed: "$L(x) = x ln 2 - 1/2 sum_{k>=1} (-1)^(k-1) sin(2kx)/k^2$".into(),
+        derived: format!("$L(x) - x ln 2 = Lambda_1(x)$, first harmonic ${first}*sin(2x)$").into(),
         independent: format!(
-            "L(pi/4) = {}; {HARMONICS} terms of the series give {}",
+            "$L(pi/4) = {}$; {HARMONICS} terms of the series give {}",
             show(&value, 15),
             show(&partial, 4)
-        ),
+        ).into(),
         verdict: Findings::holds(holds && partial.overlaps(&value)).verdict(),
         evidence: format!(
-            "{HARMONICS} Fourier coefficients of Lambda_1 compared, exactly (the series converges \
-             like 1/k^2 and serves for no more than a few digits)"
-        ),
+            "{HARMONICS} Fourier coefficients of $Lambda_1$ compared, exactly (the series converges \
+             like $1/k^2$ and serves for no more than a few digits)"
+        ).into(),
     }
 }
 

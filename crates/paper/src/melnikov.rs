@@ -1,7 +1,8 @@
 //! Section 3, the formulas (22)-(27) and the numbers of its text.
 
-use super::printed::{COMPARED_AT, Comparison, PaperVerdict, paper_comparison};
-use super::{Decimal, Findings, Reader, Row, Section, plain, show};
+use super::printed::{COMPARED_AT, PrintedForm, printed_forms};
+use super::{Decimal, Reader, Row, Section, plain, show};
+use crate::Text;
 use lindstedt::Error;
 use lindstedt_melnikov::{
     Branch, Friction, MelnikovError, PolynomialFriction, StickSlip, quadrature_dissipation,
@@ -25,12 +26,10 @@ pub(super) fn failed(error: MelnikovError) -> Error {
 
 /// Reads the formulas: every comparison with a quadrature or a derivative becomes a row.
 pub(super) fn read_formulas(_: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
-    let list = paper_comparison().map_err(failed)?;
-    // What "text" says of numbers is below, to more digits.
-    let list: Vec<Comparison> = list.into_iter().filter(|c| c.equation != "text").collect();
+    let list = printed_forms().map_err(failed)?;
     let quadrature = list.iter().find(|c| c.equation == "(24)").and_then(|c| c.printed_value);
     for (index, comparison) in list.iter().enumerate() {
-        let of_this = |c: &&Comparison| c.equation == comparison.equation;
+        let of_this = |c: &&PrintedForm| c.equation == comparison.equation;
         let before = list[..index].iter().filter(of_this).count();
         let label = match list.iter().filter(of_this).count() {
             0 | 1 => comparison.equation.to_owned(),
@@ -42,41 +41,36 @@ pub(super) fn read_formulas(_: &mut Reader<'_>, section: &mut Section) -> Result
 }
 
 /// A comparison as a row. A double has 15 digits; nine were compared.
-fn row(label: String, comparison: &Comparison, quadrature: Option<f64>) -> Row {
+fn row(label: String, comparison: &PrintedForm, quadrature: Option<f64>) -> Row {
     let estimate = |x: f64| format!("{x:.9} (estimated)");
     let derived = comparison.derived_value;
     let independent = match comparison.equation {
-        "(22)" | "(23)" => "the derivative of x_0 by differences".to_owned(),
+        "(22)" | "(23)" => "the derivative of $x_0$ by differences".to_owned(),
         _ if quadrature.is_some_and(|q| (q - derived).abs() < 1e-9) => {
             quadrature.map_or_else(String::new, |q| format!("quadrature of (24): {}", estimate(q)))
         }
         _ => String::new(),
     };
-    let findings = Findings {
-        holds: comparison.verdict == PaperVerdict::Agrees,
-        correction: (comparison.verdict == PaperVerdict::Misprint)
-            .then(|| comparison.correct.to_owned()),
-        ..Findings::default()
-    };
+    let findings = &comparison.findings;
     let gives = match comparison.printed_value {
         Some(_) if findings.holds => "as printed it gives the same".to_owned(),
         Some(value) => format!("as printed it gives {}", estimate(value)),
         None => "as printed it has no real value".to_owned(),
     };
     Row {
-        label,
-        printed: comparison.printed.to_owned(),
-        derived: estimate(derived),
-        independent,
+        label: label.into(),
+        printed: comparison.printed.into(),
+        derived: Text::from(estimate(derived)),
+        independent: independent.into(),
         verdict: findings.verdict(),
-        evidence: if comparison.printed.contains("b = 5") {
+        evidence: Text::from(if comparison.printed.contains("$b = 5$") {
             format!("{gives}; {}", comparison.correct)
-        } else if comparison.printed.contains("at v* =") {
-            let others = COMPARED_AT.replace("v* = 0.5, ", "");
-            format!("{gives}; {}; at this v* and {others}", comparison.correct)
+        } else if comparison.printed.contains("at $v* =") {
+            let others = COMPARED_AT.replace("$v* = 0.5$, ", "");
+            format!("{gives}; {}; at this $v*$ and {others}", comparison.correct)
         } else {
             format!("{gives}; {}; at {COMPARED_AT}", comparison.correct)
-        },
+        }),
     }
 }
 
@@ -130,13 +124,16 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
     let mut sources = vec![("(27)".to_owned(), value.clone())];
     let none = || Exact::from(0);
     for (name, part) in [
-        ("(25) as printed, without the beta sech^4 tanh^4 term", without_quartic(balls)),
-        ("(27) without T0", StickSlip { dry: none(), ..paper.clone() }.signed_threshold(balls)),
+        ("(25) as printed, without the $beta sech^4 tanh^4$ term", without_quartic(balls)),
+        ("(27) without $T0$", StickSlip { dry: none(), ..paper.clone() }.signed_threshold(balls)),
         (
-            "(27) without alpha",
+            "(27) without $alpha$",
             StickSlip { alpha: none(), ..paper.clone() }.signed_threshold(balls),
         ),
-        ("(27) without beta", StickSlip { beta: none(), ..paper.clone() }.signed_threshold(balls)),
+        (
+            "(27) without $beta$",
+            StickSlip { beta: none(), ..paper.clone() }.signed_threshold(balls),
+        ),
     ] {
         sources.push((name.to_owned(), balls.abs(&part.ok_or(Error::NoValue)?)));
     }
@@ -155,19 +152,17 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
         })
         .collect();
     Ok(Row {
-        label: "gamma_c".to_owned(),
-        printed:
-            "a = b = 1, alpha = beta = T0 = 0.3, omega = 2, v* = 0.4: gamma_c = 0.65, printed \
-                  twice"
-                .to_owned(),
-        derived: format!("gamma_c = {}", show(&value, DIGITS)),
+        label: "$gamma_c$".into(),
+        printed: "$a = b = 1$, $alpha = beta = T0 = 0.3$, $omega = 2$, $v* = 0.4$: $gamma_c = 0.65$, printed \
+                  twice".into(),
+        derived: format!("$gamma_c = {}$", show(&value, DIGITS)).into(),
         independent: format!(
-            "D by quadrature: {} (estimated)",
+            "$D$ by quadrature: {} (estimated)",
             show(&balls.from_parts(&second, &rug::Float::new(53)), DIGITS)
-        ),
+        ).into(),
         verdict: findings.verdict(),
         evidence: format!(
-            "0.65 is {}; {}; near v* = 0.4 the curve is flat, its smooth extrema are {}",
+            "0.65 is {}; {}; near $v* = 0.4$ the curve is flat, its smooth extrema are {}",
             source.map_or_else(
                 || {
                     let tried: Vec<&str> = sources.iter().map(|(name, _)| name.as_str()).collect();
@@ -180,7 +175,7 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
                 |digit| format!("{digit}, but such a slip is not made twice")
             ),
             extremes.ok_or(Error::NoValue)?.join(" and ")
-        ),
+        ).into(),
     })
 }
 
@@ -208,19 +203,21 @@ fn zero(text: &'static str, zero: Option<&Ball>, count: usize, balls: Balls) -> 
     let residual = oscillator(5, Exact::from(printed.value().clone())).g(balls);
     let shown = |x: &rug::Float| x.to_string_radix(10, Some(3));
     Ok(Row {
-        label: format!("v* = {text}"),
-        printed: format!("b = 5: gamma = 0 at v* = {text}"),
-        derived: format!("v* = {}", show(zero, DIGITS)),
+        label: format!("$v* = {text}$").into(),
+        printed: format!("$b = 5$: $gamma = 0$ at $v* = {text}$").into(),
+        derived: format!("$v* = {}$", show(zero, DIGITS)).into(),
         independent: format!(
-            "D by quadrature at the printed value -+ 1e-6: {} and {} (estimated)",
+            "$D$ by quadrature at the printed value -+ 1e-6: {} and {} (estimated)",
             shown(&sides[0]),
             shown(&sides[1])
-        ),
+        )
+        .into(),
         verdict: findings.verdict(),
         evidence: format!(
-            "G there is {}; (27) has {count} zeros in v* >= 0, and the list is complete",
+            "$G$ there is {}; (27) has {count} zeros in $v* >= 0$, and the list is complete",
             residual.map_or_else(|| "?".to_owned(), |g| show(&g, 3))
-        ),
+        )
+        .into(),
     })
 }
 
@@ -253,17 +250,17 @@ fn cusps(printed: &[&'static str; 2], balls: Balls) -> Result<Row, Error> {
     let v = cusp.midpoint().to_rational().ok_or(Error::NoValue)?;
     let pair = slopes(&v).ok_or(Error::NoValue)?;
     let there = if far_apart(&pair) { "a cusp" } else { "no cusp" };
-    found.push(format!("{} and {} at V: {there}", show(&pair[0], 6), show(&pair[1], 6)));
+    found.push(format!("{} and {} at $V$: {there}", show(&pair[0], 6), show(&pair[1], 6)));
     Ok(plain(
         "two cusps",
-        "b = 5: two cusps, at v* = 0.310429 and v* = 0.557204",
-        format!("the cusp is at v* = V = a/sqrt(2b) = {}", show(&cusp, DIGITS)),
+        "$b = 5$: two cusps, at $v* = 0.310429$ and $v* = 0.557204$",
+        format!("the cusp is at $v* = V = a/sqrt(2b) = {}$", show(&cusp, DIGITS)),
         format!(
             "difference quotients of the signed curve to the left and to the right, step 1e-9 (estimated): {}",
             found.join("; ")
         ),
         holds,
-        "there gamma has zeros and the signed curve is smooth: they are corners of |gamma|; at V its slope \
+        "there $gamma$ has zeros and the signed curve is smooth: they are corners of $|gamma|$; at $V$ its slope \
          from the left is infinite",
     ))
 }
@@ -281,14 +278,14 @@ fn touching(balls: Balls) -> Option<Row> {
     let holds = at(b.clone())?.contains_zero() && below.is_positive() && above.is_negative();
     Some(plain(
         "the cusp touches",
-        "by the parameter b the cusp can touch the horizontal coordinate, gamma = 0",
-        format!("it does at b = 129 a^2 beta/(70 alpha) = {b}"),
+        "by the parameter $b$ the cusp can touch the horizontal coordinate, $gamma = 0$",
+        format!("it does at $b = 129 a^2 beta/(70 alpha) = {b}$"),
         format!(
-            "gamma at the cusp, signed: {} at b - 1/1000, {} at b + 1/1000",
+            "$gamma$ at the cusp, signed: {} at $b - 1/1000$, {} at $b + 1/1000$",
             show(&below, 6),
             show(&above, 6)
         ),
         holds,
-        &format!("not at b = 5: there it is {}", show(&five, DIGITS)),
+        &format!("not at $b = 5$: there it is {}", show(&five, DIGITS)),
     ))
 }

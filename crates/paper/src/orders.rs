@@ -2,6 +2,7 @@
 
 use super::compare::{Ratio, Term, compare_sums};
 use super::{Findings, Reader, Row, periods};
+use crate::Text;
 use lindstedt::constants::Constants;
 use lindstedt::{Derivation, Error, Progress, Settings, Solution, derive};
 use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
@@ -128,12 +129,13 @@ impl Case {
             rational.map_or("?".to_owned(), |q| q.to_string())
         };
         Row {
-            label: label.to_owned(),
-            printed: printed.to_owned(),
-            derived: format!("x_{n}(0) = {}, x_{n}'(0) = {}", shown(start), shown(slope)),
-            independent: self.residual_text(),
+            label: label.into(),
+            printed: printed.into(),
+            derived: format!("$x_{n}(0) = {}$, $x_{n}'(0) = {}$", shown(start), shown(slope))
+                .into(),
+            independent: Text::from(self.residual_text()),
             verdict: Findings::holds(holds).verdict(),
-            evidence: "value and slope of the derived x_n at 0, exactly".to_owned(),
+            evidence: "value and slope of the derived $x_n$ at 0, exactly".into(),
         }
     }
 
@@ -183,25 +185,26 @@ impl Case {
             Some(correction) => {
                 // The paper writes squares of logarithms as [ln(x^2)]^2.
                 let read = if printed.contains("ln(x_0)^2") {
-                    "; right if ln(x_0)^2 is read as ln((x_0)^2)"
+                    "; right if $ln(x_0)^2$ is read as $ln((x_0)^2)$"
                 } else {
                     ""
                 };
-                format!("{correction}; at tau = 1 as printed {}{read}", show(&theirs))
+                format!("{correction}; at $tau = 1$ as printed {}{read}", show(&theirs))
             }
-            None => format!("at tau = 1 as printed {}", show(&theirs)),
+            None => format!("at $tau = 1$ as printed {}", show(&theirs)),
         };
         Ok(Row {
-            label: label.to_owned(),
-            printed: printed.to_owned(),
-            derived: format!("x_{n}'' + x_{n} = {text}"),
+            label: label.into(),
+            printed: printed.into(),
+            derived: format!("$x_{n}'' + x_{n} = {text}$").into(),
             independent: format!(
-                "at tau = 1, force differentiated numerically: {} (estimated; derived {})",
+                "at $tau = 1$, force differentiated numerically: {} (estimated; derived {})",
                 show(&numerical),
                 show(&ours)
-            ),
+            )
+            .into(),
             verdict: findings.verdict(),
-            evidence,
+            evidence: evidence.into(),
         })
     }
 

@@ -52,7 +52,7 @@ fn equation_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     let series = periods::pendulum_period_by_series(&one, balls)?;
     let mut rows = vec![plain(
         "(43)",
-        "x'' + sin x = 0",
+        "$x'' + sin x = 0$",
         format!("period at amplitude 1: {} by the AGM", show(&mean, 16)),
         format!("{} by the hypergeometric series", show(&series, 16)),
         mean.overlaps(&series),
@@ -70,30 +70,30 @@ fn equation_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     let near = balls.sub(&at_one, &balls.sin(&x)).abs_upper() < 1e-60;
     rows.push(plain(
         "(44)",
-        "x'' + x - x^(1+2 delta)/3! + x^(1+4 delta)/5! + ... = 0",
-        "x'' + x S(delta ln x^2) = 0, S(z) = sum_k (-1)^k e^(k z)/(2k+1)!".to_owned(),
-        format!("at delta = 1, x = 7/5: {}, sin(7/5) = {}", show(&at_one, 15), show(&balls.sin(&x), 15)),
+        "$x'' + x - x^(1+2 delta)/3! + x^(1+4 delta)/5! + ... = 0$",
+        "$x'' + x S(delta ln x^2) = 0$, $S(z) = sum_k (-1)^k e^(k z)/(2k+1)!$".to_owned(),
+        format!("at $delta = 1$, $x = 7/5$: {}, $sin(7/5) = {}$", show(&at_one, 15), show(&balls.sin(&x), 15)),
         printed.as_slice() == derived.as_slice() && near,
-        "the factors of the powers, exactly, and the sum at delta = 1 (the signs printed alternate)",
+        "the factors of the powers, exactly, and the sum at $delta = 1$ (the signs printed alternate)",
     ));
     let sine = balls.sin(&balls.one());
     let stiffness = case.constants.evaluate(&case.expansion.stiffness, balls)?;
     let zero = force(&x, &balls.zero(), balls)?;
     rows.push(plain(
-        "Omega(x,0)",
-        "Omega(x, 0) = x (1 - 1/3! + 1/5! - ...) = x sin 1",
-        format!("kappa = S_0 = {}", show(&stiffness, 15)),
-        format!("sin 1 = {}", show(&sine, 15)),
+        "$Omega(x,0)$",
+        "$Omega(x, 0) = x (1 - 1/3! + 1/5! - ...) = x sin 1$",
+        format!("$kappa = S_0 = {}$", show(&stiffness, 15)),
+        format!("$sin 1 = {}$", show(&sine, 15)),
         stiffness.overlaps(&sine) && balls.sub(&zero, &balls.mul(&x, &sine)).abs_upper() < 1e-60,
-        "the stiffness that the engine finds at order zero, and the sum at delta = 0",
+        "the stiffness that the engine finds at order zero, and the sum at $delta = 0$",
     ));
     rows.push(plain(
-        "omega^2",
-        "omega^2 = sin 1",
-        format!("omega^2 = S_0 = {} at order zero", show(&stiffness, 15)),
-        format!("sin 1 = {}", show(&sine, 15)),
+        "$omega^2$",
+        "$omega^2 = sin 1$",
+        format!("$omega^2 = S_0 = {}$ at order zero", show(&stiffness, 15)),
+        format!("$sin 1 = {}$", show(&sine, 15)),
         stiffness.overlaps(&sine),
-        "the series of the program for S_0 and MPFR's sine",
+        "the series of the program for $S_0$ and MPFR's sine",
     ));
     rows.push(omega_row(balls)?);
     // omega_1^2 = sum (-1)^(k+1) k/(2k+1)!, omega_2^2 half of that with k^2, as printed.
@@ -103,8 +103,13 @@ fn equation_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
         balls.mul_power_of_two(&cosine, -3),
     ];
     let names = [
-        ("omega_1^2", "omega_1^2 = 1/3! - 2/5! + 3/7! - 4/9! + ...", "-S_1", "(sin 1 - cos 1)/2"),
-        ("omega_2^2", "omega_2^2 = 0.5 (1/3! - 2^2/5! + 3^2/7! - ...)", "-S_2/2", "(cos 1)/8"),
+        (
+            "$omega_1^2$",
+            "$omega_1^2 = 1/3! - 2/5! + 3/7! - 4/9! + ...$",
+            "-S_1",
+            "(sin 1 - cos 1)/2",
+        ),
+        ("$omega_2^2$", "$omega_2^2 = 0.5 (1/3! - 2^2/5! + 3^2/7! - ...)$", "-S_2/2", "(cos 1)/8"),
     ];
     for ((label, printed, symbol, form), (n, closed)) in
         names.into_iter().zip((1u16..).zip(&closed))
@@ -119,8 +124,8 @@ fn equation_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
         rows.push(plain(
             label,
             printed,
-            format!("{symbol} = {}", show(&ours, 15)),
-            format!("{form} = {}", show(closed, 15)),
+            format!("${symbol} = {}$", show(&ours, 15)),
+            format!("${form} = {}$", show(closed, 15)),
             near(&ours) && near(closed),
             &format!("the printed sum with {TERMS} terms"),
         ));
@@ -149,7 +154,7 @@ fn omega_row(balls: Balls) -> Option<Row> {
         let shown = ring.print(&coefficient, Style::Text);
         if !compare_sums(&ring, &printed, &coefficient, &words).holds {
             holds = false;
-            corrections.push(format!("{shown} in the place of {} at order {n}", word.name));
+            corrections.push(format!("${shown}$ in the place of ${}$ at order {n}", word.name));
         }
         derived.push(shown);
     }
@@ -164,21 +169,20 @@ fn omega_row(balls: Balls) -> Option<Row> {
     let correction = (!holds && near).then(|| corrections.join(", "));
     let findings = Findings { holds, correction, propagates, reproduced: None };
     Some(Row {
-        label: "Omega".to_owned(),
-        printed: "Omega = x [omega^2 + delta ln(x^2) omega_1^2 + delta^2 [ln(x^2)]^2 + ...]"
-            .to_owned(),
+        label: "$Omega$".into(),
+        printed: "$Omega = x [omega^2 + delta ln(x^2) omega_1^2 + delta^2 [ln(x^2)]^2 + ...]$".into(),
         derived: format!(
-            "the factor of delta ln(x^2) is {}, that of delta^2 [ln(x^2)]^2 is {}",
+            "the factor of $delta ln(x^2)$ is ${}$, that of $delta^2 [ln(x^2)]^2$ is ${}$",
             derived.first()?,
             derived.get(1)?
-        ),
+        ).into(),
         independent: format!(
-            "dOmega/d(delta)/(x ln x^2) at x = 1/2, delta = 0, numerically: {} (estimated); omega_1^2 = {}",
+            "$dOmega/d(delta)/(x ln x^2)$ at $x = 1/2$, $delta = 0$, numerically: {} (estimated); $omega_1^2 = {}$",
             show(&measured, 12),
             show(&printed, 12)
-        ),
+        ).into(),
         verdict: findings.verdict(),
-        evidence: format!("{}; (47) and (49) carry the right signs", corrections.join(", ")),
+        evidence: format!("{}; (47) and (49) carry the right signs", corrections.join(", ")).into(),
     })
 }
 
@@ -223,33 +227,33 @@ fn order_rows(case: &Case) -> Result<Vec<Row>, Error> {
     Ok(vec![
         plain(
             "(45)",
-            "x_0'' + omega^2 x_0 = 0",
-            format!("x_0 = {x_0}, tau = omega t"),
+            "$x_0'' + omega^2 x_0 = 0$",
+            format!("$x_0 = {x_0}$, $tau = omega t$"),
             case.residual_text(),
             case.algebra.is_zero(&order_zero),
-            "x_0'' + x_0 vanishes identically in tau",
+            "$x_0'' + x_0$ vanishes identically in $tau$",
         ),
-        case.initial_row("(46)", 0, "x_0(0) = 1, x_0'(0) = 0"),
+        case.initial_row("(46)", 0, "$x_0(0) = 1$, $x_0'(0) = 0$"),
         case.order_row(
             "(47)",
-            (1, "x_1'' + omega^2 x_1 = omega_1^2 x_0 ln(x_0)^2 - alpha_1 x_0''"),
+            (1, "$x_1'' + omega^2 x_1 = omega_1^2 x_0 ln(x_0)^2 - alpha_1 x_0''$"),
             &first,
             &words,
             &force,
         )?,
-        case.initial_row("(48)", 1, "x_1(0) = x_1'(0) = 0"),
+        case.initial_row("(48)", 1, "$x_1(0) = x_1'(0) = 0$"),
         case.order_row(
             "(49)",
-            (2, "x_2'' + omega^2 x_2 = omega_1^2 x_1 ln(x_0^2) + omega_2^2 x_0 [ln(x_0^2)]^2 - alpha_2 x_0'' - alpha_1 x_1''"),
+            (2, "$x_2'' + omega^2 x_2 = omega_1^2 x_1 ln(x_0^2) + omega_2^2 x_0 [ln(x_0^2)]^2 - alpha_2 x_0'' - alpha_1 x_1''$"),
             &second,
             &words,
             &force,
         )?,
-        case.initial_row("(50)", 2, "x_2(0) = x_2'(0) = 0"),
+        case.initial_row("(50)", 2, "$x_2(0) = x_2'(0) = 0$"),
         plain(
-            "x_0, pendulum",
-            "x_0 = cos omega t",
-            format!("x_0 = {x_0}, tau = omega t"),
+            "$x_0$, pendulum",
+            "$x_0 = cos omega t$",
+            format!("$x_0 = {x_0}$, $tau = omega t$"),
             case.residual_text(),
             *case.x(0) == lindstedt_algebra::PhaseAlgebra::cosine(&case.algebra),
             "the solution of (45), (46)",

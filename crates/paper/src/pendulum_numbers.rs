@@ -3,6 +3,7 @@
 use super::numbers::{approximation, percent, times_two_pi, truncations};
 use super::tables::{QUANTITIES, Truncations};
 use super::{Decimal, Row, periods, plain, show};
+use crate::Text;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
@@ -27,7 +28,7 @@ pub(super) fn rows(balls: Balls) -> Option<Vec<Row>> {
     let root = balls.sqrt(&balls.sin(&balls.one()))?;
     let mut sources = vec![
         ("(51) as printed".to_owned(), as_printed.clone()),
-        ("(51) with the missing 1/omega".to_owned(), balls.div(&as_printed, &root)?),
+        ("(51) with the missing $1/omega$".to_owned(), balls.div(&as_printed, &root)?),
     ];
     sources.extend(truncations(&series, &one));
     let off = |value: &Ball| Some(show(&percent(value, &exact, balls)?, 3));
@@ -41,73 +42,76 @@ pub(super) fn rows(balls: Balls) -> Option<Vec<Row>> {
     let true_error = percent(&ball(&first_printed), &exact, balls)?;
     let correct = numerical.correct(&exact)?;
     let mut rows = vec![Row {
-        label: "T numerical".to_owned(),
-        printed: "the numerical period of (43) is T = 6.6".to_owned(),
-        derived: format!("T = {} at amplitude 1", show(&exact, 12)),
+        label: "$T$ numerical".into(),
+        printed: "the numerical period of (43) is $T = 6.6$".into(),
+        derived: format!("$T = {}$ at amplitude 1", show(&exact, 12)).into(),
         independent: format!(
             "hypergeometric series: {}",
             show(&periods::pendulum_period_by_series(&one, balls)?, 12)
-        ),
+        ).into(),
         verdict: numerical.compare(&exact).verdict(),
         evidence: format!(
             "{}, rounded it is {correct}; the error of 0.5 % given for 6.57 rests on 6.6 ({} %, in truth {} %)",
             numerical.shows_as(&exact).unwrap_or("neither rounded nor cut off"),
             show(&own, 2),
             show(&true_error, 3)
-        ),
+        ).into(),
     }];
     rows.push(Row {
-        label: "T order 0".to_owned(),
-        printed: "the approximation of order 0 gives T = 6.8".to_owned(),
-        derived: format!("2 pi/omega = {}, off by {} %", show(&zeroth, 8), off(&zeroth)?),
-        independent: exact_text.clone(),
+        label: "$T$ order 0".into(),
+        printed: "the approximation of order 0 gives $T = 6.8$".into(),
+        derived: format!("$2 pi/omega = {}$, off by {} %", show(&zeroth, 8), off(&zeroth)?).into(),
+        independent: Text::from(exact_text.clone()),
         verdict: zero.compare(&zeroth).verdict(),
         evidence: format!(
             "the printed decimals are the value, {}",
             zero.shows_as(&zeroth).unwrap_or("neither rounded nor cut off")
-        ),
+        )
+        .into(),
     });
     let linear = times_two_pi(&balls.one(), balls);
     let better = balls.sub(&percent(&linear, &exact, balls)?, &percent(&zeroth, &exact, balls)?);
     rows.push(plain(
-        "better than 2 pi",
-        "order 0 is better than T = 2 pi",
-        format!("2 pi/omega is off by {} %, 2 pi by {} %", off(&zeroth)?, off(&linear)?),
+        "better than $2 pi$",
+        "order 0 is better than $T = 2 pi$",
+        format!("$2 pi/omega$ is off by {} %, $2 pi$ by {} %", off(&zeroth)?, off(&linear)?),
         exact_text.clone(),
         better.is_positive(),
         "the two errors, enclosed",
     ));
     let (findings, _) = approximation(&first_printed, &first, &sources);
     rows.push(Row {
-        label: "T order 1".to_owned(),
-        printed: "the first approximation gives T = 6.57".to_owned(),
-        derived: format!("order 1 of T: {}, off by {} %", show(&first, 8), off(&first)?),
-        independent: exact_text.clone(),
+        label: "$T$ order 1".into(),
+        printed: "the first approximation gives $T = 6.57$".into(),
+        derived: format!("order 1 of $T$: {}, off by {} %", show(&first, 8), off(&first)?).into(),
+        independent: Text::from(exact_text.clone()),
         verdict: findings.verdict(),
-        evidence: match sources.iter().find(|(_, value)| first_printed.shows(value)) {
+        evidence: Text::from(match sources.iter().find(|(_, value)| first_printed.shows(value)) {
             Some((source, value)) => format!(
                 "6.57 is {source}, {}, {}",
                 show(value, 6),
                 first_printed.shows_as(value).unwrap_or_default()
             ),
             None => format!("given by none of the {} formulas tried", sources.len()),
-        },
+        }),
     });
     let derived_error = percent(&first, &exact, balls)?;
     let mut findings = half.compare(&derived_error);
     findings.holds |= half.shows(&true_error);
     findings.reproduced = Some(half.shows(&own));
     rows.push(Row {
-        label: "0.5 %".to_owned(),
-        printed: "practically exact, the error is approximately 0.5 %".to_owned(),
-        derived: format!("error of the derived first approximation: {} %", show(&derived_error, 3)),
-        independent: exact_text,
+        label: "0.5 %".into(),
+        printed: "practically exact, the error is approximately 0.5 %".into(),
+        derived: format!("error of the derived first approximation: {} %", show(&derived_error, 3))
+            .into(),
+        independent: exact_text.into(),
         verdict: findings.verdict(),
         evidence: format!(
             "6.57 is off by {} % from the exact period, by {} % from the printed 6.6",
             show(&true_error, 3),
             show(&own, 2)
-        ),
+        )
+        .into(),
     });
     Some(rows)
 }

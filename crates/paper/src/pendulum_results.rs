@@ -72,14 +72,16 @@ pub(super) fn rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     }
     let number = case.constants.evaluate(case.expansion.frequency_squared.get(1)?, balls)?;
     let mut rows = vec![Row {
-        label: "alpha_1, pendulum".to_owned(),
-        printed: "alpha_1 = -2 (omega_1/omega)^2 ln 2".to_owned(),
-        derived: format!("alpha_1 = {} = {}", ring.print(&alpha, Style::Text), show(&number, 12)),
-        independent: "-2 t_1 of the energy integral, without x(t), is the same polynomial"
-            .to_owned(),
+        label: "$alpha_1$, pendulum".into(),
+        printed: "$alpha_1 = -2 (omega_1/omega)^2 ln 2$".into(),
+        derived: format!("$alpha_1 = {} = {}$", ring.print(&alpha, Style::Text), show(&number, 12))
+            .into(),
+        independent: "$-2 t_1$ of the energy integral, without $x(t)$, is the same polynomial"
+            .into(),
         verdict: findings.verdict(),
-        evidence: "the resonant part is the mean of 2 cos^2 ln(cos^2), 1 - 2 ln 2, not -2 ln 2"
-            .to_owned(),
+        evidence:
+            "the resonant part is the mean of $2 cos^2 ln(cos^2)$, $1 - 2 ln 2$, not $-2 ln 2$"
+                .into(),
     }];
     // (51): T/(2 pi), with the factor 1/omega that the derived one has.
     let inverse = product(&[(OMEGA, -1)]);
@@ -97,15 +99,17 @@ pub(super) fn rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     let ours = Truncations::pendulum(1, balls)?.period(QUANTITIES[0], 1, &Rational::from(1))?;
     let as_printed = fifty_one(balls)?;
     rows.push(Row {
-        label: "(51)".to_owned(),
-        printed: "T = 2 pi [1 - (omega_1/omega)^2 (ln 2)/pi]".to_owned(),
-        derived: format!("T = 2 pi [{}] = {}", ring.print(&derived, Style::Text), show(&ours, 8)),
-        independent: format!("exact {} (AGM)", show(&exact, 12)),
+        label: "(51)".into(),
+        printed: "$T = 2 pi [1 - (omega_1/omega)^2 (ln 2)/pi]$".into(),
+        derived: format!("$T = 2 pi [{}] = {}$", ring.print(&derived, Style::Text), show(&ours, 8))
+            .into(),
+        independent: format!("exact {} (AGM)", show(&exact, 12)).into(),
         verdict: findings.verdict(),
         evidence: format!(
-            "the factor 1/omega is missing and the bracket is another; as printed T = {}",
+            "the factor $1/omega$ is missing and the bracket is another; as printed $T = {}$",
             show(&as_printed, 6)
-        ),
+        )
+        .into(),
     });
     Some(rows)
 }

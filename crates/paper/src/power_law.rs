@@ -36,13 +36,17 @@ fn statement_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
         (periods::power_law_period(&Rational::from(3), balls)?, periods::cubic_period(balls)?);
     let mut rows = vec![plain(
         "(28)",
-        "x'' + x^n = 0",
-        "periodic for odd n, with the period by Euler's integral".to_owned(),
-        format!("n = 3: T = {} by Gamma, {} by the AGM", show(&beta, 16), show(&lemniscate, 16)),
+        "$x'' + x^n = 0$",
+        "periodic for odd $n$, with the period by Euler's integral".to_owned(),
+        format!(
+            "$n = 3$: $T = {}$ by $Gamma$, {} by the AGM",
+            show(&beta, 16),
+            show(&lemniscate, 16)
+        ),
         beta.overlaps(&lemniscate),
         "two closed forms of the period enclose the same number to 70 digits",
     )];
-    rows.push(case.initial_row("(29)", 0, "x(0) = 1, x'(0) = 0"));
+    rows.push(case.initial_row("(29)", 0, "$x(0) = 1$, $x'(0) = 0$"));
     // Exactly, for integer delta, on both sides of zero.
     let points = [Rational::from((2, 3)), Rational::from((-2, 3)), Rational::from((-7, 5))];
     let same = (1..=4i32).all(|delta| {
@@ -53,18 +57,19 @@ fn statement_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     });
     rows.push(plain(
         "(30)",
-        "x'' + x^(1 + 2 delta) = 0",
-        "x'' + x (x^2)^delta = 0, n = 1 + 2 delta".to_owned(),
-        "x (x^2)^delta = x^(1 + 2 delta) for delta = 1..4 at rational x of either sign".to_owned(),
+        "$x'' + x^(1 + 2 delta) = 0$",
+        "$x'' + x (x^2)^delta = 0$, $n = 1 + 2 delta$".to_owned(),
+        "$x (x^2)^delta = x^(1 + 2 delta)$ for $delta = 1..4$ at rational $x$ of either sign"
+            .to_owned(),
         same,
-        "for x < 0 and other delta the power means x (x^2)^delta, as (31) says",
+        "for $x < 0$ and other $delta$ the power means $x (x^2)^delta$, as (31) says",
     ));
     rows.push(taylor_row(ring, balls)?);
     rows.push(plain(
         "(32)",
-        "x = sum_n x_n delta^n",
+        "$x = sum_n x_n delta^n$",
         format!(
-            "x_0 to x_{} found, x_1 = {}",
+            "$x_0$ to $x_{}$ found, $x_1 = {}$",
             case.expansion.order(),
             case.derivation.print_solution(1, Style::Text)
         ),
@@ -84,32 +89,32 @@ fn statement_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
         && product.iter().skip(1).all(|c| ring.is_zero(c));
     rows.push(plain(
         "(33)",
-        "t = tau/omega",
-        "all x_n have the period 2 pi in tau".to_owned(),
-        format!("the period by the energy integral times omega is 2 pi at orders 0..{order}"),
+        "$t = tau/omega$",
+        "all $x_n$ have the period $2 pi$ in $tau$".to_owned(),
+        format!("the period by the energy integral times $omega$ is $2 pi$ at orders 0..{order}"),
         is_one,
-        "the product of the two series is 1 in Q[mu]",
+        "the product of the two series is 1 in $Q[mu]$",
     ));
     let exact = |n| case.derivation.exact("frequency_squared", n).unwrap_or_default();
     let second_route = energy::power_law_frequency(ring, 2, u16::try_from(order).ok()?);
     rows.push(plain(
         "(34)",
-        "omega^2 = 1 + alpha_1 delta + alpha_2 delta^2 + ...",
-        format!("alpha_1 = {}, alpha_2 = {}", exact(1), exact(2)),
+        "$omega^2 = 1 + alpha_1 delta + alpha_2 delta^2 + ...$",
+        format!("$alpha_1 = {}$, $alpha_2 = {}$", exact(1), exact(2)),
         format!("the closed-form period gives the same coefficients, orders 0..{order}"),
         exact(0) == "1" && second_route == case.expansion.frequency_squared,
-        "every omega^2 coefficient is a constant and equals the one from the exact period",
+        "every $omega^2$ coefficient is a constant and equals the one from the exact period",
     ));
     let order_zero = algebra.add(&case.acceleration(0), case.x(0));
     rows.push(plain(
         "(35)",
-        "x_0'' + x_0 = 0",
-        format!("x_0 = {}", case.derivation.print_solution(0, Style::Text)),
+        "$x_0'' + x_0 = 0$",
+        format!("$x_0 = {}$", case.derivation.print_solution(0, Style::Text)),
         case.residual_text(),
         algebra.is_zero(&order_zero),
-        "x_0'' + x_0 vanishes identically",
+        "$x_0'' + x_0$ vanishes identically",
     ));
-    rows.push(case.initial_row("(36)", 0, "x_0(0) = 1, x_0'(0) = 0"));
+    rows.push(case.initial_row("(36)", 0, "$x_0(0) = 1$, $x_0'(0) = 0$"));
     Some(rows)
 }
 
@@ -130,14 +135,14 @@ fn taylor_row(ring: &PolynomialRing, balls: Balls) -> Option<Row> {
     let near = balls.sub(&second, &expected).abs_upper() < 1e-25;
     Some(plain(
         "(31)",
-        "(x^2)^delta = 1 + delta ln(x^2) + delta^2/2 [ln(x^2)]^2 + ...",
-        "1 + delta L + delta^2 L^2/2 + ..., L = ln(x^2), from n E_n = L E_(n-1)".to_owned(),
+        "$(x^2)^delta = 1 + delta ln(x^2) + delta^2/2 [ln(x^2)]^2 + ...$",
+        "$1 + delta L + delta^2 L^2/2 + ...$, $L = ln(x^2)$, from $n E_n = L E_(n-1)$".to_owned(),
         format!(
-            "second order at x = 1/3, differentiated numerically: {} (estimated)",
+            "second order at $x = 1/3$, differentiated numerically: {} (estimated)",
             show(&second, 12)
         ),
         derived == printed && near,
-        "equal as polynomials in L",
+        "equal as polynomials in $L$",
     ))
 }
 
@@ -185,31 +190,31 @@ fn order_rows(case: &Case) -> Result<Vec<Row>, Error> {
     let rows = vec![
         case.order_row(
             "(37)",
-            (1, "x_1'' + x_1 = -x_0 ln(x_0)^2 - alpha_1 x_0''"),
+            (1, "$x_1'' + x_1 = -x_0 ln(x_0)^2 - alpha_1 x_0''$"),
             &first,
             &words,
             &force,
         )?,
-        case.initial_row("(38)", 1, "x_1(0) = x_1'(0) = 0"),
+        case.initial_row("(38)", 1, "$x_1(0) = x_1'(0) = 0$"),
         case.order_row(
             "(39)",
-            (2, "x_2'' + x_2 = -[x_1 ln(x_0^2) + 2 x_1] - x_0 [ln(x_0^2)]^2 - alpha_2 x_0'' - alpha_1 x_1''"),
+            (2, "$x_2'' + x_2 = -[x_1 ln(x_0^2) + 2 x_1] - x_0 [ln(x_0^2)]^2 - alpha_2 x_0'' - alpha_1 x_1''$"),
             &second,
             &words,
             &force,
         )?,
-        case.initial_row("(40)", 2, "x_2(0) = x_2'(0) = 0"),
+        case.initial_row("(40)", 2, "$x_2(0) = x_2'(0) = 0$"),
         plain(
-            "x_0",
-            "x_0 = cos t",
-            format!("x_0 = {}", case.derivation.print_solution(0, Style::Text)),
+            "$x_0$",
+            "$x_0 = cos t$",
+            format!("$x_0 = {}$", case.derivation.print_solution(0, Style::Text)),
             case.residual_text(),
             *case.x(0) == cosine,
-            "the only solution of (35), (36); from here on the paper writes t for tau",
+            "the only solution of (35), (36); from here on the paper writes $t$ for $tau$",
         ),
         case.order_row(
             "(41)",
-            (1, "x_1'' + x_1 = -cos t ln(cos^2 t) + alpha_1 cos t"),
+            (1, "$x_1'' + x_1 = -cos t ln(cos^2 t) + alpha_1 cos t$"),
             &forty_one,
             &words,
             &force,
@@ -243,19 +248,19 @@ fn result_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     let estimate = periods::frequency_squared_slope(balls)?;
     let literal = balls.mul_i64(&balls.mul(&balls.pi(), &balls.ln_2()), 4);
     let alpha_row = Row {
-        label: "alpha_1".to_owned(),
-        printed: "alpha_1 = 4 pi ln 2".to_owned(),
-        derived: format!("alpha_1 = {} = {}", ring.print(&alpha, Style::Text), show(&value, 15)),
+        label: "$alpha_1$".into(),
+        printed: "$alpha_1 = 4 pi ln 2$".into(),
+        derived: format!("$alpha_1 = {} = {}$", ring.print(&alpha, Style::Text), show(&value, 15)).into(),
         independent: format!(
-            "d(omega^2)/d(delta) of the Gamma closed form: {} (estimated)",
+            "$d(omega^2)/d(delta)$ of the $Gamma$ closed form: {} (estimated)",
             show(&estimate, 15)
-        ),
+        ).into(),
         verdict: findings.verdict(),
         evidence: format!(
-            "printed value {}; what must vanish is the mean of 2 cos^2 t ln(cos^2 t) - alpha_1 2 cos^2 t, \
-             not that of ln(cos^2 t)",
+            "printed value {}; what must vanish is the mean of $2 cos^2 t ln(cos^2 t) - alpha_1 2 cos^2 t$, \
+             not that of $ln(cos^2 t)$",
             show(&literal, 6)
-        ),
+        ).into(),
     };
     let period = coefficient("period_over_2pi", 1)?;
     let printed = [Term::new(-2, "ln 2", ring.symbol(Symbol::LogTwo))];
@@ -263,19 +268,21 @@ fn result_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     let at_one = balls.sub(&balls.one(), &balls.mul_i64(&balls.ln_2(), 2));
     let at_one = balls.mul_i64(&balls.mul(&balls.pi(), &at_one), 2);
     let forty_two = Row {
-        label: "(42)".to_owned(),
-        printed: "T = 2 pi [1 - 2 delta ln 2]".to_owned(),
-        derived: format!("T = 2 pi [1 + delta ({})]", ring.print(&period, Style::Text)),
+        label: "(42)".into(),
+        printed: "$T = 2 pi [1 - 2 delta ln 2]$".into(),
+        derived: format!("$T = 2 pi [1 + delta ({})]$", ring.print(&period, Style::Text)).into(),
         independent: format!(
-            "-1/2 d(omega^2)/d(delta) of the Gamma closed form: {} (estimated)",
+            "$-1/2 d(omega^2)/d(delta)$ of the $Gamma$ closed form: {} (estimated)",
             show(&balls.mul_power_of_two(&balls.neg(&estimate), -1), 15)
-        ),
+        )
+        .into(),
         verdict: findings.verdict(),
         evidence: format!(
-            "at delta = 1 the printed formula gives the negative period {}; the exact one grows \
-             with delta",
+            "at $delta = 1$ the printed formula gives the negative period {}; the exact one grows \
+             with $delta$",
             show(&at_one, 6)
-        ),
+        )
+        .into(),
     };
     Some(vec![alpha_row, forty_two])
 }

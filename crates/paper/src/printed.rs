@@ -3,6 +3,7 @@
 //! Every line evaluates a form *as printed* at a point where its misprint shows, beside the same
 //! quantity by differentiation or quadrature. The verdict follows from the two numbers.
 
+use crate::Findings;
 use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_melnikov::{Branch, MelnikovError, StickSlip};
 use lindstedt_number::Exact;
@@ -10,20 +11,9 @@ use lindstedt_number::ball::Balls;
 use rug::{Float, Rational};
 use std::f64::consts::PI;
 
-/// What a comparison shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PaperVerdict {
-    /// The printed form gives the derived value.
-    Agrees,
-    /// It does not, and the form with one typographical change gives it.
-    Misprint,
-    /// It does not, and no such change repairs it.
-    Wrong,
-}
-
-/// One printed formula or number.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Comparison {
+/// One printed formula with its value where a misprint shows.
+#[derive(Clone, Debug)]
+pub struct PrintedForm {
     /// The equation, like `(26)`.
     pub equation: &'static str,
     /// The form as printed.
@@ -33,8 +23,8 @@ pub struct Comparison {
     pub printed_value: Option<f64>,
     /// The derived value there, to f64.
     pub derived_value: f64,
-    /// The verdict.
-    pub verdict: PaperVerdict,
+    /// What the comparison found; the correction is the form with one change of the pen.
+    pub findings: Findings,
     /// The correct form, or the effect.
     pub correct: &'static str,
 }
@@ -66,8 +56,8 @@ const POINT: Point = Point {
 };
 
 /// The point at which (22) to (27) are compared, in words.
-pub const COMPARED_AT: &str = "a = 1.7, b = 2.3, T0 = 0.4, alpha = 0.35, beta = 0.25, v* = 0.5, gamma = 0.8, \
-                               omega = 1.4, t0 = 0.6";
+pub(super) const COMPARED_AT: &str = "$a = 1.7$, $b = 2.3$, $T0 = 0.4$, $alpha = 0.35$, $beta = 0.25$, $v* = 0.5$, $gamma = 0.8$, \
+                               $omega = 1.4$, $t0 = 0.6$";
 
 /// A decimal of at most 6 places as the rational number it stands for.
 fn exact(x: f64) -> Exact {
@@ -194,15 +184,14 @@ fn compare(
     printed_value: Option<f64>,
     derived_value: f64,
     correct: &'static str,
-) -> Comparison {
-    let agrees = printed_value.is_some_and(|value| same(value, derived_value));
-    let verdict = if agrees { PaperVerdict::Agrees } else { PaperVerdict::Wrong };
-    Comparison {
+) -> PrintedForm {
+    let holds = printed_value.is_some_and(|value| same(value, derived_value));
+    PrintedForm {
         equation,
         printed,
         printed_value: printed_value.filter(|value| value.is_finite()),
         derived_value,
-        verdict,
+        findings: Findings::holds(holds),
         correct,
     }
 }
@@ -212,32 +201,29 @@ fn same(value: f64, derived: f64) -> bool {
     value.is_finite() && (value - derived).abs() <= 1e-9 * derived.abs().max(1e-3)
 }
 
-impl Comparison {
+impl PrintedForm {
     /// The form with one typographical change has this value: where it is the derived one, what
     /// was wrong is a misprint.
-    fn repaired_by(self, value: f64) -> Self {
-        match self.verdict {
-            PaperVerdict::Wrong if same(value, self.derived_value) => {
-                Self { verdict: PaperVerdict::Misprint, ..self }
-            }
-            _ => self,
-        }
+    fn repaired_by(mut self, value: f64) -> Self {
+        let repaired = !self.findings.holds && same(value, self.derived_value);
+        self.findings.correction = repaired.then(|| self.correct.to_owned());
+        self
     }
 }
 
-/// All comparisons of section 3, in the order of the paper.
+/// All forms of (22) to (27), in the order of the paper.
 ///
 /// ```
-/// use lindstedt_paper::{PaperVerdict, paper_comparison};
-/// let list = paper_comparison()?;
-/// let of_27: Vec<_> = list.iter().filter(|c| c.equation == "(27)").collect();
-/// assert_eq!(of_27[0].verdict, PaperVerdict::Misprint);
+/// use lindstedt_paper::{Verdict, printed_forms};
+/// let list = printed_forms()?;
+/// let of_27: Vec<_> = list.iter().filter(|form| form.equation == "(27)").collect();
+/// assert_eq!(of_27[0].findings.verdict(), Verdict::Misprint);
 /// # Ok::<(), lindstedt::melnikov::MelnikovError>(())
 /// ```
 ///
 /// # Errors
 /// [`MelnikovError::Undecided`] where a reference value is not reached (never at the fixed point).
-pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
+pub fn printed_forms() -> Result<Vec<PrintedForm>, MelnikovError> {
     let p = &POINT;
     let balls = Balls::new(120);
     let undecided = || MelnikovError::Undecided { bits: 120 };
@@ -253,25 +239,25 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
     let mut list = vec![
         compare(
             "(22)",
-            "dx/dt = x sqrt(a - b x^2/2) at t = -0.7",
+            "$dx/dt = x sqrt(a - b x^2/2)$ at $t = -0.7$",
             Some(first_integral(-t)),
             p.slope(-t),
-            "as printed for t < 0",
+            "as printed for $t < 0$",
         ),
         compare(
             "(22)",
-            "dx/dt = x sqrt(a - b x^2/2) at t = 0.7",
+            "$dx/dt = x sqrt(a - b x^2/2)$ at $t = 0.7$",
             Some(first_integral(t)),
             p.slope(t),
-            "-x sqrt(a - b x^2/2) for t > 0",
+            "$-x sqrt(a - b x^2/2)$ for $t > 0$",
         )
         .repaired_by(-first_integral(t)),
         compare(
             "(23)",
-            "v0 = a sqrt(2/b) sech(sqrt a) tanh(sqrt a t)",
+            "$v0 = a sqrt(2/b) sech(sqrt a) tanh(sqrt a t)$",
             Some(speed / root.cosh() * (root * t).tanh()),
             p.slope(t),
-            "v0 = -+ a sqrt(2/b) sech(sqrt(a) t) tanh(sqrt(a) t), upper sign for x > 0",
+            "$v0 = -+ a sqrt(2/b) sech(sqrt(a) t) tanh(sqrt(a) t)$, upper sign for $x > 0$",
         )
         .repaired_by(-speed / (root * t).cosh() * (root * t).tanh()),
     ];
@@ -310,25 +296,25 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
     list.extend([
         compare(
             "(24)",
-            "M(t0) = int {gamma v0(t - t0) cos(omega t) - v0(t - t0) [T0 sign(v0(t - t0) - v*) - alpha (v0(t - \
-             t0) - v*) + beta (v0(t - t0) - v*)^3]} dt",
+            "$M(t0) = int {gamma v0(t - t0) cos(omega t) - v0(t - t0) [T0 sign(v0(t - t0) - v*) - alpha (v0(t - \
+             t0) - v*) + beta (v0(t - t0) - v*)^3]} dt$",
             Some(by_quadrature),
             m,
-            "with v0 = +a sqrt(2/b) sech tanh as (23) prints it, which is the left loop",
+            "with $v0 = +a sqrt(2/b) sech tanh$ as (23) prints it, which is the left loop",
         ),
-        compare("(25)", "gamma sin t0 ...", Some(sin_t0), m, "gamma sin(omega t0)")
+        compare("(25)", "$gamma sin t0 ...$", Some(sin_t0), m, "$gamma sin(omega t0)$")
             .repaired_by(sin_t0 - p.forced(p.t0) + p.forced(p.omega * p.t0)),
         compare(
             "(25)",
-            "... sin(sech tanh - v*) ...",
+            "$... sin(sech tanh - v*) ...$",
             Some(p.form_25(phase, sine_of_loop, false) + p.quartic()),
             m,
-            "sign(a sqrt(2/b) sech tanh - v*)",
+            "$sign(a sqrt(2/b) sech tanh - v*)$",
         )
         .repaired_by(p.form_25(phase, sign_of_loop, false) + p.quartic()),
         compare(
             "(25)",
-            "the brace after T0 a sqrt(2/b) closes behind all terms",
+            "the brace after $T0 a sqrt(2/b)$ closes behind all terms",
             Some(p.form_25(phase, sign_of_loop, true) + p.quartic()),
             m,
             "it closes behind the integral of the sign",
@@ -336,15 +322,15 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
         .repaired_by(p.form_25(phase, sign_of_loop, false) + p.quartic()),
         compare(
             "(25)",
-            "no term beta int sech^4 tanh^4",
+            "no term $beta int sech^4 tanh^4$",
             Some(without_quartic),
             m,
-            "add -4 beta (a^4/b^2) int sech^4 tanh^4",
+            "add $-4 beta (a^4/b^2) int sech^4 tanh^4$",
         )
         .repaired_by(without_quartic + p.quartic()),
         compare(
             "(25)",
-            "+ (alpha - beta v*^2) v* a sqrt(2/b), the factor of int sech tanh",
+            "$+ (alpha - beta v*^2) v* a sqrt(2/b)$, the factor of $int sech tanh$",
             Some(-linear_in_v),
             linear_in_v,
             "- in the place of +; without effect, since the integral is 0",
@@ -360,26 +346,26 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
         .repaired_by(p.form_25(phase, sign_of_loop, false) + p.quartic()),
         compare(
             "(26)",
-            "16/35 beta a^4/sqrt(a b^2)",
+            "$16/35 beta a^4/sqrt(a b^2)$",
             Some(p.form_26(printed_cubic, linear, bracket)),
             m,
-            "16/35 beta a^4/(sqrt(a) b^2)",
+            "$16/35 beta a^4/(sqrt(a) b^2)$",
         )
         .repaired_by(p.form_26(cubic, linear, bracket)),
         compare(
             "(26)",
-            "4/3 (alpha - 3 beta v*^2) a^2/sqrt(a b)",
+            "$4/3 (alpha - 3 beta v*^2) a^2/sqrt(a b)$",
             Some(p.form_26(cubic, printed_linear, bracket)),
             m,
-            "... a^2/(sqrt(a) b)",
+            "$... a^2/(sqrt(a) b)$",
         )
         .repaired_by(p.form_26(cubic, linear, bracket)),
         compare(
             "(26)",
-            "second root sqrt(1/2 - sqrt(1/2) - sqrt(1/4 - ...))",
+            "second root $sqrt(1/2 - sqrt(1/2) - sqrt(1/4 - ...))$",
             Some(p.form_26(cubic, linear, second_radical)),
             m,
-            "sqrt(1/2 - sqrt(1/4 - b v*^2/(2a^2))); the text read here comes from a scan, whose reading may \
+            "$sqrt(1/2 - sqrt(1/4 - b v*^2/(2a^2)))$; the text read here comes from a scan, whose reading may \
              have lost the grouping of the roots",
         )
         .repaired_by(p.form_26(cubic, linear, bracket)),
@@ -388,7 +374,7 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
             "all of it as printed",
             Some(p.form_26(printed_cubic, printed_linear, second_radical)),
             m,
-            "the changes above together; then sqrt(1/2+q) - sqrt(1/2-q) = sqrt(1 - |v*|/V)",
+            "the changes above together; then $sqrt(1/2+q) - sqrt(1/2-q) = sqrt(1 - |v*|/V)$",
         )
         .repaired_by(p.form_26(cubic, linear, bracket)),
     ]);
@@ -403,10 +389,10 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
     list.push(
         compare(
             "(26)",
-            "first branch for all v* < a/sqrt(2b), at v* = -1.030418 (V = 0.792629)",
+            "first branch for all $v* < a/sqrt(2b)$, at $v* = -1.030418$ ($V = 0.792629$)",
             Some(fast.form_26(cubic, linear, fast.bracket())),
             m_fast.midpoint().to_f64(),
-            "for |v*| < a/sqrt(2b)",
+            "for $|v*| < a/sqrt(2b)$",
         )
         .repaired_by(fast.form_26(cubic, linear, 0.0)),
     );
@@ -415,10 +401,10 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
     list.push(
         compare(
             "(27)",
-            "... + 2 T0 a [...]",
+            "$... + 2 T0 a [...]$",
             Some(p.form_27(2.0 * a)),
             g,
-            "2 T0 sqrt(a) [...]; with it the right side is D sqrt(b/2)",
+            "$2 T0 sqrt(a) [...]$; with it the right side is $D sqrt(b/2)$",
         )
         .repaired_by(p.form_27(2.0 * root)),
     );
@@ -426,10 +412,10 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
     list.push(
         compare(
             "(27)",
-            "first branch for all v* < a/sqrt(2b), at v* = -1.030418 (V = 0.792629)",
+            "first branch for all $v* < a/sqrt(2b)$, at $v* = -1.030418$ ($V = 0.792629$)",
             Some(fast.form_27(2.0 * root)),
             g_fast,
-            "for |v*| < a/sqrt(2b)",
+            "for $|v*| < a/sqrt(2b)$",
         )
         .repaired_by(fast.smooth_27()),
     );
@@ -438,37 +424,10 @@ pub fn paper_comparison() -> Result<Vec<Comparison>, MelnikovError> {
     let gained = f64_of(five(0.45).signed_threshold(balls))?.abs();
     list.push(compare(
         "(27)",
-        "... > ..., without a modulus on the right: at b = 5, v* = 0.45 every gamma > 0 passes",
+        "... > ..., without a modulus on the right: at $b = 5$, $v* = 0.45$ every $gamma > 0$ passes",
         Some(0.0),
         gained,
-        "gamma F > |D|",
-    ));
-    let gamma_c = f64_of(StickSlip::paper().signed_threshold(balls))?;
-    list.push(compare("text", "gamma_c = 0.65", Some(0.65), gamma_c, "0.637071..."));
-    let zeros = five(0.4).zeros(balls)?;
-    for (zero, printed, value) in zeros
-        .iter()
-        .zip([("v* = 0.310429 (b = 5)", 0.310_429), ("v* = 0.557204 (b = 5)", 0.557_204)])
-        .map(|(z, (p, v))| (z, p, v))
-    {
-        let zero = zero.midpoint().to_f64();
-        // Six digits are printed; compare what six digits can say.
-        let rounded = (zero * 1e6).round() / 1e6;
-        list.push(compare(
-            "text",
-            printed,
-            Some(value),
-            rounded,
-            "zeros of (27), to the six digits printed",
-        ));
-    }
-    let cusp = f64_of(five(0.4).loop_speed(balls))?;
-    list.push(compare(
-        "text",
-        "two cusps, at 0.310429 and 0.557204",
-        Some(0.310_429),
-        cusp,
-        "these are zeros; the cusp is at v* = a/sqrt(2b)",
+        "$gamma F > |D|$",
     ));
     Ok(list)
 }

@@ -1,32 +1,16 @@
 //! What section 3 reports of its simulations, simulated again.
 
-use super::trust::Onset;
-use super::{Findings, Reader, Row, Section, Table, plain};
+use super::stick_slip::{model, parameters};
+use super::{Reader, Section, Table, plain};
+use crate::text::texts;
 use lindstedt::Error;
-use lindstedt_equation::Expression;
-use lindstedt_problems::stick_slip;
 use lindstedt_simulate::{
-    Doubles, Integrator, LyapunovSettings, Model, Parameters, PoincareMap, Quantity, Report,
-    Segment, Settings, System, largest_lyapunov_exponent, zero_one,
+    Doubles, Integrator, LyapunovSettings, PoincareMap, Quantity, Report, Segment, Settings,
+    System, largest_lyapunov_exponent, zero_one,
 };
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
-
-/// The equation of the data card.
-pub(super) fn model() -> Result<Model, Error> {
-    let equation: Expression = stick_slip::equation();
-    Ok(Model::second_order(&equation)?.with_small("eps"))
-}
-
-/// The paper's values: the defaults of the data card (eps = 1: the paper names none).
-pub(super) fn parameters() -> Result<Parameters, Error> {
-    let mut parameters = Parameters::new();
-    for card in stick_slip::problem().parameters {
-        parameters.set(&card.name, Quantity::parse(&card.default).ok_or(Error::NoValue)?);
-    }
-    Ok(parameters)
-}
 
 /// Attractors coexist: this is on the side of the large orbit in the right well, which sticks.
 const START: [f64; 2] = [0.11, 0.05];
@@ -167,7 +151,7 @@ const WATCHED: u32 = 300;
 pub(super) const ORBITS: usize = 4;
 /// The values of gamma: those of the paper, and one after the first doubling.
 const GAMMAS: [&str; ORBITS] = ["0.6", "0.615", "0.65", "1.2"];
-const EPS: &str = "at eps = 1: the paper names no value";
+const EPS: &str = "at $eps = 1$: the paper names no value";
 
 /// Reads what is reported of the simulations.
 pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
@@ -184,36 +168,36 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
         |o: &Orbit| format!("largest Lyapunov exponent {} (estimated)", o.shown_exponent());
     let closes = |o: &Orbit| {
         let shown = o.shown_period();
-        format!("at gamma = {} the orbit closes after {shown} periods of the forcing", o.gamma)
+        format!("at $gamma = {}$ the orbit closes after {shown} periods of the forcing", o.gamma)
     };
     section.rows.extend([
         plain(
-            "gamma = 0.6",
-            "for gamma = 0.6 we have obtained a periodic orbit",
+            "$gamma = 0.6$",
+            "for $gamma = 0.6$ we have obtained a periodic orbit",
             closes(periodic),
             exponent(periodic),
             periodic.is_periodic(),
-            &format!("{EPS}; x(0) = {}, x'(0) = {}: attractors coexist", START[0], START[1]),
+            &format!("{EPS}; $x(0) = {}$, $x'(0) = {}$: attractors coexist", START[0], START[1]),
         ),
         plain(
             "doubling",
-            "with an increase in gamma it doubles its period",
+            "with an increase in $gamma$ it doubles its period",
             format!("{}; {}", closes(periodic), closes(doubled)),
             exponent(doubled),
             doubled.period == periodic.period.map(|n| 2 * n),
-            "the same attractor at two values of gamma",
+            "the same attractor at two values of $gamma$",
         ),
         plain(
-            "gamma = 0.65",
+            "$gamma = 0.65$",
             "closely to 0.65 a very slight chaotic behaviour has been observed",
             exponent(slight),
             format!(
-                "0-1 test on every second point of the section: K = {:.3} (estimated)",
+                "0-1 test on every second point of the section: $K = {:.3}$ (estimated)",
                 slight.growth
             ),
             slight.is_chaotic() && slight.growth > 0.9,
             &format!(
-                "in one well only: {:.3} < x < {:.3} over {} periods (estimated), by period doubling; not \
+                "in one well only: ${:.3} < x < {:.3}$ over {} periods (estimated), by period doubling; not \
                  the tangle that (27) is about",
                 slight.least,
                 slight.largest,
@@ -221,11 +205,11 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
             ),
         ),
         plain(
-            "gamma = 1.2",
-            "for gamma = 1.2 two-well potential chaos is shown",
+            "$gamma = 1.2$",
+            "for $gamma = 1.2$ two-well potential chaos is shown",
             exponent(wells),
             format!(
-                "{:.3} < x < {:.3} over {} periods: both wells (estimated)",
+                "${:.3} < x < {:.3}$ over {} periods: both wells (estimated)",
                 wells.least,
                 wells.largest,
                 kept.min(WATCHED)
@@ -237,11 +221,11 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
             "sticks",
             "in all of the phase portraits the cusps corresponding to the sticks are visible",
             format!(
-                "share of the time stuck: {:.3}, {:.3} and {:.3} at gamma = 0.6, 0.65 and 1.2 \
+                "share of the time stuck: {:.3}, {:.3} and {:.3} at $gamma = 0.6$, 0.65 and 1.2 \
                  (estimated)",
                 periodic.stuck, slight.stuck, wells.stuck
             ),
-            "events of the integration: sticking where x' = v* and the force is below eps T0"
+            "events of the integration: sticking where $x' = v*$ and the force is below $eps T0$"
                 .to_owned(),
             [periodic, slight, wells].iter().all(|o| o.stuck > 0.0),
             "Fig. 1 itself prints no parameters",
@@ -253,13 +237,13 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
 
 fn table(orbits: &[Orbit], transient: u32, kept: u32) -> Table {
     let columns = [
-        "gamma",
+        "$gamma$",
         "period",
         "Lyapunov exponent",
-        "K of the 0-1 test",
+        "$K$ of the 0-1 test",
         "stuck",
-        "least x",
-        "largest x",
+        "least $x$",
+        "largest $x$",
     ];
     let row = |o: &Orbit| {
         vec![
@@ -274,50 +258,15 @@ fn table(orbits: &[Orbit], transient: u32, kept: u32) -> Table {
     };
     Table {
         name: "simulations".to_owned(),
-        title: "The orbits of the text, simulated at eps = 1 (estimated)".to_owned(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: orbits.iter().map(row).collect(),
-        notes: vec![
+        title: "The orbits of the text, simulated at $eps = 1$ (estimated)".into(),
+        columns: texts(columns),
+        rows: orbits.iter().map(row).map(texts).collect(),
+        notes: texts([
             format!("{transient} periods of the forcing left out, {kept} averaged over; doubles"),
             "the period is in periods of the forcing, the exponent per unit of time with its \
-             standard error; K of every second stroboscopic point, near 1 for chaos"
+             standard error; $K$ of every second stroboscopic point, near 1 for chaos"
                 .to_owned(),
-            format!("stuck, least and largest x over {} periods", kept.min(WATCHED)),
-        ],
+            format!("stuck, least and largest $x$ over {} periods", kept.min(WATCHED)),
+        ]),
     }
-}
-
-/// What agreement of an onset with the prediction is worth the name.
-const GOOD: f64 = 0.1;
-
-/// The row of the conclusion: whether the onset at eps = 1 is the predicted one.
-pub(super) fn agreement(onset: &Onset) -> Result<Row, Error> {
-    let last = onset.points.last().ok_or(Error::NoValue)?;
-    let shown =
-        |side: Option<(f64, f64)>| side.map_or("none".to_owned(), |s| format!("{:.5}", s.0));
-    let far =
-        |side: Option<(f64, f64)>| side.is_none_or(|s| (s.0 / onset.threshold - 1.0).abs() > GOOD);
-    let findings = Findings::holds(!far(last.right) && !far(last.left));
-    Ok(Row {
-        label: "good agreement".to_owned(),
-        printed:
-            "the obtained results illustrate practically a good agreement with the analytical \
-                  prediction"
-                .to_owned(),
-        derived: format!(
-            "gamma_c = {:.5}; the tangency that is the first one at small eps, followed to eps = {}: \
-             gamma = {} (right loop), {} (left loop) (estimated)",
-            onset.threshold,
-            last.eps,
-            shown(last.right),
-            shown(last.left)
-        ),
-        independent: "unstable manifold of the saddle orbit, followed event by event".to_owned(),
-        verdict: findings.verdict(),
-        evidence: format!(
-            "the orbit that becomes chaotic near 0.65 stays in the right well, whose loop is first \
-             tangent at {} (estimated); what is seen near 0.65 is not what (27) predicts",
-            shown(last.right)
-        ),
-    })
 }

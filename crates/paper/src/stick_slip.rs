@@ -2,10 +2,14 @@
 
 use super::melnikov::{failed, oscillator};
 use super::{Reader, Section, Table, plain, show};
+use crate::text::texts;
 use lindstedt::Error;
+use lindstedt_equation::Expression;
 use lindstedt_melnikov::{Monomial, OrbitDescription, PolynomialFriction, StickSlip};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
+use lindstedt_problems::stick_slip as card;
+use lindstedt_simulate::{Model, Parameters, Quantity};
 use rug::{Complete, Rational};
 
 /// How many points each identity is evaluated at.
@@ -164,53 +168,53 @@ pub(super) fn read_equation(_: &mut Reader<'_>, section: &mut Section) -> Result
     section.rows.extend([
         plain(
             "(18)",
-            "m x'' - k1 x + k2 x^3 = eps [Gamma cos(omega t) - theta(x' - v*)]",
-            "x'' = a x - b x^3 + eps [gamma cos(omega t) - T(v - v*)]".to_owned(),
+            "$m x'' - k1 x + k2 x^3 = eps [Gamma cos(omega t) - theta(x' - v*)]$",
+            "$x'' = a x - b x^3 + eps [gamma cos(omega t) - T(v - v*)]$".to_owned(),
             exactly.clone(),
             reductions.iter().all(|r| r.equation),
-            "with theta of (19) and the parameters of (20)",
+            "with $theta$ of (19) and the parameters of (20)",
         ),
         plain(
             "(19)",
-            "theta(w) = theta_0 sign w - A w + B w^3",
-            "T(w) = T0 sgn w - alpha w + beta w^3 is theta/m".to_owned(),
+            "$theta(w) = theta_0 sign w - A w + B w^3$",
+            "$T(w) = T0 sgn w - alpha w + beta w^3$ is $theta/m$".to_owned(),
             exactly.clone(),
             reductions.iter().all(|r| r.friction),
             "the law of the engine, sliding in both directions",
         ),
         plain(
             "(20)",
-            "v' = a x - b x^3 + eps [gamma cos(omega t) - T(v - v*)], x' = v; a = k1/m, b = k2/m, \
-             gamma = Gamma/m, T = theta/m, T0 = theta_0/m, alpha = A/m, beta = B/m",
+            "$v' = a x - b x^3 + eps [gamma cos(omega t) - T(v - v*)]$, $x' = v$; $a = k1/m$, $b = k2/m$, \
+             $gamma = Gamma/m$, $T = theta/m$, $T0 = theta_0/m$, $alpha = A/m$, $beta = B/m$",
             "the force and the law that the engine integrates".to_owned(),
             exactly,
             reductions.iter().all(|r| r.system),
-            "eps is a bookkeeping parameter: the paper's numbers take no value for it",
+            "$eps$ is a bookkeeping parameter: the paper's numbers take no value for it",
         ),
         plain(
             "(21)",
-            "H = (v^2 - a x^2 + b x^4/2)/2",
-            "dH/dt = H_x v + H_v (a x - b x^3) = 0".to_owned(),
+            "$H = (v^2 - a x^2 + b x^4/2)/2$",
+            "$dH/dt = H_x v + H_v (a x - b x^3) = 0$".to_owned(),
             format!("five-point differences, exact for degree 4, at {POINTS} rational points"),
             flows.iter().all(|f| f[0]),
-            "H as printed, along the engine's force",
+            "$H$ as printed, along the engine's force",
         ),
         plain(
             "critical points",
-            "two centres at (+-sqrt(a/b), 0), a hyperbolic saddle at the origin",
-            "a x - b x^3 = 0 there and nowhere else; eigenvalues squared a at 0, -2a at the others"
+            "two centres at $(+-sqrt(a/b), 0)$, a hyperbolic saddle at the origin",
+            "$a x - b x^3 = 0$ there and nowhere else; eigenvalues squared $a$ at 0, $-2a$ at the others"
                 .to_owned(),
-            "the sign of H_xx".to_owned(),
+            "the sign of $H_xx$".to_owned(),
             flows.iter().all(|f| f[1]),
             "exactly, at parameters with rational centres",
         ),
         plain(
-            "x_0",
-            "x_0 = +-sqrt(2a/b) sech(sqrt(a) t)",
-            "xi'' = xi - 2 xi^3 for xi = sech z in Q[sech, tanh]".to_owned(),
+            "$x_0$",
+            "$x_0 = +-sqrt(2a/b) sech(sqrt(a) t)$",
+            "$xi'' = xi - 2 xi^3$ for $xi = sech z$ in $Q[sech, tanh]$".to_owned(),
             String::new(),
             orbit.check().is_ok(),
-            "the first half of (23); an identity modulo tanh^2 = 1 - sech^2",
+            "the first half of (23); an identity modulo $tanh^2 = 1 - sech^2$",
         ),
     ]);
     Ok(true)
@@ -223,7 +227,7 @@ pub(super) fn read_table(reader: &mut Reader<'_>, section: &mut Section) -> Resu
 }
 
 fn table(balls: Balls) -> Result<Table, Error> {
-    let columns = ["b", "V", "gamma at v* = 0", "gamma at v* = V", "zero 1", "zero 2"];
+    let columns = ["$b$", "$V$", "$gamma$ at $v* = 0$", "$gamma$ at $v* = V$", "zero 1", "zero 2"];
     let mut rows = Vec::new();
     for b in [1, 2, 5, 10] {
         let at_zero = oscillator(b, Exact::from(0));
@@ -243,19 +247,34 @@ fn table(balls: Balls) -> Result<Table, Error> {
     let touching = StickSlip::paper().touching_b().ok_or(Error::NoValue)?;
     Ok(Table {
         name: "thresholds".to_owned(),
-        title: "gamma(v*): a = 1, alpha = beta = T0 = 0.3, omega = 2".to_owned(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows,
-        notes: vec![
-            "gamma is signed, the work of friction over that of the forcing; the threshold gamma_c \
+        title: "$gamma(v*)$: $a = 1$, $alpha = beta = T0 = 0.3$, $omega = 2$".into(),
+        columns: texts(columns),
+        rows: rows.into_iter().map(texts).collect(),
+        notes: texts([
+            "$gamma$ is signed, the work of friction over that of the forcing; the threshold $gamma_c$ \
              is its absolute value"
                 .to_owned(),
-            "V = a/sqrt(2b) is the largest speed on the loop: there gamma has its cusp".to_owned(),
+            "$V = a/sqrt(2b)$ is the largest speed on the loop: there $gamma$ has its cusp".to_owned(),
             format!(
-                "the cusp touches gamma = 0 at b* = {touching}; the rows with b > b* have two zeros, \
-                 one on each side of V"
+                "the cusp touches $gamma = 0$ at $b* = {touching}$; the rows with $b > b*$ have two zeros, \
+                 one on each side of $V$"
             ),
-            "at v* = 0 and v* = V themselves the theory does not hold: these are limits".to_owned(),
-        ],
+            "at $v* = 0$ and $v* = V$ themselves the theory does not hold: these are limits".to_owned(),
+        ]),
     })
+}
+
+/// The equation of the data card.
+pub(super) fn model() -> Result<Model, Error> {
+    let equation: Expression = card::equation();
+    Ok(Model::second_order(&equation)?.with_small("eps"))
+}
+
+/// The paper's values: the defaults of the data card (eps = 1: the paper names none).
+pub(super) fn parameters() -> Result<Parameters, Error> {
+    let mut parameters = Parameters::new();
+    for card in card::problem().parameters {
+        parameters.set(&card.name, Quantity::parse(&card.default).ok_or(Error::NoValue)?);
+    }
+    Ok(parameters)
 }

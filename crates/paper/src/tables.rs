@@ -1,6 +1,7 @@
 //! What the method really gives: partial sums against exact periods.
 
 use super::{Reader, Section, Table, periods};
+use crate::text::texts;
 use lindstedt::constants::Constants;
 use lindstedt::{Error, Exact, energy};
 use lindstedt_algebra::Ring;
@@ -24,9 +25,9 @@ pub(super) const QUANTITIES: [Quantity; 3] =
 impl Quantity {
     pub fn name(self) -> &'static str {
         match self {
-            Self::Period => "T",
-            Self::Frequency => "omega",
-            Self::FrequencySquared => "omega^2",
+            Self::Period => "$T$",
+            Self::Frequency => "$omega$",
+            Self::FrequencySquared => "$omega^2$",
         }
     }
 }
@@ -125,12 +126,12 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
         let exact = periods::power_law_period(&Rational::from(n), balls).ok_or(Error::NoValue)?;
         let delta = Rational::from((n - 1, 2));
         let convergence = if delta == 1 {
-            "delta = 1 lies ON the circle of convergence |delta| = 1 (T is singular at delta = -1)"
+            "$delta = 1$ lies ON the circle of convergence $|delta| = 1$ ($T$ is singular at $delta = -1$)"
                 .to_owned()
         } else {
-            format!("NO CONVERGENCE: delta = {delta} lies outside the circle |delta| = 1")
+            format!("NO CONVERGENCE: $delta = {delta}$ lies outside the circle $|delta| = 1$")
         };
-        let title = format!("x'' + x^{n} = 0, x(0) = 1: delta = {delta}");
+        let title = format!("$x'' + x^{n} = 0$, $x(0) = 1$: $delta = {delta}$");
         let table = table(&format!("n{n}"), title, &series, order, &delta, &exact, convergence);
         section.tables.push(table.ok_or(Error::NoValue)?);
     }
@@ -142,10 +143,10 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
     let series = Truncations::pendulum(order, balls).ok_or(Error::NoValue)?;
     let exact = periods::pendulum_period(&one, balls).ok_or(Error::NoValue)?;
     let convergence =
-        "NO CONVERGENCE for any delta but 0: the potential has poles at delta = -1/k, \
-                       k = 1, 2, 3, ...; the series is asymptotic"
+        "NO CONVERGENCE for any $delta$ but 0: the potential has poles at $delta = -1/k$, \
+                       $k = 1$, 2, 3, ...; the series is asymptotic"
             .to_owned();
-    let title = "pendulum x'' + sin x = 0, x(0) = 1: delta = 1".to_owned();
+    let title = "pendulum $x'' + sin x = 0$, $x(0) = 1$: $delta = 1$".to_owned();
     let table = table("pendulum", title, &series, order, &one, &exact, convergence);
     section.tables.push(table.ok_or(Error::NoValue)?);
     Ok(true)
@@ -166,7 +167,7 @@ fn table(
     let balls = series.balls;
     let mut columns = vec!["order".to_owned()];
     for quantity in QUANTITIES {
-        columns.push(format!("T through {}", quantity.name()));
+        columns.push(format!("$T$ through {}", quantity.name()));
         columns.push("error %".to_owned());
     }
     let mut rows = Vec::new();
@@ -193,7 +194,7 @@ fn table(
     let mut notes = vec![
         format!("exact period {} (certified)", decimal(exact, 25)?),
         convergence,
-        "each column cuts off the series of the quantity named, and T = 2 pi/omega follows from it"
+        "each column cuts off the series of the quantity named, and $T = 2 pi/omega$ follows from it"
             .to_owned(),
     ];
     for (quantity, best) in QUANTITIES.into_iter().zip(best) {
@@ -205,7 +206,13 @@ fn table(
         ));
     }
     notes.push(
-        "\"none\": the truncated omega or omega^2 is not positive, there is no period".to_owned(),
+        "`none`: the truncated $omega$ or $omega^2$ is not positive, there is no period".to_owned(),
     );
-    Some(Table { name: name.to_owned(), title, columns, rows, notes })
+    Some(Table {
+        name: name.to_owned(),
+        title: title.into(),
+        columns: texts(columns),
+        rows: rows.into_iter().map(texts).collect(),
+        notes: texts(notes),
+    })
 }

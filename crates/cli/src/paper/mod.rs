@@ -30,7 +30,7 @@ pub fn run(options: &PaperOptions, session: &Session<'_>) -> Outcome {
                 Format::Text => page::text(&paper),
                 Format::Markdown => page::markdown(&paper, &[]),
                 Format::Latex => page::latex(&paper),
-                Format::Json => format!("{:#}\n", page::json(&paper, seconds)),
+                Format::Json => page::json(&paper, seconds).map_err(unwritten)?,
             };
             crate::output::write(session, &report)?;
         }
@@ -53,9 +53,15 @@ fn prepare(directory: &Path) -> Result<(), Failure> {
     std::fs::remove_file(&probe).map_err(failed)
 }
 
+/// Data that cannot be written as JSON.
+fn unwritten(error: serde_json::Error) -> Failure {
+    let message = format!("no JSON: {error}");
+    Failure { exit: UNDECIDED, code: "json", message, hint: String::new() }
+}
+
 fn write_directory(directory: &Path, paper: &Paper, seconds: f64) -> Result<(), Failure> {
     let figures = figures::draw(&paper.trust)?;
-    for (name, content) in page::files(paper, figures, seconds) {
+    for (name, content) in page::files(paper, figures, seconds).map_err(unwritten)? {
         let path = directory.join(name);
         std::fs::write(&path, content)
             .map_err(|error| trouble(&path.display().to_string(), &error))?;

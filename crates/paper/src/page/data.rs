@@ -1,54 +1,8 @@
-//! The measurements of the summary as data.
+//! The measurements of the figures as tables.
 
 use super::field;
 use crate::Trust;
-use serde_json::{Value as Json, json};
 use std::fmt::Write;
-
-/// The measurements behind the summary.
-pub fn json(trust: &Trust) -> Json {
-    let findings: Vec<Json> = trust
-        .findings()
-        .into_iter()
-        .map(|f| {
-            json!({
-                "section": f.section, "method": f.method, "trusted": f.trusted,
-                "not_trusted": f.not_trusted, "class": f.class,
-            })
-        })
-        .collect();
-    let region = trust.region.as_ref().map(|region| {
-        let rate = |r: &crate::trust::Rate| {
-            json!({"rule": r.rule, "compared": r.compared, "equal": r.equal, "rate": r.share()})
-        };
-        json!({
-            "points": region.sample.points, "stable": region.sample.stable,
-            "rules": region.sample.rates.iter().map(rate).collect::<Vec<_>>(),
-            "chart_orbit": region.orbit, "status": "estimated",
-        })
-    });
-    let onset = trust.onset.as_ref().map(|onset| {
-        let side = |s: Option<(f64, f64)>| s.map(|s| json!({"gamma": s.0, "error": s.1}));
-        let points = onset
-            .points
-            .iter()
-            .map(|p| json!({"eps": p.eps, "right": side(p.right), "left": side(p.left)}));
-        json!({
-            "threshold": onset.threshold, "points": points.collect::<Vec<_>>(),
-            "status": "estimated",
-        })
-    });
-    let truncations = trust.truncations.iter().map(|t| {
-        json!({
-            "name": t.name, "delta": t.delta.to_string(), "errors": t.errors,
-            "errors_in_u": t.resummed, "best_order": t.best().map(|b| b.0),
-        })
-    });
-    json!({
-        "findings": findings, "region": region, "onset": onset,
-        "truncations": truncations.collect::<Vec<_>>(),
-    })
-}
 
 /// The data of the figures that no table has: the planes of the gains, the errors by order.
 pub fn csv(trust: &Trust) -> Vec<(String, String)> {

@@ -44,7 +44,7 @@ pub fn report(paper: &Paper) -> String {
 /// Where the methods can be trusted, above the sections.
 fn trust(paper: &Paper) -> String {
     let mut text = String::new();
-    for finding in paper.trust.findings() {
+    for finding in &paper.trust.findings {
         if text.is_empty() {
             text += "\\section*{Where the paper's methods can be trusted, and where not}\n";
         }

@@ -1,8 +1,8 @@
 //! The report as Markdown.
 
 use super::Figure;
-use super::{CLASSES, RULES, SYMBOLS, summary};
-use crate::Paper;
+use super::{CLASSES, SYMBOLS, summary};
+use crate::{Paper, Text, Verdict};
 use std::fmt::Write;
 
 /// The report.
@@ -12,6 +12,10 @@ pub fn report(paper: &Paper, figures: &[Figure]) -> String {
          non-linear and non-smooth systems*, re-read by machine (lindstedt {}).\n\n",
         env!("CARGO_PKG_VERSION")
     );
+    for verdict in Verdict::ALL {
+        let _ = writeln!(text, "- **{}**: {}", verdict.name(), cell(verdict.rule()));
+    }
+    text.push('\n');
     text += &trust(paper, figures);
     for section in &paper.sections {
         let _ = writeln!(text, "# Section {}: {}\n", section.number, section.title);
@@ -43,25 +47,22 @@ pub fn report(paper: &Paper, figures: &[Figure]) -> String {
         }
     }
     text += "# Notes\n\n";
-    for (name, meaning) in RULES {
-        let _ = writeln!(text, "- **{name}**: {}", cell(meaning));
-    }
-    text.push('\n');
     for (letters, meaning) in SYMBOLS {
-        let _ = writeln!(text, "- `{letters}`: {}", cell(meaning));
+        let (letters, meaning) = (Text::from(letters), Text::from(meaning));
+        let _ = writeln!(text, "- `{letters}`: {}", cell(&meaning));
     }
     text
 }
 
 /// Where the methods can be trusted, above the sections.
 fn trust(paper: &Paper, figures: &[Figure]) -> String {
-    let findings = paper.trust.findings();
+    let findings = &paper.trust.findings;
     if findings.is_empty() {
         return String::new();
     }
     let mut text = String::from("# Where the paper's methods can be trusted, and where not\n\n");
     for finding in findings {
-        let _ = writeln!(text, "## Section {}: {}\n", finding.section, cell(finding.method));
+        let _ = writeln!(text, "## Section {}: {}\n", finding.section, cell(&finding.method));
         for (name, list) in
             [("To be trusted", &finding.trusted), ("Not to be trusted", &finding.not_trusted)]
         {

@@ -6,8 +6,8 @@ mod latex;
 mod markdown;
 mod text;
 
-use crate::{Paper, Section, Table, Verdict};
-use serde_json::{Value as Json, json};
+use crate::{Paper, Section, Table, Text, Verdict};
+use serde::Serialize;
 use std::fmt::Write;
 
 pub use html::report as html;
@@ -23,21 +23,24 @@ pub struct Figure {
     /// The section of the paper it belongs to.
     pub section: u32,
     /// What it shows.
-    pub caption: String,
+    pub caption: Text,
     /// The picture.
     pub svg: String,
 }
 
-/// All verdicts, in the order of the summary.
-const VERDICTS: [Verdict; 4] =
-    [Verdict::Agrees, Verdict::Misprint, Verdict::Wrong, Verdict::NotReproducible];
-
 /// All files of the report with their names: pages, data, figures. `seconds` is what the work took.
-pub fn files(paper: &Paper, figures: Vec<Figure>, seconds: f64) -> Vec<(String, String)> {
+///
+/// # Errors
+/// As [`json`].
+pub fn files(
+    paper: &Paper,
+    figures: Vec<Figure>,
+    seconds: f64,
+) -> Result<Vec<(String, String)>, serde_json::Error> {
     let mut files = vec![
         ("report.html".to_owned(), html(paper, &figures)),
         ("report.md".to_owned(), markdown(paper, &figures)),
-        ("report.json".to_owned(), format!("{:#}\n", json(paper, seconds))),
+        ("report.json".to_owned(), json(paper, seconds)?),
     ];
     for section in &paper.sections {
         files.push((format!("section{}.csv", section.number), rows_csv(section)));
@@ -49,44 +52,21 @@ pub fn files(paper: &Paper, figures: Vec<Figure>, seconds: f64) -> Vec<(String, 
         files.push((format!("{name}.svg"), svg));
     }
     files.extend(data::csv(&paper.trust));
-    files
+    Ok(files)
 }
 
 /// Everything as data; `seconds` is what the work took.
-pub fn json(paper: &Paper, seconds: f64) -> Json {
-    let row = |row: &crate::Row| {
-        json!({
-            "label": row.label,
-            "printed": row.printed,
-            "derived": row.derived,
-            "independent": row.independent,
-            "verdict": row.verdict.name(),
-            "evidence": row.evidence,
-        })
-    };
-    let table = |table: &Table| {
-        json!({
-            "name": table.name,
-            "title": table.title,
-            "columns": table.columns,
-            "rows": table.rows,
-            "notes": table.notes,
-        })
-    };
-    let section = |section: &Section| {
-        json!({
-            "section": section.number,
-            "title": section.title,
-            "rows": section.rows.iter().map(row).collect::<Vec<_>>(),
-            "tables": section.tables.iter().map(table).collect::<Vec<_>>(),
-        })
-    };
-    json!({
-        "trust": data::json(&paper.trust),
-        "sections": paper.sections.iter().map(section).collect::<Vec<_>>(),
-        "complete": paper.complete,
-        "seconds": seconds,
-    })
+///
+/// # Errors
+/// None that can occur: all keys are text.
+pub fn json(paper: &Paper, seconds: f64) -> Result<String, serde_json::Error> {
+    #[derive(Serialize)]
+    struct Run<'a> {
+        #[serde(flatten)]
+        paper: &'a Paper,
+        seconds: f64,
+    }
+    Ok(format!("{}\n", serde_json::to_string_pretty(&Run { paper, seconds })?))
 }
 
 /// Whether a cell of a table is a number and nothing else.
@@ -97,48 +77,31 @@ fn is_plain_number(cell: &str) -> bool {
 /// What the numbers of the report are worth.
 const CLASSES: &str = "Every decimal is certified to the last digit shown, except in entries and tables that say estimated.";
 
-/// What the verdicts mean.
-const RULES: [(&str, &str); 4] = [
-    (
-        "agrees",
-        "it holds as printed: exactly, or the printed decimals are the value, rounded or cut off",
-    ),
-    (
-        "misprint",
-        "a slip of the pen: one factor, sign, symbol, exponent, bracket or digit changed, two symbols \
-     interchanged, or one term added or struck makes it hold, and nothing in the paper rests on the error; \
-     where there are such slips at two places, both are named or have a row each",
-    ),
-    (
-        "wrong",
-        "it does not hold, and no slip of the pen explains it, or later statements rest on the error",
-    ),
-    ("not reproducible", "a number that follows from no formula, printed or corrected"),
-];
-
 /// What the letters of the derived formulas mean that the paper does not have.
 const SYMBOLS: [(&str, &str); 6] = [
-    ("v", "x'_-, the velocity before the impact"),
+    ("$v$", "$x'_-$, the velocity before the impact"),
     (
-        "E, theta, Delta",
-        "E = exp(-beta c), theta = 2 beta lambda, Delta = E + 1/E - 2 cos(theta) in the rows C to sin phi; E = exp(2 beta R), theta = 2 beta alpha0 in (11) to (16)",
+        "$E, theta, Delta$",
+        "$E = exp(-beta c)$, $theta = 2 beta lambda$, $Delta = E + 1/E - 2 cos(theta)$ in the rows $C$ to \
+         $sin phi$; $E = exp(2 beta R)$, $theta = 2 beta alpha0$ in (11) to (16)",
     ),
     (
-        "G",
-        "the characteristic function of the delayed system, with z(t)/gamma in the place of z(t - T)",
+        "$G$",
+        "the characteristic function of the delayed system, with $z(t)/gamma$ in the place of $z(t - T)$",
     ),
     (
-        "l, mu_m, Lambda_m",
-        "l = -ln|cos tau|, mu_m the mean of l^m/m! (mu_1 = ln 2), Lambda_m' = l^m/m! - mu_m, Lambda_m(0) = 0; Lambda_1 = L(tau) - tau ln 2",
+        "$l, mu_m, Lambda_m$",
+        "$l = -ln|cos tau|$, $mu_m$ the mean of $l^m/m!$ ($mu_1 = ln 2$), $Lambda_m' = l^m/m! - mu_m$, \
+         $Lambda_m(0) = 0$; $Lambda_1 = L(tau) - tau ln 2$",
     ),
-    ("S_n", "sum_k (-1)^k k^n/(2k+1)!: S_0 = sin 1"),
-    ("kappa", "the factor of x at order zero"),
+    ("$S_n$", "$sum_k (-1)^k k^n/(2k+1)!$: $S_0 = sin 1$"),
+    ("$kappa$", "the factor of $x$ at order zero"),
 ];
 
 /// "44 statements: 30 agrees, ..." in one line.
 fn summary(section: &Section) -> String {
     let counts: Vec<String> =
-        VERDICTS.iter().map(|v| format!("{} {}", section.count(*v), v.name())).collect();
+        Verdict::ALL.iter().map(|v| format!("{} {}", section.count(*v), v.name())).collect();
     format!("{} statements: {}", section.rows.len(), counts.join(", "))
 }
 
@@ -150,7 +113,7 @@ fn field(text: &str) -> String {
     }
 }
 
-fn line(cells: &[String]) -> String {
+fn line(cells: &[Text]) -> String {
     let cells: Vec<String> = cells.iter().map(|c| field(c)).collect();
     format!("{}\n", cells.join(","))
 }
@@ -171,7 +134,7 @@ fn rows_csv(section: &Section) -> String {
             row.printed.clone(),
             row.derived.clone(),
             row.independent.clone(),
-            row.verdict.name().to_owned(),
+            row.verdict.name().into(),
             row.evidence.clone(),
         ];
         let _ = write!(text, "{}", line(&cells));

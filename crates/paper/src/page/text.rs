@@ -25,7 +25,7 @@ pub fn report(paper: &Paper) -> String {
 
 /// Where the methods can be trusted, above the sections.
 fn trust(paper: &Paper) -> String {
-    let findings = paper.trust.findings();
+    let findings = &paper.trust.findings;
     if findings.is_empty() {
         return String::new();
     }
@@ -89,7 +89,7 @@ fn aligned(table: &Table) -> String {
     }
     let width = |column: usize| {
         let cells = table.rows.iter().filter_map(|row| row.get(column));
-        cells.chain(table.columns.get(column)).map(String::len).max().unwrap_or(0)
+        cells.chain(table.columns.get(column)).map(|cell| cell.len()).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..table.columns.len()).map(width).collect();
     for row in std::iter::once(&table.columns).chain(&table.rows) {

@@ -8,21 +8,30 @@ mod onset;
 mod region;
 mod truncation;
 
+pub use crate::vibro_impact::{Rate, Sample};
 pub use onset::{Onset, OnsetPoint};
-pub use region::{Rate, Region, RegionChart, Sample};
+pub use region::{Region, RegionChart};
 pub use truncation::Truncation;
 
 pub(super) use onset::read as read_onset;
 pub(super) use region::read as read_region;
 pub(super) use truncation::read as read_truncation;
 
+use crate::Text;
+use serde::Serialize;
+
+/// What is estimated throughout says so.
+pub(super) const ESTIMATED: &str = "estimated";
+
 /// Values of eps per loop.
 pub(super) const QUICK_STEPS: usize = onset::QUICK.len();
 pub(super) const FULL_STEPS: usize = onset::FULL.len();
 
 /// The measurements; empty where the work was stopped before.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Trust {
+    /// What they come to in words, in the order of the paper; those of finished sections.
+    pub findings: Vec<Finding>,
     /// Section 2.
     pub region: Option<Region>,
     /// Section 3.
@@ -32,18 +41,18 @@ pub struct Trust {
 }
 
 /// What a section's measurement comes to, in words.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Finding {
     /// The section of the paper.
     pub section: u32,
     /// The method.
-    pub method: &'static str,
+    pub method: Text,
     /// Where it holds.
-    pub trusted: Vec<String>,
+    pub trusted: Vec<Text>,
     /// Where it does not.
-    pub not_trusted: Vec<String>,
+    pub not_trusted: Vec<Text>,
     /// What the numbers are worth.
-    pub class: String,
+    pub class: Text,
 }
 
 impl Trust {
@@ -54,13 +63,12 @@ impl Trust {
         self.truncations.extend(other.truncations);
     }
 
-    /// The findings, in the order of the paper; those of finished sections.
-    #[must_use]
-    pub fn findings(&self) -> Vec<Finding> {
+    /// Says what was measured.
+    pub(super) fn conclude(&mut self) {
         let region = self.region.as_ref().map(Region::finding);
         let onset = self.onset.as_ref().map(Onset::finding);
         let truncation = truncation::finding(&self.truncations);
-        [region, onset, truncation].into_iter().flatten().collect()
+        self.findings = [region, onset, truncation].into_iter().flatten().collect();
     }
 }
 

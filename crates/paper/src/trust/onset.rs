@@ -1,25 +1,39 @@
 //! Section 3: the eps up to which Melnikov's threshold tells where the tangle begins.
 
-use super::super::{Reader, Section, Table};
-use super::Finding;
-use crate::simulated::{model, parameters};
+use super::super::{Findings, Reader, Row, Section, Table};
+use super::{ESTIMATED, Finding};
+use crate::stick_slip::{model, parameters};
+use crate::text::texts;
 use lindstedt::Error;
 use lindstedt_melnikov::StickSlip;
 use lindstedt_simulate::{Homoclinic, Loop, Quantity, SimulateError, Tangency, continue_tangency};
+use serde::{Serialize, Serializer};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::channel;
 
 /// The first homoclinic tangency of both loops.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct OnsetPoint {
     /// The perturbation parameter.
     pub eps: f64,
     /// gamma of the right loop with its estimated error; nothing where the branch ends.
+    #[serde(serialize_with = "tangency")]
     pub right: Option<(f64, f64)>,
     /// The same of the left loop.
+    #[serde(serialize_with = "tangency")]
     pub left: Option<(f64, f64)>,
+}
+
+/// A tangency as `{"gamma": ..., "error": ...}`.
+fn tangency<S: Serializer>(side: &Option<(f64, f64)>, serializer: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Found {
+        gamma: f64,
+        error: f64,
+    }
+    side.map(|(gamma, error)| Found { gamma, error }).serialize(serializer)
 }
 
 impl OnsetPoint {
@@ -31,12 +45,14 @@ impl OnsetPoint {
 }
 
 /// Melnikov's threshold and the true onset as eps grows, at the paper's parameters. Estimated.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Onset {
     /// gamma_c of (27), corrected; it does not depend on eps.
     pub threshold: f64,
     /// The tangencies, by rising eps.
     pub points: Vec<OnsetPoint>,
+    /// The class of the numbers.
+    pub status: &'static str,
 }
 
 /// From how small an eps the branches are followed, and where they are shown.
@@ -61,8 +77,8 @@ pub(in super::super) fn read(
     if !follow(reader, threshold, &mut points)? {
         return Ok(false);
     }
-    let onset = Onset { threshold, points };
-    section.rows.push(super::super::simulated::agreement(&onset)?);
+    let onset = Onset { threshold, points, status: ESTIMATED };
+    section.rows.push(agreement(&onset)?);
     section.tables.push(onset.table());
     reader.trust.onset = Some(onset);
     Ok(true)
@@ -174,14 +190,14 @@ impl Onset {
 
     pub(super) fn finding(&self) -> Finding {
         let reach = |share: f64| {
-            let eps = self
-                .reach(share)
-                .map_or("every eps computed".to_owned(), |eps| format!("eps = {}", cut_off(eps)));
+            let eps = self.reach(share).map_or("every $eps$ computed".to_owned(), |eps| {
+                format!("$eps = {}$", cut_off(eps))
+            });
             format!("to {:.0} % up to {eps}", 100.0 * share)
         };
         let limit = self.limit().map_or_else(String::new, |(eps, mean)| {
             format!(
-                "as eps goes to 0: at eps = {eps} the mean of the two loops is {mean:.7}, the \
+                "as $eps$ goes to 0: at $eps = {eps}$ the mean of the two loops is {mean:.7}, the \
                      threshold {:.7}",
                 self.threshold
             )
@@ -190,8 +206,8 @@ impl Onset {
         let last = self.points.iter().rev().find_map(|p| Some((p.eps, p.right?.0, p.left?.0)));
         let end = last.map_or_else(String::new, |(eps, right, left)| {
             format!(
-                "at the eps = {eps} at which the paper's observations are found the tangencies that are the \
-                 first ones at small eps lie at {} for the right loop and {} for the left one, where others \
+                "at the $eps = {eps}$ at which the paper's observations are found the tangencies that are the \
+                 first ones at small $eps$ lie at {} for the right loop and {} for the left one, where others \
                  have come before it",
                 ratio(right),
                 ratio(left)
@@ -199,28 +215,27 @@ impl Onset {
         });
         Finding {
             section: 3,
-            method: "Melnikov's threshold with dry friction, (27) corrected",
-            trusted: vec![
+            method: "Melnikov's threshold with dry friction, (27) corrected".into(),
+            trusted: texts([
                 limit,
                 format!(
                     "at the paper's parameters the first tangency of both loops is the threshold \
-                     {}, {} and {}: first order in eps, of opposite sign on the two loops",
+                     {}, {} and {}: first order in $eps$, of opposite sign on the two loops",
                     reach(0.01),
                     reach(0.05),
                     reach(0.1)
                 ),
-            ],
-            not_trusted: vec![
+            ]),
+            not_trusted: texts([
                 end,
-                "chaos seen near 0.65 at eps = 1 comes from period doubling of an orbit inside one \
+                "chaos seen near 0.65 at $eps = 1$ comes from period doubling of an orbit inside one \
                  well; the agreement of the numbers is a coincidence"
                     .to_owned(),
-                "at v* = 0 and |v*| = a/sqrt(2b), where the loop touches the switching line"
+                "at $v* = 0$ and $|v*| = a/sqrt(2b)$, where the loop touches the switching line"
                     .to_owned(),
-            ],
+            ]),
             class: "estimated: tangencies by following the unstable manifold, event by event, in \
-                    doubles; the eps of a deviation by linear interpolation between the points"
-                .to_owned(),
+                    doubles; the $eps$ of a deviation by linear interpolation between the points".into(),
         }
     }
 
@@ -241,22 +256,55 @@ impl Onset {
             ]
         };
         let columns =
-            ["eps", "gamma, right loop", "deviation %", "gamma, left loop", "deviation %"];
+            ["$eps$", "$gamma$, right loop", "deviation %", "$gamma$, left loop", "deviation %"];
         Table {
             name: "tangencies".to_owned(),
-            title: "The homoclinic tangency that is the first one at small eps, against Melnikov's threshold (estimated)".to_owned(),
-            columns: columns.map(str::to_owned).to_vec(),
-            rows: self.points.iter().map(row).collect(),
-            notes: vec![
+            title: "The homoclinic tangency that is the first one at small $eps$, against Melnikov's threshold (estimated)".into(),
+            columns: texts(columns),
+            rows: self.points.iter().map(row).map(texts).collect(),
+            notes: texts([
                 format!(
-                    "a = b = 1, alpha = beta = T0 = 0.3, omega = 2, v* = 0.4; threshold {:.7} for \
-                     every eps",
+                    "$a = b = 1$, $alpha = beta = T0 = 0.3$, $omega = 2$, $v* = 0.4$; threshold {:.7} for \
+                     every $eps$",
                     self.threshold
                 ),
-                "followed from the smallest eps on, so at larger eps other tangencies may come before it: \
-                 on the left loop they do at eps = 1"
+                "followed from the smallest $eps$ on, so at larger $eps$ other tangencies may come before it: \
+                 on the left loop they do at $eps = 1$"
                     .to_owned(),
-            ],
+            ]),
         }
     }
+}
+
+/// What agreement of an onset with the prediction is worth the name.
+const GOOD: f64 = 0.1;
+
+/// The row of the conclusion: whether the onset at eps = 1 is the predicted one.
+fn agreement(onset: &Onset) -> Result<Row, Error> {
+    let last = onset.points.last().ok_or(Error::NoValue)?;
+    let shown =
+        |side: Option<(f64, f64)>| side.map_or("none".to_owned(), |s| format!("{:.5}", s.0));
+    let far =
+        |side: Option<(f64, f64)>| side.is_none_or(|s| (s.0 / onset.threshold - 1.0).abs() > GOOD);
+    let findings = Findings::holds(!far(last.right) && !far(last.left));
+    Ok(Row {
+        label: "good agreement".into(),
+        printed: "the obtained results illustrate practically a good agreement with the analytical \
+                  prediction".into(),
+        derived: format!(
+            "$gamma_c = {:.5}$; the tangency that is the first one at small $eps$, followed to $eps = {}$: \
+             $gamma = {}$ (right loop), {} (left loop) (estimated)",
+            onset.threshold,
+            last.eps,
+            shown(last.right),
+            shown(last.left)
+        ).into(),
+        independent: "unstable manifold of the saddle orbit, followed event by event".into(),
+        verdict: findings.verdict(),
+        evidence: format!(
+            "the orbit that becomes chaotic near 0.65 stays in the right well, whose loop is first \
+             tangent at {} (estimated); what is seen near 0.65 is not what (27) predicts",
+            shown(last.right)
+        ).into(),
+    })
 }

@@ -1,52 +1,15 @@
 //! Section 2: the region of (17) against the stability of the delayed system.
 
-use super::super::vibro_impact::unstable_example;
+use super::super::vibro_impact::{Sample, unstable_example};
 use super::super::{Reader, Section, Verdict};
-use super::{Finding, percent};
+use super::{ESTIMATED, Finding, percent};
+use crate::Text;
+use crate::text::texts;
 use lindstedt::Error;
 use lindstedt_impact::characteristic::Kick;
 use lindstedt_impact::chart::{Axis, Chart, Plan, Predictor, Swept, chart};
 use lindstedt_impact::prediction::Variant;
-
-/// Counts of a rule over the sample of orbits and gains.
-#[derive(Clone, Debug)]
-pub struct Rate {
-    /// The rule.
-    pub rule: &'static str,
-    /// Points where it says something.
-    pub compared: usize,
-    /// Of these, points where it has the true verdict.
-    pub equal: usize,
-}
-
-impl Rate {
-    /// equal/compared; NaN if nothing was compared.
-    #[must_use]
-    pub fn share(&self) -> f64 {
-        self.equal as f64 / self.compared as f64
-    }
-}
-
-/// The sample: orbits of the upper branch times gains.
-#[derive(Clone, Debug)]
-pub struct Sample {
-    /// Points (orbit, A, B).
-    pub points: usize,
-    /// Of these, truly stable.
-    pub stable: usize,
-    /// The rules.
-    pub rates: Vec<Rate>,
-}
-
-impl Sample {
-    fn share(&self, rule: &str) -> f64 {
-        self.rates.iter().find(|rate| rate.rule == rule).map_or(f64::NAN, Rate::share)
-    }
-
-    fn compared(&self, rule: &str) -> usize {
-        self.rates.iter().find(|rate| rate.rule == rule).map_or(0, |rate| rate.compared)
-    }
-}
+use serde::Serialize;
 
 /// The plane of the gains A, B of one orbit, for one reading of (17).
 #[derive(Clone, Debug)]
@@ -59,16 +22,22 @@ pub struct RegionChart {
 }
 
 /// How the region of (17) compares with the truth. Everything is estimated (doubles).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Region {
     /// The sample.
+    #[serde(flatten)]
     pub sample: Sample,
     /// The orbit of the charts: the first of the sample that is unstable without the loop.
-    pub orbit: String,
+    #[serde(rename = "chart_orbit")]
+    pub orbit: Text,
     /// The formulas (6), (7), (15), (16), (17), as far as they hold as printed.
+    #[serde(skip)]
     pub formulas: Vec<String>,
     /// Two readings over the same plane: the orbit of (8) itself, the true orbit.
+    #[serde(skip)]
     pub charts: Vec<RegionChart>,
+    /// The class of the numbers.
+    pub status: &'static str,
 }
 
 /// The largest gain of the charts.
@@ -100,7 +69,7 @@ pub(in super::super) fn read(
         let chart = chart(&base, &plan, &|_| true).map_err(|_| Error::NoValue)?;
         charts.push(RegionChart { rule, chart });
     }
-    reader.trust.region = Some(Region { sample, orbit, formulas, charts });
+    reader.trust.region = Some(Region { sample, orbit, formulas, charts, status: ESTIMATED });
     Ok(true)
 }
 
@@ -124,24 +93,24 @@ impl Region {
         });
         Finding {
             section: 2,
-            method: "KBM with the delay loop, stability by (17)",
-            trusted: vec![
+            method: "KBM with the delay loop, stability by (17)".into(),
+            trusted: texts([
                 format!(
-                    "the formulas {}, read with the amplitude a = F and not with that printed in \
+                    "the formulas {}, read with the amplitude $a = F$ and not with that printed in \
                      (8): (6) and (7), without an amplitude, are the first order in the loop, (15) \
                      to (17) are exact for the motion (8)",
                     self.formulas.join(", ")
                 ),
                 format!(
-                    "the characteristic function G, where z(t - T) = z(t)/gamma takes the impact \
-                     inside the delay into account: right at {} of {} points, {} orbits (for B = 0 \
-                     it defines the truth; B other than 0 tests it)",
+                    "the characteristic function $G$, where $z(t - T) = z(t)/gamma$ takes the impact \
+                     inside the delay into account: right at {} of {} points, {} orbits (for $B = 0$ \
+                     it defines the truth; $B$ other than 0 tests it)",
                     share("G"),
                     self.sample.points,
                     super::super::vibro_impact::SAMPLED
                 ),
-            ],
-            not_trusted: vec![
+            ]),
+            not_trusted: texts([
                 format!(
                     "the region of (17) as the stability region of (1): the true verdict at {} of \
                      the points to the letter, {} with the orbit of (8) itself (of the {} points where \
@@ -152,17 +121,16 @@ impl Region {
                     share(TRUE),
                     share("no loop")
                 ),
-                format!("the sign of R as a rule, which the paper does not claim: {}", share("R < 0")),
+                format!("the sign of $R$ as a rule, which the paper does not claim: {}", share("R < 0")),
                 format!(
-                    "in the plane of the gains of {}, against the zeros of G with the mean kick: {}",
-                    self.orbit,
+                    "in the plane of the gains of {}, against the zeros of $G$ with the mean kick: {}",
+                    self.orbit.marked(),
                     charts.collect::<Vec<_>>().join("; ")
                 ),
-            ],
-            class: "estimated: doubles; zeros of G on the unit disc by their winding number; in the \
-                    sample the growth of the piecewise linear return map for B other than 0, in the \
-                    plane of the gains zeros of G throughout"
-                .to_owned(),
+            ]),
+            class: "estimated: doubles; zeros of $G$ on the unit disc by their winding number; in the \
+                    sample the growth of the piecewise linear return map for $B$ other than 0, in the \
+                    plane of the gains zeros of $G$ throughout".into(),
         }
     }
 }

@@ -3,23 +3,32 @@
 use super::super::tables::{Quantity, Truncations};
 use super::super::{Reader, Section, periods};
 use super::Finding;
+use crate::text::texts;
 use lindstedt::Error;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_series::resummation::Map;
 use rug::{Float, Rational};
+use serde::{Serialize, Serializer};
 
 /// The error of T, cut off after each order, at one value of delta.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Truncation {
     /// "n = 3" or "pendulum".
     pub name: String,
     /// delta.
+    #[serde(serialize_with = "exactly")]
     pub delta: Rational,
     /// |T_N/T - 1| of the partial sum of order N, at index N. Certified, rounded to a double.
     pub errors: Vec<f64>,
     /// The same coefficients, re-expanded in u = delta/(1 + delta) with the factor sqrt(1 - u);
     /// empty for the pendulum. Estimated: no rounding errors are bounded.
+    #[serde(rename = "errors_in_u")]
     pub resummed: Vec<f64>,
+}
+
+/// A rational number as it is written.
+fn exactly<S: Serializer>(q: &Rational, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(q)
 }
 
 impl Truncation {
@@ -101,7 +110,7 @@ pub(super) fn finding(list: &[Truncation]) -> Option<Finding> {
     let share = |error: f64| match error {
         e if e < 1e-4 => format!("{e:.0e}"),
         e if e < 2.0 => format!("{:.2} %", 100.0 * e),
-        e => format!("{e:.0} times T"),
+        e => format!("{e:.0} times $T$"),
     };
     let at =
         |t: &Truncation, order: usize| t.errors.get(order).map_or("?".to_owned(), |e| share(*e));
@@ -113,23 +122,23 @@ pub(super) fn finding(list: &[Truncation]) -> Option<Finding> {
         .filter_map(|t| {
             let ((best, least), (last, error)) = (t.best()?, t.last()?);
             let (least, error) = (share(least), share(error));
-            Some(format!("{}: {least} at order {best}, {error} at order {last}", t.name))
+            Some(format!("${}$: {least} at order {best}, {error} at order {last}", t.name))
         })
         .collect();
     let resummed: Vec<String> = list
         .iter()
         .filter_map(|t| {
             let last = t.resummed.last()?;
-            Some(format!("{} at {}", share(*last), t.name))
+            Some(format!("{} at ${}$", share(*last), t.name))
         })
         .collect();
     let highest = cubic.last()?.0;
     Some(Finding {
         section: 4,
-        method: "The small delta method, T cut off after order N",
-        trusted: vec![
+        method: "The small $delta$ method, $T$ cut off after order $N$".into(),
+        trusted: texts([
             format!(
-                "n = 3 (delta = 1, on the circle of convergence): {} at order 1, {} at order 2, {} \
+                "$n = 3$ ($delta = 1$, on the circle of convergence): {} at order 1, {} at order 2, {} \
                  at order {highest}",
                 at(cubic, 1),
                 at(cubic, 2),
@@ -141,14 +150,14 @@ pub(super) fn finding(list: &[Truncation]) -> Option<Finding> {
                 at(pendulum, 1)
             ),
             format!(
-                "the same coefficients in u = delta/(1 + delta) with the factor sqrt(1 - u), for \
-                 every n computed: at order {highest} {}",
+                "the same coefficients in $u = delta/(1 + delta)$ with the factor $sqrt(1 - u)$, for \
+                 every $n$ computed: at order {highest} {}",
                 resummed.join(", ")
             ),
-        ],
-        not_trusted: vec![
+        ]),
+        not_trusted: texts([
             format!(
-                "outside the circle |delta| = 1 the series in delta diverges: {}",
+                "outside the circle $|delta| = 1$ the series in $delta$ diverges: {}",
                 outside.join("; ")
             ),
             format!(
@@ -156,9 +165,9 @@ pub(super) fn finding(list: &[Truncation]) -> Option<Finding> {
                  error is {}",
                 share(error)
             ),
-        ],
+        ]),
         class: "errors of partial sums certified, of the re-expanded series estimated (rounding \
                 errors not bounded)"
-            .to_owned(),
+            .into(),
     })
 }

@@ -93,25 +93,25 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     };
     Ok(vec![
         statement(
-            "da/dt, (6)",
+            "$da/dt$, (6)",
             "da/dt = ",
             "A*a/(2*alpha)*sin(alpha*T) + 1/2*(B - c)*a - B*a/2*cos(alpha*T)",
             q.mul(growth, &q.parameter("a")),
         ),
         statement(
-            "dpsi/dt, (6)",
+            "$dpsi/dt$, (6)",
             "dpsi/dt = ",
             "alpha - A/(2*alpha) + A/(2*alpha)*cos(alpha*T) + 1/2*B*sin(alpha*T)",
             total.clone(),
         ),
         statement(
-            "R, (7)",
+            "$R$, (7)",
             "R = ",
             "1/(2*alpha)*[A*sin(alpha*T) - alpha*[c - B*(1 - cos(alpha*T))]]",
             growth.clone(),
         ),
         statement(
-            "alpha_0, (7)",
+            "$alpha_0$, (7)",
             "alpha_0 = ",
             "alpha - A/(2*alpha)*(1 - cos(alpha*T)) + B/2*sin(alpha*T)",
             total,
@@ -127,23 +127,23 @@ pub(super) fn rows(order: usize) -> Result<Vec<Row>, Error> {
     let mut statements = statements()?.into_iter();
     let mut rows = vec![plain(
         "(5)",
-        "z = a(t) cos psi(t)",
-        format!("no other free harmonic in x up to order {order}"),
+        "$z = a(t) cos psi(t)$",
+        format!("no other free harmonic in $x$ up to order {order}"),
         "residual zero at every order".to_owned(),
         found.single_harmonic,
-        "the equation is linear: the rates are R_n a and constants, at every order derived",
+        "the equation is linear: the rates are $R_n a$ and constants, at every order derived",
     )];
     rows.extend(statements.by_ref().take(2).flat_map(|s| s.rows()));
     rows.push(uncontrolled(&found, order)?);
     // a = C_0 e^(R t): da/dt = R a, linear in a; psi' constant.
     let linear = found.growth.iter().skip(1).all(|r| q.is_zero(&coefficient(q, r, "a")));
     rows.push(plain(
-        "a(t), psi(t), (7)",
-        "a = C_0 e^(R t), psi = alpha_0 t + theta_0",
-        "da/dt = R a and dpsi/dt = alpha_0 with constant R, alpha_0".to_owned(),
+        "$a(t)$, $psi(t)$, (7)",
+        "$a = C_0 e^(R t)$, $psi = alpha_0 t + theta_0$",
+        "$da/dt = R a$ and $dpsi/dt = alpha_0$ with constant $R$, $alpha_0$".to_owned(),
         String::new(),
         linear,
-        "averaging at higher orders keeps this form: its R and alpha_0 are the Taylor sums of the \
+        "averaging at higher orders keeps this form: its $R$ and $alpha_0$ are the Taylor sums of the \
          characteristic root of the loop without impacts",
     ));
     rows.extend(statements.flat_map(|s| s.rows()));
@@ -162,7 +162,7 @@ pub(super) fn loop_switched_off(order: usize) -> Result<Row, Error> {
     Ok(plain(
         "loop switched off",
         "the delay loop is switched off where no perturbations are present",
-        "the forced response contains neither A nor B nor T".to_owned(),
+        "the forced response contains neither $A$ nor $B$ nor $T$".to_owned(),
         "delayed terms vanish on every T-periodic motion".to_owned(),
         found.response.iter().flatten().all(free),
         &format!("every order up to {order}"),
@@ -200,17 +200,17 @@ fn uncontrolled(found: &Averaged, order: usize) -> Result<Row, Error> {
     let half = q.mul(&q.rational(&Rational::from((-1, 2))), &c);
     let first = growth.get(1).is_some_and(|r| q.equal(r, &half))
         && frequency.get(1).is_some_and(|w| q.is_zero(w));
-    let rates = if first { "R = -c/2, alpha_0 = alpha" } else { "other rates" };
+    let rates = if first { "$R = -c/2$, $alpha_0 = alpha$" } else { "other rates" };
     let roots = if is_root { "are" } else { "are not" };
     Ok(plain(
-        "A = B = 0",
-        "for A = B = 0 we get the uncontrolled solution",
-        format!("{rates} to O(eps); at order 2 the frequency changes by {}", q.print(second)),
+        "$A = B = 0$",
+        "for $A = B = 0$ we get the uncontrolled solution",
+        format!("{rates} to $O(eps)$; at order 2 the frequency changes by ${}$", q.print(second)),
         format!(
-            "the orders up to {order} {roots} the expansion of the roots of l^2 + c l + alpha^2"
+            "the orders up to {order} {roots} the expansion of the roots of $l^2 + c l + alpha^2$"
         ),
         first && is_root,
-        "to O(eps), the order in which the paper works: the frequency is alpha in the place of \
-         sqrt(alpha^2 - c^2/4)",
+        "to $O(eps)$, the order in which the paper works: the frequency is $alpha$ in the place of \
+         $sqrt(alpha^2 - c^2/4)$",
     ))
 }

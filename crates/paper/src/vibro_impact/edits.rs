@@ -39,7 +39,7 @@ fn place(tree: &Tree, path: &[usize]) -> String {
             let sign = if matches!(above, Some(Tree::Negative(_))) { "-" } else { "" };
             let text = node.print();
             if text.len() < 60 {
-                return format!(" in {sign}{text}");
+                return format!(" in ${sign}{text}$");
             }
         }
     }
@@ -53,12 +53,12 @@ fn signs(node: &Tree, _: &[String], report: &mut Report<'_>) {
                 Tree::Negative(inner) => ((**inner).clone(), '+', inner.print()),
                 other => (Tree::Negative(Box::new(other.clone())), '-', other.print()),
             };
-            let what = format!("the sign of {inner} is {sign}");
+            let what = format!("the sign of ${inner}$ is {sign}");
             report(node.with(&[n], flipped), what);
         }
     }
     if let Tree::Negative(inner) = node {
-        report((**inner).clone(), format!("the sign of {} is +", inner.print()));
+        report((**inner).clone(), format!("the sign of ${}$ is +", inner.print()));
     }
 }
 
@@ -73,20 +73,20 @@ fn functions(node: &Tree, _: &[String], report: &mut Report<'_>) {
                 other => Tree::Negative(Box::new(other.clone())),
             };
             let new = Tree::Apply(name.clone(), Box::new(opposite));
-            let what = format!("{} in the place of {}", new.print(), node.print());
+            let what = format!("${}$ in the place of ${}$", new.print(), node.print());
             return report(new, what);
         }
         _ => return,
     };
     let new = Tree::Apply(other.to_owned(), argument.clone());
-    let what = format!("{} in the place of {}", new.print(), node.print());
+    let what = format!("${}$ in the place of ${}$", new.print(), node.print());
     report(new, what);
 }
 
 fn symbols(node: &Tree, vocabulary: &[String], report: &mut Report<'_>) {
     let Tree::Symbol(name) = node else { return };
     for other in vocabulary.iter().filter(|other| *other != name) {
-        report(Tree::Symbol(other.clone()), format!("{other} in the place of {name}"));
+        report(Tree::Symbol(other.clone()), format!("${other}$ in the place of ${name}$"));
     }
 }
 
@@ -99,7 +99,7 @@ fn omissions(node: &Tree, _: &[String], report: &mut Report<'_>) {
             Tree::Sum(_) => Tree::Sum(rest),
             _ => Tree::Product(rest),
         };
-        report(rest, format!("{} does not belong there", part.print()));
+        report(rest, format!("${}$ does not belong there", part.print()));
     }
 }
 
@@ -110,7 +110,7 @@ fn insertions(node: &Tree, vocabulary: &[String], report: &mut Report<'_>) {
     }
     for word in vocabulary {
         let product = Tree::Product(vec![node.clone(), Tree::Symbol(word.clone())]);
-        report(product, format!("a factor {word} is missing beside {}", node.print()));
+        report(product, format!("a factor ${word}$ is missing beside ${}$", node.print()));
     }
 }
 
@@ -125,7 +125,7 @@ fn numbers(node: &Tree, _: &[String], report: &mut Report<'_>) {
         Tree::Power(base, exponent) => {
             for other in [1, 2, 3, 4, -exponent].into_iter().filter(|other| other != exponent) {
                 let new = Tree::Power(base.clone(), other);
-                let what = format!("{} in the place of {}", new.print(), node.print());
+                let what = format!("${}$ in the place of ${}$", new.print(), node.print());
                 report(new, what);
             }
         }
@@ -149,7 +149,7 @@ fn exchanges(tree: &Tree, paths: &[Vec<usize>], list: &mut Vec<Edit>) {
                 _ => false,
             };
             if alike && a != b && !second.starts_with(first) {
-                let what = format!("{} and {} are interchanged", a.print(), b.print());
+                let what = format!("${}$ and ${}$ are interchanged", a.print(), b.print());
                 let changed = tree.with(first, (*b).clone()).with(second, (*a).clone());
                 list.push(Edit { tree: changed, what });
             }

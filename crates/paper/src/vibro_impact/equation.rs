@@ -164,7 +164,7 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     let x = Arc::new(setting.clone().only(&of_x));
     let z = Arc::new(setting.clone().only(&of_z));
     let shown = |text: &str| text.to_owned();
-    let by_substitution = "exact, as polynomials in x, x', x(t-T), x'(t-T)";
+    let by_substitution = "exact, as polynomials in $x$, $x'$, $x(t-T)$, $x'(t-T)$";
     let amplitude = q.mul(&derived.response, &q.parameter("cos(omega*t)"));
     Ok(vec![
         Statement {
@@ -174,27 +174,27 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
                 .to_owned(),
             setting: Arc::clone(&x),
             derived: derived.unscaled,
-            shown: shown("the engine's equation with eps = 1; x' -> -R_r x' at x = s"),
+            shown: shown("the engine's equation with $eps = 1$; $x' -> -R_r x'$ at $x = s$"),
             squared: false,
             independent: shown(by_substitution),
-            remark: shown("xT, xT' stand for x, x' at t - T"),
+            remark: shown("$xT$, $xT'$ stand for $x$, $x'$ at $t - T$"),
         },
         Statement {
             label: "parameters of (1)".to_owned(),
             left: shown(
-                "P0 = y_0 k_2/m, c = c_1/m, alpha^2 = (k_1 + k_2)/m, A = k_2 a_1/m, \
-                         B = k_2 b_1/m: ",
+                "$P0 = y_0 k_2/m$, $c = c_1/m$, $alpha^2 = (k_1 + k_2)/m$, $A = k_2 a_1/m$, \
+                         $B = k_2 b_1/m$: ",
             ),
             printed: "x'' + c*x' + (k_1 + k_2)/m*x = P0*cos(omega*t) + A*[x - xT] + B*[x' - xT']"
                 .to_owned(),
             setting: Arc::new(defined),
             derived: derived.mechanical,
             shown: shown(
-                "m x'' + c_1 x' + k_1 x = k_2 (y_0 cos(omega t) + a_1 (x - xT) + \
-                          b_1 (x' - xT') - x), over m",
+                "$m x'' + c_1 x' + k_1 x = k_2 (y_0 cos(omega t) + a_1 (x - xT) + \
+                          b_1 (x' - xT') - x)$, over $m$",
             ),
             squared: false,
-            independent: shown("Newton's law, the loop moving the base of the spring k_2"),
+            independent: shown("Newton's law, the loop moving the base of the spring $k_2$"),
             remark: String::new(),
         },
         Statement {
@@ -208,7 +208,7 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
             shown: shown("the engine's equation"),
             squared: false,
             independent: shown(by_substitution),
-            remark: shown("dividing by B is cosmetic: B x' - c x' holds for B = 0 too"),
+            remark: shown("dividing by $B$ is cosmetic: $B x' - c x'$ holds for $B = 0$ too"),
         },
         Statement {
             label: "(3)".to_owned(),
@@ -217,8 +217,8 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
             setting: Arc::clone(&z),
             derived: q.add(&q.parameter("z"), &amplitude),
             shown: shown(
-                "z + P0/((alpha - omega)*(alpha + omega)) cos(omega t), the response at \
-                          eps = 0",
+                "$z + P0/((alpha - omega)*(alpha + omega)) cos(omega t)$, the response at \
+                          $eps = 0$",
             ),
             squared: false,
             independent: shown(if response_is_averaged()? {
@@ -226,10 +226,10 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
             } else {
                 "order zero of the averaged expansion: another"
             }),
-            remark: shown("damping leaves it to order eps; the exact response is F, see there"),
+            remark: shown("damping leaves it to order $eps$; the exact response is $F$, see there"),
         },
         Statement {
-            label: "f, (4)".to_owned(),
+            label: "$f$, (4)".to_owned(),
             left: shown("eps f = "),
             printed: "eps*A*[z + P0/(alpha^2 - omega^2)*cos(omega*t) - zT \
                       - P0/(alpha^2 - omega^2)*cos(omega*(t - T))] \
@@ -238,10 +238,10 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
                 .to_owned(),
             setting: z,
             derived: derived.f,
-            shown: shown("eps A [x - xT] + eps [(B - c) x' - B xT'] with x of (3)"),
+            shown: shown("$eps A [x - xT] + eps [(B - c) x' - B xT']$ with $x$ of (3)"),
             squared: false,
             independent: shown("(3) substituted in (2), exactly"),
-            remark: shown("z'' + alpha^2 z = eps f itself holds by construction"),
+            remark: shown("$z'' + alpha^2 z = eps f$ itself holds by construction"),
         },
     ])
 }

@@ -45,7 +45,7 @@ pub(super) fn completions(text: &str) -> Vec<(Tree, String)> {
         {
             let from = before.char_indices().rev().nth(11).map_or(0, |(start, _)| start);
             let context = before.get(from..).unwrap_or(before).trim();
-            found.push((tree, format!("the bracket closes after \"{context}\"")));
+            found.push((tree, format!("the bracket closes after `{context}`")));
         }
     }
     found

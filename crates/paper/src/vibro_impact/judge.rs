@@ -4,6 +4,7 @@
 use super::edits::{Edit, edits};
 use super::formula::{Tree, completions, parse};
 use super::setting::Setting;
+use crate::Text;
 use crate::{Findings, Row};
 use lindstedt::quotient::Quotient;
 use lindstedt_algebra::Rationals;
@@ -128,11 +129,19 @@ impl Statement {
         Vec::new()
     }
 
+    /// The formula as printed with what stands before it: a left side, or marked words.
+    fn shown_as_printed(&self) -> Text {
+        match self.left.strip_suffix("= ") {
+            Some(_) => format!("${}{}$", self.left, self.printed).into(),
+            None => format!("{}${}$", self.left, self.printed).into(),
+        }
+    }
+
     /// The rows of this formula: one, or one for each of several slips.
     pub fn rows(&self) -> Vec<Row> {
         let judgement = self.judge();
         let derived = if self.shown.is_empty() {
-            self.setting.field.print(&self.derived)
+            format!("${}$", self.setting.field.print(&self.derived))
         } else {
             self.shown.clone()
         };
@@ -148,12 +157,12 @@ impl Statement {
             }
             evidence.extend(Some(self.remark.clone()).filter(|remark| !remark.is_empty()));
             Row {
-                label,
-                printed: format!("{}{}", self.left, self.printed),
-                derived: derived.clone(),
-                independent: self.independent.clone(),
+                label: label.into(),
+                printed: self.shown_as_printed(),
+                derived: Text::from(derived.clone()),
+                independent: Text::from(self.independent.clone()),
                 verdict: findings.verdict(),
-                evidence: evidence.join("; "),
+                evidence: Text::from(evidence.join("; ")),
             }
         };
         match &judgement.corrections[..] {

@@ -16,8 +16,9 @@ mod setting;
 mod stability;
 
 pub(super) use prediction::{ORBITS_READ, SAMPLED, unstable_example};
+pub use prediction::{Rate, Sample};
 
-use super::{Reader, Row, Section};
+use super::{Reader, Row, Section, Text};
 use judge::Statement;
 use lindstedt::Error;
 
@@ -51,7 +52,8 @@ fn statements() -> Result<Vec<Statement>, Error> {
 /// assert_eq!(verdict("R_r*alpha0"), Some(Verdict::Wrong));
 /// ```
 pub fn reread(label: &str, printed: &str) -> Result<Option<Vec<Row>>, Error> {
-    let found = statements()?.into_iter().find(|statement| statement.label == label);
+    let found =
+        statements()?.into_iter().find(|statement| *Text::from(statement.label.as_str()) == *label);
     Ok(found.map(|statement| Statement { printed: printed.to_owned(), ..statement }.rows()))
 }
 

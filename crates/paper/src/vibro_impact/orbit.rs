@@ -171,11 +171,11 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
             .only(&["P0", "alpha", "alpha0", "omega", "c", "pi", "k", "R_r", "s"]),
     );
     let [c, d, cos, sin] = derived.uncontrolled.clone();
-    let delta = "Delta = E + 1/E - 2 cos(theta), E = e^(-beta c), theta = 2 beta lambda";
+    let delta = "$Delta = E + 1/E - 2 cos(theta)$, $E = e^(-beta c)$, $theta = 2 beta lambda$";
     let mut list = vec![
         Statement {
             squared: true,
-            shown: "F = P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)".to_owned(),
+            shown: "$F = P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)$".to_owned(),
             independent: "squares compared; linear equations for the cosine and the sine"
                 .to_owned(),
             ..statement(
@@ -186,32 +186,32 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
                 derived.amplitude_squared.clone(),
             )
         },
-        statement("C, polar", "C = ", "C0*cos(theta0)", &polar, of_cos),
-        statement("D, polar", "D = ", "-C0*sin(theta0)", &polar, of_sin),
+        statement("$C$, polar", "C = ", "C0*cos(theta0)", &polar, of_cos),
+        statement("$D$, polar", "D = ", "-C0*sin(theta0)", &polar, of_sin),
         Statement {
             squared: true,
-            shown: "C0".to_owned(),
-            ..statement("C_0", "C_0 = ", "sqrt(C^2 + D^2)", &parts, q.mul(&p("C0"), &p("C0")))
+            shown: "$C0$".to_owned(),
+            ..statement("$C_0$", "C_0 = ", "sqrt(C^2 + D^2)", &parts, q.mul(&p("C0"), &p("C0")))
         },
         Statement {
-            shown: "-(1 + R_r) sin(theta) v/(lambda Delta)".to_owned(),
+            shown: "$-(1 + R_r) sin(theta) v/(lambda Delta)$".to_owned(),
             independent: residuals.to_owned(),
             remark: delta.to_owned(),
-            ..statement("C", "C = ", "s - F*cos(phi)", &own, c)
+            ..statement("$C$", "C = ", "s - F*cos(phi)", &own, c)
         },
         Statement {
-            shown: "-(1 + R_r) (1/E - cos(theta)) v/(lambda Delta)".to_owned(),
+            shown: "$-(1 + R_r) (1/E - cos(theta)) v/(lambda Delta)$".to_owned(),
             independent: residuals.to_owned(),
-            remark: "the printed form is 0/0 where sin(2 beta lambda) = 0, the derived one is not"
+            remark: "the printed form is 0/0 where $sin(2 beta lambda) = 0$, the derived one is not"
                 .to_owned(),
-            ..statement("D", "D = ", D_PRINTED, &own, d)
+            ..statement("$D$", "D = ", D_PRINTED, &own, d)
         },
         Statement {
-            shown: "(s + (1 + R_r) sin(theta) v/(lambda Delta))/F".to_owned(),
+            shown: "$(s + (1 + R_r) sin(theta) v/(lambda Delta))/F$".to_owned(),
             independent: residuals.to_owned(),
-            remark: "v = x'_-, before the impact".to_owned(),
+            remark: "$v = x'_-$, before the impact".to_owned(),
             ..statement(
-                "cos phi",
+                "$cos phi$",
                 "cos phi = ",
                 "s/F - (R_r + 1)*v*sin(2*beta*lambda)\
                  /(lambda*F*(2*cos(2*beta*lambda) - exp(-beta*c) - exp(beta*c)))",
@@ -221,13 +221,13 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
         },
         Statement {
             shown:
-                "{lambda [R_r (E - cos theta) - (1/E - cos theta)] + (1 + R_r) (c/2) sin theta} \
-                    v/(omega lambda F Delta)"
+                "${lambda [R_r (E - cos theta) - (1/E - cos theta)] + (1 + R_r) (c/2) sin theta} \
+                    v/(omega lambda F Delta)$"
                     .to_owned(),
             independent: residuals.to_owned(),
-            remark: "equal only for c = 0 as printed".to_owned(),
+            remark: "equal only for $c = 0$ as printed".to_owned(),
             ..statement(
-                "sin phi",
+                "$sin phi$",
                 "sin phi = ",
                 "(-1/2*(R_r + 1)*c*sin(2*beta*lambda) + lambda*[(R_r - 1)*cos(2*beta*lambda) \
                  + exp(-beta*c) - R_r*exp(beta*c))\
@@ -238,10 +238,10 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
         },
         Statement {
             squared: true,
-            shown: "P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)".to_owned(),
-            independent: "squares compared; the response sees neither A nor B".to_owned(),
+            shown: "$P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)$".to_owned(),
+            independent: "squares compared; the response sees neither $A$ nor $B$".to_owned(),
             ..statement(
-                "F",
+                "$F$",
                 "F = ",
                 "P0/sqrt((alpha0^2 - omega^2)^2 + c^2*omega^2)",
                 &literal,
@@ -250,16 +250,16 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
         },
         Statement {
             squared: true,
-            shown: "sqrt(alpha^2 - c^2/4)".to_owned(),
-            independent: "squares compared; both parts of l^2 + c l + alpha^2 = 0 at \
-                          l = -c/2 + i lambda"
+            shown: "$sqrt(alpha^2 - c^2/4)$".to_owned(),
+            independent: "squares compared; both parts of $l^2 + c l + alpha^2 = 0$ at \
+                          $l = -c/2 + i lambda$"
                 .to_owned(),
             remark:
-                "the symbol and a factor of one term are wrong, c^2/4 is no slip for omega^2; the \
-                     printed root is imaginary for omega > alpha"
+                "the symbol and a factor of one term are wrong, $c^2/4$ is no slip for $omega^2$; the \
+                     printed root is imaginary for $omega > alpha$"
                     .to_owned(),
             ..statement(
-                "lambda",
+                "$lambda$",
                 "lambda = ",
                 "sqrt(alpha^2 - omega^2)",
                 &literal,
@@ -267,7 +267,7 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
             )
         },
         statement(
-            "beta",
+            "$beta$",
             "beta = ",
             "pi*k/omega",
             &literal,
@@ -281,13 +281,13 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
         }
     }
     list.push(Statement {
-        shown: "D with alpha0 and -2 R in the places of lambda and c".to_owned(),
-        remark: "the amplitudes printed with (c, lambda) meet the end conditions of the flight \
-                 with (-c/2, lambda), not of (8) with (R, alpha0): for A, B other than zero the \
+        shown: "$D$ with $alpha0$ and $-2 R$ in the places of $lambda$ and $c$".to_owned(),
+        remark: "the amplitudes printed with $(c, lambda)$ meet the end conditions of the flight \
+                 with $(-c/2, lambda)$, not of (8) with $(R, alpha0)$: for $A$, $B$ other than zero the \
                  orbit of (8) is another"
             .to_owned(),
         independent: residuals.to_owned(),
-        ..statement("C, D in (8)", "D = ", D_PRINTED, &mixed, d)
+        ..statement("$C$, $D$ in (8)", "D = ", D_PRINTED, &mixed, d)
     });
     Ok(list)
 }
@@ -300,10 +300,11 @@ pub(super) fn rows() -> Result<Vec<Row>, Error> {
         let orders = response_orders()?;
         first.evidence = format!(
             "{}; the averaged response has the same square in orders 0 to {orders} of the \
-             damping; with this amplitude and F in the phase the multipliers are wrong, see the \
+             damping; with this amplitude and $F$ in the phase the multipliers are wrong, see the \
              table of multipliers",
-            first.evidence
-        );
+            first.evidence.marked()
+        )
+        .into();
     }
     Ok(rows)
 }

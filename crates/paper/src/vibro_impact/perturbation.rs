@@ -4,6 +4,7 @@ use super::FAILED;
 use super::judge::Statement;
 use super::orbit::{extended, with_pair};
 use super::setting::Setting;
+use crate::Text;
 use crate::{Findings, Row, plain};
 use lindstedt::Error;
 use lindstedt::impact_map::{ImpactMap, characteristic, coefficient, replace};
@@ -110,7 +111,7 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     let q = extended(&map);
     let flight = Arc::new(in_flight(&q).only(&[&WORDS[..], &["R*tau"]].concat()));
     let ends = Arc::new(at_ends(&q).only(&[&WORDS[..], &["beta", "pi", "k", "dT"]].concat()));
-    let by_differentiation = "formal derivatives of (8) by C, D, phi and tau";
+    let by_differentiation = "formal derivatives of (8) by $C$, $D$, $phi$ and $tau$";
     let statement =
         |label: &str, left: &str, printed: &str, setting: &Arc<Setting>, derived| Statement {
             label: label.to_owned(),
@@ -127,16 +128,16 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     let times = Arc::new(Setting::new(q.clone()).only(&["pi", "k", "l", "omega", "dT"]));
     let period = times.read("2*pi*k/omega").ok_or(FAILED)?;
     let length = q.add(&period, &q.parameter("dT"));
-    list.push(statement("tau, below (9)", "tau_(l+1) = ", "2*pi*l/omega + dT", &times, length));
-    list.push(statement("T, below (9)", "T = ", "2*pi/omega", &times, period));
+    list.push(statement("$tau$, below (9)", "tau_(l+1) = ", "2*pi*l/omega + dT", &times, length));
+    list.push(statement("$T$, below (9)", "T = ", "2*pi/omega", &times, period));
     let dx = map.displacement_variation.clone();
     let dv = map.velocity_variation.clone();
     for (label, left, printed, derived) in
-        [("dx", "delta x = ", DISPLACEMENT, dx), ("dx'", "delta x' = ", VELOCITY, dv)]
+        [("$dx$", "delta x = ", DISPLACEMENT, dx), ("$dx'$", "delta x' = ", VELOCITY, dv)]
     {
         list.push(Statement {
             independent: by_differentiation.to_owned(),
-            remark: if label == "dx'" {
+            remark: if label == "$dx'$" {
                 "(11) has both terms right".to_owned()
             } else {
                 String::new()
@@ -163,7 +164,7 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     ];
     for (label, left, printed, derived) in six {
         let inside = label.ends_with('5') || label.ends_with('6');
-        let remark = if inside { "dT inside the functions is of second order" } else { "" };
+        let remark = if inside { "$dT$ inside the functions is of second order" } else { "" };
         list.push(Statement {
             remark: remark.to_owned(),
             independent: by_differentiation.to_owned(),
@@ -182,7 +183,7 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     ] {
         list.push(Statement {
             remark,
-            independent: "(11) with omega dT = dphi' - dphi, dx'_+ = -R_r dx'_-".to_owned(),
+            independent: "(11) with $omega dT = dphi' - dphi$, $dx'_+ = -R_r dx'_-$".to_owned(),
             ..statement(label, "0 = ", printed, &ends, derived)
         });
     }
@@ -190,15 +191,15 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     let checks = orbit_values(&map).ok_or(FAILED)?;
     let jacobian = if same_characteristic(&map) { "has" } else { "does not have" };
     for ((label, printed, derived), remark) in
-        [("b_2, (16)", B[0], b2), ("b_1, (16)", B[1], b1), ("b_0, (16)", B[2], b0)]
+        [("$b_2$, (16)", B[0], b2), ("$b_1$, (16)", B[1], b1), ("$b_0$, (16)", B[2], b0)]
             .into_iter()
             .zip(checks)
     {
-        let left = format!("{} = ", label.trim_end_matches(", (16)"));
+        let left = format!("{} = ", label.trim_end_matches("$, (16)").trim_start_matches('$'));
         list.push(Statement {
             independent: format!(
-                "the Jacobian of (phi, x'_+) by the implicit function theorem {jacobian} trace \
-                 -b_1/b_2 and determinant b_0/b_2"
+                "the Jacobian of $(phi, x'_+)$ by the implicit function theorem {jacobian} trace \
+                 $-b_1/b_2$ and determinant $b_0/b_2$"
             ),
             remark,
             ..statement(label, &left, printed, &ends, derived)
@@ -235,7 +236,7 @@ fn perturbed_flight(q: &Quotients, map: &ImpactMap) -> Result<Statement, Error> 
             .to_owned(),
         setting: Arc::new(setting),
         derived,
-        shown: "(8) with C + dC, D + dD, phi + dphi".to_owned(),
+        shown: "(8) with $C + dC$, $D + dD$, $phi + dphi$".to_owned(),
         squared: false,
         independent: String::new(),
         remark: "the exponent is printed as one symbol with an index; the amplitude is that of \
@@ -250,7 +251,7 @@ fn propagation(map: &ImpactMap, ends: &Setting) -> Option<String> {
     let [first, second, _] = map.equations.clone();
     let printed = ends.read(THIRD)?;
     let found = characteristic(&ends.field, &[first, second, printed])?;
-    let names = ["b_0", "b_1", "b_2"];
+    let names = ["$b_0$", "$b_1$", "$b_2$"];
     let differ: Vec<&str> = names
         .into_iter()
         .zip(found.iter().zip(&map.characteristic))
@@ -275,12 +276,15 @@ fn orbit_values(map: &ImpactMap) -> Option<[String; 3]> {
     let of_after = q.equal(b0, &q.mul(&factor, &map.velocity_after));
     let say = |holds: bool, text: &str| if holds { text.to_owned() } else { String::new() };
     Some([
-        say(of_before, "with a the amplitude of the flight, a = F; b_2 = -(alpha0/omega) x'_-"),
-        "with a = F".to_owned(),
+        say(
+            of_before,
+            "with $a$ the amplitude of the flight, $a = F$; $b_2 = -(alpha0/omega) x'_-$",
+        ),
+        "with $a = F$".to_owned(),
         say(
             of_before && of_after,
-            "with a = F; b_0 = R_r (alpha0/omega) e^(4 beta R) x'_+, so that b_0/b_2 = \
-             R_r^2 e^(4 beta R) on the periodic orbit",
+            "with $a = F$; $b_0 = R_r (alpha0/omega) e^(4 beta R) x'_+$, so that $b_0/b_2 = \
+             R_r^2 e^(4 beta R)$ on the periodic orbit",
         ),
     ])
 }
@@ -317,43 +321,42 @@ pub(super) fn rows() -> Result<Vec<Row>, Error> {
             "(11), 1" => {
                 rows.extend(amplitude.iter().flat_map(|found| {
                     let again = Statement {
-                        label: "a".to_owned(),
+                        label: "$a$".to_owned(),
                         left: "a = ".to_owned(),
-                        remark: "a must be the F of cos phi and sin phi".to_owned(),
+                        remark: "$a$ must be the $F$ of $cos phi$ and $sin phi$".to_owned(),
                         ..found.clone()
                     };
                     again.rows()
                 }));
                 rows.push(Row {
-                    label: "x_(1-)".to_owned(),
-                    printed: "before the impact number 1, the mass possesses the velocity x_(1-)".to_owned(),
-                    derived: "x_(1-) = s, the place of the wall; the velocity is x'_(1-)".to_owned(),
-                    independent: "the end conditions of (8) and (10)".to_owned(),
+                    label: "$x_(1-)$".into(),
+                    printed: "before the impact number 1, the mass possesses the velocity $x_(1-)$".into(),
+                    derived: "$x_(1-) = s$, the place of the wall; the velocity is $x'_(1-)$".into(),
+                    independent: "the end conditions of (8) and (10)".into(),
                     verdict: Findings {
                         holds: false,
-                        correction: same.then(|| "x'_(1-)".to_owned()),
+                        correction: same.then(|| "$x'_(1-)$".to_owned()),
                         ..Findings::default()
                     }
                     .verdict(),
-                    evidence: "a dot is missing: with x_- = s and x'_- the velocity the map of the impacts \
-                               follows"
-                        .to_owned(),
+                    evidence: "a dot is missing: with $x_- = s$ and $x'_-$ the velocity the map of the impacts \
+                               follows".into(),
                 });
                 rows.push(plain(
                     "(10)",
-                    "l: tau = 0, dtau = 0, dx = 0, dx'_+ = -R_r dx'_-; l+1: tau = 2 pi k/omega + \
-                     dtau, dtau = dT, dx = 0, dx' = dx'_-",
+                    "$l$: $tau = 0$, $dtau = 0$, $dx = 0$, $dx'_+ = -R_r dx'_-$; $l+1$: $tau = 2 pi k/omega + \
+                     dtau$, $dtau = dT$, $dx = 0$, $dx' = dx'_-$",
                     "the end conditions of the impact map".to_owned(),
-                    "the implicit function theorem on (phi, x'_+) -> (phi', x'_+')".to_owned(),
+                    "the implicit function theorem on $(phi, x'_+) -> (phi', x'_+')$".to_owned(),
                     same,
                     "both have the same characteristic polynomial, exactly",
                 ));
             }
-            "b_2, (16)" => {
+            "$b_2$, (16)" => {
                 rows.push(phase_sum());
                 rows.push(plain(
                     "(14)",
-                    "dC_l = a_1 gamma^l, dD_l = a_2 gamma^l, dphi_l = a_3 gamma^l",
+                    "$dC_l = a_1 gamma^l$, $dD_l = a_2 gamma^l$, $dphi_l = a_3 gamma^l$",
                     "(12) is linear with constant coefficients".to_owned(),
                     "Euler's relation of degree one for each line".to_owned(),
                     is_linear(&map),
@@ -361,11 +364,11 @@ pub(super) fn rows() -> Result<Vec<Row>, Error> {
                 ));
                 rows.push(plain(
                     "(15)",
-                    "b_2 gamma^2 + b_1 gamma + b_0 = 0",
-                    "the determinant of the three lines has degree 2 in gamma".to_owned(),
-                    "the state (phi, x'_+) has two components".to_owned(),
+                    "$b_2 gamma^2 + b_1 gamma + b_0 = 0$",
+                    "the determinant of the three lines has degree 2 in $gamma$".to_owned(),
+                    "the state $(phi, x'_+)$ has two components".to_owned(),
                     same,
-                    "b_2, b_1, b_0 derived; see (16)",
+                    "$b_2$, $b_1$, $b_0$ derived; see (16)",
                 ));
             }
             _ => {}
@@ -386,14 +389,14 @@ fn phase_sum() -> Row {
     let correction = [-1, 1]
         .into_iter()
         .find(|shift| agrees(*shift))
-        .map(|shift| format!("the summand is dT_(i{shift:+}): the sum runs from 0 to l - 1"));
+        .map(|shift| format!("the summand is $dT_(i{shift:+})$: the sum runs from 0 to $l - 1$"));
     let findings = Findings { holds: agrees(0), correction, ..Findings::default() };
     Row {
-        label: "(13)".to_owned(),
-        printed: "dphi_l = dphi_0 + sum_(i=1)^l omega dT_i".to_owned(),
-        derived: "dphi_(l+1) = dphi_l + omega dT_l: the phase at the end of a flight".to_owned(),
-        independent: "(12) uses omega dT_l = dphi_(l+1) - dphi_l".to_owned(),
+        label: "(13)".into(),
+        printed: "$dphi_l = dphi_0 + sum_(i=1)^l omega dT_i$".into(),
+        derived: "$dphi_(l+1) = dphi_l + omega dT_l$: the phase at the end of a flight".into(),
+        independent: "(12) uses $omega dT_l = dphi_(l+1) - dphi_l$".into(),
         verdict: findings.verdict(),
-        evidence: findings.correction.unwrap_or_default(),
+        evidence: Text::from(findings.correction.unwrap_or_default()),
     }
 }

@@ -2,7 +2,8 @@
 //! what the amplitude of (8) does to the multipliers.
 
 use super::FAILED;
-use crate::trust::{Rate, Sample};
+use crate::Text;
+use crate::text::texts;
 use crate::{Findings, Reader, Row, Section, Table};
 use lindstedt::Error;
 use lindstedt_impact::characteristic::{Characteristic, Kick};
@@ -19,6 +20,7 @@ use lindstedt_number::digits::decimal;
 use lindstedt_number::real::Certified;
 use rayon::prelude::*;
 use rug::Rational;
+use serde::Serialize;
 
 /// Orbits with alpha = P0 = 1: omega, k, R_r, s, c in hundredths (omega in tenths). The paper
 /// gives no parameters; all are free of penetration, O8 lies on the lower branch.
@@ -39,7 +41,7 @@ pub(crate) const ORBITS_READ: usize = ORBITS.len();
 pub(crate) const SAMPLED: usize = ORBITS_READ - 1;
 
 /// The first orbit that is unstable without the loop: its name with the parameters.
-pub(crate) fn unstable_example() -> Option<(String, Parameters<f64>)> {
+pub(crate) fn unstable_example() -> Option<(Text, Parameters<f64>)> {
     ORBITS.into_iter().filter(|entry| entry.0 != LOWER).find_map(|entry| {
         let p = parameters(entry, Branch::Plus);
         let base = p.nearest();
@@ -50,11 +52,11 @@ pub(crate) fn unstable_example() -> Option<(String, Parameters<f64>)> {
         let [restitution, wall, damping] =
             [restitution, wall, damping].map(|n| f64::from(n) / 100.0);
         let name = format!(
-            "orbit {} (alpha = P0 = 1, omega = {tenths}, k = {k}, R_r = {restitution}, s = {wall}, \
-             c = {damping})",
+            "orbit {} ($alpha = P0 = 1$, $omega = {tenths}$, $k = {k}$, $R_r = {restitution}$, \
+             $s = {wall}$, $c = {damping}$)",
             entry.0
         );
-        (!stable).then_some((name, base))
+        (!stable).then_some((name.into(), base))
     })
 }
 
@@ -71,6 +73,41 @@ const GOOD: f64 = 0.95;
 /// The rules that are compared with the truth.
 const RULES: [&str; 6] =
     ["no loop", "(17), letter", "(17), own orbit", "(17), true orbit", "R < 0", "G"];
+
+/// Counts of a rule over the sample of orbits and gains.
+#[derive(Clone, Debug, Serialize)]
+pub struct Rate {
+    /// The rule.
+    pub rule: &'static str,
+    /// Points where it says something.
+    pub compared: usize,
+    /// Of these, points where it has the true verdict.
+    pub equal: usize,
+    /// equal/compared; NaN if nothing was compared.
+    pub rate: f64,
+}
+
+/// The sample: orbits of the upper branch times gains.
+#[derive(Clone, Debug, Serialize)]
+pub struct Sample {
+    /// Points (orbit, A, B).
+    pub points: usize,
+    /// Of these, truly stable.
+    pub stable: usize,
+    /// The rules.
+    #[serde(rename = "rules")]
+    pub rates: Vec<Rate>,
+}
+
+impl Sample {
+    pub(crate) fn share(&self, rule: &str) -> f64 {
+        self.rates.iter().find(|rate| rate.rule == rule).map_or(f64::NAN, |rate| rate.rate)
+    }
+
+    pub(crate) fn compared(&self, rule: &str) -> usize {
+        self.rates.iter().find(|rate| rate.rule == rule).map_or(0, |rate| rate.compared)
+    }
+}
 
 fn parameters(
     (_, omega, periods, restitution, wall, damping): (&str, i32, u32, i32, i32, i32),
@@ -144,12 +181,12 @@ impl Counts {
     }
 
     fn sample(&self) -> Sample {
-        let rates = RULES.into_iter().zip(self.compared).zip(self.equal);
-        Sample {
-            points: self.points,
-            stable: self.stable,
-            rates: rates.map(|((rule, compared), equal)| Rate { rule, compared, equal }).collect(),
-        }
+        let counts = RULES.into_iter().zip(self.compared).zip(self.equal);
+        let rate = |((rule, compared), equal): ((_, usize), usize)| {
+            let rate = equal as f64 / compared as f64;
+            Rate { rule, compared, equal, rate }
+        };
+        Sample { points: self.points, stable: self.stable, rates: counts.map(rate).collect() }
     }
 
     fn cells(&self, name: &str) -> Vec<String> {
@@ -228,47 +265,45 @@ fn statements(counts: &Counts, rates: [f64; RULES.len()]) -> [Row; 2] {
     let simulated =
         Findings { holds: best >= GOOD, reproduced: Some(best >= GOOD), ..Findings::default() };
     let grid = format!(
-        "{} points, eight orbits, zeros of G and the piecewise linear map of the delayed system, in doubles",
+        "{} points, eight orbits, zeros of $G$ and the piecewise linear map of the delayed system, in doubles",
         counts.points
     );
     [
         Row {
-            label: "R < 0".to_owned(),
-            printed: "from (8) it is seen that when R < 0 the assumed solution is stabilised more quickly \
-                      in comparison to R = 0; however, a problem of stability investigation of the \
-                      vibro-impact state is much more subtle"
-                .to_owned(),
+            label: "$R < 0$".into(),
+            printed: "from (8) it is seen that when $R < 0$ the assumed solution is stabilised more quickly \
+                      in comparison to $R = 0$; however, a problem of stability investigation of the \
+                      vibro-impact state is much more subtle".into(),
             derived: format!(
-                "e^(R T) < 1 in the flight (8) where R < 0; as a rule for the stability of (1) the sign of \
-                 R would agree at {by_rate:.3} of the points (estimated)"
-            ),
-            independent: grid.clone(),
+                "$e^(R T) < 1$ in the flight (8) where $R < 0$; as a rule for the stability of (1) the sign of \
+                 $R$ would agree at {by_rate:.3} of the points (estimated)"
+            ).into(),
+            independent: Text::from(grid.clone()),
             // What the paper calls more subtle must not be decided by the sign of R.
             verdict: Findings::holds(false_stable > 0 || false_unstable > 0).verdict(),
             evidence: format!(
-                "it is more subtle: R < 0 is neither sufficient ({false_stable} points with R < 0 are \
-                 unstable) nor necessary ({false_unstable} with R >= 0 are stable)"
-            ),
+                "it is more subtle: $R < 0$ is neither sufficient ({false_stable} points with $R < 0$ are \
+                 unstable) nor necessary ({false_unstable} with $R >= 0$ are stable)"
+            ).into(),
         },
         Row {
-            label: "simulations".to_owned(),
+            label: "simulations".into(),
             printed: "the validity of our analytical approach has been testified by numerical \
-                      simulations"
-                .to_owned(),
+                      simulations".into(),
             derived: format!(
                 "(17) has the verdict of (1) at {letter:.3} (to the letter), {own:.3} (orbit of \
-                 (8) with its own R, alpha0, of the {own_points} points where it exists) and \
+                 (8) with its own $R$, $alpha0$, of the {own_points} points where it exists) and \
                  {true_orbit:.3} (true orbit) of the points (estimated)"
-            ),
-            independent: grid,
+            ).into(),
+            independent: grid.into(),
             verdict: simulated.verdict(),
             evidence: format!(
                 "the region of (17) is not the stability region of (1): to ignore the loop is \
-                 right at {nothing:.3} (estimated). (6) puts e^(-lambda T) z(t) for z(t - T), as if no impact \
-                 lay between; with z(t)/gamma in its place (G) the verdict is right at {g:.3} \
+                 right at {nothing:.3} (estimated). (6) puts $e^(-lambda T) z(t)$ for $z(t - T)$, as if no impact \
+                 lay between; with $z(t)/gamma$ in its place ($G$) the verdict is right at {g:.3} \
                  (estimated). The \
                  parameters of the cited simulations are not given"
-            ),
+            ).into(),
         },
     ]
 }
@@ -278,27 +313,27 @@ fn agreement(rows: Vec<Vec<String>>, side: i32, counts: &Counts) -> Table {
     columns.extend(RULES.map(str::to_owned));
     Table {
         name: "agreement".to_owned(),
-        title: format!(
-            "Share of {side} x {side} points |A|, |B| <= 0.3 at which a rule has the true verdict \
+        title: Text::from(format!(
+            "Share of {side} x {side} points $|A|$, $|B| <= 0.3$ at which a rule has the true verdict \
              (estimated)"
-        ),
-        columns,
-        rows,
-        notes: vec![
-            "estimated: doubles; alpha = P0 = 1; the paper gives no parameter set".to_owned(),
-            "truth: zeros of the characteristic function G of the delayed system for B = 0, growth \
+        )),
+        columns: texts(columns),
+        rows: rows.into_iter().map(texts).collect(),
+        notes: texts([
+            "estimated: doubles; $alpha = P0 = 1$; the paper gives no parameter set".to_owned(),
+            "truth: zeros of the characteristic function $G$ of the delayed system for $B = 0$, growth \
              of the piecewise linear return map otherwise"
                 .to_owned(),
-            "no loop: the verdict at A = B = 0. (17) at order 1: to the letter (amplitudes of the \
-             uncontrolled orbit, R and alpha0 in (16)); with the orbit of (8) itself, where it \
-             exists; with the saltation of the true orbit. G: its zeros, with the mean kick"
+            "no loop: the verdict at $A = B = 0$. (17) at order 1: to the letter (amplitudes of the \
+             uncontrolled orbit, $R$ and $alpha0$ in (16)); with the orbit of (8) itself, where it \
+             exists; with the saltation of the true orbit. $G$: its zeros, with the mean kick"
                 .to_owned(),
             format!(
                 "{} points without O8, {} of them stable; O8 lies on the lower branch, which no \
                  loop of this kind stabilises",
                 counts.points, counts.stable
             ),
-        ],
+        ]),
     }
 }
 
@@ -323,20 +358,22 @@ fn multipliers() -> Result<Table, Error> {
             let text = if first.im.ball().contains_zero() {
                 format!("{}, {}", show(&first.re), show(&second.re))
             } else {
-                format!("{} +- {} i", show(&first.re), show(&first.im))
+                format!("${} +- {} i$", show(&first.re), show(&first.im))
             };
             cells.push(text);
         }
         let above = Rational::from((entry.1, 10)) > 1;
-        cells.insert(1, if above { "omega > alpha" } else { "omega < alpha" }.to_owned());
+        cells.insert(1, if above { "$omega > alpha$" } else { "$omega < alpha$" }.to_owned());
         rows.push(cells);
     }
     Ok(Table {
         name: "multipliers".to_owned(),
-        title: "Roots of (15) without control, with a = F and with a = P0/(alpha^2 - omega^2)"
-            .to_owned(),
-        columns: ["orbit", "", "a = F", "a of (8)"].map(str::to_owned).to_vec(),
-        rows,
-        notes: vec!["phi from F in both: a of (8) has the wrong sign for omega > alpha".to_owned()],
+        title: "Roots of (15) without control, with $a = F$ and with $a = P0/(alpha^2 - omega^2)$"
+            .into(),
+        columns: texts(["orbit", "", "$a = F$", "$a$ of (8)"]),
+        rows: rows.into_iter().map(texts).collect(),
+        notes: texts([
+            "$phi$ from $F$ in both: $a$ of (8) has the wrong sign for $omega > alpha$".to_owned()
+        ]),
     })
 }

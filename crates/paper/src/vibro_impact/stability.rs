@@ -1,5 +1,6 @@
 //! (17): when both roots of the characteristic polynomial lie inside the unit circle.
 
+use crate::Text;
 use crate::{Findings, Row, plain};
 use lindstedt::impact_map::replace;
 use lindstedt::quotient::Quotients;
@@ -102,9 +103,9 @@ pub(super) fn rows() -> Vec<Row> {
     vec![
         plain(
             "(17)",
-            "|b_0/b_2| < 1 and |b_1/(b_0 + b_2)| < 1",
-            "b_2 - b_0, P(1), P(-1) of one sign, by gamma = (1 + w)/(1 - w) and Hurwitz; (17) says \
-             the same since P(1) + P(-1) = 2 (b_0 + b_2), P(1) P(-1) = (b_0 + b_2)^2 - b_1^2"
+            "$|b_0/b_2| < 1$ and $|b_1/(b_0 + b_2)| < 1$",
+            "$b_2 - b_0$, $P(1)$, $P(-1)$ of one sign, by $gamma = (1 + w)/(1 - w)$ and Hurwitz; (17) says \
+             the same since $P(1) + P(-1) = 2 (b_0 + b_2)$, $P(1) P(-1) = (b_0 + b_2)^2 - b_1^2$"
                 .to_owned(),
             format!("{SAMPLES} polynomials made from rational roots, exactly: {both} disagreements"),
             holds,
@@ -114,14 +115,13 @@ pub(super) fn rows() -> Vec<Row> {
             ),
         ),
         Row {
-            label: "below (17)".to_owned(),
+            label: "below (17)".into(),
             printed: "taking into account equations (15) it is easy to find parameters that fulfil \
-                      (17)"
-                .to_owned(),
-            derived: "b_2, b_1, b_0 as functions of the parameters".to_owned(),
-            independent: String::new(),
+                      (17)".into(),
+            derived: "$b_2$, $b_1$, $b_0$ as functions of the parameters".into(),
+            independent: Text::default(),
             verdict: reference.verdict(),
-            evidence: reference.correction.unwrap_or_default(),
+            evidence: Text::from(reference.correction.unwrap_or_default()),
         },
     ]
 }

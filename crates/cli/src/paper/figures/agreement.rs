@@ -24,12 +24,13 @@ pub fn draw(region: &Region) -> Result<Figure, Failure> {
         name: "agreement",
         section: 2,
         caption: format!(
-            "Share of {} points (8 orbits, gains |A|, |B| <= 0.3) at which a rule has the verdict of \
+            "Share of {} points (8 orbits, gains $|A|$, $|B| <= 0.3$) at which a rule has the verdict of \
              the delayed system; {} of them are truly stable.{}",
             region.sample.points,
             region.sample.stable,
             parts.concat()
-        ),
+        )
+        .into(),
         svg: svg.replacen(&large, &small, 1),
     })
 }
@@ -57,11 +58,11 @@ fn paint(rates: &[Rate], svg: &mut String) -> Drawn {
             _ => GREY,
         };
         let bottom = top + (step - 10) * fine;
-        root.draw(&Rectangle::new([(at(0.0), top), (at(rate.share()), bottom)], colour.filled()))?;
+        root.draw(&Rectangle::new([(at(0.0), top), (at(rate.rate), bottom)], colour.filled()))?;
         let middle = top + (step / 2 - 12) * fine;
         root.draw_text(rate.rule, &font(15), (14 * fine, middle))?;
-        let shown = format!("{:.1} %", 100.0 * rate.share());
-        root.draw_text(&shown, &font(14), (at(rate.share()) + 8 * fine, middle))?;
+        let shown = format!("{:.1} %", 100.0 * rate.rate);
+        root.draw_text(&shown, &font(14), (at(rate.rate) + 8 * fine, middle))?;
     }
     root.present()?;
     Ok(())

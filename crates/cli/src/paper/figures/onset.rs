@@ -43,10 +43,10 @@ pub fn draw(onset: &Onset) -> Result<Figure, Failure> {
         name: "onset",
         section: 3,
         caption: "The homoclinic tangency of the stick-slip oscillator that is the first one at small \
-                  eps, followed to eps = 1, where on the left loop others have come before it, against \
-                  Melnikov's threshold, which does not depend on eps (a = b = 1, alpha = beta = T0 = \
-                  0.3, omega = 2, v* = 0.4)."
-            .to_owned(),
+                  $eps$, followed to $eps = 1$, where on the left loop others have come before it, against \
+                  Melnikov's threshold, which does not depend on $eps$ ($a = b = 1$, $alpha = beta = T0 = \
+                  0.3$, $omega = 2$, $v* = 0.4$)."
+            .into(),
         svg,
     })
 }

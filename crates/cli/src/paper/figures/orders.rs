@@ -41,9 +41,9 @@ pub fn draw(list: &[Truncation]) -> Result<Figure, Failure> {
     Ok(Figure {
         name: "orders",
         section: 4,
-        caption: "True error of the period cut off after order N; the curves in u: the same coefficients \
-                  re-expanded in u = delta/(1 + delta) with the factor sqrt(1 - u)."
-            .to_owned(),
+        caption: "True error of the period cut off after order $N$; the curves in $u$: the same coefficients \
+                  re-expanded in $u = delta/(1 + delta)$ with the factor $sqrt(1 - u)$."
+            .into(),
         svg,
     })
 }

@@ -31,10 +31,11 @@ pub fn draw(region: &Region) -> Result<Figure, Failure> {
         section: 2,
         caption: format!(
             "The plane of the gains for {}, the first of the sample that is unstable without the \
-             loop: (17) against the zeros of G with the mean kick. The cross is the orbit without loop.{}",
-            region.orbit,
+             loop: (17) against the zeros of $G$ with the mean kick. The cross is the orbit without loop.{}",
+            region.orbit.marked(),
             if silent { " White: (17) predicts nothing, its orbit does not exist." } else { "" }
-        ),
+        )
+        .into(),
         svg: svg.replacen(&large, &small, 1),
     })
 }

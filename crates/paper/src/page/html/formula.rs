@@ -1,37 +1,9 @@
 //! The structure of a formula: fractions, roots, indices and brackets.
 
-use super::fraction::{is_factor, push_fraction};
+use super::fraction::push_fraction;
 use super::names::{Name, name, operator};
+use super::node::Node;
 use super::tokens::{Kind, Token};
-
-/// A part of a formula.
-#[derive(Clone, Debug)]
-pub enum Node {
-    /// A letter, in italics.
-    Letter(String),
-    /// A function or another word, upright.
-    Upright(String),
-    Number(String),
-    /// A sign; true where a line may be broken before it.
-    Operator(String, bool),
-    /// A small space between factors.
-    Space,
-    Group {
-        open: &'static str,
-        close: &'static str,
-        body: Vec<Node>,
-        length: usize,
-    },
-    /// Several that stay together.
-    Row(Vec<Node>),
-    Fraction(Vec<Node>, Vec<Node>),
-    Root(Vec<Node>),
-    Scripts {
-        base: Box<Node>,
-        below: Vec<Node>,
-        above: Vec<Node>,
-    },
-}
 
 struct Parser<'t, 'a> {
     tokens: &'t [Token<'a>],
@@ -85,14 +57,14 @@ impl<'t, 'a> Parser<'t, 'a> {
                     break;
                 }
             }
-            if token.is("/") && nodes.last().is_some_and(is_factor) {
+            if token.is("/") && nodes.last().is_some_and(Node::is_factor) {
                 self.at += 1;
                 let below = self.factor();
                 let above = nodes.pop().into_iter().collect();
                 push_fraction(&mut nodes, above, below);
                 continue;
             }
-            let between = nodes.last().is_some_and(is_factor);
+            let between = nodes.last().is_some_and(Node::is_factor);
             if token.is("*") {
                 self.at += 1;
                 let numbers = matches!(nodes.last(), Some(Node::Number(_)))
@@ -121,7 +93,6 @@ impl<'t, 'a> Parser<'t, 'a> {
         let mut applies = false;
         let base = match token.kind {
             Kind::Number => self.number(token.text),
-            Kind::Quote => Node::Upright(token.text.to_owned()),
             Kind::Word => {
                 if let Some(sign) = operator(token.text) {
                     Node::Operator(sign.to_owned(), false)
@@ -219,11 +190,8 @@ impl<'t, 'a> Parser<'t, 'a> {
             } else if token.is("^") {
                 self.at += 1;
                 above.extend(self.argument());
-            } else if token.is("*")
-                && matches!(&base, Node::Letter(l) if l == "v")
-                && self.is_star()
-            {
-                // v* is the speed of the belt.
+            } else if token.is("*") && matches!(&base, Node::Letter(_)) && self.is_star() {
+                // v* is the speed of the belt, b* a value of b.
                 self.at += 1;
                 below.push(Node::Operator("\u{2217}".to_owned(), false));
             } else {

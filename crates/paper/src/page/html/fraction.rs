@@ -1,37 +1,15 @@
 //! Fractions from quotients on one line: what belongs above and below.
 
-use super::formula::Node;
+use super::node::{Node, length};
 
 /// Fractions with longer parts are written with a slash.
 const LONG: usize = 26;
-
-/// Whether it can be divided: neither sign nor space.
-pub fn is_factor(node: &Node) -> bool {
-    !matches!(node, Node::Operator(..) | Node::Space)
-}
-
-fn length(nodes: &[Node]) -> usize {
-    let of = |node: &Node| match node {
-        Node::Letter(s) | Node::Upright(s) | Node::Number(s) | Node::Operator(s, _) => {
-            s.chars().count()
-        }
-        Node::Space => 1,
-        Node::Group { length, .. } => *length,
-        Node::Fraction(a, b) => length(a).max(length(b)),
-        Node::Row(a) => length(a),
-        Node::Root(a) => 1 + length(a),
-        Node::Scripts { base, below, above } => {
-            length(std::slice::from_ref(base)) + length(below).max(length(above))
-        }
-    };
-    nodes.iter().map(of).sum()
-}
 
 /// A fraction, or a quotient with a slash where a part is long. A single bracket is dropped.
 pub fn push_fraction(nodes: &mut Vec<Node>, mut above: Vec<Node>, below: Vec<Node>) {
     // What stands directly before a bracket is applied to it: z(t)/gamma.
     if matches!(above.first(), Some(Node::Group { open: "(", .. }))
-        && nodes.last().is_some_and(is_factor)
+        && nodes.last().is_some_and(Node::is_factor)
     {
         above.splice(0..0, nodes.pop());
     } else {

@@ -3,7 +3,8 @@
 //! A formula becomes several `<math>` elements, cut before its relations, sums and long brackets:
 //! between them a line can break, inside them it cannot.
 
-use super::formula::{Node, parse};
+use super::formula::parse;
+use super::node::Node;
 use super::tokens::Token;
 use std::fmt::Write;
 

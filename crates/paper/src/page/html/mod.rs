@@ -5,13 +5,14 @@ mod formula;
 mod fraction;
 mod mathml;
 mod names;
+mod node;
 mod prose;
 mod rows;
 mod summary;
 mod tokens;
 
 use super::Figure;
-use crate::{Paper, Section};
+use crate::{Paper, Section, Verdict};
 use mathml::escape;
 use std::fmt::Write;
 
@@ -53,10 +54,21 @@ fn header(paper: &Paper) -> String {
          <p class=\"lead\">{rows} statements of the paper by J. Awrejcewicz and I. V. Andrianov, <cite>Asymptotic approaches \
          to analysis of strongly non-linear and non-smooth systems</cite>: all of its formulas (1) to (51) and every number in its text. For each: what is printed, what is derived \
          from the equations, what another route says where there is one, and the verdict that \
-         follows.</p>\n{unfinished}{}</header>\n",
+         follows.</p>\n{unfinished}{}{}</header>\n",
         env!("CARGO_PKG_VERSION"),
+        rules(),
         contents(paper)
     )
+}
+
+/// The one rule of the verdicts.
+fn rules() -> String {
+    let rule = |verdict: Verdict| {
+        let (name, rule) = (verdict.name(), verdict.rule());
+        let class = rows::class(name);
+        format!("<dt><span class=\"verdict {class}\">{name}</span></dt><dd>{rule}</dd>\n")
+    };
+    format!("<dl class=\"rules\">\n{}</dl>\n", Verdict::ALL.map(rule).concat())
 }
 
 fn contents(paper: &Paper) -> String {
@@ -90,15 +102,7 @@ fn section_text(section: &Section) -> String {
 }
 
 fn footer() -> String {
-    let mut text = String::from("<section id=\"notes\">\n<h2>Notes</h2>\n<dl class=\"rules\">\n");
-    for (name, meaning) in super::RULES {
-        let class = rows::class(name);
-        let _ = writeln!(
-            text,
-            "<dt><span class=\"verdict {class}\">{name}</span></dt><dd>{meaning}</dd>"
-        );
-    }
-    text += "</dl>\n";
+    let mut text = String::from("<section id=\"notes\">\n<h2>Notes</h2>\n");
     let _ = writeln!(
         text,
         "<p>The independent route shares nothing with the derivation; where it is a residual, it shares \
@@ -109,7 +113,7 @@ fn footer() -> String {
     );
     text += "<dl class=\"rules\">\n";
     for (letters, meaning) in super::SYMBOLS {
-        let (letters, meaning) = (prose::line(letters), prose::line(meaning));
+        let (letters, meaning) = (prose::line(&letters.into()), prose::line(&meaning.into()));
         let _ = writeln!(text, "<dt>{letters}</dt><dd>{meaning}</dd>");
     }
     text += "</dl>\n";

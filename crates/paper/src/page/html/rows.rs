@@ -3,7 +3,7 @@
 use super::super::is_plain_number;
 use super::mathml::escape;
 use super::prose::{line, number};
-use crate::{Row, Section, Table, Verdict};
+use crate::{Row, Section, Table, Text, Verdict};
 use std::fmt::Write;
 
 /// The name of a verdict as a class of the style sheet.
@@ -26,7 +26,7 @@ pub fn anchor(section: &Section, row: &Row) -> String {
     format!("s{}-{}", section.number, name.trim_matches('-'))
 }
 
-fn field(name: &str, value: &str) -> String {
+fn field(name: &str, value: &Text) -> String {
     if value.is_empty() {
         return String::new();
     }

@@ -12,14 +12,14 @@ pub fn trust(paper: &Paper, figures: &[Figure]) -> String {
     let mut text = String::from(
         "<section id=\"trust\">\n<h2>Where the paper\u{2019}s methods can be trusted, and where not</h2>\n",
     );
-    for finding in paper.trust.findings() {
+    for finding in &paper.trust.findings {
         let _ = write!(
             text,
             "<article class=\"finding\" id=\"trust-{}\">\n<h3><a href=\"#section-{}\">Section {}</a> {}</h3>\n",
             finding.section,
             finding.section,
             finding.section,
-            line(finding.method)
+            line(&finding.method)
         );
         text += &sides(&finding);
         for figure in figures.iter().filter(|figure| figure.section == finding.section) {
@@ -92,17 +92,8 @@ fn worst(paper: &Paper, number: u32) -> Option<(&Section, &Row)> {
     let of_this = rows
         .filter(|(_, row)| numbers(&row.label).contains(&number) && !row.label.contains("below"));
     of_this.max_by(|a, b| {
-        severity(a.1.verdict).cmp(&severity(b.1.verdict)).then(std::cmp::Ordering::Greater)
+        a.1.verdict.severity().cmp(&b.1.verdict.severity()).then(std::cmp::Ordering::Greater)
     })
-}
-
-fn severity(verdict: Verdict) -> u8 {
-    match verdict {
-        Verdict::Agrees => 0,
-        Verdict::Misprint => 1,
-        Verdict::NotReproducible => 2,
-        Verdict::Wrong => 3,
-    }
 }
 
 /// All formulas with their verdicts, and the numbers of the text.
@@ -122,7 +113,7 @@ pub fn glance(paper: &Paper) -> String {
         );
     }
     text += "</ol>\n<div class=\"scroll\"><table class=\"count\">\n<thead><tr><th scope=\"col\">statements</th>";
-    let verdicts = super::super::VERDICTS;
+    let verdicts = Verdict::ALL;
     for verdict in verdicts {
         let name = verdict.name();
         let _ = write!(

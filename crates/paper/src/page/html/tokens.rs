@@ -1,16 +1,14 @@
-//! The words and signs of a line of the report.
+//! The words, numbers and signs of a line.
 
 /// What a token is.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Letters and digits, beginning with a letter; with an apostrophe inside ("Newton's").
+    /// Letters and digits, beginning with a letter.
     Word,
     /// A decimal number, with its exponent.
     Number,
     /// Everything else: one sign, or several that belong together ("->", "<=", "...").
     Sign,
-    /// A quotation in double quotes, to be shown as it is.
-    Quote,
 }
 
 /// A token with its place.
@@ -53,31 +51,14 @@ pub fn tokens(line: &str) -> Vec<Token<'_>> {
 /// The kind and the length in bytes of the token at the beginning.
 fn next(rest: &str, first: char) -> (Kind, usize) {
     if first.is_ascii_alphabetic() {
-        return (Kind::Word, word(rest));
+        let end = rest.find(|c: char| !c.is_ascii_alphanumeric());
+        return (Kind::Word, end.unwrap_or(rest.len()));
     }
     if first.is_ascii_digit() {
         return (Kind::Number, number(rest));
     }
-    if first == '"'
-        && let Some(end) = rest[1..].find('"')
-    {
-        return (Kind::Quote, end + 2);
-    }
     let long = LONG_SIGNS.iter().find(|sign| rest.starts_with(**sign));
     (Kind::Sign, long.map_or(first.len_utf8(), |sign| sign.len()))
-}
-
-fn word(rest: &str) -> usize {
-    let length = |text: &str| text.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(text.len());
-    let own = length(rest);
-    // "Newton's" is a word, x'(0) is not.
-    let tail = rest[own..].strip_prefix('\'').map_or("", |tail| tail);
-    let more = length(tail);
-    if own > 1 && more > 0 && tail.starts_with(|c: char| c.is_ascii_lowercase()) {
-        own + 1 + more
-    } else {
-        own
-    }
 }
 
 fn number(rest: &str) -> usize {

@@ -1,0 +1,81 @@
+//! What was read, as plain values: every page is a reader of them.
+
+use crate::{Text, Trust, Verdict};
+use serde::Serialize;
+
+/// One formula or number of the paper.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The number of the formula, or where the statement stands.
+    pub label: Text,
+    /// What is printed.
+    pub printed: Text,
+    /// What the engine derives.
+    pub derived: Text,
+    /// What another route says, empty where there is none. A residual shares the algebra with the
+    /// derivation, other routes share nothing.
+    pub independent: Text,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why.
+    pub evidence: Text,
+}
+
+/// A table of numbers. Numbers are certified to the printed digits unless a note says otherwise.
+#[derive(Clone, Debug, Serialize)]
+pub struct Table {
+    /// A short name for files.
+    pub name: String,
+    /// What it shows.
+    pub title: Text,
+    /// The heads of the columns.
+    pub columns: Vec<Text>,
+    /// The cells, row by row.
+    pub rows: Vec<Vec<Text>>,
+    /// What must be said beside the numbers.
+    pub notes: Vec<Text>,
+}
+
+/// A section of the paper.
+#[derive(Clone, Debug, Serialize)]
+pub struct Section {
+    /// Its number.
+    #[serde(rename = "section")]
+    pub number: u32,
+    /// Its title.
+    pub title: &'static str,
+    /// Its formulas and numbers, in the order of the paper.
+    pub rows: Vec<Row>,
+    /// What the method really gives.
+    pub tables: Vec<Table>,
+}
+
+impl Section {
+    /// The row with this label.
+    pub fn row(&self, label: &str) -> Option<&Row> {
+        self.rows.iter().find(|row| row.label == *label)
+    }
+
+    /// How many rows have this verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.rows.iter().filter(|row| row.verdict == verdict).count()
+    }
+}
+
+/// What was read.
+#[derive(Clone, Debug, Serialize)]
+pub struct Paper {
+    /// Where the methods can be trusted.
+    pub trust: Trust,
+    /// The sections, in the order of the paper; with the rows finished when the observer stopped the work.
+    pub sections: Vec<Section>,
+    /// Whether everything is there (false when the observer stopped the work).
+    pub complete: bool,
+}
+
+impl Paper {
+    /// The section with this number, if it was begun.
+    pub fn section(&self, number: u32) -> Option<&Section> {
+        self.sections.iter().find(|section| section.number == number)
+    }
+}
