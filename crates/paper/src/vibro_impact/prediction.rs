@@ -309,8 +309,11 @@ fn statements(counts: &Counts, rates: [f64; RULES.len()]) -> [Row; 2] {
 }
 
 fn agreement(rows: Vec<Vec<String>>, side: i32, counts: &Counts) -> Table {
-    let mut columns = vec!["orbit".to_owned(), "truly stable".to_owned()];
-    columns.extend(RULES.map(str::to_owned));
+    let head = |rule: &str| match rule {
+        "R < 0" | "G" => format!("${rule}$"),
+        _ => rule.to_owned(),
+    };
+    let columns = ["orbit", "truly stable"].into_iter().chain(RULES).map(head);
     Table {
         name: "agreement".to_owned(),
         title: Text::from(format!(

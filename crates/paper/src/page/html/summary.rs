@@ -21,7 +21,7 @@ pub fn trust(paper: &Paper, figures: &[Figure]) -> String {
             finding.section,
             line(&finding.method)
         );
-        text += &sides(&finding);
+        text += &sides(finding);
         for figure in figures.iter().filter(|figure| figure.section == finding.section) {
             text += &picture(figure);
         }
