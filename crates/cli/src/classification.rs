@@ -1,45 +1,16 @@
 //! What an equation is made of, and which methods take it, in words and as JSON.
 
-use lindstedt::ProblemFile;
-use lindstedt::equation::classify::{
-    Algebra, Classification, ClassifyError, Method, Reason, Symmetry, classify,
-};
+pub use lindstedt::classification::{check, of, reason_text, refusal, shortened};
+use lindstedt::equation::classify::{Algebra, Classification, Method, Reason, Symmetry};
 use lindstedt::equation::print::Style;
-use lindstedt::equation::{Condition, Expression, Problem};
-use lindstedt::expand::ExpandError;
-use lindstedt::{Error, Exact, check_parameters, known_values};
+use lindstedt::equation::{Condition, Expression};
 use serde_json::{Value as Json, json};
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::arguments::Normalisation;
-use crate::failure::{Failure, NO_ANSWER};
+use crate::failure::Failure;
 use crate::problems::condition_name;
 use crate::session::Loaded;
-
-/// Classifies a problem with the values given and the defaults. A value outside its domain is against
-/// every method that looks at it: Melnikov's looks at no amplitude, averaging asks for another start.
-pub fn of(
-    problem: &Problem,
-    given: &BTreeMap<String, Exact>,
-) -> Result<Classification, ClassifyError> {
-    let mut parts = classify(problem, &known_values(problem, given))?;
-    if let Err(error) = check_parameters(problem, given)
-        && let Error::OutsideDomain { name, .. } = &error
-    {
-        let looks = |method| match method {
-            Method::Melnikov => false,
-            Method::Averaging => name != "amplitude",
-            _ => true,
-        };
-        let applies =
-            |(method, against): &&mut (Method, Vec<Reason>)| against.is_empty() && looks(*method);
-        for (_, against) in parts.methods.iter_mut().filter(applies) {
-            against.push(Reason::OutsideDomain(error.to_string()));
-        }
-    }
-    Ok(parts)
-}
 
 fn method_name(method: Method) -> &'static str {
     match method {
@@ -59,58 +30,6 @@ fn algebra_name(algebra: Algebra) -> &'static str {
         Algebra::Lobachevsky => "Lobachevsky ring",
         _ => "numeric only",
     }
-}
-
-/// A reason in words.
-pub fn reason_text(reason: &Reason, small: &str) -> String {
-    let show = |e: &Expression| shortened(&e.print(small, Style::Text));
-    match reason {
-        Reason::NotWeaklyNonlinear(e) => {
-            format!("{} has no factor {small}, so the equation is not weakly nonlinear", show(e))
-        }
-        Reason::NoLinearPart => format!("no term k*x stands in the equation without {small}"),
-        Reason::NegativeStiffness => "the linear stiffness is negative".into(),
-        Reason::IrrationalFrequency => "x' occurs and omega_0 is irrational".into(),
-        Reason::UnknownFrequency => "x' occurs and omega_0 has no value".into(),
-        Reason::Forced(e) => format!("{} depends on t", show(e)),
-        Reason::Resonant(e, (k, m)) => {
-            format!("{} is of order zero and in resonance {k}:{m} with the linear part", show(e))
-        }
-        Reason::Delay(e) => format!("{} is a delay", show(e)),
-        Reason::NonSmooth(e) => format!("{} is not smooth", show(e)),
-        Reason::NotPolynomial(e) => format!(
-            "{} is no polynomial in x, x' and ln x^2 (of f regular at 0, taylor(f(z), 9) asks for one)",
-            show(e)
-        ),
-        Reason::NotReal(e) => format!(
-            "{} is not real everywhere: write x*(x^2)^delta, sign(x)*abs(x)^p, ln(x^2)",
-            show(e)
-        ),
-        Reason::Impact => "there is a wall".into(),
-        Reason::Drift(e) => {
-            format!("{} works on x', so the amplitude drifts", show(e))
-        }
-        Reason::Condition => "the condition of the problem belongs to another method".into(),
-        Reason::Form => format!("the form x*F({small}*ln(x^2)) is needed"),
-        Reason::Frequency(e) => format!(
-            "{}: forces are cos or sin of multiples of one omega*t by numbers, without a phase",
-            show(e)
-        ),
-        Reason::NoForce => "there is no force".into(),
-        Reason::NoSaddle => "no integrable equation with a saddle at order zero".into(),
-        Reason::NoSmallParameter => format!("the small parameter {small} does not occur"),
-        Reason::Formal(e) => format!("{} is a formal function", show(e)),
-        Reason::OutsideDomain(what) => what.clone(),
-        _ => "not applicable".into(),
-    }
-}
-
-fn shortened(text: &str) -> String {
-    let mut shown: String = text.chars().take(60).collect();
-    if shown.len() < text.len() {
-        shown.push_str("...");
-    }
-    shown
 }
 
 /// The classification in lines of text, of the equation of a file or of a built-in problem.
@@ -266,123 +185,4 @@ pub fn condition(
             Err(Failure::usage("unknown-normalisation", message, &line))
         }
     }
-}
-
-/// What a file says for the amplitude to be averaged.
-const AVERAGES: &str =
-    "averaging takes it: condition = \"free-amplitude\" in the file, or --normalisation free";
-
-/// The path of a file with the place of a term of its equation, or of the equation.
-fn place(file: &ProblemFile, path: &str, term: Option<&Expression>) -> String {
-    let place = term.and_then(|term| file.locate(term)).or_else(|| file.locate_equation());
-    let place = place.map_or(String::new(), |(line, column)| format!(":{line}:{column}"));
-    format!("{path}{place}")
-}
-
-/// What an equation without a small parameter misses.
-pub fn marks(small: &str) -> String {
-    format!("a factor {small} marks the small terms; `simulate` takes it as it is")
-}
-
-/// Refuses, before any work, a file whose equation the expansion with the condition asked for does
-/// not take, with the term and its place. Free amplitudes and values outside their domain are left to
-/// their driver.
-pub fn check(
-    parts: &Classification,
-    file: &ProblemFile,
-    condition: Option<Condition>,
-    path: &str,
-) -> Result<(), Failure> {
-    let condition = condition.or(file.problem.conditions.first().copied());
-    let against = |method: Method| {
-        let listed = parts.methods.iter().filter(move |(m, _)| *m == method);
-        let reasons = listed.flat_map(|(_, against)| against);
-        reasons.filter(|r| !matches!(r, Reason::Condition | Reason::OutsideDomain(_)))
-    };
-    let small = &file.problem.small;
-    let nothing_small = !file.problem.equation.contains(&Expression::Small);
-    let marks = marks(small);
-    let refused = |at: String, what: String, hint: String| {
-        let message = format!("{at}: {what}");
-        Err(Failure { exit: NO_ANSWER, code: "no-method", message, hint })
-    };
-    let Some(reason) = against(Method::LindstedtPoincare).next() else {
-        if condition.is_some() {
-            return Ok(());
-        }
-        let (what, hint) = if nothing_small {
-            (reason_text(&Reason::NoSmallParameter, small), marks)
-        } else {
-            let hint = "\"initial-amplitude\", \"limit-cycle\", \"free-amplitude\"";
-            ("condition = [] asks for no expansion".to_owned(), hint.to_owned())
-        };
-        return refused(place(file, path, None), what, hint);
-    };
-    if condition == Some(Condition::FreeAmplitude) {
-        let plain = |r: &&Reason| match r {
-            Reason::NoLinearPart | Reason::NotWeaklyNonlinear(_) => nothing_small,
-            Reason::Frequency(_) => true,
-            _ => false,
-        };
-        let Some(reason) = against(Method::Averaging).find(plain) else { return Ok(()) };
-        let at = place(file, path, reason.term());
-        let hint = if nothing_small { marks } else { String::new() };
-        return refused(at, reason_text(reason, small), hint);
-    }
-    let at = match reason {
-        // The equation is not to blame.
-        Reason::Impact => path.to_owned(),
-        _ => place(file, path, reason.term()),
-    };
-    let averages = || {
-        against(Method::Averaging).next().is_none()
-            && parts.forcing.iter().all(|force| force.resonance.is_none())
-    };
-    let in_numbers = matches!(reason, Reason::NonSmooth(_) | Reason::NotPolynomial(_))
-        && parts.takes(Method::TimeDomain);
-    let hint = if nothing_small && *reason == Reason::NoSmallParameter {
-        &*marks
-    } else if parts.takes(Method::Melnikov) {
-        "Melnikov's method takes equations of this kind: lindstedt threshold FILE"
-    } else if *reason == Reason::UnknownFrequency {
-        "--set NAME=VALUE gives it one"
-    } else if averages() {
-        AVERAGES
-    } else if in_numbers {
-        "in numbers: `lindstedt simulate`, and `derive --tier collocation` for forces of x alone"
-    } else if nothing_small {
-        &*marks
-    } else {
-        "`lindstedt problems --show FILE` lists the methods"
-    };
-    refused(at, reason_text(reason, small), hint.to_owned())
-}
-
-/// A refusal of the engine; of the equation of a file with its place. Where no amplitude is constant,
-/// or none that is known exactly, averaging is what takes the equation.
-pub fn refusal(error: Error, file: Option<&ProblemFile>, path: &str) -> Failure {
-    let averages = matches!(
-        error,
-        Error::Expand(
-            ExpandError::AmplitudeDrifts { .. }
-                | ExpandError::NoLimitCycle
-                | ExpandError::AmplitudeOfHigherOrder
-                | ExpandError::IrrationalAmplitude
-                | ExpandError::SeveralLimitCycles { .. }
-                | ExpandError::DegenerateLimitCycle
-        )
-    );
-    let no_root = matches!(error, Error::Expand(ExpandError::StiffnessNotSquare));
-    let mut failure = Failure::from(error);
-    if let (Some(file), "no-expansion") = (file, failure.code) {
-        failure.message = format!("{}: {}", place(file, path, None), failure.message);
-        if averages {
-            failure.hint = AVERAGES.to_owned();
-        } else if !file.problem.equation.contains(&Expression::Small) {
-            failure.hint = marks(&file.problem.small);
-        } else if no_root {
-            failure.hint = "--set gives all parameters values, that of the force included; or write omega_0^2*x".to_owned();
-        }
-    }
-    failure
 }

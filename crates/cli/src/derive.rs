@@ -84,6 +84,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
             Progress::Primes(n) => format!("{n} primes done"),
             Progress::Integrating(n) => format!("{n} values compared"),
             Progress::Checking => "substituting into the equation".to_owned(),
+            _ => String::new(),
         });
         session.goes_on()
     };
@@ -96,7 +97,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
             message: unfinished(primes > 0 || polynomial(&problem.equation).is_some(), primes),
             hint: "raise --limit-seconds or lower --order".to_owned(),
         },
-        other => classification::refusal(other, file.as_ref(), &options.problem),
+        other => classification::refusal(other, file.as_ref(), &options.problem).into(),
     })?;
     let report = Report::new(&result, digits)?;
     session.done();

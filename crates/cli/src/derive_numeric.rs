@@ -43,7 +43,7 @@ pub fn run(
             message: "the time limit was reached before two grids were finished".to_owned(),
             hint: "raise --limit-seconds or lower --order or --digits".to_owned(),
         },
-        other => refusal(other, file, &options.problem),
+        other => refusal(other, file, &options.problem).into(),
     })?;
     session.done();
     let text = match session.format() {

@@ -187,7 +187,7 @@ fn failure(error: Error, file: Option<&ProblemFile>, path: &str, session: &Sessi
             message: "the time limit was reached before the expansion was finished".to_owned(),
             hint: "raise --limit-seconds or lower --order".to_owned(),
         },
-        other => refusal(other, file, path),
+        other => refusal(other, file, path).into(),
     }
 }
 

@@ -2,9 +2,7 @@
 
 use crate::arguments::Format;
 use crate::output::warn;
-use lindstedt::algebra::PhaseError;
-use lindstedt::expand::ExpandError;
-use lindstedt::{Error, NumberError};
+use lindstedt::{Error, Kind, NumberError, Refusal, Refused};
 use serde_json::json;
 use std::io::Write;
 use std::process::ExitCode;
@@ -38,6 +36,16 @@ impl Failure {
         Self { exit: USAGE, code, message, hint: hint.to_owned() }
     }
 
+    /// A refusal of the library.
+    pub fn of(refusal: &dyn Refusal) -> Self {
+        Self {
+            exit: exit_code(refusal.kind()),
+            code: refusal.code(),
+            message: refusal.to_string(),
+            hint: refusal.hint(),
+        }
+    }
+
     /// Prints the failure; in JSON mode on standard output, where a program reads.
     pub fn report(&self, format: Format) -> ExitCode {
         if format == Format::Json {
@@ -61,61 +69,28 @@ impl From<NumberError> for Failure {
 
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
-        if let Error::Simulate(error) = error {
-            return error.into();
+        Self::of(&error)
+    }
+}
+
+impl From<Refused> for Failure {
+    fn from(refused: Refused) -> Self {
+        Self {
+            exit: exit_code(refused.kind),
+            code: refused.code,
+            message: refused.message,
+            hint: refused.hint,
         }
-        let (exit, code, hint): (u8, &'static str, &str) = match &error {
-            Error::BadValue { .. } => {
-                (USAGE, "bad-value", "values are exact: 3, -1/3, 0.1, 2.5e-3, pi/4, 2*pi/3")
-            }
-            Error::Parse(_) | Error::File(_) => (USAGE, "problem-file", ""),
-            Error::Irrational { .. } => (NO_ANSWER, "irrational", "set a rational value"),
-            Error::UnknownParameter { .. } => {
-                (USAGE, "unknown-parameter", "see `lindstedt problems --show NAME`")
-            }
-            Error::UnknownCondition { .. } => {
-                (USAGE, "unknown-normalisation", "see `lindstedt problems --show NAME`")
-            }
-            Error::Unset { .. } => (USAGE, "no-value-set", "--set NAME=VALUE, for example 1/10"),
-            Error::NotAmongSymbols { .. } => {
-                (USAGE, "not-among-symbols", "set all parameters, or leave this one open")
-            }
-            Error::NoSuchRoute { .. } => (NO_ANSWER, "no-such-route", "use --route driver"),
-            Error::OutsideDomain { .. } => (NO_ANSWER, "outside-domain", ""),
-            Error::TooLarge { .. } => {
-                (UNDECIDED, "too-large", "lower --order or raise --limit-memory")
-            }
-            Error::NotEnoughBits { .. } => (UNDECIDED, "not-enough-digits", "ask for fewer digits"),
-            Error::NoSuchStart { .. } => {
-                (NO_ANSWER, "no-start", "give amplitude and phase: --start")
-            }
-            Error::NoPeriodicOrbit { .. } => (NO_ANSWER, "no-periodic-orbit", "smaller --small"),
-            Error::NoTruncatedFrequency { .. } => {
-                (NO_ANSWER, "no-truncated-frequency", "smaller --small, or another --order")
-            }
-            Error::Resummation { .. } => {
-                (NO_ANSWER, "no-such-resummation", "try --resum auto, or another order")
-            }
-            Error::NotEvaluated { .. } => (NO_ANSWER, "not-evaluated", ""),
-            Error::MovingSingularity { .. } => (
-                NO_ANSWER,
-                "no-method",
-                "`lindstedt simulate` takes it; here the equation would have to be odd in x, and \
-                 the same backwards in time",
-            ),
-            Error::NoValue => (NO_ANSWER, "no-value", ""),
-            Error::OutOfPrimes => (UNDECIDED, "out-of-primes", "lower --order"),
-            Error::Expand(ExpandError::Interrupted { .. }) => (INTERRUPTED, "interrupted", ""),
-            Error::Expand(ExpandError::Phase { source: PhaseError::Resonance { .. }, .. }) => {
-                (NO_ANSWER, "resonance", "averaging needs a force off resonance")
-            }
-            Error::Expand(ExpandError::Phase { .. }) => {
-                (UNDECIDED, "could-not-decide", "the orders below this one can be derived")
-            }
-            Error::Expand(_) => (NO_ANSWER, "no-expansion", ""),
-            _ => (UNDECIDED, "undecided", ""),
-        };
-        Self { exit, code, message: error.to_string(), hint: hint.to_owned() }
+    }
+}
+
+/// The exit code of a refusal.
+fn exit_code(kind: Kind) -> u8 {
+    match kind {
+        Kind::Usage => USAGE,
+        Kind::NoAnswer => NO_ANSWER,
+        Kind::Undecided => UNDECIDED,
+        Kind::Stopped => INTERRUPTED,
     }
 }
 

@@ -1,15 +1,21 @@
 //! What all commands share: format, output, progress, limits, Ctrl-C.
 
-use crate::arguments::{Common, Format, Precision};
-use crate::failure::{FILE, Failure, NO_ANSWER, UNDECIDED, USAGE};
+use crate::arguments::{Common, Format, Normalisation, Precision};
+use crate::failure::{FILE, Failure, INTERRUPTED, NO_ANSWER, UNDECIDED, USAGE};
+use crate::simulate::plot;
+use crate::{Outcome, output};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::algebra::Stop;
-use lindstedt::equation::Problem;
+use lindstedt::equation::{Condition, Problem};
 use lindstedt::problem_file::{FileError, LARGEST_FILE, canonical_name};
-use lindstedt::{Exact, ProblemFile};
+use lindstedt::{
+    Answer, Error, Exact, Kind, Oscillator, ProblemFile, Progress, Refusal, Standing, Work,
+};
+use lindstedt_report::{Format as Written, Present};
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -33,11 +39,9 @@ impl<'a> Session<'a> {
         let counter = Arc::clone(&interrupts);
         let _ = ctrlc::set_handler(move || {
             if counter.fetch_add(1, Ordering::SeqCst) > 0 {
-                std::process::exit(i32::from(crate::failure::INTERRUPTED));
+                std::process::exit(i32::from(INTERRUPTED));
             }
-            crate::output::warn(
-                "stopping after the step in progress; Ctrl-C again to stop at once",
-            );
+            output::warn("stopping after the step in progress; Ctrl-C again to stop at once");
         });
         let bar = if common.quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
         if let Ok(style) = ProgressStyle::with_template("{spinner} [{elapsed}] {msg}") {
@@ -85,6 +89,110 @@ impl<'a> Session<'a> {
         })
     }
 
+    /// The means of a question.
+    pub fn work(&self) -> Work {
+        let bar = self.bar.clone();
+        let progress = move |progress: Progress| {
+            if let Some(message) = words(&progress) {
+                bar.set_message(message);
+            }
+            bar.tick();
+        };
+        Work {
+            memory: self.memory(),
+            stop: self.stop(),
+            progress: Some(Arc::new(progress)),
+            ..Work::default()
+        }
+    }
+
+    /// The oscillator of an argument, with the values and the normalisation asked for: an equation,
+    /// the path of a problem file, or a built-in name.
+    pub fn oscillator(
+        &self,
+        name: &str,
+        set: &[String],
+        normalisation: Option<Normalisation>,
+    ) -> Result<Oscillator, Failure> {
+        let oscillator = if name.contains(['\'', '=']) {
+            Oscillator::parse(name)?
+        } else if name.ends_with(".toml") {
+            Oscillator::file(&read(name)?).map_err(|error| at_place(name, error))?.called(name)
+        } else {
+            Oscillator::builtin(name)?
+        };
+        let mut oscillator = oscillator;
+        for (name, value) in parameters(set)? {
+            oscillator = oscillator.with(&name, value);
+        }
+        let condition = normalisation.map(|normalisation| match normalisation {
+            Normalisation::Initial => Condition::InitialAmplitude,
+            Normalisation::Fundamental => Condition::FundamentalAmplitude,
+            Normalisation::Free => Condition::FreeAmplitude,
+        });
+        Ok(match condition {
+            Some(condition) => oscillator.under(condition)?,
+            None => oscillator,
+        })
+    }
+
+    /// Fails now rather than after the work if what is asked for cannot be written.
+    pub fn check_writable(&self, plots: &[PathBuf]) -> Result<(), Failure> {
+        plot::check(plots)?;
+        plots.iter().try_for_each(|path| output::check_file(path))?;
+        output::check_writable(self)
+    }
+
+    /// Prints an answer in the format asked for, writes its figures and tables, says its remarks.
+    pub fn show<T: Serialize>(&self, answer: Result<Answer<T>, Error>, plots: &[PathBuf]) -> Outcome
+    where
+        Answer<T>: Present,
+    {
+        self.done();
+        let answer = answer.map_err(|error| self.failure(&error))?;
+        for path in plots {
+            output::write_file(path, &plotted(&answer, path)?)?;
+        }
+        let text = match self.format() {
+            Format::Json => lindstedt_report::json(&answer).map_err(|error| Failure {
+                exit: UNDECIDED,
+                code: "json",
+                message: error.to_string(),
+                hint: String::new(),
+            })?,
+            Format::Text => Written::Text.write(&answer.document()),
+            Format::Latex => Written::Latex.write(&answer.document()),
+            Format::Markdown => Written::Markdown.write(&answer.document()),
+        };
+        output::write(self, &text)?;
+        for remark in &answer.remarks {
+            output::warn(&remark.0);
+        }
+        Ok(match answer.standing {
+            Standing::Complete => 0,
+            Standing::NoAnswer => NO_ANSWER,
+            Standing::Undecided => UNDECIDED,
+            Standing::Stopped { .. } => self.stopped(),
+        })
+    }
+
+    /// The exit code of stopped work.
+    fn stopped(&self) -> u8 {
+        if self.interrupted() { INTERRUPTED } else { UNDECIDED }
+    }
+
+    /// A refusal; of stopped work with what stopped it.
+    fn failure(&self, error: &Error) -> Failure {
+        let failure = Failure::of(error);
+        match error.kind() {
+            Kind::Stopped => {
+                let code = if self.interrupted() { "interrupted" } else { "limit-seconds" };
+                Failure { exit: self.stopped(), code, ..failure }
+            }
+            _ => failure,
+        }
+    }
+
     /// Shows what is being done.
     pub fn say(&self, message: String) {
         self.bar.set_message(message);
@@ -109,6 +217,45 @@ impl<'a> Session<'a> {
     /// Clears the progress line before results are printed.
     pub fn done(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// What is being done, in words.
+fn words(progress: &Progress) -> Option<String> {
+    Some(match progress {
+        Progress::Order(order, terms) => format!("order {order} done, {terms} terms"),
+        Progress::Primes(primes) => format!("{primes} primes done"),
+        Progress::Integrating(done) => format!("{done} values compared"),
+        Progress::Checking => "substituting into the equation".to_owned(),
+        Progress::Parts(done, all) => format!("{done} of {all} done"),
+        Progress::Digits(digits) => format!("{digits} digits"),
+        _ => return None,
+    })
+}
+
+/// The contents of a figure or a table, as the name of the file says.
+fn plotted<T>(answer: &Answer<T>, path: &Path) -> Result<String, Failure>
+where
+    Answer<T>: Present,
+{
+    let nothing = || Failure {
+        exit: NO_ANSWER,
+        code: "figure",
+        message: "there is nothing to draw".to_owned(),
+        hint: String::new(),
+    };
+    if plot::is(path, "csv") {
+        return answer.table().map(|table| table.csv()).ok_or_else(nothing);
+    }
+    let figure = answer.figure().ok_or_else(nothing)?;
+    figure.svg().map_err(|error| Failure { message: error.to_string(), ..nothing() })
+}
+
+/// An error of a problem file with its path, line and column.
+fn at_place(path: &str, error: Error) -> Failure {
+    match error {
+        Error::File(error) => at_path(path, error),
+        error => error.into(),
     }
 }
 
@@ -175,7 +322,7 @@ pub fn note(text: String) {
 /// Says the warnings that were kept.
 pub fn say_notes() {
     for text in NOTES.lock().iter().flat_map(|notes| notes.iter()) {
-        crate::output::warn(text);
+        output::warn(text);
     }
 }
 

@@ -264,25 +264,6 @@ fn bifurcation(
 
 impl From<SimulateError> for Failure {
     fn from(error: SimulateError) -> Self {
-        let (exit, code, hint) = match &error {
-            SimulateError::BranchPoint { .. } => (
-                UNDECIDED,
-                "could-not-decide",
-                "more --digits; not at all where w reaches zero without speed, or for p near -1",
-            ),
-            SimulateError::DenseBranchPoint { .. } => {
-                (UNDECIDED, "too-large", "fewer --digits, or a power farther from -1")
-            }
-            SimulateError::Grazing { .. } | SimulateError::StepTooSmall { .. } => (
-                UNDECIDED,
-                "could-not-decide",
-                "more --digits, or a start beside the degenerate one",
-            ),
-            SimulateError::MissingParameter { .. } | SimulateError::BadRestitution { .. } => {
-                (NO_ANSWER, "outside-domain", "see `lindstedt problems`")
-            }
-            _ => (NO_ANSWER, "no-trajectory", "another start, or a shorter time"),
-        };
-        Self { exit, code, message: error.to_string(), hint: hint.to_owned() }
+        Self::of(&error)
     }
 }

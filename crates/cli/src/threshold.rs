@@ -9,7 +9,7 @@ mod sweep;
 
 use crate::Outcome;
 use crate::arguments::{Format, ThresholdOptions};
-use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
+use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
 use crate::output;
 use crate::session::{Session, digits};
 use lindstedt_melnikov::MelnikovError;
@@ -67,15 +67,6 @@ fn stopped(session: &Session<'_>) -> Failure {
 
 impl From<MelnikovError> for Failure {
     fn from(error: MelnikovError) -> Self {
-        let (exit, code, hint) = match &error {
-            MelnikovError::NotFinite { .. } | MelnikovError::NotPositive { .. } => {
-                (NO_ANSWER, "outside-domain", "see `lindstedt threshold --help`")
-            }
-            MelnikovError::Undecided { .. } | MelnikovError::Digits(_) => {
-                (UNDECIDED, "could-not-decide", "move off the degenerate point")
-            }
-            _ => (NO_ANSWER, "no-answer", ""),
-        };
-        Self { exit, code, message: error.to_string(), hint: hint.to_owned() }
+        Self::of(&error)
     }
 }

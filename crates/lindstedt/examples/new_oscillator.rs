@@ -1,7 +1,6 @@
 //! An oscillator of your own: Rayleigh's equation, its limit cycle to order 6, judged twice.
 
-use lindstedt::verify::{VerifySettings, verify_derivation};
-use lindstedt::{Error, Oscillator};
+use lindstedt::{Error, Oscillator, Verify, Work};
 
 fn main() -> Result<(), Error> {
     let oscillator = Oscillator::parse("x'' + x = eps*(x' - x'^3/3)")?;
@@ -19,9 +18,9 @@ fn main() -> Result<(), Error> {
     let error = period.error.unwrap_or_default();
     println!("period at eps = 1/2: {} +- {error}", period.decimal);
 
-    let (problem, settings) = (&oscillator.problem, VerifySettings::default());
-    let judge = verify_derivation(problem, &rayleigh, &settings, &mut |_| true)?;
-    let observed = judge.observed.ok_or(Error::NoValue)?;
+    let judge =
+        oscillator.verify_derivation(&rayleigh, &Verify::default(), &Work::default())?.value;
+    let observed = judge.observed_order.ok_or(Error::NoValue)?;
     println!("against the motion in time: {:?}, observed order {observed:.2}", judge.verdict);
     Ok(())
 }

@@ -12,6 +12,12 @@ pub enum Error {
     /// The driver refused.
     #[error(transparent)]
     Expand(#[from] ExpandError),
+    /// A refusal put together from several reasons.
+    #[error(transparent)]
+    Refused(#[from] crate::refusal::Refused),
+    /// Melnikov's method has no value here.
+    #[error(transparent)]
+    Melnikov(#[from] lindstedt_melnikov::MelnikovError),
     /// The integration in the time domain failed.
     #[error(transparent)]
     Simulate(#[from] lindstedt_simulate::SimulateError),

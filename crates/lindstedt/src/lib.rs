@@ -13,28 +13,38 @@
 #[cfg(doctest)]
 struct Readme;
 
+mod answer;
 pub mod averaging;
+pub mod classification;
 pub mod constants;
 mod derivation;
 pub mod energy;
 mod error;
 pub mod evaluate;
+pub mod grid;
 pub mod impact_map;
 pub mod multimodular;
 pub mod numeric;
 mod oscillator;
 pub mod quotient;
 pub mod recognise;
+pub mod refusal;
+pub mod start;
 pub mod trade;
 pub mod verify;
+mod work;
 
+pub use answer::{Answer, Header, Remark, SCHEMA, Standing};
 pub use derivation::{
-    Derivation, NamedSeries, Progress, Route, Settings, Solution, check_parameters, derive,
+    Derivation, NamedSeries, Route, Settings, Solution, check_parameters, derive,
 };
 pub use error::Error;
 pub use lindstedt_number::{Exact, Number, NumberError, Status};
 pub use lindstedt_problem_file::ProblemFile;
-pub use oscillator::{Oscillator, known_values};
+pub use oscillator::{Oscillator, condition_name, known_values};
+pub use refusal::{Kind, Refusal, Refused};
+pub use verify::Verify;
+pub use work::{Progress, Work};
 
 pub use lindstedt_algebra as algebra;
 pub use lindstedt_coeff as coeff;

@@ -1,107 +1,223 @@
-//! The short way from an equation to its expansion.
+//! A problem with every value settled: what all questions are asked of.
 
+use crate::answer::{Header, SCHEMA};
 use crate::evaluate::{EvaluateSettings, Evaluation, evaluate};
-use crate::{Derivation, Error, Exact, Progress, Settings, derive};
-use lindstedt_equation::classify::{Classification, ClassifyError, classify};
-use lindstedt_equation::{Condition, Expression, ParameterCard, Problem};
-use lindstedt_problem_file::{
-    Names, ParseError, ParseErrorKind, parse_equation, usual_amplitude, usual_condition,
-};
+use crate::refusal::Refused;
+use crate::{Derivation, Error, Exact, Progress, Remark, Settings, classification};
+use lindstedt_equation::classify::{Classification, ClassifyError};
+use lindstedt_equation::print::Style;
+use lindstedt_equation::{Condition, ParameterCard, Problem};
+use lindstedt_problem_file::{Names, ProblemFile, canonical_name, parse_equation, usual_amplitude};
 use rug::Rational;
 use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::time::Instant;
 
-/// An oscillator with the settings of its derivation.
+/// An oscillator: an equation with what a problem file says about it, the values that are set, and
+/// what its amplitude is. Built-in problems, files and equations come to be in one way, by a problem
+/// file; no question knows a problem by its name.
 ///
 /// ```
-/// use lindstedt::Oscillator;
-/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?.derive(3)?;
-/// assert_eq!(duffing.exact("frequency", 2).as_deref(), Some("-21/256"));
-/// let softer = Oscillator::parse("x'' + k x = eps x^3")?.set("k", "1/4")?.derive(1)?;
-/// assert_eq!(softer.exact("frequency_squared", 1).as_deref(), Some("-3/4"));
+/// use lindstedt::{Oscillator, Verify, Work};
+/// let duffing = Oscillator::builtin("duffing")?;
+/// let same = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+/// for oscillator in [duffing, same] {
+///     let answer = oscillator.verify(&Verify { order: 2, ..Verify::default() }, &Work::default())?;
+///     assert!(answer.value.observed_order.is_some_and(|slope| (slope - 3.0).abs() < 0.01));
+/// }
 /// # Ok::<(), lindstedt::Error>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Oscillator {
-    /// The problem.
-    pub problem: Problem,
-    /// The settings.
-    pub settings: Settings,
+    /// The problem under the conditions that may be asked for.
+    problem: Problem,
+    file: ProblemFile,
+    /// What the file is called in messages.
+    origin: String,
+    values: BTreeMap<String, Exact>,
+    condition: Option<Condition>,
+    /// Whether the file was made from an equation alone, which says nothing of the amplitude.
+    bare: bool,
+    remarks: Vec<Remark>,
 }
 
 impl Oscillator {
-    /// An oscillator from its equation in the small parameter `eps`; other names are parameters.
-    /// The condition is the usual one: a free amplitude with t or a delay, a given amplitude where
-    /// the form of the equation shows that none drifts, a limit cycle otherwise.
+    /// The built-in oscillator of that name.
+    ///
+    /// # Errors
+    /// [`Refused`] with the names there are.
+    pub fn builtin(name: &str) -> Result<Self, Error> {
+        let stick_slip = crate::problems::stick_slip::problem;
+        let mut all = crate::problems::all();
+        all.push(stick_slip());
+        if let Some(problem) = all.iter().find(|problem| problem.name == name) {
+            return Self::from_problem(problem);
+        }
+        let names: Vec<&str> = all.iter().map(|problem| &*problem.name).collect();
+        let shown: String = name.chars().take(60).collect();
+        let message = format!("there is no problem {shown:?}");
+        let hint = format!("known: {}", names.join(", "));
+        Err(Refused::usage("unknown-problem", message, hint).into())
+    }
+
+    /// An oscillator from the text of a problem file.
+    ///
+    /// # Errors
+    /// [`Error::File`] with line and column.
+    pub fn file(text: &str) -> Result<Self, Error> {
+        let file = ProblemFile::parse(text)?;
+        let unused = file.unused.iter();
+        let unused = unused.map(|name| format!("parameter {name} is declared and occurs nowhere"));
+        let mut remarks: Vec<Remark> = unused.map(Remark).collect();
+        if file.equation.to_lowercase().contains("taylor") {
+            let polynomial = "taylor(...) is a polynomial: all results are those of the polynomial, not \
+                              of the function";
+            remarks.push(Remark(polynomial.to_owned()));
+        }
+        let (problem, origin) = (file.problem.clone(), file.problem.name.to_string());
+        let (values, condition, bare) = (BTreeMap::new(), None, false);
+        Ok(Self { problem, file, origin, values, condition, bare, remarks })
+    }
+
+    /// An oscillator from its equation in the small parameter `eps`; other names are parameters
+    /// without a value. What its amplitude is follows from the form of the equation: free to drift
+    /// with t or a delay, given where none drifts, that of a limit cycle otherwise.
     ///
     /// # Errors
     /// [`Error::Parse`] with the position in the text.
-    pub fn parse(text: &str) -> Result<Self, Error> {
-        Self::parse_in(text, &Names::any("eps"))
+    pub fn parse(equation: &str) -> Result<Self, Error> {
+        let tree = parse_equation(equation, &Names::any("eps"))?;
+        let mut text = format!("name = \"oscillator\"\nequation = {equation:?}\n[parameters]\n");
+        for name in tree.parameters().into_iter().filter(|name| name != "amplitude") {
+            let _ = writeln!(text, "{name} = {{}}");
+        }
+        Ok(Self { bare: true, ..Self::file(&text)? })
     }
 
-    /// An oscillator from its equation with the names that it may mention.
+    /// An oscillator from a problem made in Rust.
     ///
     /// # Errors
-    /// [`Error::Parse`] with the position in the text.
-    pub fn parse_in(text: &str, names: &Names) -> Result<Self, Error> {
-        let equation = parse_equation(text, names)?;
-        let whole = |kind| ParseError { kind, at: 0..text.len() };
-        Self::new(equation, &names.small)
-            .ok_or_else(|| whole(ParseErrorKind::NoAcceleration).into())
+    /// [`Error::File`] where the problem contradicts itself.
+    pub fn from_problem(problem: &Problem) -> Result<Self, Error> {
+        Self::file(&lindstedt_problem_file::write(problem))
     }
 
-    /// An oscillator from a tree; nothing when x'' does not occur linearly with a constant factor.
-    pub fn new(equation: Expression, small: &str) -> Option<Self> {
-        let equation = equation.acceleration_alone().ok()?;
-        let condition = usual_condition(&equation);
-        let card = |name: String| ParameterCard {
-            name: name.into(),
-            meaning: "".into(),
-            default: "".into(),
-        };
-        let mut parameters: Vec<ParameterCard> = equation
-            .parameters()
-            .into_iter()
-            .filter(|name| name != "amplitude")
-            .map(card)
-            .collect();
-        parameters.push(ParameterCard {
-            name: "amplitude".into(),
-            meaning: "".into(),
-            default: "1".into(),
-        });
-        let problem = Problem {
-            name: "oscillator".into(),
-            title: "".into(),
-            equation,
-            time_domain: None,
-            impact: None,
-            synchronous: None,
-            small: small.to_owned().into(),
-            conditions: vec![condition],
-            amplitude: usual_amplitude(Some(&condition)),
-            parameters,
-            notes: "".into(),
-            source: "".into(),
-        };
-        Some(Self { problem, settings: Settings::default() })
-    }
-
-    /// The same oscillator under another condition.
+    /// The same oscillator with what its file is called in messages.
     #[must_use]
-    pub fn under(mut self, condition: Condition) -> Self {
-        self.problem.conditions = vec![condition];
-        self.problem.amplitude = usual_amplitude(Some(&condition));
+    pub fn called(mut self, origin: &str) -> Self {
+        self.origin = origin.chars().take(60).collect();
         self
     }
 
-    /// The same oscillator with a value for a parameter, written exactly: `1/3`, `0.1`, `2.5e-3`.
+    /// The same oscillator with a value for a parameter, written exactly: `1/3`, `0.1`, `2.5e-3`,
+    /// `pi/4`. Greek letters may be spelled or written.
     ///
     /// # Errors
     /// [`Error::BadValue`].
-    pub fn set(mut self, name: &str, value: &str) -> Result<Self, Error> {
-        self.settings.parameters.insert(name.to_owned(), Exact::parse(value)?);
+    pub fn set(self, name: &str, value: &str) -> Result<Self, Error> {
+        let value = Exact::parse(value)?;
+        Ok(self.with(name, value))
+    }
+
+    /// The same oscillator with an exact value for a parameter.
+    #[must_use]
+    pub fn with(mut self, name: &str, value: Exact) -> Self {
+        self.values.insert(canonical_name(name.trim()), value);
+        self
+    }
+
+    /// The same oscillator under another condition. Averaging needs nothing of an equation that was
+    /// written for a constant amplitude, so a free one need not be listed; what the amplitude is under
+    /// the others only the file can say.
+    ///
+    /// # Errors
+    /// [`Refused`] where the problem does not offer it.
+    pub fn under(mut self, condition: Condition) -> Result<Self, Error> {
+        if self.bare {
+            self.problem.conditions = vec![condition];
+            self.problem.amplitude = usual_amplitude(Some(&condition));
+        } else if !self.problem.conditions.contains(&condition) {
+            if condition != Condition::FreeAmplitude {
+                let name = condition_name(condition);
+                let message = format!("{} does not offer this normalisation", self.origin);
+                let hint = format!("condition = \"{name}\" in the file asks for it");
+                return Err(Refused::usage("unknown-normalisation", message, hint).into());
+            }
+            self.problem.conditions.push(condition);
+        }
+        self.condition = Some(condition);
         Ok(self)
+    }
+
+    /// The problem.
+    #[must_use]
+    pub fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    /// What its file says.
+    #[must_use]
+    pub fn problem_file(&self) -> &ProblemFile {
+        &self.file
+    }
+
+    /// What its file is called in messages.
+    #[must_use]
+    pub fn origin(&self) -> &str {
+        &self.origin
+    }
+
+    /// The values that were set.
+    #[must_use]
+    pub fn given(&self) -> &BTreeMap<String, Exact> {
+        &self.values
+    }
+
+    /// The condition that was asked for.
+    #[must_use]
+    pub fn asked_condition(&self) -> Option<Condition> {
+        self.condition
+    }
+
+    /// The condition: the one asked for, else the first of the problem; nothing where an expansion
+    /// is not asked for.
+    #[must_use]
+    pub fn condition(&self) -> Option<Condition> {
+        self.condition.or(self.problem.conditions.first().copied())
+    }
+
+    /// What was noticed when the problem was read.
+    #[must_use]
+    pub fn remarks(&self) -> &[Remark] {
+        &self.remarks
+    }
+
+    fn card(&self, name: &str) -> Option<&ParameterCard> {
+        self.problem.parameters.iter().find(|card| card.name == name)
+    }
+
+    /// The value of a parameter: the one set, else that of its card.
+    #[must_use]
+    pub fn value(&self, name: &str) -> Option<Exact> {
+        let default = || Exact::parse(&self.card(name)?.default).ok();
+        self.values.get(name).cloned().or_else(default)
+    }
+
+    /// The values of all parameters that have one, in the order of the problem, then those set
+    /// besides its cards.
+    #[must_use]
+    pub fn all_values(&self) -> Vec<(String, Exact)> {
+        let cards = self.problem.parameters.iter().map(|card| card.name.to_string());
+        let besides = self.values.keys().filter(|name| self.card(name).is_none()).cloned();
+        let value = |name: String| Some((name.clone(), self.value(&name)?));
+        cards.chain(besides).filter_map(value).collect()
+    }
+
+    /// The rational values of the parameters.
+    #[must_use]
+    pub fn rational_values(&self) -> BTreeMap<String, Rational> {
+        let rational = |(name, value): (String, Exact)| Some((name, value.as_rational()?.clone()));
+        self.all_values().into_iter().filter_map(rational).collect()
     }
 
     /// What the equation is made of and which methods take it.
@@ -109,40 +225,89 @@ impl Oscillator {
     /// # Errors
     /// [`ClassifyError`].
     pub fn classify(&self) -> Result<Classification, ClassifyError> {
-        classify(&self.problem, &known_values(&self.problem, &self.settings.parameters))
+        classification::of(&self.problem, &self.values)
     }
 
-    /// The period by resummation, with the values set; the order is a quick one if nothing.
+    /// Refuses, before any work, an equation that the expansion under the condition does not take,
+    /// with the term and its place.
     ///
     /// # Errors
-    /// As [`evaluate`].
+    /// [`Refused`].
+    pub fn check(&self) -> Result<(), Error> {
+        let Ok(parts) = self.classify() else { return Ok(()) };
+        Ok(classification::check(&parts, &self.file, self.condition, &self.origin)?)
+    }
+
+    /// An error of the engine with the place in the file that it is about.
+    pub(crate) fn refusal(&self, error: Error) -> Error {
+        classification::refusal(error, Some(&self.file), &self.origin)
+    }
+
+    /// Refuses a parameter that follows from pi: expansions take expressions over the rational
+    /// numbers, and the delay of whole periods by its tie.
     ///
-    /// ```
-    /// use lindstedt::Oscillator;
-    /// let quintic = Oscillator::parse("x'' + x + eps*x^5 = 0")?.set("eps", "1/2")?;
-    /// let period = quintic.evaluate(None)?.period.map(|period| period.decimal);
-    /// // 4 times the integral of dx/sqrt(1 - x^2 + (1 - x^6)/6) from 0 to 1.
-    /// assert!(period.is_some_and(|period| period.starts_with("5.50107565725")));
-    /// # Ok::<(), lindstedt::Error>(())
-    /// ```
-    pub fn evaluate(&self, order: Option<usize>) -> Result<Evaluation, Error> {
-        let settings = EvaluateSettings {
-            order,
-            condition: self.settings.condition,
-            parameters: self.settings.parameters.clone(),
-            ..EvaluateSettings::default()
+    /// # Errors
+    /// [`Refused`].
+    pub fn without_pi(&self) -> Result<(), Error> {
+        let tied = self.problem.synchronous.as_ref().map(|tie| &*tie.delay);
+        let determined = self.file.determined();
+        let Some(name) = determined.keys().find(|name| Some(name.as_str()) != tied) else {
+            return Ok(());
         };
-        evaluate(&self.problem, &settings, &mut |_: Progress| true)
+        let how = self.file.follows.get(name).map_or("", String::as_str);
+        let message =
+            format!("{}: {name} follows: {how}; with pi only `simulate` computes it", self.origin);
+        let hint = format!("in the file: {name} = {{ value = \"5*pi\" }} in the place of follows");
+        Err(Refused::usage("no-value-set", message, hint).into())
     }
 
     /// The checked expansion up to an order.
     ///
     /// # Errors
-    /// As [`derive()`].
+    /// As [`derive()`](crate::derive()).
     pub fn derive(&self, order: usize) -> Result<Derivation, Error> {
-        let settings = Settings { order, ..self.settings.clone() };
-        derive(&self.problem, &settings, &mut |_: Progress| true)
+        let (condition, parameters) = (self.condition, self.values.clone());
+        let settings = Settings { order, condition, parameters, ..Settings::default() };
+        crate::derive(&self.problem, &settings, &mut |_: Progress| true)
     }
+
+    /// The period by resummation, with the values set; the order is a quick one if nothing.
+    ///
+    /// # Errors
+    /// As [`evaluate`](crate::evaluate::evaluate).
+    pub fn evaluate(&self, order: Option<usize>) -> Result<Evaluation, Error> {
+        let (condition, parameters) = (self.condition, self.values.clone());
+        let settings =
+            EvaluateSettings { order, condition, parameters, ..EvaluateSettings::default() };
+        evaluate(&self.problem, &settings, &mut |_: Progress| true)
+    }
+
+    /// The header of an answer: the values are those that enter.
+    pub(crate) fn header(
+        &self,
+        at: Vec<(String, String)>,
+        order: Option<usize>,
+        tier: &'static str,
+        start: Instant,
+    ) -> Header {
+        let equation = self.problem.equation.print(&self.problem.small, Style::Text);
+        Header {
+            schema: SCHEMA,
+            problem: self.problem.name.to_string(),
+            equation: format!("{equation} = 0"),
+            at,
+            order,
+            tier,
+            seconds: start.elapsed().as_secs_f64(),
+        }
+    }
+}
+
+/// The name of a condition in files and results.
+#[must_use]
+pub fn condition_name(condition: Condition) -> &'static str {
+    let named = lindstedt_problem_file::CONDITIONS.iter().find(|(_, known)| *known == condition);
+    named.map_or("", |(name, _)| name)
 }
 
 /// The rational values of a problem's parameters: those given, else the defaults.

@@ -27,16 +27,24 @@ mod drifting;
 mod periodic;
 
 use crate::derivation::condition;
-use crate::{Derivation, Error, Exact, Progress, Settings, derive};
+use crate::oscillator::condition_name;
+use crate::refusal::Refused;
+use crate::start::Taken;
+use crate::{
+    Answer, Derivation, Error, Exact, Oscillator, Progress, Settings, Standing, Work, derive,
+};
+use crate::{Number, Status};
 use drifting::Drifting;
-use lindstedt_equation::{Condition, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Problem};
 use lindstedt_expand::ExpandError;
 use lindstedt_simulate::Parameters;
 use periodic::Periodic;
 use rug::{Float, Rational};
+use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
+use std::time::Instant;
 
 /// The observed order may differ from N + 1 by so much.
 pub const TOLERANCE: f64 = 0.05;
@@ -46,11 +54,9 @@ const MOST_TRIES: usize = 3;
 
 /// What to verify.
 #[derive(Clone, Debug)]
-pub struct VerifySettings {
+pub struct Verify {
     /// N.
     pub order: usize,
-    /// The normalisation; the problem's default if nothing.
-    pub condition: Option<Condition>,
     /// Values of the small parameter, each smaller in modulus than the one before, none zero.
     pub small: Vec<Rational>,
     /// The window: so many periods 2 pi/omega_N (2 pi/omega_0 with a free amplitude).
@@ -59,25 +65,44 @@ pub struct VerifySettings {
     pub samples: u32,
     /// Digits of the integration; by default enough for the smallest error expected.
     pub digits: Option<u32>,
-    /// Values of parameters by name; with a free amplitude, `amplitude` is a(0), by default 1.
-    pub parameters: BTreeMap<String, Exact>,
-    /// The memory that may be used, in bytes.
-    pub memory: u64,
 }
 
-impl Default for VerifySettings {
+impl Default for Verify {
     /// Order 4 at 1/1000, 1/2000, 1/4000, 1/8000 on one period.
     fn default() -> Self {
         Self {
             order: 4,
-            condition: None,
             small: (0..4).map(|j| Rational::from((1, 1000 << j))).collect(),
             periods: 1,
             samples: 48,
             digits: None,
-            parameters: BTreeMap::new(),
-            memory: 8 << 30,
         }
+    }
+}
+
+impl Verify {
+    /// Reads values of the small parameter, `V1,V2,...`: 2 to 100 rational numbers that decrease in
+    /// modulus.
+    ///
+    /// # Errors
+    /// [`Refused`] with the value that does not fit.
+    pub fn read_small(text: &str) -> Result<Vec<Rational>, Error> {
+        let wrong = |message: String| Refused::usage("small", message, "1/100,1/200,1/400");
+        let mut list: Vec<Rational> = Vec::new();
+        for part in text.split(',') {
+            let value = Exact::parse(part)?;
+            let Some(q) = value.as_rational().filter(|q| !q.is_zero()) else {
+                return Err(wrong(format!("{part:?} is no rational number other than zero")).into());
+            };
+            if list.last().is_some_and(|last| q.cmp_abs(last).is_ge()) {
+                return Err(wrong(format!("{part} is not smaller than the value before")).into());
+            }
+            list.push(q.clone());
+        }
+        if list.len() < 2 || list.len() > 100 {
+            return Err(wrong("2 to 100 values are needed".to_owned()).into());
+        }
+        Ok(list)
     }
 }
 
@@ -96,8 +121,40 @@ pub struct Comparison {
     pub slope: Option<f64>,
 }
 
+impl Serialize for Comparison {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let small = Number {
+            exact: Some(self.small.to_string()),
+            // The nearest double (`to_f64` cuts off), as short as it can be written.
+            decimal: format!("{:e}", Float::with_val(53, &self.small).to_f64()),
+            error: None,
+            status: Status::Exact,
+        };
+        let difference = Number {
+            exact: None,
+            decimal: self.error.to_string_radix(10, Some(6)),
+            error: Some(self.simulation_error.to_string_radix(10, Some(6))),
+            status: Status::Estimated,
+        };
+        serializer.collect_map([
+            ("small", Cell::Number(&small)),
+            ("difference", Cell::Number(&difference)),
+            ("slope", Cell::Slope(self.slope)),
+        ])
+    }
+}
+
+/// A value of a serialized comparison.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Cell<'a> {
+    Number(&'a Number),
+    Slope(Option<f64>),
+}
+
 /// What the comparison says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// The observed order is N + 1 within [`TOLERANCE`], or it has settled there or at a whole
     /// number above: the terms that were left out begin later.
@@ -109,97 +166,284 @@ pub enum Verdict {
     Undecided,
 }
 
-/// The result of [`verify`].
-#[derive(Clone, Debug)]
+/// The result of [`Oscillator::verify`].
+#[derive(Clone, Debug, Serialize)]
 pub struct Verification {
-    /// N.
-    pub order: usize,
     /// The name of the small parameter.
     pub parameter: String,
+    /// The digits of the integration.
+    pub digits: u32,
     /// The normalisation.
-    pub condition: Condition,
+    #[serde(serialize_with = "named")]
+    pub normalisation: Condition,
+    /// The window in periods.
+    pub periods: u32,
     /// One line per value, in the order given.
-    pub comparisons: Vec<Comparison>,
+    pub table: Vec<Comparison>,
     /// The slope between the last two values.
-    pub observed: Option<f64>,
+    pub observed_order: Option<f64>,
+    /// N + 1.
+    pub expected_order: usize,
     /// The last slope is within [`TOLERANCE`] of the limit that it and the one before extrapolate to
     /// (three values).
     pub settled: bool,
-    /// The errors of the last two values are above those of the integration.
-    pub resolved: bool,
-    /// The last errors are smaller than the motion.
-    pub small_enough: bool,
+    /// [`TOLERANCE`].
+    pub tolerance: f64,
     /// The verdict.
     pub verdict: Verdict,
-    /// The digits of the integration.
-    pub digits: u32,
+    /// The verdict in words.
+    pub reason: String,
+    /// The errors of the last two values are above those of the integration.
+    #[serde(skip)]
+    pub resolved: bool,
+    /// The last errors are smaller than the motion.
+    #[serde(skip)]
+    pub small_enough: bool,
 }
 
-/// Compares the expansion of a problem with the time domain.
-///
-/// `observer` is told the progress of the derivation and of the integrations; when it returns
-/// `false` both stop, with [`ExpandError::Interrupted`].
-///
-/// Errors: those of [`derive()`] and [`crate::averaging::average`]; [`Error::Simulate`];
-/// [`Error::NoPeriodicOrbit`]; [`Error::LongDelay`]. Cost: two integrations per value.
-///
-/// # Example
-/// ```
-/// use lindstedt::{problems, verify::{Verdict, VerifySettings, verify}};
-/// let problem = problems::find("duffing").ok_or("no such problem")?;
-/// let found = verify(&problem, &VerifySettings { order: 2, ..Default::default() }, &mut |_| true)?;
-/// assert_eq!(found.verdict, Verdict::Agrees);
-/// assert!(found.observed.is_some_and(|slope| (slope - 3.0).abs() < 0.01));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn verify(
-    problem: &Problem,
-    settings: &VerifySettings,
-    observer: &mut dyn FnMut(Progress) -> bool,
-) -> Result<Verification, Error> {
-    let condition = condition(problem, settings.condition)?;
-    if condition == Condition::FreeAmplitude {
-        let order = settings.order;
-        return with_digits(order, condition, settings, &mut |digits| {
-            let expansion = Drifting::new(problem, settings, digits, observer)?;
+fn named<S: Serializer>(condition: &Condition, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(condition_name(*condition))
+}
+
+impl Oscillator {
+    /// Compares the expansion with the time domain on a window, at several values of the small
+    /// parameter: with all orders right the observed order of accuracy is N + 1.
+    ///
+    /// With a free amplitude `amplitude` is a(0), by default 1. Estimated: the error of every
+    /// integration is that against one with 8 digits more. Cost: two integrations per value.
+    ///
+    /// # Errors
+    /// Those of the derivation; [`Error::Simulate`], [`Error::NoPeriodicOrbit`],
+    /// [`Error::LongDelay`]; [`Refused`] where the work was stopped.
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, Verify, Work, verify::Verdict};
+    /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
+    /// let found = duffing.verify(&Verify { order: 2, ..Verify::default() }, &Work::default())?;
+    /// assert_eq!(found.value.verdict, Verdict::Agrees);
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn verify(&self, question: &Verify, work: &Work) -> Result<Answer<Verification>, Error> {
+        let start = Instant::now();
+        self.without_pi()?;
+        self.check_free()?;
+        self.check()?;
+        if self.condition().is_none() {
+            let message = format!("{} has no expansion that could be verified", self.origin());
+            let hint = "`simulate` takes it, `problems --show` lists the methods";
+            return Err(Refused::no_answer("no-expansion", message, hint).into());
+        }
+        let condition = condition(self.problem(), self.asked_condition())?;
+        let found = if condition == Condition::FreeAmplitude {
+            self.drifting(question, work)
+        } else {
+            self.derived(condition, question, work)
+                .and_then(|derivation| self.against_time(&derivation, question, work))
+        };
+        let found = found.map_err(|error| match error {
+            Error::Expand(ExpandError::Interrupted { .. }) => Refused::stopped(
+                "stopped before the comparison was finished",
+                "raise --limit-seconds, or shorten --periods",
+            )
+            .into(),
+            error => self.refusal(error),
+        })?;
+        let at = self.given().iter().map(|(name, value)| (name.clone(), value.to_string()));
+        let header = self.header(at.collect(), Some(question.order), "time domain", start);
+        let standing = match found.verdict {
+            Verdict::Agrees => Standing::Complete,
+            Verdict::Disagrees => Standing::NoAnswer,
+            Verdict::Undecided => Standing::Undecided,
+        };
+        let mut remarks = self.remarks().to_vec();
+        if matches!(condition, Condition::InitialAmplitude | Condition::FreeAmplitude) {
+            remarks.extend(self.start_remark(Taken::Amplitude));
+        }
+        Ok(Answer { header, value: found, standing, remarks })
+    }
+
+    /// As [`Oscillator::verify`], for an expansion that is there; its order and its condition count.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn verify_derivation(
+        &self,
+        derivation: &Derivation,
+        question: &Verify,
+        work: &Work,
+    ) -> Result<Answer<Verification>, Error> {
+        let start = Instant::now();
+        let value = self.against_time(derivation, question, work)?;
+        let header = self.header(Vec::new(), Some(derivation.order), "time domain", start);
+        let remarks = self.remarks().to_vec();
+        Ok(Answer { header, value, standing: Standing::Complete, remarks })
+    }
+
+    fn derived(
+        &self,
+        condition: Condition,
+        question: &Verify,
+        work: &Work,
+    ) -> Result<Derivation, Error> {
+        let settings = Settings {
+            order: question.order,
+            condition: Some(condition),
+            parameters: self.given().clone(),
+            memory: work.memory,
+            stop: work.stop.clone(),
+            ..Settings::default()
+        };
+        let derivation = derive(self.problem(), &settings, &mut |p| work.goes_on(p))?;
+        if derivation.order < question.order {
+            return Err(ExpandError::Interrupted { order: derivation.order }.into());
+        }
+        Ok(derivation)
+    }
+
+    fn drifting(&self, question: &Verify, work: &Work) -> Result<Verification, Error> {
+        with_digits(question.order, Condition::FreeAmplitude, question, &mut |digits| {
+            let expansion = Drifting::new(self, question, digits, &mut |p| work.goes_on(p))?;
             let compare = |small: &Rational, goes_on: &dyn Fn() -> bool| {
                 expansion.compare(small, digits, goes_on)
             };
-            let comparisons = compare_all(&settings.small, order, &compare, observer)?;
-            Ok(conclude(problem, condition, order, digits, comparisons))
-        });
+            let found = compare_all(question, question.order, &compare, work)?;
+            Ok(self.conclude((Condition::FreeAmplitude, question.order), question, digits, found))
+        })
     }
-    let derived = Settings {
-        order: settings.order,
-        condition: Some(condition),
-        parameters: settings.parameters.clone(),
-        memory: settings.memory,
-        ..Settings::default()
-    };
-    let derivation = derive(problem, &derived, observer)?;
-    verify_derivation(problem, &derivation, settings, observer)
+
+    fn against_time(
+        &self,
+        derivation: &Derivation,
+        question: &Verify,
+        work: &Work,
+    ) -> Result<Verification, Error> {
+        let (order, condition) = (derivation.order, derivation.condition);
+        with_digits(order, condition, question, &mut |digits| {
+            let expansion = Periodic::new(self, derivation, question, digits)?;
+            let compare = |small: &Rational, goes_on: &dyn Fn() -> bool| {
+                expansion.compare(small, digits, goes_on)
+            };
+            let found = compare_all(question, order, &compare, work)?;
+            Ok(self.conclude((condition, order), question, digits, found))
+        })
+    }
+
+    /// Refuses a value that cannot be chosen: the small parameter and what is part of it are varied.
+    fn check_free(&self) -> Result<(), Error> {
+        let problem = self.problem();
+        let Some(name) = self.given().keys().find(|name| !self.is_free(name)) else {
+            return Ok(());
+        };
+        let small = &problem.small;
+        if **name == **small || problem.parameters.iter().any(|card| card.name == **name) {
+            let message = format!("{name} is not free here: {small} is varied");
+            return Err(Refused::usage("parameter", message, "--small V1,V2,...").into());
+        }
+        let message = format!("{} has no parameter {name:?}", problem.name);
+        let free = problem.parameters.iter().map(|card| &*card.name);
+        let free: Vec<&str> = free.filter(|name| self.is_free(name)).collect();
+        let hint = match free.as_slice() {
+            [] => format!("it has none that is free; {small} is varied: --small V1,V2,..."),
+            list => format!("free are {}", list.join(", ")),
+        };
+        Err(Refused::usage("unknown-parameter", message, hint).into())
+    }
+
+    /// Whether a parameter can be set: the equation mentions it, or it is the amplitude of the
+    /// solution.
+    fn is_free(&self, name: &str) -> bool {
+        let problem = self.problem();
+        if name == "amplitude" {
+            let enters = matches!(
+                problem.amplitude,
+                AmplitudeRole::InSums
+                    | AmplitudeRole::Scaled
+                    | AmplitudeRole::ScalesFrequency { .. }
+            );
+            return self.condition() == Some(Condition::FreeAmplitude) || enters;
+        }
+        let is_card = problem.parameters.iter().any(|card| card.name == *name);
+        let mentioned = problem.equation.parameters().iter().any(|known| known == name);
+        let tie = problem.synchronous.as_ref();
+        let tied = tie.is_some_and(|tie| tie.periods == *name);
+        let determined = tie.is_some_and(|tie| tie.delay == *name);
+        is_card && name != problem.small && (mentioned || tied) && !determined
+    }
+
+    /// Slopes and verdict.
+    fn conclude(
+        &self,
+        (condition, order): (Condition, usize),
+        question: &Verify,
+        digits: u32,
+        mut table: Vec<Comparison>,
+    ) -> Verification {
+        let limit = slopes(&mut table);
+        let observed = table.last().and_then(|last| last.slope);
+        let drowned = |c: &Comparison| c.simulation_error.clone() * 1000u32 > c.error;
+        let resolved = !table.iter().rev().take(2).any(drowned);
+        let small_enough = !table.iter().rev().take(2).any(|c| c.error >= c.size);
+        let limit = limit.filter(|n| observed.is_some_and(|slope| (slope - n).abs() <= TOLERANCE));
+        let expected = order as f64 + 1.0;
+        // The error of a wrong order is C eps^n with a whole n: another limit is not one yet.
+        let power = limit.filter(|n| (n - n.round()).abs() <= TOLERANCE);
+        let near = |n: f64| (n - expected).abs() <= TOLERANCE;
+        let verdict = match power {
+            _ if !resolved || !small_enough => Verdict::Undecided,
+            _ if observed.is_some_and(near) => Verdict::Agrees,
+            Some(n) if n < expected && !near(n) => Verdict::Disagrees,
+            Some(_) => Verdict::Agrees,
+            None => Verdict::Undecided,
+        };
+        let mut found = Verification {
+            parameter: self.problem().small.to_string(),
+            digits,
+            normalisation: condition,
+            periods: question.periods,
+            table,
+            observed_order: observed,
+            expected_order: order + 1,
+            settled: limit.is_some(),
+            tolerance: TOLERANCE,
+            verdict,
+            reason: String::new(),
+            resolved,
+            small_enough,
+        };
+        found.reason = found.words();
+        found
+    }
 }
 
-/// As [`verify`], for an expansion of the problem that is there; its order and its condition
-/// count, not those of the settings.
-///
-/// # Errors
-/// As [`verify`].
-pub fn verify_derivation(
-    problem: &Problem,
-    derivation: &Derivation,
-    settings: &VerifySettings,
-    observer: &mut dyn FnMut(Progress) -> bool,
-) -> Result<Verification, Error> {
-    let (order, condition) = (derivation.order, derivation.condition);
-    with_digits(order, condition, settings, &mut |digits| {
-        let expansion = Periodic::new(problem, derivation, settings, digits)?;
-        let compare = |small: &Rational, goes_on: &dyn Fn() -> bool| {
-            expansion.compare(small, digits, goes_on)
-        };
-        let comparisons = compare_all(&settings.small, order, &compare, observer)?;
-        Ok(conclude(problem, condition, order, digits, comparisons))
-    })
+impl Verification {
+    /// The verdict in words.
+    fn words(&self) -> String {
+        let expected = self.expected_order;
+        let few = self.table.len() < 3;
+        match (self.verdict, self.observed_order) {
+            (Verdict::Agrees, Some(slope)) if slope > expected as f64 + TOLERANCE => format!(
+                "agrees: observed order {slope:.4}, expected at least {expected}: the terms left out begin later"
+            ),
+            (Verdict::Agrees, Some(slope)) => {
+                format!("agrees: observed order {slope:.4}, expected {expected}")
+            }
+            (Verdict::Disagrees, Some(slope)) => {
+                format!(
+                    "disagrees: observed order {slope:.4}, expected {expected} within {TOLERANCE}"
+                )
+            }
+            (Verdict::Undecided, Some(_)) if self.resolved && !self.small_enough => {
+                "undecided: the difference is as large as the motion; smaller --small".to_owned()
+            }
+            (Verdict::Undecided, Some(slope)) if self.resolved => format!(
+                "undecided: observed order {slope:.4} has not settled, expected {expected}; smaller --small{}",
+                if few { ", at least three of them" } else { "" }
+            ),
+            _ => "undecided: the error of the integration is not small against the difference; \
+                  more --digits or larger --small"
+                .to_owned(),
+        }
+    }
 }
 
 /// With the digits asked for; otherwise with so many that the errors of the size eps^(N+1) are
@@ -207,13 +451,13 @@ pub fn verify_derivation(
 fn with_digits(
     order: usize,
     condition: Condition,
-    settings: &VerifySettings,
+    question: &Verify,
     run: &mut dyn FnMut(u32) -> Result<Verification, Error>,
 ) -> Result<Verification, Error> {
-    if let Some(digits) = settings.digits {
+    if let Some(digits) = question.digits {
         return run(digits);
     }
-    let mut digits = digits(order, condition, settings);
+    let mut digits = digits(order, condition, question);
     for _ in 1..MOST_TRIES {
         let found = run(digits)?;
         if found.resolved {
@@ -229,11 +473,12 @@ type Compare<'a> = dyn Fn(&Rational, &dyn Fn() -> bool) -> Result<Comparison, Er
 
 /// All comparisons, on as many threads as there are processors; the observer stays on this one.
 fn compare_all(
-    values: &[Rational],
+    question: &Verify,
     order: usize,
     compare: &Compare<'_>,
-    observer: &mut dyn FnMut(Progress) -> bool,
+    work: &Work,
 ) -> Result<Vec<Comparison>, Error> {
+    let values = &question.small;
     let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(values.len());
     let (sender, receiver) = mpsc::channel::<Option<(usize, Result<Comparison, Error>)>>();
@@ -262,7 +507,7 @@ fn compare_all(
                     *place = Some(result);
                 }
             }
-            if !stopped.load(Ordering::Relaxed) && !observer(Progress::Integrating(done)) {
+            if !stopped.load(Ordering::Relaxed) && !work.goes_on(Progress::Integrating(done)) {
                 stopped.store(true, Ordering::Relaxed);
             }
         }
@@ -276,14 +521,8 @@ fn compare_all(
     found.into_iter().map(|result| result.unwrap_or_else(|| Err(interrupted()))).collect()
 }
 
-/// Slopes and verdict.
-fn conclude(
-    problem: &Problem,
-    condition: Condition,
-    order: usize,
-    digits: u32,
-    mut comparisons: Vec<Comparison>,
-) -> Verification {
+/// The slope of every line but the first, and the limit that the last two extrapolate to.
+fn slopes(comparisons: &mut [Comparison]) -> Option<f64> {
     let size = |c: &Comparison| Float::with_val(80, &c.small).abs().ln().to_f64();
     for i in 1..comparisons.len() {
         let log = |c: &Comparison| c.error.clone().ln().to_f64();
@@ -291,13 +530,9 @@ fn conclude(
         let slope = (log(after) - log(before)) / (size(after) - size(before));
         comparisons[i].slope = slope.is_finite().then_some(slope);
     }
-    let observed = comparisons.last().and_then(|last| last.slope);
-    let drowned = |c: &Comparison| c.simulation_error.clone() * 1000u32 > c.error;
-    let resolved = !comparisons.iter().rev().take(2).any(drowned);
-    let small_enough = !comparisons.iter().rev().take(2).any(|c| c.error >= c.size);
     // e = C eps^n (1 + c eps + ...) has ln e(eps_1)/e(eps_2) = n ln eps_1/eps_2 + c (eps_1 - eps_2):
     // from two slopes n and what the last slope lacks.
-    let limit = match &comparisons[..] {
+    match &comparisons[..] {
         [.., before, middle, last] => middle.slope.zip(last.slope).map(|(first, second)| {
             let steps = [size(before) - size(middle), size(middle) - size(last)];
             let falls = [steps[0].exp_m1(), -(-steps[1]).exp_m1()];
@@ -305,39 +540,13 @@ fn conclude(
             second - (second - first) * near / (near - far)
         }),
         _ => None,
-    };
-    let limit = limit.filter(|n| observed.is_some_and(|slope| (slope - n).abs() <= TOLERANCE));
-    let settled = limit.is_some();
-    let expected = order as f64 + 1.0;
-    // The error of a wrong order is C eps^n with a whole n: another limit is not one yet.
-    let power = limit.filter(|n| (n - n.round()).abs() <= TOLERANCE);
-    let near = |n: f64| (n - expected).abs() <= TOLERANCE;
-    let verdict = match power {
-        _ if !resolved || !small_enough => Verdict::Undecided,
-        _ if observed.is_some_and(near) => Verdict::Agrees,
-        Some(n) if n < expected && !near(n) => Verdict::Disagrees,
-        Some(_) => Verdict::Agrees,
-        None => Verdict::Undecided,
-    };
-    let parameter = problem.small.to_string();
-    Verification {
-        order,
-        parameter,
-        condition,
-        comparisons,
-        observed,
-        settled,
-        resolved,
-        small_enough,
-        verdict,
-        digits,
     }
 }
 
 /// Enough for errors of the size eps^(N+1), and for the slow approach to a limit cycle, which
 /// multiplies the errors of the return map by about 1/eps.
-fn digits(order: usize, condition: Condition, settings: &VerifySettings) -> u32 {
-    let sizes = settings.small.iter().map(|q| -Float::with_val(80, q).abs().log10().to_f64());
+fn digits(order: usize, condition: Condition, question: &Verify) -> u32 {
+    let sizes = question.small.iter().map(|q| -Float::with_val(80, q).abs().log10().to_f64());
     let decades = sizes.fold(0.0, f64::max).min(1e6);
     let cycle = if condition == Condition::LimitCycle { 2.0 * decades } else { 0.0 };
     ((order as f64 + 1.0) * decades + cycle).ceil() as u32 + 16

@@ -142,7 +142,7 @@ mod quadratic_field {
         }
 
         let algebra = Trigonometric::new(QuadraticField { d: 2 });
-        let tree = Oscillator::parse("x'' + x + eps*k*x^3 = 0")?.problem.equation;
+        let tree = Oscillator::parse("x'' + x + eps*k*x^3 = 0")?.problem().equation.clone();
         let equation = compile(&algebra, &tree, &Values, 4)?;
         let condition = Condition::InitialAmplitude;
         let request = Request { condition, order: 4, leading_amplitude: Rational::from(1) };

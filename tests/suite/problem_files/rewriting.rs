@@ -153,7 +153,7 @@ fn two_hundred_rewritings_give_identical_results() {
             let text = rewrite(terms, &mut dice);
             let oscillator = Oscillator::parse(&text).unwrap_or_else(|e| panic!("{text}: {e}"));
             // The condition is part of the question, not of the way of writing.
-            let oscillator = oscillator.under(plain.problem.conditions[0]);
+            let oscillator = oscillator.under(plain.problem().conditions[0]).unwrap();
             let result = oscillator.derive(3).unwrap_or_else(|e| panic!("{text}: {e}"));
             same(&result, &expected, &text);
             texts.insert(text);

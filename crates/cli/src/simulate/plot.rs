@@ -31,7 +31,7 @@ pub type Chart<'a, 'b> =
     ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 pub type Drawn = Result<(), Box<dyn std::error::Error>>;
 
-fn is(path: &Path, kind: &str) -> bool {
+pub fn is(path: &Path, kind: &str) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(kind))
 }
 

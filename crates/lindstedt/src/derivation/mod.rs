@@ -7,7 +7,7 @@ mod series;
 use crate::Number;
 use crate::constants::Constants;
 use crate::multimodular::{self, RationalBinding};
-use crate::{Error, Exact};
+use crate::{Error, Exact, Progress};
 pub use limits::check_parameters;
 pub(crate) use limits::{check_delays, unknown_parameter};
 use limits::{has_logarithms, limit_memory};
@@ -60,19 +60,6 @@ impl Default for Settings {
             stop: Stop::default(),
         }
     }
-}
-
-/// Progress of a derivation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
-    /// An order is finished; with the number of terms of its solution.
-    Order(usize, usize),
-    /// So many primes are done (problems over Q; their number is not known beforehand).
-    Primes(usize),
-    /// So many values of the small parameter are compared with the time domain.
-    Integrating(usize),
-    /// The finished expansion is being substituted into the equation.
-    Checking,
 }
 
 /// A power series that belongs to the result: prefactor * sum c_n eps^n.

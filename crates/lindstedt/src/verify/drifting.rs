@@ -1,10 +1,10 @@
 //! Averaged expansions against the time domain: x_N(t) by the truncated rates of a and psi.
 
-use super::{Comparison, VerifySettings, quantities};
+use super::{Comparison, Verify, quantities};
 use crate::averaging::AveragingSettings;
 use crate::averaging::numbers::{Harmonic, Numbers, Terms, defaults, numbers};
-use crate::{Error, Progress};
-use lindstedt_equation::{Expression, Function, Problem};
+use crate::{Error, Oscillator, Progress};
+use lindstedt_equation::{Expression, Function};
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::Balls;
 use lindstedt_simulate::{
@@ -112,14 +112,15 @@ pub(super) struct Drifting {
 
 impl Drifting {
     pub(super) fn new(
-        problem: &Problem,
-        settings: &VerifySettings,
+        oscillator: &Oscillator,
+        question: &Verify,
         digits: u32,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Self, Error> {
+        let problem = oscillator.problem();
         let bits = Digits::for_digits(digits + 16).bits();
         let balls = Balls::new(bits);
-        let mut parameters = defaults(problem, &settings.parameters);
+        let mut parameters = defaults(problem, oscillator.given());
         let start = match parameters.remove("amplitude") {
             Some(value) => Float::with_val(bits, value.ball(balls).midpoint()),
             None => Float::with_val(bits, 1),
@@ -130,7 +131,7 @@ impl Drifting {
             return Err(Error::OutsideDomain { name: "amplitude".into(), value, domain });
         }
         let asked = AveragingSettings {
-            order: settings.order,
+            order: question.order,
             parameters,
             digits: usize::try_from(digits).unwrap_or(usize::MAX),
             ..AveragingSettings::default()
@@ -138,12 +139,12 @@ impl Drifting {
         // Half of the bits are sure.
         let numbers = numbers(problem, &asked, bits.saturating_mul(2), observer)?;
         let order = numbers.solution.len().saturating_sub(1);
-        if order < settings.order {
+        if order < question.order {
             return Err(ExpandError::Interrupted { order }.into());
         }
-        let samples = settings.samples.max(2);
+        let samples = question.samples.max(2);
         let window = Float::with_val(bits, rug::float::Constant::Pi)
-            * (2 * settings.periods.max(1))
+            * (2 * question.periods.max(1))
             / &numbers.frequency;
         // Not at a whole part of the period, where delays end too.
         let time = |j: u32| {
@@ -157,7 +158,7 @@ impl Drifting {
             start,
             times: (1..=samples).map(time).collect(),
             model: Model::of_problem(&judged)?,
-            parameters: quantities(problem, &settings.parameters),
+            parameters: quantities(problem, oscillator.given()),
             small: problem.small.to_string(),
             numbers,
         })

@@ -1,10 +1,10 @@
 //! Expansions of periodic solutions, at points of the phase, against the time domain.
 
 use super::cycle::cycle;
-use super::{Comparison, VerifySettings, quantities};
-use crate::{Derivation, Error, Solution};
+use super::{Comparison, Verify, quantities};
+use crate::{Derivation, Error, Oscillator, Solution};
 use lindstedt_algebra::{PhaseAlgebra, Rationals};
-use lindstedt_equation::{AmplitudeRole, Condition, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition};
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
@@ -39,11 +39,12 @@ pub(super) struct Periodic {
 
 impl Periodic {
     pub(super) fn new(
-        problem: &Problem,
+        oscillator: &Oscillator,
         d: &Derivation,
-        settings: &VerifySettings,
+        question: &Verify,
         digits: u32,
     ) -> Result<Self, Error> {
+        let problem = oscillator.problem();
         let bits = Digits::for_digits(digits + 8).bits();
         let balls = Balls::new(bits).with_guard(64);
         let float = |ball: &Ball| Float::with_val(bits, ball.midpoint());
@@ -53,7 +54,7 @@ impl Periodic {
         let frequency_squared = frequency_squared.collect::<Result<Vec<_>, Error>>()?;
         // No point is an odd multiple of pi/2, where cos tau = 0 and ln|cos tau| has no value:
         // the denominator's factor 1009 does not cancel.
-        let (periods, samples) = (settings.periods.max(1), settings.samples.max(2));
+        let (periods, samples) = (question.periods.max(1), question.samples.max(2));
         let turn = |j: u32| {
             let numerator = (1009 * u64::from(j) + 504) * 2 * u64::from(periods);
             Rational::from((numerator, 1009 * u64::from(samples)))
@@ -112,7 +113,7 @@ impl Periodic {
             condition: d.condition,
             amplitude,
             model: Model::of_problem(problem)?,
-            parameters: quantities(problem, &settings.parameters),
+            parameters: quantities(problem, oscillator.given()),
             small: problem.small.to_string(),
         })
     }

@@ -1,0 +1,154 @@
+//! One or two swept parameters, and what was computed at their values.
+
+use crate::refusal::Refused;
+use crate::{Error, Exact, Progress, Work};
+use lindstedt_problem_file::canonical_name;
+use rayon::prelude::*;
+use rug::Rational;
+use serde::Serialize;
+
+/// The most values of an axis.
+const MOST_VALUES: usize = 1_000_000;
+
+/// The values of a swept parameter, in order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// The parameter.
+    pub name: String,
+    /// Its values, exact.
+    pub values: Vec<Exact>,
+}
+
+impl Axis {
+    /// Reads `NAME=LO..HI:COUNT` (equal steps, both ends included, exact) or `NAME=V1,V2,...`.
+    ///
+    /// # Errors
+    /// [`Refused`] with the form that is expected, [`Error::BadValue`].
+    ///
+    /// ```
+    /// use lindstedt::grid::Axis;
+    /// let axis = Axis::parse("amplitude=0..1:5")?;
+    /// let values: Vec<String> = axis.values.iter().map(ToString::to_string).collect();
+    /// assert_eq!(values, ["0", "1/4", "1/2", "3/4", "1"]);
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        let usage = |message: String| {
+            Error::from(Refused::usage("sweep", message, "NAME=LO..HI:COUNT, as in omega=0..1:11"))
+        };
+        let Some((name, range)) = text.split_once('=') else {
+            return Err(usage(format!("{text:?} is no range")));
+        };
+        let name = canonical_name(name.trim());
+        let values = match range.split_once("..") {
+            None => range.split(',').map(Exact::parse).collect::<Result<_, _>>()?,
+            Some((low, rest)) => {
+                let (high, count) =
+                    rest.rsplit_once(':').ok_or_else(|| usage(format!("{text:?} has no count")))?;
+                let count = count.trim().parse().ok();
+                let count = count.filter(|n| (1..=MOST_VALUES).contains(n)).ok_or_else(|| {
+                    usage(format!("a range has 1 to {MOST_VALUES} values, not {count:?}"))
+                })?;
+                steps(&Exact::parse(low)?, &Exact::parse(high)?, count)
+                    .ok_or_else(|| usage(format!("{text:?} mixes numbers and multiples of pi")))?
+            }
+        };
+        Ok(Self { name, values })
+    }
+
+    /// The values as doubles, for tables and figures.
+    #[must_use]
+    pub fn doubles(&self) -> Vec<f64> {
+        self.values.iter().map(Exact::to_f64).collect()
+    }
+}
+
+/// `count` values from `low` to `high` in equal steps; nothing where only one end is a multiple of
+/// pi other than zero.
+fn steps(low: &Exact, high: &Exact, count: usize) -> Option<Vec<Exact>> {
+    let (a, b, in_pi) = match (low, high) {
+        (Exact::Rational(a), Exact::Rational(b)) => (a, b, false),
+        (Exact::PiTimes(a), Exact::PiTimes(b)) => (a, b, true),
+        (Exact::Rational(a), Exact::PiTimes(b)) if a.is_zero() => (a, b, true),
+        (Exact::PiTimes(a), Exact::Rational(b)) if b.is_zero() => (a, b, true),
+        _ => return None,
+    };
+    let last = count.saturating_sub(1).max(1);
+    let value = |i: usize| {
+        let q = Rational::from(b - a) * Rational::from((i, last)) + a;
+        if in_pi { Exact::PiTimes(q) } else { Exact::Rational(q) }
+    };
+    Some((0..count).map(value).collect())
+}
+
+/// What was computed at every point of one or two axes; row by row, the first axis along the columns.
+#[derive(Clone, Debug)]
+pub struct Grid<T> {
+    /// The first swept parameter.
+    pub columns: Axis,
+    /// The second, if there is one.
+    pub rows: Option<Axis>,
+    /// The points; nothing where the work was stopped before.
+    pub points: Vec<Option<T>>,
+}
+
+impl<T: Send> Grid<T> {
+    /// Computes every point, on all cores; stopped work leaves the points that are missing empty.
+    /// `point` is given the value of the first parameter, then that of the second.
+    pub fn compute(
+        columns: Axis,
+        rows: Option<Axis>,
+        work: &Work,
+        point: impl Fn(&Exact, Option<&Exact>) -> T + Sync,
+    ) -> Self {
+        let width = columns.values.len();
+        let height = rows.as_ref().map_or(1, |axis| axis.values.len());
+        let done = std::sync::atomic::AtomicUsize::new(0);
+        let at = |index: usize| {
+            if work.stop.asked() {
+                return None;
+            }
+            let second = rows.as_ref().and_then(|axis| axis.values.get(index / width));
+            let found = point(columns.values.get(index % width)?, second);
+            let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+            work.tell(Progress::Parts(done, width * height));
+            Some(found)
+        };
+        let points = (0..width * height).into_par_iter().map(at).collect();
+        Self { columns, rows, points }
+    }
+}
+
+impl<T> Grid<T> {
+    /// The number of points that were reached.
+    #[must_use]
+    pub fn done(&self) -> usize {
+        self.points.iter().flatten().count()
+    }
+
+    /// Whether all points were reached.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.done() == self.points.len()
+    }
+
+    /// The value of the first parameter, that of the second, and the point; in order.
+    pub fn iter(&self) -> impl Iterator<Item = (&Exact, Option<&Exact>, Option<&T>)> {
+        let width = self.columns.values.len().max(1);
+        self.points.iter().enumerate().filter_map(move |(index, point)| {
+            let second = self.rows.as_ref().and_then(|axis| axis.values.get(index / width));
+            Some((self.columns.values.get(index % width)?, second, point.as_ref()))
+        })
+    }
+}
+
+impl Serialize for Axis {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeStruct;
+        let mut object = serializer.serialize_struct("Axis", 2)?;
+        object.serialize_field("parameter", &self.name)?;
+        let values: Vec<String> = self.values.iter().map(ToString::to_string).collect();
+        object.serialize_field("values", &values)?;
+        object.end()
+    }
+}

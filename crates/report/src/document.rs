@@ -1,0 +1,172 @@
+//! What a page is made of.
+
+use crate::Table;
+
+/// A formula in the two notations that the engine prints.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Formula {
+    /// As in a problem file: `x'' + x + eps*x^3 = 0`.
+    pub text: String,
+    /// The same in LaTeX, without delimiters.
+    pub latex: String,
+}
+
+impl Formula {
+    /// A formula from what prints it in either notation.
+    pub fn new(text: impl Into<String>, latex: impl Into<String>) -> Self {
+        Self { text: text.into(), latex: latex.into() }
+    }
+}
+
+/// A piece of a line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Span {
+    /// Plain words: data, escaped by every reader.
+    Words(String),
+    /// A formula within the line.
+    Formula(Formula),
+    /// Something to type or to find in a file, in a fixed width.
+    Code(String),
+}
+
+/// A line: words with formulas between them.
+///
+/// ```
+/// use lindstedt_report::{Format, Formula, Text};
+/// let line = Text::words("exponent ").formula(Formula::new("lambda", r"\lambda"));
+/// assert_eq!(Format::Text.line(&line), "exponent lambda");
+/// assert_eq!(Format::Latex.line(&line), r"exponent $\lambda$");
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Text(pub Vec<Span>);
+
+impl Text {
+    /// A line of words.
+    pub fn words(words: impl Into<String>) -> Self {
+        Self(vec![Span::Words(words.into())])
+    }
+
+    /// The line with a formula after it.
+    #[must_use]
+    pub fn formula(mut self, formula: Formula) -> Self {
+        self.0.push(Span::Formula(formula));
+        self
+    }
+
+    /// The line with words after it.
+    #[must_use]
+    pub fn and(mut self, words: impl Into<String>) -> Self {
+        self.0.push(Span::Words(words.into()));
+        self
+    }
+
+    /// The line with something to type after it.
+    #[must_use]
+    pub fn code(mut self, code: impl Into<String>) -> Self {
+        self.0.push(Span::Code(code.into()));
+        self
+    }
+
+    /// Words with formulas between dollar signs, in LaTeX: `the root $\alpha_0$ of`. The text form of
+    /// such a formula is its source without backslashes and braces.
+    #[must_use]
+    pub fn marked(source: &str) -> Self {
+        let part = |(index, part): (usize, &str)| match index % 2 {
+            0 => Span::Words(part.to_owned()),
+            _ => Span::Formula(Formula::new(part.replace(['\\', '{', '}'], ""), part)),
+        };
+        Self(source.split('$').enumerate().filter(|(_, part)| !part.is_empty()).map(part).collect())
+    }
+}
+
+impl<T: Into<String>> From<T> for Text {
+    fn from(words: T) -> Self {
+        Self::words(words)
+    }
+}
+
+impl From<Formula> for Text {
+    fn from(formula: Formula) -> Self {
+        Self(vec![Span::Formula(formula)])
+    }
+}
+
+/// A part of a page.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Block {
+    /// A heading; the first of a document is its title.
+    Heading(Text),
+    /// A formula on a line of its own.
+    Formula(Formula),
+    /// Names with values, one line each.
+    Lines(Vec<(Text, Text)>),
+    /// A table.
+    Table(Table),
+    /// A paragraph.
+    Words(Text),
+    /// Program text or a picture in characters, line by line as it is.
+    Code(String),
+}
+
+/// A page: what an answer says, in the order in which it is read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Document {
+    /// The parts.
+    pub blocks: Vec<Block>,
+}
+
+impl Document {
+    /// A page with a title.
+    pub fn titled(title: impl Into<Text>) -> Self {
+        Self::default().heading(title)
+    }
+
+    /// The page with one more part.
+    #[must_use]
+    pub fn with(mut self, block: Block) -> Self {
+        self.blocks.push(block);
+        self
+    }
+
+    /// The page with a heading after it.
+    #[must_use]
+    pub fn heading(self, text: impl Into<Text>) -> Self {
+        self.with(Block::Heading(text.into()))
+    }
+
+    /// The page with a displayed formula after it.
+    #[must_use]
+    pub fn formula(self, formula: Formula) -> Self {
+        self.with(Block::Formula(formula))
+    }
+
+    /// The page with a paragraph after it.
+    #[must_use]
+    pub fn words(self, text: impl Into<Text>) -> Self {
+        self.with(Block::Words(text.into()))
+    }
+
+    /// The page with named values after it; nothing where the list is empty.
+    #[must_use]
+    pub fn lines<N: Into<Text>, V: Into<Text>>(
+        self,
+        list: impl IntoIterator<Item = (N, V)>,
+    ) -> Self {
+        let list: Vec<_> =
+            list.into_iter().map(|(name, value)| (name.into(), value.into())).collect();
+        if list.is_empty() { self } else { self.with(Block::Lines(list)) }
+    }
+
+    /// The page with a table after it; nothing where the table is empty.
+    #[must_use]
+    pub fn table(self, table: Table) -> Self {
+        if table.rows.is_empty() { self } else { self.with(Block::Table(table)) }
+    }
+
+    /// The page with another one after it.
+    #[must_use]
+    pub fn append(mut self, other: Self) -> Self {
+        self.blocks.extend(other.blocks);
+        self
+    }
+}

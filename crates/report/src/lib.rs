@@ -1,0 +1,24 @@
+//! Answers as documents.
+//!
+//! A [`Document`] is made from an answer once ([`Present`]); text, LaTeX, Markdown and HTML are
+//! readers of it ([`Format`]), JSON is what serde makes of the answer itself. A [`Figure`] is a list
+//! of layers in one frame, a [`Table`] is printed in every format and as CSV. Nothing here computes
+//! and nothing here opens a file.
+//!
+//! Words that come from outside (titles, names, notes of a problem file) are data: every reader
+//! escapes them, and only a [`Formula`], which the engine prints, is markup.
+#![warn(missing_docs)]
+
+mod document;
+pub mod figure;
+mod format;
+mod mathml;
+mod present;
+mod table;
+
+pub use document::{Block, Document, Formula, Span, Text};
+pub use figure::{Figure, FigureError};
+pub use format::Format;
+pub use mathml::{MathError, mathml};
+pub use present::{Present, json};
+pub use table::Table;
