@@ -50,9 +50,9 @@ fn shown(list: &[AmplitudePolynomial<Rational>]) -> Vec<String> {
 }
 
 fn van_der_pol() -> Expression {
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     let gain = 1 - x.clone().pow(2);
-    Expression::Acceleration + x - Expression::Small * gain * Expression::Velocity
+    Expression::ACCELERATION + x - Expression::Small * gain * Expression::VELOCITY
 }
 
 /// classics: A_1, B_2, A_3, B_4 (checked independently there); the others vanish by symmetry.
@@ -71,11 +71,11 @@ fn van_der_pol_rates() {
 
 #[test]
 fn forced_duffing_first_order() {
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     let t = Expression::Time;
     let ratio = Expression::Number(Rational::from((2, 7)));
     let force = (t * ratio).apply(Function::Cos);
-    let equation = Expression::Acceleration + x.clone() + Expression::Small * x.pow(3)
+    let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3)
         - Expression::integer(2) * force;
     let algebra =
         Torus::new(Rationals, Rational::from(1), Some(Rational::from((2, 7))), Vec::new());
@@ -91,9 +91,9 @@ fn forced_duffing_first_order() {
 fn resonances_are_named_at_their_order() {
     let refused = |denominator: u32| {
         let frequency = Rational::from((1, denominator));
-        let x = Expression::Displacement;
+        let x = Expression::DISPLACEMENT;
         let force = (Expression::Time * Expression::Number(frequency.clone())).apply(Function::Cos);
-        let equation = Expression::Acceleration + x.clone() + Expression::Small * x.pow(3) - force;
+        let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3) - force;
         let algebra = Torus::new(Rationals, Rational::from(1), Some(frequency), Vec::new());
         let graph = compile(&algebra, &equation, &Nothing, 3).unwrap();
         average(&algebra, &graph, 3, &mut |_| true).err().map(|error| error.to_string())
@@ -112,8 +112,8 @@ fn resonances_are_named_at_their_order() {
 /// eps = 1 both are series in a^2.
 #[test]
 fn duffing_to_order_20_is_the_fundamental_normalisation() {
-    let x = Expression::Displacement;
-    let equation = Expression::Acceleration + x.clone() + Expression::Small * x.pow(3);
+    let x = Expression::DISPLACEMENT;
+    let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3);
     let result = derive(&plain(), &equation, 20);
     let duffing = problems::find("duffing").unwrap();
     let settings = Settings {
@@ -386,10 +386,10 @@ fn amplitude_equation_at_hopf_points() {
                 None
             }
         }
-        let (x, v) = (Expression::Displacement, Expression::Velocity);
+        let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
         let number = |n: i32, d: u32| Expression::Number(Rational::from((n, d)));
         let late = x.clone().delayed(Expression::parameter("tau"));
-        let equation = Expression::Acceleration + number(1, 20) * v + number(11, 10) * x.clone()
+        let equation = Expression::ACCELERATION + number(1, 20) * v + number(11, 10) * x.clone()
             - number(3, 5) * late
             + Expression::Small * x.pow(3);
         let graph = compile(&algebra, &equation, &Unbound, 2).unwrap();

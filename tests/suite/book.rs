@@ -272,11 +272,11 @@ fn tour_of_an_own_oscillator() -> Outcome {
     use lindstedt::equation::{AmplitudeRole, Condition, Expression, Problem};
     use lindstedt::{Settings, derive};
 
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     let quintic = Problem {
         name: "quintic".into(),
         title: "x'' + x + eps x^5 = 0 at amplitude 1".into(),
-        equation: Expression::Acceleration + x.clone() + Expression::Small * x.pow(5),
+        equation: Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(5),
         time_domain: None,
         impact: None,
         synchronous: None,

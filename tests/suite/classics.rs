@@ -134,23 +134,23 @@ fn the_residual_check_finds_a_wrong_digit() {
 
 #[test]
 fn other_oscillators_of_the_same_driver() {
-    let x = || Expression::Displacement;
-    let v = || Expression::Velocity;
+    let x = || Expression::DISPLACEMENT;
+    let v = || Expression::VELOCITY;
     // Helmholtz-Duffing: harmonics of both parities.
-    let helmholtz = Expression::Acceleration + x() + Expression::Small * (x().pow(2) + x().pow(3));
+    let helmholtz = Expression::ACCELERATION + x() + Expression::Small * (x().pow(2) + x().pow(3));
     let result = directly(&helmholtz, Condition::InitialAmplitude, 6);
     assert!(result.is_ok());
     // Rayleigh's x'' + x = eps (x' - x'^3/3) has the frequency of van der Pol's equation, whose
     // derivative it is.
     let third = Expression::Number(Rational::from((1, 3)));
-    let rayleigh = Expression::Acceleration + x() - Expression::Small * (v() - third * v().pow(3));
+    let rayleigh = Expression::ACCELERATION + x() - Expression::Small * (v() - third * v().pow(3));
     let rayleigh = directly(&rayleigh, Condition::LimitCycle, 8).unwrap();
     let pol = problems::find("van-der-pol").unwrap().equation;
     let pol = directly(&pol, Condition::LimitCycle, 8).unwrap();
     assert_eq!(rayleigh.frequency_squared, pol.frequency_squared);
     // Duffing-van der Pol: omega_1 and the amplitude couple.
     let gain = 1 - x().pow(2);
-    let mixed = Expression::Acceleration + x() + Expression::Small * x().pow(3)
+    let mixed = Expression::ACCELERATION + x() + Expression::Small * x().pow(3)
         - Expression::Small * gain * v();
     let mixed = directly(&mixed, Condition::LimitCycle, 6).unwrap();
     assert_eq!(mixed.frequency_squared[1], 3);
@@ -158,29 +158,29 @@ fn other_oscillators_of_the_same_driver() {
 
 #[test]
 fn what_cannot_be_expanded_is_refused_by_name() {
-    let x = || Expression::Displacement;
-    let v = || Expression::Velocity;
+    let x = || Expression::DISPLACEMENT;
+    let v = || Expression::VELOCITY;
     let refused = |equation: Expression, condition| directly(&equation, condition, 3).unwrap_err();
-    let damped = Expression::Acceleration + x() + Expression::Small * v();
+    let damped = Expression::ACCELERATION + x() + Expression::Small * v();
     assert_eq!(
         refused(damped.clone(), Condition::InitialAmplitude),
         ExpandError::AmplitudeDrifts { order: 1 }
     );
     assert_eq!(refused(damped, Condition::LimitCycle), ExpandError::NoLimitCycle);
-    let strong = Expression::Acceleration + x() + x().pow(3);
+    let strong = Expression::ACCELERATION + x() + x().pow(3);
     assert_eq!(refused(strong, Condition::InitialAmplitude), ExpandError::NotWeaklyNonlinear);
-    let irrational = Expression::Acceleration + x() - Expression::Small * (v() - v().pow(3));
+    let irrational = Expression::ACCELERATION + x() - Expression::Small * (v() - v().pow(3));
     assert_eq!(refused(irrational, Condition::LimitCycle), ExpandError::IrrationalAmplitude);
     // Averaged: a/2 (1 - a^2)(4 - a^2) up to a factor, two limit cycles.
     let two = 4 - 5 * (4 * x().pow(2)) + 8 * x().pow(4);
-    let two = Expression::Acceleration + x() - Expression::Small * two * v();
+    let two = Expression::ACCELERATION + x() - Expression::Small * two * v();
     assert_eq!(refused(two, Condition::LimitCycle), ExpandError::SeveralLimitCycles { count: 2 });
-    let unknown = Expression::Acceleration + x() + Expression::parameter("k") * Expression::Small;
+    let unknown = Expression::ACCELERATION + x() + Expression::parameter("k") * Expression::Small;
     assert_eq!(
         refused(unknown, Condition::InitialAmplitude),
         ExpandError::UnknownName { name: "k".into() }
     );
-    let logarithm = Expression::Acceleration + x() + Expression::Small * x() * x().pow(2).ln();
+    let logarithm = Expression::ACCELERATION + x() + Expression::Small * x() * x().pow(2).ln();
     assert!(matches!(
         refused(logarithm, Condition::InitialAmplitude),
         ExpandError::UnsupportedTerm { .. }
@@ -202,10 +202,10 @@ fn order_n_computes_only_what_order_n_needs() {
 fn the_residual_check_reads_constants_inside_exp() {
     // exp(eps) satisfies E' = 0 in the phase whatever its coefficients are: its value at psi = 0
     // is what tells 1 + eps + eps^2/2 + ... from anything else.
-    let x = || Expression::Displacement;
+    let x = || Expression::DISPLACEMENT;
     let exponential =
         Expression::Function(lindstedt::equation::Function::Exp, Box::new(Expression::Small));
-    let equation = Expression::Acceleration + x() + Expression::Small * exponential * x().pow(3);
+    let equation = Expression::ACCELERATION + x() + Expression::Small * exponential * x().pow(3);
     let algebra = Trigonometric::new(Rationals);
     let compiled = compile(&algebra, &equation, &NoNames, 4).unwrap();
     let right = directly(&equation, Condition::InitialAmplitude, 4).unwrap();
@@ -224,9 +224,9 @@ fn an_unlucky_prime_is_no_verdict() {
     for field in fields.take(3) {
         let stiffness = Expression::Number(Rational::from(field.prime()));
         let mut problem = problems::find("duffing").unwrap();
-        problem.equation = Expression::Acceleration
-            + stiffness * Expression::Displacement
-            + Expression::Small * Expression::Displacement.pow(3);
+        problem.equation = Expression::ACCELERATION
+            + stiffness * Expression::DISPLACEMENT
+            + Expression::Small * Expression::DISPLACEMENT.pow(3);
         let settings = Settings { order: 1, ..Settings::default() };
         let result = lindstedt::derive(&problem, &settings, &mut |_| true).unwrap();
         assert_eq!(result.exact("frequency_squared", 1).as_deref(), Some("3/4"));
@@ -241,23 +241,23 @@ fn labels_do_not_stand_for_equations() {
         let settings = Settings { order: 2, route, ..Settings::default() };
         lindstedt::derive(&problem, &settings, &mut |_| true)
     };
-    let x = || Expression::Displacement;
-    let four = Expression::Acceleration + 4 * (x() * x().pow(2).pow(Expression::Small));
+    let x = || Expression::DISPLACEMENT;
+    let four = Expression::ACCELERATION + 4 * (x() * x().pow(2).pow(Expression::Small));
     assert!(derive("power-law", four.clone(), lindstedt::Route::EnergyIntegral).is_err());
     let driver = derive("power-law", four, lindstedt::Route::Driver).unwrap();
     assert_eq!(driver.exact("frequency_squared", 1).as_deref(), Some("4 - 8*ln(2)"));
     // A second formal function has no coefficients of its own.
     let argument = || Expression::Small * x().pow(2).ln();
-    let two = Expression::Acceleration
+    let two = Expression::ACCELERATION
         + x() * argument().formal("S")
         + Expression::Small * x() * argument().formal("G");
     assert!(derive("pendulum", two, lindstedt::Route::Driver).is_err());
     // A repulsive force is no oscillator.
-    let repulsive = Expression::Acceleration - x() + Expression::Small * x().pow(3);
+    let repulsive = Expression::ACCELERATION - x() + Expression::Small * x().pow(3);
     assert!(derive("duffing", repulsive, lindstedt::Route::Driver).is_err());
     // Degrees beyond what the algebras are made for are refused, not wrapped around.
     let steep =
-        Expression::Acceleration + x() + Expression::Small * x() * x().pow(2).ln().pow(1000);
+        Expression::ACCELERATION + x() + Expression::Small * x() * x().pow(2).ln().pow(1000);
     assert!(derive("power-law", steep, lindstedt::Route::Driver).is_err());
     // Orders that were not derived are not zero.
     let result = expansion("duffing", 2);

@@ -68,11 +68,11 @@ fn power_law_50_digits_order_60_and_100_digits_order_100() {
 
 /// x'' + x + eps F(x) = 0.
 fn perturbed(force: Expression) -> Problem {
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     Problem {
         name: "test".into(),
         title: "".into(),
-        equation: Expression::Acceleration + x + Expression::Small * force,
+        equation: Expression::ACCELERATION + x + Expression::Small * force,
         time_domain: None,
         impact: None,
         synchronous: None,
@@ -86,7 +86,7 @@ fn perturbed(force: Expression) -> Problem {
 }
 
 fn x() -> Expression {
-    Expression::Displacement
+    Expression::DISPLACEMENT
 }
 
 /// |x| = (x^2)^(1/2).
@@ -196,7 +196,7 @@ fn refusals() {
     let sine = perturbed(Expression::Function(Function::Sin, Box::new(x())));
     let settings = Settings { order: 2, ..Settings::default() };
     assert!(lindstedt::derive(&sine, &settings, &mut |_| true).is_err());
-    assert!(estimate(&perturbed(Expression::Velocity), 2, Tier::Doubles).is_err());
+    assert!(estimate(&perturbed(Expression::VELOCITY), 2, Tier::Doubles).is_err());
 }
 
 /// Knuth's linear congruential generator.

@@ -46,8 +46,8 @@ pub fn text(parts: &Classification, small: &str, is_file: bool) -> String {
             "none".into()
         } else {
             // As a product with x in a sum: signs and parentheses come out as in an equation.
-            let force = parts.stiffness.clone() * Expression::Displacement;
-            let linear = (Expression::Acceleration + force).canonical();
+            let force = parts.stiffness.clone() * Expression::DISPLACEMENT;
+            let linear = (Expression::ACCELERATION + force).canonical();
             format!("{}, frequency omega_0 = {}", show(&linear), show(&parts.frequency))
         },
     );

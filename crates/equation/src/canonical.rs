@@ -25,89 +25,51 @@ impl Expression {
     ///
     /// ```
     /// use lindstedt_equation::Expression;
-    /// let x = || Expression::Displacement;
+    /// let x = || Expression::DISPLACEMENT;
     /// let e = Expression::Product(vec![x(), Expression::integer(2) * Expression::integer(3)]);
     /// assert_eq!(e.canonical(), 6 * x());
     /// ```
     #[must_use]
     pub fn canonical(&self) -> Self {
-        match self {
+        match self.map_children(&mut Self::canonical) {
             Self::Sum(terms) => canonical_sum(terms),
             Self::Product(factors) => canonical_product(factors),
-            Self::Power(base, exponent) => canonical_power(base.canonical(), exponent.canonical()),
-            Self::Function(function, argument) => {
-                Self::Function(*function, Box::new(argument.canonical()))
-            }
-            Self::Formal(name, argument) => {
-                Self::Formal(name.clone(), Box::new(argument.canonical()))
-            }
-            Self::Delayed(inner, delay) => {
-                Self::Delayed(Box::new(inner.canonical()), Box::new(delay.canonical()))
-            }
-            leaf => leaf.clone(),
-        }
-    }
-
-    /// The expression with every leaf (number, name, x, x', x'', t) that `change` has something
-    /// for replaced by it.
-    #[must_use]
-    pub fn substitute(&self, change: &dyn Fn(&Self) -> Option<Self>) -> Self {
-        let all = |list: &[Self]| list.iter().map(|e| e.substitute(change)).collect();
-        match self {
-            Self::Sum(terms) => Self::Sum(all(terms)),
-            Self::Product(factors) => Self::Product(all(factors)),
-            Self::Power(base, exponent) => base.substitute(change).pow(exponent.substitute(change)),
-            Self::Function(function, argument) => argument.substitute(change).apply(*function),
-            Self::Formal(name, argument) => argument.substitute(change).formal(name),
-            Self::Delayed(inner, delay) => {
-                inner.substitute(change).delayed(delay.substitute(change))
-            }
-            leaf => change(leaf).unwrap_or_else(|| leaf.clone()),
+            Self::Power(base, exponent) => canonical_power(*base, *exponent),
+            other => other,
         }
     }
 
     /// The first subexpression, from the outside and from the left, that `wanted` accepts.
     #[must_use]
     pub fn find(&self, wanted: &dyn Fn(&Self) -> bool) -> Option<&Self> {
-        if wanted(self) {
-            return Some(self);
-        }
-        match self {
-            Self::Sum(list) | Self::Product(list) => list.iter().find_map(|e| e.find(wanted)),
-            Self::Power(a, b) | Self::Delayed(a, b) => a.find(wanted).or_else(|| b.find(wanted)),
-            Self::Function(_, argument) | Self::Formal(_, argument) => argument.find(wanted),
-            _ => None,
-        }
+        self.nodes().find(|e| wanted(e))
     }
 
     /// Whether the expression has a subexpression like this.
     #[must_use]
     pub fn contains(&self, part: &Self) -> bool {
-        self.find(&|e| e == part).is_some()
+        self.nodes().any(|e| e == part)
     }
 
     /// Whether neither x, x', x'', t, the small parameter nor a formal function occurs.
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        let varies = |e: &Self| {
-            matches!(
-                e,
-                Self::Displacement
-                    | Self::Velocity
-                    | Self::Acceleration
-                    | Self::Time
-                    | Self::Small
-                    | Self::Formal(..)
-            )
-        };
-        self.find(&varies).is_none()
+        let varies =
+            |e: &Self| matches!(e, Self::Unknown(_) | Self::Time | Self::Small | Self::Formal(..));
+        !self.nodes().any(varies)
     }
 
     /// The names of the parameters, each once, in the order of their first occurrence.
     #[must_use]
     pub fn parameters(&self) -> Vec<String> {
-        let mut names = Vec::new();
-        collect_parameters(self, &mut names);
+        let mut names: Vec<String> = Vec::new();
+        for e in self.nodes() {
+            if let Self::Parameter(name) = e
+                && !names.contains(name)
+            {
+                names.push(name.clone());
+            }
+        }
         names
     }
 
@@ -138,19 +100,19 @@ impl Expression {
     ///
     /// ```
     /// use lindstedt_equation::Expression;
-    /// let x = Expression::Displacement;
-    /// let doubled = 2 * (Expression::Acceleration + x.clone());
-    /// assert_eq!(doubled.acceleration_alone(), Ok(Expression::Acceleration + x));
+    /// let x = Expression::DISPLACEMENT;
+    /// let doubled = 2 * (Expression::ACCELERATION + x.clone());
+    /// assert_eq!(doubled.acceleration_alone(), Ok(Expression::ACCELERATION + x));
     /// ```
     pub fn acceleration_alone(&self) -> Result<Self, AccelerationFault> {
-        let holds = |e: &Self| e.contains(&Self::Acceleration);
+        let holds = |e: &Self| e.contains(&Self::ACCELERATION);
         let with: Vec<&Self> = self.terms().iter().filter(|term| holds(term)).collect();
-        if with == [&Self::Acceleration] {
+        if with == [&Self::ACCELERATION] {
             return Ok(self.clone());
         }
         let (factor, rest) = split_acceleration(self)?;
         let factor = Self::Sum(factor).canonical();
-        let mut terms = vec![Self::Acceleration];
+        let mut terms = vec![Self::ACCELERATION];
         let scale = match &factor {
             Self::Number(c) if c.is_zero() => return Err(AccelerationFault::Missing),
             Self::Number(c) => Self::Number(Rational::from(c.recip_ref())),
@@ -170,9 +132,9 @@ impl Expression {
 fn split_acceleration(
     e: &Expression,
 ) -> Result<(Vec<Expression>, Vec<Expression>), AccelerationFault> {
-    let holds = |e: &Expression| e.contains(&Expression::Acceleration);
+    let holds = |e: &Expression| e.contains(&Expression::ACCELERATION);
     match e {
-        Expression::Acceleration => Ok((vec![Expression::integer(1)], Vec::new())),
+        e if *e == Expression::ACCELERATION => Ok((vec![Expression::integer(1)], Vec::new())),
         e if !holds(e) => Ok((Vec::new(), vec![e.clone()])),
         Expression::Sum(terms) => {
             let (mut factor, mut rest) = (Vec::new(), Vec::new());
@@ -201,28 +163,10 @@ fn split_acceleration(
     }
 }
 
-fn collect_parameters(e: &Expression, names: &mut Vec<String>) {
-    match e {
-        Expression::Parameter(name) if !names.contains(name) => names.push(name.clone()),
-        Expression::Sum(list) | Expression::Product(list) => {
-            list.iter().for_each(|e| collect_parameters(e, names));
-        }
-        Expression::Power(a, b) | Expression::Delayed(a, b) => {
-            collect_parameters(a, names);
-            collect_parameters(b, names);
-        }
-        Expression::Function(_, argument) | Expression::Formal(_, argument) => {
-            collect_parameters(argument, names);
-        }
-        _ => {}
-    }
-}
-
-fn canonical_sum(terms: &[Expression]) -> Expression {
+fn canonical_sum(terms: Vec<Expression>) -> Expression {
     let mut list: Vec<Expression> = Vec::new();
     let mut number: Option<(usize, Rational)> = None;
-    let canonical = terms.iter().map(Expression::canonical);
-    for term in canonical.flat_map(|t| match t {
+    for term in terms.into_iter().flat_map(|t| match t {
         Expression::Sum(inner) => inner,
         single => vec![single],
     }) {
@@ -243,11 +187,10 @@ fn canonical_sum(terms: &[Expression]) -> Expression {
     }
 }
 
-fn canonical_product(factors: &[Expression]) -> Expression {
+fn canonical_product(factors: Vec<Expression>) -> Expression {
     let mut list: Vec<Expression> = Vec::new();
     let mut number = Rational::from(1);
-    let canonical = factors.iter().map(Expression::canonical);
-    for factor in canonical.flat_map(|f| match f {
+    for factor in factors.into_iter().flat_map(|f| match f {
         Expression::Product(inner) => inner,
         single => vec![single],
     }) {
@@ -301,10 +244,10 @@ fn number_power(q: &Rational, n: &Rational) -> Option<Rational> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Expression::{Acceleration, Displacement, Small, Velocity};
+    use Expression::Small;
 
     fn x() -> Expression {
-        Displacement
+        Expression::DISPLACEMENT
     }
 
     #[test]
@@ -312,7 +255,7 @@ mod tests {
         let e = Expression::Sum(vec![
             Expression::integer(1),
             Expression::Sum(vec![x(), Expression::integer(2)]),
-            Expression::Product(vec![Expression::integer(0), Velocity]),
+            Expression::Product(vec![Expression::integer(0), Expression::VELOCITY]),
         ]);
         assert_eq!(e.canonical(), Expression::integer(3) + x());
         assert_eq!(e.canonical().canonical(), e.canonical());
@@ -330,22 +273,22 @@ mod tests {
     #[test]
     fn a_constant_factor_of_the_acceleration_goes() {
         let rest = || x() + Small * x().pow(3);
-        let expected = Acceleration + rest();
+        let expected = Expression::ACCELERATION + rest();
         for e in [
-            2 * (Acceleration + rest()),
-            Expression::integer(3) * Acceleration + 3 * x() + 3 * (Small * x().pow(3)),
-            -(Acceleration + rest()),
+            2 * (Expression::ACCELERATION + rest()),
+            Expression::integer(3) * Expression::ACCELERATION + 3 * x() + 3 * (Small * x().pow(3)),
+            -(Expression::ACCELERATION + rest()),
         ] {
             assert_eq!(e.acceleration_alone().map(|e| e.canonical()), Ok(expected.clone()));
         }
-        let mass = Expression::parameter("m") * Acceleration + x();
-        let divided = Acceleration + Expression::parameter("m").pow(-1) * x();
+        let mass = Expression::parameter("m") * Expression::ACCELERATION + x();
+        let divided = Expression::ACCELERATION + Expression::parameter("m").pow(-1) * x();
         assert_eq!(mass.acceleration_alone(), Ok(divided));
-        let steep = Acceleration * x() + x();
-        let inside = AccelerationFault::Inside(Acceleration * x());
+        let steep = Expression::ACCELERATION * x() + x();
+        let inside = AccelerationFault::Inside(Expression::ACCELERATION * x());
         assert_eq!(steep.acceleration_alone(), Err(inside));
         assert_eq!(
-            (Acceleration - Acceleration + x()).acceleration_alone(),
+            (Expression::ACCELERATION - Expression::ACCELERATION + x()).acceleration_alone(),
             Err(AccelerationFault::Missing)
         );
     }

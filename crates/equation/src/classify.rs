@@ -1,195 +1,18 @@
 //! What an equation is made of, and which methods take it, before any work starts.
 
 use crate::monomials::{MOST_TERMS, Monomial, Monomials, expand};
+use crate::roots::root;
 use crate::symmetry::{Parity, is_reversible, parity};
 use crate::{AccelerationFault, Expression, Function, Problem};
 use rug::Rational;
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use thiserror::Error;
 
+pub use crate::classification::{Algebra, Classification, Forcing, Method, Reason, Symmetry, Term};
+pub use crate::roots::rational_root;
+
 /// Ratios of the frequencies of force and oscillator are recognised up to these numbers.
 const LARGEST_RESONANCE: u32 = 10;
-
-/// A term with its order in the small parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Term {
-    /// The term, the small parameter included.
-    pub term: Expression,
-    /// The power of the small parameter.
-    pub order: u32,
-}
-
-/// A harmonic force, or a coefficient that varies harmonically in time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Forcing {
-    /// The term.
-    pub term: Expression,
-    /// Its order in the small parameter.
-    pub order: u32,
-    /// Its frequency, if it is a sine or cosine of omega t (+ phase).
-    pub frequency: Option<Expression>,
-    /// Whether x or x' is a factor.
-    pub parametric: bool,
-    /// (k, m) with omega : omega_0 = k : m exactly, both at most 10; nothing when the values are
-    /// not known or the ratio is no such fraction.
-    pub resonance: Option<(u32, u32)>,
-}
-
-/// How the equation changes under (x, x') -> (-x, -x').
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Symmetry {
-    /// It changes its sign: the solution has odd harmonics only.
-    Odd,
-    /// Terms of both parities, or of a parity that is not decided.
-    None,
-}
-
-/// The coefficients and functions that a derivation computes with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Algebra {
-    /// Trigonometric polynomials over Q.
-    TrigonometricOverRationals,
-    /// Trigonometric polynomials over `Q[parameters]`.
-    TrigonometricOverParameters,
-    /// The Lobachevsky ring.
-    Lobachevsky,
-    /// None: numbers only.
-    Numeric,
-}
-
-/// The methods of the engine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Method {
-    /// Lindstedt and Poincare: a constant amplitude or a limit cycle.
-    LindstedtPoincare,
-    /// Krylov, Bogoliubov, Mitropolsky: a drifting amplitude, forcing, delay.
-    Averaging,
-    /// The energy integral: the frequency alone.
-    EnergyIntegral,
-    /// Melnikov's integral over a homoclinic orbit.
-    Melnikov,
-    /// Integration in time.
-    TimeDomain,
-}
-
-/// Why a method does not apply. Terms are given as they occur, multiplied out.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Reason {
-    /// A term of order zero other than x'' and x.
-    NotWeaklyNonlinear(Expression),
-    /// No term in x at order zero.
-    NoLinearPart,
-    /// x'' - k x: no oscillation about x = 0.
-    NegativeStiffness,
-    /// The velocity occurs and omega_0 is irrational, so that time cannot be scaled exactly.
-    IrrationalFrequency,
-    /// The velocity occurs and omega_0 has no value, so that time cannot be scaled.
-    UnknownFrequency,
-    /// A function of t.
-    Forced(Expression),
-    /// A force of order zero in resonance with the linear part, k : m.
-    Resonant(Expression, (u32, u32)),
-    /// A delay.
-    Delay(Expression),
-    /// A function without a derivative at zero.
-    NonSmooth(Expression),
-    /// A function that is no polynomial in x, x' and ln x^2.
-    NotPolynomial(Expression),
-    /// A real power or logarithm of something that can be negative.
-    NotReal(Expression),
-    /// A wall.
-    Impact,
-    /// A term odd in the velocity, under a condition with constant amplitude.
-    Drift(Expression),
-    /// The condition of the problem belongs to another method.
-    Condition,
-    /// The form x F(small ln x^2) is needed.
-    Form,
-    /// No saddle of an integrable equation at order zero.
-    NoSaddle,
-    /// The small parameter does not occur.
-    NoSmallParameter,
-    /// Nothing depends on t.
-    NoForce,
-    /// A force with a phase, or of another frequency than one before it.
-    Frequency(Expression),
-    /// A formal function, and no equation for integration in time.
-    Formal(Expression),
-    /// A value outside its domain, with the domain; found by who knows the values.
-    OutsideDomain(String),
-}
-
-/// The parts of an equation and the methods that take it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Classification {
-    /// kappa of x'' + kappa x at order zero.
-    pub stiffness: Expression,
-    /// omega_0 = sqrt(kappa).
-    pub frequency: Expression,
-    /// Terms of order zero other than x'' and kappa x, forces apart.
-    pub strong: Vec<Term>,
-    /// Terms with the small parameter, forces apart.
-    pub weak: Vec<Term>,
-    /// Terms with t.
-    pub forcing: Vec<Forcing>,
-    /// x or x' at an earlier time.
-    pub delays: Vec<Expression>,
-    /// Functions that are not smooth.
-    pub non_smooth: Vec<Expression>,
-    /// Whether there is a wall.
-    pub impact: bool,
-    /// The symmetry, forces apart.
-    pub symmetry: Symmetry,
-    /// Whether solutions can be run backwards in time ([`is_reversible`]).
-    pub reversible: bool,
-    /// What a derivation computes with.
-    pub algebra: Algebra,
-    /// Every method with the reasons against it, none for a method that applies.
-    pub methods: Vec<(Method, Vec<Reason>)>,
-}
-
-impl Classification {
-    /// Whether the method applies.
-    pub fn takes(&self, method: Method) -> bool {
-        self.methods.iter().any(|(m, against)| *m == method && against.is_empty())
-    }
-
-    /// The term because of which no expansion and no threshold exists, with the reason; nothing
-    /// when some method other than integration in time applies.
-    pub fn refusal(&self) -> Option<&Reason> {
-        let formal = |m: &Method| !matches!(m, Method::TimeDomain);
-        let mut methods = self.methods.iter().filter(|(m, _)| formal(m));
-        if methods.any(|(_, against)| against.is_empty()) {
-            return None;
-        }
-        let of = |method| self.methods.iter().find(|(m, _)| *m == method);
-        let reasons = of(Method::Averaging).into_iter().chain(of(Method::LindstedtPoincare));
-        reasons.flat_map(|(_, against)| against).next()
-    }
-}
-
-impl Reason {
-    /// The term that the reason is about.
-    pub fn term(&self) -> Option<&Expression> {
-        match self {
-            Self::NotWeaklyNonlinear(e)
-            | Self::Forced(e)
-            | Self::Resonant(e, _)
-            | Self::Delay(e)
-            | Self::NonSmooth(e)
-            | Self::NotPolynomial(e)
-            | Self::NotReal(e)
-            | Self::Formal(e)
-            | Self::Frequency(e)
-            | Self::Drift(e) => Some(e),
-            _ => None,
-        }
-    }
-}
 
 /// Why an equation could not be classified.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -216,7 +39,7 @@ pub enum ClassifyError {
 /// use lindstedt_equation::classify::{Method, Symmetry, classify};
 /// use lindstedt_equation::Expression;
 /// # use lindstedt_equation::{AmplitudeRole, Condition, Problem};
-/// let x = Expression::Displacement;
+/// let x = Expression::DISPLACEMENT;
 /// # let problem = |equation| Problem {
 /// #     name: "".into(), title: "".into(), equation, time_domain: None, impact: None,
 /// #     synchronous: None,
@@ -224,7 +47,7 @@ pub enum ClassifyError {
 /// #     amplitude: AmplitudeRole::InSmallParameter, parameters: Vec::new(), notes: "".into(),
 /// #     source: "".into(),
 /// # };
-/// let duffing = problem(Expression::Acceleration + x.clone() + Expression::Small * x.pow(3));
+/// let duffing = problem(Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3));
 /// let parts = classify(&duffing, &Default::default())?;
 /// assert_eq!(parts.weak.len(), 1);
 /// assert_eq!(parts.symmetry, Symmetry::Odd);
@@ -236,7 +59,7 @@ pub fn classify(
     values: &BTreeMap<String, Rational>,
 ) -> Result<Classification, ClassifyError> {
     let equation = problem.equation.acceleration_alone().map_err(ClassifyError::Acceleration)?;
-    let rest = equation.terms().iter().filter(|t| **t != Expression::Acceleration).cloned();
+    let rest = equation.terms().iter().filter(|t| **t != Expression::ACCELERATION).cloned();
     let rest = Expression::Sum(rest.collect()).smooth_powers().canonical();
     let all = expand(&rest).ok_or(ClassifyError::TooManyTerms { limit: MOST_TERMS })?;
     let is_linear = |m: &Monomial| m.order == 0 && m.is_power(1, 0);
@@ -249,7 +72,7 @@ pub fn classify(
         strong: Vec::new(),
         weak: Vec::new(),
         forcing: Vec::new(),
-        delays: collect(&rest, &|e| matches!(e, Expression::Delayed(..))),
+        delays: collect(&rest, &Expression::is_delayed),
         non_smooth: collect(
             &rest,
             &|e| matches!(e, Expression::Function(Function::Abs | Function::Sign, z) if !z.is_constant()),
@@ -317,21 +140,16 @@ fn linear_at_zero(rest: &Expression) -> Option<Expression> {
 
 /// y^0 = 1 and F(0) = F_0 where the small parameter was set to zero.
 fn without_trivial_powers(e: &Expression) -> Expression {
-    let again = without_trivial_powers;
-    match e {
-        Expression::Sum(l) => Expression::Sum(l.iter().map(again).collect()).canonical(),
-        Expression::Product(l) => Expression::Product(l.iter().map(again).collect()).canonical(),
-        Expression::Power(_, n) if n.as_number().is_some_and(|n| n.is_zero()) => {
-            Expression::integer(1)
+    let is_zero = |e: &Expression| e.as_number().is_some_and(|n| n.is_zero());
+    let at_zero = |e: &Expression| match e {
+        Expression::Power(_, n) if is_zero(n) => Some(Expression::integer(1)),
+        Expression::Function(Function::Exp, z) if is_zero(z) => Some(Expression::integer(1)),
+        Expression::Formal(name, z) if is_zero(z) => {
+            Some(Expression::parameter(&format!("{name}_0")))
         }
-        Expression::Function(Function::Exp, z) if z.as_number().is_some_and(|z| z.is_zero()) => {
-            Expression::integer(1)
-        }
-        Expression::Formal(name, z) if z.as_number().is_some_and(|z| z.is_zero()) => {
-            Expression::parameter(&format!("{name}_0"))
-        }
-        other => other.clone(),
-    }
+        _ => None,
+    };
+    e.map(&at_zero).canonical()
 }
 
 fn forcing(
@@ -348,7 +166,7 @@ fn forcing(
     let resonance = squared
         .zip(stiffness.filter(|kappa| !kappa.is_zero()))
         .and_then(|(s, kappa)| ratio(&(s / kappa)));
-    let delayed = atoms().any(|atom| matches!(atom, Expression::Delayed(..)));
+    let delayed = atoms().any(Expression::is_delayed);
     let parametric = monomial.x + monomial.velocity > 0 || delayed;
     Forcing { order: monomial.order, frequency, parametric, resonance, term }
 }
@@ -374,25 +192,6 @@ fn ratio(q: &Rational) -> Option<(u32, u32)> {
     Some((k, m))
 }
 
-/// The rational square root of a positive rational number, if it is one.
-pub fn rational_root(q: &Rational) -> Option<Rational> {
-    let square = q.cmp0() == Ordering::Greater
-        && q.numer().is_perfect_square()
-        && q.denom().is_perfect_square();
-    square.then(|| Rational::from((q.numer().clone().sqrt(), q.denom().clone().sqrt())))
-}
-
-/// sqrt(kappa), in closed form where kappa is a square.
-fn root(kappa: &Expression) -> Expression {
-    let half = Expression::Number(Rational::from((1, 2)));
-    let plain = || kappa.clone().pow(half.clone());
-    match kappa {
-        Expression::Number(q) => rational_root(q).map_or_else(plain, Expression::Number),
-        Expression::Power(base, n) if n.as_number().is_some_and(|n| n == 2) => (**base).clone(),
-        _ => plain(),
-    }
-}
-
 /// The value of a constant expression, exactly, if the parameters have values.
 pub fn evaluate(e: &Expression, values: &BTreeMap<String, Rational>) -> Option<Rational> {
     let value = |e: &Expression| match e {
@@ -404,15 +203,13 @@ pub fn evaluate(e: &Expression, values: &BTreeMap<String, Rational>) -> Option<R
 
 /// The subexpressions of a kind, each once.
 fn collect(e: &Expression, wanted: &dyn Fn(&Expression) -> bool) -> Vec<Expression> {
-    let found = std::cell::RefCell::new(Vec::new());
-    let note = |e: &Expression| {
-        if wanted(e) && !found.borrow().contains(e) {
-            found.borrow_mut().push(e.clone());
+    let mut found: Vec<Expression> = Vec::new();
+    for e in e.nodes().filter(|e| wanted(e)) {
+        if !found.contains(e) {
+            found.push(e.clone());
         }
-        false
-    };
-    let _ = e.find(&note);
-    found.into_inner()
+    }
+    found
 }
 
 /// kappa of x'' + kappa x at order zero; nothing when the equation is too long to multiply out.
@@ -427,13 +224,13 @@ pub fn linear_stiffness(equation: &Expression) -> Option<Expression> {
 ///
 /// ```
 /// use lindstedt_equation::{Expression, classify::polynomial};
-/// let x = Expression::Displacement;
-/// let duffing = Expression::Acceleration + 2 * x.clone() + 3 * Expression::Small * x.pow(3);
+/// let x = Expression::DISPLACEMENT;
+/// let duffing = Expression::ACCELERATION + 2 * x.clone() + 3 * Expression::Small * x.pow(3);
 /// let terms: Vec<_> = polynomial(&duffing).into_iter().flatten().collect();
 /// assert_eq!(terms, [([0, 1, 0], 2.into()), ([1, 3, 0], 3.into())]);
 /// ```
 pub fn polynomial(equation: &Expression) -> Option<BTreeMap<[u32; 3], Rational>> {
-    let without = |e: &Expression| (*e == Expression::Acceleration).then(|| Expression::integer(0));
+    let without = |e: &Expression| (*e == Expression::ACCELERATION).then(|| Expression::integer(0));
     let all = expand(&equation.substitute(&without))?;
     let plain = |(m, q): (&Monomial, &Rational)| {
         (m.atoms.is_empty() && m.parameters.is_empty())

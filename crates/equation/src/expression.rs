@@ -3,7 +3,7 @@
 use rug::Rational;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// An expression in the displacement x, its derivatives, parameters and the small parameter.
+/// An expression in displacements, their derivatives, parameters and the small parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expression {
     /// A rational number.
@@ -12,17 +12,10 @@ pub enum Expression {
     Parameter(String),
     /// The small parameter of the expansion.
     Small,
-    /// x.
-    Displacement,
-    /// x' = dx/dt.
-    Velocity,
-    /// x'' = d^2x/dt^2.
-    Acceleration,
+    /// A displacement or one of its derivatives, now or at an earlier time.
+    Unknown(Unknown),
     /// The time t.
     Time,
-    /// An expression in x and x' (first) at the earlier time t - T; T (second) is a positive
-    /// expression in parameters.
-    Delayed(Box<Expression>, Box<Expression>),
     /// A sum.
     Sum(Vec<Expression>),
     /// A product.
@@ -34,6 +27,17 @@ pub enum Expression {
     Function(Function, Box<Expression>),
     /// F(z) = sum_n F_n z^n/n! with formal coefficients F_n (the pendulum's S_n).
     Formal(String, Box<Expression>),
+}
+
+/// d^n x_k/dt^n at the time t - T.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unknown {
+    /// k, from 0: which displacement.
+    pub index: usize,
+    /// n: 0 the displacement, 1 the velocity, 2 the acceleration.
+    pub derivative: u32,
+    /// T, a positive expression in parameters; nothing for the value at t.
+    pub delay: Option<Box<Expression>>,
 }
 
 /// The elementary functions of an expression tree.
@@ -54,6 +58,31 @@ pub enum Function {
 }
 
 impl Expression {
+    /// x, the displacement of an equation with one unknown.
+    pub const DISPLACEMENT: Self = Self::unknown(0, 0);
+    /// x' = dx/dt.
+    pub const VELOCITY: Self = Self::unknown(0, 1);
+    /// x'' = d^2x/dt^2.
+    pub const ACCELERATION: Self = Self::unknown(0, 2);
+
+    /// d^n x_k/dt^n, k from 0.
+    pub const fn unknown(k: usize, n: u32) -> Self {
+        Self::Unknown(Unknown { index: k, derivative: n, delay: None })
+    }
+
+    /// T of an unknown at the time t - T.
+    pub fn delay(&self) -> Option<&Self> {
+        match self {
+            Self::Unknown(unknown) => unknown.delay.as_deref(),
+            _ => None,
+        }
+    }
+
+    /// Whether this is an unknown at an earlier time.
+    pub fn is_delayed(&self) -> bool {
+        self.delay().is_some()
+    }
+
     /// An integer.
     pub fn integer(n: i64) -> Self {
         Self::Number(Rational::from(n))
@@ -80,12 +109,6 @@ impl Expression {
     #[must_use]
     pub fn apply(self, function: Function) -> Self {
         Self::Function(function, Box::new(self))
-    }
-
-    /// self at the time t - delay.
-    #[must_use]
-    pub fn delayed(self, delay: impl Into<Self>) -> Self {
-        Self::Delayed(Box::new(self), Box::new(delay.into()))
     }
 
     /// F(self) for a formal function F.

@@ -2,18 +2,22 @@
 //! fixes the amplitude, and a data card.
 
 mod canonical;
+mod classification;
 pub mod classify;
 mod expression;
 mod methods;
 pub mod monomials;
 pub mod print;
 mod problem;
+mod roots;
 mod saddle;
 mod smooth;
 pub mod symmetry;
+mod walk;
 
 pub use canonical::AccelerationFault;
-pub use expression::{Expression, Function};
+pub use expression::{Expression, Function, Unknown};
 pub use problem::{
     AmplitudeRole, Condition, Crossing, Impact, ParameterCard, Problem, Synchronous, Text,
 };
+pub use walk::Operations;

@@ -1,6 +1,6 @@
 //! Which methods take an equation, and what is against the others.
 
-use crate::classify::{Algebra, Classification, Method, Reason};
+use crate::classification::{Algebra, Classification, Method, Reason};
 use crate::monomials::expand;
 use crate::saddle::has_saddle;
 use crate::symmetry::{Parity, parity, parity_in_x};
@@ -130,11 +130,11 @@ fn lindstedt(
             against.push(Reason::Drift(only.term.clone()));
         }
     }
-    let has_velocity = rest.contains(&Expression::Velocity);
+    let has_velocity = rest.contains(&Expression::VELOCITY);
     if has_velocity && against.is_empty() {
         match stiffness {
             None => against.push(Reason::UnknownFrequency),
-            Some(kappa) if crate::classify::rational_root(kappa).is_none() => {
+            Some(kappa) if crate::roots::rational_root(kappa).is_none() => {
                 against.push(Reason::IrrationalFrequency);
             }
             _ => {}
@@ -203,7 +203,7 @@ fn angle(force: &Expression) -> Option<BTreeMap<String, i32>> {
 
 /// The equations of the energy integral: x (x^2)^small and x S(small ln x^2).
 fn is_energy_form(rest: &Expression) -> bool {
-    let x = || Expression::Displacement;
+    let x = || Expression::DISPLACEMENT;
     let square = || x().pow(2);
     let rest = rest.canonical();
     let power = x() * square().pow(Expression::Small);
@@ -230,12 +230,7 @@ fn is_logarithmic(e: &Expression) -> bool {
 
 /// A function of x or x' that is in neither ring.
 fn is_not_polynomial(e: &Expression) -> bool {
-    let varies = |z: &Expression| {
-        z.find(&|e| {
-            matches!(e, Expression::Displacement | Expression::Velocity | Expression::Delayed(..))
-        })
-        .is_some()
-    };
+    let varies = |z: &Expression| z.nodes().any(|e| matches!(e, Expression::Unknown(_)));
     let in_time = |z: &Expression| z.contains(&Expression::Time) && !varies(z);
     match e {
         Expression::Function(Function::Sin | Function::Cos, z) => !in_time(z),
@@ -255,7 +250,7 @@ fn is_not_polynomial(e: &Expression) -> bool {
 }
 
 fn is_square_of_x(e: &Expression) -> bool {
-    matches!(e, Expression::Power(base, n) if **base == Expression::Displacement
+    matches!(e, Expression::Power(base, n) if **base == Expression::DISPLACEMENT
         && n.as_number().is_some_and(|n| n > 0 && n.is_integer() && n.numer().is_even()))
 }
 

@@ -39,7 +39,7 @@ pub struct Monomials {
 ///
 /// ```
 /// use lindstedt_equation::{Expression, monomials::expand};
-/// let x = || Expression::Displacement;
+/// let x = || Expression::DISPLACEMENT;
 /// let square = expand(&((x() + 1) * (x() - 1))).ok_or("too long")?;
 /// let constant = square.terms.get(&Default::default());
 /// assert_eq!((square.terms.len(), constant), (2, Some(&(-1).into())));
@@ -58,7 +58,7 @@ impl Expression {
     ///
     /// ```
     /// use lindstedt_equation::Expression;
-    /// let x = || Expression::Displacement;
+    /// let x = || Expression::DISPLACEMENT;
     /// assert_eq!((x() * (x() - 1)).multiplied_out(), (x().pow(2) - x()).multiplied_out());
     /// ```
     #[must_use]
@@ -89,8 +89,8 @@ impl Expander {
                 single(Monomial { parameters: BTreeMap::from([(name.clone(), 1)]), ..one })
             }
             Expression::Small => single(Monomial { order: 1, ..one }),
-            Expression::Displacement => single(Monomial { x: 1, ..one }),
-            Expression::Velocity => single(Monomial { velocity: 1, ..one }),
+            e if *e == Expression::DISPLACEMENT => single(Monomial { x: 1, ..one }),
+            e if *e == Expression::VELOCITY => single(Monomial { velocity: 1, ..one }),
             Expression::Sum(list) => {
                 let mut sum = Terms::new();
                 for e in list {
@@ -255,8 +255,8 @@ impl Monomials {
             let stands_for = self.atoms.get(name).cloned();
             push(stands_for.unwrap_or_else(|| Expression::parameter(name)), i64::from(*n));
         }
-        push(Expression::Displacement, monomial.x.into());
-        push(Expression::Velocity, monomial.velocity.into());
+        push(Expression::DISPLACEMENT, monomial.x.into());
+        push(Expression::VELOCITY, monomial.velocity.into());
         for (key, n) in &monomial.atoms {
             if let Some(atom) = self.atoms.get(key) {
                 push(atom.clone(), i64::from(*n));

@@ -5,7 +5,7 @@
 //! and a factor 1 beside others is left out. Sums in sums and products in products are flat,
 //! which addition and multiplication allow.
 
-use crate::{Expression, Function};
+use crate::{Expression, Function, Unknown};
 use rug::Rational;
 use std::cmp::Ordering;
 
@@ -26,8 +26,8 @@ impl Expression {
     /// use lindstedt_equation::Expression;
     /// use lindstedt_equation::print::Style;
     ///
-    /// let x = Expression::Displacement;
-    /// let duffing = Expression::Acceleration + x.clone() + Expression::Small * x.pow(3);
+    /// let x = Expression::DISPLACEMENT;
+    /// let duffing = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3);
     /// assert_eq!(duffing.print("eps", Style::Text), "x'' + x + eps*x^3");
     /// assert_eq!(duffing.print("eps", Style::Latex), r"\ddot{x} + x + \varepsilon\,x^{3}");
     /// ```
@@ -150,13 +150,8 @@ impl Printer<'_> {
             (Expression::Parameter(name), true) => latex_name(name),
             (Expression::Small, false) => self.small.to_owned(),
             (Expression::Small, true) => latex_name(self.small),
-            (Expression::Displacement, _) => "x".to_owned(),
-            (Expression::Velocity, false) => "x'".to_owned(),
-            (Expression::Velocity, true) => r"\dot{x}".to_owned(),
-            (Expression::Acceleration, false) => "x''".to_owned(),
-            (Expression::Acceleration, true) => r"\ddot{x}".to_owned(),
+            (Expression::Unknown(unknown), _) => self.unknown(unknown),
             (Expression::Time, _) => "t".to_owned(),
-            (Expression::Delayed(inner, delay), _) => self.delayed(inner, delay),
             (Expression::Power(base, exponent), true) => {
                 format!("{}^{{{}}}", self.base(base), self.sum(exponent))
             }
@@ -200,8 +195,7 @@ impl Printer<'_> {
         }
         let symbol = matches!(
             argument,
-            Expression::Displacement
-                | Expression::Velocity
+            Expression::Unknown(Unknown { delay: None, .. })
                 | Expression::Parameter(_)
                 | Expression::Time
                 | Expression::Small
@@ -213,13 +207,23 @@ impl Printer<'_> {
         format!(r"\{name}{}", self.parenthesize(&line))
     }
 
-    /// x(t - T), x'(t - T); other delayed expressions as [..](t - T).
-    fn delayed(&self, inner: &Expression, delay: &Expression) -> String {
-        let bare = matches!(inner, Expression::Displacement | Expression::Velocity);
-        let line = self.sum(inner);
-        let line = if bare { line } else { format!("[{line}]") };
-        let time = Expression::Time - delay.clone();
-        format!("{line}{}", self.parenthesize(&self.sum(&time)))
+    /// x, x', x''(t - T); the second unknown is x_2.
+    fn unknown(&self, unknown: &Unknown) -> String {
+        let n = unknown.derivative as usize;
+        let stem = match (self.latex(), n) {
+            (true, 1..=4) => format!(r"\{}ot{{x}}", "d".repeat(n)),
+            (true, 5..) => format!("x^{{({n})}}"),
+            _ => "x".to_owned(),
+        };
+        let index = match (unknown.index, self.latex()) {
+            (0, _) => String::new(),
+            (k, false) => format!("_{}", k + 1),
+            (k, true) => format!("_{{{}}}", k + 1),
+        };
+        let primes = if self.latex() { String::new() } else { "'".repeat(n) };
+        let time = unknown.delay.as_deref().map(|delay| Expression::Time - delay.clone());
+        let time = time.map_or_else(String::new, |time| self.parenthesize(&self.sum(&time)));
+        format!("{stem}{index}{primes}{time}")
     }
 
     fn parenthesize(&self, line: &str) -> String {
@@ -271,10 +275,10 @@ fn latex_name(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Expression::{Acceleration, Displacement, Number, Small, Velocity};
+    use Expression::{Number, Small};
 
     fn x() -> Expression {
-        Displacement
+        Expression::DISPLACEMENT
     }
 
     fn both(e: &Expression, small: &str) -> [String; 2] {
@@ -283,10 +287,11 @@ mod tests {
 
     #[test]
     fn power_law_and_van_der_pol() {
-        let power_law = Acceleration + x() * x().pow(2).pow(Small);
+        let power_law = Expression::ACCELERATION + x() * x().pow(2).pow(Small);
         let shown = ["x'' + x*(x^2)^delta", r"\ddot{x} + x\,(x^{2})^{\delta}"];
         assert_eq!(both(&power_law, "delta"), shown);
-        let van_der_pol = Acceleration + x() - Small * (1 - x().pow(2)) * Velocity;
+        let van_der_pol =
+            Expression::ACCELERATION + x() - Small * (1 - x().pow(2)) * Expression::VELOCITY;
         let latex = r"\ddot{x} + x - \varepsilon\,(1 - x^{2})\,\dot{x}";
         assert_eq!(both(&van_der_pol, "eps"), ["x'' + x - eps*(1 - x^2)*x'", latex]);
     }
@@ -298,7 +303,10 @@ mod tests {
         let latex = r"x\,\Omega(\delta\,\ln(x^{2})) - \ln(x^{2})";
         assert_eq!(both(&e, "delta"), ["x*Omega(delta*ln(x^2)) - ln(x^2)", latex]);
         let sin = Expression::Function(Function::Sin, Box::new(x()));
-        let e = Acceleration + sin.clone() + sin.clone() * Velocity + sin.pow(2);
+        let e = Expression::ACCELERATION
+            + sin.clone()
+            + sin.clone() * Expression::VELOCITY
+            + sin.pow(2);
         let latex = r"\ddot{x} + \sin x + \sin(x)\,\dot{x} + (\sin x)^{2}";
         assert_eq!(both(&e, ""), ["x'' + sin(x) + sin(x)*x' + sin(x)^2", latex]);
         let exp = Expression::Function(Function::Exp, Box::new(-x()));
@@ -336,10 +344,10 @@ mod tests {
     fn time_delays_and_non_smooth_functions() {
         let delay = || Expression::parameter("T");
         let forcing = (Expression::parameter("omega") * Expression::Time).apply(Function::Cos);
-        let e = x() - x().delayed(delay()) + Velocity.delayed(delay() * 2) - forcing;
+        let e = x() - x().delayed(delay()) + Expression::VELOCITY.delayed(delay() * 2) - forcing;
         let latex = r"x - x(t - T) + \dot{x}(t - T \cdot 2) - \cos(\omega\,t)";
         assert_eq!(both(&e, "eps"), ["x - x(t - T) + x'(t - T*2) - cos(omega*t)", latex]);
-        let e = x().apply(Function::Abs).pow(3) * Velocity.apply(Function::Sign);
+        let e = x().apply(Function::Abs).pow(3) * Expression::VELOCITY.apply(Function::Sign);
         let latex = r"\left|x\right|^{3}\,\operatorname{sign}(\dot{x})";
         assert_eq!(both(&e, "eps"), ["abs(x)^3*sign(x')", latex]);
     }

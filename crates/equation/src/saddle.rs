@@ -1,6 +1,6 @@
 //! Whether x'' = f(x) has a saddle, by the signs of f on a grid.
 
-use crate::{Expression, Function};
+use crate::{Expression, Function, Operations};
 use rug::Rational;
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub(crate) fn has_saddle(rest: &Expression, values: &BTreeMap<String, Rational>)
     };
     let terms: Vec<&Expression> = rest.terms().iter().filter(kept).collect();
     let force = |x: f64| -> Option<f64> {
-        terms.iter().try_fold(0.0, |sum, term| Some(sum - value(term, x, values)?))
+        terms.iter().try_fold(0.0, |sum, term| Some(sum - term.evaluate(&mut At { x, values })?))
     };
     let mut before = None;
     for n in -POINTS / 2..=POINTS / 2 {
@@ -32,38 +32,58 @@ pub(crate) fn has_saddle(rest: &Expression, values: &BTreeMap<String, Rational>)
     Some(false)
 }
 
-fn value(e: &Expression, x: f64, values: &BTreeMap<String, Rational>) -> Option<f64> {
-    let of = |e: &Expression| value(e, x, values);
-    Some(match e {
-        Expression::Number(q) => q.to_f64(),
-        Expression::Parameter(name) => values.get(name)?.to_f64(),
-        Expression::Displacement => x,
-        Expression::Sum(list) => list.iter().try_fold(0.0, |sum, e| Some(sum + of(e)?))?,
-        Expression::Product(list) => list.iter().try_fold(1.0, |p, e| Some(p * of(e)?))?,
-        Expression::Power(base, n) => of(base)?.powf(of(n)?),
-        Expression::Function(function, z) => {
-            let z = of(z)?;
-            match function {
-                Function::Ln => z.ln(),
-                Function::Exp => z.exp(),
-                Function::Sin => z.sin(),
-                Function::Cos => z.cos(),
-                Function::Abs => z.abs(),
-                Function::Sign => z.signum(),
-            }
+/// Values in doubles at one x.
+struct At<'a> {
+    x: f64,
+    values: &'a BTreeMap<String, Rational>,
+}
+
+impl Operations for At<'_> {
+    type Value = f64;
+
+    fn number(&mut self, q: &Rational) -> Option<f64> {
+        Some(q.to_f64())
+    }
+
+    fn leaf(&mut self, leaf: &Expression) -> Option<f64> {
+        match leaf {
+            Expression::Parameter(name) => self.values.get(name).map(Rational::to_f64),
+            leaf => (*leaf == Expression::DISPLACEMENT).then_some(self.x),
         }
-        _ => return None,
-    })
+    }
+
+    fn add(&mut self, a: f64, b: f64) -> Option<f64> {
+        Some(a + b)
+    }
+
+    fn multiply(&mut self, a: f64, b: f64) -> Option<f64> {
+        Some(a * b)
+    }
+
+    fn power(&mut self, base: &Expression, exponent: &Expression) -> Option<f64> {
+        Some(base.evaluate(self)?.powf(exponent.evaluate(self)?))
+    }
+
+    fn function(&mut self, function: Function, argument: &Expression) -> Option<f64> {
+        let z = argument.evaluate(self)?;
+        Some(match function {
+            Function::Ln => z.ln(),
+            Function::Exp => z.exp(),
+            Function::Sin => z.sin(),
+            Function::Cos => z.cos(),
+            Function::Abs => z.abs(),
+            Function::Sign => z.signum(),
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Expression::Displacement;
 
     #[test]
     fn wells_and_hills() {
-        let x = || Displacement;
+        let x = || Expression::DISPLACEMENT;
         let none = BTreeMap::new();
         let of = |e: Expression| has_saddle(&e, &none);
         assert_eq!(of(x() - x().pow(2)), Some(true));
@@ -71,6 +91,6 @@ mod tests {
         assert_eq!(of(x() + x().pow(3)), Some(false));
         assert_eq!(of(x() - Expression::Small * x().pow(3)), Some(false));
         assert_eq!(of(Expression::parameter("k") * x()), None);
-        assert_eq!(of(x() + Expression::Velocity), None);
+        assert_eq!(of(x() + Expression::VELOCITY), None);
     }
 }

@@ -11,34 +11,28 @@ impl Expression {
     ///
     /// ```
     /// use lindstedt_equation::{Expression, Function};
-    /// let x = || Expression::Displacement;
+    /// let x = || Expression::DISPLACEMENT;
     /// let force = x().apply(Function::Sign) * x().apply(Function::Abs).pow(3);
     /// assert_eq!(force.smooth_powers(), x() * x().pow(2));
     /// ```
     #[must_use]
     pub fn smooth_powers(&self) -> Self {
-        if self.find(&|e| matches!(e, Self::Function(Function::Abs, _))).is_none() {
+        if !self.nodes().any(|e| matches!(e, Self::Function(Function::Abs, _))) {
             return self.clone();
         }
-        match self {
-            Self::Sum(terms) => Self::Sum(terms.iter().map(Self::smooth_powers).collect()),
+        self.map(&|e| match e {
             Self::Product(factors) => product(factors),
-            Self::Power(base, exponent) => {
-                let square = absolute_power(self).and_then(|q| square_to(&q, None));
-                square.unwrap_or_else(|| base.smooth_powers().pow(exponent.smooth_powers()))
-            }
+            Self::Power(..) => absolute_power(e).and_then(|q| square_to(&q, None)),
             // |x| alone has no form in x^2 that a ring contains.
-            Self::Function(Function::Abs, _) => self.clone(),
-            Self::Function(function, z) => z.smooth_powers().apply(*function),
-            Self::Formal(name, z) => z.smooth_powers().formal(name),
-            other => other.clone(),
-        }
+            Self::Function(Function::Abs, _) => Some(e.clone()),
+            _ => None,
+        })
     }
 }
 
 /// q of |x|^q.
 fn absolute_power(e: &Expression) -> Option<Expression> {
-    let is_absolute = |e: &Expression| *e == Expression::Displacement.apply(Function::Abs);
+    let is_absolute = |e: &Expression| *e == Expression::DISPLACEMENT.apply(Function::Abs);
     match e {
         e if is_absolute(e) => Some(Expression::integer(1)),
         Expression::Power(base, exponent) if is_absolute(base) => Some((**exponent).clone()),
@@ -53,7 +47,7 @@ fn square_to(q: &Expression, less: Option<i64>) -> Option<Expression> {
     terms.extend(less.map(|n| Expression::integer(-n)));
     let halved = terms.into_iter().map(|t| Expression::Number(half.clone()) * t);
     let exponent = Expression::Sum(halved.collect()).canonical();
-    let square = Expression::Displacement.pow(2);
+    let square = Expression::DISPLACEMENT.pow(2);
     match exponent {
         Expression::Number(n) if !n.is_integer() => None,
         Expression::Number(n) if n.is_zero() => Some(Expression::integer(1)),
@@ -62,8 +56,9 @@ fn square_to(q: &Expression, less: Option<i64>) -> Option<Expression> {
     }
 }
 
-fn product(factors: &[Expression]) -> Expression {
-    let sign = Expression::Displacement.apply(Function::Sign);
+/// A product with sign(x) and powers of |x|; nothing for another one.
+fn product(factors: &[Expression]) -> Option<Expression> {
+    let sign = Expression::DISPLACEMENT.apply(Function::Sign);
     let signs = factors.iter().filter(|f| **f == sign).count();
     let powers: Vec<Expression> = factors.iter().filter_map(absolute_power).collect();
     let q = Expression::Sum(powers.clone());
@@ -73,12 +68,10 @@ fn product(factors: &[Expression]) -> Expression {
         (_, 1) => square_to(&q, Some(1)),
         _ => None,
     };
-    let Some(square) = square else {
-        return Expression::Product(factors.iter().map(Expression::smooth_powers).collect());
-    };
+    let square = square?;
     let others = factors.iter().filter(|f| **f != sign && absolute_power(f).is_none());
     let mut list: Vec<Expression> = others.map(Expression::smooth_powers).collect();
-    list.extend((signs == 1).then_some(Expression::Displacement));
+    list.extend((signs == 1).then_some(Expression::DISPLACEMENT));
     list.push(square);
-    Expression::Product(list).canonical()
+    Some(Expression::Product(list).canonical())
 }

@@ -28,9 +28,9 @@ pub fn is_reversible(equation: &Expression) -> bool {
 ///
 /// ```
 /// use lindstedt_equation::{Expression, Function, symmetry::moving_singularity};
-/// let x = Expression::Displacement;
+/// let x = Expression::DISPLACEMENT;
 /// let kink = x.clone().apply(Function::Abs);
-/// let linear = Expression::Acceleration + x.clone();
+/// let linear = Expression::ACCELERATION + x.clone();
 /// assert_eq!(moving_singularity(&(linear.clone() + kink.clone() * x)), None);
 /// assert_eq!(moving_singularity(&(linear + kink.clone())), Some(kink));
 /// ```
@@ -42,7 +42,7 @@ pub fn moving_singularity(equation: &Expression) -> Option<Expression> {
         let zero = |e: &Expression| (e == at).then(|| Expression::integer(0));
         e.contains(at) && e.substitute(&zero).canonical() == Expression::integer(0)
     };
-    let (x, velocity) = (Expression::Displacement, Expression::Velocity);
+    let (x, velocity) = (Expression::DISPLACEMENT, Expression::VELOCITY);
     let is_harmless = |argument: &Expression| {
         let alone = |of: &Expression, other: &Expression| {
             is_power_of(argument, of) && !argument.contains(other)
@@ -87,33 +87,28 @@ pub(crate) fn parity_in_x(e: &Expression) -> Option<Parity> {
 /// How an expression changes under (x, x') -> (-x, -x'), or under x' -> -x' alone.
 pub(crate) fn parity(e: &Expression, both: bool) -> Option<Parity> {
     use Parity::{Even, Odd};
-    let of = |e: &Expression| parity(e, both);
     let times = |a: Parity, b: Parity| if a == b { Even } else { Odd };
-    match e {
-        Expression::Displacement | Expression::Acceleration => Some(if both { Odd } else { Even }),
-        Expression::Velocity => Some(Odd),
-        Expression::Sum(list) => {
-            let mut parities = list.iter().map(of);
-            let first = parities.next().unwrap_or(Some(Even))?;
-            parities.all(|p| p == Some(first)).then_some(first)
+    e.fold(&mut |e, below: &[Option<Parity>]| match (e, below) {
+        // A delay has a direction in time.
+        (Expression::Unknown(unknown), _) if unknown.delay.is_some() && !both => None,
+        (Expression::Unknown(unknown), _) => {
+            Some(if both || unknown.derivative % 2 == 1 { Odd } else { Even })
         }
-        Expression::Product(list) => list.iter().try_fold(Even, |p, e| Some(times(p, of(e)?))),
-        Expression::Power(base, exponent) => {
+        (Expression::Sum(_), [first, rest @ ..]) => {
+            first.filter(|_| rest.iter().all(|p| p == first))
+        }
+        (Expression::Product(_), list) => list.iter().try_fold(Even, |p, e| Some(times(p, (*e)?))),
+        (Expression::Power(_, exponent), [base, of_exponent]) => {
             let n = exponent.as_number().filter(Rational::is_integer);
-            match (of(base)?, n) {
-                (Even, _) => of(exponent).filter(|p| *p == Even),
+            match ((*base)?, n) {
+                (Even, _) => of_exponent.filter(|p| *p == Even),
                 (Odd, Some(n)) => Some(if n.numer().is_even() { Even } else { Odd }),
                 (Odd, None) => None,
             }
         }
-        Expression::Function(Function::Sin | Function::Sign, z) => of(z),
-        Expression::Function(Function::Cos | Function::Abs, z) => of(z).map(|_| Even),
-        Expression::Function(Function::Ln | Function::Exp, z) => of(z).filter(|p| *p == Even),
-        Expression::Formal(_, z) => of(z).filter(|p| *p == Even),
-        Expression::Delayed(inner, _) => {
-            // A delay has a direction in time.
-            if both { of(inner) } else { None }
-        }
+        (Expression::Function(Function::Sin | Function::Sign, _), [z]) => *z,
+        (Expression::Function(Function::Cos | Function::Abs, _), [z]) => z.map(|_| Even),
+        (Expression::Function(..) | Expression::Formal(..), [z]) => z.filter(|p| *p == Even),
         _ => Some(Even),
-    }
+    })
 }

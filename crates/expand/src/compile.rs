@@ -5,10 +5,10 @@
 //! node, so that x^3 costs x*x and (x*x)*x, and x^2 + x^4 costs no square twice.
 
 use crate::ExpandError;
-use crate::excitation::{Excitation, is_constant};
+use crate::excitation::Excitation;
 use lindstedt_algebra::{Elementary, FunctionAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::print::Style;
-use lindstedt_equation::{Expression, Function};
+use lindstedt_equation::{Expression, Function, Unknown};
 use rug::Rational;
 
 /// The position of a node in the graph.
@@ -114,7 +114,7 @@ pub fn compile<A: FunctionAlgebra>(
         Expression::Sum(terms) => terms.as_slice(),
         single => std::slice::from_ref(single),
     };
-    let is_acceleration = |term: &&Expression| **term == Expression::Acceleration;
+    let is_acceleration = |term: &&Expression| **term == Expression::ACCELERATION;
     if terms.iter().filter(is_acceleration).count() != 1 {
         return Err(ExpandError::AccelerationNotIsolated {
             term: equation.print("eps", Style::Text),
@@ -179,10 +179,11 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
                     .ok_or_else(|| ExpandError::UnknownName { name: name.clone() })?,
             ),
             Expression::Small => Node::Small,
-            Expression::Displacement => Node::Displacement,
-            Expression::Velocity => Node::Velocity,
-            Expression::Acceleration => {
-                return Err(ExpandError::AccelerationNotIsolated { term: "x''".into() });
+            Expression::Unknown(unknown) => {
+                self.unknown(unknown).ok_or_else(|| match (unknown.derivative, &unknown.delay) {
+                    (2, None) => ExpandError::AccelerationNotIsolated { term: "x''".into() },
+                    _ => unsupported(),
+                })?
             }
             Expression::Sum(terms) => return self.sum(terms),
             Expression::Product(factors) => return self.product(factors),
@@ -200,16 +201,21 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
                 self.offered(&elementary).then_some(()).ok_or_else(unsupported)?;
                 return self.circular(argument, cosine);
             }
-            Expression::Delayed(inner, delay) => {
-                let position = self.excitation.delays.iter().position(|known| known == &**delay);
-                let delay = position.filter(|&delay| delay < self.algebra.delays());
-                let delay = delay.ok_or_else(unsupported)?;
-                Node::Delayed { velocity: **inner == Expression::Velocity, delay }
-            }
             Expression::Function(..) | Expression::Time => return Err(unsupported()),
             Expression::Formal(name, argument) => return self.formal(name, argument),
         };
         Ok(self.push(node))
+    }
+
+    /// x, x', or one of them at an earlier time that the algebra knows.
+    fn unknown(&self, unknown: &Unknown) -> Option<Node<<A::Constants as Ring>::Element>> {
+        let (0, derivative @ (0 | 1)) = (unknown.index, unknown.derivative) else { return None };
+        let velocity = derivative == 1;
+        let Some(delay) = unknown.delay.as_deref() else {
+            return Some(if velocity { Node::Velocity } else { Node::Displacement });
+        };
+        let delay = self.excitation.delays.iter().position(|known| known == delay)?;
+        (delay < self.algebra.delays()).then_some(Node::Delayed { velocity, delay })
     }
 
     /// cos(m eta), and sin(-m eta) = -sin(m eta).
@@ -283,7 +289,7 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
                 let base = self.node(base)?;
                 return Ok(self.push(Node::Power(base, q.clone())));
             }
-            if !natural && is_constant(base) {
+            if !natural && base.is_constant() {
                 let whole = Expression::Power(Box::new(base.clone()), Box::new(exponent.clone()));
                 if let Some(value) = self.binding.power(&whole) {
                     return Ok(self.push(Node::Constant(value)));

@@ -126,8 +126,8 @@ pub fn leading_amplitude<A: PhaseAlgebra>(
 ///     fn parameter(&self, _: &str) -> Option<Rational> { None }
 ///     fn formal(&self, _: &str, _: usize) -> Option<Rational> { None }
 /// }
-/// let (algebra, x) = (Trigonometric::new(Rationals), Expression::Displacement);
-/// let duffing = Expression::Acceleration + x.clone() + Expression::Small * x.pow(3);
+/// let (algebra, x) = (Trigonometric::new(Rationals), Expression::DISPLACEMENT);
+/// let duffing = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3);
 /// let equation = compile(&algebra, &duffing, &NoNames, 2)?;
 /// let condition = Condition::InitialAmplitude;
 /// let request = Request { condition, order: 2, leading_amplitude: Rational::from(1) };

@@ -417,19 +417,14 @@ fn as_powers(equation: &Expression) -> Expression {
     let power = |z: &Expression, twice: i32| {
         z.clone().pow(2).pow(Expression::Number(Rational::from((twice, 2))))
     };
-    let all = |list: &[Expression]| list.iter().map(as_powers).collect();
-    match equation {
-        Expression::Sum(terms) => Expression::Sum(all(terms)),
-        Expression::Product(factors) => Expression::Product(all(factors)),
-        Expression::Power(base, exponent) => as_powers(base).pow((**exponent).clone()),
-        Expression::Function(Function::Abs, z) => power(&as_powers(z), 1),
+    equation.map(&|e| match e {
+        Expression::Function(Function::Abs, z) => Some(power(&as_powers(z), 1)),
         Expression::Function(Function::Sign, z) => {
             let z = as_powers(z);
-            power(&z, -1) * z
+            Some(power(&z, -1) * z)
         }
-        Expression::Function(function, z) => as_powers(z).apply(*function),
-        other => other.clone(),
-    }
+        _ => None,
+    })
 }
 
 /// 64 roundings at so many bits.

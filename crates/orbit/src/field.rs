@@ -47,8 +47,8 @@ impl Field {
     /// use lindstedt_equation::Expression;
     /// use lindstedt_orbit::Field;
     /// use std::collections::BTreeMap;
-    /// let x = Expression::Displacement;
-    /// let duffing = Expression::Acceleration + x.clone() + Expression::Small * x.pow(3);
+    /// let x = Expression::DISPLACEMENT;
+    /// let duffing = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3);
     /// let values = BTreeMap::from([("eps".to_owned(), (1, 2).into())]);
     /// assert_eq!(Field::new(&duffing, "eps", &values)?.degree(), 3);
     /// # Ok::<(), lindstedt_orbit::Failure>(())
@@ -71,10 +71,8 @@ impl Field {
             None => {}
         }
         let alone = equation.acceleration_alone().map_err(Failure::Acceleration)?;
-        let rest = alone.substitute(&|e| match e {
-            Expression::Acceleration => Some(Expression::integer(0)),
-            _ => None,
-        });
+        let rest =
+            alone.substitute(&|e| (*e == Expression::ACCELERATION).then(|| Expression::integer(0)));
         let refused = || Failure::NotPolynomial(rest.clone());
         let expanded = expand(&rest).ok_or_else(refused)?;
         let mut terms: BTreeMap<(u32, u32), Waves> = BTreeMap::new();

@@ -21,8 +21,8 @@
 //! use lindstedt_number::digits::decimal;
 //! use lindstedt_orbit::{Field, Kind, Request, Stability, Start, prove};
 //! // Van der Pol, x'' + x + (x^2 - 1) x' = 0, from the guess 2 cos(0.94 t).
-//! let (x, y) = (Expression::Displacement, Expression::Velocity);
-//! let field = Field::new(&(Expression::Acceleration + x.clone() + (x.pow(2) - 1) * y), "eps", &Default::default())?;
+//! let (x, y) = (Expression::DISPLACEMENT, Expression::VELOCITY);
+//! let field = Field::new(&(Expression::ACCELERATION + x.clone() + (x.pow(2) - 1) * y), "eps", &Default::default())?;
 //! let start = Start { frequency: 0.94, cosines: vec![0.0, 2.0], sines: vec![] };
 //! let request = Request { digits: 30, ..Request::default() };
 //! let proof = prove(&field, &Kind::LimitCycle, &start, &request)?;

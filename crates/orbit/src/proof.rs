@@ -124,9 +124,9 @@ const GOOD: f64 = 0.5;
 /// use lindstedt_number::digits::decimal;
 /// use lindstedt_orbit::{Field, Kind, Request, Start, prove};
 /// // x'' + x + x^3/2 = 0 with x(0) = 1; the guess is cos(1.17 t).
-/// let x = Expression::Displacement;
+/// let x = Expression::DISPLACEMENT;
 /// let cubic = Expression::Number((1, 2).into()) * x.clone().pow(3);
-/// let field = Field::new(&(Expression::Acceleration + x + cubic), "eps", &Default::default())?;
+/// let field = Field::new(&(Expression::ACCELERATION + x + cubic), "eps", &Default::default())?;
 /// let start = Start { frequency: 1.17, cosines: vec![0.0, 1.0], sines: vec![] };
 /// let request = Request { digits: 20, ..Request::default() };
 /// let proof = prove(&field, &Kind::InitialAmplitude(1.into()), &start, &request)?;

@@ -17,15 +17,15 @@ use nalgebra::Complex;
 use rug::{Float, Rational};
 
 fn x() -> Expression {
-    Expression::Displacement
+    Expression::DISPLACEMENT
 }
 
 fn field(rest: Expression) -> Field {
-    Field::new(&(Expression::Acceleration + rest), "eps", &Default::default()).unwrap()
+    Field::new(&(Expression::ACCELERATION + rest), "eps", &Default::default()).unwrap()
 }
 
 fn van_der_pol() -> Field {
-    field(x() + (x().pow(2) - 1) * Expression::Velocity)
+    field(x() + (x().pow(2) - 1) * Expression::VELOCITY)
 }
 
 fn wave() -> Start {

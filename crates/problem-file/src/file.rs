@@ -74,7 +74,7 @@ pub(crate) const ASKED: &str = "frequency, frequency_squared, period_over_2pi, a
 /// The condition that suits an equation: a free amplitude with t or a delay, a given amplitude
 /// where the form shows that none drifts, a limit cycle otherwise.
 pub fn usual_condition(equation: &Expression) -> Condition {
-    let outside = |e: &Expression| matches!(e, Expression::Time | Expression::Delayed(..));
+    let outside = |e: &Expression| *e == Expression::Time || e.is_delayed();
     if equation.find(&outside).is_some() {
         Condition::FreeAmplitude
     } else if lindstedt_equation::symmetry::is_reversible(equation) {
@@ -95,7 +95,7 @@ pub(crate) fn misplaced(
     match role {
         AmplitudeRole::ScalesFrequency { .. } => {
             let equation = equation.smooth_powers().canonical();
-            let fits = |e: &&Expression| **e == Expression::Acceleration || is_power_law(e);
+            let fits = |e: &&Expression| **e == Expression::ACCELERATION || is_power_law(e);
             let odd = equation.terms().iter().find(|e| !fits(e))?;
             Some(RoleReason::Scaling { term: excerpt(&odd.print(small, Style::Text)) })
         }
@@ -116,11 +116,9 @@ fn is_power_law(term: &Expression) -> bool {
         Expression::Product(list) => list.clone(),
         other => vec![other.clone()],
     };
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     let power = x.clone().pow(2).pow(Expression::Small).canonical();
-    let moving = |e: &&Expression| {
-        e.find(&|e| matches!(e, Expression::Displacement | Expression::Velocity)).is_some()
-    };
+    let moving = |e: &&Expression| e.nodes().any(|e| matches!(e, Expression::Unknown(_)));
     let mut moving: Vec<&Expression> = factors.iter().filter(moving).collect();
     moving.sort_by_key(|e| **e != x);
     moving == [&x, &power]

@@ -42,15 +42,7 @@ impl History {
             _ => {}
         }
         let expression = parse_expression(text, names)?;
-        let is_state = |e: &Expression| {
-            matches!(
-                e,
-                Expression::Displacement
-                    | Expression::Velocity
-                    | Expression::Acceleration
-                    | Expression::Delayed(..)
-            )
-        };
+        let is_state = |e: &Expression| matches!(e, Expression::Unknown(_));
         match expression.find(&is_state) {
             None => Ok(Self::Expression(expression)),
             Some(_) => Err(ParseError::new(ParseErrorKind::StateInHistory, 0..text.len())),

@@ -47,15 +47,15 @@ impl Parser<'_> {
                 return Err(self.error(kind));
             }
             let derivative = match order {
-                1 => Expression::Velocity,
-                2 => Expression::Acceleration,
+                1 => Expression::VELOCITY,
+                2 => Expression::ACCELERATION,
                 order => return Err(self.error(ParseErrorKind::Derivative { order })),
             };
             self.advance();
             return self.at_a_time(derivative, at.start);
         }
         match name {
-            "x" => return self.at_a_time(Expression::Displacement, at.start),
+            "x" => return self.at_a_time(Expression::DISPLACEMENT, at.start),
             "t" => return Ok(Expression::Time),
             "taylor" => return self.taylor(),
             "sqrt" => {
@@ -149,7 +149,7 @@ impl Parser<'_> {
             Expression::Product(factors)
                 if matches!(factors.first(), Some(Expression::Number(q)) if q.cmp0() == Ordering::Less)
         );
-        let inner_varies = what.find(&|e| matches!(e, Expression::Acceleration | Expression::Time));
+        let inner_varies = what.find(&|e| *e == Expression::ACCELERATION || *e == Expression::Time);
         if later || !delay.is_constant() || inner_varies.is_some() {
             return Err(refused());
         }

@@ -65,18 +65,14 @@ fn without_one(e: &Expression) -> Option<Expression> {
 /// Whether the expression is zero at x = x' = 0, decided from its form: every term has a factor
 /// that vanishes.
 fn vanishes_at_rest(e: &Expression) -> bool {
-    match e {
-        Expression::Displacement | Expression::Velocity | Expression::Acceleration => true,
-        Expression::Small => true,
-        Expression::Sum(terms) => terms.iter().all(vanishes_at_rest),
-        Expression::Product(factors) => factors.iter().any(vanishes_at_rest),
-        Expression::Power(base, exponent) => {
-            vanishes_at_rest(base) && exponent.as_number().is_some_and(|q| q > 0)
-        }
-        Expression::Function(Function::Sin | Function::Abs, z) => vanishes_at_rest(z),
-        Expression::Delayed(inner, _) => vanishes_at_rest(inner),
+    e.fold(&mut |e, below: &[bool]| match e {
+        Expression::Unknown(_) | Expression::Small => true,
+        Expression::Sum(_) => below.iter().all(|vanishes| *vanishes),
+        Expression::Product(_) => below.iter().any(|vanishes| *vanishes),
+        Expression::Power(_, exponent) => below[0] && exponent.as_number().is_some_and(|q| q > 0),
+        Expression::Function(Function::Sin | Function::Abs, _) => below[0],
         _ => false,
-    }
+    })
 }
 
 fn factorial_inverse(n: usize) -> Rational {

@@ -51,14 +51,13 @@ pub(crate) fn negated(e: Expression) -> Expression {
 
 /// A bound on the degree in x and x' and in what depends on them, with whole exponents only.
 pub(crate) fn degree(e: &Expression) -> f64 {
-    match e {
-        Expression::Number(_) | Expression::Parameter(_) | Expression::Time => 0.0,
-        Expression::Sum(list) => list.iter().map(degree).fold(0.0, f64::max),
-        Expression::Product(list) => list.iter().map(degree).sum(),
-        Expression::Power(base, exponent) => {
-            let n = exponent.as_number().map_or(1.0, |q| q.to_f64().abs());
-            degree(base) * n
+    e.fold(&mut |e, below: &[f64]| match (e, below) {
+        (Expression::Number(_) | Expression::Parameter(_) | Expression::Time, _) => 0.0,
+        (Expression::Sum(_), below) => below.iter().copied().fold(0.0, f64::max),
+        (Expression::Product(_), below) => below.iter().sum(),
+        (Expression::Power(_, exponent), [base, _]) => {
+            base * exponent.as_number().map_or(1.0, |q| q.to_f64().abs())
         }
         _ => 1.0,
-    }
+    })
 }

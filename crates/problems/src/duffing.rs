@@ -3,11 +3,11 @@
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
 
 pub(crate) fn problem() -> Problem {
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     Problem {
         name: "duffing".into(),
         title: "Duffing oscillator x'' + x + eps x^3 = 0, in rho = eps A^2".into(),
-        equation: Expression::Acceleration + x.clone() + Expression::Small * x.pow(3),
+        equation: Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3),
         time_domain: None,
         impact: None,
         synchronous: None,

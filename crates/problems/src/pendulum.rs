@@ -3,7 +3,7 @@
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, Function, ParameterCard, Problem};
 
 pub(crate) fn problem() -> Problem {
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     let exponent = Expression::Small * x.clone().pow(2).ln();
     // S(z) = sin(a e^(z/2))/(a e^(z/2)), and e^(z/2) = (y^2)^(delta/2) = stretch.
     let half = Expression::Number(rug::Rational::from((1, 2)));
@@ -13,8 +13,8 @@ pub(crate) fn problem() -> Problem {
     Problem {
         name: "pendulum".into(),
         title: "mathematical pendulum x'' + sin x = 0 by the small-delta method (delta = 1)".into(),
-        equation: Expression::Acceleration + x * exponent.formal("S"),
-        time_domain: Some(Expression::Acceleration + force),
+        equation: Expression::ACCELERATION + x * exponent.formal("S"),
+        time_domain: Some(Expression::ACCELERATION + force),
         impact: None,
         synchronous: None,
         small: "delta".into(),

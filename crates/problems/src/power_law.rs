@@ -3,12 +3,12 @@
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
 
 pub(crate) fn problem() -> Problem {
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     let stiffness = x.clone().pow(2).pow(Expression::Small);
     Problem {
         name: "power-law".into(),
         title: "oscillator with a restoring force |x|^n of any exponent n = 1 + 2 delta".into(),
-        equation: Expression::Acceleration + x * stiffness,
+        equation: Expression::ACCELERATION + x * stiffness,
         time_domain: None,
         impact: None,
         synchronous: None,

@@ -5,14 +5,14 @@ use lindstedt_equation::{AmplitudeRole, Expression, Function, ParameterCard, Pro
 
 /// x'' - a x + b x^3 + eps (T0 sign w - alpha w + beta w^3 - gamma cos(omega t)), w = x' - vstar.
 pub fn equation() -> Expression {
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     let symbol = Expression::parameter;
-    let slip = Expression::Velocity - symbol("vstar");
+    let slip = Expression::VELOCITY - symbol("vstar");
     let friction = symbol("T0") * slip.clone().apply(Function::Sign)
         - symbol("alpha") * slip.clone()
         + symbol("beta") * slip.pow(3);
     let forcing = symbol("gamma") * (symbol("omega") * Expression::Time).apply(Function::Cos);
-    Expression::Acceleration - symbol("a") * x.clone()
+    Expression::ACCELERATION - symbol("a") * x.clone()
         + symbol("b") * x.pow(3)
         + Expression::Small * (friction - forcing)
 }

@@ -3,12 +3,12 @@
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
 
 pub(crate) fn problem() -> Problem {
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     let gain = 1 - x.clone().pow(2);
     Problem {
         name: "van-der-pol".into(),
         title: "van der Pol's oscillator x'' - eps (1 - x^2) x' + x = 0, its limit cycle".into(),
-        equation: Expression::Acceleration + x - Expression::Small * gain * Expression::Velocity,
+        equation: Expression::ACCELERATION + x - Expression::Small * gain * Expression::VELOCITY,
         time_domain: None,
         impact: None,
         synchronous: None,

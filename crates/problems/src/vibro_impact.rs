@@ -7,14 +7,14 @@ use lindstedt_equation::{
 
 /// The controlled vibro-impact oscillator; eps = 1 in the end.
 pub fn problem() -> Problem {
-    let (x, v) = (Expression::Displacement, Expression::Velocity);
+    let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
     let symbol = Expression::parameter;
     let period = || symbol("T");
     let loop_force = symbol("A") * (x.clone() - x.clone().delayed(period()))
         + symbol("B") * (v.clone() - v.clone().delayed(period()))
         - symbol("c") * v;
     let force = symbol("P0") * (symbol("omega") * Expression::Time).apply(Function::Cos);
-    let flight = Expression::Acceleration + symbol("alpha").pow(2) * x
+    let flight = Expression::ACCELERATION + symbol("alpha").pow(2) * x
         - force
         - Expression::Small * loop_force;
     let line = ParameterCard::new;

@@ -95,9 +95,9 @@ pub struct Column<E> {
 /// use std::ops::ControlFlow;
 ///
 /// // A damped, forced oscillator: x'' + x' + x = F cos t has the answer F sin t.
-/// let x = Expression::Displacement;
+/// let x = Expression::DISPLACEMENT;
 /// let force = Expression::parameter("F") * Expression::Time.apply(Function::Cos);
-/// let equation = Expression::Acceleration + Expression::Velocity + x - force;
+/// let equation = Expression::ACCELERATION + Expression::VELOCITY + x - force;
 /// let model = Model::second_order(&equation)?;
 /// let values = [1, 2, 3].map(Quantity::from);
 /// let sweep = Sweep { model: &model, parameters: &Parameters::new(), name: "F", values: &values };

@@ -4,7 +4,7 @@ use crate::error::SimulateError;
 use crate::quantity::Parameters;
 use crate::real::Real;
 use crate::tape::{Op, Tape};
-use lindstedt_equation::{Expression, Function};
+use lindstedt_equation::{Expression, Function, Unknown};
 use rug::{Float, Rational};
 
 /// An expression, compiled: constants are folded at 64 bits more than the precision and rounded
@@ -136,17 +136,13 @@ impl<'a, R: Real> Compiler<'a, R> {
         index
     }
 
-    /// Compiles an expression; `delay` is the delay that it stands under.
-    pub(crate) fn expression(
-        &mut self,
-        expression: &Expression,
-        delay: Option<&Float>,
-    ) -> Result<Value, SimulateError> {
+    /// Compiles an expression.
+    pub(crate) fn expression(&mut self, expression: &Expression) -> Result<Value, SimulateError> {
         Ok(match expression {
             Expression::Number(q) => Value::Constant(self.float(q.clone())),
             Expression::Parameter(name) => {
                 match self.names.iter().position(|state| state == name) {
-                    Some(state) => self.state(state, delay)?,
+                    Some(state) => self.state(state, None)?,
                     None => Value::Constant(self.parameter(name)?),
                 }
             }
@@ -154,32 +150,16 @@ impl<'a, R: Real> Compiler<'a, R> {
                 let name = self.small.unwrap_or("the small parameter").to_owned();
                 Value::Constant(self.parameter(&name)?)
             }
-            Expression::Displacement => self.state(0, delay)?,
-            Expression::Velocity => self.state(1, delay)?,
-            Expression::Acceleration => return Err(SimulateError::UnexpectedState),
-            Expression::Time => {
-                let time = Value::Row(self.push(Op::Time));
-                match delay {
-                    None => time,
-                    Some(delay) => {
-                        self.sum(time, Value::Constant(Float::with_val(delay.prec(), -delay)))
-                    }
-                }
+            Expression::Unknown(Unknown { index: 0, derivative: state @ (0 | 1), delay }) => {
+                let by = delay.as_deref().map(|by| self.delay(by)).transpose()?;
+                self.state(*state as usize, by.as_ref())?
             }
-            Expression::Delayed(inner, by) => {
-                let Value::Constant(by) = self.expression(by, None)? else {
-                    return Err(SimulateError::UnexpectedState);
-                };
-                if !(by.is_finite() && by > 0) {
-                    return Err(SimulateError::BadDelay { delay: by.to_f64() });
-                }
-                let total = delay.map_or_else(|| by.clone(), |outer| by.clone() + outer);
-                self.expression(inner, Some(&total))?
-            }
+            Expression::Unknown(_) => return Err(SimulateError::UnexpectedState),
+            Expression::Time => Value::Row(self.push(Op::Time)),
             Expression::Sum(terms) => {
                 let mut total = Value::Constant(self.float(0));
                 for term in terms {
-                    let term = self.expression(term, delay)?;
+                    let term = self.expression(term)?;
                     total = self.sum(total, term);
                 }
                 total
@@ -189,25 +169,25 @@ impl<'a, R: Real> Compiler<'a, R> {
                 let split = factors.iter().partition(|factor| self.is_constant(factor));
                 let (constants, mut others): (Vec<_>, Vec<_>) = split;
                 for factor in constants {
-                    let factor = self.expression(factor, None)?;
+                    let factor = self.expression(factor)?;
                     constant = self.product(constant, factor);
                 }
                 // A gain of zero: what it multiplies (a delayed term) is not there.
                 if matches!(&constant, Value::Constant(zero) if zero.is_zero()) {
                     return Ok(constant);
                 }
-                let mut total = self.removable_quotient(&mut others, delay)?;
-                let quotient = self.modulus_quotient(&mut others, delay)?;
+                let mut total = self.removable_quotient(&mut others)?;
+                let quotient = self.modulus_quotient(&mut others)?;
                 total = self.product(total, quotient);
                 for factor in others {
-                    let factor = self.expression(factor, delay)?;
+                    let factor = self.expression(factor)?;
                     total = self.product(total, factor);
                 }
                 self.product(constant, total)
             }
-            Expression::Power(base, exponent) => self.power(base, exponent, delay)?,
+            Expression::Power(base, exponent) => self.power(base, exponent)?,
             Expression::Function(function, argument) => {
-                let argument = self.expression(argument, delay)?;
+                let argument = self.expression(argument)?;
                 self.function(*function, argument)
             }
             Expression::Formal(name, _) => {
@@ -234,6 +214,15 @@ impl<'a, R: Real> Compiler<'a, R> {
         let value = self.parameters.get(name);
         let value = value.ok_or_else(|| SimulateError::MissingParameter { name: name.to_owned() });
         Ok(value?.float(self.bits()))
+    }
+
+    /// The value of a delay.
+    fn delay(&mut self, by: &Expression) -> Result<Float, SimulateError> {
+        match self.expression(by)? {
+            Value::Constant(by) if by.is_finite() && by > 0 => Ok(by),
+            Value::Constant(by) => Err(SimulateError::BadDelay { delay: by.to_f64() }),
+            Value::Row(_) => Err(SimulateError::UnexpectedState),
+        }
     }
 
     fn state(&mut self, state: usize, delay: Option<&Float>) -> Result<Value, SimulateError> {

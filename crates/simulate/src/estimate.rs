@@ -36,8 +36,8 @@ pub struct Estimated<E> {
 /// struct Cosine;
 /// impl Computation for Cosine {
 ///     fn run<R: Real>(&self, real: &R, settings: Settings) -> Result<Vec<R::Element>, SimulateError> {
-///         let x = Expression::Displacement;
-///         let model = Model::second_order(&(Expression::Acceleration + x))?;
+///         let x = Expression::DISPLACEMENT;
+///         let model = Model::second_order(&(Expression::ACCELERATION + x))?;
 ///         let system = model.compile(real.clone(), &Parameters::new())?;
 ///         let start = [real.double(1.0), real.zero()];
 ///         let mut flow = Integrator::new(&system, &real.zero(), &start, settings)?;

@@ -42,8 +42,8 @@ impl Settings {
 /// use lindstedt_simulate::{Doubles, Integrator, Model, Parameters, Settings};
 /// use std::ops::ControlFlow;
 ///
-/// let x = Expression::Displacement;
-/// let model = Model::second_order(&(Expression::Acceleration + x))?;
+/// let x = Expression::DISPLACEMENT;
+/// let model = Model::second_order(&(Expression::ACCELERATION + x))?;
 /// let system = model.compile(Doubles, &Parameters::new())?;
 /// let mut flow = Integrator::new(&system, &0.0, &[1.0, 0.0], Settings::for_digits(16))?;
 /// flow.advance(&10.0, &mut |_| ControlFlow::Continue(()))?;

@@ -24,7 +24,7 @@
 //!     crossing: Crossing::Falling,
 //!     restitution: Expression::parameter("R"),
 //! };
-//! let equation = Expression::Acceleration + Expression::Displacement;
+//! let equation = Expression::ACCELERATION + Expression::DISPLACEMENT;
 //! let model = Model::second_order(&equation)?.with_wall(wall);
 //! let value = |text| Quantity::parse(text).unwrap_or(Quantity::from(0));
 //! let parameters = Parameters::new().with("s", value("-1/2")).with("R", value("0.999"));

@@ -47,7 +47,7 @@ pub struct LyapunovExponent {
 /// use std::ops::ControlFlow;
 ///
 /// // x'' = x: the exponents are 1 and -1.
-/// let equation = Expression::Acceleration - Expression::Displacement;
+/// let equation = Expression::ACCELERATION - Expression::DISPLACEMENT;
 /// let system = Model::second_order(&equation)?.linearised().compile(Doubles, &Parameters::new())?;
 /// let integration = Settings::for_digits(16);
 /// let settings = LyapunovSettings { interval: 1.0, transient: 20, averaged: 50, integration };

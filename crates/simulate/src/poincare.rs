@@ -63,8 +63,8 @@ impl<E> Point<E> {
 /// use lindstedt_equation::Expression;
 /// use lindstedt_simulate::{Doubles, Model, Parameters, PoincareMap, Section, Settings, Surface};
 ///
-/// let x = Expression::Displacement;
-/// let model = Model::second_order(&(Expression::Acceleration + x.clone()))?.with_section(x);
+/// let x = Expression::DISPLACEMENT;
+/// let model = Model::second_order(&(Expression::ACCELERATION + x.clone()))?.with_section(x);
 /// let system = model.compile(Doubles, &Parameters::new())?;
 /// let surface = Surface::Section(0);
 /// let section = Section::Events { surface, rising: Some(true), patience: 10.0 };

@@ -15,22 +15,21 @@ impl<R: Real> Compiler<'_, R> {
         &mut self,
         base: &Expression,
         exponent: &Expression,
-        delay: Option<&Float>,
     ) -> Result<Value, SimulateError> {
         let exact = self.rational(exponent);
-        let power = match self.expression(exponent, None) {
+        let power = match self.expression(exponent) {
             Ok(Value::Constant(power)) => power,
             _ => {
                 // exp(exponent ln base).
-                let exponent = self.expression(exponent, delay)?;
-                let base = self.expression(base, delay)?;
+                let exponent = self.expression(exponent)?;
+                let base = self.expression(base)?;
                 let ln = self.function(Function::Ln, base);
                 let product = self.product(exponent, ln);
                 return Ok(self.function(Function::Exp, product));
             }
         };
         if let Some(n) = exact.as_ref().and_then(small_integer) {
-            let base = self.expression(base, delay)?;
+            let base = self.expression(base)?;
             return Ok(self.integer_power(base, n));
         }
         let (inner, factor) = match base {
@@ -44,10 +43,10 @@ impl<R: Real> Compiler<'_, R> {
             _ => (&Box::new(Expression::Time), 0),
         };
         if factor == 0 {
-            let base = self.expression(base, delay)?;
+            let base = self.expression(base)?;
             return Ok(self.real_power(base, &power));
         }
-        let inner = self.expression(inner, delay)?;
+        let inner = self.expression(inner)?;
         let total = exact.map(|q| q * factor);
         if let Some(n) = total.as_ref().and_then(small_integer) {
             let even = self.integer_power(inner.clone(), n - n.rem_euclid(2));
@@ -95,7 +94,6 @@ impl<R: Real> Compiler<'_, R> {
     pub(crate) fn removable_quotient(
         &mut self,
         factors: &mut Vec<&Expression>,
-        delay: Option<&Float>,
     ) -> Result<Value, SimulateError> {
         let one = Value::Constant(self.float(1));
         let minus_one = Some(Rational::from(-1));
@@ -113,7 +111,7 @@ impl<R: Real> Compiler<'_, R> {
             };
             let Some(second) = factors.iter().position(reciprocal) else { continue };
             let known = (self.tape.ops.len(), self.switches.len());
-            let Value::Row(row) = self.expression(&argument, delay)? else { continue };
+            let Value::Row(row) = self.expression(&argument)? else { continue };
             let op = |row: usize| row.checked_sub(self.tape.states).map(|i| self.tape.ops[i]);
             let (scale, row) = match op(row) {
                 Some(Op::Scale(inner, c)) => (self.tape.constants[c].clone(), inner),
@@ -121,7 +119,7 @@ impl<R: Real> Compiler<'_, R> {
             };
             let Some(Op::Signed(inner, _)) = op(row) else { continue };
             for third in (0..factors.len()).filter(|third| *third != first && *third != second) {
-                let Value::Row(other) = self.expression(factors[third], delay)? else { continue };
+                let Value::Row(other) = self.expression(factors[third])? else { continue };
                 if other != inner {
                     continue;
                 }
@@ -151,7 +149,6 @@ impl<R: Real> Compiler<'_, R> {
     pub(crate) fn modulus_quotient(
         &mut self,
         factors: &mut Vec<&Expression>,
-        delay: Option<&Float>,
     ) -> Result<Value, SimulateError> {
         let one = Value::Constant(self.float(1));
         let found = factors.iter().find_map(|factor| match factor {
@@ -189,7 +186,7 @@ impl<R: Real> Compiler<'_, R> {
             return Ok(one);
         }
         *factors = rest;
-        let inner = self.expression(&inner, delay)?;
+        let inner = self.expression(&inner)?;
         if !odd {
             return Ok(self.integer_power(inner, total));
         }

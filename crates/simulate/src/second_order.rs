@@ -4,7 +4,7 @@ use crate::compile::{Compiler, Value};
 use crate::error::SimulateError;
 use crate::real::Real;
 use crate::tape::Op;
-use lindstedt_equation::{Crossing, Expression, Impact};
+use lindstedt_equation::{Crossing, Expression, Impact, Unknown};
 
 /// expression = factor x'' + rest.
 pub(crate) fn split_acceleration(
@@ -12,7 +12,7 @@ pub(crate) fn split_acceleration(
 ) -> Result<(Option<Expression>, Expression), SimulateError> {
     let none = |rest: &Expression| Ok((None, rest.clone()));
     match expression {
-        Expression::Acceleration => Ok((Some(Expression::integer(1)), Expression::integer(0))),
+        e if is_acceleration(e) => Ok((Some(Expression::integer(1)), Expression::integer(0))),
         Expression::Sum(terms) => {
             let (mut factor, mut rest) = (None, Vec::new());
             for term in terms {
@@ -44,15 +44,11 @@ pub(crate) fn split_acceleration(
 }
 
 fn contains_acceleration(expression: &Expression) -> bool {
-    match expression {
-        Expression::Acceleration => true,
-        Expression::Sum(list) | Expression::Product(list) => list.iter().any(contains_acceleration),
-        Expression::Power(a, b) | Expression::Delayed(a, b) => {
-            contains_acceleration(a) || contains_acceleration(b)
-        }
-        Expression::Function(_, a) | Expression::Formal(_, a) => contains_acceleration(a),
-        _ => false,
-    }
+    expression.nodes().any(is_acceleration)
+}
+
+fn is_acceleration(e: &Expression) -> bool {
+    matches!(e, Expression::Unknown(Unknown { derivative: 2, .. }))
 }
 
 /// A wall, compiled.
@@ -71,8 +67,8 @@ pub(crate) fn compile_wall<R: Real>(
     wall: &Impact,
     second_order: bool,
 ) -> Result<Wall<R::Element>, SimulateError> {
-    let position = compiler.expression(&wall.position, None)?;
-    let restitution = compiler.expression(&wall.restitution, None)?;
+    let position = compiler.expression(&wall.position)?;
+    let restitution = compiler.expression(&wall.restitution)?;
     let (Value::Constant(position), Value::Constant(restitution)) = (position, restitution) else {
         return Err(SimulateError::UnexpectedState);
     };

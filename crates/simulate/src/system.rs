@@ -17,8 +17,8 @@ use lindstedt_equation::{Expression, Impact, Problem};
 /// use lindstedt_equation::Expression;
 /// use lindstedt_simulate::{Doubles, Model, Parameters, System};
 ///
-/// let x = Expression::Displacement;
-/// let oscillator = Model::second_order(&(Expression::Acceleration + x))?;
+/// let x = Expression::DISPLACEMENT;
+/// let oscillator = Model::second_order(&(Expression::ACCELERATION + x))?;
 /// let system = oscillator.compile(Doubles, &Parameters::new())?;
 /// assert_eq!(system.dimension(), 2);
 /// # Ok::<(), lindstedt_simulate::SimulateError>(())
@@ -44,7 +44,7 @@ impl Model {
             Expression::Number(one) if one == 1 => -rest,
             factor => -rest * factor.pow(-1),
         };
-        let mut model = Self::first_order(&[], &[Expression::Velocity, right])?;
+        let mut model = Self::first_order(&[], &[Expression::VELOCITY, right])?;
         model.second_order = true;
         Ok(model)
     }
@@ -124,7 +124,7 @@ impl Model {
         let mut compiler = Compiler::new(&real, (n, n + n * directions), &self.names, bindings);
         let mut right_sides = Vec::new();
         for expression in &self.right_sides {
-            let value = compiler.expression(expression, None)?;
+            let value = compiler.expression(expression)?;
             right_sides.push(compiler.row(value));
         }
         let mut walls = Vec::new();
@@ -133,7 +133,7 @@ impl Model {
         }
         let mut sections = Vec::new();
         for section in &self.sections {
-            let value = compiler.expression(section, None)?;
+            let value = compiler.expression(section)?;
             sections.push(compiler.row(value));
         }
         if directions > 0 && !compiler.delays.is_empty() {
@@ -195,7 +195,7 @@ impl Model {
         let mut compiler = Compiler::new(real, (0, 0), &[], bindings);
         let mut rows = Vec::new();
         for expression in &self.history {
-            let value = compiler.expression(expression, None)?;
+            let value = compiler.expression(expression)?;
             rows.push(compiler.row(value));
         }
         if !compiler.switches.is_empty() {

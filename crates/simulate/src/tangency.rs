@@ -36,9 +36,9 @@ pub enum Loop {
 /// use std::f64::consts::PI;
 ///
 /// // x'' = x - x^3 + (F cos t - x')/100: Melnikov's threshold is 4 cosh(pi/2)/(3 sqrt 2 pi).
-/// let (x, v) = (Expression::Displacement, Expression::Velocity);
+/// let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
 /// let force = Expression::parameter("F") * Expression::Time.apply(Function::Cos);
-/// let equation = Expression::Acceleration - x.clone() + x.pow(3) + Expression::Small * (v - force);
+/// let equation = Expression::ACCELERATION - x.clone() + x.pow(3) + Expression::Small * (v - force);
 /// let model = Model::second_order(&equation)?.with_small("eps");
 /// let parameters = Parameters::new().with("eps", rug::Rational::from((1, 100)));
 /// let (model, parameters, side) = (&model, &parameters, Loop::Right);

@@ -31,8 +31,8 @@ struct Piece<R: Real> {
 /// use lindstedt_equation::Expression;
 /// use lindstedt_simulate::{Doubles, Integrator, Model, Parameters, Settings, Trajectory};
 ///
-/// let x = Expression::Displacement;
-/// let model = Model::second_order(&(Expression::Acceleration + x))?;
+/// let x = Expression::DISPLACEMENT;
+/// let model = Model::second_order(&(Expression::ACCELERATION + x))?;
 /// let system = model.compile(Doubles, &Parameters::new())?;
 /// let mut flow = Integrator::new(&system, &0.0, &[1.0, 0.0], Settings::for_digits(16))?;
 /// let mut trajectory = Trajectory::new(Doubles);

@@ -9,11 +9,11 @@ mod quintic {
     use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
 
     pub(crate) fn problem() -> Problem {
-        let x = Expression::Displacement;
+        let x = Expression::DISPLACEMENT;
         Problem {
             name: "quintic".into(),
             title: "quintic oscillator x'' + x + eps x^5 = 0, in rho = eps A^4".into(),
-            equation: Expression::Acceleration + x.clone() + Expression::Small * x.pow(5),
+            equation: Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(5),
             time_domain: None,
             impact: None,
             synchronous: None,

@@ -25,7 +25,7 @@ fn cycle_period(problem: &Problem, set: &[(&str, &str)], transient: i32) -> Floa
     }
     let model = Model::of_problem(problem).unwrap();
     let system = model
-        .with_section(lindstedt::equation::Expression::Velocity)
+        .with_section(lindstedt::equation::Expression::VELOCITY)
         .compile(real, &parameters)
         .unwrap();
     let start = [real.double(2.0), real.zero()];

@@ -96,9 +96,8 @@ impl Case<'_> {
         problem.small = small.clone().into();
         problem.equation = equation;
         let mut model = Model::of_problem(&problem)?;
-        let delayed = |e: &Expression| matches!(e, Expression::Delayed(..));
         let (mut held, mut past) = (Vec::new(), None);
-        if problem.equation.find(&delayed).is_some() {
+        if problem.equation.nodes().any(Expression::is_delayed) {
             let usual = || if self.impacting { History::FreeFlight } else { History::Constant };
             let start = state.each_ref().map(|q| q.float(bits));
             let (expression, remark) = match history.unwrap_or_else(usual) {
@@ -181,7 +180,7 @@ impl Case<'_> {
             (Some(_), AmplitudeRole::InSums)
                 if at_one && pendulum.is_some_and(|p| same(&p, problem)) =>
             {
-                Expression::Acceleration + Expression::Displacement.apply(Sin)
+                Expression::ACCELERATION + Expression::DISPLACEMENT.apply(Sin)
             }
             (Some(equation), AmplitudeRole::InSums) => scaled(equation),
             (Some(equation), _) => equation.clone(),
@@ -269,58 +268,36 @@ fn without_phases(e: &Expression) -> Expression {
             z.substitute(&|e| (*e == Expression::Time).then(|| Expression::integer(time)))
         };
         let bend = out(at(2) - 2 * at(1) + at(0));
-        let moves = |e: &Expression| {
-            matches!(e, Expression::Displacement | Expression::Velocity | Expression::Delayed(..))
-        };
         if !z.contains(&Expression::Time)
             || bend != Expression::integer(0)
-            || z.find(&moves).is_some()
+            || z.nodes().any(|e| matches!(e, Expression::Unknown(_)))
         {
             return None;
         }
         Some((out(at(1) - at(0)) * Expression::Time).apply(*function))
     };
-    rewritten(e, &plain)
-}
-
-/// The expression with every subexpression, from the outside, that `change` has something for replaced.
-fn rewritten(e: &Expression, change: &dyn Fn(&Expression) -> Option<Expression>) -> Expression {
-    if let Some(new) = change(e) {
-        return new;
-    }
-    let again = |e: &Expression| rewritten(e, change);
-    let list = |l: &[Expression]| l.iter().map(again).collect();
-    match e {
-        Expression::Sum(l) => Expression::Sum(list(l)),
-        Expression::Product(l) => Expression::Product(list(l)),
-        Expression::Power(a, b) => again(a).pow(again(b)),
-        Expression::Function(f, z) => again(z).apply(*f),
-        Expression::Formal(name, z) => again(z).formal(name),
-        Expression::Delayed(inner, delay) => again(inner).delayed(again(delay)),
-        leaf => leaf.clone(),
-    }
+    e.map(&plain)
 }
 
 /// The degree in x, x', x'' and their delayed values; nothing for what is no polynomial in them.
 fn degree(e: &Expression) -> Option<i64> {
-    match e {
-        Expression::Displacement | Expression::Velocity | Expression::Acceleration => Some(1),
-        Expression::Delayed(inner, _) => degree(inner),
-        Expression::Sum(list) => list.iter().map(degree).try_fold(0, |m, d| Some(m.max(d?))),
-        Expression::Product(list) => list.iter().map(degree).try_fold(0, |m, d| Some(m + d?)),
-        Expression::Power(base, exponent) => match (degree(base)?, degree(exponent)?) {
-            (0, 0) => Some(0),
-            (d, 0) => {
-                let n = exponent.as_number().filter(|n| n.is_integer() && *n >= 0)?;
-                d.checked_mul(n.numer().to_i64()?)
+    e.fold(&mut |e, below: &[Option<i64>]| match (e, below) {
+        (Expression::Unknown(_), _) => Some(1),
+        (Expression::Sum(_), list) => list.iter().try_fold(0, |m, d| Some(m.max((*d)?))),
+        (Expression::Product(_), list) => list.iter().try_fold(0, |m, d| Some(m + (*d)?)),
+        (Expression::Power(_, exponent), [base, of_exponent]) => {
+            match ((*base)?, (*of_exponent)?) {
+                (0, 0) => Some(0),
+                (d, 0) => {
+                    let n = exponent.as_number().filter(|n| n.is_integer() && *n >= 0)?;
+                    d.checked_mul(n.numer().to_i64()?)
+                }
+                _ => None,
             }
-            _ => None,
-        },
-        Expression::Function(_, z) | Expression::Formal(_, z) => {
-            degree(z).filter(|degree| *degree == 0)
         }
+        (Expression::Function(..) | Expression::Formal(..), [z]) => z.filter(|degree| *degree == 0),
         _ => Some(0),
-    }
+    })
 }
 
 fn unknown_start(problem: &Problem) -> Failure {
@@ -349,17 +326,19 @@ fn linked(mut given: Given) -> Given {
 
 /// The equation without delay.
 fn flying(e: &Expression) -> Expression {
-    let inner = |e: &Expression| match e {
-        Expression::Delayed(inner, _) => Some((**inner).clone()),
+    let now = |e: &Expression| match e {
+        Expression::Unknown(unknown) => {
+            Some(Expression::unknown(unknown.index, unknown.derivative))
+        }
         _ => None,
     };
-    rewritten(e, &inner).canonical()
+    e.map(&now).canonical()
 }
 
 /// Whether a sign or absolute value has the velocity in its argument: dry friction.
 fn rubs(equation: &Expression) -> bool {
     let is_friction = |e: &Expression| match e {
-        Expression::Function(Abs | Sign, argument) => argument.contains(&Expression::Velocity),
+        Expression::Function(Abs | Sign, argument) => argument.contains(&Expression::VELOCITY),
         _ => false,
     };
     equation.find(&is_friction).is_some()
@@ -368,15 +347,6 @@ fn rubs(equation: &Expression) -> bool {
 /// The equation for x = a y from that for y.
 fn scaled(e: &Expression) -> Expression {
     let over = |e: Expression| e * Expression::parameter("amplitude").pow(-1);
-    let list = |l: &[Expression]| l.iter().map(scaled).collect();
-    match e {
-        Expression::Displacement | Expression::Velocity | Expression::Acceleration => {
-            over(e.clone())
-        }
-        Expression::Sum(l) => Expression::Sum(list(l)),
-        Expression::Product(l) => Expression::Product(list(l)),
-        Expression::Power(a, b) => Expression::Power(Box::new(scaled(a)), Box::new(scaled(b))),
-        Expression::Function(f, a) => scaled(a).apply(*f),
-        other => other.clone(),
-    }
+    let change = |e: &Expression| matches!(e, Expression::Unknown(_)).then(|| over(e.clone()));
+    e.substitute(&change)
 }

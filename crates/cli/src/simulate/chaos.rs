@@ -139,7 +139,7 @@ impl Diagnosis {
         } else if self.forced {
             simulate::Section::Period(self.interval)
         } else {
-            model = model.with_section(Expression::Velocity);
+            model = model.with_section(Expression::VELOCITY);
             let surface = Surface::Section(0);
             simulate::Section::Events { surface, rising: Some(false), patience: 1e3 }
         };

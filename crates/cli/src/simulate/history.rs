@@ -3,9 +3,9 @@
 use crate::failure::{Failure, NO_ANSWER};
 use lindstedt::equation::Function::{Cos, Exp, Sin};
 use lindstedt::equation::print::Style;
-use lindstedt::equation::{Expression, Function};
+use lindstedt::equation::{Expression, Function, Operations};
 use lindstedt::simulate::Parameters;
-use rug::Float;
+use rug::{Float, Rational};
 
 /// Evaluates expressions in parameters (and t) at t = 0.
 pub struct Evaluator<'a> {
@@ -37,52 +37,7 @@ impl Evaluator<'_> {
 
     /// f(0) and f'(0); nothing when the expression has a state in it or no value.
     pub fn value_and_rate(&self, e: &Expression) -> Option<[Float; 2]> {
-        let constant = |x: Float| [x, self.number(0)];
-        let parameter = |name: &str| Some(constant(self.parameters.get(name)?.float(self.bits)));
-        let found = match e {
-            Expression::Number(q) => constant(Float::with_val(self.bits, q)),
-            Expression::Parameter(name) => parameter(name)?,
-            Expression::Small => parameter(self.small)?,
-            Expression::Time => [self.number(0), self.number(1)],
-            Expression::Sum(list) => {
-                let zero = constant(self.number(0));
-                list.iter().try_fold(zero, |[f, df], e| {
-                    let [g, dg] = self.value_and_rate(e)?;
-                    Some([f + g, df + dg])
-                })?
-            }
-            Expression::Product(list) => {
-                let one = constant(self.number(1));
-                list.iter().try_fold(one, |[f, df], e| {
-                    let [g, dg] = self.value_and_rate(e)?;
-                    Some([Float::with_val(self.bits, &f * &g), df * &g + f * dg])
-                })?
-            }
-            Expression::Power(base, exponent) => {
-                let ([f, df], [n, dn]) =
-                    (self.value_and_rate(base)?, self.value_and_rate(exponent)?);
-                if !dn.is_zero() {
-                    return None;
-                }
-                let power = |n: &Float| Float::with_val(self.bits, rug::ops::Pow::pow(&f, n));
-                let below = Float::with_val(self.bits, &n - 1u32);
-                let slope = if df.is_zero() { df } else { power(&below) * &n * df };
-                [power(&n), slope]
-            }
-            Expression::Function(function, argument) => {
-                let [f, df] = self.value_and_rate(argument)?;
-                let (value, slope) = match function {
-                    Sin => (f.clone().sin(), f.cos()),
-                    Cos => (f.clone().cos(), -f.sin()),
-                    Exp => (f.clone().exp(), f.exp()),
-                    Function::Ln => (f.clone().ln(), f.recip()),
-                    Function::Abs => (f.clone().abs(), f.signum()),
-                    Function::Sign => (f.signum(), self.number(0)),
-                };
-                [value, slope * df]
-            }
-            _ => return None,
-        };
+        let found = e.evaluate(&mut Rates(self))?;
         found.iter().all(Float::is_finite).then_some(found)
     }
 
@@ -90,6 +45,66 @@ impl Evaluator<'_> {
     pub fn value(&self, e: &Expression) -> Option<Float> {
         let [value, rate] = self.value_and_rate(e)?;
         rate.is_zero().then_some(value)
+    }
+}
+
+/// f(0) and f'(0).
+struct Rates<'a>(&'a Evaluator<'a>);
+
+impl Rates<'_> {
+    fn constant(&self, x: Float) -> [Float; 2] {
+        [x, self.0.number(0)]
+    }
+}
+
+impl Operations for Rates<'_> {
+    type Value = [Float; 2];
+
+    fn number(&mut self, q: &Rational) -> Option<[Float; 2]> {
+        Some(self.constant(Float::with_val(self.0.bits, q)))
+    }
+
+    fn leaf(&mut self, leaf: &Expression) -> Option<[Float; 2]> {
+        let parameter =
+            |name: &str| Some(self.constant(self.0.parameters.get(name)?.float(self.0.bits)));
+        match leaf {
+            Expression::Parameter(name) => parameter(name),
+            Expression::Small => parameter(self.0.small),
+            Expression::Time => Some([self.0.number(0), self.0.number(1)]),
+            _ => None,
+        }
+    }
+
+    fn add(&mut self, [f, df]: [Float; 2], [g, dg]: [Float; 2]) -> Option<[Float; 2]> {
+        Some([f + g, df + dg])
+    }
+
+    fn multiply(&mut self, [f, df]: [Float; 2], [g, dg]: [Float; 2]) -> Option<[Float; 2]> {
+        Some([Float::with_val(self.0.bits, &f * &g), df * &g + f * dg])
+    }
+
+    fn power(&mut self, base: &Expression, exponent: &Expression) -> Option<[Float; 2]> {
+        let ([f, df], [n, dn]) = (self.0.value_and_rate(base)?, self.0.value_and_rate(exponent)?);
+        if !dn.is_zero() {
+            return None;
+        }
+        let power = |n: &Float| Float::with_val(self.0.bits, rug::ops::Pow::pow(&f, n));
+        let below = Float::with_val(self.0.bits, &n - 1u32);
+        let slope = if df.is_zero() { df } else { power(&below) * &n * df };
+        Some([power(&n), slope])
+    }
+
+    fn function(&mut self, function: Function, argument: &Expression) -> Option<[Float; 2]> {
+        let [f, df] = self.0.value_and_rate(argument)?;
+        let (value, slope) = match function {
+            Sin => (f.clone().sin(), f.cos()),
+            Cos => (f.clone().cos(), -f.sin()),
+            Exp => (f.clone().exp(), f.exp()),
+            Function::Ln => (f.clone().ln(), f.recip()),
+            Function::Abs => (f.clone().abs(), f.signum()),
+            Function::Sign => (f.signum(), self.0.number(0)),
+        };
+        Some([value, slope * df])
     }
 }
 
@@ -114,58 +129,67 @@ impl Linear<'_> {
         Affine { parts }
     }
 
-    fn read(&mut self, e: &Expression) -> Option<Affine> {
-        let one = || Float::with_val(self.evaluator.bits, 1);
-        Some(match e {
-            Expression::Displacement => self.single(1, one()),
-            Expression::Velocity => self.single(2, one()),
-            Expression::Acceleration => self.single(3, one()),
+    /// What has no unknown in it.
+    fn value(&self, e: &Expression) -> Option<Affine> {
+        Some(self.single(0, self.evaluator.value(e)?))
+    }
+}
+
+impl Operations for Linear<'_> {
+    type Value = Affine;
+
+    fn number(&mut self, q: &Rational) -> Option<Affine> {
+        Some(self.single(0, Float::with_val(self.evaluator.bits, q)))
+    }
+
+    fn leaf(&mut self, leaf: &Expression) -> Option<Affine> {
+        let one = Float::with_val(self.evaluator.bits, 1);
+        match leaf {
             // T = 0.
-            Expression::Delayed(inner, _) => self.read(inner)?,
-            Expression::Sum(list) => {
-                let mut sum = self.single(0, Float::new(2));
-                for e in list {
-                    let more = self.read(e)?;
-                    sum.parts.iter_mut().zip(more.parts).for_each(|(a, b)| *a += b);
-                }
-                sum
-            }
-            Expression::Product(list) => {
-                let mut product = self.single(0, one());
-                for e in list {
-                    let factor = self.read(e)?;
-                    let is_number = |f: &Affine| f.parts.iter().skip(1).all(Float::is_zero);
-                    let (number, other) = match (is_number(&product), is_number(&factor)) {
-                        (true, _) => (product.parts[0].clone(), factor),
-                        (_, true) => (factor.parts[0].clone(), product),
-                        _ => return None,
-                    };
-                    product = other;
-                    product.parts.iter_mut().for_each(|part| *part *= &number);
-                }
-                product
-            }
-            Expression::Function(function @ (Cos | Sin), argument)
-                if argument.contains(&Expression::Time) =>
-            {
-                // cos(phase + omega t).
-                let [phase, omega] = self.evaluator.value_and_rate(argument)?;
-                let is_linear = argument.find(&|e| {
-                    matches!(e, Expression::Function(..) | Expression::Power(..))
-                        && e.contains(&Expression::Time)
-                });
-                if is_linear.is_some() || self.omega.as_ref().is_some_and(|known| *known != omega) {
-                    return None;
-                }
-                self.omega = Some(omega);
-                let (sin, cos) = phase.sin_cos(Float::new(self.evaluator.bits));
-                let mut f = self.single(0, Float::new(2));
-                let (p, q) = if *function == Cos { (cos, -sin) } else { (sin, cos) };
-                [f.parts[4], f.parts[5]] = [p, q];
-                f
-            }
-            other => self.single(0, self.evaluator.value(other)?),
-        })
+            Expression::Unknown(unknown) => Some(self.single(1 + unknown.derivative as usize, one)),
+            constant => self.value(constant),
+        }
+    }
+
+    fn add(&mut self, mut a: Affine, b: Affine) -> Option<Affine> {
+        a.parts.iter_mut().zip(b.parts).for_each(|(a, b)| *a += b);
+        Some(a)
+    }
+
+    fn multiply(&mut self, a: Affine, b: Affine) -> Option<Affine> {
+        let is_number = |f: &Affine| f.parts.iter().skip(1).all(Float::is_zero);
+        let (number, mut other) = match (is_number(&a), is_number(&b)) {
+            (true, _) => (a.parts[0].clone(), b),
+            (_, true) => (b.parts[0].clone(), a),
+            _ => return None,
+        };
+        other.parts.iter_mut().for_each(|part| *part *= &number);
+        Some(other)
+    }
+
+    fn power(&mut self, base: &Expression, exponent: &Expression) -> Option<Affine> {
+        self.value(&base.clone().pow(exponent.clone()))
+    }
+
+    fn function(&mut self, function: Function, argument: &Expression) -> Option<Affine> {
+        if !(matches!(function, Cos | Sin) && argument.contains(&Expression::Time)) {
+            return self.value(&argument.clone().apply(function));
+        }
+        // cos(phase + omega t).
+        let [phase, omega] = self.evaluator.value_and_rate(argument)?;
+        let bent = argument.nodes().any(|e| {
+            matches!(e, Expression::Function(..) | Expression::Power(..))
+                && e.contains(&Expression::Time)
+        });
+        if bent || self.omega.as_ref().is_some_and(|known| *known != omega) {
+            return None;
+        }
+        self.omega = Some(omega);
+        let (sin, cos) = phase.sin_cos(Float::new(self.evaluator.bits));
+        let mut f = self.single(0, Float::new(self.evaluator.bits));
+        let (p, q) = if function == Cos { (cos, -sin) } else { (sin, cos) };
+        [f.parts[4], f.parts[5]] = [p, q];
+        Some(f)
     }
 }
 
@@ -191,7 +215,7 @@ pub fn free_flight(
 ) -> Result<Expression, Failure> {
     let evaluator = Evaluator { parameters, small, bits };
     let mut linear = Linear { evaluator: &evaluator, omega: None };
-    let found = linear.read(equation);
+    let found = equation.evaluate(&mut linear);
     let omega = linear.omega.take().unwrap_or_else(|| Float::with_val(bits, 1));
     let Some(Affine { parts: [d, k, c, m, p, q] }) = found else {
         return Err(no_history(

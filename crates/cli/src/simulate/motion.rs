@@ -169,7 +169,7 @@ impl Plan {
     ) -> Result<Motion, SimulateError> {
         let mut model = self.setup.model.clone();
         if self.watches_velocity() {
-            model = model.with_section(Expression::Velocity);
+            model = model.with_section(Expression::VELOCITY);
         }
         let system = model.compile(real.clone(), &self.setup.parameters)?;
         let bits = real.bits() + 64;

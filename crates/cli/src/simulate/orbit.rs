@@ -15,17 +15,11 @@ use rug::{Float, Rational};
 
 /// The equation with t + psi/omega for t.
 fn advanced(e: &Expression) -> Expression {
-    let list = |l: &[Expression]| l.iter().map(advanced).collect();
-    match e {
-        Expression::Time => {
-            let omega = Expression::parameter("omega").pow(-1);
-            Expression::Time + Expression::parameter("psi") * omega
-        }
-        Expression::Sum(l) => Expression::Sum(list(l)),
-        Expression::Product(l) => Expression::Product(list(l)),
-        Expression::Function(f, a) => advanced(a).apply(*f),
-        other => other.clone(),
-    }
+    let change = |e: &Expression| {
+        let omega = || Expression::parameter("omega").pow(-1);
+        (*e == Expression::Time).then(|| Expression::Time + Expression::parameter("psi") * omega())
+    };
+    e.substitute(&change)
 }
 
 /// Just after an impact, with the orbit as history; `problem` is the vibro-impact oscillator.

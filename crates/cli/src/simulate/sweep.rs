@@ -114,7 +114,7 @@ impl Diagram {
         };
         let mut model = self.setup.model.clone();
         if self.section == Section::Velocity {
-            model = model.with_section(lindstedt::equation::Expression::Velocity);
+            model = model.with_section(lindstedt::equation::Expression::VELOCITY);
         }
         let forcing = self.setup.forcing.as_ref().map_or(10.0, |q| q.float(64).to_f64());
         let patience = 100.0 * forcing;

@@ -162,8 +162,9 @@ pub fn of_file(path: &str, set: &[String]) -> Result<Known, Failure> {
         return Err(Failure::usage("unknown-parameter", message, "--set k=N"));
     }
     let k = source.values.get(count).filter(|_| card(count).is_none());
-    let delayed = |e: &Expression| matches!(e, Expression::Delayed(..));
-    if k.is_some() && (tied.is_some() || source.problem.equation.find(&delayed).is_some()) {
+    if k.is_some()
+        && (tied.is_some() || source.problem.equation.nodes().any(Expression::is_delayed))
+    {
         let message = format!("{} has no parameter {count:?}", source.problem.name);
         let hint = "the periods between impacts follow from its delay or its [synchronous]";
         return Err(Failure::usage("unknown-parameter", message, hint));

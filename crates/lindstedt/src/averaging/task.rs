@@ -1,7 +1,7 @@
 //! One averaging: the field its coefficients are taken from, rational numbers, symbols or enclosures.
 
 use super::coefficients::{Coefficients, with_angles};
-use super::values::{Given, collect, constant, enclosed};
+use super::values::{Given, constant, enclosed};
 use super::{Averaging, AveragingSettings, Coefficient, RateTerm};
 use crate::derivation::{check_delays, unknown_parameter};
 use crate::{Error, Progress};
@@ -72,7 +72,7 @@ impl<'a> Task<'a> {
         }
         check_delays(&problem.equation, &settings.parameters)?;
         let mut names = BTreeSet::new();
-        collect(&problem.equation, &mut names);
+        names.extend(problem.equation.parameters());
         let excitation = Excitation::of(&problem.equation)?;
         Ok(Self { problem, settings, excitation, names })
     }

@@ -3,9 +3,9 @@
 use super::Coefficient;
 use crate::{Error, Exact, Number};
 use lindstedt_algebra::RationalAlgebra;
-use lindstedt_equation::Expression;
+use lindstedt_equation::{Expression, Function, Operations};
 use lindstedt_number::ball::{Ball, Balls};
-use std::collections::BTreeSet;
+use rug::Rational;
 
 /// A number from its enclosure: all digits are certain, or it is zero to twice the digits.
 pub(super) fn enclosed(ball: &Ball, digits: usize, bits: u32) -> Result<Coefficient, Error> {
@@ -31,20 +31,43 @@ impl Given {
     }
 }
 
-pub(super) fn collect(expression: &Expression, names: &mut BTreeSet<String>) {
-    match expression {
-        Expression::Parameter(name) => {
-            names.insert(name.clone());
-        }
-        Expression::Sum(list) | Expression::Product(list) => {
-            list.iter().for_each(|inner| collect(inner, names));
-        }
-        Expression::Power(a, b) | Expression::Delayed(a, b) => {
-            collect(a, names);
-            collect(b, names);
-        }
-        Expression::Function(_, inner) | Expression::Formal(_, inner) => collect(inner, names),
-        _ => {}
+/// The ring of the coefficients, with the values of parameters in it.
+struct Constants<'a, K: RationalAlgebra> {
+    ring: &'a K,
+    values: &'a dyn Fn(&str) -> Option<K::Element>,
+}
+
+impl<K: RationalAlgebra> Operations for Constants<'_, K> {
+    type Value = K::Element;
+
+    fn number(&mut self, q: &Rational) -> Option<K::Element> {
+        Some(self.ring.rational(q))
+    }
+
+    fn leaf(&mut self, leaf: &Expression) -> Option<K::Element> {
+        let Expression::Parameter(name) = leaf else { return None };
+        (self.values)(name)
+    }
+
+    fn add(&mut self, a: K::Element, b: K::Element) -> Option<K::Element> {
+        Some(self.ring.add(&a, &b))
+    }
+
+    fn multiply(&mut self, a: K::Element, b: K::Element) -> Option<K::Element> {
+        Some(self.ring.mul(&a, &b))
+    }
+
+    fn power(&mut self, base: &Expression, exponent: &Expression) -> Option<K::Element> {
+        let Expression::Number(n) = exponent else { return None };
+        let n = n.is_integer().then(|| n.numer().to_i32()).flatten()?;
+        let base = base.evaluate(self)?;
+        let base = if n < 0 { self.ring.reciprocal(&base)? } else { base };
+        (n.unsigned_abs() <= 1000)
+            .then(|| lindstedt_coeff::polynomial::power(self.ring, &base, n.unsigned_abs()))
+    }
+
+    fn function(&mut self, _: Function, _: &Expression) -> Option<K::Element> {
+        None
     }
 }
 
@@ -54,24 +77,5 @@ pub(super) fn constant<K: RationalAlgebra>(
     expression: &Expression,
     values: &dyn Fn(&str) -> Option<K::Element>,
 ) -> Option<K::Element> {
-    let value = |inner: &Expression| constant(ring, inner, values);
-    match expression {
-        Expression::Number(q) => Some(ring.rational(q)),
-        Expression::Parameter(name) => values(name),
-        Expression::Sum(list) => {
-            list.iter().try_fold(ring.zero(), |sum, inner| Some(ring.add(&sum, &value(inner)?)))
-        }
-        Expression::Product(list) => list
-            .iter()
-            .try_fold(ring.one(), |product, inner| Some(ring.mul(&product, &value(inner)?))),
-        Expression::Power(base, exponent) => {
-            let Expression::Number(n) = &**exponent else { return None };
-            let n = n.is_integer().then(|| n.numer().to_i32()).flatten()?;
-            let base = value(base)?;
-            let base = if n < 0 { ring.reciprocal(&base)? } else { base };
-            (n.unsigned_abs() <= 1000)
-                .then(|| lindstedt_coeff::polynomial::power(ring, &base, n.unsigned_abs()))
-        }
-        _ => None,
-    }
+    expression.evaluate(&mut Constants { ring, values })
 }

@@ -7,7 +7,7 @@ use lindstedt_algebra::RationalAlgebra;
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_equation::classify::{linear_stiffness, rational_root};
 use lindstedt_equation::print::Style;
-use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem, Unknown};
 use lindstedt_expand::ExpandError;
 use rug::Rational;
 use std::collections::BTreeMap;
@@ -67,8 +67,8 @@ pub(crate) fn prepare(problem: &Problem, settings: &Settings) -> Result<Prepared
         let amplitude = value("amplitude")?.unwrap_or_else(|| Rational::from(1));
         equation = scale(equation, &amplitude, &Rational::from(1));
     }
-    if equation.contains(&Expression::Velocity)
-        && equation.find(&|e| matches!(e, Expression::Time | Expression::Delayed(..))).is_none()
+    if equation.contains(&Expression::VELOCITY)
+        && !equation.nodes().any(|e| *e == Expression::Time || e.is_delayed())
         && let Some(Expression::Number(kappa)) = linear_stiffness(&equation)
         && let Some(root) = rational_root(&kappa)
     {
@@ -86,14 +86,16 @@ fn scale(equation: Expression, a: &Rational, w: &Rational) -> Expression {
     }
     let number = |q: Rational| Expression::Number(q);
     let change = |e: &Expression| match e {
-        Expression::Displacement => Some(number(a.clone()) * e.clone()),
-        Expression::Velocity => Some(number(Rational::from(a * w)) * e.clone()),
+        Expression::Unknown(Unknown { derivative: 0, .. }) => Some(number(a.clone()) * e.clone()),
+        Expression::Unknown(Unknown { derivative: 1, .. }) => {
+            Some(number(Rational::from(a * w)) * e.clone())
+        }
         _ => None,
     };
     let inverse = (a * Rational::from(w * w)).recip();
-    let term = |term: &Expression| match term {
-        Expression::Acceleration => Expression::Acceleration,
-        other => number(inverse.clone()) * other.substitute(&change),
+    let term = |term: &Expression| match *term == Expression::ACCELERATION {
+        true => Expression::ACCELERATION,
+        false => number(inverse.clone()) * term.substitute(&change),
     };
     let scaled = Expression::Sum(equation.terms().iter().map(term).collect());
     distribute_powers(&scaled).canonical()
@@ -101,25 +103,20 @@ fn scale(equation: Expression, a: &Rational, w: &Rational) -> Expression {
 
 /// (q y)^n as q^n y^n, so that numbers meet.
 fn distribute_powers(e: &Expression) -> Expression {
-    let again = distribute_powers;
-    match e {
-        Expression::Sum(list) => Expression::Sum(list.iter().map(again).collect()),
-        Expression::Product(list) => Expression::Product(list.iter().map(again).collect()),
-        Expression::Power(base, n) if n.as_number().is_some_and(|n| n.is_integer()) => {
-            match again(base).canonical() {
-                Expression::Product(mut factors)
-                    if matches!(factors.first(), Some(Expression::Number(_))) =>
-                {
-                    let number = factors.remove(0).pow((**n).clone());
-                    number * Expression::Product(factors).canonical().pow((**n).clone())
-                }
-                base => base.pow((**n).clone()),
+    let change = |e: &Expression| {
+        let Expression::Power(base, n) = e else { return None };
+        n.as_number().filter(Rational::is_integer)?;
+        Some(match distribute_powers(base).canonical() {
+            Expression::Product(mut factors)
+                if matches!(factors.first(), Some(Expression::Number(_))) =>
+            {
+                let number = factors.remove(0).pow((**n).clone());
+                number * Expression::Product(factors).canonical().pow((**n).clone())
             }
-        }
-        Expression::Power(base, n) => again(base).pow(again(n)),
-        Expression::Function(function, z) => again(z).apply(*function),
-        other => other.clone(),
-    }
+            base => base.pow((**n).clone()),
+        })
+    };
+    e.map(&change)
 }
 
 /// Powers of the frequency in the time of the problem: omega = w Omega.

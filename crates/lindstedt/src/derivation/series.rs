@@ -122,13 +122,13 @@ pub(super) fn energy_integral(
     let interrupted = || Error::from(ExpandError::Interrupted { order });
     let unavailable = || Error::NoSuchRoute { problem: problem.name.to_string() };
     // The formulas hold for these two equations, whatever the problem is called.
-    let x = || Expression::Displacement;
+    let x = || Expression::DISPLACEMENT;
     let square = || x().pow(2);
-    let power_law = Expression::Acceleration + x() * square().pow(Expression::Small);
+    let power_law = Expression::ACCELERATION + x() * square().pow(Expression::Small);
     let formal = (Expression::Small * square().ln()).formal(FORMAL);
     let expected = match problem.amplitude {
         AmplitudeRole::ScalesFrequency { .. } => power_law,
-        _ => Expression::Acceleration + x() * formal,
+        _ => Expression::ACCELERATION + x() * formal,
     };
     if problem.equation != expected {
         return Err(unavailable());

@@ -319,11 +319,11 @@ fn form(problem: &Problem, condition: Condition, equation: &Expression) -> Form 
     if let Some(stiffness) = power_law(equation).filter(|_| initial) {
         return Form::PowerLaw { stiffness };
     }
-    let x = || Expression::Displacement;
+    let x = || Expression::DISPLACEMENT;
     let sums = (Expression::Small * x().pow(2).ln()).formal(crate::derivation::FORMAL);
     if initial
         && problem.amplitude == AmplitudeRole::InSums
-        && *equation == (Expression::Acceleration + x() * sums).canonical()
+        && *equation == (Expression::ACCELERATION + x() * sums).canonical()
     {
         return Form::Sums;
     }
@@ -352,9 +352,9 @@ fn form(problem: &Problem, condition: Condition, equation: &Expression) -> Form 
 
 /// kappa > 0 of x'' + kappa x (x^2)^small.
 fn power_law(equation: &Expression) -> Option<Rational> {
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     let power = x.clone().pow(2).pow(Expression::Small);
-    let others = equation.terms().iter().filter(|term| **term != Expression::Acceleration);
+    let others = equation.terms().iter().filter(|term| **term != Expression::ACCELERATION);
     let [Expression::Product(factors)] = &others.collect::<Vec<_>>()[..] else { return None };
     let rest = factors.iter().filter(|f| **f != x && **f != power);
     let stiffness = match &rest.collect::<Vec<_>>()[..] {

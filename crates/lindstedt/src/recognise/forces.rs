@@ -22,7 +22,7 @@ pub(super) fn kind(all: &Monomials, m: &Monomial) -> Result<Kind, Why> {
     let atoms = || m.atoms.keys().filter_map(|key| all.atoms.get(key));
     let holds = |e: &Expression| atoms().any(|atom| atom.contains(e));
     let any = |wanted: &dyn Fn(&Expression) -> bool| atoms().any(|a| a.find(wanted).is_some());
-    if any(&|e| matches!(e, Expression::Delayed(..))) {
+    if any(&Expression::is_delayed) {
         return Err(Why::Delay);
     }
     if any(&|e| matches!(e, Expression::Formal(..))) {
@@ -32,8 +32,8 @@ pub(super) fn kind(all: &Monomials, m: &Monomial) -> Result<Kind, Why> {
         return Err(Why::SmallInside);
     }
     let time = holds(&Expression::Time);
-    let velocity = m.velocity > 0 || holds(&Expression::Velocity);
-    let position = m.x > 0 || holds(&Expression::Displacement);
+    let velocity = m.velocity > 0 || holds(&Expression::VELOCITY);
+    let position = m.x > 0 || holds(&Expression::DISPLACEMENT);
     match m.order {
         0 if time || velocity => Err(Why::NotSmall),
         0 => Ok(Kind::Force),

@@ -5,7 +5,7 @@ use super::in_pi::InPi;
 use super::{Refusal, Why, bind, missing, multiply_out, named, rest};
 use crate::Exact;
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
-use lindstedt_equation::{Crossing, Expression, Function, Problem};
+use lindstedt_equation::{Crossing, Expression, Function, Problem, Unknown};
 use lindstedt_impact::parameters::{Branch, ExactParameters};
 use rug::Rational;
 use std::collections::BTreeMap;
@@ -60,12 +60,11 @@ impl ImpactProblem {
         used.retain(|name| tie.is_none_or(|tie| tie.delay != *name));
         missing(&used, values)?;
         // The delay that is tied to the force keeps its name.
-        let bound = spread(&bind(&rest, values));
+        let bound = bind(&rest, values);
         let all = multiply_out(&bound)?;
         let term = |m: &Monomial, q: &Rational| all.tree(m, q);
-        let symbolic = spread(&rest);
         let refuse = |m: &Monomial, q: &Rational, why| {
-            named(&symbolic, values, (term(m, q), why), &|all, m| shape(all, m).err())
+            named(&rest, values, (term(m, q), why), &|all, m| shape(all, m).err())
         };
         let mut linear = Linear::default();
         let mut frequency: Option<InPi> = None;
@@ -121,7 +120,7 @@ impl ImpactProblem {
             k.filter(|k| *k > 0).ok_or_else(|| Refusal::Periods { value: value.to_string() })
         };
         let other_delay = |time: &Expression| Refusal::Term {
-            term: Box::new(Expression::Displacement.delayed(time.clone())),
+            term: Box::new(Expression::DISPLACEMENT.delayed(time.clone())),
             why: Why::OtherDelay,
         };
         let periods = match (&delay, tied) {
@@ -187,7 +186,7 @@ impl Linear {
         let stiffness = square.value().map_or_else(|| "?".into(), |v| v.to_string());
         let no_stiffness = || Refusal::NoStiffness { value: stiffness.clone() };
         let alpha = square.root().filter(|_| !square.is_zero()).ok_or_else(no_stiffness)?;
-        let x = Expression::Displacement;
+        let x = Expression::DISPLACEMENT;
         let constant = |e: &Expression| InPi::of(&bind(e, values)).ok_or_else(|| irrational(e));
         let mut position = constant(&wall.position)?;
         if !self.constant.is_zero() {
@@ -211,7 +210,7 @@ impl Linear {
         };
         // A phase of pi.
         let force = force.abs();
-        let velocity = Expression::Velocity;
+        let velocity = Expression::VELOCITY;
         let parameters = ExactParameters {
             alpha,
             omega: exact(&omega, &Expression::Time)?,
@@ -246,11 +245,11 @@ fn shape(all: &Monomials, m: &Monomial) -> Result<Shape, Why> {
         (0, 0, []) => Ok(Shape::Constant),
         (1, 0, []) => Ok(Shape::Displacement),
         (0, 1, []) => Ok(Shape::Velocity),
-        (0, 0, [(Expression::Delayed(inner, delay), 1)]) => match **inner {
-            Expression::Displacement => Ok(Shape::Delayed((**delay).clone(), false)),
-            Expression::Velocity => Ok(Shape::Delayed((**delay).clone(), true)),
-            _ => Err(Why::NotLinear),
-        },
+        (0, 0, [(Expression::Unknown(Unknown { derivative, delay: Some(delay), .. }), 1)])
+            if *derivative < 2 =>
+        {
+            Ok(Shape::Delayed((**delay).clone(), *derivative == 1))
+        }
         (0, 0, [(Expression::Function(function @ (Function::Cos | Function::Sin), z), 1)])
             if linear_in_time(z) =>
         {
@@ -296,40 +295,4 @@ fn periods_of(delay: &Expression, omega: &InPi) -> Option<u32> {
         _ => return None,
     };
     (turns.is_integer() && turns > 0).then(|| turns.numer().to_u32()).flatten()
-}
-
-/// Sums at an earlier time become sums of what is at an earlier time; the small parameter stays.
-fn spread(e: &Expression) -> Expression {
-    let all = |list: &[Expression]| list.iter().map(spread).collect();
-    match e {
-        Expression::Sum(list) => Expression::Sum(all(list)),
-        Expression::Product(list) => Expression::Product(all(list)),
-        Expression::Power(a, b) => spread(a).pow((**b).clone()),
-        Expression::Delayed(inner, delay) => {
-            let inner = spread(inner);
-            let linear = |m: &Monomial| {
-                let bare = m.is_power(1, 0) || m.is_power(0, 1) || m.is_power(0, 0);
-                bare && m.order == 0
-            };
-            match expand(&inner) {
-                Some(parts) if parts.terms.keys().all(linear) => {
-                    let one = |(m, q): (&Monomial, &Rational)| {
-                        let bare =
-                            Monomial { parameters: m.parameters.clone(), ..Monomial::default() };
-                        let constant = parts.tree(&bare, q);
-                        match (m.x, m.velocity) {
-                            (0, 0) => constant,
-                            (1, _) => {
-                                constant * Expression::Displacement.delayed((**delay).clone())
-                            }
-                            _ => constant * Expression::Velocity.delayed((**delay).clone()),
-                        }
-                    };
-                    Expression::Sum(parts.terms.iter().map(one).collect())
-                }
-                _ => inner.delayed((**delay).clone()),
-            }
-        }
-        other => other.clone(),
-    }
 }

@@ -4,7 +4,7 @@ use super::in_pi::InPi;
 use super::{PI, Refusal, Why, multiply_out};
 use crate::Exact;
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
-use lindstedt_equation::{Expression, Function};
+use lindstedt_equation::{Expression, Function, Operations, Unknown};
 use lindstedt_melnikov::{Friction, PolynomialFriction};
 use rug::float::Constant;
 use rug::ops::Pow;
@@ -36,21 +36,15 @@ fn bends(e: &Expression) -> bool {
 fn belt_speed(perturbation: &Expression) -> Result<Option<InPi>, Refusal> {
     let mut speed: Option<InPi> = None;
     let mut refused = None;
-    let seen = std::cell::RefCell::new(Vec::new());
-    let _ = perturbation.find(&|e| {
-        if let Expression::Function(Function::Abs | Function::Sign, z) = e
-            && z.contains(&Expression::Velocity)
-        {
-            seen.borrow_mut().push((e.clone(), (**z).clone()));
+    for whole in perturbation.nodes() {
+        let Expression::Function(Function::Abs | Function::Sign, inside) = whole else { continue };
+        if !inside.contains(&Expression::VELOCITY) {
+            continue;
         }
-        false
-    });
-    for (whole, inside) in seen.into_inner() {
-        let found = kink(&inside);
-        match (&speed, found) {
-            (_, None) => refused = Some(whole),
+        match (&speed, kink(inside)) {
+            (_, None) => refused = Some(whole.clone()),
             (None, Some(found)) => speed = Some(found),
-            (Some(first), Some(found)) if *first != found => refused = Some(whole),
+            (Some(first), Some(found)) if *first != found => refused = Some(whole.clone()),
             _ => {}
         }
     }
@@ -86,41 +80,29 @@ impl InPi {
 
 /// sign(p w) = sgn(p) sign(w) and |p w| = |p||w|, everywhere inside.
 fn homogeneous(e: &Expression) -> Expression {
-    let all = |list: &[Expression]| list.iter().map(homogeneous).collect();
-    match e {
-        Expression::Sum(list) => Expression::Sum(all(list)),
-        Expression::Product(list) => Expression::Product(all(list)),
-        Expression::Power(a, b) => homogeneous(a).pow(homogeneous(b)),
-        Expression::Function(function @ (Function::Abs | Function::Sign), z) => {
-            let slope = expand(z).and_then(|all| match all.terms.iter().collect::<Vec<_>>()[..] {
-                [(m, q)] if m.is_power(0, 1) && m.parameters.is_empty() && m.order == 0 => {
-                    Some(q.clone())
-                }
-                _ => None,
-            });
-            let Some(slope) = slope else { return homogeneous(z).apply(*function) };
-            let factor = match function {
-                Function::Abs => Rational::from(slope.abs_ref()),
-                _ => Rational::from(slope.signum_ref()),
-            };
-            Expression::Number(factor) * Expression::Velocity.apply(*function)
+    e.map(&|e| {
+        let Expression::Function(function @ (Function::Abs | Function::Sign), z) = e else {
+            return None;
+        };
+        let all = expand(z)?;
+        let [(m, slope)] = all.terms.iter().collect::<Vec<_>>()[..] else { return None };
+        if !(m.is_power(0, 1) && m.parameters.is_empty() && m.order == 0) {
+            return None;
         }
-        Expression::Function(function, z) => homogeneous(z).apply(*function),
-        other => other.clone(),
-    }
+        let factor = match function {
+            Function::Abs => Rational::from(slope.abs_ref()),
+            _ => Rational::from(slope.signum_ref()),
+        };
+        Some(Expression::Number(factor) * Expression::VELOCITY.apply(*function))
+    })
 }
 
 /// The expression on one side of w = 0: with that sign of w.
 fn beside(e: &Expression, side: i64) -> Expression {
-    let all = |list: &[Expression]| list.iter().map(|e| beside(e, side)).collect();
-    match e {
-        Expression::Sum(list) => Expression::Sum(all(list)),
-        Expression::Product(list) => Expression::Product(all(list)),
-        Expression::Power(a, b) => beside(a, side).pow(beside(b, side)),
-        Expression::Function(Function::Sign, _) => Expression::integer(side),
-        Expression::Function(function, z) => beside(z, side).apply(*function),
-        other => other.clone(),
-    }
+    e.map(&|e| match e {
+        Expression::Function(Function::Sign, _) => Some(Expression::integer(side)),
+        _ => None,
+    })
 }
 
 impl FrictionLaw {
@@ -129,7 +111,7 @@ impl FrictionLaw {
     pub fn new(perturbation: &Expression, all: &Monomials) -> Result<Self, Refusal> {
         let belt = belt_speed(perturbation)?.unwrap_or_default();
         let shift = |e: &Expression| {
-            matches!(e, Expression::Velocity).then(|| Expression::Velocity + belt.expression())
+            (*e == Expression::VELOCITY).then(|| Expression::VELOCITY + belt.expression())
         };
         let terms = all.terms.iter().map(|(m, q)| all.tree(m, q));
         let shifted = Expression::Sum(terms.collect()).substitute(&shift).canonical();
@@ -155,7 +137,7 @@ impl FrictionLaw {
             }
         }
         let term = |k: u32| {
-            Expression::Product(vec![Expression::Small, Expression::Velocity.pow(i64::from(k))])
+            Expression::Product(vec![Expression::Small, Expression::VELOCITY.pow(i64::from(k))])
         };
         let value = |c: &InPi, k: u32| {
             let refusal = || Refusal::Term { term: Box::new(term(k)), why: Why::Irrational };
@@ -231,8 +213,8 @@ fn sign_and_power(all: &Monomials, m: &Monomial) -> Option<(bool, u32)> {
     let (mut signs, mut power) = (0, m.velocity);
     for (key, n) in &m.atoms {
         match all.atoms.get(key)? {
-            Expression::Function(Function::Sign, z) if **z == Expression::Velocity => signs += n,
-            Expression::Function(Function::Abs, z) if **z == Expression::Velocity => {
+            Expression::Function(Function::Sign, z) if **z == Expression::VELOCITY => signs += n,
+            Expression::Function(Function::Abs, z) if **z == Expression::VELOCITY => {
                 signs += n;
                 power += n;
             }
@@ -242,39 +224,61 @@ fn sign_and_power(all: &Monomials, m: &Monomial) -> Option<(bool, u32)> {
     (m.x == 0).then_some((signs % 2 == 1, power))
 }
 
+/// Values at one w, which x' or x stands for.
+struct At<'a> {
+    w: &'a Float,
+}
+
+impl Operations for At<'_> {
+    type Value = Float;
+
+    fn number(&mut self, q: &Rational) -> Option<Float> {
+        Some(Float::with_val(self.w.prec(), q))
+    }
+
+    fn leaf(&mut self, leaf: &Expression) -> Option<Float> {
+        match leaf {
+            Expression::Parameter(name) if name == PI => {
+                Some(Float::with_val(self.w.prec(), Constant::Pi))
+            }
+            Expression::Unknown(Unknown { derivative: 0 | 1, delay: None, .. }) => {
+                Some(self.w.clone())
+            }
+            _ => None,
+        }
+    }
+
+    fn add(&mut self, a: Float, b: Float) -> Option<Float> {
+        Some(a + b)
+    }
+
+    fn multiply(&mut self, a: Float, b: Float) -> Option<Float> {
+        Some(a * b)
+    }
+
+    fn power(&mut self, base: &Expression, exponent: &Expression) -> Option<Float> {
+        let value = base.evaluate(self)?;
+        Some(match exponent.as_number() {
+            Some(n) if n.is_integer() => value.pow(n.numer().to_i32()?),
+            _ => value.pow(exponent.evaluate(self)?),
+        })
+    }
+
+    fn function(&mut self, function: Function, argument: &Expression) -> Option<Float> {
+        let z = argument.evaluate(self)?;
+        Some(match function {
+            Function::Ln => z.ln(),
+            Function::Exp => z.exp(),
+            Function::Sin => z.sin(),
+            Function::Cos => z.cos(),
+            Function::Abs => z.abs(),
+            Function::Sign if z.is_zero() => z,
+            Function::Sign => z.signum(),
+        })
+    }
+}
+
 /// The value of a bound expression in x' alone (or, in [`super::numeric`], in x alone) at w.
 pub(super) fn evaluate(e: &Expression, w: &Float) -> Option<Float> {
-    let bits = w.prec();
-    let of = |e: &Expression| evaluate(e, w);
-    Some(match e {
-        Expression::Number(q) => Float::with_val(bits, q),
-        Expression::Parameter(name) if name == PI => Float::with_val(bits, Constant::Pi),
-        Expression::Velocity | Expression::Displacement => w.clone(),
-        Expression::Sum(list) => {
-            list.iter().try_fold(Float::new(bits), |sum, e| Some(sum + of(e)?))?
-        }
-        Expression::Product(list) => {
-            list.iter().try_fold(Float::with_val(bits, 1), |product, e| Some(product * of(e)?))?
-        }
-        Expression::Power(base, exponent) => match exponent.as_number() {
-            Some(n) if n.is_integer() => {
-                let n = n.numer().to_i32()?;
-                of(base)?.pow(n)
-            }
-            _ => of(base)?.pow(of(exponent)?),
-        },
-        Expression::Function(function, z) => {
-            let z = of(z)?;
-            match function {
-                Function::Ln => z.ln(),
-                Function::Exp => z.exp(),
-                Function::Sin => z.sin(),
-                Function::Cos => z.cos(),
-                Function::Abs => z.abs(),
-                Function::Sign if z.is_zero() => z,
-                Function::Sign => z.signum(),
-            }
-        }
-        _ => return None,
-    })
+    e.evaluate(&mut At { w })
 }

@@ -98,7 +98,7 @@ impl Force {
     fn term(&self) -> Expression {
         match self.x {
             0 => self.atom.clone(),
-            x => (Expression::Displacement.pow(i64::from(x)) * self.atom.clone()).canonical(),
+            x => (Expression::DISPLACEMENT.pow(i64::from(x)) * self.atom.clone()).canonical(),
         }
     }
 

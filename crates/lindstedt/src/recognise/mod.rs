@@ -184,7 +184,7 @@ fn bind(e: &Expression, values: &BTreeMap<String, Exact>) -> Expression {
 fn rest(problem: &Problem) -> Result<Expression, Refusal> {
     let equation = problem.time_domain.as_ref().unwrap_or(&problem.equation);
     let alone = equation.acceleration_alone().map_err(|_| Refusal::Acceleration)?;
-    let terms = alone.terms().iter().filter(|t| **t != Expression::Acceleration).cloned();
+    let terms = alone.terms().iter().filter(|t| **t != Expression::ACCELERATION).cloned();
     Ok(Expression::Sum(terms.collect()).canonical())
 }
 

@@ -186,7 +186,7 @@ impl NumericOrbit {
         );
         let rate = (Float::with_val(work, right - left) / h / 2u32).sqrt().to_f64();
         (rate > 0.0 && rate.is_finite()).then_some(())?;
-        let equation = Expression::Acceleration - self.force.clone();
+        let equation = Expression::ACCELERATION - self.force.clone();
         let model = Model::second_order(&equation).ok()?;
         let parameters = Parameters::new().with(PI, Exact::PiTimes(Rational::from(1)));
         let system = model.compile(real, &parameters).ok()?;

@@ -87,7 +87,7 @@ fn period<R: Real>(
         _ => Float::with_val(bits, 1),
     };
     let failed = Reason::NotIntegrated;
-    let model = Model::of_problem(problem).map_err(failed)?.with_section(Expression::Velocity);
+    let model = Model::of_problem(problem).map_err(failed)?.with_section(Expression::VELOCITY);
     let system = model.compile(real.clone(), &parameters).map_err(failed)?;
     let start = [real.float(&start), real.zero()];
     let settings = Settings::for_digits(digits);

@@ -7,11 +7,11 @@ use lindstedt_simulate::{Digits, Integrator, Model, Parameters, Real, Settings, 
 use rug::{Float, Rational};
 
 pub fn x() -> Expression {
-    Expression::Displacement
+    Expression::DISPLACEMENT
 }
 
 pub fn y() -> Expression {
-    Expression::Velocity
+    Expression::VELOCITY
 }
 
 pub fn q(numerator: i64, denominator: i64) -> Expression {
@@ -20,7 +20,7 @@ pub fn q(numerator: i64, denominator: i64) -> Expression {
 
 /// x'' + rest = 0.
 pub fn equation(rest: Expression) -> Expression {
-    Expression::Acceleration + rest
+    Expression::ACCELERATION + rest
 }
 
 pub fn field(equation: &Expression) -> Field {
@@ -41,10 +41,8 @@ pub fn duffing(eps: Expression) -> Expression {
 pub fn value(e: &Expression, at: [f64; 3]) -> f64 {
     match e {
         Expression::Number(q) => q.to_f64(),
-        Expression::Displacement => at[0],
-        Expression::Velocity => at[1],
+        Expression::Unknown(unknown) => [at[0], at[1], 0.0][unknown.derivative as usize],
         Expression::Time => at[2],
-        Expression::Acceleration => 0.0,
         Expression::Sum(list) => list.iter().map(|e| value(e, at)).sum(),
         Expression::Product(list) => list.iter().map(|e| value(e, at)).product(),
         Expression::Power(base, n) => value(base, at).powf(value(n, at)),

@@ -70,12 +70,11 @@ fn formula(expression: &Expression) -> Option<Tree> {
         Expression::Number(q) => Some(Tree::Number(q.clone())),
         Expression::Parameter(name) => symbol(name),
         Expression::Small => symbol("eps"),
-        Expression::Displacement => symbol("x"),
-        Expression::Velocity => symbol("x'"),
-        Expression::Acceleration => symbol("x''"),
         Expression::Time => symbol("t"),
-        Expression::Delayed(inner, _) if **inner == Expression::Displacement => symbol("xT"),
-        Expression::Delayed(inner, _) if **inner == Expression::Velocity => symbol("xT'"),
+        Expression::Unknown(unknown) => {
+            let late = if unknown.delay.is_some() { "T" } else { "" };
+            symbol(&format!("x{late}{}", "'".repeat(unknown.derivative as usize)))
+        }
         Expression::Sum(list) => Some(Tree::Sum(all(list)?)),
         Expression::Product(list) => Some(Tree::Product(all(list)?)),
         Expression::Power(base, exponent) => {

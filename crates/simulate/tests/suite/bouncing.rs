@@ -20,7 +20,7 @@ fn wall(position: Expression, restitution: Expression, crossing: Crossing) -> Im
 }
 
 fn bouncing() -> Model {
-    let equation = Expression::Acceleration + Expression::Displacement;
+    let equation = Expression::ACCELERATION + Expression::DISPLACEMENT;
     let wall = wall(rational(-1, 2), rational(999, 1000), Crossing::Falling);
     Model::second_order(&equation).unwrap().with_wall(wall)
 }
@@ -74,7 +74,7 @@ fn thousand_impacts_to_forty_digits() {
 /// tolerance, sqrt 2 R^n > 10^-41.
 #[test]
 fn chattering_under_constant_force() {
-    let equation = Expression::Acceleration + 1;
+    let equation = Expression::ACCELERATION + 1;
     let floor = wall(Expression::integer(0), rational(1, 2), Crossing::Falling);
     let model = Model::second_order(&equation).unwrap().with_wall(floor);
     let real = Digits::for_digits(40);
@@ -112,7 +112,7 @@ fn chattering_under_constant_force() {
 #[test]
 fn chattering_under_a_varying_force_and_departure() {
     let slope = rational(1, 10) * Expression::Time;
-    let equation = Expression::Acceleration
+    let equation = Expression::ACCELERATION
         + (slope * 10).apply(lindstedt_equation::Function::Cos) * rational(1, 2)
         + rational(1, 4);
     let floor = wall(Expression::integer(0), rational(1, 2), Crossing::Falling);

@@ -43,7 +43,7 @@ fn exact(end: i64, jump: i64) -> Pieces {
 /// The largest error of y on [0, 10] (on a grid of 1/8, from the dense output) and y(10); at
 /// t = 5/2 y jumps.
 fn run<R: Real>(real: &R, digits: u32, jump: i64) -> (f64, R::Element) {
-    let y = Expression::Displacement;
+    let y = Expression::DISPLACEMENT;
     let model = Model::first_order(&["y"], &[-y.delayed(1)]).unwrap();
     let model = model.with_history(&[Expression::integer(1)]);
     let system = model.compile(real.clone(), &Parameters::new()).unwrap();

@@ -11,10 +11,10 @@ use std::ops::ControlFlow;
 
 /// x'' = -sign(x) |x|^p with 20 digits.
 fn power_law(p: (i64, i64)) -> System<Digits> {
-    let x = Expression::Displacement;
+    let x = Expression::DISPLACEMENT;
     let delta = (Rational::from(p) - 1u32) / 2u32;
     let force = x.clone() * x.pow(2).pow(Expression::Number(delta));
-    let model = Model::second_order(&(Expression::Acceleration + force)).unwrap();
+    let model = Model::second_order(&(Expression::ACCELERATION + force)).unwrap();
     model.compile(Digits::for_digits(20), &Parameters::new()).unwrap()
 }
 

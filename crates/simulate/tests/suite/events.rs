@@ -16,7 +16,7 @@ fn number(p: i64, q: i64) -> Expression {
 }
 
 fn oscillator() -> Model {
-    Model::second_order(&(Expression::Acceleration + Expression::Displacement)).unwrap()
+    Model::second_order(&(Expression::ACCELERATION + Expression::DISPLACEMENT)).unwrap()
 }
 
 fn wall(position: Expression, restitution: Expression, crossing: Crossing) -> Impact {
@@ -76,8 +76,8 @@ fn grazing_is_refused_and_a_near_miss_is_none() {
 #[test]
 fn sections_in_order() {
     let model = oscillator()
-        .with_section(Expression::Velocity)
-        .with_section(Expression::Displacement - number(1, 2));
+        .with_section(Expression::VELOCITY)
+        .with_section(Expression::DISPLACEMENT - number(1, 2));
     let (log, _) = run(&model, &[1.0, 0.0], 20.0).unwrap();
     let pi = std::f64::consts::PI;
     let turning: Vec<_> = log
@@ -105,9 +105,9 @@ fn sections_in_order() {
 #[test]
 fn a_touched_section_does_not_end_the_run() {
     let model = oscillator()
-        .with_section(Expression::Displacement - Expression::integer(1))
-        .with_section(Expression::Displacement + Expression::integer(1))
-        .with_section(Expression::Displacement);
+        .with_section(Expression::DISPLACEMENT - Expression::integer(1))
+        .with_section(Expression::DISPLACEMENT + Expression::integer(1))
+        .with_section(Expression::DISPLACEMENT);
     let (log, state) = run(&model, &[-1.0, 0.0], 100.0).unwrap();
     assert!((state[0] + 100f64.cos()).abs() < 1e-13);
     let of = |wanted: usize| -> Vec<f64> {
@@ -133,7 +133,7 @@ fn a_touched_section_does_not_end_the_run() {
 #[test]
 fn starts_at_a_wall() {
     let floor = |restitution| wall(Expression::integer(0), restitution, Crossing::Falling);
-    let heavy = Model::second_order(&(Expression::Acceleration + 1)).unwrap();
+    let heavy = Model::second_order(&(Expression::ACCELERATION + 1)).unwrap();
     let model = heavy.clone().with_wall(floor(number(1, 2)));
     // At rest, pushed down.
     let (log, state) = run(&model, &[0.0, 0.0], 5.0).unwrap();
@@ -165,7 +165,7 @@ fn starts_at_a_wall() {
 /// y' = t/2 - sign y the sliding ends at t = 2, upwards.
 #[test]
 fn sliding_in_one_dimension() {
-    let sign = || Expression::Displacement.apply(Function::Sign);
+    let sign = || Expression::DISPLACEMENT.apply(Function::Sign);
     let model = |right| Model::first_order(&["y"], &[right]).unwrap();
     let switching = |from, to| EventKind::Switching { switch: 0, from, to };
     let (log, state) = run(&model(number(1, 2) - sign()), &[1.0], 5.0).unwrap();
@@ -203,8 +203,8 @@ fn simultaneous_switches_are_refused() {
 #[test]
 fn dry_friction_stops_an_oscillator() {
     // x'' + x + sign(x')/4 = 0 from x = 1: amplitude falls by 1/2 per half period, then sticks.
-    let friction = Expression::Velocity.apply(Function::Sign) * number(1, 4);
-    let equation = Expression::Acceleration + Expression::Displacement + friction;
+    let friction = Expression::VELOCITY.apply(Function::Sign) * number(1, 4);
+    let equation = Expression::ACCELERATION + Expression::DISPLACEMENT + friction;
     let model = Model::second_order(&equation).unwrap();
     let (log, state) = run(&model, &[1.125, 0.0], 20.0).unwrap();
     let pi = std::f64::consts::PI;
@@ -217,7 +217,7 @@ fn dry_friction_stops_an_oscillator() {
 #[test]
 fn a_pole_and_missing_values_are_named() {
     // y' = y^2 from 1 has a pole at t = 1.
-    let y = Expression::Displacement;
+    let y = Expression::DISPLACEMENT;
     let model = Model::first_order(&["y"], &[y.clone().pow(2)]).unwrap();
     let outcome = run(&model, &[1.0], 2.0);
     assert!(
@@ -243,10 +243,10 @@ fn a_pole_and_missing_values_are_named() {
 /// there: the explicit steps shrink like (1 - t)^2, and none comes near to the pole.
 #[test]
 fn a_stiff_pole_is_called_one_in_few_steps() {
-    let (x, v) = (Expression::Displacement, Expression::Velocity);
+    let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
     let off = v.clone() - x.clone().pow(2);
     let right = number(2, 1) * x.clone() * v - x.pow(2) * off;
-    let model = Model::second_order(&(Expression::Acceleration - right)).unwrap();
+    let model = Model::second_order(&(Expression::ACCELERATION - right)).unwrap();
     let real = Digits::for_digits(8);
     let system = model.compile(real, &Parameters::new()).unwrap();
     let start = [real.double(1.0), real.double(1.0)];
@@ -262,11 +262,11 @@ fn a_stiff_pole_is_called_one_in_few_steps() {
 /// x'' - x' + x^3 = 0.
 #[test]
 fn growth_is_no_escape() {
-    let (x, v, t) = (Expression::Displacement, Expression::Velocity, Expression::Time);
+    let (x, v, t) = (Expression::DISPLACEMENT, Expression::VELOCITY, Expression::Time);
     let gauss = (number(2, 1) + number(4, 1) * t.pow(2)) * x.clone();
     let fed = v - x.pow(3);
     for (right, start, end) in [(gauss, [1.0, 0.0], 5.0), (fed, [0.01, 0.01], 14.0)] {
-        let model = Model::second_order(&(Expression::Acceleration - right)).unwrap();
+        let model = Model::second_order(&(Expression::ACCELERATION - right)).unwrap();
         let real = Digits::for_digits(8);
         let system = model.compile(real, &Parameters::new()).unwrap();
         let start = start.map(|x| real.double(x));

@@ -126,7 +126,7 @@ fn stick_slip_against_differences() {
 /// All smooth functions of the tape, an absolute value and a wall together.
 #[test]
 fn derivatives_of_every_function() {
-    let (x, v) = (|| Expression::Displacement, || Expression::Velocity);
+    let (x, v) = (|| Expression::DISPLACEMENT, || Expression::VELOCITY);
     let number = |p, q| Expression::Number(Rational::from((p, q)));
     let force = x().apply(Function::Sin)
         + (x().pow(2) + 1).ln() * number(1, 5)
@@ -135,7 +135,7 @@ fn derivatives_of_every_function() {
         + (v().pow(2) + 2).pow(number(1, 3)) * number(1, 7)
         - x().apply(Function::Cos) * (v().pow(4) + 3).pow(-1)
         - (Expression::Time * 2).apply(Function::Cos);
-    let model = Model::second_order(&(Expression::Acceleration * 2 + force)).unwrap();
+    let model = Model::second_order(&(Expression::ACCELERATION * 2 + force)).unwrap();
     let wall =
         Impact { position: number(3, 4), crossing: Crossing::Rising, restitution: number(2, 3) };
     let kinds = check_differences(&model.with_wall(wall), &Parameters::new(), [0.2, 0.9], 9.0);
@@ -144,8 +144,8 @@ fn derivatives_of_every_function() {
 
 #[test]
 fn no_monodromy_with_a_delay() {
-    let x = Expression::Displacement;
-    let model = Model::second_order(&(Expression::Acceleration + x.delayed(1))).unwrap();
+    let x = Expression::DISPLACEMENT;
+    let model = Model::second_order(&(Expression::ACCELERATION + x.delayed(1))).unwrap();
     let outcome = model.linearised().compile(Doubles, &Parameters::new());
     assert_eq!(outcome.err(), Some(SimulateError::LinearisationWithDelay));
 }

@@ -20,7 +20,7 @@ fn period<R: Real>(
     parameters: &Parameters,
     amplitude: &Quantity,
 ) -> Result<R::Element, SimulateError> {
-    let model = model.clone().with_section(Expression::Velocity);
+    let model = model.clone().with_section(Expression::VELOCITY);
     let system = model.compile(real.clone(), parameters)?;
     let start = [real.float(&amplitude.float(BITS)), real.zero()];
     let mut flow = Integrator::new(&system, &real.zero(), &start, Settings::for_digits(digits))?;
@@ -59,9 +59,9 @@ fn check(
 /// amplitude 1.
 #[test]
 fn power_law() {
-    let x = || Expression::Displacement;
+    let x = || Expression::DISPLACEMENT;
     let stiffness = x().pow(2).pow(Expression::Small);
-    let model = Model::second_order(&(Expression::Acceleration + x() * stiffness)).unwrap();
+    let model = Model::second_order(&(Expression::ACCELERATION + x() * stiffness)).unwrap();
     let model = model.with_small("delta");
     for n in [1i64, 2, 3, 5, 9, 101] {
         let delta = Rational::from((n - 1, 2));
@@ -78,8 +78,8 @@ fn power_law() {
 /// T = 2 pi/agm(1, cos(a/2)).
 #[test]
 fn pendulum() {
-    let x = Expression::Displacement;
-    let equation = Expression::Acceleration + x.apply(Function::Sin);
+    let x = Expression::DISPLACEMENT;
+    let equation = Expression::ACCELERATION + x.apply(Function::Sin);
     let model = Model::second_order(&equation).unwrap();
     for amplitude in ["0.001", "1", "3", "3.1", "3.1415"] {
         let amplitude = Quantity::parse(amplitude).unwrap();
@@ -112,9 +112,9 @@ fn pendulum_of_the_small_delta_method() {
 /// Exponents that are no odd integers and no 2: the solution has a branch point at every zero.
 #[test]
 fn fractional_powers_have_branch_points() {
-    let x = || Expression::Displacement;
+    let x = || Expression::DISPLACEMENT;
     let stiffness = x().pow(2).pow(Expression::Small);
-    let model = Model::second_order(&(Expression::Acceleration + x() * stiffness)).unwrap();
+    let model = Model::second_order(&(Expression::ACCELERATION + x() * stiffness)).unwrap();
     let model = model.with_small("delta");
     for (p, q) in [(3, 2), (1, 2), (5, 2), (17, 5)] {
         let n = Rational::from((p, q));
@@ -142,9 +142,9 @@ fn fractional_powers_have_branch_points() {
 /// a sign (n = 0: parabolas, T = 4 sqrt 2) or has an infinite slope at x = 0.
 #[test]
 fn singular_forces() {
-    let x = || Expression::Displacement;
+    let x = || Expression::DISPLACEMENT;
     let stiffness = x().pow(2).pow(Expression::Small);
-    let model = Model::second_order(&(Expression::Acceleration + x() * stiffness)).unwrap();
+    let model = Model::second_order(&(Expression::ACCELERATION + x() * stiffness)).unwrap();
     let model = model.with_small("delta");
     for (p, q) in [(-3, 5), (-2, 5), (-1, 4), (-1, 10), (0, 1), (1, 8), (1, 5), (1, 4), (31, 100)] {
         let n = Rational::from((p, q));
@@ -178,11 +178,11 @@ fn singular_forces() {
 #[test]
 fn a_damped_oscillator_with_branch_points() {
     let known = ["0.377377533061643312011680988646", "0.459180560540425612074347657976"];
-    let (x, small) = (|| Expression::Displacement, || Expression::Number(Rational::from((1, 10))));
+    let (x, small) = (|| Expression::DISPLACEMENT, || Expression::Number(Rational::from((1, 10))));
     let root = x().pow(2).pow(Expression::Number(Rational::from((-1, 4))));
     let square = Expression::Number(Rational::from((-1, 5))) * x().pow(2);
-    let damping = small() * Expression::Velocity + small() * x().apply(Function::Sin);
-    let equation = Expression::Acceleration + damping + x() * root + square;
+    let damping = small() * Expression::VELOCITY + small() * x().apply(Function::Sin);
+    let equation = Expression::ACCELERATION + damping + x() * root + square;
     let model = Model::second_order(&equation).unwrap();
     let real = Digits::for_digits(33);
     let system = model.compile(real, &Parameters::new()).unwrap();
@@ -200,10 +200,10 @@ fn a_damped_oscillator_with_branch_points() {
 #[test]
 fn what_happens_next_to_a_branch_point() {
     fn run<R: Real>(real: R, digits: u32) -> (Trajectory<R>, [R::Element; 2]) {
-        let x = || Expression::Displacement;
+        let x = || Expression::DISPLACEMENT;
         let stiffness = x().pow(2).pow(Expression::Number(Rational::from((-3, 8))));
         let shifted = x() + Expression::Number(Rational::from((1, 1000)));
-        let equation = Expression::Acceleration + x() * stiffness;
+        let equation = Expression::ACCELERATION + x() * stiffness;
         let model = Model::second_order(&equation).unwrap();
         let model = model.with_section(x()).with_section(shifted);
         let system = model.compile(real.clone(), &Parameters::new()).unwrap();

@@ -20,7 +20,7 @@ fn bouncing() -> Model {
         crossing: Crossing::Falling,
         restitution: half,
     };
-    let equation = Expression::Acceleration + Expression::Displacement;
+    let equation = Expression::ACCELERATION + Expression::DISPLACEMENT;
     Model::second_order(&equation).unwrap().with_wall(wall)
 }
 
@@ -133,7 +133,7 @@ fn exponents_are_numbers_or_errors() {
     let go_on = &mut |_: u32| ControlFlow::Continue(());
     let growth = |rate: i64| {
         let equation =
-            Expression::Acceleration - Expression::integer(rate) * Expression::Displacement;
+            Expression::ACCELERATION - Expression::integer(rate) * Expression::DISPLACEMENT;
         let model = Model::second_order(&equation).unwrap().linearised();
         model.compile(Doubles, &Parameters::new()).unwrap()
     };

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use lindstedt_equation::{Expression, Function};
+use lindstedt_equation::{Expression, Function, Unknown};
 use lindstedt_simulate::{Digits, Doubles, Integrator, Model, Parameters, Real, Report, Settings};
 use rug::ops::Pow;
 use rug::{Float, Rational};
@@ -28,8 +28,8 @@ impl Random {
     fn tree(&mut self, depth: u32) -> Expression {
         if depth == 0 {
             return match self.below(7) {
-                0 | 1 => Expression::Displacement,
-                2 => Expression::Velocity,
+                0 | 1 => Expression::DISPLACEMENT,
+                2 => Expression::VELOCITY,
                 3 => Expression::Time,
                 4 => Expression::parameter("p"),
                 5 => Expression::Small,
@@ -52,7 +52,7 @@ impl Random {
             11 => inner(self).apply(Function::Abs) * self.tree(0),
             12 => inner(self).apply(Function::Sign),
             _ => {
-                let delayed = [Expression::Displacement, Expression::Velocity, Expression::Time];
+                let delayed = [Expression::DISPLACEMENT, Expression::VELOCITY, Expression::Time];
                 let index = self.below(3) as usize;
                 delayed[index].clone().delayed(Expression::Number(Rational::from((3, 2))))
             }
@@ -79,13 +79,13 @@ fn evaluate(e: &Expression, at: &Point) -> Float {
         Expression::Number(q) => float(q),
         Expression::Parameter(_) => float(&Rational::from((2, 3))),
         Expression::Small => float(&Rational::from((1, 5))),
-        Expression::Displacement => at.x.clone(),
-        Expression::Velocity => at.v.clone(),
-        Expression::Time => at.t.clone(),
-        Expression::Delayed(inner, delay) => {
+        Expression::Unknown(Unknown { delay: Some(delay), index, derivative }) => {
             let then = Float::with_val(BITS, &at.t - evaluate(delay, at));
-            evaluate(inner, &history(then))
+            evaluate(&Expression::unknown(*index, *derivative), &history(then))
         }
+        Expression::Unknown(Unknown { derivative: 0, .. }) => at.x.clone(),
+        Expression::Unknown(_) => at.v.clone(),
+        Expression::Time => at.t.clone(),
         Expression::Sum(list) => list.iter().fold(Float::new(BITS), |sum, e| sum + evaluate(e, at)),
         Expression::Product(list) => {
             list.iter().fold(Float::with_val(BITS, 1), |product, e| product * evaluate(e, at))
@@ -110,7 +110,7 @@ fn evaluate(e: &Expression, at: &Point) -> Float {
 /// |x'' + tree| inside the first segment, relative to the terms; nothing if the equation was
 /// refused or blew up.
 fn defect<R: Real>(real: &R, digits: u32, tree: &Expression) -> Option<f64> {
-    let equation = Expression::Acceleration + tree.clone();
+    let equation = Expression::ACCELERATION + tree.clone();
     let past = Expression::Time.apply(Function::Cos)
         - Expression::Time * Expression::Number(Rational::from((1, 3)));
     let parameters =

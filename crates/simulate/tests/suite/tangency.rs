@@ -154,8 +154,8 @@ fn continued_to_eps_one() {
 /// x'' = x - x^3 - F cos 2t with F = 0: the manifold is the loop v^2 = x^2 - x^4/2.
 #[test]
 fn the_unstable_manifold_of_duffing() {
-    let x = Expression::Displacement;
-    let model = Model::second_order(&(Expression::Acceleration - x.clone() + x.pow(3))).unwrap();
+    let x = Expression::DISPLACEMENT;
+    let model = Model::second_order(&(Expression::ACCELERATION - x.clone() + x.pow(3))).unwrap();
     let system = model.clone().linearised().compile(Doubles, &Parameters::new()).unwrap();
     let settings = Settings::for_digits(16);
     let point = saddle(&system, PI, [0.1, -0.1], settings, &go_on).unwrap();
@@ -179,11 +179,11 @@ fn the_unstable_manifold_of_duffing() {
 /// x'' = x - x^3 + (F cos t - x')/100: Melnikov's threshold is 4 cosh(pi/2)/(3 sqrt 2 pi).
 #[test]
 fn the_damped_duffing_oscillator() {
-    let (x, v) = (Expression::Displacement, Expression::Velocity);
+    let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
     let force =
         Expression::parameter("F") * Expression::Time.apply(lindstedt_equation::Function::Cos);
     let equation =
-        Expression::Acceleration - x.clone() + x.pow(3) + Expression::Small * (v - force);
+        Expression::ACCELERATION - x.clone() + x.pow(3) + Expression::Small * (v - force);
     let model = Model::second_order(&equation).unwrap().with_small("eps");
     let parameters = Parameters::new().with("eps", rug::Rational::from((1, 100)));
     let (model, parameters, side) = (&model, &parameters, Loop::Right);

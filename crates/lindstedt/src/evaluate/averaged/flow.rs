@@ -115,7 +115,7 @@ fn run(
             let symbol = format!("{name}{n}").replace('-', "m");
             let c = if backward { Float::with_val(c.prec(), -c) } else { c.clone() };
             parameters.set(&symbol, c);
-            sum.push(Expression::parameter(&symbol) * Expression::Displacement.pow(i64::from(*n)));
+            sum.push(Expression::parameter(&symbol) * Expression::DISPLACEMENT.pow(i64::from(*n)));
         }
         sides.push(Expression::Sum(sum).canonical());
     }
