@@ -1,5 +1,7 @@
 //! Shared helpers of the integration tests.
 
+pub mod budget;
+pub mod examples;
 pub mod mathematics;
 pub mod measure;
 

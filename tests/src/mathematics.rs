@@ -5,6 +5,34 @@
 
 use pulldown_latex::config::DisplayMode;
 use pulldown_latex::{Parser, RenderConfig, Storage, push_mathml};
+use serde_json::Value;
+use std::error::Error;
+use std::io::{Read, Write};
+
+/// What mdBook asks of a preprocessor: reads `[context, book]`, writes the book with the formulas
+/// of every `content` drawn.
+///
+/// # Errors
+/// No such JSON, or as for [`render`].
+pub fn preprocess(input: impl Read, output: impl Write) -> Result<(), Box<dyn Error>> {
+    let (_, mut book): (Value, Value) = serde_json::from_reader(input)?;
+    draw(&mut book)?;
+    Ok(serde_json::to_writer(output, &book)?)
+}
+
+/// Every `content`, at any depth.
+fn draw(value: &mut Value) -> Result<(), String> {
+    match value {
+        Value::Object(map) => {
+            if let Some(Value::String(content)) = map.get_mut("content") {
+                *content = render(content)?;
+            }
+            map.values_mut().try_for_each(draw)
+        }
+        Value::Array(list) => list.iter_mut().try_for_each(draw),
+        _ => Ok(()),
+    }
+}
 
 /// A page with its formulas as MathML.
 ///

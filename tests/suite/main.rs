@@ -1,15 +1,15 @@
 //! What holds across the crates. One binary: it is linked once, and its tests share what they compute.
 
 mod averaging;
-mod book;
-mod browser;
 mod classics;
 mod estimates;
 mod evaluate;
 mod extremes;
+mod facade;
 mod interruption;
 mod laws;
 mod melnikov;
+mod module_circles;
 mod numeric;
 mod paper;
 mod paper_section_2;

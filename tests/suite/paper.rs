@@ -30,7 +30,8 @@ fn paper() -> &'static Paper {
     &counted().0
 }
 
-fn numbered(number: u32) -> &'static Section {
+/// A section of the paper, read once for all tests.
+pub fn numbered(number: u32) -> &'static Section {
     paper().section(number).unwrap_or_else(|| panic!("no section {number}"))
 }
 

@@ -7,17 +7,12 @@ use lindstedt::impact_map::{ImpactMap, characteristic, coefficient, replace};
 use lindstedt::number::ball::Balls;
 use lindstedt::number::ball::ring::{BallRing, Enclosure};
 use lindstedt::quotient::Quotient;
-use lindstedt_paper::{Options, Row, Section, Verdict, read, reread};
+use lindstedt_paper::{Row, Section, Verdict, reread};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
 
 fn section() -> &'static Section {
-    static SECTION: OnceLock<Section> = OnceLock::new();
-    SECTION.get_or_init(|| {
-        let paper = read(Options::QUICK, &mut |_| true).unwrap();
-        paper.section(2).unwrap().clone()
-    })
+    crate::paper::numbered(2)
 }
 
 fn row(label: &str) -> &'static Row {

@@ -109,37 +109,3 @@ pub fn sine_sum(n: u16, amplitude: &Ball, balls: Balls) -> Ball {
     }
     sum
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use lindstedt_number::certified;
-
-    #[test]
-    fn sine_sums() {
-        let balls = Balls::new(200);
-        let a = Rational::from((7, 5));
-        let amplitude = balls.from_rational(&a);
-        let sin_over_a = balls.div(&balls.sin(&amplitude), &amplitude);
-        let s0 = sine_sum(0, &amplitude, balls);
-        assert!(sin_over_a.is_some_and(|q| q.overlaps(&s0)));
-        // S_1 = a/2 d/da (sin a/a) = (cos a - sin a/a)/2.
-        let s1 = sine_sum(1, &amplitude, balls);
-        let expected = balls.mul_power_of_two(&balls.sub(&balls.cos(&amplitude), &s0), -1);
-        assert!(s1.overlaps(&expected) && s1.relative_accuracy_bits() > 180);
-        // S_9 at amplitude 1: mpmath 1.3.0, nsum((-1)^k k^9/(2k+1)!).
-        let s9 = certified(None, 30, |balls| Some(sine_sum(9, &balls.one(), balls)));
-        let decimal = s9.map(|n| n.decimal);
-        assert_eq!(decimal.as_deref(), Ok("0.869699443754233368698929266402"));
-    }
-
-    #[test]
-    fn digits_of_constants() {
-        let ring = lindstedt_coeff::PolynomialRing::default();
-        let mu = ring.symbol(Symbol::Moment(2));
-        let constants = Constants::default();
-        let number = certified(None, 20, |balls| constants.evaluate(&mu, balls));
-        // mu_2 = (ln^2 2 + pi^2/12)/2, mpmath 1.3.0.
-        assert_eq!(number.map(|n| n.decimal).as_deref(), Ok("0.65146002367115732145"));
-    }
-}

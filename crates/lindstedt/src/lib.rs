@@ -34,6 +34,21 @@ pub mod trade;
 pub mod verify;
 mod work;
 
+/// What the tests of single formulas reach: no part of the interface.
+#[doc(hidden)]
+pub mod formulas {
+    pub use crate::evaluate::few::plain;
+    pub use crate::trade::predict;
+    pub mod closed {
+        pub use crate::evaluate::closed::{
+            duffing, gamma_ratio, gamma_ratio_of_rational, pendulum, power_law,
+        };
+    }
+    pub mod coefficients {
+        pub use crate::evaluate::coefficients::{pendulum, power_law};
+    }
+}
+
 pub use answer::{Answer, Header, Remark, SCHEMA, Standing};
 pub use derivation::{
     Derivation, NamedSeries, Route, Settings, Solution, check_parameters, derive,

@@ -1,7 +1,7 @@
 //! What the program costs, as tables that can be kept and compared between commits:
-//! `cargo run --release -p lindstedt-tests --bin measure -- times` (or `instructions`, `costs`,
-//! `exponents`, `compare BEFORE AFTER`).
+//! `cargo run --release -p lindstedt-tests --bin measure -- times` (or another word of `USAGE`).
 
+use lindstedt_tests::budget;
 use lindstedt_tests::measure::{Rows, benches, comparison, exponent, instructions, stored, table};
 use std::error::Error;
 use std::io::{BufRead, BufReader};
@@ -12,11 +12,14 @@ type Outcome<T> = Result<T, Box<dyn Error>>;
 
 const USAGE: &str =
     "usage: measure times [FILTER] | instructions | costs | exponents | compare BEFORE AFTER
+     | tests [FILTER] | budget PROGRAM [ARGUMENT..]
   times         all benches, seconds of the fastest sample
   instructions  whole commands under valgrind, instructions on one core
   costs         the tables of cost in the book: CPU seconds (least of three) and memory
   exponents     instructions of the collocation tier against order and digits
-  compare       two stored tables";
+  compare       two stored tables
+  tests         every test alone, CPU seconds, the dearest last; those whose name has FILTER in it
+  budget        an executable of tests, held against the most that one may cost: a cargo runner";
 
 /// Whole commands, a second or two each, one per hot path.
 const COMMANDS: [&str; 13] = [
@@ -72,6 +75,13 @@ fn main() -> Outcome<()> {
             let read = |path: &str| std::fs::read_to_string(path).map(|text| stored(&text));
             print!("{}", comparison(&read(before)?, &read(after)?));
         }
+        ["tests"] => tests("")?,
+        ["tests", filter] => tests(filter)?,
+        ["budget", ..] => {
+            let arguments: Vec<_> = std::env::args_os().skip(2).collect();
+            let (program, arguments) = arguments.split_first().ok_or(USAGE)?;
+            std::process::exit(i32::from(!budget::within(program, arguments)?));
+        }
         _ => {
             eprintln!("{USAGE}");
             std::process::exit(2);
@@ -97,6 +107,31 @@ fn times(filter: Option<&str>) -> Outcome<Rows> {
         return Err("cargo bench failed".into());
     }
     Ok(benches(&text))
+}
+
+/// Every test alone, the cheapest first, and the sum. What tests share is counted for each.
+fn tests(filter: &str) -> Outcome<()> {
+    let mut build = Command::new(env!("CARGO"));
+    build.args(["test", "--release", "--workspace", "--no-run", "--message-format", "json"]);
+    let output = build.current_dir(root()).stderr(Stdio::inherit()).output()?;
+    let mut rows = Rows::new();
+    for (program, folder) in budget::executables(&String::from_utf8(output.stdout)?) {
+        let package = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let list = Command::new(&program).args(["--list", "--format", "terse"]).output()?;
+        for test in budget::tests(&String::from_utf8(list.stdout)?) {
+            let name = format!("{package} {test}");
+            if name.contains(filter) {
+                let mut run = Command::new(&program);
+                run.args(["--exact", test]).current_dir(&folder).stdout(Stdio::null());
+                let (_, cost) = budget::run(&mut run)?;
+                rows.push((name, cost.ok_or("no CPU times without /proc")?));
+            }
+        }
+    }
+    rows.sort_by(|(_, one), (_, other)| one.total_cmp(other));
+    rows.push(("all".to_owned(), rows.iter().map(|(_, cost)| cost).sum()));
+    print!("{}", table(&rows));
+    Ok(())
 }
 
 /// The program, built first, beside this one.

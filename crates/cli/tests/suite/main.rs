@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 mod averaging;
+mod book;
+mod browser;
 mod derive;
 mod evaluate;
 mod file_motions;

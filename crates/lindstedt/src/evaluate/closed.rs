@@ -44,7 +44,7 @@ const SWELLING: u32 = 48;
 
 /// Gamma(1 + y)/Gamma(1/2 + y) by MPFR, whose Bernoulli numbers take minutes at 10 000 digits; the
 /// logarithms keep the ratio for y -> infinity.
-fn gamma_ratio(balls: Balls, y: &Ball) -> Option<Ball> {
+pub fn gamma_ratio(balls: Balls, y: &Ball) -> Option<Ball> {
     let half = balls.mul_power_of_two(&balls.one(), -1);
     let upper = ln_gamma(balls, &balls.add(&balls.one(), y))?;
     let lower = ln_gamma(balls, &balls.add(&half, y))?;
@@ -53,7 +53,7 @@ fn gamma_ratio(balls: Balls, y: &Ball) -> Option<Ball> {
 
 /// The same for a rational y: sqrt(pi)/B(1/2, 1/2 + y), B(p, q) = H(p, q) + H(q, p), halves of the
 /// integral that converge geometrically. O(p^2) for p bits.
-fn gamma_ratio_of_rational(balls: Balls, y: &Rational, stop: &Stop) -> Option<Ball> {
+pub fn gamma_ratio_of_rational(balls: Balls, y: &Rational, stop: &Stop) -> Option<Ball> {
     let balls = Balls::new(balls.bits().saturating_add(SWELLING));
     let half = Rational::from((1, 2));
     let other = Rational::from(y + &half);
@@ -88,7 +88,7 @@ fn half_beta(balls: Balls, p: &Rational, q: &Rational, stop: &Stop) -> Option<Ba
 
 /// T = 4 sqrt(pi (1 + d)) Gamma(1 + y)/Gamma(1/2 + y) a^(-d), y = 1/(2 + 2d), of
 /// x'' + x (x^2)^d = 0, d > -1, x(0) = a; d besides as a rational number, if it is one.
-pub(super) fn power_law(
+pub fn power_law(
     balls: Balls,
     delta: &Ball,
     rational: Option<&Rational>,
@@ -108,7 +108,7 @@ pub(super) fn power_law(
 }
 
 /// T = 4 K(sin(a/2)) = 2 pi/agm(1, cos(a/2)) of x'' + sin x = 0, x(0) = a < pi.
-pub(super) fn pendulum(balls: Balls, amplitude: &Ball) -> Option<Ball> {
+pub fn pendulum(balls: Balls, amplitude: &Ball) -> Option<Ball> {
     let half = balls.cos(&balls.mul_power_of_two(amplitude, -1));
     let mean = agm(balls, &balls.one(), &half)?;
     balls.div(&balls.mul_i64(&balls.pi(), 2), &mean)
@@ -116,55 +116,9 @@ pub(super) fn pendulum(balls: Balls, amplitude: &Ball) -> Option<Ball> {
 
 /// T = 4 K(k)/sqrt(1 + r) = 2 pi/agm(sqrt(1 + r), sqrt(1 + r/2)) of x'' + x + eps x^3 = 0,
 /// r = eps x(0)^2 > -1, k^2 = r/(2 + 2r).
-pub(super) fn duffing(balls: Balls, rho: &Ball) -> Option<Ball> {
+pub fn duffing(balls: Balls, rho: &Ball) -> Option<Ball> {
     let one = balls.one();
     let root = |x: &Ball| balls.sqrt(&balls.add(&one, x));
     let mean = agm(balls, &root(rho)?, &root(&balls.mul_power_of_two(rho, -1))?)?;
     balls.div(&balls.mul_i64(&balls.pi(), 2), &mean)
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
-    use super::*;
-    use lindstedt_number::digits::certify;
-
-    /// mpmath 1.3.0: 4 ellipk(sin(a/2)^2), gamma, 4 ellipk(r/(2+2r))/sqrt(1+r).
-    #[test]
-    fn closed_forms() {
-        let digits = |f: &dyn Fn(Balls) -> Option<Ball>| certify(25, 4000, f).map(|d| d.0);
-        let q = |n: i32, d: i32| Rational::from((n, d));
-        let of = |n: i32, d: i32| move |balls: Balls| balls.from_rational(&q(n, d));
-        let p = of(1, 1);
-        let value = digits(&|balls| pendulum(balls, &p(balls)));
-        assert_eq!(value.as_deref(), Ok("6.699975664370452712701211"));
-        let never = Stop::default();
-        let value = digits(&|balls| power_law(balls, &balls.one(), None, &balls.one(), &never));
-        assert_eq!(value.as_deref(), Ok("7.416298709205487673735401"));
-        // x'' + sgn x = 0: 4 sqrt 2, and with amplitude 4 twice as long.
-        let four = |balls: Balls| balls.from_i64(4);
-        let value = digits(&|balls| {
-            power_law(balls, &of(-1, 2)(balls), Some(&q(-1, 2)), &four(balls), &never)
-        });
-        assert_eq!(value.as_deref(), Ok("11.31370849898476039041351"));
-        let value = digits(&|balls| duffing(balls, &balls.from_i64(1)));
-        assert_eq!(value.as_deref(), Ok("4.768022029102460806304518"));
-    }
-
-    /// Two routes: MPFR's gamma function, and the halves of the beta integral.
-    #[test]
-    fn gamma_ratios() {
-        for bits in [2, 60, 400, 2000] {
-            let balls = Balls::new(bits).with_guard(32);
-            for (n, d) in [(0, 1), (1, 1 << 30), (1, 4), (1, 3), (1, 2), (1, 1), (7, 2), (64, 1)] {
-                let y = Rational::from((n, d));
-                let one = gamma_ratio(balls, &balls.from_rational(&y)).unwrap();
-                let two = gamma_ratio_of_rational(balls, &y, &Stop::default()).unwrap();
-                let size = two.abs_upper();
-                assert!(one.overlaps(&two), "{y} {bits}");
-                assert!(*two.radius() < size >> (bits - 2), "{y} {bits}: {}", two.radius());
-            }
-        }
-    }
 }

@@ -14,7 +14,7 @@ use rug::{Float, Integer, Rational};
 /// T/2pi = sum_j mu_j delta^j (1 + delta)^(-1/2 - j), so t_n = sum_j mu_j binomial(-1/2-j, n-j).
 ///
 /// Nothing when stopped, or unless every coefficient is known to `bits` bits relative, with 16 N more in work.
-pub(super) fn power_law(order: usize, bits: u32, stop: &Stop) -> Option<Vec<Float>> {
+pub fn power_law(order: usize, bits: u32, stop: &Stop) -> Option<Vec<Float>> {
     let guard = 16u32.checked_mul(u32::try_from(order).ok()?)?.checked_add(64)?;
     let balls = Balls::new(bits).with_guard(guard);
     let moments = means_until(order, balls, stop)?;
@@ -47,7 +47,7 @@ fn known(ball: &Ball, bits: u32) -> Option<Float> {
 /// numbers for coefficients, and their means.
 ///
 /// Rounded at `bits` + 16 N bits without proof; the caller computes with other bits and compares.
-pub(super) fn pendulum(
+pub fn pendulum(
     amplitude: &dyn Fn(Balls) -> Ball,
     order: usize,
     bits: u32,
@@ -168,46 +168,4 @@ fn means_of_powers(order: usize, bits: u32, stop: &Stop) -> Option<Grid> {
         }
     }
     Some(table)
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
-
-    use super::*;
-    use crate::{Route, Settings, derive, problems};
-
-    /// The exact polynomials, evaluated as balls, against the recurrences in numbers.
-    #[test]
-    fn numbers_agree_with_the_exact_series() {
-        let order = 9;
-        let settings = Settings { order, route: Route::EnergyIntegral, ..Settings::default() };
-        let one = |balls: Balls| balls.one();
-        for name in ["power-law", "pendulum"] {
-            let problem = problems::find(name).unwrap();
-            let exact = derive(&problem, &settings, &mut |_| true).unwrap();
-            let series = exact.named("period_over_2pi").unwrap();
-            let numbers = match name {
-                "power-law" => power_law(order, 300, &Stop::default()),
-                _ => pendulum(&one, order, 300, &Stop::default()),
-            };
-            for (n, number) in numbers.unwrap().iter().enumerate() {
-                let ball = exact.ball(series, n, Balls::new(400)).unwrap();
-                let error = Float::with_val(53, ball.midpoint() - number).abs();
-                assert!(error < 1e-85, "{name} {n}: {error}");
-            }
-        }
-    }
-
-    /// What rounding leaves at order 40.
-    #[test]
-    fn rounding_is_below_the_bits() {
-        let three = |balls: Balls| balls.from_i64(3);
-        let at = |bits| pendulum(&three, 40, bits, &Stop::default()).unwrap();
-        let (low, high) = (at(200), at(500));
-        for (a, b) in low.iter().zip(&high) {
-            let error = Float::with_val(53, a - b).abs() / Float::with_val(53, b.abs_ref());
-            assert!(error < 1e-55, "{error}");
-        }
-    }
 }

@@ -52,7 +52,7 @@ pub(super) fn partial_sum(
 
 /// The midpoint without regard to what is proved of it. How far it is from the truth is the radius
 /// where it was measured; else nothing is known, and four digits are shown.
-pub(super) fn plain(ball: &Ball, digits: usize, is_measured: bool) -> Option<Number> {
+pub fn plain(ball: &Ball, digits: usize, is_measured: bool) -> Option<Number> {
     let shown = if is_measured { Number::measured } else { Number::without_estimate };
     shown(ball, digits)
 }

@@ -2,9 +2,9 @@
 //! series of T/2pi, beside the closed form where there is one.
 
 pub mod averaged;
-mod closed;
-mod coefficients;
-mod few;
+pub(crate) mod closed;
+pub(crate) mod coefficients;
+pub(crate) mod few;
 pub(crate) mod setting;
 mod solution;
 pub(crate) mod source;

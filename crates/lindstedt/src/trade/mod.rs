@@ -388,7 +388,8 @@ const MEASURABLE: f64 = 0.05;
 /// The seconds of an order from those of the two before, if both are long enough to mean anything.
 /// Exact derivations grow exponentially, and running into the limit at every order would take as
 /// many times the limit; the numeric ones are broken off when their time is over.
-fn predict(method: &Method, times: &[(usize, f64)], order: Option<usize>) -> Option<f64> {
+#[doc(hidden)]
+pub fn predict(method: &Method, times: &[(usize, f64)], order: Option<usize>) -> Option<f64> {
     let &(last, seconds) = times.last()?;
     if seconds == f64::INFINITY || !matches!(method, Method::Exact { .. } | Method::Energy { .. }) {
         return seconds.is_infinite().then_some(seconds);
@@ -396,22 +397,4 @@ fn predict(method: &Method, times: &[(usize, f64)], order: Option<usize>) -> Opt
     let &(before, less) = times.iter().rev().nth(1).filter(|(_, less)| *less >= MEASURABLE)?;
     let steps = (order? - last) as f64 / (last - before) as f64;
     Some(seconds * (seconds / less).max(1.0).powf(steps))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Nothing from milliseconds; 0.1 s and 0.4 s at orders 2 and 4 are 25.6 s at order 10; a run
-    /// that was broken off ends its method.
-    #[test]
-    fn predictions() {
-        let exact = Method::Exact { digits: 30 };
-        assert_eq!(predict(&exact, &[(2, 0.0001), (4, 0.003)], Some(32)), None);
-        assert_eq!(predict(&exact, &[(2, 0.04), (4, 0.4)], Some(10)), None);
-        let seconds = predict(&exact, &[(2, 0.1), (4, 0.4)], Some(10));
-        assert!(seconds.is_some_and(|s| (s - 25.6).abs() < 1e-9), "{seconds:?}");
-        assert_eq!(predict(&exact, &[(2, f64::INFINITY)], Some(10)), Some(f64::INFINITY));
-        assert_eq!(predict(&Method::Doubles, &[(2, 0.1), (4, 0.4)], Some(10)), None);
-    }
 }

@@ -15,30 +15,19 @@ use std::sync::OnceLock;
 type Outcome = Result<(), Box<dyn Error>>;
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The folder of `lindstedt paper --quick`, written once.
-fn folder() -> Result<&'static Path, Box<dyn Error>> {
+/// The folder of `lindstedt paper --quick`, written once for all tests.
+pub fn folder() -> Result<&'static Path, Box<dyn Error>> {
     static FOLDER: OnceLock<Result<PathBuf, String>> = OnceLock::new();
     let made = FOLDER.get_or_init(|| write_report().map_err(|error| error.to_string()));
     Ok(made.as_deref().map_err(Clone::clone)?)
 }
 
-/// The binary of this profile, brought up to date first.
 fn write_report() -> Result<PathBuf, Box<dyn Error>> {
-    let own = std::env::current_exe()?;
-    let profile = own.parent().and_then(Path::parent).ok_or("no profile folder")?;
-    let mut build = Command::new(env!("CARGO"));
-    build.args(["build", "--quiet", "--package", "lindstedt-cli"]).current_dir(root());
-    build.arg("--target-dir").arg(profile.parent().ok_or("no target folder")?);
-    if profile.file_name().is_some_and(|name| name == "release") {
-        build.arg("--release");
-    }
-    assert!(build.status()?.success(), "the binary does not build");
-    let binary = profile.join(format!("lindstedt{}", std::env::consts::EXE_SUFFIX));
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("paper");
-    let run = Command::new(binary)
+    let run = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
         .args(["paper", "--quick", "--quiet", "--out"])
         .arg(&folder)
         .status()?;

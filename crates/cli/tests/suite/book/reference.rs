@@ -1,7 +1,8 @@
 //! The reference is complete and current: every error code, every option, every formula; the
 //! examples give the known numbers.
 
-use super::{Outcome, binary, blocks, first_missing, pages, root};
+use super::{Outcome, blocks, first_missing, pages, root};
+use lindstedt_tests::examples::example;
 use lindstedt_tests::mathematics;
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -69,9 +70,9 @@ fn every_error_code_is_documented() -> Outcome {
 
 /// The page of options, from what the program says of itself.
 fn options_page() -> Result<String, Box<dyn Error>> {
-    let binary = binary()?;
     let help = |arguments: &[&str]| -> Result<String, Box<dyn Error>> {
-        let output = Command::new(&binary).args(arguments).arg("--help").output()?;
+        let output =
+            Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).arg("--help").output()?;
         let text = String::from_utf8(output.stdout)?;
         let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
         Ok(lines.join("\n"))
@@ -99,7 +100,7 @@ fn the_page_of_options_is_current() -> Outcome {
         std::fs::write(&path, &page)?;
     }
     let found = std::fs::read_to_string(&path)?;
-    assert!(found == page, "UPDATE_REFERENCE=1 cargo test -p lindstedt-tests book::");
+    assert!(found == page, "UPDATE_REFERENCE=1 cargo test --release -p lindstedt-cli book::");
     Ok(())
 }
 
@@ -122,7 +123,6 @@ fn every_command_is_described() -> Outcome {
 /// The keys at the top of what every command writes stand on the page of JSON.
 #[test]
 fn every_json_key_is_documented() -> Outcome {
-    let binary = binary()?;
     let page = std::fs::read_to_string(root().join("docs/src/reference/json.md"))?;
     for command in [
         "derive duffing --order 1",
@@ -144,9 +144,17 @@ fn every_json_key_is_documented() -> Outcome {
         "problems",
         "paper --quick",
     ] {
-        let arguments = command.split_whitespace().chain(["--format", "json", "--quiet"]);
-        let output = Command::new(&binary).args(arguments).current_dir(root()).output()?;
-        let value: serde_json::Value = serde_json::from_slice(&output.stdout)?;
+        let json = if command == "paper --quick" {
+            std::fs::read(crate::browser::folder()?.join("report.json"))?
+        } else {
+            let arguments = command.split_whitespace().chain(["--format", "json", "--quiet"]);
+            Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+                .args(arguments)
+                .current_dir(root())
+                .output()?
+                .stdout
+        };
+        let value: serde_json::Value = serde_json::from_slice(&json)?;
         for key in value.as_object().ok_or("no object")?.keys() {
             assert!(page.contains(&format!("`{key}`")), "{command}: {key}");
         }
@@ -210,16 +218,8 @@ fn examples_give_the_known_numbers() -> Outcome {
         .collect();
     let listed: BTreeSet<String> = EXAMPLES.iter().map(|(name, _)| (*name).to_owned()).collect();
     assert_eq!(there, listed);
-    let profile = binary()?;
-    let target = profile.parent().and_then(Path::parent).ok_or("no target folder")?;
     for (name, expected) in EXAMPLES {
-        let mut run = Command::new(env!("CARGO"));
-        run.args(["run", "--quiet", "--package", "lindstedt", "--example", name]);
-        run.arg("--target-dir").arg(target).current_dir(root());
-        if profile.parent().is_some_and(|folder| folder.ends_with("release")) {
-            run.arg("--release");
-        }
-        let output = run.output()?;
+        let output = Command::new(example(name)?).output()?;
         let shown = String::from_utf8(output.stdout)?;
         assert_eq!(first_missing(expected, &shown), None, "{name} printed {shown}");
         let language = format!("text,{name}");

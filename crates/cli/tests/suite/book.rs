@@ -7,12 +7,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 mod guides;
+mod html;
 mod reference;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 /// The pages of the book below a folder.
@@ -130,22 +131,6 @@ fn every_page_is_in_the_summary() -> Outcome {
     Ok(())
 }
 
-/// The binary of this profile, brought up to date first: the tests of another package do not
-/// build it, and an old one would be compared with the new book.
-fn binary() -> Result<PathBuf, Box<dyn Error>> {
-    // target/<profile>/deps/book-...
-    let own = std::env::current_exe()?;
-    let profile = own.parent().and_then(Path::parent).ok_or("no profile folder")?;
-    let mut build = Command::new(env!("CARGO"));
-    build.args(["build", "--quiet", "--package", "lindstedt-cli"]).current_dir(root());
-    build.arg("--target-dir").arg(profile.parent().ok_or("no target folder")?);
-    if profile.file_name().is_some_and(|name| name == "release") {
-        build.arg("--release");
-    }
-    assert!(build.status()?.success(), "the binary does not build");
-    Ok(profile.join(format!("lindstedt{}", std::env::consts::EXE_SUFFIX)))
-}
-
 /// Whether the lines occur in the text, in this order, each within a line of its own.
 fn first_missing<'a>(expected: &[&'a str], text: &str) -> Option<&'a str> {
     let mut lines = text.lines();
@@ -154,7 +139,6 @@ fn first_missing<'a>(expected: &[&'a str], text: &str) -> Option<&'a str> {
 
 #[test]
 fn console_blocks_show_what_the_program_prints() -> Outcome {
-    let binary = binary()?;
     let mut wrong = Vec::new();
     let mut commands = 0;
     // Several pages show parts of one long output.
@@ -165,7 +149,7 @@ fn console_blocks_show_what_the_program_prints() -> Outcome {
             let command = lines.next().and_then(|line| line.strip_prefix("$ lindstedt "));
             let command = command.ok_or("a console block starts with $ lindstedt")?;
             if !outputs.contains_key(command) {
-                let output = Command::new(&binary)
+                let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
                     .args(command.split_whitespace())
                     .current_dir(root())
                     .output()?;
@@ -223,7 +207,7 @@ fn rust_blocks_are_compiled_and_run() -> Outcome {
             }
         }
     }
-    assert!(unknown.is_empty(), "not in tests/suite/book.rs: {}", unknown.join("\n"));
+    assert!(unknown.is_empty(), "not in book.rs: {}", unknown.join("\n"));
     Ok(())
 }
 
