@@ -11,9 +11,11 @@ use crate::centre::{Centre, Doubles, Values, power_of_two};
 use crate::field::Field;
 use crate::linear::{Inverse, Linear, at};
 use crate::space::Wave;
+use crate::task::Task;
 use crate::upward::{Up, gamma, raised};
 use nalgebra::{DMatrix, DVector};
 use rug::Float;
+use rug::float::Round;
 
 /// What the couplings beyond the band are cut to, relative to their sum.
 const BAND: f64 = 1e-10;
@@ -23,6 +25,8 @@ const DROPPED: f64 = 1e-260;
 /// Everything about a centre and an inverse that does not depend on the weight.
 pub(crate) struct Frame<'a> {
     field: &'a Field,
+    /// What is uncertain of the condition's value.
+    error: Up,
     centre: &'a Centre,
     inverse: &'a Inverse,
     linear: Linear,
@@ -101,12 +105,11 @@ impl Weights {
 impl<'a> Frame<'a> {
     /// Forms 1 - A D, at a cost of 2 n^3 operations.
     pub(crate) fn new(
-        field: &'a Field,
+        task: &'a Task,
         centre: &'a Centre,
         values: &Values,
         linear: &Linear,
         inverse: &'a Inverse,
-        condition: &Float,
     ) -> Self {
         let whole = [values.by_x.doubles(Some(0)), values.by_slope.doubles(Some(0))];
         let mut linear = linear.clone();
@@ -120,12 +123,13 @@ impl<'a> Frame<'a> {
         if residual.values.iter().all(|c| c.re == 0.0 && c.im == 0.0) {
             residual.exponent = -(centre.bits as i32);
         }
-        let condition = Float::with_val(53, condition >> residual.exponent).to_f64();
+        let condition = Float::with_val(53, task.condition(centre) >> residual.exponent).to_f64();
         let [_, _, size] = centre.norms(Up::ONE);
         let scale = power_of_two((size.0 / linear.frequency).log2().round() as i32);
         let frequency_below = centre.frequency.to_f64().next_down();
         Self {
-            field,
+            field: &task.field,
+            error: task.error,
             centre,
             inverse,
             linear,
@@ -214,13 +218,22 @@ impl<'a> Frame<'a> {
         let alpha = self.columns(&numerators);
         let inverse = self.inverse_norm(measure, &alpha, weights, 0);
         let bend = self.inverse_norm(measure, &alpha, weights, 1);
-        Contraction {
-            y0: self.y0(measure, &numerators, &alpha, weights),
-            z0: self.z0(&numerators, &alpha, weights),
-            z1: self.z1(measure, &alpha, weights) + inverse * self.outside_band(weights),
-            inverse,
-            bend,
-        }
+        let [y, z] = self.uncertain(inverse, &alpha, weights);
+        let y0 = self.y0(measure, &numerators, &alpha, weights);
+        let y0 = Float::with_val_round(53, &y0 + y.0, Round::Up).0;
+        let z1 = self.z1(measure, &alpha, weights) + inverse * self.outside_band(weights) + z;
+        let z0 = self.z0(&numerators, &alpha, weights);
+        Contraction { y0, z0, z1, inverse, bend }
+    }
+
+    /// What uncertain coefficients and an uncertain condition add to Y0 and to Z1.
+    fn uncertain(&self, inverse: Up, alpha: &[f64], weights: &Weights) -> [Up; 2] {
+        let at = self.outer(weights, &Float::new(53));
+        let part = |derivative| self.field.uncertainty(at, weights.nu(), derivative);
+        let condition = if self.extra() == 1 { Up(alpha[0]) * self.error } else { Up::ZERO };
+        let by_frequency = part([1, 0, 0]).over(self.scale);
+        let slope = by_frequency.max(part([0, 1, 0]) + part([0, 0, 1]));
+        [inverse * part([0, 0, 0]) + condition, inverse * slope]
     }
 
     /// Y0 >= |A F(cbar)|: the finite part is a product in doubles with its a-priori error, the tail
@@ -434,6 +447,11 @@ impl<'a> Frame<'a> {
         let by_frequency = p([1, 0, 0]).over(self.scale);
         let by_orbit = p([0, 1, 0]) + p([0, 0, 1]);
         if self.extra() == 1 { by_frequency.max(by_orbit) } else { by_orbit }
+    }
+
+    /// What is uncertain of a polynomial field at the centre.
+    pub(crate) fn unknown(&self, field: &Field, weights: &Weights) -> Up {
+        field.uncertainty(self.outer(weights, &Float::new(53)), weights.nu(), [0, 0, 0])
     }
 
     /// N.

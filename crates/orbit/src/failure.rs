@@ -18,6 +18,14 @@ pub enum Failure {
     /// cosines and sines with rational frequencies and without phases.
     #[error("not a polynomial with rational coefficients")]
     NotPolynomial(Expression),
+    /// The degree in (x, x') or the highest harmonic of the force are beyond what is taken.
+    #[error("degree {degree}, harmonic {harmonic} of the force: too large")]
+    TooLarge {
+        /// The degree.
+        degree: u32,
+        /// The harmonic.
+        harmonic: u32,
+    },
     /// The field has a force: [`Kind::Forced`](crate::Kind::Forced) is the question.
     #[error("the equation is forced")]
     Forced,
@@ -64,6 +72,12 @@ pub enum Failure {
         y0: f64,
         /// The Lipschitz constant of A DF.
         z2: f64,
+    },
+    /// Could not decide: an orbit is proved, but within a radius as large as its frequency.
+    #[error("proved within {radius:.3e} only, which leaves no period")]
+    NoPeriod {
+        /// The radius.
+        radius: f64,
     },
     /// Stopped by the [`Stop`](lindstedt_algebra::Stop) of the request.
     #[error("stopped")]

@@ -41,6 +41,7 @@ mod newton;
 mod orbit;
 mod proof;
 mod radii;
+mod read;
 mod space;
 mod start;
 mod task;

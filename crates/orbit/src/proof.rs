@@ -234,8 +234,7 @@ fn attempt(
         let most = MOST_TIMES * modes;
         *centre = refine(task, centre.clone(), &inverse, &target, most, &request.stop)?;
         let (values, linear) = linear(centre);
-        let condition = task.condition(centre);
-        let frame = Frame::new(&task.field, centre, &values, &linear, &inverse, &condition);
+        let frame = Frame::new(task, centre, &values, &linear, &inverse);
         let (weights, radii) = weighed(&frame, &inverse, request)?;
         tries -= 1;
         if radii.radius <= goal || tries == 0 {
@@ -293,7 +292,7 @@ fn conclude(
     let error =
         if task.is_free() { frequency_error(frame, weights, radius) } else { Float::new(53) };
     let frequency = balls.add_error(&balls.from_rational(&centre.frequency), &error);
-    let no_value = || Failure::Residual { modes: 0, y0: radius.to_f64(), z2: radii.bounds.z2 };
+    let no_value = || Failure::NoPeriod { radius: radius.to_f64() };
     let turn = balls.mul_i64(&balls.pi(), 2);
     // A radius as large as the frequency proves an orbit, but no period.
     let period = balls.div(&turn, &frequency).filter(|_| frequency.is_positive());
@@ -357,6 +356,8 @@ fn divergence(
     let value = centre.mean(&by_velocity);
     let slope = frame.slope(&by_velocity, weights, radius);
     let error = Float::with_val_round(53, radius * slope.0, Round::Up).0;
+    let unknown = frame.unknown(&by_velocity, weights);
+    let error = Float::with_val_round(53, &error + unknown.0, Round::Up).0;
     balls.add_error(&balls.from_rational(&value), &error)
 }
 

@@ -6,6 +6,7 @@ use crate::centre::Centre;
 use crate::field::Field;
 use crate::space::{Parity, Wave};
 use crate::start::{Start, in_phase};
+use crate::upward::Up;
 use lindstedt_algebra::Stop;
 use nalgebra::Complex;
 use rug::{Float, Integer, Rational};
@@ -19,10 +20,17 @@ pub enum Kind {
     LimitCycle,
     /// A member of a family of an equation that is reversible (even in x'): even in time, x(0) = a.
     InitialAmplitude(Rational),
+    /// The same where x(0) is known within an error: what is proved holds for each such value.
+    InitialWithin {
+        /// The middle.
+        value: Rational,
+        /// The largest distance from it.
+        error: Rational,
+    },
     /// The same with the first harmonic a cos tau.
     FundamentalAmplitude(Rational),
     /// The response to the force, with this many periods of the force as its period (1 for a
-    /// harmonic response).
+    /// harmonic response, at most 100).
     Forced(u32),
 }
 
@@ -80,6 +88,8 @@ pub(crate) struct Task {
     pub(crate) field: Field,
     pub(crate) rows: Rows,
     pub(crate) value: Rational,
+    /// How far the value can be from it.
+    pub(crate) error: Up,
 }
 
 impl Task {
@@ -100,6 +110,7 @@ impl Task {
         let (condition, value) = match kind {
             Kind::LimitCycle => (Some(Condition::Sine), Rational::new()),
             Kind::InitialAmplitude(a) => (Some(Condition::AtZero), a.clone()),
+            Kind::InitialWithin { value, .. } => (Some(Condition::AtZero), value.clone()),
             Kind::FundamentalAmplitude(a) => (Some(Condition::Cosine), a.clone()),
             Kind::Forced(_) => (None, Rational::new()),
         };
@@ -111,7 +122,7 @@ impl Task {
         let mut field = field.clone();
         let mut exact = None;
         if let (Kind::Forced(periods), Some(force)) = (kind, &field.force) {
-            let periods = (*periods).max(1);
+            let periods = (*periods).clamp(1, MOST_PERIODS);
             let rate = Rational::from(force / periods);
             frequency = rate.to_f64();
             exact = Some(rate);
@@ -130,7 +141,11 @@ impl Task {
         if let Some(rate) = exact {
             centre.frequency = rate;
         }
-        Ok((Self { field, rows: Rows { parity, condition }, value }, centre))
+        let error = match kind {
+            Kind::InitialWithin { error, .. } => Up::of(error),
+            _ => Up::ZERO,
+        };
+        Ok((Self { field, rows: Rows { parity, condition }, value, error }, centre))
     }
 
     /// Whether the frequency is an unknown.
@@ -159,6 +174,8 @@ impl Task {
 
 /// Bits behind the point in the tier of doubles.
 pub(crate) const FAST_BITS: u32 = 72;
+/// Periods of the force in one of the response; more are taken as so many.
+const MOST_PERIODS: u32 = 100;
 /// Modes that a symmetry forbids are taken as noise below this fraction.
 const NOISE: f64 = 2e-2;
 

@@ -51,8 +51,7 @@ fn judge(
 ) -> Result<Radii, Failure> {
     let values = centre.values(&task.field);
     let linear = Linear::new(centre.frequency.to_f64(), &values, task.rows);
-    let condition = task.condition(centre);
-    let frame = Frame::new(&task.field, centre, &values, &linear, inverse, &condition);
+    let frame = Frame::new(task, centre, &values, &linear, inverse);
     let weights = Weights::new(1.0, frame.reach());
     let mut bounds: Contraction = frame.contraction(Measure::Norm, &weights);
     match without {
@@ -152,7 +151,7 @@ fn a_small_inverse_is_seen_by_z0_alone() {
 fn at_rate_one(rest: Expression, modes: &[f64]) -> (Task, Centre) {
     let rows = Rows { parity: Parity { odd: false, even: true }, condition: None };
     let modes: Vec<_> = modes.iter().map(|re| Complex::new(*re, 0.0)).collect();
-    let task = Task { field: field(rest), rows, value: Rational::new() };
+    let task = Task { field: field(rest), rows, value: Rational::new(), error: Up::ZERO };
     (task, Centre::from_doubles(72, 1.0, &modes))
 }
 

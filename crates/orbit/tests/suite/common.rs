@@ -93,7 +93,11 @@ pub fn samples(
 
 /// The time between two maxima of x after `settle`, and the second maximum.
 pub fn period(equation: &Expression, state: [f64; 2], settle: f64) -> Option<(f64, f64)> {
-    let (mut state, mut t, h) = (state, 0.0, 0.004);
+    period_by(equation, state, settle, 0.004)
+}
+
+fn period_by(equation: &Expression, state: [f64; 2], settle: f64, h: f64) -> Option<(f64, f64)> {
+    let (mut state, mut t) = (state, 0.0);
     let mut last: Option<f64> = (settle == 0.0).then_some(0.0);
     while t < settle + 200.0 {
         let next = step(equation, state, t, h);
@@ -115,9 +119,24 @@ pub fn period(equation: &Expression, state: [f64; 2], settle: f64) -> Option<(f6
 
 /// A guess from the motion from a state.
 pub fn guess(equation: &Expression, state: [f64; 2], settle: f64) -> Option<Start> {
-    let (period, top) = period(equation, state, settle)?;
+    guess_by(equation, state, settle, 0.004, 1024)
+}
+
+/// The same with a larger step and fewer samples.
+pub fn rough_guess(equation: &Expression, state: [f64; 2], settle: f64) -> Option<Start> {
+    guess_by(equation, state, settle, 0.02, 128)
+}
+
+fn guess_by(
+    equation: &Expression,
+    state: [f64; 2],
+    settle: f64,
+    h: f64,
+    n: usize,
+) -> Option<Start> {
+    let (period, top) = period_by(equation, state, settle, h)?;
     let state = if settle == 0.0 { state } else { [top, 0.0] };
-    Some(Start::from_samples(period, &samples(equation, state, 0.0, period, 1024)))
+    Some(Start::from_samples(period, &samples(equation, state, 0.0, period, n)))
 }
 
 pub fn proved(
