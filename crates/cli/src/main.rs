@@ -11,7 +11,6 @@ mod failure;
 mod output;
 mod paper;
 mod problems;
-mod recognised;
 mod session;
 mod simulate;
 mod stability;

@@ -106,6 +106,12 @@ impl<'a> Session<'a> {
         }
     }
 
+    /// The same with the precision asked for.
+    pub fn precise_work(&self, precision: &Precision) -> Result<Work, Failure> {
+        let digits = u32::try_from(digits(precision)?).unwrap_or(u32::MAX);
+        Ok(Work { digits, doubles: precision.f64, ..self.work() })
+    }
+
     /// The oscillator of an argument, with the values and the normalisation asked for: an equation,
     /// the path of a problem file, or a built-in name.
     pub fn oscillator(
@@ -134,6 +140,26 @@ impl<'a> Session<'a> {
             Some(condition) => oscillator.under(condition)?,
             None => oscillator,
         })
+    }
+
+    /// Refuses figures and tables of sweeps that are not there; a figure needs so many.
+    pub fn check_sweep(
+        &self,
+        plots: &[PathBuf],
+        sweeps: usize,
+        needed: usize,
+    ) -> Result<(), Failure> {
+        let refused =
+            |message: &str, hint: &str| Err(Failure::usage("plot", message.to_owned(), hint));
+        match sweeps {
+            0 if !plots.is_empty() => {
+                refused("--plot needs a --sweep", "for example --sweep NAME=0..1:101")
+            }
+            n if n < needed && plots.iter().any(|path| plot::is(path, "svg")) => {
+                refused("a chart needs two sweeps", "or write a .csv table")
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Fails now rather than after the work if what is asked for cannot be written.

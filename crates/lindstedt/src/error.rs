@@ -18,6 +18,9 @@ pub enum Error {
     /// Melnikov's method has no value here.
     #[error(transparent)]
     Melnikov(#[from] lindstedt_melnikov::MelnikovError),
+    /// There is no impact orbit or prediction for these values.
+    #[error(transparent)]
+    Impact(#[from] lindstedt_impact::ImpactError),
     /// The integration in the time domain failed.
     #[error(transparent)]
     Simulate(#[from] lindstedt_simulate::SimulateError),

@@ -45,15 +45,41 @@ impl Axis {
             Some((low, rest)) => {
                 let (high, count) =
                     rest.rsplit_once(':').ok_or_else(|| usage(format!("{text:?} has no count")))?;
-                let count = count.trim().parse().ok();
-                let count = count.filter(|n| (1..=MOST_VALUES).contains(n)).ok_or_else(|| {
-                    usage(format!("a range has 1 to {MOST_VALUES} values, not {count:?}"))
+                let number = count.trim().parse().ok();
+                let count = number.filter(|n| (1..=MOST_VALUES).contains(n)).ok_or_else(|| {
+                    usage(format!("a range has 1 to {MOST_VALUES} values, not {count}"))
                 })?;
                 steps(&Exact::parse(low)?, &Exact::parse(high)?, count)
                     .ok_or_else(|| usage(format!("{text:?} mixes numbers and multiples of pi")))?
             }
         };
         Ok(Self { name, values })
+    }
+
+    /// Reads the ends of a range, `NAME=LO..HI`, exact: an axis of two values.
+    ///
+    /// # Errors
+    /// As [`Axis::parse`].
+    pub fn ends(text: &str) -> Result<Self, Error> {
+        let parts =
+            text.split_once('=').and_then(|(name, range)| Some((name, range.split_once("..")?)));
+        let Some((name, (low, high))) = parts else {
+            let shown: String = text.chars().take(60).collect();
+            let message = format!("cannot read the range {shown:?}");
+            return Err(Refused::usage("range", message, "NAME=LO..HI, as in omega=0..1").into());
+        };
+        let values = vec![Exact::parse(low)?, Exact::parse(high)?];
+        Ok(Self { name: canonical_name(name.trim()), values })
+    }
+
+    /// Whether the values have equal steps.
+    #[must_use]
+    pub fn is_equidistant(&self) -> bool {
+        let values = self.doubles();
+        let (Some(first), Some(last)) = (values.first(), values.last()) else { return true };
+        let step = (last - first) / (values.len().max(2) - 1) as f64;
+        let off = |(n, x): (usize, &f64)| (first + step * n as f64 - x).abs() > 1e-9 * step.abs();
+        !values.iter().enumerate().any(off)
     }
 
     /// The values as doubles, for tables and figures.
@@ -120,6 +146,19 @@ impl<T: Send> Grid<T> {
 }
 
 impl<T> Grid<T> {
+    /// The same grid with something else at its points.
+    pub fn map<U>(self, point: impl Fn(T) -> Option<U>) -> Grid<U> {
+        let Self { columns, rows, points } = self;
+        let points = points.into_iter().map(|found| point(found?)).collect();
+        Grid { columns, rows, points }
+    }
+
+    /// The number of columns.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.columns.values.len().max(1)
+    }
+
     /// The number of points that were reached.
     #[must_use]
     pub fn done(&self) -> usize {
@@ -134,7 +173,7 @@ impl<T> Grid<T> {
 
     /// The value of the first parameter, that of the second, and the point; in order.
     pub fn iter(&self) -> impl Iterator<Item = (&Exact, Option<&Exact>, Option<&T>)> {
-        let width = self.columns.values.len().max(1);
+        let width = self.width();
         self.points.iter().enumerate().filter_map(move |(index, point)| {
             let second = self.rows.as_ref().and_then(|axis| axis.values.get(index / width));
             Some((self.columns.values.get(index % width)?, second, point.as_ref()))

@@ -29,7 +29,9 @@ mod oscillator;
 pub mod quotient;
 pub mod recognise;
 pub mod refusal;
+pub mod stability;
 pub mod start;
+pub mod threshold;
 pub mod trade;
 pub mod verify;
 mod work;
@@ -58,6 +60,8 @@ pub use lindstedt_number::{Exact, Number, NumberError, Status};
 pub use lindstedt_problem_file::ProblemFile;
 pub use oscillator::{Oscillator, condition_name, known_values};
 pub use refusal::{Kind, Refusal, Refused};
+pub use stability::Stability;
+pub use threshold::Threshold;
 pub use verify::Verify;
 pub use work::{Progress, Work};
 

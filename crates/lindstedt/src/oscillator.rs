@@ -66,7 +66,9 @@ impl Oscillator {
     /// [`Error::File`] with line and column.
     pub fn file(text: &str) -> Result<Self, Error> {
         let file = ProblemFile::parse(text)?;
-        let unused = file.unused.iter();
+        // The root of the impact velocity has no place in an equation.
+        let root = |name: &str| name == "branch" && file.problem.impact.is_some();
+        let unused = file.unused.iter().filter(|name| !root(name));
         let unused = unused.map(|name| format!("parameter {name} is declared and occurs nowhere"));
         let mut remarks: Vec<Remark> = unused.map(Remark).collect();
         if file.equation.to_lowercase().contains("taylor") {

@@ -3,6 +3,7 @@
 use crate::Error;
 use lindstedt_algebra::PhaseError;
 use lindstedt_expand::ExpandError;
+use lindstedt_impact::ImpactError;
 use lindstedt_melnikov::MelnikovError;
 use lindstedt_simulate::SimulateError;
 use std::fmt;
@@ -103,6 +104,7 @@ impl Error {
             Self::Refused(it) => return (it.kind, it.code, it.hint.clone()),
             Self::Simulate(error) => return (error.kind(), error.code(), error.hint()),
             Self::Melnikov(error) => return (error.kind(), error.code(), error.hint()),
+            Self::Impact(error) => return (error.kind(), error.code(), error.hint()),
             Self::File(error) if error.is_limit() => {
                 return (Undecided, "problem-file", error.hint());
             }
@@ -191,6 +193,33 @@ impl Refusal for SimulateError {
             _ => "another start, or a shorter time",
         };
         hint.to_owned()
+    }
+}
+
+impl Refusal for ImpactError {
+    fn code(&self) -> &'static str {
+        match self {
+            Self::NotFinite { .. }
+            | Self::NotPositive { .. }
+            | Self::OutOfRange { .. }
+            | Self::Negative { .. }
+            | Self::OrderZero
+            | Self::BadAxes => "parameter",
+            Self::NoConvergence { .. } | Self::Undecided { .. } => "undecided",
+            Self::Cancelled => "stopped",
+            _ => "no-orbit",
+        }
+    }
+    fn kind(&self) -> Kind {
+        match self.code() {
+            "parameter" => Kind::Usage,
+            "undecided" => Kind::Undecided,
+            "stopped" => Kind::Stopped,
+            _ => Kind::NoAnswer,
+        }
+    }
+    fn hint(&self) -> String {
+        String::new()
     }
 }
 

@@ -4,7 +4,7 @@ use super::history::{Evaluator, constant, free_flight};
 use super::setup::{Setup, identity, same};
 use crate::failure::{Failure, NO_ANSWER};
 use crate::session::parameters;
-use crate::stability::known::exact_parameters;
+use crate::stability::exact_parameters;
 use lindstedt::Exact;
 use lindstedt::equation::Function::{Abs, Cos, Sign, Sin};
 use lindstedt::equation::{AmplitudeRole, Condition, Crossing, Expression, ParameterCard, Problem};

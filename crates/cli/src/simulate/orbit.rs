@@ -2,7 +2,7 @@
 
 use super::setup::{Setup, identity};
 use crate::failure::{Failure, NO_ANSWER};
-use crate::stability::known::exact_parameters;
+use crate::stability::exact_parameters;
 use lindstedt::Exact;
 use lindstedt::equation::Expression;
 use lindstedt::equation::Function::{Cos, Exp, Sin};
@@ -52,7 +52,7 @@ pub fn on_orbit(
         });
     }
     let w = square.sqrt();
-    let orbit = orbit(&p)?;
+    let orbit = orbit(&p).map_err(lindstedt::Error::from)?;
     if let Ok(Some(found)) = clearance(&p, &orbit)
         && found.margin.is_positive()
     {

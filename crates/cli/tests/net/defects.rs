@@ -17,7 +17,6 @@ const KNOWN_DEFECTS: &[(&str, &str, usize)] = &[
     ("problems", "^ outside a formula", 15),
     ("problems", "_ outside a formula", 12),
     ("problems", "| in text is another sign", 6),
-    ("threshold", "^ outside a formula", 2),
     ("trade", "^ outside a formula", 5),
     // Headings and verdicts as comments: TeX prints none of them.
     ("evaluate", "% hides the rest of the line", 1),

@@ -2,6 +2,7 @@
 
 mod coefficients;
 pub(crate) mod numbers;
+mod radius;
 mod task;
 mod values;
 
@@ -11,6 +12,7 @@ use lindstedt_coeff::parameters::ParameterField;
 use lindstedt_equation::Problem;
 use lindstedt_expand::AveragedExpansion;
 use lindstedt_phase::Torus;
+pub use radius::{Finite, Radius, divergence};
 use std::collections::BTreeMap;
 use task::Task;
 

@@ -5,6 +5,7 @@
 //! their names. A term that does not fit is named; nothing is dropped.
 
 mod forces;
+mod form;
 pub mod impact;
 mod in_pi;
 mod law;

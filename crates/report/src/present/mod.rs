@@ -1,5 +1,7 @@
 //! What every answer looks like: a file per verb.
 
+mod stability;
+mod threshold;
 mod verify;
 
 use crate::{Document, Figure, Table, Text};

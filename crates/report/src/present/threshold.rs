@@ -1,0 +1,239 @@
+//! The threshold of homoclinic chaos: its numbers, its curves, its map.
+
+use super::Present;
+use crate::figure::{Axis, Colour, Mark, Raster, colours};
+use crate::{Document, Figure, Formula, Table, Text};
+use lindstedt::grid::{self, Grid};
+use lindstedt::threshold::{Harmonic, HomoclinicThreshold, Sweep};
+use lindstedt::{Answer, Number};
+use std::collections::BTreeMap;
+
+/// The longest table on a page.
+const PRINTED_POINTS: usize = 1000;
+/// Up to so many rows are drawn as curves.
+const MOST_CURVES: usize = 12;
+/// Shades of a map.
+const SHADES: f64 = 64.0;
+
+type Line = (Text, Text);
+
+fn gamma_c(words: &str) -> Text {
+    Text::from(Formula::new("gamma_c", r"\gamma_c")).and(words)
+}
+
+fn line(name: impl Into<Text>, value: impl Into<Text>) -> Line {
+    (name.into(), value.into())
+}
+
+fn numbers(value: &HomoclinicThreshold) -> Vec<Line> {
+    let number = |name: Text, number: &Number| (name, Text::number(number));
+    let speed = match &value.cusp {
+        Some(_) => Text::marked("V, largest speed, cusp at $|v*| = V$"),
+        None => "V, largest speed".into(),
+    };
+    let mut lines = vec![
+        number(gamma_c(""), &value.gamma_c),
+        number(gamma_c(" with the sign of D"), &value.signed),
+        number("D, work of friction".into(), &value.dissipation),
+        number("F, work of the forcing".into(), &value.forcing),
+        number(speed, &value.largest_speed),
+    ];
+    if let Some(cusp) = &value.cusp {
+        lines.push(number("signed threshold at the cusp".into(), &cusp.signed));
+    }
+    lines.extend(value.harmonic.iter().flat_map(harmonic));
+    if let Some(b) = value.cusp.as_ref().and_then(|cusp| cusp.touches_zero_at_b.as_ref()) {
+        lines.push(line("cusp touches zero at b =", b.to_string()));
+    }
+    lines
+}
+
+/// `gamma/m, the coefficient of cos(omega*t) in x''`.
+fn harmonic(harmonic: &Harmonic) -> Vec<Line> {
+    let [coefficient, term] = &harmonic.latex;
+    let alone = match harmonic.parameter {
+        Some(_) => "",
+        None => " (a threshold of no single parameter of it)",
+    };
+    let words = Text::from(Formula::new(&harmonic.coefficient, coefficient))
+        .and(", the coefficient of ")
+        .formula(Formula::new(&harmonic.term, term))
+        .and(" in ")
+        .formula(Formula::new("x''", "x''"))
+        .and(alone);
+    let mut lines = vec![(gamma_c(" is a value of"), words)];
+    let parameter = harmonic.parameter.as_ref().zip(harmonic.threshold.as_ref());
+    if let Some((name, number)) = parameter.filter(|(name, _)| **name != harmonic.coefficient) {
+        lines.push((gamma_c(&format!(" as a value of {name}")), Text::number(number)));
+    }
+    lines
+}
+
+fn orbits(value: &HomoclinicThreshold) -> Vec<Line> {
+    let mut lines = Vec::new();
+    for orbit in &value.orbits {
+        let least = if orbit.least == Some(true) { " (the least)" } else { "" };
+        let name = gamma_c(&format!(", {}", orbit.name));
+        lines.push((name, format!("{}{least}", orbit.gamma_c.decimal).into()));
+        lines.push(line(format!("orbit, {}", orbit.name), orbit.check.as_deref().unwrap_or("-")));
+    }
+    for resonance in value.subharmonics.iter().flatten() {
+        let name = gamma_c(&format!(" of period {}, {}", resonance.m, resonance.around));
+        lines.push(line(name, resonance.gamma_c.decimal.as_str()));
+    }
+    if let Some(of) = &value.zeros_of {
+        let name = format!("zero in {}", of.parameter);
+        lines.extend(value.zeros.iter().map(|zero| (name.as_str().into(), Text::number(zero))));
+        let note = if of.complete { "complete" } else { "sign changes on a grid" };
+        let count = format!("{} ({note})", value.zeros.len());
+        lines.push(line(format!("zeros in {}, number", of.parameter), count));
+    }
+    lines
+}
+
+/// The verdict with its distances as formulas.
+fn verdict(words: &str) -> Text {
+    let marked = words.replace("||v*| - V|", "$D$").replace("|v*|", "$|v*|$");
+    Text::marked(&marked.replace("$|v*|$ = V", "$|v*| = V$").replace("$D$", "$||v*| - V|$"))
+}
+
+impl Present for Answer<HomoclinicThreshold> {
+    fn document(&self) -> Document {
+        let value = &self.value;
+        let at: Vec<String> = self.header.at.iter().map(|(n, v)| format!("{n} = {v}")).collect();
+        let mut lines = numbers(value);
+        lines.extend(orbits(value));
+        let crossing = value.homoclinic_points.word();
+        lines.push(line("transversal homoclinic points at gamma", crossing));
+        lines.push((Text::words("validity"), verdict(value.validity.verdict)));
+        let remarks = value.remarks.iter().map(|remark| line("remark", remark.0.as_str()));
+        lines.extend(remarks);
+        if let Some(exact) = &value.gamma_c.exact {
+            lines.push((gamma_c(" ="), Text::default().code(exact)));
+        }
+        let between = if at.is_empty() { "" } else { ": " };
+        let title = format!("{}{between}{}", self.header.problem, at.join(", "));
+        let page = Document::titled(title).lines(lines);
+        value.sweep.iter().fold(page, |page, sweep| page.append(points(sweep)))
+    }
+
+    fn figure(&self) -> Option<Figure> {
+        let sweep = self.value.sweep.as_ref()?;
+        let Grid { columns, rows, .. } = &sweep.grid;
+        match rows {
+            Some(rows) if rows.values.len() > MOST_CURVES => {
+                (columns.is_equidistant() && rows.is_equidistant()).then(|| map(sweep, rows))
+            }
+            _ => Some(curves(sweep, &self.header.problem)),
+        }
+    }
+
+    /// Every point; numbers with all their digits.
+    fn table(&self) -> Option<Table> {
+        let sweep = self.value.sweep.as_ref()?;
+        let head = names(&sweep.grid).into_iter().chain(["gamma_c".into(), "signed".into()]);
+        let digits = |x: Option<f64>| x.map(|x| format!("{x:?}")).unwrap_or_default();
+        let rows = doubles(&sweep.grid).map(|(mut place, signed)| {
+            let cells = [digits(signed.map(f64::abs)), digits(signed)];
+            place.drain(..).map(|x| format!("{x:?}")).chain(cells).collect::<Vec<_>>()
+        });
+        Some(rows.fold(Table::new(head), Table::row))
+    }
+}
+
+/// The swept parameters, the slower one first.
+fn names(grid: &Grid<f64>) -> Vec<String> {
+    grid.rows.iter().chain([&grid.columns]).map(|axis| axis.name.clone()).collect()
+}
+
+/// Every point with its place, the slower parameter first.
+fn doubles(grid: &Grid<f64>) -> impl Iterator<Item = (Vec<f64>, Option<f64>)> {
+    let (columns, rows) = (grid.columns.doubles(), grid.rows.as_ref().map(grid::Axis::doubles));
+    let width = grid.width();
+    grid.points.iter().enumerate().map(move |(index, signed)| {
+        let row = rows.as_ref().and_then(|rows| rows.get(index / width));
+        (row.into_iter().chain(columns.get(index % width)).copied().collect(), *signed)
+    })
+}
+
+/// How many points, and the first of them.
+fn points(sweep: &Sweep) -> Document {
+    let Sweep { grid, blanks, certified, .. } = sweep;
+    let status = if *certified { "certified" } else { "estimated, in doubles" };
+    let blank = grid.points.len() - grid.done();
+    let without = if blank == 0 { String::new() } else { format!(", {blank} without a value") };
+    let mut reasons: BTreeMap<usize, &str> = BTreeMap::new();
+    for blank in blanks {
+        let shown = blank.points.iter().take_while(|index| **index < PRINTED_POINTS);
+        reasons.extend(shown.map(|index| (*index, blank.reason.as_str())));
+    }
+    let head: Vec<Text> = names(grid).into_iter().map(Text::words).collect();
+    let table = Table::new(head.into_iter().chain([gamma_c(" with the sign of D")]));
+    let rows = doubles(grid).take(PRINTED_POINTS).enumerate().map(|(index, (place, signed))| {
+        let value = match signed {
+            Some(signed) => format!("{signed:?}"),
+            None => format!("- ({})", reasons.get(&index).copied().unwrap_or_default()),
+        };
+        place.iter().map(f64::to_string).chain([value]).collect::<Vec<_>>()
+    });
+    let page = Document::default()
+        .words(format!("{} points ({status}){without}", grid.points.len()))
+        .table(rows.fold(table, Table::row));
+    if grid.points.len() > PRINTED_POINTS {
+        return page.words("... (--plot FILE.csv has all of them)");
+    }
+    page
+}
+
+/// A family of curves; circles mark zeros, triangles cusps.
+fn curves(sweep: &Sweep, problem: &str) -> Figure {
+    let grid = &sweep.grid;
+    let columns = grid.columns.doubles();
+    let marked = if sweep.marks.is_empty() { "" } else { ": circles zeros, triangles cusps" };
+    let title = format!("Melnikov threshold of {problem}{marked}");
+    let up = Axis::linear("gamma_c");
+    let mut figure = Figure::new(title, Axis::linear(&grid.columns.name), up);
+    for (row, signed) in grid.points.chunks(grid.width()).enumerate() {
+        let colour = colours::CYCLE[row % colours::CYCLE.len()];
+        let name = grid
+            .rows
+            .as_ref()
+            .and_then(|rows| Some(format!("{} = {}", rows.name, rows.values.get(row)?.to_f64())));
+        let line = columns.iter().zip(signed).map(|(x, y)| (*x, y.map_or(f64::NAN, f64::abs)));
+        figure = figure.layer(name.as_deref(), Mark::Line(2), colour, line);
+        if let Some(marks) = sweep.marks.get(row) {
+            let zeros = marks.zeros.iter().map(|x| (*x, 0.0));
+            figure = figure.layer(None, Mark::Disc(5), colour, zeros).layer(
+                None,
+                Mark::Triangle(7),
+                colour,
+                marks.cusps.iter().copied(),
+            );
+        }
+    }
+    figure
+}
+
+/// A map in shades: blue D > 0, red D < 0, white near 0.
+fn map(sweep: &Sweep, rows: &grid::Axis) -> Figure {
+    let grid = &sweep.grid;
+    let largest = grid.points.iter().flatten().fold(0.0f64, |m, s| m.max(s.abs()));
+    let shade = |signed: &f64| -> Colour {
+        let depth = (signed.abs() / largest.max(f64::MIN_POSITIVE)).powf(0.4);
+        let depth = (depth * SHADES).round() / SHADES;
+        let (r, g, b) = if *signed > 0.0 { colours::BLUE } else { colours::VERMILION };
+        let mix = |part: u8| (255.0 - depth * (255.0 - f64::from(part))) as u8;
+        (mix(r), mix(g), mix(b))
+    };
+    let title = format!("signed Melnikov threshold, blue > 0 > red, up to {largest:.3e}");
+    let [across, up] = [&grid.columns, rows].map(|axis| Axis::linear(&axis.name));
+    let range = |axis: &grid::Axis| {
+        let values = axis.doubles();
+        let end = |x: Option<&f64>| x.copied().unwrap_or(f64::NAN);
+        (end(values.first()), end(values.last()), values.len())
+    };
+    let cells = grid.points.iter().map(|point| point.as_ref().map(shade)).collect();
+    let (columns, rows) = (range(&grid.columns), range(rows));
+    let raster = Some(Raster { columns, rows, cells, legend: Vec::new() });
+    Figure { raster, ..Figure::new(title, across, up) }
+}
