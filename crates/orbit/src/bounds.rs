@@ -7,6 +7,8 @@
 //! A = the inverse in doubles on the modes <= N, -1/(omega^2 k^2) beyond. T(c) = c - A F(c) has
 //! |T(c) - T(d)| <= (Z0 + Z1 + Z2 r) |c - d| on the ball of radius r, and |T(cbar) - cbar| <= Y0.
 
+mod tail;
+
 use crate::centre::{Centre, Doubles, Values, power_of_two};
 use crate::field::Field;
 use crate::linear::{Inverse, Linear, at};
@@ -289,109 +291,6 @@ impl<'a> Frame<'a> {
             size += rate * rate;
         }
         size
-    }
-
-    /// Z1: the tail rows of all columns, and the finite rows of the tail columns.
-    fn z1(&self, measure: Measure, alpha: &[f64], weights: &Weights) -> Up {
-        let (modes, band) = (self.inverse.modes, self.band());
-        let tails: Vec<f64> =
-            (0..=modes + 2 * band + 1).map(|k| self.tail(measure, k.max(1), weights)).collect();
-        let mut largest = self.frequency_column(measure, weights);
-        for h in &self.inverse.basis {
-            if h.k + band > modes {
-                let below = self.tail_rows(*h, &tails);
-                largest = largest.max(below.over(weights.below(h.k) * h.k.max(1) as f64 * LESS));
-            }
-        }
-        // Beyond modes + band no finite row is met: the last columns stand for all further ones.
-        for k in modes + 1..=modes + band {
-            for h in self.linear.rows.parity.waves(k) {
-                let sum = self.finite_rows(h, alpha) + self.tail_rows(h, &tails);
-                largest = largest.max(sum.over(weights.below(k) * k as f64 * LESS));
-            }
-        }
-        largest.max(self.far(measure, alpha, weights))
-    }
-
-    /// The column of the frequency in the tail rows: sum_(k > N) |dF/domega|_k nu^k/(omega^2 k s).
-    fn frequency_column(&self, measure: Measure, weights: &Weights) -> Up {
-        if self.extra() == 0 {
-            return Up::ZERO;
-        }
-        let list = &self.linear.by_frequency;
-        let mut sum = 0.0;
-        for (k, c) in list.iter().enumerate().skip(self.inverse.modes + 1) {
-            let size = 2.0 * (c.re.abs() + c.im.abs() + DROPPED);
-            sum += size * self.tail(measure, k, weights);
-        }
-        (raised(sum, list.len() + 8) * (Up::ONE + Doubles::ERROR)).over(self.scale)
-    }
-
-    /// The tail rows of the column of a wave: sum_(k > N) |coupling| nu^k/(omega^2 k).
-    fn tail_rows(&self, h: Wave, tails: &[f64]) -> Up {
-        let (mut sum, mut sizes) = (0.0, 0.0);
-        let from = (self.inverse.modes + 1).max(h.k.saturating_sub(self.band()));
-        let rows = tails.iter().enumerate().take(h.k + self.band() + 1).skip(from);
-        for (k, tail) in rows.filter(|(k, _)| self.linear.rows.parity.has(*k)) {
-            let c = self.linear.coupling(k, h);
-            sum += 2.0 * (c.re.abs() + c.im.abs()) * tail;
-            sizes += self.linear.coupling_size(k, h) * tail;
-        }
-        let terms = 2 * self.band() + 8;
-        raised(sum, terms) + Linear::coupling_error() * raised(sizes, terms)
-    }
-
-    /// The finite rows of a tail column: sum_c |A e_c| |coupling|, and the condition.
-    fn finite_rows(&self, h: Wave, alpha: &[f64]) -> Up {
-        let (mut sum, mut sizes) = (0.0, 0.0);
-        let extra = self.extra();
-        for (w, a) in self.inverse.basis.iter().zip(alpha.iter().skip(extra)) {
-            if w.k + self.band() >= h.k {
-                sum += w.of(self.linear.coupling(w.k, h)).abs() * a;
-                sizes += self.linear.coupling_size(w.k, h) * a;
-            }
-        }
-        if let Some(condition) = self.linear.rows.condition {
-            sum += condition.of(h).abs() * alpha[0];
-        }
-        let terms = alpha.len() + 8;
-        raised(sum, terms) + Linear::coupling_error() * raised(sizes, terms)
-    }
-
-    /// A bound for all columns beyond J = N + band: it decreases with the mode,
-    /// sum_l (|u_l|/j + |v_l|) nu^l/(omega^2 (j + l)) at j = J + 1.
-    fn far(&self, measure: Measure, alpha: &[f64], weights: &Weights) -> Up {
-        let j = self.inverse.modes + self.band() + 1;
-        let square = (self.frequency_below * self.frequency_below).next_down();
-        let mut sum = 0.0;
-        for l in -(self.band() as i64)..=self.band() as i64 {
-            let (u, v) = (at(&self.linear.by_x, l), at(&self.linear.by_slope, l));
-            let size = (u.re.abs() + u.im.abs()) / j as f64 + v.re.abs() + v.im.abs();
-            let k = (j as i64 + l) as f64;
-            sum += size * weights.above(l.max(0) as usize) / (square * k);
-        }
-        let rows = match measure {
-            Measure::Norm => raised(sum, 2 * self.band() + 16) * (Up::ONE + Doubles::ERROR),
-            Measure::Frequency => Up::ZERO,
-        };
-        let condition = self.linear.rows.condition.map_or(Up::ZERO, |_| Up(alpha[0]));
-        rows + condition.over(weights.below(j) * j as f64 * LESS)
-    }
-
-    /// |A| times the norms of what was cut from g_x and omega g_y; a function and its slope are
-    /// bounded by the norm.
-    fn outside_band(&self, weights: &Weights) -> Up {
-        let kept = [self.linear.by_x.len(), self.linear.by_slope.len()];
-        let mut sum = 0.0;
-        let mut terms = 8;
-        for (list, kept) in self.whole.iter().zip(kept) {
-            for (k, c) in list.values.iter().enumerate() {
-                let size = if k < kept { 0.0 } else { c.re.abs() + c.im.abs() };
-                sum += 2.0 * (size + DROPPED) * weights.above(k);
-            }
-            terms += list.values.len();
-        }
-        raised(sum, terms) * (Up::ONE + Doubles::ERROR)
     }
 
     /// max_k |A e_k| k^power/nu^k over all waves: power 0 for |A|, power 1 for |A d^2/dtau^2| (k^2

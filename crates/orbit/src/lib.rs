@@ -34,12 +34,14 @@
 mod bounds;
 mod centre;
 mod failure;
+mod family;
 mod field;
 mod laurent;
 mod linear;
 mod newton;
 mod orbit;
 mod proof;
+mod prove;
 mod radii;
 mod read;
 mod space;
@@ -51,8 +53,10 @@ mod upward;
 mod write;
 
 pub use failure::Failure;
+pub use family::{Member, family};
 pub use field::Field;
-pub use proof::{Proof, Stability, Status, prove};
+pub use proof::{Proof, Stability, Status};
+pub use prove::prove;
 pub use radii::Bounds;
 pub use space::Parity;
 pub use start::Start;

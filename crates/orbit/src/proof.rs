@@ -1,14 +1,11 @@
-//! From a guess to a theorem.
+//! What a proof says.
 
 use crate::bounds::{Frame, Measure, Weights};
 use crate::centre::Centre;
-use crate::field::Field;
-use crate::linear::{Inverse, Linear};
-use crate::newton::{balance, invert, refine};
 use crate::orbit::Orbit;
-use crate::radii::{Bounds, Radii, decide};
+use crate::radii::{Bounds, Radii};
 use crate::start::Start;
-use crate::task::{Kind, Request, Task};
+use crate::task::Task;
 use crate::{Condition, Failure, Parity};
 use lindstedt_number::ball::{Ball, Balls};
 use rug::float::Round;
@@ -68,6 +65,8 @@ pub struct Proof {
     /// 2 pi/omega.
     #[serde(serialize_with = "crate::write::ball")]
     pub period: Ball,
+    /// Whether the period is proved to be the least one: the first harmonic is not 0.
+    pub least_period: bool,
     /// x at tau = 0.
     #[serde(serialize_with = "crate::write::ball")]
     pub displacement: Ball,
@@ -90,197 +89,8 @@ pub struct Proof {
     orbit: Orbit,
 }
 
-/// Modes of the first balance.
-const FIRST_MODES: usize = 10;
-/// Beyond this fraction of a guess its highest modes are not worth a balance.
-const GUESSED: f64 = 1e-3;
-/// How far x(0) may be, relatively, from what it shall be, after a balance with the frequency of the guess.
-const NEAR: f64 = 0.1;
-/// The highest quarter of the modes carries less than this fraction when there are enough.
-const RESOLVED: f64 = 1e-4;
-const FINELY: f64 = 1e-9;
-/// Bits beyond the digits: weights of the modes, sums.
-const GUARD_BITS: u32 = 44;
-/// The numerical solution has at most this many times the modes of the inverse.
-const MOST_TIMES: usize = 40;
-/// Weights that are tried: nu = 1 + c/N.
-const WEIGHTS: [f64; 5] = [0.0, 0.5, 2.0, 6.0, 15.0];
-/// Refinements until the radius confirms the digits.
-const MOST_REFINEMENTS: u32 = 4;
-/// A sum Z0 + Z1 with which no other weight is tried.
-const GOOD: f64 = 0.5;
-
-/// Proves that the field has a periodic orbit of this kind near the guess.
-///
-/// Newton's method from the guess, with as many modes as it takes; refinement until the radius is
-/// below 10^-digits of the largest harmonic, every residual formed without rounding; the contraction test
-/// with the modes of the inverse increased until it succeeds or the limit is reached.
-///
-/// # Errors
-/// [`Failure`]: which bound failed, with its number. That says nothing against the orbit.
-///
-/// ```
-/// use lindstedt_equation::Expression;
-/// use lindstedt_number::digits::decimal;
-/// use lindstedt_orbit::{Field, Kind, Request, Start, prove};
-/// // x'' + x + x^3/2 = 0 with x(0) = 1; the guess is cos(1.17 t).
-/// let x = Expression::DISPLACEMENT;
-/// let cubic = Expression::Number((1, 2).into()) * x.clone().pow(3);
-/// let field = Field::new(&(Expression::ACCELERATION + x + cubic), "eps", &Default::default())?;
-/// let start = Start { frequency: 1.17, cosines: vec![0.0, 1.0], sines: vec![] };
-/// let request = Request { digits: 20, ..Request::default() };
-/// let proof = prove(&field, &Kind::InitialAmplitude(1.into()), &start, &request)?;
-/// assert_eq!(decimal(&proof.period, 20).as_deref(), Some("5.3666593551917671037"));
-/// # Ok::<(), lindstedt_orbit::Failure>(())
-/// ```
-pub fn prove(
-    field: &Field,
-    kind: &Kind,
-    start: &Start,
-    request: &Request,
-) -> Result<Proof, Failure> {
-    let (task, guess) = Task::new(field, kind, start)?;
-    let (centre, mut modes) = resolved(&task, guess, request)?;
-    let bits = (f64::from(request.digits) * std::f64::consts::LOG2_10) as u32 + GUARD_BITS;
-    let mut centre = centre.with_bits(bits.max(crate::task::FAST_BITS));
-    loop {
-        let attempt = attempt(&task, &mut centre, modes, request);
-        let more = match attempt {
-            Ok(proof) => return Ok(proof),
-            Err(Failure::NoContraction { z0, z1, .. }) => ((z0 + z1) / 0.7).clamp(1.25, 2.0),
-            Err(Failure::NotConverged { .. } | Failure::Residual { .. }) => 1.5,
-            Err(other) => return Err(other),
-        };
-        if modes >= request.modes_limit {
-            return attempt;
-        }
-        modes = ((modes as f64 * more) as usize + 1).min(request.modes_limit);
-    }
-}
-
-/// Harmonic balance with as many modes as resolve the orbit. Where x(0) is given, first with the
-/// frequency of the guess in its place: near a separatrix the period hangs on the last digits of
-/// x(0), not the other way round.
-fn resolved(task: &Task, guess: Centre, request: &Request) -> Result<(Centre, usize), Failure> {
-    if task.rows.condition == Some(Condition::AtZero) {
-        let near = |c: &Centre| {
-            let miss = task.condition(c).to_f64().abs();
-            miss < NEAR * task.value.to_f64().abs()
-        };
-        let fixed = task.with_frequency_fixed();
-        let mut start = guess.clone();
-        for fraction in [RESOLVED, FINELY] {
-            let Ok((centre, modes)) = balanced(&fixed, start, fraction, request) else { break };
-            if !near(&centre) {
-                break;
-            }
-            if let Ok(found) = balance(task, centre.clone(), modes, &request.stop) {
-                return Ok((found, modes));
-            }
-            start = centre;
-        }
-    }
-    balanced(task, guess, RESOLVED, request)
-}
-
-fn balanced(
-    task: &Task,
-    guess: Centre,
-    fraction: f64,
-    request: &Request,
-) -> Result<(Centre, usize), Failure> {
-    let sizes: Vec<f64> = guess.doubles().iter().map(|c| c.norm()).collect();
-    let allowed = GUESSED * sizes.iter().sum::<f64>();
-    let beyond = |k: &usize| sizes.iter().skip(*k).sum::<f64>() < allowed;
-    let given = (0..sizes.len()).find(beyond).unwrap_or(sizes.len());
-    let mut modes = given.max(FIRST_MODES).min(request.modes_limit);
-    let mut centre = guess;
-    loop {
-        let found = balance(task, centre.clone(), modes, &request.stop);
-        if let Ok(found) = &found {
-            let sizes: Vec<f64> = found.doubles().iter().map(|c| c.norm()).collect();
-            let highest: f64 = sizes.iter().skip(modes * 3 / 4).sum();
-            if highest < fraction * sizes.iter().sum::<f64>() || modes >= request.modes_limit {
-                return Ok((found.clone(), modes));
-            }
-            // A solution on very few modes need not be near the orbit; the guess may be better.
-            if modes >= 4 * FIRST_MODES {
-                centre = found.clone();
-            }
-        } else if modes >= request.modes_limit || matches!(found, Err(Failure::Stopped)) {
-            return found.map(|centre| (centre, modes));
-        }
-        modes = (modes * 3 / 2).min(request.modes_limit);
-    }
-}
-
-/// Refinement and proof with an inverse on `modes` modes.
-fn attempt(
-    task: &Task,
-    centre: &mut Centre,
-    modes: usize,
-    request: &Request,
-) -> Result<Proof, Failure> {
-    let linear = |centre: &Centre| {
-        let values = centre.values(&task.field);
-        let linear = Linear::new(centre.frequency.to_f64(), &values, task.rows);
-        (values, linear)
-    };
-    let inverse = invert(&linear(centre).1, modes)?;
-    let goal = centre.largest() / Float::with_val(53, Float::i_pow_u(10, request.digits)) / 4u32;
-    let mut target = Float::with_val(53, &goal / 16u32);
-    let mut tries = MOST_REFINEMENTS;
-    loop {
-        let most = MOST_TIMES * modes;
-        *centre = refine(task, centre.clone(), &inverse, &target, most, &request.stop)?;
-        let (values, linear) = linear(centre);
-        let frame = Frame::new(task, centre, &values, &linear, &inverse);
-        let (weights, radii) = weighed(&frame, &inverse, request)?;
-        tries -= 1;
-        if radii.radius <= goal || tries == 0 {
-            return conclude(task, &frame, centre.clone(), &weights, radii);
-        }
-        // The radius is larger than the last step: by |A|, by the weights, by 1 - Z0 - Z1.
-        let excess = Float::with_val(53, &radii.radius / &goal) * 8u32;
-        let bits = excess.get_exp().unwrap_or(0).unsigned_abs();
-        target /= excess;
-        *centre = centre.clone().with_bits(centre.bits + bits);
-    }
-}
-
-/// The weight with the least radius.
-fn weighed(
-    frame: &Frame<'_>,
-    inverse: &Inverse,
-    request: &Request,
-) -> Result<(Weights, Radii), Failure> {
-    let modes = inverse.modes;
-    let mut best: Result<(Weights, Radii), Failure> = Err(Failure::Stopped);
-    for c in WEIGHTS {
-        if request.stop.asked() {
-            return Err(Failure::Stopped);
-        }
-        let weights = Weights::new(1.0 + c / modes as f64, frame.reach());
-        let contraction = frame.contraction(Measure::Norm, &weights);
-        let found = decide(&contraction, modes, |r| frame.z2(&contraction, &weights, r));
-        let good = contraction.z0.0 + contraction.z1.0 < GOOD;
-        let better = match (&best, &found) {
-            (Ok((_, old)), Ok(new)) => new.radius < old.radius,
-            (Err(_), Ok(_)) | (Err(Failure::Stopped), _) => true,
-            _ => false,
-        };
-        if better {
-            best = found.map(|radii| (weights, radii));
-        }
-        if good {
-            break;
-        }
-    }
-    best
-}
-
 /// Everything that follows.
-fn conclude(
+pub(crate) fn conclude(
     task: &Task,
     frame: &Frame<'_>,
     centre: Centre,
@@ -301,6 +111,7 @@ fn conclude(
     let cycle = task.rows.condition == Some(Condition::Sine);
     let orbit = Orbit { centre, radius: radius.clone(), frequency: frequency.clone(), balls };
     let (displacement, velocity) = orbit.at_phase(&balls.zero());
+    let first = orbit.harmonic(1);
     let (minimum, maximum) = orbit.extrema(task.is_free() && task.rows.parity.even);
     Ok(Proof {
         status: Status::Proved,
@@ -313,6 +124,7 @@ fn conclude(
         bounds: radii.bounds,
         frequency,
         period,
+        least_period: [&first.0, &first.1].iter().any(|ball| !ball.contains_zero()),
         displacement,
         velocity,
         maximum,

@@ -6,7 +6,7 @@ use crate::common::{
 };
 use lindstedt_equation::{Expression, Function};
 use lindstedt_number::ball::Balls;
-use lindstedt_orbit::{Field, Kind, Proof, Request, Stability, Start, prove};
+use lindstedt_orbit::{Field, Kind, Proof, Request, Stability, Start, family, prove};
 use rug::float::Constant;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
@@ -47,6 +47,7 @@ fn thirty_of(name: &str, field: &Field, kind: &Kind, start: &Start) -> Proof {
     show(name, &proof, clock.elapsed().as_secs_f64());
     assert!(digits(&proof.period) >= 30.0 && digits(&proof.maximum) >= 30.0, "{name}");
     assert!(proof.bounds.z0 + proof.bounds.z1 < 1.0 && proof.unique_within > proof.radius);
+    assert!(proof.least_period, "{name}");
     proof
 }
 
@@ -225,4 +226,42 @@ fn a_proof_in_the_precision_of_doubles_is_quick() {
     let proof = prove(&field, &Kind::LimitCycle, &start, &Request::default()).unwrap();
     show("van der Pol 1, 15 digits", &proof, clock.elapsed().as_secs_f64());
     assert!(digits(&proof.period) >= 15.0);
+}
+
+/// Van der Pol from eps = 1/2 to 4, from two points to where Newton's steps must be halved; and a
+/// family that ends: x'' + x - x^3 = 0 has no oscillation with x(0) > 1.
+#[test]
+fn families_are_followed_and_end_where_they_end() {
+    let van_der_pol = |eps: &Rational| {
+        Ok((field(&van_der_pol(Expression::Number(eps.clone()))), Kind::LimitCycle))
+    };
+    let start = Start { frequency: 0.98, cosines: vec![0.0, 2.0], sines: vec![] };
+    let values = [(1, 2), (1, 1), (4, 1)].map(Rational::from);
+    let members = family(&values, van_der_pol, &start, &Request::default()).unwrap();
+    let periods: Vec<f64> =
+        members.iter().map(|m| m.proof.as_ref().unwrap().period.midpoint().to_f64()).collect();
+    assert!((periods[0] - 6.380_675_801_773).abs() < 1e-11, "{periods:?}");
+    assert!(periods.windows(2).all(|p| p[0] < p[1]) && periods[2] < 11.6, "{periods:?}");
+    let soft = |a: &Rational| Ok((field(&duffing(q(-1, 1))), Kind::InitialAmplitude(a.clone())));
+    let start = Start { frequency: 0.9, cosines: vec![0.0, 0.5], sines: vec![] };
+    let values = [(1, 2), (9, 10), (11, 10), (6, 5)].map(Rational::from);
+    let request = Request { modes_limit: 60, ..Request::default() };
+    let members = family(&values, soft, &start, &request).unwrap();
+    let proved: Vec<bool> = members.iter().map(|m| m.proof.is_ok()).collect();
+    assert_eq!(proved, [true, true, false]);
+}
+
+/// A proof as data.
+#[test]
+fn a_proof_is_written_with_its_class() {
+    let start = Start { frequency: 1.17, cosines: vec![0.0, 1.0], sines: vec![] };
+    let kind = Kind::InitialAmplitude(1.into());
+    let proof = prove(&field(&duffing(q(1, 2))), &kind, &start, &Request::default()).unwrap();
+    let data = serde_json::to_value(&proof).unwrap();
+    assert_eq!(data["status"], "proved");
+    assert_eq!(data["parity"]["even"], true);
+    let period = data["period"]["midpoint"].as_str().unwrap();
+    assert!(period.starts_with("5.366659355191767"), "{period}");
+    let radius: f64 = data["period"]["radius"].as_str().unwrap().parse().unwrap();
+    assert!(radius >= proof.period.radius().to_f64() && radius < 1e-15);
 }

@@ -1,0 +1,136 @@
+//! A proved orbit followed in a parameter or in the amplitude, each point proved.
+
+use crate::{Failure, Field, Kind, Proof, Request, Start, prove};
+use rug::Rational;
+
+/// One point of a family.
+#[derive(Clone, Debug)]
+pub struct Member {
+    /// The parameter.
+    pub value: Rational,
+    /// What is proved there.
+    pub proof: Result<Proof, Failure>,
+}
+
+/// Halvings of a step over which Newton's method does not go.
+const MOST_HALVINGS: u32 = 6;
+
+/// The orbits of `problem(value)` at the values in this order, each proved by itself; the guess is
+/// extrapolated from the two points before. Where the step is too large for Newton's method, points
+/// between are passed through (not returned). Ends after the first point that fails, which may be where
+/// the family turns back.
+///
+/// Between the points nothing is proved; a field with the whole interval as its coefficient
+/// ([`Field::within`]) proves it, where its bounds suffice.
+///
+/// # Errors
+/// What `problem` returns for the first value; later failures stand in their [`Member`].
+///
+/// ```
+/// use lindstedt_equation::Expression;
+/// use lindstedt_orbit::{Field, Kind, Request, Start, family};
+/// // The backbone of x'' + x + x^3 = 0: the frequency grows with the amplitude.
+/// let x = Expression::DISPLACEMENT;
+/// let field = Field::new(&(Expression::ACCELERATION + x.clone() + x.pow(3)), "eps", &Default::default())?;
+/// let start = Start { frequency: 1.04, cosines: vec![0.0, 0.3], sines: vec![] };
+/// let amplitudes = [(3, 10), (1, 1), (2, 1)].map(Into::into);
+/// let problem = |a: &rug::Rational| Ok((field.clone(), Kind::InitialAmplitude(a.clone())));
+/// let members = family(&amplitudes, problem, &start, &Request::default())?;
+/// let proofs: Vec<_> = members.iter().flat_map(|m| &m.proof).collect();
+/// assert_eq!(proofs.len(), 3);
+/// assert!(proofs.windows(2).all(|p| p[0].frequency.upper() < p[1].frequency.lower()));
+/// # Ok::<(), lindstedt_orbit::Failure>(())
+/// ```
+pub fn family(
+    values: &[Rational],
+    problem: impl Fn(&Rational) -> Result<(Field, Kind), Failure>,
+    start: &Start,
+    request: &Request,
+) -> Result<Vec<Member>, Failure> {
+    let at = |value: &Rational, start: &Start, request: &Request| {
+        let (field, kind) = problem(value)?;
+        prove(&field, &kind, start, request)
+    };
+    let mut members: Vec<Member> = Vec::new();
+    // The points passed so far: (parameter, orbit in doubles).
+    let mut passed: Vec<(Rational, Start)> = Vec::new();
+    for value in values {
+        let Some((from, _)) = passed.last().cloned() else {
+            problem(value)?;
+            let proof = at(value, start, request);
+            passed.extend(proof.iter().map(|p| (value.clone(), p.start())));
+            let failed = proof.is_err();
+            members.push(Member { value: value.clone(), proof });
+            if failed {
+                break;
+            }
+            continue;
+        };
+        let proof = approach(&from, value, &mut passed, request, &at);
+        let failed = proof.is_err();
+        members.push(Member { value: value.clone(), proof });
+        if failed {
+            break;
+        }
+    }
+    Ok(members)
+}
+
+/// A proof at `value`, by steps from the last point that are halved while they fail.
+fn approach(
+    from: &Rational,
+    value: &Rational,
+    passed: &mut Vec<(Rational, Start)>,
+    request: &Request,
+    at: &dyn Fn(&Rational, &Start, &Request) -> Result<Proof, Failure>,
+) -> Result<Proof, Failure> {
+    // A failing step shall fail soon: few digits, and few more modes than before.
+    let rough = Request { digits: 10, ..request.clone() };
+    let whole = Rational::from(value - from);
+    let (mut done, mut part) = (Rational::new(), Rational::from(1));
+    loop {
+        let next = Rational::from(&done + &part);
+        let target = Rational::from(&whole * &next) + from;
+        let start = extrapolated(passed, &target);
+        let last = next == 1;
+        let found = at(&target, &start, if last { request } else { &rough });
+        match found {
+            Ok(proof) => {
+                passed.push((target, proof.start()));
+                if last {
+                    return Ok(proof);
+                }
+                done = next;
+            }
+            Err(Failure::Stopped) => return Err(Failure::Stopped),
+            Err(failure) => {
+                part /= 2;
+                if part < Rational::from((1, 1 << MOST_HALVINGS)) {
+                    return Err(failure);
+                }
+            }
+        }
+    }
+}
+
+/// The straight line through the last two orbits.
+fn extrapolated(passed: &[(Rational, Start)], value: &Rational) -> Start {
+    let Some((last, new)) = passed.last() else { return Start::default() };
+    let Some((before, old)) = passed.len().checked_sub(2).and_then(|i| passed.get(i)) else {
+        return new.clone();
+    };
+    let step = Rational::from(last - before);
+    if step.is_zero() {
+        return new.clone();
+    }
+    let t = (Rational::from(value - last) / step).to_f64();
+    let line = |new: &[f64], old: &[f64]| -> Vec<f64> {
+        let pairs = new.iter().enumerate();
+        pairs.map(|(k, c)| c + t * (c - old.get(k).copied().unwrap_or(0.0))).collect()
+    };
+    Start {
+        frequency: new.frequency + t * (new.frequency - old.frequency),
+        cosines: line(&new.cosines, &old.cosines),
+        sines: line(&new.sines, &old.sines),
+    }
+}
