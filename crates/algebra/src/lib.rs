@@ -5,12 +5,14 @@
 //! every ring of the workspace runs them with one call.
 #![warn(missing_docs)]
 
+mod amplitudes;
 mod averaging;
 pub mod laws;
 mod phase;
 mod ring;
 mod stop;
 
+pub use amplitudes::{AmplitudeAlgebra, Split};
 pub use averaging::{Averaged, AveragingAlgebra, LinearPart};
 pub use phase::{Elementary, FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution, combination};
 pub use ring::{RationalAlgebra, Rationals, Ring};

@@ -43,7 +43,7 @@ pub fn degrees<A: PhaseAlgebra>(
                 largest = largest.max(degree.unwrap_or(0));
             }
             if pass == 0 {
-                let force = of_nodes[equation.root][n].unwrap_or(0);
+                let force = of_nodes[equation.root()][n].unwrap_or(0);
                 of_x.push(force.max(of_x.last().copied().unwrap_or(1)));
             }
         }
@@ -174,7 +174,7 @@ where
         .map(|w| Rational::from(w * &expansion.stiffness))
         .collect();
     let inertia = sizes.product(&series(&squared), &curvature);
-    let residual = sizes.sum(&inertia, &of_nodes[equation.root]);
+    let residual = sizes.sum(&inertia, &of_nodes[equation.root()]);
     let bits = residual.iter().flatten().map(|size| sizes.bits(size)).max();
     Some(bits.unwrap_or(0))
 }

@@ -25,12 +25,14 @@ pub(crate) enum Node<E> {
     Displacement,
     /// x' (with respect to physical time).
     Velocity,
-    /// x (or x') at t - T_delay.
-    Delayed {
+    /// Another unknown than the first, or an unknown at t - T_delay; or its derivative.
+    Unknown {
+        /// Which unknown.
+        index: usize,
         /// Whether it is the velocity.
         velocity: bool,
         /// The position of the delay in [`Excitation::delays`].
-        delay: usize,
+        delay: Option<usize>,
     },
     /// cos(m eta) or sin(m eta) of the forcing phase eta = omega t.
     Forcing {
@@ -83,18 +85,34 @@ pub trait Binding<C: Ring> {
     }
 }
 
-/// x'' + F(x, x'; eps) = 0 as a graph of operations with known recurrences in eps; equal subexpressions
-/// are one node; `root` is F.
+impl<E> Node<E> {
+    /// The node of an unknown or its derivative.
+    pub(crate) fn unknown(index: usize, velocity: bool, delay: Option<usize>) -> Self {
+        match (index, velocity, delay) {
+            (0, false, None) => Self::Displacement,
+            (0, true, None) => Self::Velocity,
+            _ => Self::Unknown { index, velocity, delay },
+        }
+    }
+}
+
+/// x_j'' + F_j(x, x'; eps) = 0 as a graph of operations with known recurrences in eps; equal
+/// subexpressions are one node; `roots` are the F_j.
 #[derive(Clone, Debug)]
 pub struct Equation<A: FunctionAlgebra> {
     pub(crate) nodes: Vec<Node<<A::Constants as Ring>::Element>>,
-    pub(crate) root: NodeId,
+    pub(crate) roots: Vec<NodeId>,
 }
 
 impl<A: FunctionAlgebra> Equation<A> {
     /// Whether the velocity occurs.
     pub fn has_velocity(&self) -> bool {
         self.nodes.contains(&Node::Velocity)
+    }
+
+    /// F of the first equation.
+    pub(crate) fn root(&self) -> NodeId {
+        self.roots.first().copied().unwrap_or(0)
     }
 }
 
@@ -108,26 +126,43 @@ pub fn compile<A: FunctionAlgebra>(
     binding: &dyn Binding<A::Constants>,
     order: usize,
 ) -> Result<Equation<A>, ExpandError> {
-    let excitation = Excitation::of(equation)?;
-    let mut compiler = Compiler { algebra, binding, order, excitation, nodes: Vec::new() };
-    let terms = match equation {
-        Expression::Sum(terms) => terms.as_slice(),
-        single => std::slice::from_ref(single),
-    };
-    let is_acceleration = |term: &&Expression| **term == Expression::ACCELERATION;
-    if terms.iter().filter(is_acceleration).count() != 1 {
-        return Err(ExpandError::AccelerationNotIsolated {
-            term: equation.print("eps", Style::Text),
-        });
+    compile_system(algebra, std::slice::from_ref(equation), binding, order)
+}
+
+/// Compiles the left sides of `equations[j]` = 0, in each of which x_j'' stands alone.
+///
+/// # Errors
+/// As [`compile`].
+pub fn compile_system<A: FunctionAlgebra>(
+    algebra: &A,
+    equations: &[Expression],
+    binding: &dyn Binding<A::Constants>,
+    order: usize,
+) -> Result<Equation<A>, ExpandError> {
+    let excitation = Excitation::of(&Expression::Sum(equations.to_vec()))?;
+    let unknowns = equations.len();
+    let mut compiler =
+        Compiler { algebra, binding, order, excitation, unknowns, nodes: Vec::new() };
+    let mut roots = Vec::new();
+    for (j, equation) in equations.iter().enumerate() {
+        let acceleration = Expression::unknown(j, 2);
+        let is_acceleration = |term: &&Expression| **term == acceleration;
+        let terms = equation.terms();
+        if terms.iter().filter(is_acceleration).count() != 1 {
+            return Err(ExpandError::AccelerationNotIsolated {
+                term: equation.print("eps", Style::Text),
+            });
+        }
+        let rest: Vec<_> = terms.iter().filter(|t| !is_acceleration(t)).cloned().collect();
+        let root = compiler.node(&Expression::Sum(rest))?;
+        let equation_degree = degree(&compiler.nodes, root);
+        if equation_degree > LARGEST_DEGREE {
+            let term = format!("a term of degree {equation_degree}, above {LARGEST_DEGREE},");
+            return Err(ExpandError::UnsupportedTerm { term });
+        }
+        roots.push(root);
     }
-    let rest: Vec<_> = terms.iter().filter(|t| !is_acceleration(t)).cloned().collect();
-    let root = compiler.node(&Expression::Sum(rest))?;
-    let equation_degree = degree(&compiler.nodes, root);
-    if equation_degree > LARGEST_DEGREE {
-        let term = format!("a term of degree {equation_degree}, above {LARGEST_DEGREE},");
-        return Err(ExpandError::UnsupportedTerm { term });
-    }
-    Ok(Equation { nodes: compiler.nodes, root })
+    Ok(Equation { nodes: compiler.nodes, roots })
 }
 
 /// A larger degree is a different problem, and exponents of the algebras are bounded by it.
@@ -139,7 +174,7 @@ fn degree<E>(nodes: &[Node<E>], root: NodeId) -> usize {
     for node in nodes {
         degrees.push(match node {
             Node::Constant(_) | Node::Small | Node::Forcing { .. } => 0,
-            Node::Displacement | Node::Velocity | Node::Delayed { .. } => 1,
+            Node::Displacement | Node::Velocity | Node::Unknown { .. } => 1,
             Node::Sum(terms) => terms.iter().map(|(_, t)| degrees[*t]).max().unwrap_or(0),
             Node::Product(a, b) => degrees[*a].saturating_add(degrees[*b]),
             Node::Logarithm(a) | Node::Exponential(a) | Node::Power(a, _) => degrees[*a],
@@ -155,6 +190,7 @@ struct Compiler<'a, A: FunctionAlgebra> {
     binding: &'a dyn Binding<A::Constants>,
     order: usize,
     excitation: Excitation,
+    unknowns: usize,
     nodes: Vec<Node<<A::Constants as Ring>::Element>>,
 }
 
@@ -209,13 +245,18 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
 
     /// x, x', or one of them at an earlier time that the algebra knows.
     fn unknown(&self, unknown: &Unknown) -> Option<Node<<A::Constants as Ring>::Element>> {
-        let (0, derivative @ (0 | 1)) = (unknown.index, unknown.derivative) else { return None };
-        let velocity = derivative == 1;
-        let Some(delay) = unknown.delay.as_deref() else {
-            return Some(if velocity { Node::Velocity } else { Node::Displacement });
+        if unknown.index >= self.unknowns || unknown.derivative > 1 {
+            return None;
+        }
+        let (index, velocity) = (unknown.index, unknown.derivative == 1);
+        let delay = match unknown.delay.as_deref() {
+            None => None,
+            Some(delay) => {
+                let known = self.excitation.delays.iter().position(|known| known == delay);
+                Some(known.filter(|&delay| delay < self.algebra.delays())?)
+            }
         };
-        let delay = self.excitation.delays.iter().position(|known| known == delay)?;
-        (delay < self.algebra.delays()).then_some(Node::Delayed { velocity, delay })
+        Some(Node::unknown(index, velocity, delay))
     }
 
     /// cos(m eta), and sin(-m eta) = -sin(m eta).

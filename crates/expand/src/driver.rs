@@ -299,7 +299,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
             .zip(&by_v)
             .map(|(x, v)| !algebra.is_zero(&x[0]) || !algebra.is_zero(&v[0]))
             .collect();
-        let root = equation.root;
+        let root = equation.root();
         let stiffness = algebra
             .as_constant(&by_x[root][0])
             .filter(|_| algebra.is_zero(&by_v[root][0]))
@@ -344,7 +344,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
 
     /// f_n.
     fn right_side(&mut self, n: usize) -> Result<A::Element, ExpandError> {
-        let force = self.evaluator.coefficient(self.evaluator.equation.root, n)?;
+        let force = self.evaluator.coefficient(self.evaluator.equation.root(), n)?;
         let mut terms = vec![(&force, &self.inverse_stiffness)];
         terms.extend(self.convolution(&self.frequency_squared[1..], &self.second_derivatives, n));
         let f = self.algebra.linear_combination(&terms);
@@ -431,7 +431,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
             _ => None,
         };
         let tangents = alone.tangents(&change)?;
-        let force = &tangents[self.evaluator.equation.root][1];
+        let force = &tangents[self.evaluator.equation.root()][1];
         let mut change = algebra.neg(&algebra.scale_by(force, &self.inverse_stiffness));
         let inertia = algebra.scale_by(&direction, &self.frequency_squared[1]);
         algebra.add_assign(&mut change, &inertia);

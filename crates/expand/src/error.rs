@@ -25,6 +25,16 @@ pub enum ExpandError {
         /// The name.
         name: String,
     },
+    /// At order zero the equation of this unknown is not x_j'' + nu_j^2 x_j + force(t) with the frequency
+    /// nu_j of the algebra, off resonance.
+    #[error(
+        "without the small parameter equation {} is not that of the frequency given, off resonance",
+        unknown + 1
+    )]
+    NotTheFrequency {
+        /// j, from 0.
+        unknown: usize,
+    },
     /// At order zero the equation is not a linear oscillator.
     #[error("without the small parameter the equation is not linear in x alone")]
     NotWeaklyNonlinear,

@@ -144,7 +144,7 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
             | Node::Forcing { .. }
             | Node::Displacement
             | Node::Velocity
-            | Node::Delayed { .. } => Ok(algebra.zero()),
+            | Node::Unknown { .. } => Ok(algebra.zero()),
             Node::Sum(terms) => {
                 let mut sum = algebra.zero();
                 for (q, term) in terms {
@@ -319,7 +319,7 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
             };
             let tangent = match node {
                 Node::Constant(_) | Node::Small | Node::Forcing { .. } => still(),
-                Node::Displacement | Node::Velocity | Node::Delayed { .. } => {
+                Node::Displacement | Node::Velocity | Node::Unknown { .. } => {
                     direction(node).unwrap_or_else(still)
                 }
                 Node::Sum(terms) => {

@@ -10,10 +10,11 @@ mod evaluator;
 mod excitation;
 mod limit_cycle;
 mod residual;
+pub mod resonance;
 
 pub use averaging::{AveragedExpansion, average, check_averaged, linear_part};
 pub use bound::{degrees, equation_denominator, residual_bits};
-pub use compile::{Binding, Equation, compile};
+pub use compile::{Binding, Equation, compile, compile_system};
 pub use driver::{Expansion, OrderWork, Request, expand, leading_amplitude};
 pub use error::ExpandError;
 pub use excitation::Excitation;

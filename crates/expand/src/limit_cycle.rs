@@ -46,7 +46,7 @@ fn degree_in_amplitude<A: PhaseAlgebra>(equation: &Equation<A>) -> Result<usize,
             _ => return Err(ExpandError::CycleNotPolynomial),
         });
     }
-    Ok(degrees[equation.root])
+    Ok(degrees[equation.root()])
 }
 
 /// S(a), a rational number.
@@ -59,7 +59,7 @@ fn secular_term<A: PhaseAlgebra>(
     let x0 = algebra.scale(&algebra.cosine(), amplitude);
     evaluator.assign(&Node::Velocity, 0, algebra.derivative(&x0));
     evaluator.assign(&Node::Displacement, 0, x0);
-    let force = evaluator.coefficient(equation.root, 1)?;
+    let force = evaluator.coefficient(equation.root(), 1)?;
     let (_, sine) =
         algebra.first_harmonic(&force).map_err(|source| ExpandError::Phase { order: 1, source })?;
     algebra.constants().as_rational(&sine).ok_or(ExpandError::IrrationalAmplitude)

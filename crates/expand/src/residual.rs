@@ -73,7 +73,7 @@ fn substitute<A: PhaseAlgebra>(
         &judge.squared.map(|w| constants.mul(w, &expansion.stiffness)),
         &judge.solution.map(|x| algebra.derivative(&algebra.derivative(x))),
     );
-    let mut residual = inertia.add(algebra, &values[equation.root]);
+    let mut residual = inertia.add(algebra, &values[equation.root()]);
     let after = residual.coefficients.split_off(residual.coefficients.len().min(order + 1));
     judge.must_vanish(&residual, order + 1)?;
     if judge.order > order {

@@ -1,6 +1,7 @@
 //! Algebras of functions of the fast phase: trigonometric polynomials, the Lobachevsky ring, and
 //! the Lobachevsky functions as numbers.
 
+pub mod amplitudes;
 pub mod collocation;
 pub mod evaluate;
 pub mod fourier;
@@ -11,6 +12,7 @@ pub mod print;
 pub mod torus;
 pub mod trigonometric;
 
+pub use amplitudes::Amplitudes;
 pub use collocation::Collocation;
 pub use lobachevsky::Lobachevsky;
 pub use modular::Modular;

@@ -46,8 +46,12 @@ fn substitute<A: AveragingAlgebra>(
         let value = match node {
             Node::Displacement => x.clone(),
             Node::Velocity => velocity.clone(),
-            Node::Delayed { velocity: false, delay } => judge.delayed(&x, *delay)?,
-            Node::Delayed { velocity: true, delay } => judge.delayed(&velocity, *delay)?,
+            Node::Unknown { index: 0, velocity: false, delay: Some(delay) } => {
+                judge.delayed(&x, *delay)?
+            }
+            Node::Unknown { index: 0, velocity: true, delay: Some(delay) } => {
+                judge.delayed(&velocity, *delay)?
+            }
             Node::Forcing { multiple, sine } => {
                 let (cos, sin) = algebra.forcing(*multiple).ok_or_else(unsupported)?;
                 Series::polynomial(vec![if *sine { sin } else { cos }])
@@ -58,7 +62,7 @@ fn substitute<A: AveragingAlgebra>(
         };
         values.push(value);
     }
-    let residual = judge.rate(&velocity).add(algebra, &values[equation.root]);
+    let residual = judge.rate(&velocity).add(algebra, &values[equation.root()]);
     let broken = |c: &A::Element| !algebra.may_vanish(c);
     match residual.coefficients.iter().position(broken) {
         Some(order) => Err(ExpandError::Residual { order }),

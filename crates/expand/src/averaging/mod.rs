@@ -196,7 +196,7 @@ impl<'a, A: AveragingAlgebra> Averaging<'a, A> {
 
     /// f_n, with the provisional values of order n.
     fn right_side(&mut self, n: usize) -> Result<A::Element, ExpandError> {
-        let force = self.evaluator.coefficient(self.evaluator.equation.root, n)?;
+        let force = self.evaluator.coefficient(self.evaluator.equation.root(), n)?;
         let acceleration = self.rate_of_change(&self.velocity, n);
         Ok(self.algebra.neg(&self.algebra.add(&acceleration, &force)))
     }
@@ -229,13 +229,16 @@ impl<'a, A: AveragingAlgebra> Averaging<'a, A> {
         set(Node::Displacement, self.x[n].clone());
         set(Node::Velocity, self.velocity[n].clone());
         for (delay, tower) in self.towers.iter().enumerate() {
-            set(Node::Delayed { velocity: false, delay }, tower.values()[n].clone());
+            set(
+                Node::Unknown { index: 0, velocity: false, delay: Some(delay) },
+                tower.values()[n].clone(),
+            );
             // exp(-T D) commutes with D: the delayed velocity is the rate of the delayed value.
             let mut late = self.algebra.by_time(&tower.values()[n]);
             let rates = [&self.amplitude_rate[..], &self.phase_rate[..]];
             let drift = delayed::drift(self.algebra, rates, tower.values(), n);
             self.algebra.add_assign(&mut late, &drift);
-            set(Node::Delayed { velocity: true, delay }, late);
+            set(Node::Unknown { index: 0, velocity: true, delay: Some(delay) }, late);
         }
     }
 }
@@ -252,8 +255,12 @@ fn linearise<A: AveragingAlgebra>(
     for delay in 0..algebra.delays() {
         let late = algebra.shift(&generating, delay).ok_or(ExpandError::NotWeaklyNonlinear)?;
         let late_velocity = algebra.by_time(&late);
-        evaluator.assign(&Node::Delayed { velocity: false, delay }, 0, late);
-        evaluator.assign(&Node::Delayed { velocity: true, delay }, 0, late_velocity);
+        evaluator.assign(&Node::Unknown { index: 0, velocity: false, delay: Some(delay) }, 0, late);
+        evaluator.assign(
+            &Node::Unknown { index: 0, velocity: true, delay: Some(delay) },
+            0,
+            late_velocity,
+        );
     }
     let mut sensitive = vec![false; equation.nodes.len()];
     let mut factor = |variable: Node<Constant<A>>| {
@@ -262,15 +269,19 @@ fn linearise<A: AveragingAlgebra>(
         for (flag, tangent) in sensitive.iter_mut().zip(&tangents) {
             *flag |= !algebra.is_zero(&tangent[0]);
         }
-        algebra.as_constant(&tangents[equation.root][0]).ok_or(ExpandError::NotWeaklyNonlinear)
+        algebra.as_constant(&tangents[equation.root()][0]).ok_or(ExpandError::NotWeaklyNonlinear)
     };
     let linear = LinearPart {
         stiffness: factor(Node::Displacement)?,
         damping: factor(Node::Velocity)?,
         delayed: (0..algebra.delays())
             .map(|delay| {
-                let displacement = factor(Node::Delayed { velocity: false, delay })?;
-                Ok((displacement, factor(Node::Delayed { velocity: true, delay })?))
+                let displacement =
+                    factor(Node::Unknown { index: 0, velocity: false, delay: Some(delay) })?;
+                Ok((
+                    displacement,
+                    factor(Node::Unknown { index: 0, velocity: true, delay: Some(delay) })?,
+                ))
             })
             .collect::<Result<_, ExpandError>>()?,
     };

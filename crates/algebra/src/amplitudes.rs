@@ -1,0 +1,51 @@
+//! Algebras of polynomials in complex amplitudes.
+
+use crate::{FunctionAlgebra, PhaseError};
+use rug::Rational;
+
+/// What averaging with resonance asks of an algebra of polynomials in the amplitudes z_1, zbar_1, ...,
+/// z_M, zbar_M and in E = e^{i eta}, eta the phase of a force.
+///
+/// At order zero z_j' = i nu_j z_j and eta' = Omega, so that D_0 = d/dt multiplies the monomial
+/// z^p zbar^q E^m by i lambda, lambda = sum_j (p_j - q_j) nu_j + m Omega. Laws: D_0 and the derivatives
+/// satisfy Leibniz' rule, conjugation is a homomorphism that exchanges z_j with zbar_j and E with 1/E.
+pub trait AmplitudeAlgebra: FunctionAlgebra {
+    /// M.
+    fn unknowns(&self) -> usize;
+    /// nu_j.
+    fn frequency(&self, j: usize) -> Rational;
+    /// Omega, as a constant; 0 where there is no force.
+    fn force_rate(&self) -> Self::Element;
+    /// z_j.
+    fn amplitude(&self, j: usize) -> Self::Element;
+    /// The complex conjugate.
+    fn conjugate(&self, f: &Self::Element) -> Self::Element;
+    /// f + conj f.
+    fn twice_real(&self, f: &Self::Element) -> Self::Element;
+    /// df/dz_j.
+    fn by_amplitude(&self, f: &Self::Element, j: usize) -> Self::Element;
+    /// df/deta.
+    fn by_force(&self, f: &Self::Element) -> Self::Element;
+    /// D_0 f.
+    fn by_time(&self, f: &Self::Element) -> Self::Element;
+    /// Solves (D_0^2 + nu_j^2) u + 2 i nu_j f + conj(2 i nu_j f) = g for a real g: monomials of the
+    /// eigenvalue lambda = nu_j go to f, those of -nu_j to its conjugate, the others are divided by
+    /// nu_j^2 - lambda^2 and go to u. So u is real and has no monomial with |lambda| = nu_j.
+    ///
+    /// # Errors
+    /// [`PhaseError`] where the coefficients cannot be divided.
+    fn split(&self, j: usize, g: &Self::Element) -> Result<Split<Self>, PhaseError>;
+    /// Whether f has no monomial with |lambda| = nu_j.
+    fn is_off_resonance(&self, j: usize, f: &Self::Element) -> bool;
+}
+
+/// The result of [`AmplitudeAlgebra::split`].
+#[derive(Clone, Debug)]
+pub struct Split<A: AmplitudeAlgebra + ?Sized> {
+    /// f.
+    pub flow: A::Element,
+    /// u.
+    pub response: A::Element,
+    /// The smallest divisor: p_1 - q_1, ..., p_M - q_M, m of its harmonic and (nu_j^2 - lambda^2)/nu_j^2.
+    pub nearest: Option<(Vec<i32>, Rational)>,
+}

@@ -1,0 +1,125 @@
+//! The residual of a slow flow: the finished series go back into the equations.
+//!
+//! Nothing is taken from the derivation but f_{j,n}, u_{j,n} and sigma_n, and nothing is split: powers and
+//! products are those of truncated series in full, and the time derivative is the vector field
+//! D = sum_j (z_j' d/dz_j + zbar_j' d/dzbar_j) + eta' d/deta with z_j' = i nu_j z_j + sum eps^n f_{j,n}
+//! whole, where the derivation has D_0 as eigenvalues.
+
+use super::SlowFlow;
+use crate::ExpandError;
+use crate::compile::{Equation, Node};
+use crate::residual::polynomial_value;
+use lindstedt_algebra::AmplitudeAlgebra;
+use lindstedt_series::Series;
+
+/// Substitutes a slow flow into its equations; every order must vanish identically (in a ring of
+/// enclosures: must enclose zero), and x_j - z_j - zbar_j must have no monomial with |lambda| = nu_j.
+/// Returns the highest order checked.
+///
+/// # Errors
+/// [`ExpandError::Residual`] or [`ExpandError::Normalisation`] with the first order that fails;
+/// [`ExpandError::UnsupportedTerm`] for equations that are not polynomial.
+pub fn check_flow<A: AmplitudeAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    found: &SlowFlow<A::Element>,
+) -> Result<usize, ExpandError> {
+    let order = found.order();
+    normalisation(algebra, found)?;
+    let judge = Judge::new(algebra, found);
+    let x: Vec<_> = found.solution.iter().map(|x| Series::truncated(x.clone())).collect();
+    let velocity: Vec<_> = x.iter().map(|x| judge.rate(x)).collect();
+    let mut values: Vec<Series<A::Element>> = Vec::new();
+    for node in &equation.nodes {
+        let value = match node {
+            Node::Displacement => x[0].clone(),
+            Node::Velocity => velocity[0].clone(),
+            Node::Unknown { index, velocity: false, delay: None } => x[*index].clone(),
+            Node::Unknown { index, velocity: true, delay: None } => velocity[*index].clone(),
+            Node::Forcing { multiple, sine } => {
+                let (cos, sin) = algebra.forcing(*multiple).ok_or_else(unsupported)?;
+                Series::polynomial(vec![if *sine { sin } else { cos }])
+            }
+            node => polynomial_value(algebra, node, &values, order).ok_or_else(unsupported)?,
+        };
+        values.push(value);
+    }
+    for (velocity, root) in velocity.iter().zip(&equation.roots) {
+        let residual = judge.rate(velocity).add(algebra, &values[*root]);
+        let broken = |c: &A::Element| !algebra.may_vanish(c);
+        if let Some(order) = residual.coefficients.iter().position(broken) {
+            return Err(ExpandError::Residual { order });
+        }
+        if residual.known() <= order {
+            return Err(ExpandError::Residual { order: residual.known() });
+        }
+    }
+    if algebra.interrupted() {
+        return Err(ExpandError::Interrupted { order });
+    }
+    Ok(order)
+}
+
+fn unsupported() -> ExpandError {
+    ExpandError::UnsupportedTerm { term: "a function that is not polynomial".into() }
+}
+
+fn normalisation<A: AmplitudeAlgebra>(
+    algebra: &A,
+    found: &SlowFlow<A::Element>,
+) -> Result<(), ExpandError> {
+    for (j, list) in found.solution.iter().enumerate() {
+        for (order, x) in list.iter().enumerate() {
+            let rest = match order {
+                0 => algebra.sub(x, &algebra.twice_real(&algebra.amplitude(j))),
+                _ => x.clone(),
+            };
+            if !algebra.is_off_resonance(j, &rest) {
+                return Err(ExpandError::Normalisation { order });
+            }
+        }
+    }
+    Ok(())
+}
+
+struct Judge<'a, A: AmplitudeAlgebra> {
+    algebra: &'a A,
+    order: usize,
+    /// z_j' and eta'.
+    amplitudes: Vec<Series<A::Element>>,
+    force: Series<A::Element>,
+}
+
+impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
+    fn new(algebra: &'a A, found: &SlowFlow<A::Element>) -> Self {
+        let amplitude = |(j, flow): (usize, &Vec<A::Element>)| {
+            let mut flow = flow.clone();
+            algebra.add_assign(&mut flow[0], &algebra.by_time(&algebra.amplitude(j)));
+            Series::truncated(flow)
+        };
+        let order = found.order();
+        let mut force = vec![algebra.force_rate()];
+        force.extend(found.detuning.iter().cloned());
+        force.resize(order + 1, algebra.zero());
+        Self {
+            algebra,
+            order,
+            amplitudes: found.flow.iter().enumerate().map(amplitude).collect(),
+            force: Series::truncated(force),
+        }
+    }
+
+    /// D f for a real series f.
+    fn rate(&self, f: &Series<A::Element>) -> Series<A::Element> {
+        let algebra = self.algebra;
+        let mut along = Series::polynomial(Vec::new());
+        for (j, amplitude) in self.amplitudes.iter().enumerate() {
+            let slope = f.map(|f| algebra.by_amplitude(f, j));
+            along = along.add(algebra, &amplitude.mul(algebra, &slope, self.order));
+        }
+        let along = along.map(|c| algebra.twice_real(c));
+        let turn = f.map(|f| algebra.by_force(f));
+        let turned = self.force.mul(algebra, &turn, self.order);
+        Series::truncated(along.add(algebra, &turned).coefficients)
+    }
+}

@@ -1,0 +1,3 @@
+//! The engine's methods on whole equations.
+
+mod resonance;

@@ -1,0 +1,385 @@
+//! Slow flows at resonance against formulas by hand, reference numbers, the averaging of Krylov,
+//! Bogoliubov and Mitropolsky, and exact linear responses.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use lindstedt_algebra::{AmplitudeAlgebra, FunctionAlgebra, RationalAlgebra, Rationals, Ring};
+use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials};
+use lindstedt_equation::{Expression, Function};
+use lindstedt_expand::resonance::{SlowFlow, check_flow, resonant};
+use lindstedt_expand::{Binding, ExpandError, average, compile, compile_system};
+use lindstedt_number::ball::Balls;
+use lindstedt_number::ball::ring::{BallRing, Enclosure};
+use lindstedt_phase::Torus;
+use lindstedt_phase::amplitudes::scalars::{Integers, Over, Scalars};
+use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes};
+use rug::{Integer, Rational};
+use std::collections::BTreeMap;
+
+type Powers = BTreeMap<String, i32>;
+type Terms = BTreeMap<Powers, [Rational; 2]>;
+
+/// Names are symbols of the algebra.
+struct Symbols<'a, S>(&'a Amplitudes<S>);
+
+impl<S: Scalars> Binding<Amplitudes<S>> for Symbols<'_, S> {
+    fn parameter(&self, name: &str) -> Option<AmplitudeElement<S::Element>> {
+        self.0.symbol(name)
+    }
+    fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<S::Element>> {
+        None
+    }
+}
+
+const SYMBOLS: [&str; 6] = ["s", "mu", "al", "F", "h", "be"];
+
+fn q(n: i64, d: i64) -> Rational {
+    Rational::from((n, d))
+}
+
+fn p(name: &str) -> Expression {
+    Expression::parameter(name)
+}
+
+fn x(j: usize) -> Expression {
+    Expression::unknown(j, 0)
+}
+
+fn eps(e: Expression) -> Expression {
+    Expression::Small * e
+}
+
+/// cos(q t).
+fn cos(rate: Rational) -> Expression {
+    (Expression::Number(rate) * Expression::Time).apply(Function::Cos)
+}
+
+/// x_j'' + nu_j^2 x_j + the rest.
+fn oscillator(j: usize, nu: i64, rest: Expression) -> Expression {
+    Expression::unknown(j, 2) + (nu * nu) * x(j) + rest
+}
+
+/// s x + 2 mu x' + al x^3.
+fn damped_cubic() -> Expression {
+    p("s") * x(0) + 2 * p("mu") * Expression::VELOCITY + p("al") * x(0).pow(3)
+}
+
+fn algebra(frequencies: &[i64], force: Rational) -> Amplitudes<Integers> {
+    let frequencies: Vec<_> = frequencies.iter().map(|nu| Rational::from(*nu)).collect();
+    Amplitudes::new(Integers, &frequencies, &force, &SYMBOLS).unwrap()
+}
+
+fn derive<S: Scalars>(
+    algebra: &Amplitudes<S>,
+    equations: &[Expression],
+    order: usize,
+    detuning: &[AmplitudeElement<S::Element>],
+) -> SlowFlow<AmplitudeElement<S::Element>> {
+    let graph = compile_system(algebra, equations, &Symbols(algebra), order).unwrap();
+    let found = resonant(algebra, &graph, order, detuning, &mut |_| true).unwrap();
+    assert_eq!(check_flow(algebra, &graph, &found), Ok(order));
+    found
+}
+
+fn terms(algebra: &Amplitudes<Integers>, f: &AmplitudeElement<Integer>) -> Terms {
+    let unknowns = algebra.unknowns();
+    let phases = (1..=unknowns).flat_map(|j| [format!("z{j}"), format!("zbar{j}")]);
+    let names: Vec<String> =
+        phases.chain(["E".to_owned()]).chain(algebra.symbols().iter().cloned()).collect();
+    let named = |exponents: &[i32]| {
+        let all = names.iter().cloned().zip(exponents.iter().copied());
+        all.filter(|(_, n)| *n != 0).collect::<Powers>()
+    };
+    let list = algebra.rational_terms(f).unwrap();
+    list.into_iter().map(|t| (named(&t.exponents), [t.re, t.im])).collect()
+}
+
+/// `(3/2) i` of `z1^2 zbar1 al`: the words with their powers, then real and imaginary part.
+fn by_hand(list: &[(&str, Rational, Rational)]) -> Terms {
+    let powers = |text: &str| {
+        let word = |word: &str| match word.split_once('^') {
+            Some((name, n)) => (name.to_owned(), n.parse().unwrap()),
+            None => (word.to_owned(), 1),
+        };
+        text.split_whitespace().map(word).collect::<Powers>()
+    };
+    list.iter().map(|(text, re, im)| (powers(text), [re.clone(), im.clone()])).collect()
+}
+
+fn im(text: &str, n: i64, d: i64) -> (&str, Rational, Rational) {
+    (text, Rational::new(), q(n, d))
+}
+
+fn re(text: &str, n: i64, d: i64) -> (&str, Rational, Rational) {
+    (text, q(n, d), Rational::new())
+}
+
+fn primary() -> Expression {
+    oscillator(0, 1, eps(damped_cubic() - p("F") * cos(q(1, 1))))
+}
+
+fn superharmonic() -> Expression {
+    oscillator(0, 1, eps(damped_cubic()) - p("F") * cos(q(1, 3)))
+}
+
+fn forced_van_der_pol() -> Expression {
+    let friction = (1 - x(0).pow(2)) * Expression::VELOCITY;
+    oscillator(0, 1, eps(p("s") * x(0) - friction - p("F") * cos(q(1, 1))))
+}
+
+/// Orders 1 to 3 of four oscillators; `tests/data/resonance` says where the numbers come from.
+#[test]
+fn reference_flows() {
+    let text = include_str!("../../../../tests/data/resonance/slow-flows.json");
+    let data: serde_json::Value = serde_json::from_str(text).unwrap();
+    let internal = [
+        oscillator(0, 1, eps(2 * x(0) * x(1))),
+        oscillator(1, 2, eps(p("s") * x(1) + x(0).pow(2))),
+    ];
+    let cases = [
+        ("primary", algebra(&[1], q(1, 1)), vec![primary()]),
+        ("superharmonic", algebra(&[1], q(1, 3)), vec![superharmonic()]),
+        ("internal_1_2", algebra(&[1, 2], q(0, 1)), internal.to_vec()),
+        ("van_der_pol_forced", algebra(&[1], q(1, 1)), vec![forced_van_der_pol()]),
+    ];
+    assert_eq!(data["cases"].as_object().unwrap().len(), cases.len());
+    let number = |v: &serde_json::Value| v.as_str().unwrap().parse::<Rational>().unwrap();
+    for (name, algebra, equations) in cases {
+        let found = derive(&algebra, &equations, 3, &[]);
+        for (order, unknowns) in data["cases"][name]["orders"].as_object().unwrap() {
+            for (j, list) in unknowns.as_array().unwrap().iter().enumerate() {
+                let term = |t: &serde_json::Value| {
+                    let powers = t["powers"].as_object().unwrap().iter();
+                    let powers = powers.map(|(k, n)| (k.clone(), n.as_i64().unwrap() as i32));
+                    (powers.collect::<Powers>(), [number(&t["re"]), number(&t["im"])])
+                };
+                let expected: Terms = list.as_array().unwrap().iter().map(term).collect();
+                let order: usize = order.parse().unwrap();
+                assert_eq!(terms(&algebra, &found.flow[j][order]), expected, "{name} {order}");
+            }
+        }
+    }
+}
+
+/// Nayfeh and Mook, Nonlinear Oscillations, chapters 4 to 6; the other cases of their table are among the
+/// reference flows.
+#[test]
+fn first_orders_by_hand() {
+    let common = || vec![im("z1 s", 1, 2), re("z1 mu", -1, 1), im("z1^2 zbar1 al", 3, 2)];
+    let with =
+        |more: &[(&'static str, Rational, Rational)]| by_hand(&[common(), more.to_vec()].concat());
+    let parametric = oscillator(0, 1, eps(damped_cubic() + p("h") * x(0) * cos(q(2, 1))));
+    let a = algebra(&[1], q(2, 1));
+    let found = derive(&a, &[parametric], 1, &[]);
+    assert_eq!(terms(&a, &found.flow[0][1]), with(&[im("zbar1 E h", 1, 4)]));
+
+    let subharmonic = oscillator(0, 1, eps(damped_cubic()) - p("F") * cos(q(3, 1)));
+    let a = algebra(&[1], q(3, 1));
+    let found = derive(&a, &[subharmonic], 1, &[]);
+    let expected = with(&[im("zbar1^2 E F al", -3, 32), im("z1 F^2 al", 3, 256)]);
+    assert_eq!(terms(&a, &found.flow[0][1]), expected);
+
+    // V = eps (al x_1^4/4 + be x_1^3 x_2) + eps s x_2^2/2.
+    let internal = [
+        oscillator(0, 1, eps(p("al") * x(0).pow(3) + 3 * p("be") * x(0).pow(2) * x(1))),
+        oscillator(1, 3, eps(p("s") * x(1) + p("be") * x(0).pow(3))),
+    ];
+    let a = algebra(&[1, 3], q(0, 1));
+    let found = derive(&a, &internal, 2, &[]);
+    let first = [im("z1^2 zbar1 al", 3, 2), im("zbar1^2 z2 be", 3, 2)];
+    assert_eq!(terms(&a, &found.flow[0][1]), by_hand(&first));
+    let second = [im("z2 s", 1, 6), im("z1^3 be", 1, 6)];
+    assert_eq!(terms(&a, &found.flow[1][1]), by_hand(&second));
+}
+
+/// V = x^2 y - y^3/3, frequencies 1:1. K4 = (1/48)(-5 (q^2 + p^2)^2 + 28 (q_1 p_2 - q_2 p_1)^2), and
+/// z' = (i/2) dK/dzbar for z = (q - i p)/2 (Gustavson, Astron. J. 71 (1966) 670).
+#[test]
+fn henon_heiles() {
+    let equations =
+        [oscillator(0, 1, eps(2 * x(0) * x(1))), oscillator(1, 1, eps(x(0).pow(2) - x(1).pow(2)))];
+    let a = algebra(&[1, 1], q(0, 1));
+    let found = derive(&a, &equations, 4, &[]);
+    let expected = [im("z1^2 zbar1", -5, 3), im("z1 z2 zbar2", 2, 3), im("zbar1 z2^2", -7, 3)];
+    assert_eq!(terms(&a, &found.flow[0][2]), by_hand(&expected));
+    assert!([1, 3].into_iter().all(|n| a.is_zero(&found.flow[0][n])));
+}
+
+struct Nothing;
+
+impl Binding<AmplitudePolynomials<Rationals>> for Nothing {
+    fn parameter(&self, _: &str) -> Option<AmplitudePolynomial<Rational>> {
+        None
+    }
+    fn formal(&self, _: &str, _: usize) -> Option<AmplitudePolynomial<Rational>> {
+        None
+    }
+}
+
+/// f = z h(|z|^2), a = 2 |z|: A_n = a Re h, B_n = Im h, orders 1 to 6.
+#[test]
+fn without_force_the_averaging_in_polar_coordinates() {
+    let v = || Expression::VELOCITY;
+    let van_der_pol = oscillator(0, 1, -eps((1 - x(0).pow(2)) * v()));
+    let cubic = oscillator(0, 1, eps(2 * v() + x(0).pow(2) * 3 + x(0).pow(3)));
+    for equation in [van_der_pol, cubic] {
+        let torus = Torus::new(Rationals, q(1, 1), None, Vec::new());
+        let graph = compile(&torus, &equation, &Nothing, 6).unwrap();
+        let polar = average(&torus, &graph, 6, &mut |_| true).unwrap();
+        let a = algebra(&[1], q(0, 1));
+        let found = derive(&a, &[equation], 6, &[]);
+        let ring = AmplitudePolynomials::new(Rationals);
+        for n in 1..=6 {
+            let (mut drift, mut phase) = (ring.zero(), ring.zero());
+            for term in a.rational_terms(&found.flow[0][n]).unwrap() {
+                let [z, zbar] = [term.exponents[0], term.exponents[1]];
+                assert_eq!(z, zbar + 1);
+                let half = Rational::from(1) >> (2 * zbar as u32);
+                drift = ring.add(&drift, &ring.power(z + zbar, term.re * half.clone()));
+                phase = ring.add(&phase, &ring.power(2 * zbar, term.im * half));
+            }
+            assert_eq!((&polar.amplitude_rate[n], &polar.phase_rate[n]), (&drift, &phase), "{n}");
+        }
+    }
+}
+
+/// A complex number.
+type C = [f64; 2];
+
+fn over([a, b]: C, [c, d]: C) -> C {
+    let n = c * c + d * d;
+    [(a * c + b * d) / n, (b * c - a * d) / n]
+}
+
+/// The response of x'' + 2 mu eps x' + (1 + s eps) x = eps F cos eta, eta' = 1 + sigma eps, is known
+/// exactly: X = (eps F/2)/(1 + s eps - Omega^2 + 2 i mu eps Omega) E + conj; the steady state of the flow is
+/// right to O(eps^N), wherever the detuning is put, and F = 1 here.
+#[test]
+fn the_detuning_in_the_phase_or_in_the_stiffness() {
+    let a = algebra(&[1], q(1, 1));
+    let damped = p("s") * x(0) + 2 * p("mu") * Expression::VELOCITY;
+    let linear = oscillator(0, 1, eps(damped - cos(q(1, 1))));
+    let error = |s: Rational, sigma: Rational, order: usize, eps: f64| {
+        let detuning = [a.rational(&sigma)];
+        let found = derive(&a, std::slice::from_ref(&linear), order, &detuning);
+        let (mu, s_value) = (0.3, s.to_f64());
+        let (mut rate, mut force) = ([0.0, 1.0], [0.0, 0.0]);
+        for n in 1..=order {
+            for t in a.rational_terms(&found.flow[0][n]).unwrap() {
+                let symbols = s_value.powi(t.exponents[3]) * f64::powi(mu, t.exponents[4]);
+                let size = symbols * eps.powi(n as i32);
+                let slot = if t.exponents[0] == 1 { &mut rate } else { &mut force };
+                assert_eq!(t.exponents[0] + t.exponents[2], 1);
+                *slot = [slot[0] + size * t.re.to_f64(), slot[1] + size * t.im.to_f64()];
+            }
+        }
+        let omega = 1.0 + eps * sigma.to_f64();
+        let w = over(force, [-rate[0], omega - rate[1]]);
+        let exact =
+            over([eps / 2.0, 0.0], [1.0 + eps * s_value - omega * omega, 2.0 * mu * eps * omega]);
+        (w[0] - exact[0]).hypot(w[1] - exact[1])
+    };
+    for (s, sigma) in [(q(1, 2), q(0, 1)), (q(0, 1), q(-1, 4)), (q(1, 3), q(1, 5))] {
+        for order in 1..=5 {
+            let [large, small] =
+                [0.04, 0.02].map(|eps| error(s.clone(), sigma.clone(), order, eps));
+            let slope = (large / small).log2();
+            // Without detuning of the phase X does not depend on eps, and every order is exact, up to
+            // rounding.
+            let exact = sigma.is_zero() && large < 1e-14;
+            assert!(exact || slope > order as f64 - 0.25, "{s} {sigma} {order}: {slope}");
+            assert!(exact || large > 1e-12, "{s} {sigma} {order}: {large} shows nothing");
+        }
+    }
+}
+
+/// Over balls the coefficients enclose the rational ones; symbols stay symbols.
+#[test]
+fn other_coefficients() {
+    let exact = algebra(&[1], q(1, 1));
+    let rational = derive(&exact, &[primary()], 3, &[]);
+    let balls = BallRing { balls: Balls::new(80) };
+    let one = [q(1, 1)];
+    let a = Amplitudes::new(Over(balls), &one, &one[0], &SYMBOLS).unwrap();
+    let found = derive(&a, &[primary()], 3, &[]);
+    let mut gap = found.flow[0][3].clone();
+    let i = a.by_amplitude(&a.by_time(&a.amplitude(0)), 0);
+    for term in exact.rational_terms(&rational.flow[0][3]).unwrap() {
+        let parts = [a.rational(&term.re), a.mul(&i, &a.rational(&term.im))];
+        let mut value = a.add(&parts[0], &parts[1]);
+        let (cosine, sine) = a.forcing(1).unwrap();
+        let e = a.add(&cosine, &a.mul(&i, &sine));
+        let z = a.amplitude(0);
+        let phases = [z.clone(), a.conjugate(&z), e.clone(), a.conjugate(&e)];
+        let [p, q, m] = [0, 1, 2].map(|k| term.exponents[k]);
+        let symbols = SYMBOLS.iter().map(|name| a.symbol(name).unwrap());
+        let powers = [p, q, m.max(0), (-m).max(0)].into_iter().chain(term.exponents[3..].to_vec());
+        for (factor, n) in phases.into_iter().chain(symbols).zip(powers) {
+            value = (0..n).fold(value, |product, _| a.mul(&product, &factor));
+        }
+        gap = a.sub(&gap, &value);
+    }
+    assert!(a.may_vanish(&gap));
+    let tiny = a.constant(Enclosure(balls.balls.from_rational(&q(1, 1_000_000_007))));
+    assert!(!a.may_vanish(&a.add(&gap, &tiny)));
+}
+
+/// What the algebra says of order zero must be true, and a force at order zero off resonance.
+#[test]
+fn order_zero_is_checked() {
+    let refused = |a: &Amplitudes<Integers>, equation: Expression| {
+        let graph = compile_system(a, &[equation], &Symbols(a), 2).unwrap();
+        resonant(a, &graph, 2, &[], &mut |_| true).err()
+    };
+    let wrong = Some(ExpandError::NotTheFrequency { unknown: 0 });
+    assert_eq!(refused(&algebra(&[2], q(1, 1)), primary()), wrong);
+    let strong = oscillator(0, 1, eps(x(0).pow(3)) - p("F") * cos(q(1, 1)));
+    assert_eq!(refused(&algebra(&[1], q(1, 1)), strong), wrong);
+    let cubic = oscillator(0, 1, x(0).pow(3));
+    assert_eq!(refused(&algebra(&[1], q(1, 1)), cubic), wrong);
+}
+
+/// Near 1/3 the divisor is small; it is named.
+#[test]
+fn near_resonance_is_named() {
+    let a = algebra(&[1], q(33, 100));
+    let equation = oscillator(0, 1, eps(damped_cubic()) - p("F") * cos(q(33, 100)));
+    let found = derive(&a, &[equation], 1, &[]);
+    let near = found.nearest.first().unwrap();
+    assert_eq!((near.order, near.harmonic.iter().map(|k| k.abs()).collect()), (1, vec![0, 3]));
+    assert_eq!(near.size, 1 - q(99 * 99, 10_000));
+}
+
+/// The check finds a coefficient that is wrong by a little, a resonant term in u, and a wrong detuning.
+#[test]
+fn the_check_can_fail() {
+    let a = algebra(&[1], q(1, 1));
+    let graph = compile_system(&a, &[primary()], &Symbols(&a), 3).unwrap();
+    let found = resonant(&a, &graph, 3, &[], &mut |_| true).unwrap();
+    let little = a.scale(&a.amplitude(0), &q(1, 1_000_000_007));
+    let mut wrong = found.clone();
+    a.add_assign(&mut wrong.flow[0][2], &little);
+    assert_eq!(check_flow(&a, &graph, &wrong), Err(ExpandError::Residual { order: 2 }));
+    let mut wrong = found.clone();
+    a.add_assign(&mut wrong.solution[0][2], &a.twice_real(&little));
+    assert_eq!(check_flow(&a, &graph, &wrong), Err(ExpandError::Normalisation { order: 2 }));
+    let mut wrong = found;
+    wrong.detuning = vec![a.one()];
+    assert_eq!(check_flow(&a, &graph, &wrong), Err(ExpandError::Residual { order: 2 }));
+}
+
+/// Orders 4, 8 and 12 of the primary resonance with four symbols, with the check.
+#[test]
+#[ignore = "a measurement"]
+fn time() {
+    for order in [4, 8, 12] {
+        let a = Amplitudes::new(Integers, &[q(1, 1)], &q(1, 1), &SYMBOLS[..4]).unwrap();
+        let graph = compile_system(&a, &[primary()], &Symbols(&a), order).unwrap();
+        let start = std::time::Instant::now();
+        let found = resonant(&a, &graph, order, &[], &mut |_| true).unwrap();
+        let derived = start.elapsed();
+        assert_eq!(check_flow(&a, &graph, &found), Ok(order));
+        let work = found.work.last().unwrap();
+        println!("order {order}: {derived:?}, checked {:?}, {work:?}", start.elapsed());
+    }
+}

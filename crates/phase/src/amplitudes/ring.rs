@@ -1,0 +1,268 @@
+//! Sums and products.
+
+use super::words::{LARGEST, Word, exponents};
+use super::{AmplitudeElement, Amplitudes, Scalars};
+use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Ring};
+use rug::{Integer, Rational};
+use rustc_hash::FxHashMap;
+use std::sync::atomic::Ordering;
+
+type Terms<E> = Vec<(Word, [E; 2])>;
+
+/// Sums of products in progress: places of words in a list.
+struct Sum<E> {
+    places: FxHashMap<Word, usize>,
+    terms: Terms<E>,
+}
+
+impl<S: Scalars> Amplitudes<S> {
+    fn largest(&self, f: &AmplitudeElement<S::Element>) -> i32 {
+        let n = self.phases() + self.symbols.len();
+        let of = |word: Word| exponents(word, n).0.iter().map(|e| e.abs()).max().unwrap_or(0);
+        f.terms.iter().map(|(word, _)| of(*word)).max().unwrap_or(0)
+    }
+
+    /// sum <- sum + n a b for terms a and a polynomial b.
+    fn accumulate(
+        &self,
+        sum: &mut Sum<S::Element>,
+        a: &[(Word, [S::Element; 2])],
+        b: &[(Word, [S::Element; 2])],
+        n: &Integer,
+    ) {
+        let scalars = &self.scalars;
+        for (i, (v, c)) in a.iter().enumerate() {
+            if i % 64 == 63 && self.stop.asked() {
+                return;
+            }
+            let [re, im] = c.each_ref().map(|part| scalars.times(part, n));
+            let minus = scalars.neg(&im);
+            let parts = [&re, &im].map(|part| !scalars.is_zero(part));
+            for (w, [x, y]) in b {
+                let word = v + w;
+                let place = *sum.places.entry(word).or_insert(sum.terms.len());
+                if place == sum.terms.len() {
+                    sum.terms.push((word, [scalars.zero(), scalars.zero()]));
+                }
+                let Some((_, [real, imaginary])) = sum.terms.get_mut(place) else { continue };
+                if !scalars.is_zero(x) {
+                    if parts[0] {
+                        scalars.add_product(real, &re, x);
+                    }
+                    if parts[1] {
+                        scalars.add_product(imaginary, &im, x);
+                    }
+                }
+                if !scalars.is_zero(y) {
+                    if parts[0] {
+                        scalars.add_product(imaginary, &re, y);
+                    }
+                    if parts[1] {
+                        scalars.add_product(real, &minus, y);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The terms of a real polynomial whose words are above those of their conjugates, twice, and once
+    /// those that are their own: half of it, so that h + conj h is twice the polynomial.
+    fn half(&self, f: &AmplitudeElement<S::Element>) -> Terms<S::Element> {
+        let two = Integer::from(2);
+        let part = |(word, c): &(Word, [S::Element; 2])| match word.cmp(&self.mirrored(*word)) {
+            std::cmp::Ordering::Less => None,
+            std::cmp::Ordering::Equal => Some((*word, c.clone())),
+            std::cmp::Ordering::Greater => {
+                Some((*word, c.each_ref().map(|e| self.scalars.times(e, &two))))
+            }
+        };
+        f.terms.iter().filter_map(part).collect()
+    }
+
+    /// The conjugate of every term, unsorted.
+    pub(super) fn mirror(&self, terms: &[(Word, [S::Element; 2])]) -> Terms<S::Element> {
+        let term = |(word, [re, im]): &(Word, [S::Element; 2])| {
+            (self.mirrored(*word), [re.clone(), self.scalars.neg(im)])
+        };
+        terms.iter().map(term).collect()
+    }
+
+    /// The sum of two sorted lists, with factors.
+    fn merged(
+        &self,
+        [a, b]: [&[(Word, [S::Element; 2])]; 2],
+        [m, n]: [&Integer; 2],
+    ) -> Terms<S::Element> {
+        let scaled = |c: &[S::Element; 2], n: &Integer| {
+            if *n == 1 { c.clone() } else { c.each_ref().map(|e| self.scalars.times(e, n)) }
+        };
+        let mut list = Vec::with_capacity(a.len() + b.len());
+        let (mut i, mut j) = (0, 0);
+        while let (Some((v, c)), Some((w, d))) = (a.get(i), b.get(j)) {
+            if v < w {
+                list.push((*v, scaled(c, m)));
+            } else if w < v {
+                list.push((*w, scaled(d, n)));
+            } else {
+                let (mut sum, more) = (scaled(c, m), scaled(d, n));
+                for (x, y) in sum.iter_mut().zip(&more) {
+                    self.scalars.add(x, y);
+                }
+                list.push((*v, sum));
+            }
+            (i, j) = (i + usize::from(v <= w), j + usize::from(w <= v));
+        }
+        list.extend(a.iter().skip(i).map(|(v, c)| (*v, scaled(c, m))));
+        list.extend(b.iter().skip(j).map(|(w, d)| (*w, scaled(d, n))));
+        list
+    }
+
+    pub(super) fn total(
+        &self,
+        a: &AmplitudeElement<S::Element>,
+        b: &AmplitudeElement<S::Element>,
+        real: bool,
+    ) -> AmplitudeElement<S::Element> {
+        let denominator = Integer::from(a.denominator.lcm_ref(&b.denominator));
+        let factors = [a, b].map(|f| Integer::from(&denominator / &f.denominator));
+        let terms = self.merged([&a.terms, &b.terms], factors.each_ref());
+        self.canonical(denominator, terms, real)
+    }
+
+    fn products(
+        &self,
+        pairs: &[(&AmplitudeElement<S::Element>, &AmplitudeElement<S::Element>)],
+    ) -> AmplitudeElement<S::Element> {
+        let pairs = || pairs.iter().filter(|(a, b)| !a.terms.is_empty() && !b.terms.is_empty());
+        if pairs().any(|(a, b)| self.largest(a) + self.largest(b) > LARGEST) {
+            self.overflow.store(true, Ordering::Relaxed);
+            return self.zero();
+        }
+        let real = pairs().all(|(a, b)| a.real && b.real);
+        let lcm = |d: Integer, (a, b): &(&AmplitudeElement<_>, &AmplitudeElement<_>)| {
+            d.lcm(&Integer::from(&a.denominator * &b.denominator))
+        };
+        let mut denominator = pairs().fold(Integer::from(1), lcm);
+        let mut sum = Sum { places: FxHashMap::default(), terms: Vec::new() };
+        for (a, b) in pairs() {
+            let n = Integer::from(&denominator / &a.denominator) / &b.denominator;
+            let (short, long) = if a.terms.len() < b.terms.len() { (a, b) } else { (b, a) };
+            if real {
+                self.accumulate(&mut sum, &self.half(short), &long.terms, &n);
+            } else {
+                self.accumulate(&mut sum, &short.terms, &long.terms, &n);
+            }
+        }
+        let mut terms = sum.terms;
+        terms.sort_unstable_by_key(|(word, _)| *word);
+        if real {
+            let mut mirror = self.mirror(&terms);
+            mirror.sort_unstable_by_key(|(word, _)| *word);
+            let one = Integer::from(1);
+            terms = self.merged([&terms, &mirror], [&one, &one]);
+            // h + conj h was twice the factor.
+            let (half, two) = self.scalars.fraction(&Rational::from((1, 2)));
+            denominator *= two;
+            for part in terms.iter_mut().flat_map(|(_, c)| c) {
+                *part = self.scalars.product(part, &half);
+            }
+        }
+        self.canonical(denominator, terms, real)
+    }
+}
+
+impl<S: Scalars> Ring for Amplitudes<S> {
+    type Element = AmplitudeElement<S::Element>;
+
+    fn zero(&self) -> Self::Element {
+        AmplitudeElement { denominator: Integer::from(1), terms: Vec::new(), real: true }
+    }
+    fn one(&self) -> Self::Element {
+        self.monomial(0, true)
+    }
+    fn is_zero(&self, f: &Self::Element) -> bool {
+        f.terms.is_empty()
+    }
+    fn may_vanish(&self, f: &Self::Element) -> bool {
+        f.terms.iter().flat_map(|(_, c)| c).all(|part| self.scalars.may_vanish(part))
+    }
+    fn add_assign(&self, a: &mut Self::Element, b: &Self::Element) {
+        *a = self.total(a, b, a.real && b.real);
+    }
+    fn neg(&self, f: &Self::Element) -> Self::Element {
+        let term = |(word, c): &(Word, [S::Element; 2])| {
+            (*word, c.each_ref().map(|part| self.scalars.neg(part)))
+        };
+        AmplitudeElement {
+            denominator: f.denominator.clone(),
+            terms: f.terms.iter().map(term).collect(),
+            real: f.real,
+        }
+    }
+    fn mul(&self, a: &Self::Element, b: &Self::Element) -> Self::Element {
+        self.products(&[(a, b)])
+    }
+    fn sum_of_products(&self, pairs: &[(&Self::Element, &Self::Element)]) -> Self::Element {
+        self.products(pairs)
+    }
+}
+
+impl<S: Scalars> RationalAlgebra for Amplitudes<S> {
+    fn rational(&self, q: &Rational) -> Self::Element {
+        let (e, denominator) = self.scalars.fraction(q);
+        self.single(0, [e, self.scalars.zero()], denominator, true)
+    }
+    fn scale(&self, f: &Self::Element, q: &Rational) -> Self::Element {
+        if *q == 1 { f.clone() } else { self.weighted(f, false, |_| q.clone()) }
+    }
+    fn reciprocal(&self, f: &Self::Element) -> Option<Self::Element> {
+        let q = self.as_rational(f).filter(|q| !q.is_zero())?;
+        Some(self.rational(&q.recip()))
+    }
+    fn as_rational(&self, f: &Self::Element) -> Option<Rational> {
+        match &f.terms[..] {
+            [] => Some(Rational::new()),
+            [(0, [re, im])] if self.scalars.is_zero(im) => {
+                self.scalars.quotient(re, &f.denominator)
+            }
+            _ => None,
+        }
+    }
+}
+
+impl<S: Scalars> FunctionAlgebra for Amplitudes<S> {
+    // Symbols are part of the polynomials, and so constants are polynomials, too.
+    type Constants = Self;
+
+    fn constants(&self) -> &Self {
+        self
+    }
+    fn embed(&self, c: &Self::Element) -> Self::Element {
+        c.clone()
+    }
+    fn scale_by(&self, f: &Self::Element, c: &Self::Element) -> Self::Element {
+        self.mul(f, c)
+    }
+    fn as_constant(&self, f: &Self::Element) -> Option<Self::Element> {
+        let constant = |word: Word| exponents(word, self.phases()).0.iter().all(|e| *e == 0);
+        f.terms.iter().all(|(word, _)| constant(*word)).then(|| f.clone())
+    }
+    fn log_abs(&self, _: &Self::Element) -> Option<Self::Element> {
+        None
+    }
+    fn terms(&self, f: &Self::Element) -> usize {
+        f.terms.len()
+    }
+    fn interrupted(&self) -> bool {
+        self.overflowed() || self.stop.asked()
+    }
+    fn forcing(&self, multiple: u32) -> Option<(Self::Element, Self::Element)> {
+        let multiple = i32::try_from(multiple).ok().filter(|m| *m <= LARGEST)?;
+        let place = super::words::unit(self.phases() - 1);
+        let power = self.monomial(place * Word::from(multiple), false);
+        let half = self.weighted(&power, false, |_| Rational::from((1, 2)));
+        // sin = (E - 1/E)/(2 i).
+        let turned = self.weighted(&power, true, |_| Rational::from((-1, 2)));
+        Some((self.with_conjugate(&half), self.with_conjugate(&turned)))
+    }
+}

@@ -1,0 +1,121 @@
+//! Coefficients of amplitude polynomials: numerators over one common denominator where they are exact.
+
+use lindstedt_algebra::RationalAlgebra;
+use rug::{Integer, Rational};
+use std::fmt::Debug;
+
+/// Numerators e of coefficients e/d with a common denominator d; rings that are no integers keep d = 1.
+pub trait Scalars: Sync {
+    /// A numerator.
+    type Element: Clone + PartialEq + Debug + Send + Sync;
+    /// e and d > 0 with q = e/d.
+    fn fraction(&self, q: &Rational) -> (Self::Element, Integer);
+    /// e/d as a rational number, if it is one.
+    fn quotient(&self, e: &Self::Element, d: &Integer) -> Option<Rational>;
+    /// 0.
+    fn zero(&self) -> Self::Element;
+    /// Whether e = 0.
+    fn is_zero(&self, e: &Self::Element) -> bool;
+    /// Whether zero is not excluded.
+    fn may_vanish(&self, e: &Self::Element) -> bool {
+        self.is_zero(e)
+    }
+    /// sum <- sum + e.
+    fn add(&self, sum: &mut Self::Element, e: &Self::Element);
+    /// -e.
+    fn neg(&self, e: &Self::Element) -> Self::Element;
+    /// a b.
+    fn product(&self, a: &Self::Element, b: &Self::Element) -> Self::Element;
+    /// sum <- sum + a b.
+    fn add_product(&self, sum: &mut Self::Element, a: &Self::Element, b: &Self::Element) {
+        self.add(sum, &self.product(a, b));
+    }
+    /// n e.
+    fn times(&self, e: &Self::Element, n: &Integer) -> Self::Element;
+    /// g <- gcd(g, e); 1 where elements have no divisors.
+    fn content(&self, g: &mut Integer, e: &Self::Element);
+    /// e <- e/n for a divisor n.
+    fn divide(&self, e: &mut Self::Element, n: &Integer);
+}
+
+/// The integers: coefficients in Q.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Integers;
+
+impl Scalars for Integers {
+    type Element = Integer;
+
+    fn fraction(&self, q: &Rational) -> (Integer, Integer) {
+        (q.numer().clone(), q.denom().clone())
+    }
+    fn quotient(&self, e: &Integer, d: &Integer) -> Option<Rational> {
+        Some(Rational::from((e, d)))
+    }
+    fn zero(&self) -> Integer {
+        Integer::new()
+    }
+    fn is_zero(&self, e: &Integer) -> bool {
+        e.is_zero()
+    }
+    fn add(&self, sum: &mut Integer, e: &Integer) {
+        *sum += e;
+    }
+    fn neg(&self, e: &Integer) -> Integer {
+        Integer::from(-e)
+    }
+    fn product(&self, a: &Integer, b: &Integer) -> Integer {
+        Integer::from(a * b)
+    }
+    fn add_product(&self, sum: &mut Integer, a: &Integer, b: &Integer) {
+        *sum += a * b;
+    }
+    fn times(&self, e: &Integer, n: &Integer) -> Integer {
+        Integer::from(e * n)
+    }
+    fn content(&self, g: &mut Integer, e: &Integer) {
+        g.gcd_mut(e);
+    }
+    fn divide(&self, e: &mut Integer, n: &Integer) {
+        e.div_exact_mut(n);
+    }
+}
+
+/// Any algebra over Q: balls, doubles, fractions of parameters.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Over<K>(pub K);
+
+impl<K: RationalAlgebra> Scalars for Over<K> {
+    type Element = K::Element;
+
+    fn fraction(&self, q: &Rational) -> (K::Element, Integer) {
+        (self.0.rational(q), Integer::from(1))
+    }
+    fn quotient(&self, e: &K::Element, _: &Integer) -> Option<Rational> {
+        self.0.as_rational(e)
+    }
+    fn zero(&self) -> K::Element {
+        self.0.zero()
+    }
+    fn is_zero(&self, e: &K::Element) -> bool {
+        self.0.is_zero(e)
+    }
+    fn may_vanish(&self, e: &K::Element) -> bool {
+        self.0.may_vanish(e)
+    }
+    fn add(&self, sum: &mut K::Element, e: &K::Element) {
+        self.0.add_assign(sum, e);
+    }
+    fn neg(&self, e: &K::Element) -> K::Element {
+        self.0.neg(e)
+    }
+    fn product(&self, a: &K::Element, b: &K::Element) -> K::Element {
+        self.0.mul(a, b)
+    }
+    fn times(&self, e: &K::Element, n: &Integer) -> K::Element {
+        self.0.scale(e, &Rational::from(n))
+    }
+    fn content(&self, g: &mut Integer, _: &K::Element) {
+        *g = Integer::from(1);
+    }
+    fn divide(&self, _: &mut K::Element, _: &Integer) {}
+}
