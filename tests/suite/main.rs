@@ -10,6 +10,7 @@ mod interruption;
 mod laws;
 mod melnikov;
 mod module_circles;
+mod multimodular;
 mod numeric;
 mod paper;
 mod paper_section_2;

@@ -40,6 +40,9 @@ pub fn ring<R: Ring>(r: &R, samples: &[R::Element]) -> Result<(), Broken> {
                 let sum = r.add(&r.mul(a, b), &r.mul(a, c));
                 law(r.mul(a, &r.add(b, c)) == sum, "distributivity")?;
                 law(r.sum_of_products(&[(a, b), (a, c)]) == sum, "sum of products")?;
+                let square = r.add(&r.add(&sum, &sum), &r.mul(c, c));
+                let pairs = [(a, b), (a, c)];
+                law(r.coefficient_of_square(&pairs, Some(c)) == square, "coefficient of a square")?;
             }
         }
     }

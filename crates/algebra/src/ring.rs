@@ -57,6 +57,20 @@ pub trait Ring: Sync {
         }
         sum
     }
+    /// 2 (a_1 b_1 + ... + a_m b_m) + c^2: the coefficient of a square of series, each product formed
+    /// once; the square c^2 stands in the middle of an even order.
+    fn coefficient_of_square(
+        &self,
+        pairs: &[(&Self::Element, &Self::Element)],
+        middle: Option<&Self::Element>,
+    ) -> Self::Element {
+        let half = self.sum_of_products(pairs);
+        let mut sum = self.add(&half, &half);
+        if let Some(c) = middle {
+            self.add_assign(&mut sum, &self.mul(c, c));
+        }
+        sum
+    }
 }
 
 /// A ring that contains the rational numbers: q -> q 1 is injective, and `scale` by q is the product

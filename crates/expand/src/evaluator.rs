@@ -241,12 +241,9 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
         if a == b {
             let half: Vec<_> =
                 range.iter().filter(|&&k| 2 * k < n).filter_map(|&k| pair(k)).collect();
-            let mut sum = algebra.scale(&algebra.sum_of_products(&half), &Rational::from(2));
-            let mut count = half.len() as u64;
-            if let Some((x, y)) = n.is_multiple_of(2).then(|| pair(n / 2)).flatten() {
-                algebra.add_assign(&mut sum, &algebra.mul(x, y));
-                count += 1;
-            }
+            let middle = n.is_multiple_of(2).then(|| self.known(a, n / 2)).flatten();
+            let sum = algebra.coefficient_of_square(&half, middle);
+            let count = half.len() as u64 + u64::from(middle.is_some());
             self.products += count;
             return Ok(sum);
         }

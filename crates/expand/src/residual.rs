@@ -170,8 +170,7 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
         match &self.equation.nodes[id] {
             Node::Displacement => self.solution.clone(),
             Node::Velocity => {
-                let half = Rational::from((1, 2));
-                let frequency = self.squared.power(algebra.constants(), &half);
+                let frequency = self.squared.square_root(algebra.constants());
                 let frequency = frequency.unwrap_or(Series::truncated(Vec::new()));
                 self.over_frequency(&frequency, &self.solution.map(|x| algebra.derivative(x)))
             }

@@ -134,7 +134,10 @@ pub enum Error {
         problem: String,
     },
     /// The energy integral does not apply.
-    #[error("{problem}: the energy integral applies to conservative forces x F(delta ln x^2) only")]
+    #[error(
+        "{problem}: the energy integral applies to conservative forces that are polynomial, from x(0) = A, or \
+         x F(delta ln x^2)"
+    )]
     NoSuchRoute {
         /// The problem.
         problem: String,
@@ -194,6 +197,15 @@ impl From<NumberError> for Error {
             NumberError::BadValue { text } => Self::BadValue { text },
             NumberError::NotEnoughBits { bits, best } => Self::NotEnoughBits { bits, best },
             _ => Self::NoValue,
+        }
+    }
+}
+
+impl From<lindstedt_multimodular::Error> for Error {
+    fn from(error: lindstedt_multimodular::Error) -> Self {
+        match error {
+            lindstedt_multimodular::Error::Expand(error) => Self::Expand(error),
+            _ => Self::OutOfPrimes,
         }
     }
 }

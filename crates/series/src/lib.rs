@@ -67,7 +67,14 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
         let known = self.known().saturating_add(v).min(other.known().saturating_add(u));
         let length = known.min(order + 1);
         let (a, b) = (&self.coefficients, &other.coefficients);
+        let is_square = std::ptr::eq(self, other);
         let coefficient = |n: usize| {
+            if is_square {
+                let pairs: Vec<(&E, &E)> =
+                    (0..n.div_ceil(2)).filter_map(|k| Some((a.get(k)?, a.get(n - k)?))).collect();
+                let middle = n.is_multiple_of(2).then(|| a.get(n / 2)).flatten();
+                return ring.coefficient_of_square(&pairs, middle);
+            }
             let range = n.saturating_sub(b.len().saturating_sub(1))..a.len().min(n + 1);
             let pairs: Vec<(&E, &E)> =
                 range.filter_map(|k| Some((a.get(k)?, b.get(n - k)?))).collect();
@@ -99,6 +106,33 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
         exponent: &Rational,
     ) -> Option<Self> {
         self.power_while(ring, exponent, &|| true)
+    }
+
+    /// The square root of a series with leading coefficient one, from 2 y_n = x_n - sum_{k=1}^{n-1} y_k
+    /// y_{n-k}. Exact; O(N^2) products, half as many as [`Self::power`] forms. Nothing unless the leading
+    /// coefficient is one.
+    pub fn square_root<R: RationalAlgebra<Element = E>>(&self, ring: &R) -> Option<Self> {
+        let half = Rational::from((1, 2));
+        let mut y = vec![self.coefficients.first().filter(|c| **c == ring.one())?.clone()];
+        for (n, x) in self.coefficients.iter().enumerate().skip(1) {
+            let pairs: Vec<(&E, &E)> = (1..n.div_ceil(2)).map(|k| (&y[k], &y[n - k])).collect();
+            let middle = n.is_multiple_of(2).then(|| &y[n / 2]);
+            let rest = ring.sub(x, &ring.coefficient_of_square(&pairs, middle));
+            y.push(ring.scale(&rest, &half));
+        }
+        Some(Self::truncated(y))
+    }
+
+    /// The reciprocal of a series with leading coefficient one, from y_n = -sum_{k=1}^n x_k y_{n-k}. Nothing
+    /// unless the leading coefficient is one.
+    pub fn reciprocal<R: RationalAlgebra<Element = E>>(&self, ring: &R) -> Option<Self> {
+        let x = &self.coefficients;
+        let mut y = vec![x.first().filter(|c| **c == ring.one())?.clone()];
+        for n in 1..x.len() {
+            let pairs: Vec<(&E, &E)> = (1..=n).map(|k| (&x[k], &y[n - k])).collect();
+            y.push(ring.neg(&ring.sum_of_products(&pairs)));
+        }
+        Some(Self::truncated(y))
     }
 
     /// As [`Self::power`] as long as `go_on`, asked several times per order, says so; else nothing.
@@ -148,6 +182,12 @@ mod tests {
         let cube = root.mul(&Rationals, &root, 5).mul(&Rationals, &root, 5);
         assert_eq!(cube, x);
         assert_eq!(series(&[(2, 1), (1, 1)]).power(&Rationals, &third), None);
+        let Some(root) = x.square_root(&Rationals) else { panic!("leading one") };
+        assert_eq!(root.mul(&Rationals, &root, 5), x);
+        assert_eq!(root.mul(&Rationals, &root.clone(), 5), x);
+        assert_eq!(series(&[(2, 1), (1, 1)]).square_root(&Rationals), None);
+        let inverse = x.reciprocal(&Rationals);
+        assert_eq!(inverse, x.power(&Rationals, &Rational::from(-1)));
     }
 
     #[test]

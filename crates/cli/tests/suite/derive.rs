@@ -132,7 +132,7 @@ const BAD: [(&[&str], i32, &str); 24] = [
     (&["derive", "pendulum", "--set", "amplitude"], 2, "set"),
     (&["derive", "duffing", "--set", "gamma=1"], 2, "unknown-parameter"),
     (&["derive", "van-der-pol", "--normalisation", "initial"], 2, "unknown-normalisation"),
-    (&["derive", "duffing", "--route", "energy"], 3, "no-such-route"),
+    (&["derive", "van-der-pol", "--route", "energy"], 3, "no-such-route"),
     (&["derive", "duffing", "--out", "/nonexistent/directory/file"], 5, "file"),
 ];
 

@@ -6,7 +6,6 @@ mod series;
 
 use crate::Number;
 use crate::constants::Constants;
-use crate::multimodular::{self, RationalBinding};
 use crate::{Error, Exact, Progress};
 pub use limits::check_parameters;
 pub(crate) use limits::{check_delays, unknown_parameter};
@@ -19,6 +18,7 @@ use lindstedt_equation::{Condition, Problem};
 use lindstedt_expand::{
     Binding, ExpandError, Expansion, Request, check, compile, expand, leading_amplitude,
 };
+use lindstedt_multimodular::{self as multimodular, RationalBinding};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{certified, to_ratio};
 use lindstedt_phase::print::PrintPhase;
@@ -81,7 +81,7 @@ pub enum Route {
     #[default]
     Driver,
     /// By the energy integral: the frequency alone, to much higher order; for forces
-    /// x F(small ln x^2).
+    /// x F(small ln x^2), and for polynomial ones where x(0) is the amplitude.
     EnergyIntegral,
 }
 
@@ -147,6 +147,15 @@ impl Binding<PolynomialRing> for Given<'_> {
     }
 }
 
+impl Binding<Rationals> for Given<'_> {
+    fn parameter(&self, name: &str) -> Option<Rational> {
+        RationalBinding::parameter(self, name)
+    }
+    fn formal(&self, _: &str, _: usize) -> Option<Rational> {
+        None
+    }
+}
+
 impl RationalBinding for Given<'_> {
     fn parameter(&self, name: &str) -> Option<Rational> {
         self.parameters.get(name)?.as_rational().cloned()
@@ -198,13 +207,18 @@ pub fn derive(
     let condition = condition(problem, settings.condition)?;
     let amplitude = settings.parameters.get("amplitude").cloned();
     let has_logarithms = has_logarithms(&problem.equation);
-    limit_memory(problem, settings)?;
     let ring = PolynomialRing { parameters: vec!["ln(a)".to_owned()] };
     let given = Given { ring: &ring, parameters: &settings.parameters };
+    let over_q = |order: usize, observer: &mut dyn FnMut(usize) -> bool| {
+        multimodular::derive(&problem.equation, &given, condition, order, &settings.stop, observer)
+    };
+    let bytes = |order| over_q(order, &mut |_| true).ok().map(|proved| limits::bytes_of(&proved));
+    limit_memory(problem, settings, &bytes)?;
     let (solution, powers, amplitudes, stiffness, checked_orders) = if settings.route
         == Route::EnergyIntegral
     {
-        let (powers, stiffness) = energy_integral(problem, &ring, settings.order, &settings.stop)?;
+        let request = (condition, settings.order);
+        let (powers, stiffness) = energy_integral(problem, &ring, request, &settings.stop, &given)?;
         if !observer(Progress::Checking) || settings.stop.asked() {
             return Err(ExpandError::Interrupted { order: settings.order }.into());
         }
@@ -233,27 +247,15 @@ pub fn derive(
         )
     } else {
         let mut on_primes = |primes| observer(Progress::Primes(primes));
-        let proved = multimodular::derive(
-            &problem.equation,
-            &given,
-            condition,
-            settings.order,
-            &settings.stop,
-            &mut on_primes,
-        )?;
+        let proved = over_q(settings.order, &mut on_primes)?;
         let constants =
             |list: &[Rational]| list.iter().map(|q| ring.rational(q)).collect::<Vec<_>>();
-        let squared = constants(&proved.expansion.frequency_squared);
+        let lists = [&proved.expansion.frequency_squared, &proved.frequency, &proved.period];
+        let powers = Powers::rational(&ring, lists.map(Vec::as_slice));
         let amplitudes = constants(&proved.expansion.amplitude);
         let stiffness = ring.rational(&proved.expansion.stiffness);
         let order = proved.expansion.order();
-        (
-            Solution::Rational(Box::new(proved)),
-            Powers::of_square(&ring, squared)?,
-            amplitudes,
-            stiffness,
-            Some(order),
-        )
+        (Solution::Rational(Box::new(proved)), powers, amplitudes, stiffness, Some(order))
     };
     if ring.as_rational(&stiffness).is_some_and(|kappa| kappa < 0) {
         return Err(ExpandError::NegativeStiffness.into());

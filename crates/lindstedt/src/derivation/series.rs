@@ -4,11 +4,12 @@ use super::limits::has_logarithms;
 use super::{FORMAL, NamedSeries};
 use crate::energy::{frequency_until, period_until};
 use crate::{Error, Exact};
-use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
+use lindstedt_algebra::{RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::closed_forms::ClosedForms;
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
-use lindstedt_expand::ExpandError;
+use lindstedt_expand::{Binding, ExpandError, compile, conservative_period};
+use lindstedt_phase::Trigonometric;
 use lindstedt_series::Series;
 use rayon::prelude::*;
 use rug::Rational;
@@ -21,6 +22,15 @@ pub(super) struct Powers {
 }
 
 impl Powers {
+    /// omega^2, omega and T/2pi as rational numbers.
+    pub(super) fn rational(
+        ring: &PolynomialRing,
+        [squared, first, inverse]: [&[Rational]; 3],
+    ) -> Self {
+        let over = |list: &[Rational]| list.iter().map(|q| ring.rational(q)).collect();
+        Self { squared: over(squared), first: over(first), inverse: over(inverse) }
+    }
+
     pub(super) fn of_square(
         ring: &PolynomialRing,
         squared: Vec<Polynomial>,
@@ -111,13 +121,39 @@ fn exponential(ring: &PolynomialRing, rate: &Polynomial, order: usize) -> Vec<Po
     list
 }
 
+/// The powers of the frequency and kappa of a polynomial force, where x(0) is the amplitude.
+fn polynomial_integral(
+    problem: &Problem,
+    ring: &PolynomialRing,
+    (condition, order): (Condition, usize),
+    stop: &Stop,
+    given: &dyn Binding<Rationals>,
+) -> Result<(Powers, Polynomial), Error> {
+    let unavailable = || Error::NoSuchRoute { problem: problem.name.to_string() };
+    if condition != Condition::InitialAmplitude {
+        return Err(unavailable());
+    }
+    let equation = compile(&Trigonometric::new(Rationals), &problem.equation, given, order)?;
+    let period = match conservative_period(&equation, order, stop) {
+        Err(ExpandError::UnsupportedTerm { .. }) => return Err(unavailable()),
+        other => other?,
+    };
+    let lists = [&period.frequency_squared, &period.frequency, &period.period_over_2pi];
+    let powers = Powers::rational(ring, lists.map(Vec::as_slice));
+    Ok((powers, ring.rational(&period.stiffness)))
+}
+
 /// The powers of the frequency and kappa by the energy integral.
 pub(super) fn energy_integral(
     problem: &Problem,
     ring: &PolynomialRing,
-    order: usize,
+    (condition, order): (Condition, usize),
     stop: &Stop,
+    given: &dyn Binding<Rationals>,
 ) -> Result<(Powers, Polynomial), Error> {
+    if !has_logarithms(&problem.equation) {
+        return polynomial_integral(problem, ring, (condition, order), stop, given);
+    }
     // Nothing comes from an interruption only, once the equation is known.
     let interrupted = || Error::from(ExpandError::Interrupted { order });
     let unavailable = || Error::NoSuchRoute { problem: problem.name.to_string() };

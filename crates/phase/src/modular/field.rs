@@ -1,13 +1,24 @@
 //! Z/p for primes just below 2^61, in Montgomery form.
 
 use lindstedt_algebra::{RationalAlgebra, Ring};
-use rug::integer::IsPrime;
 use rug::{Integer, Rational};
 
-/// No prime is taken below this: the bounds of the sums rely on p being close to 2^61.
+/// No prime is taken below this, so that every one of them counts 60.9 bits.
 const SMALLEST: u64 = (1 << 61) - (1 << 57);
-/// Products that are added up before a sum is brought below p 2^64 again.
-const CHUNK: usize = 4;
+/// Products that are added up before their sum is folded: 24 p^2 + p 2^64 < 2^127.
+const CHUNK: usize = 24;
+/// Points whose sums stay in the first cache.
+const BLOCK: usize = 64;
+/// Rows that are added up in one pass over the sums.
+const PASS: usize = 4;
+/// Bases that decide the primality of any number below 2^64 (J. Sinclair; the table of strong
+/// pseudoprimes to base 2 below 2^64 is J. Feitsma's).
+const BASES: [u64; 7] = [2, 325, 9375, 28178, 450_775, 9_780_504, 1_795_265_022];
+
+#[inline(always)]
+fn wide(a: u64, b: u64) -> u128 {
+    u128::from(a) * u128::from(b)
+}
 
 /// The field Z/p, 2^61 - 2^57 < p < 2^61. Elements are x 2^64 mod p.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +31,7 @@ pub struct PrimeField {
 }
 
 impl PrimeField {
-    /// Z/p for a prime in that range; the caller vouches for primality.
+    /// Z/p for an odd number in that range; the caller vouches for primality.
     fn new(prime: u64) -> Self {
         // Newton's iteration doubles the correct bits of 1/p mod 2^64.
         let mut inverse = prime;
@@ -36,7 +47,24 @@ impl PrimeField {
     pub fn with_roots_of_unity(modulus: u64, below: u64) -> impl Iterator<Item = Self> {
         let start = (below.min(1 << 61) - 2) / modulus * modulus + 1;
         let candidates = (SMALLEST..=start).rev().step_by(modulus as usize);
-        candidates.filter(|&n| Integer::from(n).is_probably_prime(40) != IsPrime::No).map(Self::new)
+        let odd = candidates.filter(|n| n % 2 == 1 && n % 3 != 0 && n % 5 != 0 && n % 7 != 0);
+        odd.map(Self::new).filter(Self::is_prime)
+    }
+
+    /// Whether p is prime: the strong test to bases that no composite number below 2^64 passes.
+    fn is_prime(&self) -> bool {
+        let twos = (self.prime - 1).trailing_zeros();
+        let minus_one = self.neg(&self.one());
+        BASES.iter().all(|&base| {
+            let base = self.small(base);
+            let mut power = self.power(base, (self.prime - 1) >> twos);
+            let mut passes = power == self.one() || power == minus_one;
+            for _ in 1..twos {
+                power = self.mul(&power, &power);
+                passes |= power == minus_one;
+            }
+            passes
+        })
     }
 
     /// p.
@@ -44,59 +72,157 @@ impl PrimeField {
         self.prime
     }
 
-    /// t / 2^64 mod p for t < p 2^64.
-    #[inline]
+    /// t / 2^64 mod p for t < 2^127.
+    #[inline(always)]
     fn reduce(&self, t: u128) -> u64 {
         let m = (t as u64).wrapping_mul(self.negative_inverse);
-        // t + m p < p 2^64 + 2^64 p < 2^126.
-        let reduced = ((t + u128::from(m) * u128::from(self.prime)) >> 64) as u64;
-        if reduced >= self.prime { reduced - self.prime } else { reduced }
+        // The lower halves of t and m p add up to 0 or 2^64.
+        let carry = u64::from(t as u64 != 0);
+        let mut sum =
+            (t >> 64) as u64 + ((u128::from(m) * u128::from(self.prime)) >> 64) as u64 + carry;
+        // Below 2^63 + p < 6 p; a difference that wraps around is the larger number.
+        for shift in [2, 1, 0] {
+            sum = sum.min(sum.wrapping_sub(self.prime << shift));
+        }
+        sum
     }
 
-    /// sum + at most four products, again below p 2^64: the sum of four products is below
-    /// 4 p^2 < 2^124, so with p > 2^61 - 2^57 one subtraction of p 2^64 is enough.
-    #[inline]
-    fn accumulate(&self, sum: u128, products: impl Iterator<Item = (u64, u64)>) -> u128 {
-        let total = products.fold(sum, |sum, (a, b)| sum + u128::from(a) * u128::from(b));
-        let bound = u128::from(self.prime) << 64;
-        if total >= bound { total - bound } else { total }
+    /// a b / 2^64 mod p: the product is below p 2^61, and one subtraction is enough.
+    #[inline(always)]
+    fn product(&self, a: u64, b: u64) -> u64 {
+        let t = u128::from(a) * u128::from(b);
+        let m = (t as u64).wrapping_mul(self.negative_inverse);
+        let sum = ((t + u128::from(m) * u128::from(self.prime)) >> 64) as u64;
+        sum.min(sum.wrapping_sub(self.prime))
+    }
+
+    /// t modulo p 2^64, below it, for t < 2^127 < 5 p 2^64.
+    #[inline(always)]
+    fn fold(&self, mut t: u128) -> u128 {
+        for shift in [2, 1, 0] {
+            let bound = u128::from(self.prime) << (64 + shift);
+            t = if t >= bound { t - bound } else { t };
+        }
+        t
     }
 
     /// sum_i a_i b_i with one reduction, over the shorter length.
+    #[inline(always)]
     pub(super) fn dot(&self, a: &[u64], b: &[u64]) -> u64 {
+        let sum = |a: &[u64], b: &[u64]| -> u128 {
+            a.iter().zip(b).map(|(&a, &b)| u128::from(a) * u128::from(b)).sum()
+        };
+        if a.len() <= CHUNK {
+            return self.reduce(sum(a, b));
+        }
         let chunks = a.chunks(CHUNK).zip(b.chunks(CHUNK));
-        let sum = chunks
-            .fold(0, |sum, (a, b)| self.accumulate(sum, a.iter().copied().zip(b.iter().copied())));
-        self.reduce(sum)
+        self.reduce(chunks.fold(0, |t, (a, b)| self.fold(t) + sum(a, b)))
     }
 
-    /// sum_i a_i[j] b_i[j] for every j.
-    pub(super) fn pointwise(&self, pairs: &[(&[u64], &[u64])]) -> Vec<u64> {
-        let length = pairs.iter().map(|(a, b)| a.len().min(b.len())).max().unwrap_or(0);
-        let mut sums = vec![0u128; length];
-        for chunk in pairs.chunks(CHUNK) {
-            if let [(a, b), (c, d), (e, f), (g, h)] = chunk {
-                // The same as below with the loops exchanged: one pass over the sums.
-                for (j, sum) in sums.iter_mut().enumerate() {
-                    let products = [(a[j], b[j]), (c[j], d[j]), (e[j], f[j]), (g[j], h[j])];
-                    *sum = self.accumulate(*sum, products.into_iter());
-                }
-            } else {
-                for (a, b) in chunk {
-                    for ((sum, &x), &y) in sums.iter_mut().zip(*a).zip(*b) {
-                        *sum = self.accumulate(*sum, std::iter::once((x, y)));
+    /// a b + c d.
+    #[inline(always)]
+    pub(super) fn two(&self, a: u64, b: u64, c: u64, d: u64) -> u64 {
+        self.reduce(u128::from(a) * u128::from(b) + u128::from(c) * u128::from(d))
+    }
+
+    /// sum_i a_i[j] b_i[j] for every j < `length`, the length of every row.
+    pub(super) fn pointwise(&self, pairs: &[(&[u64], &[u64])], length: usize) -> Vec<u64> {
+        let mut result = Vec::with_capacity(length);
+        for start in (0..length).step_by(BLOCK) {
+            let range = start..length.min(start + BLOCK);
+            let mut block = [0u128; BLOCK];
+            let sums = &mut block[..range.len()];
+            for (done, rows) in pairs.chunks(PASS).enumerate() {
+                if let [(a, b), (c, d), (e, f), (g, h)] = rows {
+                    let [a, b, c, d] = [a, b, c, d].map(|row| &row[range.clone()]);
+                    let [e, f, g, h] = [e, f, g, h].map(|row| &row[range.clone()]);
+                    for (j, sum) in sums.iter_mut().enumerate() {
+                        *sum += wide(a[j], b[j])
+                            + wide(c[j], d[j])
+                            + wide(e[j], f[j])
+                            + wide(g[j], h[j]);
+                    }
+                } else {
+                    for (a, b) in rows {
+                        let (a, b) = (&a[range.clone()], &b[range.clone()]);
+                        for ((sum, &x), &y) in sums.iter_mut().zip(a).zip(b) {
+                            *sum += wide(x, y);
+                        }
                     }
                 }
+                self.fold_all(sums, done);
+            }
+            result.extend(sums.iter().map(|&sum| self.reduce(sum)));
+        }
+        result
+    }
+
+    /// sum_i c_i a_i[j] for every j, as long as the longest row.
+    pub(super) fn combination(&self, terms: &[(&[u64], u64)]) -> Vec<u64> {
+        let longest = terms.iter().map(|(row, _)| row.len()).max().unwrap_or(0);
+        let mut sums = vec![0u128; longest];
+        for (done, rows) in terms.chunks(PASS).enumerate() {
+            let mut common = 0;
+            if let [(a, s), (b, t), (c, u), (d, v)] = rows {
+                common = a.len().min(b.len()).min(c.len()).min(d.len());
+                let [a, b, c, d] = [a, b, c, d].map(|row| &row[..common]);
+                for (j, sum) in sums[..common].iter_mut().enumerate() {
+                    *sum += wide(a[j], *s) + wide(b[j], *t) + wide(c[j], *u) + wide(d[j], *v);
+                }
+            }
+            for (row, factor) in rows {
+                for (sum, &x) in sums[common..].iter_mut().zip(&row[common..]) {
+                    *sum += wide(x, *factor);
+                }
+            }
+            self.fold_all(&mut sums, done);
+        }
+        sums.iter().map(|&sum| self.reduce(sum)).collect()
+    }
+
+    /// After every fifth pass: 20 products are less than 2^127 - p 2^64.
+    #[inline(always)]
+    fn fold_all(&self, sums: &mut [u128], done: usize) {
+        if done % 5 == 4 {
+            for sum in sums {
+                *sum = self.fold(*sum);
             }
         }
-        sums.into_iter().map(|sum| self.reduce(sum)).collect()
+    }
+
+    /// The image of a number below p.
+    pub(super) fn small(&self, n: u64) -> u64 {
+        self.product(n, self.square)
+    }
+
+    /// 1/a for every a, with one inversion; nothing if one of them vanishes.
+    pub(super) fn reciprocals(&self, list: &[u64]) -> Option<Vec<u64>> {
+        let mut before = Vec::with_capacity(list.len());
+        let mut product = self.one();
+        for a in list {
+            before.push(product);
+            product = self.mul(&product, a);
+        }
+        let mut inverse = self.reciprocal(&product)?;
+        for (slot, a) in before.iter_mut().zip(list).rev() {
+            *slot = self.mul(slot, &inverse);
+            inverse = self.mul(&inverse, a);
+        }
+        Some(before)
     }
 
     /// The image of an integer.
     pub fn integer(&self, n: &Integer) -> u64 {
         // A remainder by a modulus of 61 bits fits.
-        let residue = Integer::from(n.modulo_ref(&Integer::from(self.prime)));
-        self.reduce(u128::from(residue.to_u64().unwrap_or(0)) * u128::from(self.square))
+        let residue = match n.to_i64() {
+            Some(n) if n.unsigned_abs() < self.prime => {
+                if n < 0 { n + self.prime as i64 } else { n }.unsigned_abs()
+            }
+            _ => {
+                Integer::from(n.modulo_ref(&Integer::from(self.prime))).to_u64().unwrap_or_default()
+            }
+        };
+        self.small(residue)
     }
 
     /// The representative of an element in 0..p.
@@ -140,17 +266,29 @@ impl Ring for PrimeField {
     fn is_zero(&self, a: &u64) -> bool {
         *a == 0
     }
+    #[inline(always)]
     fn add_assign(&self, a: &mut u64, b: &u64) {
-        *a += b;
-        if *a >= self.prime {
-            *a -= self.prime;
-        }
+        let sum = *a + b;
+        *a = sum.min(sum.wrapping_sub(self.prime));
     }
     fn neg(&self, a: &u64) -> u64 {
         if *a == 0 { 0 } else { self.prime - a }
     }
+    #[inline(always)]
+    fn sub(&self, a: &u64, b: &u64) -> u64 {
+        let difference = a.wrapping_sub(*b);
+        difference.min(difference.wrapping_add(self.prime))
+    }
+    #[inline(always)]
     fn mul(&self, a: &u64, b: &u64) -> u64 {
-        self.reduce(u128::from(*a) * u128::from(*b))
+        self.product(*a, *b)
+    }
+    fn sum_of_products(&self, pairs: &[(&u64, &u64)]) -> u64 {
+        let products = |part: &[(&u64, &u64)]| -> u128 {
+            part.iter().map(|(a, b)| u128::from(**a) * u128::from(**b)).sum()
+        };
+        let chunks = pairs.chunks(CHUNK);
+        self.reduce(chunks.fold(0, |sum, part| self.fold(sum) + products(part)))
     }
 }
 
@@ -199,5 +337,51 @@ mod tests {
         assert_eq!(field.power(root, 24), field.one());
         assert_ne!(field.power(root, 12), field.one());
         assert_ne!(field.power(root, 8), field.one());
+    }
+
+    /// Against a test that shares nothing with the field's own.
+    #[test]
+    fn primes_are_prime_and_none_is_left_out() {
+        let (modulus, count) = (8 * 21, 40);
+        let primes: Vec<u64> = PrimeField::with_roots_of_unity(modulus, 1 << 61)
+            .take(count)
+            .map(|field| field.prime())
+            .collect();
+        let start = (1u64 << 61) / modulus * modulus + 1;
+        let expected = (SMALLEST..=start)
+            .rev()
+            .step_by(modulus as usize)
+            .filter(|&n| Integer::from(n).is_probably_prime(40) != rug::integer::IsPrime::No);
+        assert!(primes.into_iter().eq(expected.take(count)));
+        // Strong pseudoprimes to the first 4, 7 and 9 prime bases.
+        for n in [3_215_031_751u64, 341_550_071_728_321, 3_825_123_056_546_413_051] {
+            assert!(!PrimeField::new(n).is_prime(), "{n}");
+        }
+    }
+
+    /// The largest residues there are, in every number of rows, against integers.
+    #[test]
+    fn long_sums_do_not_overflow() {
+        let field = PrimeField::with_roots_of_unity(8, 1 << 61).next().expect("a prime");
+        let largest = field.prime() - 1;
+        let (row, shorter) = (vec![largest; 70], vec![largest; 50]);
+        let square = field.mul(&largest, &largest);
+        for count in 1..130u64 {
+            let sum = field.mul(&square, &field.small(count));
+            let pairs = vec![(&row[..], &row[..]); count as usize];
+            assert_eq!(field.pointwise(&pairs, 70), vec![sum; 70], "{count}");
+            let mut terms = vec![(&row[..], largest); count as usize];
+            assert_eq!(field.combination(&terms), vec![sum; 70], "{count}");
+            terms.push((&shorter[..], largest));
+            let more = field.add(&sum, &square);
+            let expected: Vec<u64> = (0..70).map(|j| if j < 50 { more } else { sum }).collect();
+            assert_eq!(field.combination(&terms), expected, "{count}");
+            let list = vec![largest; count as usize];
+            assert_eq!(field.dot(&list, &list), sum, "{count}");
+        }
+        let list: Vec<u64> = (1..20).map(|n| field.small(n)).collect();
+        let inverses = field.reciprocals(&list).expect("units");
+        assert!(list.iter().zip(&inverses).all(|(a, b)| field.mul(a, b) == field.one()));
+        assert_eq!(field.reciprocals(&[field.one(), 0]), None);
     }
 }

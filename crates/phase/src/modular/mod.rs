@@ -1,16 +1,18 @@
-//! Trigonometric polynomials modulo a prime, by their values.
+//! Trigonometric polynomials modulo a prime, by coefficients and by values.
 //!
 //! In Z/p with p = 1 mod 8Q there is a root of unity z of order 8Q, so that phases
 //! psi_j = (2j + 1) pi/(4Q), j = 0..Q, make sense: cos k psi_j = (z^(k(2j+1)) + z^(-k(2j+1)))/2.
 //! A function splits into four parts by its symmetries under psi -> -psi and psi -> pi - psi:
 //! cosines and sines of even and of odd multiples. Each part is determined by its values on the
-//! quarter period, parts multiply point by point, and a part that vanishes costs nothing (for
-//! Duffing's equation three of four do, for van der Pol's all but one at every order).
+//! quarter period, and a part that vanishes costs nothing (for Duffing's equation three of four do,
+//! for van der Pol's all but one at every order).
 //!
-//! A product costs Q multiplications, against Q^2 for coefficient lists; the transforms that
-//! derivation and the solution of u'' + u = f need cost Q^2 and happen once per order.
+//! Sums, derivatives and the solution of u'' + u = f are taken of Fourier coefficients, products point by
+//! point at Q multiplications, against Q^2 for coefficient lists. Each form of a part is made from the other
+//! when it is first needed, and kept ([`transform`]).
 
 mod field;
+mod transform;
 
 pub use field::PrimeField;
 
@@ -18,28 +20,29 @@ use lindstedt_algebra::{
     FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring,
 };
 use rug::{Integer, Rational};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
+use transform::Transform;
 
-/// The four symmetry parts, in this order.
-const PARTS: [Part; 4] = [
-    Part { sine: false, odd: false },
-    Part { sine: false, odd: true },
-    Part { sine: true, odd: false },
-    Part { sine: true, odd: true },
+/// The four symmetries, in this order.
+const SYMMETRIES: [Symmetry; 4] = [
+    Symmetry { sine: false, odd: false },
+    Symmetry { sine: false, odd: true },
+    Symmetry { sine: true, odd: false },
+    Symmetry { sine: true, odd: true },
 ];
 
 /// Cosines or sines, of even or of odd multiples of the phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Part {
+struct Symmetry {
     sine: bool,
     odd: bool,
 }
 
-impl Part {
+impl Symmetry {
     fn index(self) -> usize {
         2 * usize::from(self.sine) + usize::from(self.odd)
     }
-    /// The k-th multiple of the part: 0, 2, 4 (cosines), 2, 4, 6 (sines) or 1, 3, 5.
+    /// The k-th multiple: 0, 2, 4 (cosines), 2, 4, 6 (sines) or 1, 3, 5.
     fn harmonic(self, k: usize) -> usize {
         match (self.sine, self.odd) {
             (false, false) => 2 * k,
@@ -47,20 +50,96 @@ impl Part {
             (_, true) => 2 * k + 1,
         }
     }
-}
-
-/// A function: per part, nothing if it vanishes, or its values at the points.
-#[derive(Clone, Debug)]
-pub struct ModularElement {
-    values: [Option<Vec<u64>>; 4],
-    /// Fourier coefficients (cos_k, sin_k), where the element was made from them.
-    harmonics: Option<[Vec<u64>; 2]>,
-}
-
-impl PartialEq for ModularElement {
-    fn eq(&self, other: &Self) -> bool {
-        self.values == other.values
+    fn times(self, other: Self) -> Self {
+        Self { sine: self.sine ^ other.sine, odd: self.odd ^ other.odd }
     }
+}
+
+/// The part of a function that has one of the symmetries, by Fourier coefficients or by the values at the
+/// points, which determine each other; at least one of the two is there, and the function is not zero.
+#[derive(Clone, Debug)]
+struct Part {
+    symmetry: Symmetry,
+    /// The last coefficient does not vanish.
+    coefficients: OnceLock<Vec<u64>>,
+    values: OnceLock<Vec<u64>>,
+    transform: Arc<Transform>,
+}
+
+impl Part {
+    fn coefficients(&self) -> &[u64] {
+        self.coefficients.get_or_init(|| {
+            let values = self.values.get().map_or(&[][..], Vec::as_slice);
+            trimmed(self.transform.coefficients(self.symmetry, values))
+        })
+    }
+
+    fn values(&self) -> &[u64] {
+        self.values.get_or_init(|| self.transform.values(self.symmetry, self.coefficients()))
+    }
+
+    /// Nothing if it vanishes.
+    fn from_forms(&self, coefficients: Option<Vec<u64>>, values: Option<Vec<u64>>) -> Option<Self> {
+        let coefficients = coefficients.map(trimmed);
+        let known = coefficients.as_ref().or(values.as_ref())?;
+        if known.iter().all(|&c| c == 0) {
+            return None;
+        }
+        Some(Self {
+            symmetry: self.symmetry,
+            coefficients: coefficients.map_or_else(OnceLock::new, OnceLock::from),
+            values: values.map_or_else(OnceLock::new, OnceLock::from),
+            transform: Arc::clone(&self.transform),
+        })
+    }
+
+    /// A linear map that multiplies every number by the same.
+    fn map(&self, g: impl Fn(&u64) -> u64) -> Option<Self> {
+        let image = |list: &Vec<u64>| -> Vec<u64> { list.iter().map(&g).collect() };
+        self.from_forms(self.coefficients.get().map(image), self.values.get().map(image))
+    }
+
+    /// sum_i c_i f_i over parts of one symmetry, in the form that needs the fewest transforms.
+    fn combination(field: &PrimeField, terms: &[(&Self, u64)]) -> Option<Self> {
+        let (first, _) = terms.first()?;
+        let lacking = |form: fn(&Self) -> &OnceLock<Vec<u64>>| {
+            terms.iter().filter(|(part, _)| form(part).get().is_none()).count()
+        };
+        let (no_coefficients, no_values) =
+            (lacking(|part| &part.coefficients), lacking(|part| &part.values));
+        let by_values = no_values == 0 && terms.len() <= SHORT || no_coefficients > no_values;
+        let by_coefficients = no_coefficients == 0 || !by_values;
+        let combine = |form: fn(&Self) -> &[u64]| {
+            let lists: Vec<_> = terms.iter().map(|(part, c)| (form(part), *c)).collect();
+            field.combination(&lists)
+        };
+        let coefficients = by_coefficients.then(|| combine(Self::coefficients));
+        first.from_forms(coefficients, by_values.then(|| combine(Self::values)))
+    }
+}
+
+impl PartialEq for Part {
+    fn eq(&self, other: &Self) -> bool {
+        match (self.values.get(), other.values.get()) {
+            (Some(a), Some(b)) => a == b,
+            _ => self.coefficients() == other.coefficients(),
+        }
+    }
+}
+
+fn trimmed(mut list: Vec<u64>) -> Vec<u64> {
+    list.truncate(list.iter().rposition(|&c| c != 0).map_or(0, |last| last + 1));
+    list
+}
+
+/// Values are combined beside the coefficients in sums of at most so many terms; in longer ones a
+/// transform costs less.
+const SHORT: usize = 8;
+
+/// A function: its part of every symmetry, nothing where that vanishes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModularElement {
+    parts: [Option<Part>; 4],
 }
 
 /// Trigonometric polynomials of bounded degree over Z/p.
@@ -71,83 +150,36 @@ impl PartialEq for ModularElement {
 pub struct Modular {
     field: PrimeField,
     points: usize,
-    /// cos(m pi/(4Q)) for m = 0..8Q, and the same for the sine.
-    cos: Vec<u64>,
-    sin: Vec<u64>,
-    /// 2/Q, the normalisation of the forward transform.
-    two_over_points: u64,
-    half: u64,
+    transform: Arc<Transform>,
     /// k and 1/(1 - k^2) for every harmonic k (zero for k = 1).
     multiples: Vec<u64>,
     inverse_divisors: Vec<u64>,
-    tables: [OnceLock<BasisTable>; 4],
 }
-
-/// Q x Q values of basis functions, in the two orders in which transforms run through them.
-#[derive(Clone, Debug)]
-struct BasisTable {
-    by_harmonic: Vec<u64>,
-    by_point: Vec<u64>,
-}
-
-/// Tables of the basis at more points are not kept: their squares cost more than the few
-/// transforms of a low order in a high degree.
-const TABLED_POINTS: usize = 512;
 
 impl Modular {
     /// The number of points per quarter period that represent harmonics up to `degree`, and the
     /// order of the root of unity that the prime must provide.
     pub fn points_for_degree(degree: usize) -> (usize, u64) {
-        let points = degree / 2 + 2;
-        (points, 8 * points as u64)
+        let (rows, columns) = transform::size(degree / 2 + 2);
+        (rows * columns, 8 * (rows * columns) as u64)
     }
 
     /// The algebra with the given number of points per quarter period; nothing when the field
     /// has no root of unity of order 8 `points`.
     pub fn new(field: PrimeField, points: usize) -> Option<Self> {
-        let order = 8 * points as u64;
-        let root = field.root_of_unity(order)?;
-        let mut powers = vec![field.one()];
-        for k in 1..8 * points {
-            powers.push(field.mul(&powers[k - 1], &root));
-        }
-        let half = field.rational(&Rational::from((1, 2)));
-        // i = z^(2Q), and 1/i = -i.
-        let half_over_i = field.neg(&field.mul(&half, &powers[2 * points]));
-        let combine = |m: usize, sign: bool, factor: u64| {
-            let conjugate = powers[(8 * points - m) % (8 * points)];
-            let conjugate = if sign { conjugate } else { field.neg(&conjugate) };
-            field.mul(&field.add(&powers[m], &conjugate), &factor)
-        };
-        let cos = (0..8 * points).map(|m| combine(m, true, half)).collect();
-        let sin = (0..8 * points).map(|m| combine(m, false, half_over_i)).collect();
-        let two_over_points = field.rational(&Rational::from((2, points)));
-        let integer = |n: i64| field.integer(&Integer::from(n));
+        let root = field.root_of_unity(8 * points as u64)?;
         let harmonics = 0..=2 * points as i64;
-        let inverse = |k: i64| field.reciprocal(&integer(1 - k * k)).unwrap_or(0);
+        let integer = |n: i64| field.integer(&Integer::from(n));
+        let divisor = |k: i64| if k == 1 { field.one() } else { integer(1 - k * k) };
+        let divisors: Vec<u64> = harmonics.clone().map(divisor).collect();
+        let mut inverse_divisors = field.reciprocals(&divisors)?;
+        inverse_divisors[1] = 0;
         Some(Self {
             field,
             points,
-            cos,
-            sin,
-            two_over_points,
-            half,
-            multiples: harmonics.clone().map(integer).collect(),
-            inverse_divisors: harmonics.map(inverse).collect(),
-            tables: [const { OnceLock::new() }; 4],
-        })
-    }
-
-    /// The values of the basis functions of a part at the points, made when first needed.
-    fn table(&self, part: Part) -> &BasisTable {
-        self.tables[part.index()].get_or_init(|| {
-            let basis = if part.sine { &self.sin } else { &self.cos };
-            let value = |k: usize, j: usize| basis[part.harmonic(k) * (2 * j + 1) % basis.len()];
-            let table = |entry: &dyn Fn(usize, usize) -> u64| {
-                let row = |i| (0..self.points).map(move |j| (i, j));
-                (0..self.points).flat_map(row).map(|(i, j)| entry(i, j)).collect()
-            };
-            BasisTable { by_harmonic: table(&value), by_point: table(&|j, k| value(k, j)) }
+            transform: Arc::new(Transform::new(field, points, root)?),
+            multiples: harmonics.map(integer).collect(),
+            inverse_divisors,
         })
     }
 
@@ -156,115 +188,103 @@ impl Modular {
         &self.field
     }
 
-    /// Fourier coefficients of a part from its values: by discrete orthogonality at the points
-    /// (2j+1) pi/(4Q), sum_j cos k psi_j cos m psi_j = Q/2 delta_km for 0 < k < 2Q.
-    fn forward(&self, part: Part, values: &[u64]) -> Vec<u64> {
-        let coefficient = |(k, row): (usize, &[u64])| {
-            let harmonic = part.harmonic(k);
-            let sum = self.field.mul(&self.field.dot(row, values), &self.two_over_points);
-            // The constant and sin 2Q psi have twice the norm.
-            if harmonic == 0 || harmonic == 2 * self.points {
-                self.field.mul(&sum, &self.half)
-            } else {
-                sum
-            }
+    /// Nothing if it vanishes.
+    fn part(&self, symmetry: Symmetry, coefficients: Vec<u64>) -> Option<Part> {
+        let empty = Part {
+            symmetry,
+            coefficients: OnceLock::new(),
+            values: OnceLock::new(),
+            transform: Arc::clone(&self.transform),
         };
-        if self.points <= TABLED_POINTS {
-            let rows = self.table(part).by_harmonic.chunks(self.points);
-            return rows.enumerate().map(coefficient).collect();
-        }
-        let mut row = Vec::with_capacity(self.points);
-        let each = (0..self.points).map(|k| {
-            let harmonic = part.harmonic(k);
-            self.row(part, harmonic, 2 * harmonic, self.points, &mut row);
-            coefficient((k, &row))
-        });
-        each.collect()
-    }
-
-    /// The basis at a start and further arguments of equal distance, in units of the step of the
-    /// table of the sine: a row of the table of the part that is not kept.
-    fn row(&self, part: Part, start: usize, step: usize, count: usize, row: &mut Vec<u64>) {
-        let basis = if part.sine { &self.sin } else { &self.cos };
-        let (mut index, step) = (start % basis.len(), step % basis.len());
-        row.clear();
-        for _ in 0..count {
-            row.push(basis[index]);
-            index += step;
-            if index >= basis.len() {
-                index -= basis.len();
-            }
-        }
-    }
-
-    /// Values of a part from its coefficients.
-    fn backward(&self, part: Part, coefficients: &[u64]) -> Option<Vec<u64>> {
-        let used = coefficients.iter().rposition(|&c| c != 0)? + 1;
-        if self.points > TABLED_POINTS {
-            let mut row = Vec::with_capacity(used);
-            let each = (0..self.points).map(|j| {
-                let (first, second) = (part.harmonic(0), part.harmonic(1));
-                let odd = 2 * j + 1;
-                self.row(part, first * odd, (second - first) * odd, used, &mut row);
-                self.field.dot(&row, &coefficients[..used])
-            });
-            return Some(each.collect());
-        }
-        let rows = self.table(part).by_point.chunks(self.points);
-        Some(rows.map(|row| self.field.dot(row, &coefficients[..used])).collect())
+        empty.from_forms(Some(coefficients), None)
     }
 
     /// The Fourier coefficients (cos_k, sin_k) of an element, up to the highest harmonic.
     pub fn harmonics(&self, f: &ModularElement) -> [Vec<u64>; 2] {
-        if let Some(known) = &f.harmonics {
-            return known.clone();
-        }
         let mut lists = [vec![0; 2 * self.points + 1], vec![0; 2 * self.points + 1]];
-        for part in PARTS {
-            let Some(values) = &f.values[part.index()] else { continue };
-            let list = &mut lists[usize::from(part.sine)];
-            for (k, c) in self.forward(part, values).into_iter().enumerate() {
-                list[part.harmonic(k)] = c;
+        for symmetry in SYMMETRIES {
+            let Some(part) = &f.parts[symmetry.index()] else { continue };
+            let list = &mut lists[usize::from(symmetry.sine)];
+            for (k, &c) in part.coefficients().iter().enumerate() {
+                list[symmetry.harmonic(k)] = c;
             }
         }
         lists
     }
 
     /// The element with given Fourier coefficients.
-    pub fn from_harmonics(&self, mut harmonics: [Vec<u64>; 2]) -> ModularElement {
-        for list in &mut harmonics {
-            list.resize(2 * self.points + 1, 0);
-        }
-        let values = PARTS.map(|part| {
-            let list = &harmonics[usize::from(part.sine)];
-            let coefficients: Vec<u64> = (0..self.points).map(|k| list[part.harmonic(k)]).collect();
-            self.backward(part, &coefficients)
+    pub fn from_harmonics(&self, harmonics: [Vec<u64>; 2]) -> ModularElement {
+        let parts = SYMMETRIES.map(|symmetry| {
+            let list = &harmonics[usize::from(symmetry.sine)];
+            let coefficient = |k| list.get(symmetry.harmonic(k)).copied();
+            self.part(symmetry, (0..self.points).map_while(coefficient).collect())
         });
-        ModularElement { values, harmonics: Some(harmonics) }
+        ModularElement { parts }
     }
 
-    fn map(&self, f: &ModularElement, g: impl Fn(u64) -> u64) -> ModularElement {
-        let image = |list: &Vec<u64>| -> Vec<u64> { list.iter().map(|&x| g(x)).collect() };
-        self.canonical(ModularElement {
-            values: f.values.each_ref().map(|values| values.as_ref().map(image)),
-            harmonics: f.harmonics.as_ref().map(|lists| lists.each_ref().map(image)),
-        })
-    }
-
-    /// A part whose values all vanish is absent.
-    fn canonical(&self, mut f: ModularElement) -> ModularElement {
-        for part in &mut f.values {
-            if part.as_ref().is_some_and(|values| values.iter().all(|&v| v == 0)) {
-                *part = None;
-            }
-        }
+    /// One coefficient, of harmonic k of the symmetry.
+    fn single(&self, symmetry: Symmetry, k: usize, c: u64) -> ModularElement {
+        let mut f = self.zero();
+        let mut coefficients = vec![0; k];
+        coefficients.push(c);
+        f.parts[symmetry.index()] = self.part(symmetry, coefficients);
         f
     }
 
-    fn add_lists(&self, a: &mut [u64], b: &[u64]) {
-        for (x, y) in a.iter_mut().zip(b) {
-            self.field.add_assign(x, y);
+    fn coefficient(&self, f: &ModularElement, symmetry: Symmetry, k: usize) -> u64 {
+        let part = f.parts[symmetry.index()].as_ref();
+        part.and_then(|part| part.coefficients().get(k).copied()).unwrap_or(0)
+    }
+
+    /// The sum of products and of `doubled` products taken twice, point by point.
+    fn products(
+        &self,
+        pairs: &[(&ModularElement, &ModularElement)],
+        doubled: &[(&ModularElement, &ModularElement)],
+    ) -> ModularElement {
+        let [once, twice] = [pairs, doubled].map(|pairs| self.pointwise(pairs));
+        let mut sum = self.zero();
+        for (symmetry, (once, twice)) in SYMMETRIES.into_iter().zip(once.into_iter().zip(twice)) {
+            let double = |list: Vec<u64>| -> Vec<u64> {
+                list.iter().map(|a| self.field.add(a, a)).collect()
+            };
+            let twice = twice.map(double);
+            let values = match (once, twice) {
+                (Some(mut a), Some(b)) => {
+                    add_lists(&self.field, &mut a, &b);
+                    a
+                }
+                (a, b) => match a.or(b) {
+                    Some(values) => values,
+                    None => continue,
+                },
+            };
+            let empty = self.part(symmetry, vec![self.field.one()]);
+            sum.parts[symmetry.index()] =
+                empty.and_then(|part| part.from_forms(None, Some(values)));
         }
+        sum
+    }
+
+    /// The values of a sum of products, by symmetry; nothing where no product has it.
+    fn pointwise(&self, pairs: &[(&ModularElement, &ModularElement)]) -> [Option<Vec<u64>>; 4] {
+        let mut factors: [Vec<(&[u64], &[u64])>; 4] = [const { Vec::new() }; 4];
+        for (f, g) in pairs {
+            for p in SYMMETRIES {
+                for q in SYMMETRIES {
+                    if let (Some(a), Some(b)) = (&f.parts[p.index()], &g.parts[q.index()]) {
+                        factors[p.times(q).index()].push((a.values(), b.values()));
+                    }
+                }
+            }
+        }
+        factors.map(|pairs| (!pairs.is_empty()).then(|| self.field.pointwise(&pairs, self.points)))
+    }
+}
+
+fn add_lists(field: &PrimeField, a: &mut [u64], b: &[u64]) {
+    for (x, y) in a.iter_mut().zip(b) {
+        field.add_assign(x, y);
     }
 }
 
@@ -272,59 +292,66 @@ impl Ring for Modular {
     type Element = ModularElement;
 
     fn zero(&self) -> ModularElement {
-        ModularElement { values: [const { None }; 4], harmonics: None }
+        ModularElement { parts: [const { None }; 4] }
     }
     fn one(&self) -> ModularElement {
         self.embed(&self.field.one())
     }
     fn is_zero(&self, f: &ModularElement) -> bool {
-        f.values.iter().all(Option::is_none)
+        f.parts.iter().all(Option::is_none)
     }
     fn add_assign(&self, f: &mut ModularElement, g: &ModularElement) {
-        if self.is_zero(f) {
-            f.clone_from(g);
-            return;
-        }
-        if self.is_zero(g) {
-            return;
-        }
-        for (x, y) in f.values.iter_mut().zip(&g.values) {
-            match (x.as_mut(), y) {
-                (_, None) => {}
-                (None, Some(y)) => *x = Some(y.clone()),
-                (Some(x), Some(y)) => self.add_lists(x, y),
+        for (a, b) in f.parts.iter_mut().zip(&g.parts) {
+            if let Some(b) = b {
+                let one = self.field.one();
+                *a = match a.take() {
+                    Some(a) => Part::combination(&self.field, &[(&a, one), (b, one)]),
+                    None => Some(b.clone()),
+                };
             }
         }
-        match (f.harmonics.as_mut(), &g.harmonics) {
-            (Some(own), Some(other)) => {
-                for (x, y) in own.iter_mut().zip(other) {
-                    self.add_lists(x, y);
-                }
-            }
-            _ => f.harmonics = None,
-        }
-        *f = self.canonical(std::mem::replace(f, self.zero()));
     }
     fn neg(&self, f: &ModularElement) -> ModularElement {
-        self.map(f, |x| self.field.neg(&x))
+        let negative = |x: &u64| self.field.neg(x);
+        let parts = f.parts.each_ref();
+        ModularElement { parts: parts.map(|part| part.as_ref()?.map(negative)) }
     }
     fn mul(&self, f: &ModularElement, g: &ModularElement) -> ModularElement {
         self.sum_of_products(&[(f, g)])
     }
+    /// What has a constant factor is a linear combination, which needs no transform.
     fn sum_of_products(&self, pairs: &[(&ModularElement, &ModularElement)]) -> ModularElement {
-        let mut factors: [Vec<(&[u64], &[u64])>; 4] = [const { Vec::new() }; 4];
-        for (f, g) in pairs {
-            for p in PARTS {
-                for q in PARTS {
-                    if let (Some(a), Some(b)) = (&f.values[p.index()], &g.values[q.index()]) {
-                        let part = Part { sine: p.sine ^ q.sine, odd: p.odd ^ q.odd };
-                        factors[part.index()].push((a, b));
-                    }
+        let (mut terms, mut rest) = (Vec::new(), Vec::new());
+        let mut constants = Vec::new();
+        for &(f, g) in pairs {
+            match (self.as_constant(f), self.as_constant(g)) {
+                (Some(c), _) => {
+                    terms.push(g);
+                    constants.push(c);
                 }
+                (_, Some(c)) => {
+                    terms.push(f);
+                    constants.push(c);
+                }
+                _ => rest.push((f, g)),
             }
         }
-        let values = factors.map(|pairs| (!pairs.is_empty()).then(|| self.field.pointwise(&pairs)));
-        self.canonical(ModularElement { values, harmonics: None })
+        let terms: Vec<_> = terms.into_iter().zip(&constants).collect();
+        let linear = self.linear_combination(&terms);
+        if rest.is_empty() {
+            return linear;
+        }
+        let mut sum = self.products(&rest, &[]);
+        self.add_assign(&mut sum, &linear);
+        sum
+    }
+    fn coefficient_of_square(
+        &self,
+        pairs: &[(&ModularElement, &ModularElement)],
+        middle: Option<&ModularElement>,
+    ) -> ModularElement {
+        let middle: Vec<_> = middle.map(|m| (m, m)).into_iter().collect();
+        self.products(&middle, pairs)
     }
 }
 
@@ -333,7 +360,7 @@ impl RationalAlgebra for Modular {
         self.embed(&self.field.rational(q))
     }
     fn scale(&self, f: &ModularElement, q: &Rational) -> ModularElement {
-        self.scale_by(f, &self.field.rational(q))
+        if *q == 1 { f.clone() } else { self.scale_by(f, &self.field.rational(q)) }
     }
     /// Only constants are units.
     fn reciprocal(&self, f: &ModularElement) -> Option<ModularElement> {
@@ -350,25 +377,34 @@ impl FunctionAlgebra for Modular {
         &self.field
     }
     fn embed(&self, c: &u64) -> ModularElement {
-        let mut f = self.zero();
-        f.values[0] = (*c != 0).then(|| vec![*c; self.points]);
-        f
+        self.single(Symmetry { sine: false, odd: false }, 0, *c)
     }
     fn scale_by(&self, f: &ModularElement, c: &u64) -> ModularElement {
-        self.map(f, |x| self.field.mul(&x, c))
+        let times = |x: &u64| self.field.mul(x, c);
+        let parts = f.parts.each_ref();
+        ModularElement { parts: parts.map(|part| part.as_ref()?.map(times)) }
     }
     fn linear_combination(&self, terms: &[(&ModularElement, &u64)]) -> ModularElement {
-        let constants: Vec<ModularElement> = terms.iter().map(|(_, c)| self.embed(c)).collect();
-        let pairs: Vec<_> = terms.iter().zip(&constants).map(|((f, _), c)| (*f, c)).collect();
-        self.sum_of_products(&pairs)
+        let parts = SYMMETRIES.map(|symmetry| {
+            let of_terms: Vec<(&Part, u64)> = terms
+                .iter()
+                .filter_map(|(f, c)| Some((f.parts[symmetry.index()].as_ref()?, **c)))
+                .collect();
+            Part::combination(&self.field, &of_terms)
+        });
+        ModularElement { parts }
     }
     fn as_constant(&self, f: &ModularElement) -> Option<u64> {
-        match &f.values {
+        match &f.parts {
             [None, None, None, None] => Some(0),
-            [Some(values), None, None, None] => {
-                let first = *values.first()?;
-                values.iter().all(|&v| v == first).then_some(first)
-            }
+            [Some(part), None, None, None] => match part.coefficients.get().map(Vec::as_slice) {
+                Some([constant]) => Some(*constant),
+                Some(_) => None,
+                None => {
+                    let (first, rest) = part.values().split_first()?;
+                    rest.iter().all(|value| value == first).then_some(*first)
+                }
+            },
             _ => None,
         }
     }
@@ -377,47 +413,63 @@ impl FunctionAlgebra for Modular {
         (*f == self.one()).then(|| self.zero())
     }
     fn terms(&self, f: &ModularElement) -> usize {
-        let [cos, sin] = self.harmonics(f);
-        cos.iter().chain(&sin).filter(|&&c| c != 0).count()
+        let lists = f.parts.iter().flatten().map(Part::coefficients);
+        lists.flatten().filter(|&&c| c != 0).count()
     }
 }
 
 impl PhaseAlgebra for Modular {
     fn cosine(&self) -> ModularElement {
-        self.from_harmonics([vec![0, self.field.one()], Vec::new()])
+        self.single(Symmetry { sine: false, odd: true }, 0, self.field.one())
     }
     fn sine(&self) -> ModularElement {
-        self.from_harmonics([Vec::new(), vec![0, self.field.one()]])
+        self.single(Symmetry { sine: true, odd: true }, 0, self.field.one())
     }
     fn derivative(&self, f: &ModularElement) -> ModularElement {
-        let [cos, sin] = self.harmonics(f);
-        let times = |list: Vec<u64>| -> Vec<u64> {
-            list.iter().zip(&self.multiples).map(|(c, k)| self.field.mul(c, k)).collect()
-        };
-        let cos: Vec<u64> = times(cos).iter().map(|c| self.field.neg(c)).collect();
-        self.from_harmonics([times(sin), cos])
+        let mut derivative = self.zero();
+        for symmetry in SYMMETRIES {
+            let Some(part) = &f.parts[symmetry.index()] else { continue };
+            let image = Symmetry { sine: !symmetry.sine, odd: symmetry.odd };
+            let times = |(k, c): (usize, &u64)| {
+                let c = self.field.mul(c, &self.multiples[symmetry.harmonic(k)]);
+                if symmetry.sine { c } else { self.field.neg(&c) }
+            };
+            let mut list: Vec<u64> = part.coefficients().iter().enumerate().map(times).collect();
+            // cos 2m psi is number m, sin 2m psi number m - 1.
+            match (symmetry.sine, symmetry.odd) {
+                (false, false) => drop(list.remove(0)),
+                (true, false) => list.insert(0, 0),
+                _ => {}
+            }
+            derivative.parts[image.index()] = self.part(image, list);
+        }
+        derivative
     }
     fn at_zero(&self, f: &ModularElement) -> Option<u64> {
-        let [cos, _] = self.harmonics(f);
-        Some(cos.iter().fold(0, |sum, c| self.field.add(&sum, c)))
+        let cosines = f.parts[..2].iter().flatten().flat_map(Part::coefficients);
+        Some(cosines.fold(0, |sum, c| self.field.add(&sum, c)))
     }
     fn first_harmonic(&self, f: &ModularElement) -> Result<(u64, u64), PhaseError> {
-        let [cos, sin] = self.harmonics(f);
-        Ok((cos[1], sin[1]))
+        let [cosine, sine] =
+            [false, true].map(|sine| self.coefficient(f, Symmetry { sine, odd: true }, 0));
+        Ok((cosine, sine))
     }
     fn resolve(&self, f: &ModularElement) -> Result<Resolution<Self>, PhaseError> {
-        let [mut cos, mut sin] = self.harmonics(f);
-        let (cos_amplitude, sin_amplitude) = (cos[1], sin[1]);
-        let (mut value, mut slope) = (0, 0);
-        for k in 0..cos.len() {
-            cos[k] = self.field.mul(&cos[k], &self.inverse_divisors[k]);
-            sin[k] = self.field.mul(&sin[k], &self.inverse_divisors[k]);
-            self.field.add_assign(&mut value, &cos[k]);
-            self.field.add_assign(&mut slope, &self.field.mul(&sin[k], &self.multiples[k]));
+        let (cos_amplitude, sin_amplitude) = self.first_harmonic(f)?;
+        let parts = SYMMETRIES.map(|symmetry| {
+            let divide = |(k, c): (usize, &u64)| {
+                self.field.mul(c, &self.inverse_divisors[symmetry.harmonic(k)])
+            };
+            let list = f.parts[symmetry.index()].as_ref()?.coefficients();
+            self.part(symmetry, list.iter().enumerate().map(divide).collect())
+        });
+        let mut response = ModularElement { parts };
+        let value = self.at_zero(&response).unwrap_or(0);
+        let slope = self.at_zero(&self.derivative(&response)).unwrap_or(0);
+        for (sine, c) in [(false, value), (true, slope)] {
+            let homogeneous = self.single(Symmetry { sine, odd: true }, 0, self.field.neg(&c));
+            self.add_assign(&mut response, &homogeneous);
         }
-        cos[1] = self.field.neg(&value);
-        sin[1] = self.field.neg(&slope);
-        let response = self.from_harmonics([cos, sin]);
         Ok(Resolution { cos_amplitude, sin_amplitude, response })
     }
 }

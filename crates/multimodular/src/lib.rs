@@ -1,0 +1,275 @@
+//! Expansions over Q by computation modulo many primes, with proof.
+//!
+//! The driver runs unchanged over [`Modular`] for primes p of 61 bits, where a product of phase functions
+//! costs one multiplication per point. Every image is substituted into the equation modulo its own prime
+//! (`image`). Chinese remaindering gives the numerators of an order over a denominator that the
+//! recurrence predicts from the orders below (`lift`), with as many primes as that order needs.
+//!
+//! Nothing is assumed about how many primes suffice, or about the denominator: order n is accepted when the
+//! product of the primes that gave it exceeds every numerator that its residual can have ([`ResidualBound`]).
+//! Then it is *proved*, by induction: modulo each of these primes the equations of the orders up to n have one
+//! solution, which is the image and, the orders below being right, what they are modulo p; so the residual of
+//! order n is divisible by all the primes and smaller than their product: zero.
+
+mod image;
+mod lift;
+#[cfg(test)]
+mod tests;
+
+use image::{Image, Job};
+use lift::{Lifted, Remaindering};
+use lindstedt_algebra::{RationalAlgebra, Rationals, Stop};
+use lindstedt_equation::{Condition, Expression};
+use lindstedt_expand::{
+    Binding, ExpandError, Expansion, Request, ResidualBound, compile, degrees,
+    equation_denominator, expand, leading_amplitude,
+};
+use lindstedt_phase::modular::PrimeField;
+use lindstedt_phase::{Modular, Trigonometric};
+use rayon::prelude::*;
+use rug::Rational;
+
+/// The plain algebra over Q, in which results are stated.
+pub type RationalAlgebraOfPhase = Trigonometric<Rationals>;
+
+/// Why there is no expansion.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// As the driver over Q would refuse; interrupted; or a residual that does not vanish.
+    #[error(transparent)]
+    Expand(#[from] ExpandError),
+    /// No more primes of 61 bits with the roots of unity that the order needs.
+    #[error("no more 61-bit primes for this order")]
+    OutOfPrimes,
+}
+
+/// Names bound to rational numbers.
+pub trait RationalBinding: Sync {
+    /// The value of a parameter.
+    fn parameter(&self, name: &str) -> Option<Rational>;
+}
+
+/// The same names over another ring of constants.
+struct Over<'a, C>(&'a dyn RationalBinding, &'a C);
+
+impl<C: RationalAlgebra> Binding<C> for Over<'_, C> {
+    fn parameter(&self, name: &str) -> Option<C::Element> {
+        self.0.parameter(name).map(|q| self.1.rational(&q))
+    }
+    fn formal(&self, _: &str, _: usize) -> Option<C::Element> {
+        None
+    }
+}
+
+/// A proved expansion and what it took.
+#[derive(Clone, Debug)]
+pub struct Proved {
+    /// The expansion over Q.
+    pub expansion: Expansion<RationalAlgebraOfPhase>,
+    /// omega_n of omega/sqrt(kappa) = sum omega_n eps^n, whose square is W.
+    pub frequency: Vec<Rational>,
+    /// T_n of sqrt(kappa) T/2pi, the reciprocal of that.
+    pub period: Vec<Rational>,
+    /// The number of primes that determined it.
+    pub primes: usize,
+    /// The number of primes modulo which it was substituted into the equation: those that determined and
+    /// prove it, and one apart that judges the lifting.
+    pub proof_primes: usize,
+}
+
+/// Derives and proves the expansion of a polynomial equation over Q: x_n and W_n of
+/// omega^2 = kappa sum W_n eps^n for n = 0, ..., `order`, in lowest terms.
+///
+/// `observer` is told the number of primes done so far; `false` stops. `stop` is asked after every
+/// order modulo every prime, from all threads.
+///
+/// Cost: O(N^3) products modulo every prime, and B/61 primes where the numbers of order N have B bits (for van
+/// der Pol's equation B grows like 0.7 N^2, for Duffing's like 5 N).
+///
+/// # Errors
+/// [`Error::Expand`] as the driver over Q would, or interrupted.
+pub fn derive(
+    equation: &Expression,
+    binding: &dyn RationalBinding,
+    condition: Condition,
+    order: usize,
+    stop: &Stop,
+    observer: &mut dyn FnMut(usize) -> bool,
+) -> Result<Proved, Error> {
+    let plain = Trigonometric::new(Rationals);
+    let over_q = Over(binding, &Rationals);
+    let compiled = compile(&plain, equation, &over_q, order)?;
+    let leading_amplitude = leading_amplitude(&plain, &compiled, condition)?;
+    let request = Request { condition, order, leading_amplitude };
+    let (degrees, degree) = degrees(&compiled, order).ok_or_else(|| {
+        ExpandError::UnsupportedTerm { term: "a term that is not polynomial".into() }
+    })?;
+    let (points, roots) = Modular::points_for_degree(degree);
+    let initial = Condition::InitialAmplitude;
+    let zero = Request { order: 0, condition: initial, ..request.clone() };
+    let stiffness = expand(&plain, &compiled, &zero, &mut |_| true)?.stiffness;
+    let largest = degrees.last().copied().unwrap_or(1);
+    let is_cycle = condition == Condition::LimitCycle;
+    let bound = ResidualBound::new(&compiled, &stiffness, largest, is_cycle)?;
+    let job = Job { equation, binding, request, stiffness: stiffness.clone(), points, stop };
+    // Reduction is a homomorphism only where no denominator vanishes, and what is divided by must not.
+    let mut numbers = equation_denominator(&compiled) * stiffness.numer() * stiffness.denom();
+    numbers *= job.request.leading_amplitude.numer();
+    numbers *= job.request.leading_amplitude.denom();
+    let primes = PrimeField::with_roots_of_unity(roots, 1 << 61);
+    let primes = primes.filter(|field| field.integer(&numbers) != 0);
+    let mut ladder = Ladder { job: &job, primes, images: Vec::new(), bound, needs: Vec::new() };
+    ladder.climb(observer)
+}
+
+/// The loop over the orders.
+struct Ladder<'a, P> {
+    job: &'a Job<'a>,
+    primes: P,
+    /// The first one judges what the others give.
+    images: Vec<Image>,
+    bound: ResidualBound,
+    /// The primes that every order needed.
+    needs: Vec<usize>,
+}
+
+impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
+    fn climb(&mut self, observer: &mut dyn FnMut(usize) -> bool) -> Result<Proved, Error> {
+        let mut found: Vec<Lifted> = Vec::new();
+        self.more(3, observer)?;
+        let mut remaindering = Remaindering::new(&self.images[1..]);
+        // Bits of a residual, and of the numerators, above those of the denominator.
+        let mut excess = 0;
+        for n in 0..=self.job.request.order {
+            let harmonics = self.images[0].harmonics(n);
+            let guess = self.bound.expected(&harmonics);
+            let mut needed = (i64::from(guess.significant_bits()) + excess).unsigned_abs();
+            let (numbers, bits) = loop {
+                self.prepare(&mut remaindering, n, needed, observer)?;
+                self.job.go_on()?;
+                let lifted = remaindering.lift(&self.images[1..], n, &guess, self.job.stop);
+                needed = remaindering.bits() + 1;
+                let Some(numbers) = lifted else { continue };
+                let bits = self.bound.take(&numbers);
+                if bits <= remaindering.bits() {
+                    break (numbers, bits);
+                }
+                self.bound.give_back();
+                needed = bits.max(needed);
+            };
+            self.job.judge(&self.images[0], n, &numbers)?;
+            let lifting = u64::from(lift::MARGIN + lift::longest(&numbers) + 4);
+            excess = bits.max(lifting) as i64 - i64::from(numbers.denominator.significant_bits());
+            self.needs.push(remaindering.primes());
+            found.push(Lifted::new(&numbers, &self.images[0], n));
+            self.images.iter_mut().for_each(|image| image.forget(n));
+        }
+        let primes = self.images.len() - 1;
+        let (expansion, [frequency, period]) = self.assemble(found);
+        Ok(Proved { expansion, frequency, period, primes, proof_primes: primes + 1 })
+    }
+
+    /// The expansion over Q, and the series of the frequency and the period.
+    fn assemble(
+        &self,
+        found: Vec<Lifted>,
+    ) -> (Expansion<RationalAlgebraOfPhase>, [Vec<Rational>; 2]) {
+        let mut expansion = Expansion {
+            condition: self.job.request.condition,
+            stiffness: self.job.stiffness.clone(),
+            frequency_squared: Vec::new(),
+            amplitude: Vec::new(),
+            solution: Vec::new(),
+            work: Vec::new(),
+            certificates: Vec::new(),
+        };
+        let mut series = [Vec::new(), Vec::new()];
+        for order in found {
+            let [squared, frequency, period] = order.series;
+            expansion.frequency_squared.push(squared);
+            expansion.amplitude.push(order.amplitude);
+            expansion.solution.push(order.solution);
+            series[0].push(frequency);
+            series[1].push(period);
+        }
+        (expansion, series)
+    }
+
+    /// Enough primes for so many bits, and not many more than enough.
+    fn prepare(
+        &mut self,
+        remaindering: &mut Remaindering,
+        n: usize,
+        needed: u64,
+        observer: &mut dyn FnMut(usize) -> bool,
+    ) -> Result<(), Error> {
+        if (needed..=needed + needed / 8 + 256).contains(&remaindering.bits()) {
+            return Ok(());
+        }
+        let own = Self::primes_for(needed);
+        let have = self.images.len() - 1;
+        if have < own {
+            self.more(self.batch(n, own), observer)?;
+        }
+        // Some more serve the next orders, too.
+        let last = (1 + own + own / 16).min(self.images.len());
+        *remaindering = Remaindering::new(&self.images[1..last]);
+        Ok(())
+    }
+
+    /// Every prime has more than 60.9 bits.
+    fn primes_for(bits: u64) -> usize {
+        (bits * 10).div_ceil(609) as usize + 1
+    }
+
+    /// How many more primes to take at once: those that are needed, and where the growth so far continues,
+    /// nearly those of the last order; at most as many as there are.
+    fn batch(&self, n: usize, own: usize) -> usize {
+        let have = self.images.len() - 1;
+        let half = self.needs.get(n / 2).copied().unwrap_or(own);
+        let slope = (own.saturating_sub(half), n - n / 2);
+        let rest = self.job.request.order - n;
+        let last = own + slope.0 * rest / slope.1.max(1);
+        let (least, most) = (own.saturating_sub(have).max(1), have.max(2));
+        (last * 9 / 10).saturating_sub(have).min(most).max(least)
+    }
+
+    /// Images modulo more primes, each of them checked.
+    fn more(&mut self, count: usize, observer: &mut dyn FnMut(usize) -> bool) -> Result<(), Error> {
+        let from = self.needs.len();
+        let wanted = self.images.len() + count;
+        while self.images.len() < wanted {
+            let missing = wanted - self.images.len();
+            let fields: Vec<PrimeField> = self.primes.by_ref().take(missing).collect();
+            if fields.is_empty() {
+                return Err(Error::OutOfPrimes);
+            }
+            let job = self.job;
+            let new: Vec<_> = fields.into_par_iter().map(|field| job.image(field, from)).collect();
+            // A prime can be unlucky (a denominator or a pivot vanishes modulo it): it is skipped. What
+            // fails modulo all of them fails over Q.
+            let mut failure = None;
+            for image in new {
+                match image {
+                    Ok(Ok(image)) => {
+                        let image = match self.images.first() {
+                            // A coefficient vanishes modulo one of two primes and not over Q.
+                            Some(judge) => image.like(judge).ok_or(Error::OutOfPrimes)?,
+                            None => image,
+                        };
+                        self.images.push(image);
+                    }
+                    Ok(Err(unlucky)) => failure = Some(unlucky),
+                    Err(broken) => return Err(broken),
+                }
+            }
+            if let (true, Some(error)) = (self.images.is_empty(), failure) {
+                return Err(error.into());
+            }
+            let stopped = ExpandError::Interrupted { order: self.job.request.order };
+            observer(self.images.len()).then_some(()).ok_or(stopped)?;
+        }
+        Ok(())
+    }
+}

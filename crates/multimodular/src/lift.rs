@@ -1,0 +1,220 @@
+//! From images modulo primes to numbers over Q.
+
+use crate::image::{Image, Place};
+use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
+use lindstedt_expand::OrderNumbers;
+use lindstedt_phase::trigonometric::TrigonometricPolynomial;
+use rayon::prelude::*;
+use rug::{Integer, Rational};
+
+/// A candidate is accepted when it is shorter than the modulus by so many bits, which happens by chance
+/// once in 2^80. It is proved afterwards.
+pub(crate) const MARGIN: u32 = 80;
+
+/// The Chinese remainder theorem for the primes of a list of images.
+pub(crate) struct Remaindering {
+    modulus: Integer,
+    /// M/p_i and its inverse modulo p_i.
+    cofactors: Vec<(Integer, u64)>,
+}
+
+impl Remaindering {
+    pub(crate) fn new(images: &[Image]) -> Self {
+        let mut modulus = Integer::from(1);
+        for image in images {
+            modulus *= image.field.prime();
+        }
+        let cofactor = |image: &Image| {
+            let field = &image.field;
+            let cofactor = Integer::from(modulus.div_exact_ref(&Integer::from(field.prime())));
+            let inverse = field.reciprocal(&field.integer(&cofactor)).unwrap_or(0);
+            (cofactor, inverse)
+        };
+        let cofactors = images.par_iter().map(cofactor).collect();
+        Self { modulus, cofactors }
+    }
+
+    /// How many primes.
+    pub(crate) fn primes(&self) -> usize {
+        self.cofactors.len()
+    }
+
+    /// M >= 2^this.
+    pub(crate) fn bits(&self) -> u64 {
+        u64::from(self.modulus.significant_bits()) - 1
+    }
+
+    /// The numbers of order n, whose common denominator is guessed; nothing when the primes do not suffice,
+    /// or when stopped.
+    pub(crate) fn lift(
+        &self,
+        images: &[Image],
+        n: usize,
+        guess: &Integer,
+        stop: &Stop,
+    ) -> Option<OrderNumbers> {
+        let places = images.first()?.places(n);
+        let pairs = images.iter().zip(&self.cofactors);
+        let factors: Vec<u64> = pairs
+            .map(|(image, (_, inverse))| image.field.mul(inverse, &image.field.integer(guess)))
+            .collect();
+        let numerator =
+            |index: usize| (!stop.asked()).then(|| self.numerator(images, n, index, &factors));
+        // One number decides whether the others are worth their while.
+        let probe = places.len().saturating_sub(1).min(3);
+        let mut growing = Growing { modulus: &self.modulus, factor: Integer::from(1) };
+        growing.fit(&numerator(probe)?)?;
+        let numerators: Vec<Option<Integer>> =
+            (0..places.len()).into_par_iter().map(numerator).collect();
+        let mut fitted = Vec::with_capacity(numerators.len());
+        for numerator in numerators {
+            let numerator = growing.fit(&numerator?)?;
+            fitted.push((numerator, growing.factor.clone()));
+        }
+        let rescaled = fitted.into_iter().map(|(numerator, factor)| {
+            if factor == growing.factor {
+                return numerator;
+            }
+            numerator * Integer::from(growing.factor.div_exact_ref(&factor))
+        });
+        let denominator = Integer::from(guess * &growing.factor);
+        // Numerators over a multiple of p say nothing modulo p.
+        if images.iter().any(|image| image.field.integer(&denominator) == 0) {
+            return None;
+        }
+        Some(lowest_terms(places.iter().copied().zip(rescaled).collect(), denominator))
+    }
+
+    /// The representative of the smallest absolute value of a number times the guess.
+    fn numerator(&self, images: &[Image], n: usize, index: usize, factors: &[u64]) -> Integer {
+        let mut sum = Integer::with_capacity(self.modulus.significant_bits() as usize + 128);
+        for ((image, (cofactor, _)), factor) in images.iter().zip(&self.cofactors).zip(factors) {
+            let field = &image.field;
+            let digit = field.mul(factor, &image.values(n)[index]);
+            sum += cofactor * field.representative(digit);
+        }
+        centred(sum, &self.modulus)
+    }
+}
+
+fn centred(n: Integer, modulus: &Integer) -> Integer {
+    let residue = n.modulo(modulus);
+    if Integer::from(&residue << 1) > *modulus { residue - modulus } else { residue }
+}
+
+/// A factor of the denominator that grows where the guess was too small.
+struct Growing<'a> {
+    modulus: &'a Integer,
+    factor: Integer,
+}
+
+impl Growing<'_> {
+    /// A residue times the factor, short.
+    fn fit(&mut self, residue: &Integer) -> Option<Integer> {
+        let limit = self.modulus.significant_bits().checked_sub(MARGIN)?;
+        let is_short = |n: &Integer| n.significant_bits() <= limit;
+        let numerator = if self.factor == 1 {
+            residue.clone()
+        } else {
+            centred(Integer::from(residue * &self.factor), self.modulus)
+        };
+        if is_short(&numerator) {
+            return Some(numerator);
+        }
+        let missing = self.missing(&numerator)?;
+        self.factor *= &missing;
+        Some(centred(numerator * missing, self.modulus)).filter(is_short)
+    }
+
+    /// q with q r = small modulo M, by Euclid's algorithm on (M, r): the convergent before a
+    /// quotient of more than 80 bits (M. Monagan, ISSAC 2004).
+    fn missing(&self, residue: &Integer) -> Option<Integer> {
+        let (mut a, mut b) = (self.modulus.clone(), residue.clone());
+        let (mut before, mut cofactor) = (Integer::new(), Integer::from(1));
+        while !b.is_zero() {
+            let (quotient, remainder) = a.div_rem_ref(&b).into();
+            let _: &Integer = &quotient;
+            if quotient.significant_bits() > MARGIN {
+                return Some(cofactor.abs());
+            }
+            let next = before - Integer::from(&quotient * &cofactor);
+            before = std::mem::replace(&mut cofactor, next);
+            a = std::mem::replace(&mut b, remainder);
+        }
+        None
+    }
+}
+
+/// Divides by what the denominator and all numerators have in common.
+fn lowest_terms(mut numerators: Vec<(Place, Integer)>, mut denominator: Integer) -> OrderNumbers {
+    let mut common = denominator.clone();
+    for (_, numerator) in &numerators {
+        common.gcd_mut(numerator);
+        if common == 1 {
+            break;
+        }
+    }
+    if common != 1 {
+        denominator.div_exact_mut(&common);
+        numerators.iter_mut().for_each(|(_, numerator)| numerator.div_exact_mut(&common));
+    }
+    let [mut squared, mut frequency, mut period] = [const { None }; 3];
+    let over = |numerator: Integer| Some(Rational::from((numerator, denominator.clone())));
+    let mut coefficients = Vec::with_capacity(numerators.len());
+    for (place, numerator) in numerators {
+        match place {
+            Place::Squared => squared = over(numerator),
+            Place::Frequency => frequency = over(numerator),
+            Place::Period => period = over(numerator),
+            Place::Cosine(k) | Place::Sine(k) => coefficients.push((k, numerator)),
+        }
+    }
+    let [squared, frequency, period] = [squared, frequency, period].map(Option::unwrap_or_default);
+    OrderNumbers { denominator, numerators: coefficients, squared, frequency, period }
+}
+
+/// The bits of the longest numerator over the common denominator.
+pub(crate) fn longest(numbers: &OrderNumbers) -> u32 {
+    let own = numbers.numerators.iter().map(|(_, c)| c.significant_bits());
+    let series = [&numbers.squared, &numbers.frequency, &numbers.period].map(|q| {
+        let more = numbers.denominator.significant_bits() + 1
+            - q.denom().significant_bits().min(numbers.denominator.significant_bits());
+        q.numer().significant_bits() + more
+    });
+    own.chain(series).max().unwrap_or(1)
+}
+
+/// One order over Q, in lowest terms.
+pub(crate) struct Lifted {
+    /// W_n, omega_n, T_n.
+    pub series: [Rational; 3],
+    pub amplitude: Rational,
+    pub solution: TrigonometricPolynomial<Rational>,
+}
+
+impl Lifted {
+    /// From numerators over their common denominator; what they belong to is written in an image.
+    pub(crate) fn new(numbers: &OrderNumbers, image: &Image, n: usize) -> Self {
+        let denominator = &numbers.denominator;
+        let places = image.places(n).iter().filter(|place| place.harmonic().is_some());
+        let reduce = |(_, c): &(usize, Integer)| Rational::from((c.clone(), denominator.clone()));
+        let values: Vec<Rational> = numbers.numerators.par_iter().map(reduce).collect();
+        let mut solution = TrigonometricPolynomial { cos: Vec::new(), sin: Vec::new() };
+        let mut amplitude = Integer::new();
+        for ((place, value), (_, numerator)) in places.zip(values).zip(&numbers.numerators) {
+            let (list, k) = match *place {
+                Place::Sine(k) => (&mut solution.sin, k),
+                Place::Cosine(k) => {
+                    amplitude += numerator;
+                    (&mut solution.cos, k)
+                }
+                Place::Squared | Place::Frequency | Place::Period => continue,
+            };
+            list.resize_with(k, Rational::new);
+            list.push(value);
+        }
+        let amplitude = Rational::from((amplitude, denominator.clone()));
+        let series = [&numbers.squared, &numbers.frequency, &numbers.period].map(Clone::clone);
+        Self { series, amplitude, solution }
+    }
+}

@@ -1,0 +1,353 @@
+//! Cosine and sine transforms of length Q modulo p, by one number-theoretic transform.
+//!
+//! With theta_j = (2j + 1) pi/(4Q) the sum sum_m a_m cos 2m theta_j is, after the permutation
+//! v_n = g_2n, v_(Q-1-n) = g_(2n+1) (J. Makhoul, IEEE Trans. ASSP 28 (1980) 27), the transform
+//!
+//!   v_n = sum_m w^(mn) u_m,   u_m = z^m (a_m - i a_(Q-m))/2,   w = z^4 = e^(2 pi i/Q),
+//!
+//! of length Q = r s: r transforms of length s and s of length r, each two small dense matrices, at
+//! Q (r + s)/2 products in place of Q^2. The other three symmetries are this one, times a diagonal:
+//!
+//!   2 cos theta sum_k c_k cos (2k+1) theta = c_0 + sum_m (c_m + c_(m-1)) cos 2m theta,
+//!   2 sin theta sum_k d_k cos (2k+1) theta = sum_m (d_(m-1) - d_m) sin 2m theta,
+//!
+//! and sin (2k+1) theta is (-1)^k cos (2k+1) (pi/2 - theta), the points in reverse.
+
+use super::{PrimeField, Symmetry};
+use lindstedt_algebra::{RationalAlgebra, Ring};
+use rug::Rational;
+
+/// The tables of one prime and one number of points.
+#[derive(Clone, Debug)]
+pub(super) struct Transform {
+    field: PrimeField,
+    points: usize,
+    rows: usize,
+    columns: usize,
+    /// w^(s k m), w^(r k m) and w^(k m): the two small matrices and the factors between them.
+    row_matrix: Small,
+    column_matrix: Small,
+    /// With row and column exchanged.
+    twiddles: Vec<u64>,
+    /// The place of u_m in the input of [`Self::fourier`], and of y_n in its output.
+    place_in: Vec<u32>,
+    place_out: Vec<u32>,
+    /// The factors of a_m and a_(Q-m) in u_m.
+    entry: [Vec<u64>; 2],
+    /// The factors of v and of its mirror image on the way back, with the normalisation.
+    exit: [Vec<u64>; 2],
+    /// 2 cos theta_j and its reciprocal; tan theta_j and its reciprocal.
+    twice_cosine: Vec<u64>,
+    half_secant: Vec<u64>,
+    tangent: Vec<u64>,
+    cotangent: Vec<u64>,
+}
+
+/// The transform y_k = sum_j v^(jk) x_j of a small length n, v of order n: y_k and y_(n-k) are the sum and the
+/// difference of a cosine transform of x_j + x_(n-j) and a sine transform of x_j - x_(n-j).
+#[derive(Clone, Debug)]
+struct Small {
+    length: usize,
+    /// (v^(jk) + v^(-jk))/2, j, k <= n/2, and (v^(jk) - v^(-jk))/2, 1 <= j, k < n/2.
+    cosines: Vec<u64>,
+    sines: Vec<u64>,
+}
+
+impl Small {
+    /// From the powers v^m, m < n, and 1/2.
+    fn new(field: &PrimeField, length: usize, power: impl Fn(usize) -> u64, half: u64) -> Self {
+        let (even, odd) = (length / 2 + 1, length.div_ceil(2) - 1);
+        let entry = |j: usize, k: usize, minus: bool| {
+            let m = j * k % length;
+            let (plus, other) = (power(m), power((length - m) % length));
+            let other = if minus { field.neg(&other) } else { other };
+            field.mul(&half, &field.add(&plus, &other))
+        };
+        let mut cosines = Vec::with_capacity(even * even);
+        for k in 0..even {
+            cosines.extend((0..even).map(|j| entry(j, k, false)));
+        }
+        let mut sines = Vec::with_capacity(odd * odd);
+        for k in 1..=odd {
+            sines.extend((1..=odd).map(|j| entry(j, k, true)));
+        }
+        Self { length, cosines, sines }
+    }
+
+    /// `scratch` has room for n + 1 numbers.
+    #[inline(always)]
+    fn apply(&self, field: &PrimeField, x: &[u64], y: &mut [u64], scratch: &mut [u64]) {
+        let n = self.length;
+        let (even, odd) = (n / 2 + 1, n.div_ceil(2) - 1);
+        let (sums, differences) = scratch.split_at_mut(even);
+        let differences = &mut differences[..odd];
+        sums[0] = x[0];
+        let pairs = x[1..].iter().zip(x[1..].iter().rev());
+        for ((sum, difference), (a, b)) in
+            sums[1..].iter_mut().zip(differences.iter_mut()).zip(pairs)
+        {
+            *sum = field.add(a, b);
+            *difference = field.sub(a, b);
+        }
+        if n.is_multiple_of(2) {
+            sums[n / 2] = x[n / 2];
+        }
+        for (k, weights) in self.cosines.chunks_exact(even).enumerate() {
+            y[k] = field.dot(weights, sums);
+        }
+        for (k, weights) in self.sines.chunks_exact(odd.max(1)).enumerate() {
+            let (cosine, sine) = (y[k + 1], field.dot(weights, differences));
+            y[n - 1 - k] = field.sub(&cosine, &sine);
+            y[k + 1] = field.add(&cosine, &sine);
+        }
+    }
+}
+
+/// Q = r s, not below `least`, for which the work of an expansion of that degree is least: per point some
+/// least/4 products of functions stand beside every transform.
+pub(super) fn size(least: usize) -> (usize, usize) {
+    let split = |points: usize| {
+        let rows =
+            (1..=points).take_while(|r| r * r <= points).filter(|r| points.is_multiple_of(*r));
+        let rows = rows.last().unwrap_or(1);
+        (rows, points / rows)
+    };
+    let cost = |&(r, s): &(usize, usize)| r * s * (least / 4 + r + s);
+    let sizes = (least..=least + least / 4 + 1).map(split);
+    sizes.min_by_key(cost).unwrap_or((1, least))
+}
+
+impl Transform {
+    /// The tables from a root of unity of order 8Q; nothing if that is none.
+    pub(super) fn new(field: PrimeField, points: usize, root: u64) -> Option<Self> {
+        let (rows, columns) = size(points);
+        // A number of points that `size` did not choose is as good, only slower.
+        let (rows, columns) = if rows * columns == points { (rows, columns) } else { (1, points) };
+        let order = 8 * points;
+        let mut powers = vec![field.one()];
+        for k in 1..order {
+            powers.push(field.mul(&powers[k - 1], &root));
+        }
+        let z = |k: usize| powers[k % order];
+        let number = |q: (i32, usize)| field.rational(&Rational::from(q));
+        let (half, minus_half) = (number((1, 2)), number((-1, 2)));
+        // i = z^(2Q).
+        let minus_half_i = field.mul(&minus_half, &z(2 * points));
+        let over_points = number((1, points));
+        let times = |factor: u64, k: usize| field.mul(&factor, &z(k));
+        let mut entry = [half, minus_half_i]
+            .map(|factor| (0..points).map(|m| times(factor, 2 * m)).collect::<Vec<u64>>());
+        // a_0 stands alone.
+        (entry[0][0], entry[1][0]) = (field.one(), 0);
+        let mut exit = [order - 2, 2]
+            .map(|step| (0..points).map(|k| times(over_points, step * k)).collect::<Vec<u64>>());
+        (exit[0][0], exit[1][0]) = (over_points, 0);
+        let pair = |k: usize| (z(k), z(order - k));
+        let odd = (0..points).map(|j| 2 * j + 1);
+        let twice_cosine: Vec<u64> =
+            odd.clone().map(|k| pair(k)).map(|(a, b)| field.add(&a, &b)).collect();
+        // 2 sin = (z - 1/z)/i = -i (z - 1/z).
+        let minus_i = field.neg(&z(2 * points));
+        let twice_sine: Vec<u64> =
+            odd.map(pair).map(|(a, b)| field.mul(&minus_i, &field.sub(&a, &b))).collect();
+        let half_secant = field.reciprocals(&twice_cosine)?;
+        let half_cosecant = field.reciprocals(&twice_sine)?;
+        let product = |a: &[u64], b: &[u64]| -> Vec<u64> {
+            a.iter().zip(b).map(|(x, y)| field.mul(x, y)).collect()
+        };
+        Some(Self {
+            field,
+            points,
+            rows,
+            columns,
+            row_matrix: Small::new(&field, rows, |m| z(8 * columns * m), half),
+            column_matrix: Small::new(&field, columns, |m| z(8 * rows * m), half),
+            twiddles: (0..points).map(|i| z(8 * (i / rows) * (i % rows))).collect(),
+            place_in: (0..points).map(|m| (m % columns * rows + m / columns) as u32).collect(),
+            place_out: (0..points).map(|n| (n % rows * columns + n / rows) as u32).collect(),
+            entry,
+            exit,
+            tangent: product(&twice_sine, &half_secant),
+            cotangent: product(&twice_cosine, &half_cosecant),
+            twice_cosine,
+            half_secant,
+        })
+    }
+
+    /// y_n = sum_m w^(mn) u_m; `input` is u with u_m at (m mod s) r + m/s, the result has y_n at
+    /// (n mod r) s + n/r.
+    fn fourier(&self, input: &[u64]) -> Vec<u64> {
+        let (r, s) = (self.rows, self.columns);
+        let mut turned = vec![0; self.points];
+        let mut scratch = vec![0; 2 * s.max(r) + 2];
+        for (u, out) in input.chunks(r).zip(turned.chunks_mut(r)) {
+            self.row_matrix.apply(&self.field, u, out, &mut scratch);
+        }
+        let mut middle = vec![0; self.points];
+        for (column, (list, twiddles)) in turned.chunks(r).zip(self.twiddles.chunks(r)).enumerate()
+        {
+            for (row, (value, twiddle)) in list.iter().zip(twiddles).enumerate() {
+                middle[row * s + column] = self.field.mul(value, twiddle);
+            }
+        }
+        let mut output = vec![0; self.points];
+        for (list, out) in middle.chunks(s).zip(output.chunks_mut(s)) {
+            self.column_matrix.apply(&self.field, list, out, &mut scratch);
+        }
+        output
+    }
+
+    /// sum_m a_m cos 2m theta_j, m < Q, for every j.
+    fn even_cosines(&self, a: &[u64]) -> Vec<u64> {
+        let q = self.points;
+        let at = |m: usize| a.get(m).copied().unwrap_or(0);
+        let mut u = vec![0; q];
+        for m in 0..q {
+            let value = self.field.two(at(m), self.entry[0][m], at(q - m), self.entry[1][m]);
+            u[self.place_in[m] as usize] = value;
+        }
+        let v = self.fourier(&u);
+        let source = |j: usize| if j.is_multiple_of(2) { j / 2 } else { q - 1 - j / 2 };
+        (0..q).map(|j| v[self.place_out[source(j)] as usize]).collect()
+    }
+
+    /// The a_m of the values: a_m = (z^-m V_(Q-m) + z^m V_m)/Q with V the transform of v.
+    fn from_even_cosines(&self, values: &[u64]) -> Vec<u64> {
+        let q = self.points;
+        let mut v = vec![0; q];
+        for (j, &value) in values.iter().enumerate() {
+            let n = if j.is_multiple_of(2) { j / 2 } else { q - 1 - j / 2 };
+            v[self.place_in[n] as usize] = value;
+        }
+        let v = self.fourier(&v);
+        let at = |n: usize| v[self.place_out[if n == q { 0 } else { n }] as usize];
+        let each =
+            (0..q).map(|m| self.field.two(at(q - m), self.exit[0][m], at(m), self.exit[1][m]));
+        each.collect()
+    }
+
+    fn times(&self, values: &mut [u64], factors: &[u64]) {
+        for (value, factor) in values.iter_mut().zip(factors) {
+            *value = self.field.mul(value, factor);
+        }
+    }
+
+    /// The values at the points of a function of that symmetry from its coefficients, at most Q.
+    pub(super) fn values(&self, symmetry: Symmetry, coefficients: &[u64]) -> Vec<u64> {
+        let (field, q) = (&self.field, self.points);
+        if let (Symmetry { sine: false, odd: false }, [constant]) = (symmetry, coefficients) {
+            return vec![*constant; q];
+        }
+        if symmetry == (Symmetry { sine: false, odd: false }) {
+            return self.even_cosines(coefficients);
+        }
+        // Coefficients of odd cosines first, then of 2 cos theta times their sum.
+        let mut a = coefficients.to_vec();
+        a.resize(q, 0);
+        match (symmetry.sine, symmetry.odd) {
+            (true, true) => negate_odd(field, &mut a),
+            (true, false) => {
+                for k in (0..q - 1).rev() {
+                    a[k] = field.add(&a[k], &a[k + 1]);
+                }
+            }
+            _ => {}
+        }
+        for m in (1..q).rev() {
+            a[m] = field.add(&a[m], &a[m - 1]);
+        }
+        let mut values = self.even_cosines(&a);
+        let tangent = symmetry.sine && !symmetry.odd;
+        self.times(&mut values, if tangent { &self.tangent } else { &self.half_secant });
+        if symmetry.sine && symmetry.odd {
+            values.reverse();
+        }
+        values
+    }
+
+    /// The Q coefficients of a function of that symmetry from its values at the points.
+    pub(super) fn coefficients(&self, symmetry: Symmetry, values: &[u64]) -> Vec<u64> {
+        let (field, q) = (&self.field, self.points);
+        if symmetry == (Symmetry { sine: false, odd: false }) {
+            return self.from_even_cosines(values);
+        }
+        let mut values = values.to_vec();
+        if symmetry.sine && symmetry.odd {
+            values.reverse();
+        }
+        let cotangent = symmetry.sine && !symmetry.odd;
+        self.times(&mut values, if cotangent { &self.cotangent } else { &self.twice_cosine });
+        let mut a = self.from_even_cosines(&values);
+        for m in 1..q {
+            a[m] = field.sub(&a[m], &a[m - 1]);
+        }
+        match (symmetry.sine, symmetry.odd) {
+            (true, true) => negate_odd(field, &mut a),
+            (true, false) => {
+                for k in 0..q - 1 {
+                    a[k] = field.sub(&a[k], &a[k + 1]);
+                }
+            }
+            _ => {}
+        }
+        a
+    }
+}
+
+fn negate_odd(field: &PrimeField, list: &mut [u64]) {
+    for value in list.iter_mut().skip(1).step_by(2) {
+        *value = field.neg(value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::SYMMETRIES;
+    use super::*;
+
+    /// Every basis function at every point, against its definition, and back; at the largest degree, too.
+    #[test]
+    fn every_basis_function_is_itself() {
+        for points in [1usize, 2, 3, 4, 6, 7, 12, 15, 30, 49] {
+            let order = 8 * points as u64;
+            let field = PrimeField::with_roots_of_unity(order, 1 << 61).next().expect("a prime");
+            let root = field.root_of_unity(order).expect("a root");
+            let transform = Transform::new(field, points, root).expect("tables");
+            let z = |k: usize| field.power(root, k as u64 % order);
+            let half = field.rational(&Rational::from((1, 2)));
+            let half_over_i = field.neg(&field.mul(&half, &z(2 * points)));
+            for symmetry in SYMMETRIES {
+                for k in 0..points {
+                    let value = |j: usize| {
+                        let m = symmetry.harmonic(k) * (2 * j + 1) % (8 * points);
+                        let (plus, minus) = (z(m), z(8 * points - m));
+                        if symmetry.sine {
+                            field.mul(&half_over_i, &field.sub(&plus, &minus))
+                        } else {
+                            field.mul(&half, &field.add(&plus, &minus))
+                        }
+                    };
+                    let mut unit = vec![0; points];
+                    unit[k] = field.one();
+                    let values: Vec<u64> = (0..points).map(value).collect();
+                    assert_eq!(
+                        transform.values(symmetry, &unit),
+                        values,
+                        "{points} {symmetry:?} {k}"
+                    );
+                    assert_eq!(transform.values(symmetry, &unit[..=k]), values);
+                    assert_eq!(transform.coefficients(symmetry, &values), unit);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn sizes_are_large_enough_and_split() {
+        for least in 1..2000 {
+            let (r, s) = size(least);
+            assert!(r * s >= least && r * s <= least + least / 4 + 1 && r <= s);
+            assert!(least < 30 || s < 4 * r, "{least}: {r} {s}");
+        }
+    }
+}
