@@ -4,8 +4,8 @@
 use divan::Bencher;
 use lindstedt::equation::classify::classify;
 use lindstedt::number::ball::Balls;
-use lindstedt::recognise::{MelnikovProblem, all_values};
-use lindstedt::{ProblemFile, known_values};
+use lindstedt::recognise::MelnikovProblem;
+use lindstedt::{Oscillator, ProblemFile, known_values};
 use std::collections::BTreeMap;
 
 fn main() {
@@ -57,16 +57,16 @@ fn classify_six_files(bencher: Bencher<'_, '_>) {
 
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn recognise_a_threshold(bencher: Bencher<'_, '_>) {
-    let problem = file(NUMERIC).problem;
-    let values = all_values(&problem, &BTreeMap::new());
-    bencher.bench(|| MelnikovProblem::new(&problem, &values).is_ok());
+    let oscillator = Oscillator::from_problem(&file(NUMERIC).problem).expect("a case");
+    let (problem, values) = (oscillator.problem(), oscillator.all_values().into_iter().collect());
+    bencher.bench(|| MelnikovProblem::new(problem, &values).is_ok());
 }
 
 /// The orbit by integration, the integrals by quadrature.
 #[divan::bench(args = [16, 30], sample_count = 2, sample_size = 1)]
 fn numeric_threshold(bencher: Bencher<'_, '_>, digits: u32) {
-    let problem = file(NUMERIC).problem;
-    let values = all_values(&problem, &BTreeMap::new());
-    let found = MelnikovProblem::new(&problem, &values).expect("a threshold");
+    let oscillator = Oscillator::from_problem(&file(NUMERIC).problem).expect("a case");
+    let (problem, values) = (oscillator.problem(), oscillator.all_values().into_iter().collect());
+    let found = MelnikovProblem::new(problem, &values).expect("a threshold");
     bencher.bench(|| found.thresholds(Balls::new(digits * 10 / 3 + 40)).map(|list| list.len()));
 }

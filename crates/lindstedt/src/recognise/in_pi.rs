@@ -2,9 +2,9 @@
 
 use super::PI;
 use crate::Exact;
+use lindstedt_equation::Expression;
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::monomials::{Monomial, expand};
-use lindstedt_equation::{Expression, Problem};
 use rug::Rational;
 use std::collections::BTreeMap;
 
@@ -79,14 +79,4 @@ impl InPi {
         }
         sum
     }
-}
-
-/// The values of all parameters of a problem: those given, else the defaults; cards without a
-/// value are left out.
-#[must_use]
-pub fn all_values(problem: &Problem, given: &BTreeMap<String, Exact>) -> BTreeMap<String, Exact> {
-    let value =
-        |name: &str, default: &str| given.get(name).cloned().or_else(|| Exact::parse(default).ok());
-    let cards = problem.parameters.iter();
-    cards.filter_map(|c| Some((c.name.to_string(), value(&c.name, &c.default)?))).collect()
 }

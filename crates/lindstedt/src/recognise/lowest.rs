@@ -14,10 +14,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// its threshold are in the symbols of the problem.
 ///
 /// ```
-/// use lindstedt::recognise::{LowestHarmonic, all_values};
-/// use lindstedt::ProblemFile;
+/// use lindstedt::recognise::LowestHarmonic;
+/// use lindstedt::Oscillator;
 ///
-/// let file = ProblemFile::parse(
+/// let oscillator = Oscillator::file(
 ///     r#"
 ///     name = "pendulum"
 ///     equation = "m x'' + m sin x = eps (gamma cos(omega t) - delta x')"
@@ -29,11 +29,11 @@ use std::collections::{BTreeMap, BTreeSet};
 ///     delta = { value = "1" }
 ///     "#,
 /// )?;
-/// let values = all_values(&file.problem, &Default::default());
-/// let found = LowestHarmonic::find(&file.problem, &values).expect("there is a force");
+/// let values = oscillator.all_values().into_iter().collect();
+/// let found = LowestHarmonic::find(oscillator.problem(), &values).expect("there is a force");
 /// let (name, factor) = found.parameter.expect("it is gamma/m");
 /// assert_eq!((name.as_str(), factor.to_f64()), ("gamma", 0.5));
-/// # Ok::<(), lindstedt::problem_file::FileError>(())
+/// # Ok::<(), lindstedt::Error>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct LowestHarmonic {

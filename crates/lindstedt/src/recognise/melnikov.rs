@@ -37,9 +37,9 @@ pub enum Unperturbed {
 /// ```
 /// use lindstedt::recognise::MelnikovProblem;
 /// use lindstedt::number::{ball::Balls, digits::decimal};
-/// use lindstedt::{ProblemFile, recognise::all_values};
+/// use lindstedt::Oscillator;
 ///
-/// let file = ProblemFile::parse(
+/// let oscillator = Oscillator::file(
 ///     r#"
 ///     name = "pendulum"
 ///     equation = "x'' + sin x = eps (gamma cos(omega t) - delta x')"
@@ -50,8 +50,8 @@ pub enum Unperturbed {
 ///     delta = { value = "1" }
 ///     "#,
 /// )?;
-/// let values = all_values(&file.problem, &Default::default());
-/// let pendulum = MelnikovProblem::new(&file.problem, &values)?;
+/// let values = oscillator.all_values().into_iter().collect();
+/// let pendulum = MelnikovProblem::new(oscillator.problem(), &values)?;
 /// let gamma = &pendulum.thresholds(Balls::new(120))?[0].threshold.gamma;
 /// // 4 delta cosh(pi omega/2)/pi
 /// assert_eq!(decimal(gamma, 12).as_deref(), Some("3.19478526383"));

@@ -17,7 +17,6 @@ mod potential;
 mod search;
 
 pub use impact::ImpactProblem;
-pub use in_pi::all_values;
 pub use lowest::LowestHarmonic;
 pub use melnikov::{MelnikovProblem, OrbitThreshold};
 pub use numeric::{NumericOrbit, OrbitCheck};

@@ -1,6 +1,6 @@
 //! Charts: one or two parameters, the prediction and the truth at every point.
 
-use super::point::stable;
+use super::reading::stable;
 use super::subject::{Range, Subject};
 use crate::grid::{Axis, Grid};
 use crate::refusal::Refused;

@@ -6,6 +6,7 @@
 
 mod chart;
 mod point;
+mod reading;
 mod subject;
 
 use crate::answer::as_map;
@@ -22,7 +23,7 @@ use std::time::Instant;
 use subject::Subject;
 
 pub use chart::{Chart, LeftOutAndAgreement};
-pub use point::{Aware, Found, Predicted, PredictedOrbit, ReturnMap, TrueOrbit, Truth};
+pub use point::{Aware, Found, Multiplier, Predicted, PredictedOrbit, ReturnMap, TrueOrbit, Truth};
 
 /// What to ask about an impact orbit.
 ///
