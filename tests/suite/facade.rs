@@ -8,5 +8,6 @@ mod constants;
 mod energy;
 mod few;
 mod front;
+mod growth;
 mod predictions;
 mod quotient;

@@ -2,6 +2,7 @@
 
 use crate::arguments::Format;
 use crate::output::warn;
+use lindstedt::simulate::SimulateError;
 use lindstedt::{Error, Kind, NumberError, Refusal, Refused};
 use serde_json::json;
 use std::io::Write;
@@ -69,6 +70,12 @@ impl From<NumberError> for Failure {
 
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
+        Self::of(&error)
+    }
+}
+
+impl From<SimulateError> for Failure {
+    fn from(error: SimulateError) -> Self {
         Self::of(&error)
     }
 }

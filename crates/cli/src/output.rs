@@ -3,7 +3,7 @@
 use crate::failure::{FILE, Failure};
 use crate::session::Session;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Writes a result to the file asked for or to standard output.
 ///
@@ -35,6 +35,22 @@ pub fn check_file(path: &Path) -> Result<(), Failure> {
         let _ = std::fs::remove_file(path);
     }
     Ok(())
+}
+
+/// Whether the name of a file ends so.
+pub fn is(path: &Path, kind: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(kind))
+}
+
+/// Refuses names that are neither figure nor table.
+pub fn check_plots(paths: &[PathBuf]) -> Result<(), Failure> {
+    match paths.iter().find(|path| !is(path, "svg") && !is(path, "csv")) {
+        None => Ok(()),
+        Some(path) => {
+            let message = format!("cannot plot to {}", path.display());
+            Err(Failure::usage("plot", message, "the name must end in .svg or .csv"))
+        }
+    }
 }
 
 /// Writes a figure or a table.

@@ -2,7 +2,6 @@
 
 use crate::arguments::{Common, Format, Normalisation, Precision};
 use crate::failure::{FILE, Failure, INTERRUPTED, NO_ANSWER, UNDECIDED, USAGE};
-use crate::simulate::plot;
 use crate::{Outcome, output};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::algebra::Stop;
@@ -155,7 +154,7 @@ impl<'a> Session<'a> {
             0 if !plots.is_empty() => {
                 refused("--plot needs a --sweep", "for example --sweep NAME=0..1:101")
             }
-            n if n < needed && plots.iter().any(|path| plot::is(path, "svg")) => {
+            n if n < needed && plots.iter().any(|path| output::is(path, "svg")) => {
                 refused("a chart needs two sweeps", "or write a .csv table")
             }
             _ => Ok(()),
@@ -164,7 +163,7 @@ impl<'a> Session<'a> {
 
     /// Fails now rather than after the work if what is asked for cannot be written.
     pub fn check_writable(&self, plots: &[PathBuf]) -> Result<(), Failure> {
-        plot::check(plots)?;
+        output::check_plots(plots)?;
         plots.iter().try_for_each(|path| output::check_file(path))?;
         output::check_writable(self)
     }
@@ -270,7 +269,7 @@ where
         message: "there is nothing to draw".to_owned(),
         hint: String::new(),
     };
-    if plot::is(path, "csv") {
+    if output::is(path, "csv") {
         return answer.table().map(|table| table.csv()).ok_or_else(nothing);
     }
     let figure = answer.figure().ok_or_else(nothing)?;

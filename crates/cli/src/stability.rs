@@ -2,10 +2,9 @@
 
 use crate::Outcome;
 use crate::arguments::{KickChoice, PredictorChoice, StabilityOptions, VariantChoice};
-use crate::failure::Failure;
-use crate::session::{Session, parameters};
-use lindstedt::impact::{characteristic::Kick, parameters::ExactParameters, prediction::Variant};
-use lindstedt::{Oscillator, Stability};
+use crate::session::Session;
+use lindstedt::Stability;
+use lindstedt::impact::{characteristic::Kick, prediction::Variant};
 
 pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
     let work = session.precise_work(&options.precision)?;
@@ -33,15 +32,4 @@ pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
     session.check_sweep(&options.plot, question.sweep.len(), 2)?;
     session.check_writable(&options.plot)?;
     session.show(oscillator.stability(&question, &work), &options.plot)
-}
-
-/// The parameters of the built-in impact oscillator for `simulate`.
-pub fn exact_parameters(
-    set: &[String],
-) -> Result<(ExactParameters, Vec<(String, String)>), Failure> {
-    let (branch, set) = Stability::read_branch(set)?;
-    let values = parameters(&set)?.into_iter();
-    let oscillator = Oscillator::builtin("vibro-impact")?;
-    let oscillator = values.fold(oscillator, |known, (name, value)| known.with(&name, value));
-    Ok(oscillator.impact_parameters(branch)?)
 }

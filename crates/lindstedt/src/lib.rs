@@ -23,6 +23,7 @@ mod error;
 pub mod evaluate;
 pub mod grid;
 pub mod impact_map;
+pub mod motion;
 pub mod numeric;
 mod oscillator;
 pub mod quotient;
@@ -39,6 +40,10 @@ mod work;
 #[doc(hidden)]
 pub mod formulas {
     pub use crate::evaluate::few::plain;
+    pub use crate::motion::answer::shown;
+    pub mod growth {
+        pub use crate::motion::growth::{grows, linear, verdict};
+    }
     pub use crate::trade::predict;
     pub mod closed {
         pub use crate::evaluate::closed::{
@@ -57,6 +62,7 @@ pub use derivation::{
 pub use error::Error;
 pub use lindstedt_number::{Exact, Number, NumberError, Status};
 pub use lindstedt_problem_file::ProblemFile;
+pub use motion::Simulate;
 pub use oscillator::{Oscillator, condition_name, known_values};
 pub use refusal::{Kind, Refusal, Refused};
 pub use stability::Stability;

@@ -263,7 +263,7 @@ fn shape(all: &Monomials, m: &Monomial) -> Result<Shape, Why> {
 }
 
 /// omega t + phase: the phase moves the clock only.
-fn linear_in_time(argument: &Expression) -> bool {
+pub(crate) fn linear_in_time(argument: &Expression) -> bool {
     expand(argument).is_some_and(|all| {
         let time = |m: &Monomial| m.atoms.get("t") == Some(&1) && m.atoms.len() == 1;
         let plain = |m: &Monomial| m.x == 0 && m.velocity == 0 && m.order == 0;

@@ -1,5 +1,6 @@
 //! What every answer looks like: a file per verb.
 
+mod motion;
 mod stability;
 mod threshold;
 mod verify;

@@ -1,7 +1,7 @@
 //! Growth of a perturbation of the periodic impact orbit, as long as it is linear.
 
-use super::motion::{Motion, Plan};
-use lindstedt::simulate::EventKind;
+use super::course::{Course, Plan};
+use lindstedt_simulate::EventKind;
 use rug::Float;
 
 /// Deviations that differ from twice those of half the perturbation by more than this part are
@@ -13,9 +13,11 @@ const LEAST: usize = 12;
 const CHANGE: f64 = 0.02;
 
 /// How much later than on the orbit every impact comes, with the sign changed.
-pub fn shifts(plan: &Plan, motion: &Motion) -> Vec<Float> {
-    let Some((period, _)) = &plan.setup.orbit else { return Vec::new() };
-    let impacts = motion.events.iter().filter(|e| matches!(e.kind, EventKind::Impact { .. }));
+pub(super) fn shifts(plan: &Plan, course: &Course) -> Vec<Float> {
+    let Some(period) = plan.setup.orbit.as_ref().map(|orbit| &orbit.period) else {
+        return Vec::new();
+    };
+    let impacts = course.events.iter().filter(|e| matches!(e.kind, EventKind::Impact { .. }));
     (1u32..)
         .zip(impacts)
         .map(|(n, e)| Float::with_val(period.prec(), period * n) - &e.time)
@@ -103,48 +105,5 @@ pub fn verdict(shifts: &[Float], linear: usize) -> String {
         None => {
             format!("whether the perturbation grows is undecided: it keeps its size{last}{within}")
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn series(ratio: f64, count: i32) -> Vec<Float> {
-        (0..count).map(|n| Float::with_val(80, ratio.powi(n))).collect()
-    }
-
-    #[test]
-    fn growth_is_told_from_decay_and_from_neither() {
-        assert_eq!(grows(&series(-1.05, 40)), Some(true));
-        assert_eq!(grows(&series(0.9, 40)), Some(false));
-        assert_eq!(grows(&series(-1.0, 40)), None);
-        assert_eq!(grows(&series(2.0, 11)), None);
-    }
-
-    /// Ratios -1.6 and -1.2 in turn: 1.6*1.2 = 1.3856^2. A constant ratio needs no mean.
-    #[test]
-    fn alternating_ratios_have_a_mean() {
-        let at = |n: i32| 1e-6 * (-1.6f64).powi((n + 1) / 2) * (-1.2f64).powi(n / 2);
-        let turns: Vec<Float> = (0..21).map(|n| Float::with_val(80, at(n))).collect();
-        let words = verdict(&turns, turns.len());
-        assert!(words.contains("grows, last ratio -1.20000000"), "{words}");
-        assert!(words.contains("geometric mean of the last 10: 1.385641 per impact"), "{words}");
-        assert!(!verdict(&series(-1.05, 40), 40).contains("mean"));
-    }
-
-    /// Saturated at one: half the perturbation comes there later, and only what is before counts.
-    #[test]
-    fn saturated_deviations_do_not_count() {
-        let run = |start: f64| -> Vec<Float> {
-            let grown = |n: i32| start * 1.5f64.powi(n);
-            (0..60).map(|n| Float::with_val(80, grown(n) / (1.0 + grown(n)))).collect()
-        };
-        let (all, half) = (run(1e-3), run(5e-4));
-        let count = linear(&all, &half, &all);
-        assert!((5..12).contains(&count), "{count}");
-        let (all, half) = (run(1e-6), run(5e-7));
-        let count = linear(&all, &half, &all);
-        assert!((20..30).contains(&count) && grows(&all[..count]) == Some(true), "{count}");
     }
 }

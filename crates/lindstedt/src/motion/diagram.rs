@@ -1,0 +1,355 @@
+//! Bifurcation diagrams: the points of a section over a parameter, resumable.
+
+use super::setup::Setup;
+use super::{Section, Start, answer, increasing, precomputed, section};
+use crate::grid::Axis;
+use crate::refusal::Refused;
+use crate::{Answer, Error, Oscillator, Progress, Remark, Standing, Status, Work};
+use lindstedt_equation::Expression;
+use lindstedt_simulate::{
+    self as simulate, DiagramSettings, Doubles, Point, Quantity, Settings, Surface, Sweep, diagram,
+};
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// The question for a bifurcation diagram.
+///
+/// ```
+/// use lindstedt::{Oscillator, Work, motion::Bifurcation};
+/// let friction = Oscillator::builtin("stick-slip")?;
+/// let question = Bifurcation { skipped: 50, kept: 4, ..Bifurcation::over("gamma=0.5..0.6:2") };
+/// let answer = friction.bifurcation(&question, &Work::default())?;
+/// assert_eq!(answer.value.sweep.columns.len(), 2);
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Bifurcation {
+    /// Where every motion starts.
+    pub start: Start,
+    /// `NAME=LO..HI:COUNT`, or NAME alone for the range that the problem file says.
+    pub sweep: String,
+    /// The section; by default at impacts, else once per period of the force, else at maxima of x.
+    pub section: Option<Section>,
+    /// Points left out at the beginning.
+    pub skipped: u32,
+    /// Points that are kept.
+    pub kept: u32,
+}
+
+impl Bifurcation {
+    /// A diagram over a parameter, of 100 points per value after 200.
+    #[must_use]
+    pub fn over(sweep: &str) -> Self {
+        let (start, sweep) = (Start::default(), sweep.to_owned());
+        Self { start, sweep, section: None, skipped: 200, kept: 100 }
+    }
+}
+
+/// The points over one value, or why there are none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Column {
+    /// The value.
+    pub value: f64,
+    /// The same as it would be written.
+    pub exact: String,
+    /// x and x' of each point; just before an impact.
+    pub points: Vec<[f64; 2]>,
+    /// Why the motion ended.
+    pub failure: Option<String>,
+}
+
+/// Where finished columns are kept, so that a diagram that was stopped goes on.
+pub trait Journal {
+    /// The columns of an earlier run, from the first on; nothing where the work is to be given up.
+    /// `identity` is one line that determines every number; a column whose value is not that of the
+    /// diagram is not used, nor what comes after it.
+    fn begin(&mut self, identity: &str) -> Option<Vec<Column>>;
+    /// The next finished column; whether to go on.
+    fn keep(&mut self, column: &Column) -> bool;
+}
+
+/// Nothing is kept.
+impl Journal for () {
+    fn begin(&mut self, _identity: &str) -> Option<Vec<Column>> {
+        Some(Vec::new())
+    }
+    fn keep(&mut self, _column: &Column) -> bool {
+        true
+    }
+}
+
+/// What was swept.
+#[derive(Clone, Debug, Serialize)]
+pub struct Swept {
+    /// The parameter.
+    pub parameter: String,
+    /// The section.
+    pub section: Section,
+    /// Points left out.
+    pub skip: u32,
+    /// Points kept.
+    pub kept: u32,
+    /// Doubles of whose error nothing is known.
+    pub status: Status,
+    /// One per finished value.
+    pub columns: Vec<Column>,
+}
+
+/// The result of [`Oscillator::bifurcation`].
+#[derive(Clone, Debug, Serialize)]
+pub struct Diagram {
+    /// None: a section of a motion with perturbations that grow is typical of it.
+    pub digits: Option<u32>,
+    /// The start of every motion.
+    pub start: answer::Begin,
+    /// The motion before the start, in words, where there is a delay.
+    pub history: Option<&'static str>,
+    /// The columns.
+    pub sweep: Swept,
+    /// Whether all values are finished.
+    pub complete: bool,
+    /// In words.
+    pub verdict: String,
+}
+
+/// What the numbers of a diagram are.
+const TIER: &str = "doubles, without an error: a section of a motion with perturbations that grow is \
+                    typical of it";
+
+impl Oscillator {
+    /// The points of a section over the values of a parameter, after a transient, every value from
+    /// the same start; on all cores, in order.
+    ///
+    /// In doubles, without an error: of chaotic motion the points are typical, not those of one
+    /// motion.
+    ///
+    /// # Errors
+    /// [`Refused`] for a parameter that cannot be varied and for a section that there is not. A motion
+    /// that fails is a column with its reason.
+    pub fn bifurcation(
+        &self,
+        question: &Bifurcation,
+        work: &Work,
+    ) -> Result<Answer<Diagram>, Error> {
+        self.bifurcation_resumed(question, work, &mut ())
+    }
+
+    /// The same from where a journal ends, which is told every finished column.
+    ///
+    /// # Errors
+    /// As there; [`Refused`] as stopped where the journal gives up.
+    pub fn bifurcation_resumed(
+        &self,
+        question: &Bifurcation,
+        work: &Work,
+        journal: &mut dyn Journal,
+    ) -> Result<Answer<Diagram>, Error> {
+        let begin = Instant::now();
+        let setup = Setup::new(self, &question.start, true, precomputed(work))?;
+        let axis = self.swept(&question.sweep, &setup)?;
+        if question.kept == 0 {
+            return Err(Refused::usage("sweep", "no points to keep", "--periods 100").into());
+        }
+        let section = section(question.section, true, &setup)?.unwrap_or(Section::Velocity);
+        let values = axis.values.iter().map(|value| Quantity::from(value.clone())).collect();
+        let mut task = Task { question, setup, name: axis.name, section, values };
+        let given_up = || Refused::stopped("the file of the sweep cannot be used", "");
+        let mut columns = journal.begin(&task.identity()).ok_or_else(given_up)?;
+        let known =
+            columns.iter().zip(&task.values).take_while(|(c, q)| c.exact == answer::shown(q));
+        columns.truncate(known.count());
+        task.compute(&mut columns, work, journal)?;
+        let count: usize = columns.iter().map(|column| column.points.len()).sum();
+        let empty = columns.iter().filter(|column| column.points.is_empty()).count();
+        let verdict = format!(
+            "{} of {} values of {}, {empty} without points, {count} points in all",
+            columns.len(),
+            task.values.len(),
+            task.name,
+        );
+        let mut remarks = self.remarks().to_vec();
+        remarks.extend(task.setup.remarks.drain(..).map(Remark));
+        let (done, complete) = (columns.len(), columns.len() == task.values.len());
+        if !complete {
+            remarks.push(Remark("stopped; with --resume FILE it can be continued".to_owned()));
+        }
+        let [x, v] = task.setup.start.each_ref().map(answer::shown);
+        let value = Diagram {
+            digits: None,
+            start: answer::Begin { x, v, chosen: task.setup.chosen },
+            history: task.setup.history,
+            sweep: Swept {
+                parameter: task.name,
+                section,
+                skip: question.skipped,
+                kept: question.kept,
+                status: Status::Estimated,
+                columns,
+            },
+            complete,
+            verdict,
+        };
+        let header = self.header(task.setup.at, None, TIER, begin);
+        let standing = if complete { Standing::Complete } else { Standing::Stopped { done } };
+        Ok(Answer { header, value, standing, remarks })
+    }
+
+    /// The values to go through.
+    fn swept(&self, text: &str, setup: &Setup) -> Result<Axis, Error> {
+        let usage = |message: String, hint: &str| Refused::usage("sweep", message, hint);
+        let name = text.split('=').next().unwrap_or_default().trim();
+        let file = self.problem_file();
+        let known = setup.sweepable.iter().any(|known| known == name);
+        let text = match file.ranges.get(text.trim()) {
+            Some(range) => format!("{name}={range}"),
+            None if text.contains('=') => text.to_owned(),
+            None if known => {
+                let message = format!("{} gives no range for {name}", setup.name);
+                return Err(usage(message, &format!("--sweep {name}=LO..HI:COUNT")).into());
+            }
+            None => {
+                let message = format!("{text:?} is not NAME=LO..HI:COUNT");
+                return Err(usage(message, "gamma=0.5..1:400").into());
+            }
+        };
+        if file.fixed.iter().any(|fixed| fixed == name) {
+            let message = format!("{name:?} is fixed in the file");
+            return Err(usage(message, "take it out of `fixed`").into());
+        }
+        let axis = Axis::parse(&text)?;
+        if !setup.sweepable.contains(&axis.name) {
+            let hint = format!(
+                "it can be one of: {}; what the start or the delays depend on is fixed",
+                setup.sweepable.join(", ")
+            );
+            return Err(usage(format!("{name:?} cannot be varied here"), &hint).into());
+        }
+        increasing(&axis.values).map_err(|message| usage(message, "LO..HI:COUNT"))?;
+        Ok(axis)
+    }
+}
+
+/// A diagram to compute.
+struct Task<'a> {
+    question: &'a Bifurcation,
+    setup: Setup,
+    name: String,
+    section: Section,
+    values: Vec<Quantity>,
+}
+
+impl Task<'_> {
+    /// What determines every number.
+    fn identity(&self) -> String {
+        let others = self.setup.at.iter().filter(|(name, _)| *name != self.name);
+        let others: Vec<String> = others.map(|(name, value)| format!("{name}={value}")).collect();
+        let ends = [self.values.first(), self.values.last()];
+        let [low, high] = ends.map(|q| q.map(answer::shown).unwrap_or_default());
+        let start = self.setup.start.each_ref().map(|q| q.float(64).to_f64());
+        format!(
+            "{} {}; {} = {low}..{high}:{}; start {start:?}; {:?}; skip {}, keep {}; {}",
+            self.setup.name,
+            others.join(" "),
+            self.name,
+            self.values.len(),
+            self.section,
+            self.question.skipped,
+            self.question.kept,
+            self.setup.identity,
+        )
+    }
+
+    /// The columns after those that there are.
+    fn compute(
+        &self,
+        columns: &mut Vec<Column>,
+        work: &Work,
+        journal: &mut dyn Journal,
+    ) -> Result<(), Error> {
+        let mut model = self.setup.model.clone();
+        if self.section == Section::Velocity {
+            model = model.with_section(Expression::VELOCITY);
+        }
+        let forcing = self.setup.forcing.as_ref().map_or(10.0, |q| q.float(64).to_f64());
+        let events = |surface, rising| simulate::Section::Events {
+            surface,
+            rising,
+            patience: 100.0 * forcing,
+        };
+        let settings = DiagramSettings {
+            time: 0.0,
+            start: self.setup.start.iter().map(|q| q.float(64).to_f64()).collect(),
+            section: match self.section {
+                Section::Stroboscopic => simulate::Section::Period(forcing),
+                Section::Impact => events(Surface::Wall(0), None),
+                Section::Velocity => events(Surface::Section(0), Some(false)),
+            },
+            periods: self.periods()?,
+            transient: self.question.skipped,
+            kept: self.question.kept,
+            follow: false,
+            integration: Settings { most_impacts: 10_000_000, ..Settings::for_digits(16) },
+        };
+        let sweep = Sweep {
+            model: &model,
+            parameters: &self.setup.parameters,
+            name: &self.name,
+            values: &self.values,
+        };
+        let flow = |on: bool| if on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+        let tick = || flow(!work.stop.asked());
+        let range = columns.len()..self.values.len();
+        let all = range.end;
+        diagram(&sweep, &Doubles, &settings, range, &tick, &mut |found| {
+            let Some(value) = self.values.get(found.index) else { return flow(false) };
+            let column = self.column(value, &found.points);
+            let kept = journal.keep(&column);
+            if kept {
+                columns.push(column);
+            }
+            flow(work.goes_on(Progress::Parts(columns.len(), all)) && kept)
+        });
+        Ok(())
+    }
+
+    fn column(
+        &self,
+        value: &Quantity,
+        points: &Result<Vec<Point<f64>>, simulate::SimulateError>,
+    ) -> Column {
+        let pair = |p: &Point<f64>| {
+            let state = if self.section == Section::Impact { &p.before } else { &p.state };
+            match state[..] {
+                [x, v, ..] => [x, v],
+                _ => [f64::NAN; 2],
+            }
+        };
+        Column {
+            value: value.float(53).to_f64(),
+            exact: answer::shown(value),
+            points: points.iter().flatten().map(pair).collect(),
+            failure: points.as_ref().err().map(ToString::to_string),
+        }
+    }
+
+    /// The period of the force per value, where it depends on the parameter.
+    fn periods(&self) -> Result<Vec<f64>, Error> {
+        if self.section != Section::Stroboscopic {
+            return Ok(Vec::new());
+        }
+        self.values.iter().filter_map(|value| self.setup.period_at(&self.name, value)).collect()
+    }
+}
+
+impl Swept {
+    /// Which coordinate tells the points apart: 0 for x, 1 for x'; and what it is.
+    #[must_use]
+    pub fn ordinate(&self) -> (usize, &'static str) {
+        match self.section {
+            Section::Impact => (1, "velocity x' before impact"),
+            Section::Velocity => (0, "maximum of x"),
+            Section::Stroboscopic => (0, "displacement x"),
+        }
+    }
+}

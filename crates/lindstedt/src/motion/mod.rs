@@ -1,0 +1,401 @@
+//! Motions in the time domain: their events and sections, the growth of a perturbation, numbers that
+//! tell chaos from regular motion, bifurcation diagrams.
+//!
+//! The integrator is that of [`lindstedt_simulate`]. A motion is integrated twice, the second time
+//! with eight digits more; the difference estimates the error of every number, and both are repeated
+//! with more digits until those asked for are there. In chaotic motion digits are lost at a constant
+//! rate, so a long motion ends with a refusal in place of digits that mean nothing; averages over it
+//! ([`Chaos`]) and its sections over a parameter ([`Bifurcation`]) are computed in doubles.
+
+pub(crate) mod answer;
+mod chaos;
+mod course;
+mod diagram;
+pub(crate) mod growth;
+mod history;
+mod orbit;
+mod setup;
+
+pub use answer::{Begin, Event, LinearRegime, Motion, Points, Rest, State, Steps};
+pub use chaos::{Chaos, Diagnosis, Exponent, Test, ZeroOneTest};
+pub use course::Dot;
+pub use diagram::{Bifurcation, Column, Diagram, Journal, Swept};
+pub use lindstedt_impact::parameters::Branch;
+
+use crate::grid::Axis;
+use crate::refusal::Refused;
+use crate::{Answer, Error, Exact, Oscillator, Progress, Remark, Standing, Work};
+use answer::Pair;
+use course::{Course, Plan, align};
+use lindstedt_simulate::{EventKind, Quantity, SimulateError};
+use rug::{Float, Rational};
+use serde::Serialize;
+use setup::Setup;
+use std::time::Instant;
+
+/// Digits more, in which the second integration is made.
+const MORE: u32 = 8;
+/// Integrations with more and more digits, until those asked for are there.
+const TRIES: u32 = 4;
+/// The logarithm of an error that leaves not one digit.
+const NOT_ONE_DIGIT: f64 = -1.0;
+/// Where nothing is said: so many impacts, periods, or units of time.
+const USUAL: u32 = 20;
+
+/// Where a motion starts, as far as it is said.
+#[derive(Clone, Debug, Default)]
+pub struct Start {
+    /// x(0), x'(0); by default those of the problem file, else on the periodic impact orbit where a
+    /// wall and a delay of whole periods make one, else at rest at the amplitude.
+    pub state: Option<[Exact; 2]>,
+    /// The motion before t = 0, which a delay needs: `constant`, `free-flight`, or an expression in t.
+    pub history: Option<String>,
+    /// The root of the impact velocity of the periodic orbit; the larger one by default.
+    pub branch: Option<Branch>,
+    /// Velocity added on the periodic orbit, in units of the impact velocity; not zero.
+    pub perturbation: Option<Rational>,
+}
+
+impl Start {
+    /// Reads a state `X,V`.
+    ///
+    /// # Errors
+    /// [`Refused`] where there are not two values.
+    pub fn read_state(text: &str) -> Result<[Exact; 2], Error> {
+        let parts: Vec<&str> = text.split(',').collect();
+        let [x, v] = parts[..] else {
+            let message = format!("{text:?} is not X,V");
+            return Err(Refused::usage("state", message, "--state 1,-1/2").into());
+        };
+        Ok([Exact::parse(x)?, Exact::parse(v)?])
+    }
+
+    /// Reads a perturbation: a rational number other than zero.
+    ///
+    /// # Errors
+    /// [`Refused`] for any other.
+    pub fn read_perturbation(text: &str) -> Result<Rational, Error> {
+        let value = Exact::parse(text)?.as_rational().filter(|q| !q.is_zero()).cloned();
+        let wrong =
+            || Refused::usage("perturb", "no rational number but zero", "--perturb 1e-6").into();
+        value.ok_or_else(wrong)
+    }
+}
+
+/// Where a motion ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// At this time.
+    Time(Exact),
+    /// After so many periods of the force, without one after so many maxima of x.
+    Periods(u32),
+    /// At the N-th impact.
+    Impacts(u32),
+}
+
+/// A Poincare section.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Section {
+    /// Once per period of the force, t = 2 pi n/omega.
+    Stroboscopic,
+    /// Just before each impact.
+    Impact,
+    /// x' = 0 from above: maxima of x.
+    Velocity,
+}
+
+/// What a figure of a motion shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// x' over x.
+    Phase,
+    /// x over t.
+    Time,
+    /// The points of the section.
+    Section,
+}
+
+/// The question for a motion.
+#[derive(Clone, Debug, Default)]
+pub struct Simulate {
+    /// Where it starts.
+    pub start: Start,
+    /// Where it ends; by default at the last of `times`, else after 20 impacts, periods of the force,
+    /// or units of time.
+    pub end: Option<End>,
+    /// Times at which the state is given, in order, none negative; by default 21 of equal distance.
+    pub times: Option<Vec<Exact>>,
+    /// The section whose points are kept.
+    pub section: Option<Section>,
+    /// Points of the section that are left out at the beginning.
+    pub skip: Option<u32>,
+    /// Whether the line of a figure is kept.
+    pub drawn: bool,
+    /// What a figure shows; by default what the question is about.
+    pub view: Option<View>,
+}
+
+impl Simulate {
+    /// Reads times, `LO..HI:COUNT` or `T1,T2,...`.
+    ///
+    /// # Errors
+    /// As [`Axis::parse`].
+    pub fn read_times(text: &str) -> Result<Vec<Exact>, Error> {
+        let usage = |message| Refused::usage("times", message, "LO..HI:COUNT, as in 0..1:11");
+        let axis = Axis::parse(&format!("t={text}"));
+        let times = axis.map_err(|error| usage(error.to_string()))?.values;
+        increasing(&times).map_err(|message| usage(message).into()).map(|()| times)
+    }
+}
+
+/// Refuses values that are not in order.
+fn increasing(values: &[Exact]) -> Result<(), String> {
+    let falls = values.windows(2).find(|pair| pair[1] < pair[0]);
+    falls.map_or(Ok(()), |pair| Err(format!("{} comes after {}", pair[1], pair[0])))
+}
+
+impl Oscillator {
+    /// The motion from a start to an end: its events, samples and section, integrated until the
+    /// digits of `work` are there.
+    ///
+    /// Estimated: every number has the difference to an integration with eight digits more as its
+    /// error. In doubles there is one try; where it has not one digit the answer is undecided, a
+    /// picture. A motion that escapes in a finite time is given up to shortly before, and is no
+    /// answer to the question. Cost: two integrations, more where digits are lost on the way.
+    ///
+    /// # Errors
+    /// [`Refused`] for a question that does not fit, where the digits cannot be reached, where there
+    /// is no such start or history, and for stopped work; [`Error::Simulate`], [`Error::Impact`].
+    ///
+    /// ```
+    /// use lindstedt::{Exact, Oscillator, Work, motion::{End, Simulate}};
+    /// let pendulum = Oscillator::builtin("pendulum")?.set("amplitude", "3")?;
+    /// let question = Simulate { end: Some(End::Periods(1)), ..Simulate::default() };
+    /// let answer = pendulum.motion(&question, &Work { digits: 12, ..Work::default() })?;
+    /// assert_eq!(answer.value.last.t.decimal, "16.1555393724"); // 4 K(sin(3/2)), mpmath 1.3.0
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn motion(&self, question: &Simulate, work: &Work) -> Result<Answer<Motion>, Error> {
+        let begin = Instant::now();
+        let setup = Setup::new(self, &question.start, false, precomputed(work))?;
+        let mut plan = plan(question, setup)?;
+        let (pair, working) = integrate(&mut plan, work)?;
+        let half = if plan.perturbed() && pair.finer.is_some() {
+            plan.run_half(working, work).map(|half| growth::shifts(&plan, &half))
+        } else {
+            None
+        };
+        let mut remarks = self.remarks().to_vec();
+        remarks.extend(plan.setup.remarks.iter().cloned().map(Remark));
+        if plan.skip > 0 && pair.course.points.is_empty() {
+            let text = format!("--skip {} leaves out every point of the section", plan.skip);
+            remarks.push(Remark(text));
+        }
+        if pair.finer.is_none() {
+            let text = "no digit is left in doubles (without --f64 there are some, over a shorter \
+                        time; --lyapunov and --zero-one tell how chaotic)";
+            remarks.push(Remark(text.to_owned()));
+        }
+        remarks.extend(plan.cut.iter().map(|why| Remark(format!("{why}: the motion up to there"))));
+        let standing = match (pair.course.complete, &pair.finer) {
+            (false, _) => Standing::NoAnswer,
+            (true, None) => Standing::Undecided,
+            (true, Some(_)) => Standing::Complete,
+        };
+        let header = self.header(plan.setup.at.clone(), None, tier(work), begin);
+        let value = Motion::new(plan, pair, half, work);
+        Ok(Answer { header, value, standing, remarks })
+    }
+}
+
+fn tier(work: &Work) -> &'static str {
+    if work.doubles { "doubles" } else { "Taylor series" }
+}
+
+/// What is computed beforehand has more digits than asked for: some are lost on the way.
+fn precomputed(work: &Work) -> u32 {
+    let digits = u32::try_from(work.printed_digits()).unwrap_or(u32::MAX);
+    digits.saturating_add(if work.doubles { 40 } else { digits.saturating_add(40) })
+}
+
+/// Refuses a section that there is not.
+fn section(asked: Option<Section>, wanted: bool, setup: &Setup) -> Result<Option<Section>, Error> {
+    let usual = match &setup.forcing {
+        _ if setup.wall => Section::Impact,
+        Some(_) => Section::Stroboscopic,
+        None => Section::Velocity,
+    };
+    let section = asked.or(wanted.then_some(usual));
+    if section == Some(Section::Stroboscopic) && setup.orbit.is_some() {
+        let message = "the impacts of the orbit come at the times of this section, where x' jumps";
+        return Err(Refused::usage("section", message, "--section impact, or --state").into());
+    }
+    let reason = match section {
+        Some(Section::Stroboscopic) if setup.forcing.is_none() => "no force with one period",
+        Some(Section::Impact) if !setup.wall => "no wall",
+        _ => return Ok(section),
+    };
+    let message = format!("{} has {reason}", setup.name);
+    Err(Refused::usage("section", message, "--section velocity").into())
+}
+
+/// The end asked for; at the last time asked for; else as long as is usual.
+fn end(asked: Option<&End>, last: Option<&Quantity>, setup: &Setup) -> Result<course::End, Error> {
+    let periods = |n: u32| match &setup.forcing {
+        Some(period) => course::End::Time(period.times(&Rational::from(n))),
+        None => course::End::Maxima(n),
+    };
+    Ok(match (asked, last) {
+        (Some(End::Time(time)), _) => course::End::Time(time.clone().into()),
+        (Some(End::Periods(n)), _) => periods(*n),
+        (Some(End::Impacts(_)), _) if !setup.wall => {
+            let message = "there is no wall; use --until or --periods";
+            return Err(Refused::usage("impacts", message, "").into());
+        }
+        (Some(End::Impacts(n)), _) => course::End::Impacts(*n),
+        // As long as it takes.
+        (None, Some(last)) if last.float(64) > 0 => course::End::Time(last.clone()),
+        _ if setup.wall => course::End::Impacts(USUAL),
+        _ if setup.forcing.is_some() => periods(USUAL),
+        _ => course::End::Time(Quantity::from(i64::from(USUAL))),
+    })
+}
+
+/// What to integrate.
+fn plan(question: &Simulate, setup: Setup) -> Result<Plan, Error> {
+    let usage = |code, message: &str| Err(Refused::usage(code, message, "").into());
+    let asked: Vec<Quantity> =
+        question.times.iter().flatten().map(|t| Quantity::from(t.clone())).collect();
+    let end = end(question.end.as_ref(), asked.last(), &setup)?;
+    let empty = match &end {
+        course::End::Time(time) => time.float(64) <= 0,
+        course::End::Maxima(n) | course::End::Impacts(n) => *n == 0,
+    };
+    if empty {
+        return usage("until", "the end is not after the start");
+    }
+    if let (Some(last), course::End::Time(time)) = (asked.last(), &end)
+        && last.float(64) > time.float(64)
+    {
+        return usage("times", "times go on after the end: --until, --periods");
+    }
+    let times = match (&question.times, &end) {
+        (None, course::End::Time(time)) => {
+            (0..=USUAL).map(|k| time.times(&Rational::from((k, USUAL)))).collect()
+        }
+        _ => asked,
+    };
+    if times.first().is_some_and(|first| first.float(64) < 0) {
+        return usage("times", "times begin at 0");
+    }
+    let section = section(question.section, question.view == Some(View::Section), &setup)?;
+    if question.skip.is_some() && section.is_none() {
+        return usage("skip", "--skip leaves out points of a section: --section");
+    }
+    let view = match (question.view, section) {
+        (Some(view), _) => view,
+        (None, Some(_)) => View::Section,
+        (None, None) if setup.wall => View::Time,
+        (None, None) => View::Phase,
+    };
+    let skip = question.skip.unwrap_or(0) as usize;
+    let drawn = question.drawn;
+    Ok(Plan { setup, end, times, section, skip, drawn, view, cut: None })
+}
+
+/// Two integrations, the second with more digits, both with so many that their difference leaves the
+/// digits asked for; with them the working digits of the first.
+///
+/// In doubles there is one try; no second motion where it has not one digit or met other events.
+/// Where the motion ends in a singularity, the plan is cut shortly before it.
+fn integrate(plan: &mut Plan, work: &Work) -> Result<(Pair, u32), Error> {
+    let digits = u32::try_from(work.printed_digits()).unwrap_or(u32::MAX);
+    let doubles = work.doubles;
+    let mut working = if doubles { 16 } else { digits.saturating_add(4) };
+    let (mut lost, mut same) = (0.0, false);
+    for left in (0..TRIES).rev() {
+        work.tell(Progress::Digits(working));
+        let (mut course, mut finer) = match both(plan, working, work) {
+            Err(error) if plan.cut.is_none() && singular(&error).is_some() => {
+                plan.cut_before(singular(&error).unwrap_or_default(), error.to_string());
+                continue;
+            }
+            // Near a branch point, or a double root to working precision: more digits may tell.
+            Err(error) if !doubles && degenerate(&error) && left > 0 => {
+                working = working.saturating_mul(2);
+                continue;
+            }
+            found => found?,
+        };
+        if work.stop.asked() {
+            let message = "stopped before the end of the motion";
+            return Err(Refused::stopped(message, "a shorter time, or fewer --digits").into());
+        }
+        align(&mut course, &mut finer);
+        for course in [&mut course, &mut finer] {
+            course.points.drain(..plan.skip.min(course.points.len()));
+        }
+        same = course.comparable(&finer);
+        let error = course.log10_error(&finer);
+        lost = error + f64::from(digits);
+        if same && if doubles { error < NOT_ONE_DIGIT } else { lost <= 0.0 } {
+            return Ok((Pair { course, finer: Some(finer) }, working));
+        }
+        if doubles {
+            return Ok((Pair { course, finer: None }, working));
+        }
+        let more = if same { lost.ceil().clamp(1.0, 1e4) as u32 + 2 } else { digits };
+        working = working.saturating_add(more);
+    }
+    let message = if same {
+        format!("{digits} digits were not reached, {:.0} are missing", lost.clamp(1.0, 1e6))
+    } else {
+        format!("{digits} digits were not reached: with {MORE} more the events are others")
+    };
+    let hint = "a shorter time, or more --digits; --f64 for a picture";
+    Err(Refused::undecided("not-enough-digits", message, hint).into())
+}
+
+fn both(plan: &Plan, working: u32, work: &Work) -> Result<(Course, Course), SimulateError> {
+    let course = plan.run(working, work.doubles, work)?;
+    Ok((course, plan.run(working.saturating_add(MORE), false, work)?))
+}
+
+/// The time of a singularity that ends the motion.
+fn singular(error: &SimulateError) -> Option<f64> {
+    match error {
+        SimulateError::Escape { time, .. } | SimulateError::UnboundedVelocity { time, .. } => {
+            Some(*time)
+        }
+        _ => None,
+    }
+}
+
+fn degenerate(error: &SimulateError) -> bool {
+    matches!(
+        error,
+        SimulateError::BranchPoint { .. }
+            | SimulateError::StepTooSmall { .. }
+            | SimulateError::Grazing { .. }
+    )
+}
+
+/// The name of an event.
+fn event_name(kind: EventKind) -> &'static str {
+    match kind {
+        EventKind::Impact { .. } => "impact",
+        EventKind::Accumulation { .. } => "accumulation",
+        EventKind::Rest { .. } => "rest",
+        EventKind::Departure { .. } => "departure",
+        EventKind::Switching { to: 0, .. } => "stick",
+        EventKind::Switching { from: 0, .. } => "slip",
+        EventKind::Switching { .. } => "switch",
+        _ => "section",
+    }
+}
+
+/// |a - b|.
+fn difference(a: &Float, b: &Float) -> Float {
+    Float::with_val(53, a - b).abs()
+}
