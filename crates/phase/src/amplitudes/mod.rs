@@ -20,13 +20,16 @@ use scalars::Scalars;
 use std::sync::atomic::{AtomicBool, Ordering};
 use words::{DIGITS, Word};
 
+/// A word with the real and the imaginary numerator of its coefficient.
+type Term<E> = (Word, [E; 2]);
+
 /// A polynomial; it means nothing without its [`Amplitudes`].
 #[derive(Clone, Debug)]
 pub struct AmplitudeElement<E> {
     /// The common denominator, positive.
     denominator: Integer,
     /// Words with real and imaginary numerators, sorted, none of which vanishes.
-    terms: Vec<(Word, [E; 2])>,
+    terms: Vec<Term<E>>,
     /// Whether it is known to be its own conjugate; only a hint.
     real: bool,
 }
@@ -120,7 +123,7 @@ impl<S: Scalars> Amplitudes<S> {
     /// The terms with their coefficients, where those are rational.
     pub fn rational_terms(&self, f: &AmplitudeElement<S::Element>) -> Option<Vec<AmplitudeTerm>> {
         let n = self.phases() + self.symbols.len();
-        let term = |(word, [re, im]): &(Word, [S::Element; 2])| {
+        let term = |(word, [re, im]): &Term<S::Element>| {
             Some(AmplitudeTerm {
                 exponents: words::exponents(*word, n).0[..n].to_vec(),
                 re: self.scalars.quotient(re, &f.denominator)?,
@@ -177,7 +180,7 @@ impl<S: Scalars> Amplitudes<S> {
     fn canonical(
         &self,
         mut denominator: Integer,
-        mut terms: Vec<(Word, [S::Element; 2])>,
+        mut terms: Vec<Term<S::Element>>,
         real: bool,
     ) -> AmplitudeElement<S::Element> {
         let scalars = &self.scalars;
@@ -212,7 +215,7 @@ impl<S: Scalars> Amplitudes<S> {
         let factors: Vec<_> =
             f.terms.iter().map(|(word, _)| self.scalars.fraction(&factor(*word))).collect();
         let common = factors.iter().fold(Integer::from(1), |d, (_, own)| d.lcm(own));
-        let term = |((word, [re, im]), (e, own)): (&(Word, [S::Element; 2]), (S::Element, _))| {
+        let term = |((word, [re, im]), (e, own)): (&Term<_>, (S::Element, _))| {
             let e = match Integer::from(&common / &own) {
                 one if one == 1 => e,
                 n => self.scalars.times(&e, &n),

@@ -1,13 +1,15 @@
 //! Sums and products.
 
 use super::words::{LARGEST, Word, exponents};
-use super::{AmplitudeElement, Amplitudes, Scalars};
+use super::{AmplitudeElement, Amplitudes, Scalars, Term};
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Ring};
 use rug::{Integer, Rational};
 use rustc_hash::FxHashMap;
 use std::sync::atomic::Ordering;
 
-type Terms<E> = Vec<(Word, [E; 2])>;
+type Terms<E> = Vec<Term<E>>;
+
+type Pair<'a, E> = (&'a AmplitudeElement<E>, &'a AmplitudeElement<E>);
 
 /// Sums of products in progress: places of words in a list.
 struct Sum<E> {
@@ -26,8 +28,8 @@ impl<S: Scalars> Amplitudes<S> {
     fn accumulate(
         &self,
         sum: &mut Sum<S::Element>,
-        a: &[(Word, [S::Element; 2])],
-        b: &[(Word, [S::Element; 2])],
+        a: &[Term<S::Element>],
+        b: &[Term<S::Element>],
         n: &Integer,
     ) {
         let scalars = &self.scalars;
@@ -69,7 +71,7 @@ impl<S: Scalars> Amplitudes<S> {
     /// those that are their own: half of it, so that h + conj h is twice the polynomial.
     fn half(&self, f: &AmplitudeElement<S::Element>) -> Terms<S::Element> {
         let two = Integer::from(2);
-        let part = |(word, c): &(Word, [S::Element; 2])| match word.cmp(&self.mirrored(*word)) {
+        let part = |(word, c): &Term<S::Element>| match word.cmp(&self.mirrored(*word)) {
             std::cmp::Ordering::Less => None,
             std::cmp::Ordering::Equal => Some((*word, c.clone())),
             std::cmp::Ordering::Greater => {
@@ -80,19 +82,15 @@ impl<S: Scalars> Amplitudes<S> {
     }
 
     /// The conjugate of every term, unsorted.
-    pub(super) fn mirror(&self, terms: &[(Word, [S::Element; 2])]) -> Terms<S::Element> {
-        let term = |(word, [re, im]): &(Word, [S::Element; 2])| {
+    pub(super) fn mirror(&self, terms: &[Term<S::Element>]) -> Terms<S::Element> {
+        let term = |(word, [re, im]): &Term<S::Element>| {
             (self.mirrored(*word), [re.clone(), self.scalars.neg(im)])
         };
         terms.iter().map(term).collect()
     }
 
     /// The sum of two sorted lists, with factors.
-    fn merged(
-        &self,
-        [a, b]: [&[(Word, [S::Element; 2])]; 2],
-        [m, n]: [&Integer; 2],
-    ) -> Terms<S::Element> {
+    fn merged(&self, [a, b]: [&[Term<S::Element>]; 2], [m, n]: [&Integer; 2]) -> Terms<S::Element> {
         let scaled = |c: &[S::Element; 2], n: &Integer| {
             if *n == 1 { c.clone() } else { c.each_ref().map(|e| self.scalars.times(e, n)) }
         };
@@ -129,17 +127,14 @@ impl<S: Scalars> Amplitudes<S> {
         self.canonical(denominator, terms, real)
     }
 
-    fn products(
-        &self,
-        pairs: &[(&AmplitudeElement<S::Element>, &AmplitudeElement<S::Element>)],
-    ) -> AmplitudeElement<S::Element> {
+    fn products(&self, pairs: &[Pair<'_, S::Element>]) -> AmplitudeElement<S::Element> {
         let pairs = || pairs.iter().filter(|(a, b)| !a.terms.is_empty() && !b.terms.is_empty());
         if pairs().any(|(a, b)| self.largest(a) + self.largest(b) > LARGEST) {
             self.overflow.store(true, Ordering::Relaxed);
             return self.zero();
         }
         let real = pairs().all(|(a, b)| a.real && b.real);
-        let lcm = |d: Integer, (a, b): &(&AmplitudeElement<_>, &AmplitudeElement<_>)| {
+        let lcm = |d: Integer, (a, b): &Pair<'_, _>| {
             d.lcm(&Integer::from(&a.denominator * &b.denominator))
         };
         let mut denominator = pairs().fold(Integer::from(1), lcm);
@@ -190,9 +185,8 @@ impl<S: Scalars> Ring for Amplitudes<S> {
         *a = self.total(a, b, a.real && b.real);
     }
     fn neg(&self, f: &Self::Element) -> Self::Element {
-        let term = |(word, c): &(Word, [S::Element; 2])| {
-            (*word, c.each_ref().map(|part| self.scalars.neg(part)))
-        };
+        let term =
+            |(word, c): &Term<S::Element>| (*word, c.each_ref().map(|part| self.scalars.neg(part)));
         AmplitudeElement {
             denominator: f.denominator.clone(),
             terms: f.terms.iter().map(term).collect(),
