@@ -171,7 +171,7 @@ impl Factors {
             let mut sums = vec![Rational::new(); 2 * reach + 1];
             for (power, c) in list.iter().enumerate().filter(|(_, c)| !c.is_zero()) {
                 // x^power = 2^-power sum_i binomial(power, i) z^(power - 2i).
-                let unit = Rational::from(c >> power as u32);
+                let unit: Rational = c.clone() >> power as u32;
                 for i in 0..=power {
                     let exponent = power as i64 - 2 * i as i64;
                     let place = (exponent / stride + reach as i64) as usize;
@@ -190,7 +190,7 @@ impl Factors {
         let scale = common * 4u32;
         let scaled = |(m, list): (usize, Vec<Rational>)| {
             let power = Integer::from(rug::ops::Pow::pow(&scale, m as u32));
-            let integer = |c: Rational| Rational::from(c * &power).numer().clone();
+            let integer = |c: Rational| (c * &power).numer().clone();
             (m, list.into_iter().map(integer).collect())
         };
         let factors = lists.into_iter().map(scaled).collect();

@@ -35,7 +35,7 @@ pub(crate) struct Generators {
 impl Generators {
     /// The primes up to `largest`, and a coprime basis of what is left of some denominators.
     pub(crate) fn new<'a>(largest: usize, denominators: impl Iterator<Item = &'a Integer>) -> Self {
-        let prime = |n: &u32| (2..).take_while(|d| d * d <= *n).all(|d| n % d != 0);
+        let prime = |n: &u32| (2..).take_while(|d| d * d <= *n).all(|d| !n.is_multiple_of(d));
         let mut numbers: Vec<Integer> =
             (2..=largest.max(2) as u32).filter(prime).map(Integer::from).collect();
         let mut rests = Vec::new();

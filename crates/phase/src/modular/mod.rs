@@ -79,7 +79,7 @@ impl Part {
     }
 
     /// Nothing if it vanishes.
-    fn from_forms(&self, coefficients: Option<Vec<u64>>, values: Option<Vec<u64>>) -> Option<Self> {
+    fn with_forms(&self, coefficients: Option<Vec<u64>>, values: Option<Vec<u64>>) -> Option<Self> {
         let coefficients = coefficients.map(trimmed);
         let known = coefficients.as_ref().or(values.as_ref())?;
         if known.iter().all(|&c| c == 0) {
@@ -96,7 +96,7 @@ impl Part {
     /// A linear map that multiplies every number by the same.
     fn map(&self, g: impl Fn(&u64) -> u64) -> Option<Self> {
         let image = |list: &Vec<u64>| -> Vec<u64> { list.iter().map(&g).collect() };
-        self.from_forms(self.coefficients.get().map(image), self.values.get().map(image))
+        self.with_forms(self.coefficients.get().map(image), self.values.get().map(image))
     }
 
     /// sum_i c_i f_i over parts of one symmetry, in the form that needs the fewest transforms.
@@ -114,7 +114,7 @@ impl Part {
             field.combination(&lists)
         };
         let coefficients = by_coefficients.then(|| combine(Self::coefficients));
-        first.from_forms(coefficients, by_values.then(|| combine(Self::values)))
+        first.with_forms(coefficients, by_values.then(|| combine(Self::values)))
     }
 }
 
@@ -196,7 +196,7 @@ impl Modular {
             values: OnceLock::new(),
             transform: Arc::clone(&self.transform),
         };
-        empty.from_forms(Some(coefficients), None)
+        empty.with_forms(Some(coefficients), None)
     }
 
     /// The Fourier coefficients (cos_k, sin_k) of an element, up to the highest harmonic.
@@ -261,7 +261,7 @@ impl Modular {
             };
             let empty = self.part(symmetry, vec![self.field.one()]);
             sum.parts[symmetry.index()] =
-                empty.and_then(|part| part.from_forms(None, Some(values)));
+                empty.and_then(|part| part.with_forms(None, Some(values)));
         }
         sum
     }

@@ -145,7 +145,7 @@ impl Transform {
         let pair = |k: usize| (z(k), z(order - k));
         let odd = (0..points).map(|j| 2 * j + 1);
         let twice_cosine: Vec<u64> =
-            odd.clone().map(|k| pair(k)).map(|(a, b)| field.add(&a, &b)).collect();
+            odd.clone().map(pair).map(|(a, b)| field.add(&a, &b)).collect();
         // 2 sin = (z - 1/z)/i = -i (z - 1/z).
         let minus_i = field.neg(&z(2 * points));
         let twice_sine: Vec<u64> =
@@ -212,7 +212,7 @@ impl Transform {
     }
 
     /// The a_m of the values: a_m = (z^-m V_(Q-m) + z^m V_m)/Q with V the transform of v.
-    fn from_even_cosines(&self, values: &[u64]) -> Vec<u64> {
+    fn even_cosine_coefficients(&self, values: &[u64]) -> Vec<u64> {
         let q = self.points;
         let mut v = vec![0; q];
         for (j, &value) in values.iter().enumerate() {
@@ -269,7 +269,7 @@ impl Transform {
     pub(super) fn coefficients(&self, symmetry: Symmetry, values: &[u64]) -> Vec<u64> {
         let (field, q) = (&self.field, self.points);
         if symmetry == (Symmetry { sine: false, odd: false }) {
-            return self.from_even_cosines(values);
+            return self.even_cosine_coefficients(values);
         }
         let mut values = values.to_vec();
         if symmetry.sine && symmetry.odd {
@@ -277,7 +277,7 @@ impl Transform {
         }
         let cotangent = symmetry.sine && !symmetry.odd;
         self.times(&mut values, if cotangent { &self.cotangent } else { &self.twice_cosine });
-        let mut a = self.from_even_cosines(&values);
+        let mut a = self.even_cosine_coefficients(&values);
         for m in 1..q {
             a[m] = field.sub(&a[m], &a[m - 1]);
         }
