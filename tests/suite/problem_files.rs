@@ -9,7 +9,7 @@ use lindstedt::equation::classify::{Algebra, Method, Reason, classify};
 use lindstedt::equation::{Condition, Problem};
 use lindstedt::problem_file::write;
 use lindstedt::{
-    Derivation, Error, Oscillator, ProblemFile, Settings, derive, known_values, problems,
+    Derivation, Error, Oscillator, ProblemFile, Settings, Work, derive, known_values, problems,
 };
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -134,7 +134,7 @@ fn high_degrees() {
             rug::Integer::from(rug::Integer::binomial_u(degree, m)),
             rug::Integer::from(1) << degree,
         ));
-        let result = result.derive(1).unwrap();
+        let result = result.derive(1, &Work::default()).unwrap().value;
         assert_eq!(result.exact("frequency", 1), Some(expected.to_string()), "{degree}");
     }
 }
@@ -143,11 +143,11 @@ fn high_degrees() {
 /// errors do not fall faster than eps^2, however high the order.
 #[test]
 fn a_wrong_order_is_found() {
+    use lindstedt::Verify;
     use lindstedt::verify::Verdict;
-    use lindstedt::{Verify, Work};
     let question = Verify { order: 4, ..Verify::default() };
     let check = |of: &str, against: &str| {
-        let derivation = Oscillator::parse(of).unwrap().derive(4).unwrap();
+        let derivation = Oscillator::parse(of).unwrap().derive(4, &Work::default()).unwrap().value;
         let other = Oscillator::parse(against).unwrap();
         other.verify_derivation(&derivation, &question, &Work::default()).unwrap().value
     };
@@ -198,7 +198,10 @@ fn amplitude_and_time_are_scaled_in_the_tree() {
     // omega depends on eps a^2 alone: coefficient n is that of a = 1 times a^(2n).
     let at =
         |a: &str| Oscillator::parse("x'' + x + eps x^3 = 0").unwrap().set("amplitude", a).unwrap();
-    let (one, half) = (at("1").derive(4).unwrap(), at("1/2").derive(4).unwrap());
+    let (one, half) = (
+        at("1").derive(4, &Work::default()).unwrap().value,
+        at("1/2").derive(4, &Work::default()).unwrap().value,
+    );
     for n in 0..=4u32 {
         let scaled = rug::Rational::from((1, 4u64.pow(n)));
         let value = |r: &Derivation| -> rug::Rational {
@@ -208,7 +211,11 @@ fn amplitude_and_time_are_scaled_in_the_tree() {
     }
     // x'' + 9/4 x = eps (1 - x^2) x': with t = s/(3/2) and eps = (3/2) mu it is van der Pol's
     // equation in mu, so omega = (3/2) sum c_n (2/3)^n eps^n.
-    let fast = Oscillator::parse("x'' + 9/4 x = eps (1 - x^2) x'").unwrap().derive(4).unwrap();
+    let fast = Oscillator::parse("x'' + 9/4 x = eps (1 - x^2) x'")
+        .unwrap()
+        .derive(4, &Work::default())
+        .unwrap()
+        .value;
     assert_eq!(fast.time_scale, rug::Rational::from((3, 2)));
     assert_eq!(fast.exact("frequency", 0).as_deref(), Some("3/2"));
     assert_eq!(fast.exact("frequency", 2).as_deref(), Some("-1/24"));
@@ -218,12 +225,12 @@ fn amplitude_and_time_are_scaled_in_the_tree() {
     assert_eq!(fast.exact("amplitude", 0).as_deref(), Some("2"));
     // An irrational omega_0 with x' is refused, without x' it is not.
     let irrational = Oscillator::parse("x'' + 2 x = eps (1 - x^2) x'").unwrap();
-    assert!(matches!(irrational.derive(2), Err(Error::Expand(_))));
+    assert!(matches!(irrational.derive(2, &Work::default()), Err(Error::Expand(_))));
     let reasons = irrational.classify().unwrap().methods;
     assert_eq!(reasons[0].1, [Reason::IrrationalFrequency]);
-    assert!(Oscillator::parse("x'' + 2 x + eps x^3").unwrap().derive(2).is_ok());
+    assert!(Oscillator::parse("x'' + 2 x + eps x^3").unwrap().derive(2, &Work::default()).is_ok());
     let pi = Oscillator::parse("x'' + k x + eps x^3").unwrap().set("k", "pi").unwrap();
-    assert!(matches!(pi.derive(1), Err(Error::Irrational { .. })));
+    assert!(matches!(pi.derive(1, &Work::default()), Err(Error::Irrational { .. })));
 }
 
 #[test]
@@ -269,7 +276,7 @@ fn classification_finds_forces_delays_and_resonances() {
     // x x' changes its sign with x -> -x, t -> -t: no drift.
     let even = Oscillator::parse("x'' + x + eps x x' = 0").unwrap();
     assert_eq!(even.problem().conditions, [Condition::InitialAmplitude]);
-    assert!(even.derive(3).is_ok());
+    assert!(even.derive(3, &Work::default()).is_ok());
     let saddle = parts("x'' - a x + b x^3 + eps (x' - gamma cos(omega t))", &[("a", "1")]);
     assert!(saddle.takes(Method::Melnikov));
     assert!(!parts("x'' - a x + b x^3 + eps x'", &[("a", "1")]).takes(Method::Melnikov));
@@ -298,6 +305,11 @@ fn what_is_taken_is_what_the_driver_takes() {
         let oscillator = Oscillator::parse(text).unwrap();
         let parts = oscillator.classify().unwrap();
         assert_eq!(parts.takes(Method::LindstedtPoincare), taken, "{text}: {:?}", parts.methods[0]);
-        assert_eq!(oscillator.derive(2).is_ok(), taken, "{text}: {:?}", oscillator.derive(2).err());
+        assert_eq!(
+            oscillator.derive(2, &Work::default()).is_ok(),
+            taken,
+            "{text}: {:?}",
+            oscillator.derive(2, &Work::default()).err()
+        );
     }
 }

@@ -2,10 +2,8 @@
 //! with files and a terminal.
 
 mod arguments;
-mod averaging;
 mod classification;
 mod derive;
-mod derive_numeric;
 mod evaluate;
 mod failure;
 mod output;

@@ -178,18 +178,7 @@ impl<'a> Session<'a> {
         for path in plots {
             output::write_file(path, &plotted(&answer, path)?)?;
         }
-        let text = match self.format() {
-            Format::Json => lindstedt_report::json(&answer).map_err(|error| Failure {
-                exit: UNDECIDED,
-                code: "json",
-                message: error.to_string(),
-                hint: String::new(),
-            })?,
-            Format::Text => Written::Text.write(&answer.document()),
-            Format::Latex => Written::Latex.write(&answer.document()),
-            Format::Markdown => Written::Markdown.write(&answer.document()),
-        };
-        output::write(self, &text)?;
+        self.print(&answer)?;
         for remark in &answer.remarks {
             output::warn(&remark.0);
         }
@@ -199,6 +188,22 @@ impl<'a> Session<'a> {
             Standing::Undecided => UNDECIDED,
             Standing::Stopped { .. } => self.stopped(),
         })
+    }
+
+    /// Prints what can be shown in the format asked for.
+    pub fn print<A: Serialize + Present>(&self, answer: &A) -> Result<(), Failure> {
+        let text = match self.format() {
+            Format::Json => lindstedt_report::json(answer).map_err(|error| Failure {
+                exit: UNDECIDED,
+                code: "json",
+                message: error.to_string(),
+                hint: String::new(),
+            })?,
+            Format::Text => Written::Text.write(&answer.document()),
+            Format::Latex => Written::Latex.write(&answer.document()),
+            Format::Markdown => Written::Markdown.write(&answer.document()),
+        };
+        output::write(self, &text)
     }
 
     /// The exit code of stopped work.
@@ -451,4 +456,9 @@ pub fn problem(name: &str) -> Result<Problem, Failure> {
         let message = format!("there is no problem {shown:?}");
         Failure::usage("unknown-problem", message, &format!("known: {}", names.join(", ")))
     })
+}
+
+/// A number of the JSON contract.
+pub fn number_json(number: &lindstedt::Number) -> serde_json::Value {
+    serde_json::json!(number)
 }

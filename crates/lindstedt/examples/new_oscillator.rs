@@ -4,7 +4,7 @@ use lindstedt::{Error, Oscillator, Verify, Work};
 
 fn main() -> Result<(), Error> {
     let oscillator = Oscillator::parse("x'' + x = eps*(x' - x'^3/3)")?;
-    let rayleigh = oscillator.derive(6)?;
+    let rayleigh = oscillator.derive(6, &Work::default())?.value;
     for n in 0..=rayleigh.order {
         let coefficient = rayleigh.exact("frequency", n).ok_or(Error::NoValue)?;
         println!("frequency, coefficient of eps^{n}: {coefficient}");

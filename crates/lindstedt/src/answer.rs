@@ -27,11 +27,20 @@ pub struct Header {
 }
 
 /// Pairs as an object that keeps their order.
-pub(crate) fn as_map<S: Serializer>(
-    list: &[(String, String)],
+pub(crate) fn as_map<S: Serializer, K: Serialize, V: Serialize>(
+    list: &[(K, V)],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
     serializer.collect_map(list.iter().map(|(name, value)| (name, value)))
+}
+
+/// The same as a value of its own.
+pub(crate) struct Object<K, V>(pub Vec<(K, V)>);
+
+impl<K: Serialize, V: Serialize> Serialize for Object<K, V> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        as_map(&self.0, serializer)
+    }
 }
 
 /// How far an answer goes; one exit code each on the command line.

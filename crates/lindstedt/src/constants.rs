@@ -17,6 +17,13 @@ pub struct Constants {
     known: Mutex<BTreeMap<(u32, Symbol), Ball>>,
 }
 
+impl Clone for Constants {
+    /// The amplitude; values are computed again when they are asked for.
+    fn clone(&self) -> Self {
+        Self::new(self.amplitude.clone())
+    }
+}
+
 impl Constants {
     /// The constants that do not depend on an amplitude, and those that do if one is given.
     pub fn new(amplitude: Option<Exact>) -> Self {

@@ -2,11 +2,10 @@
 //! exact arithmetic, each substituted back into its equation.
 //!
 //! ```
-//! use lindstedt::{Settings, derive, problems};
-//! let problem = problems::find("power-law").ok_or("no such problem")?;
-//! let result = derive(&problem, &Settings { order: 2, ..Settings::default() }, &mut |_| true)?;
-//! assert_eq!(result.exact("frequency_squared", 1).as_deref(), Some("1 - 2*ln(2)"));
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! use lindstedt::{Oscillator, Work};
+//! let power_law = Oscillator::builtin("power-law")?.derive(2, &Work::default())?.value;
+//! assert_eq!(power_law.exact("frequency_squared", 1).as_deref(), Some("1 - 2*ln(2)"));
+//! # Ok::<(), lindstedt::Error>(())
 //! ```
 
 #[doc = include_str!("../../../README.md")]
@@ -15,9 +14,11 @@ struct Readme;
 
 mod answer;
 pub mod averaging;
+pub mod catalogue;
 pub mod classification;
 pub mod constants;
 mod derivation;
+mod derive;
 pub mod energy;
 mod error;
 pub mod evaluate;
@@ -59,6 +60,7 @@ pub use answer::{Answer, Header, Remark, SCHEMA, Standing};
 pub use derivation::{
     Derivation, NamedSeries, Route, Settings, Solution, check_parameters, derive,
 };
+pub use derive::Derive;
 pub use error::Error;
 pub use lindstedt_number::{Exact, Number, NumberError, Status};
 pub use lindstedt_problem_file::ProblemFile;

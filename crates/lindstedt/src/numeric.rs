@@ -5,8 +5,10 @@
 //! *estimated*: every expansion is computed on two grids of different accuracy, and four times the
 //! largest difference of the two results up to that order stands beside each number.
 
+use crate::answer::Object;
 use crate::derivation::Settings;
 use crate::derivation::prepare::prepare;
+use crate::oscillator::condition_name;
 use crate::{Error, Exact, Number, constants::sine_sum};
 use lindstedt_algebra::{PhaseAlgebra, Rationals};
 use lindstedt_coeff::floats::{Doubles, Floats, Reals};
@@ -22,6 +24,8 @@ use lindstedt_phase::collocation::{Collocation, Grid};
 use lindstedt_series::Series;
 use rug::float::Special;
 use rug::{Float, Rational};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 /// How the numbers are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,9 +73,61 @@ pub struct Estimate {
     pub products: u64,
     /// The series of the result.
     pub series: Vec<EstimatedSeries>,
+    /// The name of the small parameter.
+    pub parameter: String,
+    /// The coefficients as numbers, series by series, as far as they have one digit; empty where nobody
+    /// asked for decimals.
+    pub numbers: Vec<Vec<Option<Number>>>,
+}
+
+impl Tier {
+    /// The name in results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        if matches!(self, Self::Fourier { .. }) { "fourier" } else { "collocation" }
+    }
+}
+
+impl Serialize for Estimate {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Method {
+            name: &'static str,
+            nodes: usize,
+            bits: u32,
+            products: u64,
+        }
+        let named = self.series.iter().map(|series| series.name).zip(&self.numbers);
+        let series = Object(named.collect());
+        let method = Method {
+            name: "the same recursion on two grids",
+            nodes: self.nodes,
+            bits: self.bits,
+            products: self.products,
+        };
+        let unchecked = Object(vec![("checked_orders", None::<bool>), ("zero", None)]);
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("parameter", &self.parameter)?;
+        map.serialize_entry("normalisation", condition_name(self.condition))?;
+        map.serialize_entry("series", &series)?;
+        map.serialize_entry::<_, [&str; 0]>("solution", &[])?;
+        map.serialize_entry("residual", &unchecked)?;
+        map.serialize_entry("method", &method)?;
+        map.end()
+    }
 }
 
 impl Estimate {
+    /// With the coefficients as numbers of at most so many digits.
+    pub(crate) fn with_numbers(mut self, digits: usize, parameter: &str) -> Self {
+        let row = |series: &EstimatedSeries| {
+            (0..series.coefficients.len()).map(|n| series.number(n, digits)).collect()
+        };
+        self.numbers = self.series.iter().map(row).collect();
+        parameter.clone_into(&mut self.parameter);
+        self
+    }
+
     /// The series of that name.
     #[must_use]
     pub fn named(&self, name: &str) -> Option<&EstimatedSeries> {
@@ -312,6 +368,8 @@ impl Job<'_> {
             bits,
             products: fine.products,
             series,
+            parameter: String::new(),
+            numbers: Vec::new(),
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::answer::{Header, SCHEMA};
 use crate::evaluate::{EvaluateSettings, Evaluation, evaluate};
 use crate::refusal::Refused;
-use crate::{Derivation, Error, Exact, Progress, Remark, Settings, classification};
+use crate::{Error, Exact, Progress, Remark, classification};
 use lindstedt_equation::classify::{Classification, ClassifyError};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Condition, ParameterCard, Problem};
@@ -237,11 +237,20 @@ impl Oscillator {
     /// [`Refused`].
     pub fn check(&self) -> Result<(), Error> {
         let Ok(parts) = self.classify() else { return Ok(()) };
-        Ok(classification::check(&parts, &self.file, self.condition, &self.origin)?)
+        self.check_parts(&parts)
     }
 
-    /// An error of the engine with the place in the file that it is about.
+    /// The same for a classification that is there.
+    pub(crate) fn check_parts(&self, parts: &Classification) -> Result<(), Error> {
+        Ok(classification::check(parts, &self.file, self.condition, &self.origin)?)
+    }
+
+    /// An error of the engine with the place in the file that it is about; an equation alone is its own
+    /// place.
     pub(crate) fn refusal(&self, error: Error) -> Error {
+        if self.bare {
+            return error;
+        }
         classification::refusal(error, Some(&self.file), &self.origin)
     }
 
@@ -261,16 +270,6 @@ impl Oscillator {
             format!("{}: {name} follows: {how}; with pi only `simulate` computes it", self.origin);
         let hint = format!("in the file: {name} = {{ value = \"5*pi\" }} in the place of follows");
         Err(Refused::usage("no-value-set", message, hint).into())
-    }
-
-    /// The checked expansion up to an order.
-    ///
-    /// # Errors
-    /// As [`derive()`](crate::derive()).
-    pub fn derive(&self, order: usize) -> Result<Derivation, Error> {
-        let (condition, parameters) = (self.condition, self.values.clone());
-        let settings = Settings { order, condition, parameters, ..Settings::default() };
-        crate::derive(&self.problem, &settings, &mut |_: Progress| true)
     }
 
     /// The period by resummation, with the values set; the order is a quick one if nothing.

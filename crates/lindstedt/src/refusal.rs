@@ -154,11 +154,27 @@ impl Error {
             Self::Expand(ExpandError::Phase { .. }) => {
                 (Undecided, "could-not-decide", "the orders below this one can be derived")
             }
+            Self::Expand(error) if averages(error) => {
+                (NoAnswer, "no-expansion", "averaging takes it: --normalisation free")
+            }
             Self::Expand(_) => (NoAnswer, "no-expansion", ""),
             _ => (Undecided, "undecided", ""),
         };
         (kind, code, hint.to_owned())
     }
+}
+
+/// Whether averaging takes what no constant amplitude, or none that is known exactly, satisfies.
+pub(crate) fn averages(error: &ExpandError) -> bool {
+    matches!(
+        error,
+        ExpandError::AmplitudeDrifts { .. }
+            | ExpandError::NoLimitCycle
+            | ExpandError::AmplitudeOfHigherOrder
+            | ExpandError::IrrationalAmplitude
+            | ExpandError::SeveralLimitCycles { .. }
+            | ExpandError::DegenerateLimitCycle
+    )
 }
 
 impl Refusal for SimulateError {

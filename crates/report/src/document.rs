@@ -16,6 +16,13 @@ impl Formula {
     pub fn new(text: impl Into<String>, latex: impl Into<String>) -> Self {
         Self { text: text.into(), latex: latex.into() }
     }
+
+    /// As a sentence: the LaTeX form is words with formulas between dollar signs, the text form stands
+    /// as it is.
+    #[must_use]
+    pub fn into_sentence(self) -> Text {
+        Text(vec![Span::Sentence(self)])
+    }
 }
 
 /// A piece of a line.
@@ -25,6 +32,8 @@ pub enum Span {
     Words(String),
     /// A formula within the line.
     Formula(Formula),
+    /// A sentence with its own marks: its LaTeX form is words with formulas between dollar signs.
+    Sentence(Formula),
     /// Something to type or to find in a file, in a fixed width.
     Code(String),
 }
@@ -106,6 +115,8 @@ pub enum Block {
     Words(Text),
     /// Program text or a picture in characters, line by line as it is.
     Code(String),
+    /// A whole file: in text it stands alone and unchanged, elsewhere as [`Block::Code`].
+    Source(String),
 }
 
 /// A page: what an answer says, in the order in which it is read.

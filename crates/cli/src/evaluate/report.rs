@@ -3,8 +3,8 @@
 use super::flag;
 use super::trajectory::Table;
 use crate::arguments::Resum;
-use crate::derive::number_json;
 use crate::session::Session;
+use crate::session::number_json;
 use lindstedt::Number;
 use lindstedt::equation::Problem;
 use lindstedt::evaluate::{Evaluation, kind_name, method_name, rounded};

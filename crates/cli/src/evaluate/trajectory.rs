@@ -2,9 +2,9 @@
 
 use super::{figure, flag};
 use crate::arguments::EvaluateOptions;
-use crate::derive::number_json;
 use crate::failure::Failure;
 use crate::session::Session;
+use crate::session::number_json;
 use lindstedt::Exact;
 use lindstedt::equation::Problem;
 use lindstedt::evaluate::{Displacement, Trajectory};

@@ -234,11 +234,11 @@ fn toml_blocks_are_problem_files() -> Outcome {
 mod readme {
     //! The library example of the README.
 
-    use lindstedt::Oscillator;
+    use lindstedt::{Oscillator, Work};
 
     fn main() -> Result<(), Box<dyn std::error::Error>> {
         let oscillator = Oscillator::parse("x'' + x + eps*(x^2 - 1)*x' = 0")?;
-        let result = oscillator.derive(6)?;
+        let result = oscillator.derive(6, &Work::default())?.value;
         assert_eq!(result.exact("frequency", 6).as_deref(), Some("35/884736"));
         assert_eq!(result.checked_orders, Some(6));
         Ok(())
@@ -281,10 +281,10 @@ fn tour_of_an_own_oscillator() -> Outcome {
 #[rustfmt::skip]
 #[test]
 fn problem_files_from_rust() -> Outcome {
-    use lindstedt::Oscillator;
+    use lindstedt::{Oscillator, Work};
 
     let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
-    let result = duffing.set("amplitude", "1/2")?.derive(4)?;
+    let result = duffing.set("amplitude", "1/2")?.derive(4, &Work::default())?.value;
     assert_eq!(result.exact("frequency", 1).as_deref(), Some("3/32"));
     Ok(())
 }

@@ -1,16 +1,20 @@
 //! Averaging of a problem: rates of amplitude and phase as formulas or as numbers.
 
 mod coefficients;
+mod json;
 pub(crate) mod numbers;
 mod radius;
 mod task;
 mod values;
 
+use crate::classification::Description;
 use crate::{Error, Exact, Number, Progress};
+pub use json::{Finite, Radius, divergence};
 use lindstedt_algebra::Stop;
 use lindstedt_coeff::parameters::ParameterField;
 use lindstedt_equation::Problem;
 use lindstedt_expand::AveragedExpansion;
+use lindstedt_impact::convergence::Convergence;
 use lindstedt_phase::Torus;
 pub use radius::{Finite, Radius, divergence};
 use std::collections::BTreeMap;
@@ -92,9 +96,19 @@ pub struct Averaging {
     /// Whether the coefficients are exact (rational numbers or formulas); otherwise they are
     /// certified and the residual encloses zero.
     pub exact: bool,
+    /// Where the averaged series of an impact oscillator converges, with a value for every parameter.
+    pub convergence: Option<Convergence>,
+    /// What the equation is made of.
+    pub description: Option<Description>,
 }
 
 impl Averaging {
+    /// With what its equation is made of.
+    pub(crate) fn described(mut self, description: Option<Description>) -> Self {
+        self.description = description;
+        self
+    }
+
     /// Whether A_n = R_n a and B_n are free of a: then the amplitude grows exponentially, and
     /// `growth_rate` and `frequency` are numbers.
     pub fn is_linear(&self) -> bool {

@@ -213,6 +213,8 @@ impl<'a> Task<'a> {
             solution: over.solution.clone(),
             terms: over.terms.clone(),
             exact,
+            convergence: None,
+            description: None,
         })
     }
 

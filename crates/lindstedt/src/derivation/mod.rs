@@ -1,10 +1,12 @@
 //! From a problem to a checked expansion: the call behind `lindstedt derive`.
 
+mod json;
 pub(crate) mod limits;
 pub(crate) mod prepare;
 mod series;
 
 use crate::Number;
+use crate::classification::Description;
 use crate::constants::Constants;
 use crate::{Error, Exact, Progress};
 pub use limits::check_parameters;
@@ -99,7 +101,7 @@ pub enum Solution {
 
 /// A checked expansion: nothing leaves [`derive()`] that was not substituted back
 /// (`checked_orders`), but for [`Route::EnergyIntegral`], which has no solution to substitute.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Derivation {
     /// The problem as it was expanded: values put in, x and t scaled.
     pub problem: Problem,
@@ -125,6 +127,10 @@ pub struct Derivation {
     /// Time is in units of 1/this: the solution's equation has linear stiffness 1 where x' occurs.
     /// The series of the result are in the time of the problem.
     pub time_scale: Rational,
+    /// The coefficients of the series as numbers; empty where nobody asked for decimals.
+    pub numbers: Vec<Vec<Number>>,
+    /// What the equation is made of.
+    pub description: Option<Description>,
     pub(crate) constants: Constants,
 }
 
@@ -293,11 +299,35 @@ pub fn derive(
         amplitude: amplitude.clone(),
         bound,
         time_scale,
+        numbers: Vec::new(),
+        description: None,
         constants: Constants::new(amplitude),
     })
 }
 
 impl Derivation {
+    /// With the coefficients as numbers of so many digits.
+    pub(crate) fn with_numbers(mut self, digits: usize) -> Result<Self, Error> {
+        let numbers = self.series.iter().map(|series| self.numbers(series, digits));
+        self.numbers = numbers.collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
+    /// With what its equation is made of.
+    pub(crate) fn described(mut self, description: Option<Description>) -> Self {
+        self.description = description;
+        self
+    }
+
+    /// The number of orders whose solution is known.
+    #[must_use]
+    pub fn solved(&self) -> usize {
+        match self.solution {
+            Solution::FrequencyOnly => 0,
+            _ => self.order + 1,
+        }
+    }
+
     /// The series of that name.
     pub fn named(&self, name: &str) -> Option<&NamedSeries> {
         self.series.iter().find(|series| series.name == name)

@@ -50,6 +50,8 @@ impl Format {
         let span = |span: &Span| match span {
             Span::Words(words) => writer.words(words),
             Span::Formula(formula) => writer.inline(formula),
+            Span::Sentence(formula) if self == Self::Text => writer.words(&formula.text),
+            Span::Sentence(formula) => self.line(&Text::marked(&formula.latex)),
             Span::Code(code) => writer.verbatim(code),
         };
         line.0.iter().map(span).collect()
@@ -80,7 +82,8 @@ impl Format {
             }
             Block::Table(table) => self.table(table),
             Block::Words(line) => writer.paragraph(&self.line(line)),
-            Block::Code(code) => writer.code(code),
+            Block::Source(file) if self == Self::Text => text::harmless(file),
+            Block::Code(code) | Block::Source(code) => writer.code(code),
         });
         let parts: Vec<String> = parts.collect();
         self.join(page, &parts)

@@ -7,7 +7,7 @@ use crate::Formula;
 pub(super) struct Plain;
 
 /// Without the characters that steer a terminal.
-fn harmless(words: &str) -> String {
+pub(super) fn harmless(words: &str) -> String {
     words.chars().map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect()
 }
 

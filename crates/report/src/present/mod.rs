@@ -1,12 +1,20 @@
 //! What every answer looks like: a file per verb.
 
+mod average;
+mod catalogue;
+mod classification;
+mod derive;
+mod estimate;
 mod motion;
 mod stability;
 mod threshold;
 mod verify;
 
-use crate::{Document, Figure, Table, Text};
-use lindstedt::{Answer, Number, Status};
+use crate::{Document, Figure, Formula, Table, Text};
+use classification::classification;
+use lindstedt::coeff::print::Style;
+use lindstedt::equation::{Condition, Problem, print};
+use lindstedt::{Number, Status};
 use serde::Serialize;
 
 /// An answer that can be shown.
@@ -27,7 +35,7 @@ pub trait Present {
 ///
 /// # Errors
 /// Those of serde: never for the answers of this workspace, whose keys are strings.
-pub fn json<T: Serialize>(answer: &Answer<T>) -> serde_json::Result<String> {
+pub fn json<A: Serialize>(answer: &A) -> serde_json::Result<String> {
     Ok(format!("{:#}\n", serde_json::to_value(answer)?))
 }
 
@@ -42,5 +50,30 @@ impl Text {
             (None, Status::NoEstimate) => format!("{} (no estimate)", number.decimal),
             _ => number.decimal.clone(),
         })
+    }
+}
+
+/// A formula from what prints it in either notation.
+fn both(print: impl Fn(Style) -> String) -> Formula {
+    Formula::new(print(Style::Text), print(Style::Latex))
+}
+
+/// The equation of a problem.
+fn equation(problem: &Problem) -> Formula {
+    let side = |style| format!("{} = 0", problem.equation.print(&problem.small, style));
+    Formula::new(side(print::Style::Text), side(print::Style::Latex))
+}
+
+/// A condition in words.
+fn condition_text(condition: Condition) -> &'static str {
+    match condition {
+        Condition::InitialAmplitude => "x(0) = 1, x'(0) = 0: corrections start at rest at zero",
+        Condition::FundamentalAmplitude => {
+            "the first harmonic of x is cos(tau): corrections have no first harmonic"
+        }
+        Condition::LimitCycle => "x'(0) = 0; the amplitude x(0) is determined order by order",
+        Condition::FreeAmplitude => {
+            "the first harmonic of x is a cos(psi): a and psi drift, corrections have none"
+        }
     }
 }

@@ -1,0 +1,289 @@
+//! The question `derive`: exact, averaged, or in estimated numbers.
+
+use crate::averaging::{self, Averaging, AveragingSettings};
+use crate::classification::Description;
+use crate::numeric::{self, Estimate, Tier};
+use crate::refusal::Refused;
+use crate::start::Taken;
+use crate::{
+    Answer, Derivation, Error, Exact, Oscillator, Progress, Remark, Route, Settings, Solution,
+    Standing, Work, derivation,
+};
+use lindstedt_equation::classify::{Method, Reason};
+use lindstedt_equation::{AmplitudeRole, Condition};
+use lindstedt_expand::ExpandError;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// What to derive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Derive {
+    /// The highest order.
+    pub order: usize,
+    /// How the series are derived.
+    pub route: Route,
+}
+
+impl From<usize> for Derive {
+    fn from(order: usize) -> Self {
+        Self { order, route: Route::default() }
+    }
+}
+
+impl Oscillator {
+    /// The expansion of omega^2, omega and T/2 pi in the small parameter and of x_0, x_1, ... as
+    /// functions of the phase tau = omega t, up to an order, substituted back into the equation.
+    ///
+    /// The amplitude is what the condition fixes; values of parameters are put in, and those without
+    /// one refuse. Exact: rational numbers or polynomials in named constants, printed beside
+    /// `work.digits` digits. Cost over Q: O(N^3) per prime, and primes that grow a little faster than N; in
+    /// the Lobachevsky ring a factor of about 1.8 per order.
+    ///
+    /// Stopped work leaves the orders that are finished ([`Standing::Stopped`]); over Q, where all are
+    /// finished together, it is refused.
+    ///
+    /// # Errors
+    /// [`Error`] with the reason: nothing is ever dropped or approximated silently.
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, Work};
+    /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?.derive(3, &Work::default())?.value;
+    /// assert_eq!(duffing.exact("frequency", 2).as_deref(), Some("-21/256"));
+    /// assert_eq!(duffing.checked_orders, Some(3));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn derive(
+        &self,
+        question: impl Into<Derive>,
+        work: &Work,
+    ) -> Result<Answer<Derivation>, Error> {
+        let (start, question) = (Instant::now(), question.into());
+        self.without_pi()?;
+        self.check()?;
+        let settings = Settings { route: question.route, ..self.settings(question.order, work) };
+        let primes = AtomicUsize::new(0);
+        let found = derivation::derive(self.problem(), &settings, &mut |progress| {
+            if let Progress::Primes(n) = progress {
+                primes.store(n, Ordering::Relaxed);
+            }
+            work.goes_on(progress)
+        });
+        let primes = primes.into_inner();
+        let value = found.map_err(|error| self.unfinished(error, primes))?;
+        let value = value.with_numbers(work.printed_digits())?.described(self.describe().ok());
+        let mut remarks = self.remarks().to_vec();
+        if value.condition == Condition::InitialAmplitude {
+            remarks.extend(self.start_remark(Taken::Amplitude));
+        }
+        let solved = !matches!(value.solution, Solution::FrequencyOnly);
+        remarks.extend(
+            self.missing(&|name| value.named(name).is_some() || name == "solution" && solved),
+        );
+        let unchecked = solved && value.checked_orders.is_none();
+        let done = value.order < question.order || unchecked;
+        let standing = self.standing(done, value.order, !unchecked, &mut remarks);
+        let header = self.header(self.entering(&value), Some(value.order), "exact", start);
+        Ok(Answer { header, value, standing, remarks })
+    }
+
+    /// The same series in estimated numbers: forces that no exact ring takes, and high orders of those
+    /// whose exact solution has millions of terms.
+    ///
+    /// # Errors
+    /// As [`numeric::derive`].
+    pub fn estimate(
+        &self,
+        order: usize,
+        tier: Tier,
+        work: &Work,
+    ) -> Result<Answer<Estimate>, Error> {
+        let start = Instant::now();
+        self.without_pi()?;
+        self.check_numeric()?;
+        let settings = self.settings(order, work);
+        let mut observer = |done: &lindstedt_expand::OrderWork| {
+            work.goes_on(Progress::Order(done.order, done.terms))
+        };
+        let found = numeric::derive(self.problem(), &settings, tier, &mut observer);
+        let value = found.map_err(|error| match error {
+            Error::Expand(ExpandError::Interrupted { .. }) => Refused::stopped(
+                "stopped before two grids were finished",
+                "raise --limit-seconds or lower --order or --digits",
+            )
+            .into(),
+            error => self.refusal(error),
+        })?;
+        let value = value.with_numbers(work.printed_digits(), &self.problem().small);
+        let tier = value.tier.name();
+        let header = self.header(self.given_text(), Some(value.order), tier, start);
+        let remarks = self.remarks().to_vec();
+        Ok(Answer { header, value, standing: Standing::Complete, remarks })
+    }
+
+    /// The averaged equations of Krylov, Bogoliubov and Mitropolsky,
+    ///
+    ///   x = a cos psi + ..., da/dt = sum eps^n A_n(a), dpsi/dt = sum eps^n B_n(a), B_0 = omega_0,
+    ///
+    /// up to an order. Parameters that are not set stay symbols; where the symbols have no root, the
+    /// values of the problem file are taken and that is said. Exact, or certified where values are
+    /// irrational; the residual vanishes or encloses zero.
+    ///
+    /// # Errors
+    /// [`Error`] with the reason; resonances are named.
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, Work};
+    /// let cycle = Oscillator::parse("x'' + x = eps*(1 - x^2)*x'")?;
+    /// let averaged = cycle.average(2, &Work::default())?;
+    /// assert_eq!(averaged.value.amplitude_rate[1].len(), 2); // a/2 - a^3/8
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn average(&self, order: usize, work: &Work) -> Result<Answer<Averaging>, Error> {
+        let start = Instant::now();
+        self.without_pi()?;
+        let free = self.clone().under(Condition::FreeAmplitude)?;
+        free.check()?;
+        let (value, at, taken) = free.averaged(order, work)?;
+        let names: &[&str] = match value.is_linear() {
+            true => &["growth_rate", "frequency", "solution"],
+            // A_n(a)/a and B_n(a).
+            false => &["solution", "growth_rate", "frequency"],
+        };
+        let mut remarks = self.remarks().to_vec();
+        remarks.extend(taken);
+        remarks.extend(self.missing(&|name| names.contains(&name)));
+        let value = value.with_convergence(&at).described(free.describe().ok());
+        remarks.extend(value.divergence().map(Remark));
+        let checked = value.checked_orders == value.order;
+        let stopped = value.order < order || !checked;
+        let standing = self.standing(stopped, value.order, checked, &mut remarks);
+        let at = at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
+        let tier = if value.exact { "exact" } else { "certified" };
+        let header = self.header(at, Some(value.order), tier, start);
+        Ok(Answer { header, value, standing, remarks })
+    }
+
+    /// The averaged expansion, the values that were put in, and what is to be said of them.
+    fn averaged(
+        &self,
+        order: usize,
+        work: &Work,
+    ) -> Result<(Averaging, BTreeMap<String, Exact>, Option<Remark>), Error> {
+        let average = |parameters: &BTreeMap<String, Exact>| {
+            let settings = AveragingSettings {
+                order,
+                parameters: parameters.clone(),
+                digits: work.printed_digits(),
+                stop: work.stop.clone(),
+                memory: work.memory,
+            };
+            averaging::average(self.problem(), &settings, &mut |progress| work.goes_on(progress))
+        };
+        let error = match average(self.given()) {
+            Ok(value) => return Ok((value, self.given().clone(), None)),
+            Err(error) => error,
+        };
+        let all: BTreeMap<String, Exact> = self.all_values().into_iter().collect();
+        let no_root = matches!(error, Error::Expand(ExpandError::StiffnessNotSquare));
+        if !no_root || all.len() == self.given().len() {
+            return Err(self.refusal(error));
+        }
+        let value = average(&all).map_err(|error| self.refusal(error))?;
+        let remark = "the linear frequency is no formula in the parameters: all values of the problem \
+                      are put in";
+        Ok((value, all, Some(Remark(remark.to_owned()))))
+    }
+
+    fn settings(&self, order: usize, work: &Work) -> Settings {
+        Settings {
+            order,
+            condition: self.asked_condition(),
+            parameters: self.given().clone(),
+            memory: work.memory,
+            stop: work.stop.clone(),
+            ..Settings::default()
+        }
+    }
+
+    /// What the equation is made of, and which methods take it, in words.
+    ///
+    /// # Errors
+    /// [`lindstedt_equation::classify::ClassifyError`].
+    pub fn describe(&self) -> Result<Description, lindstedt_equation::classify::ClassifyError> {
+        Ok(Description::new(&self.classify()?, &self.problem().small))
+    }
+
+    /// To values at nodes every force is alike; what is not finite there is refused later.
+    fn check_numeric(&self) -> Result<(), Error> {
+        let Ok(mut parts) = self.classify() else { return Ok(()) };
+        for (method, against) in &mut parts.methods {
+            if *method == Method::LindstedtPoincare {
+                against.retain(|r| !matches!(r, Reason::NonSmooth(_) | Reason::NotPolynomial(_)));
+            }
+        }
+        self.check_parts(&parts)
+    }
+
+    /// Over Q every order is reconstructed from all primes together and proved by substitution at
+    /// the end: stopped before, there is not one.
+    fn unfinished(&self, error: Error, primes: usize) -> Error {
+        if !matches!(error, Error::Expand(ExpandError::Interrupted { .. })) {
+            return self.refusal(error);
+        }
+        let over_q = primes > 0
+            || lindstedt_equation::classify::polynomial(&self.problem().equation).is_some();
+        let why = if over_q {
+            format!(
+                ": over Q all orders are reconstructed together from many primes ({primes} done) and \
+                 proved at the end; before that no order is"
+            )
+        } else {
+            String::new()
+        };
+        let message = format!("stopped before the expansion was finished{why}");
+        Refused::stopped(message, "raise --limit-seconds or lower --order").into()
+    }
+
+    /// Complete, or stopped after an order, which is said.
+    fn standing(
+        &self,
+        stopped: bool,
+        done: usize,
+        checked: bool,
+        remarks: &mut Vec<Remark>,
+    ) -> Standing {
+        if !stopped {
+            return Standing::Complete;
+        }
+        let checked = if checked { "and checked" } else { "but not checked" };
+        remarks.push(Remark(format!("stopped: orders 0 to {done} are finished {checked}")));
+        Standing::Stopped { done }
+    }
+
+    /// What the problem file asks for and the answer does not have.
+    pub(crate) fn missing(&self, has: &dyn Fn(&str) -> bool) -> Option<Remark> {
+        let asked = self.problem_file().asked.iter().map(String::as_str);
+        let missing: Vec<&str> = asked.filter(|name| !has(name)).collect();
+        let list = missing.join(", ");
+        let text = || Remark(format!("asked for in the file, but not in this result: {list}"));
+        (!missing.is_empty()).then(text)
+    }
+
+    /// The values that were set, as text.
+    pub(crate) fn given_text(&self) -> Vec<(String, String)> {
+        self.given().iter().map(|(name, value)| (name.clone(), value.to_string())).collect()
+    }
+
+    /// The values that the coefficients depend on.
+    fn entering(&self, derivation: &Derivation) -> Vec<(String, String)> {
+        let enters = matches!(
+            derivation.problem.amplitude,
+            AmplitudeRole::ScalesFrequency { .. } | AmplitudeRole::InSums | AmplitudeRole::Scaled
+        );
+        let amplitude = derivation.amplitude.as_ref().filter(|_| enters);
+        let amplitude = amplitude.map(|value| ("amplitude".to_owned(), value.to_string()));
+        let bound = derivation.bound.iter().map(|(name, q)| (name.clone(), q.to_string()));
+        amplitude.into_iter().chain(bound).collect()
+    }
+}

@@ -1,0 +1,121 @@
+//! Averaged equations.
+
+use super::{Present, both, classification, condition_text, equation};
+use crate::{Document, Formula};
+use lindstedt::Answer;
+use lindstedt::averaging::{Averaging, Coefficient, RateTerm};
+use lindstedt::coeff::print::{Style, latex_name, power};
+use lindstedt::equation::Condition;
+
+/// Formulas longer than this are counted; JSON has them all.
+const PRINTED_CHARACTERS: usize = 6000;
+
+impl Present for Answer<Averaging> {
+    fn document(&self) -> Document {
+        let result = &self.value;
+        let problem = &result.problem;
+        let title = format!("{}: {}", problem.name, problem.title);
+        let mut page = Document::titled(title.trim_end_matches([':', ' ']));
+        page = classification(page, result.description.as_ref());
+        page = page.formula(equation(problem)).formula(ansatz(&problem.small));
+        page = page.words(format!("Normalisation: {}.", condition_text(Condition::FreeAmplitude)));
+        for n in 0..=result.order {
+            page = page.formula(solution(result, n));
+            for (name, rates) in [("A", &result.amplitude_rate), ("B", &result.phase_rate)] {
+                if n > 0 || name == "B" {
+                    let terms = rates.get(n).map_or(&[][..], Vec::as_slice);
+                    page = page.formula(both(|style| {
+                        format!("{} = {}", indexed(name, n, style), rate(terms, style))
+                    }));
+                }
+            }
+        }
+        page.words(residual(result))
+    }
+}
+
+fn indexed(name: &str, n: usize, style: Style) -> String {
+    if style == Style::Text { format!("{name}_{n}") } else { format!("{name}_{{{n}}}") }
+}
+
+fn ansatz(small: &str) -> Formula {
+    let latex = latex_name(small);
+    Formula::new(
+        format!(
+            "x = u_0 + u_1*{small} + ...   a' = A_1(a)*{small} + A_2(a)*{small}^2 + ...   psi' = B_0 + B_1(a)*{small} + ..."
+        ),
+        format!(
+            "x = u_0 + u_1\\,{latex} + \\dots,\\quad \\dot a = A_1(a)\\,{latex} + A_2(a)\\,{latex}^2 + \\dots,\\quad \\dot\\psi = B_0 + B_1(a)\\,{latex} + \\dots"
+        ),
+    )
+}
+
+fn solution(result: &Averaging, n: usize) -> Formula {
+    both(|style| {
+        let position = usize::from(style == Style::Latex);
+        let solution = result.solution.get(n).map_or("0", |pair| pair[position].as_str());
+        format!("{} = {}", indexed("u", n, style), shortened(solution.to_owned(), style))
+    })
+}
+
+fn residual(result: &Averaging) -> String {
+    let last = result.checked_orders;
+    if result.exact {
+        return format!(
+            "Residual: the expansion substituted into the equation vanishes identically at orders 0 to {last}."
+        );
+    }
+    let rest = if last < result.order {
+        "the orders above were not checked"
+    } else {
+        "all digits printed are certain"
+    };
+    format!(
+        "Residual: the expansion substituted into the equation encloses zero at orders 0 to {last};\n{rest}."
+    )
+}
+
+/// sum of c a^exponent.
+fn rate(terms: &[RateTerm], style: Style) -> String {
+    let mut line = String::new();
+    for term in terms {
+        let coefficient = match &term.coefficient {
+            Coefficient::Number(number) => {
+                number.exact.clone().unwrap_or_else(|| number.decimal.clone())
+            }
+            Coefficient::Formula { text, latex } => match style {
+                Style::Text => text.clone(),
+                Style::Latex => latex.clone(),
+            },
+        };
+        let is_sum = coefficient.trim_start_matches('-').contains([' ']);
+        let name = (term.exponent != 0).then(|| power("a", term.exponent.into(), style));
+        let (negative, magnitude) = match coefficient.strip_prefix('-') {
+            Some(rest) if !is_sum => (true, rest.to_owned()),
+            _ => (false, coefficient),
+        };
+        line += match (line.is_empty(), negative) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        let times = if style == Style::Text { "*" } else { "\\," };
+        line += &match (name, is_sum) {
+            (None, _) => magnitude,
+            (Some(name), _) if magnitude == "1" => name,
+            (Some(name), true) => format!("{name}{times}({magnitude})"),
+            (Some(name), false) => format!("{magnitude}{times}{name}"),
+        };
+    }
+    if line.is_empty() { "0".to_owned() } else { shortened(line, style) }
+}
+
+fn shortened(line: String, style: Style) -> String {
+    let count = line.len();
+    match style {
+        _ if count <= PRINTED_CHARACTERS => line,
+        Style::Text => format!("[{count} characters; in full with --format json]"),
+        Style::Latex => format!("\\text{{[{count} characters; in full with --format json]}}"),
+    }
+}

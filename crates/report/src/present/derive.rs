@@ -1,0 +1,226 @@
+//! A derivation as one would write it on the board, order by order.
+
+use super::{Present, both, classification, condition_text, equation};
+use crate::{Document, Formula, Text};
+use lindstedt::coeff::print::{Style, latex_name};
+use lindstedt::equation::{AmplitudeRole, Condition};
+use lindstedt::{Answer, Derivation, Number, Solution};
+
+/// Right sides and solutions with more terms are counted, not printed; JSON has them all.
+const PRINTED_TERMS: usize = 60;
+
+const RING: &str = "$\\ell = -\\ln|\\cos\\tau|$, $\\Lambda_m = \\int_0^\\tau(\\ell^m/m! - \\mu_m)$ (periodic), \
+                    $\\mu_m = \\langle\\ell^m/m!\\rangle$, $f_n$ is the right side without $W_n x_0''$.";
+const RING_TEXT: &str = "l = -ln|cos(tau)|, Lambda_m = integral of l^m/m! - mu_m from 0 to tau (periodic),\n\
+                         mu_m = mean of l^m/m!, f_n = right side without W_n x_0''.";
+
+impl Present for Answer<Derivation> {
+    fn document(&self) -> Document {
+        let board = Board(&self.value);
+        let problem = &self.value.problem;
+        let title = format!("{}: {}", problem.name, problem.title);
+        let mut page = Document::titled(title.trim_end_matches([':', ' ']));
+        page = classification(page, self.value.description.as_ref());
+        page = page.formula(equation(problem)).formula(board.ansatz());
+        page = page.words(format!("Normalisation: {}.", condition_text(self.value.condition)));
+        for words in board.scalings() {
+            page = page.words(words);
+        }
+        if matches!(self.value.solution, Solution::Lobachevsky(_)) {
+            page = page.words(Formula::new(RING_TEXT, RING).into_sentence());
+        }
+        for n in 0..self.value.solved() {
+            page = board.order(page, n);
+        }
+        page = page.heading("Result");
+        page = board.result(page);
+        page.words(board.residual())
+    }
+}
+
+/// A derivation with what is written of it.
+struct Board<'a>(&'a Derivation);
+
+impl Board<'_> {
+    fn small(&self, style: Style) -> String {
+        let name = &self.0.problem.small;
+        if style == Style::Latex { latex_name(name) } else { name.to_string() }
+    }
+
+    /// tau = omega t, omega^2 = kappa (1 + W_1 eps + ...), x = x_0 + x_1 eps + ...
+    fn ansatz(&self) -> Formula {
+        both(|style| {
+            let (small, kappa) = (self.small(style), self.0.ring_print(style));
+            let (tau, omega, times, gap, dots) = match style {
+                Style::Text => ("tau", "omega", "*", "   ", "..."),
+                Style::Latex => ("\\tau", "\\omega", "\\,", "\\quad ", "\\dots"),
+            };
+            let sum = format!("1 + W_1{times}{small} + W_2{times}{small}^2 + {dots}");
+            let sum = if kappa == "1" { sum } else { format!("{kappa}{times}({sum})") };
+            format!(
+                "{tau} = {omega}{times}t,{gap}{omega}^2 = {sum},{gap}x = x_0({tau}) + \
+                 x_1({tau}){times}{small} + {dots}"
+            )
+        })
+    }
+
+    /// What x and the symbols stand for where the equation is not the one that was written.
+    fn scalings(&self) -> Vec<Text> {
+        let result = self.0;
+        let mut list = Vec::new();
+        if let Some(value) = &result.amplitude {
+            let small = self.small(Style::Text);
+            let scaled = value.to_string() != "1";
+            let words = match result.problem.amplitude {
+                AmplitudeRole::ScalesFrequency { .. } if scaled => Some(format!(
+                    "Amplitude a = {value}: x/a is expanded below, W_n belongs to amplitude one; the \
+                     result contains the factor a^(2 {small}) of omega^2."
+                )),
+                AmplitudeRole::InSums => {
+                    Some(format!("Amplitude a = {value} (in the S_n): x/a is expanded below."))
+                }
+                AmplitudeRole::Scaled if scaled => {
+                    Some(format!("Amplitude a = {value}: y = x/a is expanded, written x below."))
+                }
+                _ => None,
+            };
+            list.extend(words);
+        }
+        if !result.bound.is_empty() {
+            let values = result.bound.iter().map(|(n, q)| format!("{n} = {q}"));
+            list.push(format!("With {}.", values.collect::<Vec<_>>().join(", ")));
+        }
+        if result.time_scale != 1 {
+            list.push(format!(
+                "Time is in units of 1/{} below; the result has omega in the time of the problem.",
+                result.time_scale
+            ));
+        }
+        list.into_iter().map(Text::words).collect()
+    }
+
+    fn order(&self, page: Document, n: usize) -> Document {
+        let result = self.0;
+        let mut page = page.heading(format!("Order {n}"));
+        if n == 0 {
+            page = page.formula(Formula::new("x_0'' + x_0 = 0", "x_0'' + x_0 = 0"));
+        } else {
+            page = page.formula(self.right_side(n)).formula(self.secular(n));
+            if result.condition == Condition::LimitCycle && n > 1 {
+                page = page.formula(both(|style| {
+                    let (before, value) = (n - 1, result.amplitude_correction(n - 1, style));
+                    match style {
+                        Style::Text => format!(
+                            "2*mean(f_{n}*sin(tau)) = 0 fixes the amplitude a_{before} = {value}"
+                        ),
+                        Style::Latex => format!(
+                            "2\\langle f_{{{n}}}\\sin\\tau\\rangle = 0 \\;\\Rightarrow\\; \
+                             a_{{{before}}} = {value}"
+                        ),
+                    }
+                }));
+            }
+        }
+        page.formula(both(|style| {
+            let terms = result.terms(n);
+            let solution = if terms > PRINTED_TERMS {
+                counted(terms, style)
+            } else {
+                result.print_solution(n, style)
+            };
+            format!("{} = {solution}", indexed("x", n, style))
+        }))
+    }
+
+    /// x_n'' + x_n = f_n - W_n x_0''.
+    fn right_side(&self, n: usize) -> Formula {
+        both(|style| {
+            let (right_side, terms) = self.0.print_right_side(n, style);
+            let right_side = match terms {
+                0 => String::new(),
+                1..=PRINTED_TERMS => right_side,
+                _ => counted(terms, style),
+            };
+            let (x, w) = (indexed("x", n, style), indexed("W", n, style));
+            let times = if style == Style::Text { "*" } else { "\\," };
+            format!("{x}'' + {x} = {right_side} - {w}{times}x_0''").replace("=  -", "= -")
+        })
+    }
+
+    /// The condition that leaves no secular term, and the W_n that it gives.
+    fn secular(&self, n: usize) -> Formula {
+        both(|style| {
+            let w = indexed("W", n, style);
+            let value = self.0.frequency_correction(n, style);
+            let leading = self.0.amplitude_correction(0, style);
+            let times = if style == Style::Text { "*" } else { "\\," };
+            let factor = if leading == "1" { String::new() } else { format!("{leading}{times}") };
+            match style {
+                Style::Text => format!(
+                    "no secular term: 2*mean(f_{n}*cos(tau)) + {factor}{w} = 0, so {w} = {value}"
+                ),
+                Style::Latex => format!(
+                    "2\\langle f_{{{n}}}\\cos\\tau\\rangle + {factor}{w} = 0 \\;\\Rightarrow\\; {w} = {value}"
+                ),
+            }
+        })
+    }
+
+    /// The series, coefficient by coefficient.
+    fn result(&self, mut page: Document) -> Document {
+        let result = self.0;
+        let small = both(|style| self.small(style));
+        for (series, numbers) in result.series.iter().zip(&result.numbers) {
+            let name = series.name.replace('_', " ");
+            let line = Text::words(format!("{name} in powers of ")).formula(small.clone()).and(":");
+            page = page.words(line);
+            for (n, number) in numbers.iter().enumerate() {
+                let exact = both(|style| result.print_coefficient(series, n, style));
+                page = page.formula(coefficient(n, exact, number));
+            }
+        }
+        page
+    }
+
+    fn residual(&self) -> String {
+        let vanishes = |last: usize| {
+            format!(
+                "Residual: the expansion substituted into the equation vanishes identically at orders 0 to {last}"
+            )
+        };
+        match (&self.0.solution, self.0.checked_orders) {
+            (Solution::Rational(proved), Some(last)) => format!(
+                "{}\n(proved modulo {} primes of 61 bits, more than its numbers can hold).",
+                vanishes(last),
+                proved.proof_primes
+            ),
+            (_, Some(last)) => vanishes(last) + ".",
+            (Solution::FrequencyOnly, None) => {
+                "By the energy integral; no solution, so nothing to substitute.".to_owned()
+            }
+            (_, None) => "Not substituted into the equation: not checked.".to_owned(),
+        }
+    }
+}
+
+/// `n: exact` with its decimal below; zero and small integers need no second form.
+fn coefficient(n: usize, exact: Formula, number: &Number) -> Formula {
+    let second = number.error.is_some() || number.decimal != exact.text;
+    let shown =
+        |sign: &str| if second { format!("{sign}{}", number.decimal) } else { String::new() };
+    Formula::new(
+        format!("{n}: {}{}", exact.text, shown("\n   =  ")),
+        format!("{n}:\\quad {}{}", exact.latex, shown(" = ")),
+    )
+}
+
+fn indexed(name: &str, n: usize, style: Style) -> String {
+    if style == Style::Text { format!("{name}_{n}") } else { format!("{name}_{{{n}}}") }
+}
+
+fn counted(terms: usize, style: Style) -> String {
+    match style {
+        Style::Text => format!("[{terms} terms; all of them with --format json]"),
+        Style::Latex => format!("\\text{{[{terms} terms; all of them with --format json]}}"),
+    }
+}
