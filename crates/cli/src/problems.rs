@@ -6,10 +6,12 @@ use crate::session::Session;
 use lindstedt::catalogue::Catalogue;
 
 pub fn run(options: &ProblemsOptions, session: &Session<'_>) -> Outcome {
-    let catalogue = match &options.show {
-        Some(name) => session.oscillator(name, &[], None)?.entry(),
-        None => Catalogue::builtin(),
+    let Some(name) = &options.show else {
+        session.print(&Catalogue::builtin())?;
+        return Ok(0);
     };
-    session.print(&catalogue)?;
+    let oscillator = session.oscillator(name, &[], None)?;
+    session.print(&oscillator.entry())?;
+    session.say_remarks(oscillator.remarks());
     Ok(0)
 }

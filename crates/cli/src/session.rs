@@ -8,7 +8,7 @@ use lindstedt::algebra::Stop;
 use lindstedt::equation::{Condition, Problem};
 use lindstedt::problem_file::{FileError, LARGEST_FILE, canonical_name};
 use lindstedt::{
-    Answer, Error, Exact, Kind, Oscillator, ProblemFile, Progress, Refusal, Standing, Work,
+    Answer, Error, Exact, Kind, Oscillator, ProblemFile, Progress, Refusal, Remark, Standing, Work,
 };
 use lindstedt_report::{Format as Written, Present};
 use serde::Serialize;
@@ -179,15 +179,18 @@ impl<'a> Session<'a> {
             output::write_file(path, &plotted(&answer, path)?)?;
         }
         self.print(&answer)?;
-        for remark in &answer.remarks {
-            output::warn(&remark.0);
-        }
+        self.say_remarks(&answer.remarks);
         Ok(match answer.standing {
             Standing::Complete => 0,
             Standing::NoAnswer => NO_ANSWER,
             Standing::Undecided => UNDECIDED,
             Standing::Stopped { .. } => self.stopped(),
         })
+    }
+
+    /// Says what is to be said beside an answer.
+    pub fn say_remarks(&self, remarks: &[Remark]) {
+        remarks.iter().for_each(|remark| output::warn(&remark.0));
     }
 
     /// Prints what can be shown in the format asked for.

@@ -14,7 +14,7 @@ pub fn compare(
     given: &BTreeMap<String, Exact>,
     taken: Taken,
 ) {
-    let Some(Ok(mut oscillator)) = file.map(|file| Oscillator::file(&file.to_text())) else {
+    let Some(Ok(mut oscillator)) = file.map(|file| Oscillator::file(file.source())) else {
         return;
     };
     for (name, value) in given {

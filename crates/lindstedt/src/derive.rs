@@ -143,6 +143,8 @@ impl Oscillator {
         let start = Instant::now();
         self.without_pi()?;
         let free = self.clone().under(Condition::FreeAmplitude)?;
+        let values = self.all_values().into_iter().collect();
+        derivation::check_delays(&self.problem().equation, &values)?;
         free.check()?;
         let (value, at, taken) = free.averaged(order, work)?;
         let names: &[&str] = match value.is_linear() {

@@ -187,6 +187,12 @@ impl ProblemFile {
         Some(position(&self.text, self.start? + found.start))
     }
 
+    /// The text of the file.
+    #[must_use]
+    pub fn source(&self) -> &str {
+        &self.text
+    }
+
     /// Line and column of the equation; nothing when it contains escapes.
     pub fn locate_equation(&self) -> Option<(usize, usize)> {
         Some(position(&self.text, self.start?))

@@ -121,7 +121,7 @@ fn refusals_have_their_reason() {
         (&["vibro-impact", "--set", "z=1"], 2, "z"),
         (&["vibro-impact", "--normalisation", "initial"], 2, "does not offer"),
         (&["vibro-impact", "--set", "branch=+"], 2, "branch has no meaning here"),
-        (&["power-law", "--normalisation", "free"], 2, "does not offer"),
+        (&["power-law", "--normalisation", "free"], 3, "not taken"),
     ];
     for (arguments, code, words) in cases {
         let output = derive(arguments);

@@ -97,7 +97,9 @@ fn built_in_problems_run_from_their_printed_files() {
 #[test]
 fn files_with_delays_are_averaged() {
     let name = example("delayed-duffing.toml");
-    let shown = text(&["derive", &name, "--order", "10", "--digits", "15", "--format", "json"]);
+    let values = ["--set", "beta=1", "--set", "g=1/10", "--set", "T=1"];
+    let asked = ["derive", &name, "--order", "10", "--digits", "15", "--format", "json"];
+    let shown = text(&[&asked[..], &values].concat());
     let result: Value = serde_json::from_str(&shown).unwrap();
     assert_eq!(result["residual"]["checked_orders"], 10);
     assert_eq!(result["residual"]["encloses_zero"], true);

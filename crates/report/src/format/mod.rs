@@ -95,16 +95,23 @@ impl Format {
         self.writer().table(&cells(&table.columns), &rows)
     }
 
-    /// Parts with a blank line between them; formulas that follow each other stand together in text.
+    /// Parts with a blank line between them; in text what belongs together stands together.
     fn join(self, page: &Document, parts: &[String]) -> String {
         let mut text = String::new();
-        for (index, part) in parts.iter().enumerate() {
-            let formulas = index > 0
-                && [index - 1, index].iter().all(|&i| matches!(page.blocks[i], Block::Formula(_)));
-            if index > 0 && !(self == Self::Text && formulas) {
+        let mut before: Option<&Block> = None;
+        for (index, (block, part)) in page.blocks.iter().zip(parts).enumerate() {
+            let close = before.is_some_and(|before| match (before, block) {
+                (Block::Formula(_), Block::Formula(_)) => true,
+                // Not the title.
+                (Block::Heading(_), _) => index > 1,
+                (Block::Words(line), Block::Formula(_)) => self.line(line).ends_with(':'),
+                _ => false,
+            });
+            if before.is_some() && !(self == Self::Text && close) {
                 text.push('\n');
             }
             text += part;
+            before = Some(block);
         }
         text
     }
