@@ -198,7 +198,7 @@ impl<'a> Session<'a> {
         let text = match self.format() {
             Format::Json => lindstedt_report::json(answer).map_err(|error| Failure {
                 exit: UNDECIDED,
-                code: "json",
+                code: "undecided",
                 message: error.to_string(),
                 hint: String::new(),
             })?,

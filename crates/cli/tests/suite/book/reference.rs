@@ -24,8 +24,21 @@ fn sources(folder: &Path, text: &mut Vec<String>) -> Outcome {
 
 /// The codes in a source text: literals where a code stands.
 fn codes(source: &str) -> BTreeSet<String> {
-    let places =
-        ["code: ", "usage(", "USAGE,", "NO_ANSWER,", "UNDECIDED,", "FILE,", "INTERRUPTED,"];
+    let places = [
+        "code: ",
+        "usage(",
+        "no_answer(",
+        "undecided(",
+        "USAGE,",
+        "NO_ANSWER,",
+        "UNDECIDED,",
+        "FILE,",
+        "INTERRUPTED,",
+        "Usage,",
+        "NoAnswer,",
+        "Undecided,",
+        "Stopped,",
+    ];
     let mut found = BTreeSet::new();
     for place in places {
         for (position, _) in source.match_indices(place) {
@@ -55,7 +68,11 @@ fn codes_are_found() {
 fn every_error_code_is_documented() -> Outcome {
     let mut texts = Vec::new();
     sources(&root().join("crates/cli/src"), &mut texts)?;
-    let emitted: BTreeSet<String> = texts.iter().flat_map(|text| codes(text)).collect();
+    sources(&root().join("crates/lindstedt/src"), &mut texts)?;
+    let mut emitted: BTreeSet<String> = texts.iter().flat_map(|text| codes(text)).collect();
+    // The codes of the engine's errors are what their arms give.
+    let refusals = std::fs::read_to_string(root().join("crates/lindstedt/src/refusal.rs"))?;
+    emitted.extend(codes(&refusals.replace("=> {", "code: ").replace("=> ", "code: ")));
     assert!(emitted.len() > 30, "only {emitted:?}");
     let page = std::fs::read_to_string(root().join("docs/src/reference/errors.md"))?;
     let rows = page.lines().filter(|line| line.starts_with("| `"));
