@@ -12,8 +12,7 @@ const MATHEMATICS: &str = r"frac sqrt cos sin tan sec cosh sinh tanh ln exp max 
     overline tilde hat prime alpha beta gamma delta epsilon varepsilon zeta eta theta kappa lambda mu nu xi pi rho
     sigma tau phi varphi chi psi omega ell Gamma Delta Theta Lambda Pi Sigma Phi Psi Omega , ; : ! | \";
 /// Commands for both.
-const BOTH: &str =
-    "{ } _ % & # $ dots ldots quad qquad textbackslash textasciicircum textasciitilde - , ^";
+const BOTH: &str = "{ } _ % & # $ dots ldots quad qquad textbackslash textasciicircum textasciitilde textbar textless textgreater - , ^";
 /// Environments of text, of mathematics, and those inside mathematics.
 const ENVIRONMENTS: &str = "tabular longtable itemize enumerate description table verbatim";
 const DISPLAYS: &str = "equation equation* align align* gather gather*";

@@ -9,6 +9,7 @@ mod evaluate;
 mod file_motions;
 mod interrupt;
 mod known_digits;
+mod one_path;
 mod problem_files;
 mod simulate;
 mod simulate_files;

@@ -13,6 +13,10 @@ fn escaped(words: &str) -> String {
         match c {
             '&' | '%' | '$' | '#' | '_' | '{' | '}' => text.extend(['\\', c]),
             '\\' => text.push_str(r"\textbackslash{}"),
+            // In the usual font these are other signs.
+            '|' => text.push_str(r"\textbar{}"),
+            '<' => text.push_str(r"\textless{}"),
+            '>' => text.push_str(r"\textgreater{}"),
             '~' => text.push_str(r"\textasciitilde{}"),
             '^' => text.push_str(r"\textasciicircum{}"),
             // In the default encoding of fonts these three are other signs.

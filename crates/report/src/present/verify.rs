@@ -2,8 +2,9 @@
 
 use super::Present;
 use crate::figure::{Axis, Mark, colours};
-use crate::{Document, Figure, Table};
+use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::Answer;
+use lindstedt::coeff::print::latex_name;
 use lindstedt::verify::{Comparison, Verification};
 
 /// Small parameter, difference, error of the integration, slope.
@@ -26,7 +27,9 @@ fn title(answer: &Answer<Verification>) -> String {
 impl Present for Answer<Verification> {
     fn document(&self) -> Document {
         let name = self.value.parameter.as_str();
-        let table = Table::new([name, "max |x_N - x|", "integration", "local order"]);
+        let small = Text::from(Formula::new(name, latex_name(name)));
+        let error = Text::from(Formula::new("max |x_N - x|", r"\max |x_N - x|"));
+        let table = Table::new([small, error, "integration".into(), "local order".into()]);
         let table = self.value.table.iter().map(row).fold(table, Table::row);
         Document::titled(title(self)).table(table).words(self.value.reason.as_str())
     }
