@@ -9,7 +9,6 @@ mod values;
 
 use crate::classification::Description;
 use crate::{Error, Exact, Number, Progress};
-pub use json::{Finite, Radius, divergence};
 use lindstedt_algebra::Stop;
 use lindstedt_coeff::parameters::ParameterField;
 use lindstedt_equation::Problem;

@@ -19,10 +19,6 @@ fn escaped(words: &str) -> String {
             '>' => text.push_str(r"\textgreater{}"),
             '~' => text.push_str(r"\textasciitilde{}"),
             '^' => text.push_str(r"\textasciicircum{}"),
-            // In the default encoding of fonts these three are other signs.
-            '|' => text.push_str(r"\textbar{}"),
-            '<' => text.push_str(r"\textless{}"),
-            '>' => text.push_str(r"\textgreater{}"),
             c if c.is_control() && c != '\n' => text.push('?'),
             c => text.push(c),
         }
