@@ -3,9 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use lindstedt::algebra::RationalAlgebra;
-use lindstedt::evaluate::{EvaluateSettings, evaluate};
 use lindstedt::series::resummation::{Method, Resummed, Sample, UniformMap, resum};
-use lindstedt::{Error, Exact, Settings, derive, problems};
+use lindstedt::{Error, Evaluate, Oscillator, Settings, Work, derive, problems};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
@@ -138,19 +137,13 @@ fn closed_forms(seed: u64, cases: usize, most: u64, count: &mut Count) {
         let (name, parameter, value) = random(&mut g);
         let order = 5 + g.below(most - 5) as usize;
         for method in [None, g.method(), g.method()] {
-            let parameters =
-                [(parameter.to_owned(), Exact::parse(&value).unwrap())].into_iter().collect();
-            let settings = EvaluateSettings {
-                order: Some(order),
-                method,
-                parameters,
-                ..EvaluateSettings::default()
-            };
-            let problem = problems::find(name).unwrap();
-            let found = evaluate(&problem, &settings, &mut |_| true);
+            let question = Evaluate { order: Some(order), method, ..Evaluate::default() };
+            let oscillator = Oscillator::builtin(name).unwrap().set(parameter, &value).unwrap();
+            let found = oscillator.evaluate(&question, &Work::default());
             let label = format!("{name} {parameter} = {value} order {order} {method:?}");
             match found {
                 Ok(found) => {
+                    let found = found.value;
                     let exact = found.exact_period.as_ref().unwrap().decimal.clone();
                     count.add(label, (method, order), Ok(&found.resummed), &over_two_pi(&exact));
                 }

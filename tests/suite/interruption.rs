@@ -4,11 +4,13 @@
 
 use lindstedt::algebra::Stop;
 use lindstedt::averaging::{Averaging, AveragingSettings, average};
-use lindstedt::evaluate::{EvaluateSettings, evaluate};
 use lindstedt::expand::ExpandError;
 use lindstedt::numeric::{Tier, derive as derive_numbers};
 use lindstedt::series::resummation::{Method, ResummationError, Sample, UniformMap, resum_until};
-use lindstedt::{Derivation, Error, Exact, Progress, Settings, derive, problems};
+use lindstedt::{
+    Derivation, Error, Evaluate, Exact, Kind, Oscillator, Progress, Refusal, Settings, Work,
+    derive, problems,
+};
 use rug::Float;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -228,8 +230,10 @@ fn resummations() {
 fn evaluations() {
     for name in ["power-law", "pendulum", "duffing", "van-der-pol"] {
         let run = |stop| {
-            let settings = EvaluateSettings { order: Some(9), stop, ..EvaluateSettings::default() };
-            evaluate(&problems::find(name).unwrap(), &settings, &mut |_| true)
+            let question = Evaluate { order: Some(9), ..Evaluate::default() };
+            Oscillator::builtin(name)
+                .unwrap()
+                .evaluate(&question, &Work { stop, ..Work::default() })
         };
         let (stop, asked) = after(u64::MAX);
         assert!(run(stop).is_ok());
@@ -237,7 +241,8 @@ fn evaluations() {
         assert!(total > 500, "{name}: {total} questions");
         for i in 0..20 {
             let (stop, _) = after(total * i / 20);
-            assert!(interrupted(&run(stop)), "{name} {i} of {total}");
+            let stopped = run(stop).is_err_and(|error| error.kind() == Kind::Stopped);
+            assert!(stopped, "{name} {i} of {total}");
         }
     }
 }

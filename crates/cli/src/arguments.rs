@@ -1,6 +1,7 @@
 //! The arguments. Names are part of the public interface: add, do not rename.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use lindstedt::series::resummation::Method;
 use std::path::PathBuf;
 
 /// Perturbation expansions of strongly nonlinear and non-smooth oscillators, to any order.
@@ -175,6 +176,30 @@ pub enum Resum {
     BorelPade,
     /// The least error estimate, or a simpler method within a factor ten of it.
     Auto,
+}
+
+impl From<Resum> for Option<Method> {
+    fn from(resum: Resum) -> Self {
+        Some(match resum {
+            Resum::None => Method::PartialSum,
+            Resum::Pade => Method::Pade,
+            Resum::Uniform => Method::Uniform,
+            Resum::UniformPade => Method::UniformPade,
+            Resum::Conformal => Method::ConformalPade,
+            Resum::BorelPade => Method::BorelPade,
+            Resum::Auto => return None,
+        })
+    }
+}
+
+impl From<Language> for lindstedt::evaluate::Language {
+    fn from(language: Language) -> Self {
+        match language {
+            Language::Rust => Self::Rust,
+            Language::Python => Self::Python,
+            Language::Latex => Self::Latex,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

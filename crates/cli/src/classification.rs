@@ -1,6 +1,6 @@
 //! The condition asked for, for the verbs that still load a problem by themselves.
 
-pub use lindstedt::classification::{check, of, refusal};
+pub use lindstedt::classification::{check, of};
 use lindstedt::condition_name;
 use lindstedt::equation::Condition;
 

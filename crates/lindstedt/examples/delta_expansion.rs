@@ -1,7 +1,6 @@
 //! The small-delta expansion of x'' + x (x^2)^delta = 0 to order 8, and what it says about x^3.
 
-use lindstedt::evaluate::{EvaluateSettings, evaluate};
-use lindstedt::{Error, Settings, derive, problems};
+use lindstedt::{Error, Evaluate, Oscillator, Settings, Work, derive, problems};
 
 fn main() -> Result<(), Error> {
     let problem = problems::find("power-law").ok_or(Error::NoValue)?;
@@ -17,8 +16,8 @@ fn main() -> Result<(), Error> {
     println!("residual zero to order {}", result.checked_orders.ok_or(Error::NoValue)?);
 
     // delta = 1 is the default: x'' + x^3 = 0, on the circle of convergence.
-    let settings = EvaluateSettings { order: Some(20), ..EvaluateSettings::default() };
-    let value = evaluate(&problem, &settings, &mut |_| true)?;
+    let question = Evaluate { order: Some(20), ..Evaluate::default() };
+    let value = Oscillator::from_problem(&problem)?.evaluate(&question, &Work::default())?.value;
     let (sum, exact) = (value.period.ok_or(Error::NoValue)?, value.exact_period);
     println!("period of x'' + x^3 = 0: {} +- {}", sum.decimal, sum.error.unwrap_or_default());
     println!("closed form:             {}", exact.ok_or(Error::NoValue)?.decimal);

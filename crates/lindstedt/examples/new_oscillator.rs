@@ -1,6 +1,6 @@
 //! An oscillator of your own: Rayleigh's equation, its limit cycle to order 6, judged twice.
 
-use lindstedt::{Error, Oscillator, Verify, Work};
+use lindstedt::{Error, Evaluate, Oscillator, Verify, Work};
 
 fn main() -> Result<(), Error> {
     let oscillator = Oscillator::parse("x'' + x = eps*(x' - x'^3/3)")?;
@@ -13,7 +13,8 @@ fn main() -> Result<(), Error> {
     println!("substituted into the equation: vanishes identically at orders 0 to {checked}");
 
     // At a value: the series of the period, summed, with its estimated error.
-    let period = oscillator.clone().set("eps", "1/2")?.evaluate(None)?.period;
+    let value = oscillator.clone().set("eps", "1/2")?;
+    let period = value.evaluate(&Evaluate::default(), &Work::default())?.value.period;
     let period = period.ok_or(Error::NoValue)?;
     let error = period.error.unwrap_or_default();
     println!("period at eps = 1/2: {} +- {error}", period.decimal);

@@ -62,6 +62,7 @@ pub use derivation::{
 };
 pub use derive::Derive;
 pub use error::Error;
+pub use evaluate::Evaluate;
 pub use lindstedt_number::{Exact, Number, NumberError, Status};
 pub use lindstedt_problem_file::ProblemFile;
 pub use motion::Simulate;

@@ -1,9 +1,8 @@
 //! A problem with every value settled: what all questions are asked of.
 
 use crate::answer::{Header, SCHEMA};
-use crate::evaluate::{EvaluateSettings, Evaluation, evaluate};
 use crate::refusal::Refused;
-use crate::{Error, Exact, Progress, Remark, classification};
+use crate::{Error, Exact, Remark, classification};
 use lindstedt_equation::classify::{Classification, ClassifyError};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Condition, ParameterCard, Problem};
@@ -270,17 +269,6 @@ impl Oscillator {
             format!("{}: {name} follows: {how}; with pi only `simulate` computes it", self.origin);
         let hint = format!("in the file: {name} = {{ value = \"5*pi\" }} in the place of follows");
         Err(Refused::usage("no-value-set", message, hint).into())
-    }
-
-    /// The period by resummation, with the values set; the order is a quick one if nothing.
-    ///
-    /// # Errors
-    /// As [`evaluate`](crate::evaluate::evaluate).
-    pub fn evaluate(&self, order: Option<usize>) -> Result<Evaluation, Error> {
-        let (condition, parameters) = (self.condition, self.values.clone());
-        let settings =
-            EvaluateSettings { order, condition, parameters, ..EvaluateSettings::default() };
-        evaluate(&self.problem, &settings, &mut |_: Progress| true)
     }
 
     /// The header of an answer: the values are those that enter.

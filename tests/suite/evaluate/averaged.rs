@@ -1,14 +1,16 @@
 //! Averaged motions against the integrator.
 
-use super::support::integrated;
+use super::support::{integrated, valued};
 use lindstedt::equation::Problem;
-use lindstedt::evaluate::averaged::{Motion, MotionSettings, Start};
-use lindstedt::{Exact, problems};
+use lindstedt::evaluate::averaged::{Motion, Start};
+use lindstedt::{Exact, Work, problems};
 
 fn motion(problem: &Problem, order: usize, set: &[(&str, &str)], start: Start) -> Motion {
-    let parameters = set.iter().map(|(n, v)| ((*n).to_owned(), Exact::parse(v).unwrap())).collect();
-    let settings = MotionSettings { order, parameters, digits: 14, start };
-    Motion::new(problem, &settings, &mut |_| true).unwrap()
+    Motion::new(&valued(problem, set), order, &start, &work()).unwrap()
+}
+
+fn work() -> Work {
+    Work { digits: 14, ..Work::default() }
 }
 
 fn state(x: &str, v: &str) -> Start {
@@ -32,7 +34,7 @@ fn averaged_van_der_pol() {
         let expected = integrated(&problem, &[("eps", eps)], start, &times);
         for order in 2..=9 {
             let mut motion = motion(&problem, order, &[("eps", eps)], state(x, "0"));
-            let found = motion.at(&values(&times), &mut || true);
+            let found = motion.at(&values(&times), &work());
             assert_eq!(found.len(), times.len());
             for (moment, expected) in found.iter().zip(&expected) {
                 let x = &moment.displacement;
@@ -70,7 +72,7 @@ fn averaged_free_flight() {
     let expected = integrated(&model_problem, &still, [-0.5, 0.25], &times);
     let mut flight = motion(&problem, 10, &off, state("-1/2", "1/4"));
     assert!(flight.has_wall && flight.verdict().contains("between impacts"));
-    for (moment, expected) in flight.at(&values(&times), &mut || true).iter().zip(expected) {
+    for (moment, expected) in flight.at(&values(&times), &work()).iter().zip(expected) {
         let error = (moment.displacement.double - expected).abs();
         assert!(error <= moment.displacement.error + 1e-13 && error < 1e-9, "{error:e}");
     }
@@ -95,7 +97,7 @@ fn averaged_free_flight() {
         |t: f64| forced(t) + (r * t).exp() * (first * (w * t).cos() - second * (w * t).sin());
     // Backwards too.
     let times = [-3.0, 0.0, 2.0, 6.0];
-    for (moment, time) in flight.at(&values(&times), &mut || true).iter().zip(times) {
+    for (moment, time) in flight.at(&values(&times), &work()).iter().zip(times) {
         let error = (moment.displacement.double - exact(time)).abs();
         assert!(error <= moment.displacement.error + 1e-13, "{time}: {error:e}");
         assert!(error < 1e-8, "{time}: {error:e}");

@@ -1,9 +1,9 @@
 //! The built-in problems against closed forms.
 
-use super::support::{relative_error, relative_estimate, run, settings};
-use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
+use super::support::{question, relative_error, relative_estimate, run, valued};
+use lindstedt::evaluate::Trajectory;
 use lindstedt::series::resummation::{Kind, Method, ResummationError};
-use lindstedt::{Error, Exact, problems};
+use lindstedt::{Error, Evaluate, Exact, Work, problems};
 use rug::Float;
 
 /// Section 3 of the numbers: exponent and relative error of T at orders 2, 4, 8, 12, 20 by the
@@ -210,10 +210,10 @@ fn the_solution_at_asked_times() {
     ];
     for (name, order, expected, most) in cases {
         let problem = problems::find(name).unwrap();
-        let settings = EvaluateSettings { digits: 16, ..settings(order, None, &[]) };
-        let period = evaluate(&problem, &settings, &mut |_| true).unwrap();
-        let phase = Exact::parse("0").unwrap();
-        let path = Trajectory::new(&problem, &settings, &period, phase, &mut |_| true).unwrap();
+        let work = Work { digits: 16, ..Work::default() };
+        let (oscillator, asked) = (valued(&problem, &[]), question(order, None));
+        let period = oscillator.evaluate(&asked, &work).unwrap().value;
+        let path = Trajectory::new(&oscillator, &asked, &period, &work).unwrap();
         for (time, expected) in ["1/2", "1", "2", "3"].iter().zip(expected) {
             let found = path.at(&Exact::parse(time).unwrap());
             let error = (found.double - expected).abs();
@@ -222,7 +222,8 @@ fn the_solution_at_asked_times() {
         }
         // Half a period later with phase pi: the same, by symmetry with the other sign.
         let half = Exact::PiTimes(rug::Rational::from(1));
-        let shifted = Trajectory::new(&problem, &settings, &period, half, &mut |_| true).unwrap();
+        let half = Evaluate { phase: half, ..asked };
+        let shifted = Trajectory::new(&oscillator, &half, &period, &work).unwrap();
         let (a, b) =
             (path.at(&Exact::parse("1").unwrap()), shifted.at(&Exact::parse("1").unwrap()));
         assert!((a.double + b.double).abs() < 1e-9);

@@ -1,14 +1,15 @@
 //! Problem files: limit cycles, conservative oscillators, solutions, refusals.
 
 use super::support::{
-    example, integrated, quantity, relative_error, relative_estimate, settings, written,
+    evaluate, example, integrated, quantity, question, relative_error, relative_estimate, valued,
+    written,
 };
 use lindstedt::equation::{Condition, Problem};
-use lindstedt::evaluate::{EvaluateSettings, Trajectory, evaluate};
+use lindstedt::evaluate::Trajectory;
 use lindstedt::simulate::{
     Digits, EventKind, Integrator, Model, Parameters, Real, Report, Settings as Precision,
 };
-use lindstedt::{Error, Exact, problems};
+use lindstedt::{Error, Exact, Work, problems};
 use rug::Float;
 use std::ops::ControlFlow;
 
@@ -66,7 +67,7 @@ fn limit_cycles_of_files() {
         (own, &[("eps", "1/5"), ("c", "-1/10")], 1e-8),
     ];
     for (problem, set, most) in cases {
-        let found = evaluate(&problem, &settings(24, None, set), &mut |_| true).unwrap();
+        let found = evaluate(&problem, 24, None, set).unwrap();
         let exact = cycle_period(&problem, set, 320).to_string();
         let (error, estimate) = (relative_error(&found, &exact), relative_estimate(&found, &exact));
         assert!(error <= estimate + 1e-22, "{} {set:?}: {error:e} {estimate:e}", problem.name);
@@ -155,7 +156,7 @@ fn conservative_files() {
     ];
     for (problem, set, force, amplitude, is_closed) in cases {
         let order = if problem.small == "delta" && !is_closed { 8 } else { 24 };
-        let found = evaluate(&problem, &settings(order, None, set), &mut |_| true).unwrap();
+        let found = evaluate(&problem, order, None, set).unwrap();
         let exact = energy_period(&force, amplitude);
         let period = found.period.as_ref().unwrap();
         let (value, error) = (&period.decimal, period.error.as_ref().unwrap());
@@ -182,11 +183,11 @@ fn solutions_of_files() {
         (example("duffing-van-der-pol"), &[("eps", "1/10")]),
     ];
     for (problem, set) in cases {
-        let settings = EvaluateSettings { digits: 16, ..settings(20, None, set) };
-        let period = evaluate(&problem, &settings, &mut |_| true).unwrap();
+        let work = Work { digits: 16, ..Work::default() };
+        let (oscillator, asked) = (valued(&problem, set), question(20, None));
+        let period = oscillator.evaluate(&asked, &work).unwrap().value;
         let zero = Exact::parse("0").unwrap();
-        let path =
-            Trajectory::new(&problem, &settings, &period, zero.clone(), &mut |_| true).unwrap();
+        let path = Trajectory::new(&oscillator, &asked, &period, &work).unwrap();
         let start = path.at(&zero).double;
         let times = [0.5, 1.0, 2.0, 5.0];
         let expected = integrated(&problem, set, [start, 0.0], &times);
@@ -203,9 +204,7 @@ fn solutions_of_files() {
 /// What cannot be evaluated says so.
 #[test]
 fn refusals_of_files() {
-    let run = |problem: &Problem, set: &[(&str, &str)]| {
-        evaluate(problem, &settings(6, None, set), &mut |_| true)
-    };
+    let run = |problem: &Problem, set: &[(&str, &str)]| evaluate(problem, 6, None, set);
     let named = |error: Error| match error {
         Error::Unset { name, .. } => name,
         other => panic!("{other}"),
@@ -221,10 +220,12 @@ fn refusals_of_files() {
     assert!(
         matches!(unknown, Err(Error::UnknownParameter { known, .. }) if known == "amplitude, eps")
     );
-    for name in ["stick-slip", "vibro-impact", "wright"] {
+    for name in ["vibro-impact", "wright"] {
         let found = run(&example(name), &[("eps", "1")]);
         assert!(matches!(found, Err(Error::NotEvaluated { .. })), "{name}");
     }
+    let found = run(&example("stick-slip"), &[]);
+    assert!(matches!(found, Err(Error::Refused(why)) if why.code == "no-method"));
     // A wall bounds a motion whose expansion does not know it.
     let mut walled = duffing.clone();
     walled.impact = problems::vibro_impact::problem().impact;
@@ -239,7 +240,7 @@ fn the_nearest_singularity_does_not_depend_on_the_order() {
     let mixture = written("x'' + x = eps (1 - x^2/2 - x'^2/6) x'", "condition = 'limit-cycle'\n");
     let mut before: Option<f64> = None;
     for order in [40, 60, 70] {
-        let found = evaluate(&mixture, &settings(order, None, &[("eps", "1")]), &mut |_| true);
+        let found = evaluate(&mixture, order, None, &[("eps", "1")]);
         let found = found.unwrap().resummed.singularity.unwrap();
         assert!((found.exponent.to_f64() - 0.5).abs() < 2e-2, "{order} {}", found.exponent);
         let place = found.at.re.to_f64();
@@ -249,7 +250,7 @@ fn the_nearest_singularity_does_not_depend_on_the_order() {
     }
     for order in [30, 40] {
         let law = problems::find("power-law").unwrap();
-        let found = evaluate(&law, &settings(order, None, &[("n", "5")]), &mut |_| true).unwrap();
+        let found = evaluate(&law, order, None, &[("n", "5")]).unwrap();
         if let Some(found) = found.resummed.singularity {
             assert!((found.at.re.to_f64() + 1.0).abs() < 0.03, "{order} {}", found.at.re);
         }
@@ -263,7 +264,7 @@ fn a_singularity_that_fewer_orders_contradict_has_a_large_error() {
     let force = "x'' + x + eps (8/3 x^4 + 4/3 x^2 + x^5) = 0";
     let problem = written(force, "condition = 'initial-amplitude'\n");
     for order in [24, 30, 40, 50] {
-        let found = evaluate(&problem, &settings(order, None, &[("eps", "1/100")]), &mut |_| true);
+        let found = evaluate(&problem, order, None, &[("eps", "1/100")]);
         let found = found.unwrap().resummed.singularity.unwrap();
         let distance = (found.at.re.to_f64() - 0.137_631_990_320_583).abs();
         assert!(
@@ -280,10 +281,10 @@ fn a_singularity_that_fewer_orders_contradict_has_a_large_error() {
 #[test]
 fn approximants_of_the_lowest_orders_alone_are_no_value() {
     let set = [("eps", "1/10"), ("alpha_2", "1/2")];
-    let initial = Some(Condition::InitialAmplitude);
+    let oscillator = valued(&example("helmholtz-duffing"), &set);
+    let oscillator = oscillator.under(Condition::InitialAmplitude).unwrap();
     for order in [6, 7, 8] {
-        let asked = EvaluateSettings { condition: initial, ..settings(order, None, &set) };
-        let found = evaluate(&example("helmholtz-duffing"), &asked, &mut |_| true).unwrap();
+        let found = oscillator.evaluate(&question(order, None), &Work::default()).unwrap().value;
         let period = found.period.unwrap();
         let number = |text: &str| text.parse::<f64>().unwrap();
         let distance = (number(&period.decimal) - 6.265_546_653_426_539).abs();

@@ -1,17 +1,32 @@
 //! What the tests of evaluation share.
 
 use lindstedt::equation::Problem;
-use lindstedt::evaluate::{EvaluateSettings, Evaluation, evaluate};
+use lindstedt::evaluate::Evaluation;
 use lindstedt::series::resummation::Method;
 use lindstedt::simulate::{
     Doubles, Integrator, Model, Parameters, Quantity, Settings as Precision, Trajectory as Path,
 };
-use lindstedt::{Error, Exact, ProblemFile, problems};
+use lindstedt::{Error, Evaluate, Oscillator, ProblemFile, Work, problems};
 use rug::Float;
 
-pub fn settings(order: usize, method: Option<Method>, set: &[(&str, &str)]) -> EvaluateSettings {
-    let parameters = set.iter().map(|(n, v)| ((*n).to_owned(), Exact::parse(v).unwrap())).collect();
-    EvaluateSettings { order: Some(order), method, parameters, ..EvaluateSettings::default() }
+/// A problem with values.
+pub fn valued(problem: &Problem, set: &[(&str, &str)]) -> Oscillator {
+    let oscillator = Oscillator::from_problem(problem).unwrap();
+    set.iter().fold(oscillator, |oscillator, (name, value)| oscillator.set(name, value).unwrap())
+}
+
+pub fn question(order: usize, method: Option<Method>) -> Evaluate {
+    Evaluate { order: Some(order), method, ..Evaluate::default() }
+}
+
+pub fn evaluate(
+    problem: &Problem,
+    order: usize,
+    method: Option<Method>,
+    set: &[(&str, &str)],
+) -> Result<Evaluation, Error> {
+    let found = valued(problem, set).evaluate(&question(order, method), &Work::default());
+    found.map(|answer| answer.value)
 }
 
 pub fn run(
@@ -20,7 +35,7 @@ pub fn run(
     method: Option<Method>,
     set: &[(&str, &str)],
 ) -> Result<Evaluation, Error> {
-    evaluate(&problems::find(name).unwrap(), &settings(order, method, set), &mut |_| true)
+    evaluate(&problems::find(name).unwrap(), order, method, set)
 }
 
 /// |value/exact - 1| of T/2pi without the amplitude, from the raw outcome.

@@ -1,7 +1,6 @@
 //! The period by resummation and in closed form.
 
 use super::support::{Grid, rational, set};
-use lindstedt::evaluate::{EvaluateSettings, evaluate};
 use lindstedt::problems;
 use lindstedt::series::resummation::Method;
 use rug::float::Constant;
@@ -105,17 +104,15 @@ struct Cell<'a> {
 fn judge(grid: &mut Grid, cell: &Cell<'_>, truth: Option<&(Float, u32)>) {
     let Cell { problem, set: parameters, order, digits, method } = *cell;
     let label = format!("{problem} {parameters:?} order {order} digits {digits} {method:?}");
-    let settings = EvaluateSettings {
-        order: Some(order),
-        method,
-        parameters: set(parameters),
-        digits,
-        ..EvaluateSettings::default()
-    };
+    let question = Evaluate { order: Some(order), method, ..Evaluate::default() };
+    let work = Work { digits: u32::try_from(digits).unwrap(), ..Work::default() };
+    let oscillator = Oscillator::builtin(problem).unwrap();
+    let oscillator = set(parameters)
+        .into_iter()
+        .fold(oscillator, |oscillator, (name, value)| oscillator.with(&name, value));
     grid.cell(&label, |grid| {
-        let found = evaluate(&problems::find(problem).unwrap(), &settings, &mut |_| true);
-        let found = match found {
-            Ok(found) => found,
+        let found = match oscillator.evaluate(&question, &work) {
+            Ok(found) => found.value,
             Err(error) => return grid.refused(&error),
         };
         let Some((truth, known)) = truth else {

@@ -6,13 +6,15 @@ mod report;
 use crate::Outcome;
 use crate::arguments::{Format, TradeOptions};
 use crate::classification;
-use crate::evaluate::set_order_parameter;
 use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output;
-use crate::session::{self, Session};
-use lindstedt::Error;
-use lindstedt::equation::Condition;
+use crate::session::{self, Loaded, Session};
+use lindstedt::equation::{Condition, Expression};
+use lindstedt::problem_file::parse_equation;
 use lindstedt::trade::{Plan, Row, measure, most_accurate, recommend, recommend_for_many};
+use lindstedt::{Error, Exact};
+use rug::Rational;
+use std::collections::BTreeMap;
 
 /// What a recommendation is asked for.
 #[derive(Clone, Copy)]
@@ -55,6 +57,25 @@ impl Wanted {
     fn is_met(self, rows: &[Row]) -> bool {
         self.error.is_none_or(|_| self.best(rows).is_some())
             && self.seconds.is_none_or(|_| self.within(rows).is_some())
+    }
+}
+
+/// Where the small parameter only counts orders (the equation as it was written does not mention
+/// it, a table of orders puts it in) it is 1, unless it is set.
+fn set_order_parameter(loaded: &Loaded, given: &mut BTreeMap<String, Exact>) {
+    let problem = &loaded.problem;
+    let written = loaded.file.as_ref().map(|file| parse_equation(&file.equation, &file.names));
+    let mentions = |e: &Expression| e.contains(&Expression::Small);
+    let counts_only = match &written {
+        Some(Ok(equation)) => !mentions(equation),
+        // Built-in problems have a card for a small parameter that means something.
+        None => problem.conditions.contains(&Condition::FreeAmplitude) && problem.impact.is_some(),
+        Some(Err(_)) => false,
+    };
+    let listed = problem.parameters.iter().any(|card| card.name == problem.small);
+    if counts_only && !listed {
+        let one = || Exact::Rational(Rational::from(1));
+        given.entry(problem.small.to_string()).or_insert_with(one);
     }
 }
 

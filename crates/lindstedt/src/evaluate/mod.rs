@@ -1,109 +1,54 @@
-//! Values from an expansion: period and frequency at given parameters, by resummation of the
-//! series of T/2pi, beside the closed form where there is one.
+//! The question `evaluate`: period and frequency at given parameters, by resummation of the
+//! series of T/2pi, beside the closed form where there is one; x(t) at given times.
 
 pub mod averaged;
 pub(crate) mod closed;
+mod code;
 pub(crate) mod coefficients;
 pub(crate) mod few;
+mod json;
+mod period;
 pub(crate) mod setting;
 mod solution;
 pub(crate) mod source;
+mod times;
+mod words;
 
-use crate::Number;
-use crate::{Error, Exact, Progress};
-use lindstedt_algebra::Stop;
-use lindstedt_equation::{Condition, Problem};
-use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::certified;
-use lindstedt_series::resummation::{
-    Growth, Kind, Method, Pade, Picture, ResummationError, Resummed, resum_until,
-};
-use rug::Float;
-use setting::{Form, Setting};
-pub use solution::{Displacement, Fourier, Trajectory};
-use source::{Source, remembered};
-use std::collections::BTreeMap;
+use crate::refusal::Refused;
+use crate::start::Taken;
+use crate::{Answer, Error, Exact, Kind, Oscillator, Refusal, Remark, Standing, Work};
+pub use code::{Language, SolutionCode};
+pub use json::Place;
+use lindstedt_equation::{Condition, Expression};
+use lindstedt_expand::ExpandError;
+use lindstedt_problem_file::parse_equation;
+use lindstedt_series::resummation::Method;
+pub use period::Evaluation;
+use rug::Rational;
+use setting::Setting;
+pub use solution::{Displacement, Displacements, Fourier, Trajectory};
+use std::time::Instant;
+pub use times::Times;
+pub use words::{kind_name, method_flag, method_name, rounded, with_error};
 
 /// What to evaluate.
 #[derive(Clone, Debug)]
-pub struct EvaluateSettings {
+pub struct Evaluate {
     /// The highest order of the expansion; a quick one if nothing.
     pub order: Option<usize>,
     /// The method; nothing is `auto`, the one with the least error estimate.
     pub method: Option<Method>,
-    /// The normalisation; the problem's default if nothing.
-    pub condition: Option<Condition>,
-    /// Values of parameters by name, the small one included.
-    pub parameters: BTreeMap<String, Exact>,
-    /// Digits asked for; an estimate has as many of them as its error allows.
-    pub digits: usize,
-    /// The memory that may be used, in bytes.
-    pub memory: u64,
-    /// Asked within long steps whether to stop.
-    pub stop: Stop,
+    /// The times at which x is asked for.
+    pub times: Option<Times>,
+    /// x(t) = X(omega t + phase), X(0) at rest.
+    pub phase: Exact,
 }
 
-impl Default for EvaluateSettings {
+impl Default for Evaluate {
+    /// A quick order, the best method, no times, phase 0.
     fn default() -> Self {
-        Self {
-            order: None,
-            method: None,
-            condition: None,
-            parameters: BTreeMap::new(),
-            digits: 30,
-            memory: 8 << 30,
-            stop: Stop::default(),
-        }
-    }
-}
-
-/// A period and how it was found.
-#[derive(Debug)]
-pub struct Evaluation {
-    /// The parameters, the derived ones included.
-    pub at: Vec<(String, Exact)>,
-    /// The variable of the series.
-    pub variable: String,
-    /// The order of the expansion in the small parameter.
-    pub order: usize,
-    /// The period by resummation; nothing where not one digit is supported. Without an error
-    /// where the coefficients are too few for an estimate.
-    pub period: Option<Number>,
-    /// 2 pi over the period.
-    pub frequency: Option<Number>,
-    /// The period by the closed form, and that form.
-    pub exact_period: Option<Number>,
-    /// |period - exact period|, where both are known.
-    pub true_error: Option<String>,
-    /// What was done, what the alternatives gave, what the coefficients tell.
-    pub resummed: Resummed,
-    /// The best truncation of a divergent series: order and partial sum of T.
-    pub best_truncation: Option<(usize, Option<Number>)>,
-    /// What is proved about the radius of convergence: its value, and why.
-    pub radius: Option<(f64, &'static str)>,
-    /// The best that is known of the period: the closed form, else the estimate.
-    best_period: Ball,
-    /// Whether an error of the period is known.
-    is_estimated: bool,
-    /// Whether the coefficients are too few for an estimate: a few digits of the sum are shown.
-    no_estimate: bool,
-    /// Bits asked for.
-    accuracy: u32,
-    /// In words.
-    pub verdict: String,
-    /// Poles and zeros of the diagonal Pade approximant of the highest order.
-    pub picture: Option<Picture>,
-}
-
-/// The order that takes well below a second.
-fn default_order(form: &Form) -> usize {
-    match form {
-        Form::PowerLaw { .. } => 20,
-        Form::Sums => 24,
-        Form::Cubic { .. } => 30,
-        Form::Relaxation => 60,
-        Form::Conservative | Form::Polynomial => 24,
-        Form::Logarithmic => 8,
+        let phase = Exact::Rational(Rational::new());
+        Self { order: None, method: None, times: None, phase }
     }
 }
 
@@ -112,331 +57,168 @@ fn bits_for(digits: usize) -> u32 {
     u32::try_from(digits).unwrap_or(u32::MAX / 8).saturating_mul(4).saturating_add(32)
 }
 
-/// Evaluates the period of a problem: of the library, of a file, or built from an equation.
-///
-/// The series of T/2pi in the small parameter is summed; which quantity is truncated matters, and
-/// it is always this one. `period` and `frequency` are estimated; `exact_period` is certified, and
-/// there for x'' + k x (x^2)^delta, x'' + k x + c eps x^3 and the pendulum with a given amplitude.
-///
-/// # Errors
-/// [`Error::NotEvaluated`] for a problem without a periodic solution that is expanded (no
-/// condition, a free amplitude, a wall); [`Error::Unset`] where the small parameter or another one
-/// has no value; [`Error::OutsideDomain`] and [`Error::UnknownParameter`] for parameters,
-/// [`Error::Resummation`] where the method asked for does not apply, and what
-/// [`crate::derive()`] returns.
-///
-/// ```
-/// use lindstedt::evaluate::{EvaluateSettings, evaluate};
-/// use lindstedt::problems;
-/// let problem = problems::find("power-law").ok_or("no such problem")?;
-/// let result = evaluate(&problem, &EvaluateSettings::default(), &mut |_| true)?;
-/// let exact = result.exact_period.ok_or("no closed form")?;
-/// assert_eq!(exact.decimal, "7.41629870920548767373540138878");
-/// let period = result.period.ok_or("not one digit")?;
-/// assert!(period.decimal.starts_with("7.41629870920548"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn evaluate(
-    problem: &Problem,
-    settings: &EvaluateSettings,
-    observer: &mut dyn FnMut(Progress) -> bool,
-) -> Result<Evaluation, Error> {
-    let setting = Setting::new(problem, settings.condition, &settings.parameters)?;
-    let order = settings.order.unwrap_or_else(|| default_order(&setting.form));
-    let limits = (settings.memory, &settings.stop);
-    let accuracy = bits_for(settings.digits);
-    source::limit_memory(&setting.form, order, accuracy, settings.memory)?;
-    let source = Source::new(&setting, order, limits, observer)?;
-    if !observer(Progress::Checking) {
-        return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
-    }
-    let sample = remembered(|bits| if settings.stop.asked() { None } else { source.sample(bits) });
-    let few = few::partial_sum(&sample, source.known, settings.method, accuracy);
-    let resummed =
-        few.unwrap_or_else(|| resum_until(&sample, settings.method, accuracy, &settings.stop));
-    if settings.stop.asked() {
-        return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
-    }
-    let resummed = resummed
-        .map_err(|reason| Error::Resummation { problem: problem.name.to_string(), reason })?;
-    let exact_period = match &source.closed {
-        None => None,
-        Some((form, formula)) => {
-            let found = certified(Some(form.clone()), settings.digits, formula);
-            if settings.stop.asked() {
-                return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
+impl Oscillator {
+    /// The period, 2 pi over it, and with times the solution x(t).
+    ///
+    /// The series of T/2pi in the small parameter is summed; which quantity is truncated matters, and
+    /// it is always this one. `period` and `frequency` are estimated; `exact_period` is certified, and
+    /// there for x'' + k x (x^2)^delta, x'' + k x + c eps x^3 and the pendulum with a given amplitude.
+    /// A small parameter that only counts orders is 1; x(0) of a file is its amplitude.
+    ///
+    /// Undecided where not one digit of the period is supported; stopped work leaves the times that
+    /// were reached.
+    ///
+    /// # Errors
+    /// [`Error::NotEvaluated`] for a problem without a periodic solution that is expanded (no
+    /// condition, a free amplitude, a wall); [`Error::Unset`] where the small parameter or another one
+    /// has no value; [`Error::OutsideDomain`] and [`Error::UnknownParameter`] for parameters,
+    /// [`Error::Resummation`] where the method asked for does not apply, and what
+    /// [`Oscillator::derive`] returns.
+    ///
+    /// ```
+    /// use lindstedt::{Error, Evaluate, Oscillator, Work};
+    /// let cubic = Oscillator::builtin("power-law")?;
+    /// let found = cubic.evaluate(&Evaluate::default(), &Work::default())?.value;
+    /// let exact = found.exact_period.ok_or(Error::NoValue)?;
+    /// assert_eq!(exact.decimal, "7.41629870920548767373540138878");
+    /// let period = found.period.ok_or(Error::NoValue)?;
+    /// assert!(period.decimal.starts_with("7.41629870920548"));
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn evaluate(&self, question: &Evaluate, work: &Work) -> Result<Answer<Evaluation>, Error> {
+        let start = Instant::now();
+        let (case, mut remarks) = self.settled()?;
+        let mut value = period::period(&case, question, work).map_err(|e| case.unevaluated(e))?;
+        let mut standing = Standing::Complete;
+        if let Some(times) = &question.times {
+            let path = case.path(&value, question, work)?;
+            let found = path.table(times, work);
+            if !found.complete {
+                let stopped = "stopped; the times not reached are missing";
+                remarks.push(Remark(stopped.to_owned()));
+                standing = Standing::Stopped { done: found.points.len() };
             }
-            Some(found?)
+            value.solution = Some(found);
         }
-    };
-    let balls = Balls::new(resummed.bits).with_guard(64);
-    let scale = period_scale(&source, balls)?;
-    let estimate = &resummed.outcome.estimate;
-    let mut period = balls.mul(&balls.from_parts(&estimate.value, &estimate.error), &scale);
-    let closed = source.closed.as_ref().and_then(|(_, formula)| formula(balls));
-    let value = balls.mul(&balls.from_parts(&estimate.value, &Float::new(53)), &scale);
-    let difference = closed.as_ref().map(|exact| balls.sub(&value, exact).abs_upper());
-    if let Some(error) = &difference
-        && (!estimate.error.is_finite() || error > period.radius())
-    {
-        // Too few orders for an estimate, or an estimate that fails: the closed form measures
-        // the error.
-        period = balls.add_error(&value, error);
-    }
-    let no_estimate = !estimate.error.is_finite() && few::has_no_estimate(source.known);
-    let is_estimated = period.is_finite();
-    if !is_estimated && no_estimate {
-        period = value;
-    }
-    // A measured error above the value leaves no digit.
-    let has_no_digit =
-        no_estimate && is_estimated && *period.radius() >= period.midpoint().clone().abs();
-    let number = |ball: &Ball| match no_estimate {
-        _ if has_no_digit => None,
-        false => Number::estimated(ball, settings.digits),
-        true => few::plain(ball, settings.digits, is_estimated),
-    };
-    let frequency = balls.div(&balls.mul_i64(&balls.pi(), 2), &period);
-    let best = best_truncation(&sample, &resummed, &scale, settings.digits);
-    let picture = picture(&sample, resummed.bits, &settings.stop);
-    if settings.stop.asked() {
-        return Err(lindstedt_expand::ExpandError::Interrupted { order }.into());
-    }
-    let mut result = Evaluation {
-        order,
-        period: number(&period),
-        frequency: frequency.and_then(|f| number(&f)),
-        exact_period,
-        true_error: difference.map(|error| short(&error)),
-        resummed,
-        best_truncation: best,
-        radius: source.radius,
-        best_period: closed.unwrap_or(period),
-        is_estimated,
-        no_estimate,
-        accuracy,
-        verdict: String::new(),
-        picture,
-        at: source.at.clone(),
-        variable: source.variable.clone(),
-    };
-    result.verdict = result.describe();
-    Ok(result)
-}
-
-/// 2 pi times the factor of the series.
-fn period_scale(source: &Source, balls: Balls) -> Result<Ball, Error> {
-    let factor = (source.factor)(balls).filter(Ball::is_finite).ok_or(Error::NoValue)?;
-    Ok(balls.mul(&balls.mul_i64(&balls.pi(), 2), &factor))
-}
-
-fn short(x: &Float) -> String {
-    if x.is_zero() { "0".to_owned() } else { format!("{:.1e}", Float::with_val(53, x)) }
-}
-
-/// The smallest term of a series that diverges at the point.
-fn best_truncation(
-    sample: &dyn Fn(u32) -> Option<lindstedt_series::resummation::Sample>,
-    resummed: &Resummed,
-    scale: &Ball,
-    digits: usize,
-) -> Option<(usize, Option<Number>)> {
-    let outcome = sample(resummed.bits)?.sum(Method::PartialSum, None, 64).ok()?;
-    let order = outcome.smallest_term?;
-    let balls = Balls::new(resummed.bits);
-    let ball = balls.from_parts(&outcome.estimate.value, &outcome.estimate.error);
-    Some((order, Number::estimated(&balls.mul(&ball, scale), digits)))
-}
-
-/// The poles and zeros of the diagonal approximant.
-fn picture(
-    sample: &dyn Fn(u32) -> Option<lindstedt_series::resummation::Sample>,
-    bits: u32,
-    stop: &Stop,
-) -> Option<Picture> {
-    let sample = sample(bits)?;
-    let order = sample.coefficients.len().checked_sub(1).filter(|order| *order > 1)?;
-    let half = order / 2;
-    Pade::until(stop, &sample.coefficients, order - half, half, bits)?.picture_until(stop)
-}
-
-/// A double with the digits that its error leaves, and the error rounded up to one digit.
-#[must_use]
-pub fn with_error(value: f64, error: f64) -> String {
-    let [value, error] = rounded(value, error);
-    format!("{value} +- {error}")
-}
-
-/// A double to the place of the first digit of its error, and the error rounded up to that digit.
-#[must_use]
-pub fn rounded(value: f64, error: f64) -> [String; 2] {
-    let least = value.abs().max(f64::MIN_POSITIVE) * f64::EPSILON;
-    let error = error.abs().max(least);
-    let exponent = error.log10().floor();
-    let unit = 10f64.powi(exponent as i32);
-    let error = (error / unit * (1.0 - 1e-9)).ceil() * unit;
-    let size = value.abs().max(error);
-    if exponent > 0.0 || !(1e-4..1e6).contains(&size) {
-        let digits = (size.log10().floor() - exponent).clamp(0.0, 17.0) as usize;
-        return [format!("{value:.digits$e}"), format!("{error:.0e}")];
-    }
-    let places = (-exponent).clamp(0.0, 17.0) as usize;
-    let error = if exponent < -4.0 { format!("{error:.0e}") } else { format!("{error:.places$}") };
-    [format!("{value:.places$}"), error]
-}
-
-/// The name of a method in words.
-#[must_use]
-pub fn method_name(method: Method) -> &'static str {
-    match method {
-        Method::PartialSum => "partial sum",
-        Method::Pade => "Pade",
-        Method::Uniform => "uniform (series in u)",
-        Method::UniformPade => "Pade in u",
-        Method::ConformalPade => "conformal map and Pade",
-        Method::BorelPade => "Borel and Pade",
-        _ => "another method",
-    }
-}
-
-/// The name of a kind of singularity.
-#[must_use]
-pub fn kind_name(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Pole => "pole",
-        Kind::SquareRoot => "square root",
-        Kind::InverseSquareRoot => "inverse square root",
-        Kind::Logarithm => "logarithm",
-        _ => "power",
-    }
-}
-
-impl Evaluation {
-    /// What was done and why, in one or two sentences.
-    fn describe(&self) -> String {
-        let outcome = &self.resummed.outcome;
-        let mut parts = Vec::new();
-        let name = &self.variable;
-        parts.push(match (self.radius, self.resummed.growth) {
-            (Some((0.0, why)), _) => {
-                format!("the series in {name} diverges for every {name} but 0 ({why}): it is asymptotic")
-            }
-            (Some((radius, why)), _) => {
-                format!("the series in {name} has radius of convergence {radius} ({why})")
-            }
-            (None, Growth::Factorial { rate }) => format!(
-                "the series in {name} seems to diverge for every {name} but 0 (coefficients grow like \
-                 n!^{rate:.1}): asymptotic"
-            ),
-            (None, Growth::Entire) => {
-                format!("the coefficients in {name} fall like those of an entire function")
-            }
-            _ => match self.estimated_radius() {
-                Some((radius, error)) => {
-                    let radius = with_error(radius, error);
-                    format!("the series in {name} has radius of convergence {radius} (estimated)")
-                }
-                None => "too few coefficients to estimate the radius of convergence".to_owned(),
-            },
-        });
-        if let Some((order, number)) = &self.best_truncation {
-            let value = number.as_ref().map_or_else(String::new, |n| format!(": {}", n.decimal));
-            parts.push(format!("best truncation at order {order}{value}"));
+        if standing == Standing::Complete && value.period.is_none() {
+            let none = "the expansion gives not one digit of the period here";
+            remarks.push(Remark(none.to_owned()));
+            standing = Standing::Undecided;
         }
-        let method = method_name(self.resummed.method);
-        let degrees = outcome.degrees.map_or_else(String::new, |(l, m)| format!(" [{l}/{m}]"));
-        let choice = self.choice();
-        parts.push(match &self.period {
-            Some(Number { error: Some(error), .. }) if self.no_estimate => format!(
-                "{method}{degrees} of order {}, no estimate from so few coefficients; against the \
-                 closed form the error is {error}",
-                self.order
-            ),
-            Some(Number { error: Some(error), .. }) => {
-                format!("summed by {method}{degrees}{choice}, estimated error {error}")
-            }
-            Some(_) => format!(
-                "{method}{degrees} of order {}, no estimate from so few coefficients",
-                self.order
-            ),
-            None if self.no_estimate => format!(
-                "{method}{degrees} of order {} gives not one digit: against the closed form the \
-                 error is {}",
-                self.order,
-                self.true_error.as_deref().unwrap_or("larger than the value")
-            ),
-            None => format!(
-                "{method}{degrees} gives not one digit: neighbouring approximants do not agree"
-            ),
-        });
-        parts.join("; ")
+        let at = value.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
+        let header = self.header(at, Some(value.order), "resummation", start);
+        Ok(Answer { header, value, standing, remarks })
     }
 
-    /// The radius of convergence and its error, both estimated, where the coefficients have one:
-    /// the modulus of the nearest singularity where that is found and agrees with the slope of
-    /// log |c_n|, else that slope.
-    #[must_use]
-    pub fn estimated_radius(&self) -> Option<(f64, f64)> {
-        let found = self.resummed.singularity.as_ref();
-        // The disagreement of a few approximants is no bound: twice as much.
-        let modulus = found.map(|s| (s.at.abs().to_f64(), 2.0 * s.error.to_f64()));
-        match self.resummed.growth {
-            Growth::Radius { radius, error } => {
-                let agrees = |pair: &(f64, f64)| (pair.0 - radius).abs() <= error + pair.1;
-                Some(modulus.filter(agrees).unwrap_or((radius, error)))
-            }
-            Growth::Undecided => modulus,
-            _ => None,
+    /// The solution as a function in a language: its harmonics in omega t, in doubles.
+    ///
+    /// # Errors
+    /// As [`Oscillator::evaluate`]; [`Refused`] where the expansion has no value at some phase.
+    ///
+    /// ```
+    /// use lindstedt::evaluate::Language;
+    /// use lindstedt::{Evaluate, Oscillator, Work};
+    /// let duffing = Oscillator::builtin("duffing")?.set("eps", "1/10")?;
+    /// let question = Evaluate { order: Some(6), ..Evaluate::default() };
+    /// let code = duffing.solution_code(&question, Language::Python, 3, &Work::default())?;
+    /// assert!(code.value.code.contains("def displacement(t):"));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn solution_code(
+        &self,
+        question: &Evaluate,
+        language: Language,
+        harmonics: usize,
+        work: &Work,
+    ) -> Result<Answer<SolutionCode>, Error> {
+        let start = Instant::now();
+        let (case, remarks) = self.settled()?;
+        let found = period::period(&case, question, work).map_err(|e| case.unevaluated(e))?;
+        let path = case.path(&found, question, work)?;
+        let value = SolutionCode::new(&self.problem().name, &path, language, harmonics)?;
+        let at = found.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
+        let header = self.header(at, Some(path.order()), "resummation", start);
+        Ok(Answer { header, value, standing: Standing::Complete, remarks })
+    }
+
+    /// x(t) of a period; a period without a digit has none.
+    fn path(
+        &self,
+        found: &Evaluation,
+        question: &Evaluate,
+        work: &Work,
+    ) -> Result<Trajectory, Error> {
+        if found.period.is_none() && found.exact_period.is_none() {
+            return Err(Refused::undecided(
+                "no-value",
+                "the period has not one digit at these parameters, so x(t) has none",
+                "a higher --order, another --resum, or `lindstedt simulate`",
+            )
+            .into());
         }
+        Trajectory::new(self, question, found, work).map_err(|error| self.unevaluated(error))
     }
 
-    /// Why the method was taken, where there was a choice.
-    fn choice(&self) -> String {
-        let Resummed { tried, method, outcome, .. } = &self.resummed;
-        let errors = || tried.iter().filter_map(|(m, e)| Some((m, e.as_ref().ok()?)));
-        let finite = || errors().filter(|(_, error)| error.is_finite());
-        let Some((_, own)) = errors().find(|(m, _)| *m == method).filter(|_| tried.len() > 1)
+    /// The case with a value for a parameter that only counts orders, and with the amplitude that the
+    /// initial data of its file mean; refuses what cannot be expanded.
+    fn settled(&self) -> Result<(Self, Vec<Remark>), Error> {
+        self.without_pi()?;
+        self.check()?;
+        let case = self.with_order_parameter();
+        let mut remarks = self.remarks().to_vec();
+        let initial = self.problem_file().initial.as_ref();
+        let Some([x, velocity]) =
+            initial.filter(|_| self.condition() == Some(Condition::InitialAmplitude))
         else {
-            return String::new();
+            return Ok((case, remarks));
         };
-        let count = finite().count();
-        let floor = Float::with_val(53, outcome.estimate.value.abs_ref()) >> self.accuracy;
-        if count == 1 {
-            format!(", the only one of {} methods with an error estimate", tried.len())
-        } else if *own <= floor {
-            format!(
-                ", the simplest of {} methods whose error is below the working precision",
-                tried.len()
-            )
-        } else if finite().all(|(_, error)| own <= error) {
-            format!(", the least error estimate of {count} methods")
-        } else {
-            let least = finite().map(|(_, error)| error.clone()).reduce(|a, b| a.min(&b));
-            let near = least.map_or(count, |least| {
-                let bound = least * 10u32;
-                finite().filter(|(_, error)| **error <= bound).count()
-            });
-            format!(
-                ", the simplest of {near} methods whose error estimate is within a factor 10 of \
-                 the least"
-            )
+        let set = self.given().contains_key("amplitude");
+        let taken =
+            if set { Taken::Amplitude } else { Taken::Initial("--set amplitude=AMPLITUDE") };
+        remarks.extend(case.start_remark(taken));
+        if set {
+            return Ok((case, remarks));
         }
+        let rests = Exact::parse(velocity)?.as_rational().is_some_and(Rational::is_zero);
+        if !rests || !self.problem().parameters.iter().any(|card| card.name == "amplitude") {
+            return Err(Refused::no_answer(
+                "initial-data",
+                "the expansion starts at rest: x(0) = amplitude, x'(0) = 0",
+                "--set amplitude=A and --phase PHASE, or change [initial] of the file",
+            )
+            .into());
+        }
+        Ok((case.with("amplitude", Exact::parse(x)?), remarks))
     }
 
-    /// Whether the coefficients are too few for an estimate of the error; the error of the period,
-    /// if there is one, is then measured by the closed form.
-    #[must_use]
-    pub fn has_no_estimate(&self) -> bool {
-        self.no_estimate
+    /// Where the small parameter only counts orders it is 1, unless it is set: a table of orders put it
+    /// into the equation of a file, or it is no parameter of an averaged motion between impacts.
+    pub(crate) fn with_order_parameter(&self) -> Self {
+        let (problem, file) = (self.problem(), self.problem_file());
+        let written = parse_equation(&file.equation, &file.names);
+        let flight =
+            problem.impact.is_some() && problem.conditions.contains(&Condition::FreeAmplitude);
+        let counts = flight || written.is_ok_and(|tree| !tree.contains(&Expression::Small));
+        let listed = problem.parameters.iter().any(|card| card.name == problem.small);
+        if !counts || listed || self.given().contains_key(&*problem.small) {
+            return self.clone();
+        }
+        self.clone().with(&problem.small, Exact::Rational(Rational::from(1)))
     }
 
-    /// Why a method gave nothing, or its error estimate relative to 2 pi times the factor.
-    #[must_use]
-    pub fn tried(&self) -> Vec<(&'static str, String)> {
-        let text = |found: &Result<Float, ResummationError>| match found {
-            Ok(error) => short(error),
-            Err(reason) => reason.to_string(),
-        };
-        self.resummed.tried.iter().map(|(m, found)| (method_name(*m), text(found))).collect()
+    /// The problem with a value for everything.
+    fn setting(&self) -> Result<Setting, Error> {
+        Setting::new(self.problem(), self.asked_condition(), self.given())
+    }
+
+    /// A refusal with its place; of stopped work in words.
+    pub(crate) fn unevaluated(&self, error: Error) -> Error {
+        if error.kind() == Kind::Stopped
+            || matches!(error, Error::Expand(ExpandError::Interrupted { .. }))
+        {
+            let message = "stopped before the expansion was finished";
+            return Refused::stopped(message, "raise --limit-seconds or lower --order").into();
+        }
+        self.refusal(error)
     }
 }

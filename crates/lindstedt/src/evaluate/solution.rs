@@ -3,10 +3,8 @@
 
 use super::setting::{Form, Setting};
 use super::source::remembered;
-use super::{EvaluateSettings, Evaluation, bits_for, few};
-use crate::Number;
-use crate::{Derivation, Error, Exact, Progress, Solution};
-use lindstedt_equation::Problem;
+use super::{Evaluate, Evaluation, Times, bits_for, few, method_flag};
+use crate::{Derivation, Error, Exact, Number, Oscillator, Progress, Solution, Work};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
 use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
@@ -25,6 +23,28 @@ pub struct Displacement {
     pub double: f64,
     /// The estimated error as a double; infinite where there is no estimate.
     pub error: f64,
+}
+
+/// x(t) at the times asked for.
+#[derive(Clone, Debug)]
+pub struct Displacements {
+    /// The order of the solution.
+    pub order: usize,
+    /// The methods that sum its series.
+    pub methods: Vec<Method>,
+    /// The times that were reached.
+    pub points: Vec<Displacement>,
+    /// Whether these are all.
+    pub complete: bool,
+}
+
+impl Displacements {
+    /// The methods as they are asked for.
+    #[must_use]
+    pub fn summed_by(&self) -> String {
+        let methods: Vec<&str> = self.methods.iter().map(|m| method_flag(*m)).collect();
+        methods.join(" or ")
+    }
 }
 
 /// x as a Fourier series in omega t.
@@ -76,6 +96,11 @@ const FEWEST_NODES: usize = 64;
 const PHASES: u32 = 64;
 const SAFETY: f64 = 2.0;
 
+/// Digits of a double.
+const DOUBLE: usize = 16;
+/// Times between two looks at the clock.
+const BLOCK: usize = 16;
+
 /// Doublings of the precision before the rounding is added to the error as it is.
 const DOUBLINGS: u32 = 4;
 
@@ -107,30 +132,33 @@ fn settled(
 }
 
 impl Trajectory {
-    /// Derives the solution of a problem, x(0) = a, x'(0) = 0 at phase 0.
+    /// Derives the solution of an oscillator, x(0) = a, x'(0) = 0 at phase 0.
     ///
     /// The frequency is the closed form's where there is one, else the resummed one, with its
-    /// error, of `evaluation` (by [`super::evaluate`] with the same settings).
+    /// error, of `evaluation` (by [`Oscillator::evaluate`] of the same question). Without times a figure
+    /// or a function in doubles is meant, and the digits are those of a double.
     ///
     /// # Errors
-    /// As [`super::evaluate`] and [`crate::derive()`].
+    /// As [`Oscillator::evaluate`].
     pub fn new(
-        problem: &Problem,
-        settings: &EvaluateSettings,
+        oscillator: &Oscillator,
+        question: &Evaluate,
         evaluation: &Evaluation,
-        phase: Exact,
-        observer: &mut dyn FnMut(Progress) -> bool,
+        work: &Work,
     ) -> Result<Self, Error> {
-        let setting = Setting::new(problem, settings.condition, &settings.parameters)?;
-        let order = settings.order.unwrap_or_else(|| default_order(&setting.form));
-        let digits = settings.digits.min(30);
+        let setting = oscillator.setting()?;
+        let order = question.order.unwrap_or_else(|| default_order(&setting.form));
+        let asked = question.times.as_ref().is_some_and(|times| times.range.is_some());
+        let digits = if asked { work.printed_digits().min(30) } else { DOUBLE };
+        let phase = question.phase.clone();
         let balls = Balls::new(bits_for(digits).saturating_add(64));
         let period = evaluation.best_period.clone();
         let two_pi = balls.mul_i64(&balls.pi(), 2);
         let frequency = balls.div(&two_pi, &period).ok_or(Error::NoValue)?;
-        let derivation = setting.derive(order, (settings.memory, &settings.stop), observer)?;
+        let mut observer = |progress| work.goes_on(progress);
+        let derivation = setting.derive(order, (work.memory, &work.stop), &mut observer)?;
         let few = few::is_few(derivation.order + 1);
-        let methods = match settings.method {
+        let methods = match question.method {
             Some(
                 method @ (Method::PartialSum
                 | Method::Pade
@@ -154,6 +182,21 @@ impl Trajectory {
         };
         trajectory.speed = trajectory.largest_speed();
         Ok(trajectory)
+    }
+
+    /// x at times, those that are reached before the work is stopped.
+    #[must_use]
+    pub fn table(&self, times: &Times, work: &Work) -> Displacements {
+        let times = times.list(self.period);
+        let mut points = Vec::new();
+        for block in times.chunks(BLOCK) {
+            if !work.goes_on(Progress::Parts(points.len(), times.len())) {
+                break;
+            }
+            points.par_extend(block.par_iter().map(|time| self.at(time)));
+        }
+        let complete = points.len() == times.len();
+        Displacements { order: self.order(), methods: self.methods.clone(), points, complete }
     }
 
     /// The largest difference quotient of x over neighbouring phases, times a safety factor.

@@ -15,6 +15,7 @@ mod simulation;
 mod sums;
 mod truth;
 
+use crate::evaluate::method_flag;
 use crate::evaluate::setting::Setting;
 use crate::evaluate::source::Source;
 use crate::{Error, Exact};
@@ -115,13 +116,8 @@ impl Summation {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Self::PartialSum | Self::Resummed(resummation::Method::PartialSum) => "none",
-            Self::Resummed(resummation::Method::Pade) => "pade",
-            Self::Resummed(resummation::Method::Uniform) => "uniform",
-            Self::Resummed(resummation::Method::UniformPade) => "uniform-pade",
-            Self::Resummed(resummation::Method::ConformalPade) => "conformal",
-            Self::Resummed(resummation::Method::BorelPade) => "borel-pade",
-            Self::Resummed(_) => "another",
+            Self::PartialSum => "none",
+            Self::Resummed(method) => method_flag(*method),
         }
     }
 }

@@ -8,6 +8,7 @@ mod estimate;
 mod motion;
 mod stability;
 mod threshold;
+mod evaluate;
 mod verify;
 
 use crate::{Document, Figure, Formula, Table, Text};

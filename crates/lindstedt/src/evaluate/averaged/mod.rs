@@ -9,47 +9,41 @@
 //! series is asymptotic: the estimate means something only while its terms decrease, and is
 //! withheld otherwise.
 
+mod answer;
 mod flow;
 mod rest;
+mod start;
 mod truncated;
 
-use super::bits_for;
 use super::few::plain;
 use super::setting::{check_names, small_value};
-use crate::Number;
+use super::{Times, bits_for};
 use crate::averaging::AveragingSettings;
 use crate::averaging::numbers::{Numbers, numbers};
-use crate::{Error, Exact, Progress};
+use crate::{Error, Exact, Number, Oscillator, Work};
 use flow::Flow;
 use lindstedt_equation::symmetry::is_reversible;
 use lindstedt_equation::{Condition, Problem};
 use lindstedt_number::ball::Balls;
 use rest::{Rest, looked_at};
 use rug::Float;
+pub use start::Start;
 use std::collections::BTreeMap;
 use truncated::Truncated;
 
-/// Where the motion starts, at t = 0.
-#[derive(Clone, Debug)]
-pub enum Start {
-    /// a(0) and psi(0).
-    Amplitude(Exact, Exact),
-    /// x(0) and x'(0), which a(0) and psi(0) are computed from.
-    State(Exact, Exact),
+/// What to evaluate of an averaged motion.
+#[derive(Clone, Debug, Default)]
+pub struct AveragedMotion {
+    /// N; 4 if nothing.
+    pub order: Option<usize>,
+    /// The start; if nothing that of the file, else the amplitude of the problem at phase 0.
+    pub start: Option<Start>,
+    /// The times at which the motion is asked for.
+    pub times: Option<Times>,
 }
 
-/// What to evaluate.
-#[derive(Clone, Debug)]
-pub struct MotionSettings {
-    /// N.
-    pub order: usize,
-    /// Values of parameters by name, the small one included.
-    pub parameters: BTreeMap<String, Exact>,
-    /// Digits asked for.
-    pub digits: usize,
-    /// The start.
-    pub start: Start,
-}
+/// The order if none is asked for.
+const ORDER: usize = 4;
 
 /// A quantity at one time.
 #[derive(Clone, Debug)]
@@ -76,7 +70,7 @@ pub struct Moment {
 }
 
 /// An averaged motion.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Motion {
     /// The parameters with their values, the small one included.
     pub at: Vec<(String, Exact)>,
@@ -102,6 +96,8 @@ pub struct Motion {
     pub is_delayed: bool,
     /// Whether there is a wall, which the averaged motion does not see: it holds between impacts.
     pub has_wall: bool,
+    /// The motion at the times asked for, those that are reached.
+    pub moments: Option<Vec<Moment>>,
     full: Truncated,
     rest: Rest,
     /// What the start may be off by, where it was computed from x and x'.
@@ -118,51 +114,36 @@ impl Motion {
     /// # Errors
     /// [`Error::UnknownCondition`] for a problem that does not offer a free amplitude;
     /// [`Error::Unset`] for a parameter without a value; [`Error::NoSuchStart`]; those of
-    /// [`crate::averaging::average`].
-    ///
-    /// ```
-    /// use lindstedt::evaluate::averaged::{Motion, MotionSettings, Start};
-    /// use lindstedt::{Exact, problems};
-    /// let problem = problems::find("van-der-pol").ok_or("no such problem")?;
-    /// let start = Start::Amplitude(Exact::parse("1")?, Exact::parse("0")?);
-    /// let parameters = [("eps".to_owned(), Exact::parse("1/10")?)].into();
-    /// let settings = MotionSettings { order: 4, parameters, digits: 12, start };
-    /// let mut motion = Motion::new(&problem, &settings, &mut |_| true)?;
-    /// let far = motion.at(&[Exact::parse("100")?], &mut || true);
-    /// // The limit cycle has amplitude 2 + O(eps^2).
-    /// assert!((far[0].amplitude.double - 2.0).abs() < 1e-3);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// [`Oscillator::average`].
     pub fn new(
-        problem: &Problem,
-        settings: &MotionSettings,
-        observer: &mut dyn FnMut(Progress) -> bool,
+        oscillator: &Oscillator,
+        order: usize,
+        start: &Start,
+        work: &Work,
     ) -> Result<Self, Error> {
+        let problem = oscillator.problem();
         if !problem.conditions.contains(&Condition::FreeAmplitude) {
             return Err(Error::UnknownCondition { problem: problem.name.to_string() });
         }
-        check_names(problem, &settings.parameters)?;
-        let (small, at) = small_value(problem, &settings.parameters)?;
+        check_names(problem, oscillator.given())?;
+        let (small, at) = small_value(problem, oscillator.given())?;
         let listed = |name: &String| problem.parameters.iter().any(|card| card.name == *name);
         // The small parameter has its value in the sum, not in the coefficients; an amplitude is
         // free.
         let parameters =
             at.iter().filter(|(name, _)| listed(name)).cloned().collect::<BTreeMap<_, _>>();
-        let bits = bits_for(settings.digits.saturating_add(16));
-        let averaging = AveragingSettings {
-            order: settings.order,
-            parameters,
-            digits: settings.digits,
-            ..AveragingSettings::default()
-        };
-        let found = numbers(problem, &averaging, bits, observer)?;
+        let digits = work.printed_digits();
+        let bits = bits_for(digits.saturating_add(16));
+        let averaging =
+            AveragingSettings { order, parameters, digits, ..AveragingSettings::default() };
+        let found = numbers(problem, &averaging, bits, &mut |progress| work.goes_on(progress))?;
         let small = Float::with_val(bits, small.ball(Balls::new(bits)).midpoint());
-        Self::of_numbers(problem, settings, &found, &small, at)
+        Self::of_numbers(problem, (start, digits), &found, &small, at)
     }
 
     fn of_numbers(
         problem: &Problem,
-        settings: &MotionSettings,
+        (start, digits): (&Start, usize),
         found: &Numbers,
         small: &Float,
         at: Vec<(String, Exact)>,
@@ -171,7 +152,8 @@ impl Motion {
         let order = found.solution.len().saturating_sub(1);
         let float = |value: &Exact| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
         let mut full = Truncated::new(found, small, order);
-        full.start = match &settings.start {
+        let given = start;
+        full.start = match given {
             Start::Amplitude(a, psi) => [float(a), float(psi)],
             Start::State(x, v) => {
                 let state = [float(x), float(v)];
@@ -195,18 +177,16 @@ impl Motion {
             match errors {
                 Some(errors) => {
                     let error = Float::with_val(53, errors[k] * if k == 0 { scale } else { 1.0 });
-                    Number::estimated(&balls.from_parts(&rates[k], &error), settings.digits)
+                    Number::estimated(&balls.from_parts(&rates[k], &error), digits)
                 }
-                None => {
-                    plain(&balls.from_parts(&rates[k], &Float::new(53)), settings.digits, false)
-                }
+                None => plain(&balls.from_parts(&rates[k], &Float::new(53)), digits, false),
             }
         };
         let numbers =
             |rates: [Float; 2], scale: f64| [number(&rates, 0, scale), number(&rates, 1, scale)];
         let linear = full.linear().map(|rates| numbers(rates, 1.0));
         let rate_numbers = numbers(full.rate(&start[0]), start[0].to_f64());
-        let start_error = match (&settings.start, ratio) {
+        let start_error = match (given, ratio) {
             (Start::Amplitude(..), _) => [0.0; 2],
             (Start::State(..), None) => [f64::INFINITY; 2],
             (Start::State(..), Some(q)) => {
@@ -227,10 +207,11 @@ impl Motion {
             ended: None,
             is_delayed: !found.delays.is_empty(),
             has_wall: problem.impact.is_some(),
+            moments: None,
             full,
             rest,
             start_error,
-            digits: settings.digits,
+            digits,
         })
     }
 
@@ -254,12 +235,13 @@ impl Motion {
     }
 
     /// The motion at times in increasing order. Times that the integration does not reach, because
-    /// it ends or `goes_on` says no (asked at every step), are left out.
-    pub fn at(&mut self, times: &[Exact], goes_on: &mut dyn FnMut() -> bool) -> Vec<Moment> {
+    /// it ends or the work is stopped (asked at every step), are left out.
+    pub fn at(&mut self, times: &[Exact], work: &Work) -> Vec<Moment> {
+        let mut goes_on = || !work.stop.asked();
         let bits = self.full.start[0].prec();
         let float = |value: &Exact| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
         let floats: Vec<Float> = times.iter().map(float).collect();
-        let mut flow = |system: &Truncated| Flow::new(system, &floats, self.digits, goes_on);
+        let mut flow = |system: &Truncated| Flow::new(system, &floats, self.digits, &mut goes_on);
         let found = flow(&self.full);
         let amplitudes = found.states.iter().flatten().map(|state| state.values[0].clone());
         let near = looked_at(amplitudes.chain(std::iter::once(self.full.start[0].clone())));

@@ -1,0 +1,136 @@
+//! The solution as a function: its Fourier series in omega t, with the measured deviation.
+
+use super::{Fourier, Trajectory};
+use crate::Error;
+use crate::refusal::Refused;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// A language in which a solution can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Language {
+    /// A function of doubles.
+    Rust,
+    /// A function of numbers.
+    Python,
+    /// A displayed formula.
+    Latex,
+}
+
+/// One harmonic: k, coefficient of cos, coefficient of sin.
+type Term = (usize, f64, f64);
+
+/// A solution as a function of time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SolutionCode {
+    /// The language.
+    pub language: Language,
+    /// omega.
+    pub frequency: f64,
+    /// k, c_k and s_k of c_k cos(k omega t) + s_k sin(k omega t); those below the error are left out.
+    pub terms: Vec<Term>,
+    /// The largest deviation from the expansion that was measured, what is left out included.
+    pub deviation: f64,
+    /// Terms below this are left out.
+    pub left_out_below: f64,
+    /// The program text.
+    pub code: String,
+}
+
+impl SolutionCode {
+    /// A trajectory by its harmonics up to one.
+    pub(super) fn new(
+        problem: &str,
+        trajectory: &Trajectory,
+        language: Language,
+        harmonics: usize,
+    ) -> Result<Self, Error> {
+        let Fourier { coefficients: list, deviation, error } =
+            trajectory.fourier(harmonics).ok_or_else(|| {
+                Refused::undecided(
+                    "no-value",
+                    "the expansion has no value at some phase",
+                    "lower or raise --order, or --resum none",
+                )
+            })?;
+        let size = list.iter().fold(0.0f64, |m, (c, s)| m.max(c.abs()).max(s.abs()));
+        // Below the error of the expansion a coefficient is noise; where some phase has no estimate,
+        // the measured deviation stands for it.
+        let small = (size * trajectory.negligible()).max(error.unwrap_or(deviation));
+        let keep = |x: f64| if x.abs() > small { x } else { 0.0 };
+        let terms = list.iter().enumerate().map(|(k, &(c, s))| (k, keep(c), keep(s)));
+        let terms: Vec<Term> = terms.filter(|(_, c, s)| *c != 0.0 || *s != 0.0).collect();
+        // What is left out deviates, too.
+        let left_out = |x: f64| x - keep(x);
+        let deviation =
+            list.iter().fold(deviation, |d, &(c, s)| d + left_out(c).abs() + left_out(s).abs());
+        let note = format!(
+            "{problem}: x(t), expansion of order {}, its first {harmonics} harmonics; deviation from \
+             the expansion {deviation:.1e}; {}",
+            trajectory.order(),
+            match error {
+                Some(_) =>
+                    format!("terms below the error of the expansion, {small:.1e}, are left out"),
+                None =>
+                    "no estimate at some phases: terms below the deviation are left out".to_owned(),
+            }
+        );
+        let frequency = trajectory.frequency();
+        let code = match language {
+            Language::Rust => rust(&note, frequency, &terms),
+            Language::Python => python(&note, frequency, &terms),
+            Language::Latex => latex(&note, frequency, &terms),
+        };
+        Ok(Self { language, frequency, terms, deviation, left_out_below: small, code })
+    }
+}
+
+fn rust(note: &str, omega: f64, terms: &[Term]) -> String {
+    let mut text = format!("/// {note}.\npub fn displacement(t: f64) -> f64 {{\n");
+    let _ = writeln!(text, "    let phase = {omega:?} * t;\n    [");
+    for (k, c, s) in terms {
+        let _ = writeln!(text, "        ({k}.0, {c:?}, {s:?}),");
+    }
+    text.push_str("    ]\n    .iter()\n    .map(|&(k, c, s): &(f64, f64, f64)| {\n");
+    text.push_str("        c * (k * phase).cos() + s * (k * phase).sin()\n    })\n    .sum()\n}\n");
+    text
+}
+
+fn python(note: &str, omega: f64, terms: &[Term]) -> String {
+    let mut text = String::from("from math import cos, sin\n\n\ndef displacement(t):\n");
+    let _ = writeln!(text, "    \"\"\"{note}.\"\"\"\n    phase = {omega:?} * t\n    terms = (");
+    for (k, c, s) in terms {
+        let _ = writeln!(text, "        ({k}, {c:?}, {s:?}),");
+    }
+    text.push_str(
+        "    )\n    return sum(c * cos(k * phase) + s * sin(k * phase) for k, c, s in terms)\n",
+    );
+    text
+}
+
+fn latex(note: &str, omega: f64, terms: &[Term]) -> String {
+    let number = |x: f64| {
+        let text = format!("{x:e}");
+        match text.split_once('e') {
+            Some((mantissa, "0")) => mantissa.to_owned(),
+            Some((mantissa, exponent)) => format!(r"{mantissa}\cdot 10^{{{exponent}}}"),
+            None => text,
+        }
+    };
+    let mut parts = Vec::new();
+    for &(k, c, s) in terms {
+        let angle = |name: &str| match k {
+            0 => String::new(),
+            1 => format!(r"\{name} \omega t"),
+            _ => format!(r"\{name} {k}\omega t"),
+        };
+        for (x, name) in [(c, "cos"), (s, "sin")] {
+            if x != 0.0 {
+                parts.push(format!("{} {}", number(x), angle(name)));
+            }
+        }
+    }
+    let sum = parts.join(" + ").replace("+ -", "- ");
+    format!("% {note}.\n\\[ x(t) = {sum}, \\qquad \\omega = {} \\]\n", number(omega))
+}

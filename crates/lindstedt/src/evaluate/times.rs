@@ -1,0 +1,75 @@
+//! Times at which a motion is asked for.
+
+use crate::refusal::Refused;
+use crate::{Error, Exact};
+use lindstedt_number::ball::Balls;
+use rug::Rational;
+
+/// The most times of one table.
+const MOST_TIMES: u32 = 100_000;
+/// Points of a figure for which no times are given.
+const POINTS: u32 = 129;
+
+/// Times in equal steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Times {
+    /// The first and the last; nothing where they follow from the motion: one period, ten turns of an
+    /// averaged motion.
+    pub range: Option<(Rational, Rational)>,
+    /// How many.
+    pub count: u32,
+}
+
+impl Default for Times {
+    /// As many as a figure needs, over what the motion shows.
+    fn default() -> Self {
+        Self { range: None, count: POINTS }
+    }
+}
+
+fn usage(text: &str) -> Error {
+    let shown: String = text.chars().take(60).collect();
+    let hint = "--times LO..HI:COUNT, for example 0..10:101";
+    Refused::usage("range", format!("cannot read the times {shown:?}"), hint).into()
+}
+
+/// The number, or the double next to a multiple of pi.
+fn rational(text: &str) -> Result<Rational, Error> {
+    let value = Exact::parse(text)?;
+    let nearest = || value.ball(Balls::new(200)).midpoint().to_rational();
+    value.as_rational().cloned().or_else(nearest).ok_or_else(|| usage(text))
+}
+
+impl Times {
+    /// Reads `LO..HI:COUNT`, both ends included.
+    ///
+    /// # Errors
+    /// [`Refused`] with the form that is expected, [`Error::BadValue`].
+    ///
+    /// ```
+    /// let times = lindstedt::evaluate::Times::parse("0..3:4")?;
+    /// assert_eq!(times.list(0.0)[1].to_string(), "1");
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        let (low, rest) = text.split_once("..").ok_or_else(|| usage(text))?;
+        let (high, count) = rest.rsplit_once(':').ok_or_else(|| usage(text))?;
+        let count: u32 = count.trim().parse().map_err(|_| usage(text))?;
+        if count == 0 || count > MOST_TIMES {
+            let message = format!("1 to {MOST_TIMES} times, not {count}");
+            return Err(Refused::usage("range", message, "").into());
+        }
+        Ok(Self { range: Some((rational(low)?, rational(high)?)), count })
+    }
+
+    /// The times, from 0 to `last` where none were given.
+    #[must_use]
+    pub fn list(&self, last: f64) -> Vec<Exact> {
+        let (low, high) = self
+            .range
+            .clone()
+            .unwrap_or_else(|| (Rational::new(), Rational::from_f64(last).unwrap_or_default()));
+        let width = (high - &low) / Rational::from(self.count.saturating_sub(1).max(1));
+        (0..self.count).map(|i| Exact::Rational(Rational::from(&width * i) + &low)).collect()
+    }
+}

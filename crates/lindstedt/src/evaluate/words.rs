@@ -1,0 +1,205 @@
+//! What was done, in words.
+
+use super::Evaluation;
+use crate::Number;
+use lindstedt_series::resummation::{Growth, Kind, Method, ResummationError, Resummed};
+use rug::Float;
+
+pub(super) fn short(x: &Float) -> String {
+    if x.is_zero() { "0".to_owned() } else { format!("{:.1e}", Float::with_val(53, x)) }
+}
+
+/// A double with the digits that its error leaves, and the error rounded up to one digit.
+#[must_use]
+pub fn with_error(value: f64, error: f64) -> String {
+    let [value, error] = rounded(value, error);
+    format!("{value} +- {error}")
+}
+
+/// A double to the place of the first digit of its error, and the error rounded up to that digit.
+#[must_use]
+pub fn rounded(value: f64, error: f64) -> [String; 2] {
+    let least = value.abs().max(f64::MIN_POSITIVE) * f64::EPSILON;
+    let error = error.abs().max(least);
+    let exponent = error.log10().floor();
+    let unit = 10f64.powi(exponent as i32);
+    let error = (error / unit * (1.0 - 1e-9)).ceil() * unit;
+    let size = value.abs().max(error);
+    if exponent > 0.0 || !(1e-4..1e6).contains(&size) {
+        let digits = (size.log10().floor() - exponent).clamp(0.0, 17.0) as usize;
+        return [format!("{value:.digits$e}"), format!("{error:.0e}")];
+    }
+    let places = (-exponent).clamp(0.0, 17.0) as usize;
+    let error = if exponent < -4.0 { format!("{error:.0e}") } else { format!("{error:.places$}") };
+    [format!("{value:.places$}"), error]
+}
+
+/// The name of a method in words.
+#[must_use]
+pub fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::PartialSum => "partial sum",
+        Method::Pade => "Pade",
+        Method::Uniform => "uniform (series in u)",
+        Method::UniformPade => "Pade in u",
+        Method::ConformalPade => "conformal map and Pade",
+        Method::BorelPade => "Borel and Pade",
+        _ => "another method",
+    }
+}
+
+/// The name of a method where it is asked for.
+#[must_use]
+pub fn method_flag(method: Method) -> &'static str {
+    match method {
+        Method::PartialSum => "none",
+        Method::Pade => "pade",
+        Method::Uniform => "uniform",
+        Method::UniformPade => "uniform-pade",
+        Method::ConformalPade => "conformal",
+        Method::BorelPade => "borel-pade",
+        _ => "another",
+    }
+}
+
+/// The name of a kind of singularity.
+#[must_use]
+pub fn kind_name(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Pole => "pole",
+        Kind::SquareRoot => "square root",
+        Kind::InverseSquareRoot => "inverse square root",
+        Kind::Logarithm => "logarithm",
+        _ => "power",
+    }
+}
+
+impl Evaluation {
+    /// What was done and why, in one or two sentences.
+    pub(super) fn describe(&self) -> String {
+        let outcome = &self.resummed.outcome;
+        let mut parts = Vec::new();
+        let name = &self.variable;
+        parts.push(match (self.radius, self.resummed.growth) {
+            (Some((0.0, why)), _) => {
+                format!("the series in {name} diverges for every {name} but 0 ({why}): it is asymptotic")
+            }
+            (Some((radius, why)), _) => {
+                format!("the series in {name} has radius of convergence {radius} ({why})")
+            }
+            (None, Growth::Factorial { rate }) => format!(
+                "the series in {name} seems to diverge for every {name} but 0 (coefficients grow like \
+                 n!^{rate:.1}): asymptotic"
+            ),
+            (None, Growth::Entire) => {
+                format!("the coefficients in {name} fall like those of an entire function")
+            }
+            _ => match self.estimated_radius() {
+                Some((radius, error)) => {
+                    let radius = with_error(radius, error);
+                    format!("the series in {name} has radius of convergence {radius} (estimated)")
+                }
+                None => "too few coefficients to estimate the radius of convergence".to_owned(),
+            },
+        });
+        if let Some((order, number)) = &self.best_truncation {
+            let value = number.as_ref().map_or_else(String::new, |n| format!(": {}", n.decimal));
+            parts.push(format!("best truncation at order {order}{value}"));
+        }
+        let method = method_name(self.resummed.method);
+        let degrees = outcome.degrees.map_or_else(String::new, |(l, m)| format!(" [{l}/{m}]"));
+        let choice = self.choice();
+        parts.push(match &self.period {
+            Some(Number { error: Some(error), .. }) if self.no_estimate => format!(
+                "{method}{degrees} of order {}, no estimate from so few coefficients; against the \
+                 closed form the error is {error}",
+                self.order
+            ),
+            Some(Number { error: Some(error), .. }) => {
+                format!("summed by {method}{degrees}{choice}, estimated error {error}")
+            }
+            Some(_) => format!(
+                "{method}{degrees} of order {}, no estimate from so few coefficients",
+                self.order
+            ),
+            None if self.no_estimate => format!(
+                "{method}{degrees} of order {} gives not one digit: against the closed form the \
+                 error is {}",
+                self.order,
+                self.true_error.as_deref().unwrap_or("larger than the value")
+            ),
+            None => format!(
+                "{method}{degrees} gives not one digit: neighbouring approximants do not agree"
+            ),
+        });
+        parts.join("; ")
+    }
+
+    /// The radius of convergence and its error, both estimated, where the coefficients have one:
+    /// the modulus of the nearest singularity where that is found and agrees with the slope of
+    /// log |c_n|, else that slope.
+    #[must_use]
+    pub fn estimated_radius(&self) -> Option<(f64, f64)> {
+        let found = self.resummed.singularity.as_ref();
+        // The disagreement of a few approximants is no bound: twice as much.
+        let modulus = found.map(|s| (s.at.abs().to_f64(), 2.0 * s.error.to_f64()));
+        match self.resummed.growth {
+            Growth::Radius { radius, error } => {
+                let agrees = |pair: &(f64, f64)| (pair.0 - radius).abs() <= error + pair.1;
+                Some(modulus.filter(agrees).unwrap_or((radius, error)))
+            }
+            Growth::Undecided => modulus,
+            _ => None,
+        }
+    }
+
+    /// Why the method was taken, where there was a choice.
+    fn choice(&self) -> String {
+        let Resummed { tried, method, outcome, .. } = &self.resummed;
+        let errors = || tried.iter().filter_map(|(m, e)| Some((m, e.as_ref().ok()?)));
+        let finite = || errors().filter(|(_, error)| error.is_finite());
+        let Some((_, own)) = errors().find(|(m, _)| *m == method).filter(|_| tried.len() > 1)
+        else {
+            return String::new();
+        };
+        let count = finite().count();
+        let floor = Float::with_val(53, outcome.estimate.value.abs_ref()) >> self.accuracy;
+        if count == 1 {
+            format!(", the only one of {} methods with an error estimate", tried.len())
+        } else if *own <= floor {
+            format!(
+                ", the simplest of {} methods whose error is below the working precision",
+                tried.len()
+            )
+        } else if finite().all(|(_, error)| own <= error) {
+            format!(", the least error estimate of {count} methods")
+        } else {
+            let least = finite().map(|(_, error)| error.clone()).reduce(|a, b| a.min(&b));
+            let near = least.map_or(count, |least| {
+                let bound = least * 10u32;
+                finite().filter(|(_, error)| **error <= bound).count()
+            });
+            format!(
+                ", the simplest of {near} methods whose error estimate is within a factor 10 of \
+                 the least"
+            )
+        }
+    }
+
+    /// Whether the coefficients are too few for an estimate of the error; the error of the period,
+    /// if there is one, is then measured by the closed form.
+    #[must_use]
+    pub fn has_no_estimate(&self) -> bool {
+        self.no_estimate
+    }
+
+    /// Why a method gave nothing, or its error estimate relative to 2 pi times the factor.
+    #[must_use]
+    pub fn tried(&self) -> Vec<(&'static str, String)> {
+        let text = |found: &Result<Float, ResummationError>| match found {
+            Ok(error) => short(error),
+            Err(reason) => reason.to_string(),
+        };
+        self.resummed.tried.iter().map(|(m, found)| (method_name(*m), text(found))).collect()
+    }
+}
