@@ -100,7 +100,8 @@ impl Oscillator {
     /// # Errors
     /// [`Error::File`] where the problem contradicts itself.
     pub fn from_problem(problem: &Problem) -> Result<Self, Error> {
-        Self::file(&lindstedt_problem_file::write(problem))
+        // A card that the equation does not mention is no slip of a writer.
+        Ok(Self { remarks: Vec::new(), ..Self::file(&lindstedt_problem_file::write(problem))? })
     }
 
     /// The same oscillator with what its file is called in messages.

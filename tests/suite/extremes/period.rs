@@ -1,8 +1,8 @@
 //! The period by resummation and in closed form.
 
 use super::support::{Grid, rational, set};
-use lindstedt::problems;
 use lindstedt::series::resummation::Method;
+use lindstedt::{Evaluate, Oscillator, Work};
 use rug::float::Constant;
 use rug::{Float, Rational};
 

@@ -126,7 +126,7 @@ fn every_format_and_every_refusal() {
         (&["van-der-pol", "--normalisation", "free", "--start", "-1,0"], 2),
         (&["van-der-pol", "--normalisation", "free", "--resum", "pade"], 2),
         (&["van-der-pol", "--normalisation", "free", "--code", "rust"], 2),
-        (&["power-law", "--normalisation", "free"], 2),
+        (&["power-law", "--normalisation", "free"], 3),
     ];
     for (arguments, code) in cases {
         let output = run(arguments);
