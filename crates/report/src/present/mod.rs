@@ -5,10 +5,10 @@ mod catalogue;
 mod classification;
 mod derive;
 mod estimate;
+mod evaluate;
 mod motion;
 mod stability;
 mod threshold;
-mod evaluate;
 mod verify;
 
 use crate::{Document, Figure, Formula, Table, Text};
