@@ -460,8 +460,3 @@ pub fn problem(name: &str) -> Result<Problem, Failure> {
         Failure::usage("unknown-problem", message, &format!("known: {}", names.join(", ")))
     })
 }
-
-/// A number of the JSON contract.
-pub fn number_json(number: &lindstedt::Number) -> serde_json::Value {
-    serde_json::json!(number)
-}
