@@ -12,7 +12,6 @@ mod problems;
 mod session;
 mod simulate;
 mod stability;
-mod start;
 mod threshold;
 mod trade;
 mod verify;

@@ -218,10 +218,10 @@ impl<'a> Session<'a> {
     fn failure(&self, error: &Error) -> Failure {
         let failure = Failure::of(error);
         match error.kind() {
-            Kind::Stopped => {
-                let code = if self.interrupted() { "interrupted" } else { "limit-seconds" };
-                Failure { exit: self.stopped(), code, ..failure }
+            Kind::Stopped if self.interrupted() => {
+                Failure { exit: INTERRUPTED, code: "interrupted", ..failure }
             }
+            Kind::Stopped => Failure { exit: UNDECIDED, code: "limit-seconds", ..failure },
             _ => failure,
         }
     }

@@ -135,7 +135,7 @@ pub struct Classification {
     pub impact: bool,
     /// The symmetry, forces apart.
     pub symmetry: Symmetry,
-    /// Whether solutions can be run backwards in time ([`is_reversible`]).
+    /// Whether solutions can be run backwards in time (`symmetry::is_reversible`).
     pub reversible: bool,
     /// What a derivation computes with.
     pub algebra: Algebra,

@@ -17,7 +17,7 @@
 //! | [`kick`] | the piecewise linear return map for B != 0 |
 //! | [`report`], [`chart`] | one point, many points |
 //!
-//! Every formula is written once over [`real::Real`] and runs in doubles (estimated: rounding errors
+//! Every formula is written once over [`Real`](lindstedt_number::real::Real) and runs in doubles (estimated: rounding errors
 //! are not tracked) and in balls (certified: the radius bounds every error). What is estimated in
 //! both says so.
 //!

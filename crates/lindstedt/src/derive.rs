@@ -9,6 +9,7 @@ use crate::{
     Answer, Derivation, Error, Exact, Oscillator, Progress, Remark, Route, Settings, Solution,
     Standing, Work, derivation,
 };
+use lindstedt_algebra::PhaseError;
 use lindstedt_equation::classify::{Method, Reason};
 use lindstedt_equation::{AmplitudeRole, Condition};
 use lindstedt_expand::ExpandError;
@@ -30,6 +31,9 @@ impl From<usize> for Derive {
         Self { order, route: Route::default() }
     }
 }
+
+/// An averaged expansion, the values that were put in, and what is to be said of them.
+type Averaged = (Averaging, BTreeMap<String, Exact>, Option<Remark>);
 
 impl Oscillator {
     /// The expansion of omega^2, omega and T/2 pi in the small parameter and of x_0, x_1, ... as
@@ -125,8 +129,9 @@ impl Oscillator {
     ///
     ///   x = a cos psi + ..., da/dt = sum eps^n A_n(a), dpsi/dt = sum eps^n B_n(a), B_0 = omega_0,
     ///
-    /// up to an order. Parameters that are not set stay symbols; where the symbols have no root, the
-    /// values of the problem file are taken and that is said. Exact, or certified where values are
+    /// up to an order. Parameters that are not set stay symbols; where no formula in them exists (a
+    /// frequency without a root, a response without an inverse), the values of the problem file are taken, and
+    /// that is said. Exact, or certified where values are
     /// irrational; the residual vanishes or encloses zero.
     ///
     /// # Errors
@@ -167,11 +172,7 @@ impl Oscillator {
     }
 
     /// The averaged expansion, the values that were put in, and what is to be said of them.
-    fn averaged(
-        &self,
-        order: usize,
-        work: &Work,
-    ) -> Result<(Averaging, BTreeMap<String, Exact>, Option<Remark>), Error> {
+    fn averaged(&self, order: usize, work: &Work) -> Result<Averaged, Error> {
         let average = |parameters: &BTreeMap<String, Exact>| {
             let settings = AveragingSettings {
                 order,
@@ -187,13 +188,19 @@ impl Oscillator {
             Err(error) => error,
         };
         let all: BTreeMap<String, Exact> = self.all_values().into_iter().collect();
-        let no_root = matches!(error, Error::Expand(ExpandError::StiffnessNotSquare));
-        if !no_root || all.len() == self.given().len() {
+        let no_symbols = matches!(
+            error,
+            Error::Expand(
+                ExpandError::StiffnessNotSquare
+                    | ExpandError::Phase { source: PhaseError::Indivisible { .. }, .. }
+            )
+        );
+        if !no_symbols || all.len() == self.given().len() {
             return Err(self.refusal(error));
         }
         let value = average(&all).map_err(|error| self.refusal(error))?;
-        let remark = "the linear frequency is no formula in the parameters: all values of the problem \
-                      are put in";
+        let remark =
+            "the expansion is no formula in the parameters: all values of the problem are put in";
         Ok((value, all, Some(Remark(remark.to_owned()))))
     }
 

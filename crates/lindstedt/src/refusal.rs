@@ -72,7 +72,12 @@ impl Refused {
 
     /// Stopped before anything was finished.
     pub fn stopped(message: impl Into<String>, hint: impl Into<String>) -> Self {
-        Self { code: "stopped", kind: Kind::Stopped, message: message.into(), hint: hint.into() }
+        Self {
+            code: "interrupted",
+            kind: Kind::Stopped,
+            message: message.into(),
+            hint: hint.into(),
+        }
     }
 }
 

@@ -56,7 +56,7 @@ fn prepare(directory: &Path) -> Result<(), Failure> {
 /// Data that cannot be written as JSON.
 fn unwritten(error: serde_json::Error) -> Failure {
     let message = format!("no JSON: {error}");
-    Failure { exit: UNDECIDED, code: "json", message, hint: String::new() }
+    Failure { exit: UNDECIDED, code: "undecided", message, hint: String::new() }
 }
 
 fn write_directory(directory: &Path, paper: &Paper, seconds: f64) -> Result<(), Failure> {

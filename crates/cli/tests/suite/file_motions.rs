@@ -162,7 +162,8 @@ fn parameters_that_follow() {
     let path = folder.file("x'' + x + c*x' = 0", &[("z", "1")], "orders = { z = 1 }");
     let file = std::fs::read_to_string(&path).unwrap() + "c = { follows = \"2*z\" }\n";
     std::fs::write(&path, file).unwrap();
-    let found = text(&["derive", &path, "--normalisation", "free", "--order", "1"]);
+    let asked = ["derive", &path, "--normalisation", "free", "--order", "1", "--set", "z=1"];
+    let found = text(&asked);
     assert!(found.contains("A_1 = -a\n"), "{found}");
 }
 
@@ -304,7 +305,8 @@ fn preload_and_hertz() {
     assert!(error.contains("w = { value = \"3*pi\" }"), "{error}");
     let path = folder.file("x'' + x + eps*x^3 = F", &[("F", "1")], "");
     // (1 + a cos psi)^3: B_1 = 3/2 + 3 a^2/8.
-    let found = text(&["derive", &path, "--normalisation", "free", "--order", "1"]);
+    let asked = ["derive", &path, "--normalisation", "free", "--order", "1", "--set", "F=1"];
+    let found = text(&asked);
     assert!(found.contains("B_1 = 3/2 + 3/8*a^2"), "{found}");
     let path = folder.file("x'' + 4*x + eps*x' = cos(Omega*t)", &[("f", "5/2")], "");
     let file = std::fs::read_to_string(&path).unwrap() + "Omega = { follows = \"2*pi*f\" }\n";

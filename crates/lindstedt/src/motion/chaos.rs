@@ -299,15 +299,15 @@ impl Run<'_> {
     }
 
     fn verdict(&self, exponent: Option<&Exponent>, test: Option<&ZeroOneTest>) -> String {
-        let exponent = exponent.map(|exponent| self.of_exponent(&exponent.found));
+        let exponent = exponent.map(|exponent| self.of_exponent(exponent));
         // The test whose K is largest.
         let largest = test.and_then(|t| t.k.iter().max_by(|a, b| a.found.k.total_cmp(&b.found.k)));
         let test = largest.map(|test| self.of_test(test));
         exponent.into_iter().chain(test).collect::<Vec<_>>().join("; ")
     }
 
-    fn of_exponent(&self, found: &LyapunovExponent) -> String {
-        let LyapunovExponent { value, error } = *found;
+    fn of_exponent(&self, exponent: &Exponent) -> String {
+        let LyapunovExponent { value, error } = exponent.found;
         if value == f64::NEG_INFINITY {
             return "every perturbation is forgotten (the motion sticks or rests): regular"
                 .to_owned();
@@ -327,7 +327,10 @@ impl Run<'_> {
             }
             _ => "undecided: no exponential growth, no decay",
         };
-        format!("{word}, largest Lyapunov exponent {}", crate::evaluate::with_error(value, error))
+        // As it stands above the verdict.
+        let Number { decimal, error, .. } = &exponent.number;
+        let error = error.as_deref().unwrap_or("0");
+        format!("{word}, largest Lyapunov exponent {decimal} +- {error}")
     }
 
     fn of_test(&self, test: &Test) -> String {

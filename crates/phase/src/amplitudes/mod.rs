@@ -1,6 +1,6 @@
 //! Polynomials in complex amplitudes z_1, zbar_1, ..., z_M, zbar_M, in E = e^{i eta} and 1/E, and in named
 //! symbols, with complex coefficients: what averaging with resonance computes with
-//! ([`AmplitudeAlgebra`]).
+//! ([`AmplitudeAlgebra`](lindstedt_algebra::AmplitudeAlgebra)).
 //!
 //! A monomial is one word ([`words`]), an element a list sorted by words with numerators over one common
 //! denominator ([`scalars`]), reduced: canonical. The ratios of the frequencies are rational numbers, so

@@ -9,7 +9,7 @@
 //!
 //! Sums, derivatives and the solution of u'' + u = f are taken of Fourier coefficients, products point by
 //! point at Q multiplications, against Q^2 for coefficient lists. Each form of a part is made from the other
-//! when it is first needed, and kept ([`transform`]).
+//! when it is first needed, and kept (`transform`).
 
 mod field;
 mod transform;
