@@ -227,7 +227,7 @@ impl Refusal for ImpactError {
             | Self::OrderZero
             | Self::BadAxes => "parameter",
             Self::NoConvergence { .. } | Self::Undecided { .. } => "undecided",
-            Self::Cancelled => "stopped",
+            Self::Cancelled => "interrupted",
             _ => "no-orbit",
         }
     }
@@ -235,7 +235,7 @@ impl Refusal for ImpactError {
         match self.code() {
             "parameter" => Kind::Usage,
             "undecided" => Kind::Undecided,
-            "stopped" => Kind::Stopped,
+            "interrupted" => Kind::Stopped,
             _ => Kind::NoAnswer,
         }
     }
