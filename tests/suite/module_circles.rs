@@ -10,9 +10,7 @@ use std::error::Error;
 use std::path::Path;
 
 /// The circles there are today, each as the modules in it.
-const KNOWN: [&str; 9] = [
-    "cli: averaging, derive, derive_numeric",
-    "cli: classification, problems",
+const KNOWN: [&str; 7] = [
     "cli: failure, output, session",
     "lindstedt: classification, oscillator",
     "lindstedt: error, refusal",

@@ -343,8 +343,9 @@ impl Derivation {
     /// Coefficient n of a series as a fraction, where it is rational.
     ///
     /// ```
-    /// let oscillator = lindstedt::Oscillator::parse("x'' + x + eps*x^3 = 0")?;
-    /// let first = oscillator.derive(2)?.ratio("frequency_squared", 1);
+    /// use lindstedt::{Oscillator, Work};
+    /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?.derive(2, &Work::default())?;
+    /// let first = duffing.value.ratio("frequency_squared", 1);
     /// assert_eq!(first.map(|q| q.to_string()).as_deref(), Some("3/4"));
     /// # Ok::<(), lindstedt::Error>(())
     /// ```

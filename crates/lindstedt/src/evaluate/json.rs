@@ -1,6 +1,6 @@
 //! The plain form of an evaluation.
 
-use super::words::{method_flag, rounded};
+use super::names::{method_flag, rounded};
 use super::{Displacement, Displacements, Evaluation, kind_name};
 use crate::{Number, Status};
 use lindstedt_series::resummation::{Complex, Growth, Picture};

@@ -5,8 +5,10 @@ pub mod averaged;
 pub(crate) mod closed;
 mod code;
 pub(crate) mod coefficients;
+mod displacements;
 pub(crate) mod few;
 mod json;
+mod names;
 mod period;
 pub(crate) mod setting;
 mod solution;
@@ -18,18 +20,19 @@ use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{Answer, Error, Exact, Kind, Oscillator, Refusal, Remark, Standing, Work};
 pub use code::{Language, SolutionCode};
+pub use displacements::{Displacement, Displacements};
 pub use json::Place;
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_expand::ExpandError;
 use lindstedt_problem_file::parse_equation;
 use lindstedt_series::resummation::Method;
+pub use names::{kind_name, method_flag, method_name, rounded, with_error};
 pub use period::Evaluation;
 use rug::Rational;
 use setting::Setting;
-pub use solution::{Displacement, Displacements, Fourier, Trajectory};
+pub use solution::{Fourier, Trajectory};
 use std::time::Instant;
 pub use times::Times;
-pub use words::{kind_name, method_flag, method_name, rounded, with_error};
 
 /// What to evaluate.
 #[derive(Clone, Debug)]

@@ -1,9 +1,9 @@
 //! The period at given parameters: the sum of the series of T/2pi, beside the closed form where
 //! there is one.
 
+use super::names::short;
 use super::setting::Form;
 use super::source::{self, Source, remembered};
-use super::words::short;
 use super::{Displacements, Evaluate, bits_for, few};
 use crate::{Error, Exact, Number, Oscillator, Progress, Work};
 use lindstedt_algebra::Stop;

@@ -1,9 +1,10 @@
 //! The solution x(t) at given times: the expansion at the phase omega t, order by order, and its
 //! series in the small parameter summed there.
 
+use super::displacements::{Displacement, Displacements};
 use super::setting::{Form, Setting};
 use super::source::remembered;
-use super::{Evaluate, Evaluation, Times, bits_for, few, method_flag};
+use super::{Evaluate, Evaluation, Times, bits_for, few};
 use crate::{Derivation, Error, Exact, Number, Oscillator, Progress, Solution, Work};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
@@ -11,41 +12,6 @@ use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
 use lindstedt_series::resummation::{Estimate, Method, Sample, UniformMap, partial_sums};
 use rayon::prelude::*;
 use rug::{Float, Rational};
-
-/// x at one time.
-#[derive(Clone, Debug)]
-pub struct Displacement {
-    /// The time.
-    pub time: Exact,
-    /// x(t); nothing where not one digit is supported (or x vanishes within the error).
-    pub value: Option<Number>,
-    /// x(t) as a double, for pictures.
-    pub double: f64,
-    /// The estimated error as a double; infinite where there is no estimate.
-    pub error: f64,
-}
-
-/// x(t) at the times asked for.
-#[derive(Clone, Debug)]
-pub struct Displacements {
-    /// The order of the solution.
-    pub order: usize,
-    /// The methods that sum its series.
-    pub methods: Vec<Method>,
-    /// The times that were reached.
-    pub points: Vec<Displacement>,
-    /// Whether these are all.
-    pub complete: bool,
-}
-
-impl Displacements {
-    /// The methods as they are asked for.
-    #[must_use]
-    pub fn summed_by(&self) -> String {
-        let methods: Vec<&str> = self.methods.iter().map(|m| method_flag(*m)).collect();
-        methods.join(" or ")
-    }
-}
 
 /// x as a Fourier series in omega t.
 #[derive(Clone, Debug)]
