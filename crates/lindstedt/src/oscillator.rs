@@ -85,9 +85,16 @@ impl Oscillator {
     /// with t or a delay, given where none drifts, that of a limit cycle otherwise.
     ///
     /// # Errors
-    /// [`Error::Parse`] with the position in the text.
+    /// [`Error::Parse`] with the position in the text; [`Refused`] for the name of a second unknown, which
+    /// is never taken for a constant.
     pub fn parse(equation: &str) -> Result<Self, Error> {
         let tree = parse_equation(equation, &Names::any("eps"))?;
+        if let Some(name) = tree.parameters().into_iter().find(|name| is_unknown(name)) {
+            let message =
+                format!("{name} is the name of an unknown, and it has no equation of its own");
+            let hint = "a problem file may declare a parameter of that name";
+            return Err(Refused::usage("second-unknown", message, hint).into());
+        }
         let mut text = format!("name = \"oscillator\"\nequation = {equation:?}\n[parameters]\n");
         for name in tree.parameters().into_iter().filter(|name| name != "amplitude") {
             let _ = writeln!(text, "{name} = {{}}");
@@ -291,6 +298,15 @@ impl Oscillator {
             seconds: start.elapsed().as_secs_f64(),
         }
     }
+}
+
+/// Whether a name is that of an unknown by the custom of the field, so that taking it for a constant
+/// would answer another question.
+fn is_unknown(name: &str) -> bool {
+    let letter = matches!(name, "y" | "z" | "u" | "v" | "w" | "q");
+    let index = name.strip_prefix("x_").or_else(|| name.strip_prefix('x'));
+    let numbered = |digits: &str| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit());
+    letter || index.is_some_and(numbered)
 }
 
 /// The name of a condition in files and results.

@@ -93,3 +93,25 @@ fn name_file_and_library_answer_alike() {
     same(library(&verified), "verify", "duffing", &["--order", "2"]);
     assert!(compared >= 40, "only {compared} numbers");
 }
+
+/// An equation in quotes is a problem; every name but those of unknowns is a parameter.
+#[test]
+fn an_equation_is_a_problem() {
+    let equation = "x'' + x + eps*x^3 = 0";
+    let work = Work { digits: 20, ..Work::default() };
+    let derived = Oscillator::parse(equation).unwrap().derive(3, &work).unwrap();
+    let options = ["--order", "3", "--digits", "20"];
+    assert_eq!(asked("derive", equation, &options), library(&derived));
+    let verdict = &asked("verify", equation, &["--order", "2"])["verdict"];
+    assert_eq!(verdict, "agrees");
+    let set = asked("derive", "x'' + x + eps*beta*x^3 = 0", &["--set", "beta=1/2", "--order", "1"]);
+    assert_eq!(set["series"]["frequency"][1]["exact"], "3/16");
+    for name in ["y", "x_2", "w", "x1"] {
+        let equation = format!("x'' + x + eps*{name}*x^2 = 0");
+        let program = env!("CARGO_BIN_EXE_lindstedt");
+        let output = Command::new(program).args(["derive", &equation]).output().unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{name}: {error}");
+        assert!(error.contains(&format!("{name} is the name of an unknown")), "{error}");
+    }
+}
