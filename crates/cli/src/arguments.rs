@@ -130,6 +130,14 @@ pub struct EvaluateOptions {
     /// is the amplitude.
     #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
     pub times: Option<String>,
+    /// The orbit as a theorem: period, frequency, amplitude and Floquet exponent enclosed, with the
+    /// radius of the contraction proof.
+    #[arg(long, conflicts_with_all = ["times", "code", "phase", "start", "state", "sweep", "plot", "f64"])]
+    pub prove: bool,
+    /// Period and frequency over NAME=LO..HI:COUNT or NAME=V1,V2,...; at most two, the first along
+    /// the horizontal axis.
+    #[arg(long, value_name = "NAME=LO..HI:COUNT", conflicts_with_all = ["times", "code", "phase", "start", "state"])]
+    pub sweep: Vec<String>,
     /// x(t) = X(omega t + PHASE).
     #[arg(long, value_name = "PHASE", default_value = "0", allow_hyphen_values = true)]
     pub phase: String,

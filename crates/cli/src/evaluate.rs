@@ -7,6 +7,7 @@ use crate::session::Session;
 use lindstedt::equation::Condition;
 use lindstedt::evaluate::Times;
 use lindstedt::evaluate::averaged::{AveragedMotion, Start};
+use lindstedt::grid::Axis;
 use lindstedt::{Evaluate, Exact, Oscillator, Work};
 
 pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
@@ -26,12 +27,34 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     }
     let (order, method) = (options.order.map(|order| order as usize), options.resum.into());
     let question = Evaluate { order, method, times, phase: Exact::parse(&options.phase)? };
+    if options.prove {
+        return session.show(oscillator.prove(&question, &work), &[]);
+    }
+    if !options.sweep.is_empty() {
+        let (columns, rows) = axes(&options.sweep)?;
+        let swept = oscillator.evaluate_sweep(&question, columns, rows, &work);
+        return session.show(swept, &options.plot);
+    }
     if let Some(language) = options.code {
         let harmonics = options.harmonics as usize;
         let code = oscillator.solution_code(&question, language.into(), harmonics, &work);
         return session.show(code, &[]);
     }
     session.show(oscillator.evaluate(&question, &work), &options.plot)
+}
+
+/// One axis or two.
+fn axes(texts: &[String]) -> Result<(Axis, Option<Axis>), Failure> {
+    let mut axes = texts.iter().map(|text| Axis::parse(text));
+    let columns = axes.next().transpose()?;
+    let rows = axes.next().transpose()?;
+    match (columns, axes.next()) {
+        (Some(columns), None) => Ok((columns, rows)),
+        _ => {
+            let message = "at most two parameters are swept".to_owned();
+            Err(Failure::usage("sweep", message, "one --sweep or two"))
+        }
+    }
 }
 
 fn averaged(
@@ -46,6 +69,8 @@ fn averaged(
         (sums, "--resum", "the averaged series is broken off at --order"),
         (options.code.is_some(), "--code", "an averaged motion is no Fourier series in one phase"),
         (options.phase.trim() != "0", "--phase", "--start A,PSI has the phase"),
+        (options.prove, "--prove", "`stability` and `simulate` judge forced motions"),
+        (!options.sweep.is_empty(), "--sweep", "an averaged motion has no period"),
     ] {
         if asked {
             let message = format!("{what} does not belong to averaged motions");

@@ -81,6 +81,7 @@ pub use lindstedt_impact as impact;
 pub use lindstedt_melnikov as melnikov;
 pub use lindstedt_multimodular as multimodular;
 pub use lindstedt_number as number;
+pub use lindstedt_orbit as orbit;
 pub use lindstedt_phase as phase;
 pub use lindstedt_problem_file as problem_file;
 pub use lindstedt_problems as problems;

@@ -10,9 +10,11 @@ pub(crate) mod few;
 mod json;
 mod names;
 mod period;
+mod prove;
 pub(crate) mod setting;
 mod solution;
 pub(crate) mod source;
+mod sweep;
 mod times;
 mod words;
 
@@ -28,10 +30,12 @@ use lindstedt_problem_file::parse_equation;
 use lindstedt_series::resummation::Method;
 pub use names::{kind_name, method_flag, method_name, rounded, with_error};
 pub use period::Evaluation;
+pub use prove::{Bounds, ProvedOrbit, Verdict as ProofVerdict};
 use rug::Rational;
 use setting::Setting;
 pub use solution::{Fourier, Trajectory};
 use std::time::Instant;
+pub use sweep::{EvaluationSweep, SweptPeriod};
 pub use times::Times;
 
 /// What to evaluate.

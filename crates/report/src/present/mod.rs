@@ -7,7 +7,9 @@ mod derive;
 mod estimate;
 mod evaluate;
 mod motion;
+mod prove;
 mod stability;
+mod sweep;
 mod threshold;
 mod verify;
 

@@ -145,6 +145,8 @@ fn every_json_key_is_documented() -> Outcome {
         "derive duffing --order 1",
         "derive vibro-impact --order 1",
         "evaluate duffing --order 6 --times 0..1:2",
+        "evaluate van-der-pol --set eps=1/2 --prove",
+        "evaluate duffing --order 4 --sweep eps=0..1:2 --digits 8",
         "threshold stick-slip --digits 8 --zeros vstar=0..1 --sweep vstar=0..1:3",
         "stability vibro-impact --f64 --variant impact-aware",
         "simulate duffing --periods 1 --digits 8",

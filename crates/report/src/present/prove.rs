@@ -1,0 +1,64 @@
+//! The orbit as a theorem.
+
+use super::Present;
+use crate::{Document, Text};
+use lindstedt::evaluate::{ProofVerdict, ProvedOrbit};
+use lindstedt::{Answer, Number, Status};
+
+fn shown(number: &Number) -> String {
+    let class = match number.status {
+        Status::Proved => "proved",
+        Status::Estimated => "estimated",
+        _ => "no estimate",
+    };
+    match &number.error {
+        Some(error) => format!("{} +- {error} ({class})", number.decimal),
+        None => format!("{} ({class})", number.decimal),
+    }
+}
+
+impl Present for Answer<ProvedOrbit> {
+    fn document(&self) -> Document {
+        let value = &self.value;
+        let values: Vec<String> =
+            self.header.at.iter().map(|(n, v)| format!("{n} = {v}")).collect();
+        let title = format!("{}: {}", self.header.problem, values.join(", "));
+        let named = [
+            ("period", &value.period),
+            ("frequency", &value.frequency),
+            ("x at phase 0", &value.amplitude),
+            ("x' at phase 0", &value.velocity),
+            ("largest x", &value.maximum),
+            ("least x", &value.minimum),
+        ];
+        let known =
+            named.into_iter().filter_map(|(name, number)| Some((name, shown(number.as_ref()?))));
+        let exponents = value.floquet_exponent.iter().map(|e| ("Floquet exponent", shown(e)));
+        let page = Document::titled(title).lines(known.chain(exponents));
+        match &value.proof {
+            ProofVerdict::Failed { failed, why } => page.words(format!(
+                "Not proved ({failed}): {why}. This says nothing against the orbit."
+            )),
+            ProofVerdict::Proved { modes, weight, radius, unique_within, bounds } => {
+                let stable = match value.stable {
+                    Some(true) => " It is stable.",
+                    Some(false) => " It is unstable.",
+                    None => "",
+                };
+                let words = format!(
+                    "Proved: there is exactly one periodic orbit within {} of these Fourier coefficients, and no \
+                     second one within {}.{stable}",
+                    radius.decimal, unique_within.decimal
+                );
+                page.words(Text::words(words)).lines([
+                    ("modes", modes.to_string()),
+                    ("weight nu", weight.to_string()),
+                    ("Y0", bounds.y0.decimal.clone()),
+                    ("Z0", format!("{:e}", bounds.z0)),
+                    ("Z1", format!("{:.4}", bounds.z1)),
+                    ("Z2", format!("{:.4}", bounds.z2)),
+                ])
+            }
+        }
+    }
+}
