@@ -4,7 +4,7 @@
 use super::{Evaluate, Evaluation, period};
 use crate::refusal::Refused;
 use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Status, Work};
-use lindstedt_equation::Condition;
+use lindstedt_equation::{AmplitudeRole, Condition};
 use lindstedt_number::ball::Ball;
 use lindstedt_orbit::{Failure, Field, Kind, Proof, Request, Stability, Start, prove};
 use rug::float::Round;
@@ -49,11 +49,11 @@ pub enum Verdict {
         /// nu of the norm.
         weight: f64,
         /// The distance of the orbit from the numerical one, in the norm of the proof.
-        radius: Number,
+        radius: Box<Number>,
         /// The distance within which there is no second orbit.
-        unique_within: Number,
+        unique_within: Box<Number>,
         /// The bounds of the test.
-        bounds: Bounds,
+        bounds: Box<Bounds>,
     },
     /// Not proved; this says nothing against the orbit.
     Failed {
@@ -104,8 +104,8 @@ impl Oscillator {
     pub fn prove(&self, question: &Evaluate, work: &Work) -> Result<Answer<ProvedOrbit>, Error> {
         let start = Instant::now();
         let (case, mut remarks) = self.settled()?;
-        let (field, kind) = case.field()?;
         let found = period::period(&case, question, work).ok();
+        let (field, kind) = case.field()?;
         let request =
             Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() };
         let mut failure = Failure::NoStart;
@@ -129,7 +129,8 @@ impl Oscillator {
         let (value, standing) = match proof {
             Some(proof) => {
                 let cycle = kind == Kind::LimitCycle;
-                (ProvedOrbit::new(&proof, cycle, work.printed_digits()), Standing::Complete)
+                let digits = work.printed_digits();
+                (ProvedOrbit::new(&proof, cycle, digits), Standing::Complete)
             }
             None => {
                 remarks.push(Remark(format!("not proved: {failure}")));
@@ -141,11 +142,19 @@ impl Oscillator {
         Ok(Answer { header, value, standing, remarks })
     }
 
-    /// The vector field with its values, and which orbit of it is meant.
+    /// The vector field with its values, and which orbit of it is meant. A small parameter that has the
+    /// amplitude in it is, in the equation of x itself, its other part.
     fn field(&self) -> Result<(Field, Kind), Error> {
-        let values = self.rational_values();
-        let one = || Rational::from(1);
-        let amplitude = || values.get("amplitude").cloned().unwrap_or_else(one);
+        let mut values = self.rational_values();
+        let small = &self.problem().small;
+        if self.problem().amplitude == AmplitudeRole::InSmallParameter {
+            let cards = self.problem().parameters.iter().filter(|card| card.name != "amplitude");
+            let part = cards.filter_map(|card| values.get(&*card.name)).next().cloned();
+            if let Some(part) = part {
+                values.entry(small.to_string()).or_insert(part);
+            }
+        }
+        let amplitude = || values.get("amplitude").cloned().unwrap_or_else(|| Rational::from(1));
         let kind = match self.condition() {
             Some(Condition::LimitCycle) => Kind::LimitCycle,
             Some(Condition::InitialAmplitude) => Kind::InitialAmplitude(amplitude()),
@@ -218,14 +227,14 @@ impl ProvedOrbit {
             proof: Verdict::Proved {
                 modes: proof.modes,
                 weight: proof.weight,
-                radius: above(&proof.radius),
-                unique_within: below(&proof.unique_within),
-                bounds: Bounds {
+                radius: Box::new(above(&proof.radius)),
+                unique_within: Box::new(below(&proof.unique_within)),
+                bounds: Box::new(Bounds {
                     y0: above(&proof.bounds.y0),
                     z0: proof.bounds.z0,
                     z1: proof.bounds.z1,
                     z2: proof.bounds.z2,
-                },
+                }),
             },
         }
     }
