@@ -1,12 +1,12 @@
 //! The motion before t = 0: constant, free flight, or an expression in t; start values from it.
 
-use crate::recognise::impact::linear_in_time;
 use crate::refusal::Refused;
 use crate::{Error, Exact};
 use lindstedt_equation::Function::{Cos, Exp, Sin};
 use lindstedt_equation::monomials::{Monomial, expand};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function, Operations};
+use lindstedt_recognise::linear_in_time;
 use lindstedt_simulate::Parameters;
 use rug::{Float, Rational};
 

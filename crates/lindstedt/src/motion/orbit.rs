@@ -2,7 +2,6 @@
 
 use super::Branch;
 use super::history::{Evaluator, Linear};
-use crate::recognise::ImpactProblem;
 use crate::refusal::Refused;
 use crate::{Error, Oscillator};
 use lindstedt_equation::Crossing;
@@ -10,6 +9,7 @@ use lindstedt_impact::flight::clearance;
 use lindstedt_impact::orbit::orbit;
 use lindstedt_impact::parameters::ExactParameters;
 use lindstedt_number::real::{Certified, Real as _};
+use lindstedt_recognise::ImpactProblem;
 use rug::Float;
 
 /// The orbit with one impact in k periods of the force.

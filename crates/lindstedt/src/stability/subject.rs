@@ -2,13 +2,13 @@
 
 use super::Stability;
 use crate::grid::Axis;
-use crate::recognise::ImpactProblem;
 use crate::refusal::Refused;
 use crate::{Error, Exact, Oscillator};
 use lindstedt_equation::Expression;
 use lindstedt_impact::ImpactError;
 use lindstedt_impact::parameters::{Branch, Parameters, Swept};
 use lindstedt_impact::report::Request;
+use lindstedt_recognise::ImpactProblem;
 use rug::Rational;
 use std::collections::BTreeMap;
 

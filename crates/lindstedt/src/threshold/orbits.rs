@@ -2,14 +2,14 @@
 
 use super::subject::Subject;
 use super::{Crossing, Cusp, Harmonic, HomoclinicThreshold, Orbit, Validity};
-use crate::recognise::melnikov::Unperturbed;
-use crate::recognise::{OrbitCheck, OrbitThreshold};
 use crate::{Error, Exact, Number, Status};
 use lindstedt_equation::Expression;
 use lindstedt_equation::print::Style;
 use lindstedt_melnikov::{Class, MelnikovError, Potential, Verdict};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::certified;
+use lindstedt_recognise::Unperturbed;
+use lindstedt_recognise::{OrbitCheck, OrbitThreshold};
 
 /// Bits that order the thresholds of several orbits.
 const ORDERING_BITS: u32 = 200;

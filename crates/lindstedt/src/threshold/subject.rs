@@ -1,11 +1,11 @@
 //! The oscillator that is asked about, as Melnikov's method sees it, at other values of parameters.
 
 use crate::grid::Axis;
-use crate::recognise::{LowestHarmonic, MelnikovProblem};
 use crate::refusal::Refused;
 use crate::{Error, Exact, Oscillator, Work};
 use lindstedt_melnikov::{self as melnikov, StickSlip};
 use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_recognise::{LowestHarmonic, MelnikovProblem};
 use std::collections::BTreeMap;
 
 /// The oscillator with what was found in its equation.

@@ -1,12 +1,12 @@
 //! Zeros of the signed threshold in a parameter.
 
 use super::subject::{Range, Subject};
-use crate::recognise::melnikov::Unperturbed;
 use crate::refusal::Refused;
 use crate::{Error, Exact, Number, Status};
 use lindstedt_melnikov::Class;
 use lindstedt_number::ball::Balls;
 use lindstedt_number::certified;
+use lindstedt_recognise::Unperturbed;
 use rug::Rational;
 
 /// Cells in which a change of sign is looked for.

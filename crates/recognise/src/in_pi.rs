@@ -1,16 +1,16 @@
 //! Constants of a bound equation: polynomials in pi over Q.
 
-use super::PI;
-use crate::Exact;
+use crate::bound::PI;
 use lindstedt_equation::Expression;
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::monomials::{Monomial, expand};
+use lindstedt_number::Exact;
 use rug::Rational;
 use std::collections::BTreeMap;
 
 /// sum_k q_k pi^k.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct InPi(BTreeMap<i32, Rational>);
+pub(crate) struct InPi(BTreeMap<i32, Rational>);
 
 impl InPi {
     /// Adds the constant factor of a term; nothing if it is no power of pi over Q.

@@ -1,16 +1,18 @@
 //! Orbits of a force without closed form, followed by Taylor series; every number is estimated.
 
-use super::in_pi::InPi;
-use super::law::evaluate;
-use super::melnikov::OrbitThreshold;
-use super::motion::Motion;
-use super::{PI, Refusal, potential};
-use crate::Exact;
+use crate::bound::PI;
+use crate::in_pi::InPi;
+use crate::law::evaluate;
+use crate::motion::Motion;
+use crate::potential;
+use crate::refusal::Refusal;
+use crate::threshold::OrbitThreshold;
 use lindstedt_algebra::Stop;
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::Monomials;
 use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_melnikov::{Class, Forcing, Friction, MelnikovError, Threshold};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_simulate::{Digits, Integrator, Model, Parameters, Report, Settings, Trajectory};
 use rug::{Float, Rational};
@@ -19,11 +21,11 @@ use std::ops::ControlFlow;
 /// Half the width of the search where no bound of the zeros is known.
 const REACH: f64 = 20.0;
 /// Bits of the search.
-pub(super) const COARSE: u32 = 128;
+pub(crate) const COARSE: u32 = 128;
 
 /// One orbit from a saddle.
 #[derive(Clone, Debug)]
-pub(super) struct Path {
+pub(crate) struct Path {
     pub name: &'static str,
     pub saddle: Float,
     /// Where the motion starts: the turning point, or the centre between two saddles.
@@ -66,7 +68,7 @@ pub struct OrbitCheck {
 
 impl NumericOrbit {
     /// The orbits of the force with these terms (in x alone, bound).
-    pub(super) fn find(force: &Monomials) -> Result<Self, Refusal> {
+    pub(crate) fn find(force: &Monomials) -> Result<Self, Refusal> {
         let terms = force.terms.iter().map(|(m, q)| force.tree(m, q));
         let force_of_x = Expression::Sum(terms.collect()).canonical();
         let found = Self { force: force_of_x, paths: Vec::new(), stop: Stop::default() };
@@ -83,7 +85,7 @@ impl NumericOrbit {
 
     /// Whether f has a positive derivative at a zero: its difference quotients agree. Near other
     /// saddles nothing decays exponentially.
-    pub(super) fn is_hyperbolic(&self, x: &Float) -> bool {
+    pub(crate) fn is_hyperbolic(&self, x: &Float) -> bool {
         let quotient = |h: f64| -> Option<f64> {
             let ends = (Float::with_val(COARSE, x - h), Float::with_val(COARSE, x + h));
             Some(((self.f(&ends.1)? - self.f(&ends.0)?) / (2.0 * h)).to_f64())
@@ -95,7 +97,7 @@ impl NumericOrbit {
     }
 
     /// f(x); nothing where it is not finite, and when the work was stopped.
-    pub(super) fn f(&self, x: &Float) -> Option<Float> {
+    pub(crate) fn f(&self, x: &Float) -> Option<Float> {
         if self.stop.asked() {
             return None;
         }
@@ -103,13 +105,13 @@ impl NumericOrbit {
     }
 
     /// W between two points.
-    pub(super) fn work(&self, from: &Float, to: &Float, bits: u32) -> Option<Float> {
+    pub(crate) fn work(&self, from: &Float, to: &Float, bits: u32) -> Option<Float> {
         let estimate = tanh_sinh(bits, from, to, |x| self.f(x)).ok()?;
         Some(Float::with_val(bits, &estimate.value))
     }
 
     /// W over one cell of the search: Gauss and Legendre with five points, exact to 1e-16 there.
-    pub(super) fn cell(&self, from: &Float, to: &Float) -> Option<Float> {
+    pub(crate) fn cell(&self, from: &Float, to: &Float) -> Option<Float> {
         const NODES: [(f64, f64); 5] = [
             (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
             (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
@@ -128,7 +130,7 @@ impl NumericOrbit {
     }
 
     /// A zero of f between two points of opposite sign.
-    pub(super) fn zero(&self, low: &Float, high: &Float, bits: u32) -> Option<Float> {
+    pub(crate) fn zero(&self, low: &Float, high: &Float, bits: u32) -> Option<Float> {
         let (mut low, mut high) = (Float::with_val(bits, low), Float::with_val(bits, high));
         let rising = self.f(&high)? > 0;
         for _ in 0..bits + 8 {
@@ -139,7 +141,7 @@ impl NumericOrbit {
     }
 
     /// The simple zero of W near x, by Newton's method.
-    pub(super) fn turning_point(&self, saddle: &Float, near: &Float, bits: u32) -> Option<Float> {
+    pub(crate) fn turning_point(&self, saddle: &Float, near: &Float, bits: u32) -> Option<Float> {
         let mut x = Float::with_val(bits, near);
         for _ in 0..60 {
             let step = self.work(saddle, &x, bits)? / self.f(&x)?;

@@ -1,9 +1,9 @@
 //! A motion on an orbit, and the integrals of Melnikov's function along it.
 
-use crate::Exact;
 use lindstedt_algebra::Stop;
 use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_melnikov::{Forcing, ForcingWork, Friction, MelnikovError};
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_simulate::{Digits, Trajectory};
 use rug::{Float, Rational};
@@ -12,7 +12,7 @@ use rug::{Float, Rational};
 const LEVELS: u32 = 9;
 
 /// x(t), x'(t) for |t| <= end.
-pub(super) struct Motion {
+pub(crate) struct Motion {
     pub forward: Trajectory<Digits>,
     pub backward: Option<Trajectory<Digits>>,
     pub end: Float,

@@ -1,11 +1,11 @@
 //! The unperturbed force f(x): which of the potentials with a closed orbit it is.
 
-use super::in_pi::InPi;
-use crate::Exact;
+use crate::in_pi::InPi;
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::monomials::{Monomials, expand};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_melnikov::Potential;
+use lindstedt_number::Exact;
 use rug::Rational;
 use std::cmp::Ordering;
 
@@ -13,7 +13,7 @@ use std::cmp::Ordering;
 const LARGEST_DEGREE: usize = 1000;
 
 /// f(x) = sum_k f_k x^k with constants over Q\[pi\], of the terms of a sum; nothing for other forces.
-pub(super) fn polynomial(force: &Monomials) -> Option<Vec<InPi>> {
+pub(crate) fn polynomial(force: &Monomials) -> Option<Vec<InPi>> {
     let mut coefficients = Vec::new();
     for (m, q) in &force.terms {
         let k = usize::try_from(m.x).ok().filter(|k| *k <= LARGEST_DEGREE)?;
@@ -30,7 +30,7 @@ pub(super) fn polynomial(force: &Monomials) -> Option<Vec<InPi>> {
 }
 
 /// The potential of y and s, where x = s y + constant turns x'' = f(x) into one with a closed orbit.
-pub(super) fn closed(force: &Monomials) -> Option<(Potential, Rational)> {
+pub(crate) fn closed(force: &Monomials) -> Option<(Potential, Rational)> {
     if let Some(coefficients) = polynomial(force) {
         let list: Option<Vec<Exact>> = coefficients.iter().map(|c| c.value()).collect();
         return match list?.as_slice() {

@@ -1,12 +1,13 @@
 //! x'' + c x' + alpha^2 x = P0 cos(omega t) + A (x - x_T) + B (x' - x'_T) between impacts, from the
 //! terms of an equation with a wall.
 
-use super::in_pi::InPi;
-use super::{Refusal, Why, bind, missing, multiply_out, named, rest};
-use crate::Exact;
+use crate::bound::{bind, missing, multiply_out, named, of_value, rest};
+use crate::in_pi::InPi;
+use crate::refusal::{Refusal, Why};
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
 use lindstedt_equation::{Crossing, Expression, Function, Problem, Unknown};
 use lindstedt_impact::parameters::{Branch, ExactParameters};
+use lindstedt_number::Exact;
 use rug::Rational;
 use std::collections::BTreeMap;
 
@@ -107,12 +108,12 @@ impl ImpactProblem {
             (Some(omega), _) => omega.clone(),
             (None, Some(tie)) => values
                 .get(&*tie.frequency)
-                .and_then(|v| InPi::of(&super::of_value(v)))
+                .and_then(|v| InPi::of(&of_value(v)))
                 .ok_or(Refusal::NoForce)?,
             _ => return Err(Refusal::NoForce),
         };
         let tied = tie.filter(|tie| {
-            let known = values.get(&*tie.frequency).and_then(|v| InPi::of(&super::of_value(v)));
+            let known = values.get(&*tie.frequency).and_then(|v| InPi::of(&of_value(v)));
             known.as_ref() == Some(&omega)
         });
         let whole = |value: &Exact| {
@@ -262,8 +263,9 @@ fn shape(all: &Monomials, m: &Monomial) -> Result<Shape, Why> {
     }
 }
 
-/// omega t + phase: the phase moves the clock only.
-pub(crate) fn linear_in_time(argument: &Expression) -> bool {
+/// Whether the argument of a harmonic force is omega t + phase: the phase moves the clock only.
+#[must_use]
+pub fn linear_in_time(argument: &Expression) -> bool {
     expand(argument).is_some_and(|all| {
         let time = |m: &Monomial| m.atoms.get("t") == Some(&1) && m.atoms.len() == 1;
         let plain = |m: &Monomial| m.x == 0 && m.velocity == 0 && m.order == 0;

@@ -1,6 +1,6 @@
 //! The search for saddles and the orbits that leave them, on a grid.
 
-use super::numeric::{COARSE, NumericOrbit, Path};
+use crate::numeric::{COARSE, NumericOrbit, Path};
 use rug::Float;
 
 /// Points of the search for saddles and turning points.
@@ -9,7 +9,7 @@ const POINTS: i32 = 4000;
 const SAMPLES: u32 = 7;
 
 impl NumericOrbit {
-    pub(super) fn search(&self, reach: f64) -> Option<Vec<Path>> {
+    pub(crate) fn search(&self, reach: f64) -> Option<Vec<Path>> {
         let step = 2.0 * reach / f64::from(POINTS);
         // Off the symmetric points, where zeros like to be.
         let at = |n: i32| Float::with_val(COARSE, step * (f64::from(n) + 0.137) - reach);

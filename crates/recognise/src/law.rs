@@ -1,11 +1,12 @@
 //! The friction law of an equation: T(x' - v*), with v* the speed at which it jumps or bends.
 
-use super::in_pi::InPi;
-use super::{PI, Refusal, Why, multiply_out};
-use crate::Exact;
+use crate::bound::{PI, multiply_out};
+use crate::in_pi::InPi;
+use crate::refusal::{Refusal, Why};
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
 use lindstedt_equation::{Expression, Function, Operations, Unknown};
 use lindstedt_melnikov::{Friction, PolynomialFriction};
+use lindstedt_number::Exact;
 use rug::float::Constant;
 use rug::ops::Pow;
 use rug::{Float, Rational};
@@ -14,7 +15,7 @@ use std::sync::Arc;
 
 /// A friction law and the speed of the belt.
 #[derive(Clone, Debug)]
-pub(super) struct FrictionLaw {
+pub(crate) struct FrictionLaw {
     pub belt_speed: Exact,
     dry: Exact,
     /// t_k at index k.
@@ -278,7 +279,7 @@ impl Operations for At<'_> {
     }
 }
 
-/// The value of a bound expression in x' alone (or, in [`super::numeric`], in x alone) at w.
-pub(super) fn evaluate(e: &Expression, w: &Float) -> Option<Float> {
+/// The value of a bound expression in x' alone (or, in [`crate::numeric`], in x alone) at w.
+pub(crate) fn evaluate(e: &Expression, w: &Float) -> Option<Float> {
     e.evaluate(&mut At { w })
 }

@@ -1,24 +1,25 @@
 //! The terms of Melnikov's form, and the harmonic forces among them.
 
-use super::Why;
-use super::in_pi::InPi;
-use crate::Exact;
+use crate::bound::PI;
+use crate::in_pi::InPi;
+use crate::refusal::Why;
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_melnikov::{Forcing, Harmonic};
+use lindstedt_number::Exact;
 use rug::{Integer, Rational};
 
 /// Harmonics k omega up to this k.
 const LARGEST_HARMONIC: u32 = 10_000;
 
 /// What a term can be.
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Force,
     Friction,
     Harmonic,
 }
 
-pub(super) fn kind(all: &Monomials, m: &Monomial) -> Result<Kind, Why> {
+pub(crate) fn kind(all: &Monomials, m: &Monomial) -> Result<Kind, Why> {
     let atoms = || m.atoms.keys().filter_map(|key| all.atoms.get(key));
     let holds = |e: &Expression| atoms().any(|atom| atom.contains(e));
     let any = |wanted: &dyn Fn(&Expression) -> bool| atoms().any(|a| a.find(wanted).is_some());
@@ -75,19 +76,19 @@ fn sum(part: &Monomials) -> Option<InPi> {
 }
 
 /// omega of a bound sine or cosine of omega t + phase, with its sign.
-pub(super) fn frequency(atom: &Expression) -> Option<Exact> {
+pub(crate) fn frequency(atom: &Expression) -> Option<Exact> {
     sum(&angle(atom)?.0)?.value()
 }
 
 /// The frequency of a force whose amplitude is zero at the values given.
-pub(super) fn silent_frequency(bound: &Expression) -> Option<Exact> {
+pub(crate) fn silent_frequency(bound: &Expression) -> Option<Exact> {
     let term = bound.find(&|e| angle(e).is_some())?;
     Some(frequency(term)?.abs())
 }
 
 /// One harmonic force g x^p cos(omega t + phase).
 #[derive(Clone, Debug)]
-pub(super) struct Term {
+pub(crate) struct Term {
     pub omega: Exact,
     /// In radians; nothing where it is a sum of a rational number and a multiple of pi.
     phase: Option<Exact>,
@@ -107,7 +108,7 @@ impl Term {
         }
         if matches!(atom, Expression::Function(Function::Sin, _)) {
             let quarter = if omega.sign().is_lt() { 1 } else { -1 };
-            let mut turn = InPi::of(&Expression::parameter(super::PI))?;
+            let mut turn = InPi::of(&Expression::parameter(PI))?;
             turn = turn.scaled(&Rational::from((quarter, 2)));
             phase = phase.plus(&turn);
         }
@@ -123,7 +124,7 @@ impl Term {
 }
 
 /// The force of unit lowest amplitude, and that amplitude; terms by rising frequency.
-pub(super) fn forcing(terms: &[Term]) -> Result<(Forcing, Exact), Why> {
+pub(crate) fn forcing(terms: &[Term]) -> Result<(Forcing, Exact), Why> {
     let first = terms.first().ok_or(Why::NotHarmonic)?;
     if terms.iter().any(|t| t.parametric) {
         return match terms {

@@ -1,13 +1,13 @@
 //! What the questions that take an equation by its form share: values, ranges, refusals with their
 //! place.
 
-use super::Refusal;
 use crate::grid::Axis;
 use crate::refusal::{Refusal as _, Refused};
 use crate::{Error, Exact, Kind, Oscillator};
 use lindstedt_equation::Expression;
 use lindstedt_equation::print::Style;
 use lindstedt_problem_file::canonical_name;
+use lindstedt_recognise::Refusal;
 use std::collections::BTreeMap;
 
 /// What makes room for symbols of files whose numbers follow from pi.

@@ -1,12 +1,12 @@
 //! Which term of an equation the threshold is about: its lowest harmonic force, with the coefficient
 //! as it is written.
 
-use super::forces::{Kind, frequency, kind};
-use super::in_pi::InPi;
-use super::{bind, rest};
-use crate::Exact;
+use crate::bound::{bind, rest};
+use crate::forces::{Kind, frequency, kind};
+use crate::in_pi::InPi;
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
 use lindstedt_equation::{Expression, Problem};
+use lindstedt_number::Exact;
 use rug::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,26 +14,28 @@ use std::collections::{BTreeMap, BTreeSet};
 /// its threshold are in the symbols of the problem.
 ///
 /// ```
-/// use lindstedt::recognise::LowestHarmonic;
-/// use lindstedt::Oscillator;
+/// use lindstedt_number::Exact;
+/// use lindstedt_problem_file::ProblemFile;
+/// use lindstedt_recognise::LowestHarmonic;
 ///
-/// let oscillator = Oscillator::file(
+/// let file = ProblemFile::parse(
 ///     r#"
 ///     name = "pendulum"
 ///     equation = "m x'' + m sin x = eps (gamma cos(omega t) - delta x')"
 ///     condition = []
 ///     [parameters]
-///     m = { value = "2" }
-///     gamma = { value = "1" }
-///     omega = { value = "1" }
-///     delta = { value = "1" }
+///     m = {}
+///     gamma = {}
+///     omega = {}
+///     delta = {}
 ///     "#,
 /// )?;
-/// let values = oscillator.all_values().into_iter().collect();
-/// let found = LowestHarmonic::find(oscillator.problem(), &values).expect("there is a force");
+/// let values = [("m", 2), ("gamma", 1), ("omega", 1), ("delta", 1)];
+/// let values = values.map(|(name, value)| (name.to_owned(), Exact::from(value)));
+/// let found = LowestHarmonic::find(&file.problem, &values.into()).expect("there is a force");
 /// let (name, factor) = found.parameter.expect("it is gamma/m");
 /// assert_eq!((name.as_str(), factor.to_f64()), ("gamma", 0.5));
-/// # Ok::<(), lindstedt::Error>(())
+/// # Ok::<(), lindstedt_problem_file::FileError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct LowestHarmonic {
@@ -50,7 +52,7 @@ pub struct LowestHarmonic {
 
 /// The terms with one harmonic function.
 #[derive(Debug)]
-pub(super) struct Force {
+pub(crate) struct Force {
     atom: Expression,
     x: u32,
     /// |omega|, and what orders forces of one frequency.
@@ -60,7 +62,7 @@ pub(super) struct Force {
 }
 
 /// The harmonic forces of an equation without values, by frequency; nothing if one has none.
-pub(super) fn forces(all: &Monomials, values: &BTreeMap<String, Exact>) -> Option<Vec<Force>> {
+pub(crate) fn forces(all: &Monomials, values: &BTreeMap<String, Exact>) -> Option<Vec<Force>> {
     let mut list: Vec<Force> = Vec::new();
     for (m, q) in &all.terms {
         if !matches!(kind(all, m), Ok(Kind::Harmonic)) {
@@ -119,7 +121,7 @@ impl Force {
 }
 
 /// The parameters of which all forces are multiples.
-pub(super) fn common(all: &Monomials, forces: &[Force]) -> Vec<String> {
+pub(crate) fn common(all: &Monomials, forces: &[Force]) -> Vec<String> {
     let names: BTreeSet<&String> = forces
         .iter()
         .flat_map(|force| force.terms.iter().flat_map(|(m, _)| m.parameters.keys()))

@@ -1,12 +1,14 @@
 //! x'' = f(x) + eps (gamma cos(omega t) - T(x' - v*)) in the form of its terms.
 
-use super::forces::{Kind, Term, forcing, kind, silent_frequency};
-use super::in_pi::InPi;
-use super::law::FrictionLaw;
-use super::lowest::{common, forces};
-use super::numeric::NumericOrbit;
-use super::{Refusal, Why, bind, missing, multiply_out, named, potential, rest};
-use crate::Exact;
+use crate::bound::{bind, missing, multiply_out, named, rest};
+use crate::forces::{Kind, Term, forcing, kind, silent_frequency};
+use crate::in_pi::InPi;
+use crate::law::FrictionLaw;
+use crate::lowest::{common, forces};
+use crate::numeric::NumericOrbit;
+use crate::potential;
+use crate::refusal::{Refusal, Why};
+use crate::threshold::OrbitThreshold;
 use lindstedt_algebra::Stop;
 use lindstedt_equation::monomials::{Monomial, Monomials};
 use lindstedt_equation::{Expression, Problem};
@@ -14,6 +16,7 @@ use lindstedt_melnikov::{
     Axis, Branch, Class, Forcing, Friction, MelnikovError, Potential, StickSlip, System, Threshold,
     Verdict,
 };
+use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 use std::collections::BTreeMap;
@@ -35,23 +38,23 @@ pub enum Unperturbed {
 /// A problem in the form that Melnikov's method takes.
 ///
 /// ```
-/// use lindstedt::recognise::MelnikovProblem;
-/// use lindstedt::number::{ball::Balls, digits::decimal};
-/// use lindstedt::Oscillator;
+/// use lindstedt_number::{Exact, ball::Balls, digits::decimal};
+/// use lindstedt_problem_file::ProblemFile;
+/// use lindstedt_recognise::MelnikovProblem;
 ///
-/// let oscillator = Oscillator::file(
+/// let file = ProblemFile::parse(
 ///     r#"
 ///     name = "pendulum"
 ///     equation = "x'' + sin x = eps (gamma cos(omega t) - delta x')"
 ///     condition = []
 ///     [parameters]
-///     gamma = { value = "1" }
-///     omega = { value = "1" }
-///     delta = { value = "1" }
+///     gamma = {}
+///     omega = {}
+///     delta = {}
 ///     "#,
 /// )?;
-/// let values = oscillator.all_values().into_iter().collect();
-/// let pendulum = MelnikovProblem::new(oscillator.problem(), &values)?;
+/// let values = ["gamma", "omega", "delta"].map(|name| (name.to_owned(), Exact::from(1)));
+/// let pendulum = MelnikovProblem::new(&file.problem, &values.into())?;
 /// let gamma = &pendulum.thresholds(Balls::new(120))?[0].threshold.gamma;
 /// // 4 delta cosh(pi omega/2)/pi
 /// assert_eq!(decimal(gamma, 12).as_deref(), Some("3.19478526383"));
@@ -72,17 +75,6 @@ pub struct MelnikovProblem {
     pub amplitude: Exact,
     /// Whether friction jumps.
     jumps: bool,
-}
-
-/// The threshold on one orbit, in x.
-#[derive(Clone, Debug)]
-pub struct OrbitThreshold {
-    /// Which orbit.
-    pub name: &'static str,
-    /// The saddle it leaves, where it is followed numerically.
-    pub saddle: Option<f64>,
-    /// gamma_c, D and F.
-    pub threshold: Threshold,
 }
 
 impl MelnikovProblem {

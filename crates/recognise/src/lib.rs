@@ -1,0 +1,26 @@
+//! From the equation of a problem to what a method needs: Melnikov's potential, friction, forcing
+//! and belt speed ([`MelnikovProblem`]), the impact oscillator of section 2 ([`ImpactProblem`]).
+//!
+//! Terms are matched by what they are, multiplied out with the values of the parameters, never by
+//! their names. A term that does not fit is named; nothing is dropped.
+
+mod bound;
+mod forces;
+mod impact;
+mod in_pi;
+mod law;
+mod lowest;
+mod melnikov;
+mod motion;
+mod numeric;
+mod potential;
+mod refusal;
+mod search;
+mod threshold;
+
+pub use impact::{ImpactProblem, linear_in_time};
+pub use lowest::LowestHarmonic;
+pub use melnikov::{MelnikovProblem, Unperturbed};
+pub use numeric::{NumericOrbit, OrbitCheck};
+pub use refusal::{Refusal, Why};
+pub use threshold::OrbitThreshold;
