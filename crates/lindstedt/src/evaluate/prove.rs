@@ -1,7 +1,7 @@
 //! The orbit as a theorem: exactly one periodic orbit within a radius of the numbers, whether or not
 //! the series converges, which gives no more than the guess ([`lindstedt_orbit`]).
 
-use super::{Evaluate, Evaluation, period};
+use super::{Evaluate, Evaluation, Trajectory, period};
 use crate::refusal::Refused;
 use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Status, Work};
 use lindstedt_equation::{AmplitudeRole, Condition};
@@ -13,7 +13,10 @@ use serde::Serialize;
 use std::time::Instant;
 
 /// Harmonics of the guess from the expansion; Newton's method finds the others.
-const GUESSED: usize = 24;
+const GUESSED: usize = 11;
+
+/// Digits of the expansion's sum for it.
+const DIGITS_OF_A_GUESS: u32 = 16;
 
 /// A periodic orbit, proved or as it was estimated before.
 #[derive(Clone, Debug, Serialize)]
@@ -104,13 +107,15 @@ impl Oscillator {
     pub fn prove(&self, question: &Evaluate, work: &Work) -> Result<Answer<ProvedOrbit>, Error> {
         let start = Instant::now();
         let (case, mut remarks) = self.settled()?;
-        let found = period::period(&case, question, work).ok();
+        let estimate = |work: &Work| period::period(&case, question, work).ok();
+        let rough = Work { digits: DIGITS_OF_A_GUESS.min(work.digits), ..work.clone() };
+        let found = estimate(&rough);
         let (field, kind) = case.field()?;
         let request =
             Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() };
         let mut failure = Failure::NoStart;
         let mut proof = None;
-        for start in case.starts(found.as_ref(), &kind, question, work) {
+        for start in case.starts(found.as_ref(), &kind, question, &rough) {
             match prove(&field, &kind, &start, &request) {
                 Ok(found) => {
                     proof = Some(found);
@@ -134,6 +139,7 @@ impl Oscillator {
             }
             None => {
                 remarks.push(Remark(format!("not proved: {failure}")));
+                let found = if work.digits > rough.digits { estimate(work) } else { found };
                 (ProvedOrbit::estimated(found, &failure), Standing::Undecided)
             }
         };
@@ -186,10 +192,10 @@ impl Oscillator {
         work: &Work,
     ) -> Vec<Start> {
         let mut starts = Vec::new();
-        let rough = Work { digits: 16, ..work.clone() };
-        let path = found.and_then(|found| self.path(found, question, &rough).ok());
-        if let Some((path, series)) = path.as_ref().and_then(|p| Some((p, p.fourier(GUESSED)?))) {
-            let (cosines, sines) = series.coefficients.iter().copied().unzip();
+        let path = found.filter(|f| f.period.is_some() || f.exact_period.is_some());
+        let path = path.and_then(|f| Trajectory::without_error(self, question, f, work).ok());
+        if let Some((path, (cosines, sines))) = path.and_then(|p| p.guess(GUESSED).map(|g| (p, g)))
+        {
             starts.push(Start { frequency: path.frequency(), cosines, sines });
         }
         let amplitude = match kind {

@@ -97,6 +97,16 @@ fn settled(
     None
 }
 
+/// (c_k, s_k) of values at the phases 2 pi (i + 1/2)/n, by the trapezoidal rule.
+fn harmonic(values: &[f64], k: usize) -> (f64, f64) {
+    let count = values.len() as f64;
+    let weight = if k == 0 { 1.0 } else { 2.0 } / count;
+    values.iter().enumerate().fold((0.0, 0.0), |(c, s), (i, x)| {
+        let angle = k as f64 * (i as f64 + 0.5) * std::f64::consts::TAU / count;
+        (c + weight * x * angle.cos(), s + weight * x * angle.sin())
+    })
+}
+
 impl Trajectory {
     /// Derives the solution of an oscillator, x(0) = a, x'(0) = 0 at phase 0.
     ///
@@ -107,6 +117,18 @@ impl Trajectory {
     /// # Errors
     /// As [`Oscillator::evaluate`].
     pub fn new(
+        oscillator: &Oscillator,
+        question: &Evaluate,
+        evaluation: &Evaluation,
+        work: &Work,
+    ) -> Result<Self, Error> {
+        let mut trajectory = Self::without_error(oscillator, question, evaluation, work)?;
+        trajectory.speed = trajectory.largest_speed();
+        Ok(trajectory)
+    }
+
+    /// The same without the bound of the speed that an error of x needs, which costs 64 phases.
+    pub(super) fn without_error(
         oscillator: &Oscillator,
         question: &Evaluate,
         evaluation: &Evaluation,
@@ -135,19 +157,17 @@ impl Trajectory {
             _ if few => vec![Method::PartialSum],
             _ => vec![Method::Pade, Method::UniformPade],
         };
-        let mut trajectory = Self {
+        Ok(Self {
             derivation,
             frequency,
             is_estimated: evaluation.is_estimated || evaluation.exact_period.is_some(),
             setting,
-            speed: 0.0,
+            speed: f64::INFINITY,
             phase,
             methods,
             digits,
             period: period.midpoint().to_f64(),
-        };
-        trajectory.speed = trajectory.largest_speed();
-        Ok(trajectory)
+        })
     }
 
     /// x at times, those that are reached before the work is stopped.
@@ -321,16 +341,10 @@ impl Trajectory {
         };
         let nodes: Vec<Displacement> =
             (0..count).into_par_iter().map(|i| at(i as f64 + 0.5)).collect::<Option<_>>()?;
-        let coefficient = |k: usize| {
-            let weight = if k == 0 { 1.0 } else { 2.0 } / count as f64;
-            nodes.iter().enumerate().fold((0.0, 0.0), |(c, s), (i, x)| {
-                let angle = k as f64 * (i as f64 + 0.5) * turn;
-                (c + weight * x.double * angle.cos(), s + weight * x.double * angle.sin())
-            })
-        };
         // |c_k| changes by less than the mean of |2 error cos|.
         let error = nodes.iter().map(|x| x.error).sum::<f64>() * 2.0 / count as f64;
-        let list: Vec<(f64, f64)> = (0..=harmonics).map(coefficient).collect();
+        let values: Vec<f64> = nodes.iter().map(|x| x.double).collect();
+        let list: Vec<(f64, f64)> = (0..=harmonics).map(|k| harmonic(&values, k)).collect();
         let sum = |angle: f64| {
             let term = |(k, (c, s)): (usize, &(f64, f64))| {
                 let angle = k as f64 * angle;
@@ -348,6 +362,19 @@ impl Trajectory {
         let (fine, _) = deviation((-8..=8).map(|i| place + f64::from(i) / 32.0).collect())?;
         let deviation = coarse.max(fine);
         Some(Fourier { coefficients: list, deviation, error: error.is_finite().then_some(error) })
+    }
+
+    /// The Fourier coefficients c_k, s_k, k = 0 .. `harmonics`, of one approximant at
+    /// 2 (harmonics + 1) phases: a guess without an error.
+    #[must_use]
+    pub(super) fn guess(&self, harmonics: usize) -> Option<(Vec<f64>, Vec<f64>)> {
+        let count = 2 * (harmonics + 1);
+        let node = |i: usize| {
+            let phase = Point::PiTimes(Rational::from((2 * i as u64 + 1, count as u64)));
+            self.rough(&phase).filter(|x| x.is_finite())
+        };
+        let nodes: Vec<f64> = (0..count).into_par_iter().map(node).collect::<Option<_>>()?;
+        Some((0..=harmonics).map(|k| harmonic(&nodes, k)).unzip())
     }
 
     /// omega as a double.
