@@ -2,7 +2,6 @@
 //! with files and a terminal.
 
 mod arguments;
-mod classification;
 mod derive;
 mod evaluate;
 mod failure;
@@ -40,10 +39,7 @@ fn main() -> ExitCode {
         Command::Paper(options) => paper::run(options, &session),
     };
     match outcome {
-        Ok(code) => {
-            session::say_notes();
-            ExitCode::from(code)
-        }
+        Ok(code) => ExitCode::from(code),
         Err(failure) => failure.report(session.format()),
     }
 }

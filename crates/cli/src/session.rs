@@ -1,22 +1,22 @@
 //! What all commands share: format, output, progress, limits, Ctrl-C.
 
 use crate::arguments::{Common, Format, Normalisation, Precision};
-use crate::failure::{FILE, Failure, INTERRUPTED, NO_ANSWER, UNDECIDED, USAGE};
+use crate::failure::{FILE, Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::{Outcome, output};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::algebra::Stop;
-use lindstedt::equation::{Condition, Problem};
+use lindstedt::equation::Condition;
 use lindstedt::problem_file::{FileError, LARGEST_FILE, canonical_name};
 use lindstedt::{
-    Answer, Error, Exact, Kind, Oscillator, ProblemFile, Progress, Refusal, Remark, Standing, Work,
+    Answer, Error, Exact, Kind, Oscillator, Progress, Refusal, Remark, Standing, Work,
 };
 use lindstedt_report::{Format as Written, Present};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// No result is printed with more digits than this: the contract of exact evaluation.
@@ -226,12 +226,6 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Shows what is being done.
-    pub fn say(&self, message: String) {
-        self.bar.set_message(message);
-        self.bar.tick();
-    }
-
     /// How many steps there are: from now on the bar shows what part is done.
     pub fn expect_steps(&self, steps: usize) {
         self.bar.set_length(steps as u64);
@@ -284,16 +278,8 @@ where
     figure.svg().map_err(|error| Failure { message: error.to_string(), ..nothing() })
 }
 
-/// An error of a problem file with its path, line and column.
-fn at_place(path: &str, error: Error) -> Failure {
-    match error {
-        Error::File(error) => at_path(path, error),
-        error => error.into(),
-    }
-}
-
 /// The number of digits asked for.
-pub fn digits(precision: &Precision) -> Result<usize, Failure> {
+fn digits(precision: &Precision) -> Result<usize, Failure> {
     if precision.f64 {
         return Ok(17);
     }
@@ -311,7 +297,7 @@ pub fn digits(precision: &Precision) -> Result<usize, Failure> {
 }
 
 /// Reads the `--set NAME=VALUE` arguments.
-pub fn parameters(list: &[String]) -> Result<BTreeMap<String, Exact>, Failure> {
+fn parameters(list: &[String]) -> Result<BTreeMap<String, Exact>, Failure> {
     let mut parameters = BTreeMap::new();
     for item in list {
         let Some((name, value)) = item.split_once('=') else {
@@ -334,78 +320,11 @@ pub fn parameters(list: &[String]) -> Result<BTreeMap<String, Exact>, Failure> {
     Ok(parameters)
 }
 
-/// A problem with the file that it was read from.
-pub struct Loaded {
-    /// The problem.
-    pub problem: Problem,
-    /// Its file; nothing for a built-in problem.
-    pub file: Option<ProblemFile>,
-}
-
-/// What is said once there is an answer: a refusal is one line.
-static NOTES: Mutex<Vec<String>> = Mutex::new(Vec::new());
-
-/// Keeps a warning for [`say_notes`].
-pub fn note(text: String) {
-    if let Ok(mut notes) = NOTES.lock() {
-        notes.push(text);
-    }
-}
-
-/// Says the warnings that were kept.
-pub fn say_notes() {
-    for text in NOTES.lock().iter().flat_map(|notes| notes.iter()) {
-        output::warn(text);
-    }
-}
-
-/// The built-in problem of that name, or the one in a file `NAME.toml`.
-pub fn load(name: &str) -> Result<Loaded, Failure> {
-    if name.ends_with(".toml") {
-        let file = ProblemFile::parse(&read(name)?).map_err(|error| at_path(name, error))?;
-        for name in &file.unused {
-            note(format!("parameter {name} is declared and occurs nowhere"));
-        }
-        if file.equation.to_lowercase().contains("taylor") {
-            note(
-                "taylor(...) is a polynomial: all results are those of the polynomial, not of the \
-                 function"
-                    .to_owned(),
-            );
-        }
-        return Ok(Loaded { problem: file.problem.clone(), file: Some(file) });
-    }
-    problem(name).map(|problem| Loaded { problem, file: None })
-}
-
-impl Loaded {
-    /// Refuses a parameter that follows from pi: expansions take expressions over the rational numbers, and
-    /// the delay of whole periods by its tie.
-    pub fn without_pi(&self, path: &str) -> Result<(), Failure> {
-        let tied = self.problem.synchronous.as_ref().map(|tie| &*tie.delay);
-        let Some(file) = &self.file else { return Ok(()) };
-        let Some(name) = file.determined().keys().find(|name| Some(name.as_str()) != tied) else {
-            return Ok(());
-        };
-        let how = file.follows.get(name).map_or("", String::as_str);
-        Err(Failure {
-            exit: USAGE,
-            code: "no-value-set",
-            message: format!(
-                "{}: {name} follows: {how}; with pi only `simulate` computes it",
-                shown(path)
-            ),
-            hint: format!("in the file: {name} = {{ value = \"5*pi\" }} in the place of follows"),
-        })
-    }
-}
-
-/// An error of a problem file with the path in front.
-fn at_path(path: &str, error: FileError) -> Failure {
-    let FileError { kind, line, column } = &error;
-    let exit = if error.is_limit() { UNDECIDED } else { USAGE };
-    let message = format!("{}:{line}:{column}: {kind}", shown(path));
-    Failure { exit, code: "problem-file", message, hint: error.hint() }
+/// An error of a problem file with its path, line and column.
+fn at_place(path: &str, error: Error) -> Failure {
+    let failure = Failure::of(&error);
+    let Error::File(FileError { kind, line, column }) = &error else { return failure };
+    Failure { message: format!("{}:{line}:{column}: {kind}", shown(path)), ..failure }
 }
 
 fn shown(name: &str) -> String {
@@ -437,26 +356,4 @@ fn read(path: &str) -> Result<String, Failure> {
         return Err(too_large());
     }
     String::from_utf8(bytes).map_err(|_| failure("it is not UTF-8 text".into(), ""))
-}
-
-/// The built-in problem of that name.
-pub fn problem(name: &str) -> Result<Problem, Failure> {
-    if name.ends_with(".toml") {
-        return load(name).map(|loaded| loaded.problem);
-    }
-    lindstedt::problems::find(name).ok_or_else(|| {
-        if name == lindstedt::problems::stick_slip::problem().name {
-            return Failure {
-                exit: NO_ANSWER,
-                code: "no-expansion",
-                message: "stick-slip has no expansion by Lindstedt and Poincare".into(),
-                hint: "Melnikov's method takes it: lindstedt threshold stick-slip".into(),
-            };
-        }
-        let mut names: Vec<_> = lindstedt::problems::all().into_iter().map(|p| p.name).collect();
-        names.push(lindstedt::problems::stick_slip::problem().name);
-        let shown: String = name.chars().take(60).collect();
-        let message = format!("there is no problem {shown:?}");
-        Failure::usage("unknown-problem", message, &format!("known: {}", names.join(", ")))
-    })
 }

@@ -45,7 +45,6 @@ pub mod formulas {
     pub mod growth {
         pub use crate::motion::growth::{grows, linear, verdict};
     }
-    pub use crate::trade::predict;
     pub mod closed {
         pub use crate::evaluate::closed::{
             duffing, gamma_ratio, gamma_ratio_of_rational, pendulum, power_law,

@@ -1,7 +1,6 @@
 //! What nothing beats in time and error.
 
 use lindstedt::trade::{Method, Row, most_accurate, pareto, recommend, recommend_for_many};
-use rug::Float;
 
 fn rows(points: &[(f64, f64)]) -> Vec<Row> {
     let row = |&(seconds, error): &(f64, f64)| Row {
@@ -11,9 +10,11 @@ fn rows(points: &[(f64, f64)]) -> Vec<Row> {
         seconds,
         seconds_again: 1.0 / seconds,
         bytes: 0,
-        period: Float::with_val(53, 1),
+        period: "1".to_owned(),
         true_error: error,
         stated_error: 10.0 * error,
+        proved_error: None,
+        pareto: false,
     };
     points.iter().map(row).collect()
 }

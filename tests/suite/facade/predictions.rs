@@ -1,7 +1,6 @@
 //! How long the next order takes.
 
-use lindstedt::formulas::predict;
-use lindstedt::trade::Method;
+use lindstedt::trade::{Method, predict};
 
 /// Nothing from milliseconds; 0.1 s and 0.4 s at orders 2 and 4 are 25.6 s at order 10; a run
 /// that was broken off ends its method.

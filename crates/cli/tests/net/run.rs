@@ -51,12 +51,20 @@ pub fn run_all(lines: &[Line]) -> Vec<Vec<Output>> {
     found
 }
 
+/// The arguments of a command; what stands in quotation marks is one.
+fn words(command: &str) -> impl Iterator<Item = &str> {
+    command.split('"').enumerate().flat_map(|(n, part)| match n % 2 {
+        0 => part.split_whitespace().collect(),
+        _ => vec![part],
+    })
+}
+
 /// Runs one command. Files that it shall write are named `x.*`: they go into a folder of their own.
 fn run(command: &str, format: &'static str) -> Output {
     let name: String = command.chars().filter(char::is_ascii_alphanumeric).collect();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("net-{name}-{format}"));
     let mut files = Vec::new();
-    let arguments = command.split(' ').map(|argument| {
+    let arguments = words(command).map(|argument| {
         if !argument.starts_with("x.") {
             return argument.to_owned();
         }

@@ -168,7 +168,7 @@ impl Oscillator {
 
     /// The case with a value for a parameter that only counts orders, and with the amplitude that the
     /// initial data of its file mean; refuses what cannot be expanded.
-    fn settled(&self) -> Result<(Self, Vec<Remark>), Error> {
+    pub(crate) fn settled(&self) -> Result<(Self, Vec<Remark>), Error> {
         self.without_pi()?;
         self.check()?;
         let case = self.with_order_parameter();
@@ -214,7 +214,7 @@ impl Oscillator {
     }
 
     /// The problem with a value for everything.
-    fn setting(&self) -> Result<Setting, Error> {
+    pub(crate) fn setting(&self) -> Result<Setting, Error> {
         Setting::new(self.problem(), self.asked_condition(), self.given())
     }
 

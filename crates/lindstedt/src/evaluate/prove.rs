@@ -150,7 +150,7 @@ impl Oscillator {
 
     /// The vector field with its values, and which orbit of it is meant. A small parameter that has the
     /// amplitude in it is, in the equation of x itself, its other part.
-    fn field(&self) -> Result<(Field, Kind), Error> {
+    pub(crate) fn field(&self) -> Result<(Field, Kind), Error> {
         let mut values = self.rational_values();
         let small = &self.problem().small;
         if self.problem().amplitude == AmplitudeRole::InSmallParameter {

@@ -1,6 +1,6 @@
 //! What is worth its time.
 
-use super::Row;
+use super::{Plan, Recommendation, Row};
 
 /// The indices of the rows that no other row beats in both time and true error, from the fastest
 /// to the most accurate. Of equal rows the first stays.
@@ -53,4 +53,24 @@ pub fn most_accurate(rows: &[Row], seconds: f64) -> Option<usize> {
 fn fastest(rows: &[Row], error: f64, time: impl Fn(&Row) -> f64) -> Option<usize> {
     let good = rows.iter().enumerate().filter(|(_, row)| row.stated_error <= error);
     good.min_by(|(_, a), (_, b)| time(a).total_cmp(&time(b))).map(|(i, _)| i)
+}
+
+impl Plan {
+    /// The rows for the error and the time asked for: with both the time limits the row for the error,
+    /// and that for many values by the time of each, which may be bought with a longer derivation.
+    pub(super) fn recommended(&self, rows: &[Row]) -> Option<Recommendation> {
+        let (error, seconds) = (self.error, self.seconds);
+        error.or(seconds)?;
+        let most = seconds.unwrap_or(f64::INFINITY);
+        let row = |index: Option<usize>| rows.get(index?).cloned();
+        Some(Recommendation {
+            error,
+            seconds,
+            row: row(error.and_then(|e| recommend(rows, e))).filter(|row| row.seconds <= most),
+            for_many: row(error.and_then(|e| recommend_for_many(rows, e)))
+                .filter(|row| row.seconds_again <= most),
+            within: row(seconds.and_then(|s| most_accurate(rows, s))),
+            fastest: row(recommend(rows, f64::MAX)),
+        })
+    }
 }

@@ -4,123 +4,35 @@
 //! by the integrator in the time domain, which shares no code with them. Of each run are kept the
 //! time, the memory, the true relative error, and the error that the run states without knowing
 //! the truth: a closed form where there is one, a reference of many digits (van der Pol's
-//! oscillator at eps = 1), else the integrator with more digits than any run.
+//! oscillator at eps = 1), else the integrator with more digits than any run. Where the
+//! contraction test of [`lindstedt_orbit`] takes the equation, the true error is proved as well.
 //!
 //! Every series is summed twice: as it stands (a partial sum, of a divergent series to its
 //! smallest term), and by the resummation that [`lindstedt_series::resummation::resum`] chooses.
 
+mod answer;
 mod front;
+mod method;
+mod proof;
 mod run;
 mod simulation;
 mod sums;
 mod truth;
 
-use crate::evaluate::method_flag;
 use crate::evaluate::setting::Setting;
 use crate::evaluate::source::Source;
-use crate::{Error, Exact};
+use crate::refusal::Refused;
+use crate::{Answer, Error, Oscillator, Progress, Remark, Standing, Work};
+pub use answer::{LeftOut, Reason, Recommendation, Row, Trade};
 pub use front::{most_accurate, pareto, recommend, recommend_for_many};
 use lindstedt_algebra::Stop;
-use lindstedt_equation::{Condition, Problem};
-use lindstedt_series::resummation;
-use rug::{Float, Rational};
-use std::collections::BTreeMap;
+use lindstedt_equation::Condition;
+use lindstedt_number::ball::{Ball, Balls};
+#[doc(hidden)]
+pub use method::predict;
+pub use method::{Method, Summation};
 use std::time::Instant;
-pub use truth::Truth;
-
-/// How a period is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[non_exhaustive]
-pub enum Method {
-    /// Derived in exact rings, then evaluated to `digits` digits.
-    Exact {
-        /// Digits of the evaluation.
-        digits: u32,
-    },
-    /// The exact energy integral (power law and pendulum), then evaluated.
-    Energy {
-        /// Digits of the evaluation.
-        digits: u32,
-    },
-    /// [`crate::numeric::Tier::Collocation`].
-    Collocation {
-        /// Correct digits of the coefficients.
-        digits: u32,
-    },
-    /// [`crate::numeric::Tier::Doubles`].
-    Doubles,
-    /// [`crate::numeric::Tier::Fourier`].
-    Fourier {
-        /// Harmonics of each symmetry class.
-        harmonics: usize,
-    },
-    /// Integrated in the time domain in double precision.
-    SimulationInDoubles {
-        /// Digits of one step.
-        digits: u32,
-    },
-    /// Integrated in the time domain in floats of so many digits.
-    Simulation {
-        /// Digits of one step.
-        digits: u32,
-    },
-}
-
-impl Method {
-    /// `exact`, `energy`, `collocation`, `collocation-f64`, `fourier`, `simulation-f64`,
-    /// `simulation`.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Exact { .. } => "exact",
-            Self::Energy { .. } => "energy",
-            Self::Collocation { .. } => "collocation",
-            Self::Doubles => "collocation-f64",
-            Self::Fourier { .. } => "fourier",
-            Self::SimulationInDoubles { .. } => "simulation-f64",
-            Self::Simulation { .. } => "simulation",
-        }
-    }
-
-    /// Digits computed with; 16 for the tiers in doubles.
-    #[must_use]
-    pub fn digits(&self) -> u32 {
-        match *self {
-            Self::Exact { digits }
-            | Self::Energy { digits }
-            | Self::Collocation { digits }
-            | Self::SimulationInDoubles { digits }
-            | Self::Simulation { digits } => digits,
-            Self::Doubles | Self::Fourier { .. } => 16,
-        }
-    }
-
-    /// Whether a series is summed, to an order; otherwise the equation is integrated.
-    #[must_use]
-    pub fn has_order(&self) -> bool {
-        !matches!(self, Self::SimulationInDoubles { .. } | Self::Simulation { .. })
-    }
-}
-
-/// How a series is summed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Summation {
-    /// As it stands; of a divergent series to its smallest term.
-    PartialSum,
-    /// By the method with the least error estimate.
-    Resummed(resummation::Method),
-}
-
-impl Summation {
-    /// As after `--resum`: `none`, `pade`, `uniform`, `uniform-pade`, `conformal`, `borel-pade`.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::PartialSum => "none",
-            Self::Resummed(method) => method_flag(*method),
-        }
-    }
-}
+use truth::Truth;
 
 /// What is run.
 #[derive(Clone, Debug)]
@@ -135,11 +47,10 @@ pub struct Plan {
     pub run_seconds: f64,
     /// The time of a row is the least of so many runs; a run longer than 1 s is not repeated.
     pub repeats: u32,
-    /// The memory that may be used, in bytes.
-    pub memory: u64,
-    /// What the amplitude is; the first condition of the problem if not given. The true period is
-    /// sought from the initial amplitude and on the limit cycle.
-    pub condition: Option<Condition>,
+    /// A relative error for which a row is recommended.
+    pub error: Option<f64>,
+    /// A time for which a row is recommended; with `error` also a limit for that.
+    pub seconds: Option<f64>,
 }
 
 impl Default for Plan {
@@ -151,246 +62,194 @@ impl Default for Plan {
             harmonics: vec![16, 64],
             run_seconds: 5.0,
             repeats: 3,
-            memory: 8 << 30,
-            condition: None,
+            error: None,
+            seconds: None,
         }
     }
 }
 
-/// One run.
-#[derive(Clone, Debug)]
-pub struct Row {
-    /// The method.
-    pub method: Method,
-    /// The order of the series; nothing for the integrator.
-    pub order: Option<usize>,
-    /// How the series is summed; nothing for the integrator.
-    pub summation: Option<Summation>,
-    /// The time of the fastest run: derivation and summation, with the choice of the method.
-    pub seconds: f64,
-    /// The time for one more value of the small parameter: summing the series again by the same
-    /// method; for the integrator the same as `seconds`.
-    pub seconds_again: f64,
-    /// Numbers kept at once times their size: an estimate of the memory in bytes.
-    pub bytes: u64,
-    /// The period found.
-    pub period: Float,
-    /// |period/T - 1|, up to [`Truth::uncertainty`].
-    pub true_error: f64,
-    /// The estimate of the relative error that the run gives without knowing T: of a sum that of
-    /// the resummation, with what the errors of the coefficients make of it (four times the
-    /// difference of two grids); four times the difference of two tolerances. Infinite where
-    /// there is no estimate (too few orders, outside of the circle of convergence).
-    pub stated_error: f64,
-}
-
-/// A run that was not made.
-#[derive(Clone, Debug)]
-pub struct LeftOut {
-    /// The method.
-    pub method: Method,
-    /// The order.
-    pub order: Option<usize>,
-    /// Why.
-    pub reason: Reason,
-}
-
-/// Why a run was left out.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Reason {
-    /// It took longer than [`Plan::run_seconds`].
-    TooLong,
-    /// A lower order of the same method predicts so many seconds.
-    Predicted(f64),
-    /// It was refused.
-    Refused(Error),
-    /// The integrator refused.
-    NotIntegrated(lindstedt_simulate::SimulateError),
-}
-
-/// What was measured.
-#[derive(Clone, Debug)]
-pub struct Trade {
-    /// The problem.
-    pub problem: Problem,
-    /// The true period and where it is from.
-    pub truth: Truth,
-    /// The rows in the order of [`Method`], digits, order, summation.
-    pub rows: Vec<Row>,
-    /// The runs that were not made, in the same order.
-    pub left_out: Vec<LeftOut>,
-    /// Whether the observer let all runs finish.
-    pub finished: bool,
-}
-
-/// Measures a problem, of the library or of a file, with a periodic solution that is expanded.
-///
-/// Parameters that are not given have the defaults of [`crate::evaluate`], but delta = 1/4 for the
-/// power law and eps = 1/4 for Duffing's oscillator, where the series itself converges fast.
-///
-/// `observer` is asked before every run and at every order of it; when it returns `false`, the
-/// rows finished so far are returned. It is told the run and the rows so far.
-///
-/// # Errors
-/// [`Error::NotEvaluated`] for a problem without such a solution, [`Error::NoValue`] where the true
-/// period is unknown, [`Error::Simulate`] where the integrator has to tell it and refuses;
-/// [`Error::UnknownParameter`], [`Error::Unset`] and [`Error::OutsideDomain`] for parameters.
-///
-/// ```
-/// use lindstedt::problems;
-/// use lindstedt::trade::{Plan, measure, pareto, recommend};
-/// let problem = problems::find("duffing").ok_or("no such problem")?;
-/// let plan = Plan { orders: vec![2, 8], digits: vec![20], ..Plan::default() };
-/// let trade = measure(&problem, &Default::default(), &plan, &mut |_, _| true)?;
-/// assert!(trade.rows.iter().all(|row| row.true_error <= row.stated_error));
-/// assert!(!pareto(&trade.rows).is_empty() && recommend(&trade.rows, 1e-3).is_some());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn measure(
-    problem: &Problem,
-    parameters: &BTreeMap<String, Exact>,
-    plan: &Plan,
-    observer: &mut dyn FnMut(&Method, &[Row]) -> bool,
-) -> Result<Trade, Error> {
-    let setting = Setting::new(problem, plan.condition, &defaults(problem, parameters))?;
-    let most = plan.digits.iter().copied().max().unwrap_or(16).max(16);
-    let bits = (f64::from(most) * std::f64::consts::LOG2_10).ceil() as u32 + 64;
-    let source = template(&setting, plan.memory)?;
-    let first = Method::Simulation { digits: most };
-    let mut goes_on = || observer(&first, &[]);
-    let truth = truth::truth(&setting, &source, bits, most, &mut goes_on);
-    let truth = truth.map_err(|reason| match reason {
-        Reason::Refused(error) => error,
-        Reason::NotIntegrated(error) => error.into(),
-        _ => Error::NoValue,
-    })?;
-    let methods = methods(problem, plan, most);
-    let mut trade = Trade {
-        problem: problem.clone(),
-        truth,
-        rows: Vec::new(),
-        left_out: Vec::new(),
-        finished: true,
-    };
-    for method in methods {
-        let mut orders: Vec<Option<usize>> = vec![None];
-        if method.has_order() {
-            orders = plan.orders.iter().copied().map(Some).collect();
-            orders.sort_unstable();
-            orders.dedup();
-        }
-        let mut times: Vec<(usize, f64)> = Vec::new();
-        for order in orders {
-            if let Some(seconds) = predict(&method, &times, order).filter(|s| *s > plan.run_seconds)
-            {
-                let reason = Reason::Predicted(seconds);
-                trade.left_out.push(LeftOut { method, order, reason });
-                continue;
-            }
-            if !observer(&method, &trade.rows) {
-                trade.finished = false;
-                return Ok(trade);
-            }
-            let mut cancelled = false;
-            let start = Instant::now();
-            let mut goes_on = || {
-                cancelled |= !observer(&method, &trade.rows);
-                !cancelled && start.elapsed().as_secs_f64() <= plan.run_seconds
-            };
-            let (memory, seconds) = (plan.memory, plan.run_seconds);
-            let job = run::Job { setting: &setting, source: &source, memory, bits, seconds };
-            let outcome = job.run(&method, order.unwrap_or(0), plan.repeats, &mut goes_on);
-            if cancelled {
-                trade.finished = false;
-                return Ok(trade);
-            }
-            match outcome {
-                Ok(list) => {
-                    let least = list.iter().map(|found| found.seconds).reduce(f64::min);
-                    times.push((order.unwrap_or(0), least.unwrap_or(0.0)));
-                    for found in list {
-                        trade.rows.push(trade.truth.row(method, order, found));
-                    }
-                }
-                Err(reason) => {
-                    let reason = match reason {
-                        _ if start.elapsed().as_secs_f64() > plan.run_seconds => Reason::TooLong,
-                        other => other,
-                    };
-                    let ends = reason == Reason::TooLong;
-                    trade.left_out.push(LeftOut { method, order, reason });
-                    if ends {
-                        // Higher orders take longer still.
-                        times.push((order.unwrap_or(0), f64::INFINITY));
-                    }
-                }
-            }
-        }
+impl Plan {
+    fn most_digits(&self) -> u32 {
+        self.digits.iter().copied().max().unwrap_or(16).max(16)
     }
-    Ok(trade)
 }
 
-/// Values that are set where nothing is given.
-const DEFAULTS: [(&str, &str, [&str; 2]); 2] =
-    [("power-law", "delta", ["delta", "n"]), ("duffing", "eps", ["eps", "eps"])];
-
-fn defaults(problem: &Problem, given: &BTreeMap<String, Exact>) -> BTreeMap<String, Exact> {
-    let mut all = given.clone();
-    for (name, parameter, others) in DEFAULTS {
-        if *problem.name == *name && !others.iter().any(|other| given.contains_key(*other)) {
-            all.insert(parameter.to_owned(), Exact::Rational(Rational::from((1, 4))));
+impl Oscillator {
+    /// Measures what every route to the period costs and how wrong it is. Values that are not set are
+    /// those of [`Oscillator::evaluate`]; of `work` count the memory, when to stop, and whom to tell.
+    ///
+    /// Undecided where no row is what the recommendation asks for; stopped work leaves the rows that
+    /// are finished. Cost: the runs of the plan, each at most [`Plan::run_seconds`] long.
+    ///
+    /// # Errors
+    /// [`Refused`] for a problem without a periodic solution that is expanded, and where the true
+    /// period is unknown; [`Error::Simulate`] where the integrator has to tell it and refuses; those of
+    /// [`Oscillator::evaluate`] for parameters.
+    ///
+    /// ```
+    /// use lindstedt::trade::{Plan, recommend};
+    /// use lindstedt::{Oscillator, Work};
+    /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?.set("eps", "1/4")?;
+    /// let plan = Plan { orders: vec![2, 8], digits: vec![20], ..Plan::default() };
+    /// let trade = duffing.trade(&plan, &Work::default())?.value;
+    /// assert!(trade.rows.iter().all(|row| row.true_error <= row.stated_error));
+    /// assert!(!trade.pareto.is_empty() && recommend(&trade.rows, 1e-3).is_some());
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn trade(&self, plan: &Plan, work: &Work) -> Result<Answer<Trade>, Error> {
+        let start = Instant::now();
+        let (case, mut remarks) = self.settled()?;
+        let bench = Bench::new(&case, plan, work).map_err(|error| case.no_reference(error))?;
+        let mut value = bench.truth.begin(&bench.setting, plan.repeats);
+        let proved = match proof::period(&case, &bench) {
+            Ok(period) => period,
+            Err(failure) => {
+                remarks.push(Remark(format!("the period is not proved: {failure}")));
+                None
+            }
+        };
+        value.proved_period = proved.as_ref().map(|period| bench.number(period));
+        value.finished = bench.run_all(proved.as_ref(), &mut value);
+        value.pareto = pareto(&value.rows);
+        for &index in &value.pareto {
+            value.rows[index].pareto = true;
         }
+        value.recommendation = plan.recommended(&value.rows);
+        let standing = if !value.finished {
+            remarks.push(Remark("not finished: the rows above are".to_owned()));
+            Standing::Stopped { done: value.rows.len() }
+        } else if value.recommendation.as_ref().is_none_or(Recommendation::is_met) {
+            Standing::Complete
+        } else {
+            Standing::Undecided
+        };
+        let at = bench.setting.at.iter().map(|(name, value)| (name.clone(), value.to_string()));
+        let header = self.header(at.collect(), None, "every tier", start);
+        Ok(Answer { header, value, standing, remarks })
     }
-    all
+
+    /// A refusal in the words of this question.
+    fn no_reference(&self, error: Error) -> Error {
+        if !matches!(error, Error::NoValue | Error::NotEvaluated { .. }) {
+            return self.unevaluated(error);
+        }
+        let name = &self.problem().name;
+        let message = format!("{name}: the true period at these parameters is not known");
+        let hint = match self.condition() {
+            Some(Condition::FundamentalAmplitude) => {
+                "it is sought from x(0), not from the first harmonic: --normalisation initial, where \
+                 the problem offers it"
+            }
+            _ => {
+                "oscillators with a periodic solution that starts at rest: power-law, pendulum, \
+                 duffing, van-der-pol, files"
+            }
+        };
+        Refused::no_answer("no-reference", message, hint).into()
+    }
 }
 
 /// Orders that tell in which power of the small parameter the series is.
 const FEW: usize = 4;
 
-/// What is known of the series without its coefficients; nothing for an equation that the exact
-/// driver does not take.
-fn template(setting: &Setting, memory: u64) -> Result<Source, Error> {
-    match Source::new(setting, FEW, (memory, &Stop::default()), &mut |_| true) {
-        Err(error @ Error::OutsideDomain { .. }) => Err(error),
-        found => Ok(found.unwrap_or_else(|_| Source::plain(setting))),
+/// A case with what all runs share.
+struct Bench<'a> {
+    plan: &'a Plan,
+    work: &'a Work,
+    setting: Setting,
+    /// What is known of the series; its own coefficients are not used.
+    source: Source,
+    truth: Truth,
+    bits: u32,
+}
+
+impl<'a> Bench<'a> {
+    fn new(case: &Oscillator, plan: &'a Plan, work: &'a Work) -> Result<Self, Error> {
+        let setting = case.setting()?;
+        let most = plan.most_digits();
+        let bits = (f64::from(most) * std::f64::consts::LOG2_10).ceil() as u32 + 64;
+        let means = (work.memory, &work.stop);
+        let source = match Source::new(&setting, FEW, means, &mut |_| !work.stop.asked()) {
+            Err(error @ Error::OutsideDomain { .. }) => return Err(error),
+            // Nothing is known of an equation that the exact driver does not take.
+            found => found.unwrap_or_else(|_| Source::plain(&setting)),
+        };
+        let truth = Truth::new(&setting, &source, bits, most, &work.stop)?;
+        Ok(Self { plan, work, setting, source, truth, bits })
+    }
+
+    /// Says stop when the work shall stop, or after the seconds of a run from now.
+    fn stop(&self) -> Stop {
+        let (outer, start, seconds) =
+            (self.work.stop.clone(), Instant::now(), self.plan.run_seconds);
+        Stop::new(move || outer.asked() || start.elapsed().as_secs_f64() > seconds)
+    }
+
+    /// A proved period as it is printed.
+    fn number(&self, period: &Ball) -> crate::Number {
+        let digits = self.plan.most_digits() as usize;
+        crate::Number::of_ball(period, digits).weaken(crate::Status::Proved)
+    }
+
+    /// All runs; whether they were all made.
+    fn run_all(&self, proved: Option<&Ball>, trade: &mut Trade) -> bool {
+        let methods = Method::all(&self.setting.problem, self.plan);
+        let all = methods.iter().map(|method| method.orders(self.plan).len()).sum();
+        let mut done = 0;
+        for method in methods {
+            let mut times: Vec<(usize, f64)> = Vec::new();
+            for order in method.orders(self.plan) {
+                done += 1;
+                let predicted = predict(&method, &times, order);
+                if let Some(seconds) = predicted.filter(|s| *s > self.plan.run_seconds) {
+                    let reason = Reason::Predicted(seconds);
+                    trade.left_out.push(LeftOut { method, order, reason });
+                    continue;
+                }
+                let time = self.run_one((method, order), proved, trade);
+                if !self.work.goes_on(Progress::Parts(done, all)) {
+                    return false;
+                }
+                times.extend(time.map(|seconds| (order.unwrap_or(0), seconds)));
+            }
+        }
+        true
+    }
+
+    /// The rows of one run, or why there is none; its time, infinite where it was too long.
+    fn run_one(
+        &self,
+        (method, order): (Method, Option<usize>),
+        proved: Option<&Ball>,
+        trade: &mut Trade,
+    ) -> Option<f64> {
+        let limit = self.plan.run_seconds;
+        let start = Instant::now();
+        let outcome = self.run(&method, order.unwrap_or(0));
+        let too_long = start.elapsed().as_secs_f64() > limit;
+        match outcome {
+            // What was stopped in its midst means nothing.
+            _ if self.work.stop.asked() => None,
+            Ok(list) => {
+                let least = list.iter().map(|found| found.seconds).reduce(f64::min);
+                let rows = list.into_iter().map(|found| {
+                    let proved_error = proved.and_then(|period| proof::error(period, &found));
+                    Row { proved_error, ..self.truth.row(method, order, found) }
+                });
+                trade.rows.extend(rows);
+                least
+            }
+            Err(error) => {
+                let reason = if too_long { Reason::TooLong(limit) } else { Reason::Refused(error) };
+                trade.left_out.push(LeftOut { method, order, reason });
+                // Higher orders take longer still.
+                too_long.then_some(f64::INFINITY)
+            }
+        }
     }
 }
 
-/// All methods in the order of the rows.
-fn methods(problem: &Problem, plan: &Plan, most: u32) -> Vec<Method> {
-    let mut digits = plan.digits.clone();
-    let mut harmonics = plan.harmonics.clone();
-    digits.sort_unstable();
-    digits.dedup();
-    harmonics.sort_unstable();
-    harmonics.dedup();
-    // The digits of an evaluation cost nothing beside an exact derivation.
-    let mut list = vec![Method::Exact { digits: most }];
-    if run::has_energy_route(problem) {
-        list.push(Method::Energy { digits: most });
-    }
-    list.extend(digits.iter().map(|&digits| Method::Collocation { digits }));
-    list.push(Method::Doubles);
-    list.extend(harmonics.into_iter().map(|harmonics| Method::Fourier { harmonics }));
-    list.extend([8, 12, 16].map(|digits| Method::SimulationInDoubles { digits }));
-    list.extend(digits.into_iter().map(|digits| Method::Simulation { digits }));
-    list
-}
-
-/// Shorter times are mostly noise: nothing is extrapolated from them.
-const MEASURABLE: f64 = 0.05;
-
-/// The seconds of an order from those of the two before, if both are long enough to mean anything.
-/// Exact derivations grow exponentially, and running into the limit at every order would take as
-/// many times the limit; the numeric ones are broken off when their time is over.
-#[doc(hidden)]
-pub fn predict(method: &Method, times: &[(usize, f64)], order: Option<usize>) -> Option<f64> {
-    let &(last, seconds) = times.last()?;
-    if seconds == f64::INFINITY || !matches!(method, Method::Exact { .. } | Method::Energy { .. }) {
-        return seconds.is_infinite().then_some(seconds);
-    }
-    let &(before, less) = times.iter().rev().nth(1).filter(|(_, less)| *less >= MEASURABLE)?;
-    let steps = (order? - last) as f64 / (last - before) as f64;
-    Some(seconds * (seconds / less).max(1.0).powf(steps))
+/// As many bits as so many balls need.
+fn balls(bits: u32) -> Balls {
+    Balls::new(bits).with_guard(64)
 }

@@ -1,6 +1,7 @@
 //! The series of a run summed: as it stands, and by the method whose error estimate is least.
 
-use super::{Reason, Summation};
+use super::Summation;
+use super::run::{Found, fastest};
 use crate::Error;
 use crate::evaluate::source::{Coefficients, Source};
 use lindstedt_algebra::Stop;
@@ -22,23 +23,11 @@ pub(super) struct Series {
     pub(super) accuracy: u32,
 }
 
-/// A sum.
-pub(super) struct Sum {
-    pub(super) summation: Summation,
-    pub(super) period: Float,
-    /// The stated absolute error; infinite where there is no estimate.
-    pub(super) error: Float,
-    /// The time for the first value, in which the method is chosen, and for one more.
-    pub(super) seconds: f64,
-    pub(super) again: f64,
-}
-
 /// Sums that take less are timed again, and the least time counts.
 const SHORT: f64 = 0.01;
 
-fn failed(reason: ResummationError) -> Reason {
-    let problem = String::new();
-    Reason::Refused(Error::Resummation { problem, reason })
+fn failed(reason: ResummationError) -> Error {
+    Error::Resummation { problem: String::new(), reason }
 }
 
 impl Series {
@@ -47,42 +36,34 @@ impl Series {
     }
 
     /// The partial sum, and the value by the method that `auto` chooses where it is another one
-    /// and has an error estimate.
+    /// and has an error estimate. Their times are those of the sums alone.
     pub(super) fn sums(
         &self,
         source: &Source,
         repeats: u32,
         stop: &Stop,
-    ) -> Result<Vec<Sum>, Reason> {
-        let mut list = vec![timed(repeats, || self.partial_sum(source))?];
-        list.extend(timed(repeats, || self.resummed(source, stop)).ok());
+    ) -> Result<Vec<Found>, Error> {
+        let timed = |run: &dyn Fn() -> Result<Found, Error>| {
+            fastest((repeats, SHORT), stop, run).map(|(found, seconds)| Found {
+                seconds,
+                again: found.again.min(seconds),
+                ..found
+            })
+        };
+        let mut list = vec![timed(&|| self.partial_sum(source))?];
+        list.extend(timed(&|| self.resummed(source, stop)).ok());
         Ok(list)
     }
 
-    fn partial_sum(&self, source: &Source) -> Result<Sum, Reason> {
-        let start = Instant::now();
+    fn partial_sum(&self, source: &Source) -> Result<Found, Error> {
         let bits = self.accuracy + 64;
         let none = || failed(ResummationError::NoCoefficients { bits });
         let sample = self.sample(source, bits).ok_or_else(none)?;
-        let found = sample.sum(Method::PartialSum, None, self.accuracy);
-        let estimate = match found {
-            Ok(outcome) => outcome.estimate,
-            Err(ResummationError::TooFewCoefficients { .. }) => {
-                let sums = partial_sums(&sample.coefficients, &sample.point, bits);
-                let value = sums.last().cloned().ok_or_else(none)?;
-                Estimate { value, error: Float::with_val(53, Special::Infinity) }
-            }
-            Err(reason) => return Err(failed(reason)),
-        };
-        let noise = self.noise(&sample, Method::PartialSum, None, &estimate.value);
-        let (period, error) = self.period(source, &estimate, noise)?;
-        let seconds = start.elapsed().as_secs_f64();
-        let summation = Summation::PartialSum;
-        Ok(Sum { summation, period, error, seconds, again: seconds })
+        let estimate = self.sum(&sample, Method::PartialSum, None).map_err(failed)?;
+        self.found(source, &sample, (Method::PartialSum, None), &estimate)
     }
 
-    fn resummed(&self, source: &Source, stop: &Stop) -> Result<Sum, Reason> {
-        let start = Instant::now();
+    fn resummed(&self, source: &Source, stop: &Stop) -> Result<Found, Error> {
         let found = resum_until(&|bits| self.sample(source, bits), None, self.accuracy, stop);
         let found = found.map_err(failed)?;
         let estimate = &found.outcome.estimate;
@@ -92,14 +73,28 @@ impl Series {
         let none = || failed(ResummationError::NoCoefficients { bits: found.bits });
         let sample = self.sample(source, found.bits).ok_or_else(none)?;
         let singularity = found.singularity.as_ref();
-        let noise = self.noise(&sample, found.method, singularity, &estimate.value);
-        let (period, error) = self.period(source, estimate, noise)?;
-        let seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
         sample.sum(found.method, singularity, self.accuracy).map_err(failed)?;
-        let again = start.elapsed().as_secs_f64().min(seconds);
-        let summation = Summation::Resummed(found.method);
-        Ok(Sum { summation, period, error, seconds, again })
+        let again = start.elapsed().as_secs_f64();
+        let found = self.found(source, &sample, (found.method, singularity), estimate)?;
+        Ok(Found { again, ..found })
+    }
+
+    /// The sum by a method; of too few coefficients for an estimate the partial sum, without one.
+    fn sum(
+        &self,
+        sample: &Sample,
+        method: Method,
+        singularity: Option<&Singularity>,
+    ) -> Result<Estimate, ResummationError> {
+        match sample.sum(method, singularity, self.accuracy) {
+            Err(reason @ ResummationError::TooFewCoefficients { .. }) => {
+                let sums = partial_sums(&sample.coefficients, &sample.point, sample.bits);
+                let value = sums.last().cloned().ok_or(reason)?;
+                Ok(Estimate { value, error: Float::with_val(53, Special::Infinity) })
+            }
+            found => found.map(|outcome| outcome.estimate),
+        }
     }
 
     /// What the errors e_n of the coefficients make of the value: the sum of its changes by
@@ -108,8 +103,7 @@ impl Series {
     fn noise(
         &self,
         sample: &Sample,
-        method: Method,
-        singularity: Option<&Singularity>,
+        (method, singularity): (Method, Option<&Singularity>),
         value: &Float,
     ) -> Float {
         let Some(errors) = &self.errors else { return Float::new(53) };
@@ -124,47 +118,35 @@ impl Series {
                     *c += e;
                 }
             }
-            let other = match changed.sum(method, singularity, self.accuracy) {
-                Ok(outcome) => outcome.estimate.value,
-                Err(ResummationError::TooFewCoefficients { .. }) => {
-                    let sums = partial_sums(&changed.coefficients, &changed.point, changed.bits);
-                    sums.last().cloned().unwrap_or_else(|| Float::new(53))
-                }
+            noise += match self.sum(&changed, method, singularity) {
+                Ok(other) => Float::with_val(53, &other.value - value).abs(),
                 Err(_) => Float::with_val(53, Special::Infinity),
             };
-            noise += Float::with_val(53, &other - value).abs();
         }
         noise
     }
 
     /// 2 pi times the factor of the source.
-    fn period(
+    fn found(
         &self,
         source: &Source,
+        sample: &Sample,
+        by: (Method, Option<&Singularity>),
         estimate: &Estimate,
-        noise: Float,
-    ) -> Result<(Float, Float), Reason> {
+    ) -> Result<Found, Error> {
+        let noise = self.noise(sample, by, &estimate.value);
         let balls = Balls::new(self.accuracy + 64);
-        let factor = (source.factor)(balls).ok_or(Reason::Refused(Error::NoValue))?;
+        let factor = (source.factor)(balls).ok_or(Error::NoValue)?;
         let scale = balls.mul(&balls.mul_i64(&balls.pi(), 2), &factor);
         let period = Float::with_val(self.accuracy + 64, &estimate.value * scale.midpoint());
         let period = Float::with_val(self.accuracy, period);
         let rounding = Float::with_val(53, period.abs_ref()) >> (self.accuracy - 2);
         let error = (noise + &estimate.error) * scale.abs_upper() + rounding;
-        Ok((period, error))
+        let summation = match by.0 {
+            Method::PartialSum => Summation::PartialSum,
+            method => Summation::Resummed(method),
+        };
+        let (seconds, again) = (0.0, f64::INFINITY);
+        Ok(Found { summation: Some(summation), seconds, again, bytes: 0, period, error })
     }
-}
-
-/// The sum with the least times of some runs.
-fn timed(repeats: u32, run: impl Fn() -> Result<Sum, Reason>) -> Result<Sum, Reason> {
-    let mut best = run()?;
-    for _ in 1..repeats {
-        if best.seconds > SHORT {
-            break;
-        }
-        let next = run()?;
-        best.seconds = best.seconds.min(next.seconds);
-        best.again = best.again.min(next.again);
-    }
-    Ok(best)
 }

@@ -11,6 +11,7 @@ mod prove;
 mod stability;
 mod sweep;
 mod threshold;
+mod trade;
 mod verify;
 
 use crate::{Document, Figure, Formula, Table, Text};
