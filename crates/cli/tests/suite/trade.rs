@@ -112,12 +112,17 @@ fn errors_are_proved() {
         ("x'' + x + eps*x^3 = 0", "eps=1/2"),
         ("x'' + x - eps*(1 - x^2)*x' = 0", "eps=3"),
         ("duffing", "amplitude=2"),
+        // An unstable cycle around a focus, whose turns take equally long, too.
+        ("van-der-pol", "eps=-1"),
     ];
     for (problem, set) in cases {
         let value = at_order(problem, "4", &["--set", set]);
         let proved = &value["proved_period"];
         assert_eq!(proved["status"], "proved", "{problem}");
-        assert_eq!(proved["decimal"].as_str().unwrap()[..18], value["period"].as_str().unwrap()[..18]);
+        assert_eq!(
+            proved["decimal"].as_str().unwrap()[..18],
+            value["period"].as_str().unwrap()[..18]
+        );
         let reference = value["period_error"].as_f64().unwrap();
         for row in value["rows"].as_array().unwrap() {
             let number = |key: &str| row[key].as_f64().unwrap();
@@ -125,17 +130,20 @@ fn errors_are_proved() {
             assert!(error <= bound + reference && bound <= 1.01 * error + 1e-22, "{row}");
         }
     }
+    // No polynomial, and nothing that the exact tier takes: judged in the time domain, or by a closed form.
+    let value = at_order("x'' + x + eps*abs(x)*x = 0", "2", &["--set", "eps=1/2"]);
+    assert!(value["source"].as_str().unwrap().starts_with("time domain"));
     let value = at_order("pendulum", "2", &[]);
     assert!(value["proved_period"].is_null() && value["rows"][0]["proved_error"].is_null());
 }
 
-/// Files are judged in the time domain; Rayleigh's limit cycle has van der Pol's period.
+/// Polynomial files are judged by a proof; Rayleigh's limit cycle has van der Pol's period.
 #[test]
 fn problem_files() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/");
     let file = format!("{folder}rayleigh.toml");
     let value = at_order(&file, "24", &["--set", "eps=1", "--for", "1e-6"]);
-    assert!(value["source"].as_str().unwrap().starts_with("time domain"));
+    assert_eq!(value["source"], "contraction proof");
     let reference = "6.6632868593231301896996820304823287068126463168838";
     assert!(reference.starts_with(&value["period"].as_str().unwrap()[..20]));
     let rows = value["rows"].as_array().unwrap();
@@ -160,7 +168,8 @@ fn parameters_enter() {
     };
     let ratio = period("power-law", &["n=2", "amplitude=4"]) / period("power-law", &["delta=1/2"]);
     assert!((ratio - 0.5).abs() < 1e-15);
-    let difference = period("duffing", &["eps=1", "amplitude=1/2"]) - period("duffing", &["eps=1/4"]);
+    let difference =
+        period("duffing", &["eps=1", "amplitude=1/2"]) - period("duffing", &["eps=1/4"]);
     assert!(difference.abs() < 1e-15);
     // Outside the circle of convergence, and where sin a is far from a.
     assert!(period("duffing", &["eps=3"]) < 4.0);

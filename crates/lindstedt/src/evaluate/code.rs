@@ -132,5 +132,15 @@ fn latex(note: &str, omega: f64, terms: &[Term]) -> String {
         }
     }
     let sum = parts.join(" + ").replace("+ -", "- ");
-    format!("% {note}.\n\\[ x(t) = {sum}, \\qquad \\omega = {} \\]\n", number(omega))
+    let omega = number(omega);
+    // The name of the problem is anybody's.
+    let mut words = String::new();
+    for c in note.chars() {
+        match c {
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => words.extend(['\\', c]),
+            '\\' | '^' | '~' => words.push('-'),
+            c => words.push(c),
+        }
+    }
+    format!("\\[ x(t) = {sum}, \\qquad \\omega = {omega} \\]\n{words}.\n")
 }

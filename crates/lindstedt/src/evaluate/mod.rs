@@ -16,6 +16,7 @@ mod solution;
 pub(crate) mod source;
 mod sweep;
 mod times;
+pub(crate) mod turn;
 mod words;
 
 use crate::refusal::Refused;
@@ -166,11 +167,16 @@ impl Oscillator {
         Trajectory::new(self, question, found, work).map_err(|error| self.unevaluated(error))
     }
 
-    /// The case with a value for a parameter that only counts orders, and with the amplitude that the
-    /// initial data of its file mean; refuses what cannot be expanded.
-    pub(crate) fn settled(&self) -> Result<(Self, Vec<Remark>), Error> {
+    /// The case as [`Oscillator::placed`] has it; refuses what cannot be expanded exactly.
+    fn settled(&self) -> Result<(Self, Vec<Remark>), Error> {
         self.without_pi()?;
         self.check()?;
+        self.placed()
+    }
+
+    /// The case with a value for a parameter that only counts orders, and with the amplitude that the
+    /// initial data of its file mean.
+    pub(crate) fn placed(&self) -> Result<(Self, Vec<Remark>), Error> {
         let case = self.with_order_parameter();
         let mut remarks = self.remarks().to_vec();
         let initial = self.problem_file().initial.as_ref();

@@ -1,6 +1,7 @@
 //! The orbit as a theorem: exactly one periodic orbit within a radius of the numbers, whether or not
 //! the series converges, which gives no more than the guess ([`lindstedt_orbit`]).
 
+use super::turn::TimeDomain;
 use super::{Evaluate, Evaluation, Trajectory, period};
 use crate::refusal::Refused;
 use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Status, Work};
@@ -84,8 +85,8 @@ pub struct Bounds {
 impl Oscillator {
     /// Proves the periodic orbit at the values set: a limit cycle, or the member of a family with the
     /// amplitude given. Period, frequency, x at phase 0, extrema and the Floquet exponent are enclosed
-    /// to `work.digits` digits ([`Status::Proved`]); the guess is the sum of the expansion, else one
-    /// harmonic. For equations that are polynomial in x and x' with rational coefficients.
+    /// to `work.digits` digits ([`Status::Proved`]); the guess is the motion in the time domain, else
+    /// the sum of the expansion, else one harmonic. For equations that are polynomial in x and x' with rational coefficients.
     ///
     /// Where the proof fails the estimated period stands as before, and what failed is said
     /// ([`Standing::Undecided`]). Cost: third power of the modes (400: a second).
@@ -107,45 +108,59 @@ impl Oscillator {
     pub fn prove(&self, question: &Evaluate, work: &Work) -> Result<Answer<ProvedOrbit>, Error> {
         let start = Instant::now();
         let (case, mut remarks) = self.settled()?;
-        let estimate = |work: &Work| period::period(&case, question, work).ok();
-        let rough = Work { digits: DIGITS_OF_A_GUESS.min(work.digits), ..work.clone() };
-        let found = estimate(&rough);
-        let (field, kind) = case.field()?;
-        let request =
-            Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() };
-        let mut failure = Failure::NoStart;
-        let mut proof = None;
-        for start in case.starts(found.as_ref(), &kind, question, &rough) {
-            match prove(&field, &kind, &start, &request) {
-                Ok(found) => {
-                    proof = Some(found);
-                    break;
-                }
-                Err(Failure::Stopped) => {
-                    let hint = "raise --limit-seconds, or ask for fewer --digits";
-                    return Err(
-                        Refused::stopped("stopped before the proof was finished", hint).into()
-                    );
-                }
-                Err(error) => failure = error,
-            }
-        }
+        let (found, outcome) = case.attempt(question, work)?;
         let order = found.as_ref().map(|found| found.order);
-        let (value, standing) = match proof {
-            Some(proof) => {
-                let cycle = kind == Kind::LimitCycle;
+        let (value, standing) = match outcome {
+            Ok(proof) => {
+                let cycle = case.condition() == Some(Condition::LimitCycle);
                 let digits = work.printed_digits();
                 (ProvedOrbit::new(&proof, cycle, digits), Standing::Complete)
             }
-            None => {
+            Err(failure) => {
                 remarks.push(Remark(format!("not proved: {failure}")));
-                let found = if work.digits > rough.digits { estimate(work) } else { found };
+                let found = period::period(&case, question, work).ok().or(found);
                 (ProvedOrbit::estimated(found, &failure), Standing::Undecided)
             }
         };
         let at = case.all_values().into_iter().map(|(name, value)| (name, value.to_string()));
         let header = self.header(at.collect(), order, "contraction proof", start);
         Ok(Answer { header, value, standing, remarks })
+    }
+
+    /// The proof from the first guess that leads to one: the motion in the time domain, then those of the
+    /// expansion, which is made only then.
+    fn attempt(
+        &self,
+        question: &Evaluate,
+        work: &Work,
+    ) -> Result<(Option<Evaluation>, Result<Proof, Failure>), Error> {
+        let (field, kind) = self.field()?;
+        let request =
+            Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() };
+        let moving = self
+            .setting()
+            .and_then(|setting| TimeDomain::new(&setting, &work.stop).start(&work.stop));
+        let mut outcome = Err(Failure::NoStart);
+        if let Ok(start) = moving {
+            outcome = prove(&field, &kind, &start, &request);
+        }
+        let mut found = None;
+        // With too few modes no other guess is better.
+        if !matches!(outcome, Ok(_) | Err(Failure::NoContraction { .. } | Failure::Stopped)) {
+            let rough = Work { digits: DIGITS_OF_A_GUESS.min(work.digits), ..work.clone() };
+            found = period::period(self, question, &rough).ok();
+            for start in self.starts(found.as_ref(), &kind, question, &rough) {
+                outcome = prove(&field, &kind, &start, &request);
+                if matches!(outcome, Ok(_) | Err(Failure::Stopped)) {
+                    break;
+                }
+            }
+        }
+        if work.stop.asked() && outcome.is_err() {
+            let hint = "raise --limit-seconds, or ask for fewer --digits";
+            return Err(Refused::stopped("stopped before the proof was finished", hint).into());
+        }
+        Ok((found, outcome))
     }
 
     /// The vector field with its values, and which orbit of it is meant. A small parameter that has the

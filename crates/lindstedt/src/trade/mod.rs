@@ -4,8 +4,9 @@
 //! by the integrator in the time domain, which shares no code with them. Of each run are kept the
 //! time, the memory, the true relative error, and the error that the run states without knowing
 //! the truth: a closed form where there is one, a reference of many digits (van der Pol's
-//! oscillator at eps = 1), else the integrator with more digits than any run. Where the
-//! contraction test of [`lindstedt_orbit`] takes the equation, the true error is proved as well.
+//! oscillator at eps = 1), else the period of the contraction test of [`lindstedt_orbit`], else the
+//! integrator with more digits than any run. Where the test takes the equation, the true error is
+//! proved as well.
 //!
 //! Every series is summed twice: as it stands (a partial sum, of a divergent series to its
 //! smallest term), and by the resummation that [`lindstedt_series::resummation::resum`] chooses.
@@ -21,13 +22,15 @@ mod truth;
 
 use crate::evaluate::setting::Setting;
 use crate::evaluate::source::Source;
+use crate::evaluate::turn::TimeDomain;
 use crate::refusal::Refused;
 use crate::{Answer, Error, Oscillator, Progress, Remark, Standing, Work};
 pub use answer::{LeftOut, Reason, Recommendation, Row, Trade};
 pub use front::{most_accurate, pareto, recommend, recommend_for_many};
 use lindstedt_algebra::Stop;
 use lindstedt_equation::Condition;
-use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::ball::Ball;
+use lindstedt_orbit::Failure;
 #[doc(hidden)]
 pub use method::predict;
 pub use method::{Method, Summation};
@@ -98,18 +101,21 @@ impl Oscillator {
     /// ```
     pub fn trade(&self, plan: &Plan, work: &Work) -> Result<Answer<Trade>, Error> {
         let start = Instant::now();
-        let (case, mut remarks) = self.settled()?;
-        let bench = Bench::new(&case, plan, work).map_err(|error| case.no_reference(error))?;
-        let mut value = bench.truth.begin(&bench.setting, plan.repeats);
-        let proved = match proof::period(&case, &bench) {
-            Ok(period) => period,
-            Err(failure) => {
-                remarks.push(Remark(format!("the period is not proved: {failure}")));
-                None
-            }
-        };
-        value.proved_period = proved.as_ref().map(|period| bench.number(period));
-        value.finished = bench.run_all(proved.as_ref(), &mut value);
+        self.without_pi()?;
+        // The numeric tiers take equations that the exact one refuses.
+        if self.condition().is_none() {
+            self.check()?;
+        }
+        let (case, mut remarks) = self.placed()?;
+        let failed = |error| case.no_reference(error);
+        let setting = case.setting().map_err(failed)?;
+        let bench = Bench::new(&case, &setting, plan, work).map_err(failed)?;
+        if let Some(failure) = &bench.failure {
+            remarks.push(Remark(format!("the period is not proved: {failure}")));
+        }
+        let mut value = bench.truth.begin(&setting, plan.repeats);
+        value.proved_period = bench.proved.as_ref().map(|period| bench.number(period));
+        value.finished = bench.run_all(&mut value);
         value.pareto = pareto(&value.rows);
         for &index in &value.pareto {
             value.rows[index].pareto = true;
@@ -123,7 +129,7 @@ impl Oscillator {
         } else {
             Standing::Undecided
         };
-        let at = bench.setting.at.iter().map(|(name, value)| (name.clone(), value.to_string()));
+        let at = setting.at.iter().map(|(name, value)| (name.clone(), value.to_string()));
         let header = self.header(at.collect(), None, "every tier", start);
         Ok(Answer { header, value, standing, remarks })
     }
@@ -152,37 +158,51 @@ impl Oscillator {
 /// Orders that tell in which power of the small parameter the series is.
 const FEW: usize = 4;
 
+/// Digits of the truth beyond the most that are judged.
+const MORE: u32 = 8;
+
 /// A case with what all runs share.
 struct Bench<'a> {
     plan: &'a Plan,
     work: &'a Work,
-    setting: Setting,
+    setting: &'a Setting,
     /// What is known of the series; its own coefficients are not used.
     source: Source,
+    motion: TimeDomain<'a>,
+    /// The period by the contraction test, where it takes the equation, and why not where it failed.
+    proved: Option<Ball>,
+    failure: Option<Failure>,
     truth: Truth,
     bits: u32,
 }
 
 impl<'a> Bench<'a> {
-    fn new(case: &Oscillator, plan: &'a Plan, work: &'a Work) -> Result<Self, Error> {
-        let setting = case.setting()?;
-        let most = plan.most_digits();
-        let bits = (f64::from(most) * std::f64::consts::LOG2_10).ceil() as u32 + 64;
+    fn new(
+        case: &Oscillator,
+        setting: &'a Setting,
+        plan: &'a Plan,
+        work: &'a Work,
+    ) -> Result<Self, Error> {
+        let digits = plan.most_digits() + MORE;
+        let bits = (f64::from(digits) * std::f64::consts::LOG2_10).ceil() as u32 + 40;
         let means = (work.memory, &work.stop);
-        let source = match Source::new(&setting, FEW, means, &mut |_| !work.stop.asked()) {
+        let source = match Source::new(setting, FEW, means, &mut |_| !work.stop.asked()) {
             Err(error @ Error::OutsideDomain { .. }) => return Err(error),
             // Nothing is known of an equation that the exact driver does not take.
-            found => found.unwrap_or_else(|_| Source::plain(&setting)),
+            found => found.unwrap_or_else(|_| Source::plain(setting)),
         };
-        let truth = Truth::new(&setting, &source, bits, most, &work.stop)?;
-        Ok(Self { plan, work, setting, source, truth, bits })
+        let motion = TimeDomain::new(setting, &work.stop);
+        let (proved, failure) = match proof::period(case, &motion, digits, stop(plan, work)) {
+            Ok(proved) => (proved, None),
+            Err(failure) => (None, Some(failure)),
+        };
+        let simulate = |digits| simulation::in_digits(&motion, digits, &work.stop);
+        let truth = Truth::new((setting, &source), (bits, digits), proved.as_ref(), &simulate)?;
+        Ok(Self { plan, work, setting, source, motion, proved, failure, truth, bits })
     }
 
-    /// Says stop when the work shall stop, or after the seconds of a run from now.
     fn stop(&self) -> Stop {
-        let (outer, start, seconds) =
-            (self.work.stop.clone(), Instant::now(), self.plan.run_seconds);
-        Stop::new(move || outer.asked() || start.elapsed().as_secs_f64() > seconds)
+        stop(self.plan, self.work)
     }
 
     /// A proved period as it is printed.
@@ -192,7 +212,7 @@ impl<'a> Bench<'a> {
     }
 
     /// All runs; whether they were all made.
-    fn run_all(&self, proved: Option<&Ball>, trade: &mut Trade) -> bool {
+    fn run_all(&self, trade: &mut Trade) -> bool {
         let methods = Method::all(&self.setting.problem, self.plan);
         let all = methods.iter().map(|method| method.orders(self.plan).len()).sum();
         let mut done = 0;
@@ -206,7 +226,7 @@ impl<'a> Bench<'a> {
                     trade.left_out.push(LeftOut { method, order, reason });
                     continue;
                 }
-                let time = self.run_one((method, order), proved, trade);
+                let time = self.run_one((method, order), trade);
                 if !self.work.goes_on(Progress::Parts(done, all)) {
                     return false;
                 }
@@ -217,12 +237,7 @@ impl<'a> Bench<'a> {
     }
 
     /// The rows of one run, or why there is none; its time, infinite where it was too long.
-    fn run_one(
-        &self,
-        (method, order): (Method, Option<usize>),
-        proved: Option<&Ball>,
-        trade: &mut Trade,
-    ) -> Option<f64> {
+    fn run_one(&self, (method, order): (Method, Option<usize>), trade: &mut Trade) -> Option<f64> {
         let limit = self.plan.run_seconds;
         let start = Instant::now();
         let outcome = self.run(&method, order.unwrap_or(0));
@@ -233,6 +248,7 @@ impl<'a> Bench<'a> {
             Ok(list) => {
                 let least = list.iter().map(|found| found.seconds).reduce(f64::min);
                 let rows = list.into_iter().map(|found| {
+                    let proved = self.proved.as_ref();
                     let proved_error = proved.and_then(|period| proof::error(period, &found));
                     Row { proved_error, ..self.truth.row(method, order, found) }
                 });
@@ -249,7 +265,8 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// As many bits as so many balls need.
-fn balls(bits: u32) -> Balls {
-    Balls::new(bits).with_guard(64)
+/// Says stop when the work shall stop, or after the seconds of a run from now.
+fn stop(plan: &Plan, work: &Work) -> Stop {
+    let (outer, start, seconds) = (work.stop.clone(), Instant::now(), plan.run_seconds);
+    Stop::new(move || outer.asked() || start.elapsed().as_secs_f64() > seconds)
 }

@@ -67,8 +67,8 @@ impl Bench<'_> {
             _ => Err(Error::NoValue),
         };
         let integrated = || match *method {
-            Method::Simulation { digits } => simulation::in_digits(&self.setting, digits, &stop),
-            _ => simulation::in_doubles(&self.setting, method.digits(), &stop),
+            Method::Simulation { digits } => simulation::in_digits(&self.motion, digits, &stop),
+            _ => simulation::in_doubles(&self.motion, method.digits(), &stop),
         };
         if !method.has_order() {
             let (found, seconds) = fastest((repeats, LONG), &stop, &integrated)?;

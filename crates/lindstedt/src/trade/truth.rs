@@ -1,12 +1,11 @@
 //! True periods, from a route that the runs do not take.
 
 use super::run::Found;
-use super::{Method, Row, Trade, balls, simulation};
+use super::{Method, Row, Trade};
 use crate::Error;
 use crate::evaluate::setting::Setting;
 use crate::evaluate::source::Source;
-use lindstedt_algebra::Stop;
-use lindstedt_number::ball::Balls;
+use lindstedt_number::ball::{Ball, Balls};
 use rug::Float;
 use rug::float::Round;
 
@@ -19,8 +18,6 @@ const VAN_DER_POL: &str = concat!(
 );
 /// Its relative error.
 const VAN_DER_POL_ERROR: f64 = 1e-97;
-/// Digits of the integrator beyond the most that are judged.
-const MORE: u32 = 8;
 
 /// The true period at given parameters.
 pub(super) struct Truth {
@@ -33,17 +30,19 @@ pub(super) struct Truth {
 }
 
 impl Truth {
-    /// The closed form of `source`, else the reference (van der Pol at 1), else the time domain.
+    /// The closed form of `source`, else the reference (van der Pol at 1), else what was proved, else
+    /// the time domain.
     pub(super) fn new(
-        setting: &Setting,
-        source: &Source,
-        bits: u32,
-        digits: u32,
-        stop: &Stop,
+        (setting, source): (&Setting, &Source),
+        (bits, digits): (u32, u32),
+        proved: Option<&Ball>,
+        simulate: &dyn Fn(u32) -> Result<Found, Error>,
     ) -> Result<Self, Error> {
         let rounding = (8.0 - f64::from(bits)).exp2();
         if let Some((text, formula)) = &source.closed {
-            let ball = formula(balls(bits)).filter(|b| b.is_finite()).ok_or(Error::NoValue)?;
+            let ball = formula(Balls::new(bits).with_guard(64))
+                .filter(|b| b.is_finite())
+                .ok_or(Error::NoValue)?;
             let period = Float::with_val(bits, ball.midpoint());
             return Ok(Self { period, uncertainty: rounding, source: text.clone() });
         }
@@ -55,9 +54,15 @@ impl Truth {
             let (period, source) = (Float::with_val(bits, reference), "reference of 98 digits");
             return Ok(Self { period, uncertainty, source: source.to_owned() });
         }
-        let found = simulation::in_digits(setting, digits + MORE, stop)?;
+        if let Some(ball) = proved {
+            let period = Float::with_val(bits, ball.midpoint());
+            let relative = Float::with_val(53, ball.radius() / &period).abs().to_f64();
+            let uncertainty = relative + rounding;
+            return Ok(Self { period, uncertainty, source: "contraction proof".to_owned() });
+        }
+        let found = simulate(digits)?;
         let uncertainty = Float::with_val(53, &found.error / &found.period).abs().to_f64();
-        let source = format!("time domain: Taylor series to {} digits", digits + MORE);
+        let source = format!("time domain: Taylor series to {digits} digits");
         Ok(Self { period: Float::with_val(bits, &found.period), uncertainty, source })
     }
 
