@@ -108,7 +108,10 @@ impl Oscillator {
     pub fn prove(&self, question: &Evaluate, work: &Work) -> Result<Answer<ProvedOrbit>, Error> {
         let start = Instant::now();
         let (case, mut remarks) = self.settled()?;
-        let (found, outcome) = case.attempt(question, work)?;
+        let (mut found, outcome) = case.attempt(question, work)?;
+        if outcome.is_err() {
+            found = period::period(&case, question, work).ok().or(found);
+        }
         let order = found.as_ref().map(|found| found.order);
         let (value, standing) = match outcome {
             Ok(proof) => {
@@ -118,7 +121,6 @@ impl Oscillator {
             }
             Err(failure) => {
                 remarks.push(Remark(format!("not proved: {failure}")));
-                let found = period::period(&case, question, work).ok().or(found);
                 (ProvedOrbit::estimated(found, &failure), Standing::Undecided)
             }
         };
