@@ -7,7 +7,7 @@ use lindstedt::coeff::closed_forms::ClosedForms;
 use lindstedt::coeff::{PolynomialRing, Symbol};
 use lindstedt::number::ball::Balls;
 use lindstedt::phase::Lobachevsky;
-use lindstedt::phase::evaluate;
+use lindstedt::phase::evaluate::PhaseFunctions;
 use lindstedt::phase::lobachevsky::Word;
 use lindstedt::phase::lobachevsky_function::{LambdaTable, Point};
 use lindstedt::{Exact, Settings, Solution, energy};
@@ -335,14 +335,11 @@ fn the_solution_agrees_with_the_inverted_energy_integral() {
         let expected = taylor(|delta| exact_solution(&reflected, delta, bits), order, bits);
         let balls = Balls::new(400);
         let table = LambdaTable::new(order, balls);
+        let of_coefficient = |c: &_| constants.evaluate(c, balls);
+        let functions = PhaseFunctions::lobachevsky(&solution.solution, table, of_coefficient);
+        let values = functions.unwrap().at(&Point::Rational(tau.clone())).unwrap();
         for n in 0..=order {
-            let value = evaluate::lobachevsky(
-                &solution.solution[n],
-                &Point::Rational(tau.clone()),
-                &table,
-                |c| constants.evaluate(c, balls),
-            );
-            let derived = value.unwrap().midpoint().clone();
+            let derived = values[n].midpoint().clone();
             let expected = if beyond { -expected[n].clone() } else { expected[n].clone() };
             let error = Float::with_val(bits, &derived - &expected).abs();
             assert!(error < 1e-45, "x_{n}({tau}): {derived} against {expected}");

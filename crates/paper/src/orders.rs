@@ -11,7 +11,7 @@ use lindstedt_coeff::{Polynomial, PolynomialRing};
 use lindstedt_expand::{ExpandError, Expansion};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::digits::decimal;
-use lindstedt_phase::evaluate::lobachevsky;
+use lindstedt_phase::evaluate::PhaseFunctions;
 use lindstedt_phase::lobachevsky::LobachevskyElement;
 use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
 use lindstedt_phase::print::PrintPhase;
@@ -114,7 +114,10 @@ impl Case {
     fn value(&self, f: &Element) -> Option<Ball> {
         let point = Point::Rational(Rational::from(1));
         let balls = self.table.balls();
-        lobachevsky(f, &point, &self.table, |c| self.constants.evaluate(c, balls))
+        let of_coefficient = |c: &_| self.constants.evaluate(c, balls);
+        PhaseFunctions::lobachevsky(std::slice::from_ref(f), self.table.clone(), of_coefficient)?
+            .at(&point)?
+            .pop()
     }
 
     /// The row of x_n(0) = (1 or 0), x_n'(0) = 0.

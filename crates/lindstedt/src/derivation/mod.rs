@@ -12,7 +12,7 @@ use crate::{Error, Exact, Progress};
 pub use limits::check_parameters;
 pub(crate) use limits::{check_delays, unknown_parameter};
 use limits::{has_logarithms, limit_memory};
-use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring, Stop};
+use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_equation::classify::rational_root;
@@ -23,6 +23,8 @@ use lindstedt_expand::{
 use lindstedt_multimodular::{self as multimodular, RationalBinding};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{certified, to_ratio};
+use lindstedt_phase::evaluate::{PhaseFunctions, of_rational};
+use lindstedt_phase::lobachevsky_function::LambdaTable;
 use lindstedt_phase::print::PrintPhase;
 use lindstedt_phase::{Lobachevsky, Trigonometric};
 use num_bigint::BigInt;
@@ -446,6 +448,33 @@ impl Derivation {
     pub fn numbers(&self, series: &NamedSeries, digits: usize) -> Result<Vec<Number>, Error> {
         let orders = (0..series.coefficients.len()).into_par_iter();
         orders.map(|n| self.number(series, n, digits)).collect()
+    }
+
+    /// x_0, x_1, ..., x_N, or their functions in the phase, to be evaluated at many phases. Nothing where the
+    /// solution was not kept.
+    pub(crate) fn phase_functions(&self, derivative: bool, balls: Balls) -> Option<PhaseFunctions> {
+        match &self.solution {
+            Solution::Lobachevsky(expansion) => {
+                let algebra = Lobachevsky::new(self.ring.clone());
+                let functions: Vec<_> = match derivative {
+                    true => expansion.solution.iter().map(|x| algebra.derivative(x)).collect(),
+                    false => expansion.solution.clone(),
+                };
+                let table = LambdaTable::new(functions.len(), balls);
+                let value = |c: &_| self.constants.evaluate(c, balls);
+                PhaseFunctions::lobachevsky(&functions, table, value)
+            }
+            Solution::Rational(proved) => {
+                let algebra = Trigonometric::new(Rationals);
+                let solution = &proved.expansion.solution;
+                let functions: Vec<_> = match derivative {
+                    true => solution.iter().map(|x| algebra.derivative(x)).collect(),
+                    false => solution.clone(),
+                };
+                PhaseFunctions::trigonometric(&functions, balls, of_rational(balls))
+            }
+            Solution::FrequencyOnly => None,
+        }
     }
 
     /// Coefficient n of a series as a ball.

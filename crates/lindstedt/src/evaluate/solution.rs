@@ -5,13 +5,15 @@ use super::displacements::{Displacement, Displacements};
 use super::setting::{Form, Setting};
 use super::source::remembered;
 use super::{Evaluate, Evaluation, Times, bits_for, few};
-use crate::{Derivation, Error, Exact, Number, Oscillator, Progress, Solution, Work};
+use crate::{Derivation, Error, Exact, Number, Oscillator, Progress, Work};
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
-use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
+use lindstedt_phase::evaluate::PhaseFunctions;
+use lindstedt_phase::lobachevsky_function::Point;
 use lindstedt_series::resummation::{Estimate, Method, Sample, UniformMap, partial_sums};
 use rayon::prelude::*;
 use rug::{Float, Rational};
+use std::collections::BTreeMap;
+use std::sync::{Arc, RwLock};
 
 /// x as a Fourier series in omega t.
 #[derive(Clone, Debug)]
@@ -40,6 +42,8 @@ pub struct Trajectory {
     phase: Exact,
     methods: Vec<Method>,
     digits: usize,
+    /// The x_n with balls as coefficients, by their bits.
+    functions: RwLock<BTreeMap<u32, Arc<PhaseFunctions>>>,
     /// The period.
     pub period: f64,
 }
@@ -166,6 +170,7 @@ impl Trajectory {
             phase,
             methods,
             digits,
+            functions: RwLock::default(),
             period: period.midpoint().to_f64(),
         })
     }
@@ -307,19 +312,16 @@ impl Trajectory {
 
     /// x_n at a phase.
     fn coefficients(&self, point: &Point, balls: Balls) -> Option<Vec<Ball>> {
-        match &self.derivation.solution {
-            Solution::Lobachevsky(expansion) => {
-                let table = LambdaTable::new(expansion.solution.len(), balls);
-                let constants = &self.derivation.constants;
-                let value = |x| lobachevsky(x, point, &table, |c| constants.evaluate(c, balls));
-                expansion.solution.iter().map(value).collect()
+        let known = self.functions.read().ok()?.get(&balls.bits()).cloned();
+        let functions = match known {
+            Some(functions) => functions,
+            None => {
+                let functions = Arc::new(self.derivation.phase_functions(false, balls)?);
+                self.functions.write().ok()?.insert(balls.bits(), functions.clone());
+                functions
             }
-            Solution::Rational(proved) => {
-                let value = |x| trigonometric(x, point, balls, of_rational(balls));
-                proved.expansion.solution.iter().map(value).collect()
-            }
-            Solution::FrequencyOnly => None,
-        }
+        };
+        functions.at(point)
     }
 
     /// The Fourier coefficients (c_k, s_k), k = 0 .. `harmonics`, of x as a function of
@@ -357,7 +359,8 @@ impl Trajectory {
             let all: Vec<(f64, f64)> = places.into_par_iter().map(one).collect::<Option<_>>()?;
             all.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))
         };
-        let quarters = (0..4 * count).map(|i| i as f64 / 4.0).collect();
+        // The nodes, half a step off, are known.
+        let quarters = (0..4 * count).filter(|i| i % 4 != 2).map(|i| i as f64 / 4.0).collect();
         let (coarse, place) = deviation(quarters)?;
         let (fine, _) = deviation((-8..=8).map(|i| place + f64::from(i) / 32.0).collect())?;
         let deviation = coarse.max(fine);

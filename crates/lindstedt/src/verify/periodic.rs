@@ -2,14 +2,12 @@
 
 use super::cycle::cycle;
 use super::{Comparison, Verify, quantities};
-use crate::{Derivation, Error, Oscillator, Solution};
-use lindstedt_algebra::{PhaseAlgebra, Rationals};
+use crate::{Derivation, Error, Oscillator};
 use lindstedt_equation::{AmplitudeRole, Condition};
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_phase::evaluate::{lobachevsky, of_rational, trigonometric};
-use lindstedt_phase::lobachevsky_function::{LambdaTable, Point};
-use lindstedt_phase::{Lobachevsky, Trigonometric};
+use lindstedt_phase::evaluate::PhaseFunctions;
+use lindstedt_phase::lobachevsky_function::Point;
 use lindstedt_simulate::{
     Digits, Integrator, Model, Outcome, Parameters, Real, Settings as Precision, Trajectory,
 };
@@ -70,39 +68,17 @@ impl Periodic {
             Some(value) if scaled => float(&value.ball(balls)),
             _ => Float::with_val(bits, 1),
         };
-        let at = |point: &Point, derivative: bool| -> Option<Vec<Float>> {
-            let values: Option<Vec<Ball>> = match &d.solution {
-                Solution::Lobachevsky(e) => {
-                    let table = LambdaTable::new(d.order + 1, balls);
-                    let algebra = Lobachevsky::new(d.ring.clone());
-                    let value =
-                        |x: &_| lobachevsky(x, point, &table, |c| d.constants.evaluate(c, balls));
-                    let terms = e.solution.iter().take(d.order + 1);
-                    if derivative {
-                        terms.map(|x| value(&algebra.derivative(x))).collect()
-                    } else {
-                        terms.map(value).collect()
-                    }
-                }
-                Solution::Rational(e) => {
-                    let algebra = Trigonometric::new(Rationals);
-                    let value = |x: &_| trigonometric(x, point, balls, of_rational(balls));
-                    let terms = e.expansion.solution.iter().take(d.order + 1);
-                    if derivative {
-                        terms.map(|x| value(&algebra.derivative(x))).collect()
-                    } else {
-                        terms.map(value).collect()
-                    }
-                }
-                Solution::FrequencyOnly => None,
-            };
-            Some(values?.iter().map(|ball| float(ball) * &amplitude).collect())
+        let functions = |derivative| d.phase_functions(derivative, balls).ok_or(Error::NoValue);
+        let (displacement, velocity) = (functions(false)?, functions(true)?);
+        let at = |functions: &PhaseFunctions, point: &Point| -> Option<Vec<Float>> {
+            let values = functions.at(point)?;
+            Some(values.iter().take(d.order + 1).map(|ball| float(ball) * &amplitude).collect())
         };
-        let points = turns.par_iter().map(|q| at(&Point::PiTimes(q.clone()), false));
+        let points = turns.par_iter().map(|q| at(&displacement, &Point::PiTimes(q.clone())));
         let values: Option<Vec<_>> = points.collect();
         let values = values.ok_or(Error::NoValue)?;
         let zero = Point::Rational(Rational::new());
-        let [x, v] = [false, true].map(|derivative| at(&zero, derivative).ok_or(Error::NoValue));
+        let [x, v] = [&displacement, &velocity].map(|f| at(f, &zero).ok_or(Error::NoValue));
         Ok(Self {
             bits,
             order: d.order,
