@@ -89,6 +89,9 @@ pub struct Tangency {
     pub periods: u32,
 }
 
+/// A linearised system with its saddle.
+type Place = (System<Doubles>, Saddle);
+
 /// A: small, so that the manifold is straight, but far above rounding errors.
 const AMOUNT: f64 = 1e-6;
 /// Looks per period.
@@ -274,19 +277,25 @@ impl Homoclinic<'_> {
         if nearest.0 < AWAY { Ok(nearest.1) } else { Err(SimulateError::NoTangency { value }) }
     }
 
+    /// The linearised system at a value, and its saddle, looked for from a guess.
+    fn at(&self, value: f64, guess: [f64; 2], tick: &Tick<'_>) -> Result<Place, SimulateError> {
+        let system = self.system(value, true)?;
+        let saddle = saddle(&system, self.period, guess, Self::settings(), tick)?;
+        Ok((system, saddle))
+    }
+
     /// (G, dG/dsigma).
     fn unstable_component(
         &self,
-        (value, phase): (f64, f64),
+        (system, saddle): &Place,
+        phase: f64,
         periods: u32,
         tick: &Tick<'_>,
     ) -> Result<[f64; 2], SimulateError> {
-        let system = self.system(value, true)?;
-        let saddle = saddle(&system, self.period, self.guess, Self::settings(), tick)?;
-        let amount = self.amount(&saddle, phase);
+        let amount = self.amount(saddle, phase);
         let end = f64::from(periods) * self.period;
         let start = saddle.unstable(amount);
-        let flow = monodromy_while(&system, (&0.0, &end), &start, Self::settings(), tick)?;
+        let flow = monodromy_while(system, (&0.0, &end), &start, Self::settings(), tick)?;
         let [u, _] = saddle.coordinates(&flow.end);
         // d(start)/dsigma = amount ln(mu) (unstable direction).
         let rate = amount * saddle.multipliers[0].ln();
@@ -309,12 +318,18 @@ impl Homoclinic<'_> {
         let (mut value, mut phase) = start;
         let mut moved = f64::INFINITY;
         let (mut step, mut turn) = (1e-6, 1e-5);
+        // The saddles of one step lie near those of the step before.
+        let mut guess = self.guess;
         for _ in 0..30 {
-            let at =
-                |dv: f64, dp: f64| self.unstable_component((value + dv, phase + dp), periods, tick);
-            let [g, slope] = at(0.0, 0.0)?;
-            let (more, less) = (at(step, 0.0)?, at(-step, 0.0)?);
-            let (later, sooner) = (at(0.0, turn)?, at(0.0, -turn)?);
+            let here = self.at(value, guess, tick)?;
+            guess = here.1.state;
+            let component =
+                |place: &Place, phase| self.unstable_component(place, phase, periods, tick);
+            let [g, slope] = component(&here, phase)?;
+            let more = component(&self.at(value + step, guess, tick)?, phase)?;
+            let less = component(&self.at(value - step, guess, tick)?, phase)?;
+            let (later, sooner) =
+                (component(&here, phase + turn)?, component(&here, phase - turn)?);
             // The differences stay where G is nearly linear in the value, quadratic in the phase.
             let (change, bend) =
                 ((more[0] - less[0]).abs(), (later[0] + sooner[0] - 2.0 * g).abs());
@@ -335,7 +350,8 @@ impl Homoclinic<'_> {
             let damping = (0.05 / dp.abs()).min(0.02 / dv.abs()).min(1.0);
             value += damping * dv;
             phase += damping * dp;
-            if dv.abs() < 1e-8 && dv.abs() >= 0.25 * moved || dv == 0.0 {
+            // Far below the change from one number of periods to the next, or rounding errors.
+            if dv.abs() < 1e-12 || dv.abs() < 1e-8 && dv.abs() >= 0.25 * moved {
                 return Ok((value, phase));
             }
             moved = dv.abs();
