@@ -13,11 +13,12 @@
 //! from B((1 - z)/2 + i, 1/2 - i) = B((1 - z)/2, 1/2) ((1 - z)/2)_i (-1)^i/(1/2)_i. The period is
 //! linear in the mu_m at every order.
 
-use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
+use lindstedt_algebra::{RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::sparse::Sparse;
 use lindstedt_coeff::{Polynomial, PolynomialRing, PowerProduct, Symbol};
 use lindstedt_series::Series;
 use rug::{Integer, Rational};
+use std::collections::BTreeMap;
 
 /// K and l as formal parameters; the constants of the caller must not use these.
 const COTANGENT_SQUARED: Symbol = Symbol::Parameter(u16::MAX - 1);
@@ -64,7 +65,9 @@ pub(crate) fn period_until(
 
 /// The mean of a polynomial in K and l; nothing when stopped.
 fn mean(ring: &PolynomialRing, p: &Polynomial, stop: &Stop) -> Option<Polynomial> {
-    let mut sum = ring.zero();
+    // Many monomials share their powers of K and l, and the sum is long: merged once, at the end.
+    let mut means = BTreeMap::new();
+    let mut terms = Vec::new();
     for (monomial, coefficient) in p.terms() {
         if stop.asked() {
             return None;
@@ -78,9 +81,10 @@ fn mean(ring: &PolynomialRing, p: &Polynomial, stop: &Stop) -> Option<Polynomial
                 _ => rest = ring.mul(&rest, &ring.power(symbol, exponent)),
             }
         }
-        sum = ring.add(&sum, &ring.mul(&rest, &mean_of_powers(i, m)));
+        let mean = means.entry((i, m)).or_insert_with(|| mean_of_powers(i, m));
+        terms.extend_from_slice(ring.mul(&rest, mean).terms());
     }
-    Some(sum)
+    Some(Sparse::collect(&Rationals, terms))
 }
 
 /// <K^i l^m>.
@@ -108,7 +112,7 @@ fn mean_of_powers(i: u16, m: u16) -> Polynomial {
         };
         (mu, Rational::from(c * &factorial))
     });
-    Sparse::collect(&lindstedt_algebra::Rationals, terms)
+    Sparse::collect(&Rationals, terms)
 }
 
 /// A power of the frequency of the power law x'' + x (x^2)^delta = 0 to the given order, from the
