@@ -102,3 +102,15 @@ fn balanced(text: &str) -> Result<(), String> {
     }
     open.pop().map_or(Ok(()), |(name, _)| Err(name.to_owned()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::balanced;
+
+    #[test]
+    fn malformed_elements_are_found() {
+        assert!(balanced("<math><msup><mi>x</mi><mn>2</mn></msup></math>").is_ok());
+        assert!(balanced("<math><msup><mi>x</mi></msup></math>").is_err());
+        assert!(balanced("<math><mi>x</math>").is_err());
+    }
+}
