@@ -1,5 +1,7 @@
 //! Marked text: where the formulas of a line are is said by who writes it, not guessed by who reads it.
 
+use crate::page::latex;
+use lindstedt_report::{Formula, Text as Line};
 use serde::{Serialize, Serializer};
 use std::borrow::Borrow;
 use std::fmt;
@@ -58,6 +60,15 @@ impl Text {
                     });
                 }
             }
+        })
+    }
+
+    /// As a line of the page: literal print in quotation marks, formulas in both notations.
+    pub fn line(&self) -> Line {
+        self.parts().fold(Line::default(), |line, part| match part {
+            Part::Words(words) => line.and(words),
+            Part::Formula(text) => line.formula(Formula::new(text, latex(text))),
+            Part::Code(code) => line.and("\"").code(code).and("\""),
         })
     }
 

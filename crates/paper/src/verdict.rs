@@ -50,6 +50,14 @@ impl Verdict {
         }
     }
 
+    /// The verdict as a name in a style sheet.
+    pub(crate) fn class(self) -> &'static str {
+        match self {
+            Self::NotReproducible => "not-reproducible",
+            other => other.name(),
+        }
+    }
+
     /// How bad it is, for the worst of several: 0 to 3.
     pub(crate) fn severity(self) -> u8 {
         match self {

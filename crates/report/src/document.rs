@@ -36,6 +36,21 @@ pub enum Span {
     Sentence(Formula),
     /// Something to type or to find in a file, in a fixed width.
     Code(String),
+    /// Words that stand out; the class is a name for a style sheet.
+    Strong {
+        /// What is read.
+        words: String,
+        /// What it is: `wrong`.
+        class: &'static str,
+    },
+    /// Words that lead to a place of the page or to a file beside it; where nothing can be followed,
+    /// the words.
+    Link {
+        /// What is read.
+        words: String,
+        /// The name of a file, or `#` and that of a [`Part`].
+        to: String,
+    },
 }
 
 /// A line: words with formulas between them.
@@ -73,6 +88,27 @@ impl Text {
     #[must_use]
     pub fn code(mut self, code: impl Into<String>) -> Self {
         self.0.push(Span::Code(code.into()));
+        self
+    }
+
+    /// The line with words after it that stand out.
+    #[must_use]
+    pub fn strong(mut self, words: impl Into<String>, class: &'static str) -> Self {
+        self.0.push(Span::Strong { words: words.into(), class });
+        self
+    }
+
+    /// The line with words after it that lead somewhere.
+    #[must_use]
+    pub fn link(mut self, words: impl Into<String>, to: impl Into<String>) -> Self {
+        self.0.push(Span::Link { words: words.into(), to: to.into() });
+        self
+    }
+
+    /// The line with another one after it.
+    #[must_use]
+    pub fn then(mut self, other: impl Into<Self>) -> Self {
+        self.0.extend(other.into().0);
         self
     }
 
@@ -117,6 +153,41 @@ pub enum Block {
     Code(String),
     /// A whole file: in text it stands alone and unchanged, elsewhere as [`Block::Code`].
     Source(String),
+    /// Items, one below the other.
+    List(Vec<Text>),
+    /// A picture with words below it; nothing where only characters are shown.
+    Picture {
+        /// The name of its file, without `.svg`.
+        name: String,
+        /// What it shows.
+        caption: Text,
+        /// The picture.
+        svg: String,
+    },
+    /// A part with a place of its own.
+    Part(Part),
+    /// What is read on demand, under a word; in full where a page cannot fold.
+    Folded {
+        /// The word.
+        word: &'static str,
+        /// Whether it is shown at first.
+        open: bool,
+        /// What is folded away.
+        page: Document,
+    },
+}
+
+/// A part of a page with a heading one level below that of the page.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    /// The heading; a frame without one where empty.
+    pub title: Text,
+    /// The name by which a [`Span::Link`] finds it; empty where none does.
+    pub name: String,
+    /// What it is, for a style sheet: `row wrong`.
+    pub class: String,
+    /// What it says.
+    pub page: Document,
 }
 
 /// A page: what an answer says, in the order in which it is read.
@@ -172,6 +243,31 @@ impl Document {
     #[must_use]
     pub fn table(self, table: Table) -> Self {
         if table.rows.is_empty() { self } else { self.with(Block::Table(table)) }
+    }
+
+    /// The page with items after it; nothing where the list is empty.
+    #[must_use]
+    pub fn list<T: Into<Text>>(self, list: impl IntoIterator<Item = T>) -> Self {
+        let list: Vec<Text> = list.into_iter().map(Into::into).collect();
+        if list.is_empty() { self } else { self.with(Block::List(list)) }
+    }
+
+    /// The page with a part of its own after it.
+    #[must_use]
+    pub fn part(
+        self,
+        (name, class): (impl Into<String>, impl Into<String>),
+        title: impl Into<Text>,
+        page: Self,
+    ) -> Self {
+        let (title, name, class) = (title.into(), name.into(), class.into());
+        self.with(Block::Part(Part { title, name, class, page }))
+    }
+
+    /// The page with what is read on demand after it; nothing where that is empty.
+    #[must_use]
+    pub fn folded(self, word: &'static str, open: bool, page: Self) -> Self {
+        if page.blocks.is_empty() { self } else { self.with(Block::Folded { word, open, page }) }
     }
 
     /// The page with another one after it.

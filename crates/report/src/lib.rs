@@ -16,9 +16,9 @@ mod mathml;
 mod present;
 mod table;
 
-pub use document::{Block, Document, Formula, Span, Text};
+pub use document::{Block, Document, Formula, Part, Span, Text};
 pub use figure::{Figure, FigureError};
-pub use format::Format;
+pub use format::{Format, standalone};
 pub use mathml::{MathError, mathml};
 pub use present::{Present, json};
 pub use table::Table;

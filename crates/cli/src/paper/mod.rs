@@ -1,13 +1,12 @@
 //! `lindstedt paper`: the paper, formula by formula, as a report.
 
-mod figures;
-
 use crate::Outcome;
 use crate::arguments::{Format, PaperOptions};
-use crate::failure::{Failure, INTERRUPTED, UNDECIDED};
+use crate::failure::{Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::output::trouble;
 use crate::session::Session;
-use lindstedt_paper::{Options, Paper, page, read};
+use lindstedt_paper::{Options, page, read};
+use lindstedt_report::Format as Written;
 use std::path::Path;
 
 pub fn run(options: &PaperOptions, session: &Session<'_>) -> Outcome {
@@ -23,13 +22,25 @@ pub fn run(options: &PaperOptions, session: &Session<'_>) -> Outcome {
     let paper = read(depth, &mut observer)?;
     session.done();
     let seconds = session.elapsed().as_secs_f64();
-    match session.out() {
-        Some(directory) => write_directory(directory, &paper, seconds)?,
-        None => {
-            let report = match session.format() {
-                Format::Text => page::text(&paper),
-                Format::Markdown => page::markdown(&paper, &[]),
-                Format::Latex => page::latex(&paper),
+    let unwritten = |error: page::PageError| Failure {
+        exit: NO_ANSWER,
+        code: "page",
+        message: error.to_string(),
+        hint: String::new(),
+    };
+    match (session.out(), session.format()) {
+        (Some(directory), _) => {
+            for (name, content) in page::files(&paper, seconds).map_err(unwritten)? {
+                let path = directory.join(name);
+                std::fs::write(&path, content)
+                    .map_err(|error| trouble(&path.display().to_string(), &error))?;
+            }
+        }
+        (None, format) => {
+            let report = match format {
+                Format::Text => page::write(&paper, Written::Text),
+                Format::Markdown => page::write(&paper, Written::Markdown),
+                Format::Latex => page::write(&paper, Written::Latex),
                 Format::Json => page::json(&paper, seconds).map_err(unwritten)?,
             };
             crate::output::write(session, &report)?;
@@ -51,20 +62,4 @@ fn prepare(directory: &Path) -> Result<(), Failure> {
     let probe = directory.join(".lindstedt-probe");
     std::fs::write(&probe, "").map_err(failed)?;
     std::fs::remove_file(&probe).map_err(failed)
-}
-
-/// Data that cannot be written as JSON.
-fn unwritten(error: serde_json::Error) -> Failure {
-    let message = format!("no JSON: {error}");
-    Failure { exit: UNDECIDED, code: "undecided", message, hint: String::new() }
-}
-
-fn write_directory(directory: &Path, paper: &Paper, seconds: f64) -> Result<(), Failure> {
-    let figures = figures::draw(&paper.trust)?;
-    for (name, content) in page::files(paper, figures, seconds).map_err(unwritten)? {
-        let path = directory.join(name);
-        std::fs::write(&path, content)
-            .map_err(|error| trouble(&path.display().to_string(), &error))?;
-    }
-    Ok(())
 }

@@ -1,77 +1,32 @@
-//! The page of the paper: text, Markdown, LaTeX, HTML, JSON and CSV are readers of [`Paper`].
+//! The page of the paper, a [`Document`]: text, Markdown, LaTeX and HTML are its readers, JSON is what
+//! serde makes of [`Paper`], CSV is its tables.
 
 mod data;
-mod html;
-mod latex;
-mod markdown;
-mod text;
+mod figures;
+mod notation;
+mod summary;
 
-use crate::{Paper, Section, Table, Text, Verdict};
+use crate::{Paper, Row, Section, Table, Text, Verdict};
+use figures::Drawing;
+use lindstedt_report::{Document, FigureError, Format, Text as Line, standalone};
 use serde::Serialize;
-use std::fmt::Write;
 
-pub use html::report as html;
-pub use latex::report as latex;
-pub use markdown::report as markdown;
-pub use text::report as text;
+pub use data::files;
+pub(crate) use notation::latex;
 
-/// A figure of the summary.
-#[derive(Clone, Debug)]
-pub struct Figure {
-    /// Its name as a file, without ".svg".
-    pub name: &'static str,
-    /// The section of the paper it belongs to.
-    pub section: u32,
-    /// What it shows.
-    pub caption: Text,
-    /// The picture.
-    pub svg: String,
-}
+/// The width of the page as text.
+const WIDTH: usize = 100;
 
-/// All files of the report with their names: pages, data, figures. `seconds` is what the work took.
-///
-/// # Errors
-/// As [`json`].
-pub fn files(
-    paper: &Paper,
-    figures: Vec<Figure>,
-    seconds: f64,
-) -> Result<Vec<(String, String)>, serde_json::Error> {
-    let mut files = vec![
-        ("report.html".to_owned(), html(paper, &figures)),
-        ("report.md".to_owned(), markdown(paper, &figures)),
-        ("report.json".to_owned(), json(paper, seconds)?),
-    ];
-    for section in &paper.sections {
-        files.push((format!("section{}.csv", section.number), rows_csv(section)));
-        for table in &section.tables {
-            files.push((format!("section{}-{}.csv", section.number, table.name), csv(table)));
-        }
-    }
-    for Figure { name, svg, .. } in figures {
-        files.push((format!("{name}.svg"), svg));
-    }
-    files.extend(data::csv(&paper.trust));
-    Ok(files)
-}
-
-/// Everything as data; `seconds` is what the work took.
-///
-/// # Errors
-/// None that can occur: all keys are text.
-pub fn json(paper: &Paper, seconds: f64) -> Result<String, serde_json::Error> {
-    #[derive(Serialize)]
-    struct Run<'a> {
-        #[serde(flatten)]
-        paper: &'a Paper,
-        seconds: f64,
-    }
-    Ok(format!("{}\n", serde_json::to_string_pretty(&Run { paper, seconds })?))
-}
-
-/// Whether a cell of a table is a number and nothing else.
-fn is_plain_number(cell: &str) -> bool {
-    cell.chars().all(|c| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e'))
+/// Why there is no page.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PageError {
+    /// A figure cannot be drawn.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// The data cannot be written as JSON.
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
 }
 
 /// What the numbers of the report are worth.
@@ -98,46 +53,139 @@ const SYMBOLS: [(&str, &str); 6] = [
     ("$kappa$", "the factor of $x$ at order zero"),
 ];
 
+/// Everything as data; `seconds` is what the work took.
+///
+/// # Errors
+/// None that can occur: all keys are text.
+pub fn json(paper: &Paper, seconds: f64) -> Result<String, PageError> {
+    #[derive(Serialize)]
+    struct Run<'a> {
+        #[serde(flatten)]
+        paper: &'a Paper,
+        seconds: f64,
+    }
+    Ok(lindstedt_report::json(&Run { paper, seconds })?)
+}
+
+/// The page in one format, to stand alone: no figures, no names of files beside it.
+#[must_use]
+pub fn write(paper: &Paper, format: Format) -> String {
+    format.write_within(&document(paper, None), WIDTH)
+}
+
+/// The page; with figures it is one of several [`files`], whose names it tells.
+fn document(paper: &Paper, figures: Option<&[Drawing]>) -> Document {
+    let rows: usize = paper.sections.iter().map(|s| s.rows.len()).sum();
+    let rules = Verdict::ALL.map(|verdict| (stamp(verdict), verdict.rule()));
+    let mut page = Document::titled(
+        "Asymptotic approaches to strongly nonlinear and non-smooth systems, re-read by machine",
+    )
+    .words(format!(
+        "{rows} statements of the paper by J. Awrejcewicz and I. V. Andrianov, \u{201c}Asymptotic approaches to \
+         analysis of strongly non-linear and non-smooth systems\u{201d}: all of its formulas (1) to (51) and \
+         every number in its text, by lindstedt {}. For each: what is printed, what is derived from the \
+         equations, what another route says where there is one, and the verdict that follows.",
+        env!("CARGO_PKG_VERSION")
+    ));
+    if !paper.complete {
+        page = page.words(
+            Line::default()
+                .strong("Unfinished: the work was stopped before its end.", "unfinished"),
+        );
+    }
+    page = page.lines(rules).words(contents(paper));
+    if !paper.trust.findings.is_empty() {
+        page = page.part(
+            ("trust", ""),
+            "Where the paper's methods can be trusted, and where not",
+            summary::trust(paper, figures.unwrap_or_default()),
+        );
+    }
+    page = page.part(("glance", ""), "The paper at a glance", summary::glance(paper));
+    for section in &paper.sections {
+        let title = format!("Section {}: {}", section.number, section.title);
+        let name = format!("section-{}", section.number);
+        page = page.part((name, ""), title, section_page(section, figures.is_some()));
+    }
+    page.part(("notes", ""), "Notes", notes())
+}
+
+/// Where the parts of the page are.
+fn contents(paper: &Paper) -> Line {
+    let mut line = Line::default();
+    if !paper.trust.findings.is_empty() {
+        line = line.link("Where to trust", "#trust").and(", ");
+    }
+    line = line.link("At a glance", "#glance");
+    for section in &paper.sections {
+        let number = section.number;
+        line = line.and(", ").link(format!("Section {number}"), format!("#section-{number}"));
+    }
+    line.and(", ").link("Notes", "#notes")
+}
+
+/// A verdict, as a class of the style sheet, too.
+fn stamp(verdict: Verdict) -> Line {
+    Line::default().strong(verdict.name(), verdict.class())
+}
+
 /// "44 statements: 30 agrees, ..." in one line.
-fn summary(section: &Section) -> String {
-    let counts: Vec<String> =
-        Verdict::ALL.iter().map(|v| format!("{} {}", section.count(*v), v.name())).collect();
-    format!("{} statements: {}", section.rows.len(), counts.join(", "))
+fn counts(section: &Section) -> String {
+    let counts = Verdict::ALL.map(|v| format!("{} {}", section.count(v), v.name()));
+    format!("{} statements: {}.", section.rows.len(), counts.join(", "))
 }
 
-fn field(text: &str) -> String {
-    if text.contains([',', '"', '\n']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
+fn section_page(section: &Section, has_files: bool) -> Document {
+    let mut line = Line::words(counts(section));
+    if has_files {
+        let csv = data::rows_name(section);
+        line = line.and(" Data: ").link(&csv, &csv).and(", ").link("report.json", "report.json");
+        line = line.and(".");
     }
-}
-
-fn line(cells: &[Text]) -> String {
-    let cells: Vec<String> = cells.iter().map(|c| field(c)).collect();
-    format!("{}\n", cells.join(","))
-}
-
-fn csv(table: &Table) -> String {
-    let mut text = line(&table.columns);
-    for row in &table.rows {
-        text += &line(row);
-    }
-    text
-}
-
-fn rows_csv(section: &Section) -> String {
-    let mut text = String::from("label,printed,derived,independent,verdict,evidence\n");
+    let mut page = Document::default().words(line).words(CLASSES);
     for row in &section.rows {
-        let cells = [
-            row.label.clone(),
-            row.printed.clone(),
-            row.derived.clone(),
-            row.independent.clone(),
-            row.verdict.name().into(),
-            row.evidence.clone(),
-        ];
-        let _ = write!(text, "{}", line(&cells));
+        let class = format!("row {}", row.verdict.class());
+        let title = row.label.line().and("  ").then(stamp(row.verdict));
+        page = page.part((summary::anchor(section, row), class), title, row_page(row));
     }
-    text
+    for table in &section.tables {
+        let name = format!("table-{}-{}", section.number, table.name);
+        let mut inner = Document::default();
+        if has_files {
+            let csv = data::table_name(section, table);
+            inner = inner.words(Line::words("Data: ").link(&csv, &csv).and("."));
+        }
+        let inner = inner.table(table_of(table)).list(table.notes.iter().map(Text::line));
+        page = page.part((name, "data"), table.title.line(), inner);
+    }
+    page
+}
+
+/// One statement; the evidence is open where the statement does not hold.
+fn row_page(row: &Row) -> Document {
+    let lines = |list: [(&'static str, &Text); 2]| {
+        let some = list.into_iter().filter(|(_, value)| !value.is_empty());
+        Document::default().lines(some.map(|(name, value)| (name, value.line())))
+    };
+    let page = lines([("printed", &row.printed), ("derived", &row.derived)]);
+    let inner = lines([("independent", &row.independent), ("evidence", &row.evidence)]);
+    page.folded("evidence", row.verdict != Verdict::Agrees, inner)
+}
+
+/// A table of the page as one of the report.
+fn table_of(table: &Table) -> lindstedt_report::Table {
+    let rows = table.rows.iter().map(|row| row.iter().map(Text::line).collect()).collect();
+    lindstedt_report::Table { columns: table.columns.iter().map(Text::line).collect(), rows }
+}
+
+fn notes() -> Document {
+    let lines =
+        SYMBOLS.map(|(letters, meaning)| (Text::from(letters).line(), Text::from(meaning).line()));
+    let about = "The independent route shares nothing with the derivation; where it is a residual, it shares the \
+         algebra of functions. Certified numbers carry an enclosure: what is shown is right to one unit of its \
+         last digit; estimated ones come from floating point or from differences, and their error is measured, \
+         not proved.";
+    let notation = "A formula is written as in the report's data: primes are derivatives, $xT$ is $x$ at $t - T$, \
+         $dC$ a small change of $C$.";
+    Document::default().words(about).lines(lines).words(Text::from(notation).line())
 }

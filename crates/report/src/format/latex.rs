@@ -36,8 +36,18 @@ impl Writer for Latex {
     fn verbatim(&self, code: &str) -> String {
         format!("\\texttt{{{}}}", escaped(code))
     }
+    fn strong(&self, words: &str, _class: &str) -> String {
+        format!("\\textbf{{{}}}", escaped(words))
+    }
+    fn link(&self, words: &str, _to: &str) -> String {
+        escaped(words)
+    }
     fn heading(&self, line: &str, level: usize) -> String {
-        let command = if level == 1 { "section" } else { "paragraph" };
+        let command = match level {
+            1 => "section",
+            2 => "paragraph",
+            _ => "subparagraph",
+        };
         format!("\\{command}*{{{line}}}\n")
     }
     fn formula(&self, formula: &Formula) -> String {
@@ -61,5 +71,12 @@ impl Writer for Latex {
         // The only text that ends a verbatim environment.
         let code = code.replace("\\end{verbatim}", "\\end {verbatim}");
         format!("\\begin{{verbatim}}\n{}\n\\end{{verbatim}}\n", code.trim_end())
+    }
+    fn list(&self, items: &[String]) -> String {
+        let items: String = items.iter().map(|item| format!("\\item {item}\n")).collect();
+        format!("\\begin{{itemize}}\n{items}\\end{{itemize}}\n")
+    }
+    fn picture(&self, _name: &str, _caption: &str, _svg: &str) -> String {
+        String::new()
     }
 }

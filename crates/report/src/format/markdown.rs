@@ -39,8 +39,14 @@ impl Writer for Markdown {
         let fence = "`".repeat(fence(code).len() - 2);
         format!("{fence}{code}{fence}")
     }
+    fn strong(&self, words: &str, _class: &str) -> String {
+        format!("**{}**", escaped(words))
+    }
+    fn link(&self, words: &str, to: &str) -> String {
+        format!("[{}]({to})", escaped(words))
+    }
     fn heading(&self, line: &str, level: usize) -> String {
-        format!("{} {}\n", if level == 1 { "##" } else { "###" }, line.replace('\n', " "))
+        format!("{} {}\n", "#".repeat(level + 1), line.replace('\n', " "))
     }
     fn formula(&self, formula: &Formula) -> String {
         format!("$$ {} $$\n", formula.latex)
@@ -63,5 +69,11 @@ impl Writer for Markdown {
     fn code(&self, code: &str) -> String {
         let fence = fence(code);
         format!("{fence}text\n{}\n{fence}\n", code.trim_end())
+    }
+    fn list(&self, items: &[String]) -> String {
+        items.iter().map(|item| format!("- {}\n", item.replace('\n', "\n  "))).collect()
+    }
+    fn picture(&self, name: &str, caption: &str, _svg: &str) -> String {
+        format!("![{caption}]({name}.svg)\n")
     }
 }

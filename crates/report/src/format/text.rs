@@ -3,8 +3,37 @@
 use super::Writer;
 use crate::Formula;
 
-/// Text for a terminal.
-pub(super) struct Plain;
+/// Text for a terminal, in lines of at most so many characters where blanks allow it.
+pub(super) struct Plain {
+    pub width: usize,
+}
+
+/// Lines as long as they are.
+pub(super) const UNLIMITED: Plain = Plain { width: usize::MAX };
+
+impl Plain {
+    /// A text after its first words, its further lines under it.
+    fn hanging(&self, first: &str, text: &str) -> String {
+        let hang = " ".repeat(width(first));
+        let mut lines = vec![first.to_owned()];
+        for (index, paragraph) in text.split('\n').enumerate() {
+            if index > 0 {
+                lines.push(hang.clone());
+            }
+            let mut used = width(&hang);
+            for (index, word) in paragraph.split(' ').enumerate() {
+                let wide = width(word);
+                let full = index > 0 && used + 1 + wide > self.width;
+                match lines.last_mut() {
+                    Some(line) if !full => line.extend([if index > 0 { " " } else { "" }, word]),
+                    _ => lines.push(format!("{hang}{word}")),
+                }
+                used = if full { width(&hang) } else { used + usize::from(index > 0) } + wide;
+            }
+        }
+        lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
+    }
+}
 
 /// Without the characters that steer a terminal.
 pub(super) fn harmless(words: &str) -> String {
@@ -36,6 +65,12 @@ impl Writer for Plain {
     fn verbatim(&self, code: &str) -> String {
         harmless(code)
     }
+    fn strong(&self, words: &str, _class: &str) -> String {
+        harmless(words)
+    }
+    fn link(&self, words: &str, _to: &str) -> String {
+        harmless(words)
+    }
     fn heading(&self, line: &str, _level: usize) -> String {
         format!("{line}\n")
     }
@@ -44,10 +79,8 @@ impl Writer for Plain {
     }
     fn lines(&self, list: &[(String, String)]) -> String {
         let widest = list.iter().map(|(name, _)| width(name)).max().unwrap_or(0) + 2;
-        let hang = " ".repeat(widest + 2);
         let line = |(name, value): &(String, String)| {
-            let value = value.replace('\n', &format!("\n{hang}"));
-            format!("  {}{value}", padded(name, widest)).trim_end().to_owned() + "\n"
+            self.hanging(&format!("  {}", padded(name, widest)), value)
         };
         list.iter().map(line).collect()
     }
@@ -64,9 +97,15 @@ impl Writer for Plain {
         all().map(line).collect()
     }
     fn paragraph(&self, line: &str) -> String {
-        format!("{line}\n")
+        self.hanging("", line)
     }
     fn code(&self, code: &str) -> String {
         indented(code)
+    }
+    fn list(&self, items: &[String]) -> String {
+        items.iter().map(|item| self.hanging("  - ", item)).collect()
+    }
+    fn picture(&self, _name: &str, _caption: &str, _svg: &str) -> String {
+        String::new()
     }
 }
