@@ -24,7 +24,7 @@ pub fn run(options: &PaperOptions, session: &Session<'_>) -> Outcome {
     let seconds = session.elapsed().as_secs_f64();
     let unwritten = |error: page::PageError| Failure {
         exit: NO_ANSWER,
-        code: "page",
+        code: "figure",
         message: error.to_string(),
         hint: String::new(),
     };

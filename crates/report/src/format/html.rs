@@ -24,7 +24,9 @@ fn escaped(words: &str) -> String {
 
 /// A formula as MathML; one that is not understood stands as it was printed, never half drawn.
 fn drawn(formula: &Formula, display: bool) -> String {
+    // Few fonts have a glyph for the invisible application of a function.
     mathml(&formula.latex, display)
+        .map(|math| math.replace("<mo>\u{2061}</mo>", ""))
         .unwrap_or_else(|_| format!("<code>{}</code>", escaped(&formula.text)))
 }
 

@@ -142,6 +142,7 @@ impl Format {
             }
             let close = before.is_some_and(|before| match (before, block) {
                 (Block::Formula(_), Block::Formula(_)) => true,
+                (Block::Heading(_), Block::Heading(_)) => false,
                 // Not the title.
                 (Block::Heading(_), _) => index > 1,
                 (Block::Words(line), Block::Formula(_)) => self.line(line).ends_with(':'),
