@@ -4,6 +4,7 @@
 
 use lindstedt::number::ball::Balls;
 use lindstedt_paper::{Decimal, Findings, Options, Paper, Row, Section, Verdict, read};
+use lindstedt_report::{Span, mathml};
 use rug::Rational;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -77,6 +78,35 @@ fn all_51_formulas_have_a_row() {
             assert!(says_why, "{}: a verdict without a reason", row.label);
         }
     }
+}
+
+/// Every formula of the page is understood: none stands there as it was typed.
+#[test]
+fn every_formula_is_drawn() {
+    let mut count = 0;
+    let mut draw = |text: &lindstedt_paper::Text| {
+        for span in text.line().0 {
+            let Span::Formula(formula) = span else { continue };
+            let drawn = mathml(&formula.latex, false);
+            assert!(drawn.is_ok(), "{}: {drawn:?}", formula.text);
+            count += 1;
+        }
+    };
+    for section in &paper().sections {
+        for row in &section.rows {
+            [&row.label, &row.printed, &row.derived, &row.independent, &row.evidence]
+                .map(&mut draw);
+        }
+        for table in &section.tables {
+            let cells = table.rows.iter().flatten().chain(&table.columns).chain(&table.notes);
+            cells.chain([&table.title]).for_each(&mut draw);
+        }
+    }
+    for finding in &paper().trust.findings {
+        let lists = finding.trusted.iter().chain(&finding.not_trusted);
+        lists.chain([&finding.method, &finding.class]).for_each(&mut draw);
+    }
+    assert!(count > 400, "{count} formulas");
 }
 
 /// The progress bar ends when the work does.

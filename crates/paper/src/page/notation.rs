@@ -489,7 +489,7 @@ mod tests {
     #[test]
     fn formulas_are_found() {
         for (text, count) in [
-            ("$x'' + x + eps x^3 = 0$", 4),
+            ("$x'' + c x' + x + eps x^3 = 0$", 5),
             ("exact, as polynomials in $x$, $x'$, $x(t-T)$", 3),
             ("the printed root is imaginary for $omega > alpha$", 1),
             ("$a = 1$ and b = 2", 1),
@@ -520,7 +520,7 @@ mod tests {
             ("da/dt - dx/dt", r"\frac{da}{dt}-\frac{dx}{dt}"),
             ("x = sqrt(2a/b)", r"x=\sqrt{\frac{2a}{b}}"),
             ("S = 1 - 1/3! + x^2/(2k+1)!", r"S=1-\frac{1}{3!}+\frac{x^{2}}{(2k+1)!}"),
-            ("lambda = sqrt(alpha^2 - c^2/4)", r"\lambda =\sqrt{\alpha ^{2}-\frac{c^{2}}{4}}"),
+            ("lambda = sqrt(alpha^2 - c^2/4)", r"\lambda =\sqrt{\alpha^{2}-\frac{c^{2}}{4}}"),
             ("alpha0 x_0'' T_(l+1)", r"\alpha_{0}\,x_{0}''\,T_{l+1}"),
             ("(a/b)^2 -> 6e-13", r"\left(\frac{a}{b}\right)^{2}\to 6\cdot 10^{-13}"),
         ] {
