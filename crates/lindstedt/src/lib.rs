@@ -8,7 +8,7 @@
 //! # Ok::<(), lindstedt::Error>(())
 //! ```
 
-#[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../README.md")]
 #[cfg(doctest)]
 struct Readme;
 
