@@ -14,7 +14,7 @@ use lindstedt::expand::{AveragedExpansion, Binding, average, check_averaged, com
 use lindstedt::number::ball::Balls;
 use lindstedt::number::ball::ring::{BallRing, Enclosure};
 use lindstedt::phase::{Delay, Torus};
-use lindstedt::{Error, Exact, Settings, derive as derive_problem, problems};
+use lindstedt::{DerivationError as Error, Exact, Settings, derive as derive_problem, problems};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 

@@ -4,7 +4,7 @@
 
 use lindstedt::algebra::RationalAlgebra;
 use lindstedt::series::resummation::{Method, Resummed, Sample, UniformMap, resum};
-use lindstedt::{Error, Evaluate, Oscillator, Settings, Work, derive, problems};
+use lindstedt::{Error, Evaluate, EvaluationError, Oscillator, Settings, Work, derive, problems};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
@@ -147,7 +147,7 @@ fn closed_forms(seed: u64, cases: usize, most: u64, count: &mut Count) {
                     let exact = found.exact_period.as_ref().unwrap().decimal.clone();
                     count.add(label, (method, order), Ok(&found.resummed), &over_two_pi(&exact));
                 }
-                Err(Error::Resummation { .. }) => {
+                Err(Error::Evaluation(EvaluationError::Resummation { .. })) => {
                     count.add(label, (method, order), Err(()), &Float::new(53));
                 }
                 Err(other) => panic!("{label}: {other}"),

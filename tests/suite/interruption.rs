@@ -4,12 +4,11 @@
 
 use lindstedt::algebra::Stop;
 use lindstedt::averaging::{Averaging, AveragingSettings, average};
-use lindstedt::expand::ExpandError;
 use lindstedt::numeric::{Tier, derive as derive_numbers};
 use lindstedt::series::resummation::{Method, ResummationError, Sample, UniformMap, resum_until};
 use lindstedt::{
-    Derivation, Error, Evaluate, Exact, Kind, Oscillator, Progress, Refusal, Settings, Work,
-    derive, problems,
+    Derivation, DerivationError as Error, Evaluate, Exact, Kind, Oscillator, Progress, Refusal,
+    Settings, Work, derive, problems,
 };
 use rug::Float;
 use std::sync::Arc;
@@ -22,8 +21,8 @@ fn after(limit: u64) -> (Stop, Arc<AtomicU64>) {
     (Stop::new(move || counter.fetch_add(1, Ordering::SeqCst) >= limit), asked)
 }
 
-fn interrupted<T>(result: &Result<T, Error>) -> bool {
-    matches!(result, Err(Error::Expand(ExpandError::Interrupted { .. })))
+fn interrupted<T>(result: &Result<T, impl Refusal>) -> bool {
+    result.as_ref().is_err_and(|error| error.kind() == Kind::Stopped)
 }
 
 fn lobachevsky(name: &str, order: usize, stop: Stop) -> (Result<Derivation, Error>, Vec<usize>) {

@@ -9,7 +9,7 @@ use lindstedt::number::ball::Balls;
 use lindstedt::numeric::{Estimate, Tier, derive};
 use lindstedt::phase::lobachevsky_function::means;
 use lindstedt::series::Series;
-use lindstedt::{Error, Exact, Settings, problems};
+use lindstedt::{DerivationError, Exact, Settings, problems};
 use rug::{Float, Rational};
 
 /// omega^power of the power law from T/2pi = (1 + delta)^(-1/2) M(u), M(u) = sum_m mu_m u^m,
@@ -32,7 +32,7 @@ fn closed_form(power: i32, order: usize, bits: u32) -> Vec<Float> {
     (0..=order).map(coefficient).collect()
 }
 
-fn estimate(problem: &Problem, order: usize, tier: Tier) -> Result<Estimate, Error> {
+fn estimate(problem: &Problem, order: usize, tier: Tier) -> Result<Estimate, DerivationError> {
     let settings = Settings { order, ..Settings::default() };
     derive(problem, &settings, tier, &mut |_| true)
 }

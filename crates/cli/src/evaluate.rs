@@ -8,7 +8,7 @@ use lindstedt::equation::Condition;
 use lindstedt::evaluate::Times;
 use lindstedt::evaluate::averaged::{AveragedMotion, Start};
 use lindstedt::grid::Axis;
-use lindstedt::{Evaluate, Exact, Oscillator, Work};
+use lindstedt::{Error, Evaluate, Exact, Oscillator, Work};
 
 pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     let oscillator = session.oscillator(&options.problem, &options.set, options.normalisation)?;
@@ -78,7 +78,8 @@ fn averaged(
         }
     }
     let start = options.start.as_deref().map(Start::parse_amplitude);
-    let start = start.or_else(|| options.state.as_deref().map(Start::parse_state)).transpose()?;
+    let start = start.or_else(|| options.state.as_deref().map(Start::parse_state)).transpose();
+    let start = start.map_err(Error::from)?;
     let order = options.order.map(|order| order as usize);
     let question = AveragedMotion { order, start, times };
     session.show(oscillator.averaged_motion(&question, work), &options.plot)

@@ -6,6 +6,7 @@ pub mod floats;
 pub mod parameters;
 pub mod polynomial;
 pub mod print;
+pub mod quotient;
 pub mod sparse;
 
 pub use polynomial::{Polynomial, PolynomialRing, PowerProduct, Symbol};

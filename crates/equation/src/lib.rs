@@ -4,6 +4,7 @@
 mod canonical;
 mod classification;
 pub mod classify;
+pub mod description;
 mod expression;
 mod methods;
 pub mod monomials;

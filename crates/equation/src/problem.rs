@@ -1,13 +1,15 @@
 //! A problem: an equation with what is needed to expand it and to talk about it.
 
 use crate::Expression;
+use serde::Serialize;
 use std::borrow::Cow;
 
 /// Text of a data card: a literal of a built-in problem or a string read from a problem file.
 pub type Text = Cow<'static, str>;
 
 /// What fixes the amplitude (and the phase) of the solution, order by order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Condition {
     /// x(0) = 1, x'(0) = 0: corrections start at rest at zero ("initial amplitude").
     InitialAmplitude,
@@ -18,6 +20,19 @@ pub enum Condition {
     /// A free amplitude a that drifts (Krylov, Bogoliubov, Mitropolsky): x = a cos psi + ...,
     /// corrections have no first harmonic, da/dt and dpsi/dt are functions of a.
     FreeAmplitude,
+}
+
+impl Condition {
+    /// Its name in files and results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::InitialAmplitude => "initial-amplitude",
+            Self::FundamentalAmplitude => "fundamental-amplitude",
+            Self::LimitCycle => "limit-cycle",
+            Self::FreeAmplitude => "free-amplitude",
+        }
+    }
 }
 
 /// How the amplitude of the user's solution enters an equation written for amplitude one.

@@ -14,6 +14,7 @@
 //! | [`map`], [`prediction`] | (16), (17), multipliers; variants E, P, S; the mismatch m |
 //! | [`aware`] | KBM with kappa = 1 - 1/gamma |
 //! | [`characteristic`], [`winding`], [`zeros`], [`flip`] | G(w), its zeros counted and enclosed, the flip boundary |
+//! | [`linearised`] | the map of one flight and impact in symbols, linearised by formal differentiation |
 //! | [`kick`] | the piecewise linear return map for B != 0 |
 //! | [`report`], [`chart`] | one point, many points |
 //!
@@ -53,14 +54,17 @@ pub mod flight;
 pub mod flip;
 pub mod flow;
 pub mod kick;
+pub mod linearised;
 pub mod map;
 pub mod orbit;
 pub mod parameters;
 pub mod prediction;
 pub mod propagator;
+mod radius;
 pub mod report;
 mod velocity;
 pub mod winding;
 pub mod zeros;
 
 pub use error::ImpactError;
+pub use radius::{Finite, Radius, divergence};

@@ -1,6 +1,7 @@
 //! What every verb answers with.
 
-use serde::{Serialize, Serializer};
+use lindstedt_number::as_map;
+use serde::Serialize;
 
 /// The version of the JSON form; it grows when a key changes its meaning.
 pub const SCHEMA: u32 = 1;
@@ -24,23 +25,6 @@ pub struct Header {
     pub tier: &'static str,
     /// Wall-clock seconds of the question.
     pub seconds: f64,
-}
-
-/// Pairs as an object that keeps their order.
-pub(crate) fn as_map<S: Serializer, K: Serialize, V: Serialize>(
-    list: &[(K, V)],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(list.iter().map(|(name, value)| (name, value)))
-}
-
-/// The same as a value of its own.
-pub(crate) struct Object<K, V>(pub Vec<(K, V)>);
-
-impl<K: Serialize, V: Serialize> Serialize for Object<K, V> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        as_map(&self.0, serializer)
-    }
 }
 
 /// How far an answer goes; one exit code each on the command line.

@@ -1,9 +1,8 @@
 //! What is built in, and one problem with all that is known before any work.
 
 use crate::Oscillator;
-use crate::classification::Description;
-use crate::oscillator::condition_name;
 use lindstedt_equation::Problem;
+use lindstedt_equation::description::Description;
 use lindstedt_equation::print::Style;
 use serde::Serialize;
 
@@ -71,7 +70,7 @@ impl Entry {
             equation: equation(Style::Text),
             latex: equation(Style::Latex),
             parameter: problem.small.to_string(),
-            normalisations: problem.conditions.iter().map(|c| condition_name(*c)).collect(),
+            normalisations: problem.conditions.iter().map(|c| c.name()).collect(),
             parameters: problem.parameters.iter().map(parameter).collect(),
             notes: problem.notes.to_string(),
             source: problem.source.to_string(),

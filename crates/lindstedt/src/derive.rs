@@ -1,18 +1,22 @@
 //! The question `derive`: exact, averaged, or in estimated numbers.
 
 use crate::averaging::{self, Averaging, AveragingSettings};
-use crate::classification::Description;
+use crate::convergence;
 use crate::numeric::{self, Estimate, Tier};
 use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{
     Answer, Derivation, Error, Exact, Oscillator, Progress, Remark, Route, Settings, Solution,
-    Standing, Work, derivation,
+    Standing, Work,
 };
 use lindstedt_algebra::PhaseError;
+use lindstedt_derivation::DerivationError;
+use lindstedt_derivation::check_delays;
 use lindstedt_equation::classify::{Method, Reason};
+use lindstedt_equation::description::Description;
 use lindstedt_equation::{AmplitudeRole, Condition};
 use lindstedt_expand::ExpandError;
+use lindstedt_impact::divergence;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -67,15 +71,16 @@ impl Oscillator {
         self.check()?;
         let settings = Settings { route: question.route, ..self.settings(question.order, work) };
         let primes = AtomicUsize::new(0);
-        let found = derivation::derive(self.problem(), &settings, &mut |progress| {
+        let found = lindstedt_derivation::derive(self.problem(), &settings, &mut |progress| {
             if let Progress::Primes(n) = progress {
                 primes.store(n, Ordering::Relaxed);
             }
             work.goes_on(progress)
         });
         let primes = primes.into_inner();
-        let value = found.map_err(|error| self.unfinished(error, primes))?;
-        let value = value.with_numbers(work.printed_digits())?.described(self.describe().ok());
+        let value = found.map_err(|error| self.unfinished(error.into(), primes))?;
+        let mut value = value.with_numbers(work.printed_digits())?;
+        value.description = self.describe().ok();
         let mut remarks = self.remarks().to_vec();
         if value.condition == Condition::InitialAmplitude {
             remarks.extend(self.start_remark(Taken::Amplitude));
@@ -111,12 +116,12 @@ impl Oscillator {
         };
         let found = numeric::derive(self.problem(), &settings, tier, &mut observer);
         let value = found.map_err(|error| match error {
-            Error::Expand(ExpandError::Interrupted { .. }) => Refused::stopped(
+            DerivationError::Expand(ExpandError::Interrupted { .. }) => Refused::stopped(
                 "stopped before two grids were finished",
                 "raise --limit-seconds or lower --order or --digits",
             )
             .into(),
-            error => self.refusal(error),
+            error => self.refusal(error.into()),
         })?;
         let value = value.with_numbers(work.printed_digits(), &self.problem().small);
         let tier = value.tier.name();
@@ -149,9 +154,9 @@ impl Oscillator {
         self.without_pi()?;
         let free = self.clone().under(Condition::FreeAmplitude)?;
         let values = self.all_values().into_iter().collect();
-        derivation::check_delays(&self.problem().equation, &values)?;
+        check_delays(&self.problem().equation, &values)?;
         free.check()?;
-        let (value, at, taken) = free.averaged(order, work)?;
+        let (mut value, at, taken) = free.averaged(order, work)?;
         let names: &[&str] = match value.is_linear() {
             true => &["growth_rate", "frequency", "solution"],
             // A_n(a)/a and B_n(a).
@@ -160,8 +165,10 @@ impl Oscillator {
         let mut remarks = self.remarks().to_vec();
         remarks.extend(taken);
         remarks.extend(self.missing(&|name| names.contains(&name)));
-        let value = value.with_convergence(&at).described(free.describe().ok());
-        remarks.extend(value.divergence().map(Remark));
+        value.convergence = convergence::of(&value, &at);
+        value.description = free.describe().ok();
+        let diverges = value.convergence.as_ref().filter(|found| found.diverges());
+        remarks.extend(diverges.map(divergence).map(Remark));
         let checked = value.checked_orders == value.order;
         let stopped = value.order < order || !checked;
         let standing = self.standing(stopped, value.order, checked, &mut remarks);
@@ -190,15 +197,15 @@ impl Oscillator {
         let all: BTreeMap<String, Exact> = self.all_values().into_iter().collect();
         let no_symbols = matches!(
             error,
-            Error::Expand(
+            DerivationError::Expand(
                 ExpandError::StiffnessNotSquare
                     | ExpandError::Phase { source: PhaseError::Indivisible { .. }, .. }
             )
         );
         if !no_symbols || all.len() == self.given().len() {
-            return Err(self.refusal(error));
+            return Err(self.refusal(error.into()));
         }
-        let value = average(&all).map_err(|error| self.refusal(error))?;
+        let value = average(&all).map_err(|error| self.refusal(error.into()))?;
         let remark =
             "the expansion is no formula in the parameters: all values of the problem are put in";
         Ok((value, all, Some(Remark(remark.to_owned()))))
@@ -237,7 +244,7 @@ impl Oscillator {
     /// Over Q every order is reconstructed from all primes together and proved by substitution at
     /// the end: stopped before, there is not one.
     fn unfinished(&self, error: Error, primes: usize) -> Error {
-        if !matches!(error, Error::Expand(ExpandError::Interrupted { .. })) {
+        if !error.is_interrupted() {
             return self.refusal(error);
         }
         let over_q = primes > 0

@@ -1,20 +1,26 @@
 //! Errors of the facade.
 
+use crate::refusal::{Kind, Refusal, Refused};
+use lindstedt_derivation::DerivationError;
+use lindstedt_evaluation::EvaluationError;
 use lindstedt_expand::ExpandError;
 use lindstedt_number::NumberError;
 use lindstedt_problem_file::{FileError, ParseError};
 use thiserror::Error;
 
-/// Why the engine has no answer. Each kind maps to one exit code of the command line.
+/// Why there is no answer. Each kind maps to one exit code of the command line.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The driver refused.
+    /// There is no expansion.
     #[error(transparent)]
-    Expand(#[from] ExpandError),
+    Derivation(DerivationError),
+    /// The expansion has no value.
+    #[error(transparent)]
+    Evaluation(EvaluationError),
     /// A refusal put together from several reasons.
     #[error(transparent)]
-    Refused(#[from] crate::refusal::Refused),
+    Refused(#[from] Refused),
     /// Melnikov's method has no value here.
     #[error(transparent)]
     Melnikov(#[from] lindstedt_melnikov::MelnikovError),
@@ -53,167 +59,86 @@ pub enum Error {
         /// The delay.
         delay: String,
     },
-    /// No more primes of 61 bits with the roots of unity that the order needs.
-    #[error("no more 61-bit primes for this order")]
-    OutOfPrimes,
     /// An equation cannot be read.
     #[error(transparent)]
     Parse(#[from] ParseError),
     /// A problem file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A rational value is needed where the parameter stands.
-    #[error("{name} = {value} is irrational, but exact derivations of this problem are over Q")]
-    Irrational {
-        /// The parameter.
-        name: String,
-        /// The value.
-        value: String,
-    },
-    /// A value that cannot be read.
-    #[error("cannot read the value {text:?}")]
-    BadValue {
-        /// The text, shortened.
-        text: String,
-    },
-    /// A parameter the problem does not have.
-    #[error("{problem} has no parameter {name:?}; it has {known}")]
-    UnknownParameter {
-        /// The problem.
-        problem: String,
-        /// The name.
-        name: String,
-        /// The parameters it has.
-        known: String,
-    },
-    /// A value that cannot stand among symbols.
-    #[error(
-        "{name} can only be set when all parameters are{}: symbols take rational values",
-        without(missing)
-    )]
-    NotAmongSymbols {
-        /// The parameter.
-        name: String,
-        /// The parameters of the equation without a value.
-        missing: Vec<String>,
-    },
-    /// Newton's method found no amplitude and phase for the state asked for.
-    #[error(
-        "{problem}: no amplitude and phase were found with x(0) = {displacement}, x'(0) = {velocity}"
-    )]
-    NoSuchStart {
-        /// The problem.
-        problem: String,
-        /// x(0).
-        displacement: String,
-        /// x'(0).
-        velocity: String,
-    },
-    /// A parameter without a value.
-    #[error("{name} has no value in {problem}: set it")]
-    Unset {
-        /// The problem.
-        problem: String,
-        /// The parameter.
-        name: String,
-    },
-    /// A value outside the domain of a parameter.
-    #[error("{name} = {value} is outside its domain {domain}")]
-    OutsideDomain {
-        /// The parameter.
-        name: String,
-        /// The value.
-        value: String,
-        /// The domain.
-        domain: &'static str,
-    },
-    /// A condition that the problem does not offer.
-    #[error("{problem} does not offer this normalisation")]
-    UnknownCondition {
-        /// The problem.
-        problem: String,
-    },
-    /// The energy integral does not apply.
-    #[error(
-        "{problem}: the energy integral applies to conservative forces that are polynomial, from x(0) = A, or \
-         x F(delta ln x^2)"
-    )]
-    NoSuchRoute {
-        /// The problem.
-        problem: String,
-    },
-    /// The work would need more memory than allowed.
-    #[error(
-        "order {order} is predicted to need 10^{exponent} bytes, above the limit of {limit} MiB"
-    )]
-    TooLarge {
-        /// The order.
-        order: usize,
-        /// The prediction: the exponent of ten of the bytes, rounded.
-        exponent: u64,
-        /// The limit in MiB.
-        limit: u64,
-    },
-    /// The digits were not reached.
-    #[error("the digits asked for were not reached with {bits} bits")]
-    NotEnoughBits {
-        /// The largest precision tried.
-        bits: u32,
-        /// The best enclosure.
-        best: Option<String>,
-    },
-    /// The series has no value by the method asked for.
-    #[error("{problem}: {reason}")]
-    Resummation {
-        /// The problem.
-        problem: String,
-        /// Why.
-        reason: lindstedt_series::resummation::ResummationError,
-    },
-    /// Period and solution are not summed for this problem.
-    #[error("{problem}: no series of the period is known that can be summed")]
-    NotEvaluated {
-        /// The problem.
-        problem: String,
-    },
-    /// A force whose derivatives hold delta functions at places that the motion passes at times that
-    /// change from order to order: an expansion by values would drop them.
-    #[error(
-        "{term} is singular where the motion passes at times that change with the small parameter: the \
-         expansion has terms there that values at nodes do not see"
-    )]
-    MovingSingularity {
-        /// The function.
-        term: String,
-    },
     /// The value does not exist.
     #[error("the value does not exist")]
     NoValue,
 }
 
+impl From<DerivationError> for Error {
+    fn from(error: DerivationError) -> Self {
+        match error {
+            DerivationError::NoValue => Self::NoValue,
+            error => Self::Derivation(error),
+        }
+    }
+}
+
+impl From<EvaluationError> for Error {
+    fn from(error: EvaluationError) -> Self {
+        match error {
+            EvaluationError::Derivation(error) => error.into(),
+            error => Self::Evaluation(error),
+        }
+    }
+}
+
+impl From<ExpandError> for Error {
+    fn from(error: ExpandError) -> Self {
+        DerivationError::from(error).into()
+    }
+}
+
 impl From<NumberError> for Error {
     fn from(error: NumberError) -> Self {
-        match error {
-            NumberError::BadValue { text } => Self::BadValue { text },
-            NumberError::NotEnoughBits { bits, best } => Self::NotEnoughBits { bits, best },
-            _ => Self::NoValue,
-        }
+        DerivationError::from(error).into()
     }
 }
 
-impl From<lindstedt_multimodular::Error> for Error {
-    fn from(error: lindstedt_multimodular::Error) -> Self {
-        match error {
-            lindstedt_multimodular::Error::Expand(error) => Self::Expand(error),
-            _ => Self::OutOfPrimes,
-        }
+impl Refusal for Error {
+    fn parts(&self) -> (Kind, &'static str, String) {
+        use Kind::{NoAnswer, Undecided, Usage};
+        let (kind, code, hint) = match self {
+            Self::Refused(it) => return (it.kind, it.code, it.hint.clone()),
+            Self::Derivation(error) => return error.parts(),
+            Self::Evaluation(error) => return error.parts(),
+            Self::Simulate(error) => return error.parts(),
+            Self::Melnikov(error) => return error.parts(),
+            Self::Impact(error) => return error.parts(),
+            Self::File(error) => {
+                let kind = if error.is_limit() { Undecided } else { Usage };
+                return (kind, "problem-file", error.hint());
+            }
+            Self::Parse(_) => (Usage, "problem-file", ""),
+            Self::NoPeriodicOrbit { .. } => (NoAnswer, "no-periodic-orbit", "smaller --small"),
+            Self::NoTruncatedFrequency { .. } => {
+                (NoAnswer, "no-truncated-frequency", "smaller --small, or another --order")
+            }
+            Self::NoValue => (NoAnswer, "no-value", ""),
+            Self::LongDelay { .. } => (Undecided, "undecided", ""),
+        };
+        (kind, code, hint.to_owned())
     }
 }
 
-/// Which values are missing.
-fn without(missing: &[String]) -> String {
-    match missing {
-        [] => String::new(),
-        names => format!(" (without a value: {})", names.join(", ")),
+impl Error {
+    /// Whether work was stopped before anything was finished.
+    #[must_use]
+    pub fn is_interrupted(&self) -> bool {
+        matches!(self.expand(), Some(ExpandError::Interrupted { .. }))
+    }
+
+    /// What the driver said.
+    #[must_use]
+    pub fn expand(&self) -> Option<&ExpandError> {
+        match self {
+            Self::Derivation(DerivationError::Expand(error)) => Some(error),
+            _ => None,
+        }
     }
 }

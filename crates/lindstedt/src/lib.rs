@@ -13,68 +13,55 @@
 struct Readme;
 
 mod answer;
-pub mod averaging;
 pub mod catalogue;
 pub mod classification;
-pub mod constants;
-mod derivation;
+mod convergence;
 mod derive;
-pub mod energy;
 mod error;
 pub mod evaluate;
 mod form;
 pub mod grid;
-pub mod impact_map;
 pub mod motion;
-pub mod numeric;
 mod oscillator;
-pub mod quotient;
 pub mod refusal;
 pub mod stability;
 pub mod start;
 pub mod threshold;
 pub mod trade;
 pub mod verify;
-mod work;
 
 /// What the tests of single formulas reach: no part of the interface.
 #[doc(hidden)]
 pub mod formulas {
-    pub use crate::evaluate::few::plain;
     pub use crate::motion::answer::shown;
     pub mod growth {
         pub use crate::motion::growth::{grows, linear, verdict};
     }
-    pub mod closed {
-        pub use crate::evaluate::closed::{
-            duffing, gamma_ratio, gamma_ratio_of_rational, pendulum, power_law,
-        };
-    }
-    pub mod coefficients {
-        pub use crate::evaluate::coefficients::{pendulum, power_law};
-    }
 }
 
 pub use answer::{Answer, Header, Remark, SCHEMA, Standing};
-pub use derivation::{
-    Derivation, NamedSeries, Route, Settings, Solution, check_parameters, derive,
-};
 pub use derive::Derive;
 pub use error::Error;
 pub use evaluate::Evaluate;
+pub use lindstedt_derivation::{
+    Derivation, DerivationError, NamedSeries, Progress, Route, Settings, Solution, Work, averaging,
+    check_parameters, constants, derive, energy, known_values, numeric,
+};
+pub use lindstedt_evaluation::EvaluationError;
 pub use lindstedt_number::{Exact, Number, NumberError, Status};
 pub use lindstedt_problem_file::ProblemFile;
 pub use motion::Simulate;
-pub use oscillator::{Oscillator, condition_name, known_values};
+pub use oscillator::Oscillator;
 pub use refusal::{Kind, Refusal, Refused};
 pub use stability::Stability;
 pub use threshold::Threshold;
 pub use verify::Verify;
-pub use work::{Progress, Work};
 
 pub use lindstedt_algebra as algebra;
 pub use lindstedt_coeff as coeff;
+pub use lindstedt_derivation as derivation;
 pub use lindstedt_equation as equation;
+pub use lindstedt_evaluation as evaluation;
 pub use lindstedt_expand as expand;
 pub use lindstedt_impact as impact;
 pub use lindstedt_melnikov as melnikov;

@@ -147,7 +147,7 @@ impl Oscillator {
             self.problem.amplitude = usual_amplitude(Some(&condition));
         } else if !self.problem.conditions.contains(&condition) {
             if condition != Condition::FreeAmplitude {
-                let name = condition_name(condition);
+                let name = condition.name();
                 let message = format!("{} does not offer this normalisation", self.origin);
                 let hint = format!("condition = \"{name}\" in the file asks for it");
                 return Err(Refused::usage("unknown-normalisation", message, hint).into());
@@ -307,27 +307,4 @@ fn is_unknown(name: &str) -> bool {
     let index = name.strip_prefix("x_").or_else(|| name.strip_prefix('x'));
     let numbered = |digits: &str| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit());
     letter || index.is_some_and(numbered)
-}
-
-/// The name of a condition in files and results.
-#[must_use]
-pub fn condition_name(condition: Condition) -> &'static str {
-    let named = lindstedt_problem_file::CONDITIONS.iter().find(|(_, known)| *known == condition);
-    named.map_or("", |(name, _)| name)
-}
-
-/// The rational values of a problem's parameters: those given, else the defaults.
-pub fn known_values(
-    problem: &Problem,
-    given: &BTreeMap<String, Exact>,
-) -> BTreeMap<String, Rational> {
-    let mut values = BTreeMap::new();
-    for card in &problem.parameters {
-        let default = || Exact::parse(&card.default).ok();
-        let value = given.get(&*card.name).cloned().or_else(default);
-        if let Some(q) = value.as_ref().and_then(Exact::as_rational) {
-            values.insert(card.name.to_string(), q.clone());
-        }
-    }
-    values
 }

@@ -26,8 +26,6 @@ mod cycle;
 mod drifting;
 mod periodic;
 
-use crate::derivation::condition;
-use crate::oscillator::condition_name;
 use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{
@@ -35,6 +33,7 @@ use crate::{
 };
 use crate::{Number, Status};
 use drifting::Drifting;
+use lindstedt_derivation::condition;
 use lindstedt_equation::{AmplitudeRole, Condition, Problem};
 use lindstedt_expand::ExpandError;
 use lindstedt_simulate::Parameters;
@@ -174,7 +173,6 @@ pub struct Verification {
     /// The digits of the integration.
     pub digits: u32,
     /// The normalisation.
-    #[serde(serialize_with = "named")]
     pub normalisation: Condition,
     /// The window in periods.
     pub periods: u32,
@@ -199,10 +197,6 @@ pub struct Verification {
     /// The last errors are smaller than the motion.
     #[serde(skip)]
     pub small_enough: bool,
-}
-
-fn named<S: Serializer>(condition: &Condition, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(condition_name(*condition))
 }
 
 impl Oscillator {
@@ -241,7 +235,7 @@ impl Oscillator {
                 .and_then(|derivation| self.against_time(&derivation, question, work))
         };
         let found = found.map_err(|error| match error {
-            Error::Expand(ExpandError::Interrupted { .. }) => Refused::stopped(
+            error if error.is_interrupted() => Refused::stopped(
                 "stopped before the comparison was finished",
                 "raise --limit-seconds, or shorten --periods",
             )
@@ -513,7 +507,7 @@ fn compare_all(
         }
     });
     let interrupted = || Error::from(ExpandError::Interrupted { order });
-    let is_reason = |e: &Error| !matches!(e, Error::Expand(ExpandError::Interrupted { .. }));
+    let is_reason = |e: &Error| !e.is_interrupted();
     let reason = found.iter().flatten().find_map(|r| r.as_ref().err().filter(|e| is_reason(e)));
     if let Some(reason) = reason {
         return Err(reason.clone());

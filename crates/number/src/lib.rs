@@ -16,11 +16,13 @@ pub mod complex;
 pub mod digits;
 mod error;
 mod exact;
+mod named;
 mod number;
 mod ratio;
 pub mod real;
 
 pub use error::NumberError;
 pub use exact::{Exact, decimal};
+pub use named::{Object, as_map};
 pub use number::{Number, Status, certified, rational};
 pub use ratio::{from_ratio, to_ratio};

@@ -3,7 +3,7 @@
 use super::printed::{COMPARED_AT, PrintedForm, printed_forms};
 use super::{Decimal, Reader, Row, Section, plain, show};
 use crate::Text;
-use lindstedt::Error;
+use lindstedt::{DerivationError, Error};
 use lindstedt_melnikov::{
     Branch, Friction, MelnikovError, PolynomialFriction, StickSlip, quadrature_dissipation,
 };
@@ -19,7 +19,9 @@ const QUADRATURE_BITS: u32 = 100;
 /// The error of the other crate as one of this.
 pub(super) fn failed(error: MelnikovError) -> Error {
     match error {
-        MelnikovError::Undecided { bits } => Error::NotEnoughBits { bits, best: None },
+        MelnikovError::Undecided { bits } => {
+            DerivationError::NotEnoughBits { bits, best: None }.into()
+        }
         _ => Error::NoValue,
     }
 }

@@ -172,7 +172,7 @@ impl Case {
             let value = self.algebra.scale(&term.value, &term.factor);
             self.algebra.add_assign(&mut sum, &value);
         }
-        let contradiction = || Error::Expand(ExpandError::Residual { order: n });
+        let contradiction = || Error::from(ExpandError::Residual { order: n });
         let balls = self.table.balls();
         let ours = self.value(&derived).ok_or(Error::NoValue)?;
         let theirs = self.value(&sum).ok_or(Error::NoValue)?;

@@ -51,10 +51,10 @@ pub struct ProblemFile {
 
 /// The names of the conditions.
 pub const CONDITIONS: [(&str, Condition); 4] = [
-    ("initial-amplitude", Condition::InitialAmplitude),
-    ("fundamental-amplitude", Condition::FundamentalAmplitude),
-    ("limit-cycle", Condition::LimitCycle),
-    ("free-amplitude", Condition::FreeAmplitude),
+    (Condition::InitialAmplitude.name(), Condition::InitialAmplitude),
+    (Condition::FundamentalAmplitude.name(), Condition::FundamentalAmplitude),
+    (Condition::LimitCycle.name(), Condition::LimitCycle),
+    (Condition::FreeAmplitude.name(), Condition::FreeAmplitude),
 ];
 
 /// The names of the ways in which an amplitude enters.

@@ -1,6 +1,6 @@
 //! A problem as the text of a problem file.
 
-use crate::file::{AMPLITUDES, CONDITIONS, ProblemFile};
+use crate::file::{AMPLITUDES, ProblemFile};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Crossing, Expression, Problem};
 use std::collections::BTreeSet;
@@ -39,12 +39,7 @@ fn render(problem: &Problem, file: Option<&ProblemFile>) -> String {
         line("time_domain", &side(equation));
     }
     line("small", &problem.small);
-    let conditions: Vec<String> = problem
-        .conditions
-        .iter()
-        .filter_map(|c| CONDITIONS.iter().find(|(_, known)| known == c))
-        .map(|(name, _)| quoted(name))
-        .collect();
+    let conditions: Vec<String> = problem.conditions.iter().map(|c| quoted(c.name())).collect();
     let conditions = match &conditions[..] {
         [one] => one.clone(),
         list => format!("[{}]", list.join(", ")),

@@ -6,7 +6,8 @@ use lindstedt::evaluate::averaged::{Motion, Start};
 use lindstedt::{Exact, Work, problems};
 
 fn motion(problem: &Problem, order: usize, set: &[(&str, &str)], start: Start) -> Motion {
-    Motion::new(&valued(problem, set), order, &start, &work()).unwrap()
+    let case = valued(problem, set);
+    Motion::new(case.problem(), case.given(), order, &start, &work()).unwrap()
 }
 
 fn work() -> Work {

@@ -1,9 +1,8 @@
 //! The built-in problems against closed forms.
 
 use super::support::{question, relative_error, relative_estimate, run, valued};
-use lindstedt::evaluate::Trajectory;
 use lindstedt::series::resummation::{Kind, Method, ResummationError};
-use lindstedt::{Error, Evaluate, Exact, Work, problems};
+use lindstedt::{DerivationError, Error, Evaluate, EvaluationError, Exact, Work, problems};
 use rug::Float;
 
 /// Section 3 of the numbers: exponent and relative error of T at orders 2, 4, 8, 12, 20 by the
@@ -74,7 +73,7 @@ fn estimates_of_the_power_law_hold() {
                         );
                         checked += 1;
                     }
-                    Err(Error::Resummation { reason, .. }) => {
+                    Err(Error::Evaluation(EvaluationError::Resummation { reason, .. })) => {
                         assert!(matches!(reason, ResummationError::OutsideDisc { .. }), "{reason}");
                         assert_eq!(method, Some(Method::Uniform));
                         refused += 1;
@@ -86,7 +85,10 @@ fn estimates_of_the_power_law_hold() {
     }
     // n = -0.999, -0.9, -0.6, -0.5 at two orders: |u| >= 3.
     assert_eq!((checked, refused), (12 * 10 - 8, 8));
-    assert!(matches!(run("power-law", 4, None, &[("n", "-1")]), Err(Error::OutsideDomain { .. })));
+    assert!(matches!(
+        run("power-law", 4, None, &[("n", "-1")]),
+        Err(Error::Derivation(DerivationError::OutsideDomain { .. }))
+    ));
 }
 
 #[test]
@@ -146,7 +148,10 @@ fn duffing_inside_and_outside_the_radius() {
     let singularity = found.resummed.singularity.unwrap();
     assert!((singularity.at.re.to_f64() + 1.0).abs() < 1e-6);
     assert_eq!(singularity.kind, Kind::Logarithm);
-    assert!(matches!(run("duffing", 4, None, &[("eps", "-1")]), Err(Error::OutsideDomain { .. })));
+    assert!(matches!(
+        run("duffing", 4, None, &[("eps", "-1")]),
+        Err(Error::Derivation(DerivationError::OutsideDomain { .. }))
+    ));
 }
 
 #[test]
@@ -213,7 +218,7 @@ fn the_solution_at_asked_times() {
         let work = Work { digits: 16, ..Work::default() };
         let (oscillator, asked) = (valued(&problem, &[]), question(order, None));
         let period = oscillator.evaluate(&asked, &work).unwrap().value;
-        let path = Trajectory::new(&oscillator, &asked, &period, &work).unwrap();
+        let path = oscillator.trajectory(&period, &asked, &work).unwrap();
         for (time, expected) in ["1/2", "1", "2", "3"].iter().zip(expected) {
             let found = path.at(&Exact::parse(time).unwrap());
             let error = (found.double - expected).abs();
@@ -223,7 +228,7 @@ fn the_solution_at_asked_times() {
         // Half a period later with phase pi: the same, by symmetry with the other sign.
         let half = Exact::PiTimes(rug::Rational::from(1));
         let half = Evaluate { phase: half, ..asked };
-        let shifted = Trajectory::new(&oscillator, &half, &period, &work).unwrap();
+        let shifted = oscillator.trajectory(&period, &half, &work).unwrap();
         let (a, b) =
             (path.at(&Exact::parse("1").unwrap()), shifted.at(&Exact::parse("1").unwrap()));
         assert!((a.double + b.double).abs() < 1e-9);

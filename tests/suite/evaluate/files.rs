@@ -5,11 +5,10 @@ use super::support::{
     written,
 };
 use lindstedt::equation::{Condition, Problem};
-use lindstedt::evaluate::Trajectory;
 use lindstedt::simulate::{
     Digits, EventKind, Integrator, Model, Parameters, Real, Report, Settings as Precision,
 };
-use lindstedt::{Error, Exact, Work, problems};
+use lindstedt::{DerivationError, Error, EvaluationError, Exact, Work, problems};
 use rug::Float;
 use std::ops::ControlFlow;
 
@@ -187,7 +186,7 @@ fn solutions_of_files() {
         let (oscillator, asked) = (valued(&problem, set), question(20, None));
         let period = oscillator.evaluate(&asked, &work).unwrap().value;
         let zero = Exact::parse("0").unwrap();
-        let path = Trajectory::new(&oscillator, &asked, &period, &work).unwrap();
+        let path = oscillator.trajectory(&period, &asked, &work).unwrap();
         let start = path.at(&zero).double;
         let times = [0.5, 1.0, 2.0, 5.0];
         let expected = integrated(&problem, set, [start, 0.0], &times);
@@ -206,7 +205,7 @@ fn solutions_of_files() {
 fn refusals_of_files() {
     let run = |problem: &Problem, set: &[(&str, &str)]| evaluate(problem, 6, None, set);
     let named = |error: Error| match error {
-        Error::Unset { name, .. } => name,
+        Error::Derivation(DerivationError::Unset { name, .. }) => name,
         other => panic!("{other}"),
     };
     let duffing = example("duffing");
@@ -215,14 +214,17 @@ fn refusals_of_files() {
     assert_eq!(named(run(&open, &[("eps", "1")]).unwrap_err()), "k");
     // Beyond the saddle.
     let beyond = run(&duffing, &[("eps", "-1/4"), ("amplitude", "2")]);
-    assert!(matches!(beyond, Err(Error::OutsideDomain { .. })));
+    assert!(matches!(beyond, Err(Error::Derivation(DerivationError::OutsideDomain { .. }))));
     let unknown = run(&duffing, &[("eps", "1"), ("k", "1")]);
     assert!(
-        matches!(unknown, Err(Error::UnknownParameter { known, .. }) if known == "amplitude, eps")
+        matches!(unknown, Err(Error::Derivation(DerivationError::UnknownParameter { known, .. })) if known == "amplitude, eps")
     );
     for name in ["vibro-impact", "wright"] {
         let found = run(&example(name), &[("eps", "1")]);
-        assert!(matches!(found, Err(Error::NotEvaluated { .. })), "{name}");
+        assert!(
+            matches!(found, Err(Error::Evaluation(EvaluationError::NotEvaluated { .. }))),
+            "{name}"
+        );
     }
     let found = run(&example("stick-slip"), &[]);
     assert!(matches!(found, Err(Error::Refused(why)) if why.code == "no-method"));

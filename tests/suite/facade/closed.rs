@@ -1,7 +1,7 @@
 //! Closed forms of periods.
 
 use lindstedt::algebra::Stop;
-use lindstedt::formulas::closed::{
+use lindstedt::evaluation::closed::{
     duffing, gamma_ratio, gamma_ratio_of_rational, pendulum, power_law,
 };
 use lindstedt::number::ball::{Ball, Balls};

@@ -1,7 +1,7 @@
 //! Coefficients as numbers against the exact ones.
 
 use lindstedt::algebra::Stop;
-use lindstedt::formulas::coefficients::{pendulum, power_law};
+use lindstedt::evaluation::coefficients::{pendulum, power_law};
 use lindstedt::number::ball::Balls;
 use lindstedt::{Route, Settings, derive, problems};
 use rug::Float;

@@ -1,7 +1,7 @@
 //! Digits of a sum of few terms.
 
 use lindstedt::Status;
-use lindstedt::formulas::plain;
+use lindstedt::evaluation::few::plain;
 use lindstedt::number::ball::Balls;
 use rug::Float;
 

@@ -1,6 +1,6 @@
 //! Quotients of polynomials.
 
-use lindstedt::quotient::Quotients;
+use lindstedt::coeff::quotient::Quotients;
 
 #[test]
 fn quotients_cancel_when_compared() {

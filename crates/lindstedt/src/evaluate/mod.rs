@@ -2,39 +2,27 @@
 //! series of T/2pi, beside the closed form where there is one; x(t) at given times.
 
 pub mod averaged;
-pub(crate) mod closed;
 mod code;
-pub(crate) mod coefficients;
-mod displacements;
-pub(crate) mod few;
-mod json;
-mod names;
-mod period;
 mod prove;
-pub(crate) mod setting;
-mod solution;
-pub(crate) mod source;
 mod sweep;
 mod times;
 pub(crate) mod turn;
-mod words;
 
 use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{Answer, Error, Exact, Kind, Oscillator, Refusal, Remark, Standing, Work};
 pub use code::{Language, SolutionCode};
-pub use displacements::{Displacement, Displacements};
-pub use json::Place;
 use lindstedt_equation::{Condition, Expression};
-use lindstedt_expand::ExpandError;
+use lindstedt_evaluation::setting::Setting;
+pub use lindstedt_evaluation::{
+    Displacement, Displacements, Evaluation, Fourier, Place, Trajectory, kind_name, method_flag,
+    method_name, rounded, with_error,
+};
+pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;
 use lindstedt_series::resummation::Method;
-pub use names::{kind_name, method_flag, method_name, rounded, with_error};
-pub use period::Evaluation;
 pub use prove::{Bounds, ProvedOrbit, Verdict as ProofVerdict};
 use rug::Rational;
-use setting::Setting;
-pub use solution::{Fourier, Trajectory};
 use std::time::Instant;
 pub use sweep::{EvaluationSweep, SweptPeriod};
 pub use times::Times;
@@ -58,11 +46,6 @@ impl Default for Evaluate {
         let phase = Exact::Rational(Rational::new());
         Self { order: None, method: None, times: None, phase }
     }
-}
-
-/// Bits for so many digits, with a margin.
-fn bits_for(digits: usize) -> u32 {
-    u32::try_from(digits).unwrap_or(u32::MAX / 8).saturating_mul(4).saturating_add(32)
 }
 
 impl Oscillator {
@@ -96,11 +79,11 @@ impl Oscillator {
     pub fn evaluate(&self, question: &Evaluate, work: &Work) -> Result<Answer<Evaluation>, Error> {
         let start = Instant::now();
         let (case, mut remarks) = self.settled()?;
-        let mut value = period::period(&case, question, work).map_err(|e| case.unevaluated(e))?;
+        let mut value = case.period(question, work)?;
         let mut standing = Standing::Complete;
         if let Some(times) = &question.times {
-            let path = case.path(&value, question, work)?;
-            let found = path.table(times, work);
+            let path = case.trajectory(&value, question, work)?;
+            let found = path.table(&times.list(path.period), work);
             if !found.complete {
                 let stopped = "stopped; the times not reached are missing";
                 remarks.push(Remark(stopped.to_owned()));
@@ -141,16 +124,20 @@ impl Oscillator {
     ) -> Result<Answer<SolutionCode>, Error> {
         let start = Instant::now();
         let (case, remarks) = self.settled()?;
-        let found = period::period(&case, question, work).map_err(|e| case.unevaluated(e))?;
-        let path = case.path(&found, question, work)?;
+        let found = case.period(question, work)?;
+        let path = case.trajectory(&found, question, work)?;
         let value = SolutionCode::new(&self.problem().name, &path, language, harmonics)?;
         let at = found.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
         let header = self.header(at, Some(path.order()), "resummation", start);
         Ok(Answer { header, value, standing: Standing::Complete, remarks })
     }
 
-    /// x(t) of a period; a period without a digit has none.
-    fn path(
+    /// x(t) of a period that [`Oscillator::evaluate`] found for the same question; a period without a
+    /// digit has none.
+    ///
+    /// # Errors
+    /// [`Refused`], those of [`Oscillator::evaluate`].
+    pub fn trajectory(
         &self,
         found: &Evaluation,
         question: &Evaluate,
@@ -164,11 +151,22 @@ impl Oscillator {
             )
             .into());
         }
-        Trajectory::new(self, question, found, work).map_err(|error| self.unevaluated(error))
+        let in_doubles = question.times.as_ref().is_none_or(|times| times.range.is_none());
+        let (setting, phase) = (self.setting()?, &question.phase);
+        Trajectory::new(setting, question.order, phase, found, in_doubles, work)
+            .map_err(|error| self.unevaluated(error.into()))
+    }
+
+    /// The period of a settled case.
+    fn period(&self, question: &Evaluate, work: &Work) -> Result<Evaluation, Error> {
+        let found = self
+            .setting()
+            .and_then(|case| Ok(period(&case, question.order, question.method, work)?));
+        found.map_err(|error| self.unevaluated(error))
     }
 
     /// The case as [`Oscillator::placed`] has it; refuses what cannot be expanded exactly.
-    fn settled(&self) -> Result<(Self, Vec<Remark>), Error> {
+    pub(crate) fn settled(&self) -> Result<(Self, Vec<Remark>), Error> {
         self.without_pi()?;
         self.check()?;
         self.placed()
@@ -221,14 +219,12 @@ impl Oscillator {
 
     /// The problem with a value for everything.
     pub(crate) fn setting(&self) -> Result<Setting, Error> {
-        Setting::new(self.problem(), self.asked_condition(), self.given())
+        Ok(Setting::new(self.problem(), self.asked_condition(), self.given())?)
     }
 
     /// A refusal with its place; of stopped work in words.
     pub(crate) fn unevaluated(&self, error: Error) -> Error {
-        if error.kind() == Kind::Stopped
-            || matches!(error, Error::Expand(ExpandError::Interrupted { .. }))
-        {
+        if error.kind() == Kind::Stopped {
             let message = "stopped before the expansion was finished";
             return Refused::stopped(message, "raise --limit-seconds or lower --order").into();
         }

@@ -2,9 +2,9 @@
 //! the series converges, which gives no more than the guess ([`lindstedt_orbit`]).
 
 use super::turn::TimeDomain;
-use super::{Evaluate, Evaluation, Trajectory, period};
+use super::{Evaluate, Evaluation, Trajectory};
 use crate::refusal::Refused;
-use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Status, Work};
+use crate::{Answer, DerivationError, Error, Number, Oscillator, Remark, Standing, Status, Work};
 use lindstedt_equation::{AmplitudeRole, Condition};
 use lindstedt_number::ball::Ball;
 use lindstedt_orbit::{Failure, Field, Kind, Proof, Request, Stability, Start, prove};
@@ -110,7 +110,7 @@ impl Oscillator {
         let (case, mut remarks) = self.settled()?;
         let (mut found, outcome) = case.attempt(question, work)?;
         if outcome.is_err() {
-            found = period::period(&case, question, work).ok().or(found);
+            found = case.period(question, work).ok().or(found);
         }
         let order = found.as_ref().map(|found| found.order);
         let (value, standing) = match outcome {
@@ -150,7 +150,7 @@ impl Oscillator {
         // With too few modes no other guess is better.
         if !matches!(outcome, Ok(_) | Err(Failure::NoContraction { .. } | Failure::Stopped)) {
             let rough = Work { digits: DIGITS_OF_A_GUESS.min(work.digits), ..work.clone() };
-            found = period::period(self, question, &rough).ok();
+            found = self.period(question, &rough).ok();
             for start in self.starts(found.as_ref(), &kind, question, &rough) {
                 outcome = prove(&field, &kind, &start, &request);
                 if matches!(outcome, Ok(_) | Err(Failure::Stopped)) {
@@ -190,7 +190,9 @@ impl Oscillator {
         let problem = || self.problem().name.to_string();
         let field =
             Field::of_problem(self.problem(), &values).map_err(|failure| match failure {
-                Failure::NoValue(name) => Error::Unset { problem: problem(), name },
+                Failure::NoValue(name) => {
+                    Error::from(DerivationError::Unset { problem: problem(), name })
+                }
                 other => {
                     let hint =
                         "`evaluate` without --prove estimates it; a closed form is certified there";
@@ -210,7 +212,10 @@ impl Oscillator {
     ) -> Vec<Start> {
         let mut starts = Vec::new();
         let path = found.filter(|f| f.period.is_some() || f.exact_period.is_some());
-        let path = path.and_then(|f| Trajectory::without_error(self, question, f, work).ok());
+        let path = path.zip(self.setting().ok()).and_then(|(f, setting)| {
+            let (order, phase) = (question.order, &question.phase);
+            Trajectory::without_error(setting, order, phase, f, true, work).ok()
+        });
         if let Some((path, (cosines, sines))) = path.and_then(|p| p.guess(GUESSED).map(|g| (p, g)))
         {
             starts.push(Start { frequency: path.frequency(), cosines, sines });

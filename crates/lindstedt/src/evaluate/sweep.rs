@@ -1,6 +1,6 @@
 //! Period and frequency over one or two swept parameters.
 
-use super::{Evaluate, period};
+use super::Evaluate;
 use crate::grid::{Axis, Grid};
 use crate::{Answer, Error, Exact, Number, Oscillator, Remark, Standing, Work};
 use serde::ser::SerializeMap;
@@ -57,7 +57,7 @@ impl Oscillator {
             let pairs = values.filter_map(|(value, name)| Some((name.as_deref()?, value?.clone())));
             let case = pairs.fold(self.clone(), |case, (name, value)| case.with(name, value));
             let (case, _) = case.settled()?;
-            period::period(&case, question, &silent).map_err(|error| case.unevaluated(error))
+            case.period(question, &silent)
         };
         let grid = Grid::compute(columns, rows, work, point);
         let order = grid.points.iter().flatten().find_map(|found| Some(found.as_ref().ok()?.order));

@@ -9,7 +9,6 @@ mod point;
 mod reading;
 mod subject;
 
-use crate::answer::as_map;
 use crate::grid::Axis;
 use crate::refusal::Refused;
 use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Work};
@@ -18,6 +17,7 @@ use lindstedt_impact::characteristic::Kick;
 use lindstedt_impact::parameters::{Branch, ExactParameters};
 use lindstedt_impact::prediction::Variant;
 use lindstedt_impact::report::{certified_stability_watched, stability_watched};
+use lindstedt_number::as_map;
 use serde::Serialize;
 use std::time::Instant;
 use subject::Subject;

@@ -1,8 +1,8 @@
 //! One point as plain data: the true orbit, the prediction and the truth.
 
-use crate::averaging::Radius;
 use crate::{Number, Status};
 use lindstedt_impact::ImpactError;
+use lindstedt_impact::Radius;
 use serde::Serialize;
 
 /// Something that may not exist.

@@ -5,7 +5,6 @@ use super::point::{
     Aware, Found, Multiplier, Predicted, PredictedOrbit, ReturnMap, TrueOrbit, Truth,
 };
 use super::subject::Subject;
-use crate::averaging::{Radius, divergence};
 use crate::{Number, Remark, Status};
 use lindstedt_impact::ImpactError;
 use lindstedt_impact::aware::AwarePrediction;
@@ -14,6 +13,7 @@ use lindstedt_impact::equivalent::EquivalentOrbit;
 use lindstedt_impact::kick::Growth;
 use lindstedt_impact::map::Verdict;
 use lindstedt_impact::report::{ExactReport, OrbitReport, StabilityReport};
+use lindstedt_impact::{Radius, divergence};
 use lindstedt_number::complex::Complex;
 use lindstedt_number::real::Real;
 

@@ -24,7 +24,9 @@ use crate::evaluate::setting::Setting;
 use crate::evaluate::source::Source;
 use crate::evaluate::turn::TimeDomain;
 use crate::refusal::Refused;
-use crate::{Answer, Error, Oscillator, Progress, Remark, Standing, Work};
+use crate::{
+    Answer, DerivationError, Error, EvaluationError, Oscillator, Progress, Remark, Standing, Work,
+};
 pub use answer::{LeftOut, Reason, Recommendation, Row, Trade};
 pub use front::{most_accurate, pareto, recommend, recommend_for_many};
 use lindstedt_algebra::Stop;
@@ -136,7 +138,10 @@ impl Oscillator {
 
     /// A refusal in the words of this question.
     fn no_reference(&self, error: Error) -> Error {
-        if !matches!(error, Error::NoValue | Error::NotEvaluated { .. }) {
+        if !matches!(
+            error,
+            Error::NoValue | Error::Evaluation(EvaluationError::NotEvaluated { .. })
+        ) {
             return self.unevaluated(error);
         }
         let name = &self.problem().name;
@@ -187,7 +192,7 @@ impl<'a> Bench<'a> {
         let bits = (f64::from(digits) * std::f64::consts::LOG2_10).ceil() as u32 + 40;
         let means = (work.memory, &work.stop);
         let source = match Source::new(setting, FEW, means, &mut |_| !work.stop.asked()) {
-            Err(error @ Error::OutsideDomain { .. }) => return Err(error),
+            Err(error @ DerivationError::OutsideDomain { .. }) => return Err(error.into()),
             // Nothing is known of an equation that the exact driver does not take.
             found => found.unwrap_or_else(|_| Source::plain(setting)),
         };

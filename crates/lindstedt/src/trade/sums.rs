@@ -2,8 +2,8 @@
 
 use super::Summation;
 use super::run::{Found, fastest};
-use crate::Error;
 use crate::evaluate::source::{Coefficients, Source};
+use crate::{Error, EvaluationError};
 use lindstedt_algebra::Stop;
 use lindstedt_number::ball::Balls;
 use lindstedt_series::resummation::{
@@ -27,7 +27,7 @@ pub(super) struct Series {
 const SHORT: f64 = 0.01;
 
 fn failed(reason: ResummationError) -> Error {
-    Error::Resummation { problem: String::new(), reason }
+    EvaluationError::Resummation { problem: String::new(), reason }.into()
 }
 
 impl Series {

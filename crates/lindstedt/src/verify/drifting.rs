@@ -2,8 +2,9 @@
 
 use super::{Comparison, Verify, quantities};
 use crate::averaging::AveragingSettings;
-use crate::averaging::numbers::{Harmonic, Numbers, Terms, defaults, numbers};
 use crate::{Error, Oscillator, Progress};
+use lindstedt_derivation::averaging::numbers::{Harmonic, Numbers, Terms, numbers};
+use lindstedt_derivation::{DerivationError, all_values};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::Balls;
@@ -120,7 +121,7 @@ impl Drifting {
         let problem = oscillator.problem();
         let bits = Digits::for_digits(digits + 16).bits();
         let balls = Balls::new(bits);
-        let mut parameters = defaults(problem, oscillator.given());
+        let mut parameters = all_values(problem, oscillator.given());
         let start = match parameters.remove("amplitude") {
             Some(value) => Float::with_val(bits, value.ball(balls).midpoint()),
             None => Float::with_val(bits, 1),
@@ -128,7 +129,8 @@ impl Drifting {
         if start <= 0 {
             let value = start.to_string_radix(10, Some(6));
             let domain = "amplitude > 0";
-            return Err(Error::OutsideDomain { name: "amplitude".into(), value, domain });
+            let name = "amplitude".into();
+            return Err(DerivationError::OutsideDomain { name, value, domain }.into());
         }
         let asked = AveragingSettings {
             order: question.order,

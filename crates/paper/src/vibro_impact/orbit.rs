@@ -6,8 +6,8 @@ use super::judge::Statement;
 use super::setting::Setting;
 use crate::Row;
 use lindstedt::Error;
-use lindstedt::impact_map::{ImpactMap, coefficient, replace};
-use lindstedt::quotient::{Quotient, Quotients};
+use lindstedt::coeff::quotient::{Quotient, Quotients};
+use lindstedt::impact::linearised::{ImpactMap, coefficient, replace};
 use rug::Rational;
 use std::sync::Arc;
 

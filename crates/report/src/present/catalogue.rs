@@ -4,7 +4,6 @@ use super::classification::lines;
 use super::{Present, condition_text};
 use crate::{Block, Document, Formula};
 use lindstedt::catalogue::{Catalogue, Entry};
-use lindstedt::condition_name;
 
 impl Present for Catalogue {
     fn document(&self) -> Document {
@@ -34,10 +33,7 @@ fn card(page: Document, entry: &Entry) -> Document {
     let page = page.heading(entry.name.as_str()).words(entry.title.as_str());
     let page = page.formula(Formula::new(entry.equation.as_str(), entry.latex.as_str()));
     let conditions = entry.conditions.iter().map(|condition| {
-        (
-            format!("normalisation {}", condition_name(*condition)),
-            condition_text(*condition).to_owned(),
-        )
+        (format!("normalisation {}", condition.name()), condition_text(*condition).to_owned())
     });
     let small = ("small parameter".to_owned(), entry.parameter.clone());
     let parameters = entry

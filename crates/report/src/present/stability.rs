@@ -4,7 +4,7 @@ mod chart;
 
 use super::Present;
 use crate::{Block, Document, Figure, Formula, Table, Text};
-use lindstedt::averaging::Finite;
+use lindstedt::impact::Finite;
 use lindstedt::stability::{
     Aware, Found, OrbitStability, Predicted, PredictedOrbit, TrueOrbit, Truth,
 };

@@ -1,0 +1,94 @@
+//! The plain form of an averaged problem.
+
+use super::{Averaging, Coefficient, RateTerm};
+use lindstedt_equation::Condition;
+use lindstedt_impact::Radius;
+use lindstedt_number::{Number, Object, Status};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+impl Coefficient {
+    /// As a number: a formula has no decimal.
+    fn number(&self) -> Printed<'_> {
+        match self {
+            Self::Number(number) => Printed::Number(number),
+            Self::Formula { text, .. } => {
+                Printed::Formula { exact: text, decimal: (), error: (), status: Status::Exact }
+            }
+        }
+    }
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Printed<'a> {
+    Number(&'a Number),
+    Formula { exact: &'a str, decimal: (), error: (), status: Status },
+    Zero { exact: &'static str, decimal: &'static str, error: (), status: Status },
+}
+
+const ZERO: Printed<'static> =
+    Printed::Zero { exact: "0", decimal: "0", error: (), status: Status::Exact };
+
+/// One term of a rate.
+#[derive(Serialize)]
+struct Term<'a> {
+    power: i32,
+    coefficient: Printed<'a>,
+}
+
+/// The numbers of a linear rate.
+fn numbers(rates: &[Vec<RateTerm>]) -> Vec<Printed<'_>> {
+    rates.iter().map(|rate| rate.first().map_or(ZERO, |term| term.coefficient.number())).collect()
+}
+
+/// The polynomials in a of any rate.
+fn polynomials(rates: &[Vec<RateTerm>]) -> Vec<Vec<Term<'_>>> {
+    rates.iter().map(|rate| rate.iter().map(Term::new).collect()).collect()
+}
+
+impl<'a> Term<'a> {
+    fn new(term: &'a RateTerm) -> Self {
+        Self { power: term.exponent, coefficient: term.coefficient.number() }
+    }
+}
+
+/// Which orders were substituted into the equation.
+#[derive(Serialize)]
+struct Residual {
+    checked_orders: usize,
+    zero: Option<bool>,
+    encloses_zero: bool,
+}
+
+impl Serialize for Averaging {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (a, b) = (&self.amplitude_rate, &self.phase_rate);
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("parameter", &*self.problem.small)?;
+        map.serialize_entry("normalisation", &Condition::FreeAmplitude)?;
+        if self.is_linear() {
+            let series = Object(vec![("growth_rate", numbers(a)), ("frequency", numbers(b))]);
+            map.serialize_entry("series", &series)?;
+        } else {
+            let rates = vec![("amplitude_rate", polynomials(a)), ("phase_rate", polynomials(b))];
+            map.serialize_entry("series", &Object(rates))?;
+        }
+        let solution: Vec<&String> = self.solution.iter().map(|[text, _]| text).collect();
+        map.serialize_entry("solution", &solution)?;
+        map.serialize_entry("terms", &self.terms)?;
+        let residual = Residual {
+            checked_orders: self.checked_orders,
+            zero: self.exact.then_some(true),
+            encloses_zero: !self.exact,
+        };
+        map.serialize_entry("residual", &residual)?;
+        let name = "averaging (Krylov, Bogoliubov, Mitropolsky)";
+        map.serialize_entry("method", &Object(vec![("name", name)]))?;
+        if let Some(found) = &self.convergence {
+            map.serialize_entry("convergence", &Radius::new(found))?;
+        }
+        map.serialize_entry("classification", &self.description)?;
+        map.end()
+    }
+}

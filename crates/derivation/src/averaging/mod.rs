@@ -1,0 +1,185 @@
+//! Averaging of a problem: rates of amplitude and phase as formulas or as numbers.
+
+mod coefficients;
+mod json;
+pub mod numbers;
+mod task;
+mod values;
+
+use crate::error::DerivationError as Error;
+use crate::work::Progress;
+use lindstedt_algebra::Stop;
+use lindstedt_coeff::parameters::ParameterField;
+use lindstedt_equation::Problem;
+use lindstedt_equation::description::Description;
+use lindstedt_expand::AveragedExpansion;
+use lindstedt_impact::convergence::Convergence;
+use lindstedt_number::{Exact, Number};
+use lindstedt_phase::Torus;
+use std::collections::BTreeMap;
+use task::Task;
+
+/// What to average.
+#[derive(Clone, Debug)]
+pub struct AveragingSettings {
+    /// The highest order.
+    pub order: usize,
+    /// Values of parameters by name. Parameters of the equation that are not listed stay symbols.
+    pub parameters: BTreeMap<String, Exact>,
+    /// Digits of numbers that are not rational.
+    pub digits: usize,
+    /// Asked within the orders whether to stop.
+    pub stop: Stop,
+    /// The memory that may be used, in bytes.
+    pub memory: u64,
+}
+
+impl Default for AveragingSettings {
+    /// Order 2, every parameter a symbol, 30 digits, 8 GiB.
+    fn default() -> Self {
+        Self {
+            order: 2,
+            parameters: BTreeMap::new(),
+            digits: 30,
+            stop: Stop::default(),
+            memory: 8 << 30,
+        }
+    }
+}
+
+/// One term c a^exponent of a rate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RateTerm {
+    /// The power of the amplitude.
+    pub exponent: i32,
+    /// c.
+    pub coefficient: Coefficient,
+}
+
+/// A coefficient of an averaged expansion.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Coefficient {
+    /// A number.
+    Number(Number),
+    /// A formula in the parameters that have no value, as text and as LaTeX.
+    Formula {
+        /// One line of text.
+        text: String,
+        /// LaTeX.
+        latex: String,
+    },
+}
+
+/// An averaged problem, substituted into its equation:
+///
+///   x = a cos psi + ..., da/dt = sum eps^n A_n(a), dpsi/dt = sum eps^n B_n(a) with B_0 = omega_0;
+///
+/// no other term of x contains cos psi or sin psi.
+#[derive(Clone, Debug)]
+pub struct Averaging {
+    /// The problem.
+    pub problem: Problem,
+    /// The highest order derived.
+    pub order: usize,
+    /// Orders 0..=this leave no residual; 0 where [`AveragingSettings::stop`] left no time to check
+    /// the others.
+    pub checked_orders: usize,
+    /// A_n, order by order, as terms in increasing powers of a.
+    pub amplitude_rate: Vec<Vec<RateTerm>>,
+    /// B_n; the one of order zero is omega_0.
+    pub phase_rate: Vec<Vec<RateTerm>>,
+    /// u_0 = a cos psi + the forced response, u_1, ... as text and as LaTeX.
+    pub solution: Vec<[String; 2]>,
+    /// Terms of u_n.
+    pub terms: Vec<usize>,
+    /// Whether the coefficients are exact (rational numbers or formulas); otherwise they are
+    /// certified and the residual encloses zero.
+    pub exact: bool,
+    /// Where the averaged series of an impact oscillator converges, with a value for every parameter.
+    pub convergence: Option<Convergence>,
+    /// What the equation is made of.
+    pub description: Option<Description>,
+}
+
+impl Averaging {
+    /// Whether A_n = R_n a and B_n are free of a: then the amplitude grows exponentially, and
+    /// `growth_rate` and `frequency` are numbers.
+    pub fn is_linear(&self) -> bool {
+        let only = |rates: &[Vec<RateTerm>], exponent| {
+            rates.iter().flatten().all(|term| term.exponent == exponent)
+        };
+        only(&self.amplitude_rate, 1) && only(&self.phase_rate, 0)
+    }
+}
+
+/// Averages a problem.
+///
+/// Coefficients are rational where all parameters of the equation have rational values and no
+/// delay occurs; formulas when a parameter has no value (the others must be rational); certified
+/// numbers otherwise, at a precision that is raised until all digits are certain.
+///
+/// # Errors
+/// [`Error`] with the reason; resonances are named.
+///
+/// ```
+/// use lindstedt_derivation::averaging::{AveragingSettings, Coefficient, average};
+/// let problem = lindstedt_problems::vibro_impact::problem();
+/// let settings = AveragingSettings { order: 1, ..AveragingSettings::default() };
+/// let result = average(&problem, &settings, &mut |_| true)?;
+/// // The paper's (7): da/dt = eps R a.
+/// let Coefficient::Formula { text, .. } = &result.amplitude_rate[1][0].coefficient else { panic!() };
+/// assert!(text.contains("1/2*alpha^(-1)*A*sin(alpha*T)"), "{text}");
+/// # Ok::<(), lindstedt_derivation::DerivationError>(())
+/// ```
+pub fn average(
+    problem: &Problem,
+    settings: &AveragingSettings,
+    observer: &mut dyn FnMut(Progress) -> bool,
+) -> Result<Averaging, Error> {
+    let task = Task::new(problem, settings)?;
+    if task.names.iter().any(|name| task.value(name).is_none()) {
+        limit_memory(settings)?;
+        return task.symbolic(observer);
+    }
+    if let Some(result) = task.rational(observer)? {
+        return Ok(result);
+    }
+    task.certified(observer)
+}
+
+/// The averaged expansion with every parameter a symbol: [`average`] as elements of the field of rational
+/// functions of the parameters, sines and cosines, exact and substituted into its equation.
+///
+/// x = a cos psi + ..., da/dt = sum eps^n A_n(a), dpsi/dt = sum eps^n B_n(a) with B_0 = omega_0, n up to `order`.
+///
+/// # Errors
+/// As [`average`]; the expansion grows with each symbol (see its memory limit).
+///
+/// ```
+/// use lindstedt_derivation::averaging::formulas;
+/// let (_, expansion) = formulas(&lindstedt_problems::vibro_impact::problem(), 1)?;
+/// assert_eq!(expansion.amplitude_rate.len(), 2);
+/// # Ok::<(), lindstedt_derivation::DerivationError>(())
+/// ```
+pub fn formulas(
+    problem: &Problem,
+    order: usize,
+) -> Result<(ParameterField, AveragedExpansion<Torus<ParameterField>>), Error> {
+    let settings = AveragingSettings { order, digits: 20, ..AveragingSettings::default() };
+    let (field, over) = Task::new(problem, &settings)?.over_parameters(&mut |_| true)?;
+    Ok((field, over.expansion))
+}
+
+/// Refuses before allocating. Measured: the rates of the delay loop in six symbols take 58 MiB at
+/// order 8 and 1.6 times more per order; numbers take 14 MiB at order 60.
+fn limit_memory(settings: &AveragingSettings) -> Result<(), Error> {
+    let bits = 58f64.log2() + 20.0 + (settings.order as f64 - 8.0) * 1.6f64.log2();
+    if bits > (settings.memory.max(1) as f64).log2() {
+        return Err(Error::TooLarge {
+            order: settings.order,
+            exponent: (bits * 2f64.log10()).round() as u64,
+            limit: settings.memory >> 20,
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,349 @@
+//! One averaging: the field its coefficients are taken from, rational numbers, symbols or enclosures.
+
+use super::coefficients::{Coefficients, with_angles};
+use super::values::{Given, constant, enclosed};
+use super::{Averaging, AveragingSettings, Coefficient, RateTerm};
+use crate::error::DerivationError as Error;
+use crate::limits::{check_delays, unknown_parameter};
+use crate::work::Progress;
+use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
+use lindstedt_coeff::PolynomialRing;
+use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials, AmplitudePower};
+use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
+use lindstedt_coeff::print::{Print, Style};
+use lindstedt_equation::{Expression, Problem};
+use lindstedt_expand::{
+    AveragedExpansion, Binding, Excitation, ExpandError, average as expand_average, check_averaged,
+    compile, linear_part,
+};
+use lindstedt_number::ball::Balls;
+use lindstedt_number::ball::ring::{BallRing, Enclosure};
+use lindstedt_number::rational;
+use lindstedt_phase::{Delay, Torus};
+use rug::Rational;
+use std::collections::BTreeSet;
+
+pub(super) struct Task<'a> {
+    problem: &'a Problem,
+    settings: &'a AveragingSettings,
+    pub(super) excitation: Excitation,
+    /// The parameters of the equation.
+    pub(super) names: BTreeSet<String>,
+}
+
+/// Values of parameters in a ring of coefficients.
+struct Bound<'a, K: RationalAlgebra> {
+    ring: AmplitudePolynomials<K>,
+    values: &'a dyn Fn(&str) -> Option<K::Element>,
+}
+
+impl<K: RationalAlgebra> Binding<AmplitudePolynomials<K>> for Bound<'_, K> {
+    fn parameter(&self, name: &str) -> Option<AmplitudePolynomial<K::Element>> {
+        (self.values)(name).map(|value| self.ring.embed(value))
+    }
+    fn formal(&self, _: &str, _: usize) -> Option<AmplitudePolynomial<K::Element>> {
+        None
+    }
+    fn power(&self, power: &Expression) -> Option<AmplitudePolynomial<K::Element>> {
+        constant(&self.ring.coefficients, power, self.values).map(|value| self.ring.embed(value))
+    }
+}
+
+/// Beyond this precision "not enough bits" is answered.
+const MOST_BITS: u32 = 1 << 18;
+
+/// The result over K.
+pub(super) struct Over<K: RationalAlgebra> {
+    pub(super) frequency: K::Element,
+    pub(super) expansion: AveragedExpansion<Torus<K>>,
+    checked_orders: usize,
+    solution: Vec<[String; 2]>,
+    terms: Vec<usize>,
+}
+
+impl<'a> Task<'a> {
+    pub(super) fn new(
+        problem: &'a Problem,
+        settings: &'a AveragingSettings,
+    ) -> Result<Self, Error> {
+        let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
+        if let Some(name) = settings.parameters.keys().find(|name| !known.contains(&name.as_str()))
+        {
+            return Err(unknown_parameter(problem, name));
+        }
+        check_delays(&problem.equation, &settings.parameters)?;
+        let mut names = BTreeSet::new();
+        names.extend(problem.equation.parameters());
+        let excitation = Excitation::of(&problem.equation)?;
+        Ok(Self { problem, settings, excitation, names })
+    }
+
+    /// The value of a parameter; of a synchronous delay 2 pi k/omega when that is a multiple of pi.
+    pub(super) fn value(&self, name: &str) -> Option<Given> {
+        let given = |name: &str| self.settings.parameters.get(name).cloned();
+        match &self.problem.synchronous {
+            Some(tie) if tie.delay == name => {
+                Some(Given::Period(given(&tie.periods)?, given(&tie.frequency)?))
+            }
+            _ => given(name).map(Given::Value),
+        }
+    }
+
+    fn is_synchronous(&self, delay: &Expression) -> bool {
+        let tied = self.problem.synchronous.as_ref();
+        tied.is_some_and(|tie| *delay == Expression::parameter(&tie.delay))
+    }
+
+    /// The algebra over K and the frequency omega_0; `angles` sees omega_0 T and omega T before
+    /// their sines are asked for, and may extend the ring.
+    fn algebra<K: Coefficients>(
+        &self,
+        ring: &K,
+        values: &dyn Fn(&str) -> Option<K::Element>,
+        angles: &dyn Fn(&K, &[K::Element]) -> K,
+    ) -> Result<(Torus<K>, K::Element), Error> {
+        let evaluate = |expression: &Expression| constant(ring, expression, values);
+        let unknown = |e: &Expression| {
+            Error::from(ExpandError::UnsupportedTerm {
+                term: e.print(&self.problem.small, lindstedt_equation::print::Style::Text),
+            })
+        };
+        let forcing = match &self.excitation.frequency {
+            Some(frequency) => Some(evaluate(frequency).ok_or_else(|| unknown(frequency))?),
+            None => None,
+        };
+        let times: Vec<K::Element> = self
+            .excitation
+            .delays
+            .iter()
+            .map(|delay| evaluate(delay).ok_or_else(|| unknown(delay)))
+            .collect::<Result<_, _>>()?;
+        let still = |ring: &K| [ring.one(), ring.zero()];
+        let waiting = |time: &K::Element| Delay {
+            time: time.clone(),
+            free: still(ring),
+            forced: still(ring),
+        };
+        // The linear part does not depend on the frequency, and gives it.
+        let provisional = Torus::new(
+            ring.clone(),
+            ring.one(),
+            forcing.clone(),
+            times.iter().map(waiting).collect(),
+        );
+        let bound = Bound { ring: provisional.constants().clone(), values };
+        let graph = compile(&provisional, &self.problem.equation, &bound, self.settings.order)?;
+        let linear = linear_part(&provisional, &graph)?;
+        let constants = provisional.constants();
+        let zero = |f: &AmplitudePolynomial<K::Element>| constants.is_zero(f);
+        if !zero(&linear.damping) || linear.delayed.iter().any(|(b, c)| !zero(b) || !zero(c)) {
+            return Err(ExpandError::NotWeaklyNonlinear.into());
+        }
+        let stiffness = constants.as_coefficient(&linear.stiffness);
+        let stiffness = stiffness.ok_or(ExpandError::NotWeaklyNonlinear)?;
+        let frequency = ring.square_root(&stiffness).ok_or(ExpandError::StiffnessNotSquare)?;
+
+        let mut all = Vec::new();
+        for (delay, time) in self.excitation.delays.iter().zip(&times) {
+            all.push(ring.mul(&frequency, time));
+            if let Some(forcing) = forcing.as_ref().filter(|_| !self.is_synchronous(delay)) {
+                all.push(ring.mul(forcing, time));
+            }
+        }
+        let ring = angles(ring, &all);
+        let mut delays = Vec::new();
+        for (delay, time) in self.excitation.delays.iter().zip(times) {
+            let turn =
+                |rate: &K::Element| ring.turn(rate, &time).ok_or(ExpandError::IrrationalAngle);
+            let forced = match &forcing {
+                Some(forcing) if !self.is_synchronous(delay) => turn(forcing)?,
+                _ => still(&ring),
+            };
+            delays.push(Delay { free: turn(&frequency)?, forced, time });
+        }
+        let torus = Torus::new(ring, frequency.clone(), forcing, delays);
+        Ok((torus.with_stop(self.settings.stop.clone()), frequency))
+    }
+
+    fn derive<K: Coefficients + Print>(
+        &self,
+        (algebra, frequency): (Torus<K>, K::Element),
+        values: &dyn Fn(&str) -> Option<K::Element>,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Over<K>, Error> {
+        let bound = Bound { ring: algebra.constants().clone(), values };
+        let graph = compile(&algebra, &self.problem.equation, &bound, self.settings.order)?;
+        let mut on_order =
+            |work: &lindstedt_expand::OrderWork| observer(Progress::Order(work.order, work.terms));
+        let expansion = expand_average(&algebra, &graph, self.settings.order, &mut on_order)?;
+        observer(Progress::Checking);
+        // Order zero was checked before the loop.
+        let checked_orders = match check_averaged(&algebra, &graph, &expansion) {
+            Err(ExpandError::Interrupted { .. }) => 0,
+            other => other?,
+        };
+        let terms = expansion.solution.iter().map(|x| algebra.terms(x)).collect();
+        let print = |x| [Style::Text, Style::Latex].map(|style| algebra.print(x, style));
+        let solution = expansion.solution.iter().map(print).collect();
+        Ok(Over { frequency, expansion, checked_orders, solution, terms })
+    }
+
+    fn finish<K: RationalAlgebra>(
+        &self,
+        over: &Over<K>,
+        exact: bool,
+        coefficient: &dyn Fn(&K::Element) -> Result<Coefficient, Error>,
+    ) -> Result<Averaging, Error> {
+        let term = |(AmplitudePower(exponent), c): &(AmplitudePower, K::Element)| {
+            Ok(RateTerm { exponent: *exponent, coefficient: coefficient(c)? })
+        };
+        let rates = |list: &[AmplitudePolynomial<K::Element>]| {
+            let rate = |f: &AmplitudePolynomial<K::Element>| f.terms().iter().map(term).collect();
+            list.iter().map(rate).collect::<Result<Vec<Vec<_>>, Error>>()
+        };
+        let mut phase_rate = rates(&over.expansion.phase_rate)?;
+        if let Some(first) = phase_rate.first_mut() {
+            *first = vec![RateTerm { exponent: 0, coefficient: coefficient(&over.frequency)? }];
+        }
+        Ok(Averaging {
+            problem: self.problem.clone(),
+            order: over.expansion.order(),
+            checked_orders: over.checked_orders,
+            amplitude_rate: rates(&over.expansion.amplitude_rate)?,
+            phase_rate,
+            solution: over.solution.clone(),
+            terms: over.terms.clone(),
+            exact,
+            convergence: None,
+            description: None,
+        })
+    }
+
+    /// Over Q; nothing when a square root or an angle is irrational.
+    pub(super) fn over_rationals(
+        &self,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Option<Over<Rationals>>, Error> {
+        let values = |name: &str| match self.value(name)? {
+            Given::Value(value) => value.as_rational().cloned(),
+            Given::Period(..) => None,
+        };
+        if self.names.iter().any(|name| values(name).is_none()) {
+            return Ok(None);
+        }
+        let algebra = match self.algebra(&Rationals, &values, &|ring, _| *ring) {
+            Err(Error::Expand(ExpandError::StiffnessNotSquare | ExpandError::IrrationalAngle)) => {
+                return Ok(None);
+            }
+            other => other?,
+        };
+        self.derive(algebra, &values, observer).map(Some)
+    }
+
+    pub(super) fn rational(
+        &self,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Option<Averaging>, Error> {
+        let Some(over) = self.over_rationals(observer)? else { return Ok(None) };
+        let number = |q: &Rational| Ok(Coefficient::Number(rational(q, self.settings.digits)?));
+        self.finish(&over, true, &number).map(Some)
+    }
+
+    /// Over the field of the parameters without a value.
+    pub(super) fn over_parameters(
+        &self,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<(ParameterField, Over<ParameterField>), Error> {
+        let given = |name: &str| match self.value(name)? {
+            Given::Value(value) => value.as_rational().cloned(),
+            Given::Period(..) => None,
+        };
+        let irrational = |name: &&String| {
+            let value = self.settings.parameters.get(*name);
+            value.is_some_and(|value| value.as_rational().is_none())
+        };
+        let tied = |name: &&String| {
+            let tie = self.problem.synchronous.as_ref();
+            tie.is_some_and(|tie| tie.periods == ***name)
+        };
+        let names = self.settings.parameters.keys();
+        if let Some(name) = names.clone().find(irrational).or(names.clone().find(tied)) {
+            // A delay tied to the force takes the values of its periods and its frequency.
+            let tie = self.problem.synchronous.as_ref();
+            let cards = self.problem.parameters.iter().map(|card| card.name.to_string());
+            let open = |name: &String| {
+                let behind = tie.is_some_and(|t| t.periods == **name || t.frequency == **name);
+                (self.names.contains(name) || behind)
+                    && !self.settings.parameters.contains_key(name)
+            };
+            let missing = cards.filter(open).collect();
+            return Err(Error::NotAmongSymbols { name: name.clone(), missing });
+        }
+        // In the order of the data card, which is the order of printing.
+        let cards = self.problem.parameters.iter().map(|card| card.name.to_string());
+        let listed: Vec<String> = cards.filter(|name| self.names.contains(name)).collect();
+        let unlisted = self.names.iter().filter(|name| !listed.contains(name)).cloned();
+        let ordered: Vec<String> = listed.iter().cloned().chain(unlisted).collect();
+        let parameters = ordered.into_iter().filter(|name| given(name).is_none()).collect();
+        let plain = ParameterField { ring: PolynomialRing { parameters }, pairs: Vec::new() };
+        let values = |name: &str| match given(name) {
+            Some(q) => Some(plain.rational(&q)),
+            None => Some(plain.parameter(plain.position(name)?)),
+        };
+        let algebra = self.algebra(&plain, &values, &|field, angles| with_angles(field, angles))?;
+        let field = algebra.0.coefficients().clone();
+        let over = self.derive(algebra, &values, observer)?;
+        Ok((field, over))
+    }
+
+    pub(super) fn symbolic(
+        &self,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Averaging, Error> {
+        let (field, over) = self.over_parameters(observer)?;
+        let formula = |c: &ParameterFraction| match field.as_rational(c) {
+            Some(q) => Ok(Coefficient::Number(rational(&q, self.settings.digits)?)),
+            None => Ok(Coefficient::Formula {
+                text: field.print(c, Style::Text),
+                latex: field.print(c, Style::Latex),
+            }),
+        };
+        self.finish(&over, true, &formula)
+    }
+
+    /// With enclosures.
+    pub(super) fn over_balls(
+        &self,
+        balls: Balls,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Over<BallRing>, Error> {
+        let ring = BallRing { balls };
+        let values = |name: &str| Some(Enclosure(self.value(name)?.ball(balls)?));
+        let algebra = self.algebra(&ring, &values, &|ring, _| *ring)?;
+        self.derive(algebra, &values, observer)
+    }
+
+    /// With enclosures; the precision doubles until every coefficient has its digits.
+    pub(super) fn certified(
+        &self,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Averaging, Error> {
+        let digits = self.settings.digits;
+        // Every order loses some bits to the growth of the radii.
+        let wanted = (digits as f64 * 3.33) as u32;
+        let mut bits =
+            wanted + 40 + 8 * u32::try_from(self.settings.order).unwrap_or(u32::MAX / 16);
+        loop {
+            let over = self.over_balls(Balls::new(bits), observer)?;
+            let result = self.finish(&over, false, &|c| enclosed(&c.0, digits, bits));
+            match result {
+                Err(Error::NotEnoughBits { .. })
+                    if bits < MOST_BITS && !self.settings.stop.asked() =>
+                {
+                    bits *= 2;
+                }
+                other => return other,
+            }
+        }
+    }
+}

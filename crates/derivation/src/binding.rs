@@ -1,0 +1,43 @@
+//! What the names of an equation mean in the rings of exact derivations.
+
+use lindstedt_algebra::{RationalAlgebra, Rationals};
+use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
+use lindstedt_expand::Binding;
+use lindstedt_multimodular::RationalBinding;
+use lindstedt_number::Exact;
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// The name of the formal function whose Taylor coefficients are the sums S_n.
+pub const FORMAL: &str = "S";
+
+/// Rational values given for parameters of the equation, and the formal sums.
+pub(crate) struct Given<'a> {
+    pub ring: &'a PolynomialRing,
+    pub parameters: &'a BTreeMap<String, Exact>,
+}
+
+impl Binding<PolynomialRing> for Given<'_> {
+    fn parameter(&self, name: &str) -> Option<Polynomial> {
+        Some(self.ring.rational(&RationalBinding::parameter(self, name)?))
+    }
+    fn formal(&self, name: &str, n: usize) -> Option<Polynomial> {
+        let sum = Symbol::Sum(u16::try_from(n).ok()?);
+        (name == FORMAL).then(|| self.ring.symbol(sum))
+    }
+}
+
+impl Binding<Rationals> for Given<'_> {
+    fn parameter(&self, name: &str) -> Option<Rational> {
+        RationalBinding::parameter(self, name)
+    }
+    fn formal(&self, _: &str, _: usize) -> Option<Rational> {
+        None
+    }
+}
+
+impl RationalBinding for Given<'_> {
+    fn parameter(&self, name: &str) -> Option<Rational> {
+        self.parameters.get(name)?.as_rational().cloned()
+    }
+}

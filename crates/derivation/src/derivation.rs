@@ -1,0 +1,282 @@
+//! A derivation: its series, its solution, printed and as numbers.
+
+use crate::constants::Constants;
+use crate::error::DerivationError;
+use crate::series::NamedSeries;
+use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
+use lindstedt_coeff::print::{Print, Style};
+use lindstedt_coeff::{Polynomial, PolynomialRing};
+use lindstedt_equation::classify::rational_root;
+use lindstedt_equation::description::Description;
+use lindstedt_equation::{Condition, Problem};
+use lindstedt_expand::Expansion;
+use lindstedt_multimodular as multimodular;
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::{Exact, Number, certified, to_ratio};
+use lindstedt_phase::print::PrintPhase;
+use lindstedt_phase::{Lobachevsky, Trigonometric};
+use num_bigint::BigInt;
+use num_rational::Ratio;
+use rayon::prelude::*;
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// The solution, in the algebra that the equation needed.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Solution {
+    /// None: the energy integral gives the frequency alone.
+    FrequencyOnly,
+    /// In the Lobachevsky ring.
+    Lobachevsky(Box<Expansion<Lobachevsky<PolynomialRing>>>),
+    /// Trigonometric polynomials over Q.
+    Rational(Box<multimodular::Proved>),
+}
+
+/// A checked expansion: nothing leaves [`crate::derive()`] that was not substituted back
+/// (`checked_orders`), but for [`crate::Route::EnergyIntegral`], which has no solution to substitute.
+#[derive(Clone, Debug)]
+pub struct Derivation {
+    /// The problem as it was expanded: values put in, x and t scaled.
+    pub problem: Problem,
+    /// The normalisation used.
+    pub condition: Condition,
+    /// The highest order derived (lower than asked for when interrupted).
+    pub order: usize,
+    /// Orders whose residual vanishes identically: 0..=this; nothing without a solution, and
+    /// where [`crate::Settings::stop`] left no time to check.
+    pub checked_orders: Option<usize>,
+    /// The ring of the coefficients.
+    pub ring: PolynomialRing,
+    /// kappa, the factor of x at order zero.
+    pub stiffness: Polynomial,
+    /// The series of the result.
+    pub series: Vec<NamedSeries>,
+    /// The solution.
+    pub solution: Solution,
+    /// The amplitude that was asked for or is the default; nothing where there is none.
+    pub amplitude: Option<Exact>,
+    /// Parameters of the equation with the values that were put in.
+    pub bound: BTreeMap<String, Rational>,
+    /// Time is in units of 1/this: the solution's equation has linear stiffness 1 where x' occurs.
+    /// The series of the result are in the time of the problem.
+    pub time_scale: Rational,
+    /// The coefficients of the series as numbers; empty where nobody asked for decimals.
+    pub numbers: Vec<Vec<Number>>,
+    /// What the equation is made of.
+    pub description: Option<Description>,
+    /// The values of the constants of the ring.
+    pub constants: Constants,
+}
+
+impl Derivation {
+    /// With the coefficients as numbers of so many digits.
+    ///
+    /// # Errors
+    /// As [`Self::number`].
+    pub fn with_numbers(mut self, digits: usize) -> Result<Self, DerivationError> {
+        let numbers = self.series.iter().map(|series| self.numbers(series, digits));
+        self.numbers = numbers.collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
+    /// The number of orders whose solution is known.
+    #[must_use]
+    pub fn solved(&self) -> usize {
+        match self.solution {
+            Solution::FrequencyOnly => 0,
+            _ => self.order + 1,
+        }
+    }
+
+    /// The series of that name.
+    pub fn named(&self, name: &str) -> Option<&NamedSeries> {
+        self.series.iter().find(|series| series.name == name)
+    }
+
+    /// Coefficient n of a series as an exact expression.
+    pub fn exact(&self, name: &str, n: usize) -> Option<String> {
+        let series = self.named(name)?;
+        series.coefficients.get(n)?;
+        Some(self.print_coefficient(series, n, Style::Text))
+    }
+
+    /// Coefficient n of a series as a fraction, where it is rational.
+    ///
+    /// ```
+    /// use lindstedt_derivation::{Settings, derive};
+    /// let problem = lindstedt_problems::find("duffing").ok_or("no such problem")?;
+    /// let duffing = derive(&problem, &Settings { order: 2, ..Settings::default() }, &mut |_| true)?;
+    /// let first = duffing.ratio("frequency_squared", 1);
+    /// assert_eq!(first.map(|q| q.to_string()).as_deref(), Some("3/4"));
+    /// # Ok::<(), Box<dyn std::error::DerivationError>>(())
+    /// ```
+    pub fn ratio(&self, name: &str, n: usize) -> Option<Ratio<BigInt>> {
+        let series = self.named(name)?;
+        let product = self.with_prefactor(series, series.coefficients.get(n)?)?;
+        self.ring.as_rational(&product).map(|q| to_ratio(&q))
+    }
+
+    /// A coefficient times its power of the root of the stiffness, where that is in the ring: the
+    /// root of a square is taken.
+    fn with_prefactor(&self, series: &NamedSeries, coefficient: &Polynomial) -> Option<Polynomial> {
+        let power = series.half_power;
+        if power == 0 || self.ring.is_zero(coefficient) {
+            return Some(coefficient.clone());
+        }
+        if power == 2 {
+            return Some(self.ring.mul(coefficient, &self.stiffness));
+        }
+        let root = rational_root(&self.ring.as_rational(&self.stiffness)?)?;
+        let root = if power < 0 { root.recip() } else { root };
+        let factor = rug::ops::Pow::pow(root, power.unsigned_abs());
+        Some(self.ring.scale(coefficient, &factor))
+    }
+
+    /// Coefficient n with its prefactor, printed.
+    pub fn print_coefficient(&self, series: &NamedSeries, n: usize, style: Style) -> String {
+        let Some(coefficient) = series.coefficients.get(n) else { return "0".to_owned() };
+        if let Some(product) = self.with_prefactor(series, coefficient) {
+            return self.ring.print(&product, style);
+        }
+        let power = series.half_power;
+        let kappa = self.ring.print(&self.stiffness, style);
+        let single = kappa.chars().all(|c| c.is_alphanumeric() || "_{}".contains(c));
+        let factor = match style {
+            Style::Text if single => format!("{kappa}^({power}/2)"),
+            Style::Text => format!("({kappa})^({power}/2)"),
+            Style::Latex if single => format!("{kappa}^{{{power}/2}}"),
+            Style::Latex => format!(r"\left({kappa}\right)^{{{power}/2}}"),
+        };
+        if *coefficient == self.ring.one() {
+            return factor;
+        }
+        let rest = self.ring.print(coefficient, style);
+        match style {
+            Style::Text => format!("{factor}*({rest})"),
+            Style::Latex => format!(r"{factor}\left({rest}\right)"),
+        }
+    }
+
+    /// kappa, the factor of x at order zero, printed.
+    pub fn ring_print(&self, style: Style) -> String {
+        self.ring.print(&self.stiffness, style)
+    }
+
+    /// W_n of omega^2 = kappa sum W_n eps^n for amplitude one, in the moments mu_m, printed; empty
+    /// beyond the orders derived.
+    pub fn frequency_correction(&self, n: usize, style: Style) -> String {
+        if n > self.order {
+            return String::new();
+        }
+        match &self.solution {
+            Solution::FrequencyOnly => String::new(),
+            Solution::Lobachevsky(expansion) => {
+                self.ring.print(&expansion.frequency_squared[n], style)
+            }
+            Solution::Rational(proved) => {
+                Rationals.print(&proved.expansion.frequency_squared[n], style)
+            }
+        }
+    }
+
+    /// x_n(0), printed.
+    pub fn amplitude_correction(&self, n: usize, style: Style) -> String {
+        if n > self.order {
+            return String::new();
+        }
+        match &self.solution {
+            Solution::FrequencyOnly => String::new(),
+            Solution::Lobachevsky(expansion) => self.ring.print(&expansion.amplitude[n], style),
+            Solution::Rational(proved) => Rationals.print(&proved.expansion.amplitude[n], style),
+        }
+    }
+
+    /// Coefficient n of a series as a number with `digits` digits.
+    ///
+    /// # Errors
+    /// [`DerivationError::NotEnoughBits`] when the digits cannot be reached.
+    pub fn number(
+        &self,
+        series: &NamedSeries,
+        n: usize,
+        digits: usize,
+    ) -> Result<Number, DerivationError> {
+        let exact = self.print_coefficient(series, n, Style::Text);
+        Ok(certified(Some(exact), digits, |balls| self.ball(series, n, balls))?)
+    }
+
+    /// All coefficients of a series as numbers.
+    ///
+    /// # Errors
+    /// As [`Self::number`].
+    pub fn numbers(
+        &self,
+        series: &NamedSeries,
+        digits: usize,
+    ) -> Result<Vec<Number>, DerivationError> {
+        let orders = (0..series.coefficients.len()).into_par_iter();
+        orders.map(|n| self.number(series, n, digits)).collect()
+    }
+
+    /// Coefficient n of a series as a ball.
+    pub fn ball(&self, series: &NamedSeries, n: usize, balls: Balls) -> Option<Ball> {
+        let value = self.constants.evaluate(series.coefficients.get(n)?, balls)?;
+        if series.half_power == 0 {
+            return Some(value);
+        }
+        let root = balls.sqrt(&self.constants.evaluate(&self.stiffness, balls)?)?;
+        Some(balls.mul(&value, &balls.powi(&root, series.half_power.into())?))
+    }
+
+    /// x_n printed, as a function of the phase `tau` = omega t; empty beyond the orders derived.
+    pub fn print_solution(&self, n: usize, style: Style) -> String {
+        if n > self.order {
+            return String::new();
+        }
+        match &self.solution {
+            Solution::FrequencyOnly => String::new(),
+            Solution::Lobachevsky(expansion) => {
+                Lobachevsky::new(self.ring.clone()).print(&expansion.solution[n], "tau", style)
+            }
+            Solution::Rational(proved) => {
+                Trigonometric::new(Rationals).print(&proved.expansion.solution[n], "tau", style)
+            }
+        }
+    }
+
+    /// The right side f_n of x_n'' + x_n = f_n - W_n x_0'', printed, and its number of terms; empty
+    /// beyond the orders derived.
+    pub fn print_right_side(&self, n: usize, style: Style) -> (String, usize) {
+        if n > self.order {
+            return (String::new(), 0);
+        }
+        match &self.solution {
+            Solution::Lobachevsky(expansion) => {
+                let algebra = Lobachevsky::new(self.ring.clone());
+                let f = expansion.right_side(&algebra, n);
+                (algebra.print(&f, "tau", style), algebra.terms(&f))
+            }
+            Solution::FrequencyOnly => (String::new(), 0),
+            Solution::Rational(proved) => {
+                let algebra = Trigonometric::new(Rationals);
+                let f = proved.expansion.right_side(&algebra, n);
+                (algebra.print(&f, "tau", style), algebra.terms(&f))
+            }
+        }
+    }
+
+    /// The number of terms of x_n; 0 beyond the orders derived.
+    pub fn terms(&self, n: usize) -> usize {
+        if n > self.order {
+            return 0;
+        }
+        match &self.solution {
+            Solution::FrequencyOnly => 0,
+            Solution::Lobachevsky(expansion) => expansion.solution[n].len(),
+            Solution::Rational(proved) => {
+                Trigonometric::new(Rationals).terms(&proved.expansion.solution[n])
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Why there is no derivation.
+
+use lindstedt_expand::ExpandError;
+use lindstedt_number::NumberError;
+use thiserror::Error;
+
+/// Why the engine has no expansion.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum DerivationError {
+    /// The driver refused.
+    #[error(transparent)]
+    Expand(#[from] ExpandError),
+    /// No more primes of 61 bits with the roots of unity that the order needs.
+    #[error("no more 61-bit primes for this order")]
+    OutOfPrimes,
+    /// A rational value is needed where the parameter stands.
+    #[error("{name} = {value} is irrational, but exact derivations of this problem are over Q")]
+    Irrational {
+        /// The parameter.
+        name: String,
+        /// The value.
+        value: String,
+    },
+    /// A value that cannot be read.
+    #[error("cannot read the value {text:?}")]
+    BadValue {
+        /// The text, shortened.
+        text: String,
+    },
+    /// A parameter the problem does not have.
+    #[error("{problem} has no parameter {name:?}; it has {known}")]
+    UnknownParameter {
+        /// The problem.
+        problem: String,
+        /// The name.
+        name: String,
+        /// The parameters it has.
+        known: String,
+    },
+    /// A value that cannot stand among symbols.
+    #[error(
+        "{name} can only be set when all parameters are{}: symbols take rational values",
+        without(missing)
+    )]
+    NotAmongSymbols {
+        /// The parameter.
+        name: String,
+        /// The parameters of the equation without a value.
+        missing: Vec<String>,
+    },
+    /// A parameter without a value.
+    #[error("{name} has no value in {problem}: set it")]
+    Unset {
+        /// The problem.
+        problem: String,
+        /// The parameter.
+        name: String,
+    },
+    /// A value outside the domain of a parameter.
+    #[error("{name} = {value} is outside its domain {domain}")]
+    OutsideDomain {
+        /// The parameter.
+        name: String,
+        /// The value.
+        value: String,
+        /// The domain.
+        domain: &'static str,
+    },
+    /// A condition that the problem does not offer.
+    #[error("{problem} does not offer this normalisation")]
+    UnknownCondition {
+        /// The problem.
+        problem: String,
+    },
+    /// The energy integral does not apply.
+    #[error(
+        "{problem}: the energy integral applies to conservative forces that are polynomial, from x(0) = A, or \
+         x F(delta ln x^2)"
+    )]
+    NoSuchRoute {
+        /// The problem.
+        problem: String,
+    },
+    /// The work would need more memory than allowed.
+    #[error(
+        "order {order} is predicted to need 10^{exponent} bytes, above the limit of {limit} MiB"
+    )]
+    TooLarge {
+        /// The order.
+        order: usize,
+        /// The prediction: the exponent of ten of the bytes, rounded.
+        exponent: u64,
+        /// The limit in MiB.
+        limit: u64,
+    },
+    /// The digits were not reached.
+    #[error("the digits asked for were not reached with {bits} bits")]
+    NotEnoughBits {
+        /// The largest precision tried.
+        bits: u32,
+        /// The best enclosure.
+        best: Option<String>,
+    },
+    /// A force whose derivatives hold delta functions at places that the motion passes at times that
+    /// change from order to order: an expansion by values would drop them.
+    #[error(
+        "{term} is singular where the motion passes at times that change with the small parameter: the \
+         expansion has terms there that values at nodes do not see"
+    )]
+    MovingSingularity {
+        /// The function.
+        term: String,
+    },
+    /// The value does not exist.
+    #[error("the value does not exist")]
+    NoValue,
+}
+
+impl From<NumberError> for DerivationError {
+    fn from(error: NumberError) -> Self {
+        match error {
+            NumberError::BadValue { text } => Self::BadValue { text },
+            NumberError::NotEnoughBits { bits, best } => Self::NotEnoughBits { bits, best },
+            _ => Self::NoValue,
+        }
+    }
+}
+
+impl From<lindstedt_multimodular::Error> for DerivationError {
+    fn from(error: lindstedt_multimodular::Error) -> Self {
+        match error {
+            lindstedt_multimodular::Error::Expand(error) => Self::Expand(error),
+            _ => Self::OutOfPrimes,
+        }
+    }
+}
+
+/// Which values are missing.
+fn without(missing: &[String]) -> String {
+    match missing {
+        [] => String::new(),
+        names => format!(" (without a value: {})", names.join(", ")),
+    }
+}

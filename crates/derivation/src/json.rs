@@ -1,0 +1,57 @@
+//! The plain form of a derivation.
+
+use crate::derivation::{Derivation, Solution};
+use lindstedt_coeff::print::Style;
+use lindstedt_number::Object;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+/// Which orders were substituted into the equation.
+#[derive(Serialize)]
+struct Residual {
+    checked_orders: Option<usize>,
+    zero: Option<bool>,
+}
+
+/// The algebra, or the primes.
+#[derive(Serialize)]
+struct Method {
+    name: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    primes: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    proof_primes: Option<usize>,
+}
+
+impl Serialize for Derivation {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let series = self.series.iter().map(|series| series.name).zip(&self.numbers);
+        let series = Object(series.collect());
+        let orders = 0..self.solved();
+        let solution: Vec<String> =
+            orders.clone().map(|n| self.print_solution(n, Style::Text)).collect();
+        let terms: Vec<usize> = orders.map(|n| self.terms(n)).collect();
+        let (name, proved) = match &self.solution {
+            Solution::Rational(proved) => ("multi-modular, proved", Some(proved)),
+            Solution::FrequencyOnly => ("energy integral", None),
+            Solution::Lobachevsky(_) => ("Lobachevsky ring over Q[mu_m]", None),
+        };
+        let method = Method {
+            name,
+            primes: proved.map(|proved| proved.primes),
+            proof_primes: proved.map(|proved| proved.proof_primes),
+        };
+        let checked = self.checked_orders;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("parameter", &*self.problem.small)?;
+        map.serialize_entry("normalisation", &self.condition)?;
+        map.serialize_entry("series", &series)?;
+        map.serialize_entry("solution", &solution)?;
+        map.serialize_entry("terms", &terms)?;
+        let residual = Residual { checked_orders: checked, zero: checked.map(|_| true) };
+        map.serialize_entry("residual", &residual)?;
+        map.serialize_entry("method", &method)?;
+        map.serialize_entry("classification", &self.description)?;
+        map.end()
+    }
+}

@@ -1,0 +1,220 @@
+//! What is refused before any work: parameters outside their domains, too much memory.
+
+use crate::error::DerivationError as Error;
+use crate::settings::{Route, Settings};
+use crate::values::all_values;
+use lindstedt_equation::{AmplitudeRole, Expression, Function, Problem};
+use lindstedt_multimodular::Proved;
+use lindstedt_number::Exact;
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// x = -y: what starts at x(0) = -a starts at y(0) = a. An equation that is odd in x is that of y,
+/// too, and moves at -a as at a half a period later; another one moves on another orbit.
+const NEGATIVE: &str = "amplitude > 0 (a start at -a is a start at a of the equation with -x in place of \
+                        x, which is the same equation if it is odd)";
+
+/// The parameters there are, in place of one that is none.
+pub(crate) fn unknown_parameter(problem: &Problem, name: &str) -> Error {
+    let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
+    let mut known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    if *name == *problem.small {
+        known += &format!(" ({name} is the small parameter: no coefficient depends on it)");
+    }
+    Error::UnknownParameter { problem: problem.name.to_string(), name: name.to_owned(), known }
+}
+
+/// Names and domains of the parameters given.
+///
+/// # Errors
+/// [`Error::UnknownParameter`], [`Error::OutsideDomain`].
+pub fn check_parameters(problem: &Problem, given: &BTreeMap<String, Exact>) -> Result<(), Error> {
+    let unknown = given.keys().find(|name| problem.parameters.iter().all(|c| c.name != **name));
+    if let Some(name) = unknown {
+        return Err(unknown_parameter(problem, name));
+    }
+    // The values of the card are no better than those given: a file may hold any.
+    let values = all_values(problem, given);
+    check_delays(&problem.equation, &values)?;
+    for (name, value) in &values {
+        let outside =
+            |domain| Error::OutsideDomain { name: name.clone(), value: value.to_string(), domain };
+        let scales = matches!(problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
+        match name.as_str() {
+            "amplitude" => {
+                let zero = Exact::Rational(Rational::new());
+                let bounded = matches!(problem.amplitude, AmplitudeRole::InSums);
+                let enters = matches!(
+                    problem.amplitude,
+                    AmplitudeRole::InSums
+                        | AmplitudeRole::ScalesFrequency { .. }
+                        | AmplitudeRole::InSmallParameter
+                        | AmplitudeRole::Scaled
+                );
+                if enters && *value < zero {
+                    return Err(outside(NEGATIVE));
+                } else if enters && *value <= zero {
+                    return Err(outside("amplitude > 0 (there is no oscillation at amplitude 0)"));
+                } else if bounded && Exact::PiTimes(Rational::from(1)) <= *value {
+                    return Err(outside("0 < amplitude < pi (at pi the period is infinite)"));
+                }
+            }
+            "n" | "delta" if scales && *value <= Exact::from(-1) => {
+                return Err(outside("greater than -1"));
+            }
+            _ => {}
+        }
+    }
+    let both = given.get("n").zip(given.get("delta"));
+    if let Some((n, delta)) = both.and_then(|(n, d)| n.as_rational().zip(d.as_rational()))
+        && *n != Rational::from(delta * 2u32) + 1u32
+    {
+        return Err(Error::OutsideDomain {
+            name: "n".to_owned(),
+            value: n.to_string(),
+            domain: "n = 1 + 2 delta with the delta given",
+        });
+    }
+    Ok(())
+}
+
+/// Refuses x(t - T) with T <= 0, which is no delay.
+///
+/// # Errors
+/// [`Error::OutsideDomain`].
+pub fn check_delays(e: &Expression, values: &BTreeMap<String, Exact>) -> Result<(), Error> {
+    let Some(by) = e.nodes().find_map(Expression::delay) else { return Ok(()) };
+    let (name, value) = match by {
+        Expression::Parameter(name) => (name.to_string(), values.get(&**name).cloned()),
+        Expression::Number(q) => ("delay".to_owned(), Some(Exact::Rational(q.clone()))),
+        _ => return Ok(()),
+    };
+    match value {
+        Some(value) if !value.sign().is_gt() => {
+            let domain = "greater than 0 (it is a delay)";
+            Err(Error::OutsideDomain { name, value: value.to_string(), domain })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether the equation needs the Lobachevsky ring, or exp, which the route over many primes does
+/// not take.
+#[must_use]
+pub fn has_logarithms(expression: &Expression) -> bool {
+    expression.nodes().any(|e| match e {
+        Expression::Power(_, exponent) => !matches!(**exponent, Expression::Number(_)),
+        Expression::Function(Function::Ln | Function::Exp, _) | Expression::Formal(..) => true,
+        _ => false,
+    })
+}
+
+/// The order up to which an expansion over Q is derived to see how its numbers grow.
+const PROBE: usize = 24;
+
+/// The bytes of the Fourier coefficients of an expansion.
+pub(crate) fn bytes_of(proved: &Proved) -> f64 {
+    let lists = proved.expansion.solution.iter().flat_map(|x| [&x.cos, &x.sin]);
+    let bits =
+        |q: &Rational| f64::from(q.numer().significant_bits() + q.denom().significant_bits());
+    lists.flatten().map(bits).sum::<f64>() / 8.0
+}
+
+/// log2 of the bytes that an expansion over Q takes. The numbers grow like a power of the order (measured: Duffing
+/// 3.0, van der Pol 3.9; all numbers of an order N have N^3 or N^4 bits), which two low orders show; at the peak
+/// residues, numerators and the printed form stand beside them: 4 to 7 times as much in the engine,
+/// some more in what prints.
+fn over_q(order: usize, bytes: &dyn Fn(usize) -> Option<f64>) -> f64 {
+    let base = 6e6;
+    let probes = (order > PROBE).then(|| bytes(PROBE / 2).zip(bytes(PROBE))).flatten();
+    // What cannot be derived says so itself.
+    let Some((half, whole)) = probes else { return f64::log2(base) };
+    let rate = (whole / half).log2().clamp(2.5, 4.0);
+    f64::log2(base + 8.0 * whole * (order as f64 / PROBE as f64).powf(rate))
+}
+
+/// Refuses before allocating. Measured: the Lobachevsky ring takes 0.7 GiB at order 20 and 1.5
+/// times more per order; with formal sums 0.1 GiB at order 10 and twice as much per order; over Q
+/// `bytes` tells the size of the numbers up to an order ([`bytes_of`]).
+pub(crate) fn limit_memory(
+    problem: &Problem,
+    settings: &Settings,
+    bytes: &dyn Fn(usize) -> Option<f64>,
+) -> Result<(), Error> {
+    let order = settings.order as f64;
+    let sums = matches!(problem.amplitude, AmplitudeRole::InSums);
+    let logarithms = has_logarithms(&problem.equation);
+    let bits = if settings.route == Route::EnergyIntegral && !logarithms {
+        // Three series of N numbers of O(N) bits.
+        f64::log2(6e6 + 16.0 * order * order)
+    } else if settings.route == Route::EnergyIntegral {
+        // 28 629 terms in 0.1 GiB at order 30; the number of partitions grows by 1.2 per order,
+        // with formal sums by 1.5.
+        30.0 + 0.1f64.log2() + if sums { (order - 14.0) * 0.6 } else { (order - 30.0) * 0.27 }
+    } else if sums {
+        30.0 + 0.1f64.log2() + (order - 10.0)
+    } else if logarithms {
+        30.0 + 0.7f64.log2() + (order - 20.0) * 1.5f64.log2()
+    } else {
+        // No expansion is known that takes as much as this: nothing need be derived to allow it.
+        let most = 31.0 + 4.0 * (order / 164.0).log2();
+        if most.max(24.0) <= (settings.memory.max(1) as f64).log2() {
+            return Ok(());
+        }
+        over_q(settings.order, bytes)
+    };
+    refuse_above(settings.memory, settings.order, bits)
+}
+
+/// Refuses an order that needs 2^`bits` bytes, if that is more than `memory`.
+///
+/// # Errors
+/// [`Error::TooLarge`].
+pub fn refuse_above(memory: u64, order: usize, bits: f64) -> Result<(), Error> {
+    if bits <= (memory.max(1) as f64).log2() {
+        return Ok(());
+    }
+    let exponent = (bits * 2f64.log10()).round() as u64;
+    Err(Error::TooLarge { order, exponent, limit: memory >> 20 })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+    use super::*;
+
+    /// Against peaks of a process that derives and prints nothing (MB, `/usr/bin/time -v`, x86-64 Linux): within
+    /// a factor of two both ways.
+    #[test]
+    fn predictions_are_within_a_factor_of_two() {
+        for (name, order, measured) in
+            [("duffing", 200, 21.6), ("duffing", 400, 108.6), ("van-der-pol", 120, 26.4)]
+        {
+            let problem = lindstedt_problems::find(name).unwrap();
+            let condition = problem.conditions[0];
+            let probe = |order| {
+                let derivation = lindstedt_multimodular::derive(
+                    &problem.equation,
+                    &NoNames,
+                    condition,
+                    order,
+                    &lindstedt_algebra::Stop::default(),
+                    &mut |_| true,
+                );
+                derivation.ok().map(|proved| bytes_of(&proved))
+            };
+            let predicted = over_q(order, &probe).exp2() / 1e6;
+            let ratio = predicted / measured;
+            assert!((0.5..2.0).contains(&ratio), "{name} {order}: {predicted} MB for {measured}");
+        }
+    }
+
+    struct NoNames;
+
+    impl lindstedt_multimodular::RationalBinding for NoNames {
+        fn parameter(&self, _: &str) -> Option<Rational> {
+            None
+        }
+    }
+}

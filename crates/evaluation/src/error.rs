@@ -1,0 +1,67 @@
+//! Why an expansion has no value.
+
+use lindstedt_derivation::DerivationError;
+use lindstedt_expand::ExpandError;
+use lindstedt_number::NumberError;
+use thiserror::Error;
+
+/// Why an expansion has no value at the parameters given.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum EvaluationError {
+    /// There is no expansion.
+    #[error(transparent)]
+    Derivation(#[from] DerivationError),
+    /// Period and solution are not summed for this problem.
+    #[error("{problem}: no series of the period is known that can be summed")]
+    NotEvaluated {
+        /// The problem.
+        problem: String,
+    },
+    /// The series has no value by the method asked for.
+    #[error("{problem}: {reason}")]
+    Resummation {
+        /// The problem.
+        problem: String,
+        /// Why.
+        reason: lindstedt_series::resummation::ResummationError,
+    },
+    /// Newton's method found no amplitude and phase for the state asked for.
+    #[error(
+        "{problem}: no amplitude and phase were found with x(0) = {displacement}, x'(0) = {velocity}"
+    )]
+    NoSuchStart {
+        /// The problem.
+        problem: String,
+        /// x(0).
+        displacement: String,
+        /// x'(0).
+        velocity: String,
+    },
+    /// A start that is not two values separated by a comma.
+    #[error("--{option} {text:?} is not two values")]
+    NotTwoValues {
+        /// `start` or `state`.
+        option: &'static str,
+        /// The text, shortened.
+        text: String,
+    },
+    /// An averaged motion starts at a positive amplitude.
+    #[error("the amplitude {amplitude} is not positive")]
+    NotPositive {
+        /// The amplitude.
+        amplitude: String,
+    },
+}
+
+impl From<ExpandError> for EvaluationError {
+    fn from(error: ExpandError) -> Self {
+        Self::Derivation(error.into())
+    }
+}
+
+impl From<NumberError> for EvaluationError {
+    fn from(error: NumberError) -> Self {
+        Self::Derivation(error.into())
+    }
+}

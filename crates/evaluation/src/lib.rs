@@ -1,0 +1,34 @@
+//! Derived series as numbers: the period by resummation beside its closed form, x(t) at given times,
+//! averaged motions.
+//!
+//! | module | what |
+//! |---|---|
+//! | [`setting`] | a problem with a value for everything, and the form of its equation |
+//! | [`source`] | the series of T/2pi at a point: coefficients, variable, closed form |
+//! | [`period()`] | the sum of that series |
+//! | [`Trajectory`] | x(t), summed phase by phase |
+//! | [`averaged`] | a(t), psi(t), x(t) of an averaged oscillator |
+//!
+//! What is summed is estimated, with its error; closed forms ([`closed`]) are certified.
+
+pub mod averaged;
+pub mod closed;
+pub mod coefficients;
+mod digits;
+mod displacements;
+mod error;
+pub mod few;
+mod json;
+mod names;
+mod period;
+pub mod setting;
+mod solution;
+pub mod source;
+mod words;
+
+pub use displacements::{Displacement, Displacements};
+pub use error::EvaluationError;
+pub use json::Place;
+pub use names::{kind_name, method_flag, method_name, rounded, with_error};
+pub use period::{Evaluation, period};
+pub use solution::{Fourier, Trajectory};

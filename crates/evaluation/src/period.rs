@@ -1,0 +1,216 @@
+//! The period at given parameters: the sum of the series of T/2pi, beside the closed form where
+//! there is one.
+
+use crate::digits::bits_for;
+use crate::displacements::Displacements;
+use crate::error::EvaluationError as Error;
+use crate::few;
+use crate::names::short;
+use crate::setting::{Form, Setting};
+use crate::source::{self, Source, remembered};
+use lindstedt_algebra::Stop;
+use lindstedt_derivation::{DerivationError, Progress, Work};
+use lindstedt_expand::ExpandError;
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::{Exact, Number, certified};
+use lindstedt_series::resummation::{Method, Pade, Picture, Resummed, Sample, resum_until};
+use rug::Float;
+
+/// A period and how it was found.
+#[derive(Clone, Debug)]
+pub struct Evaluation {
+    /// The parameters, the derived ones included.
+    pub at: Vec<(String, Exact)>,
+    /// The variable of the series.
+    pub variable: String,
+    /// The order of the expansion in the small parameter.
+    pub order: usize,
+    /// The period by resummation; nothing where not one digit is supported. Without an error
+    /// where the coefficients are too few for an estimate.
+    pub period: Option<Number>,
+    /// 2 pi over the period.
+    pub frequency: Option<Number>,
+    /// The period by the closed form, and that form.
+    pub exact_period: Option<Number>,
+    /// |period - exact period|, where both are known.
+    pub true_error: Option<String>,
+    /// What was done, what the alternatives gave, what the coefficients tell.
+    pub resummed: Resummed,
+    /// The best truncation of a divergent series: order and partial sum of T.
+    pub best_truncation: Option<(usize, Option<Number>)>,
+    /// What is proved about the radius of convergence: its value, and why.
+    pub radius: Option<(f64, &'static str)>,
+    /// The best that is known of the period: the closed form, else the estimate.
+    pub best_period: Ball,
+    /// Whether an error of the period is known.
+    pub(crate) is_estimated: bool,
+    /// Whether the coefficients are too few for an estimate: a few digits of the sum are shown.
+    pub(crate) no_estimate: bool,
+    /// Bits asked for.
+    pub(crate) accuracy: u32,
+    /// In words.
+    pub verdict: String,
+    /// Poles and zeros of the diagonal Pade approximant of the highest order.
+    pub picture: Option<Picture>,
+    /// The method that was asked for; nothing is `auto`.
+    pub asked: Option<Method>,
+    /// x(t), where times were asked for.
+    pub solution: Option<Displacements>,
+}
+
+/// The order that takes well below a second.
+fn default_order(form: &Form) -> usize {
+    match form {
+        Form::PowerLaw { .. } => 20,
+        Form::Sums => 24,
+        Form::Cubic { .. } => 30,
+        Form::Relaxation => 60,
+        Form::Conservative | Form::Polynomial => 24,
+        Form::Logarithmic => 8,
+    }
+}
+
+/// The period by the series of T/2pi up to an order (a quick one if nothing), beside the closed form;
+/// of the methods the one asked for, else the one with the least error estimate.
+///
+/// # Errors
+/// [`Error::Resummation`] where the method does not apply; those of [`Source::new`].
+pub fn period(
+    setting: &Setting,
+    order: Option<usize>,
+    method: Option<Method>,
+    work: &Work,
+) -> Result<Evaluation, Error> {
+    let order = order.unwrap_or_else(|| default_order(&setting.form));
+    let (digits, stop) = (work.printed_digits(), &work.stop);
+    let accuracy = bits_for(digits);
+    source::limit_memory(&setting.form, order, accuracy, work.memory)?;
+    let mut observer = |progress| work.goes_on(progress);
+    let source = Source::new(setting, order, (work.memory, stop), &mut observer)?;
+    let goes_on = || match stop.asked() {
+        true => Err(Error::from(ExpandError::Interrupted { order })),
+        false => Ok(()),
+    };
+    work.tell(Progress::Checking);
+    goes_on()?;
+    let sample = remembered(|bits| if stop.asked() { None } else { source.sample(bits) });
+    let few = few::partial_sum(&sample, source.known, method, accuracy);
+    let resummed = few.unwrap_or_else(|| resum_until(&sample, method, accuracy, stop));
+    goes_on()?;
+    let problem = || setting.problem.name.to_string();
+    let resummed = resummed.map_err(|reason| Error::Resummation { problem: problem(), reason })?;
+    let closed = source.closed.as_ref();
+    let exact_period = closed.map(|(form, formula)| certified(Some(form.clone()), digits, formula));
+    goes_on()?;
+    let exact_period = exact_period.transpose()?;
+    let sum = Sum::new(&source, &resummed)?;
+    let best_truncation = best_truncation(&sample, &resummed, &sum.scale, digits);
+    let picture = picture(&sample, resummed.bits, stop);
+    goes_on()?;
+    let (period, frequency) = (sum.number(&sum.period, digits), sum.frequency(digits));
+    let mut result = Evaluation {
+        order,
+        period,
+        frequency,
+        exact_period,
+        true_error: sum.difference.as_ref().map(short),
+        resummed,
+        best_truncation,
+        radius: source.radius,
+        is_estimated: sum.is_estimated,
+        no_estimate: sum.no_estimate,
+        best_period: sum.closed.unwrap_or(sum.period),
+        accuracy,
+        verdict: String::new(),
+        picture,
+        at: source.at.clone(),
+        variable: source.variable.clone(),
+        asked: method,
+        solution: None,
+    };
+    result.verdict = result.describe();
+    Ok(result)
+}
+
+/// The period that the sum of the series gives.
+struct Sum {
+    balls: Balls,
+    /// 2 pi times the factor of the series.
+    scale: Ball,
+    period: Ball,
+    closed: Option<Ball>,
+    /// |period - closed|.
+    difference: Option<Float>,
+    is_estimated: bool,
+    no_estimate: bool,
+}
+
+impl Sum {
+    fn new(source: &Source, resummed: &Resummed) -> Result<Self, Error> {
+        let balls = Balls::new(resummed.bits).with_guard(64);
+        let scale = period_scale(source, balls)?;
+        let estimate = &resummed.outcome.estimate;
+        let mut period = balls.mul(&balls.from_parts(&estimate.value, &estimate.error), &scale);
+        let closed = source.closed.as_ref().and_then(|(_, formula)| formula(balls));
+        let value = balls.mul(&balls.from_parts(&estimate.value, &Float::new(53)), &scale);
+        let difference = closed.as_ref().map(|exact| balls.sub(&value, exact).abs_upper());
+        if let Some(error) = &difference
+            && (!estimate.error.is_finite() || error > period.radius())
+        {
+            // Too few orders for an estimate, or an estimate that fails: the closed form measures
+            // the error.
+            period = balls.add_error(&value, error);
+        }
+        let no_estimate = !estimate.error.is_finite() && few::has_no_estimate(source.known);
+        let is_estimated = period.is_finite();
+        if !is_estimated && no_estimate {
+            period = value;
+        }
+        Ok(Self { balls, scale, period, closed, difference, is_estimated, no_estimate })
+    }
+
+    fn number(&self, ball: &Ball, digits: usize) -> Option<Number> {
+        // A measured error above the value leaves no digit.
+        let size = self.period.midpoint().clone().abs();
+        if self.no_estimate && self.is_estimated && *self.period.radius() >= size {
+            None
+        } else if self.no_estimate {
+            few::plain(ball, digits, self.is_estimated)
+        } else {
+            Number::estimated(ball, digits)
+        }
+    }
+
+    fn frequency(&self, digits: usize) -> Option<Number> {
+        let two_pi = self.balls.mul_i64(&self.balls.pi(), 2);
+        self.number(&self.balls.div(&two_pi, &self.period)?, digits)
+    }
+}
+
+/// 2 pi times the factor of the series.
+fn period_scale(source: &Source, balls: Balls) -> Result<Ball, Error> {
+    let factor = (source.factor)(balls).filter(Ball::is_finite).ok_or(DerivationError::NoValue)?;
+    Ok(balls.mul(&balls.mul_i64(&balls.pi(), 2), &factor))
+}
+
+/// The smallest term of a series that diverges at the point.
+fn best_truncation(
+    sample: &dyn Fn(u32) -> Option<Sample>,
+    resummed: &Resummed,
+    scale: &Ball,
+    digits: usize,
+) -> Option<(usize, Option<Number>)> {
+    let outcome = sample(resummed.bits)?.sum(Method::PartialSum, None, 64).ok()?;
+    let order = outcome.smallest_term?;
+    let balls = Balls::new(resummed.bits);
+    let ball = balls.from_parts(&outcome.estimate.value, &outcome.estimate.error);
+    Some((order, Number::estimated(&balls.mul(&ball, scale), digits)))
+}
+
+/// The poles and zeros of the diagonal approximant.
+fn picture(sample: &dyn Fn(u32) -> Option<Sample>, bits: u32, stop: &Stop) -> Option<Picture> {
+    let sample = sample(bits)?;
+    let order = sample.coefficients.len().checked_sub(1).filter(|order| *order > 1)?;
+    let half = order / 2;
+    Pade::until(stop, &sample.coefficients, order - half, half, bits)?.picture_until(stop)
+}

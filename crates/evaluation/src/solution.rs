@@ -1,0 +1,404 @@
+//! The solution x(t) at given times: the expansion at the phase omega t, order by order, and its
+//! series in the small parameter summed there.
+
+use crate::digits::bits_for;
+use crate::displacements::{Displacement, Displacements};
+use crate::error::EvaluationError as Error;
+use crate::few;
+use crate::period::Evaluation;
+use crate::setting::{Form, Setting};
+use crate::source::remembered;
+use lindstedt_derivation::{Derivation, DerivationError, Progress, Work};
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_number::{Exact, Number};
+use lindstedt_phase::evaluate::PhaseFunctions;
+use lindstedt_phase::lobachevsky_function::Point;
+use lindstedt_series::resummation::{Estimate, Method, Sample, UniformMap, partial_sums};
+use rayon::prelude::*;
+use rug::{Float, Rational};
+use std::collections::BTreeMap;
+use std::sync::{Arc, RwLock};
+
+/// x as a Fourier series in omega t.
+#[derive(Clone, Debug)]
+pub struct Fourier {
+    /// (c_k, s_k) of c_k cos(k omega t) + s_k sin(k omega t).
+    pub coefficients: Vec<(f64, f64)>,
+    /// The largest deviation of the sum from x at four times as many points as were used, and near the
+    /// largest of these at 16 more.
+    pub deviation: f64,
+    /// What the estimated errors of x allow a coefficient to be wrong by; nothing without estimates.
+    pub error: Option<f64>,
+}
+
+/// x(t), to be evaluated at any time.
+pub struct Trajectory {
+    derivation: Derivation,
+    /// The frequency with its uncertainty.
+    frequency: Ball,
+    /// Whether anything is known about its error.
+    is_estimated: bool,
+    /// The small parameter, and a in x = a y (1 where the expansion contains its amplitude).
+    setting: Setting,
+    /// An estimated bound of |x'|, for the error that an uncertain frequency makes.
+    speed: f64,
+    /// x(t) = X(omega t + phase).
+    phase: Exact,
+    methods: Vec<Method>,
+    digits: usize,
+    /// The x_n with balls as coefficients, by their bits.
+    functions: RwLock<BTreeMap<u32, Arc<PhaseFunctions>>>,
+    /// The period.
+    pub period: f64,
+}
+
+/// The order of a solution that takes about a second.
+fn default_order(form: &Form) -> usize {
+    match form {
+        Form::PowerLaw { .. } => 10,
+        Form::Sums | Form::Logarithmic => 8,
+        Form::Cubic { .. } => 24,
+        Form::Relaxation => 40,
+        Form::Conservative | Form::Polynomial => 20,
+    }
+}
+
+/// Points at which a Fourier series is taken, at least; a multiple of 4.
+const FEWEST_NODES: usize = 64;
+
+/// Phases at which the speed is looked at, and its safety factor.
+const PHASES: u32 = 64;
+const SAFETY: f64 = 2.0;
+
+/// Digits of a double.
+const DOUBLE: usize = 16;
+/// Times between two looks at the clock.
+const BLOCK: usize = 16;
+
+/// Doublings of the precision before the rounding is added to the error as it is.
+const DOUBLINGS: u32 = 4;
+
+/// One method at p and 2p bits, p doubled until the rounding does not matter; it is added to the
+/// error. The same as [`lindstedt_series::resummation::resum`] without the search for the nearest
+/// singularity, which would take most of the time at every phase anew.
+fn settled(
+    sample: &dyn Fn(u32) -> Option<Sample>,
+    method: Method,
+    known: usize,
+    accuracy: u32,
+) -> Option<(Estimate, u32)> {
+    let loss = u32::try_from(known).ok()?.saturating_mul(4);
+    let mut bits = accuracy.saturating_add(64).saturating_add(loss);
+    let sum = |bits: u32| Some(sample(bits)?.sum(method, None, accuracy).ok()?.estimate);
+    let mut before = sum(bits)?;
+    for last in (0..=DOUBLINGS).rev() {
+        bits = bits.saturating_mul(2);
+        let mut after = sum(bits)?;
+        let rounding = Float::with_val(53, &after.value - &before.value).abs();
+        let size = Float::with_val(53, after.value.abs_ref()) >> accuracy;
+        if last == 0 || Float::with_val(53, &rounding * 8u32) <= after.error || rounding <= size {
+            after.error += rounding.max(&size);
+            return Some((after, bits));
+        }
+        before = after;
+    }
+    None
+}
+
+/// (c_k, s_k) of values at the phases 2 pi (i + 1/2)/n, by the trapezoidal rule.
+fn harmonic(values: &[f64], k: usize) -> (f64, f64) {
+    let count = values.len() as f64;
+    let weight = if k == 0 { 1.0 } else { 2.0 } / count;
+    values.iter().enumerate().fold((0.0, 0.0), |(c, s), (i, x)| {
+        let angle = k as f64 * (i as f64 + 0.5) * std::f64::consts::TAU / count;
+        (c + weight * x * angle.cos(), s + weight * x * angle.sin())
+    })
+}
+
+impl Trajectory {
+    /// Derives the solution of a problem up to an order (one that takes about a second if nothing),
+    /// x(0) = a, x'(0) = 0 at phase 0.
+    ///
+    /// The frequency is the closed form's where there is one, else the resummed one, with its
+    /// error, of `evaluation` (by [`crate::period()`]); summed by its method. In doubles where a figure or
+    /// a function is meant.
+    ///
+    /// # Errors
+    /// Those of [`lindstedt_derivation::derive()`].
+    pub fn new(
+        setting: Setting,
+        order: Option<usize>,
+        phase: &Exact,
+        evaluation: &Evaluation,
+        in_doubles: bool,
+        work: &Work,
+    ) -> Result<Self, Error> {
+        let mut trajectory =
+            Self::without_error(setting, order, phase, evaluation, in_doubles, work)?;
+        trajectory.speed = trajectory.largest_speed();
+        Ok(trajectory)
+    }
+
+    /// The same without the bound of the speed that an error of x needs, which costs 64 phases.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn without_error(
+        setting: Setting,
+        order: Option<usize>,
+        phase: &Exact,
+        evaluation: &Evaluation,
+        in_doubles: bool,
+        work: &Work,
+    ) -> Result<Self, Error> {
+        let order = order.unwrap_or_else(|| default_order(&setting.form));
+        let digits = if in_doubles { DOUBLE } else { work.printed_digits().min(30) };
+        let phase = phase.clone();
+        let balls = Balls::new(bits_for(digits).saturating_add(64));
+        let period = evaluation.best_period.clone();
+        let two_pi = balls.mul_i64(&balls.pi(), 2);
+        let frequency = balls.div(&two_pi, &period).ok_or(DerivationError::NoValue)?;
+        let mut observer = |progress| work.goes_on(progress);
+        let derivation = setting.derive(order, (work.memory, &work.stop), &mut observer)?;
+        let few = few::is_few(derivation.order + 1);
+        let methods = match evaluation.asked {
+            Some(
+                method @ (Method::PartialSum
+                | Method::Pade
+                | Method::Uniform
+                | Method::UniformPade
+                | Method::BorelPade),
+            ) => vec![method],
+            _ if few => vec![Method::PartialSum],
+            _ => vec![Method::Pade, Method::UniformPade],
+        };
+        Ok(Self {
+            derivation,
+            frequency,
+            is_estimated: evaluation.is_estimated || evaluation.exact_period.is_some(),
+            setting,
+            speed: f64::INFINITY,
+            phase,
+            methods,
+            digits,
+            functions: RwLock::default(),
+            period: period.midpoint().to_f64(),
+        })
+    }
+
+    /// x at times, those that are reached before the work is stopped.
+    #[must_use]
+    pub fn table(&self, times: &[Exact], work: &Work) -> Displacements {
+        let mut points = Vec::new();
+        for block in times.chunks(BLOCK) {
+            if !work.goes_on(Progress::Parts(points.len(), times.len())) {
+                break;
+            }
+            points.par_extend(block.par_iter().map(|time| self.at(time)));
+        }
+        let complete = points.len() == times.len();
+        Displacements { order: self.order(), methods: self.methods.clone(), points, complete }
+    }
+
+    /// The largest difference quotient of x over neighbouring phases, times a safety factor.
+    fn largest_speed(&self) -> f64 {
+        let frequency = self.frequency.midpoint().to_f64();
+        if self.frequency.relative_accuracy_bits() >= i64::from(bits_for(self.digits)) {
+            // Known so well that no factor of this size matters.
+            let balls = Balls::new(64);
+            return 16.0 * frequency * self.setting.amplitude.ball(balls).abs_upper().to_f64();
+        }
+        let point = |k: u32| Point::PiTimes(Rational::from((2 * k + 1, PHASES)));
+        let x: Vec<f64> = (0..PHASES)
+            .into_par_iter()
+            .map(|k| self.rough(&point(k)).unwrap_or(f64::NAN))
+            .collect();
+        let step = std::f64::consts::TAU / f64::from(PHASES);
+        let next = x.iter().cycle().skip(1);
+        let quotients = x.iter().zip(next).map(|(a, b)| (b - a).abs() / step);
+        // Where the series has no value at some phase nothing bounds the speed.
+        let top =
+            quotients.fold(0.0, |top: f64, q| if q >= 0.0 { top.max(q) } else { f64::INFINITY });
+        SAFETY * top * frequency
+    }
+
+    /// The methods that sum the series in the small parameter; at every phase the one with the
+    /// least error estimate.
+    #[must_use]
+    pub fn methods(&self) -> &[Method] {
+        &self.methods
+    }
+
+    /// The order of the solution.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.derivation.order
+    }
+
+    /// x(t).
+    ///
+    /// The error is estimated from neighbouring approximants; to it the effect of the uncertain
+    /// frequency is added.
+    #[must_use]
+    pub fn at(&self, time: &Exact) -> Displacement {
+        let nothing = || Displacement {
+            time: time.clone(),
+            value: None,
+            double: f64::NAN,
+            error: f64::INFINITY,
+        };
+        self.value(time).unwrap_or_else(nothing)
+    }
+
+    fn value(&self, time: &Exact) -> Option<Displacement> {
+        let bits = self.frequency.midpoint().prec();
+        let balls = Balls::new(bits);
+        let t = time.ball(balls);
+        let tau = balls.add(&balls.mul(&self.frequency, &t), &self.phase.ball(balls));
+        let drift = balls.mul(&t, &self.frequency).radius().to_f64()
+            / self.frequency.midpoint().to_f64().abs();
+        let point = Point::Rational(tau.midpoint().to_rational()?);
+        let (value, error) = self.sum(&point)?;
+        let double = value.midpoint().to_f64();
+        if !self.is_estimated || !error.is_finite() && few::has_no_estimate(self.order() + 1) {
+            let (value, error) = (few::plain(&value, self.digits, false), f64::INFINITY);
+            return Some(Displacement { time: time.clone(), value, double, error });
+        }
+        let ball = Balls::new(value.midpoint().prec()).add_error(&value, &error);
+        let ball = balls.add_error(&ball, &Float::with_val(53, drift * self.speed));
+        let value = Number::estimated(&ball, self.digits);
+        Some(Displacement { time: time.clone(), value, double, error: ball.radius().to_f64() })
+    }
+
+    /// X at a phase to some digits, by one sequence of Pade approximants or the partial sum.
+    fn rough(&self, point: &Point) -> Option<f64> {
+        let order = u32::try_from(self.order()).ok()?;
+        let bits = 128 + 4 * order;
+        let sample = self.sample(point, bits)?;
+        let sum = sample.sum(Method::Pade, None, 53).map(|found| found.estimate.value).ok();
+        let partial = || partial_sums(&sample.coefficients, &sample.point, bits).pop();
+        let value = sum.or_else(partial)?;
+        let balls = Balls::new(bits);
+        let scaled = balls
+            .mul(&balls.from_parts(&value, &Float::new(53)), &self.setting.amplitude.ball(balls));
+        Some(scaled.midpoint().to_f64())
+    }
+
+    /// The coefficients of X at a phase and the small parameter.
+    fn sample(&self, point: &Point, bits: u32) -> Option<Sample> {
+        let balls = Balls::new(bits).with_guard(64);
+        let scale = Float::with_val(bits, 1);
+        let map = UniformMap { scale, prefactor: Float::new(bits), radius: None };
+        let coefficients = self.coefficients(point, balls)?;
+        let float = |c: &Ball| Float::with_val(bits, c.midpoint());
+        Some(Sample {
+            coefficients: coefficients.iter().map(float).collect(),
+            point: Float::with_val(bits, self.setting.small(balls).midpoint()),
+            map: Some(map),
+            radius: None,
+            bits,
+        })
+    }
+
+    /// X at a phase, and its estimated error.
+    fn sum(&self, point: &Point) -> Option<(Ball, Float)> {
+        let source = remembered(|bits| self.sample(point, bits));
+        let accuracy = bits_for(self.digits);
+        let known = self.order() + 1;
+        let (estimate, bits) = match few::partial_sum(&source, known, None, accuracy) {
+            Some(few) => few.ok().map(|found| (found.outcome.estimate, found.bits))?,
+            None => {
+                let sums = self.methods.iter();
+                let sums = sums.filter_map(|m| settled(&source, *m, known, accuracy));
+                sums.min_by(|a, b| a.0.error.total_cmp(&b.0.error))?
+            }
+        };
+        let balls = Balls::new(bits);
+        let amplitude = self.setting.amplitude.ball(balls);
+        let value = balls.from_parts(&estimate.value, &Float::new(53));
+        let error = Float::with_val(53, &estimate.error * amplitude.abs_upper());
+        Some((balls.mul(&value, &amplitude), error))
+    }
+
+    /// x_n at a phase.
+    fn coefficients(&self, point: &Point, balls: Balls) -> Option<Vec<Ball>> {
+        let known = self.functions.read().ok()?.get(&balls.bits()).cloned();
+        let functions = match known {
+            Some(functions) => functions,
+            None => {
+                let functions = Arc::new(self.derivation.phase_functions(false, balls)?);
+                self.functions.write().ok()?.insert(balls.bits(), functions.clone());
+                functions
+            }
+        };
+        functions.at(point)
+    }
+
+    /// The Fourier coefficients (c_k, s_k), k = 0 .. `harmonics`, of x as a function of
+    /// omega t, by the trapezoidal rule on 4 (harmonics + 1) points, 64 at least, and the largest
+    /// deviation of their sum from x that was found.
+    ///
+    /// The points lie half a step off the phase 0 and their number is a multiple of 4, so the harmonics
+    /// that fold onto lower ones keep their parity: no sine appears in an even motion, no even harmonic
+    /// in an odd one.
+    #[must_use]
+    pub fn fourier(&self, harmonics: usize) -> Option<Fourier> {
+        let count = (4 * (harmonics + 1)).max(FEWEST_NODES);
+        let turn = std::f64::consts::TAU / count as f64;
+        let at = |place: f64| {
+            let time = place / count as f64 * self.period;
+            let time = Exact::Rational(Rational::from_f64(time)?);
+            let x = self.at(&time);
+            x.double.is_finite().then_some(x)
+        };
+        let nodes: Vec<Displacement> =
+            (0..count).into_par_iter().map(|i| at(i as f64 + 0.5)).collect::<Option<_>>()?;
+        // |c_k| changes by less than the mean of |2 error cos|.
+        let error = nodes.iter().map(|x| x.error).sum::<f64>() * 2.0 / count as f64;
+        let values: Vec<f64> = nodes.iter().map(|x| x.double).collect();
+        let list: Vec<(f64, f64)> = (0..=harmonics).map(|k| harmonic(&values, k)).collect();
+        let sum = |angle: f64| {
+            let term = |(k, (c, s)): (usize, &(f64, f64))| {
+                let angle = k as f64 * angle;
+                c * angle.cos() + s * angle.sin()
+            };
+            list.iter().enumerate().map(term).sum::<f64>()
+        };
+        let deviation = |places: Vec<f64>| -> Option<(f64, f64)> {
+            let one = |place: f64| Some(((sum(place * turn) - at(place)?.double).abs(), place));
+            let all: Vec<(f64, f64)> = places.into_par_iter().map(one).collect::<Option<_>>()?;
+            all.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        // The nodes, half a step off, are known.
+        let quarters = (0..4 * count).filter(|i| i % 4 != 2).map(|i| i as f64 / 4.0).collect();
+        let (coarse, place) = deviation(quarters)?;
+        let (fine, _) = deviation((-8..=8).map(|i| place + f64::from(i) / 32.0).collect())?;
+        let deviation = coarse.max(fine);
+        Some(Fourier { coefficients: list, deviation, error: error.is_finite().then_some(error) })
+    }
+
+    /// The Fourier coefficients c_k, s_k, k = 0 .. `harmonics`, of one approximant at
+    /// 2 (harmonics + 1) phases: a guess without an error.
+    #[must_use]
+    pub fn guess(&self, harmonics: usize) -> Option<(Vec<f64>, Vec<f64>)> {
+        let count = 2 * (harmonics + 1);
+        let node = |i: usize| {
+            let phase = Point::PiTimes(Rational::from((2 * i as u64 + 1, count as u64)));
+            self.rough(&phase).filter(|x| x.is_finite())
+        };
+        let nodes: Vec<f64> = (0..count).into_par_iter().map(node).collect::<Option<_>>()?;
+        Some((0..=harmonics).map(|k| harmonic(&nodes, k)).unzip())
+    }
+
+    /// omega as a double.
+    #[must_use]
+    pub fn frequency(&self) -> f64 {
+        self.frequency.midpoint().to_f64()
+    }
+
+    /// 10^-digits (15 at most), below which a harmonic is not worth a line.
+    #[must_use]
+    pub fn negligible(&self) -> f64 {
+        10f64.powi(-(self.digits.min(15) as i32))
+    }
+}

@@ -1,0 +1,155 @@
+//! The errors of the engines as refusals.
+
+use super::Kind::{self, NoAnswer, Stopped, Undecided, Usage};
+use super::Refusal;
+use lindstedt_algebra::PhaseError;
+use lindstedt_derivation::DerivationError;
+use lindstedt_evaluation::EvaluationError;
+use lindstedt_expand::ExpandError;
+use lindstedt_impact::ImpactError;
+use lindstedt_melnikov::MelnikovError;
+use lindstedt_simulate::SimulateError;
+
+impl Refusal for ExpandError {
+    fn parts(&self) -> (Kind, &'static str, String) {
+        let (kind, code, hint) = match self {
+            Self::Interrupted { .. } => (Stopped, "interrupted", ""),
+            Self::Phase { source: PhaseError::Resonance { .. }, .. } => {
+                (NoAnswer, "resonance", "averaging needs a force off resonance")
+            }
+            Self::Phase { .. } => {
+                (Undecided, "could-not-decide", "the orders below this one can be derived")
+            }
+            error if averages(error) => {
+                (NoAnswer, "no-expansion", "averaging takes it: --normalisation free")
+            }
+            _ => (NoAnswer, "no-expansion", ""),
+        };
+        (kind, code, hint.to_owned())
+    }
+}
+
+impl Refusal for DerivationError {
+    fn parts(&self) -> (Kind, &'static str, String) {
+        let (kind, code, hint) = match self {
+            Self::Expand(error) => return error.parts(),
+            Self::BadValue { .. } => {
+                (Usage, "bad-value", "values are exact: 3, -1/3, 0.1, 2.5e-3, pi/4, 2*pi/3")
+            }
+            Self::Irrational { .. } => (NoAnswer, "irrational", "set a rational value"),
+            Self::UnknownParameter { .. } => {
+                (Usage, "unknown-parameter", "see `lindstedt problems --show NAME`")
+            }
+            Self::UnknownCondition { .. } => {
+                (Usage, "unknown-normalisation", "see `lindstedt problems --show NAME`")
+            }
+            Self::Unset { .. } => (Usage, "no-value-set", "--set NAME=VALUE, for example 1/10"),
+            Self::NotAmongSymbols { .. } => {
+                (Usage, "not-among-symbols", "set all parameters, or leave this one open")
+            }
+            Self::NoSuchRoute { .. } => (NoAnswer, "no-such-route", "use --route driver"),
+            Self::OutsideDomain { .. } => (NoAnswer, "outside-domain", ""),
+            Self::TooLarge { .. } => {
+                (Undecided, "too-large", "lower --order or raise --limit-memory")
+            }
+            Self::NotEnoughBits { .. } => (Undecided, "not-enough-digits", "ask for fewer digits"),
+            Self::MovingSingularity { .. } => (
+                NoAnswer,
+                "no-method",
+                "`lindstedt simulate` takes it; here the equation would have to be odd in x, and \
+                 the same backwards in time",
+            ),
+            Self::NoValue => (NoAnswer, "no-value", ""),
+            Self::OutOfPrimes => (Undecided, "out-of-primes", "lower --order"),
+            _ => (Undecided, "undecided", ""),
+        };
+        (kind, code, hint.to_owned())
+    }
+}
+
+impl Refusal for EvaluationError {
+    fn parts(&self) -> (Kind, &'static str, String) {
+        let (kind, code, hint) = match self {
+            Self::Derivation(error) => return error.parts(),
+            Self::NotEvaluated { .. } => (NoAnswer, "not-evaluated", ""),
+            Self::Resummation { .. } => {
+                (NoAnswer, "no-such-resummation", "try --resum auto, or another order")
+            }
+            Self::NoSuchStart { .. } => (NoAnswer, "no-start", "give amplitude and phase: --start"),
+            Self::NotTwoValues { option, .. } => (Usage, *option, "for example 1,0"),
+            Self::NotPositive { .. } => (Usage, "start", "--start A,PSI with A > 0"),
+            _ => (Undecided, "undecided", ""),
+        };
+        (kind, code, hint.to_owned())
+    }
+}
+
+/// Whether averaging takes what no constant amplitude, or none that is known exactly, satisfies.
+pub(crate) fn averages(error: &ExpandError) -> bool {
+    matches!(
+        error,
+        ExpandError::AmplitudeDrifts { .. }
+            | ExpandError::NoLimitCycle
+            | ExpandError::AmplitudeOfHigherOrder
+            | ExpandError::IrrationalAmplitude
+            | ExpandError::SeveralLimitCycles { .. }
+            | ExpandError::DegenerateLimitCycle
+    )
+}
+
+impl Refusal for SimulateError {
+    fn parts(&self) -> (Kind, &'static str, String) {
+        let (kind, code, hint) = match self {
+            Self::BranchPoint { .. } => (
+                Undecided,
+                "could-not-decide",
+                "more --digits; not at all where w reaches zero without speed, or for p near -1",
+            ),
+            Self::DenseBranchPoint { .. } => {
+                (Undecided, "too-large", "fewer --digits, or a power farther from -1")
+            }
+            Self::Grazing { .. } | Self::StepTooSmall { .. } => (
+                Undecided,
+                "could-not-decide",
+                "more --digits, or a start beside the degenerate one",
+            ),
+            Self::MissingParameter { .. } | Self::BadRestitution { .. } => {
+                (NoAnswer, "outside-domain", "see `lindstedt problems`")
+            }
+            _ => (NoAnswer, "no-trajectory", "another start, or a shorter time"),
+        };
+        (kind, code, hint.to_owned())
+    }
+}
+
+impl Refusal for ImpactError {
+    fn parts(&self) -> (Kind, &'static str, String) {
+        let (kind, code) = match self {
+            Self::NotFinite { .. }
+            | Self::NotPositive { .. }
+            | Self::OutOfRange { .. }
+            | Self::Negative { .. }
+            | Self::OrderZero
+            | Self::BadAxes => (Usage, "parameter"),
+            Self::NoConvergence { .. } | Self::Undecided { .. } => (Undecided, "undecided"),
+            Self::Cancelled => (Stopped, "interrupted"),
+            _ => (NoAnswer, "no-orbit"),
+        };
+        (kind, code, String::new())
+    }
+}
+
+impl Refusal for MelnikovError {
+    fn parts(&self) -> (Kind, &'static str, String) {
+        let (kind, code, hint) = match self {
+            Self::NotFinite { .. } | Self::NotPositive { .. } => {
+                (NoAnswer, "outside-domain", "see `lindstedt threshold --help`")
+            }
+            Self::Undecided { .. } | Self::Digits(_) => {
+                (Undecided, "could-not-decide", "move off the degenerate point")
+            }
+            _ => (NoAnswer, "no-answer", ""),
+        };
+        (kind, code, hint.to_owned())
+    }
+}
