@@ -46,6 +46,23 @@ pub enum EventKind {
     },
 }
 
+impl EventKind {
+    /// Its name: `impact`, `accumulation`, `rest`, `departure`, `stick`, `slip`, `switch`, `section`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Impact { .. } => "impact",
+            Self::Accumulation { .. } => "accumulation",
+            Self::Rest { .. } => "rest",
+            Self::Departure { .. } => "departure",
+            Self::Switching { to: 0, .. } => "stick",
+            Self::Switching { from: 0, .. } => "slip",
+            Self::Switching { .. } => "switch",
+            Self::Section { .. } => "section",
+        }
+    }
+}
+
 /// An event with the states (those of the linearisation behind them) on both sides.
 #[derive(Debug)]
 pub struct Event<'a, R: Real> {

@@ -1,11 +1,11 @@
 //! The answer: a motion with the estimated errors of its numbers.
 
-use super::course::{Course, Dot, End, Happening, Moment, Plan};
 use super::growth::{self, shifts};
-use super::{Section, View, difference, event_name};
+use super::plan::Plan;
+use super::{Section, View, difference};
 use crate::{Exact, Number, Work};
 use lindstedt_number::ball::Balls;
-use lindstedt_simulate::{EventKind, Quantity};
+use lindstedt_simulate::{Course, Dot, End, EventKind, Happening, Moment, Quantity};
 use rug::Float;
 use serde::{Serialize, Serializer};
 use std::fmt::Write;
@@ -189,7 +189,7 @@ impl Numbers {
     fn event(&self, (a, b): (&Happening, &Happening)) -> Event {
         let place = [&a.time, &a.after[0], &a.before[1], &a.after[1]];
         Event {
-            kind: event_name(a.kind),
+            kind: a.kind.name(),
             t: self.number(&a.time, &b.time),
             x: self.number(&a.after[0], &b.after[0]),
             v_before: self.number(&a.before[1], &b.before[1]),
@@ -231,7 +231,7 @@ impl Motion {
         let ratio = ratio.iter().zip(&fine_ratio).map(|(a, b)| numbers.number(a, b));
         let events = || course.events.iter().zip(&finer.events);
         let endless = events().filter(|(a, _)| matches!(a.kind, EventKind::Accumulation { .. }));
-        let [x, v] = plan.setup.start.each_ref().map(shown);
+        let [x, v] = plan.setup.flow.start.each_ref().map(shown);
         let points = || Points {
             kind: plan.section.unwrap_or(Section::Velocity),
             points: numbers.states(&course.points, &finer.points),

@@ -141,7 +141,7 @@ impl Oscillator {
                         orbit, many of where the motion ends; --state starts elsewhere";
             remarks.push(Remark(text.to_owned()));
         }
-        let period = setup.forcing.as_ref().map(|q| q.float(53).to_f64());
+        let period = setup.flow.forcing.as_ref().map(|q| q.float(53).to_f64());
         let run = Run {
             interval: period.unwrap_or(1.0),
             phase: period.filter(|_| setup.wall).map_or(0.0, |period| PHASE * period),
@@ -153,7 +153,7 @@ impl Oscillator {
         };
         let lyapunov = question.lyapunov.then(|| run.lyapunov()).transpose()?;
         let zero_one = question.zero_one.then(|| run.zero_one()).transpose()?;
-        let [x, v] = run.setup.start.each_ref().map(answer::shown);
+        let [x, v] = run.setup.flow.start.each_ref().map(answer::shown);
         let value = Diagnosis {
             digits: 16,
             start: answer::Begin { x, v, chosen: run.setup.chosen },
@@ -202,7 +202,7 @@ impl Run<'_> {
     }
 
     fn start(&self) -> [f64; 2] {
-        self.setup.start.each_ref().map(|q| q.float(53).to_f64())
+        self.setup.flow.start.each_ref().map(|q| q.float(53).to_f64())
     }
 
     /// The state at the beginning of the first interval.
@@ -211,7 +211,7 @@ impl Run<'_> {
         if self.phase == 0.0 {
             return Ok((0.0, start));
         }
-        let system = self.setup.model.compile(Doubles, &self.setup.parameters)?;
+        let system = self.setup.flow.model.compile(Doubles, &self.setup.flow.parameters)?;
         let settings = Settings::for_digits(16);
         let section = Section::Period(self.phase);
         let mut map = PoincareMap::new(&system, &0.0, &start, section, settings)?;
@@ -220,8 +220,8 @@ impl Run<'_> {
     }
 
     fn lyapunov(&self) -> Result<Exponent, Error> {
-        let system = self.setup.model.clone().linearised();
-        let system = system.compile(Doubles, &self.setup.parameters)?;
+        let system = self.setup.flow.model.clone().linearised();
+        let system = system.compile(Doubles, &self.setup.flow.parameters)?;
         let settings = LyapunovSettings {
             interval: self.interval,
             transient: self.skipped,
@@ -246,7 +246,7 @@ impl Run<'_> {
 
     /// x once per period of the force, or its maxima.
     fn series(&self) -> Result<Vec<f64>, Error> {
-        let mut model = self.setup.model.clone();
+        let mut model = self.setup.flow.model.clone();
         let section = if self.forced && self.phase > 0.0 {
             Section::Strobe { first: self.phase, period: self.interval }
         } else if self.forced {
@@ -256,7 +256,7 @@ impl Run<'_> {
             let surface = Surface::Section(0);
             Section::Events { surface, rising: Some(false), patience: 1e3 }
         };
-        let system = model.compile(Doubles, &self.setup.parameters)?;
+        let system = model.compile(Doubles, &self.setup.flow.parameters)?;
         let settings = Settings::for_digits(16);
         let mut map = PoincareMap::new(&system, &0.0, &self.start(), section, settings)?;
         let (mut series, all) = (Vec::new(), self.skipped.saturating_add(self.kept));

@@ -174,7 +174,7 @@ impl Oscillator {
         if !complete {
             remarks.push(Remark("stopped; with --resume FILE it can be continued".to_owned()));
         }
-        let [x, v] = task.setup.start.each_ref().map(answer::shown);
+        let [x, v] = task.setup.flow.start.each_ref().map(answer::shown);
         let value = Diagram {
             digits: None,
             start: answer::Begin { x, v, chosen: task.setup.chosen },
@@ -246,7 +246,7 @@ impl Task<'_> {
         let others: Vec<String> = others.map(|(name, value)| format!("{name}={value}")).collect();
         let ends = [self.values.first(), self.values.last()];
         let [low, high] = ends.map(|q| q.map(answer::shown).unwrap_or_default());
-        let start = self.setup.start.each_ref().map(|q| q.float(64).to_f64());
+        let start = self.setup.flow.start.each_ref().map(|q| q.float(64).to_f64());
         format!(
             "{} {}; {} = {low}..{high}:{}; start {start:?}; {:?}; skip {}, keep {}; {}",
             self.setup.name,
@@ -267,11 +267,11 @@ impl Task<'_> {
         work: &Work,
         journal: &mut dyn Journal,
     ) -> Result<(), Error> {
-        let mut model = self.setup.model.clone();
+        let mut model = self.setup.flow.model.clone();
         if self.section == Section::Velocity {
             model = model.with_section(Expression::VELOCITY);
         }
-        let forcing = self.setup.forcing.as_ref().map_or(10.0, |q| q.float(64).to_f64());
+        let forcing = self.setup.flow.forcing.as_ref().map_or(10.0, |q| q.float(64).to_f64());
         let events = |surface, rising| simulate::Section::Events {
             surface,
             rising,
@@ -279,7 +279,7 @@ impl Task<'_> {
         };
         let settings = DiagramSettings {
             time: 0.0,
-            start: self.setup.start.iter().map(|q| q.float(64).to_f64()).collect(),
+            start: self.setup.flow.start.iter().map(|q| q.float(64).to_f64()).collect(),
             section: match self.section {
                 Section::Stroboscopic => simulate::Section::Period(forcing),
                 Section::Impact => events(Surface::Wall(0), None),
@@ -293,7 +293,7 @@ impl Task<'_> {
         };
         let sweep = Sweep {
             model: &model,
-            parameters: &self.setup.parameters,
+            parameters: &self.setup.flow.parameters,
             name: &self.name,
             values: &self.values,
         };

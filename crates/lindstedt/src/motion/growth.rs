@@ -1,7 +1,7 @@
 //! Growth of a perturbation of the periodic impact orbit, as long as it is linear.
 
-use super::course::{Course, Plan};
-use lindstedt_simulate::EventKind;
+use super::plan::Plan;
+use lindstedt_simulate::{Course, EventKind};
 use rug::Float;
 
 /// Deviations that differ from twice those of half the perturbation by more than this part are

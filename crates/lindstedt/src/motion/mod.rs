@@ -9,27 +9,26 @@
 
 pub(crate) mod answer;
 mod chaos;
-mod course;
 mod diagram;
 pub(crate) mod growth;
 mod history;
 mod orbit;
+mod plan;
 mod setup;
 
 pub use answer::{Begin, Event, LinearRegime, Motion, Points, Rest, State, Steps};
 pub use chaos::{Chaos, Diagnosis, Exponent, Test, ZeroOneTest};
-pub use course::Dot;
 pub use diagram::{Bifurcation, Column, Diagram, Journal, Swept};
 pub use lindstedt_impact::parameters::Branch;
+pub use lindstedt_simulate::{Cut as Section, Dot};
 
 use crate::grid::Axis;
 use crate::refusal::Refused;
 use crate::{Answer, Error, Exact, Oscillator, Progress, Remark, Standing, Work};
 use answer::Pair;
-use course::{Course, Plan, align};
-use lindstedt_simulate::{EventKind, Quantity, SimulateError};
+use lindstedt_simulate::{self as simulate, Course, Quantity, SimulateError, align};
+use plan::Plan;
 use rug::{Float, Rational};
-use serde::Serialize;
 use setup::Setup;
 use std::time::Instant;
 
@@ -91,18 +90,6 @@ pub enum End {
     Periods(u32),
     /// At the N-th impact.
     Impacts(u32),
-}
-
-/// A Poincare section.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Section {
-    /// Once per period of the force, t = 2 pi n/omega.
-    Stroboscopic,
-    /// Just before each impact.
-    Impact,
-    /// x' = 0 from above: maxima of x.
-    Velocity,
 }
 
 /// What a figure of a motion shows.
@@ -221,7 +208,7 @@ fn precomputed(work: &Work) -> u32 {
 
 /// Refuses a section that there is not.
 fn section(asked: Option<Section>, wanted: bool, setup: &Setup) -> Result<Option<Section>, Error> {
-    let usual = match &setup.forcing {
+    let usual = match &setup.flow.forcing {
         _ if setup.wall => Section::Impact,
         Some(_) => Section::Stroboscopic,
         None => Section::Velocity,
@@ -232,7 +219,7 @@ fn section(asked: Option<Section>, wanted: bool, setup: &Setup) -> Result<Option
         return Err(Refused::usage("section", message, "--section impact, or --state").into());
     }
     let reason = match section {
-        Some(Section::Stroboscopic) if setup.forcing.is_none() => "no force with one period",
+        Some(Section::Stroboscopic) if setup.flow.forcing.is_none() => "no force with one period",
         Some(Section::Impact) if !setup.wall => "no wall",
         _ => return Ok(section),
     };
@@ -241,24 +228,28 @@ fn section(asked: Option<Section>, wanted: bool, setup: &Setup) -> Result<Option
 }
 
 /// The end asked for; at the last time asked for; else as long as is usual.
-fn end(asked: Option<&End>, last: Option<&Quantity>, setup: &Setup) -> Result<course::End, Error> {
-    let periods = |n: u32| match &setup.forcing {
-        Some(period) => course::End::Time(period.times(&Rational::from(n))),
-        None => course::End::Maxima(n),
+fn end(
+    asked: Option<&End>,
+    last: Option<&Quantity>,
+    setup: &Setup,
+) -> Result<simulate::End, Error> {
+    let periods = |n: u32| match &setup.flow.forcing {
+        Some(period) => simulate::End::Time(period.times(&Rational::from(n))),
+        None => simulate::End::Maxima(n),
     };
     Ok(match (asked, last) {
-        (Some(End::Time(time)), _) => course::End::Time(time.clone().into()),
+        (Some(End::Time(time)), _) => simulate::End::Time(time.clone().into()),
         (Some(End::Periods(n)), _) => periods(*n),
         (Some(End::Impacts(_)), _) if !setup.wall => {
             let message = "there is no wall; use --until or --periods";
             return Err(Refused::usage("impacts", message, "").into());
         }
-        (Some(End::Impacts(n)), _) => course::End::Impacts(*n),
+        (Some(End::Impacts(n)), _) => simulate::End::Impacts(*n),
         // As long as it takes.
-        (None, Some(last)) if last.float(64) > 0 => course::End::Time(last.clone()),
-        _ if setup.wall => course::End::Impacts(USUAL),
-        _ if setup.forcing.is_some() => periods(USUAL),
-        _ => course::End::Time(Quantity::from(i64::from(USUAL))),
+        (None, Some(last)) if last.float(64) > 0 => simulate::End::Time(last.clone()),
+        _ if setup.wall => simulate::End::Impacts(USUAL),
+        _ if setup.flow.forcing.is_some() => periods(USUAL),
+        _ => simulate::End::Time(Quantity::from(i64::from(USUAL))),
     })
 }
 
@@ -269,19 +260,19 @@ fn plan(question: &Simulate, setup: Setup) -> Result<Plan, Error> {
         question.times.iter().flatten().map(|t| Quantity::from(t.clone())).collect();
     let end = end(question.end.as_ref(), asked.last(), &setup)?;
     let empty = match &end {
-        course::End::Time(time) => time.float(64) <= 0,
-        course::End::Maxima(n) | course::End::Impacts(n) => *n == 0,
+        simulate::End::Time(time) => time.float(64) <= 0,
+        simulate::End::Maxima(n) | simulate::End::Impacts(n) => *n == 0,
     };
     if empty {
         return usage("until", "the end is not after the start");
     }
-    if let (Some(last), course::End::Time(time)) = (asked.last(), &end)
+    if let (Some(last), simulate::End::Time(time)) = (asked.last(), &end)
         && last.float(64) > time.float(64)
     {
         return usage("times", "times go on after the end: --until, --periods");
     }
     let times = match (&question.times, &end) {
-        (None, course::End::Time(time)) => {
+        (None, simulate::End::Time(time)) => {
             (0..=USUAL).map(|k| time.times(&Rational::from((k, USUAL)))).collect()
         }
         _ => asked,
@@ -379,20 +370,6 @@ fn degenerate(error: &SimulateError) -> bool {
             | SimulateError::StepTooSmall { .. }
             | SimulateError::Grazing { .. }
     )
-}
-
-/// The name of an event.
-fn event_name(kind: EventKind) -> &'static str {
-    match kind {
-        EventKind::Impact { .. } => "impact",
-        EventKind::Accumulation { .. } => "accumulation",
-        EventKind::Rest { .. } => "rest",
-        EventKind::Departure { .. } => "departure",
-        EventKind::Switching { to: 0, .. } => "stick",
-        EventKind::Switching { from: 0, .. } => "slip",
-        EventKind::Switching { .. } => "switch",
-        _ => "section",
-    }
 }
 
 /// |a - b|.

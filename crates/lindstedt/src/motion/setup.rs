@@ -15,7 +15,7 @@ use lindstedt_equation::{
 };
 use lindstedt_expand::Excitation;
 use lindstedt_problem_file::History;
-use lindstedt_simulate::{Digits, Model, Parameters, Quantity, Real as _};
+use lindstedt_simulate::{Digits, Flow, Model, Parameters, Quantity, Real as _};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
@@ -25,18 +25,14 @@ const SWEPT_PERTURBATION: (u32, u32) = (1, 1000);
 /// A problem in the time domain.
 pub(super) struct Setup {
     pub name: String,
-    pub model: Model,
-    pub parameters: Parameters,
+    /// The motion: model, values, start, period of the force.
+    pub flow: Flow,
     /// Every parameter as it stands, in the order of the data card.
     pub at: Vec<(String, String)>,
-    /// x(0), x'(0).
-    pub start: [Quantity; 2],
     /// How the start was chosen, where it was not given.
     pub chosen: Option<&'static str>,
     /// The motion before t = 0, in words.
     pub history: Option<&'static str>,
-    /// The period of the force.
-    pub forcing: Option<Quantity>,
     /// The frequency of the force in the parameters.
     frequency: Option<Expression>,
     /// The name of the small parameter.
@@ -45,8 +41,6 @@ pub(super) struct Setup {
     pub wall: bool,
     /// The equation is linear, without a wall.
     pub linear: bool,
-    /// Dry friction makes the body stick.
-    pub sticks: bool,
     /// The periodic impact orbit that the motion starts on.
     pub orbit: Option<Orbit>,
     /// Parameters that can be swept: nothing that was computed beforehand depends on them.
@@ -92,7 +86,7 @@ impl Setup {
     pub fn period_at(&self, name: &str, value: &Quantity) -> Option<Result<f64, Error>> {
         let frequency = self.frequency.as_ref()?;
         frequency.parameters().iter().find(|parameter| *parameter == name)?;
-        let mut parameters = self.parameters.clone();
+        let mut parameters = self.flow.parameters.clone();
         parameters.set(name, value.clone());
         let evaluator = Evaluator { parameters: &parameters, small: &self.small, bits: 64 };
         let period = evaluator.period(frequency).transpose()?;
@@ -312,24 +306,26 @@ impl Case<'_> {
             let list = asked.join(", ");
             self.remarks.push(format!("asked for in the file, not answered by a motion: {list}"));
         }
-        let wall = self.problem.impact.is_some();
+        let (wall, sweepable) = (self.problem.impact.is_some(), self.sweepable());
         Ok(Setup {
             identity: self.identity(past.as_ref()),
             name: self.problem.name.to_string(),
-            model,
+            flow: Flow {
+                model,
+                parameters: self.parameters,
+                start: begin.state,
+                forcing,
+                sticks: friction(&self.equation).is_some(),
+            },
             at,
-            start: begin.state,
             chosen: begin.chosen,
             history,
-            forcing,
             wall,
             linear: !wall && is_linear(&self.equation),
-            sticks: friction(&self.equation).is_some(),
             // The frequency of the force is held on the orbit.
             frequency: frequency.filter(|_| self.orbit.is_none()),
-            sweepable: self.sweepable(),
+            sweepable,
             small: self.small,
-            parameters: self.parameters,
             orbit: self.orbit,
             remarks: self.remarks,
         })

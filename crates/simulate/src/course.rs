@@ -1,0 +1,189 @@
+//! What happens on the way from a start to an end: events, samples, the points of a section; two
+//! integrations of one motion compared.
+
+use crate::quantity::Quantity;
+use crate::report::{EventKind, Work};
+use rug::Float;
+
+/// Where a course ends.
+#[derive(Clone, Debug)]
+pub enum End {
+    /// At this time.
+    Time(Quantity),
+    /// The N-th maximum of x.
+    Maxima(u32),
+    /// The N-th impact.
+    Impacts(u32),
+}
+
+/// A state at a time.
+#[derive(Clone, Debug)]
+pub struct Moment {
+    /// t.
+    pub time: Float,
+    /// x, x'.
+    pub state: [Float; 2],
+    /// Sticking, or resting at the wall.
+    pub stuck: bool,
+}
+
+/// An event on the way.
+#[derive(Clone, Debug)]
+pub struct Happening {
+    /// What.
+    pub kind: EventKind,
+    /// When.
+    pub time: Float,
+    /// x, x' before.
+    pub before: [Float; 2],
+    /// x, x' after.
+    pub after: [Float; 2],
+}
+
+impl Happening {
+    /// An impact, or a hit without rebound.
+    #[must_use]
+    pub fn is_impact(&self) -> bool {
+        match self.kind {
+            EventKind::Impact { .. } => true,
+            EventKind::Rest { .. } => self.before[1] != self.after[1],
+            _ => false,
+        }
+    }
+}
+
+/// A point of the line that a figure shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dot {
+    /// t.
+    pub time: f64,
+    /// x.
+    pub x: f64,
+    /// x'.
+    pub v: f64,
+    /// Sticking, or at rest at the wall.
+    pub stuck: bool,
+}
+
+/// What came of an integration.
+#[derive(Clone, Debug)]
+pub struct Course {
+    /// The events, but for those of sections and for switches that nothing comes of.
+    pub events: Vec<Happening>,
+    /// The states at the times asked for.
+    pub samples: Vec<Moment>,
+    /// The points of the section; at impacts the state just before.
+    pub points: Vec<Moment>,
+    /// The state at the end.
+    pub last: Moment,
+    /// The cost.
+    pub work: Work,
+    /// The time spent sticking or at rest at the wall.
+    pub stuck_time: Float,
+    /// The line of a figure, where one is kept.
+    pub line: Vec<Dot>,
+    /// The end was reached.
+    pub complete: bool,
+    /// The points are those of a section at impacts.
+    pub(crate) points_at_impacts: bool,
+}
+
+impl Course {
+    /// Whether both integrations met the same events (but for the impacts that one of them told
+    /// apart before an accumulation and the other not, see [`align`]); nothing else can be compared.
+    #[must_use]
+    pub fn comparable(&self, finer: &Self) -> bool {
+        let kinds = |c: &Self| -> Vec<EventKind> { c.events.iter().map(|e| e.kind).collect() };
+        let sizes = |c: &Self| (c.samples.len(), c.points.len(), c.complete);
+        kinds(self) == kinds(finer) && sizes(self) == sizes(finer)
+    }
+
+    /// The largest error, relative to the larger of the value and one, as log10.
+    #[must_use]
+    pub fn log10_error(&self, finer: &Self) -> f64 {
+        let mut worst = f64::NEG_INFINITY;
+        let (own, other) = (self.numbers(), finer.numbers());
+        for (a, b) in own.zip(other) {
+            let size = Float::with_val(64, a.abs_ref()).max(&Float::with_val(64, 1));
+            let error = Float::with_val(64, a - b).abs() / size;
+            worst = worst.max(error.log10().to_f64());
+        }
+        worst
+    }
+
+    /// All numbers that are given, in order.
+    fn numbers(&self) -> impl Iterator<Item = &Float> {
+        let moments = [&self.last].into_iter().chain(&self.samples).chain(&self.points);
+        let moments = moments.flat_map(|m| [&m.time].into_iter().chain(&m.state));
+        let events = self.events.iter();
+        let events = events.flat_map(|e| [&e.time].into_iter().chain(&e.before).chain(&e.after));
+        moments.chain(events)
+    }
+
+    /// How many events there are of that name; hits without rebound are impacts.
+    #[must_use]
+    pub fn count(&self, name: &str) -> usize {
+        let is = |e: &&Happening| match name {
+            "impact" => e.is_impact(),
+            _ => e.kind.name() == name,
+        };
+        self.events.iter().filter(is).count()
+    }
+
+    /// Impacts in sequence before each accumulation.
+    fn runs(&self) -> Vec<usize> {
+        let mut run = 0;
+        let mut list = Vec::new();
+        for event in &self.events {
+            match event.kind {
+                EventKind::Impact { .. } => run += 1,
+                EventKind::Accumulation { .. } => list.push(std::mem::take(&mut run)),
+                _ => run = 0,
+            }
+        }
+        list
+    }
+
+    /// Leaves out the last impacts before every accumulation, but for so many.
+    fn shorten(&mut self, common: &[usize]) {
+        let mut accumulations = self.runs().into_iter().zip(common);
+        let (mut events, mut points) = (Vec::new(), Vec::new());
+        // Points of a section at impacts stand for these impacts, in order.
+        let at_impacts = self.points_at_impacts;
+        let mut old_points = std::mem::take(&mut self.points).into_iter();
+        let mut run: Vec<(Happening, Option<Moment>)> = Vec::new();
+        for event in std::mem::take(&mut self.events) {
+            if matches!(event.kind, EventKind::Impact { .. }) {
+                run.push((event, if at_impacts { old_points.next() } else { None }));
+                continue;
+            }
+            if matches!(event.kind, EventKind::Accumulation { .. })
+                && let Some((own, common)) = accumulations.next()
+            {
+                run.truncate(run.len() - (own - common).min(run.len()));
+            }
+            for (event, point) in run.drain(..) {
+                events.push(event);
+                points.extend(point);
+            }
+            if at_impacts && event.is_impact() {
+                points.extend(old_points.next());
+            }
+            events.push(event);
+        }
+        for (event, point) in run {
+            events.push(event);
+            points.extend(point);
+        }
+        points.extend(old_points);
+        (self.events, self.points) = (events, points);
+    }
+}
+
+/// Leaves out the impacts before an accumulation that only one of two integrations told apart:
+/// with fewer digits the sequence is known to be geometric, and jumped over, earlier.
+pub fn align(a: &mut Course, b: &mut Course) {
+    let common: Vec<usize> = a.runs().iter().zip(b.runs()).map(|(m, n)| (*m).min(n)).collect();
+    a.shorten(&common);
+    b.shorten(&common);
+}
