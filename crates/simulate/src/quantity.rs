@@ -1,5 +1,6 @@
 //! Values of parameters, exact where they can be.
 
+use lindstedt_equation::Problem;
 use lindstedt_number::Exact;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
@@ -84,6 +85,37 @@ impl Parameters {
     #[must_use]
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Those of a problem: given, or by default, with the delay that is a number of periods of the force.
+    /// What has no value is left out.
+    #[must_use]
+    pub fn of_problem(problem: &Problem, given: &BTreeMap<String, Exact>) -> Self {
+        let mut parameters = Self::new();
+        let value = |name: &str| {
+            let card = || problem.parameters.iter().find(|card| card.name == name);
+            given.get(name).cloned().or_else(|| Exact::parse(&card()?.default).ok())
+        };
+        for card in &problem.parameters {
+            if let Some(value) = value(&card.name) {
+                parameters.set(&card.name, value);
+            }
+        }
+        if let Some(tie) = &problem.synchronous
+            && let (Some(Exact::Rational(k)), Some(omega)) =
+                (value(&tie.periods), value(&tie.frequency))
+        {
+            let two_k = k * 2u32;
+            let period = match &omega {
+                Exact::Rational(w) if !w.is_zero() => Some(Exact::pi_times(two_k / w)),
+                Exact::PiTimes(w) if !w.is_zero() => Some(Exact::from(two_k / w)),
+                _ => None,
+            };
+            if let Some(period) = period {
+                parameters.set(&tie.delay, period);
+            }
+        }
+        parameters
     }
 
     /// With one more value (or another one).

@@ -5,7 +5,6 @@ use super::orbit::{Orbit, recognised};
 use super::{Branch, Start};
 use crate::refusal::Refused;
 use crate::start::Taken;
-use crate::verify::quantities;
 use crate::{Error, Exact, Oscillator, check_parameters};
 use lindstedt_equation::Function::{Abs, Cos, Sign, Sin};
 use lindstedt_equation::monomials::expand;
@@ -62,7 +61,7 @@ impl Setup {
         let mut problem = with_small(oscillator.problem());
         let given = linked(&problem, oscillator.given().clone());
         check_parameters(&problem, &given)?;
-        let mut parameters = quantities(&problem, &given);
+        let mut parameters = Parameters::of_problem(&problem, &given);
         let at = values(&problem, &given, start.branch);
         let (equation, small) = determined(oscillator, &mut problem, &mut parameters);
         let bits = Digits::for_digits(digits.saturating_add(40)).bits();

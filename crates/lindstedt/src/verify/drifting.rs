@@ -1,6 +1,6 @@
 //! Averaged expansions against the time domain: x_N(t) by the truncated rates of a and psi.
 
-use super::{Comparison, Verify, quantities};
+use super::{Comparison, Verify};
 use crate::averaging::AveragingSettings;
 use crate::{Error, Oscillator, Progress};
 use lindstedt_derivation::averaging::numbers::{Harmonic, Numbers, Terms, numbers};
@@ -160,7 +160,7 @@ impl Drifting {
             start,
             times: (1..=samples).map(time).collect(),
             model: Model::of_problem(&judged)?,
-            parameters: quantities(problem, oscillator.given()),
+            parameters: Parameters::of_problem(problem, oscillator.given()),
             small: problem.small.to_string(),
             numbers,
         })

@@ -1,7 +1,7 @@
 //! Expansions of periodic solutions, at points of the phase, against the time domain.
 
 use super::cycle::cycle;
-use super::{Comparison, Verify, quantities};
+use super::{Comparison, Verify};
 use crate::{Derivation, Error, Oscillator};
 use lindstedt_equation::{AmplitudeRole, Condition};
 use lindstedt_expand::ExpandError;
@@ -89,7 +89,7 @@ impl Periodic {
             condition: d.condition,
             amplitude,
             model: Model::of_problem(problem)?,
-            parameters: quantities(problem, oscillator.given()),
+            parameters: Parameters::of_problem(problem, oscillator.given()),
             small: problem.small.to_string(),
         })
     }
