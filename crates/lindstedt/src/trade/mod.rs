@@ -12,6 +12,7 @@
 //! smallest term), and by the resummation that [`lindstedt_series::resummation::resum`] chooses.
 
 mod answer;
+mod found;
 mod front;
 mod method;
 mod proof;

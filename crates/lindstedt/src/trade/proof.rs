@@ -1,6 +1,6 @@
 //! The period as a theorem, once for all rows: a row's true error is then proved, too.
 
-use super::run::Found;
+use super::found::Found;
 use crate::Oscillator;
 use crate::evaluate::turn::TimeDomain;
 use lindstedt_algebra::Stop;

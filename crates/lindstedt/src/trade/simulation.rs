@@ -1,6 +1,6 @@
 //! The competitor: the period from the equation in the time domain.
 
-use super::run::Found;
+use super::found::Found;
 use crate::Error;
 use crate::evaluate::turn::TimeDomain;
 use lindstedt_algebra::Stop;

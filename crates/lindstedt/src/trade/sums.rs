@@ -1,7 +1,7 @@
 //! The series of a run summed: as it stands, and by the method whose error estimate is least.
 
 use super::Summation;
-use super::run::{Found, fastest};
+use super::found::{Found, fastest};
 use crate::evaluate::source::{Coefficients, Source};
 use crate::{Error, EvaluationError};
 use lindstedt_algebra::Stop;

@@ -1,6 +1,6 @@
 //! True periods, from a route that the runs do not take.
 
-use super::run::Found;
+use super::found::Found;
 use super::{Method, Row, Trade};
 use crate::Error;
 use crate::evaluate::setting::Setting;
