@@ -94,8 +94,8 @@ fn every_formula_is_drawn() {
     };
     for section in &paper().sections {
         for row in &section.rows {
-            [&row.label, &row.printed, &row.derived, &row.independent, &row.evidence]
-                .map(&mut draw);
+            let texts = [&row.label, &row.printed, &row.derived, &row.independent, &row.evidence];
+            texts.into_iter().for_each(&mut draw);
         }
         for table in &section.tables {
             let cells = table.rows.iter().flatten().chain(&table.columns).chain(&table.notes);
