@@ -5,7 +5,9 @@ pub mod examples;
 pub mod mathematics;
 pub mod measure;
 
-use lindstedt::{Derivation, Settings, derive, problems};
+use lindstedt::{
+    Derivation, unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
+};
 
 /// The checked expansion of a built-in problem with its default settings, to an order.
 ///

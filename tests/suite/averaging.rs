@@ -3,18 +3,21 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test fails by panicking
 
-use lindstedt::algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt::averaging::{Averaging, AveragingSettings, Coefficient, average as average_problem};
-use lindstedt::coeff::PolynomialRing;
-use lindstedt::coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials};
-use lindstedt::coeff::parameters::{ParameterField, ParameterFraction};
-use lindstedt::coeff::print::{Print, Style};
-use lindstedt::equation::{Condition, Expression, Function, ParameterCard, Problem};
-use lindstedt::expand::{AveragedExpansion, Binding, average, check_averaged, compile};
-use lindstedt::number::ball::Balls;
-use lindstedt::number::ball::ring::{BallRing, Enclosure};
-use lindstedt::phase::{Delay, Torus};
-use lindstedt::{DerivationError as Error, Exact, Settings, derive as derive_problem, problems};
+use lindstedt::unstable::algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
+use lindstedt::unstable::coeff::PolynomialRing;
+use lindstedt::unstable::coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials};
+use lindstedt::unstable::coeff::parameters::{ParameterField, ParameterFraction};
+use lindstedt::unstable::coeff::print::{Print, Style};
+use lindstedt::unstable::equation::{Condition, Expression, Function, ParameterCard, Problem};
+use lindstedt::unstable::expand::{AveragedExpansion, Binding, average, check_averaged, compile};
+use lindstedt::unstable::number::ball::Balls;
+use lindstedt::unstable::number::ball::ring::{BallRing, Enclosure};
+use lindstedt::unstable::phase::{Delay, Torus};
+use lindstedt::{
+    DerivationError as Error, Exact, unstable::derivation::Settings,
+    unstable::derivation::derive as derive_problem, unstable::problems,
+};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
@@ -136,7 +139,7 @@ fn delay_loop() -> Problem {
     let mut problem = problems::vibro_impact::problem();
     let Expression::Sum(terms) = &problem.equation else { panic!("a sum") };
     let free = |term: &&Expression| {
-        !term.print("eps", lindstedt::equation::print::Style::Text).contains("P0")
+        !term.print("eps", lindstedt::unstable::equation::print::Style::Text).contains("P0")
     };
     problem.equation = Expression::Sum(terms.iter().filter(free).cloned().collect());
     problem.synchronous = None;
@@ -209,7 +212,7 @@ fn symbolic_rates_of_the_delay_loop() {
     let g2 = z.add(&bend, &z.scale(&z.mul(&slope, &time), -1, 1));
     let over_alpha = |power: u32| {
         let inverse = k.reciprocal(&alpha).unwrap();
-        z.real(&lindstedt::coeff::polynomial::power(&k, &inverse, power))
+        z.real(&lindstedt::unstable::coeff::polynomial::power(&k, &inverse, power))
     };
     let minus_i = z.scale(&z.i(), -1, 1);
     let lambda_1 = z.scale(&z.mul(&z.mul(&minus_i, &g), &over_alpha(1)), 1, 2);

@@ -1,11 +1,13 @@
 //! Duffing and van der Pol: published coefficients, both normalisations, two routes.
 #![allow(clippy::unwrap_used)]
 
-use lindstedt::algebra::Rationals;
-use lindstedt::equation::{Condition, Expression};
-use lindstedt::expand::{Binding, ExpandError, Request, check, compile, expand, leading_amplitude};
-use lindstedt::phase::Trigonometric;
-use lindstedt::{Settings, Solution, problems};
+use lindstedt::unstable::algebra::Rationals;
+use lindstedt::unstable::equation::{Condition, Expression};
+use lindstedt::unstable::expand::{
+    Binding, ExpandError, Request, check, compile, expand, leading_amplitude,
+};
+use lindstedt::unstable::phase::Trigonometric;
+use lindstedt::{Solution, unstable::derivation::Settings, unstable::problems};
 use lindstedt_tests::{expansion, with};
 use rug::Rational;
 
@@ -79,7 +81,7 @@ fn directly(
     equation: &Expression,
     condition: Condition,
     order: usize,
-) -> Result<lindstedt::expand::Expansion<Plain>, ExpandError> {
+) -> Result<lindstedt::unstable::expand::Expansion<Plain>, ExpandError> {
     let algebra = Trigonometric::new(Rationals);
     let compiled = compile(&algebra, equation, &NoNames, order)?;
     let leading_amplitude = leading_amplitude(&algebra, &compiled, condition)?;
@@ -203,8 +205,10 @@ fn the_residual_check_reads_constants_inside_exp() {
     // exp(eps) satisfies E' = 0 in the phase whatever its coefficients are: its value at psi = 0
     // is what tells 1 + eps + eps^2/2 + ... from anything else.
     let x = || Expression::DISPLACEMENT;
-    let exponential =
-        Expression::Function(lindstedt::equation::Function::Exp, Box::new(Expression::Small));
+    let exponential = Expression::Function(
+        lindstedt::unstable::equation::Function::Exp,
+        Box::new(Expression::Small),
+    );
     let equation = Expression::ACCELERATION + x() + Expression::Small * exponential * x().pow(3);
     let algebra = Trigonometric::new(Rationals);
     let compiled = compile(&algebra, &equation, &NoNames, 4).unwrap();
@@ -219,8 +223,9 @@ fn the_residual_check_reads_constants_inside_exp() {
 #[test]
 fn an_unlucky_prime_is_no_verdict() {
     // The engine's own primes as coefficients: modulo one of them the stiffness vanishes.
-    let (_, roots) = lindstedt::phase::Modular::points_for_degree(5);
-    let fields = lindstedt::phase::modular::PrimeField::with_roots_of_unity(roots, 1 << 61);
+    let (_, roots) = lindstedt::unstable::phase::Modular::points_for_degree(5);
+    let fields =
+        lindstedt::unstable::phase::modular::PrimeField::with_roots_of_unity(roots, 1 << 61);
     for field in fields.take(3) {
         let stiffness = Expression::Number(Rational::from(field.prime()));
         let mut problem = problems::find("duffing").unwrap();
@@ -228,7 +233,8 @@ fn an_unlucky_prime_is_no_verdict() {
             + stiffness * Expression::DISPLACEMENT
             + Expression::Small * Expression::DISPLACEMENT.pow(3);
         let settings = Settings { order: 1, ..Settings::default() };
-        let result = lindstedt::derive(&problem, &settings, &mut |_| true).unwrap();
+        let result =
+            lindstedt::unstable::derivation::derive(&problem, &settings, &mut |_| true).unwrap();
         assert_eq!(result.exact("frequency_squared", 1).as_deref(), Some("3/4"));
     }
 }
@@ -239,7 +245,7 @@ fn labels_do_not_stand_for_equations() {
         let mut problem = problems::find(name).unwrap();
         problem.equation = equation;
         let settings = Settings { order: 2, route, ..Settings::default() };
-        lindstedt::derive(&problem, &settings, &mut |_| true)
+        lindstedt::unstable::derivation::derive(&problem, &settings, &mut |_| true)
     };
     let x = || Expression::DISPLACEMENT;
     let four = Expression::ACCELERATION + 4 * (x() * x().pow(2).pow(Expression::Small));

@@ -2,9 +2,12 @@
 //! The generator is seeded; the ignored test counts over many more and larger cases.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use lindstedt::algebra::RationalAlgebra;
-use lindstedt::series::resummation::{Method, Resummed, Sample, UniformMap, resum};
-use lindstedt::{Error, Evaluate, EvaluationError, Oscillator, Settings, Work, derive, problems};
+use lindstedt::unstable::algebra::RationalAlgebra;
+use lindstedt::unstable::series::resummation::{Method, Resummed, Sample, UniformMap, resum};
+use lindstedt::{
+    Error, Evaluate, EvaluationError, Oscillator, Work, unstable::derivation::Settings,
+    unstable::derivation::derive, unstable::problems,
+};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 

@@ -2,13 +2,15 @@
 //! one, and the questions within one order are many. Counted, not timed.
 #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
-use lindstedt::algebra::Stop;
 use lindstedt::averaging::{Averaging, AveragingSettings, average};
 use lindstedt::numeric::{Tier, derive as derive_numbers};
-use lindstedt::series::resummation::{Method, ResummationError, Sample, UniformMap, resum_until};
+use lindstedt::unstable::algebra::Stop;
+use lindstedt::unstable::series::resummation::{
+    Method, ResummationError, Sample, UniformMap, resum_until,
+};
 use lindstedt::{
     Derivation, DerivationError as Error, Evaluate, Exact, Kind, Oscillator, Progress, Refusal,
-    Settings, Work, derive, problems,
+    Work, unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
 };
 use rug::Float;
 use std::sync::Arc;
@@ -70,7 +72,7 @@ fn orders_of_the_lobachevsky_ring() {
                         );
                     }
                     for n in 0..=result.order {
-                        let style = lindstedt::coeff::print::Style::Text;
+                        let style = lindstedt::unstable::coeff::print::Style::Text;
                         assert_eq!(result.print_solution(n, style), whole.print_solution(n, style));
                     }
                     unchecked += usize::from(result.checked_orders.is_none());
@@ -116,7 +118,7 @@ fn grids() {
         let run = |stop| {
             let settings = Settings { order: 6, stop, ..Settings::default() };
             let mut orders = 0;
-            let mut observer = |_: &lindstedt::expand::OrderWork| {
+            let mut observer = |_: &lindstedt::unstable::expand::OrderWork| {
                 orders += 1;
                 true
             };

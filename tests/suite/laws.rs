@@ -1,11 +1,11 @@
 //! Every law of the algebras can fail: an algebra with one defect is caught by the law named
 //! after it.
 
-use lindstedt::algebra::{
+use lindstedt::unstable::algebra::{
     FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Rationals, Resolution, Ring, laws,
 };
-use lindstedt::phase::Trigonometric;
-use lindstedt::phase::trigonometric::TrigonometricPolynomial;
+use lindstedt::unstable::phase::Trigonometric;
+use lindstedt::unstable::phase::trigonometric::TrigonometricPolynomial;
 use rug::Rational;
 
 type Element = TrigonometricPolynomial<Rational>;

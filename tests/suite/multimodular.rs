@@ -2,9 +2,12 @@
 //! omega^2 and of every x_n, by another reconstruction, other transforms and a proof modulo fresh primes.
 #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
-use lindstedt::coeff::print::Style;
-use lindstedt::equation::{Condition, Problem};
-use lindstedt::{Derivation, Exact, ProblemFile, Settings, Solution, derive, problems};
+use lindstedt::unstable::coeff::print::Style;
+use lindstedt::unstable::equation::{Condition, Problem};
+use lindstedt::{
+    Derivation, Exact, ProblemFile, Solution, unstable::derivation::Settings,
+    unstable::derivation::derive, unstable::problems,
+};
 
 /// FNV-1a over the coefficients of omega^2, then x_0, x_1, ..., a line each.
 fn digest(result: &Derivation) -> u64 {

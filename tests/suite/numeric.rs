@@ -2,14 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
-use lindstedt::algebra::{RationalAlgebra, Ring};
-use lindstedt::coeff::floats::Floats;
-use lindstedt::equation::{AmplitudeRole, Condition, Expression, Function, Problem};
-use lindstedt::number::ball::Balls;
 use lindstedt::numeric::{Estimate, Tier, derive};
-use lindstedt::phase::lobachevsky_function::means;
-use lindstedt::series::Series;
-use lindstedt::{DerivationError, Exact, Settings, problems};
+use lindstedt::unstable::algebra::{RationalAlgebra, Ring};
+use lindstedt::unstable::coeff::floats::Floats;
+use lindstedt::unstable::equation::{AmplitudeRole, Condition, Expression, Function, Problem};
+use lindstedt::unstable::number::ball::Balls;
+use lindstedt::unstable::phase::lobachevsky_function::means;
+use lindstedt::unstable::series::Series;
+use lindstedt::{DerivationError, Exact, unstable::derivation::Settings, unstable::problems};
 use rug::{Float, Rational};
 
 /// omega^power of the power law from T/2pi = (1 + delta)^(-1/2) M(u), M(u) = sum_m mu_m u^m,
@@ -169,7 +169,8 @@ fn damped_and_renormalised() {
     for (name, condition, series) in cases {
         let problem = problems::find(name).unwrap();
         let settings = Settings { order: 5, condition, ..Settings::default() };
-        let exact = lindstedt::derive(&problem, &settings, &mut |_| true).unwrap();
+        let exact =
+            lindstedt::unstable::derivation::derive(&problem, &settings, &mut |_| true).unwrap();
         let named = exact.named(series).unwrap();
         for tier in
             [Tier::Collocation { digits: 20 }, Tier::Doubles, Tier::Fourier { harmonics: 64 }]
@@ -195,7 +196,7 @@ fn refusals() {
     assert!(estimate(&perturbed(pole), 2, Tier::Doubles).is_err());
     let sine = perturbed(Expression::Function(Function::Sin, Box::new(x())));
     let settings = Settings { order: 2, ..Settings::default() };
-    assert!(lindstedt::derive(&sine, &settings, &mut |_| true).is_err());
+    assert!(lindstedt::unstable::derivation::derive(&sine, &settings, &mut |_| true).is_err());
     assert!(estimate(&perturbed(Expression::VELOCITY), 2, Tier::Doubles).is_err());
 }
 
@@ -286,7 +287,8 @@ fn files_in_the_numeric_tiers() {
     {
         let problem = lindstedt::ProblemFile::parse(&text).unwrap().problem;
         let settings = Settings { order: 4, ..Settings::default() };
-        let exact = lindstedt::derive(&problem, &settings, &mut |_| true).unwrap();
+        let exact =
+            lindstedt::unstable::derivation::derive(&problem, &settings, &mut |_| true).unwrap();
         for tier in [Tier::Collocation { digits: 20 }, Tier::Doubles] {
             let found = derive(&problem, &settings, tier, &mut |_| true).unwrap();
             for name in ["frequency", "period_over_2pi"] {

@@ -2,7 +2,7 @@
 
 #![allow(clippy::panic, reason = "a test that panics has failed")]
 
-use lindstedt::number::ball::Balls;
+use lindstedt::unstable::number::ball::Balls;
 use lindstedt_paper::{Decimal, Findings, Options, Paper, Row, Section, Verdict, read};
 use lindstedt_report::{Span, mathml};
 use rug::Rational;

@@ -3,10 +3,10 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "a test that panics has failed")]
 
-use lindstedt::coeff::quotient::Quotient;
-use lindstedt::impact::linearised::{ImpactMap, characteristic, coefficient, replace};
-use lindstedt::number::ball::Balls;
-use lindstedt::number::ball::ring::{BallRing, Enclosure};
+use lindstedt::unstable::coeff::quotient::Quotient;
+use lindstedt::unstable::impact::linearised::{ImpactMap, characteristic, coefficient, replace};
+use lindstedt::unstable::number::ball::Balls;
+use lindstedt::unstable::number::ball::ring::{BallRing, Enclosure};
 use lindstedt_paper::{Row, Section, Verdict, reread};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;

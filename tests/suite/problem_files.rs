@@ -5,12 +5,13 @@
 mod fuzz;
 mod rewriting;
 
-use lindstedt::equation::classify::{Algebra, Method, Reason, classify};
-use lindstedt::equation::{Condition, Problem};
-use lindstedt::problem_file::write;
+use lindstedt::unstable::equation::classify::{Algebra, Method, Reason, classify};
+use lindstedt::unstable::equation::{Condition, Problem};
+use lindstedt::unstable::problem_file::write;
 use lindstedt::{
-    Derivation, DerivationError, Error, Oscillator, ProblemFile, Settings, Work, derive,
-    known_values, problems,
+    Derivation, DerivationError, Error, Oscillator, ProblemFile, Work,
+    unstable::derivation::Settings, unstable::derivation::derive,
+    unstable::derivation::known_values, unstable::problems,
 };
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -2,15 +2,15 @@
 //! period, the energy integral, the elliptic integral, published values.
 #![allow(clippy::unwrap_used)]
 
-use lindstedt::algebra::{FunctionAlgebra, PhaseAlgebra, Ring};
-use lindstedt::coeff::closed_forms::ClosedForms;
-use lindstedt::coeff::{PolynomialRing, Symbol};
-use lindstedt::number::ball::Balls;
-use lindstedt::phase::Lobachevsky;
-use lindstedt::phase::evaluate::PhaseFunctions;
-use lindstedt::phase::lobachevsky::Word;
-use lindstedt::phase::lobachevsky_function::{LambdaTable, Point};
-use lindstedt::{Exact, Settings, Solution, energy};
+use lindstedt::unstable::algebra::{FunctionAlgebra, PhaseAlgebra, Ring};
+use lindstedt::unstable::coeff::closed_forms::ClosedForms;
+use lindstedt::unstable::coeff::{PolynomialRing, Symbol};
+use lindstedt::unstable::number::ball::Balls;
+use lindstedt::unstable::phase::Lobachevsky;
+use lindstedt::unstable::phase::evaluate::PhaseFunctions;
+use lindstedt::unstable::phase::lobachevsky::Word;
+use lindstedt::unstable::phase::lobachevsky_function::{LambdaTable, Point};
+use lindstedt::{Exact, Solution, unstable::derivation::Settings, unstable::derivation::energy};
 use lindstedt_tests::{decimal, expansion, with};
 use rug::float::Constant;
 use rug::ops::Pow;
@@ -145,7 +145,7 @@ fn the_first_solutions_and_where_the_secant_appears() {
     assert_eq!(coefficient.map(|(_, c)| c.clone()), Some(q(-1, 12)));
 }
 
-trait RationalNumber: lindstedt::algebra::RationalAlgebra {
+trait RationalNumber: lindstedt::unstable::algebra::RationalAlgebra {
     fn rational_number(&self, n: i32, d: i32) -> Self::Element {
         self.rational(&Rational::from((n, d)))
     }
@@ -162,7 +162,8 @@ fn the_solution_has_rational_coefficients() {
         for polynomial in x.blocks().values() {
             for (_, c) in polynomial.terms() {
                 assert!(
-                    lindstedt::algebra::RationalAlgebra::as_rational(&result.ring, c).is_some()
+                    lindstedt::unstable::algebra::RationalAlgebra::as_rational(&result.ring, c)
+                        .is_some()
                 );
             }
         }
@@ -196,9 +197,10 @@ fn alpha_to_order_30_by_the_energy_integral() {
     // coefficient of delta^30 for j = 0 and 1.
     assert_eq!(alpha[30].terms().len(), 28_629 - 2);
     let closed = ClosedForms::new(30).closed_form(&ring, &alpha[30]).unwrap();
-    let constants = lindstedt::constants::Constants::default();
-    let evaluate = |p: &lindstedt::coeff::Polynomial| {
-        let number = lindstedt::number::certified(None, 20, |balls| constants.evaluate(p, balls));
+    let constants = lindstedt::unstable::derivation::constants::Constants::default();
+    let evaluate = |p: &lindstedt::unstable::coeff::Polynomial| {
+        let number =
+            lindstedt::unstable::number::certified(None, 20, |balls| constants.evaluate(p, balls));
         number.unwrap().decimal
     };
     assert_eq!(evaluate(&closed), evaluate(&alpha[30]));
@@ -324,7 +326,7 @@ fn the_solution_agrees_with_the_inverted_energy_integral() {
     let order = 7;
     let result = expansion("power-law", order);
     let Solution::Lobachevsky(solution) = &result.solution else { panic!("Lobachevsky ring") };
-    let constants = lindstedt::constants::Constants::default();
+    let constants = lindstedt::unstable::derivation::constants::Constants::default();
     for (numerator, denominator) in [(7, 10), (19, 7)] {
         let tau = Rational::from((numerator, denominator));
         let at = Float::with_val(bits, &tau);

@@ -1,7 +1,7 @@
 //! The arguments. Names are part of the public interface: add, do not rename.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use lindstedt::series::resummation::Method;
+use lindstedt::unstable::series::resummation::Method;
 use std::path::PathBuf;
 
 /// Perturbation expansions of strongly nonlinear and non-smooth oscillators, to any order.

@@ -4,8 +4,8 @@ use crate::Outcome;
 use crate::arguments::{self, DeriveOptions, TierName};
 use crate::failure::Failure;
 use crate::session::Session;
-use lindstedt::equation::Condition;
 use lindstedt::numeric::Tier;
+use lindstedt::unstable::equation::Condition;
 use lindstedt::{Derive, Route};
 
 pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {

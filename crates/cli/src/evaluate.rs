@@ -4,10 +4,10 @@ use crate::Outcome;
 use crate::arguments::{EvaluateOptions, Resum};
 use crate::failure::Failure;
 use crate::session::Session;
-use lindstedt::equation::Condition;
 use lindstedt::evaluate::Times;
 use lindstedt::evaluate::averaged::{AveragedMotion, Start};
 use lindstedt::grid::Axis;
+use lindstedt::unstable::equation::Condition;
 use lindstedt::{Error, Evaluate, Exact, Oscillator, Work};
 
 pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {

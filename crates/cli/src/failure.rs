@@ -2,7 +2,7 @@
 
 use crate::arguments::Format;
 use crate::output::warn;
-use lindstedt::simulate::SimulateError;
+use lindstedt::unstable::simulate::SimulateError;
 use lindstedt::{Error, Kind, NumberError, Refusal, Refused};
 use serde_json::json;
 use std::io::Write;

@@ -4,9 +4,9 @@ use crate::arguments::{Common, Format, Normalisation, Precision};
 use crate::failure::{FILE, Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
 use crate::{Outcome, output};
 use indicatif::{ProgressBar, ProgressStyle};
-use lindstedt::algebra::Stop;
-use lindstedt::equation::Condition;
-use lindstedt::problem_file::{FileError, LARGEST_FILE, canonical_name};
+use lindstedt::unstable::algebra::Stop;
+use lindstedt::unstable::equation::Condition;
+use lindstedt::unstable::problem_file::{FileError, LARGEST_FILE, canonical_name};
 use lindstedt::{
     Answer, Error, Exact, Kind, Oscillator, Progress, Refusal, Remark, Standing, Work,
 };

@@ -4,7 +4,7 @@ use crate::Outcome;
 use crate::arguments::{KickChoice, PredictorChoice, StabilityOptions, VariantChoice};
 use crate::session::Session;
 use lindstedt::Stability;
-use lindstedt::impact::{characteristic::Kick, prediction::Variant};
+use lindstedt::unstable::impact::{characteristic::Kick, prediction::Variant};
 
 pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
     let work = session.precise_work(&options.precision)?;

@@ -4,7 +4,9 @@
 use divan::Bencher;
 use lindstedt::averaging::{AveragingSettings, average};
 use lindstedt::numeric::{self, Tier};
-use lindstedt::{Exact, Route, Settings, derive, problems};
+use lindstedt::{
+    Exact, Route, unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
+};
 
 fn main() {
     divan::main();

@@ -2,10 +2,10 @@
 //! along an orbit that has no closed form.
 
 use divan::Bencher;
-use lindstedt::equation::classify::classify;
-use lindstedt::number::ball::Balls;
-use lindstedt::recognise::MelnikovProblem;
-use lindstedt::{Oscillator, ProblemFile, known_values};
+use lindstedt::unstable::equation::classify::classify;
+use lindstedt::unstable::number::ball::Balls;
+use lindstedt::unstable::recognise::MelnikovProblem;
+use lindstedt::{Oscillator, ProblemFile, unstable::derivation::known_values};
 use std::collections::BTreeMap;
 
 fn main() {

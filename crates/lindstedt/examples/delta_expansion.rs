@@ -1,11 +1,10 @@
 //! The small-delta expansion of x'' + x (x^2)^delta = 0 to order 8, and what it says about x^3.
 
-use lindstedt::{Error, Evaluate, Oscillator, Settings, Work, derive, problems};
+use lindstedt::{Error, Evaluate, Oscillator, Work};
 
 fn main() -> Result<(), Error> {
-    let problem = problems::find("power-law").ok_or(Error::NoValue)?;
-    let settings = Settings { order: 8, ..Settings::default() };
-    let result = derive(&problem, &settings, &mut |_| true)?;
+    let power_law = Oscillator::builtin("power-law")?;
+    let result = power_law.derive(8, &Work::default())?.value;
 
     let period = result.named("period_over_2pi").ok_or(Error::NoValue)?;
     for n in 0..=3 {
@@ -17,7 +16,7 @@ fn main() -> Result<(), Error> {
 
     // delta = 1 is the default: x'' + x^3 = 0, on the circle of convergence.
     let question = Evaluate { order: Some(20), ..Evaluate::default() };
-    let value = Oscillator::from_problem(&problem)?.evaluate(&question, &Work::default())?.value;
+    let value = power_law.evaluate(&question, &Work::default())?.value;
     let (sum, exact) = (value.period.ok_or(Error::NoValue)?, value.exact_period);
     println!("period of x'' + x^3 = 0: {} +- {}", sum.decimal, sum.error.unwrap_or_default());
     println!("closed form:             {}", exact.ok_or(Error::NoValue)?.decimal);

@@ -1,14 +1,14 @@
 //! Where averaging predicts a stable impact orbit with a delay loop, and where it is stable.
 
 use lindstedt::Exact;
-use lindstedt::impact::ImpactError;
-use lindstedt::impact::characteristic::Kick;
-use lindstedt::impact::chart::{Axis, Plan, Point, Predictor, Swept, chart};
-use lindstedt::impact::flip::flip_boundary;
-use lindstedt::impact::map::Verdict::{Stable, Unstable};
-use lindstedt::impact::parameters::{Branch, ExactParameters};
-use lindstedt::impact::prediction::Variant;
-use lindstedt::number::real::Real;
+use lindstedt::unstable::impact::ImpactError;
+use lindstedt::unstable::impact::characteristic::Kick;
+use lindstedt::unstable::impact::chart::{Axis, Plan, Point, Predictor, Swept, chart};
+use lindstedt::unstable::impact::flip::flip_boundary;
+use lindstedt::unstable::impact::map::Verdict::{Stable, Unstable};
+use lindstedt::unstable::impact::parameters::{Branch, ExactParameters};
+use lindstedt::unstable::impact::prediction::Variant;
+use lindstedt::unstable::number::real::Real;
 
 fn symbol(point: Option<&Point>) -> char {
     match point.and_then(|p| Some((p.predicted?, p.exact?))) {

@@ -1,9 +1,9 @@
 //! The threshold of stick-slip chaos over the speed of the belt, and where it vanishes.
 
 use lindstedt::Exact;
-use lindstedt::melnikov::{Axis, FastPoint, MelnikovError, StickSlip};
-use lindstedt::number::ball::Balls;
-use lindstedt::number::digits::decimal;
+use lindstedt::unstable::melnikov::{Axis, FastPoint, MelnikovError, StickSlip};
+use lindstedt::unstable::number::ball::Balls;
+use lindstedt::unstable::number::digits::decimal;
 
 fn main() -> Result<(), MelnikovError> {
     // Doubles for the curve.

@@ -85,8 +85,8 @@ impl Catalogue {
     /// The built-in problems.
     #[must_use]
     pub fn builtin() -> Self {
-        let mut list = crate::problems::all();
-        list.push(crate::problems::stick_slip::problem());
+        let mut list = lindstedt_problems::all();
+        list.push(lindstedt_problems::stick_slip::problem());
         Self { problems: list.iter().map(Entry::new).collect() }
     }
 }

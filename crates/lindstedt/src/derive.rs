@@ -6,11 +6,11 @@ use crate::numeric::{self, Estimate, Tier};
 use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{
-    Answer, Derivation, Error, Exact, Oscillator, Progress, Remark, Route, Settings, Solution,
-    Standing, Work,
+    Answer, Derivation, Error, Exact, Oscillator, Progress, Remark, Route, Solution, Standing, Work,
 };
 use lindstedt_algebra::PhaseError;
 use lindstedt_derivation::DerivationError;
+use lindstedt_derivation::Settings;
 use lindstedt_derivation::check_delays;
 use lindstedt_equation::classify::{Method, Reason};
 use lindstedt_equation::description::Description;

@@ -7,6 +7,14 @@
 //! assert_eq!(power_law.exact("frequency_squared", 1).as_deref(), Some("1 - 2*ln(2)"));
 //! # Ok::<(), lindstedt::Error>(())
 //! ```
+//!
+//! One entry: an [`Oscillator`] is a problem with every value settled, from a built-in name
+//! ([`Oscillator::builtin`]), a file ([`Oscillator::file`]) or an equation ([`Oscillator::parse`]).
+//! Each question is a method that takes a [`Work`] (digits, memory, stop, progress) and returns
+//! an [`Answer`] (header, value, standing, remarks) or an [`Error`], which holds every
+//! crate's error and says code, standing and hint ([`Refusal`]). Every [`Number`] carries its [`Status`].
+//!
+//! What is exported here keeps its meaning between versions; [`unstable`] does not.
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]
@@ -44,8 +52,7 @@ pub use derive::Derive;
 pub use error::Error;
 pub use evaluate::Evaluate;
 pub use lindstedt_derivation::{
-    Derivation, DerivationError, NamedSeries, Progress, Route, Settings, Solution, Work, averaging,
-    check_parameters, constants, derive, energy, known_values, numeric,
+    Derivation, DerivationError, NamedSeries, Progress, Route, Solution, Work, averaging, numeric,
 };
 pub use lindstedt_evaluation::EvaluationError;
 pub use lindstedt_number::{Exact, Number, NumberError, Status};
@@ -57,20 +64,25 @@ pub use stability::Stability;
 pub use threshold::Threshold;
 pub use verify::Verify;
 
-pub use lindstedt_algebra as algebra;
-pub use lindstedt_coeff as coeff;
-pub use lindstedt_derivation as derivation;
-pub use lindstedt_equation as equation;
-pub use lindstedt_evaluation as evaluation;
-pub use lindstedt_expand as expand;
-pub use lindstedt_impact as impact;
-pub use lindstedt_melnikov as melnikov;
-pub use lindstedt_multimodular as multimodular;
-pub use lindstedt_number as number;
-pub use lindstedt_orbit as orbit;
-pub use lindstedt_phase as phase;
-pub use lindstedt_problem_file as problem_file;
-pub use lindstedt_problems as problems;
-pub use lindstedt_recognise as recognise;
-pub use lindstedt_series as series;
-pub use lindstedt_simulate as simulate;
+/// The libraries below this one, for whoever adds a ring, a policy of the driver or a judge, or checks a
+/// coefficient by hand. **Not stable**: their items change with every version; a question that
+/// needs them to be asked is worth a method of [`Oscillator`].
+pub mod unstable {
+    pub use lindstedt_algebra as algebra;
+    pub use lindstedt_coeff as coeff;
+    pub use lindstedt_derivation as derivation;
+    pub use lindstedt_equation as equation;
+    pub use lindstedt_evaluation as evaluation;
+    pub use lindstedt_expand as expand;
+    pub use lindstedt_impact as impact;
+    pub use lindstedt_melnikov as melnikov;
+    pub use lindstedt_multimodular as multimodular;
+    pub use lindstedt_number as number;
+    pub use lindstedt_orbit as orbit;
+    pub use lindstedt_phase as phase;
+    pub use lindstedt_problem_file as problem_file;
+    pub use lindstedt_problems as problems;
+    pub use lindstedt_recognise as recognise;
+    pub use lindstedt_series as series;
+    pub use lindstedt_simulate as simulate;
+}

@@ -46,8 +46,8 @@ impl Oscillator {
     /// # Errors
     /// [`Refused`] with the names there are.
     pub fn builtin(name: &str) -> Result<Self, Error> {
-        let stick_slip = crate::problems::stick_slip::problem;
-        let mut all = crate::problems::all();
+        let stick_slip = lindstedt_problems::stick_slip::problem;
+        let mut all = lindstedt_problems::all();
         all.push(stick_slip());
         if let Some(problem) = all.iter().find(|problem| problem.name == name) {
             return Self::from_problem(problem);

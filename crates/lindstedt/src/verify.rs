@@ -30,9 +30,10 @@ mod verdict;
 
 use crate::refusal::Refused;
 use crate::start::Taken;
-use crate::{Answer, Derivation, Error, Exact, Oscillator, Settings, Standing, Work, derive};
+use crate::{Answer, Derivation, Error, Exact, Oscillator, Standing, Work};
 use drifting::Drifting;
 use lindstedt_derivation::condition;
+use lindstedt_derivation::{Settings, derive};
 use lindstedt_equation::{AmplitudeRole, Condition};
 use lindstedt_expand::ExpandError;
 use periodic::Periodic;

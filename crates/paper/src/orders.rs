@@ -3,8 +3,11 @@
 use super::compare::{Ratio, Term, compare_sums};
 use super::{Findings, Reader, Row, periods};
 use crate::Text;
-use lindstedt::constants::Constants;
-use lindstedt::{Derivation, Error, Progress, Settings, Solution, derive};
+use lindstedt::unstable::derivation::constants::Constants;
+use lindstedt::{
+    Derivation, Error, Progress, Solution, unstable::derivation::Settings,
+    unstable::derivation::derive,
+};
 use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_coeff::print::Style;
 use lindstedt_coeff::{Polynomial, PolynomialRing};

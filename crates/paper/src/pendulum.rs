@@ -7,7 +7,7 @@ use super::pendulum_results::{self, OMEGA_1, in_printed_symbols, results};
 use super::power_law::vocabulary;
 use super::{Findings, Reader, Row, Section, periods, plain, show};
 use lindstedt::Error;
-use lindstedt::constants::sine_sum;
+use lindstedt::unstable::derivation::constants::sine_sum;
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{PolynomialRing, Symbol};

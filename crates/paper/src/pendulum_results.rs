@@ -5,7 +5,7 @@ use super::orders::Case;
 use super::pendulum_numbers::fifty_one;
 use super::tables::{QUANTITIES, Truncations};
 use super::{Row, periods, show};
-use lindstedt::energy;
+use lindstedt::unstable::derivation::energy;
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};

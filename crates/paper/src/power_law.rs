@@ -3,7 +3,7 @@
 use super::compare::{Term, compare_sums};
 use super::orders::Case;
 use super::{Reader, Row, Section, lobachevsky, periods, plain, show};
-use lindstedt::{Error, energy};
+use lindstedt::{Error, unstable::derivation::energy};
 use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};

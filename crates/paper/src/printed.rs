@@ -218,7 +218,7 @@ impl PrintedForm {
 /// let list = printed_forms()?;
 /// let of_27: Vec<_> = list.iter().filter(|form| form.equation == "(27)").collect();
 /// assert_eq!(of_27[0].findings.verdict(), Verdict::Misprint);
-/// # Ok::<(), lindstedt::melnikov::MelnikovError>(())
+/// # Ok::<(), lindstedt::unstable::melnikov::MelnikovError>(())
 /// ```
 ///
 /// # Errors

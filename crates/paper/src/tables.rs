@@ -2,8 +2,8 @@
 
 use super::{Reader, Section, Table, periods};
 use crate::text::texts;
-use lindstedt::constants::Constants;
-use lindstedt::{Error, Exact, energy};
+use lindstedt::unstable::derivation::constants::Constants;
+use lindstedt::{Error, Exact, unstable::derivation::energy};
 use lindstedt_algebra::Ring;
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_number::ball::{Ball, Balls};

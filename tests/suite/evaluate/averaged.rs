@@ -1,9 +1,9 @@
 //! Averaged motions against the integrator.
 
 use super::support::{integrated, valued};
-use lindstedt::equation::Problem;
 use lindstedt::evaluate::averaged::{Motion, Start};
-use lindstedt::{Exact, Work, problems};
+use lindstedt::unstable::equation::Problem;
+use lindstedt::{Exact, Work, unstable::problems};
 
 fn motion(problem: &Problem, order: usize, set: &[(&str, &str)], start: Start) -> Motion {
     let case = valued(problem, set);
@@ -30,7 +30,8 @@ fn averaged_van_der_pol() {
     let times = [0.0, 1.0, 7.0, 15.0, 30.0, 50.0, 80.0];
     let (mut checked, mut sharp) = (0, 0);
     for (eps, x) in [("1/20", "1/2"), ("1/10", "1"), ("1/10", "3"), ("1/4", "1"), ("1/2", "2")] {
-        let start = [Exact::parse(x).unwrap().ball(lindstedt::number::ball::Balls::new(60))];
+        let start =
+            [Exact::parse(x).unwrap().ball(lindstedt::unstable::number::ball::Balls::new(60))];
         let start = [start[0].midpoint().to_f64(), 0.0];
         let expected = integrated(&problem, &[("eps", eps)], start, &times);
         for order in 2..=9 {
@@ -63,9 +64,11 @@ fn averaged_free_flight() {
     // Any delay will do: its gain is zero.
     let still = [("eps", "1"), ("c", "1/10"), ("T", "1")];
     let mut model_problem = free.clone();
-    let without = |e: &lindstedt::equation::Expression| match e {
-        lindstedt::equation::Expression::Parameter(name) if name == "A" || name == "B" => {
-            Some(lindstedt::equation::Expression::integer(0))
+    let without = |e: &lindstedt::unstable::equation::Expression| match e {
+        lindstedt::unstable::equation::Expression::Parameter(name)
+            if name == "A" || name == "B" =>
+        {
+            Some(lindstedt::unstable::equation::Expression::integer(0))
         }
         _ => None,
     };

@@ -1,8 +1,10 @@
 //! The built-in problems against closed forms.
 
 use super::support::{question, relative_error, relative_estimate, run, valued};
-use lindstedt::series::resummation::{Kind, Method, ResummationError};
-use lindstedt::{DerivationError, Error, Evaluate, EvaluationError, Exact, Work, problems};
+use lindstedt::unstable::series::resummation::{Kind, Method, ResummationError};
+use lindstedt::{
+    DerivationError, Error, Evaluate, EvaluationError, Exact, Work, unstable::problems,
+};
 use rug::Float;
 
 /// Section 3 of the numbers: exponent and relative error of T at orders 2, 4, 8, 12, 20 by the

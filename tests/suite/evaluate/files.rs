@@ -4,11 +4,11 @@ use super::support::{
     evaluate, example, integrated, quantity, question, relative_error, relative_estimate, valued,
     written,
 };
-use lindstedt::equation::{Condition, Problem};
-use lindstedt::simulate::{
+use lindstedt::unstable::equation::{Condition, Problem};
+use lindstedt::unstable::simulate::{
     Digits, EventKind, Integrator, Model, Parameters, Real, Report, Settings as Precision,
 };
-use lindstedt::{DerivationError, Error, EvaluationError, Exact, Work, problems};
+use lindstedt::{DerivationError, Error, EvaluationError, Exact, Work, unstable::problems};
 use rug::Float;
 use std::ops::ControlFlow;
 
@@ -25,7 +25,7 @@ fn cycle_period(problem: &Problem, set: &[(&str, &str)], transient: i32) -> Floa
     }
     let model = Model::of_problem(problem).unwrap();
     let system = model
-        .with_section(lindstedt::equation::Expression::VELOCITY)
+        .with_section(lindstedt::unstable::equation::Expression::VELOCITY)
         .compile(real, &parameters)
         .unwrap();
     let start = [real.double(2.0), real.zero()];
@@ -160,7 +160,7 @@ fn conservative_files() {
         let period = found.period.as_ref().unwrap();
         let (value, error) = (&period.decimal, period.error.as_ref().unwrap());
         let (value, error): (f64, f64) = (value.parse().unwrap(), error.parse().unwrap());
-        let name = problem.equation.print("eps", lindstedt::equation::print::Style::Text);
+        let name = problem.equation.print("eps", lindstedt::unstable::equation::print::Style::Text);
         assert!((value - exact).abs() <= error + 1e-13, "{name}: {value} {exact} {error:e}");
         assert!(error < if order == 8 { 0.1 } else { 1e-4 }, "{name}: {error:e}");
         assert_eq!(found.exact_period.is_some(), is_closed, "{name}");

@@ -1,12 +1,12 @@
 //! What the tests of evaluation share.
 
-use lindstedt::equation::Problem;
 use lindstedt::evaluate::Evaluation;
-use lindstedt::series::resummation::Method;
-use lindstedt::simulate::{
+use lindstedt::unstable::equation::Problem;
+use lindstedt::unstable::series::resummation::Method;
+use lindstedt::unstable::simulate::{
     Doubles, Integrator, Model, Parameters, Quantity, Settings as Precision, Trajectory as Path,
 };
-use lindstedt::{Error, Evaluate, Oscillator, ProblemFile, Work, problems};
+use lindstedt::{Error, Evaluate, Oscillator, ProblemFile, Work, unstable::problems};
 use rug::Float;
 
 /// A problem with values.

@@ -1,13 +1,15 @@
 //! The coefficients of the power law: exact, by collocation, in doubles, by Fourier series.
 
 use super::support::{Grid, rational, set};
-use lindstedt::algebra::Ring;
-use lindstedt::coeff::floats::Floats;
-use lindstedt::number::ball::Balls;
 use lindstedt::numeric::{Tier, derive as derive_numbers};
-use lindstedt::phase::lobachevsky_function::means;
-use lindstedt::series::Series;
-use lindstedt::{Route, Settings, derive, problems};
+use lindstedt::unstable::algebra::Ring;
+use lindstedt::unstable::coeff::floats::Floats;
+use lindstedt::unstable::number::ball::Balls;
+use lindstedt::unstable::phase::lobachevsky_function::means;
+use lindstedt::unstable::series::Series;
+use lindstedt::{
+    Route, unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
+};
 use rug::{Float, Rational};
 
 /// omega^p of x'' + x (x^2)^delta = 0 at amplitude a: (1 + delta)^(p/2) M(u)^(-p) a^(p delta),

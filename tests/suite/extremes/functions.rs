@@ -1,8 +1,8 @@
 //! The Lobachevsky function and the elementary functions of balls.
 
 use super::support::{Grid, rational};
-use lindstedt::number::ball::{Ball, Balls};
-use lindstedt::phase::lobachevsky_function::{Point, lobachevsky, lobachevsky_f64};
+use lindstedt::unstable::number::ball::{Ball, Balls};
+use lindstedt::unstable::phase::lobachevsky_function::{Point, lobachevsky, lobachevsky_f64};
 use rug::float::Constant;
 use rug::{Float, Rational};
 

@@ -1,7 +1,7 @@
 //! The period by resummation and in closed form.
 
 use super::support::{Grid, rational, set};
-use lindstedt::series::resummation::Method;
+use lindstedt::unstable::series::resummation::Method;
 use lindstedt::{Evaluate, Oscillator, Work};
 use rug::float::Constant;
 use rug::{Float, Rational};

@@ -3,7 +3,7 @@
 use super::support::{Grid, rational, set};
 use lindstedt::Exact;
 use lindstedt::averaging::{AveragingSettings, Coefficient, RateTerm, average};
-use lindstedt::problems;
+use lindstedt::unstable::problems;
 use lindstedt_impact::flow::rates;
 use lindstedt_impact::parameters::{Branch, ExactParameters};
 use rug::Float;

@@ -1,6 +1,6 @@
 //! Counting the cells of a grid and judging them.
 
-use lindstedt::number::ball::Ball;
+use lindstedt::unstable::number::ball::Ball;
 use lindstedt::{Exact, Number, Status};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;

@@ -2,7 +2,7 @@
 
 use super::support::{Grid, rational};
 use lindstedt::Exact;
-use lindstedt::number::ball::Balls;
+use lindstedt::unstable::number::ball::Balls;
 use lindstedt_melnikov::StickSlip;
 use rug::Float;
 use rug::float::Constant;

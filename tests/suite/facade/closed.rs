@@ -1,11 +1,11 @@
 //! Closed forms of periods.
 
-use lindstedt::algebra::Stop;
-use lindstedt::evaluation::closed::{
+use lindstedt::unstable::algebra::Stop;
+use lindstedt::unstable::evaluation::closed::{
     duffing, gamma_ratio, gamma_ratio_of_rational, pendulum, power_law,
 };
-use lindstedt::number::ball::{Ball, Balls};
-use lindstedt::number::digits::certify;
+use lindstedt::unstable::number::ball::{Ball, Balls};
+use lindstedt::unstable::number::digits::certify;
 use rug::Rational;
 
 /// mpmath 1.3.0: 4 ellipk(sin(a/2)^2), gamma, 4 ellipk(r/(2+2r))/sqrt(1+r).

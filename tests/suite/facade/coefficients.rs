@@ -1,9 +1,11 @@
 //! Coefficients as numbers against the exact ones.
 
-use lindstedt::algebra::Stop;
-use lindstedt::evaluation::coefficients::{pendulum, power_law};
-use lindstedt::number::ball::Balls;
-use lindstedt::{Route, Settings, derive, problems};
+use lindstedt::unstable::algebra::Stop;
+use lindstedt::unstable::evaluation::coefficients::{pendulum, power_law};
+use lindstedt::unstable::number::ball::Balls;
+use lindstedt::{
+    Route, unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
+};
 use rug::Float;
 
 /// The exact polynomials, evaluated as balls, against the recurrences in numbers.

@@ -1,9 +1,9 @@
 //! Constants and their digits.
 
-use lindstedt::coeff::{PolynomialRing, Symbol};
-use lindstedt::constants::{Constants, sine_sum};
-use lindstedt::number::ball::Balls;
-use lindstedt::number::certified;
+use lindstedt::unstable::coeff::{PolynomialRing, Symbol};
+use lindstedt::unstable::derivation::constants::{Constants, sine_sum};
+use lindstedt::unstable::number::ball::Balls;
+use lindstedt::unstable::number::certified;
 use rug::Rational;
 
 #[test]

@@ -1,9 +1,9 @@
 //! The energy integral: period against frequency.
 
-use lindstedt::algebra::Ring;
-use lindstedt::coeff::PolynomialRing;
-use lindstedt::energy::{period_over_2pi, power_law_frequency};
-use lindstedt::series::Series;
+use lindstedt::unstable::algebra::Ring;
+use lindstedt::unstable::coeff::PolynomialRing;
+use lindstedt::unstable::derivation::energy::{period_over_2pi, power_law_frequency};
+use lindstedt::unstable::series::Series;
 use rug::Rational;
 
 #[test]

@@ -1,8 +1,8 @@
 //! Digits of a sum of few terms.
 
 use lindstedt::Status;
-use lindstedt::evaluation::few::plain;
-use lindstedt::number::ball::Balls;
+use lindstedt::unstable::evaluation::few::plain;
+use lindstedt::unstable::number::ball::Balls;
 use rug::Float;
 
 /// pi with nothing known of its error, and with one of 1e-3.

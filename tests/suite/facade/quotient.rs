@@ -1,6 +1,6 @@
 //! Quotients of polynomials.
 
-use lindstedt::coeff::quotient::Quotients;
+use lindstedt::unstable::coeff::quotient::Quotients;
 
 #[test]
 fn quotients_cancel_when_compared() {

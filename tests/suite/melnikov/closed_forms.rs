@@ -2,8 +2,8 @@
 
 use super::support::{Random, assert_agrees, number, oracle, real, stick_slip};
 use lindstedt::Exact;
-use lindstedt::number::ball::Balls;
-use lindstedt::number::digits::{certify, decimal};
+use lindstedt::unstable::number::ball::Balls;
+use lindstedt::unstable::number::digits::{certify, decimal};
 use lindstedt_melnikov::{Branch, Friction, PolynomialFriction, StickSlip, quadrature_dissipation};
 use rug::Rational;
 use serde_json::Value;

@@ -2,7 +2,7 @@
 
 use super::support::{Random, decimal, oracle};
 use lindstedt::Exact;
-use lindstedt::number::ball::Balls;
+use lindstedt::unstable::number::ball::Balls;
 use lindstedt_melnikov::{Axis, FastPoint, MelnikovError, StickSlip, surface};
 use rug::Float;
 

@@ -2,7 +2,7 @@
 
 use super::support::{Random, assert_agrees, decimal, number, oracle, real};
 use lindstedt::Exact;
-use lindstedt::number::ball::Balls;
+use lindstedt::unstable::number::ball::Balls;
 use lindstedt_melnikov::{
     Branch, Class, Forcing, Friction, Harmonic, MelnikovError, Monomial, PolynomialFriction,
     Potential, System, polynomial_dissipation, quadrature_dissipation,
@@ -297,7 +297,11 @@ fn described_orbits() {
     let one = || Monomial::new(1, 1, 0, 0);
     let shape = lindstedt_melnikov::hyperbolic::Hyperbolic::term((2).into(), 2, false);
     let ring = lindstedt_melnikov::hyperbolic::HyperbolicRing;
-    let shape = lindstedt::algebra::Ring::sub(&ring, &shape, &lindstedt::algebra::Ring::one(&ring));
+    let shape = lindstedt::unstable::algebra::Ring::sub(
+        &ring,
+        &shape,
+        &lindstedt::unstable::algebra::Ring::one(&ring),
+    );
     // xi = 2u - 1, u'' = 4u - 6u^2 gives xi'' = 1 - 2 xi - 3 xi^2.
     let force = vec![one(), Monomial::new(-2, 1, 0, 0), Monomial::new(-3, 1, 0, 0)];
     let orbit = lindstedt_melnikov::OrbitDescription {

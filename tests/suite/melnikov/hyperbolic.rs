@@ -1,8 +1,8 @@
 //! The hyperbolic algebra: laws, exact integrals, J_{p,q} in balls and in f64.
 
 use super::support::{Random, assert_agrees, number, oracle};
-use lindstedt::algebra::{Ring, laws};
-use lindstedt::number::ball::{Ball, Balls};
+use lindstedt::unstable::algebra::{Ring, laws};
+use lindstedt::unstable::number::ball::{Ball, Balls};
 use lindstedt_melnikov::hyperbolic::{
     Hyperbolic, HyperbolicRing, integral_f64, line_fourier, line_fourier_ball, line_fourier_f64,
     line_fourier_real, line_integral, line_integral_real,

@@ -2,7 +2,7 @@
 
 use super::support::{assert_agrees, oracle, real, stick_slip};
 use lindstedt::Exact;
-use lindstedt::number::ball::Balls;
+use lindstedt::unstable::number::ball::Balls;
 use lindstedt_melnikov::{
     Elliptic, MelnikovError, PolynomialFriction, Region, StickSlip, Subharmonic, subharmonic,
 };
@@ -94,7 +94,7 @@ fn elliptic_powers_by_quadrature() {
                 dn += (s * d).powi(2 * n as i32) / d;
             }
             let step = std::f64::consts::PI / f64::from(nodes) / 2.0;
-            let check = |exact: Option<lindstedt::number::ball::Ball>, sum: f64| {
+            let check = |exact: Option<lindstedt::unstable::number::ball::Ball>, sum: f64| {
                 let exact = exact.unwrap().midpoint().to_f64();
                 assert!(
                     (exact / (sum * step) - 1.0).abs() < 1e-12,

@@ -1,7 +1,7 @@
 //! Reading the oracles and comparing with them.
 
 use lindstedt::Exact;
-use lindstedt::number::ball::Ball;
+use lindstedt::unstable::number::ball::Ball;
 use lindstedt_melnikov::StickSlip;
 use rug::{Integer, Rational, ops::Pow};
 use serde_json::Value;

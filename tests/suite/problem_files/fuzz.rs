@@ -3,8 +3,11 @@
 //! The ordinary run is short. A long one: `LINDSTEDT_FUZZ=<cases> cargo test --release -p
 //! lindstedt-tests problem_files::fuzz -- --ignored`. What it finds is added to `CORPUS`.
 
-use lindstedt::equation::classify::Reason;
-use lindstedt::{Error, ProblemFile, Progress, Settings, derive, known_values};
+use lindstedt::unstable::equation::classify::Reason;
+use lindstedt::{
+    Error, ProblemFile, Progress, unstable::derivation::Settings, unstable::derivation::derive,
+    unstable::derivation::known_values,
+};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
@@ -43,7 +46,7 @@ fn run(text: &str) -> Result<(), Error> {
         Err(error) => assert!(error.is_limit(), "{text}: {error}\n{}", file.to_text()),
     }
     let values = known_values(&file.problem, &BTreeMap::new());
-    let parts = lindstedt::equation::classify::classify(&file.problem, &values);
+    let parts = lindstedt::unstable::equation::classify::classify(&file.problem, &values);
     let settings = Settings { order: 2, memory: 64 << 20, ..Settings::default() };
     // The work is bounded by the primes and orders it may take.
     let mut steps = 0;

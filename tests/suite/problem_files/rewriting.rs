@@ -133,7 +133,7 @@ fn same(a: &Derivation, b: &Derivation, text: &str) {
         assert_eq!(mine.coefficients, yours.coefficients, "{text}");
     }
     for n in 0..=3 {
-        let style = lindstedt::coeff::print::Style::Text;
+        let style = lindstedt::unstable::coeff::print::Style::Text;
         assert_eq!(a.print_solution(n, style), b.print_solution(n, style), "{text}");
     }
 }

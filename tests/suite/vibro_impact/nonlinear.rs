@@ -4,8 +4,8 @@
 //! history, starts with a perturbed velocity, and reports the impacts.
 
 use super::support::{ORBITS, Random, parameters};
-use lindstedt::equation::Expression;
-use lindstedt::equation::Function::{Cos, Exp, Sin};
+use lindstedt::unstable::equation::Expression;
+use lindstedt::unstable::equation::Function::{Cos, Exp, Sin};
 use lindstedt_impact::characteristic::{Characteristic, Kick};
 use lindstedt_impact::equivalent::{Drive, EquivalentOrbit, equivalent_orbit};
 use lindstedt_impact::flow::{Flow, rates};
@@ -126,7 +126,7 @@ fn shifts(p: &Parameters<f64>, orbit: &Orbit<f64>, perturbation: f64) -> Vec<f64
     ] {
         values.set(name, Float::with_val(53, value));
     }
-    let mut problem = lindstedt::problems::vibro_impact::problem();
+    let mut problem = lindstedt::unstable::problems::vibro_impact::problem();
     problem.equation = shifted(&problem.equation);
     let model = Model::of_problem(&problem).unwrap().with_history(&[history()]);
     let system = model.compile(Doubles, &values).unwrap();

@@ -3,7 +3,7 @@
 
 use super::support::Random;
 use lindstedt::averaging::{Averaging, AveragingSettings, Coefficient, RateTerm, average};
-use lindstedt::{Exact, problems};
+use lindstedt::{Exact, unstable::problems};
 use lindstedt_impact::flow::{characteristic_root, rates};
 use lindstedt_impact::parameters::{Branch, ExactParameters};
 use lindstedt_number::real::Certified;

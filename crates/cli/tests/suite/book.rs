@@ -253,8 +253,8 @@ mod readme {
 #[rustfmt::skip]
 #[test]
 fn tour_of_an_own_oscillator() -> Outcome {
-    use lindstedt::equation::{AmplitudeRole, Condition, Expression, Problem};
-    use lindstedt::{Settings, derive};
+    use lindstedt::unstable::equation::{AmplitudeRole, Condition, Expression, Problem};
+    use lindstedt::{unstable::derivation::Settings, unstable::derivation::derive};
 
     let x = Expression::DISPLACEMENT;
     let quintic = Problem {

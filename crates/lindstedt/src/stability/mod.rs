@@ -2,7 +2,7 @@
 //!
 //! Between impacts x'' + c x' + alpha^2 x = P0 cos(omega t) + A (x - x_T) + B (x' - x'_T) with
 //! T = 2 pi k/omega, and x' -> -R_r x' at the wall x = s. An equation with a wall is brought to this
-//! form ([`crate::recognise::ImpactProblem`]), whoever wrote it; one impact in k periods of the force.
+//! form ([`lindstedt_recognise::ImpactProblem`]), whoever wrote it; one impact in k periods of the force.
 
 mod chart;
 mod point;

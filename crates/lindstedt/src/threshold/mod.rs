@@ -3,7 +3,7 @@
 //! For x'' = f(x) + eps (gamma cos(omega t) - T(x' - v*)) with a homoclinic or heteroclinic orbit of
 //! x'' = f(x) the Melnikov function M(t0) = gamma F(omega t0) - D has simple zeros if and only if
 //! |gamma| exceeds gamma_c = D/max F (D > 0) or D/min F (D < 0). What f, T and the force are is read
-//! off the equation ([`crate::recognise::MelnikovProblem`]), whoever wrote it; an oscillator of the form
+//! off the equation ([`lindstedt_recognise::MelnikovProblem`]), whoever wrote it; an oscillator of the form
 //!
 //!   x'' = a x - b x^3 + eps (gamma cos(omega t) - T0 sgn w + alpha w - beta w^3),  w = x' - v*,
 //!

@@ -5,9 +5,10 @@ use super::sums::Series;
 use super::{Bench, Method, simulation};
 use crate::evaluate::source::coefficients_of;
 use crate::numeric::{self, Tier};
-use crate::{Error, Route, Settings, Solution, derive};
+use crate::{Error, Route, Solution};
 use lindstedt_algebra::Stop;
 use lindstedt_coeff::Polynomial;
+use lindstedt_derivation::{Settings, derive};
 use lindstedt_expand::ExpandError;
 use rug::{Float, Rational};
 

@@ -5,7 +5,7 @@ use super::formula::Tree;
 use super::judge::Statement;
 use super::setting::Setting;
 use lindstedt::Error;
-use lindstedt::coeff::quotient::{Quotient, Quotients};
+use lindstedt::unstable::coeff::quotient::{Quotient, Quotients};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_problems::vibro_impact;
 use std::sync::Arc;
@@ -120,8 +120,9 @@ fn derive(setting: &Setting) -> Option<Derived> {
         .word("x''", free)
         .means("eps", q.integer(0))
         .value(&equation)?;
-    let by_p = lindstedt::impact::linearised::coefficient(q, &alone, "p");
-    let constant = lindstedt::impact::linearised::replace(q, &alone, &[("p", q.integer(0))])?;
+    let by_p = lindstedt::unstable::impact::linearised::coefficient(q, &alone, "p");
+    let constant =
+        lindstedt::unstable::impact::linearised::replace(q, &alone, &[("p", q.integer(0))])?;
     let response = q.neg(&q.div(&constant, &by_p)?);
     // z'' + alpha^2 z less the equation with x = z + p cos(omega t).
     let shifted = setting

@@ -6,7 +6,7 @@ use super::formula::{Tree, completions, parse};
 use super::setting::Setting;
 use crate::Text;
 use crate::{Findings, Row};
-use lindstedt::coeff::quotient::Quotient;
+use lindstedt::unstable::coeff::quotient::Quotient;
 use lindstedt_algebra::Rationals;
 use rug::Rational;
 use std::collections::HashMap;

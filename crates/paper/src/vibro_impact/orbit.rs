@@ -6,8 +6,8 @@ use super::judge::Statement;
 use super::setting::Setting;
 use crate::Row;
 use lindstedt::Error;
-use lindstedt::coeff::quotient::{Quotient, Quotients};
-use lindstedt::impact::linearised::{ImpactMap, coefficient, replace};
+use lindstedt::unstable::coeff::quotient::{Quotient, Quotients};
+use lindstedt::unstable::impact::linearised::{ImpactMap, coefficient, replace};
 use rug::Rational;
 use std::sync::Arc;
 

@@ -7,8 +7,8 @@ use super::setting::Setting;
 use crate::Text;
 use crate::{Findings, Row, plain};
 use lindstedt::Error;
-use lindstedt::coeff::quotient::{Quotient, Quotients};
-use lindstedt::impact::linearised::{ImpactMap, characteristic, coefficient, replace};
+use lindstedt::unstable::coeff::quotient::{Quotient, Quotients};
+use lindstedt::unstable::impact::linearised::{ImpactMap, characteristic, coefficient, replace};
 use std::sync::Arc;
 
 /// Symbols of the perturbation in formulas.

@@ -2,7 +2,7 @@
 //! point by which most wrong formulas are told apart quickly.
 
 use super::formula::Tree;
-use lindstedt::coeff::quotient::{Quotient, Quotients};
+use lindstedt::unstable::coeff::quotient::{Quotient, Quotients};
 use lindstedt_algebra::Rationals;
 use rug::Rational;
 use rug::ops::Pow;

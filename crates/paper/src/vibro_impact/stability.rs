@@ -2,8 +2,8 @@
 
 use crate::Text;
 use crate::{Findings, Row, plain};
-use lindstedt::coeff::quotient::Quotients;
-use lindstedt::impact::linearised::replace;
+use lindstedt::unstable::coeff::quotient::Quotients;
+use lindstedt::unstable::impact::linearised::replace;
 use rug::Rational;
 
 /// Polynomials of known roots that the condition is tried on.

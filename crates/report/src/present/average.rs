@@ -4,8 +4,8 @@ use super::{Present, both, classification, condition_text, equation};
 use crate::{Document, Formula};
 use lindstedt::Answer;
 use lindstedt::averaging::{Averaging, Coefficient, RateTerm};
-use lindstedt::coeff::print::{Style, latex_name, power};
-use lindstedt::equation::Condition;
+use lindstedt::unstable::coeff::print::{Style, latex_name, power};
+use lindstedt::unstable::equation::Condition;
 
 /// Formulas longer than this are counted; JSON has them all.
 const PRINTED_CHARACTERS: usize = 6000;

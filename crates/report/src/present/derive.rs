@@ -2,8 +2,8 @@
 
 use super::{Present, both, classification, condition_text, equation};
 use crate::{Document, Formula, Text};
-use lindstedt::coeff::print::{Style, latex_name};
-use lindstedt::equation::{AmplitudeRole, Condition};
+use lindstedt::unstable::coeff::print::{Style, latex_name};
+use lindstedt::unstable::equation::{AmplitudeRole, Condition};
 use lindstedt::{Answer, Derivation, Number, Solution};
 
 /// Right sides and solutions with more terms are counted, not printed; JSON has them all.

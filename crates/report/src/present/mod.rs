@@ -16,8 +16,8 @@ mod verify;
 
 use crate::{Document, Figure, Formula, Table, Text};
 use classification::classification;
-use lindstedt::coeff::print::Style;
-use lindstedt::equation::{Condition, Problem, print};
+use lindstedt::unstable::coeff::print::Style;
+use lindstedt::unstable::equation::{Condition, Problem, print};
 use lindstedt::{Number, Status};
 use serde::Serialize;
 

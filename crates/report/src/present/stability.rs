@@ -4,10 +4,10 @@ mod chart;
 
 use super::Present;
 use crate::{Block, Document, Figure, Formula, Table, Text};
-use lindstedt::impact::Finite;
 use lindstedt::stability::{
     Aware, Found, OrbitStability, Predicted, PredictedOrbit, TrueOrbit, Truth,
 };
+use lindstedt::unstable::impact::Finite;
 use lindstedt::{Answer, Number};
 
 type Line = (Text, Text);

@@ -4,7 +4,7 @@ use super::Present;
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::Answer;
-use lindstedt::coeff::print::latex_name;
+use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::verify::{Comparison, Verification};
 
 /// Small parameter, difference, error of the integration, slope.

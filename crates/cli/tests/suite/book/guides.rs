@@ -4,7 +4,7 @@ use super::Outcome;
 
 #[rustfmt::skip]
 mod quintic {
-    use lindstedt::equation as lindstedt_equation;
+    use lindstedt::unstable::equation as lindstedt_equation;
 
     use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
 
@@ -41,7 +41,7 @@ mod quintic {
 #[rustfmt::skip]
 #[test]
 fn quintic_by_the_energy_integral() -> Outcome {
-    use lindstedt::{Settings, derive};
+    use lindstedt::{unstable::derivation::Settings, unstable::derivation::derive};
 
     let settings = Settings { order: 2, ..Settings::default() };
     let result = derive(&quintic::problem(), &settings, &mut |_| true)?;
@@ -54,7 +54,7 @@ fn quintic_by_the_energy_integral() -> Outcome {
 mod quadratic_field {
     use super::Outcome;
 
-    use lindstedt::algebra::{RationalAlgebra, Ring};
+    use lindstedt::unstable::algebra::{RationalAlgebra, Ring};
     use rug::Rational;
 
     /// Q(sqrt d), d not a square; (p, q) is p + q sqrt d.
@@ -107,8 +107,8 @@ mod quadratic_field {
 
     #[test]
     fn its_laws() {
-        use lindstedt::algebra::{PhaseAlgebra, laws};
-        use lindstedt::phase::Trigonometric;
+        use lindstedt::unstable::algebra::{PhaseAlgebra, laws};
+        use lindstedt::unstable::phase::Trigonometric;
 
         let field = QuadraticField { d: 2 };
         let root = (Rational::new(), Rational::from(1));
@@ -125,9 +125,9 @@ mod quadratic_field {
     #[test]
     fn an_expansion_over_it() -> Outcome {
         use lindstedt::Oscillator;
-        use lindstedt::equation::Condition;
-        use lindstedt::expand::{Binding, Request, check, compile, expand};
-        use lindstedt::phase::Trigonometric;
+        use lindstedt::unstable::equation::Condition;
+        use lindstedt::unstable::expand::{Binding, Request, check, compile, expand};
+        use lindstedt::unstable::phase::Trigonometric;
 
         /// k = sqrt 2.
         struct Values;

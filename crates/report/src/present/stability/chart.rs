@@ -3,9 +3,9 @@
 use crate::figure::{Axis, Colour, Mark, Raster, colours};
 use crate::{Figure, Table};
 use lindstedt::Answer;
-use lindstedt::impact::chart::{Agreement, LeftOut, Point};
-use lindstedt::impact::map::Verdict;
 use lindstedt::stability::{Chart, OrbitStability};
+use lindstedt::unstable::impact::chart::{Agreement, LeftOut, Point};
+use lindstedt::unstable::impact::map::Verdict;
 
 /// The largest chart in characters.
 const WIDEST: usize = 100;
