@@ -253,26 +253,10 @@ mod readme {
 #[rustfmt::skip]
 #[test]
 fn tour_of_an_own_oscillator() -> Outcome {
-    use lindstedt::unstable::equation::{AmplitudeRole, Condition, Expression, Problem};
-    use lindstedt::{unstable::derivation::Settings, unstable::derivation::derive};
+    use lindstedt::{Oscillator, Work};
 
-    let x = Expression::DISPLACEMENT;
-    let quintic = Problem {
-        name: "quintic".into(),
-        title: "x'' + x + eps x^5 = 0 at amplitude 1".into(),
-        equation: Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(5),
-        time_domain: None,
-        impact: None,
-        synchronous: None,
-        small: "eps".into(),
-        conditions: vec![Condition::InitialAmplitude],
-        amplitude: AmplitudeRole::InSmallParameter,
-        parameters: Vec::new(),
-        notes: "".into(),
-        source: "".into(),
-    };
-    let settings = Settings { order: 3, ..Settings::default() };
-    let result = derive(&quintic, &settings, &mut |_| true)?;
+    let quintic = Oscillator::parse("x'' + x + eps*x^5 = 0")?;
+    let result = quintic.derive(3, &Work::default())?.value;
     assert_eq!(result.exact("frequency_squared", 1).as_deref(), Some("5/8"));
     assert_eq!(result.checked_orders, Some(3));
     Ok(())
