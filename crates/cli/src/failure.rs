@@ -1,7 +1,7 @@
 //! Failures: one clear line, a hint, and the exit code of the contract.
 
 use crate::arguments::Format;
-use crate::output::warn;
+use crate::terminal::warn;
 use lindstedt::unstable::simulate::SimulateError;
 use lindstedt::{Error, Kind, NumberError, Refusal, Refused};
 use serde_json::json;

@@ -11,6 +11,7 @@ mod problems;
 mod session;
 mod simulate;
 mod stability;
+mod terminal;
 mod threshold;
 mod trade;
 mod verify;

@@ -1,15 +1,14 @@
 //! Writing results.
 
 use crate::failure::{FILE, Failure};
-use crate::session::Session;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Writes a result to the file asked for or to standard output.
 ///
 /// A reader that closes the pipe early (`| head`) is no failure.
-pub fn write(session: &Session, text: &str) -> Result<(), Failure> {
-    let Some(path) = session.out() else {
+pub fn write(out: Option<&Path>, text: &str) -> Result<(), Failure> {
+    let Some(path) = out else {
         let mut stdout = std::io::stdout().lock();
         return match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
@@ -19,11 +18,6 @@ pub fn write(session: &Session, text: &str) -> Result<(), Failure> {
         };
     };
     std::fs::write(path, text).map_err(|error| trouble(&path.display().to_string(), &error))
-}
-
-/// Fails now rather than after the work if the output cannot be written.
-pub fn check_writable(session: &Session) -> Result<(), Failure> {
-    session.out().map_or(Ok(()), check_file)
 }
 
 /// Fails now rather than after the work if a file cannot be written.
@@ -66,9 +60,4 @@ pub fn trouble(what: &str, error: &std::io::Error) -> Failure {
         message: format!("cannot write {what}: {error}"),
         hint: String::new(),
     }
-}
-
-/// One line on standard error; a stream that is closed or full is no reason to fail.
-pub fn warn(message: &str) {
-    let _ = writeln!(std::io::stderr(), "lindstedt: {message}");
 }

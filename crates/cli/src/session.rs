@@ -2,6 +2,7 @@
 
 use crate::arguments::{Common, Format, Normalisation, Precision};
 use crate::failure::{FILE, Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
+use crate::terminal::warn;
 use crate::{Outcome, output};
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::unstable::algebra::Stop;
@@ -40,7 +41,7 @@ impl<'a> Session<'a> {
             if counter.fetch_add(1, Ordering::SeqCst) > 0 {
                 std::process::exit(i32::from(INTERRUPTED));
             }
-            output::warn("stopping after the step in progress; Ctrl-C again to stop at once");
+            warn("stopping after the step in progress; Ctrl-C again to stop at once");
         });
         let bar = if common.quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
         if let Ok(style) = ProgressStyle::with_template("{spinner} [{elapsed}] {msg}") {
@@ -165,7 +166,7 @@ impl<'a> Session<'a> {
     pub fn check_writable(&self, plots: &[PathBuf]) -> Result<(), Failure> {
         output::check_plots(plots)?;
         plots.iter().try_for_each(|path| output::check_file(path))?;
-        output::check_writable(self)
+        self.out().map_or(Ok(()), output::check_file)
     }
 
     /// Prints an answer in the format asked for, writes its figures and tables, says its remarks.
@@ -190,7 +191,7 @@ impl<'a> Session<'a> {
 
     /// Says what is to be said beside an answer.
     pub fn say_remarks(&self, remarks: &[Remark]) {
-        remarks.iter().for_each(|remark| output::warn(&remark.0));
+        remarks.iter().for_each(|remark| warn(&remark.0));
     }
 
     /// Prints what can be shown in the format asked for.
@@ -206,7 +207,7 @@ impl<'a> Session<'a> {
             Format::Latex => Written::Latex.write(&answer.document()),
             Format::Markdown => Written::Markdown.write(&answer.document()),
         };
-        output::write(self, &text)
+        output::write(self.out(), &text)
     }
 
     /// The exit code of stopped work.

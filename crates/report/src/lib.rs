@@ -15,10 +15,12 @@ mod format;
 mod mathml;
 mod present;
 mod table;
+mod text;
 
-pub use document::{Block, Document, Formula, Part, Span, Text};
+pub use document::{Block, Document, Part};
 pub use figure::{Figure, FigureError};
 pub use format::{Format, standalone};
 pub use mathml::{MathError, mathml};
 pub use present::{Present, json};
 pub use table::Table;
+pub use text::{Formula, Span, Text};

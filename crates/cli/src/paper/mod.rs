@@ -43,7 +43,7 @@ pub fn run(options: &PaperOptions, session: &Session<'_>) -> Outcome {
                 Format::Latex => page::write(&paper, Written::Latex),
                 Format::Json => page::json(&paper, seconds).map_err(unwritten)?,
             };
-            crate::output::write(session, &report)?;
+            crate::output::write(session.out(), &report)?;
         }
     }
     if paper.complete {
@@ -51,7 +51,7 @@ pub fn run(options: &PaperOptions, session: &Session<'_>) -> Outcome {
     }
     let reason = if session.interrupted() { "interrupted" } else { "time limit" };
     let rows: usize = paper.sections.iter().map(|s| s.rows.len()).sum();
-    crate::output::warn(&format!("{reason}: {rows} rows are finished"));
+    crate::terminal::warn(&format!("{reason}: {rows} rows are finished"));
     Ok(if session.interrupted() { INTERRUPTED } else { UNDECIDED })
 }
 

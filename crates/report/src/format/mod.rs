@@ -1,5 +1,6 @@
 //! The readers of a document.
 
+mod csv;
 mod html;
 mod latex;
 mod markdown;
