@@ -18,6 +18,7 @@ mod digits;
 mod displacements;
 mod error;
 pub mod few;
+mod fourier;
 mod json;
 mod names;
 mod period;
@@ -28,7 +29,8 @@ mod words;
 
 pub use displacements::{Displacement, Displacements};
 pub use error::EvaluationError;
+pub use fourier::Fourier;
 pub use json::Place;
 pub use names::{kind_name, method_flag, method_name, rounded, with_error};
 pub use period::{Evaluation, period};
-pub use solution::{Fourier, Trajectory};
+pub use solution::Trajectory;

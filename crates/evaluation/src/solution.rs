@@ -5,6 +5,7 @@ use crate::digits::bits_for;
 use crate::displacements::{Displacement, Displacements};
 use crate::error::EvaluationError as Error;
 use crate::few;
+use crate::fourier::{Fourier, harmonic};
 use crate::period::Evaluation;
 use crate::setting::{Form, Setting};
 use crate::source::remembered;
@@ -18,18 +19,6 @@ use rayon::prelude::*;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 use std::sync::{Arc, RwLock};
-
-/// x as a Fourier series in omega t.
-#[derive(Clone, Debug)]
-pub struct Fourier {
-    /// (c_k, s_k) of c_k cos(k omega t) + s_k sin(k omega t).
-    pub coefficients: Vec<(f64, f64)>,
-    /// The largest deviation of the sum from x at four times as many points as were used, and near the
-    /// largest of these at 16 more.
-    pub deviation: f64,
-    /// What the estimated errors of x allow a coefficient to be wrong by; nothing without estimates.
-    pub error: Option<f64>,
-}
 
 /// x(t), to be evaluated at any time.
 pub struct Trajectory {
@@ -103,16 +92,6 @@ fn settled(
         before = after;
     }
     None
-}
-
-/// (c_k, s_k) of values at the phases 2 pi (i + 1/2)/n, by the trapezoidal rule.
-fn harmonic(values: &[f64], k: usize) -> (f64, f64) {
-    let count = values.len() as f64;
-    let weight = if k == 0 { 1.0 } else { 2.0 } / count;
-    values.iter().enumerate().fold((0.0, 0.0), |(c, s), (i, x)| {
-        let angle = k as f64 * (i as f64 + 0.5) * std::f64::consts::TAU / count;
-        (c + weight * x * angle.cos(), s + weight * x * angle.sin())
-    })
 }
 
 impl Trajectory {
@@ -357,15 +336,11 @@ impl Trajectory {
         let error = nodes.iter().map(|x| x.error).sum::<f64>() * 2.0 / count as f64;
         let values: Vec<f64> = nodes.iter().map(|x| x.double).collect();
         let list: Vec<(f64, f64)> = (0..=harmonics).map(|k| harmonic(&values, k)).collect();
-        let sum = |angle: f64| {
-            let term = |(k, (c, s)): (usize, &(f64, f64))| {
-                let angle = k as f64 * angle;
-                c * angle.cos() + s * angle.sin()
-            };
-            list.iter().enumerate().map(term).sum::<f64>()
-        };
+        let error = error.is_finite().then_some(error);
+        let mut found = Fourier { coefficients: list, deviation: f64::INFINITY, error };
         let deviation = |places: Vec<f64>| -> Option<(f64, f64)> {
-            let one = |place: f64| Some(((sum(place * turn) - at(place)?.double).abs(), place));
+            let one =
+                |place: f64| Some(((found.at(place * turn) - at(place)?.double).abs(), place));
             let all: Vec<(f64, f64)> = places.into_par_iter().map(one).collect::<Option<_>>()?;
             all.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))
         };
@@ -373,8 +348,8 @@ impl Trajectory {
         let quarters = (0..4 * count).filter(|i| i % 4 != 2).map(|i| i as f64 / 4.0).collect();
         let (coarse, place) = deviation(quarters)?;
         let (fine, _) = deviation((-8..=8).map(|i| place + f64::from(i) / 32.0).collect())?;
-        let deviation = coarse.max(fine);
-        Some(Fourier { coefficients: list, deviation, error: error.is_finite().then_some(error) })
+        found.deviation = coarse.max(fine);
+        Some(found)
     }
 
     /// The Fourier coefficients c_k, s_k, k = 0 .. `harmonics`, of one approximant at
