@@ -98,6 +98,8 @@ struct Reader<'a> {
     trust: Trust,
     /// Counted in section 2, before the charts.
     sample: Option<trust::Sample>,
+    /// Computed for the tables of section 4, before the errors by order.
+    tabled: Vec<tables::Tabled>,
 }
 
 impl Reader<'_> {
@@ -173,7 +175,8 @@ fn read_section(
     observer: &mut dyn FnMut(&str) -> bool,
 ) -> Result<(Section, Trust, bool), Error> {
     let balls = Balls::new(BITS);
-    let mut reader = Reader { options, balls, observer, trust: Trust::default(), sample: None };
+    let trust = Trust::default();
+    let mut reader = Reader { options, balls, observer, trust, sample: None, tabled: Vec::new() };
     let mut section = Section { number: *number, title, rows: Vec::new(), tables: Vec::new() };
     for (what, part) in *parts {
         if !reader.goes_on(what) || !part(&mut reader, &mut section)? {
@@ -240,14 +243,7 @@ fn plain(
     holds: bool,
     evidence: &str,
 ) -> Row {
-    Row {
-        label: label.into(),
-        printed: printed.into(),
-        derived: derived.into(),
-        independent: independent.into(),
-        verdict: Findings::holds(holds).verdict(),
-        evidence: evidence.into(),
-    }
+    Row::new(label, printed, derived, independent, &Findings::holds(holds), evidence)
 }
 
 /// A number with so many certified digits, if it has them.

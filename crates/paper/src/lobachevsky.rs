@@ -34,14 +34,14 @@ pub(super) fn rows(reader: &Reader<'_>) -> Result<Vec<Row>, Error> {
                     independent: String,
                     holds,
                     evidence: String| {
-        rows.push(Row {
-            label: label.into(),
-            printed: printed.into(),
-            derived: derived.into(),
-            independent: independent.into(),
-            verdict: Findings::holds(holds).verdict(),
-            evidence: evidence.into(),
-        });
+        rows.push(Row::new(
+            label,
+            printed,
+            derived,
+            independent,
+            &Findings::holds(holds),
+            evidence,
+        ));
     };
     let show = |ball: &Ball| decimal(ball, 15).unwrap_or_else(|| "?".to_owned());
     // The definition, against the integral itself.
@@ -100,15 +100,14 @@ pub(super) fn rows(reader: &Reader<'_>) -> Result<Vec<Row>, Error> {
     let double = l(&Rational::from(2));
     let printed = balls.mul_i64(&balls.mul(&balls.pi(), &balls.ln_2()), 2);
     let direct = quadrature(&zero, &Rational::from(2));
-    rows.push(Row {
-        label: "$L(2 pi)$".into(),
-        printed: "$L(2 pi) = 2 pi ln 2$".into(),
-        derived: format!("$L(2 pi) = {}$", show(&double)).into(),
-        independent: format!("quadrature: {} (estimated)", direct.to_string_radix(10, Some(15)))
-            .into(),
-        verdict: Findings::holds(double.overlaps(&printed) && near(&printed, &direct)).verdict(),
-        evidence: "twice the pseudoperiod, by the printed properties".into(),
-    });
+    rows.push(Row::new(
+        "$L(2 pi)$",
+        "$L(2 pi) = 2 pi ln 2$",
+        format!("$L(2 pi) = {}$", show(&double)),
+        format!("quadrature: {} (estimated)", direct.to_string_radix(10, Some(15))),
+        &Findings::holds(double.overlaps(&printed) && near(&printed, &direct)),
+        "twice the pseudoperiod, by the printed properties",
+    ));
     Ok(rows)
 }
 
@@ -143,21 +142,21 @@ fn series_row(reader: &Reader<'_>) -> Row {
     let value = lobachevsky(&Point::PiTimes(quarter), balls);
     let show = |ball: &Ball, digits| decimal(ball, digits).unwrap_or_else(|| "?".to_owned());
     let first = exact.get(2).map_or("?".to_owned(), |c| ring.print(c, Style::Text));
-    Row {
-        label: "$L$ series".into(),
-        printed: "$L(x) = x ln 2 - 1/2 sum_{k>=1} (-1)^(k-1) sin(2kx)/k^2$".into(),
-        derived: format!("$L(x) - x ln 2 = Lambda_1(x)$, first harmonic ${first}*sin(2x)$").into(),
-        independent: format!(
+    Row::new(
+        "$L$ series",
+        "$L(x) = x ln 2 - 1/2 sum_{k>=1} (-1)^(k-1) sin(2kx)/k^2$",
+        format!("$L(x) - x ln 2 = Lambda_1(x)$, first harmonic ${first}*sin(2x)$"),
+        format!(
             "$L(pi/4) = {}$; {HARMONICS} terms of the series give {}",
             show(&value, 15),
             show(&partial, 4)
-        ).into(),
-        verdict: Findings::holds(holds && partial.overlaps(&value)).verdict(),
-        evidence: format!(
+        ),
+        &Findings::holds(holds && partial.overlaps(&value)),
+        format!(
             "{HARMONICS} Fourier coefficients of $Lambda_1$ compared, exactly (the series converges \
              like $1/k^2$ and serves for no more than a few digits)"
-        ).into(),
-    }
+        ),
+    )
 }
 
 /// Whether an estimate agrees with a ball to 25 digits.

@@ -2,7 +2,6 @@
 
 use super::printed::{COMPARED_AT, PrintedForm, printed_forms};
 use super::{Decimal, Reader, Row, Section, plain, show};
-use crate::Text;
 use lindstedt::{DerivationError, Error};
 use lindstedt_melnikov::{
     Branch, Friction, MelnikovError, PolynomialFriction, StickSlip, quadrature_dissipation,
@@ -59,21 +58,21 @@ fn row(label: String, comparison: &PrintedForm, quadrature: Option<f64>) -> Row 
         Some(value) => format!("as printed it gives {}", estimate(value)),
         None => "as printed it has no real value".to_owned(),
     };
-    Row {
-        label: label.into(),
-        printed: comparison.printed.into(),
-        derived: Text::from(estimate(derived)),
-        independent: independent.into(),
-        verdict: findings.verdict(),
-        evidence: Text::from(if comparison.printed.contains("$b = 5$") {
+    Row::new(
+        label,
+        comparison.printed,
+        estimate(derived),
+        independent,
+        findings,
+        if comparison.printed.contains("$b = 5$") {
             format!("{gives}; {}", comparison.correct)
         } else if comparison.printed.contains("at $v* =") {
             let others = COMPARED_AT.replace("$v* = 0.5$, ", "");
             format!("{gives}; {}; at this $v*$ and {others}", comparison.correct)
         } else {
             format!("{gives}; {}; at {COMPARED_AT}", comparison.correct)
-        }),
-    }
+        },
+    )
 }
 
 /// The paper's oscillator with another b and v*.
@@ -153,17 +152,17 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
             Some(show(&there.signed_threshold(balls)?, 6))
         })
         .collect();
-    Ok(Row {
-        label: "$gamma_c$".into(),
-        printed: "$a = b = 1$, $alpha = beta = T0 = 0.3$, $omega = 2$, $v* = 0.4$: $gamma_c = 0.65$, printed \
-                  twice".into(),
-        derived: format!("$gamma_c = {}$", show(&value, DIGITS)).into(),
-        independent: format!(
+    Ok(Row::new(
+        "$gamma_c$",
+        "$a = b = 1$, $alpha = beta = T0 = 0.3$, $omega = 2$, $v* = 0.4$: $gamma_c = 0.65$, printed \
+                  twice",
+        format!("$gamma_c = {}$", show(&value, DIGITS)),
+        format!(
             "$D$ by quadrature: {} (estimated)",
             show(&balls.from_parts(&second, &rug::Float::new(53)), DIGITS)
-        ).into(),
-        verdict: findings.verdict(),
-        evidence: format!(
+        ),
+        &findings,
+        format!(
             "0.65 is {}; {}; near $v* = 0.4$ the curve is flat, its smooth extrema are {}",
             source.map_or_else(
                 || {
@@ -177,8 +176,8 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
                 |digit| format!("{digit}, but such a slip is not made twice")
             ),
             extremes.ok_or(Error::NoValue)?.join(" and ")
-        ).into(),
-    })
+        ),
+    ))
 }
 
 /// The threshold of the paper's point without the part (32/35) beta V^3 of G: what (25) leaves
@@ -204,23 +203,21 @@ fn zero(text: &'static str, zero: Option<&Ball>, count: usize, balls: Balls) -> 
     findings.holds &= sides[0].is_sign_negative() != sides[1].is_sign_negative();
     let residual = oscillator(5, Exact::from(printed.value().clone())).g(balls);
     let shown = |x: &rug::Float| x.to_string_radix(10, Some(3));
-    Ok(Row {
-        label: format!("$v* = {text}$").into(),
-        printed: format!("$b = 5$: $gamma = 0$ at $v* = {text}$").into(),
-        derived: format!("$v* = {}$", show(zero, DIGITS)).into(),
-        independent: format!(
+    Ok(Row::new(
+        format!("$v* = {text}$"),
+        format!("$b = 5$: $gamma = 0$ at $v* = {text}$"),
+        format!("$v* = {}$", show(zero, DIGITS)),
+        format!(
             "$D$ by quadrature at the printed value -+ 1e-6: {} and {} (estimated)",
             shown(&sides[0]),
             shown(&sides[1])
-        )
-        .into(),
-        verdict: findings.verdict(),
-        evidence: format!(
+        ),
+        &findings,
+        format!(
             "$G$ there is {}; (27) has {count} zeros in $v* >= 0$, and the list is complete",
             residual.map_or_else(|| "?".to_owned(), |g| show(&g, 3))
-        )
-        .into(),
-    })
+        ),
+    ))
 }
 
 /// "Two cusps": whether the slopes on both sides of a place differ.

@@ -2,7 +2,6 @@
 
 use super::tables::{QUANTITIES, Truncations};
 use super::{Decimal, Findings, Reader, Row, Section, periods, show};
-use crate::Text;
 use lindstedt::Error;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
@@ -83,19 +82,14 @@ fn rows(balls: Balls) -> Option<Vec<Row>> {
 
     let printed_first = Decimal::new("6.8070")?;
     let (findings, source) = approximation(&printed_first, &first, &sources);
-    rows.push(Row {
-        label: "$n = 3$, first".into(),
-        printed: "$n = 3$ ($delta = 1$): (42) yields $T = 6.8070$".into(),
-        derived: format!("order 1 of $T$: {}, off by {}", show(&first, 6), off(&first)?).into(),
-        independent: Text::from(exact_text.clone()),
-        verdict: findings.verdict(),
-        evidence: format!(
-            "(42) as printed gives {}; 6.8070 is {}",
-            show(&forty_two(1), 5),
-            tried(&source)
-        )
-        .into(),
-    });
+    rows.push(Row::new(
+        "$n = 3$, first",
+        "$n = 3$ ($delta = 1$): (42) yields $T = 6.8070$",
+        format!("order 1 of $T$: {}, off by {}", show(&first, 6), off(&first)?),
+        exact_text.clone(),
+        &findings,
+        format!("(42) as printed gives {}; 6.8070 is {}", show(&forty_two(1), 5), tried(&source)),
+    ));
 
     let printed_exact = Decimal::new("7.4164")?;
     let findings = if exact.overlaps(&second_route) {
@@ -103,75 +97,72 @@ fn rows(balls: Balls) -> Option<Vec<Row>> {
     } else {
         Findings::default()
     };
-    rows.push(Row {
-        label: "$n = 3$, exact".into(),
-        printed: "exact period $T = 7.4164$".into(),
-        derived: format!("$T = {}$ by the $Gamma$ closed form", show(&exact, 20)).into(),
-        independent: format!("$T = {}$ by the AGM", show(&second_route, 20)).into(),
-        verdict: findings.verdict(),
-        evidence: Text::from(findings.correction.unwrap_or_default()),
-    });
+    rows.push(Row::new(
+        "$n = 3$, exact",
+        "exact period $T = 7.4164$",
+        format!("$T = {}$ by the $Gamma$ closed form", show(&exact, 20)),
+        format!("$T = {}$ by the AGM", show(&second_route, 20)),
+        &findings,
+        findings.correction.clone().unwrap_or_default(),
+    ));
 
     let own = percent(&ball(&printed_first), &ball(&printed_exact), balls)?;
     let eight = balls.from_i64(8);
-    rows.push(Row {
-        label: "$n = 3$, 8 %".into(),
-        printed: "the error doesn't exceed 8 %".into(),
-        derived: format!("error of the derived first approximation: {}", off(&first)?).into(),
-        independent: Text::from(exact_text.clone()),
-        verdict: Findings::holds(balls.sub(&eight, &own).is_positive()).verdict(),
-        evidence: format!(
+    rows.push(Row::new(
+        "$n = 3$, 8 %",
+        "the error doesn't exceed 8 %",
+        format!("error of the derived first approximation: {}", off(&first)?),
+        exact_text.clone(),
+        &Findings::holds(balls.sub(&eight, &own).is_positive()),
+        format!(
             "the paper's own numbers give {} %, (42) as printed {}",
             show(&own, 3),
             off(&forty_two(1))?
-        )
-        .into(),
-    });
+        ),
+    ));
 
     let printed_second = Decimal::new("7.5111")?;
     let (findings, source) = approximation(&printed_second, &second, &sources);
-    rows.push(Row {
-        label: "$n = 3$, second".into(),
-        printed: "the next approximation gives $T = 7.5111$".into(),
-        derived: format!("order 2 of $T$: {}, off by {}", show(&second, 6), off(&second)?).into(),
-        independent: Text::from(exact_text.clone()),
-        verdict: findings.verdict(),
-        evidence: format!("7.5111 is {}", tried(&source)).into(),
-    });
+    rows.push(Row::new(
+        "$n = 3$, second",
+        "the next approximation gives $T = 7.5111$",
+        format!("order 2 of $T$: {}, off by {}", show(&second, 6), off(&second)?),
+        exact_text.clone(),
+        &findings,
+        format!("7.5111 is {}", tried(&source)),
+    ));
 
     // The paper says "practically exact" again below (51), for an error of 0.5 %.
     let half = balls.from_rational(Decimal::new("0.5")?.value());
     let its_error = percent(&ball(&printed_second), &exact, balls)?;
-    rows.push(Row {
-        label: "$n = 3$, 7.5111".into(),
-        printed: "7.5111 is a practically exact value".into(),
-        derived: format!("the derived second approximation is: off by {}", off(&second)?).into(),
-        independent: exact_text.into(),
-        verdict: Findings::holds(balls.sub(&half, &its_error).is_positive()).verdict(),
-        evidence: format!(
+    rows.push(Row::new(
+        "$n = 3$, 7.5111",
+        "7.5111 is a practically exact value",
+        format!("the derived second approximation is: off by {}", off(&second)?),
+        exact_text,
+        &Findings::holds(balls.sub(&half, &its_error).is_positive()),
+        format!(
             "7.5111 is off by {} %; below (51) the paper calls 0.5 % practically exact",
             show(&its_error, 3)
-        )
-        .into(),
-    });
+        ),
+    ));
 
     let exact_five = periods::power_law_period(&Rational::from(5), balls)?;
     let derived_five = series.period(period, 1, &two)?;
     let error = percent(&derived_five, &exact_five, balls)?;
     let printed_five = forty_two(2);
-    rows.push(Row {
-        label: "$n = 5$".into(),
-        printed: "for $n = 5$ formula (42) does not represent a real period value".into(),
-        derived: format!("(42) as printed gives {}", show(&printed_five, 5)).into(),
-        independent: format!("exact {} by the $Gamma$ function", show(&exact_five, 8)).into(),
-        verdict: Findings::holds(printed_five.is_negative()).verdict(),
-        evidence: format!(
+    rows.push(Row::new("$n = 5$",
+"for $n = 5$ formula (42) does not represent a real period value",
+format!("(42) as printed gives {}", show(&printed_five, 5)),
+format!("exact {} by the $Gamma$ function", show(&exact_five, 8)),
+&Findings::holds(printed_five.is_negative()),
+format!(
             "negative as for $n = 3$ already, where {} stands for 6.8070; the corrected formula gives {}, off \
              by {} %",
             show(&forty_two(1), 5),
             show(&derived_five, 6),
             show(&error, 3)
-        ).into(),
-    });
+        ),
+));
     Some(rows)
 }

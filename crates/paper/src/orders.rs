@@ -2,7 +2,6 @@
 
 use super::compare::{Ratio, Term, compare_sums};
 use super::{Findings, Reader, Row, periods};
-use crate::Text;
 use lindstedt::unstable::derivation::constants::Constants;
 use lindstedt::{
     Derivation, Error, Progress, Solution, unstable::derivation::Settings,
@@ -134,15 +133,14 @@ impl Case {
             let rational = value.and_then(|v| ring.as_rational(&v));
             rational.map_or("?".to_owned(), |q| q.to_string())
         };
-        Row {
-            label: label.into(),
-            printed: printed.into(),
-            derived: format!("$x_{n}(0) = {}$, $x_{n}'(0) = {}$", shown(start), shown(slope))
-                .into(),
-            independent: Text::from(self.residual_text()),
-            verdict: Findings::holds(holds).verdict(),
-            evidence: "value and slope of the derived $x_n$ at 0, exactly".into(),
-        }
+        Row::new(
+            label,
+            printed,
+            format!("$x_{n}(0) = {}$, $x_{n}'(0) = {}$", shown(start), shown(slope)),
+            self.residual_text(),
+            &Findings::holds(holds),
+            "value and slope of the derived $x_n$ at 0, exactly",
+        )
     }
 
     /// What the residual check said.
@@ -199,19 +197,18 @@ impl Case {
             }
             None => format!("at $tau = 1$ as printed {}", show(&theirs)),
         };
-        Ok(Row {
-            label: label.into(),
-            printed: printed.into(),
-            derived: format!("$x_{n}'' + x_{n} = {text}$").into(),
-            independent: format!(
+        Ok(Row::new(
+            label,
+            printed,
+            format!("$x_{n}'' + x_{n} = {text}$"),
+            format!(
                 "at $tau = 1$, force differentiated numerically: {} (estimated; derived {})",
                 show(&numerical),
                 show(&ours)
-            )
-            .into(),
-            verdict: findings.verdict(),
-            evidence: evidence.into(),
-        })
+            ),
+            &findings,
+            evidence,
+        ))
     }
 
     /// -[force]_n/kappa - sum_{k=1}^n W_k x_{n-k}'' at tau = 1, for n = 1, 2, the force along

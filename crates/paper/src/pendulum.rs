@@ -168,22 +168,22 @@ fn omega_row(balls: Balls) -> Option<Row> {
     let near = balls.add(&measured, &printed).abs_upper() < 1e-25;
     let correction = (!holds && near).then(|| corrections.join(", "));
     let findings = Findings { holds, correction, propagates, reproduced: None };
-    Some(Row {
-        label: "$Omega$".into(),
-        printed: "$Omega = x [omega^2 + delta ln(x^2) omega_1^2 + delta^2 [ln(x^2)]^2 + ...]$".into(),
-        derived: format!(
+    Some(Row::new(
+        "$Omega$",
+        "$Omega = x [omega^2 + delta ln(x^2) omega_1^2 + delta^2 [ln(x^2)]^2 + ...]$",
+        format!(
             "the factor of $delta ln(x^2)$ is ${}$, that of $delta^2 [ln(x^2)]^2$ is ${}$",
             derived.first()?,
             derived.get(1)?
-        ).into(),
-        independent: format!(
+        ),
+        format!(
             "$dOmega/d(delta)/(x ln x^2)$ at $x = 1/2$, $delta = 0$, numerically: {} (estimated); $omega_1^2 = {}$",
             show(&measured, 12),
             show(&printed, 12)
-        ).into(),
-        verdict: findings.verdict(),
-        evidence: format!("{}; (47) and (49) carry the right signs", corrections.join(", ")).into(),
-    })
+        ),
+        &findings,
+        format!("{}; (47) and (49) carry the right signs", corrections.join(", ")),
+    ))
 }
 
 fn order_rows(case: &Case) -> Result<Vec<Row>, Error> {

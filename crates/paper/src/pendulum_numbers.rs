@@ -3,7 +3,6 @@
 use super::numbers::{approximation, percent, times_two_pi, truncations};
 use super::tables::{QUANTITIES, Truncations};
 use super::{Decimal, Row, periods, plain, show};
-use crate::Text;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 
@@ -41,34 +40,33 @@ pub(super) fn rows(balls: Balls) -> Option<Vec<Row>> {
     let own = percent(&ball(&first_printed), &ball(&numerical), balls)?;
     let true_error = percent(&ball(&first_printed), &exact, balls)?;
     let correct = numerical.correct(&exact)?;
-    let mut rows = vec![Row {
-        label: "$T$ numerical".into(),
-        printed: "the numerical period of (43) is $T = 6.6$".into(),
-        derived: format!("$T = {}$ at amplitude 1", show(&exact, 12)).into(),
-        independent: format!(
+    let mut rows = vec![Row::new(
+        "$T$ numerical",
+        "the numerical period of (43) is $T = 6.6$",
+        format!("$T = {}$ at amplitude 1", show(&exact, 12)),
+        format!(
             "hypergeometric series: {}",
             show(&periods::pendulum_period_by_series(&one, balls)?, 12)
-        ).into(),
-        verdict: numerical.compare(&exact).verdict(),
-        evidence: format!(
+        ),
+        &numerical.compare(&exact),
+        format!(
             "{}, rounded it is {correct}; the error of 0.5 % given for 6.57 rests on 6.6 ({} %, in truth {} %)",
             numerical.shows_as(&exact).unwrap_or("neither rounded nor cut off"),
             show(&own, 2),
             show(&true_error, 3)
-        ).into(),
-    }];
-    rows.push(Row {
-        label: "$T$ order 0".into(),
-        printed: "the approximation of order 0 gives $T = 6.8$".into(),
-        derived: format!("$2 pi/omega = {}$, off by {} %", show(&zeroth, 8), off(&zeroth)?).into(),
-        independent: Text::from(exact_text.clone()),
-        verdict: zero.compare(&zeroth).verdict(),
-        evidence: format!(
+        ),
+    )];
+    rows.push(Row::new(
+        "$T$ order 0",
+        "the approximation of order 0 gives $T = 6.8$",
+        format!("$2 pi/omega = {}$, off by {} %", show(&zeroth, 8), off(&zeroth)?),
+        exact_text.clone(),
+        &zero.compare(&zeroth),
+        format!(
             "the printed decimals are the value, {}",
             zero.shows_as(&zeroth).unwrap_or("neither rounded nor cut off")
-        )
-        .into(),
-    });
+        ),
+    ));
     let linear = times_two_pi(&balls.one(), balls);
     let better = balls.sub(&percent(&linear, &exact, balls)?, &percent(&zeroth, &exact, balls)?);
     rows.push(plain(
@@ -80,38 +78,36 @@ pub(super) fn rows(balls: Balls) -> Option<Vec<Row>> {
         "the two errors, enclosed",
     ));
     let (findings, _) = approximation(&first_printed, &first, &sources);
-    rows.push(Row {
-        label: "$T$ order 1".into(),
-        printed: "the first approximation gives $T = 6.57$".into(),
-        derived: format!("order 1 of $T$: {}, off by {} %", show(&first, 8), off(&first)?).into(),
-        independent: Text::from(exact_text.clone()),
-        verdict: findings.verdict(),
-        evidence: Text::from(match sources.iter().find(|(_, value)| first_printed.shows(value)) {
+    rows.push(Row::new(
+        "$T$ order 1",
+        "the first approximation gives $T = 6.57$",
+        format!("order 1 of $T$: {}, off by {} %", show(&first, 8), off(&first)?),
+        exact_text.clone(),
+        &findings,
+        match sources.iter().find(|(_, value)| first_printed.shows(value)) {
             Some((source, value)) => format!(
                 "6.57 is {source}, {}, {}",
                 show(value, 6),
                 first_printed.shows_as(value).unwrap_or_default()
             ),
             None => format!("given by none of the {} formulas tried", sources.len()),
-        }),
-    });
+        },
+    ));
     let derived_error = percent(&first, &exact, balls)?;
     let mut findings = half.compare(&derived_error);
     findings.holds |= half.shows(&true_error);
     findings.reproduced = Some(half.shows(&own));
-    rows.push(Row {
-        label: "0.5 %".into(),
-        printed: "practically exact, the error is approximately 0.5 %".into(),
-        derived: format!("error of the derived first approximation: {} %", show(&derived_error, 3))
-            .into(),
-        independent: exact_text.into(),
-        verdict: findings.verdict(),
-        evidence: format!(
+    rows.push(Row::new(
+        "0.5 %",
+        "practically exact, the error is approximately 0.5 %",
+        format!("error of the derived first approximation: {} %", show(&derived_error, 3)),
+        exact_text,
+        &findings,
+        format!(
             "6.57 is off by {} % from the exact period, by {} % from the printed 6.6",
             show(&true_error, 3),
             show(&own, 2)
-        )
-        .into(),
-    });
+        ),
+    ));
     Some(rows)
 }

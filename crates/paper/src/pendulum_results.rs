@@ -71,18 +71,14 @@ pub(super) fn rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
         return None;
     }
     let number = case.constants.evaluate(case.expansion.frequency_squared.get(1)?, balls)?;
-    let mut rows = vec![Row {
-        label: "$alpha_1$, pendulum".into(),
-        printed: "$alpha_1 = -2 (omega_1/omega)^2 ln 2$".into(),
-        derived: format!("$alpha_1 = {} = {}$", ring.print(&alpha, Style::Text), show(&number, 12))
-            .into(),
-        independent: "$-2 t_1$ of the energy integral, without $x(t)$, is the same polynomial"
-            .into(),
-        verdict: findings.verdict(),
-        evidence:
-            "the resonant part is the mean of $2 cos^2 ln(cos^2)$, $1 - 2 ln 2$, not $-2 ln 2$"
-                .into(),
-    }];
+    let mut rows = vec![Row::new(
+        "$alpha_1$, pendulum",
+        "$alpha_1 = -2 (omega_1/omega)^2 ln 2$",
+        format!("$alpha_1 = {} = {}$", ring.print(&alpha, Style::Text), show(&number, 12)),
+        "$-2 t_1$ of the energy integral, without $x(t)$, is the same polynomial",
+        &findings,
+        "the resonant part is the mean of $2 cos^2 ln(cos^2)$, $1 - 2 ln 2$, not $-2 ln 2$",
+    )];
     // (51): T/(2 pi), with the factor 1/omega that the derived one has.
     let inverse = product(&[(OMEGA, -1)]);
     let derived = ring.mul(&inverse, &ring.add(&ring.one(), &first));
@@ -98,18 +94,16 @@ pub(super) fn rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     let exact = periods::pendulum_period(&Rational::from(1), balls)?;
     let ours = Truncations::pendulum(1, balls)?.period(QUANTITIES[0], 1, &Rational::from(1))?;
     let as_printed = fifty_one(balls)?;
-    rows.push(Row {
-        label: "(51)".into(),
-        printed: "$T = 2 pi [1 - (omega_1/omega)^2 (ln 2)/pi]$".into(),
-        derived: format!("$T = 2 pi [{}] = {}$", ring.print(&derived, Style::Text), show(&ours, 8))
-            .into(),
-        independent: format!("exact {} (AGM)", show(&exact, 12)).into(),
-        verdict: findings.verdict(),
-        evidence: format!(
+    rows.push(Row::new(
+        "(51)",
+        "$T = 2 pi [1 - (omega_1/omega)^2 (ln 2)/pi]$",
+        format!("$T = 2 pi [{}] = {}$", ring.print(&derived, Style::Text), show(&ours, 8)),
+        format!("exact {} (AGM)", show(&exact, 12)),
+        &findings,
+        format!(
             "the factor $1/omega$ is missing and the bracket is another; as printed $T = {}$",
             show(&as_printed, 6)
-        )
-        .into(),
-    });
+        ),
+    ));
     Some(rows)
 }

@@ -1,5 +1,6 @@
 //! Periods and forces by routes that share nothing with the expansions.
 
+use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Integer, Rational};
 
@@ -93,63 +94,26 @@ pub(super) fn cubic_period(balls: Balls) -> Option<Ball> {
 
 /// int_low^high -ln|cos t| dt by tanh-sinh quadrature in MPFR, split at the odd multiples of
 /// pi/2 inside: no theory of the integrand beyond its definition. Estimated, not certified:
-/// about 30 digits.
+/// about 30 digits; not a number where they are not reached.
 pub(super) fn integral_of_log_secant(low: &Float, high: &Float) -> Float {
-    const BITS: u32 = 160;
+    const BITS: u32 = 110;
+    /// The nodes come that near to a pole.
+    const POLE_BITS: u32 = 300;
     if low > high {
         return -integral_of_log_secant(high, low);
     }
-    let half_pi = Float::with_val(BITS, rug::float::Constant::Pi) / 2u32;
+    let half_pi = Float::with_val(POLE_BITS, rug::float::Constant::Pi) / 2u32;
+    let poles = (-8..=8).filter(|k| k % 2 != 0).map(|k| Float::with_val(POLE_BITS, &half_pi * k));
     let mut nodes = vec![low.clone()];
-    let turns = 8;
-    for k in (-turns..=turns).filter(|k| k % 2 != 0) {
-        let pole = Float::with_val(BITS, &half_pi * k);
-        if pole > *low && pole < *high {
-            nodes.push(pole);
-        }
-    }
+    nodes.extend(poles.filter(|pole| pole > low && pole < high));
     nodes.push(high.clone());
-    let mut sum = Float::new(BITS);
-    for pair in nodes.windows(2) {
-        if let [from, to] = pair {
-            sum += tanh_sinh(from, to, BITS);
-        }
-    }
-    sum
-}
-
-/// The rule x = (from + to)/2 + (to - from)/2 tanh(pi/2 sinh t) with step 2^-5 for |t| <= 5.
-fn tanh_sinh(from: &Float, to: &Float, bits: u32) -> Float {
-    let half_pi = Float::with_val(bits, rug::float::Constant::Pi) / 2u32;
-    let radius = Float::with_val(bits, to - from) / 2u32;
-    let mut sum = Float::new(bits);
-    for i in -140i32..=140 {
-        let t: Float = Float::with_val(bits, i) >> 5;
-        let inner = Float::with_val(bits, &half_pi * t.clone().sinh());
-        let cosh = Float::with_val(bits, inner.cosh_ref());
-        let weight = Float::with_val(bits, &half_pi * t.cosh()) / cosh.square();
-        // The distance to the nearer end, without cancellation: radius (1 - |tanh u|)
-        // = 2 radius/(1 + e^(2 |u|)).
-        let inner_abs = inner.clone().abs();
-        let gap = Float::with_val(bits, &radius * 2u32) / ((inner_abs * 2u32).exp() + 1u32);
-        let value = if inner.is_sign_negative() {
-            log_secant(from, &gap, bits)
-        } else {
-            log_secant(to, &(-gap), bits)
-        };
-        if value.is_finite() {
-            sum += weight * value;
-        }
-    }
-    (sum * radius) >> 5
-}
-
-/// -ln|cos(end + gap)|, by sin(gap) where the end is an odd multiple of pi/2.
-fn log_secant(end: &Float, gap: &Float, bits: u32) -> Float {
-    let cosine = end.clone().cos();
-    let near_pole = cosine.clone().abs() < Float::with_val(53, 1e-40);
-    let value = if near_pole { gap.clone().sin() } else { Float::with_val(bits, end + gap).cos() };
-    -value.abs().ln()
+    let log_secant = |t: &Float| Some(-Float::with_val(t.prec(), t.cos_ref()).abs().ln());
+    let part = |pair: &[Float]| match pair {
+        [from, to] => tanh_sinh(BITS, from, to, log_secant).ok().map(|found| found.value),
+        _ => None,
+    };
+    let sum = nodes.windows(2).try_fold(Float::new(BITS), |sum, pair| Some(sum + part(pair)?));
+    sum.unwrap_or_else(|| Float::with_val(BITS, rug::float::Special::Nan))
 }
 
 /// Taylor coefficient 1 or 2 of force(delta) at 0, by a central difference with step 2^-(bits/4):

@@ -247,42 +247,40 @@ fn result_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     let value = case.derivation.ball(series, 1, balls)?;
     let estimate = periods::frequency_squared_slope(balls)?;
     let literal = balls.mul_i64(&balls.mul(&balls.pi(), &balls.ln_2()), 4);
-    let alpha_row = Row {
-        label: "$alpha_1$".into(),
-        printed: "$alpha_1 = 4 pi ln 2$".into(),
-        derived: format!("$alpha_1 = {} = {}$", ring.print(&alpha, Style::Text), show(&value, 15)).into(),
-        independent: format!(
+    let alpha_row = Row::new(
+        "$alpha_1$",
+        "$alpha_1 = 4 pi ln 2$",
+        format!("$alpha_1 = {} = {}$", ring.print(&alpha, Style::Text), show(&value, 15)),
+        format!(
             "$d(omega^2)/d(delta)$ of the $Gamma$ closed form: {} (estimated)",
             show(&estimate, 15)
-        ).into(),
-        verdict: findings.verdict(),
-        evidence: format!(
+        ),
+        &findings,
+        format!(
             "printed value {}; what must vanish is the mean of $2 cos^2 t ln(cos^2 t) - alpha_1 2 cos^2 t$, \
              not that of $ln(cos^2 t)$",
             show(&literal, 6)
-        ).into(),
-    };
+        ),
+    );
     let period = coefficient("period_over_2pi", 1)?;
     let printed = [Term::new(-2, "ln 2", ring.symbol(Symbol::LogTwo))];
     let findings = compare_sums(ring, &printed, &period, &words);
     let at_one = balls.sub(&balls.one(), &balls.mul_i64(&balls.ln_2(), 2));
     let at_one = balls.mul_i64(&balls.mul(&balls.pi(), &at_one), 2);
-    let forty_two = Row {
-        label: "(42)".into(),
-        printed: "$T = 2 pi [1 - 2 delta ln 2]$".into(),
-        derived: format!("$T = 2 pi [1 + delta ({})]$", ring.print(&period, Style::Text)).into(),
-        independent: format!(
+    let forty_two = Row::new(
+        "(42)",
+        "$T = 2 pi [1 - 2 delta ln 2]$",
+        format!("$T = 2 pi [1 + delta ({})]$", ring.print(&period, Style::Text)),
+        format!(
             "$-1/2 d(omega^2)/d(delta)$ of the $Gamma$ closed form: {} (estimated)",
             show(&balls.mul_power_of_two(&balls.neg(&estimate), -1), 15)
-        )
-        .into(),
-        verdict: findings.verdict(),
-        evidence: format!(
+        ),
+        &findings,
+        format!(
             "at $delta = 1$ the printed formula gives the negative period {}; the exact one grows \
              with $delta$",
             show(&at_one, 6)
-        )
-        .into(),
-    };
+        ),
+    );
     Some(vec![alpha_row, forty_two])
 }

@@ -19,6 +19,9 @@ const SAME: f64 = 1e-5;
 /// The longest period looked for, in periods of the forcing.
 const LONGEST: usize = 64;
 
+/// Digits of the integrations: four or five are shown, and chaos forgets the others.
+const DIGITS: u32 = 12;
+
 /// A long orbit at one gamma.
 struct Orbit {
     gamma: &'static str,
@@ -45,7 +48,7 @@ fn compile(gamma: &str, linearised: bool) -> Result<System<Doubles>, Error> {
 
 impl Orbit {
     fn follow(gamma: &'static str, transient: u32, kept: u32) -> Result<Self, Error> {
-        let settings = Settings::for_digits(16);
+        let settings = Settings::for_digits(DIGITS);
         let system = compile(gamma, false)?;
         let section = lindstedt_simulate::Section::Period(PI);
         let mut map = PoincareMap::new(&system, &0.0, &START, section, settings)?;
@@ -112,7 +115,7 @@ fn on_the_way(
     start: [f64; 2],
     periods: u32,
 ) -> Result<(f64, f64, f64), Error> {
-    let mut flow = Integrator::new(system, &0.0, &start, Settings::for_digits(16))?;
+    let mut flow = Integrator::new(system, &0.0, &start, Settings::for_digits(DIGITS))?;
     let (mut stuck, mut least, mut largest) = (0.0, f64::INFINITY, f64::NEG_INFINITY);
     let end = PI * f64::from(periods.max(1));
     flow.advance(&end, &mut |report| {

@@ -9,6 +9,7 @@ use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::digits::decimal;
 use rug::{Float, Rational};
+use std::rc::Rc;
 
 /// The quantity whose series is cut off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,15 +116,26 @@ impl Truncations {
 /// Tables that are announced.
 pub(super) const TABLES: usize = 5;
 
-/// Adds the tables of n = 3, 5, 7, 9 and of the pendulum.
-pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
-    let (balls, order) = (reader.balls, reader.options.table_order.max(6));
-    let series = Truncations::power_law(order, balls).ok_or(Error::NoValue)?;
-    for n in [3, 5, 7, 9] {
-        if !reader.goes_on(&format!("table of n = {n}")) {
-            return Ok(false);
-        }
-        let exact = periods::power_law_period(&Rational::from(n), balls).ok_or(Error::NoValue)?;
+/// An oscillator whose period is tabulated.
+pub(super) struct Tabled {
+    /// "n = 3" or "pendulum".
+    pub name: String,
+    pub delta: Rational,
+    /// The highest order.
+    pub order: usize,
+    pub exact: Ball,
+    pub series: Rc<Truncations>,
+    title: String,
+    convergence: String,
+}
+
+/// The exact coefficients of the pendulum grow like the partitions of the order.
+const PENDULUM_ORDER: usize = 14;
+
+/// n = 3, 5, 7, 9 and the pendulum.
+fn tabled(order: usize, balls: Balls) -> Option<Vec<Tabled>> {
+    let series = Rc::new(Truncations::power_law(order, balls)?);
+    let power_law = |n: i32| {
         let delta = Rational::from((n - 1, 2));
         let convergence = if delta == 1 {
             "$delta = 1$ lies ON the circle of convergence $|delta| = 1$ ($T$ is singular at $delta = -1$)"
@@ -131,39 +143,49 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
         } else {
             format!("NO CONVERGENCE: $delta = {delta}$ lies outside the circle $|delta| = 1$")
         };
-        let title = format!("$x'' + x^{n} = 0$, $x(0) = 1$: $delta = {delta}$");
-        let table = table(&format!("n{n}"), title, &series, order, &delta, &exact, convergence);
-        section.tables.push(table.ok_or(Error::NoValue)?);
+        Some(Tabled {
+            name: format!("n = {n}"),
+            order,
+            exact: periods::power_law_period(&Rational::from(n), balls)?,
+            series: Rc::clone(&series),
+            title: format!("$x'' + x^{n} = 0$, $x(0) = 1$: $delta = {delta}$"),
+            delta,
+            convergence,
+        })
+    };
+    let mut list = [3, 5, 7, 9].into_iter().map(power_law).collect::<Option<Vec<_>>>()?;
+    let (one, order) = (Rational::from(1), order.min(PENDULUM_ORDER));
+    list.push(Tabled {
+        name: "pendulum".to_owned(),
+        order,
+        exact: periods::pendulum_period(&one, balls)?,
+        series: Rc::new(Truncations::pendulum(order, balls)?),
+        title: "pendulum $x'' + sin x = 0$, $x(0) = 1$: $delta = 1$".to_owned(),
+        delta: one,
+        convergence:
+            "NO CONVERGENCE for any $delta$ but 0: the potential has poles at $delta = -1/k$, \
+             $k = 1$, 2, 3, ...; the series is asymptotic"
+                .to_owned(),
+    });
+    Some(list)
+}
+
+/// Adds the tables of n = 3, 5, 7, 9 and of the pendulum.
+pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
+    let order = reader.options.table_order.max(6);
+    reader.tabled = tabled(order, reader.balls).ok_or(Error::NoValue)?;
+    for n in 0..reader.tabled.len() {
+        let name = reader.tabled[n].name.clone();
+        if !reader.goes_on(&format!("table of {name}")) {
+            return Ok(false);
+        }
+        section.tables.push(table(&reader.tabled[n]).ok_or(Error::NoValue)?);
     }
-    if !reader.goes_on("table of the pendulum") {
-        return Ok(false);
-    }
-    let one = Rational::from(1);
-    let order = order.min(PENDULUM_ORDER);
-    let series = Truncations::pendulum(order, balls).ok_or(Error::NoValue)?;
-    let exact = periods::pendulum_period(&one, balls).ok_or(Error::NoValue)?;
-    let convergence =
-        "NO CONVERGENCE for any $delta$ but 0: the potential has poles at $delta = -1/k$, \
-                       $k = 1$, 2, 3, ...; the series is asymptotic"
-            .to_owned();
-    let title = "pendulum $x'' + sin x = 0$, $x(0) = 1$: $delta = 1$".to_owned();
-    let table = table("pendulum", title, &series, order, &one, &exact, convergence);
-    section.tables.push(table.ok_or(Error::NoValue)?);
     Ok(true)
 }
 
-/// The exact coefficients of the pendulum grow like the partitions of the order.
-pub(super) const PENDULUM_ORDER: usize = 14;
-
-fn table(
-    name: &str,
-    title: String,
-    series: &Truncations,
-    order: usize,
-    delta: &Rational,
-    exact: &Ball,
-    convergence: String,
-) -> Option<Table> {
+fn table(of: &Tabled) -> Option<Table> {
+    let (series, order, delta, exact) = (&of.series, of.order, &of.delta, &of.exact);
     let balls = series.balls;
     let mut columns = vec!["order".to_owned()];
     for quantity in QUANTITIES {
@@ -193,7 +215,7 @@ fn table(
     }
     let mut notes = vec![
         format!("exact period {} (certified)", decimal(exact, 25)?),
-        convergence,
+        of.convergence.clone(),
         "each column cuts off the series of the quantity named, and $T = 2 pi/omega$ follows from it"
             .to_owned(),
     ];
@@ -209,8 +231,8 @@ fn table(
         "`none`: the truncated $omega$ or $omega^2$ is not positive, there is no period".to_owned(),
     );
     Some(Table {
-        name: name.to_owned(),
-        title: title.into(),
+        name: of.name.replace(" = ", ""),
+        title: of.title.as_str().into(),
         columns: texts(columns),
         rows: rows.into_iter().map(texts).collect(),
         notes: texts(notes),

@@ -1,6 +1,6 @@
 //! What was read, as plain values: every page is a reader of them.
 
-use crate::{Text, Trust, Verdict};
+use crate::{Findings, Text, Trust, Verdict};
 use serde::Serialize;
 
 /// One formula or number of the paper.
@@ -19,6 +19,22 @@ pub struct Row {
     pub verdict: Verdict,
     /// Why.
     pub evidence: Text,
+}
+
+impl Row {
+    /// A row whose verdict follows from what was found: label, print, derivation, the other route, why.
+    pub(crate) fn new(
+        label: impl Into<Text>,
+        printed: impl Into<Text>,
+        derived: impl Into<Text>,
+        independent: impl Into<Text>,
+        findings: &Findings,
+        evidence: impl Into<Text>,
+    ) -> Self {
+        let (label, printed, derived) = (label.into(), printed.into(), derived.into());
+        let (independent, evidence) = (independent.into(), evidence.into());
+        Self { label, printed, derived, independent, verdict: findings.verdict(), evidence }
+    }
 }
 
 /// A table of numbers. Numbers are certified to the printed digits unless a note says otherwise.

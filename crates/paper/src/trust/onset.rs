@@ -58,7 +58,7 @@ pub struct Onset {
 /// From how small an eps the branches are followed, and where they are shown.
 pub(in super::super) const FULL: &[f64] =
     &[0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0];
-pub(in super::super) const QUICK: &[f64] = &[0.005, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
+pub(in super::super) const QUICK: &[f64] = &[0.005, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 1.0];
 
 /// Orbits followed round the loop for the first tangency.
 const ORBITS: u32 = 24;
@@ -287,24 +287,24 @@ fn agreement(onset: &Onset) -> Result<Row, Error> {
     let far =
         |side: Option<(f64, f64)>| side.is_none_or(|s| (s.0 / onset.threshold - 1.0).abs() > GOOD);
     let findings = Findings::holds(!far(last.right) && !far(last.left));
-    Ok(Row {
-        label: "good agreement".into(),
-        printed: "the obtained results illustrate practically a good agreement with the analytical \
-                  prediction".into(),
-        derived: format!(
+    Ok(Row::new(
+        "good agreement",
+        "the obtained results illustrate practically a good agreement with the analytical \
+                  prediction",
+        format!(
             "$gamma_c = {:.5}$; the tangency that is the first one at small $eps$, followed to $eps = {}$: \
              $gamma = {}$ (right loop), {} (left loop) (estimated)",
             onset.threshold,
             last.eps,
             shown(last.right),
             shown(last.left)
-        ).into(),
-        independent: "unstable manifold of the saddle orbit, followed event by event".into(),
-        verdict: findings.verdict(),
-        evidence: format!(
+        ),
+        "unstable manifold of the saddle orbit, followed event by event",
+        &findings,
+        format!(
             "the orbit that becomes chaotic near 0.65 stays in the right well, whose loop is first \
              tangent at {} (estimated); what is seen near 0.65 is not what (27) predicts",
             shown(last.right)
-        ).into(),
-    })
+        ),
+    ))
 }

@@ -1,7 +1,7 @@
 //! Section 4: the true error of the period against the order of the delta expansion.
 
-use super::super::tables::{Quantity, Truncations};
-use super::super::{Reader, Section, periods};
+use super::super::tables::{Quantity, Tabled, Truncations};
+use super::super::{Reader, Section};
 use super::Finding;
 use crate::text::texts;
 use lindstedt::Error;
@@ -54,32 +54,19 @@ fn errors(
 /// The errors of n = 3, 5, 7, 9 and of the pendulum.
 pub(in super::super) fn read(reader: &mut Reader<'_>, _: &mut Section) -> Result<bool, Error> {
     let balls = reader.balls;
-    let order = reader.options.table_order.max(6);
-    let series = Truncations::power_law(order, balls).ok_or(Error::NoValue)?;
-    let mut list = Vec::new();
-    for n in [3, 5, 7, 9] {
-        let exact = periods::power_law_period(&Rational::from(n), balls).ok_or(Error::NoValue)?;
-        let delta = Rational::from((n - 1, 2));
-        let sums = (0..=order).map(|k| series.period(Quantity::Period, k, &delta));
-        list.push(Truncation {
-            name: format!("n = {n}"),
-            errors: errors(sums, &exact, balls).ok_or(Error::NoValue)?,
-            resummed: uniform(&series, &delta, &exact, balls),
-            delta,
-        });
-    }
-    let one = Rational::from(1);
-    let order = order.min(super::super::tables::PENDULUM_ORDER);
-    let series = Truncations::pendulum(order, balls).ok_or(Error::NoValue)?;
-    let exact = periods::pendulum_period(&one, balls).ok_or(Error::NoValue)?;
-    let sums = (0..=order).map(|k| series.period(Quantity::Period, k, &one));
-    list.push(Truncation {
-        name: "pendulum".to_owned(),
-        errors: errors(sums, &exact, balls).ok_or(Error::NoValue)?,
-        resummed: Vec::new(),
-        delta: one,
-    });
-    reader.trust.truncations = list;
+    let truncation = |of: &Tabled| {
+        let sums = (0..=of.order).map(|k| of.series.period(Quantity::Period, k, &of.delta));
+        let is_power_law = of.name != "pendulum";
+        let resummed = is_power_law.then(|| uniform(&of.series, &of.delta, &of.exact, balls));
+        Some(Truncation {
+            name: of.name.clone(),
+            errors: errors(sums, &of.exact, balls)?,
+            resummed: resummed.unwrap_or_default(),
+            delta: of.delta.clone(),
+        })
+    };
+    let list = reader.tabled.iter().map(truncation).collect::<Option<_>>();
+    reader.trust.truncations = list.ok_or(Error::NoValue)?;
     Ok(true)
 }
 

@@ -80,16 +80,9 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     let setting = Arc::new(found.setting.clone().only(&words));
     let growth = found.growth.get(1).ok_or(FAILED)?;
     let total = found.frequency.iter().fold(q.integer(0), |sum, term| q.add(&sum, term));
-    let statement = |label: &str, left: &str, printed: &str, derived: Quotient| Statement {
-        label: label.to_owned(),
-        left: left.to_owned(),
-        printed: printed.to_owned(),
-        setting: Arc::clone(&setting),
-        derived,
-        shown: String::new(),
-        squared: false,
-        independent: "residual of the expansion substituted in the equation: zero".to_owned(),
-        remark: String::new(),
+    let residual = "residual of the expansion substituted in the equation: zero";
+    let statement = |label: &str, left: &str, printed: &str, derived: Quotient| {
+        Statement::new((label, left), printed, &setting, derived).with("", residual, "")
     };
     Ok(vec![
         statement(

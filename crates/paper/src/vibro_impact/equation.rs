@@ -11,45 +11,13 @@ use lindstedt_problems::vibro_impact;
 use std::sync::Arc;
 
 /// Displacements x and z, delayed ones with T; the time t occurs in angles only.
-const NAMES: [&str; 32] = [
-    "alpha",
-    "omega",
-    "c",
-    "P0",
-    "A",
-    "B",
-    "T",
-    "eps",
-    "t",
-    "x",
-    "x'",
-    "x''",
-    "xT",
-    "xT'",
-    "z",
-    "z'",
-    "z''",
-    "zT",
-    "zT'",
-    "cos(omega*t)",
-    "sin(omega*t)",
-    "cos(omega*(t - T))",
-    "sin(omega*(t - T))",
-    "m",
-    "c_1",
-    "k_1",
-    "k_2",
-    "a_1",
-    "b_1",
-    "y_0",
-    "p",
-    "R_r",
-];
+const NAMES: &str = "alpha|omega|c|P0|A|B|T|eps|t|x|x'|x''|xT|xT'|z|z'|z''|zT|zT'|cos(omega*t)|sin(omega*t)|\
+     cos(omega*(t - T))|sin(omega*(t - T))|m|c_1|k_1|k_2|a_1|b_1|y_0|p|R_r";
 
 /// The words of (1)-(4).
 fn setting() -> Setting {
     let pairs = [("cos(omega*t)", "sin(omega*t)"), ("cos(omega*(t - T))", "sin(omega*(t - T))")];
-    let plain = Setting::new(Quotients::new(&NAMES, &pairs));
+    let plain = Setting::new(Quotients::new(&NAMES.split('|').collect::<Vec<_>>(), &pairs));
     let value = |name: &str| plain.field.parameter(name);
     let [late_cos, late_sin] = [value(pairs[1].0), value(pairs[1].1)];
     let [cos, sin] = [value(pairs[0].0), value(pairs[0].1)];
@@ -163,85 +131,77 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
         .word("B", "k_2*b_1/m");
     let x = Arc::new(setting.clone().only(&of_x));
     let z = Arc::new(setting.clone().only(&of_z));
-    let shown = |text: &str| text.to_owned();
     let by_substitution = "exact, as polynomials in $x$, $x'$, $x(t-T)$, $x'(t-T)$";
     let amplitude = q.mul(&derived.response, &q.parameter("cos(omega*t)"));
+    let defined = Arc::new(defined);
+    let averaged = if response_is_averaged()? {
+        "order zero of the averaged expansion: the same"
+    } else {
+        "order zero of the averaged expansion: another"
+    };
     Ok(vec![
-        Statement {
-            label: "(1)".to_owned(),
-            left: String::new(),
-            printed: "x'' + c*x' + alpha^2*x = P0*cos(omega*t) + A*[x - xT] + B*[x' - xT']"
-                .to_owned(),
-            setting: Arc::clone(&x),
-            derived: derived.unscaled,
-            shown: shown("the engine's equation with $eps = 1$; $x' -> -R_r x'$ at $x = s$"),
-            squared: false,
-            independent: shown(by_substitution),
-            remark: shown("$xT$, $xT'$ stand for $x$, $x'$ at $t - T$"),
-        },
-        Statement {
-            label: "parameters of (1)".to_owned(),
-            left: shown(
+        Statement::new(
+            ("(1)", ""),
+            "x'' + c*x' + alpha^2*x = P0*cos(omega*t) + A*[x - xT] + B*[x' - xT']",
+            &x,
+            derived.unscaled,
+        )
+        .with(
+            "the engine's equation with $eps = 1$; $x' -> -R_r x'$ at $x = s$",
+            by_substitution,
+            "$xT$, $xT'$ stand for $x$, $x'$ at $t - T$",
+        ),
+        Statement::new(
+            (
+                "parameters of (1)",
                 "$P0 = y_0 k_2/m$, $c = c_1/m$, $alpha^2 = (k_1 + k_2)/m$, $A = k_2 a_1/m$, \
-                         $B = k_2 b_1/m$: ",
+                 $B = k_2 b_1/m$: ",
             ),
-            printed: "x'' + c*x' + (k_1 + k_2)/m*x = P0*cos(omega*t) + A*[x - xT] + B*[x' - xT']"
-                .to_owned(),
-            setting: Arc::new(defined),
-            derived: derived.mechanical,
-            shown: shown(
-                "$m x'' + c_1 x' + k_1 x = k_2 (y_0 cos(omega t) + a_1 (x - xT) + \
-                          b_1 (x' - xT') - x)$, over $m$",
-            ),
-            squared: false,
-            independent: shown("Newton's law, the loop moving the base of the spring $k_2$"),
-            remark: String::new(),
-        },
-        Statement {
-            label: "(2)".to_owned(),
-            left: String::new(),
-            printed: "x'' + alpha^2*x = P0*cos(omega*t) + eps*A*[x - xT] + \
-                      eps*B*[(1 - c/B)*x' - xT']"
-                .to_owned(),
-            setting: x,
-            derived: derived.equation,
-            shown: shown("the engine's equation"),
-            squared: false,
-            independent: shown(by_substitution),
-            remark: shown("dividing by $B$ is cosmetic: $B x' - c x'$ holds for $B = 0$ too"),
-        },
-        Statement {
-            label: "(3)".to_owned(),
-            left: shown("x = "),
-            printed: "z + P0/(alpha^2 - omega^2)*cos(omega*t)".to_owned(),
-            setting: Arc::clone(&z),
-            derived: q.add(&q.parameter("z"), &amplitude),
-            shown: shown(
-                "$z + P0/((alpha - omega)*(alpha + omega)) cos(omega t)$, the response at \
-                          $eps = 0$",
-            ),
-            squared: false,
-            independent: shown(if response_is_averaged()? {
-                "order zero of the averaged expansion: the same"
-            } else {
-                "order zero of the averaged expansion: another"
-            }),
-            remark: shown("damping leaves it to order $eps$; the exact response is $F$, see there"),
-        },
-        Statement {
-            label: "$f$, (4)".to_owned(),
-            left: shown("eps f = "),
-            printed: "eps*A*[z + P0/(alpha^2 - omega^2)*cos(omega*t) - zT \
-                      - P0/(alpha^2 - omega^2)*cos(omega*(t - T))] \
-                      + eps*B*[(1 - c/B*(z' - P0*omega/(alpha^2 - omega^2)*sin(omega*t)) - zT' \
-                      + P0*omega/(alpha^2 - omega^2)*sin(omega*(t - T))]"
-                .to_owned(),
-            setting: z,
-            derived: derived.f,
-            shown: shown("$eps A [x - xT] + eps [(B - c) x' - B xT']$ with $x$ of (3)"),
-            squared: false,
-            independent: shown("(3) substituted in (2), exactly"),
-            remark: shown("$z'' + alpha^2 z = eps f$ itself holds by construction"),
-        },
+            "x'' + c*x' + (k_1 + k_2)/m*x = P0*cos(omega*t) + A*[x - xT] + B*[x' - xT']",
+            &defined,
+            derived.mechanical,
+        )
+        .with(
+            "$m x'' + c_1 x' + k_1 x = k_2 (y_0 cos(omega t) + a_1 (x - xT) + b_1 (x' - xT') - x)$, \
+             over $m$",
+            "Newton's law, the loop moving the base of the spring $k_2$",
+            "",
+        ),
+        Statement::new(
+            ("(2)", ""),
+            "x'' + alpha^2*x = P0*cos(omega*t) + eps*A*[x - xT] + eps*B*[(1 - c/B)*x' - xT']",
+            &x,
+            derived.equation,
+        )
+        .with(
+            "the engine's equation",
+            by_substitution,
+            "dividing by $B$ is cosmetic: $B x' - c x'$ holds for $B = 0$ too",
+        ),
+        Statement::new(
+            ("(3)", "x = "),
+            "z + P0/(alpha^2 - omega^2)*cos(omega*t)",
+            &z,
+            q.add(&q.parameter("z"), &amplitude),
+        )
+        .with(
+            "$z + P0/((alpha - omega)*(alpha + omega)) cos(omega t)$, the response at $eps = 0$",
+            averaged,
+            "damping leaves it to order $eps$; the exact response is $F$, see there",
+        ),
+        Statement::new(
+            ("$f$, (4)", "eps f = "),
+            "eps*A*[z + P0/(alpha^2 - omega^2)*cos(omega*t) - zT \
+             - P0/(alpha^2 - omega^2)*cos(omega*(t - T))] \
+             + eps*B*[(1 - c/B*(z' - P0*omega/(alpha^2 - omega^2)*sin(omega*t)) - zT' \
+             + P0*omega/(alpha^2 - omega^2)*sin(omega*(t - T))]",
+            &z,
+            derived.f,
+        )
+        .with(
+            "$eps A [x - xT] + eps [(B - c) x' - B xT']$ with $x$ of (3)",
+            "(3) substituted in (2), exactly",
+            "$z'' + alpha^2 z = eps f$ itself holds by construction",
+        ),
     ])
 }

@@ -10,6 +10,7 @@ use lindstedt::unstable::coeff::quotient::Quotient;
 use lindstedt_algebra::Rationals;
 use rug::Rational;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A formula of the paper.
 #[derive(Clone)]
@@ -21,7 +22,7 @@ pub(super) struct Statement {
     /// The formula as printed.
     pub printed: String,
     /// The words of the formula.
-    pub setting: std::sync::Arc<Setting>,
+    pub setting: Arc<Setting>,
     /// What is derived.
     pub derived: Quotient,
     /// How the derived formula is shown; printed from the element where empty.
@@ -45,6 +46,32 @@ pub(super) struct Judgement {
 }
 
 impl Statement {
+    /// A formula that is compared as it stands, with nothing said beside it.
+    pub fn new(
+        (label, left): (&str, &str),
+        printed: &str,
+        setting: &Arc<Setting>,
+        derived: Quotient,
+    ) -> Self {
+        let [label, left, printed] = [label, left, printed].map(str::to_owned);
+        let [shown, independent, remark] = [(); 3].map(|()| String::new());
+        let setting = Arc::clone(setting);
+        Self { label, left, printed, setting, derived, shown, squared: false, independent, remark }
+    }
+
+    /// With what is shown for the derived formula, what confirms it, and what is to be said beside it.
+    #[must_use]
+    pub fn with(self, shown: &str, independent: &str, remark: &str) -> Self {
+        let [shown, independent, remark] = [shown, independent, remark].map(str::to_owned);
+        Self { shown, independent, remark, ..self }
+    }
+
+    /// By its square.
+    #[must_use]
+    pub fn squared(self) -> Self {
+        Self { squared: true, ..self }
+    }
+
     fn value(&self, tree: &Tree) -> Option<Quotient> {
         self.setting.value(&if self.squared { tree.squared() } else { tree.clone() })
     }
@@ -156,14 +183,9 @@ impl Statement {
                 evidence.push("no change of one place makes it hold".to_owned());
             }
             evidence.extend(Some(self.remark.clone()).filter(|remark| !remark.is_empty()));
-            Row {
-                label: label.into(),
-                printed: self.shown_as_printed(),
-                derived: Text::from(derived.clone()),
-                independent: Text::from(self.independent.clone()),
-                verdict: findings.verdict(),
-                evidence: Text::from(evidence.join("; ")),
-            }
+            let evidence = evidence.join("; ");
+            let printed = self.shown_as_printed();
+            Row::new(label, printed, &*derived, &*self.independent, &findings, evidence)
         };
         match &judgement.corrections[..] {
             [] => vec![row(self.label.clone(), None)],

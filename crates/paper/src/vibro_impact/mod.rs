@@ -21,6 +21,7 @@ pub use prediction::{Rate, Sample};
 use super::{Reader, Row, Section, Text};
 use judge::Statement;
 use lindstedt::Error;
+use lindstedt::unstable::impact::linearised::ImpactMap;
 
 /// The words of a derivation that failed where it cannot.
 const FAILED: Error = Error::NoValue;
@@ -33,7 +34,7 @@ fn statements() -> Result<Vec<Statement>, Error> {
     let mut list = equation::statements()?;
     list.extend(averaged::statements()?);
     list.extend(orbit::statements()?);
-    list.extend(perturbation::statements()?);
+    list.extend(perturbation::statements(&ImpactMap::derive().ok_or(FAILED)?)?);
     Ok(list)
 }
 
@@ -94,6 +95,7 @@ pub(super) fn read_stability(
     reader: &mut Reader<'_>,
     section: &mut Section,
 ) -> Result<bool, Error> {
-    section.rows.extend(stability::rows());
+    let rows = stability::rows(section);
+    section.rows.extend(rows);
     prediction::read(reader, section)
 }

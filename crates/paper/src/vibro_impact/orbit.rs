@@ -14,28 +14,9 @@ use std::sync::Arc;
 /// The map's field with the words of this page behind.
 pub(super) fn extended(map: &ImpactMap) -> Quotients {
     let mut field = map.field.clone();
-    let more = [
-        "alpha",
-        "c",
-        "lambda",
-        "beta",
-        "P0",
-        "F",
-        "pi",
-        "k",
-        "l",
-        "T",
-        "t",
-        "tau",
-        "phi",
-        "C0",
-        "theta0",
-        "cos(theta0)",
-        "sin(theta0)",
-        "dT",
-        "R_tau",
-    ];
-    field.field.ring.parameters.extend(more.map(str::to_owned));
+    let more =
+        "alpha c lambda beta P0 F pi k l T t tau phi C0 theta0 cos(theta0) sin(theta0) dT R_tau";
+    field.field.ring.parameters.extend(more.split(' ').map(str::to_owned));
     let [cos, sin] = ["cos(theta0)", "sin(theta0)"].map(|name| field.field.position(name));
     if let (Some(cos), Some(sin)) = (cos, sin) {
         field.field.pairs.push((cos, sin));
@@ -128,18 +109,6 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     } else {
         "the solution does not meet the end conditions"
     };
-    let statement =
-        |label: &str, left: &str, printed: &str, setting: &Arc<Setting>, value| Statement {
-            label: label.to_owned(),
-            left: left.to_owned(),
-            printed: printed.to_owned(),
-            setting: Arc::clone(setting),
-            derived: value,
-            shown: String::new(),
-            squared: false,
-            independent: String::new(),
-            remark: String::new(),
-        };
     // The polar form: C_0 cos(alpha0 t + theta_0) by the product of two rotations.
     let polar = Arc::new(
         with_pair(Setting::new(q.clone()), "theta0", "cos(theta0)", "sin(theta0)")
@@ -171,125 +140,96 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
             .only(&["P0", "alpha", "alpha0", "omega", "c", "pi", "k", "R_r", "s"]),
     );
     let [c, d, cos, sin] = derived.uncontrolled.clone();
-    let delta = "$Delta = E + 1/E - 2 cos(theta)$, $E = e^(-beta c)$, $theta = 2 beta lambda$";
-    let mut list = vec![
-        Statement {
-            squared: true,
-            shown: "$F = P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)$".to_owned(),
-            independent: "squares compared; linear equations for the cosine and the sine"
-                .to_owned(),
-            ..statement(
-                "(8)",
-                "amplitude ",
-                "P0/(alpha^2 - omega^2)",
-                &literal,
-                derived.amplitude_squared.clone(),
-            )
-        },
-        statement("$C$, polar", "C = ", "C0*cos(theta0)", &polar, of_cos),
-        statement("$D$, polar", "D = ", "-C0*sin(theta0)", &polar, of_sin),
-        Statement {
-            squared: true,
-            shown: "$C0$".to_owned(),
-            ..statement("$C_0$", "C_0 = ", "sqrt(C^2 + D^2)", &parts, q.mul(&p("C0"), &p("C0")))
-        },
-        Statement {
-            shown: "$-(1 + R_r) sin(theta) v/(lambda Delta)$".to_owned(),
-            independent: residuals.to_owned(),
-            remark: delta.to_owned(),
-            ..statement("$C$", "C = ", "s - F*cos(phi)", &own, c)
-        },
-        Statement {
-            shown: "$-(1 + R_r) (1/E - cos(theta)) v/(lambda Delta)$".to_owned(),
-            independent: residuals.to_owned(),
-            remark: "the printed form is 0/0 where $sin(2 beta lambda) = 0$, the derived one is not"
-                .to_owned(),
-            ..statement("$D$", "D = ", D_PRINTED, &own, d)
-        },
-        Statement {
-            shown: "$(s + (1 + R_r) sin(theta) v/(lambda Delta))/F$".to_owned(),
-            independent: residuals.to_owned(),
-            remark: "$v = x'_-$, before the impact".to_owned(),
-            ..statement(
-                "$cos phi$",
-                "cos phi = ",
-                "s/F - (R_r + 1)*v*sin(2*beta*lambda)\
-                 /(lambda*F*(2*cos(2*beta*lambda) - exp(-beta*c) - exp(beta*c)))",
-                &own,
-                cos,
-            )
-        },
-        Statement {
-            shown:
-                "${lambda [R_r (E - cos theta) - (1/E - cos theta)] + (1 + R_r) (c/2) sin theta} \
-                    v/(omega lambda F Delta)$"
-                    .to_owned(),
-            independent: residuals.to_owned(),
-            remark: "equal only for $c = 0$ as printed".to_owned(),
-            ..statement(
-                "$sin phi$",
-                "sin phi = ",
-                "(-1/2*(R_r + 1)*c*sin(2*beta*lambda) + lambda*[(R_r - 1)*cos(2*beta*lambda) \
-                 + exp(-beta*c) - R_r*exp(beta*c))\
-                 /(lambda*F*omega*(2*cos(2*beta*lambda) - exp(-beta*c) - exp(beta*c)))*v",
-                &own,
-                sin,
-            )
-        },
-        Statement {
-            squared: true,
-            shown: "$P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)$".to_owned(),
-            independent: "squares compared; the response sees neither $A$ nor $B$".to_owned(),
-            ..statement(
-                "$F$",
-                "F = ",
-                "P0/sqrt((alpha0^2 - omega^2)^2 + c^2*omega^2)",
-                &literal,
-                derived.amplitude_squared.clone(),
-            )
-        },
-        Statement {
-            squared: true,
-            shown: "$sqrt(alpha^2 - c^2/4)$".to_owned(),
-            independent: "squares compared; both parts of $l^2 + c l + alpha^2 = 0$ at \
-                          $l = -c/2 + i lambda$"
-                .to_owned(),
-            remark:
-                "the symbol and a factor of one term are wrong, $c^2/4$ is no slip for $omega^2$; the \
-                     printed root is imaginary for $omega > alpha$"
-                    .to_owned(),
-            ..statement(
-                "$lambda$",
-                "lambda = ",
-                "sqrt(alpha^2 - omega^2)",
-                &literal,
-                derived.lambda_squared.clone(),
-            )
-        },
-        statement(
-            "$beta$",
-            "beta = ",
-            "pi*k/omega",
-            &literal,
-            q.div(&q.mul(&p("pi"), &p("k")), &p("omega")).ok_or(FAILED)?,
+    let polynomials = "exact, as polynomials";
+    let squares = derived.amplitude_squared.clone();
+    let half_period = q.div(&q.mul(&p("pi"), &p("k")), &p("omega")).ok_or(FAILED)?;
+    let [_, any_d, _, _] = derived.any.clone();
+    Ok(vec![
+        Statement::new(("(8)", "amplitude "), "P0/(alpha^2 - omega^2)", &literal, squares.clone())
+            .squared()
+            .with(
+                "$F = P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)$",
+                "squares compared; linear equations for the cosine and the sine",
+                "",
+            ),
+        Statement::new(("$C$, polar", "C = "), "C0*cos(theta0)", &polar, of_cos)
+            .with("", polynomials, ""),
+        Statement::new(("$D$, polar", "D = "), "-C0*sin(theta0)", &polar, of_sin)
+            .with("", polynomials, ""),
+        Statement::new(("$C_0$", "C_0 = "), "sqrt(C^2 + D^2)", &parts, q.mul(&p("C0"), &p("C0")))
+            .squared()
+            .with("$C0$", polynomials, ""),
+        Statement::new(("$C$", "C = "), "s - F*cos(phi)", &own, c).with(
+            "$-(1 + R_r) sin(theta) v/(lambda Delta)$",
+            residuals,
+            "$Delta = E + 1/E - 2 cos(theta)$, $E = e^(-beta c)$, $theta = 2 beta lambda$",
         ),
-    ];
-    let [_, d, _, _] = derived.any.clone();
-    for statement in &mut list {
-        if statement.independent.is_empty() {
-            "exact, as polynomials".clone_into(&mut statement.independent);
-        }
-    }
-    list.push(Statement {
-        shown: "$D$ with $alpha0$ and $-2 R$ in the places of $lambda$ and $c$".to_owned(),
-        remark: "the amplitudes printed with $(c, lambda)$ meet the end conditions of the flight \
-                 with $(-c/2, lambda)$, not of (8) with $(R, alpha0)$: for $A$, $B$ other than zero the \
-                 orbit of (8) is another"
-            .to_owned(),
-        independent: residuals.to_owned(),
-        ..statement("$C$, $D$ in (8)", "D = ", D_PRINTED, &mixed, d)
-    });
-    Ok(list)
+        Statement::new(("$D$", "D = "), D_PRINTED, &own, d).with(
+            "$-(1 + R_r) (1/E - cos(theta)) v/(lambda Delta)$",
+            residuals,
+            "the printed form is 0/0 where $sin(2 beta lambda) = 0$, the derived one is not",
+        ),
+        Statement::new(
+            ("$cos phi$", "cos phi = "),
+            "s/F - (R_r + 1)*v*sin(2*beta*lambda)\
+             /(lambda*F*(2*cos(2*beta*lambda) - exp(-beta*c) - exp(beta*c)))",
+            &own,
+            cos,
+        )
+        .with(
+            "$(s + (1 + R_r) sin(theta) v/(lambda Delta))/F$",
+            residuals,
+            "$v = x'_-$, before the impact",
+        ),
+        Statement::new(
+            ("$sin phi$", "sin phi = "),
+            "(-1/2*(R_r + 1)*c*sin(2*beta*lambda) + lambda*[(R_r - 1)*cos(2*beta*lambda) \
+             + exp(-beta*c) - R_r*exp(beta*c))\
+             /(lambda*F*omega*(2*cos(2*beta*lambda) - exp(-beta*c) - exp(beta*c)))*v",
+            &own,
+            sin,
+        )
+        .with(
+            "${lambda [R_r (E - cos theta) - (1/E - cos theta)] + (1 + R_r) (c/2) sin theta} \
+             v/(omega lambda F Delta)$",
+            residuals,
+            "equal only for $c = 0$ as printed",
+        ),
+        Statement::new(
+            ("$F$", "F = "),
+            "P0/sqrt((alpha0^2 - omega^2)^2 + c^2*omega^2)",
+            &literal,
+            squares,
+        )
+        .squared()
+        .with(
+            "$P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)$",
+            "squares compared; the response sees neither $A$ nor $B$",
+            "",
+        ),
+        Statement::new(
+            ("$lambda$", "lambda = "),
+            "sqrt(alpha^2 - omega^2)",
+            &literal,
+            derived.lambda_squared.clone(),
+        )
+        .squared()
+        .with(
+            "$sqrt(alpha^2 - c^2/4)$",
+            "squares compared; both parts of $l^2 + c l + alpha^2 = 0$ at $l = -c/2 + i lambda$",
+            "the symbol and a factor of one term are wrong, $c^2/4$ is no slip for $omega^2$; the \
+             printed root is imaginary for $omega > alpha$",
+        ),
+        Statement::new(("$beta$", "beta = "), "pi*k/omega", &literal, half_period)
+            .with("", polynomials, ""),
+        Statement::new(("$C$, $D$ in (8)", "D = "), D_PRINTED, &mixed, any_d).with(
+            "$D$ with $alpha0$ and $-2 R$ in the places of $lambda$ and $c$",
+            residuals,
+            "the amplitudes printed with $(c, lambda)$ meet the end conditions of the flight with \
+             $(-c/2, lambda)$, not of (8) with $(R, alpha0)$: for $A$, $B$ other than zero the orbit of \
+             (8) is another",
+        ),
+    ])
 }
 
 /// (8) and the formulas after it.

@@ -4,7 +4,6 @@ use super::FAILED;
 use super::judge::Statement;
 use super::orbit::{extended, with_pair};
 use super::setting::Setting;
-use crate::Text;
 use crate::{Findings, Row, plain};
 use lindstedt::Error;
 use lindstedt::unstable::coeff::quotient::{Quotient, Quotients};
@@ -106,25 +105,15 @@ const B: [&str; 3] = [
 ];
 
 /// (9), (11), (12), (16) and what stands between them.
-pub(super) fn statements() -> Result<Vec<Statement>, Error> {
-    let map = ImpactMap::derive().ok_or(FAILED)?;
-    let q = extended(&map);
+pub(super) fn statements(map: &ImpactMap) -> Result<Vec<Statement>, Error> {
+    let q = extended(map);
     let flight = Arc::new(in_flight(&q).only(&[&WORDS[..], &["R*tau"]].concat()));
     let ends = Arc::new(at_ends(&q).only(&[&WORDS[..], &["beta", "pi", "k", "dT"]].concat()));
     let by_differentiation = "formal derivatives of (8) by $C$, $D$, $phi$ and $tau$";
-    let statement =
-        |label: &str, left: &str, printed: &str, setting: &Arc<Setting>, derived| Statement {
-            label: label.to_owned(),
-            left: left.to_owned(),
-            printed: printed.to_owned(),
-            setting: Arc::clone(setting),
-            derived,
-            shown: String::new(),
-            squared: false,
-            independent: String::new(),
-            remark: String::new(),
-        };
-    let mut list = vec![perturbed_flight(&q, &map)?];
+    let statement = |label: &str, left: &str, printed: &str, setting: &Arc<Setting>, derived| {
+        Statement::new((label, left), printed, setting, derived)
+    };
+    let mut list = vec![perturbed_flight(&q, map)?];
     let times = Arc::new(Setting::new(q.clone()).only(&["pi", "k", "l", "omega", "dT"]));
     let period = times.read("2*pi*k/omega").ok_or(FAILED)?;
     let length = q.add(&period, &q.parameter("dT"));
@@ -135,15 +124,9 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     for (label, left, printed, derived) in
         [("$dx$", "delta x = ", DISPLACEMENT, dx), ("$dx'$", "delta x' = ", VELOCITY, dv)]
     {
-        list.push(Statement {
-            independent: by_differentiation.to_owned(),
-            remark: if label == "$dx'$" {
-                "(11) has both terms right".to_owned()
-            } else {
-                String::new()
-            },
-            ..statement(label, left, printed, &flight, derived)
-        });
+        let remark = if label == "$dx'$" { "(11) has both terms right" } else { "" };
+        let found = statement(label, left, printed, &flight, derived);
+        list.push(found.with("", by_differentiation, remark));
     }
     let start = [&map.start_displacement, &map.start_velocity];
     let next = [of_next(&q, start[0]).ok_or(FAILED)?, of_next(&q, start[1]).ok_or(FAILED)?];
@@ -165,45 +148,38 @@ pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     for (label, left, printed, derived) in six {
         let inside = label.ends_with('5') || label.ends_with('6');
         let remark = if inside { "$dT$ inside the functions is of second order" } else { "" };
-        list.push(Statement {
-            remark: remark.to_owned(),
-            independent: by_differentiation.to_owned(),
-            ..statement(label, left, printed, &ends, derived)
-        });
+        let found = statement(label, left, printed, &ends, derived);
+        list.push(found.with("", by_differentiation, remark));
     }
     let [first, second, third] = map.equations.clone();
     let second_printed = "exp(2*beta*R)*[dC*cos(2*beta*alpha0) + dD*sin(2*beta*alpha0) \
          + 1/omega*(dphi' - dphi)*[(alpha0*D + R*C)*cos(2*beta*alpha0) \
          + (R*D - alpha0*C)*sin(2*beta*alpha0)]] - dC'";
-    let propagation = propagation(&map, &ends).ok_or(FAILED)?;
+    let propagation = propagation(map, &ends).ok_or(FAILED)?;
     for (label, printed, derived, remark) in [
         ("(12), 1", "dC - a*dphi*sin(phi)", first, String::new()),
         ("(12), 2", second_printed, second, String::new()),
         ("(12), 3", THIRD, third, propagation),
     ] {
-        list.push(Statement {
-            remark,
-            independent: "(11) with $omega dT = dphi' - dphi$, $dx'_+ = -R_r dx'_-$".to_owned(),
-            ..statement(label, "0 = ", printed, &ends, derived)
-        });
+        let found = statement(label, "0 = ", printed, &ends, derived);
+        let independent = "(11) with $omega dT = dphi' - dphi$, $dx'_+ = -R_r dx'_-$";
+        list.push(found.with("", independent, &remark));
     }
     let [b0, b1, b2] = map.characteristic.clone();
-    let checks = orbit_values(&map).ok_or(FAILED)?;
-    let jacobian = if same_characteristic(&map) { "has" } else { "does not have" };
+    let checks = orbit_values(map).ok_or(FAILED)?;
+    let jacobian = if same_characteristic(map) { "has" } else { "does not have" };
     for ((label, printed, derived), remark) in
         [("$b_2$, (16)", B[0], b2), ("$b_1$, (16)", B[1], b1), ("$b_0$, (16)", B[2], b0)]
             .into_iter()
             .zip(checks)
     {
         let left = format!("{} = ", label.trim_end_matches("$, (16)").trim_start_matches('$'));
-        list.push(Statement {
-            independent: format!(
-                "the Jacobian of $(phi, x'_+)$ by the implicit function theorem {jacobian} trace \
-                 $-b_1/b_2$ and determinant $b_0/b_2$"
-            ),
-            remark,
-            ..statement(label, &left, printed, &ends, derived)
-        });
+        let independent = format!(
+            "the Jacobian of $(phi, x'_+)$ by the implicit function theorem {jacobian} trace \
+             $-b_1/b_2$ and determinant $b_0/b_2$"
+        );
+        let found = statement(label, &left, printed, &ends, derived);
+        list.push(found.with("", &independent, &remark));
     }
     Ok(list)
 }
@@ -228,21 +204,19 @@ fn perturbed_flight(q: &Quotients, map: &ImpactMap) -> Result<Statement, Error> 
         "R", "alpha0", "alpha", "omega", "C", "D", "dC", "dD", "dphi", "tau", "phi", "R_tau",
         "R*tau", "P0",
     ]);
-    Ok(Statement {
-        label: "(9)".to_owned(),
-        left: "x + delta x = ".to_owned(),
-        printed: "exp(R_tau)*[(C + dC)*cos(alpha0*tau) + (D + dD)*sin(alpha0*tau)] \
-                  + P0/(alpha^2 - omega^2)*cos(omega*tau + phi + dphi)"
-            .to_owned(),
-        setting: Arc::new(setting),
+    let found = Statement::new(
+        ("(9)", "x + delta x = "),
+        "exp(R_tau)*[(C + dC)*cos(alpha0*tau) + (D + dD)*sin(alpha0*tau)] \
+         + P0/(alpha^2 - omega^2)*cos(omega*tau + phi + dphi)",
+        &Arc::new(setting),
         derived,
-        shown: "(8) with $C + dC$, $D + dD$, $phi + dphi$".to_owned(),
-        squared: false,
-        independent: String::new(),
-        remark: "the exponent is printed as one symbol with an index; the amplitude is that of \
-                 (8), which has a row of its own"
-            .to_owned(),
-    })
+    );
+    Ok(found.with(
+        "(8) with $C + dC$, $D + dD$, $phi + dphi$",
+        "",
+        "the exponent is printed as one symbol with an index; the amplitude is that of (8), which has a \
+         row of its own",
+    ))
 }
 
 /// What the third line of (12) does to the determinant as it is printed.
@@ -316,7 +290,7 @@ pub(super) fn rows() -> Result<Vec<Row>, Error> {
     let same = same_characteristic(&map);
     let amplitude = super::orbit::statements()?.into_iter().find(|s| s.label == "(8)");
     let mut rows = Vec::new();
-    for statement in statements()? {
+    for statement in statements(&map)? {
         match statement.label.as_str() {
             "(11), 1" => {
                 rows.extend(amplitude.iter().flat_map(|found| {
@@ -328,20 +302,18 @@ pub(super) fn rows() -> Result<Vec<Row>, Error> {
                     };
                     again.rows()
                 }));
-                rows.push(Row {
-                    label: "$x_(1-)$".into(),
-                    printed: "before the impact number 1, the mass possesses the velocity $x_(1-)$".into(),
-                    derived: "$x_(1-) = s$, the place of the wall; the velocity is $x'_(1-)$".into(),
-                    independent: "the end conditions of (8) and (10)".into(),
-                    verdict: Findings {
+                rows.push(Row::new("$x_(1-)$",
+"before the impact number 1, the mass possesses the velocity $x_(1-)$",
+"$x_(1-) = s$, the place of the wall; the velocity is $x'_(1-)$",
+"the end conditions of (8) and (10)",
+&Findings {
                         holds: false,
                         correction: same.then(|| "$x'_(1-)$".to_owned()),
                         ..Findings::default()
-                    }
-                    .verdict(),
-                    evidence: "a dot is missing: with $x_- = s$ and $x'_-$ the velocity the map of the impacts \
-                               follows".into(),
-                });
+                    },
+"a dot is missing: with $x_- = s$ and $x'_-$ the velocity the map of the impacts \
+                               follows",
+));
                 rows.push(plain(
                     "(10)",
                     "$l$: $tau = 0$, $dtau = 0$, $dx = 0$, $dx'_+ = -R_r dx'_-$; $l+1$: $tau = 2 pi k/omega + \
@@ -391,12 +363,12 @@ fn phase_sum() -> Row {
         .find(|shift| agrees(*shift))
         .map(|shift| format!("the summand is $dT_(i{shift:+})$: the sum runs from 0 to $l - 1$"));
     let findings = Findings { holds: agrees(0), correction, ..Findings::default() };
-    Row {
-        label: "(13)".into(),
-        printed: "$dphi_l = dphi_0 + sum_(i=1)^l omega dT_i$".into(),
-        derived: "$dphi_(l+1) = dphi_l + omega dT_l$: the phase at the end of a flight".into(),
-        independent: "(12) uses $omega dT_l = dphi_(l+1) - dphi_l$".into(),
-        verdict: findings.verdict(),
-        evidence: Text::from(findings.correction.unwrap_or_default()),
-    }
+    Row::new(
+        "(13)",
+        "$dphi_l = dphi_0 + sum_(i=1)^l omega dT_i$",
+        "$dphi_(l+1) = dphi_l + omega dT_l$: the phase at the end of a flight",
+        "(12) uses $omega dT_l = dphi_(l+1) - dphi_l$",
+        &findings,
+        findings.correction.clone().unwrap_or_default(),
+    )
 }

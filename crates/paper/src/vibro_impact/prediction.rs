@@ -269,42 +269,42 @@ fn statements(counts: &Counts, rates: [f64; RULES.len()]) -> [Row; 2] {
         counts.points
     );
     [
-        Row {
-            label: "$R < 0$".into(),
-            printed: "from (8) it is seen that when $R < 0$ the assumed solution is stabilised more quickly \
+        Row::new(
+            "$R < 0$",
+            "from (8) it is seen that when $R < 0$ the assumed solution is stabilised more quickly \
                       in comparison to $R = 0$; however, a problem of stability investigation of the \
-                      vibro-impact state is much more subtle".into(),
-            derived: format!(
+                      vibro-impact state is much more subtle",
+            format!(
                 "$e^(R T) < 1$ in the flight (8) where $R < 0$; as a rule for the stability of (1) the sign of \
                  $R$ would agree at {by_rate:.3} of the points (estimated)"
-            ).into(),
-            independent: Text::from(grid.clone()),
+            ),
+            grid.clone(),
             // What the paper calls more subtle must not be decided by the sign of R.
-            verdict: Findings::holds(false_stable > 0 || false_unstable > 0).verdict(),
-            evidence: format!(
+            &Findings::holds(false_stable > 0 || false_unstable > 0),
+            format!(
                 "it is more subtle: $R < 0$ is neither sufficient ({false_stable} points with $R < 0$ are \
                  unstable) nor necessary ({false_unstable} with $R >= 0$ are stable)"
-            ).into(),
-        },
-        Row {
-            label: "simulations".into(),
-            printed: "the validity of our analytical approach has been testified by numerical \
-                      simulations".into(),
-            derived: format!(
+            ),
+        ),
+        Row::new(
+            "simulations",
+            "the validity of our analytical approach has been testified by numerical \
+                      simulations",
+            format!(
                 "(17) has the verdict of (1) at {letter:.3} (to the letter), {own:.3} (orbit of \
                  (8) with its own $R$, $alpha0$, of the {own_points} points where it exists) and \
                  {true_orbit:.3} (true orbit) of the points (estimated)"
-            ).into(),
-            independent: grid.into(),
-            verdict: simulated.verdict(),
-            evidence: format!(
+            ),
+            grid,
+            &simulated,
+            format!(
                 "the region of (17) is not the stability region of (1): to ignore the loop is \
                  right at {nothing:.3} (estimated). (6) puts $e^(-lambda T) z(t)$ for $z(t - T)$, as if no impact \
                  lay between; with $z(t)/gamma$ in its place ($G$) the verdict is right at {g:.3} \
                  (estimated). The \
                  parameters of the cited simulations are not given"
-            ).into(),
-        },
+            ),
+        ),
     ]
 }
 

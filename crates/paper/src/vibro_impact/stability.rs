@@ -1,7 +1,6 @@
 //! (17): when both roots of the characteristic polynomial lie inside the unit circle.
 
-use crate::Text;
-use crate::{Findings, Row, plain};
+use crate::{Findings, Row, Section, plain};
 use lindstedt::unstable::coeff::quotient::Quotients;
 use lindstedt::unstable::impact::linearised::replace;
 use rug::Rational;
@@ -86,16 +85,14 @@ fn trials() -> [u32; 3] {
 }
 
 /// (17) and the reference below it.
-pub(super) fn rows() -> Vec<Row> {
+pub(super) fn rows(section: &Section) -> Vec<Row> {
     let identity = moebius_identity().unwrap_or(false);
     let [both, first, second] = trials();
     let holds = identity && both == 0;
     let reference = {
         // Which numbered formula has b_0, b_1, b_2 on the left: found among the formulas read.
-        let defining = super::perturbation::statements().ok().and_then(|list| {
-            let found = list.into_iter().find(|s| s.left.trim_start().starts_with("b_0"))?;
-            Some(found.label.split_once(", ")?.1.to_owned())
-        });
+        let found = section.rows.iter().find(|row| row.printed.starts_with("b_0 = "));
+        let defining = found.and_then(|row| Some(row.label.split_once(", ")?.1.to_owned()));
         let right = defining.as_deref() == Some("(15)");
         let correction = defining.filter(|_| !right).map(|n| format!("{n} in the place of (15)"));
         Findings { holds: right, correction, ..Findings::default() }
@@ -114,14 +111,13 @@ pub(super) fn rows() -> Vec<Row> {
                  polynomials). It decides the stability of the map of (8), not of (1)"
             ),
         ),
-        Row {
-            label: "below (17)".into(),
-            printed: "taking into account equations (15) it is easy to find parameters that fulfil \
-                      (17)".into(),
-            derived: "$b_2$, $b_1$, $b_0$ as functions of the parameters".into(),
-            independent: Text::default(),
-            verdict: reference.verdict(),
-            evidence: Text::from(reference.correction.unwrap_or_default()),
-        },
+        Row::new("below (17)",
+"taking into account equations (15) it is easy to find parameters that fulfil \
+                      (17)",
+"$b_2$, $b_1$, $b_0$ as functions of the parameters",
+"",
+&reference,
+reference.correction.clone().unwrap_or_default(),
+),
     ]
 }
