@@ -1,6 +1,6 @@
 //! The coefficients of T/2pi as floats, by the energy integral in numbers.
 //!
-//! The exact polynomials of [`crate::energy`] have tens of thousands of terms at order 30; their
+//! The exact polynomials of [`lindstedt_derivation::energy`] have tens of thousands of terms at order 30; their
 //! values satisfy the same recurrences and cost O(N^2) for the power law, O(N^4/6) products for
 //! forces x F(delta ln x^2).
 

@@ -23,7 +23,7 @@ impl Axis {
     /// Reads `NAME=LO..HI:COUNT` (equal steps, both ends included, exact) or `NAME=V1,V2,...`.
     ///
     /// # Errors
-    /// [`Refused`] with the form that is expected, [`Error::BadValue`].
+    /// [`Refused`] with the form that is expected, [`DerivationError::BadValue`](crate::DerivationError::BadValue).
     ///
     /// ```
     /// use lindstedt::grid::Axis;

@@ -122,7 +122,7 @@ impl Oscillator {
     /// `pi/4`. Greek letters may be spelled or written.
     ///
     /// # Errors
-    /// [`Error::BadValue`].
+    /// [`DerivationError::BadValue`](crate::DerivationError::BadValue).
     pub fn set(self, name: &str, value: &str) -> Result<Self, Error> {
         let value = Exact::parse(value)?;
         Ok(self.with(name, value))

@@ -7,9 +7,9 @@
 
 use crate::error::SimulateError;
 use crate::integrator::Settings;
+use crate::integrator::real::Real;
 use crate::poincare::{PoincareMap, Point, Section};
 use crate::quantity::{Parameters, Quantity};
-use crate::real::Real;
 use crate::system::{Model, System};
 use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};

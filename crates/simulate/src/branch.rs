@@ -9,8 +9,8 @@
 //! side. Where w does not pass zero with a speed the branch point is refused.
 
 use crate::error::SimulateError;
+use crate::integrator::real::Real;
 use crate::integrator::{Integrator, Observer};
-use crate::real::Real;
 use crate::report::EventKind;
 use crate::tape::LEAP;
 use std::ops::ControlFlow;

@@ -1,8 +1,8 @@
 //! From the expression tree to the tape.
 
 use crate::error::SimulateError;
+use crate::integrator::real::Real;
 use crate::quantity::Parameters;
-use crate::real::Real;
 use crate::tape::{Op, Tape};
 use lindstedt_equation::{Expression, Function, Unknown};
 use rug::{Float, Rational};

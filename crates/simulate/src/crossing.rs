@@ -10,11 +10,11 @@
 
 use crate::branch::Branch;
 use crate::error::SimulateError;
+use crate::integrator::real::Real;
 use crate::integrator::{Integrator, Observer};
 use crate::local::{Local, Piece, ShapeRef};
 use crate::past::Clock;
 use crate::puiseux::{Lattice, MOST_TERMS};
-use crate::real::Real;
 use crate::report::{Event, EventKind, Report, Segment};
 use crate::system::System;
 use std::ops::ControlFlow;

@@ -1,6 +1,9 @@
 //! MPFR floats as real numbers.
 
-use crate::real::Real;
+use crate::error::SimulateError;
+use crate::integrator::real::Real;
+use crate::integrator::{Integrator, Observer};
+use crate::outcome::Outcome;
 use rug::{Float, Rational};
 
 /// The arithmetic of MPFR floats with a fixed number of bits.
@@ -26,6 +29,17 @@ impl Digits {
 
 impl Real for Digits {
     type Element = Float;
+
+    fn advance(
+        flow: &mut Integrator<'_, Self>,
+        target: &Float,
+        observer: &mut Observer<'_, Self>,
+    ) -> Result<Outcome, SimulateError> {
+        flow.advance_here(target, observer)
+    }
+    fn begin(flow: &mut Integrator<'_, Self>) -> Result<(), SimulateError> {
+        flow.begin_here()
+    }
 
     fn bits(&self) -> u32 {
         self.bits

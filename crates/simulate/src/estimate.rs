@@ -3,7 +3,7 @@
 use crate::digits::Digits;
 use crate::error::SimulateError;
 use crate::integrator::Settings;
-use crate::real::Real;
+use crate::integrator::real::Real;
 use rug::Float;
 
 /// Something computed from an integration, in any arithmetic.

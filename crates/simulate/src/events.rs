@@ -1,8 +1,8 @@
 //! Which surface is met first, and what happens there.
 
 use crate::error::{SimulateError, Surface};
+use crate::integrator::real::Real;
 use crate::integrator::{Hit, Integrator, Observer};
-use crate::real::Real;
 use crate::report::{Event, EventKind, Report};
 use crate::roots::AtCluster;
 use crate::tape::{LEAP, Op};
@@ -13,7 +13,7 @@ const FIRST: (usize, AtCluster) = (1, AtCluster::Stop);
 
 impl<R: Real> Integrator<'_, R> {
     /// The classification of the start: signs of the switches, walls.
-    pub(crate) fn begin(&mut self) -> Result<(), SimulateError> {
+    pub(crate) fn begin_here(&mut self) -> Result<(), SimulateError> {
         let system = self.system;
         self.expand_to(0)?;
         for (index, wall) in system.walls.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! Walls: impacts, their accumulation, rest and departure.
 
 use crate::error::SimulateError;
+use crate::integrator::real::Real;
 use crate::integrator::{Hit, Integrator, Observer};
-use crate::real::Real;
 use crate::report::EventKind;
 use std::ops::ControlFlow;
 

@@ -1,12 +1,15 @@
 //! The integrator: steps, and the loop over them.
 
+pub(crate) mod real;
+
 use crate::error::{SimulateError, Surface};
+use crate::outcome::Outcome;
 use crate::past::{Clock, Past};
-use crate::real::Real;
-use crate::report::{Outcome, Report, Work};
+use crate::report::{Report, Work};
 use crate::roots::RootFinder;
 use crate::series::{Phase, Series};
 use crate::system::System;
+use real::Real;
 use std::ops::ControlFlow;
 
 /// How precisely to integrate.
@@ -156,7 +159,7 @@ impl<'s, R: Real> Integrator<'s, R> {
             runaway: None,
             work: Work::default(),
         };
-        flow.begin()?;
+        R::begin(&mut flow)?;
         Ok(flow)
     }
 
@@ -203,7 +206,7 @@ impl<'s, R: Real> Integrator<'s, R> {
         self.rebound = None;
         self.phase.contact = None;
         self.vanishing.iter_mut().for_each(|skip| *skip = 0);
-        self.begin()
+        R::begin(self)
     }
 
     pub(crate) fn seconds(&self) -> f64 {
@@ -214,6 +217,14 @@ impl<'s, R: Real> Integrator<'s, R> {
     /// the observer breaks it off, after which the state is that at the end of the step. May be
     /// called again with a later target: stroboscopic sections are a loop over targets. Cost: per step O(operations order^2).
     pub fn advance(
+        &mut self,
+        target: &R::Element,
+        observer: &mut Observer<'_, R>,
+    ) -> Result<Outcome, SimulateError> {
+        R::advance(self, target, observer)
+    }
+
+    pub(crate) fn advance_here(
         &mut self,
         target: &R::Element,
         observer: &mut Observer<'_, R>,

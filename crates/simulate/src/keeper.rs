@@ -3,10 +3,11 @@
 use crate::course::{Course, Dot, End, Happening, Moment};
 use crate::digits::Digits;
 use crate::error::SimulateError;
+use crate::integrator::real::{Doubles, Real};
 use crate::integrator::{Integrator, Settings};
+use crate::outcome::Outcome;
 use crate::quantity::{Parameters, Quantity};
-use crate::real::{Doubles, Real};
-use crate::report::{EventKind, Outcome, Report, Segment, Work};
+use crate::report::{EventKind, Report, Segment, Work};
 use crate::system::Model;
 use lindstedt_equation::Expression;
 use rug::Float;

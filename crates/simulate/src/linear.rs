@@ -1,8 +1,8 @@
 //! Linearisation: saltation at events, monodromy matrix, Floquet multipliers.
 
 use crate::error::SimulateError;
+use crate::integrator::real::Real;
 use crate::integrator::{Integrator, Settings, Tick, go_on};
-use crate::real::Real;
 use crate::system::System;
 use nalgebra::{Complex, DMatrix};
 

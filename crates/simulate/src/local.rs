@@ -1,7 +1,7 @@
 //! The solution on one side of a branch point as series in fractional powers of the distance.
 
+use crate::integrator::real::Real;
 use crate::puiseux::{Lattice, Terms};
-use crate::real::Real;
 use crate::system::System;
 use crate::tape::{Op, horner};
 

@@ -1,8 +1,8 @@
 //! The largest Lyapunov exponent, through impacts, switchings and sliding.
 
 use crate::error::SimulateError;
+use crate::integrator::real::Real;
 use crate::integrator::{Integrator, Settings};
-use crate::real::Real;
 use crate::system::System;
 use std::ops::ControlFlow;
 

@@ -7,7 +7,7 @@
 //! pieces whose polynomials agree to the tolerance over one of them are read as one; this merges
 //! slivers and breakpoints that the delay has smoothed.
 
-use crate::real::Real;
+use crate::integrator::real::Real;
 use crate::series::log2_step;
 use crate::system::System;
 use crate::tape::{Moment, Op, Rows};

@@ -1,8 +1,8 @@
 //! Poincare maps: the state once per forcing period, or at the crossings of a surface.
 
 use crate::error::{SimulateError, Surface};
+use crate::integrator::real::Real;
 use crate::integrator::{Integrator, Settings, Tick, go_on};
-use crate::real::Real;
 use crate::report::{EventKind, Report};
 use crate::system::System;
 use std::collections::VecDeque;

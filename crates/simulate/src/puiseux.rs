@@ -5,7 +5,7 @@
 //! those of the Taylor recurrences with the exponents in place of the orders: with u = c d^e + ...
 //! and d u' = e c d^e + ..., b = (1 + u)^p has e b_e = sum_f (p f - (e - f)) u_f b_(e-f).
 
-use crate::real::Real;
+use crate::integrator::real::Real;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! What an integration tells its observer.
 
+use crate::integrator::real::Real;
 use crate::local::ShapeRef;
-use crate::real::Real;
 
 /// What happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,15 +119,6 @@ pub enum Report<'a, R: Real> {
     Event(Event<'a, R>),
     /// Nothing new: a step takes its time, and asks whether to go on.
     Busy,
-}
-
-/// How an integration ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// At the time asked for.
-    Reached,
-    /// The observer broke it off.
-    Stopped,
 }
 
 /// The work done.

@@ -7,7 +7,7 @@
 //! last digits. Sign changes that remain in an interval of relative width 2^(-bits/2 + 4) cannot
 //! be told from a double root: a cluster.
 
-use crate::real::Real;
+use crate::integrator::real::Real;
 use crate::tape::horner;
 
 /// A simple root.
@@ -279,7 +279,7 @@ impl<E: Clone + PartialOrd> RootFinder<E> {
 mod tests {
     use super::*;
     use crate::digits::Digits;
-    use crate::real::Doubles;
+    use crate::integrator::real::Doubles;
 
     fn polynomial(roots: &[f64]) -> Vec<f64> {
         let mut c = vec![1.0];

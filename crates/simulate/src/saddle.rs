@@ -1,10 +1,10 @@
 //! Saddle orbits of periodically forced systems of second order, and their unstable manifolds.
 
 use crate::error::SimulateError;
+use crate::integrator::real::Doubles;
 use crate::integrator::{Settings, Tick};
 use crate::linear::monodromy_while;
 use crate::poincare::{PoincareMap, Section};
-use crate::real::Doubles;
 use crate::system::System;
 use nalgebra::{DMatrix, DVector};
 

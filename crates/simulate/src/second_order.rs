@@ -2,7 +2,7 @@
 
 use crate::compile::{Compiler, Value};
 use crate::error::SimulateError;
-use crate::real::Real;
+use crate::integrator::real::Real;
 use crate::tape::Op;
 use lindstedt_equation::{Crossing, Expression, Impact, Unknown};
 

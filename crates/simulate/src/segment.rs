@@ -1,9 +1,9 @@
 //! The end of a step: the segment is reported and kept, sections are crossed.
 
 use crate::error::SimulateError;
+use crate::integrator::real::Real;
 use crate::integrator::{Integrator, Observer};
 use crate::local::ShapeRef;
-use crate::real::Real;
 use crate::report::{Event, EventKind, Report, Segment};
 use crate::roots::{AtCluster, Cluster};
 use std::ops::ControlFlow;

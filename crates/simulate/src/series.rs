@@ -1,7 +1,7 @@
 //! The Taylor series of all states about the start of a step, its length, and a check of both.
 
 use crate::error::SimulateError;
-use crate::real::Real;
+use crate::integrator::real::Real;
 use crate::system::System;
 use crate::tape::{Moment, Op, Rows, horner};
 

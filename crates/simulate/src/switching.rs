@@ -7,8 +7,8 @@
 //! Sliding ends when u exceeds 1 or -1, towards that side (Filippov 1988, section 15).
 
 use crate::error::SimulateError;
+use crate::integrator::real::Real;
 use crate::integrator::{Hit, Integrator};
-use crate::real::Real;
 use crate::report::EventKind;
 
 impl<R: Real> Integrator<'_, R> {

@@ -2,8 +2,8 @@
 
 use crate::compile::{Compiler, Switch, Value};
 use crate::error::SimulateError;
+use crate::integrator::real::Real;
 use crate::quantity::Parameters;
-use crate::real::Real;
 use crate::second_order::{Wall, compile_wall, split_acceleration};
 use crate::tape::{Op, Tape};
 use lindstedt_equation::{Expression, Impact, Problem};

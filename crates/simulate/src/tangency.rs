@@ -8,11 +8,11 @@
 //! extremum over sigma. Only forward time is used: with sticking there is no other.
 
 use crate::error::SimulateError;
+use crate::integrator::real::Doubles;
 use crate::integrator::{Settings, Tick};
 use crate::linear::monodromy_while;
 use crate::poincare::{PoincareMap, Section};
 use crate::quantity::{Parameters, Quantity};
-use crate::real::Doubles;
 use crate::saddle::{Saddle, saddle};
 use crate::system::{Model, System};
 use rug::Float;

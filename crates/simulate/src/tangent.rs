@@ -5,7 +5,7 @@
 //! control is determined like the control itself.
 
 use crate::compile::{Compiler, Value};
-use crate::real::Real;
+use crate::integrator::real::Real;
 use crate::tape::Op;
 
 impl<R: Real> Compiler<'_, R> {

@@ -6,7 +6,7 @@
 //! are those of a = b c, a' = b' a (exponential) and so on (Moore, Interval Analysis, 1966;
 //! Jorba and Zou, Experimental Mathematics 14, 2005, section 2).
 
-use crate::real::Real;
+use crate::integrator::real::Real;
 
 /// One operation; the numbers are rows unless the name says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! A solution that is kept.
 
+use crate::integrator::real::Real;
 use crate::local::Shape;
-use crate::real::Real;
 use crate::report::{EventKind, Report};
 
 /// An event, kept.

@@ -33,7 +33,7 @@ impl Oscillator {
     /// that ends before the last time is no complete answer either, and says why it ends.
     ///
     /// # Errors
-    /// [`Error::Unset`] for a parameter without a value; [`Error::NoSuchStart`]; a refusal where the
+    /// [`DerivationError::Unset`](crate::DerivationError::Unset) for a parameter without a value; [`EvaluationError::NoSuchStart`](crate::EvaluationError::NoSuchStart); a refusal where the
     /// motion has no start; those of [`Oscillator::average`].
     ///
     /// ```

@@ -60,10 +60,10 @@ impl Oscillator {
     /// were reached.
     ///
     /// # Errors
-    /// [`Error::NotEvaluated`] for a problem without a periodic solution that is expanded (no
-    /// condition, a free amplitude, a wall); [`Error::Unset`] where the small parameter or another one
-    /// has no value; [`Error::OutsideDomain`] and [`Error::UnknownParameter`] for parameters,
-    /// [`Error::Resummation`] where the method asked for does not apply, and what
+    /// [`EvaluationError::NotEvaluated`](crate::EvaluationError::NotEvaluated) for a problem without a periodic solution that is expanded (no
+    /// condition, a free amplitude, a wall); [`DerivationError::Unset`](crate::DerivationError::Unset) where the small parameter or another one
+    /// has no value; [`DerivationError::OutsideDomain`](crate::DerivationError::OutsideDomain) and [`DerivationError::UnknownParameter`](crate::DerivationError::UnknownParameter) for parameters,
+    /// [`EvaluationError::Resummation`](crate::EvaluationError::Resummation) where the method asked for does not apply, and what
     /// [`Oscillator::derive`] returns.
     ///
     /// ```

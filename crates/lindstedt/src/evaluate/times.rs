@@ -44,7 +44,7 @@ impl Times {
     /// Reads `LO..HI:COUNT`, both ends included.
     ///
     /// # Errors
-    /// [`Refused`] with the form that is expected, [`Error::BadValue`].
+    /// [`Refused`] with the form that is expected, [`DerivationError::BadValue`](crate::DerivationError::BadValue).
     ///
     /// ```
     /// let times = lindstedt::evaluate::Times::parse("0..3:4")?;

@@ -207,7 +207,7 @@ impl Oscillator {
     /// orbit that has to be followed.
     ///
     /// # Errors
-    /// [`Refused`] with the term that does not fit, [`Error::Melnikov`], [`Error::NotEnoughBits`].
+    /// [`Refused`] with the term that does not fit, [`Error::Melnikov`], [`DerivationError::NotEnoughBits`](crate::DerivationError::NotEnoughBits).
     ///
     /// ```
     /// use lindstedt::{Oscillator, Threshold, Work};

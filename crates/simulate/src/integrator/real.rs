@@ -3,13 +3,16 @@
 //! The context value owns the precision; elements are bare. Operations write to a place that
 //! exists already, so that the inner loops allocate nothing.
 
+use super::{Integrator, Observer};
+use crate::error::SimulateError;
+use crate::outcome::Outcome;
 use rug::float::Constant;
 use rug::{Float, Rational};
 use std::fmt::Debug;
 
 /// Arithmetic at one precision. Every operation is correctly rounded or, for sums of products,
 /// a chain of correctly rounded operations.
-pub trait Real: Clone + Debug + Send + Sync {
+pub trait Real: Clone + Debug + Send + Sync + Sized {
     /// A number.
     type Element: Clone + Debug + PartialEq + PartialOrd + Send + Sync;
 
@@ -128,6 +131,22 @@ pub trait Real: Clone + Debug + Send + Sync {
     fn pi(&self) -> Self::Element {
         self.float(&Float::with_val(self.bits() + 8, Constant::Pi))
     }
+
+    /// [`Integrator::advance`], compiled once for each arithmetic and not wherever one integrates.
+    ///
+    /// # Errors
+    /// As there.
+    fn advance(
+        flow: &mut Integrator<'_, Self>,
+        target: &Self::Element,
+        observer: &mut Observer<'_, Self>,
+    ) -> Result<Outcome, SimulateError>;
+
+    /// The first step of [`Integrator::new`], likewise.
+    ///
+    /// # Errors
+    /// As there.
+    fn begin(flow: &mut Integrator<'_, Self>) -> Result<(), SimulateError>;
 }
 
 /// The arithmetic of f64.
@@ -136,6 +155,17 @@ pub struct Doubles;
 
 impl Real for Doubles {
     type Element = f64;
+
+    fn advance(
+        flow: &mut Integrator<'_, Self>,
+        target: &f64,
+        observer: &mut Observer<'_, Self>,
+    ) -> Result<Outcome, SimulateError> {
+        flow.advance_here(target, observer)
+    }
+    fn begin(flow: &mut Integrator<'_, Self>) -> Result<(), SimulateError> {
+        flow.begin_here()
+    }
 
     fn bits(&self) -> u32 {
         53
