@@ -69,7 +69,7 @@ pub enum Verdict {
     Undecided,
 }
 
-/// The result of [`Oscillator::verify`].
+/// The result of [`crate::Oscillator::verify`].
 #[derive(Clone, Debug, Serialize)]
 pub struct Verification {
     /// The name of the small parameter.
