@@ -10,7 +10,7 @@ use lindstedt::unstable::series::resummation::{
 };
 use lindstedt::{
     Derivation, DerivationError as Error, Evaluate, Exact, Kind, Oscillator, Progress, Refusal,
-    Work, unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
+    Route, Work, unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
 };
 use rug::Float;
 use std::sync::Arc;
@@ -28,7 +28,7 @@ fn interrupted<T>(result: &Result<T, impl Refusal>) -> bool {
 }
 
 fn lobachevsky(name: &str, order: usize, stop: Stop) -> (Result<Derivation, Error>, Vec<usize>) {
-    let settings = Settings { order, stop, ..Settings::default() };
+    let settings = Settings { order, stop, route: Route::Driver, ..Settings::default() };
     let mut orders = Vec::new();
     let mut observer = |progress: Progress| {
         if let Progress::Order(n, _) = progress {
@@ -86,6 +86,36 @@ fn orders_of_the_lobachevsky_ring() {
             }
         }
         assert!(seen.len() > order / 2 && unchecked > 30, "{name}: {seen:?} {unchecked}");
+    }
+}
+
+/// By the clock the orders are finished together: an error before, and nothing unchecked that says it is checked.
+#[test]
+fn one_clock() {
+    for (name, order) in [("power-law", 8), ("pendulum", 6)] {
+        let run = |stop| {
+            let settings = Settings { order, stop, route: Route::Clock, ..Settings::default() };
+            derive(&problems::find(name).unwrap(), &settings, &mut |_| true)
+        };
+        let (stop, asked) = after(u64::MAX);
+        assert_eq!(run(stop).unwrap().checked_orders, Some(order));
+        let total = asked.load(Ordering::SeqCst);
+        assert!(total > 20 * order as u64, "{name}: {total} questions");
+        let (mut none, mut unchecked) = (0, 0);
+        for i in 0..40 {
+            let (stop, _) = after(total * i / 40);
+            match run(stop) {
+                Ok(result) => {
+                    assert_eq!((result.order, result.checked_orders), (order, None), "{name} {i}");
+                    unchecked += 1;
+                }
+                Err(error) => {
+                    assert!(interrupted::<()>(&Err(error)), "{name} {i}");
+                    none += 1;
+                }
+            }
+        }
+        assert!(none > 5 && unchecked > 5, "{name}: {none} {unchecked}");
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod averaging;
 mod classics;
+mod clock;
 mod closed_forms;
 mod estimates;
 mod evaluate;

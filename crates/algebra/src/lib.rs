@@ -7,6 +7,7 @@
 
 mod amplitudes;
 mod averaging;
+mod clock;
 pub mod laws;
 mod phase;
 mod ring;
@@ -14,6 +15,7 @@ mod stop;
 
 pub use amplitudes::{AmplitudeAlgebra, Split};
 pub use averaging::{Averaged, AveragingAlgebra, LinearPart};
+pub use clock::{ClockAlgebra, StillAndClock};
 pub use phase::{Elementary, FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution, combination};
 pub use ring::{RationalAlgebra, Rationals, Ring};
 pub use stop::Stop;

@@ -1,6 +1,6 @@
 //! Rings and algebras over the rational numbers.
 
-use rug::Rational;
+use rug::{Integer, Rational};
 use std::fmt::Debug;
 
 /// A commutative ring with one. The value owns the context, elements are bare data.
@@ -111,6 +111,19 @@ impl Ring for Rationals {
     }
     fn mul(&self, a: &Rational, b: &Rational) -> Rational {
         Rational::from(a * b)
+    }
+    /// Products of integers are added without a greatest common divisor.
+    fn sum_of_products(&self, pairs: &[(&Rational, &Rational)]) -> Rational {
+        let (mut whole, mut rest) = (Integer::new(), Rational::new());
+        for (a, b) in pairs {
+            if a.is_integer() && b.is_integer() {
+                whole += a.numer() * b.numer();
+            } else {
+                rest += Rational::from(*a * *b);
+            }
+        }
+        rest += whole;
+        rest
     }
 }
 

@@ -85,8 +85,9 @@ pub struct DeriveOptions {
     /// What the amplitude is: x(0), the first harmonic, or free to drift (averaging).
     #[arg(long, value_enum)]
     pub normalisation: Option<Normalisation>,
-    /// The driver, or the energy integral (frequency alone; power-law and pendulum).
-    #[arg(long, value_enum, default_value_t = Route::Driver)]
+    /// By the clock where the equation allows it and else by the driver; one of them; or the energy
+    /// integral (frequency alone; power-law and pendulum).
+    #[arg(long, value_enum, default_value_t = Route::Auto)]
     pub route: Route,
     /// Exact, or numbers with an estimated error: collocation (--digits or --f64) or a truncated
     /// Fourier series in doubles (--harmonics).
@@ -338,8 +339,12 @@ pub enum KickChoice {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Route {
-    /// Solution and frequency, checked by substitution.
+    /// The clock where the equation allows it, else the driver.
+    Auto,
+    /// Solution and frequency order by order, checked by substitution.
     Driver,
+    /// Solution and frequency from the still part of the solution and one shift of its clock.
+    Clock,
     /// The frequency alone, exact and to much higher order.
     Energy,
 }

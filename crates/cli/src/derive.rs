@@ -19,6 +19,8 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     let tier = match options.tier {
         TierName::Exact => {
             let route = match options.route {
+                arguments::Route::Auto => Route::Automatic,
+                arguments::Route::Clock => Route::Clock,
                 arguments::Route::Driver => Route::Driver,
                 arguments::Route::Energy => Route::EnergyIntegral,
             };

@@ -3,6 +3,7 @@
 pub mod amplitude;
 pub mod closed_forms;
 pub mod floats;
+pub mod packed;
 pub mod parameters;
 pub mod polynomial;
 pub mod print;

@@ -53,6 +53,11 @@ impl PowerProduct {
         Self(factors)
     }
 
+    /// The product of powers of strictly increasing symbols; powers with exponent zero are left out.
+    pub(crate) fn increasing(factors: impl Iterator<Item = (Symbol, i16)>) -> Self {
+        Self(factors.filter(|(_, exponent)| *exponent != 0).collect())
+    }
+
     /// The factors, symbols increasing.
     pub fn factors(&self) -> &[(Symbol, i16)] {
         &self.0

@@ -52,6 +52,13 @@ impl<M: Monomial, E: Clone + PartialEq + Debug + Send + Sync> Sparse<M, E> {
         sum.finish(ring)
     }
 
+    /// The polynomial with these terms, none of which is zero; nothing unless the monomials increase strictly.
+    pub fn from_increasing(mut terms: Vec<(M, E)>) -> Option<Self> {
+        terms.shrink_to_fit();
+        let increases = terms.is_sorted_by(|(m, _), (n, _)| m < n);
+        increases.then_some(Self { terms })
+    }
+
     /// The terms in increasing order of monomials.
     pub fn terms(&self) -> &[(M, E)] {
         &self.terms

@@ -3,6 +3,7 @@
 use crate::constants::Constants;
 use crate::error::DerivationError;
 use crate::series::NamedSeries;
+use crate::settings::Route;
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing};
@@ -54,6 +55,8 @@ pub struct Derivation {
     pub series: Vec<NamedSeries>,
     /// The solution.
     pub solution: Solution,
+    /// How it was derived; never [`Route::Automatic`].
+    pub route: Route,
     /// The amplitude that was asked for or is the default; nothing where there is none.
     pub amplitude: Option<Exact>,
     /// Parameters of the equation with the values that were put in.

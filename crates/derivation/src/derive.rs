@@ -1,6 +1,7 @@
 //! From a problem to a checked expansion.
 
 use crate::binding::Given;
+use crate::clock;
 use crate::constants::Constants;
 use crate::derivation::{Derivation, Solution};
 use crate::error::DerivationError;
@@ -23,12 +24,12 @@ use rug::Rational;
 type Observer<'a> = dyn FnMut(Progress) -> bool + 'a;
 
 /// What a route finds.
-struct Found {
-    solution: Solution,
-    powers: Powers,
-    amplitudes: Vec<Polynomial>,
-    stiffness: Polynomial,
-    checked_orders: Option<usize>,
+pub(crate) struct Found {
+    pub solution: Solution,
+    pub powers: Powers,
+    pub amplitudes: Vec<Polynomial>,
+    pub stiffness: Polynomial,
+    pub checked_orders: Option<usize>,
 }
 
 /// A prepared problem on its way.
@@ -47,11 +48,12 @@ struct Task<'a> {
 /// (the problem's first if none is given), and it is part of the result. Exact: the coefficients are
 /// rational numbers or polynomials in named constants, the residual has been checked, over Q proved.
 /// Cost over Q: O(N^3) per prime for order N, and a number of primes that grows a little faster than N;
-/// in the Lobachevsky ring a factor of about 1.8 per order.
+/// in the Lobachevsky ring O(1) per term by the clock, a factor of about 1.8 per order by the driver.
 ///
 /// `observer` is told the progress; when it returns `false` the derivation stops with the orders
 /// finished so far (over Q, where all orders are finished together, with an error). The same
-/// holds within an order when `settings.stop` says so; then the orders finished are not checked.
+/// holds within an order when `settings.stop` says so; then the orders finished are not checked, and by the
+/// clock, which unfolds them together, it is an error.
 ///
 /// # Errors
 /// [`DerivationError`] with the reason; nothing is ever dropped or approximated silently.
@@ -80,12 +82,13 @@ pub fn derive(
     let task = Task { problem, settings, condition, ring: &ring, given };
     let bytes = |order| task.proved(order, &mut |_| true).ok().map(|proved| bytes_of(&proved));
     limit_memory(problem, settings, &bytes)?;
-    let found = if settings.route == Route::EnergyIntegral {
-        task.by_energy(observer)?
-    } else if has_logarithms(&problem.equation) {
-        task.over_moments(observer)?
-    } else {
-        task.over_rationals(observer)?
+    let logarithms = has_logarithms(&problem.equation);
+    let (route, found) = match settings.route {
+        Route::EnergyIntegral => (Route::EnergyIntegral, task.by_energy(observer)?),
+        Route::Automatic | Route::Clock if logarithms => task.by_clock(&bytes, observer)?,
+        Route::Clock => return Err(ExpandError::NotOneClock { order: 0 }.into()),
+        _ if logarithms => (Route::Driver, task.over_moments(observer)?),
+        _ => (Route::Driver, task.over_rationals(observer)?),
     };
     let Found { solution, powers, amplitudes, stiffness, checked_orders } = found;
     if ring.as_rational(&stiffness).is_some_and(|kappa| kappa < 0) {
@@ -114,6 +117,7 @@ pub fn derive(
         stiffness,
         series,
         solution,
+        route,
         amplitude: amplitude.clone(),
         bound,
         time_scale,
@@ -143,6 +147,26 @@ impl Task<'_> {
         }
         let solution = Solution::FrequencyOnly;
         Ok(Found { solution, powers, amplitudes: Vec::new(), stiffness, checked_orders: None })
+    }
+
+    /// By the clock, or by the driver where that is not asked for and does not apply.
+    fn by_clock(
+        &self,
+        bytes: &dyn Fn(usize) -> Option<f64>,
+        observer: &mut Observer<'_>,
+    ) -> Result<(Route, Found), DerivationError> {
+        let Self { problem, settings, condition, given, .. } = self;
+        match clock::derive(problem, given, *condition, settings, observer)? {
+            Some(found) => Ok((Route::Clock, found)),
+            None if settings.route == Route::Clock => {
+                Err(ExpandError::NotOneClock { order: 0 }.into())
+            }
+            None => {
+                let settings = Settings { route: Route::Driver, ..(*settings).clone() };
+                limit_memory(problem, &settings, bytes)?;
+                Ok((Route::Driver, self.over_moments(observer)?))
+            }
+        }
     }
 
     /// In the Lobachevsky ring over Q\[mu_m\].

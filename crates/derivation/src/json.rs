@@ -1,6 +1,7 @@
 //! The plain form of a derivation.
 
 use crate::derivation::{Derivation, Solution};
+use crate::settings::Route;
 use lindstedt_coeff::print::Style;
 use lindstedt_number::Object;
 use serde::ser::SerializeMap;
@@ -17,6 +18,7 @@ struct Residual {
 #[derive(Serialize)]
 struct Method {
     name: &'static str,
+    route: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     primes: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -38,6 +40,11 @@ impl Serialize for Derivation {
         };
         let method = Method {
             name,
+            route: match self.route {
+                Route::Clock => "clock",
+                Route::EnergyIntegral => "energy",
+                Route::Driver | Route::Automatic => "driver",
+            },
             primes: proved.map(|proved| proved.primes),
             proof_primes: proved.map(|proved| proved.proof_primes),
         };

@@ -13,6 +13,7 @@
 
 pub mod averaging;
 mod binding;
+mod clock;
 pub mod constants;
 mod derivation;
 mod derive;

@@ -133,6 +133,13 @@ fn over_q(order: usize, bytes: &dyn Fn(usize) -> Option<f64>) -> f64 {
     f64::log2(base + 8.0 * whole * (order as f64 / PROBE as f64).powf(rate))
 }
 
+/// log2 of the bytes that the functions of a clock take, as JSON beside them: their terms grow with the partitions of
+/// the order, like exp(2.9 N^(1/2)), and their coefficients do again where they are polynomials in the sums.
+fn by_clock(order: f64, sums: bool) -> f64 {
+    let (bytes, at, rate) = if sums { (0.9e9, 16.0f64, 4.65) } else { (0.7e9, 30.0f64, 2.9) };
+    f64::log2(10e6 + bytes * (rate * (order.sqrt() - at.sqrt())).exp())
+}
+
 /// Refuses before allocating. Measured: the Lobachevsky ring takes 0.7 GiB at order 20 and 1.5
 /// times more per order; with formal sums 0.1 GiB at order 10 and twice as much per order; over Q
 /// `bytes` tells the size of the numbers up to an order ([`bytes_of`]).
@@ -151,6 +158,8 @@ pub(crate) fn limit_memory(
         // 28 629 terms in 0.1 GiB at order 30; the number of partitions grows by 1.2 per order,
         // with formal sums by 1.5.
         30.0 + 0.1f64.log2() + if sums { (order - 14.0) * 0.6 } else { (order - 30.0) * 0.27 }
+    } else if logarithms && settings.route != Route::Driver {
+        by_clock(order, sums)
     } else if sums {
         30.0 + 0.1f64.log2() + (order - 10.0)
     } else if logarithms {
@@ -207,6 +216,20 @@ mod tests {
             let predicted = over_q(order, &probe).exp2() / 1e6;
             let ratio = predicted / measured;
             assert!((0.5..2.0).contains(&ratio), "{name} {order}: {predicted} MB for {measured}");
+        }
+    }
+
+    /// Peaks of `lindstedt derive PROBLEM --order N --format json` (MB, x86-64 Linux).
+    #[test]
+    fn the_functions_of_a_clock_are_predicted_within_a_factor_of_two() {
+        let law = [(8, 11), (12, 13), (16, 21), (20, 48), (30, 713)];
+        let sums = [(8, 15), (10, 29), (12, 83), (16, 905)];
+        for (list, formal) in [(&law[..], false), (&sums[..], true)] {
+            for &(order, measured) in list {
+                let predicted = by_clock(f64::from(order), formal).exp2() / 1e6;
+                let ratio = predicted / f64::from(measured);
+                assert!((0.5..2.0).contains(&ratio), "{order}: {predicted} MB for {measured}");
+            }
         }
     }
 

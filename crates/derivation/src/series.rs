@@ -32,6 +32,8 @@ pub(crate) struct Powers {
     squared: Vec<Polynomial>,
     first: Vec<Polynomial>,
     inverse: Vec<Polynomial>,
+    /// Whether the mu_m are put in already.
+    closed: bool,
 }
 
 impl Powers {
@@ -41,7 +43,17 @@ impl Powers {
         [squared, first, inverse]: [&[Rational]; 3],
     ) -> Self {
         let over = |list: &[Rational]| list.iter().map(|q| ring.rational(q)).collect();
-        Self { squared: over(squared), first: over(first), inverse: over(inverse) }
+        Self::new(over(squared), over(first), over(inverse), false)
+    }
+
+    /// omega^2/kappa, its root, and the reciprocal of that; whether in closed form.
+    pub(crate) fn new(
+        squared: Vec<Polynomial>,
+        first: Vec<Polynomial>,
+        inverse: Vec<Polynomial>,
+        closed: bool,
+    ) -> Self {
+        Self { squared, first, inverse, closed }
     }
 
     pub(crate) fn of_square(
@@ -54,8 +66,14 @@ impl Powers {
             power.map(|s| s.coefficients).ok_or(Error::NoValue)
         };
         let (first, inverse) = (power((1, 2))?, power((-1, 2))?);
-        Ok(Self { squared: series.coefficients, first, inverse })
+        Ok(Self::new(series.coefficients, first, inverse, false))
     }
+}
+
+/// What is printed is the closed form where there is one; mu_m stay where S_n stand beside.
+/// Without logarithms there is nothing to close (and tables to order 100 take minutes).
+pub(crate) fn closes(problem: &Problem) -> bool {
+    has_logarithms(&problem.equation) && !matches!(problem.amplitude, AmplitudeRole::InSums)
 }
 
 /// The series of the result.
@@ -69,10 +87,7 @@ pub(crate) fn series(
     stiffness: &Polynomial,
 ) -> Result<Vec<NamedSeries>, Error> {
     let order = powers.squared.len() - 1;
-    // What is printed is the closed form where there is one; mu_m stay where S_n stand beside.
-    // Without logarithms there is nothing to close (and tables to order 100 take minutes).
-    let closes =
-        has_logarithms(&problem.equation) && !matches!(problem.amplitude, AmplitudeRole::InSums);
+    let closes = closes(problem) && !powers.closed;
     let lists = [&powers.squared, &powers.first, &powers.inverse];
     let monomials = lists.into_iter().flatten().flat_map(|p| p.terms());
     let symbols = monomials.flat_map(|(m, _)| m.factors()).map(|(symbol, _)| *symbol);
@@ -186,7 +201,7 @@ pub(crate) fn energy_integral(
     match problem.amplitude {
         AmplitudeRole::ScalesFrequency { exponent: 2 } => {
             let power = |p| frequency_until(ring, p, size, stop).ok_or_else(interrupted);
-            Ok((Powers { squared: power(2)?, first: power(1)?, inverse: power(-1)? }, ring.one()))
+            Ok((Powers::new(power(2)?, power(1)?, power(-1)?, false), ring.one()))
         }
         AmplitudeRole::InSums => {
             let sums: Vec<Polynomial> = (0..=size).map(|n| ring.symbol(Symbol::Sum(n))).collect();
@@ -197,7 +212,7 @@ pub(crate) fn energy_integral(
                 power.map(|s| s.coefficients).ok_or_else(interrupted)
             };
             let (squared, first) = (power(-2)?, power(-1)?);
-            let powers = Powers { squared, first, inverse: period.coefficients };
+            let powers = Powers::new(squared, first, period.coefficients, false);
             Ok((powers, ring.symbol(Symbol::Sum(0))))
         }
         _ => Err(unavailable()),

@@ -40,9 +40,14 @@ impl Default for Settings {
 /// How the series are derived.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Route {
-    /// By the driver: solution and frequency, checked by the residual.
+    /// By the clock where the equation allows it, else by the driver.
     #[default]
+    Automatic,
+    /// By the driver: solution and frequency, checked by the residual.
     Driver,
+    /// By the still part of the solution and one shift of its clock: conservative equations with logarithms whose
+    /// solution depends on the Lambda_m so. The residual is proved zero by that dependence and at Lambda = 0.
+    Clock,
     /// By the energy integral: the frequency alone, to much higher order; for forces
     /// x F(small ln x^2), and for polynomial ones where x(0) is the amplitude.
     EnergyIntegral,

@@ -182,18 +182,18 @@ pub(crate) fn run(
     Ok(list)
 }
 
-struct Driver<'a, A: PhaseAlgebra> {
-    algebra: &'a A,
+pub(crate) struct Driver<'a, A: PhaseAlgebra> {
+    pub(crate) algebra: &'a A,
     condition: Condition,
-    evaluator: Evaluator<'a, A>,
-    stiffness: Constant<A>,
+    pub(crate) evaluator: Evaluator<'a, A>,
+    pub(crate) stiffness: Constant<A>,
     /// 1/kappa and 1/a_0.
-    inverse_stiffness: Constant<A>,
+    pub(crate) inverse_stiffness: Constant<A>,
     inverse_amplitude: Constant<A>,
-    frequency_squared: Vec<Constant<A>>,
+    pub(crate) frequency_squared: Vec<Constant<A>>,
     /// omega/sqrt(kappa); used only where the velocity occurs, and then kappa = 1.
     frequency: Vec<Constant<A>>,
-    x: Vec<A::Element>,
+    pub(crate) x: Vec<A::Element>,
     /// x_n' and x_n'' with respect to psi.
     slopes: Vec<A::Element>,
     second_derivatives: Vec<A::Element>,
@@ -275,7 +275,7 @@ impl<A: PhaseAlgebra> Scheme for Driver<'_, A> {
 }
 
 impl<'a, A: PhaseAlgebra> Driver<'a, A> {
-    fn start(
+    pub(crate) fn start(
         algebra: &'a A,
         equation: &'a Equation<A>,
         request: &Request,
@@ -333,12 +333,12 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     }
 
     /// Fails after an interruption: the values of the order in progress mean nothing.
-    fn go_on(&self, order: usize) -> Result<(), ExpandError> {
+    pub(crate) fn go_on(&self, order: usize) -> Result<(), ExpandError> {
         if self.algebra.interrupted() { Err(ExpandError::Interrupted { order }) } else { Ok(()) }
     }
 
     /// Forgets provisional coefficients: those of order n and above that depend on x_n.
-    fn forget(&mut self, n: usize) {
+    pub(crate) fn forget(&mut self, n: usize) {
         self.evaluator.forget_from(n, &self.sensitive);
     }
 
@@ -401,7 +401,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     }
 
     /// The terms c_k f_{n-k}, k = 1..n, that do not vanish; c_1 is the first of the list.
-    fn convolution<'b>(
+    pub(crate) fn convolution<'b>(
         &self,
         constants: &'b [Constant<A>],
         f: &'b [A::Element],
@@ -448,7 +448,7 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
     }
 
     /// The amplitude of the last order of a limit cycle is fixed by the order after it.
-    fn finish(mut self, work: Vec<OrderWork>) -> Result<Expansion<A>, ExpandError> {
+    pub(crate) fn finish(mut self, work: Vec<OrderWork>) -> Result<Expansion<A>, ExpandError> {
         let algebra = self.algebra;
         let order = self.x.len() - 1;
         // The order in progress when it was interrupted may have its frequency already.

@@ -99,6 +99,12 @@ pub enum ExpandError {
         /// What the algebra said.
         source: PhaseError,
     },
+    /// The solution is not found as one function of a shifted clock (it may exist in another form).
+    #[error("order {order}: the solution is not one function of a shifted clock")]
+    NotOneClock {
+        /// The order at which it is seen.
+        order: usize,
+    },
     /// The caller asked to stop.
     #[error("interrupted at order {order}")]
     Interrupted {

@@ -3,6 +3,7 @@
 
 mod averaging;
 mod bound;
+mod clock;
 mod compile;
 mod driver;
 mod error;
@@ -17,6 +18,9 @@ mod size;
 
 pub use averaging::{AveragedExpansion, average, check_averaged, linear_part};
 pub use bound::{degrees, equation_denominator};
+pub use clock::{
+    ClockExpansion, ClockFrequency, ClockMean, check_clock, clock_variable, expand_clock,
+};
 pub use compile::{Binding, Equation, compile, compile_system};
 pub use driver::{Expansion, OrderWork, Request, expand, leading_amplitude};
 pub use error::ExpandError;

@@ -56,18 +56,12 @@ fn substitute<A: PhaseAlgebra>(
         squared.push(constants.zero());
     }
     let judge = Judge {
-        algebra,
-        equation,
-        expansion,
         order: solution.len() - 1,
         solution: Series::truncated(solution),
         squared: Series::truncated(squared),
+        ..Judge::new(algebra, equation, expansion, order)
     };
-    let mut values: Vec<Series<A::Element>> = Vec::new();
-    for id in 0..equation.nodes.len() {
-        let value = judge.value(id, &values);
-        values.push(value);
-    }
+    let values = judge.values();
     judge.transcendental_nodes(&values)?;
     let inertia = judge.over_frequency(
         &judge.squared.map(|w| constants.mul(w, &expansion.stiffness)),
@@ -140,18 +134,40 @@ pub(crate) fn polynomial_value<A: FunctionAlgebra>(
     }
 }
 
-struct Judge<'a, A: PhaseAlgebra> {
+/// A series expansion and its equation, to be multiplied out up to an order.
+pub(crate) struct Judge<'a, A: PhaseAlgebra> {
     algebra: &'a A,
     equation: &'a Equation<A>,
     expansion: &'a Expansion<A>,
     order: usize,
-    solution: Series<A::Element>,
-    squared: Series<<A::Constants as Ring>::Element>,
+    pub(crate) solution: Series<A::Element>,
+    pub(crate) squared: Series<<A::Constants as Ring>::Element>,
 }
 
-impl<A: PhaseAlgebra> Judge<'_, A> {
+impl<'a, A: PhaseAlgebra> Judge<'a, A> {
+    pub(crate) fn new(
+        algebra: &'a A,
+        equation: &'a Equation<A>,
+        expansion: &'a Expansion<A>,
+        order: usize,
+    ) -> Self {
+        let solution = Series::truncated(expansion.solution.clone());
+        let squared = Series::truncated(expansion.frequency_squared.clone());
+        Self { algebra, equation, expansion, order, solution, squared }
+    }
+
+    /// The values of all nodes.
+    pub(crate) fn values(&self) -> Vec<Series<A::Element>> {
+        let mut values: Vec<Series<A::Element>> = Vec::new();
+        for id in 0..self.equation.nodes.len() {
+            let value = self.value(id, &values);
+            values.push(value);
+        }
+        values
+    }
+
     /// A series of constants times a series of functions.
-    fn over_frequency(
+    pub(crate) fn over_frequency(
         &self,
         constants: &Series<<A::Constants as Ring>::Element>,
         f: &Series<A::Element>,
@@ -179,7 +195,11 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
         }
     }
 
-    fn must_vanish(&self, series: &Series<A::Element>, needed: usize) -> Result<(), ExpandError> {
+    pub(crate) fn must_vanish(
+        &self,
+        series: &Series<A::Element>,
+        needed: usize,
+    ) -> Result<(), ExpandError> {
         let broken = |c: &A::Element| !self.algebra.is_zero(c);
         match series.coefficients.iter().position(broken) {
             Some(order) => Err(ExpandError::Residual { order }),
@@ -188,7 +208,10 @@ impl<A: PhaseAlgebra> Judge<'_, A> {
         }
     }
 
-    fn transcendental_nodes(&self, values: &[Series<A::Element>]) -> Result<(), ExpandError> {
+    pub(crate) fn transcendental_nodes(
+        &self,
+        values: &[Series<A::Element>],
+    ) -> Result<(), ExpandError> {
         let algebra = self.algebra;
         let slope = |id: NodeId| values[id].map(|c| algebra.derivative(c));
         let product =

@@ -46,7 +46,7 @@ impl Oscillator {
     /// The amplitude is what the condition fixes; values of parameters are put in, and those without
     /// one refuse. Exact: rational numbers or polynomials in named constants, printed beside
     /// `work.digits` digits. Cost over Q: O(N^3) per prime, and primes that grow a little faster than N; in
-    /// the Lobachevsky ring a factor of about 1.8 per order.
+    /// the Lobachevsky ring O(1) per term by the clock, a factor of about 1.8 per order by the driver.
     ///
     /// Stopped work leaves the orders that are finished ([`Standing::Stopped`]); over Q, where all are
     /// finished together, it is refused.

@@ -16,6 +16,7 @@ use crate::trigonometric::{Trigonometric, TrigonometricPolynomial, harmonics};
 use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra};
 use lindstedt_coeff::print::{Print, Style, Term, latex_name, parenthesize, power, print_sum};
 use rug::Rational;
+use std::fmt::Write;
 
 /// A phase algebra whose elements can be printed.
 pub trait PrintPhase: PhaseAlgebra<Constants: Print> {
@@ -130,21 +131,26 @@ fn trigonometric_factors(factor: Factor, phase: &str, style: Style) -> Vec<Strin
     factors
 }
 
-/// l and Lambda_m with their exponents.
+/// l and Lambda_m with their exponents, as one factor: solutions have millions of them.
 fn word_factors(word: &Word, style: Style) -> Vec<String> {
-    let mut factors = Vec::new();
-    for (index, &exponent) in word.exponents().iter().enumerate() {
-        let name = match (index, style) {
-            (0, Style::Text) => "l".to_owned(),
-            (0, Style::Latex) => r"\ell".to_owned(),
-            (m, Style::Text) => format!("Lambda_{m}"),
-            (m, Style::Latex) => latex_name(&format!("Lambda_{m}")),
+    let mut line = String::new();
+    for (index, &exponent) in word.exponents().iter().enumerate().filter(|(_, e)| **e > 0) {
+        let times = if style == Style::Text { "*" } else { r"\," };
+        line.push_str(if line.is_empty() { "" } else { times });
+        // Writing to a string cannot fail.
+        let _ = match (index, style) {
+            (0, Style::Text) => write!(line, "l"),
+            (0, Style::Latex) => write!(line, r"\ell"),
+            (m, Style::Text) => write!(line, "Lambda_{m}"),
+            (m, Style::Latex) => write!(line, "{}", latex_name(&format!("Lambda_{m}"))),
         };
-        if exponent > 0 {
-            factors.push(power(&name, exponent.into(), style));
-        }
+        let _ = match (exponent, style) {
+            (1, _) => Ok(()),
+            (_, Style::Text) => write!(line, "^{exponent}"),
+            (_, Style::Latex) => write!(line, "^{{{exponent}}}"),
+        };
     }
-    factors
+    if line.is_empty() { Vec::new() } else { vec![line] }
 }
 
 /// function(harmonic * phase)^exponent: `cos(3*tau)^2`, `\cos^{2} 3\tau`.

@@ -123,14 +123,26 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
         Some(Self::truncated(y))
     }
 
-    /// The reciprocal of a series with leading coefficient one, from y_n = -sum_{k=1}^n x_k y_{n-k}. Nothing
-    /// unless the leading coefficient is one.
+    /// The reciprocal of a series with leading coefficient one. Nothing unless the leading coefficient is one.
     pub fn reciprocal<R: RationalAlgebra<Element = E>>(&self, ring: &R) -> Option<Self> {
-        let x = &self.coefficients;
-        let mut y = vec![x.first().filter(|c| **c == ring.one())?.clone()];
-        for n in 1..x.len() {
+        let mut one = vec![ring.zero(); self.coefficients.len()];
+        one.first_mut()?.clone_from(&ring.one());
+        Self::truncated(one).divided_by(ring, self)
+    }
+
+    /// self/other for a series `other` with leading coefficient one, from y_n = z_n - sum_{k=1}^n x_k y_{n-k}, as far
+    /// as both are known. Exact; O(N^2) products. Nothing unless the leading coefficient is one.
+    pub fn divided_by<R: RationalAlgebra<Element = E>>(
+        &self,
+        ring: &R,
+        other: &Self,
+    ) -> Option<Self> {
+        let x = &other.coefficients;
+        x.first().filter(|c| **c == ring.one())?;
+        let mut y: Vec<E> = Vec::new();
+        for (n, z) in self.coefficients.iter().take(x.len()).enumerate() {
             let pairs: Vec<(&E, &E)> = (1..=n).map(|k| (&x[k], &y[n - k])).collect();
-            y.push(ring.neg(&ring.sum_of_products(&pairs)));
+            y.push(ring.sub(z, &ring.sum_of_products(&pairs)));
         }
         Some(Self::truncated(y))
     }
@@ -188,6 +200,8 @@ mod tests {
         assert_eq!(series(&[(2, 1), (1, 1)]).square_root(&Rationals), None);
         let inverse = x.reciprocal(&Rationals);
         assert_eq!(inverse, x.power(&Rationals, &Rational::from(-1)));
+        let quotient = root.divided_by(&Rationals, &x).map(|q| q.mul(&Rationals, &x, 5));
+        assert_eq!(quotient, Some(root));
     }
 
     #[test]

@@ -119,7 +119,7 @@ const BAD: [(&[&str], i32, &str); 24] = [
     (&["derive", "duffing", "--order", "1000000000"], 4, "too-large"),
     (&["derive", "power-law", "--order", "1000000000"], 4, "too-large"),
     (&["derive", "pendulum", "--order", "1000000000", "--route", "energy"], 4, "too-large"),
-    (&["derive", "power-law", "--order", "40"], 4, "too-large"),
+    (&["derive", "power-law", "--order", "60"], 4, "too-large"),
     (&["derive", "duffing", "--digits", "0"], 2, "digits"),
     (&["derive", "duffing", "--digits", "1000000000000"], 4, "digits"),
     (&["derive", "duffing", "--digits", "-3"], 2, "usage"),

@@ -1,3 +1,4 @@
 //! The engine's methods on whole equations.
 
+mod clock;
 mod resonance;

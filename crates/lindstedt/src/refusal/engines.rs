@@ -17,6 +17,7 @@ impl Refusal for ExpandError {
             Self::Phase { source: PhaseError::Resonance { .. }, .. } => {
                 (NoAnswer, "resonance", "averaging needs a force off resonance")
             }
+            Self::NotOneClock { .. } => (NoAnswer, "no-such-route", "use --route driver"),
             Self::Phase { .. } => {
                 (Undecided, "could-not-decide", "the orders below this one can be derived")
             }

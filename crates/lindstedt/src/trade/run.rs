@@ -20,7 +20,7 @@ impl Bench<'_> {
     pub(super) fn run(&self, method: &Method, order: usize) -> Result<Vec<Found>, Error> {
         let (stop, repeats) = (self.stop(), self.plan.repeats);
         let derived = || match *method {
-            Method::Exact { digits } => self.exact(Route::Driver, order, digits, &stop),
+            Method::Exact { digits } => self.exact(Route::default(), order, digits, &stop),
             Method::Energy { digits } => self.exact(Route::EnergyIntegral, order, digits, &stop),
             Method::Collocation { digits } => {
                 self.numeric(Tier::Collocation { digits }, order, &stop)

@@ -8,9 +8,13 @@
 //! Lambda_m' = l^m/m! - mu_m. Subtracting the mean mu_m is what makes Lambda_m periodic: the
 //! elimination of secular terms is the passage from int l^m/m! to Lambda_m.
 
+mod clock;
+mod formal;
 mod integral;
 mod word;
 
+pub use clock::{Clock, Still};
+pub use formal::Formal;
 pub use word::Word;
 
 use lindstedt_algebra::{

@@ -4,7 +4,7 @@ use super::{Present, both, classification, condition_text, equation};
 use crate::{Document, Formula, Text};
 use lindstedt::unstable::coeff::print::{Style, latex_name};
 use lindstedt::unstable::equation::{AmplitudeRole, Condition};
-use lindstedt::{Answer, Derivation, Number, Solution};
+use lindstedt::{Answer, Derivation, Number, Route, Solution};
 
 /// Right sides and solutions with more terms are counted, not printed; JSON has them all.
 const PRINTED_TERMS: usize = 60;
@@ -193,6 +193,10 @@ impl Board<'_> {
                 "{}\n(proved modulo {} primes of 61 bits, more than its numbers can hold).",
                 vanishes(last),
                 proved.proof_primes
+            ),
+            (_, Some(last)) if self.0.route == Route::Clock => format!(
+                "{}\n(proved by its one clock: dx/dLambda_m = -c_m D x term by term, then at Lambda = 0).",
+                vanishes(last)
             ),
             (_, Some(last)) => vanishes(last) + ".",
             (Solution::FrequencyOnly, None) => {
