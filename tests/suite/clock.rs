@@ -52,7 +52,7 @@ fn the_equation_decides_and_not_its_name() {
     let built_in = derived("power-law", 6, Route::Clock).unwrap();
     assert_eq!([written.route, built_in.route], [Route::Clock; 2]);
     for n in 0..=6 {
-        let style = lindstedt::coeff::print::Style::Text;
+        let style = lindstedt::unstable::coeff::print::Style::Text;
         assert_eq!(written.print_solution(n, style), built_in.print_solution(n, style));
     }
     let duffing = "x'' + x + eps*x^3 = 0";
