@@ -311,6 +311,10 @@ fn parameters(list: &[String]) -> Result<BTreeMap<String, Exact>, Failure> {
             let hint = "lindstedt stability and lindstedt simulate take it";
             return Err(Failure::usage("set", message.to_owned(), hint));
         }
+        if canonical_name(name.trim()) == "pi" {
+            let message = "pi is a number: it has no other value".to_owned();
+            return Err(Failure::usage("set", message, ""));
+        }
         let value = Exact::parse(value)?;
         // Greek letters as in a problem file.
         if parameters.insert(canonical_name(name.trim()), value).is_some() {

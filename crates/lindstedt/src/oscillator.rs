@@ -6,10 +6,11 @@ use crate::{Error, Exact, Remark, classification};
 use lindstedt_equation::classify::{Classification, ClassifyError};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Condition, ParameterCard, Problem};
-use lindstedt_problem_file::{Names, ProblemFile, canonical_name, parse_equation, usual_amplitude};
+use lindstedt_problem_file::{
+    Names, PI, ProblemFile, canonical_name, parse_equation, usual_amplitude,
+};
 use rug::Rational;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::time::Instant;
 
 /// An oscillator: an equation with what a problem file says about it, the values that are set, and
@@ -62,9 +63,18 @@ impl Oscillator {
     /// An oscillator from the text of a problem file.
     ///
     /// # Errors
-    /// [`Error::File`] with line and column.
+    /// [`Error::File`] with line and column; [`Refused`] for the name of a second unknown where no table
+    /// declares it as a parameter.
     pub fn file(text: &str) -> Result<Self, Error> {
         let file = ProblemFile::parse(text)?;
+        let second = file.problem.parameters.iter().find(|card| is_unknown(&card.name));
+        if let Some(card) = second.filter(|_| !file.declares) {
+            let name = &card.name;
+            let message =
+                format!("{name} is the name of an unknown, and it has no equation of its own");
+            let hint = "a problem file may declare a parameter of that name";
+            return Err(Refused::usage("second-unknown", message, hint).into());
+        }
         // The root of the impact velocity has no place in an equation.
         let root = |name: &str| name == "branch" && file.problem.impact.is_some();
         let unused = file.unused.iter().filter(|name| !root(name));
@@ -88,17 +98,9 @@ impl Oscillator {
     /// [`Error::Parse`] with the position in the text; [`Refused`] for the name of a second unknown, which
     /// is never taken for a constant.
     pub fn parse(equation: &str) -> Result<Self, Error> {
-        let tree = parse_equation(equation, &Names::any("eps"))?;
-        if let Some(name) = tree.parameters().into_iter().find(|name| is_unknown(name)) {
-            let message =
-                format!("{name} is the name of an unknown, and it has no equation of its own");
-            let hint = "a problem file may declare a parameter of that name";
-            return Err(Refused::usage("second-unknown", message, hint).into());
-        }
-        let mut text = format!("name = \"oscillator\"\nequation = {equation:?}\n[parameters]\n");
-        for name in tree.parameters().into_iter().filter(|name| name != "amplitude") {
-            let _ = writeln!(text, "{name} = {{}}");
-        }
+        // A place in the equation, not in a file.
+        parse_equation(equation, &Names::any("eps"))?;
+        let text = format!("equation = {equation:?}\n");
         Ok(Self { bare: true, ..Self::file(&text)? })
     }
 
@@ -111,10 +113,20 @@ impl Oscillator {
         Ok(Self { remarks: Vec::new(), ..Self::file(&lindstedt_problem_file::write(problem))? })
     }
 
-    /// The same oscillator with what its file is called in messages.
+    /// The same oscillator with what its file is called in messages. A problem without a name of its own
+    /// has that of the file, without folder and ending.
     #[must_use]
     pub fn called(mut self, origin: &str) -> Self {
         self.origin = origin.chars().take(60).collect();
+        let stem = origin.rsplit(['/', '\\']).next().unwrap_or(origin);
+        let stem = stem.strip_suffix(".toml").unwrap_or(stem).to_lowercase();
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        let name: String = stem.chars().map(plain).take(40).collect();
+        let name = name.trim_matches('-');
+        if !self.file.named && !name.is_empty() {
+            self.problem.name = name.to_owned().into();
+            self.file.problem.name = self.problem.name.clone();
+        }
         self
     }
 
@@ -122,16 +134,24 @@ impl Oscillator {
     /// `pi/4`. Greek letters may be spelled or written.
     ///
     /// # Errors
-    /// [`DerivationError::BadValue`](crate::DerivationError::BadValue).
+    /// [`DerivationError::BadValue`](crate::DerivationError::BadValue); [`Refused`] for the number pi, which
+    /// is no parameter.
     pub fn set(self, name: &str, value: &str) -> Result<Self, Error> {
+        if canonical_name(name.trim()) == PI {
+            let message = "pi is a number: it has no other value";
+            return Err(Refused::usage("set", message, "").into());
+        }
         let value = Exact::parse(value)?;
         Ok(self.with(name, value))
     }
 
-    /// The same oscillator with an exact value for a parameter.
+    /// The same oscillator with an exact value for a parameter; pi stays what it is.
     #[must_use]
     pub fn with(mut self, name: &str, value: Exact) -> Self {
-        self.values.insert(canonical_name(name.trim()), value);
+        let name = canonical_name(name.trim());
+        if name != PI {
+            self.values.insert(name, value);
+        }
         self
     }
 

@@ -41,6 +41,10 @@ pub struct ProblemFile {
     pub unused: Vec<String>,
     /// The names that the equation may mention.
     pub names: Names,
+    /// Whether it has a name of its own.
+    pub named: bool,
+    /// Whether it has a table of parameters; without one every name of the equation is one, without a value.
+    pub declares: bool,
     /// The equation as it was written.
     pub equation: String,
     /// Where it starts, in bytes of the file; nothing when it contains escapes.
@@ -48,6 +52,9 @@ pub struct ProblemFile {
     pub(crate) meanings: Meanings,
     pub(crate) text: String,
 }
+
+/// The name of a problem whose file has none.
+pub(crate) const UNNAMED: &str = "oscillator";
 
 /// The names of the conditions.
 pub const CONDITIONS: [(&str, Condition); 4] = [

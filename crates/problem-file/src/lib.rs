@@ -27,5 +27,5 @@ pub use file::{
 pub use file_error::{FileError, FileErrorKind, RoleReason};
 pub use grammar::{locate, parse_equation, parse_expression};
 pub use history::History;
-pub use names::{Names, canonical_name, is_parameter_name};
+pub use names::{Names, PI, canonical_name, is_parameter_name};
 pub use write::write;

@@ -3,14 +3,11 @@
 
 use crate::file_error::{FileError, FileErrorKind};
 use crate::grammar::parse_expression;
-use crate::names::{Names, canonical_name};
+use crate::names::{Names, PI, canonical_name};
 use crate::reader::Reader;
 use crate::schema::Schema;
 use lindstedt_equation::{Expression, Synchronous};
 use std::collections::BTreeMap;
-
-/// The number pi in what determines a parameter.
-const PI: &str = "pi";
 
 /// What stands for the names of parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,8 +41,8 @@ impl Meanings {
         tie: Option<&Synchronous>,
     ) -> Result<Self, FileError> {
         let refused = |name: &str, reason: String| {
-            let key =
-                schema.parameters.0.iter().find(|(key, _)| canonical_name(key.get_ref()) == name);
+            let mut keys = schema.parameters.iter().flat_map(|table| &table.0);
+            let key = keys.find(|(key, _)| canonical_name(key.get_ref()) == name);
             let at = key.map_or(0, |(key, _)| key.span().start);
             reader.error(FileErrorKind::Follows { name: name.to_owned(), reason }, at)
         };
@@ -57,13 +54,9 @@ impl Meanings {
         for name in orders.keys() {
             known.in_place.insert(name.clone(), of_order(name, Expression::parameter(name)));
         }
-        let mut with_pi = names.clone();
-        with_pi.parameters.iter_mut().for_each(|set| {
-            set.insert(PI.to_owned());
-        });
         let mut open: BTreeMap<&str, Expression> = BTreeMap::new();
         for (name, text) in follows {
-            let found = parse_expression(text, &with_pi)
+            let found = parse_expression(text, names)
                 .map_err(|error| refused(name, format!("{}", error.kind)))?;
             open.insert(name, found);
         }

@@ -98,6 +98,9 @@ pub fn canonical_name(name: &str) -> String {
     plain.split('_').map(part).collect::<Vec<_>>().join("_")
 }
 
+/// The number pi: a name that every expression may mention, with that value and no other.
+pub const PI: &str = "pi";
+
 /// What a name in an equation may be.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Names {

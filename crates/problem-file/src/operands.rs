@@ -3,7 +3,7 @@
 use crate::error::{Expectation, Limit, ParseError, ParseErrorKind, excerpt};
 use crate::grammar::{LARGEST_EXPONENT, Parsed, Parser};
 use crate::lexer::Kind;
-use crate::names::{foreign, function, is_parameter_name};
+use crate::names::{PI, foreign, function, is_parameter_name};
 use crate::taylor::taylor;
 use crate::trees::{degree, negated};
 use lindstedt_equation::{Expression, Function};
@@ -75,6 +75,7 @@ impl Parser<'_> {
             return Ok(Expression::Small);
         }
         let declared = match &self.names.parameters {
+            _ if name == PI => true,
             Some(list) => list.contains(name),
             None => is_parameter_name(name),
         };

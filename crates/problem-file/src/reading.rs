@@ -2,13 +2,14 @@
 
 use crate::error::{ParseError, ParseErrorKind, excerpt};
 use crate::file::{
-    AMPLITUDES, ASKED, CONDITIONS, ProblemFile, misplaced, usual_amplitude, usual_condition,
+    AMPLITUDES, ASKED, CONDITIONS, ProblemFile, UNNAMED, misplaced, usual_amplitude,
+    usual_condition,
 };
 use crate::file_error::{FileError, FileErrorKind};
 use crate::grammar::{locate, parse_equation, parse_expression};
 use crate::history::{is_range, ranges, start};
 use crate::meaning::Meanings;
-use crate::names::{Names, canonical_name, is_parameter_name};
+use crate::names::{Names, PI, canonical_name, is_parameter_name};
 use crate::reader::Reader;
 use crate::schema::{self, Schema};
 use lindstedt_equation::print::Style;
@@ -34,7 +35,10 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     let name = problem_name(reader, &schema)?;
     let small = small_name(reader, &schema)?;
     let Parameters { mut cards, units, follows, declared } = parameters(reader, &schema, &small)?;
-    let mut names = Names::only(&small, declared.iter().map(String::as_str));
+    let mut names = match &schema.parameters {
+        Some(_) => Names::only(&small, declared.iter().map(String::as_str)),
+        None => Names::any(&small),
+    };
     names.formal = formal_names(reader, &schema)?;
     let orders = orders(reader, &schema, &declared)?;
     let tie = schema.synchronous.as_ref();
@@ -46,6 +50,9 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     let time_domain = schema.time_domain.as_ref().map(read).transpose()?;
     let wall = schema.impact.as_ref();
     let impact = wall.map(|wall| impact(reader, wall, &names, &meanings)).transpose()?;
+    cards.extend(undeclared([Some(&equation), time_domain.as_ref()], impact.as_ref(), &declared));
+    names.parameters = Some(cards.iter().map(|card| card.name.to_string()).collect());
+    names.parameters.iter_mut().for_each(|list| list.extend(declared.iter().cloned()));
     let conditions = conditions(reader, &schema, &equation)?;
     let amplitude = amplitude(reader, &schema, (&equation, &small), &conditions, &declared)?;
     if amplitude == AmplitudeRole::Scaled && !declared.contains("amplitude") {
@@ -74,6 +81,8 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     Ok(ProblemFile {
         unused: unused(&schema, &equation, amplitude, &declared, &follows),
         asked: asked(reader, &schema)?,
+        named: schema.name.is_some(),
+        declares: schema.parameters.is_some(),
         start: reader.content(&schema.equation),
         equation: schema.equation.get_ref().clone(),
         text: reader.text.to_owned(),
@@ -103,12 +112,31 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     })
 }
 
+/// The parameters without a table: those that equations and wall mention, without a value; and the number
+/// pi, which no table declares.
+fn undeclared(
+    equations: [Option<&Expression>; 2],
+    wall: Option<&Impact>,
+    declared: &BTreeSet<String>,
+) -> Vec<ParameterCard> {
+    let parts = wall.into_iter().flat_map(|wall| [&wall.position, &wall.restitution]);
+    let all = equations.into_iter().flatten().chain(parts);
+    let mentioned: BTreeSet<String> = all.flat_map(Expression::parameters).collect();
+    let card = |name: String| {
+        let (meaning, default) = if name == PI { ("the number pi", PI) } else { ("", "") };
+        ParameterCard { name: name.into(), meaning: meaning.into(), default: default.into() }
+    };
+    let open = |name: &String| !declared.contains(name) && name != "amplitude";
+    mentioned.into_iter().filter(open).map(card).collect()
+}
+
 fn problem_name(reader: &Reader<'_>, schema: &Schema) -> Result<String, FileError> {
-    let name = schema.name.get_ref();
+    let Some(word) = &schema.name else { return Ok(UNNAMED.to_owned()) };
+    let name = word.get_ref();
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if name.is_empty() || name.len() > 40 || !name.chars().all(plain) || name.starts_with('-') {
         let kind = FileErrorKind::Name { name: excerpt(name), what: "problem" };
-        return Err(reader.error(kind, schema.name.span().start));
+        return Err(reader.error(kind, word.span().start));
     }
     Ok(name.clone())
 }
@@ -141,7 +169,7 @@ fn formal_names(reader: &Reader<'_>, schema: &Schema) -> Result<BTreeSet<String>
 fn parameters(reader: &Reader<'_>, schema: &Schema, small: &str) -> Result<Parameters, FileError> {
     let (mut cards, mut units, mut follows) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
     let mut declared = BTreeSet::new();
-    for (key, parameter) in &schema.parameters.0 {
+    for (key, parameter) in schema.parameters.iter().flat_map(|table| &table.0) {
         let name = parameter_name(reader, key, "parameter")?;
         if !declared.insert(name.clone()) {
             return Err(reader.error(FileErrorKind::Twice { name }, key.span().start));

@@ -11,7 +11,7 @@ use toml::Spanned;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Schema {
-    pub name: Spanned<String>,
+    pub name: Option<Spanned<String>>,
     #[serde(default)]
     pub title: String,
     pub equation: Spanned<String>,
@@ -23,8 +23,8 @@ pub(crate) struct Schema {
     pub time_domain: Option<Spanned<String>>,
     #[serde(default)]
     pub orders: Entries<u32>,
-    #[serde(default)]
-    pub parameters: Entries<Parameter>,
+    /// Without the table every name of the equation is a parameter.
+    pub parameters: Option<Entries<Parameter>>,
     pub impact: Option<Impact>,
     pub synchronous: Option<Synchronous>,
     pub initial: Option<Initial>,

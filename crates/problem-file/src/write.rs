@@ -1,6 +1,7 @@
 //! A problem as the text of a problem file.
 
 use crate::file::{AMPLITUDES, ProblemFile};
+use crate::names::PI;
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Crossing, Expression, Problem};
 use std::collections::BTreeSet;
@@ -73,7 +74,7 @@ fn render(problem: &Problem, file: Option<&ProblemFile>) -> String {
     if !problem.parameters.is_empty() || !undeclared.is_empty() {
         text.push_str("\n[parameters]\n");
     }
-    for card in &problem.parameters {
+    for card in problem.parameters.iter().filter(|card| card.name != PI) {
         let (value, meaning) = (quoted(&card.default), quoted(&card.meaning));
         let value =
             if card.default.is_empty() { String::new() } else { format!("value = {value}, ") };

@@ -374,7 +374,7 @@ fn code_without_noise() {
         String::from_utf8(output.stdout).unwrap()
     };
     let text = code("pendulum");
-    assert!(text.starts_with("% ") && text.contains("are left out"), "{text}");
+    assert!(text.starts_with(r"\[ x(t)") && text.contains("are left out"), "{text}");
     assert!(!text.contains("sin") && text.matches("cos").count() >= 2, "{text}");
     assert_eq!(code("duffing").matches("cos").count(), 8);
 }

@@ -114,6 +114,8 @@ fn errors_are_proved() {
         ("duffing", "amplitude=2"),
         // An unstable cycle around a focus, whose turns take equally long, too.
         ("van-der-pol", "eps=-1"),
+        // n determines delta.
+        ("power-law", "n=5"),
     ];
     for (problem, set) in cases {
         let value = at_order(problem, "4", &["--set", set]);
@@ -133,6 +135,8 @@ fn errors_are_proved() {
     // No polynomial, and nothing that the exact tier takes: judged in the time domain, or by a closed form.
     let value = at_order("x'' + x + eps*abs(x)*x = 0", "2", &["--set", "eps=1/2"]);
     assert!(value["source"].as_str().unwrap().starts_with("time domain"));
+    let value = at_order("power-law", "2", &["--set", "n=3/2"]);
+    assert!(value["proved_period"].is_null(), "{value}");
     let value = at_order("pendulum", "2", &[]);
     assert!(value["proved_period"].is_null() && value["rows"][0]["proved_error"].is_null());
 }

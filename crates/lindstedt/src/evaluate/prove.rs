@@ -11,6 +11,7 @@ use lindstedt_orbit::{Failure, Field, Kind, Proof, Request, Stability, Start, pr
 use rug::float::Round;
 use rug::{Float, Rational};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Harmonics of the guess from the expansion; Newton's method finds the others.
@@ -124,7 +125,7 @@ impl Oscillator {
                 (ProvedOrbit::estimated(found, &failure), Standing::Undecided)
             }
         };
-        let at = case.all_values().into_iter().map(|(name, value)| (name, value.to_string()));
+        let at = case.setting()?.at.into_iter().map(|(name, value)| (name, value.to_string()));
         let header = self.header(at.collect(), order, "contraction proof", start);
         Ok(Answer { header, value, standing, remarks })
     }
@@ -168,7 +169,14 @@ impl Oscillator {
     /// The vector field with its values, and which orbit of it is meant. A small parameter that has the
     /// amplitude in it is, in the equation of x itself, its other part.
     pub(crate) fn field(&self) -> Result<(Field, Kind), Error> {
-        let mut values = self.rational_values();
+        if !matches!(self.condition(), Some(condition) if condition != Condition::FreeAmplitude) {
+            let message = "an amplitude that drifts belongs to no periodic orbit";
+            return Err(Refused::no_answer("no-proof", message, "`evaluate --start`").into());
+        }
+        // With what the values set determine: n of a power law gives delta.
+        let known = self.setting()?.at.into_iter();
+        let mut values: BTreeMap<String, Rational> =
+            known.filter_map(|(name, value)| Some((name, value.as_rational()?.clone()))).collect();
         let small = &self.problem().small;
         if self.problem().amplitude == AmplitudeRole::InSmallParameter {
             let cards = self.problem().parameters.iter().filter(|card| card.name != "amplitude");
@@ -180,12 +188,8 @@ impl Oscillator {
         let amplitude = || values.get("amplitude").cloned().unwrap_or_else(|| Rational::from(1));
         let kind = match self.condition() {
             Some(Condition::LimitCycle) => Kind::LimitCycle,
-            Some(Condition::InitialAmplitude) => Kind::InitialAmplitude(amplitude()),
             Some(Condition::FundamentalAmplitude) => Kind::FundamentalAmplitude(amplitude()),
-            _ => {
-                let message = "an amplitude that drifts belongs to no periodic orbit";
-                return Err(Refused::no_answer("no-proof", message, "`evaluate --start`").into());
-            }
+            _ => Kind::InitialAmplitude(amplitude()),
         };
         let problem = || self.problem().name.to_string();
         let field =

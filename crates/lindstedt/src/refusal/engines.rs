@@ -37,6 +37,11 @@ impl Refusal for DerivationError {
             Self::BadValue { .. } => {
                 (Usage, "bad-value", "values are exact: 3, -1/3, 0.1, 2.5e-3, pi/4, 2*pi/3")
             }
+            Self::Irrational { name, .. } if name == "pi" => (
+                NoAnswer,
+                "irrational",
+                "`derive --normalisation free` keeps pi as a symbol, `simulate` computes with it",
+            ),
             Self::Irrational { .. } => (NoAnswer, "irrational", "set a rational value"),
             Self::UnknownParameter { .. } => {
                 (Usage, "unknown-parameter", "see `lindstedt problems --show NAME`")
