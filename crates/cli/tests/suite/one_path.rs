@@ -1,14 +1,14 @@
 //! The same question to a built-in name, to its own file, and to the library with either: one answer, what a
 //! clock says apart.
 
-use lindstedt::equation::Condition;
 use lindstedt::evaluate::averaged::{AveragedMotion, Start};
 use lindstedt::evaluate::{Language, Times};
 use lindstedt::grid::Axis;
 use lindstedt::motion::{Bifurcation, Chaos, End};
 use lindstedt::numeric::Tier;
-use lindstedt::series::resummation::Method;
 use lindstedt::trade::Plan;
+use lindstedt::unstable::equation::Condition;
+use lindstedt::unstable::series::resummation::Method;
 use lindstedt::{
     Answer, Derive, Error, Evaluate, Exact, Oscillator, Route, Simulate, Stability, Threshold,
     Verify, Work,
