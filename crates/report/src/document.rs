@@ -48,7 +48,7 @@ pub enum Block {
 pub struct Part {
     /// The heading; a frame without one where empty.
     pub title: Text,
-    /// The name by which a [`Span::Link`] finds it; empty where none does.
+    /// The name by which a [`Span::Link`](crate::Span::Link) finds it; empty where none does.
     pub name: String,
     /// What it is, for a style sheet: `row wrong`.
     pub class: String,

@@ -46,7 +46,7 @@ pub enum Span {
     Link {
         /// What is read.
         words: String,
-        /// The name of a file, or `#` and that of a [`Part`].
+        /// The name of a file, or `#` and that of a [`Part`](crate::Part).
         to: String,
     },
 }
