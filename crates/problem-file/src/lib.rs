@@ -17,6 +17,7 @@ mod reader;
 mod reading;
 mod schema;
 mod taylor;
+mod text;
 mod trees;
 mod write;
 
