@@ -3,8 +3,8 @@
 
 use crate::binding::{FORMAL, Given};
 use crate::derivation::Solution;
-use crate::derive::Found;
 use crate::error::DerivationError as Error;
+use crate::found::Found;
 use crate::series::{Powers, closes};
 use crate::settings::Settings;
 use crate::work::Progress;

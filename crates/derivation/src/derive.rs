@@ -5,13 +5,14 @@ use crate::clock;
 use crate::constants::Constants;
 use crate::derivation::{Derivation, Solution};
 use crate::error::DerivationError;
+use crate::found::Found;
 use crate::limits::{bytes_of, check_parameters, has_logarithms, limit_memory};
 use crate::prepare::{Prepared, prepare};
 use crate::series::{Powers, energy_integral, series, undo_time_scale};
 use crate::settings::{Route, Settings, condition};
 use crate::work::Progress;
 use lindstedt_algebra::{RationalAlgebra, Stop};
-use lindstedt_coeff::{Polynomial, PolynomialRing};
+use lindstedt_coeff::PolynomialRing;
 use lindstedt_equation::{Condition, Problem};
 use lindstedt_expand::{
     ExpandError, OrderWork, Request, check, compile, expand, leading_amplitude,
@@ -22,15 +23,6 @@ use lindstedt_phase::Lobachevsky;
 use rug::Rational;
 
 type Observer<'a> = dyn FnMut(Progress) -> bool + 'a;
-
-/// What a route finds.
-pub(crate) struct Found {
-    pub solution: Solution,
-    pub powers: Powers,
-    pub amplitudes: Vec<Polynomial>,
-    pub stiffness: Polynomial,
-    pub checked_orders: Option<usize>,
-}
 
 /// A prepared problem on its way.
 struct Task<'a> {

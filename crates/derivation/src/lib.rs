@@ -19,6 +19,7 @@ mod derivation;
 mod derive;
 pub mod energy;
 mod error;
+mod found;
 mod json;
 mod limits;
 pub mod numeric;
