@@ -1,5 +1,6 @@
 //! The command line `lindstedt`: reads arguments, calls the library, prints. The only place
 //! with files and a terminal.
+#![warn(clippy::too_many_lines)]
 
 mod arguments;
 mod derive;

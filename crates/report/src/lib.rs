@@ -7,7 +7,7 @@
 //!
 //! Words that come from outside (titles, names, notes of a problem file) are data: every reader
 //! escapes them, and only a [`Formula`], which the engine prints, is markup.
-#![warn(missing_docs)]
+#![warn(missing_docs, clippy::too_many_lines)]
 
 mod document;
 pub mod figure;
