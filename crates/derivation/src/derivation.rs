@@ -112,7 +112,7 @@ impl Derivation {
     /// let duffing = derive(&problem, &Settings { order: 2, ..Settings::default() }, &mut |_| true)?;
     /// let first = duffing.ratio("frequency_squared", 1);
     /// assert_eq!(first.map(|q| q.to_string()).as_deref(), Some("3/4"));
-    /// # Ok::<(), Box<dyn std::error::DerivationError>>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn ratio(&self, name: &str, n: usize) -> Option<Ratio<BigInt>> {
         let series = self.named(name)?;

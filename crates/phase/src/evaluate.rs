@@ -19,7 +19,8 @@ use std::fmt::Debug;
 /// let functions = PhaseFunctions::trigonometric(&cosines, balls, of_rational(balls));
 /// // 3 cos(pi/3) and 3 cos(2 pi/3).
 /// let values = functions.and_then(|f| f.at(&Point::PiTimes((1, 3).into()))).unwrap_or_default();
-/// assert!(values[0].overlaps(&balls.from_f64(1.5)) && values[1].overlaps(&balls.from_f64(-1.5)));
+/// let expected = [(3, 2), (-3, 2)].map(|q| balls.from_rational(&q.into()));
+/// assert!(values.len() == 2 && values.iter().zip(&expected).all(|(v, e)| v.overlaps(e)));
 /// ```
 pub struct PhaseFunctions {
     balls: Balls,

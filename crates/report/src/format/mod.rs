@@ -159,8 +159,8 @@ impl Format {
     }
 }
 
-/// The page without parts in parts, each block with its depth; named values that follow one another are
-/// one list.
+/// The page without parts in parts, each block with its depth; named values that follow those
+/// of another part are one list with them.
 fn flat(page: &Document, depth: usize) -> Vec<(usize, Block)> {
     let mut list: Vec<(usize, Block)> = Vec::new();
     for block in &page.blocks {
@@ -174,9 +174,12 @@ fn flat(page: &Document, depth: usize) -> Vec<(usize, Block)> {
             Block::Folded { page, .. } => flat(page, depth),
             block => vec![(depth, block.clone())],
         };
+        let nested = matches!(block, Block::Part(_) | Block::Folded { .. });
         for (depth, block) in inner {
             match (list.last_mut(), block) {
-                (Some((_, Block::Lines(before))), Block::Lines(next)) => before.extend(next),
+                (Some((_, Block::Lines(before))), Block::Lines(next)) if nested => {
+                    before.extend(next);
+                }
                 (_, block) => list.push((depth, block)),
             }
         }
