@@ -248,9 +248,9 @@ impl Derivation {
         }
     }
 
-    /// The right side f_n of x_n'' + x_n = f_n - W_n x_0'', printed, and its number of terms; empty
-    /// beyond the orders derived.
-    pub fn print_right_side(&self, n: usize, style: Style) -> (String, usize) {
+    /// The right side f_n of x_n'' + x_n = f_n - W_n x_0'', printed where it has at most `most` terms, and
+    /// their number; empty beyond the orders derived.
+    pub fn print_right_side(&self, n: usize, style: Style, most: usize) -> (String, usize) {
         if n > self.order {
             return (String::new(), 0);
         }
@@ -258,13 +258,15 @@ impl Derivation {
             Solution::Lobachevsky(expansion) => {
                 let algebra = Lobachevsky::new(self.ring.clone());
                 let f = expansion.right_side(&algebra, n);
-                (algebra.print(&f, "tau", style), algebra.terms(&f))
+                let terms = algebra.terms(&f);
+                (if terms > most { String::new() } else { algebra.print(&f, "tau", style) }, terms)
             }
             Solution::FrequencyOnly => (String::new(), 0),
             Solution::Rational(proved) => {
                 let algebra = Trigonometric::new(Rationals);
                 let f = proved.expansion.right_side(&algebra, n);
-                (algebra.print(&f, "tau", style), algebra.terms(&f))
+                let terms = algebra.terms(&f);
+                (if terms > most { String::new() } else { algebra.print(&f, "tau", style) }, terms)
             }
         }
     }

@@ -18,6 +18,7 @@ mod pendulum_results;
 mod periods;
 mod power_law;
 mod printed;
+mod reading;
 mod simulated;
 mod stick_slip;
 mod tables;
@@ -29,9 +30,10 @@ mod vibro_impact;
 
 pub use compare::Decimal;
 pub use printed::{PrintedForm, printed_forms};
+pub use reading::Paper;
 pub use text::{Part, Text};
 pub use trust::Trust;
-pub use values::{Paper, Row, Section, Table};
+pub use values::{Row, Section, Table};
 pub use verdict::{Findings, Verdict};
 pub use vibro_impact::reread;
 

@@ -1,6 +1,6 @@
-//! What was read, as plain values: every page is a reader of them.
+//! Rows, tables and sections of what was read, as plain values.
 
-use crate::{Findings, Text, Trust, Verdict};
+use crate::{Findings, Text, Verdict};
 use serde::Serialize;
 
 /// One formula or number of the paper.
@@ -75,23 +75,5 @@ impl Section {
     /// How many rows have this verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         self.rows.iter().filter(|row| row.verdict == verdict).count()
-    }
-}
-
-/// What was read.
-#[derive(Clone, Debug, Serialize)]
-pub struct Paper {
-    /// Where the methods can be trusted.
-    pub trust: Trust,
-    /// The sections, in the order of the paper; with the rows finished when the observer stopped the work.
-    pub sections: Vec<Section>,
-    /// Whether everything is there (false when the observer stopped the work).
-    pub complete: bool,
-}
-
-impl Paper {
-    /// The section with this number, if it was begun.
-    pub fn section(&self, number: u32) -> Option<&Section> {
-        self.sections.iter().find(|section| section.number == number)
     }
 }

@@ -135,7 +135,7 @@ impl Board<'_> {
     /// x_n'' + x_n = f_n - W_n x_0''.
     fn right_side(&self, n: usize) -> Formula {
         both(|style| {
-            let (right_side, terms) = self.0.print_right_side(n, style);
+            let (right_side, terms) = self.0.print_right_side(n, style, PRINTED_TERMS);
             let right_side = match terms {
                 0 => String::new(),
                 1..=PRINTED_TERMS => right_side,
