@@ -108,28 +108,40 @@ pub fn check(
         Reason::Impact => path.to_owned(),
         _ => place(file, path, reason.term()),
     };
-    let averages = || {
-        against(Method::Averaging).next().is_none()
-            && parts.forcing.iter().all(|force| force.resonance.is_none())
-    };
+    let averages = against(Method::Averaging).next().is_none()
+        && parts.forcing.iter().all(|force| force.resonance.is_none());
+    let hint = next_best(parts, reason, nothing_small, averages);
+    let hint = hint.map_or(marks, ToOwned::to_owned);
+    refused(at, reason_text(reason, small), hint)
+}
+
+/// What takes an equation that the expansion does not; nothing where a small parameter would make it one
+/// that the expansion takes.
+fn next_best(
+    parts: &Classification,
+    reason: &Reason,
+    nothing_small: bool,
+    averages: bool,
+) -> Option<&'static str> {
     let in_numbers = matches!(reason, Reason::NonSmooth(_) | Reason::NotPolynomial(_))
         && parts.takes(Method::TimeDomain);
-    let hint = if nothing_small && *reason == Reason::NoSmallParameter {
-        &*marks
+    if nothing_small && *reason == Reason::NoSmallParameter {
+        None
     } else if parts.takes(Method::Melnikov) {
-        "Melnikov's method takes equations of this kind: lindstedt threshold FILE"
+        Some("Melnikov's method takes equations of this kind: lindstedt threshold FILE")
     } else if *reason == Reason::UnknownFrequency {
-        "--set NAME=VALUE gives it one"
-    } else if averages() {
-        AVERAGES
+        Some("--set NAME=VALUE gives it one")
+    } else if averages {
+        Some(AVERAGES)
     } else if in_numbers {
-        "in numbers: `lindstedt simulate`, and `derive --tier collocation` for forces of x alone"
+        Some(
+            "in numbers: `lindstedt simulate`, and `derive --tier collocation` for forces of x alone",
+        )
     } else if nothing_small {
-        &*marks
+        None
     } else {
-        "`lindstedt problems --show FILE` lists the methods"
-    };
-    refused(at, reason_text(reason, small), hint.to_owned())
+        Some("`lindstedt problems --show FILE` lists the methods")
+    }
 }
 
 /// A refusal of the engine; of the equation of a file with its place. Where no amplitude is constant,

@@ -16,6 +16,8 @@
 //!
 //! What is exported here keeps its meaning between versions; [`unstable`] does not.
 
+#![warn(clippy::too_many_lines)]
+
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]
 struct Readme;
