@@ -69,20 +69,9 @@ fn power_law_50_digits_order_60_and_100_digits_order_100() {
 /// x'' + x + eps F(x) = 0.
 fn perturbed(force: Expression) -> Problem {
     let x = Expression::DISPLACEMENT;
-    Problem {
-        name: "test".into(),
-        title: "".into(),
-        equation: Expression::ACCELERATION + x + Expression::Small * force,
-        time_domain: None,
-        impact: None,
-        synchronous: None,
-        small: "eps".into(),
-        conditions: vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude],
-        amplitude: AmplitudeRole::InSmallParameter,
-        parameters: Vec::new(),
-        notes: "".into(),
-        source: "".into(),
-    }
+    let conditions = [Condition::InitialAmplitude, Condition::FundamentalAmplitude];
+    Problem::new("test", Expression::ACCELERATION + x + Expression::Small * force)
+        .under(conditions, AmplitudeRole::InSmallParameter)
 }
 
 fn x() -> Expression {

@@ -37,17 +37,10 @@ pub enum ClassifyError {
 /// # Example
 /// ```
 /// use lindstedt_equation::classify::{Method, Symmetry, classify};
-/// use lindstedt_equation::Expression;
-/// # use lindstedt_equation::{AmplitudeRole, Condition, Problem};
+/// use lindstedt_equation::{Expression, Problem};
 /// let x = Expression::DISPLACEMENT;
-/// # let problem = |equation| Problem {
-/// #     name: "".into(), title: "".into(), equation, time_domain: None, impact: None,
-/// #     synchronous: None,
-/// #     small: "eps".into(), conditions: vec![Condition::InitialAmplitude],
-/// #     amplitude: AmplitudeRole::InSmallParameter, parameters: Vec::new(), notes: "".into(),
-/// #     source: "".into(),
-/// # };
-/// let duffing = problem(Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3));
+/// let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3);
+/// let duffing = Problem::new("duffing", equation);
 /// let parts = classify(&duffing, &Default::default())?;
 /// assert_eq!(parts.weak.len(), 1);
 /// assert_eq!(parts.symmetry, Symmetry::Odd);

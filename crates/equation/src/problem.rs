@@ -1,6 +1,7 @@
 //! A problem: an equation with what is needed to expand it and to talk about it.
 
 use crate::Expression;
+use crate::symmetry::is_reversible;
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -23,6 +24,31 @@ pub enum Condition {
 }
 
 impl Condition {
+    /// The usual one: the initial amplitude for equations that keep their form when time runs backwards,
+    /// a limit cycle for those that do not, a free amplitude with forcing or delay; none where nothing is
+    /// small: such an equation is for the time domain.
+    ///
+    /// ```
+    /// use lindstedt_equation::{Condition, Expression};
+    /// let free = Expression::ACCELERATION + Expression::DISPLACEMENT;
+    /// assert_eq!(Condition::usual(&free), None);
+    /// let damped = free + Expression::Small * Expression::VELOCITY;
+    /// assert_eq!(Condition::usual(&damped), Some(Condition::LimitCycle));
+    /// ```
+    #[must_use]
+    pub fn usual(equation: &Expression) -> Option<Self> {
+        let outside = |e: &Expression| *e == Expression::Time || e.is_delayed();
+        if equation.find(&outside).is_some() {
+            Some(Self::FreeAmplitude)
+        } else if !equation.contains(&Expression::Small) {
+            None
+        } else if is_reversible(equation) {
+            Some(Self::InitialAmplitude)
+        } else {
+            Some(Self::LimitCycle)
+        }
+    }
+
     /// Its name in files and results.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -55,6 +81,18 @@ pub enum AmplitudeRole {
     Free,
 }
 
+impl AmplitudeRole {
+    /// The usual one: free or determined where the condition says so, or x = a y.
+    #[must_use]
+    pub const fn usual(condition: Option<&Condition>) -> Self {
+        match condition {
+            Some(Condition::LimitCycle) => Self::Determined,
+            Some(Condition::FreeAmplitude) | None => Self::Free,
+            Some(_) => Self::Scaled,
+        }
+    }
+}
+
 /// One line of a data card.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterCard {
@@ -67,9 +105,9 @@ pub struct ParameterCard {
 }
 
 impl ParameterCard {
-    /// A line of a built-in problem.
+    /// Name, meaning and default value.
     #[must_use]
-    pub fn new(name: &'static str, meaning: &'static str, default: &'static str) -> Self {
+    pub fn new(name: impl Into<Text>, meaning: impl Into<Text>, default: impl Into<Text>) -> Self {
         Self { name: name.into(), meaning: meaning.into(), default: default.into() }
     }
 }
@@ -107,7 +145,20 @@ pub struct Synchronous {
 
 /// A built-in or user-defined oscillator, as data: the same tree is expanded, integrated, classified and
 /// printed. Dimensionless; `notes` says how it follows from the physical one.
+///
+/// ```
+/// use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
+/// let x = Expression::DISPLACEMENT;
+/// let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3);
+/// let duffing = Problem::new("duffing", equation)
+///     .with_parameter("amplitude", "x(0), where x'(0) = 0", "1")
+///     .with_source("classical");
+/// assert_eq!(duffing.conditions, [Condition::InitialAmplitude]);
+/// assert_eq!((&*duffing.small, duffing.amplitude), ("eps", AmplitudeRole::Scaled));
+/// assert_eq!(duffing.parameters.len(), 1);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Problem {
     /// The name on the command line.
     pub name: Text,
@@ -134,4 +185,92 @@ pub struct Problem {
     pub notes: Text,
     /// Where it comes from.
     pub source: Text,
+}
+
+impl Problem {
+    /// A problem in powers of `eps`, under its usual condition, with the usual role of the amplitude.
+    #[must_use]
+    pub fn new(name: impl Into<Text>, equation: Expression) -> Self {
+        let conditions = Vec::from_iter(Condition::usual(&equation));
+        Self {
+            name: name.into(),
+            title: "".into(),
+            time_domain: None,
+            impact: None,
+            synchronous: None,
+            small: "eps".into(),
+            amplitude: AmplitudeRole::usual(conditions.first()),
+            conditions,
+            parameters: Vec::new(),
+            notes: "".into(),
+            source: "".into(),
+            equation,
+        }
+    }
+
+    /// Its title, one line.
+    #[must_use]
+    pub fn with_title(self, title: impl Into<Text>) -> Self {
+        Self { title: title.into(), ..self }
+    }
+
+    /// The name of the small parameter.
+    #[must_use]
+    pub fn with_small(self, name: impl Into<Text>) -> Self {
+        Self { small: name.into(), ..self }
+    }
+
+    /// The conditions that make sense, the default first, and how an amplitude enters.
+    #[must_use]
+    pub fn under(self, conditions: impl Into<Vec<Condition>>, amplitude: AmplitudeRole) -> Self {
+        Self { conditions: conditions.into(), amplitude, ..self }
+    }
+
+    /// One more parameter: its name, what it is, its default.
+    #[must_use]
+    pub fn with_parameter(
+        mut self,
+        name: impl Into<Text>,
+        meaning: impl Into<Text>,
+        default: impl Into<Text>,
+    ) -> Self {
+        self.parameters.push(ParameterCard::new(name, meaning, default));
+        self
+    }
+
+    /// The equation to integrate, where the one to expand has formal functions.
+    #[must_use]
+    pub fn with_time_domain(self, equation: Expression) -> Self {
+        Self { time_domain: Some(equation), ..self }
+    }
+
+    /// A wall with an impact law.
+    #[must_use]
+    pub fn with_wall(self, wall: Impact) -> Self {
+        Self { impact: Some(wall), ..self }
+    }
+
+    /// The parameter `delay` is `periods` periods of the force of that frequency.
+    #[must_use]
+    pub fn with_synchronous(
+        self,
+        delay: impl Into<Text>,
+        periods: impl Into<Text>,
+        frequency: impl Into<Text>,
+    ) -> Self {
+        let (delay, periods, frequency) = (delay.into(), periods.into(), frequency.into());
+        Self { synchronous: Some(Synchronous { delay, periods, frequency }), ..self }
+    }
+
+    /// How the dimensionless equation follows from the physical one, and what is known.
+    #[must_use]
+    pub fn with_notes(self, notes: impl Into<Text>) -> Self {
+        Self { notes: notes.into(), ..self }
+    }
+
+    /// Where it comes from.
+    #[must_use]
+    pub fn with_source(self, source: impl Into<Text>) -> Self {
+        Self { source: source.into(), ..self }
+    }
 }

@@ -5,10 +5,8 @@ use crate::refusal::Refused;
 use crate::{Error, Exact, Remark, classification};
 use lindstedt_equation::classify::{Classification, ClassifyError};
 use lindstedt_equation::print::Style;
-use lindstedt_equation::{Condition, ParameterCard, Problem};
-use lindstedt_problem_file::{
-    Names, PI, ProblemFile, canonical_name, parse_equation, usual_amplitude,
-};
+use lindstedt_equation::{AmplitudeRole, Condition, ParameterCard, Problem};
+use lindstedt_problem_file::{Names, PI, ProblemFile, canonical_name, parse_equation};
 use rug::Rational;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -164,7 +162,7 @@ impl Oscillator {
     pub fn under(mut self, condition: Condition) -> Result<Self, Error> {
         if self.bare {
             self.problem.conditions = vec![condition];
-            self.problem.amplitude = usual_amplitude(Some(&condition));
+            self.problem.amplitude = AmplitudeRole::usual(Some(&condition));
         } else if !self.problem.conditions.contains(&condition) {
             if condition != Condition::FreeAmplitude {
                 let name = condition.name();

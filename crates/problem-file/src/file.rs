@@ -76,19 +76,6 @@ pub const AMPLITUDES: [(&str, AmplitudeRole); 6] = [
 pub(crate) const ASKED: &str = "frequency, frequency_squared, period_over_2pi, amplitude, \
                      initial_displacement, growth_rate, solution";
 
-/// The condition that suits an equation: a free amplitude with t or a delay, a given amplitude
-/// where the form shows that none drifts, a limit cycle otherwise.
-pub fn usual_condition(equation: &Expression) -> Condition {
-    let outside = |e: &Expression| *e == Expression::Time || e.is_delayed();
-    if equation.find(&outside).is_some() {
-        Condition::FreeAmplitude
-    } else if lindstedt_equation::symmetry::is_reversible(equation) {
-        Condition::InitialAmplitude
-    } else {
-        Condition::LimitCycle
-    }
-}
-
 /// Why an amplitude cannot enter in this way. The roles of the built-in problems are claims about
 /// the equation, and a claim is checked.
 pub(crate) fn misplaced(
@@ -127,15 +114,6 @@ fn is_power_law(term: &Expression) -> bool {
     let mut moving: Vec<&Expression> = factors.iter().filter(moving).collect();
     moving.sort_by_key(|e| **e != x);
     moving == [&x, &power]
-}
-
-/// How the amplitude enters under a condition.
-pub fn usual_amplitude(condition: Option<&Condition>) -> AmplitudeRole {
-    match condition {
-        Some(Condition::LimitCycle) => AmplitudeRole::Determined,
-        Some(Condition::FreeAmplitude) | None => AmplitudeRole::Free,
-        Some(_) => AmplitudeRole::Scaled,
-    }
 }
 
 impl ProblemFile {

@@ -1,10 +1,7 @@
 //! From the keys of a problem file to the problem: each key is read, and checked, by itself.
 
 use crate::error::{ParseError, ParseErrorKind, excerpt};
-use crate::file::{
-    AMPLITUDES, ASKED, CONDITIONS, ProblemFile, UNNAMED, misplaced, usual_amplitude,
-    usual_condition,
-};
+use crate::file::{AMPLITUDES, ASKED, CONDITIONS, ProblemFile, UNNAMED, misplaced};
 use crate::file_error::{FileError, FileErrorKind};
 use crate::grammar::{locate, parse_equation, parse_expression};
 use crate::history::{is_range, ranges, start};
@@ -57,11 +54,7 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     let amplitude = amplitude(reader, &schema, (&equation, &small), &conditions, &declared)?;
     if amplitude == AmplitudeRole::Scaled && !declared.contains("amplitude") {
         let meaning = "a: x(0), or the first harmonic; x = a y is expanded";
-        cards.push(ParameterCard {
-            name: "amplitude".into(),
-            meaning: meaning.into(),
-            default: "1".into(),
-        });
+        cards.push(ParameterCard::new("amplitude", meaning, "1"));
     }
     let (initial, history) = start(reader, schema.initial.as_ref(), &names)?;
     if !equation.contains(&Expression::Small)
@@ -78,28 +71,24 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     {
         return Err(reader.error(FileErrorKind::Twice { name: name.clone() }, word.span().start));
     }
+    let unused = unused(&schema, &equation, amplitude, &declared, &follows);
+    let mut problem = Problem::new(name, equation)
+        .with_title(schema.title.clone())
+        .with_small(small)
+        .under(conditions, amplitude)
+        .with_notes(schema.notes.clone())
+        .with_source(schema.source.clone());
+    problem.parameters = cards;
+    (problem.time_domain, problem.impact, problem.synchronous) = (time_domain, impact, synchronous);
     Ok(ProblemFile {
-        unused: unused(&schema, &equation, amplitude, &declared, &follows),
+        unused,
         asked: asked(reader, &schema)?,
         named: schema.name.is_some(),
         declares: schema.parameters.is_some(),
         start: reader.content(&schema.equation),
         equation: schema.equation.get_ref().clone(),
         text: reader.text.to_owned(),
-        problem: Problem {
-            name: name.into(),
-            title: schema.title.into(),
-            equation,
-            time_domain,
-            impact,
-            synchronous,
-            small: small.clone().into(),
-            conditions,
-            amplitude,
-            parameters: cards,
-            notes: schema.notes.into(),
-            source: schema.source.into(),
-        },
+        problem,
         units,
         follows,
         initial,
@@ -124,7 +113,7 @@ fn undeclared(
     let mentioned: BTreeSet<String> = all.flat_map(Expression::parameters).collect();
     let card = |name: String| {
         let (meaning, default) = if name == PI { ("the number pi", PI) } else { ("", "") };
-        ParameterCard { name: name.into(), meaning: meaning.into(), default: default.into() }
+        ParameterCard::new(name, meaning, default)
     };
     let open = |name: &String| !declared.contains(name) && name != "amplitude";
     mentioned.into_iter().filter(open).map(card).collect()
@@ -193,11 +182,8 @@ fn parameters(reader: &Reader<'_>, schema: &Schema, small: &str) -> Result<Param
             continue;
         }
         let default = parameter.value.as_ref().map(|v| reader.value(v)).transpose()?;
-        cards.push(ParameterCard {
-            name: name.into(),
-            meaning: parameter.meaning.clone().into(),
-            default: default.unwrap_or_default().into(),
-        });
+        let meaning = parameter.meaning.clone();
+        cards.push(ParameterCard::new(name, meaning, default.unwrap_or_default()));
     }
     Ok(Parameters { cards, units, follows, declared })
 }
@@ -248,10 +234,7 @@ fn conditions(
 ) -> Result<Vec<Condition>, FileError> {
     let known = "initial-amplitude, fundamental-amplitude, limit-cycle, free-amplitude";
     let Some(list) = &schema.condition else {
-        let usual = usual_condition(equation);
-        let needs_small = usual != Condition::FreeAmplitude;
-        let nothing = needs_small && !equation.contains(&Expression::Small);
-        return Ok(if nothing { Vec::new() } else { vec![usual] });
+        return Ok(Condition::usual(equation).into_iter().collect());
     };
     let one = |word: &String| reader.word("condition", word, list.span(), &CONDITIONS, known);
     list.get_ref().0.iter().map(one).collect()
@@ -270,7 +253,7 @@ fn amplitude(
         Some(word) => (&**word.get_ref(), word.span()),
     };
     let role = match &schema.amplitude {
-        None => usual_amplitude(conditions.first()),
+        None => AmplitudeRole::usual(conditions.first()),
         Some(_) => reader.word("amplitude", word, at.clone(), &AMPLITUDES, known)?,
     };
     match misplaced(role, equation, small, declared) {

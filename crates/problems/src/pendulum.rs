@@ -1,6 +1,6 @@
 //! x'' + sin x = 0, embedded in the small-delta method.
 
-use lindstedt_equation::{AmplitudeRole, Condition, Expression, Function, ParameterCard, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, Function, Problem};
 
 pub(crate) fn problem() -> Problem {
     let x = Expression::DISPLACEMENT;
@@ -10,33 +10,21 @@ pub(crate) fn problem() -> Problem {
     let stretch = x.clone().pow(2).pow(Expression::Small * half);
     let angle = Expression::parameter("amplitude") * stretch;
     let force = x.clone() * angle.clone().apply(Function::Sin) * angle.pow(-1);
-    Problem {
-        name: "pendulum".into(),
-        title: "mathematical pendulum x'' + sin x = 0 by the small-delta method (delta = 1)".into(),
-        equation: Expression::ACCELERATION + x * exponent.formal("S"),
-        time_domain: Some(Expression::ACCELERATION + force),
-        impact: None,
-        synchronous: None,
-        small: "delta".into(),
-        conditions: vec![Condition::InitialAmplitude],
-        amplitude: AmplitudeRole::InSums,
-        parameters: vec![
-            ParameterCard {
-                name: "amplitude".into(),
-                meaning: "x(0) = a in radians, 0 < a < pi, x'(0) = 0; enters through the sums S_n"
-                    .into(),
-                default: "1".into(),
-            },
-            ParameterCard {
-                name: "delta".into(),
-                meaning: "small parameter; delta = 1 is the pendulum".into(),
-                default: "1".into(),
-            },
-        ],
-        notes: "x = a y turns sin x into a y sum_k (-1)^k a^(2k) (y^2)^k/(2k+1)!. Replacing the \
-                exponent k by k delta gives y S(delta ln y^2) with S(z) = sum_n S_n z^n/n! and \
-                S_n = sum_k (-1)^k a^(2k) k^n/(2k+1)!; S_0 = sin(a)/a. Time in sqrt(length/g)."
-            .into(),
-        source: "Awrejcewicz and Andrianov, section 4, equations (43)-(51)".into(),
-    }
+    Problem::new("pendulum", Expression::ACCELERATION + x * exponent.formal("S"))
+        .with_title("mathematical pendulum x'' + sin x = 0 by the small-delta method (delta = 1)")
+        .with_small("delta")
+        .under([Condition::InitialAmplitude], AmplitudeRole::InSums)
+        .with_time_domain(Expression::ACCELERATION + force)
+        .with_parameter(
+            "amplitude",
+            "x(0) = a in radians, 0 < a < pi, x'(0) = 0; enters through the sums S_n",
+            "1",
+        )
+        .with_parameter("delta", "small parameter; delta = 1 is the pendulum", "1")
+        .with_notes(
+            "x = a y turns sin x into a y sum_k (-1)^k a^(2k) (y^2)^k/(2k+1)!. Replacing the \
+             exponent k by k delta gives y S(delta ln y^2) with S(z) = sum_n S_n z^n/n! and \
+             S_n = sum_k (-1)^k a^(2k) k^n/(2k+1)!; S_0 = sin(a)/a. Time in sqrt(length/g).",
+        )
+        .with_source("Awrejcewicz and Andrianov, section 4, equations (43)-(51)")
 }

@@ -6,35 +6,19 @@ use super::Outcome;
 mod quintic {
     use lindstedt::unstable::equation as lindstedt_equation;
 
-    use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
+    use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
 
     pub(crate) fn problem() -> Problem {
         let x = Expression::DISPLACEMENT;
-        Problem {
-            name: "quintic".into(),
-            title: "quintic oscillator x'' + x + eps x^5 = 0, in rho = eps A^4".into(),
-            equation: Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(5),
-            time_domain: None,
-            impact: None,
-            synchronous: None,
-            small: "rho".into(),
-            conditions: vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude],
-            amplitude: AmplitudeRole::InSmallParameter,
-            parameters: vec![
-                ParameterCard {
-                    name: "eps".into(),
-                    meaning: "coefficient of the quintic force".into(),
-                    default: "1".into(),
-                },
-                ParameterCard {
-                    name: "amplitude".into(),
-                    meaning: "A: x(0), or the first harmonic".into(),
-                    default: "1".into(),
-                },
-            ],
-            notes: "m x'' + k x + k_5 x^5 = 0 with time in sqrt(m/k) and eps = k_5/k".into(),
-            source: "energy integral, docs/src/guide/add-a-problem.md".into(),
-        }
+        let conditions = [Condition::InitialAmplitude, Condition::FundamentalAmplitude];
+        Problem::new("quintic", Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(5))
+            .with_title("quintic oscillator x'' + x + eps x^5 = 0, in rho = eps A^4")
+            .with_small("rho")
+            .under(conditions, AmplitudeRole::InSmallParameter)
+            .with_parameter("eps", "coefficient of the quintic force", "1")
+            .with_parameter("amplitude", "A: x(0), or the first harmonic", "1")
+            .with_notes("m x'' + k x + k_5 x^5 = 0 with time in sqrt(m/k) and eps = k_5/k")
+            .with_source("energy integral, docs/src/guide/add-a-problem.md")
     }
 }
 
