@@ -16,6 +16,7 @@ pub mod complex;
 pub mod digits;
 mod error;
 mod exact;
+pub mod interval;
 mod named;
 mod number;
 mod ratio;

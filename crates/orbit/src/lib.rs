@@ -46,6 +46,7 @@ mod radii;
 mod read;
 mod space;
 mod start;
+pub mod steady;
 mod task;
 #[cfg(test)]
 mod tests;

@@ -1,0 +1,354 @@
+//! Branches of solutions of n polynomials in n + 1 unknowns, by continuation in arclength (Keller 1977): a step along
+//! the tangent, Newton's method on the hyperplane across it, steps as long as the direction turns little.
+//!
+//! Where one of three functions along the branch changes its sign, the point is located by bisection and secants:
+//! the parameter's share of the tangent (folds), prod_(i<j) (lambda_i + lambda_j) (Hopf points), and the determinant of the
+//! derivative with the tangent below it (crossings of branches).
+
+use super::System;
+use super::flow::Change;
+use lindstedt_algebra::Stop;
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// Where a branch is followed.
+#[derive(Clone, Debug)]
+pub struct Course {
+    /// Which of the variables is the parameter.
+    pub parameter: usize,
+    /// Its range.
+    pub range: [f64; 2],
+    /// The first so many rows and variables are a vector field: its eigenvalues are the exponents.
+    pub unknowns: usize,
+    /// The branch ends where |x_i| exceeds this, for the unknowns; their unit, too.
+    pub reach: f64,
+    /// The longest step, as a fraction of the range and of the reach.
+    pub step: f64,
+    /// The most points.
+    pub most: usize,
+    /// Asked between points.
+    pub stop: Stop,
+}
+
+/// A point of a branch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// The variables.
+    pub at: Vec<f64>,
+    /// The eigenvalues of the vector field there.
+    pub exponents: Vec<Complex<f64>>,
+    /// The point is one of these.
+    pub change: Option<Change>,
+}
+
+impl Point {
+    /// Whether all exponents have negative real parts; nothing within rounding.
+    #[must_use]
+    pub fn is_stable(&self) -> Option<bool> {
+        let size = self.exponents.iter().fold(0.0f64, |m, x| m.max(x.norm()));
+        let largest = self.exponents.iter().map(|x| x.re).fold(f64::NEG_INFINITY, f64::max);
+        (largest.abs() > 1e-9 * size).then_some(largest < 0.0)
+    }
+}
+
+/// A piece of a solution curve.
+#[derive(Clone, Debug)]
+pub struct Branch {
+    /// The points in order, those of changes among them.
+    pub points: Vec<Point>,
+    /// Whether the last point is the first.
+    pub closed: bool,
+    /// Whether it was followed to the ends of the range or the reach on both sides.
+    pub complete: bool,
+}
+
+/// The eigenvalues of a row-major matrix.
+fn eigenvalues(n: usize, rows: &[f64]) -> Vec<Complex<f64>> {
+    if let ([a, b, c, d], 2) = (rows, n) {
+        let (half, gap) = (0.5 * (a + d), 0.5 * (a - d));
+        let square = gap * gap + b * c;
+        let root = Complex::new(square, 0.0).sqrt();
+        return vec![root + half, -root + half];
+    }
+    if rows.iter().any(|x| !x.is_finite()) {
+        return Vec::new();
+    }
+    DMatrix::from_row_slice(n, n, rows).complex_eigenvalues().iter().copied().collect()
+}
+
+/// prod_(i<j) (lambda_i + lambda_j).
+fn sums(exponents: &[Complex<f64>]) -> f64 {
+    let pairs = exponents.iter().enumerate();
+    let product = pairs.flat_map(|(i, a)| exponents[..i].iter().map(move |b| a + b));
+    product.fold(Complex::new(1.0, 0.0), |p, sum| p * sum).re
+}
+
+#[derive(Clone, Debug)]
+struct State {
+    /// The variables in their units.
+    scaled: Vec<f64>,
+    tangent: Vec<f64>,
+    orientation: f64,
+    point: Point,
+}
+
+/// A function whose zero is a change.
+type Test<'a> = &'a dyn Fn(&State) -> f64;
+
+struct Tracer<'a> {
+    system: &'a System,
+    course: &'a Course,
+    units: Vec<f64>,
+}
+
+enum End {
+    Closed,
+    Edge,
+    Lost,
+}
+
+/// The branch through a solution near `start`, in both directions. Nothing where no solution is near.
+#[must_use]
+pub fn follow(system: &System, start: &[f64], course: &Course) -> Option<Branch> {
+    let n = system.variables();
+    if system.rows() + 1 != n || start.len() != n || course.parameter >= n {
+        return None;
+    }
+    let width = course.range[1] - course.range[0];
+    let units = (0..n).map(|i| if i == course.parameter { width } else { course.reach });
+    let tracer = Tracer { system, course, units: units.collect() };
+    let first = tracer.first(start)?;
+    let (mut points, end) = tracer.trace(&first, course.most);
+    if matches!(end, End::Closed) {
+        return Some(Branch { points, closed: true, complete: true });
+    }
+    let opposite = State { tangent: first.tangent.iter().map(|t| -t).collect(), ..first };
+    let opposite = State { orientation: -opposite.orientation, ..opposite };
+    let (back, other) = tracer.trace(&opposite, course.most.saturating_sub(points.len()).max(2));
+    let mut all: Vec<Point> = back.into_iter().skip(1).rev().collect();
+    all.append(&mut points);
+    let complete = matches!((end, other), (End::Edge, End::Edge));
+    Some(Branch { points: all, closed: false, complete })
+}
+
+impl Tracer<'_> {
+    fn derivatives(&self, scaled: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let at: Vec<f64> = scaled.iter().zip(&self.units).map(|(y, unit)| y * unit).collect();
+        self.system.derivatives(&at)
+    }
+
+    /// The derivative in units with a row below it.
+    fn bordered(&self, slopes: &[f64], below: &[f64]) -> DMatrix<f64> {
+        let n = below.len();
+        DMatrix::from_fn(n, n, |i, j| {
+            if i + 1 == n { below[j] } else { slopes[i * n + j] * self.units[j] }
+        })
+    }
+
+    fn state(&self, scaled: Vec<f64>, previous: &[f64]) -> Option<State> {
+        let n = scaled.len();
+        let (_, slopes) = self.derivatives(&scaled);
+        let mut right = DVector::zeros(n);
+        right[n - 1] = 1.0;
+        let tangent = self.bordered(&slopes, previous).lu().solve(&right)?;
+        let tangent: Vec<f64> = tangent.normalize().iter().copied().collect();
+        if tangent.iter().any(|t| !t.is_finite()) {
+            return None;
+        }
+        let orientation = self.bordered(&slopes, &tangent).determinant();
+        let m = self.course.unknowns;
+        let rows: Vec<f64> =
+            (0..m).flat_map(|i| slopes[i * n..i * n + m].iter().copied()).collect();
+        let at = scaled.iter().zip(&self.units).map(|(y, unit)| y * unit).collect();
+        let point = Point { at, exponents: eigenvalues(m, &rows), change: None };
+        Some(State { scaled, tangent, orientation, point })
+    }
+
+    /// Newton's method across a direction; with the number of steps.
+    fn correct(&self, guess: &[f64], across: &[f64]) -> Option<(Vec<f64>, usize)> {
+        let n = guess.len();
+        let mut at = guess.to_vec();
+        let mut before = f64::INFINITY;
+        for steps in 1..=12 {
+            let (values, slopes) = self.derivatives(&at);
+            let off: f64 = across.iter().zip(&at).zip(guess).map(|((t, y), g)| t * (y - g)).sum();
+            let right = DVector::from_iterator(n, values.into_iter().chain([off]));
+            let step = self.bordered(&slopes, across).lu().solve(&right)?;
+            at.iter_mut().zip(step.iter()).for_each(|(y, d)| *y -= d);
+            let change = step.amax();
+            if !change.is_finite() || change > 10.0 {
+                return None;
+            }
+            if change < 1e-13 || (change < 1e-9 && change > 0.2 * before) {
+                return Some((at, steps));
+            }
+            before = change;
+        }
+        None
+    }
+
+    fn first(&self, start: &[f64]) -> Option<State> {
+        let scaled: Vec<f64> = start.iter().zip(&self.units).map(|(x, unit)| x / unit).collect();
+        let n = scaled.len();
+        let axis = |k: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };
+        let order = std::iter::once(self.course.parameter).chain(0..n);
+        order.into_iter().find_map(|k| {
+            let (at, _) = self.correct(&scaled, &axis(k))?;
+            let state = self.state(at, &axis(k))?;
+            let off = state.scaled.iter().zip(&scaled).all(|(a, b)| (a - b).abs() < 0.05);
+            off.then_some(state)
+        })
+    }
+
+    fn step(&self, from: &State, length: f64) -> Option<(State, usize)> {
+        let ahead = from.scaled.iter().zip(&from.tangent).map(|(y, t)| y + length * t);
+        let (at, steps) = self.correct(&ahead.collect::<Vec<_>>(), &from.tangent)?;
+        Some((self.state(at, &from.tangent)?, steps))
+    }
+
+    fn trace(&self, first: &State, most: usize) -> (Vec<Point>, End) {
+        let longest = self.course.step;
+        let mut points = vec![first.point.clone()];
+        let mut from = first.clone();
+        let mut length = 0.25 * longest;
+        while points.len() < most && !self.course.stop.asked() {
+            let turned = |to: &State| {
+                from.tangent.iter().zip(&to.tangent).map(|(a, b)| a * b).sum::<f64>() < 0.95
+            };
+            let Some((to, steps)) = self.step(&from, length).filter(|(to, _)| !turned(to)) else {
+                length *= 0.5;
+                if length < 1e-9 {
+                    return (points, End::Lost);
+                }
+                continue;
+            };
+            if points.len() > 3 && self.passes(&from, length, first) {
+                points.extend(self.changes(&from, length, &to));
+                points.push(first.point.clone());
+                return (points, End::Closed);
+            }
+            if let Some(edge) = self.edge(&to) {
+                let last = self.at_edge(&from, &to, edge);
+                points.extend(self.changes(&from, length, &last));
+                points.push(last.point);
+                return (points, End::Edge);
+            }
+            points.extend(self.changes(&from, length, &to));
+            points.push(to.point.clone());
+            from = to;
+            if steps <= 3 {
+                length = (1.5 * length).min(longest);
+            }
+        }
+        (points, End::Lost)
+    }
+
+    /// Whether a step passes the first state in its direction.
+    fn passes(&self, from: &State, length: f64, first: &State) -> bool {
+        let away: Vec<f64> = first.scaled.iter().zip(&from.scaled).map(|(a, b)| a - b).collect();
+        let along: f64 = away.iter().zip(&from.tangent).map(|(a, t)| a * t).sum();
+        let across: f64 =
+            away.iter().zip(&from.tangent).map(|(a, t)| (a - along * t).powi(2)).sum();
+        let same: f64 = first.tangent.iter().zip(&from.tangent).map(|(a, b)| a * b).sum();
+        along > 0.0 && along <= length && across.sqrt() < 0.3 * length && same > 0.9
+    }
+
+    /// The variable that has left its range with the value at which it did.
+    fn edge(&self, state: &State) -> Option<(usize, f64)> {
+        let course = self.course;
+        let parameter = state.point.at[course.parameter];
+        let [low, high] = course.range;
+        if !(low..=high).contains(&parameter) {
+            return Some((course.parameter, parameter.clamp(low, high)));
+        }
+        let far = (0..course.unknowns).find(|i| state.point.at[*i].abs() > course.reach)?;
+        Some((far, course.reach.copysign(state.point.at[far])))
+    }
+
+    /// The point of the branch at the edge.
+    fn at_edge(&self, from: &State, to: &State, (variable, value): (usize, f64)) -> State {
+        let target = value / self.units[variable];
+        let (a, b) = (from.scaled[variable], to.scaled[variable]);
+        let share = if a == b { 1.0 } else { (target - a) / (b - a) };
+        let mut guess: Vec<f64> =
+            from.scaled.iter().zip(&to.scaled).map(|(a, b)| a + share * (b - a)).collect();
+        guess[variable] = target;
+        let across: Vec<f64> =
+            (0..guess.len()).map(|i| f64::from(u8::from(i == variable))).collect();
+        let landed = self.correct(&guess, &across);
+        let landed = landed.and_then(|(at, _)| self.state(at, &from.tangent));
+        landed.unwrap_or_else(|| to.clone())
+    }
+
+    /// The changes between two states, in order.
+    fn changes(&self, from: &State, length: f64, to: &State) -> Vec<Point> {
+        let parameter = self.course.parameter;
+        let fold = move |state: &State| state.tangent[parameter];
+        let hopf = |state: &State| sums(&state.point.exponents);
+        let crossing = |state: &State| state.orientation;
+        let tests: [(Change, Test<'_>); 3] =
+            [(Change::Crossing, &crossing), (Change::Fold, &fold), (Change::Hopf, &hopf)];
+        let mut found: Vec<(f64, Change, State)> = Vec::new();
+        for (change, test) in tests {
+            if test(from) * test(to) >= 0.0 {
+                continue;
+            }
+            let Some((at, state)) = self.locate(from, length, test) else { continue };
+            let near = |(other, ..): &(f64, Change, State)| (other - at).abs() < 1e-4 * length;
+            // A crossing of branches makes the tangent turn; a real pair of opposite exponents is no oscillation.
+            let apparent = change == Change::Fold && found.iter().any(near);
+            if apparent || (change == Change::Hopf && !oscillates(&state.point.exponents)) {
+                continue;
+            }
+            found.push((at, change, state));
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let marked = |(_, change, state): (f64, Change, State)| Point {
+            change: Some(change),
+            ..state.point
+        };
+        found.into_iter().map(marked).collect()
+    }
+
+    /// The zero of a function along a step, by regula falsi (Illinois) on its length.
+    fn locate(&self, from: &State, length: f64, test: Test<'_>) -> Option<(f64, State)> {
+        let (mut low, mut high) = (0.0, length);
+        let (mut at_low, mut at_high) = (test(from), test(&self.step(from, length)?.0));
+        let mut last = None;
+        let mut kept = 0i32;
+        for _ in 0..60 {
+            let middle = (low * at_high - high * at_low) / (at_high - at_low);
+            let middle = if middle > low && middle < high { middle } else { 0.5 * (low + high) };
+            let (state, _) = self.step(from, middle)?;
+            let value = test(&state);
+            last = Some((middle, state));
+            if value == 0.0 || high - low < 1e-13 * length {
+                break;
+            }
+            if value * at_low > 0.0 {
+                (low, at_low) = (middle, value);
+                if kept > 0 {
+                    at_high *= 0.5;
+                }
+                kept = 1;
+            } else {
+                (high, at_high) = (middle, value);
+                if kept < 0 {
+                    at_low *= 0.5;
+                }
+                kept = -1;
+            }
+            if value.abs() < 1e-14 * (test(from).abs() + 1e-300) {
+                break;
+            }
+        }
+        last
+    }
+}
+
+/// Whether the pair of exponents with the smallest sum is complex.
+fn oscillates(exponents: &[Complex<f64>]) -> bool {
+    let pairs = exponents.iter().enumerate();
+    let pairs = pairs.flat_map(|(i, a)| exponents[..i].iter().map(move |b| (*a, *b)));
+    let least = pairs.min_by(|(a, b), (c, d)| (a + b).norm().total_cmp(&(c + d).norm()));
+    least.is_some_and(|(a, _)| a.im.abs() > 1e-6 * a.norm() && a.im != 0.0)
+}

@@ -1,0 +1,272 @@
+//! Polynomials with rational coefficients in numbered variables, and systems of them as functions of doubles and of
+//! intervals.
+
+use lindstedt_number::Exact;
+use lindstedt_number::ball::Balls;
+use lindstedt_number::interval::Interval;
+use rug::Rational;
+use std::collections::BTreeMap;
+use std::ops::{Add, Mul};
+
+/// Bits of the constants that are given.
+const BITS: u32 = 80;
+
+/// A polynomial: exponents of the variables (missing ones are 0) with coefficients, none of which is zero.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Polynomial {
+    terms: BTreeMap<Vec<u32>, Rational>,
+}
+
+impl Polynomial {
+    /// Adds q times a monomial.
+    pub fn add_term(&mut self, exponents: &[u32], q: &Rational) {
+        let used = exponents.iter().rposition(|e| *e > 0).map_or(0, |last| last + 1);
+        let key = exponents[..used].to_vec();
+        let sum = self.terms.remove(&key).unwrap_or_default() + q;
+        if sum != 0 {
+            self.terms.insert(key, sum);
+        }
+    }
+
+    /// The variable i.
+    #[must_use]
+    pub fn variable(i: usize) -> Self {
+        let mut exponents = vec![0; i + 1];
+        exponents[i] = 1;
+        Self { terms: [(exponents, Rational::from(1))].into() }
+    }
+
+    /// A constant.
+    #[must_use]
+    pub fn constant(q: Rational) -> Self {
+        let mut constant = Self::default();
+        constant.add_term(&[], &q);
+        constant
+    }
+
+    /// The terms.
+    pub fn terms(&self) -> impl Iterator<Item = (&[u32], &Rational)> {
+        self.terms.iter().map(|(exponents, q)| (exponents.as_slice(), q))
+    }
+
+    /// The derivative by the variable i.
+    #[must_use]
+    pub fn by(&self, i: usize) -> Self {
+        let mut derivative = Self::default();
+        for (exponents, q) in &self.terms {
+            if let Some(e) = exponents.get(i).copied().filter(|e| *e > 0) {
+                let mut lower = exponents.clone();
+                lower[i] -= 1;
+                derivative.add_term(&lower, &Rational::from(q * e));
+            }
+        }
+        derivative
+    }
+}
+
+impl Add<&Polynomial> for Polynomial {
+    type Output = Self;
+    fn add(mut self, other: &Self) -> Self {
+        for (exponents, q) in &other.terms {
+            self.add_term(exponents, q);
+        }
+        self
+    }
+}
+
+impl Mul for &Polynomial {
+    type Output = Polynomial;
+    fn mul(self, other: Self) -> Polynomial {
+        let mut product = Polynomial::default();
+        for (a, p) in &self.terms {
+            for (b, q) in &other.terms {
+                let (long, short) = if a.len() > b.len() { (a, b) } else { (b, a) };
+                let mut sum = long.clone();
+                sum.iter_mut().zip(short).for_each(|(e, f)| *e += f);
+                product.add_term(&sum, &Rational::from(p * q));
+            }
+        }
+        product
+    }
+}
+
+/// What polynomials are evaluated over.
+pub(crate) trait Scalar: Copy + Add<Output = Self> + Mul<Output = Self> {
+    const ZERO: Self;
+    fn integer(n: u32) -> Self;
+    fn coefficient(term: &Term) -> Self;
+    fn powi(self, n: u32) -> Self;
+}
+
+impl Scalar for f64 {
+    const ZERO: Self = 0.0;
+    fn integer(n: u32) -> Self {
+        f64::from(n)
+    }
+    fn coefficient(term: &Term) -> Self {
+        term.near
+    }
+    fn powi(self, n: u32) -> Self {
+        self.powi(n.cast_signed())
+    }
+}
+
+impl Scalar for Interval {
+    const ZERO: Self = Self::ZERO;
+    fn integer(n: u32) -> Self {
+        Self::point(f64::from(n))
+    }
+    fn coefficient(term: &Term) -> Self {
+        term.coefficient
+    }
+    fn powi(self, n: u32) -> Self {
+        self.powi(n)
+    }
+}
+
+/// A term of a [`System`].
+#[derive(Clone, Debug)]
+pub(crate) struct Term {
+    coefficient: Interval,
+    near: f64,
+    /// The variables with their exponents, positive.
+    powers: Vec<(usize, u32)>,
+}
+
+/// Polynomials in some variables as functions, the other variables having values.
+#[derive(Clone, Debug)]
+pub struct System {
+    rows: Vec<Vec<Term>>,
+    variables: usize,
+    largest: u32,
+}
+
+impl System {
+    /// The polynomials as functions of the variables for which `values` has nothing, in their order; a variable
+    /// beyond the list is free if it occurs in a polynomial or is below `least`.
+    ///
+    /// Coefficients are enclosures: values like pi/4 take part in what is proved.
+    #[must_use]
+    pub fn new(rows: &[Polynomial], values: &[Option<Exact>]) -> Self {
+        let balls = Balls::new(BITS);
+        let given: Vec<_> = values
+            .iter()
+            .map(|value| value.as_ref().map(|value| Interval::of_ball(&value.ball(balls))))
+            .collect();
+        let exact: Vec<_> =
+            values.iter().map(|value| value.as_ref().and_then(Exact::as_rational)).collect();
+        let mut place = Vec::new();
+        let mut variables = 0;
+        let named = rows.iter().flat_map(|row| row.terms.keys().map(Vec::len)).max();
+        for i in 0..named.unwrap_or(0).max(values.len()) {
+            place.push(variables);
+            variables += usize::from(given.get(i).is_none_or(Option::is_none));
+        }
+        let row = |polynomial: &Polynomial| {
+            let mut sums: BTreeMap<Vec<(usize, u32)>, (Rational, Interval)> = BTreeMap::new();
+            for (exponents, q) in polynomial.terms() {
+                let mut powers = Vec::new();
+                let (mut rational, mut other) = (q.clone(), Interval::ONE);
+                for (i, e) in exponents.iter().enumerate().filter(|(_, e)| **e > 0) {
+                    match (exact.get(i).copied().flatten(), given.get(i).copied().flatten()) {
+                        (Some(value), _) => (0..*e).for_each(|_| rational *= value),
+                        (None, Some(value)) => other = other * value.powi(*e),
+                        (None, None) => powers.push((place[i], *e)),
+                    }
+                }
+                let sum = sums.entry(powers).or_insert((Rational::new(), Interval::ZERO));
+                if other == Interval::ONE {
+                    sum.0 += rational;
+                } else {
+                    sum.1 = sum.1 + Interval::of(&rational) * other;
+                }
+            }
+            let term = |(powers, (rational, other)): (_, (Rational, Interval))| {
+                let coefficient = Interval::of(&rational) + other;
+                Term { near: coefficient.middle(), coefficient, powers }
+            };
+            let vanishes = |term: &Term| term.coefficient == Interval::ZERO;
+            sums.into_iter().map(term).filter(|term| !vanishes(term)).collect()
+        };
+        let rows: Vec<Vec<Term>> = rows.iter().map(row).collect();
+        let powers = rows.iter().flatten().flat_map(|term| &term.powers);
+        let largest = powers.map(|(_, e)| *e).max().unwrap_or(0);
+        Self { rows, variables, largest }
+    }
+
+    /// The number of polynomials.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The number of variables.
+    #[must_use]
+    pub fn variables(&self) -> usize {
+        self.variables
+    }
+
+    /// Powers 0..=largest of every variable, one after the other.
+    fn powers<T: Scalar>(&self, at: &[T]) -> Vec<T> {
+        let power = |x: T| (0..=self.largest).map(move |n| x.powi(n));
+        at.iter().flat_map(|x| power(*x)).collect()
+    }
+
+    fn product<T: Scalar>(&self, term: &Term, powers: &[T], but: Option<usize>) -> T {
+        let stride = self.largest as usize + 1;
+        let factor = |(k, (i, e)): (usize, &(usize, u32))| {
+            let lower = u32::from(but == Some(k));
+            powers[i * stride + (e - lower) as usize]
+        };
+        let coefficient = T::coefficient(term);
+        term.powers.iter().enumerate().map(factor).fold(coefficient, |product, f| product * f)
+    }
+
+    /// The values of the polynomials.
+    pub(crate) fn values<T: Scalar>(&self, at: &[T]) -> Vec<T> {
+        let powers = self.powers(at);
+        let value = |row: &Vec<Term>| {
+            row.iter().map(|term| self.product(term, &powers, None)).fold(T::ZERO, |a, b| a + b)
+        };
+        self.rows.iter().map(value).collect()
+    }
+
+    /// The values and the derivatives, row by row.
+    pub(crate) fn derivatives<T: Scalar>(&self, at: &[T]) -> (Vec<T>, Vec<T>) {
+        let powers = self.powers(at);
+        let n = self.variables;
+        let mut slopes = vec![T::ZERO; self.rows.len() * n];
+        let mut values = vec![T::ZERO; self.rows.len()];
+        for ((row, value), slopes) in
+            self.rows.iter().zip(&mut values).zip(slopes.chunks_exact_mut(n.max(1)))
+        {
+            for term in row {
+                *value = *value + self.product(term, &powers, None);
+                for (k, (i, e)) in term.powers.iter().enumerate() {
+                    let slope = self.product(term, &powers, Some(k)) * T::integer(*e);
+                    slopes[*i] = slopes[*i] + slope;
+                }
+            }
+        }
+        (values, slopes)
+    }
+
+    /// Every row's own highest degree in all variables, its terms of that degree, and an upper bound of the sum of
+    /// |coefficients| for every lower degree.
+    pub(crate) fn leading(&self) -> (Self, Vec<(u32, Vec<f64>)>) {
+        let degree = |term: &Term| term.powers.iter().map(|(_, e)| e).sum::<u32>();
+        let mut top = Vec::new();
+        let mut sizes = Vec::new();
+        for row in &self.rows {
+            let highest = row.iter().map(degree).max().unwrap_or(0);
+            let mut below = vec![Interval::ZERO; highest as usize];
+            for term in row.iter().filter(|term| degree(term) < highest) {
+                let sum = &mut below[degree(term) as usize];
+                *sum = *sum + Interval::point(term.coefficient.above());
+            }
+            top.push(row.iter().filter(|term| degree(term) == highest).cloned().collect());
+            sizes.push((highest, below.into_iter().map(Interval::high).collect()));
+        }
+        (Self { rows: top, ..*self }, sizes)
+    }
+}

@@ -1,0 +1,264 @@
+//! All zeros of n polynomials in a box, with proof of their number, by subdivision; and a box outside which there is
+//! none.
+//!
+//! A box is thrown away when it is proved to have no zero, or when it lies in a box that is known to have exactly one,
+//! which is counted. Otherwise it is cut in two; a zero on a cut is proved on a box around it, not on the halves.
+//! What is still open at the smallest size is handed back: *could not decide* is not *none*.
+
+use super::System;
+use super::krawczyk::{
+    Region, Verdict, Zero, is_in, krawczyk, meet, middle, newton, prove, zero_near,
+};
+use lindstedt_algebra::Stop;
+use lindstedt_number::interval::Interval;
+
+/// How far a search goes.
+#[derive(Clone, Debug)]
+pub struct Limits {
+    /// Boxes looked at.
+    pub boxes: usize,
+    /// Boxes are not cut below this fraction of the box searched.
+    pub smallest: f64,
+    /// Asked between boxes.
+    pub stop: Stop,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { boxes: 2_000_000, smallest: 1e-6, stop: Stop::default() }
+    }
+}
+
+/// The zeros of a box.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The zeros, each proved; no two are the same.
+    pub zeros: Vec<Zero>,
+    /// Boxes that could not be decided, hulls of neighbours; all other points of the box searched that are no zero
+    /// of the list are none.
+    pub undecided: Vec<Region>,
+    /// The boxes looked at.
+    pub boxes: usize,
+    /// Whether the search was stopped; what was left then counts as undecided.
+    pub stopped: bool,
+}
+
+impl Found {
+    /// Whether the number of zeros is proved.
+    #[must_use]
+    pub fn is_proved(&self) -> bool {
+        self.undecided.is_empty()
+    }
+}
+
+/// All zeros of as many polynomials as unknowns in a closed box. A zero on its boundary within rounding is counted.
+///
+/// Nothing where the numbers of polynomials, of unknowns and of sides differ. Cost: one test, n^3 operations, per box;
+/// the number of boxes grows with the number of zeros and, fast, with n and near multiple zeros.
+///
+/// ```
+/// use lindstedt_number::interval::Interval;
+/// use lindstedt_orbit::steady::{Limits, Polynomial, System, all_zeros};
+/// // x^2 + y^2 = 1, x = y.
+/// let (x, y) = (Polynomial::variable(0), Polynomial::variable(1));
+/// let circle = (&x * &x) + &(&y * &y) + &Polynomial::constant((-1).into());
+/// let line = x + &(&y * &Polynomial::constant((-1).into()));
+/// let system = System::new(&[circle, line], &[]);
+/// let found = all_zeros(&system, &[Interval::new(-2.0, 2.0); 2], &Limits::default()).ok_or("shape")?;
+/// assert!(found.is_proved() && found.zeros.len() == 2);
+/// # Ok::<(), &str>(())
+/// ```
+#[must_use]
+pub fn all_zeros(system: &System, region: &[Interval], limits: &Limits) -> Option<Found> {
+    let n = region.len();
+    let fits = n > 0 && system.rows() == n && system.variables() == n;
+    if !fits || region.iter().any(|x| !x.is_finite()) {
+        return None;
+    }
+    let mut search = Search { system, limits, zeros: Vec::new(), open: Vec::new(), boxes: 0 };
+    let stopped = !search.run(region);
+    let meets = |zero: &Zero| meet(&zero.enclosure, region).is_some();
+    search.zeros.retain(meets);
+    let undecided = joined(search.open);
+    Some(Found { zeros: search.zeros, undecided, boxes: search.boxes, stopped })
+}
+
+struct Search<'a> {
+    system: &'a System,
+    limits: &'a Limits,
+    zeros: Vec<Zero>,
+    open: Vec<Region>,
+    boxes: usize,
+}
+
+impl Search<'_> {
+    /// False when it was stopped.
+    fn run(&mut self, region: &[Interval]) -> bool {
+        let smallest: Vec<f64> = region.iter().map(|x| self.limits.smallest * x.width()).collect();
+        let mut stack = vec![region.to_vec()];
+        while let Some(part) = stack.pop() {
+            if self.zeros.iter().any(|zero| is_in(&part, &zero.unique_within)) {
+                continue;
+            }
+            self.boxes += 1;
+            if self.boxes > self.limits.boxes || self.limits.stop.asked() {
+                self.open.push(part);
+                self.open.append(&mut stack);
+                return false;
+            }
+            let next = match krawczyk(self.system, &part) {
+                Verdict::None => continue,
+                Verdict::One(_) => {
+                    if !self.record(&part) {
+                        self.open.push(part);
+                    }
+                    continue;
+                }
+                Verdict::Within(within) => within,
+                Verdict::Open => part.clone(),
+            };
+            if gained(&part, &next) {
+                stack.push(next);
+                continue;
+            }
+            self.centre(&part);
+            match self.cut(&next, &smallest) {
+                Some(halves) => stack.extend(halves),
+                None => self.open.push(next),
+            }
+        }
+        true
+    }
+
+    /// Records the zero of a box that has exactly one; false where it cannot be told from another.
+    fn record(&mut self, part: &[Interval]) -> bool {
+        prove(self.system, part).is_some_and(|zero| self.keep(zero))
+    }
+
+    /// Adds a zero unless it is known; false where that is not decided. A box with one zero knows all that lie in it.
+    fn keep(&mut self, zero: Zero) -> bool {
+        for known in &self.zeros {
+            let same = is_in(&zero.enclosure, &known.unique_within)
+                || is_in(&known.enclosure, &zero.unique_within);
+            if same {
+                return true;
+            }
+            if meet(&zero.enclosure, &known.enclosure).is_some() {
+                return false;
+            }
+        }
+        self.zeros.push(zero);
+        true
+    }
+
+    /// Looks for a zero from the middle of a box, for one on its boundary, which no subdivision isolates.
+    fn centre(&mut self, part: &[Interval]) {
+        let Some(at) = newton(self.system, &middle(part)) else { return };
+        let near = |(x, side): (&f64, &Interval)| (x - side.middle()).abs() <= 0.6 * side.width();
+        let known = |zero: &Zero| zero.unique_within.iter().zip(&at).all(|(x, a)| x.contains(*a));
+        if !at.iter().zip(part).all(near) || self.zeros.iter().any(known) {
+            return;
+        }
+        let widths: Vec<f64> = part.iter().map(|x| 1.2 * x.width()).collect();
+        if let Some(zero) = zero_near(self.system, &at, &widths) {
+            self.keep(zero);
+        }
+    }
+
+    /// The halves of a box, cut where the polynomials change most; nothing at the smallest size.
+    fn cut(&self, part: &[Interval], smallest: &[f64]) -> Option<[Region; 2]> {
+        let n = part.len();
+        let (_, slopes) = self.system.derivatives(part);
+        let change = |j: usize| -> f64 {
+            let steepest = (0..n).map(|i| slopes[i * n + j].above()).fold(0.0, f64::max);
+            let width = part[j].width();
+            // A side that nothing depends on, or that everything does, is cut by its length.
+            if steepest.is_finite() { width * steepest.max(1e-300) } else { width }
+        };
+        let large = (0..n).filter(|j| part[*j].width() > smallest[*j]);
+        let side = large.max_by(|a, b| change(*a).total_cmp(&change(*b)))?;
+        Some(part[side].halves().map(|half| {
+            let mut piece = part.to_vec();
+            piece[side] = half;
+            piece
+        }))
+    }
+}
+
+/// Whether a side has become much shorter.
+fn gained(before: &[Interval], after: &[Interval]) -> bool {
+    before.iter().zip(after).any(|(a, b)| b.width() < 0.6 * a.width())
+}
+
+/// Hulls of boxes that touch.
+fn joined(open: Vec<Region>) -> Vec<Region> {
+    let mut hulls: Vec<Region> = Vec::new();
+    for mut part in open {
+        while let Some(k) = hulls.iter().position(|hull| meet(hull, &part).is_some()) {
+            let other = hulls.swap_remove(k);
+            part = part.iter().zip(&other).map(|(a, b)| a.hull(*b)).collect();
+        }
+        hulls.push(part);
+    }
+    hulls
+}
+
+/// Boxes of the sphere looked at for a bound.
+const MOST_PARTS: usize = 100_000;
+
+/// Some R such that all zeros have |x_i| < R for every i, from the terms of highest degree of every polynomial:
+/// where they have no common zero on the cube's surface max |x_i| = 1, one of them outgrows the rest of its polynomial.
+/// Nothing where they have one, or where that could not be decided.
+#[must_use]
+pub fn bound(system: &System) -> Option<f64> {
+    let n = system.variables();
+    let (top, sizes) = system.leading();
+    if n == 0 || system.rows() != n {
+        return None;
+    }
+    let mut stack = Vec::new();
+    for (side, end) in (0..n).flat_map(|side| [(side, -1.0), (side, 1.0)]) {
+        let mut face = vec![Interval::new(-1.0, 1.0); n];
+        face[side] = Interval::point(end);
+        stack.push(face);
+    }
+    let mut radius = 0.0f64;
+    let mut parts = 0;
+    while let Some(part) = stack.pop() {
+        parts += 1;
+        if parts > MOST_PARTS {
+            return None;
+        }
+        let values = top.values(&part);
+        let outgrown = values.iter().zip(&sizes).filter_map(|(value, (degree, below))| {
+            outgrows(value.below(), *degree, below).filter(|r| *r < 1e6)
+        });
+        // A much finer cut gives a smaller bound; a few parts are worth it.
+        let width = part.iter().map(|x| x.width()).fold(0.0, f64::max);
+        match outgrown.reduce(f64::min) {
+            Some(r) if r <= radius || width < 0.2 => radius = radius.max(r),
+            _ if width < 1e-3 => return None,
+            _ => {
+                let widest = |a: &usize, b: &usize| part[*a].width().total_cmp(&part[*b].width());
+                let side = (0..n).max_by(widest)?;
+                stack.extend(part[side].halves().map(|half| {
+                    let mut piece = part.clone();
+                    piece[side] = half;
+                    piece
+                }));
+            }
+        }
+    }
+    Some(radius)
+}
+
+/// A power of 2^(1/4), rounded up, beyond which c r^d > sum_k below_k r^k.
+fn outgrows(c: f64, degree: u32, below: &[f64]) -> Option<f64> {
+    let rest = |r: f64| -> f64 {
+        let power = |k: usize| Interval::point(r).powi(degree - k as u32).low();
+        below.iter().enumerate().map(|(k, size)| size / power(k)).sum()
+    };
+    // The sum of a few positive doubles is known to a few units.
+    let ladder = (-40..80).map(|k| 2f64.powf(f64::from(k) / 4.0));
+    (c > 0.0).then(|| ladder.into_iter().find(|r| rest(*r) * (1.0 + 1e-12) < c)).flatten()
+}

@@ -1,0 +1,281 @@
+#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+use super::*;
+use lindstedt_number::Exact;
+use lindstedt_number::interval::Interval;
+use rug::Rational;
+
+fn polynomial(terms: &[(&[u32], (i64, i64))]) -> Polynomial {
+    let mut sum = Polynomial::default();
+    for (exponents, q) in terms {
+        sum.add_term(exponents, &Rational::from(*q));
+    }
+    sum
+}
+
+#[test]
+fn roots_on_cuts_are_counted() {
+    // (x^2 - 1/4)(x - 1) x: roots on cuts of [-2, 2].
+    let p = polynomial(&[(&[4], (1, 1)), (&[3], (-1, 1)), (&[2], (-1, 4)), (&[1], (1, 4))]);
+    let system = System::new(&[p], &[]);
+    let found = all_zeros(&system, &[Interval::new(-2.0, 2.0)], &Limits::default()).unwrap();
+    assert!(found.is_proved());
+    let mut roots: Vec<f64> = found.zeros.iter().map(|zero| zero.middle()[0]).collect();
+    roots.sort_by(f64::total_cmp);
+    for (root, known) in roots.iter().zip([-0.5, 0.0, 0.5, 1.0]) {
+        assert!((root - known).abs() < 1e-14);
+    }
+    assert_eq!(roots.len(), 4);
+    let radius = bound(&system).unwrap();
+    assert!((1.0..3.0).contains(&radius), "{radius}");
+}
+
+#[test]
+fn a_double_root_is_undecided_not_none() {
+    let p = polynomial(&[(&[2], (1, 1)), (&[1], (-2, 3)), (&[], (1, 9))]);
+    let system = System::new(&[p], &[]);
+    let found = all_zeros(&system, &[Interval::new(-2.0, 2.0)], &Limits::default()).unwrap();
+    assert_eq!((found.zeros.len(), found.undecided.len()), (0, 1));
+    assert!(found.undecided[0][0].contains(1.0 / 3.0));
+}
+
+fn term(amplitudes: &[u32], parameters: &[u32], re: (i64, i64), im: (i64, i64)) -> ComplexTerm {
+    let (re, im) = (Rational::from(re), Rational::from(im));
+    ComplexTerm { amplitudes: amplitudes.to_vec(), parameters: parameters.to_vec(), re, im }
+}
+
+/// w' = -(i/4) F - mu w - i s w + (3/2) i al w^2 conj w; parameters s, mu, al, F. Nayfeh and Mook, section 4.1.
+fn duffing() -> Flow {
+    let equation = vec![
+        term(&[0, 0], &[0, 0, 0, 1], (0, 1), (-1, 4)),
+        term(&[1, 0], &[0, 1, 0, 0], (-1, 1), (0, 1)),
+        term(&[1, 0], &[1, 0, 0, 0], (0, 1), (-1, 1)),
+        term(&[2, 1], &[0, 0, 1, 0], (0, 1), (3, 2)),
+    ];
+    Flow::of_complex(&[equation], &["s", "mu", "al", "F"])
+}
+
+/// w' = -(i/4) F + w/2 - i s w - w^2 conj w/2; parameters s, F.
+fn van_der_pol() -> Flow {
+    let equation = vec![
+        term(&[0, 0], &[0, 1], (0, 1), (-1, 4)),
+        term(&[1, 0], &[0, 0], (1, 2), (0, 1)),
+        term(&[1, 0], &[1, 0], (0, 1), (-1, 1)),
+        term(&[2, 1], &[0, 0], (-1, 2), (0, 1)),
+    ];
+    Flow::of_complex(&[equation], &["s", "F"])
+}
+
+fn at(values: &[&str]) -> Vec<Option<Exact>> {
+    values.iter().map(|text| Exact::parse(text).ok()).collect()
+}
+
+fn amplitude(w: &[f64]) -> f64 {
+    2.0 * w[0].hypot(w[1])
+}
+
+fn square(r: f64) -> Vec<Interval> {
+    vec![Interval::new(-r, r); 2]
+}
+
+/// (mu^2 + (s - 3 al a^2/8)^2) a^2 = F^2/4 at every state, their number that of the cubic's positive roots.
+#[test]
+fn primary_resonance_states() {
+    for (s, mu, count) in
+        [("1", "1/10", 3), ("-1", "1/10", 1), ("1/2", "1", 1), ("pi/4", "1/20", 3)]
+    {
+        let values = at(&[s, mu, "1", "1/2"]);
+        let system = duffing().system(&values);
+        let radius = bound(&system).unwrap();
+        let found = all_zeros(&system, &square(radius), &Limits::default()).unwrap();
+        assert!(found.is_proved() && found.boxes < 5000, "{} boxes", found.boxes);
+        assert_eq!(found.zeros.len(), count, "s = {s}, mu = {mu}");
+        let number = |k: usize| values[k].as_ref().unwrap().to_f64();
+        for zero in &found.zeros {
+            let a = amplitude(&zero.middle());
+            let left = (number(1).powi(2) + (number(0) - 0.375 * a * a).powi(2)) * a * a;
+            assert!((left - 0.0625).abs() < 1e-13, "{left}");
+            assert!(zero.enclosure.iter().all(|x| x.width() < 1e-13));
+        }
+    }
+}
+
+fn course(parameter: usize, range: [f64; 2], step: f64) -> Course {
+    let stop = Default::default();
+    Course { parameter, range, unknowns: 2, reach: 2.0, step, most: 20_000, stop }
+}
+
+/// The whole curve over s; both folds, where d(F^2)/d(a^2) = 0, proved.
+#[test]
+fn primary_resonance_branch() {
+    let flow = duffing();
+    let mut values = at(&["1", "1/10", "1", "1/2"]);
+    values[0] = None;
+    let system = flow.system(&values);
+    let start = [1e-2, -0.06, -2.0];
+    let branch = follow(&system, &start, &course(2, [-2.0, 4.0], 2e-3)).unwrap();
+    assert!(branch.complete && !branch.closed);
+    assert!(branch.points.len() > 500);
+    let (first, last) = (&branch.points[0].at, branch.points.last().unwrap());
+    assert!((first[2] + 2.0).abs() < 1e-12 && (last.at[2] - 4.0).abs() < 1e-12);
+    for point in &branch.points {
+        let (a, s) = (amplitude(&point.at), point.at[2]);
+        let left = (0.01 + (s - 0.375 * a * a).powi(2)) * a * a;
+        assert!((left - 0.0625).abs() < 1e-11);
+        // Liouville: the trace is -2 mu.
+        let trace: f64 = point.exponents.iter().map(|x| x.re).sum();
+        assert!((trace + 0.2).abs() < 1e-12);
+        // Unstable exactly between the folds: det = mu^2 + (s - 3c)(s - c) < 0, c = 3 a^2/8.
+        let c = 0.375 * a * a;
+        let determinant = 0.01 + (s - 3.0 * c) * (s - c);
+        if determinant.abs() > 1e-6 {
+            assert_eq!(point.is_stable(), Some(determinant > 0.0));
+        }
+    }
+    let folds: Vec<_> = branch.points.iter().filter(|p| p.change.is_some()).collect();
+    assert_eq!(folds.len(), 2);
+    for fold in folds {
+        assert_eq!(fold.change, Some(Change::Fold));
+        let zero = flow.change_near(Change::Fold, &values, &fold.at).unwrap();
+        let place = zero.middle();
+        let (s, c) = (place[2], 0.375 * amplitude(&place).powi(2));
+        assert!((0.01 + (s - 3.0 * c) * (s - c)).abs() < 1e-13);
+        assert!(zero.enclosure[2].width() < 1e-12 && (s - fold.at[2]).abs() < 1e-9);
+    }
+}
+
+/// Cusp: s = sqrt 3 mu, a^2 = 16 mu/(3 sqrt 3 al), F^2 = 256 mu^3/(9 sqrt 3 al).
+#[test]
+fn primary_resonance_cusp() {
+    let flow = duffing();
+    let mut values = at(&["1", "1/10", "1", "1/2"]);
+    (values[0], values[3]) = (None, None);
+    let root = 3f64.sqrt();
+    let cusp = [0.1 * root, (256.0 * 1e-3 / (9.0 * root)).sqrt()];
+    // From a fold at F = 1/2 along the curve of folds.
+    let mut one = values.clone();
+    one[3] = Exact::parse("1/2").ok();
+    let branch = follow(&flow.system(&one), &[1e-2, -0.06, -2.0], &course(2, [-2.0, 4.0], 0.01));
+    let branch = branch.unwrap();
+    let fold = branch.points.iter().find(|p| p.change == Some(Change::Fold)).unwrap();
+    let start = flow.change_near(Change::Fold, &one, &fold.at).unwrap().middle();
+    let l = [start[3], start[4]];
+    let curve = flow.conditions(Change::Fold, &values, &l).unwrap();
+    let guess = [&start[..3], &[0.5], &start[3..]].concat();
+    let folds = follow(&curve, &guess, &course(3, [0.01, 0.6], 0.02)).unwrap();
+    let found = flow.on_folds(&values, &folds);
+    assert_eq!(found.len(), 1);
+    let (change, zero) = &found[0];
+    let place = zero.middle();
+    assert_eq!(*change, Change::Cusp);
+    assert!((place[2] - cusp[0]).abs() < 1e-12 && (place[3] - cusp[1]).abs() < 1e-12);
+    assert!((amplitude(&place).powi(2) - 1.6 / (3.0 * root)).abs() < 1e-12);
+}
+
+/// Guckenheimer and Holmes, section 2.1: in their units sigma = 2 s, gamma = F/2 the Bogdanov-Takens point (1/2, 1/2), the
+/// cusp (1/sqrt 3, sqrt(8/27)).
+#[test]
+fn van_der_pol_lock_in() {
+    let flow = van_der_pol();
+    let free = [None, None];
+    let double = flow.change_near(Change::BogdanovTakens, &free, &[-0.48, 0.52, 0.24, 0.98]);
+    let double = double.unwrap().middle();
+    assert!((double[2] - 0.25).abs() < 1e-13 && (double[3] - 1.0).abs() < 1e-13);
+    let at = [None, Exact::parse("6/5").ok()];
+    let branch =
+        follow(&flow.system(&at), &[0.0, -1.2, 0.0], &course(2, [-1.0, 1.0], 5e-3)).unwrap();
+    let hopf: Vec<_> = branch.points.iter().filter(|p| p.change == Some(Change::Hopf)).collect();
+    assert_eq!(hopf.len(), 2);
+    for point in hopf {
+        let zero = flow.change_near(Change::Hopf, &at, &point.at).unwrap();
+        let place = zero.middle();
+        // Trace 1 - 2 |w|^2 = 0; then (1/16 + s^2)/2 = F^2/16.
+        assert!((place[0].powi(2) + place[1].powi(2) - 0.5).abs() < 1e-13);
+        assert!((0.5 * (0.0625 + place[2].powi(2)) - 0.09).abs() < 1e-13);
+        assert!((place[2] - point.at[2]).abs() < 1e-9);
+    }
+    let low = [None, Exact::parse("1/2").ok()];
+    let branch =
+        follow(&flow.system(&low), &[0.0, -1.1, 0.0], &course(2, [-1.0, 1.0], 5e-3)).unwrap();
+    // Below the cusp the locked states are a closed curve beside the one near zero.
+    assert!(branch.closed);
+    let folds: Vec<_> = branch.points.iter().filter(|p| p.change == Some(Change::Fold)).collect();
+    assert_eq!(folds.len(), 2);
+}
+
+/// Principal parametric resonance without forcing: w = 0 loses its stability where a pair of states branches off.
+#[test]
+fn crossings_are_no_folds() {
+    // w' = (i/4) h conj w - mu w - i s w + (3/2) i w^2 conj w; parameters s, mu, h.
+    let equation = vec![
+        term(&[0, 1], &[0, 0, 1], (0, 1), (1, 4)),
+        term(&[1, 0], &[0, 1, 0], (-1, 1), (0, 1)),
+        term(&[1, 0], &[1, 0, 0], (0, 1), (-1, 1)),
+        term(&[2, 1], &[0, 0, 0], (0, 1), (3, 2)),
+    ];
+    let flow = Flow::of_complex(&[equation], &["s", "mu", "h"]);
+    let values = [None, Exact::parse("1/10").ok(), Exact::parse("1").ok()];
+    let branch =
+        follow(&flow.system(&values), &[0.0, 0.0, -1.0], &course(2, [-1.0, 1.0], 0.01)).unwrap();
+    let changes: Vec<_> = branch.points.iter().filter(|p| p.change.is_some()).collect();
+    // mu^2 + s^2 = h^2/16.
+    let edge = (0.0625f64 - 0.01).sqrt();
+    assert_eq!(changes.len(), 2);
+    for (point, s) in changes.iter().zip([-edge, edge]) {
+        assert_eq!(point.change, Some(Change::Crossing));
+        assert!((point.at[2] - s).abs() < 1e-6);
+    }
+    let exact = at(&["0", "1/10", "1"]);
+    let found = all_zeros(&flow.system(&exact), &square(1.5), &Limits::default()).unwrap();
+    assert!(found.is_proved());
+    assert_eq!(found.zeros.len(), 3);
+}
+
+/// Two coupled modes, both forced: 4 unknowns, terms to degree 5. All states, each a zero, and their number does not
+/// depend on the box.
+#[test]
+fn two_modes() {
+    let cubic = |own: [u32; 4], other: [u32; 4]| {
+        vec![
+            term(&own, &[], (0, 1), (3, 2)),
+            term(&other, &[], (0, 1), (1, 2)),
+            term(&[0, 0, 0, 0], &[], (0, 1), (-1, 8)),
+        ]
+    };
+    let mut first = cubic([2, 1, 0, 0], [1, 0, 1, 1]);
+    first.push(term(&[1, 0, 0, 0], &[], (-1, 10), (-1, 1)));
+    first.push(term(&[3, 2, 0, 0], &[], (0, 1), (-15, 160)));
+    let mut second = cubic([0, 0, 2, 1], [1, 1, 1, 0]);
+    second.push(term(&[0, 0, 1, 0], &[], (-1, 10), (-4, 5)));
+    second.push(term(&[0, 0, 3, 2], &[], (0, 1), (-15, 160)));
+    let flow = Flow::of_complex(&[first, second], &[]);
+    let system = flow.system(&[]);
+    let found = all_zeros(&system, &[Interval::new(-1.5, 1.5); 4], &Limits::default()).unwrap();
+    assert!(found.is_proved() && found.boxes < 40_000, "{}", found.boxes);
+    assert_eq!(found.zeros.len(), 5);
+    // Newton's method from a grid finds no other, and all of them.
+    let mut reached = vec![false; 5];
+    for index in 0..7usize.pow(4) {
+        let digit = |k: u32| (index / 7usize.pow(k) % 7) as f64 * 0.45 - 1.35;
+        let Some(at) = krawczyk::newton(&system, &[digit(0), digit(1), digit(2), digit(3)]) else {
+            continue;
+        };
+        if at.iter().all(|x| x.abs() < 1.5) {
+            let near =
+                |zero: &Zero| zero.middle().iter().zip(&at).all(|(a, b)| (a - b).abs() < 1e-9);
+            reached[found.zeros.iter().position(near).unwrap()] = true;
+        }
+    }
+    assert_eq!(reached, [true; 5]);
+}
+
+/// At s = 1 the start decides between the two stable states.
+#[test]
+fn starts_settle_on_different_branches() {
+    let system = duffing().system(&at(&["1", "1/10", "1", "1/2"]));
+    let fate = |start: [f64; 2]| settle(&system, &start, 1.0, 1000.0, &Default::default());
+    let (Fate::Steady(low), Fate::Steady(high)) = (fate([0.0, 0.0]), fate([0.8, 0.0])) else {
+        unreachable!()
+    };
+    assert!(amplitude(&low) < 0.5 && amplitude(&high) > 1.0);
+}
