@@ -1,7 +1,7 @@
 //! Printed sums and printed decimals against the true ones.
 
 use super::Findings;
-use lindstedt::Exact;
+use lindstedt::{Error, Exact};
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_number::ball::Ball;
 use rug::ops::Pow;
@@ -18,6 +18,12 @@ impl<E> Term<E> {
     pub fn new(factor: impl Into<Rational>, name: &str, value: E) -> Self {
         Self { factor: factor.into(), name: name.to_owned(), value }
     }
+}
+
+/// A word of a vocabulary, times a factor.
+pub(super) fn word<E: Clone>(words: &[Term<E>], factor: i32, name: &str) -> Result<Term<E>, Error> {
+    let found = words.iter().find(|word| word.name == name).ok_or(Error::NoValue)?;
+    Ok(Term::new(factor, name, found.value.clone()))
 }
 
 /// A ring in which "b is a rational multiple of a" can be read off.

@@ -6,6 +6,8 @@
 //! it is computed. A further section of the paper adds modules with functions that push [`Row`]s
 //! and [`Table`]s, and an entry in `SECTIONS`.
 
+#![warn(clippy::too_many_lines)]
+
 mod compare;
 mod lobachevsky;
 mod melnikov;

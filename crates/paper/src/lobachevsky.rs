@@ -1,12 +1,10 @@
 //! The Lobachevsky function of the text below (41).
 
-use super::{Findings, Reader, Row, periods};
-use lindstedt::Error;
+use super::{Findings, Reader, Row, periods, plain, show};
 use lindstedt_algebra::RationalAlgebra;
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::print::{Print, Style};
-use lindstedt_number::ball::Ball;
-use lindstedt_number::digits::decimal;
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::fourier::lambda_harmonics;
 use lindstedt_phase::lobachevsky_function::{Point, lobachevsky};
 use rug::{Float, Rational};
@@ -15,100 +13,114 @@ use rug::{Float, Rational};
 const HARMONICS: u32 = 200;
 
 /// Where properties of L are tested, in units of pi.
-const POINTS: [(i32, u32); 5] = [(1, 8), (1, 3), (2, 7), (9, 20), (-3, 11)];
+const POINTS: [(i32, u32); 5] = [(1, 8), THIRD, (2, 7), (9, 20), (-3, 11)];
+
+/// Where its value is shown.
+const THIRD: (i32, u32) = (1, 3);
 
 /// The rows from the definition of L to L(2 pi).
-pub(super) fn rows(reader: &Reader<'_>) -> Result<Vec<Row>, Error> {
-    let balls = reader.balls;
-    let l = |q: &Rational| lobachevsky(&Point::PiTimes(q.clone()), balls);
-    let pi_times = |q: &Rational| Float::with_val(200, rug::float::Constant::Pi) * q;
-    let quadrature = |from: &Rational, to: &Rational| {
-        periods::integral_of_log_secant(&pi_times(from), &pi_times(to))
-    };
-    let points: Vec<Rational> = POINTS.iter().map(|p| Rational::from(*p)).collect();
-    let zero = Rational::new();
-    let mut rows = Vec::new();
-    let mut push = |label: &str,
-                    printed: &str,
-                    derived: String,
-                    independent: String,
-                    holds,
-                    evidence: String| {
-        rows.push(Row::new(
-            label,
-            printed,
-            derived,
-            independent,
-            &Findings::holds(holds),
-            evidence,
-        ));
-    };
-    let show = |ball: &Ball| decimal(ball, 15).unwrap_or_else(|| "?".to_owned());
-    // The definition, against the integral itself.
-    let third = Rational::from((1, 3));
-    let direct = quadrature(&zero, &third);
-    let holds = points.iter().all(|q| near(&l(q), &quadrature(&zero, q)));
-    push(
-        "$L$",
-        "$L(x) = -int_0^x ln|cos t| dt$",
-        format!("$L(pi/3) = {}$", show(&l(&third))),
-        format!("quadrature: {} (estimated)", direct.to_string_radix(10, Some(15))),
-        holds,
-        format!(
-            "the series of the program and the integral agree to 25 digits at {} points",
-            points.len()
-        ),
-    );
-    let odd = points.iter().all(|q| l(q).overlaps(&balls.neg(&l(&Rational::from(-q)))));
-    let odd = odd
-        && points.iter().all(|q| {
-            let mirrored = Rational::from(-q);
-            near(&balls.neg(&l(q)), &quadrature(&zero, &mirrored))
-        });
-    push(
-        "$L$ odd",
-        "$L(x) = -L(-x)$ for $-pi/2 <= x <= pi/2$",
-        "$L$ is odd on the whole line".to_owned(),
-        "quadrature from 0 to $-x$".to_owned(),
-        odd,
-        "the integrand is even; compared at the test points".to_owned(),
-    );
-    for (label, printed, shift) in [
-        ("$L(x - pi)$", "$L(x - pi) = L(x) - pi ln 2$", -1),
-        ("$L(x + pi)$", "$L(x + pi) = L(x) + pi ln 2$", 1),
-    ] {
-        let step = balls.mul_i64(&balls.mul(&balls.pi(), &balls.ln_2()), shift);
-        let holds = points.iter().all(|q| {
-            let moved = Rational::from(q + shift);
-            let expected = balls.add(&l(q), &step);
-            l(&moved).overlaps(&expected) && near(&expected, &quadrature(&zero, &moved))
-        });
-        let moved = Rational::from(&third + shift);
-        push(
-            label,
-            printed,
-            format!("$L(pi/3 {shift:+} pi) = {}$", show(&l(&moved))),
-            format!(
-                "quadrature: {} (estimated)",
-                quadrature(&zero, &moved).to_string_radix(10, Some(15))
-            ),
-            holds,
-            "the mean of $-ln|cos|$ is $mu_1 = ln 2$; compared at the test points".to_owned(),
-        );
+pub(super) fn rows(reader: &Reader<'_>) -> Vec<Row> {
+    let points = POINTS.iter().map(|p| Rational::from(*p)).collect();
+    let routes = Routes { balls: reader.balls, points };
+    vec![
+        routes.definition(),
+        routes.odd(),
+        routes.shifted("$L(x - pi)$", "$L(x - pi) = L(x) - pi ln 2$", -1),
+        routes.shifted("$L(x + pi)$", "$L(x + pi) = L(x) + pi ln 2$", 1),
+        series_row(reader),
+        routes.twice_the_pseudoperiod(),
+    ]
+}
+
+/// L by the series of the program and by quadrature of its definition; arguments in units of pi.
+struct Routes {
+    balls: Balls,
+    points: Vec<Rational>,
+}
+
+impl Routes {
+    fn series(&self, q: &Rational) -> Ball {
+        lobachevsky(&Point::PiTimes(q.clone()), self.balls)
     }
-    rows.push(series_row(reader));
-    let double = l(&Rational::from(2));
-    let printed = balls.mul_i64(&balls.mul(&balls.pi(), &balls.ln_2()), 2);
-    let direct = quadrature(&zero, &Rational::from(2));
-    rows.push(Row::new(
-        "$L(2 pi)$",
-        "$L(2 pi) = 2 pi ln 2$",
-        format!("$L(2 pi) = {}$", show(&double)),
-        format!("quadrature: {} (estimated)", direct.to_string_radix(10, Some(15))),
-        &Findings::holds(double.overlaps(&printed) && near(&printed, &direct)),
-        "twice the pseudoperiod, by the printed properties",
-    ));
-    Ok(rows)
+
+    fn quadrature(q: &Rational) -> Float {
+        let pi_times = |q: &Rational| Float::with_val(200, rug::float::Constant::Pi) * q;
+        periods::integral_of_log_secant(&pi_times(&Rational::new()), &pi_times(q))
+    }
+
+    /// The quadrature in words.
+    fn quadrature_text(q: &Rational) -> String {
+        format!("quadrature: {} (estimated)", Self::quadrature(q).to_string_radix(10, Some(15)))
+    }
+
+    /// n pi ln 2.
+    fn pseudoperiods(&self, n: i64) -> Ball {
+        let balls = self.balls;
+        balls.mul_i64(&balls.mul(&balls.pi(), &balls.ln_2()), n)
+    }
+
+    /// The definition, against the integral itself.
+    fn definition(&self) -> Row {
+        let third = Rational::from(THIRD);
+        plain(
+            "$L$",
+            "$L(x) = -int_0^x ln|cos t| dt$",
+            format!("$L(pi/3) = {}$", show(&self.series(&third), 15)),
+            Self::quadrature_text(&third),
+            self.points.iter().all(|q| near(&self.series(q), &Self::quadrature(q))),
+            &format!(
+                "the series of the program and the integral agree to 25 digits at {} points",
+                self.points.len()
+            ),
+        )
+    }
+
+    fn odd(&self) -> Row {
+        let is_odd = |q: &Rational| {
+            let (mirrored, negative) = (Rational::from(-q), self.balls.neg(&self.series(q)));
+            self.series(q).overlaps(&self.balls.neg(&self.series(&mirrored)))
+                && near(&negative, &Self::quadrature(&mirrored))
+        };
+        plain(
+            "$L$ odd",
+            "$L(x) = -L(-x)$ for $-pi/2 <= x <= pi/2$",
+            "$L$ is odd on the whole line",
+            "quadrature from 0 to $-x$",
+            self.points.iter().all(is_odd),
+            "the integrand is even; compared at the test points",
+        )
+    }
+
+    fn shifted(&self, label: &str, printed: &str, shift: i32) -> Row {
+        let step = self.pseudoperiods(shift.into());
+        let holds = self.points.iter().all(|q| {
+            let moved = Rational::from(q + shift);
+            let expected = self.balls.add(&self.series(q), &step);
+            self.series(&moved).overlaps(&expected) && near(&expected, &Self::quadrature(&moved))
+        });
+        let moved = Rational::from(THIRD) + shift;
+        plain(
+            label,
+            printed,
+            format!("$L(pi/3 {shift:+} pi) = {}$", show(&self.series(&moved), 15)),
+            Self::quadrature_text(&moved),
+            holds,
+            "the mean of $-ln|cos|$ is $mu_1 = ln 2$; compared at the test points",
+        )
+    }
+
+    fn twice_the_pseudoperiod(&self) -> Row {
+        let two = Rational::from(2);
+        let (series, printed) = (self.series(&two), self.pseudoperiods(2));
+        plain(
+            "$L(2 pi)$",
+            "$L(2 pi) = 2 pi ln 2$",
+            format!("$L(2 pi) = {}$", show(&series, 15)),
+            Self::quadrature_text(&two),
+            series.overlaps(&printed) && near(&printed, &Self::quadrature(&two)),
+            "twice the pseudoperiod, by the printed properties",
+        )
+    }
 }
 
 /// L(x) - x ln 2 = Lambda_1(x): harmonic by harmonic, exactly.
@@ -140,7 +152,6 @@ fn series_row(reader: &Reader<'_>) -> Row {
         Float::with_val_round(53, Rational::from((1, 2 * next * next)), rug::float::Round::Up).0;
     let partial = balls.add_error(&balls.add(&linear, &balls.from_rational(&sum)), &bound);
     let value = lobachevsky(&Point::PiTimes(quarter), balls);
-    let show = |ball: &Ball, digits| decimal(ball, digits).unwrap_or_else(|| "?".to_owned());
     let first = exact.get(2).map_or("?".to_owned(), |c| ring.print(c, Style::Text));
     Row::new(
         "$L$ series",

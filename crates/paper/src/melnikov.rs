@@ -114,44 +114,17 @@ pub(super) fn read_numbers(reader: &mut Reader<'_>, section: &mut Section) -> Re
 /// gamma_c = 0.65.
 fn threshold(balls: Balls) -> Result<Row, Error> {
     let paper = StickSlip::paper();
-    let signed = paper.signed_threshold(balls).ok_or(Error::NoValue)?;
-    let value = balls.abs(&signed);
+    let value = balls.abs(&paper.signed_threshold(balls).ok_or(Error::NoValue)?);
     let printed = Decimal::new("0.65").ok_or(Error::NoValue)?;
     let system = paper.system().map_err(failed)?;
     let forcing = system.threshold(balls, Branch::Positive).map_err(failed)?.forcing;
     let second = rug::Float::with_val(QUADRATURE_BITS, work(&paper)? / forcing.midpoint());
-    // What else might be meant: a term left out of (27). At a = b = 1 the factors that are
-    // misprinted in (26) and (27) are all 1.
-    let mut sources = vec![("(27)".to_owned(), value.clone())];
-    let none = || Exact::from(0);
-    for (name, part) in [
-        ("(25) as printed, without the $beta sech^4 tanh^4$ term", without_quartic(balls)),
-        ("(27) without $T0$", StickSlip { dry: none(), ..paper.clone() }.signed_threshold(balls)),
-        (
-            "(27) without $alpha$",
-            StickSlip { alpha: none(), ..paper.clone() }.signed_threshold(balls),
-        ),
-        (
-            "(27) without $beta$",
-            StickSlip { beta: none(), ..paper.clone() }.signed_threshold(balls),
-        ),
-    ] {
-        sources.push((name.to_owned(), balls.abs(&part.ok_or(Error::NoValue)?)));
-    }
+    let sources = sources(&paper, &value, balls)?;
     let source = sources.iter().find(|(_, value)| printed.shows(value));
     let mut findings = printed.compare(&value);
     findings.reproduced = Some(source.is_some());
     // A slip of one digit is made once. The text repeats this number: "closely to gamma_c = 0.65".
     let digit = findings.correction.take();
-    let stationary = paper.stationary_points(balls).map_err(failed)?;
-    let extremes: Option<Vec<String>> = stationary
-        .iter()
-        .map(|v| {
-            let v = Exact::from(v.midpoint().to_rational()?);
-            let there = StickSlip { belt_speed: v, ..paper.clone() };
-            Some(show(&there.signed_threshold(balls)?, 6))
-        })
-        .collect();
     Ok(Row::new(
         "$gamma_c$",
         "$a = b = 1$, $alpha = beta = T0 = 0.3$, $omega = 2$, $v* = 0.4$: $gamma_c = 0.65$, printed \
@@ -166,18 +139,52 @@ fn threshold(balls: Balls) -> Result<Row, Error> {
             "0.65 is {}; {}; near $v* = 0.4$ the curve is flat, its smooth extrema are {}",
             source.map_or_else(
                 || {
-                    let tried: Vec<&str> = sources.iter().map(|(name, _)| name.as_str()).collect();
+                    let tried: Vec<&str> = sources.iter().map(|(name, _)| *name).collect();
                     format!("given by none of the formulas tried: {}", tried.join("; "))
                 },
-                |(name, _)| name.clone()
+                |(name, _)| (*name).to_owned()
             ),
             digit.map_or_else(
                 || "more than one digit differs".to_owned(),
                 |digit| format!("{digit}, but such a slip is not made twice")
             ),
-            extremes.ok_or(Error::NoValue)?.join(" and ")
+            extremes(&paper, balls)?.join(" and ")
         ),
     ))
+}
+
+/// What else might be meant: a term left out of (27). At a = b = 1 the factors that are misprinted
+/// in (26) and (27) are all 1.
+fn sources(
+    paper: &StickSlip,
+    value: &Ball,
+    balls: Balls,
+) -> Result<Vec<(&'static str, Ball)>, Error> {
+    let (none, rest) = (Exact::from(0), || paper.clone());
+    let without = [
+        ("(27) without $T0$", StickSlip { dry: none.clone(), ..rest() }),
+        ("(27) without $alpha$", StickSlip { alpha: none.clone(), ..rest() }),
+        ("(27) without $beta$", StickSlip { beta: none, ..rest() }),
+    ];
+    let quartic =
+        ("(25) as printed, without the $beta sech^4 tanh^4$ term", without_quartic(balls));
+    let parts = without.map(|(name, case)| (name, case.signed_threshold(balls)));
+    let mut list = vec![("(27)", value.clone())];
+    for (name, part) in [quartic].into_iter().chain(parts) {
+        list.push((name, balls.abs(&part.ok_or(Error::NoValue)?)));
+    }
+    Ok(list)
+}
+
+/// The smooth extrema of the threshold over v*.
+fn extremes(paper: &StickSlip, balls: Balls) -> Result<Vec<String>, Error> {
+    let value = |v: &Ball| {
+        let belt_speed = Exact::from(v.midpoint().to_rational()?);
+        let there = StickSlip { belt_speed, ..paper.clone() };
+        Some(show(&there.signed_threshold(balls)?, 6))
+    };
+    let stationary = paper.stationary_points(balls).map_err(failed)?;
+    stationary.iter().map(value).collect::<Option<_>>().ok_or(Error::NoValue)
 }
 
 /// The threshold of the paper's point without the part (32/35) beta V^3 of G: what (25) leaves

@@ -108,6 +108,12 @@ impl Case {
         self.algebra.scale_by(f, c)
     }
 
+    /// -alpha_k x_n''.
+    pub fn inertia(&self, k: usize, n: usize) -> Term<Element> {
+        let value = self.scaled(&self.acceleration(n), &self.expansion.frequency_squared[k]);
+        Term::new(-1, &format!("alpha_{k} x_{n}''"), value)
+    }
+
     /// The whole right side of x_n'' + x_n = ..., secular term and all.
     pub fn right_side(&self, n: usize) -> Element {
         self.algebra.add(&self.acceleration(n), self.x(n))

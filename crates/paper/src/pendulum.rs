@@ -1,6 +1,6 @@
 //! (43)-(51): the pendulum.
 
-use super::compare::{Term, compare_sums};
+use super::compare::{Term, compare_sums, word};
 use super::orders::{Case, Element};
 use super::pendulum_numbers;
 use super::pendulum_results::{self, OMEGA_1, in_printed_symbols, results};
@@ -10,7 +10,7 @@ use lindstedt::Error;
 use lindstedt::unstable::derivation::constants::sine_sum;
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::print::{Print, Style};
-use lindstedt_coeff::{PolynomialRing, Symbol};
+use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_number::ball::{Ball, Balls};
 use rug::{Integer, Rational};
 
@@ -47,17 +47,33 @@ fn force(x: &Ball, delta: &Ball, balls: Balls) -> Option<Ball> {
 }
 
 fn equation_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
+    let mut rows = vec![period_row(balls)?, power_series_row(balls)?];
+    rows.extend(stiffness_rows(case, balls)?);
+    rows.push(omega_row(balls)?);
+    for sum in PRINTED_SUMS {
+        rows.push(sum.row(balls)?);
+    }
+    Some(rows)
+}
+
+fn period_row(balls: Balls) -> Option<Row> {
     let one = Rational::from(1);
     let mean = periods::pendulum_period(&one, balls)?;
     let series = periods::pendulum_period_by_series(&one, balls)?;
-    let mut rows = vec![plain(
+    Some(plain(
         "(43)",
         "$x'' + sin x = 0$",
         format!("period at amplitude 1: {} by the AGM", show(&mean, 16)),
         format!("{} by the hypergeometric series", show(&series, 16)),
         mean.overlaps(&series),
         "two closed forms of the period enclose the same number",
-    )];
+    ))
+}
+
+/// Where the sum of (44) is compared with the force: x = 7/5.
+const AT: (i32, i32) = (7, 5);
+
+fn power_series_row(balls: Balls) -> Option<Row> {
     // The coefficients printed, and the recurrence c_{k+1} = -c_k/((2k+2)(2k+3)) of sin'' = -sin.
     let printed = [Rational::from(1), Rational::from((-1, 6)), Rational::from((1, 120))];
     let mut derived = vec![Rational::from(1)];
@@ -65,72 +81,109 @@ fn equation_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
         let last = derived.last()?;
         derived.push(last * Rational::from((-1, (2 * k + 2) * (2 * k + 3))));
     }
-    let x = balls.from_rational(&Rational::from((7, 5)));
-    let at_one = force(&x, &balls.one(), balls)?;
-    let near = balls.sub(&at_one, &balls.sin(&x)).abs_upper() < 1e-60;
-    rows.push(plain(
+    let x = balls.from_rational(&Rational::from(AT));
+    let (at_one, sine) = (force(&x, &balls.one(), balls)?, balls.sin(&x));
+    Some(plain(
         "(44)",
         "$x'' + x - x^(1+2 delta)/3! + x^(1+4 delta)/5! + ... = 0$",
-        "$x'' + x S(delta ln x^2) = 0$, $S(z) = sum_k (-1)^k e^(k z)/(2k+1)!$".to_owned(),
-        format!("at $delta = 1$, $x = 7/5$: {}, $sin(7/5) = {}$", show(&at_one, 15), show(&balls.sin(&x), 15)),
-        printed.as_slice() == derived.as_slice() && near,
+        "$x'' + x S(delta ln x^2) = 0$, $S(z) = sum_k (-1)^k e^(k z)/(2k+1)!$",
+        format!(
+            "at $delta = 1$, $x = 7/5$: {}, $sin(7/5) = {}$",
+            show(&at_one, 15),
+            show(&sine, 15)
+        ),
+        printed.as_slice() == derived.as_slice() && near(&at_one, &sine, balls),
         "the factors of the powers, exactly, and the sum at $delta = 1$ (the signs printed alternate)",
-    ));
+    ))
+}
+
+/// Whether two numbers agree to 60 digits.
+fn near(a: &Ball, b: &Ball, balls: Balls) -> bool {
+    balls.sub(a, b).abs_upper() < 1e-60
+}
+
+/// Omega(x, 0) and omega^2.
+fn stiffness_rows(case: &Case, balls: Balls) -> Option<[Row; 2]> {
     let sine = balls.sin(&balls.one());
     let stiffness = case.constants.evaluate(&case.expansion.stiffness, balls)?;
+    let x = balls.from_rational(&Rational::from(AT));
     let zero = force(&x, &balls.zero(), balls)?;
-    rows.push(plain(
-        "$Omega(x,0)$",
-        "$Omega(x, 0) = x (1 - 1/3! + 1/5! - ...) = x sin 1$",
-        format!("$kappa = S_0 = {}$", show(&stiffness, 15)),
-        format!("$sin 1 = {}$", show(&sine, 15)),
-        stiffness.overlaps(&sine) && balls.sub(&zero, &balls.mul(&x, &sine)).abs_upper() < 1e-60,
-        "the stiffness that the engine finds at order zero, and the sum at $delta = 0$",
-    ));
-    rows.push(plain(
-        "$omega^2$",
-        "$omega^2 = sin 1$",
-        format!("$omega^2 = S_0 = {}$ at order zero", show(&stiffness, 15)),
-        format!("$sin 1 = {}$", show(&sine, 15)),
-        stiffness.overlaps(&sine),
-        "the series of the program for $S_0$ and MPFR's sine",
-    ));
-    rows.push(omega_row(balls)?);
-    // omega_1^2 = sum (-1)^(k+1) k/(2k+1)!, omega_2^2 half of that with k^2, as printed.
-    let cosine = balls.cos(&balls.one());
-    let closed = [
-        balls.mul_power_of_two(&balls.sub(&sine, &cosine), -1),
-        balls.mul_power_of_two(&cosine, -3),
-    ];
-    let names = [
-        (
-            "$omega_1^2$",
-            "$omega_1^2 = 1/3! - 2/5! + 3/7! - 4/9! + ...$",
-            "-S_1",
-            "(sin 1 - cos 1)/2",
+    let same = stiffness.overlaps(&sine);
+    let [shown, shown_sine] = [&stiffness, &sine].map(|ball| show(ball, 15));
+    Some([
+        plain(
+            "$Omega(x,0)$",
+            "$Omega(x, 0) = x (1 - 1/3! + 1/5! - ...) = x sin 1$",
+            format!("$kappa = S_0 = {shown}$"),
+            format!("$sin 1 = {shown_sine}$"),
+            same && near(&zero, &balls.mul(&x, &sine), balls),
+            "the stiffness that the engine finds at order zero, and the sum at $delta = 0$",
         ),
-        ("$omega_2^2$", "$omega_2^2 = 0.5 (1/3! - 2^2/5! + 3^2/7! - ...)$", "-S_2/2", "(cos 1)/8"),
-    ];
-    for ((label, printed, symbol, form), (n, closed)) in
-        names.into_iter().zip((1u16..).zip(&closed))
-    {
+        plain(
+            "$omega^2$",
+            "$omega^2 = sin 1$",
+            format!("$omega^2 = S_0 = {shown}$ at order zero"),
+            format!("$sin 1 = {shown_sine}$"),
+            same,
+            "the series of the program for $S_0$ and MPFR's sine",
+        ),
+    ])
+}
+
+/// A sum that is printed term by term, with its closed form.
+struct PrintedSum {
+    order: u16,
+    label: &'static str,
+    printed: &'static str,
+    symbol: &'static str,
+    form: &'static str,
+    closed: fn(Balls) -> Ball,
+}
+
+/// omega_1^2 = sum (-1)^(k+1) k/(2k+1)!, omega_2^2 half of that with k^2, as printed.
+const PRINTED_SUMS: [PrintedSum; 2] = [
+    PrintedSum {
+        order: 1,
+        label: "$omega_1^2$",
+        printed: "$omega_1^2 = 1/3! - 2/5! + 3/7! - 4/9! + ...$",
+        symbol: "-S_1",
+        form: "(sin 1 - cos 1)/2",
+        closed: |balls| {
+            let one = balls.one();
+            balls.mul_power_of_two(&balls.sub(&balls.sin(&one), &balls.cos(&one)), -1)
+        },
+    },
+    PrintedSum {
+        order: 2,
+        label: "$omega_2^2$",
+        printed: "$omega_2^2 = 0.5 (1/3! - 2^2/5! + 3^2/7! - ...)$",
+        symbol: "-S_2/2",
+        form: "(cos 1)/8",
+        closed: |balls| balls.mul_power_of_two(&balls.cos(&balls.one()), -3),
+    },
+];
+
+impl PrintedSum {
+    fn row(&self, balls: Balls) -> Option<Row> {
+        let Self { order, symbol, form, .. } = self;
+        let closed = (self.closed)(balls);
         let mut sum = Rational::new();
         for k in 1..=TERMS {
-            sum -= sine_coefficient(k) * Rational::from(k.pow(n.into()));
+            sum -= sine_coefficient(k) * Rational::from(k.pow((*order).into()));
         }
-        sum /= n;
-        let ours = balls.neg(&balls.div_i64(&sine_sum(n, &balls.one(), balls), n.into())?);
-        let near = |b: &Ball| balls.sub(b, &balls.from_rational(&sum)).abs_upper() < 1e-60;
-        rows.push(plain(
-            label,
-            printed,
+        sum /= *order;
+        let sum = balls.from_rational(&sum);
+        let series = sine_sum(*order, &balls.one(), balls);
+        let ours = balls.neg(&balls.div_i64(&series, (*order).into())?);
+        Some(plain(
+            self.label,
+            self.printed,
             format!("${symbol} = {}$", show(&ours, 15)),
-            format!("${form} = {}$", show(closed, 15)),
-            near(&ours) && near(closed),
+            format!("${form} = {}$", show(&closed, 15)),
+            near(&ours, &sum, balls) && near(&closed, &sum, balls),
             &format!("the printed sum with {TERMS} terms"),
-        ));
+        ))
     }
-    Some(rows)
 }
 
 /// The printed sign of omega_1^2 in Omega and in (47).
@@ -186,41 +239,35 @@ fn omega_row(balls: Balls) -> Option<Row> {
     ))
 }
 
-fn order_rows(case: &Case) -> Result<Vec<Row>, Error> {
+/// The terms that can stand in an order equation, divided by omega^2 = S_0: omega_1^2/omega^2 =
+/// -S_1/S_0 and so on.
+fn divided_vocabulary(case: &Case) -> Vec<Term<Element>> {
     let ring = &case.derivation.ring;
-    // The equations divided by omega^2 = S_0: omega_1^2/omega^2 = -S_1/S_0 and so on.
     let inverse = ring.power(Symbol::Sum(0), -1);
     let over = |n: u16| ring.mul(&ring.symbol(Symbol::Sum(n)), &inverse);
     let factors = [
-        ("omega_1^2 ", ring.neg(&over(1))),
-        ("omega_2^2 ", ring.scale(&over(2), &Rational::from((-1, 2)))),
-        ("omega^2 ", ring.one()),
+        ("omega_1^2", ring.neg(&over(1))),
+        ("omega_2^2", ring.scale(&over(2), &Rational::from((-1, 2)))),
+        ("omega^2", ring.one()),
     ];
-    let mut words = Vec::new();
-    for (name, factor) in &factors {
-        for word in vocabulary(case) {
-            words.push(Term::new(
-                1,
-                &format!("{name}{}", word.name),
-                case.scaled(&word.value, factor),
-            ));
-        }
-    }
-    let word = |factor: i32, name: &str| -> Result<Term<Element>, Error> {
-        let found = words.iter().find(|w| w.name == name).ok_or(Error::NoValue)?;
-        Ok(Term::new(factor, name, found.value.clone()))
+    let words = vocabulary(case);
+    let divided = |(name, factor): &(&str, Polynomial)| -> Vec<Term<Element>> {
+        let term = |word: &Term<Element>| {
+            Term::new(1, &format!("{name} {}", word.name), case.scaled(&word.value, factor))
+        };
+        words.iter().map(term).collect()
     };
-    let alpha = &case.expansion.frequency_squared;
-    let inertia = |k: usize, n: usize| {
-        let value = case.scaled(&case.acceleration(n), &alpha[k]);
-        Term::new(-1, &format!("alpha_{k} x_{n}''"), value)
-    };
-    let first = [word(SIGN_IN_47, "omega_1^2 x_0 (ln x_0)^2")?, inertia(1, 0)];
+    factors.iter().flat_map(divided).collect()
+}
+
+fn order_rows(case: &Case) -> Result<Vec<Row>, Error> {
+    let words = divided_vocabulary(case);
+    let first = [word(&words, SIGN_IN_47, "omega_1^2 x_0 (ln x_0)^2")?, case.inertia(1, 0)];
     let second = [
-        word(1, "omega_1^2 x_1 ln(x_0^2)")?,
-        word(1, "omega_2^2 x_0 [ln(x_0^2)]^2")?,
-        inertia(2, 0),
-        inertia(1, 1),
+        word(&words, 1, "omega_1^2 x_1 ln(x_0^2)")?,
+        word(&words, 1, "omega_2^2 x_0 [ln(x_0^2)]^2")?,
+        case.inertia(2, 0),
+        case.inertia(1, 1),
     ];
     let order_zero = case.algebra.add(&case.acceleration(0), case.x(0));
     let x_0 = case.derivation.print_solution(0, Style::Text);

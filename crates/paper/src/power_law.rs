@@ -1,6 +1,6 @@
 //! (28)-(42): the power law.
 
-use super::compare::{Term, compare_sums};
+use super::compare::{Term, compare_sums, word};
 use super::orders::Case;
 use super::{Reader, Row, Section, lobachevsky, periods, plain, show};
 use lindstedt::{Error, unstable::derivation::energy};
@@ -18,7 +18,7 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
     let rows = &mut section.rows;
     rows.extend(statement_rows(&case, reader.balls).ok_or(Error::NoValue)?);
     rows.extend(order_rows(&case)?);
-    rows.extend(lobachevsky::rows(reader)?);
+    rows.extend(lobachevsky::rows(reader));
     rows.extend(result_rows(&case, reader.balls).ok_or(Error::NoValue)?);
     Ok(true)
 }
@@ -30,14 +30,45 @@ fn force(x: &Ball, delta: &Ball, balls: Balls) -> Option<Ball> {
 }
 
 fn statement_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
-    let ring = &case.derivation.ring;
-    let algebra = &case.algebra;
-    let (beta, lemniscate) =
-        (periods::power_law_period(&Rational::from(3), balls)?, periods::cubic_period(balls)?);
-    let mut rows = vec![plain(
+    let order_zero = case.algebra.add(&case.acceleration(0), case.x(0));
+    Some(vec![
+        period_row(balls)?,
+        case.initial_row("(29)", 0, "$x(0) = 1$, $x'(0) = 0$"),
+        power_row(),
+        taylor_row(&case.derivation.ring, balls)?,
+        plain(
+            "(32)",
+            "$x = sum_n x_n delta^n$",
+            format!(
+                "$x_0$ to $x_{}$ found, $x_1 = {}$",
+                case.expansion.order(),
+                case.derivation.print_solution(1, Style::Text)
+            ),
+            case.residual_text(),
+            case.derivation.checked_orders == Some(case.expansion.order()),
+            "a solution of this form exists at every order derived",
+        ),
+        phase_row(case)?,
+        frequency_row(case)?,
+        plain(
+            "(35)",
+            "$x_0'' + x_0 = 0$",
+            format!("$x_0 = {}$", case.derivation.print_solution(0, Style::Text)),
+            case.residual_text(),
+            case.algebra.is_zero(&order_zero),
+            "$x_0'' + x_0$ vanishes identically",
+        ),
+        case.initial_row("(36)", 0, "$x_0(0) = 1$, $x_0'(0) = 0$"),
+    ])
+}
+
+fn period_row(balls: Balls) -> Option<Row> {
+    let beta = periods::power_law_period(&Rational::from(3), balls)?;
+    let lemniscate = periods::cubic_period(balls)?;
+    Some(plain(
         "(28)",
         "$x'' + x^n = 0$",
-        "periodic for odd $n$, with the period by Euler's integral".to_owned(),
+        "periodic for odd $n$, with the period by Euler's integral",
         format!(
             "$n = 3$: $T = {}$ by $Gamma$, {} by the AGM",
             show(&beta, 16),
@@ -45,40 +76,31 @@ fn statement_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
         ),
         beta.overlaps(&lemniscate),
         "two closed forms of the period enclose the same number to 70 digits",
-    )];
-    rows.push(case.initial_row("(29)", 0, "$x(0) = 1$, $x'(0) = 0$"));
-    // Exactly, for integer delta, on both sides of zero.
-    let points = [Rational::from((2, 3)), Rational::from((-2, 3)), Rational::from((-7, 5))];
+    ))
+}
+
+/// (30): exactly, for integer delta, on both sides of zero.
+fn power_row() -> Row {
+    let points = [(2, 3), (-2, 3), (-7, 5)].map(Rational::from);
     let same = (1..=4i32).all(|delta| {
         points.iter().all(|x| {
             let square = Rational::from(x.square_ref());
             square.pow(delta) * x == Rational::from(x.pow(1 + 2 * delta))
         })
     });
-    rows.push(plain(
+    plain(
         "(30)",
         "$x'' + x^(1 + 2 delta) = 0$",
-        "$x'' + x (x^2)^delta = 0$, $n = 1 + 2 delta$".to_owned(),
-        "$x (x^2)^delta = x^(1 + 2 delta)$ for $delta = 1..4$ at rational $x$ of either sign"
-            .to_owned(),
+        "$x'' + x (x^2)^delta = 0$, $n = 1 + 2 delta$",
+        "$x (x^2)^delta = x^(1 + 2 delta)$ for $delta = 1..4$ at rational $x$ of either sign",
         same,
         "for $x < 0$ and other $delta$ the power means $x (x^2)^delta$, as (31) says",
-    ));
-    rows.push(taylor_row(ring, balls)?);
-    rows.push(plain(
-        "(32)",
-        "$x = sum_n x_n delta^n$",
-        format!(
-            "$x_0$ to $x_{}$ found, $x_1 = {}$",
-            case.expansion.order(),
-            case.derivation.print_solution(1, Style::Text)
-        ),
-        case.residual_text(),
-        case.derivation.checked_orders == Some(case.expansion.order()),
-        "a solution of this form exists at every order derived",
-    ));
-    // Energy gives T without x(t): times omega of the driver it must be 2 pi, exactly.
-    let order = case.expansion.order();
+    )
+}
+
+/// (33): energy gives T without x(t); times omega of the driver it must be 2 pi, exactly.
+fn phase_row(case: &Case) -> Option<Row> {
+    let (ring, order) = (&case.derivation.ring, case.expansion.order());
     let ones = vec![ring.one(); order + 1];
     let period = Series::truncated(energy::period_over_2pi(ring, &ones, order)?);
     let squared = Series::truncated(case.expansion.frequency_squared.clone());
@@ -87,35 +109,29 @@ fn statement_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     let is_one = product.first() == Some(&ring.one())
         && product.len() == order + 1
         && product.iter().skip(1).all(|c| ring.is_zero(c));
-    rows.push(plain(
+    Some(plain(
         "(33)",
         "$t = tau/omega$",
-        "all $x_n$ have the period $2 pi$ in $tau$".to_owned(),
+        "all $x_n$ have the period $2 pi$ in $tau$",
         format!("the period by the energy integral times $omega$ is $2 pi$ at orders 0..{order}"),
         is_one,
         "the product of the two series is 1 in $Q[mu]$",
-    ));
+    ))
+}
+
+fn frequency_row(case: &Case) -> Option<Row> {
+    let order = case.expansion.order();
     let exact = |n| case.derivation.exact("frequency_squared", n).unwrap_or_default();
-    let second_route = energy::power_law_frequency(ring, 2, u16::try_from(order).ok()?);
-    rows.push(plain(
+    let second_route =
+        energy::power_law_frequency(&case.derivation.ring, 2, u16::try_from(order).ok()?);
+    Some(plain(
         "(34)",
         "$omega^2 = 1 + alpha_1 delta + alpha_2 delta^2 + ...$",
         format!("$alpha_1 = {}$, $alpha_2 = {}$", exact(1), exact(2)),
         format!("the closed-form period gives the same coefficients, orders 0..{order}"),
         exact(0) == "1" && second_route == case.expansion.frequency_squared,
         "every $omega^2$ coefficient is a constant and equals the one from the exact period",
-    ));
-    let order_zero = algebra.add(&case.acceleration(0), case.x(0));
-    rows.push(plain(
-        "(35)",
-        "$x_0'' + x_0 = 0$",
-        format!("$x_0 = {}$", case.derivation.print_solution(0, Style::Text)),
-        case.residual_text(),
-        algebra.is_zero(&order_zero),
-        "$x_0'' + x_0$ vanishes identically",
-    ));
-    rows.push(case.initial_row("(36)", 0, "$x_0(0) = 1$, $x_0'(0) = 0$"));
-    Some(rows)
+    ))
 }
 
 /// (31): n E_n = L E_{n-1} for E = exp(delta L), L = ln(x^2).
@@ -165,27 +181,18 @@ pub(super) fn vocabulary(case: &Case) -> Vec<Term<super::orders::Element>> {
 
 fn order_rows(case: &Case) -> Result<Vec<Row>, Error> {
     let words = vocabulary(case);
-    let word = |factor: i32, name: &str| -> Result<Term<_>, Error> {
-        let found = words.iter().find(|w| w.name == name).ok_or(Error::NoValue)?;
-        Ok(Term::new(factor, name, found.value.clone()))
-    };
-    let alpha = &case.expansion.frequency_squared;
-    let inertia = |k: usize, n: usize| {
-        let value = case.scaled(&case.acceleration(n), &alpha[k]);
-        Term::new(-1, &format!("alpha_{k} x_{n}''"), value)
-    };
-    let first = [word(-1, "x_0 (ln x_0)^2")?, inertia(1, 0)];
+    let first = [word(&words, -1, "x_0 (ln x_0)^2")?, case.inertia(1, 0)];
     let second = [
-        word(-1, "x_1 ln(x_0^2)")?,
-        word(-2, "x_1")?,
-        word(-1, "x_0 [ln(x_0^2)]^2")?,
-        inertia(2, 0),
-        inertia(1, 1),
+        word(&words, -1, "x_1 ln(x_0^2)")?,
+        word(&words, -2, "x_1")?,
+        word(&words, -1, "x_0 [ln(x_0^2)]^2")?,
+        case.inertia(2, 0),
+        case.inertia(1, 1),
     ];
     let cosine = case.algebra.cosine();
     let forty_one = [
         Term::new(-1, "cos t ln(cos^2 t)", case.product(&cosine, &case.log())),
-        Term::new(1, "alpha_1 cos t", case.scaled(&cosine, &alpha[1])),
+        Term::new(1, "alpha_1 cos t", case.scaled(&cosine, &case.expansion.frequency_squared[1])),
     ];
     let rows = vec![
         case.order_row(

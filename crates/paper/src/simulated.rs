@@ -1,7 +1,7 @@
 //! What section 3 reports of its simulations, simulated again.
 
 use super::stick_slip::{model, parameters};
-use super::{Reader, Section, Table, plain};
+use super::{Reader, Row, Section, Table, plain};
 use crate::text::texts;
 use lindstedt::Error;
 use lindstedt_simulate::{
@@ -104,6 +104,10 @@ impl Orbit {
         self.period.map_or("none".to_owned(), |n| n.to_string())
     }
 
+    fn exponent_text(&self) -> String {
+        format!("largest Lyapunov exponent {} (estimated)", self.shown_exponent())
+    }
+
     fn shown_exponent(&self) -> String {
         format!("{:+.4} +- {:.0e}", self.exponent, self.error)
     }
@@ -167,18 +171,26 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
     let follow = |gamma| Orbit::follow(gamma, transient, kept);
     let orbits: Vec<Orbit> = GAMMAS.into_par_iter().map(follow).collect::<Result<_, _>>()?;
     let [periodic, doubled, slight, wells] = &orbits[..] else { return Err(Error::NoValue) };
-    let exponent =
-        |o: &Orbit| format!("largest Lyapunov exponent {} (estimated)", o.shown_exponent());
+    let watched = kept.min(WATCHED);
+    section.rows.extend(periodic_rows(periodic, doubled));
+    section.rows.extend(chaotic_rows(slight, wells, watched));
+    section.rows.push(sticks_row([periodic, slight, wells]));
+    section.tables.push(table(&orbits, transient, kept));
+    Ok(true)
+}
+
+/// The periodic orbit and its doubling.
+fn periodic_rows(periodic: &Orbit, doubled: &Orbit) -> [Row; 2] {
     let closes = |o: &Orbit| {
         let shown = o.shown_period();
         format!("at $gamma = {}$ the orbit closes after {shown} periods of the forcing", o.gamma)
     };
-    section.rows.extend([
+    [
         plain(
             "$gamma = 0.6$",
             "for $gamma = 0.6$ we have obtained a periodic orbit",
             closes(periodic),
-            exponent(periodic),
+            periodic.exponent_text(),
             periodic.is_periodic(),
             &format!("{EPS}; $x(0) = {}$, $x'(0) = {}$: attractors coexist", START[0], START[1]),
         ),
@@ -186,56 +198,57 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &mut Section) -> Result<boo
             "doubling",
             "with an increase in $gamma$ it doubles its period",
             format!("{}; {}", closes(periodic), closes(doubled)),
-            exponent(doubled),
+            doubled.exponent_text(),
             doubled.period == periodic.period.map(|n| 2 * n),
             "the same attractor at two values of $gamma$",
         ),
+    ]
+}
+
+/// Chaos in one well and in both; the range of x was `watched` over so many periods.
+fn chaotic_rows(slight: &Orbit, wells: &Orbit, watched: u32) -> [Row; 2] {
+    let range =
+        |o: &Orbit| format!("${:.3} < x < {:.3}$ over {watched} periods", o.least, o.largest);
+    [
         plain(
             "$gamma = 0.65$",
             "closely to 0.65 a very slight chaotic behaviour has been observed",
-            exponent(slight),
+            slight.exponent_text(),
             format!(
                 "0-1 test on every second point of the section: $K = {:.3}$ (estimated)",
                 slight.growth
             ),
             slight.is_chaotic() && slight.growth > 0.9,
             &format!(
-                "in one well only: ${:.3} < x < {:.3}$ over {} periods (estimated), by period doubling; not \
-                 the tangle that (27) is about",
-                slight.least,
-                slight.largest,
-                kept.min(WATCHED)
+                "in one well only: {} (estimated), by period doubling; not the tangle that (27) is \
+                 about",
+                range(slight)
             ),
         ),
         plain(
             "$gamma = 1.2$",
             "for $gamma = 1.2$ two-well potential chaos is shown",
-            exponent(wells),
-            format!(
-                "${:.3} < x < {:.3}$ over {} periods: both wells (estimated)",
-                wells.least,
-                wells.largest,
-                kept.min(WATCHED)
-            ),
+            wells.exponent_text(),
+            format!("{}: both wells (estimated)", range(wells)),
             wells.is_chaotic() && wells.visits_both_wells(),
             EPS,
         ),
-        plain(
-            "sticks",
-            "in all of the phase portraits the cusps corresponding to the sticks are visible",
-            format!(
-                "share of the time stuck: {:.3}, {:.3} and {:.3} at $gamma = 0.6$, 0.65 and 1.2 \
-                 (estimated)",
-                periodic.stuck, slight.stuck, wells.stuck
-            ),
-            "events of the integration: sticking where $x' = v*$ and the force is below $eps T0$"
-                .to_owned(),
-            [periodic, slight, wells].iter().all(|o| o.stuck > 0.0),
-            "Fig. 1 itself prints no parameters",
+    ]
+}
+
+fn sticks_row(orbits: [&Orbit; 3]) -> Row {
+    let [periodic, slight, wells] = orbits.map(|o| o.stuck);
+    plain(
+        "sticks",
+        "in all of the phase portraits the cusps corresponding to the sticks are visible",
+        format!(
+            "share of the time stuck: {periodic:.3}, {slight:.3} and {wells:.3} at $gamma = 0.6$, 0.65 and \
+             1.2 (estimated)"
         ),
-    ]);
-    section.tables.push(table(&orbits, transient, kept));
-    Ok(true)
+        "events of the integration: sticking where $x' = v*$ and the force is below $eps T0$",
+        [periodic, slight, wells].iter().all(|stuck| *stuck > 0.0),
+        "Fig. 1 itself prints no parameters",
+    )
 }
 
 fn table(orbits: &[Orbit], transient: u32, kept: u32) -> Table {

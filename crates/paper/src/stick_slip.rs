@@ -1,7 +1,7 @@
 //! Section 3, the equation (18)-(21) exactly, and the table of thresholds.
 
 use super::melnikov::{failed, oscillator};
-use super::{Reader, Section, Table, plain, show};
+use super::{Reader, Row, Section, Table, plain, show};
 use crate::text::texts;
 use lindstedt::Error;
 use lindstedt_equation::Expression;
@@ -164,21 +164,28 @@ pub(super) fn read_equation(_: &mut Reader<'_>, section: &mut Section) -> Result
         reductions.push(reduction(&mut points, &orbit).ok_or(Error::NoValue)?);
         flows.push(flow(&mut points, &orbit).ok_or(Error::NoValue)?);
     }
+    section.rows.extend(reduction_rows(&reductions));
+    section.rows.extend(flow_rows(&flows, &orbit));
+    Ok(true)
+}
+
+/// (18) to (20).
+fn reduction_rows(reductions: &[Reduction]) -> [Row; 3] {
     let exactly = format!("both sides, exactly, at {POINTS} rational points");
-    section.rows.extend([
+    [
         plain(
             "(18)",
             "$m x'' - k1 x + k2 x^3 = eps [Gamma cos(omega t) - theta(x' - v*)]$",
-            "$x'' = a x - b x^3 + eps [gamma cos(omega t) - T(v - v*)]$".to_owned(),
-            exactly.clone(),
+            "$x'' = a x - b x^3 + eps [gamma cos(omega t) - T(v - v*)]$",
+            &*exactly,
             reductions.iter().all(|r| r.equation),
             "with $theta$ of (19) and the parameters of (20)",
         ),
         plain(
             "(19)",
             "$theta(w) = theta_0 sign w - A w + B w^3$",
-            "$T(w) = T0 sgn w - alpha w + beta w^3$ is $theta/m$".to_owned(),
-            exactly.clone(),
+            "$T(w) = T0 sgn w - alpha w + beta w^3$ is $theta/m$",
+            &*exactly,
             reductions.iter().all(|r| r.friction),
             "the law of the engine, sliding in both directions",
         ),
@@ -186,15 +193,21 @@ pub(super) fn read_equation(_: &mut Reader<'_>, section: &mut Section) -> Result
             "(20)",
             "$v' = a x - b x^3 + eps [gamma cos(omega t) - T(v - v*)]$, $x' = v$; $a = k1/m$, $b = k2/m$, \
              $gamma = Gamma/m$, $T = theta/m$, $T0 = theta_0/m$, $alpha = A/m$, $beta = B/m$",
-            "the force and the law that the engine integrates".to_owned(),
+            "the force and the law that the engine integrates",
             exactly,
             reductions.iter().all(|r| r.system),
             "$eps$ is a bookkeeping parameter: the paper's numbers take no value for it",
         ),
+    ]
+}
+
+/// (21), the critical points and the orbit through the saddle.
+fn flow_rows(flows: &[[bool; 2]], orbit: &OrbitDescription) -> [Row; 3] {
+    [
         plain(
             "(21)",
             "$H = (v^2 - a x^2 + b x^4/2)/2$",
-            "$dH/dt = H_x v + H_v (a x - b x^3) = 0$".to_owned(),
+            "$dH/dt = H_x v + H_v (a x - b x^3) = 0$",
             format!("five-point differences, exact for degree 4, at {POINTS} rational points"),
             flows.iter().all(|f| f[0]),
             "$H$ as printed, along the engine's force",
@@ -202,22 +215,20 @@ pub(super) fn read_equation(_: &mut Reader<'_>, section: &mut Section) -> Result
         plain(
             "critical points",
             "two centres at $(+-sqrt(a/b), 0)$, a hyperbolic saddle at the origin",
-            "$a x - b x^3 = 0$ there and nowhere else; eigenvalues squared $a$ at 0, $-2a$ at the others"
-                .to_owned(),
-            "the sign of $H_xx$".to_owned(),
+            "$a x - b x^3 = 0$ there and nowhere else; eigenvalues squared $a$ at 0, $-2a$ at the others",
+            "the sign of $H_xx$",
             flows.iter().all(|f| f[1]),
             "exactly, at parameters with rational centres",
         ),
         plain(
             "$x_0$",
             "$x_0 = +-sqrt(2a/b) sech(sqrt(a) t)$",
-            "$xi'' = xi - 2 xi^3$ for $xi = sech z$ in $Q[sech, tanh]$".to_owned(),
-            String::new(),
+            "$xi'' = xi - 2 xi^3$ for $xi = sech z$ in $Q[sech, tanh]$",
+            "",
             orbit.check().is_ok(),
             "the first half of (23); an identity modulo $tanh^2 = 1 - sech^2$",
         ),
-    ]);
-    Ok(true)
+    ]
 }
 
 /// Reads the table.

@@ -94,67 +94,71 @@ fn uniform(series: &Truncations, delta: &Rational, exact: &Ball, balls: Balls) -
 pub(super) fn finding(list: &[Truncation]) -> Option<Finding> {
     let named = |name: &str| list.iter().find(|t| t.name == name);
     let (cubic, pendulum) = (named("n = 3")?, named("pendulum")?);
-    let share = |error: f64| match error {
-        e if e < 1e-4 => format!("{e:.0e}"),
-        e if e < 2.0 => format!("{:.2} %", 100.0 * e),
-        e => format!("{e:.0} times $T$"),
-    };
-    let at =
-        |t: &Truncation, order: usize| t.errors.get(order).map_or("?".to_owned(), |e| share(*e));
-    let (best, least) = pendulum.best()?;
-    let (last, error) = pendulum.last()?;
-    let outside: Vec<String> = list
-        .iter()
-        .filter(|t| t.delta > 1)
-        .filter_map(|t| {
-            let ((best, least), (last, error)) = (t.best()?, t.last()?);
-            let (least, error) = (share(least), share(error));
-            Some(format!("${}$: {least} at order {best}, {error} at order {last}", t.name))
-        })
-        .collect();
-    let resummed: Vec<String> = list
-        .iter()
-        .filter_map(|t| {
-            let last = t.resummed.last()?;
-            Some(format!("{} at ${}$", share(*last), t.name))
-        })
-        .collect();
-    let highest = cubic.last()?.0;
     Some(Finding {
         section: 4,
         method: "The small $delta$ method, $T$ cut off after order $N$".into(),
-        trusted: texts([
-            format!(
-                "$n = 3$ ($delta = 1$, on the circle of convergence): {} at order 1, {} at order 2, {} \
-                 at order {highest}",
-                at(cubic, 1),
-                at(cubic, 2),
-                at(cubic, highest)
-            ),
-            format!(
-                "the pendulum at amplitude 1 up to order {best}: {} there, {} at order 1",
-                share(least),
-                at(pendulum, 1)
-            ),
-            format!(
-                "the same coefficients in $u = delta/(1 + delta)$ with the factor $sqrt(1 - u)$, for \
-                 every $n$ computed: at order {highest} {}",
-                resummed.join(", ")
-            ),
-        ]),
-        not_trusted: texts([
-            format!(
-                "outside the circle $|delta| = 1$ the series in $delta$ diverges: {}",
-                outside.join("; ")
-            ),
-            format!(
-                "the pendulum beyond order {best}: the series is asymptotic, at order {last} the \
-                 error is {}",
-                share(error)
-            ),
-        ]),
+        trusted: texts(trusted(list, cubic, pendulum)?),
+        not_trusted: texts(not_trusted(list, pendulum)?),
         class: "errors of partial sums certified, of the re-expanded series estimated (rounding \
                 errors not bounded)"
             .into(),
     })
+}
+
+/// A relative error in words.
+fn share(error: f64) -> String {
+    match error {
+        e if e < 1e-4 => format!("{e:.0e}"),
+        e if e < 2.0 => format!("{:.2} %", 100.0 * e),
+        e => format!("{e:.0} times $T$"),
+    }
+}
+
+fn trusted(list: &[Truncation], cubic: &Truncation, pendulum: &Truncation) -> Option<[String; 3]> {
+    let at =
+        |t: &Truncation, order: usize| t.errors.get(order).map_or("?".to_owned(), |e| share(*e));
+    let (best, least) = pendulum.best()?;
+    let resummed = |t: &Truncation| Some(format!("{} at ${}$", share(*t.resummed.last()?), t.name));
+    let resummed: Vec<String> = list.iter().filter_map(resummed).collect();
+    let highest = cubic.last()?.0;
+    Some([
+        format!(
+            "$n = 3$ ($delta = 1$, on the circle of convergence): {} at order 1, {} at order 2, {} \
+             at order {highest}",
+            at(cubic, 1),
+            at(cubic, 2),
+            at(cubic, highest)
+        ),
+        format!(
+            "the pendulum at amplitude 1 up to order {best}: {} there, {} at order 1",
+            share(least),
+            at(pendulum, 1)
+        ),
+        format!(
+            "the same coefficients in $u = delta/(1 + delta)$ with the factor $sqrt(1 - u)$, for \
+             every $n$ computed: at order {highest} {}",
+            resummed.join(", ")
+        ),
+    ])
+}
+
+fn not_trusted(list: &[Truncation], pendulum: &Truncation) -> Option<[String; 2]> {
+    let diverging = |t: &Truncation| {
+        let ((best, least), (last, error)) = (t.best()?, t.last()?);
+        let (least, error) = (share(least), share(error));
+        Some(format!("${}$: {least} at order {best}, {error} at order {last}", t.name))
+    };
+    let outside: Vec<String> = list.iter().filter(|t| t.delta > 1).filter_map(diverging).collect();
+    let ((best, _), (last, error)) = (pendulum.best()?, pendulum.last()?);
+    Some([
+        format!(
+            "outside the circle $|delta| = 1$ the series in $delta$ diverges: {}",
+            outside.join("; ")
+        ),
+        format!(
+            "the pendulum beyond order {best}: the series is asymptotic, at order {last} the \
+             error is {}",
+            share(error)
+        ),
+    ])
 }

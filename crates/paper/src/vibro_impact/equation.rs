@@ -2,7 +2,7 @@
 
 use super::FAILED;
 use super::formula::Tree;
-use super::judge::Statement;
+use super::judge::{Printed, Statement};
 use super::setting::Setting;
 use lindstedt::Error;
 use lindstedt::unstable::coeff::quotient::{Quotient, Quotients};
@@ -114,94 +114,86 @@ fn response_is_averaged() -> Result<bool, Error> {
     Ok(q.equal(&first[0], &printed) && q.is_zero(&first[1]))
 }
 
-/// (1)-(4).
+const BY_SUBSTITUTION: &str = "exact, as polynomials in $x$, $x'$, $x(t-T)$, $x'(t-T)$";
+
+/// (1)-(4) as printed.
+const PRINTED: [Printed; 5] = [
+    Printed::new("(1)", "", "x'' + c*x' + alpha^2*x = P0*cos(omega*t) + A*[x - xT] + B*[x' - xT']")
+        .with(
+            "the engine's equation with $eps = 1$; $x' -> -R_r x'$ at $x = s$",
+            BY_SUBSTITUTION,
+            "$xT$, $xT'$ stand for $x$, $x'$ at $t - T$",
+        ),
+    Printed::new(
+        "parameters of (1)",
+        "$P0 = y_0 k_2/m$, $c = c_1/m$, $alpha^2 = (k_1 + k_2)/m$, $A = k_2 a_1/m$, \
+         $B = k_2 b_1/m$: ",
+        "x'' + c*x' + (k_1 + k_2)/m*x = P0*cos(omega*t) + A*[x - xT] + B*[x' - xT']",
+    )
+    .with(
+        "$m x'' + c_1 x' + k_1 x = k_2 (y_0 cos(omega t) + a_1 (x - xT) + b_1 (x' - xT') - x)$, \
+         over $m$",
+        "Newton's law, the loop moving the base of the spring $k_2$",
+        "",
+    ),
+    Printed::new(
+        "(2)",
+        "",
+        "x'' + alpha^2*x = P0*cos(omega*t) + eps*A*[x - xT] + eps*B*[(1 - c/B)*x' - xT']",
+    )
+    .with(
+        "the engine's equation",
+        BY_SUBSTITUTION,
+        "dividing by $B$ is cosmetic: $B x' - c x'$ holds for $B = 0$ too",
+    ),
+    Printed::new("(3)", "x = ", "z + P0/(alpha^2 - omega^2)*cos(omega*t)").with(
+        "$z + P0/((alpha - omega)*(alpha + omega)) cos(omega t)$, the response at $eps = 0$",
+        "order zero of the averaged expansion: the same",
+        "damping leaves it to order $eps$; the exact response is $F$, see there",
+    ),
+    Printed::new(
+        "$f$, (4)",
+        "eps f = ",
+        "eps*A*[z + P0/(alpha^2 - omega^2)*cos(omega*t) - zT \
+         - P0/(alpha^2 - omega^2)*cos(omega*(t - T))] \
+         + eps*B*[(1 - c/B*(z' - P0*omega/(alpha^2 - omega^2)*sin(omega*t)) - zT' \
+         + P0*omega/(alpha^2 - omega^2)*sin(omega*(t - T))]",
+    )
+    .with(
+        "$eps A [x - xT] + eps [(B - c) x' - B xT']$ with $x$ of (3)",
+        "(3) substituted in (2), exactly",
+        "$z'' + alpha^2 z = eps f$ itself holds by construction",
+    ),
+];
+
+/// (1)-(4) beside what is derived.
 pub(super) fn statements() -> Result<Vec<Statement>, Error> {
     let setting = setting();
     let derived = derive(&setting).ok_or(FAILED)?;
-    let q = setting.field.clone();
+    let q = &setting.field;
     let words = ["alpha", "omega", "c", "P0", "A", "B", "T", "eps", "t"];
-    let of_x = [&words[..], &["x", "x'", "x''", "xT", "xT'"]].concat();
-    let of_z = [&words[..], &["z", "z'", "z''", "zT", "zT'"]].concat();
-    let masses = setting.clone();
-    let defined = masses
+    let with = |more: &[&str]| Arc::new(setting.clone().only(&[&words[..], more].concat()));
+    let x = with(&["x", "x'", "x''", "xT", "xT'"]);
+    let z = with(&["z", "z'", "z''", "zT", "zT'"]);
+    let defined = setting
+        .clone()
         .word("P0", "y_0*k_2/m")
         .word("c", "c_1/m")
         .word("omega_0^2", "(k_1 + k_2)/m")
         .word("A", "k_2*a_1/m")
         .word("B", "k_2*b_1/m");
-    let x = Arc::new(setting.clone().only(&of_x));
-    let z = Arc::new(setting.clone().only(&of_z));
-    let by_substitution = "exact, as polynomials in $x$, $x'$, $x(t-T)$, $x'(t-T)$";
     let amplitude = q.mul(&derived.response, &q.parameter("cos(omega*t)"));
-    let defined = Arc::new(defined);
-    let averaged = if response_is_averaged()? {
-        "order zero of the averaged expansion: the same"
-    } else {
-        "order zero of the averaged expansion: another"
-    };
-    Ok(vec![
-        Statement::new(
-            ("(1)", ""),
-            "x'' + c*x' + alpha^2*x = P0*cos(omega*t) + A*[x - xT] + B*[x' - xT']",
-            &x,
-            derived.unscaled,
-        )
-        .with(
-            "the engine's equation with $eps = 1$; $x' -> -R_r x'$ at $x = s$",
-            by_substitution,
-            "$xT$, $xT'$ stand for $x$, $x'$ at $t - T$",
-        ),
-        Statement::new(
-            (
-                "parameters of (1)",
-                "$P0 = y_0 k_2/m$, $c = c_1/m$, $alpha^2 = (k_1 + k_2)/m$, $A = k_2 a_1/m$, \
-                 $B = k_2 b_1/m$: ",
-            ),
-            "x'' + c*x' + (k_1 + k_2)/m*x = P0*cos(omega*t) + A*[x - xT] + B*[x' - xT']",
-            &defined,
-            derived.mechanical,
-        )
-        .with(
-            "$m x'' + c_1 x' + k_1 x = k_2 (y_0 cos(omega t) + a_1 (x - xT) + b_1 (x' - xT') - x)$, \
-             over $m$",
-            "Newton's law, the loop moving the base of the spring $k_2$",
-            "",
-        ),
-        Statement::new(
-            ("(2)", ""),
-            "x'' + alpha^2*x = P0*cos(omega*t) + eps*A*[x - xT] + eps*B*[(1 - c/B)*x' - xT']",
-            &x,
-            derived.equation,
-        )
-        .with(
-            "the engine's equation",
-            by_substitution,
-            "dividing by $B$ is cosmetic: $B x' - c x'$ holds for $B = 0$ too",
-        ),
-        Statement::new(
-            ("(3)", "x = "),
-            "z + P0/(alpha^2 - omega^2)*cos(omega*t)",
-            &z,
-            q.add(&q.parameter("z"), &amplitude),
-        )
-        .with(
-            "$z + P0/((alpha - omega)*(alpha + omega)) cos(omega t)$, the response at $eps = 0$",
-            averaged,
-            "damping leaves it to order $eps$; the exact response is $F$, see there",
-        ),
-        Statement::new(
-            ("$f$, (4)", "eps f = "),
-            "eps*A*[z + P0/(alpha^2 - omega^2)*cos(omega*t) - zT \
-             - P0/(alpha^2 - omega^2)*cos(omega*(t - T))] \
-             + eps*B*[(1 - c/B*(z' - P0*omega/(alpha^2 - omega^2)*sin(omega*t)) - zT' \
-             + P0*omega/(alpha^2 - omega^2)*sin(omega*(t - T))]",
-            &z,
-            derived.f,
-        )
-        .with(
-            "$eps A [x - xT] + eps [(B - c) x' - B xT']$ with $x$ of (3)",
-            "(3) substituted in (2), exactly",
-            "$z'' + alpha^2 z = eps f$ itself holds by construction",
-        ),
-    ])
+    let truth = [
+        (&x, derived.unscaled),
+        (&Arc::new(defined), derived.mechanical),
+        (&x, derived.equation),
+        (&z, q.add(&q.parameter("z"), &amplitude)),
+        (&z, derived.f),
+    ];
+    let pairs = PRINTED.iter().zip(truth);
+    let mut list: Vec<_> = pairs.map(|(line, (words, value))| line.against(words, value)).collect();
+    if !response_is_averaged()? {
+        list[3].independent = "order zero of the averaged expansion: another".to_owned();
+    }
+    Ok(list)
 }

@@ -35,6 +35,45 @@ pub(super) struct Statement {
     pub remark: String,
 }
 
+/// What the paper prints for a formula, and what is said beside the comparison: a line of a list.
+pub(super) struct Printed {
+    /// As in [`Statement`].
+    label: [&'static str; 2],
+    formula: &'static str,
+    beside: [&'static str; 3],
+    squared: bool,
+}
+
+impl Printed {
+    /// Label, left side and formula.
+    pub const fn new(label: &'static str, left: &'static str, formula: &'static str) -> Self {
+        Self { label: [label, left], formula, beside: [""; 3], squared: false }
+    }
+
+    /// As [`Statement::with`].
+    pub const fn with(
+        self,
+        shown: &'static str,
+        independent: &'static str,
+        remark: &'static str,
+    ) -> Self {
+        Self { beside: [shown, independent, remark], ..self }
+    }
+
+    /// By its square.
+    pub const fn squared(self) -> Self {
+        Self { squared: true, ..self }
+    }
+
+    /// Beside what is derived.
+    pub fn against(&self, setting: &Arc<Setting>, derived: Quotient) -> Statement {
+        let [shown, independent, remark] = self.beside;
+        let [label, left] = self.label;
+        let statement = Statement::new((label, left), self.formula, setting, derived);
+        Statement { squared: self.squared, ..statement.with(shown, independent, remark) }
+    }
+}
+
 /// What a comparison found.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Judgement {
@@ -64,12 +103,6 @@ impl Statement {
     pub fn with(self, shown: &str, independent: &str, remark: &str) -> Self {
         let [shown, independent, remark] = [shown, independent, remark].map(str::to_owned);
         Self { shown, independent, remark, ..self }
-    }
-
-    /// By its square.
-    #[must_use]
-    pub fn squared(self) -> Self {
-        Self { squared: true, ..self }
     }
 
     fn value(&self, tree: &Tree) -> Option<Quotient> {

@@ -2,7 +2,7 @@
 
 use super::FAILED;
 use super::averaged::averaged;
-use super::judge::Statement;
+use super::judge::{Printed, Statement};
 use super::setting::Setting;
 use crate::Row;
 use lindstedt::Error;
@@ -98,138 +98,134 @@ fn words(q: &Quotients, orbit: &[Quotient; 4], angle: &str, exponent: &str) -> S
 }
 
 const D_PRINTED: &str = "C/sin(2*beta*lambda)*(exp(beta*c) - cos(2*beta*lambda))";
+const POLYNOMIALS: &str = "exact, as polynomials";
+const RESIDUALS: &str = "the solution put into the four end conditions: exact";
 
-/// The formulas around (8).
-pub(super) fn statements() -> Result<Vec<Statement>, Error> {
-    let derived = derive().ok_or(FAILED)?;
-    let q = &derived.q;
+/// The formulas around (8) as printed.
+const PRINTED: [Printed; 12] = [
+    Printed::new("(8)", "amplitude ", "P0/(alpha^2 - omega^2)").squared().with(
+        "$F = P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)$",
+        "squares compared; linear equations for the cosine and the sine",
+        "",
+    ),
+    Printed::new("$C$, polar", "C = ", "C0*cos(theta0)").with("", POLYNOMIALS, ""),
+    Printed::new("$D$, polar", "D = ", "-C0*sin(theta0)").with("", POLYNOMIALS, ""),
+    Printed::new("$C_0$", "C_0 = ", "sqrt(C^2 + D^2)").squared().with("$C0$", POLYNOMIALS, ""),
+    Printed::new("$C$", "C = ", "s - F*cos(phi)").with(
+        "$-(1 + R_r) sin(theta) v/(lambda Delta)$",
+        RESIDUALS,
+        "$Delta = E + 1/E - 2 cos(theta)$, $E = e^(-beta c)$, $theta = 2 beta lambda$",
+    ),
+    Printed::new("$D$", "D = ", D_PRINTED).with(
+        "$-(1 + R_r) (1/E - cos(theta)) v/(lambda Delta)$",
+        RESIDUALS,
+        "the printed form is 0/0 where $sin(2 beta lambda) = 0$, the derived one is not",
+    ),
+    Printed::new(
+        "$cos phi$",
+        "cos phi = ",
+        "s/F - (R_r + 1)*v*sin(2*beta*lambda)\
+         /(lambda*F*(2*cos(2*beta*lambda) - exp(-beta*c) - exp(beta*c)))",
+    )
+    .with(
+        "$(s + (1 + R_r) sin(theta) v/(lambda Delta))/F$",
+        RESIDUALS,
+        "$v = x'_-$, before the impact",
+    ),
+    Printed::new(
+        "$sin phi$",
+        "sin phi = ",
+        "(-1/2*(R_r + 1)*c*sin(2*beta*lambda) + lambda*[(R_r - 1)*cos(2*beta*lambda) \
+         + exp(-beta*c) - R_r*exp(beta*c))\
+         /(lambda*F*omega*(2*cos(2*beta*lambda) - exp(-beta*c) - exp(beta*c)))*v",
+    )
+    .with(
+        "${lambda [R_r (E - cos theta) - (1/E - cos theta)] + (1 + R_r) (c/2) sin theta} \
+         v/(omega lambda F Delta)$",
+        RESIDUALS,
+        "equal only for $c = 0$ as printed",
+    ),
+    Printed::new("$F$", "F = ", "P0/sqrt((alpha0^2 - omega^2)^2 + c^2*omega^2)").squared().with(
+        "$P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)$",
+        "squares compared; the response sees neither $A$ nor $B$",
+        "",
+    ),
+    Printed::new("$lambda$", "lambda = ", "sqrt(alpha^2 - omega^2)").squared().with(
+        "$sqrt(alpha^2 - c^2/4)$",
+        "squares compared; both parts of $l^2 + c l + alpha^2 = 0$ at $l = -c/2 + i lambda$",
+        "the symbol and a factor of one term are wrong, $c^2/4$ is no slip for $omega^2$; the \
+         printed root is imaginary for $omega > alpha$",
+    ),
+    Printed::new("$beta$", "beta = ", "pi*k/omega").with("", POLYNOMIALS, ""),
+    Printed::new("$C$, $D$ in (8)", "D = ", D_PRINTED).with(
+        "$D$ with $alpha0$ and $-2 R$ in the places of $lambda$ and $c$",
+        RESIDUALS,
+        "the amplitudes printed with $(c, lambda)$ meet the end conditions of the flight with \
+         $(-c/2, lambda)$, not of (8) with $(R, alpha0)$: for $A$, $B$ other than zero the orbit of \
+         (8) is another",
+    ),
+];
+
+/// The polar form, C_0 cos(alpha0 tau + theta_0) by the product of two rotations: the factors of
+/// cos(alpha0 tau) and sin(alpha0 tau).
+fn polar_factors(q: &Quotients) -> [Quotient; 2] {
     let p = |name: &str| q.parameter(name);
-    let residuals = if derived.closes {
-        "the solution put into the four end conditions: exact"
-    } else {
-        "the solution does not meet the end conditions"
-    };
-    // The polar form: C_0 cos(alpha0 t + theta_0) by the product of two rotations.
-    let polar = Arc::new(
-        with_pair(Setting::new(q.clone()), "theta0", "cos(theta0)", "sin(theta0)")
-            .only(&["C0", "theta0"]),
-    );
     let rotation = q.sub(
         &q.mul(&p("cos(theta0)"), &p("cos(alpha0*tau)")),
         &q.mul(&p("sin(theta0)"), &p("sin(alpha0*tau)")),
     );
     let free = q.mul(&p("C0"), &rotation);
-    let [of_cos, of_sin] =
-        ["cos(alpha0*tau)", "sin(alpha0*tau)"].map(|name| coefficient(q, &free, name));
-    let parts = Arc::new(
-        Setting::new(q.clone())
-            .means("C", of_cos.clone())
-            .means("D", of_sin.clone())
-            .only(&["C", "D", "R"]),
-    );
-    let own = Arc::new(words(q, &derived.uncontrolled, "2*beta*lambda", "-beta*c"));
-    // e^(beta c) and the functions of 2 beta lambda are independent of those of (R, alpha0).
+    ["cos(alpha0*tau)", "sin(alpha0*tau)"].map(|name| coefficient(q, &free, name))
+}
+
+/// The words of the amplitudes of (8) with (R, alpha0). e^(beta c) and the functions of
+/// 2 beta lambda are independent of those.
+fn mixed_words(derived: &Derived) -> Setting {
+    let q = &derived.q;
     let mut mixed = words(q, &derived.any, "2*beta*alpha0", "2*beta*R");
     mixed = with_pair(mixed, "2*beta*lambda", "cos(theta0)", "sin(theta0)");
     if let Some(base) = mixed.read("beta*c") {
-        mixed.meaning.exponentials.push([base, p("C0")]);
+        mixed.meaning.exponentials.push([base, q.parameter("C0")]);
     }
-    let mixed = Arc::new(mixed);
-    let literal = Arc::new(
-        Setting::new(q.clone())
-            .only(&["P0", "alpha", "alpha0", "omega", "c", "pi", "k", "R_r", "s"]),
-    );
-    let [c, d, cos, sin] = derived.uncontrolled.clone();
-    let polynomials = "exact, as polynomials";
-    let squares = derived.amplitude_squared.clone();
+    mixed
+}
+
+/// The formulas around (8) beside what is derived.
+pub(super) fn statements() -> Result<Vec<Statement>, Error> {
+    let derived = derive().ok_or(FAILED)?;
+    let q = &derived.q;
+    let p = |name: &str| q.parameter(name);
+    let all = || Setting::new(q.clone());
+    let [of_cos, of_sin] = polar_factors(q);
+    let polar = with_pair(all(), "theta0", "cos(theta0)", "sin(theta0)").only(&["C0", "theta0"]);
+    let parts = all().means("C", of_cos.clone()).means("D", of_sin.clone()).only(&["C", "D", "R"]);
+    let own = words(q, &derived.uncontrolled, "2*beta*lambda", "-beta*c");
+    let literal = all().only(&["P0", "alpha", "alpha0", "omega", "c", "pi", "k", "R_r", "s"]);
+    let [polar, parts, own, literal, mixed] =
+        [polar, parts, own, literal, mixed_words(&derived)].map(Arc::new);
     let half_period = q.div(&q.mul(&p("pi"), &p("k")), &p("omega")).ok_or(FAILED)?;
-    let [_, any_d, _, _] = derived.any.clone();
-    Ok(vec![
-        Statement::new(("(8)", "amplitude "), "P0/(alpha^2 - omega^2)", &literal, squares.clone())
-            .squared()
-            .with(
-                "$F = P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)$",
-                "squares compared; linear equations for the cosine and the sine",
-                "",
-            ),
-        Statement::new(("$C$, polar", "C = "), "C0*cos(theta0)", &polar, of_cos)
-            .with("", polynomials, ""),
-        Statement::new(("$D$, polar", "D = "), "-C0*sin(theta0)", &polar, of_sin)
-            .with("", polynomials, ""),
-        Statement::new(("$C_0$", "C_0 = "), "sqrt(C^2 + D^2)", &parts, q.mul(&p("C0"), &p("C0")))
-            .squared()
-            .with("$C0$", polynomials, ""),
-        Statement::new(("$C$", "C = "), "s - F*cos(phi)", &own, c).with(
-            "$-(1 + R_r) sin(theta) v/(lambda Delta)$",
-            residuals,
-            "$Delta = E + 1/E - 2 cos(theta)$, $E = e^(-beta c)$, $theta = 2 beta lambda$",
-        ),
-        Statement::new(("$D$", "D = "), D_PRINTED, &own, d).with(
-            "$-(1 + R_r) (1/E - cos(theta)) v/(lambda Delta)$",
-            residuals,
-            "the printed form is 0/0 where $sin(2 beta lambda) = 0$, the derived one is not",
-        ),
-        Statement::new(
-            ("$cos phi$", "cos phi = "),
-            "s/F - (R_r + 1)*v*sin(2*beta*lambda)\
-             /(lambda*F*(2*cos(2*beta*lambda) - exp(-beta*c) - exp(beta*c)))",
-            &own,
-            cos,
-        )
-        .with(
-            "$(s + (1 + R_r) sin(theta) v/(lambda Delta))/F$",
-            residuals,
-            "$v = x'_-$, before the impact",
-        ),
-        Statement::new(
-            ("$sin phi$", "sin phi = "),
-            "(-1/2*(R_r + 1)*c*sin(2*beta*lambda) + lambda*[(R_r - 1)*cos(2*beta*lambda) \
-             + exp(-beta*c) - R_r*exp(beta*c))\
-             /(lambda*F*omega*(2*cos(2*beta*lambda) - exp(-beta*c) - exp(beta*c)))*v",
-            &own,
-            sin,
-        )
-        .with(
-            "${lambda [R_r (E - cos theta) - (1/E - cos theta)] + (1 + R_r) (c/2) sin theta} \
-             v/(omega lambda F Delta)$",
-            residuals,
-            "equal only for $c = 0$ as printed",
-        ),
-        Statement::new(
-            ("$F$", "F = "),
-            "P0/sqrt((alpha0^2 - omega^2)^2 + c^2*omega^2)",
-            &literal,
-            squares,
-        )
-        .squared()
-        .with(
-            "$P0/sqrt((alpha^2 - omega^2)^2 + c^2 omega^2)$",
-            "squares compared; the response sees neither $A$ nor $B$",
-            "",
-        ),
-        Statement::new(
-            ("$lambda$", "lambda = "),
-            "sqrt(alpha^2 - omega^2)",
-            &literal,
-            derived.lambda_squared.clone(),
-        )
-        .squared()
-        .with(
-            "$sqrt(alpha^2 - c^2/4)$",
-            "squares compared; both parts of $l^2 + c l + alpha^2 = 0$ at $l = -c/2 + i lambda$",
-            "the symbol and a factor of one term are wrong, $c^2/4$ is no slip for $omega^2$; the \
-             printed root is imaginary for $omega > alpha$",
-        ),
-        Statement::new(("$beta$", "beta = "), "pi*k/omega", &literal, half_period)
-            .with("", polynomials, ""),
-        Statement::new(("$C$, $D$ in (8)", "D = "), D_PRINTED, &mixed, any_d).with(
-            "$D$ with $alpha0$ and $-2 R$ in the places of $lambda$ and $c$",
-            residuals,
-            "the amplitudes printed with $(c, lambda)$ meet the end conditions of the flight with \
-             $(-c/2, lambda)$, not of (8) with $(R, alpha0)$: for $A$, $B$ other than zero the orbit of \
-             (8) is another",
-        ),
-    ])
+    let [c, d, cos, sin] = derived.uncontrolled;
+    let [_, any_d, _, _] = derived.any;
+    let truth = [
+        (&literal, derived.amplitude_squared.clone()),
+        (&polar, of_cos),
+        (&polar, of_sin),
+        (&parts, q.mul(&p("C0"), &p("C0"))),
+        (&own, c),
+        (&own, d),
+        (&own, cos),
+        (&own, sin),
+        (&literal, derived.amplitude_squared),
+        (&literal, derived.lambda_squared),
+        (&literal, half_period),
+        (&mixed, any_d),
+    ];
+    let pairs = PRINTED.iter().zip(truth);
+    let mut list: Vec<_> = pairs.map(|(line, (words, value))| line.against(words, value)).collect();
+    for found in list.iter_mut().filter(|found| found.independent == RESIDUALS && !derived.closes) {
+        found.independent = "the solution does not meet the end conditions".to_owned();
+    }
+    Ok(list)
 }
 
 /// (8) and the formulas after it.

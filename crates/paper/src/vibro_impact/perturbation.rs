@@ -107,81 +107,117 @@ const B: [&str; 3] = [
 /// (9), (11), (12), (16) and what stands between them.
 pub(super) fn statements(map: &ImpactMap) -> Result<Vec<Statement>, Error> {
     let q = extended(map);
-    let flight = Arc::new(in_flight(&q).only(&[&WORDS[..], &["R*tau"]].concat()));
     let ends = Arc::new(at_ends(&q).only(&[&WORDS[..], &["beta", "pi", "k", "dT"]].concat()));
-    let by_differentiation = "formal derivatives of (8) by $C$, $D$, $phi$ and $tau$";
-    let statement = |label: &str, left: &str, printed: &str, setting: &Arc<Setting>, derived| {
-        Statement::new((label, left), printed, setting, derived)
-    };
     let mut list = vec![perturbed_flight(&q, map)?];
+    list.extend(times(&q)?);
+    list.extend(variations(&q, map));
+    list.extend(end_conditions(&q, map, &ends)?);
+    list.extend(eliminated(map, &ends)?);
+    list.extend(characteristic_equation(map, &ends)?);
+    Ok(list)
+}
+
+/// The times below (9).
+fn times(q: &Quotients) -> Result<[Statement; 2], Error> {
     let times = Arc::new(Setting::new(q.clone()).only(&["pi", "k", "l", "omega", "dT"]));
     let period = times.read("2*pi*k/omega").ok_or(FAILED)?;
     let length = q.add(&period, &q.parameter("dT"));
-    list.push(statement("$tau$, below (9)", "tau_(l+1) = ", "2*pi*l/omega + dT", &times, length));
-    list.push(statement("$T$, below (9)", "T = ", "2*pi/omega", &times, period));
-    let dx = map.displacement_variation.clone();
-    let dv = map.velocity_variation.clone();
-    for (label, left, printed, derived) in
-        [("$dx$", "delta x = ", DISPLACEMENT, dx), ("$dx'$", "delta x' = ", VELOCITY, dv)]
-    {
-        let remark = if label == "$dx'$" { "(11) has both terms right" } else { "" };
-        let found = statement(label, left, printed, &flight, derived);
-        list.push(found.with("", by_differentiation, remark));
-    }
-    let start = [&map.start_displacement, &map.start_velocity];
-    let next = [of_next(&q, start[0]).ok_or(FAILED)?, of_next(&q, start[1]).ok_or(FAILED)?];
-    let [end_x, end_v] = [&map.end_displacement, &map.end_velocity].map(|f| with_length(&q, f));
-    let (end_x, end_v) = (end_x.ok_or(FAILED)?, end_v.ok_or(FAILED)?);
-    let six = [
-        ("(11), 1", "0 = ", "dC - a*dphi*sin(phi)", start[0].clone()),
-        ("(11), 2", "delta x'_+ = ", "R*dC + dD*alpha0 - a*omega*dphi*cos(phi)", start[1].clone()),
-        ("(11), 3", "0 = ", "dC' - a*dphi'*sin(phi)", next[0].clone()),
-        (
-            "(11), 4",
-            "delta x'_+' = ",
-            "R*dC' + dD'*alpha0 - a*omega*dphi'*cos(phi)",
-            next[1].clone(),
+    let label = ("$tau$, below (9)", "tau_(l+1) = ");
+    Ok([
+        Statement::new(label, "2*pi*l/omega + dT", &times, length),
+        Statement::new(("$T$, below (9)", "T = "), "2*pi/omega", &times, period),
+    ])
+}
+
+const BY_DIFFERENTIATION: &str = "formal derivatives of (8) by $C$, $D$, $phi$ and $tau$";
+
+/// The small changes of displacement and velocity in flight.
+fn variations(q: &Quotients, map: &ImpactMap) -> [Statement; 2] {
+    let flight = Arc::new(in_flight(q).only(&[&WORDS[..], &["R*tau"]].concat()));
+    let [dx, dv] = [&map.displacement_variation, &map.velocity_variation].map(Clone::clone);
+    let remark = "(11) has both terms right";
+    [
+        Statement::new(("$dx$", "delta x = "), DISPLACEMENT, &flight, dx).with(
+            "",
+            BY_DIFFERENTIATION,
+            "",
         ),
-        ("(11), 5", "0 = ", END_DISPLACEMENT, end_x),
-        ("(11), 6", "delta x'_-' = ", END_VELOCITY, end_v),
-    ];
-    for (label, left, printed, derived) in six {
-        let inside = label.ends_with('5') || label.ends_with('6');
-        let remark = if inside { "$dT$ inside the functions is of second order" } else { "" };
-        let found = statement(label, left, printed, &ends, derived);
-        list.push(found.with("", by_differentiation, remark));
-    }
-    let [first, second, third] = map.equations.clone();
-    let second_printed = "exp(2*beta*R)*[dC*cos(2*beta*alpha0) + dD*sin(2*beta*alpha0) \
-         + 1/omega*(dphi' - dphi)*[(alpha0*D + R*C)*cos(2*beta*alpha0) \
-         + (R*D - alpha0*C)*sin(2*beta*alpha0)]] - dC'";
-    let propagation = propagation(map, &ends).ok_or(FAILED)?;
-    for (label, printed, derived, remark) in [
-        ("(12), 1", "dC - a*dphi*sin(phi)", first, String::new()),
-        ("(12), 2", second_printed, second, String::new()),
-        ("(12), 3", THIRD, third, propagation),
-    ] {
-        let found = statement(label, "0 = ", printed, &ends, derived);
+        Statement::new(("$dx'$", "delta x' = "), VELOCITY, &flight, dv).with(
+            "",
+            BY_DIFFERENTIATION,
+            remark,
+        ),
+    ]
+}
+
+/// (11): label, left side, formula, remark.
+const ELEVEN: [[&str; 4]; 6] = [
+    ["(11), 1", "0 = ", "dC - a*dphi*sin(phi)", ""],
+    ["(11), 2", "delta x'_+ = ", "R*dC + dD*alpha0 - a*omega*dphi*cos(phi)", ""],
+    ["(11), 3", "0 = ", "dC' - a*dphi'*sin(phi)", ""],
+    ["(11), 4", "delta x'_+' = ", "R*dC' + dD'*alpha0 - a*omega*dphi'*cos(phi)", ""],
+    ["(11), 5", "0 = ", END_DISPLACEMENT, INSIDE],
+    ["(11), 6", "delta x'_-' = ", END_VELOCITY, INSIDE],
+];
+const INSIDE: &str = "$dT$ inside the functions is of second order";
+
+fn end_conditions(
+    q: &Quotients,
+    map: &ImpactMap,
+    ends: &Arc<Setting>,
+) -> Result<Vec<Statement>, Error> {
+    let start = [&map.start_displacement, &map.start_velocity];
+    let end = [&map.end_displacement, &map.end_velocity];
+    let [this, next] = [start.map(|f| Some(f.clone())), start.map(|f| of_next(q, f))];
+    let derived = [this, next, end.map(|f| with_length(q, f))];
+    let lines = ELEVEN.iter().zip(derived.into_iter().flatten());
+    let statement = |([label, left, printed, remark], derived): (&[&str; 4], Option<Quotient>)| {
+        let found = Statement::new((label, left), printed, ends, derived.ok_or(FAILED)?);
+        Ok(found.with("", BY_DIFFERENTIATION, remark))
+    };
+    lines.map(statement).collect()
+}
+
+/// The lines of (12).
+const TWELVE: [&str; 3] = ["dC - a*dphi*sin(phi)", SECOND, THIRD];
+const SECOND: &str = "exp(2*beta*R)*[dC*cos(2*beta*alpha0) + dD*sin(2*beta*alpha0) \
+     + 1/omega*(dphi' - dphi)*[(alpha0*D + R*C)*cos(2*beta*alpha0) \
+     + (R*D - alpha0*C)*sin(2*beta*alpha0)]] - dC'";
+
+/// (12).
+fn eliminated(map: &ImpactMap, ends: &Arc<Setting>) -> Result<Vec<Statement>, Error> {
+    let propagation = propagation(map, ends).ok_or(FAILED)?;
+    let statement = |(n, (printed, derived)): (usize, (&str, &Quotient))| {
+        let label = format!("(12), {n}");
+        let remark = if n == TWELVE.len() { &*propagation } else { "" };
         let independent = "(11) with $omega dT = dphi' - dphi$, $dx'_+ = -R_r dx'_-$";
-        list.push(found.with("", independent, &remark));
-    }
-    let [b0, b1, b2] = map.characteristic.clone();
-    let checks = orbit_values(map).ok_or(FAILED)?;
+        Statement::new((&label, "0 = "), printed, ends, derived.clone()).with(
+            "",
+            independent,
+            remark,
+        )
+    };
+    Ok((1..).zip(TWELVE.into_iter().zip(&map.equations)).map(statement).collect())
+}
+
+/// (16).
+fn characteristic_equation(map: &ImpactMap, ends: &Arc<Setting>) -> Result<Vec<Statement>, Error> {
     let jacobian = if same_characteristic(map) { "has" } else { "does not have" };
-    for ((label, printed, derived), remark) in
-        [("$b_2$, (16)", B[0], b2), ("$b_1$, (16)", B[1], b1), ("$b_0$, (16)", B[2], b0)]
-            .into_iter()
-            .zip(checks)
-    {
-        let left = format!("{} = ", label.trim_end_matches("$, (16)").trim_start_matches('$'));
-        let independent = format!(
-            "the Jacobian of $(phi, x'_+)$ by the implicit function theorem {jacobian} trace \
-             $-b_1/b_2$ and determinant $b_0/b_2$"
-        );
-        let found = statement(label, &left, printed, &ends, derived);
-        list.push(found.with("", &independent, &remark));
-    }
-    Ok(list)
+    let independent = format!(
+        "the Jacobian of $(phi, x'_+)$ by the implicit function theorem {jacobian} trace \
+         $-b_1/b_2$ and determinant $b_0/b_2$"
+    );
+    let remarks = orbit_values(map).ok_or(FAILED)?;
+    let lines = B.iter().zip(map.characteristic.iter().rev()).zip(remarks);
+    let statement = |(n, ((printed, derived), remark)): (usize, ((&&str, &Quotient), String))| {
+        let (label, left) = (format!("$b_{n}$, (16)"), format!("b_{n} = "));
+        Statement::new((&label, &left), printed, ends, derived.clone()).with(
+            "",
+            &independent,
+            &remark,
+        )
+    };
+    Ok((0..B.len()).rev().zip(lines).map(statement).collect())
 }
 
 /// (9), with the amplitude that the paper calls a.
@@ -287,67 +323,79 @@ fn is_linear(map: &ImpactMap) -> bool {
 /// (9)-(16) in the order of the paper.
 pub(super) fn rows() -> Result<Vec<Row>, Error> {
     let map = ImpactMap::derive().ok_or(FAILED)?;
-    let same = same_characteristic(&map);
-    let amplitude = super::orbit::statements()?.into_iter().find(|s| s.label == "(8)");
     let mut rows = Vec::new();
     for statement in statements(&map)? {
         match statement.label.as_str() {
             "(11), 1" => {
-                rows.extend(amplitude.iter().flat_map(|found| {
-                    let again = Statement {
-                        label: "$a$".to_owned(),
-                        left: "a = ".to_owned(),
-                        remark: "$a$ must be the $F$ of $cos phi$ and $sin phi$".to_owned(),
-                        ..found.clone()
-                    };
-                    again.rows()
-                }));
-                rows.push(Row::new("$x_(1-)$",
-"before the impact number 1, the mass possesses the velocity $x_(1-)$",
-"$x_(1-) = s$, the place of the wall; the velocity is $x'_(1-)$",
-"the end conditions of (8) and (10)",
-&Findings {
-                        holds: false,
-                        correction: same.then(|| "$x'_(1-)$".to_owned()),
-                        ..Findings::default()
-                    },
-"a dot is missing: with $x_- = s$ and $x'_-$ the velocity the map of the impacts \
-                               follows",
-));
-                rows.push(plain(
-                    "(10)",
-                    "$l$: $tau = 0$, $dtau = 0$, $dx = 0$, $dx'_+ = -R_r dx'_-$; $l+1$: $tau = 2 pi k/omega + \
-                     dtau$, $dtau = dT$, $dx = 0$, $dx' = dx'_-$",
-                    "the end conditions of the impact map".to_owned(),
-                    "the implicit function theorem on $(phi, x'_+) -> (phi', x'_+')$".to_owned(),
-                    same,
-                    "both have the same characteristic polynomial, exactly",
-                ));
+                rows.extend(amplitude_again()?);
+                rows.extend(before_eleven(same_characteristic(&map)));
             }
-            "$b_2$, (16)" => {
-                rows.push(phase_sum());
-                rows.push(plain(
-                    "(14)",
-                    "$dC_l = a_1 gamma^l$, $dD_l = a_2 gamma^l$, $dphi_l = a_3 gamma^l$",
-                    "(12) is linear with constant coefficients".to_owned(),
-                    "Euler's relation of degree one for each line".to_owned(),
-                    is_linear(&map),
-                    "turns (12) into a linear system whose determinant must vanish",
-                ));
-                rows.push(plain(
-                    "(15)",
-                    "$b_2 gamma^2 + b_1 gamma + b_0 = 0$",
-                    "the determinant of the three lines has degree 2 in $gamma$".to_owned(),
-                    "the state $(phi, x'_+)$ has two components".to_owned(),
-                    same,
-                    "$b_2$, $b_1$, $b_0$ derived; see (16)",
-                ));
-            }
+            "$b_2$, (16)" => rows.extend(before_sixteen(&map)),
             _ => {}
         }
         rows.extend(statement.rows());
     }
     Ok(rows)
+}
+
+/// The amplitude of (8), which (9) calls a.
+fn amplitude_again() -> Result<Vec<Row>, Error> {
+    let amplitude = super::orbit::statements()?.into_iter().find(|s| s.label == "(8)");
+    let again = |found: Statement| Statement {
+        label: "$a$".to_owned(),
+        left: "a = ".to_owned(),
+        remark: "$a$ must be the $F$ of $cos phi$ and $sin phi$".to_owned(),
+        ..found
+    };
+    Ok(amplitude.map_or_else(Vec::new, |found| again(found).rows()))
+}
+
+/// The velocity before the impact, and (10); `same`: both characteristic polynomials agree.
+fn before_eleven(same: bool) -> [Row; 2] {
+    let correction = same.then(|| "$x'_(1-)$".to_owned());
+    [
+        Row::new(
+            "$x_(1-)$",
+            "before the impact number 1, the mass possesses the velocity $x_(1-)$",
+            "$x_(1-) = s$, the place of the wall; the velocity is $x'_(1-)$",
+            "the end conditions of (8) and (10)",
+            &Findings { correction, ..Findings::default() },
+            "a dot is missing: with $x_- = s$ and $x'_-$ the velocity the map of the impacts \
+             follows",
+        ),
+        plain(
+            "(10)",
+            "$l$: $tau = 0$, $dtau = 0$, $dx = 0$, $dx'_+ = -R_r dx'_-$; $l+1$: $tau = 2 pi k/omega + \
+             dtau$, $dtau = dT$, $dx = 0$, $dx' = dx'_-$",
+            "the end conditions of the impact map",
+            "the implicit function theorem on $(phi, x'_+) -> (phi', x'_+')$",
+            same,
+            "both have the same characteristic polynomial, exactly",
+        ),
+    ]
+}
+
+/// (13), (14) and (15).
+fn before_sixteen(map: &ImpactMap) -> [Row; 3] {
+    [
+        phase_sum(),
+        plain(
+            "(14)",
+            "$dC_l = a_1 gamma^l$, $dD_l = a_2 gamma^l$, $dphi_l = a_3 gamma^l$",
+            "(12) is linear with constant coefficients",
+            "Euler's relation of degree one for each line",
+            is_linear(map),
+            "turns (12) into a linear system whose determinant must vanish",
+        ),
+        plain(
+            "(15)",
+            "$b_2 gamma^2 + b_1 gamma + b_0 = 0$",
+            "the determinant of the three lines has degree 2 in $gamma$",
+            "the state $(phi, x'_+)$ has two components",
+            same_characteristic(map),
+            "$b_2$, $b_1$, $b_0$ derived; see (16)",
+        ),
+    ]
 }
 
 /// (13), dphi_l = dphi_0 + sum_(i=1)^l omega dT_i, against dphi_(l+1) = dphi_l + omega dT_l: both
