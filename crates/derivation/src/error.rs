@@ -11,6 +11,9 @@ pub enum DerivationError {
     /// The driver refused.
     #[error(transparent)]
     Expand(#[from] ExpandError),
+    /// Averaging at resonance does not take the equations.
+    #[error(transparent)]
+    Resonance(#[from] crate::resonance::ResonanceError),
     /// No more primes of 61 bits with the roots of unity that the order needs.
     #[error("no more 61-bit primes for this order")]
     OutOfPrimes,

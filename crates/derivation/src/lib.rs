@@ -5,6 +5,7 @@
 //! | [`derive()`] | omega^2, omega, T/2pi and x_n, substituted back into the equation | exact |
 //! | [`energy`] | the frequency alone, by the energy integral | exact |
 //! | [`averaging`] | rates of amplitude and phase (Krylov, Bogoliubov, Mitropolsky) | exact, certified |
+//! | [`resonance`] | slow flows at resonance and of several unknowns | exact |
 //! | [`numeric`] | the same recursion over functions known by their values | estimated |
 //! | [`constants`] | the constants of exact coefficients as balls | certified |
 //!
@@ -25,6 +26,7 @@ mod limits;
 pub mod numeric;
 mod phase_functions;
 pub mod prepare;
+pub mod resonance;
 mod series;
 mod settings;
 mod values;

@@ -262,7 +262,7 @@ impl Oscillator {
     }
 
     /// Complete, or stopped after an order, which is said.
-    fn standing(
+    pub(crate) fn standing(
         &self,
         stopped: bool,
         done: usize,

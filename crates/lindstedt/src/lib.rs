@@ -34,6 +34,7 @@ pub mod grid;
 pub mod motion;
 mod oscillator;
 pub mod refusal;
+mod resonance;
 pub mod stability;
 pub mod start;
 pub mod threshold;
@@ -55,6 +56,7 @@ pub use error::Error;
 pub use evaluate::Evaluate;
 pub use lindstedt_derivation::{
     Derivation, DerivationError, NamedSeries, Progress, Route, Solution, Work, averaging, numeric,
+    resonance::SlowFlow,
 };
 pub use lindstedt_evaluation::EvaluationError;
 pub use lindstedt_number::{Exact, Number, NumberError, Status};

@@ -18,6 +18,7 @@ use lindstedt_number::{Exact, Number};
 use lindstedt_phase::Torus;
 use std::collections::BTreeMap;
 use task::Task;
+pub(crate) use values::constant;
 
 /// What to average.
 #[derive(Clone, Debug)]

@@ -73,7 +73,7 @@ impl<K: RationalAlgebra> Operations for Constants<'_, K> {
 }
 
 /// The value of an expression in numbers and parameters.
-pub(super) fn constant<K: RationalAlgebra>(
+pub(crate) fn constant<K: RationalAlgebra>(
     ring: &K,
     expression: &Expression,
     values: &dyn Fn(&str) -> Option<K::Element>,

@@ -4,6 +4,7 @@ use super::Kind::{self, NoAnswer, Stopped, Undecided, Usage};
 use super::Refusal;
 use lindstedt_algebra::PhaseError;
 use lindstedt_derivation::DerivationError;
+use lindstedt_derivation::resonance::ResonanceError;
 use lindstedt_evaluation::EvaluationError;
 use lindstedt_expand::ExpandError;
 use lindstedt_impact::ImpactError;
@@ -30,10 +31,52 @@ impl Refusal for ExpandError {
     }
 }
 
+impl Refusal for ResonanceError {
+    fn parts(&self) -> (Kind, &'static str, String) {
+        let (kind, code, hint) = match self {
+            Self::SecondPhase => (
+                NoAnswer,
+                "second-phase",
+                "forces are cos(m*omega*t) of one omega, detuned together: cos(m*(1 + eps*sigma)*t)",
+            ),
+            Self::NotAForce { .. } | Self::Acceleration { .. } | Self::Delay { .. } => {
+                (NoAnswer, "no-method", "`lindstedt simulate` takes it")
+            }
+            Self::NotWeaklyNonlinear { .. } => {
+                (NoAnswer, "no-method", "a factor eps marks the small terms")
+            }
+            Self::Equations { .. } => {
+                (Usage, "second-unknown", "one equation for every unknown, separated by `;`")
+            }
+            Self::Unset { .. } => (Usage, "no-value-set", "--set NAME=VALUE, for example 1/10"),
+            Self::NoRationalModes { .. } => (
+                NoAnswer,
+                "no-rational-modes",
+                "exact orders need frequencies with rational ratios; a small difference is a detuning \
+                 eps*sigma*x",
+            ),
+            Self::NoOscillation { .. } => (NoAnswer, "no-expansion", ""),
+            Self::NotDiagonalisable => (NoAnswer, "not-diagonalisable", ""),
+            Self::NearMiss { .. } => (
+                NoAnswer,
+                "near-miss",
+                "write the frequency at the resonance and the difference as a detuning: eps*sigma*x",
+            ),
+            Self::TooManySymbols { .. } => (NoAnswer, "too-many-symbols", "--set some of them"),
+            Self::TooHigh { .. } | Self::TooManyTerms { .. } => {
+                (Undecided, "too-large", "lower --order")
+            }
+            _ => (Undecided, "undecided", ""),
+        };
+        (kind, code, hint.to_owned())
+    }
+}
+
 impl Refusal for DerivationError {
     fn parts(&self) -> (Kind, &'static str, String) {
         let (kind, code, hint) = match self {
             Self::Expand(error) => return error.parts(),
+            Self::Resonance(error) => return error.parts(),
             Self::BadValue { .. } => {
                 (Usage, "bad-value", "values are exact: 3, -1/3, 0.1, 2.5e-3, pi/4, 2*pi/3")
             }

@@ -1,0 +1,208 @@
+//! The modes of M x'' + K x: rational frequencies and shapes, exactly.
+
+use super::ResonanceError;
+use rug::{Integer, Rational};
+
+/// A square matrix of rational numbers, by rows.
+pub(super) type Matrix = Vec<Vec<Rational>>;
+
+/// x = P q with q_j'' + nu_j^2 q_j.
+pub(super) struct Modes {
+    /// nu_j > 0.
+    pub frequencies: Vec<Rational>,
+    /// P, the shapes as columns; nothing where x is q.
+    pub shapes: Option<Matrix>,
+    /// P^-1 M^-1: what the other terms of the equations are multiplied by.
+    pub inverse: Matrix,
+}
+
+/// The modes of M x'' + K x. Where both are diagonal the unknowns stay what they are.
+///
+/// The characteristic polynomial of M^-1 K is made integral; its roots are real where there are modes, so
+/// that Newton's method from above, in integers, finds the largest one or shows that it is none. Cost: O(n^4).
+pub(super) fn modes(mass: &Matrix, stiffness: &Matrix) -> Result<Modes, ResonanceError> {
+    let n = mass.len();
+    let inverse = inverted(mass).ok_or(ResonanceError::NotDiagonalisable)?;
+    let matrix = product(&inverse, stiffness);
+    let diagonal = |m: &Matrix| (0..n).all(|i| (0..n).all(|j| i == j || m[i][j].is_zero()));
+    if diagonal(&matrix) && diagonal(mass) {
+        let squares: Vec<_> = (0..n).map(|j| matrix[j][j].clone()).collect();
+        return Ok(Modes { frequencies: roots(&squares)?, shapes: None, inverse });
+    }
+    let squares = eigenvalues(&matrix)?;
+    let frequencies = roots(&squares)?;
+    let mut columns: Vec<Vec<Rational>> = Vec::new();
+    let mut distinct = squares.clone();
+    distinct.dedup();
+    for square in &distinct {
+        columns.extend(kernel(&matrix, square));
+    }
+    if columns.len() != n {
+        return Err(ResonanceError::NotDiagonalisable);
+    }
+    let shapes: Matrix =
+        (0..n).map(|i| columns.iter().map(|column| column[i].clone()).collect()).collect();
+    let back = inverted(&shapes).ok_or(ResonanceError::NotDiagonalisable)?;
+    Ok(Modes { frequencies, inverse: product(&back, &inverse), shapes: Some(shapes) })
+}
+
+/// The positive roots of positive rational squares.
+fn roots(squares: &[Rational]) -> Result<Vec<Rational>, ResonanceError> {
+    if let Some(square) = squares.iter().find(|square| **square <= 0) {
+        return Err(ResonanceError::NoOscillation { square: square.to_string() });
+    }
+    let root = |q: &Rational| lindstedt_equation::classify::rational_root(q);
+    squares.iter().map(root).collect::<Option<_>>().ok_or_else(|| {
+        let list: Vec<String> = squares.iter().map(ToString::to_string).collect();
+        ResonanceError::NoRationalModes { squares: list.join(", ") }
+    })
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let entry = |row: &Vec<Rational>, j: usize| {
+        row.iter().zip(b).map(|(x, other)| Rational::from(x * &other[j])).sum()
+    };
+    a.iter().map(|row| (0..b.len()).map(|j| entry(row, j)).collect()).collect()
+}
+
+/// The reduced row echelon form, and the columns of its pivots.
+fn reduced(mut rows: Matrix, columns: usize) -> (Matrix, Vec<usize>) {
+    let mut pivots = Vec::new();
+    for column in 0..columns {
+        let next = pivots.len();
+        let Some(found) = (next..rows.len()).find(|i| !rows[*i][column].is_zero()) else {
+            continue;
+        };
+        rows.swap(next, found);
+        let scale = Rational::from(rows[next][column].recip_ref());
+        rows[next].iter_mut().for_each(|x| *x *= &scale);
+        let pivot = rows[next].clone();
+        for (_, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != next) {
+            let factor = row[column].clone();
+            row.iter_mut().zip(&pivot).for_each(|(x, p)| *x -= Rational::from(&factor * p));
+        }
+        pivots.push(column);
+    }
+    (rows, pivots)
+}
+
+fn inverted(matrix: &Matrix) -> Option<Matrix> {
+    let n = matrix.len();
+    let unit = |i: usize| (0..n).map(move |j| Rational::from(u32::from(i == j)));
+    let rows =
+        matrix.iter().enumerate().map(|(i, row)| row.iter().cloned().chain(unit(i)).collect());
+    let (rows, pivots) = reduced(rows.collect(), n);
+    (pivots.len() == n).then(|| rows.into_iter().map(|row| row[n..].to_vec()).collect())
+}
+
+/// A basis of the kernel of matrix - lambda, each vector with 1 in its own free column.
+fn kernel(matrix: &Matrix, lambda: &Rational) -> Vec<Vec<Rational>> {
+    let n = matrix.len();
+    let mut shifted = matrix.clone();
+    (0..n).for_each(|i| shifted[i][i] -= lambda);
+    let (rows, pivots) = reduced(shifted, n);
+    let vector = |free: usize| {
+        let mut vector = vec![Rational::new(); n];
+        vector[free] = Rational::from(1);
+        for (row, pivot) in rows.iter().zip(&pivots) {
+            vector[*pivot] = Rational::from(-&row[free]);
+        }
+        vector
+    };
+    // Shapes read from the first unknown.
+    let scaled = |vector: Vec<Rational>| {
+        let first = vector.iter().find(|x| !x.is_zero()).cloned().unwrap_or_else(|| 1.into());
+        vector.into_iter().map(|x| x / &first).collect()
+    };
+    (0..n).filter(|j| !pivots.contains(j)).map(vector).map(scaled).collect()
+}
+
+/// The eigenvalues with their multiplicities, increasing, where all of them are rational.
+fn eigenvalues(matrix: &Matrix) -> Result<Vec<Rational>, ResonanceError> {
+    let n = matrix.len();
+    let common = matrix.iter().flatten().fold(Integer::from(1), |d, q| d.lcm(q.denom()));
+    // The characteristic polynomial of common * matrix (Faddeev and Leverrier), highest power first.
+    let scaled: Matrix = matrix
+        .iter()
+        .map(|row| row.iter().map(|q| Rational::from(q * &common)).collect())
+        .collect();
+    let mut polynomial = vec![Integer::from(1)];
+    let mut current = scaled.clone();
+    for k in 1..=n {
+        let trace: Rational = (0..n).map(|i| current[i][i].clone()).sum();
+        let c = -trace / Integer::from(k);
+        (0..n).for_each(|i| current[i][i] += &c);
+        polynomial.push(c.into_numer_denom().0);
+        current = product(&scaled, &current);
+    }
+    let mut found = Vec::new();
+    while polynomial.len() > 1 {
+        let root = largest_root(&polynomial).ok_or_else(|| ResonanceError::NoRationalModes {
+            squares: "of the linear part".to_owned(),
+        })?;
+        let mut carried = Integer::new();
+        for c in &mut polynomial {
+            *c += Integer::from(&carried * &root);
+            carried.clone_from(c);
+        }
+        polynomial.pop();
+        found.push(Rational::from((root, common.clone())));
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// The largest root of a monic polynomial with real roots, if it is an integer: from above, Newton's method
+/// decreases towards it.
+fn largest_root(polynomial: &[Integer]) -> Option<Integer> {
+    let bound = polynomial.iter().map(|c| c.clone().abs()).max()?;
+    let mut x = bound + 1u32;
+    loop {
+        let (mut value, mut slope) = (Integer::new(), Integer::new());
+        for c in polynomial {
+            slope = slope * &x + &value;
+            value = value * &x + c;
+        }
+        if value.is_zero() {
+            return Some(x);
+        }
+        // A polynomial with real roots is positive and grows above all of them.
+        if value < 0 || slope <= 0 {
+            return None;
+        }
+        // Beside a double root the step is half of the way; a root that is passed was no integer.
+        x -= (value / slope).max(Integer::from(1));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn matrix(rows: &[&[i32]]) -> Matrix {
+        rows.iter().map(|row| row.iter().map(|q| Rational::from(*q)).collect()).collect()
+    }
+
+    #[test]
+    fn shapes_and_refusals() {
+        let unit = matrix(&[&[1, 0], &[0, 1]]);
+        // Two masses with equal springs and a coupling of 3/2: squares 1 and 4.
+        let half = Rational::from((1, 2));
+        let coupled = vec![
+            vec![Rational::from(5) * &half, Rational::from(-3) * &half],
+            vec![Rational::from(-3) * &half, Rational::from(5) * &half],
+        ];
+        let found = modes(&unit, &coupled);
+        let Ok(found) = found else { panic!("rational modes") };
+        assert_eq!(found.frequencies, [1, 2]);
+        assert_eq!(found.shapes, Some(matrix(&[&[1, 1], &[1, -1]])));
+        let sheared = modes(&unit, &matrix(&[&[1, 1], &[0, 1]])).err();
+        assert_eq!(sheared, Some(ResonanceError::NotDiagonalisable));
+        let kerschen = modes(&unit, &matrix(&[&[2, -1], &[-1, 2]])).err();
+        assert!(matches!(kerschen, Some(ResonanceError::NoRationalModes { .. })));
+        let golden = modes(&unit, &matrix(&[&[2, -1], &[-1, 1]])).err();
+        assert!(matches!(golden, Some(ResonanceError::NoRationalModes { .. })));
+        let saddle = modes(&unit, &matrix(&[&[0, 1], &[1, 0]])).err();
+        assert!(matches!(saddle, Some(ResonanceError::NoOscillation { .. })));
+    }
+}

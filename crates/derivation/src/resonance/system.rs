@@ -1,0 +1,288 @@
+//! From the equations of a problem to what is averaged: values put in, modes, the phase of the forces.
+
+use super::ResonanceError;
+use super::forces::{Phase, is_wave, leading_rates, near, phase};
+use super::modes::{Matrix, Modes, modes};
+use crate::error::DerivationError as Error;
+use lindstedt_equation::monomials::{MOST_TERMS, Monomial, Monomials, expand};
+use lindstedt_equation::{Expression, Unknown};
+use lindstedt_number::Exact;
+use rug::Rational;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What is averaged: x_j'' + nu_j^2 x_j + ... = 0 with forces cos(m Omega t), eta = Omega t + the detuning.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// The left sides, x_j'' alone; where there are shapes, of the modes.
+    pub equations: Vec<Expression>,
+    /// nu_j.
+    pub frequencies: Vec<Rational>,
+    /// Omega; 0 where there is no force.
+    pub force: Rational,
+    /// sigma_1, sigma_2, ... of eta' = Omega + sum eps^n sigma_n.
+    pub detuning: Vec<Expression>,
+    /// Names without a value, in the order of printing.
+    pub symbols: Vec<String>,
+    /// P of x = P q, where the unknowns are no modes.
+    pub shapes: Option<Matrix>,
+    /// The values that were put in.
+    pub bound: BTreeMap<String, Rational>,
+    /// The frequency that was given where it lies beside a resonance, and the name of its detuning.
+    pub beside: Option<Beside>,
+}
+
+/// A frequency beside a resonance: rate = Omega + eps * symbol.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beside {
+    /// The rate of the force's phase as it was given.
+    pub rate: Rational,
+    /// The symbol (rate - Omega)/eps.
+    pub symbol: String,
+}
+
+/// The name of an unknown while its equation is multiplied out as one of a parameter: none is written so.
+fn stand_in(unknown: &Unknown) -> Expression {
+    Expression::parameter(&format!("{}'{}", unknown.index, unknown.derivative))
+}
+
+const WAVE: &str = "'t";
+
+/// The equation at eps = 0, multiplied out, unknowns and forces as parameters.
+fn at_zero(equation: &Expression) -> Result<Monomials, ResonanceError> {
+    let change = |e: &Expression| match e {
+        Expression::Small => Some(Expression::integer(0)),
+        Expression::Unknown(unknown) => Some(stand_in(unknown)),
+        wave if is_wave(wave) => Some(Expression::parameter(WAVE)),
+        _ => None,
+    };
+    let all = expand(&equation.map(&change).canonical());
+    all.ok_or(ResonanceError::TooManyTerms { limit: MOST_TERMS })
+}
+
+/// A factor of a term: an unknown (index and derivative), or a force.
+fn unknowns_of(m: &Monomial) -> impl Iterator<Item = ([usize; 2], i32)> {
+    m.parameters.iter().filter_map(|(name, n)| {
+        let (index, derivative) = name.split_once('\'')?;
+        Some(([index.parse().ok()?, derivative.parse().ok()?], *n))
+    })
+}
+
+/// The coefficients of x_k and x_k'' in an equation at order zero, by index.
+struct Linear {
+    mass: BTreeMap<usize, Expression>,
+    stiffness: BTreeMap<usize, Expression>,
+}
+
+fn linear(equation: &Expression) -> Result<Linear, ResonanceError> {
+    let all = at_zero(equation)?;
+    let mut linear = Linear { mass: BTreeMap::new(), stiffness: BTreeMap::new() };
+    for (m, q) in &all.terms {
+        let refused =
+            || ResonanceError::NotWeaklyNonlinear { term: super::shown(&written(&all.tree(m, q))) };
+        let mut found = unknowns_of(m);
+        let (first, second) = (found.next(), found.next());
+        let force = m.parameters.contains_key(WAVE);
+        if !m.atoms.is_empty() {
+            return Err(refused());
+        }
+        let list = match (first, second) {
+            (None, None) => continue,
+            (Some(([_, 0], 1)), None) if !force => &mut linear.stiffness,
+            (Some(([_, 2], 1)), None) if !force => &mut linear.mass,
+            _ => return Err(refused()),
+        };
+        let Some(([index, _], _)) = first else { continue };
+        let mut rest = m.clone();
+        rest.parameters.retain(|name, _| !name.contains('\''));
+        let sum = list.remove(&index).unwrap_or_else(|| 0.into());
+        list.insert(index, (sum + all.tree(&rest, q)).canonical());
+    }
+    Ok(linear)
+}
+
+/// A term with its unknowns again.
+fn written(e: &Expression) -> Expression {
+    e.map(&|e| {
+        let Expression::Parameter(name) = e else { return None };
+        if name == WAVE {
+            return Some(Expression::parameter("cos(...*t)"));
+        }
+        let (index, derivative) = name.split_once('\'')?;
+        Some(Expression::unknown(index.parse().ok()?, derivative.parse().ok()?))
+    })
+}
+
+/// Values: those that are given, and those of the cards.
+pub(super) struct Values<'a> {
+    pub given: &'a BTreeMap<String, Exact>,
+    pub cards: &'a dyn Fn(&str) -> Option<Exact>,
+}
+
+impl Values<'_> {
+    fn rational(&self, name: &str, value: &Exact) -> Result<Rational, Error> {
+        let value = value
+            .as_rational()
+            .ok_or_else(|| Error::Irrational { name: name.to_owned(), value: value.to_string() })?;
+        Ok(value.clone())
+    }
+}
+
+impl System {
+    /// Prepares the left sides of equations; `order` is the order in which symbols are printed.
+    pub(super) fn of(
+        equations: &[Expression],
+        values: &Values<'_>,
+        order: &[String],
+    ) -> Result<Self, Error> {
+        for e in equations.iter().flat_map(Expression::nodes) {
+            match e {
+                Expression::Unknown(unknown) if unknown.delay.is_some() => {
+                    return Err(ResonanceError::Delay { term: super::shown(e) }.into());
+                }
+                Expression::Unknown(unknown) if unknown.index >= equations.len() => {
+                    let count = unknown.index + 1;
+                    let equations = equations.len();
+                    return Err(ResonanceError::Equations { unknowns: count, equations }.into());
+                }
+                _ => {}
+            }
+        }
+        let mut bound = BTreeMap::new();
+        let mentioned: BTreeSet<String> =
+            equations.iter().flat_map(Expression::parameters).collect();
+        for (name, value) in values.given.iter().filter(|(name, _)| mentioned.contains(*name)) {
+            bound.insert(name.clone(), values.rational(name, value)?);
+        }
+        let equations = put_in(equations, &bound);
+        // What the frequencies depend on has its value, too.
+        let parts = equations.iter().map(linear).collect::<Result<Vec<_>, _>>()?;
+        let entries = parts.iter().flat_map(|p| p.mass.values().chain(p.stiffness.values()));
+        let rates = leading_rates(&equations)?;
+        let needed: BTreeSet<String> =
+            entries.chain(&rates).flat_map(Expression::parameters).collect();
+        for name in needed {
+            let value =
+                (values.cards)(&name).ok_or(ResonanceError::Unset { name: name.clone() })?;
+            bound.insert(name.clone(), values.rational(&name, &value)?);
+        }
+        let equations = put_in(&equations, &bound);
+        let (phase, equations) = phase(&equations)?;
+        let parts = equations.iter().map(linear).collect::<Result<Vec<_>, _>>()?;
+        let matrix = |of: &dyn Fn(&Linear) -> &BTreeMap<usize, Expression>| -> Matrix {
+            let entry = |p: &Linear, j| of(p).get(&j).and_then(Expression::as_number);
+            let row = |p| (0..parts.len()).map(|j| entry(p, j).unwrap_or_default()).collect();
+            parts.iter().map(row).collect()
+        };
+        let modes = modes(&matrix(&|p| &p.mass), &matrix(&|p| &p.stiffness))?;
+        let equations = separated(&equations, &modes)?;
+        Ok(Self::with_phase(equations, modes, phase, order).with_bound(bound))
+    }
+
+    fn with_bound(self, bound: BTreeMap<String, Rational>) -> Self {
+        Self { bound, ..self }
+    }
+
+    fn with_phase(
+        equations: Vec<Expression>,
+        modes: Modes,
+        phase: Phase,
+        order: &[String],
+    ) -> Self {
+        let Modes { frequencies, shapes, .. } = modes;
+        let Phase { rate, mut detuning } = phase;
+        let all = equations.iter().chain(&detuning).flat_map(Expression::parameters);
+        let mut symbols: Vec<String> = order.to_vec();
+        let used: BTreeSet<String> = all.collect();
+        symbols.retain(|name| used.contains(name));
+        let unlisted: Vec<_> = used.into_iter().filter(|name| !symbols.contains(name)).collect();
+        symbols.extend(unlisted);
+        let at = (rate > 0).then(|| near(&rate, &frequencies)).flatten();
+        let Some(at) = at else {
+            let (bound, beside) = (BTreeMap::new(), None);
+            return Self {
+                equations,
+                frequencies,
+                force: rate,
+                detuning,
+                symbols,
+                shapes,
+                bound,
+                beside,
+            };
+        };
+        let free = |name: &&str| !symbols.iter().any(|known| known == name);
+        let symbol = ["sigma", "detuning", "sigma_0"].into_iter().find(free).unwrap_or("sigma_1");
+        symbols.push(symbol.to_owned());
+        if detuning.is_empty() {
+            detuning.push(0.into());
+        }
+        detuning[0] = (detuning[0].clone() + Expression::parameter(symbol)).canonical();
+        // The harmonics m eta keep m.
+        let scale = Rational::from(&at / &rate);
+        let moved = |e: &Expression| {
+            let (Expression::Function(function, angle), true) = (e, is_wave(e)) else {
+                return None;
+            };
+            let angle = Expression::Number(scale.clone()) * (**angle).clone();
+            Some(angle.canonical().apply(*function))
+        };
+        let equations = equations.iter().map(|e| e.map(&moved)).collect();
+        let beside = Some(Beside { rate, symbol: symbol.to_owned() });
+        let bound = BTreeMap::new();
+        Self { equations, frequencies, force: at, detuning, symbols, shapes, bound, beside }
+    }
+}
+
+fn put_in(equations: &[Expression], values: &BTreeMap<String, Rational>) -> Vec<Expression> {
+    let change = |e: &Expression| match e {
+        Expression::Parameter(name) => values.get(name).cloned().map(Expression::Number),
+        _ => None,
+    };
+    equations.iter().map(|e| e.substitute(&change).canonical()).collect()
+}
+
+/// q_j'' + the rest of equation j, with x = P q in it.
+fn separated(equations: &[Expression], modes: &Modes) -> Result<Vec<Expression>, ResonanceError> {
+    let without: Vec<Expression> =
+        equations.iter().map(without_acceleration).collect::<Result<_, _>>()?;
+    let shape = |e: &Expression| {
+        let (Some(shapes), Expression::Unknown(unknown)) = (&modes.shapes, e) else { return None };
+        let part = |(j, p): (usize, &Rational)| {
+            Expression::Number(p.clone()) * Expression::unknown(j, unknown.derivative)
+        };
+        Some(Expression::Sum(shapes[unknown.index].iter().enumerate().map(part).collect()))
+    };
+    let without: Vec<Expression> = without.iter().map(|e| e.map(&shape)).collect();
+    let equation = |(j, row): (usize, &Vec<Rational>)| {
+        let parts = row.iter().zip(&without).filter(|(q, _)| !q.is_zero());
+        let terms = parts.map(|(q, e)| (Expression::Number(q.clone()) * e.clone()).canonical());
+        let terms = terms.flat_map(|e| e.terms().to_vec());
+        Expression::Sum([Expression::unknown(j, 2)].into_iter().chain(terms).collect())
+    };
+    Ok(modes.inverse.iter().enumerate().map(equation).collect())
+}
+
+/// The equation without the x_k'', which stand in terms of their own with constant factors.
+fn without_acceleration(equation: &Expression) -> Result<Expression, ResonanceError> {
+    let accelerated =
+        |e: &Expression| matches!(e, Expression::Unknown(Unknown { derivative: 2.., .. }));
+    let alone = |term: &Expression| match term {
+        Expression::Product(factors) => {
+            let (with, others): (Vec<_>, Vec<_>) = factors.iter().partition(|f| accelerated(f));
+            with.len() == 1 && others.iter().all(|e| matches!(e, Expression::Number(_)))
+        }
+        single => accelerated(single),
+    };
+    let holds = |e: &Expression| e.nodes().any(accelerated);
+    let split = |e: &Expression| {
+        let (with, rest): (Vec<_>, Vec<_>) = e.terms().iter().cloned().partition(holds);
+        match with.iter().find(|term| !alone(term)) {
+            None => Ok(Expression::Sum(rest).canonical()),
+            Some(term) => Err(ResonanceError::Acceleration { term: super::shown(term) }),
+        }
+    };
+    split(&equation.canonical()).or_else(|error| {
+        let all = equation.multiplied_out().ok_or(error)?;
+        split(&all)
+    })
+}

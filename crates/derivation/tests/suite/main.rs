@@ -1,0 +1,3 @@
+//! What is derived against numbers from elsewhere.
+
+mod resonance;

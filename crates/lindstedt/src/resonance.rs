@@ -1,0 +1,54 @@
+//! The slow flow of a problem: averaging at resonance and of several unknowns.
+
+use crate::{Answer, Error, Oscillator, SlowFlow, Work};
+use lindstedt_derivation::resonance::{FlowSettings, slow_flow};
+use std::time::Instant;
+
+impl Oscillator {
+    /// The slow flow up to an order: with complex amplitudes z_j, E = e^{i eta} and the phase eta of the
+    /// force,
+    ///
+    ///   x_j = z_j + zbar_j + ..., z_j' = i nu_j z_j + sum eps^n f_{j,n}(z, zbar, E),
+    ///   eta' = Omega + eps sigma_1 + ...,
+    ///
+    /// whatever is resonant at whichever order. Parameters that are not set stay symbols; what a
+    /// frequency depends on takes the value of the problem. A force beside a resonance is detuned: by
+    /// `cos((1 + eps*sigma)*t)` as it is written, or by the symbol sigma = (omega - Omega)/eps where omega is
+    /// a number. Exact, and substituted into the equation. Cost: O(N^2) products of polynomials whose length
+    /// grows like N^(symbols + 1).
+    ///
+    /// # Errors
+    /// [`Error`] with the reason: frequencies whose ratio is not rational, a linear part without modes, a
+    /// divisor that is almost zero, each by name.
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, Work};
+    /// let forced = Oscillator::parse("x'' + x + eps*x^3 = eps*F*cos((1 + eps*sigma)*t)")?;
+    /// let flow = forced.slow_flow(2, &Work::default())?.value;
+    /// // f_1 = -(i/4) F E + (3/2) i z^2 zbar: exponents of z, zbar, E, F, sigma.
+    /// let first: Vec<_> = flow.flow[0][1].iter().map(|t| (&t.exponents[..], t.im.to_string())).collect();
+    /// assert!(first.contains(&(&[0, 0, 1, 1, 0], "-1/4".to_owned())));
+    /// assert!(first.contains(&(&[2, 1, 0, 0, 0], "3/2".to_owned())));
+    /// assert_eq!(flow.checked_orders, Some(2));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn slow_flow(&self, order: usize, work: &Work) -> Result<Answer<SlowFlow>, Error> {
+        let start = Instant::now();
+        self.without_pi()?;
+        let problem = self.problem();
+        let cards = problem.parameters.iter().map(|card| card.name.to_string());
+        let cards: Vec<_> = cards.map(|name| (name.clone(), self.value(&name))).collect();
+        let stop = work.stop.clone();
+        let settings = FlowSettings { order, given: self.given(), cards: &cards, stop };
+        let equations = std::slice::from_ref(&problem.equation);
+        let found = slow_flow(equations, &settings, &mut |progress| work.goes_on(progress));
+        let value = found.map_err(|error| self.refusal(error.into()))?;
+        let mut remarks = self.remarks().to_vec();
+        let checked = value.checked_orders.is_some();
+        let stopped = value.order < order || !checked;
+        let standing = self.standing(stopped, value.order, checked, &mut remarks);
+        let at = value.system.bound.iter().map(|(name, q)| (name.clone(), q.to_string()));
+        let header = self.header(at.collect(), Some(value.order), "exact", start);
+        Ok(Answer { header, value, standing, remarks })
+    }
+}
