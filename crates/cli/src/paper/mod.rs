@@ -35,6 +35,9 @@ pub fn run(options: &PaperOptions, session: &Session<'_>) -> Outcome {
                 std::fs::write(&path, content)
                     .map_err(|error| trouble(&path.display().to_string(), &error))?;
             }
+            let main = directory.join(page::PAGE);
+            let line = format!("wrote {} ({})\n", main.display(), page::tally(&paper));
+            crate::output::write(None, &line)?;
         }
         (None, format) => {
             let report = match format {

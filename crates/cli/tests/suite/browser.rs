@@ -30,8 +30,12 @@ fn write_report() -> Result<PathBuf, Box<dyn Error>> {
     let run = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
         .args(["paper", "--quick", "--quiet", "--out"])
         .arg(&folder)
-        .status()?;
-    assert!(run.success(), "paper: {run}");
+        .output()?;
+    assert!(run.status.success(), "paper: {run:?}");
+    let said = String::from_utf8(run.stdout)?;
+    let page = folder.join("report.html");
+    let expected = format!("wrote {} (", page.display());
+    assert!(said.starts_with(&expected) && said.contains(" statements: "), "{said}");
     Ok(folder)
 }
 

@@ -4,15 +4,18 @@ use super::{PageError, WIDTH, document, figures, json, standalone, table_of};
 use crate::{Paper, Row, Section, Table, Trust};
 use lindstedt_report::{Format, Table as Sheet};
 
+/// The file in which one begins to read.
+pub const PAGE: &str = "report.html";
+
 /// All files of the report with their names. `seconds` is what the work took.
 ///
 /// # Errors
 /// A figure that cannot be drawn; as [`json`].
 pub fn files(paper: &Paper, seconds: f64) -> Result<Vec<(String, String)>, PageError> {
     let drawn = figures::draw(&paper.trust)?;
-    let page = document(paper, Some(&drawn));
+    let page = document(paper, Some(&drawn), true);
     let mut files = vec![
-        ("report.html".to_owned(), standalone(&page, include_str!("style.css"))),
+        (PAGE.to_owned(), standalone(&page, include_str!("style.css"))),
         ("report.md".to_owned(), Format::Markdown.write_within(&page, WIDTH)),
         ("report.json".to_owned(), json(paper, seconds)?),
     ];

@@ -66,7 +66,8 @@ fn framed(title: &str, across: Axis, up: Axis) -> Figure {
 fn agreement(region: &Region) -> Drawn {
     let rates = &region.sample.rates;
     let across = Axis::linear("share of true verdicts in percent");
-    let mut figure = framed("Rules against the truth", across, Axis::linear("rule"));
+    let mut figure =
+        framed("Rules against the truth", across, Axis::named("", rates.iter().map(|r| r.rule)));
     for (n, rate) in (1u32..).zip(rates) {
         let colour = match rate.rule {
             "G" => colours::GREEN,
@@ -74,7 +75,7 @@ fn agreement(region: &Region) -> Drawn {
             _ => colours::GREY,
         };
         let (share, place) = (100.0 * rate.rate, f64::from(n));
-        let name = format!("{n}: {}, {share:.1} %", rate.rule);
+        let name = format!("{}: {share:.1} %", rate.rule);
         let bar = [(0.0, place), (share, place)];
         figure = figure.layer(Some(&name), Mark::Line(14), colour, bar);
     }

@@ -11,7 +11,7 @@ use figures::Drawing;
 use lindstedt_report::{Document, FigureError, Format, Text as Line, standalone};
 use serde::Serialize;
 
-pub use data::files;
+pub use data::{PAGE, files};
 pub(crate) use notation::latex;
 
 /// The width of the page as text.
@@ -70,11 +70,13 @@ pub fn json(paper: &Paper, seconds: f64) -> Result<String, PageError> {
 /// The page in one format, to stand alone: no figures, no names of files beside it.
 #[must_use]
 pub fn write(paper: &Paper, format: Format) -> String {
-    format.write_within(&document(paper, None), WIDTH)
+    let linked = matches!(format, Format::Markdown | Format::Html);
+    format.write_within(&document(paper, None, linked), WIDTH)
 }
 
-/// The page; with figures it is one of several [`files`], whose names it tells.
-fn document(paper: &Paper, figures: Option<&[Drawing]>) -> Document {
+/// The page; with figures it is one of several [`files`], whose names it tells; `linked` where a reader
+/// can follow links.
+fn document(paper: &Paper, figures: Option<&[Drawing]>, linked: bool) -> Document {
     let rows: usize = paper.sections.iter().map(|s| s.rows.len()).sum();
     let rules = Verdict::ALL.map(|verdict| (stamp(verdict), verdict.rule()));
     let mut page = Document::titled(
@@ -93,7 +95,10 @@ fn document(paper: &Paper, figures: Option<&[Drawing]>) -> Document {
                 .strong("Unfinished: the work was stopped before its end.", "unfinished"),
         );
     }
-    page = page.lines(rules).words(contents(paper));
+    page = page.lines(rules);
+    if linked {
+        page = page.words(contents(paper));
+    }
     if !paper.trust.findings.is_empty() {
         page = page.part(
             ("trust", ""),
@@ -101,7 +106,7 @@ fn document(paper: &Paper, figures: Option<&[Drawing]>) -> Document {
             summary::trust(paper, figures.unwrap_or_default()),
         );
     }
-    page = page.part(("glance", ""), "The paper at a glance", summary::glance(paper));
+    page = page.part(("glance", ""), "The paper at a glance", summary::glance(paper, linked));
     for section in &paper.sections {
         let title = format!("Section {}: {}", section.number, section.title);
         let name = format!("section-{}", section.number);
@@ -129,14 +134,22 @@ fn stamp(verdict: Verdict) -> Line {
     Line::default().strong(verdict.name(), verdict.class())
 }
 
-/// "44 statements: 30 agrees, ..." in one line.
-fn counts(section: &Section) -> String {
-    let counts = Verdict::ALL.map(|v| format!("{} {}", section.count(v), v.name()));
-    format!("{} statements: {}.", section.rows.len(), counts.join(", "))
+/// "44 statements: 30 agrees, ...", of one section or several.
+fn counts(sections: &[Section]) -> String {
+    let count = |v| sections.iter().map(|section| section.count(v)).sum::<usize>();
+    let counts = Verdict::ALL.map(|v| format!("{} {}", count(v), v.name()));
+    let all: usize = sections.iter().map(|section| section.rows.len()).sum();
+    format!("{all} statements: {}", counts.join(", "))
+}
+
+/// The number of statements and how often each verdict is given, in one line.
+#[must_use]
+pub fn tally(paper: &Paper) -> String {
+    counts(&paper.sections)
 }
 
 fn section_page(section: &Section, has_files: bool) -> Document {
-    let mut line = Line::words(counts(section));
+    let mut line = Line::words(counts(std::slice::from_ref(section)) + ".");
     if has_files {
         let csv = data::rows_name(section);
         line = line.and(" Data: ").link(&csv, &csv).and(", ").link("report.json", "report.json");

@@ -66,7 +66,7 @@ fn worst(paper: &Paper, number: u32) -> Option<(&Section, &Row)> {
 }
 
 /// All formulas with their verdicts, and how often each is given.
-pub(super) fn glance(paper: &Paper) -> Document {
+pub(super) fn glance(paper: &Paper, linked: bool) -> Document {
     let formulas = |verdict: Verdict| {
         let found = (1..=FORMULAS).filter_map(|number| Some((number, worst(paper, number)?)));
         let of_this = found.filter(|(_, (_, row))| row.verdict == verdict);
@@ -88,8 +88,9 @@ pub(super) fn glance(paper: &Paper) -> Document {
     let table = paper.sections.iter().fold(Table::new(columns), |table, section| {
         table.row(counts(format!("Section {}", section.number), &|verdict| section.count(verdict)))
     });
+    let leads = if linked { "; a number leads to its row" } else { "" };
     Document::default()
-        .words("Every formula under the worst verdict of its parts; a number leads to its row.")
+        .words(format!("Every formula under the worst verdict of its parts{leads}."))
         .lines(lines)
         .table(table)
 }

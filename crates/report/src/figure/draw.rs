@@ -96,13 +96,12 @@ fn paint(
 fn chart(area: &Area<'_>, figure: &Figure, [xs, ys]: &[Range<f64>; 2]) -> Drawn {
     let font = |size: u32| ("sans-serif", size * FINE);
     let [across, up] = &figure.axes;
-    let widest = [ys.start, ys.end].map(|y| up.scale.tick(y, ys).len()).into_iter().max();
     let mut chart = ChartBuilder::on(area)
         .margin(12 * FINE)
         .margin_right(28 * FINE)
         .caption(&figure.title, font(17))
         .x_label_area_size(46 * FINE)
-        .y_label_area_size((34 + 8 * widest.unwrap_or(1) as u32) * FINE)
+        .y_label_area_size((34 + 8 * up.widest(ys) as u32) * FINE)
         .build_cartesian_2d(xs.clone(), ys.clone())?;
     let mut mesh = chart.configure_mesh();
     mesh.x_desc(across.label.as_str())
@@ -113,11 +112,14 @@ fn chart(area: &Area<'_>, figure: &Figure, [xs, ys]: &[Range<f64>; 2]) -> Drawn 
         .axis_style(stroke(colours::BLACK, 1))
         .light_line_style(WHITE)
         .bold_line_style(stroke((232, 232, 232), 1));
+    if !up.names.is_empty() {
+        mesh.y_labels(up.names.len());
+    }
     if figure.raster.is_some() {
         mesh.disable_mesh();
     }
-    mesh.x_label_formatter(&|x| across.scale.tick(*x, xs))
-        .y_label_formatter(&|y| up.scale.tick(*y, ys))
+    mesh.x_label_formatter(&|x| across.tick(*x, xs))
+        .y_label_formatter(&|y| up.tick(*y, ys))
         .draw()?;
     if let Some(raster) = &figure.raster {
         cells(&mut chart, raster)?;

@@ -88,17 +88,27 @@ pub struct Axis {
     pub label: String,
     /// Its scale.
     pub scale: Scale,
+    /// The words at 1, 2, 3, ...; numbers at the ticks where empty.
+    pub names: Vec<String>,
 }
 
 impl Axis {
     /// A linear axis.
     pub fn linear(label: impl Into<String>) -> Self {
-        Self { label: label.into(), scale: Scale::Linear }
+        Self { label: label.into(), scale: Scale::Linear, names: Vec::new() }
     }
 
     /// A logarithmic axis.
     pub fn logarithmic(label: impl Into<String>) -> Self {
-        Self { label: label.into(), scale: Scale::Logarithmic }
+        Self { scale: Scale::Logarithmic, ..Self::linear(label) }
+    }
+
+    /// Places 1, 2, 3, ... with their names.
+    pub fn named<N: Into<String>>(
+        label: impl Into<String>,
+        names: impl IntoIterator<Item = N>,
+    ) -> Self {
+        Self { names: names.into_iter().map(Into::into).collect(), ..Self::linear(label) }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Scales of axes: their ranges and the words at their ticks.
 
+use super::Axis;
 use std::ops::Range;
 
 /// The scale of an axis.
@@ -22,7 +23,7 @@ impl Scale {
     }
 
     /// The word at a tick.
-    pub(super) fn tick(self, place: f64, range: &Range<f64>) -> String {
+    fn tick(self, place: f64, range: &Range<f64>) -> String {
         match self {
             Self::Logarithmic => match 10f64.powf(place) {
                 value if (1e-3..1e4).contains(&value) => short(value),
@@ -35,6 +36,24 @@ impl Scale {
                 format!("{shown:.*}", decimals(range))
             }
         }
+    }
+}
+
+impl Axis {
+    /// The word at a tick; none between two names.
+    pub(super) fn tick(&self, place: f64, range: &Range<f64>) -> String {
+        if self.names.is_empty() {
+            return self.scale.tick(place, range);
+        }
+        let of_place = |n: &usize| (place - (*n + 1) as f64).abs() < 1e-6;
+        let named = (0..self.names.len()).find(of_place).and_then(|n| self.names.get(n));
+        named.cloned().unwrap_or_default()
+    }
+
+    /// How many characters its widest word has.
+    pub(super) fn widest(&self, range: &Range<f64>) -> usize {
+        let ends = [range.start, range.end].map(|place| self.tick(place, range));
+        ends.iter().chain(&self.names).map(|word| word.chars().count()).max().unwrap_or(1)
     }
 }
 
