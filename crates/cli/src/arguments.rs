@@ -132,7 +132,7 @@ pub struct EvaluateOptions {
     #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
     pub times: Option<String>,
     /// The orbit as a theorem: period, frequency, amplitude and Floquet exponent enclosed, with the
-    /// radius of the contraction proof.
+    /// radius of the contraction proof; of a forced equation its responses with the force's period.
     #[arg(long, conflicts_with_all = ["times", "code", "phase", "start", "state", "sweep", "plot", "f64"])]
     pub prove: bool,
     /// Period and frequency over NAME=LO..HI:COUNT or NAME=V1,V2,...; at most two, the first along

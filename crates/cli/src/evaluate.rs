@@ -17,7 +17,8 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     let shown = !options.plot.is_empty() || options.code.is_some();
     let times = options.times.as_deref().map(Times::parse).transpose()?;
     let times = times.or_else(|| shown.then(Times::default));
-    if oscillator.condition() == Some(Condition::FreeAmplitude) {
+    let drifts = oscillator.condition() == Some(Condition::FreeAmplitude);
+    if drifts && !options.prove {
         return averaged(options, session, &oscillator, times, &work);
     }
     if options.start.is_some() || options.state.is_some() {
@@ -69,7 +70,6 @@ fn averaged(
         (sums, "--resum", "the averaged series is broken off at --order"),
         (options.code.is_some(), "--code", "an averaged motion is no Fourier series in one phase"),
         (options.phase.trim() != "0", "--phase", "--start A,PSI has the phase"),
-        (options.prove, "--prove", "`stability` and `simulate` judge forced motions"),
         (!options.sweep.is_empty(), "--sweep", "an averaged motion has no period"),
     ] {
         if asked {

@@ -72,7 +72,8 @@ impl Field {
     }
 
     /// Whether x(tau) -> x(-tau) maps solutions to solutions: even powers of x', cosines.
-    pub(crate) fn is_reversible(&self) -> bool {
+    #[must_use]
+    pub fn is_reversible(&self) -> bool {
         let even =
             |t: &Term| t.velocity.is_multiple_of(2) && t.factor.values().all(|(_, b)| b.is_zero());
         self.terms.iter().all(even)

@@ -192,19 +192,17 @@ impl Proof {
         self.orbit.harmonic(k)
     }
 
+    /// The product of the two Floquet multipliers, e^(sum of the exponents times the period) (Liouville).
+    #[must_use]
+    pub fn multiplier_product(&self) -> Ball {
+        let balls = self.orbit.balls;
+        balls.exp(&balls.mul(&self.exponent, &self.period))
+    }
+
     /// The numerical solution as a guess for a neighbouring problem.
     #[must_use]
     pub fn start(&self) -> Start {
-        let modes = self.orbit.centre.doubles();
-        Start {
-            frequency: self.frequency.midpoint().to_f64(),
-            cosines: modes
-                .iter()
-                .zip(0..)
-                .map(|(c, k)| if k == 0 { c.re } else { 2.0 * c.re })
-                .collect(),
-            sines: modes.iter().map(|c| -2.0 * c.im).collect(),
-        }
+        Start::of(&self.orbit.centre)
     }
 
     /// A lower bound of the distance between the numerical solutions of two proofs in the norm with

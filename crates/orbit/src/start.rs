@@ -1,5 +1,6 @@
 //! The guess from which Newton's method starts.
 
+use crate::centre::Centre;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -39,6 +40,37 @@ impl Start {
             cosines: modes.clone().map(|k| coefficient(k, f64::cos)).collect(),
             sines: modes.map(|k| coefficient(k, f64::sin)).collect(),
         }
+    }
+
+    /// The numerical solution in doubles.
+    pub(crate) fn of(centre: &Centre) -> Self {
+        let modes = centre.doubles();
+        let times = |k: usize| if k == 0 { 1.0 } else { 2.0 };
+        Self {
+            frequency: centre.frequency.to_f64(),
+            cosines: modes.iter().enumerate().map(|(k, c)| times(k) * c.re).collect(),
+            sines: modes.iter().map(|c| -2.0 * c.im).collect(),
+        }
+    }
+
+    /// sum_k |c_k|, twice those that oscillate.
+    pub(crate) fn size(&self) -> f64 {
+        self.complex().iter().map(|c| 2.0 * c.norm()).sum()
+    }
+
+    /// Whether the harmonics that oscillate have this share of the sum.
+    pub(crate) fn oscillates(&self, share: f64) -> bool {
+        let whole: f64 = self.complex().iter().skip(1).map(|c| 2.0 * c.norm()).sum();
+        whole > share * self.size()
+    }
+
+    /// Whether frequency and harmonics agree, relative to their size.
+    pub(crate) fn is_near(&self, other: &Self, relative: f64) -> bool {
+        let (a, b) = (self.complex(), other.complex());
+        let at = |list: &[Complex<f64>], k: usize| list.get(k).copied().unwrap_or_default();
+        let apart = (0..a.len().max(b.len())).map(|k| 2.0 * (at(&a, k) - at(&b, k)).norm());
+        apart.sum::<f64>() <= relative * self.size()
+            && (self.frequency - other.frequency).abs() <= relative * self.frequency
     }
 
     /// c_k = (cosine_k - i sine_k)/2.

@@ -11,6 +11,7 @@ mod interrupt;
 mod known_digits;
 mod one_path;
 mod problem_files;
+mod proof;
 mod simulate;
 mod simulate_files;
 mod stability;

@@ -7,6 +7,7 @@ mod prove;
 mod sweep;
 mod times;
 pub(crate) mod turn;
+mod wanted;
 
 use crate::refusal::Refused;
 use crate::start::Taken;

@@ -2,20 +2,25 @@
 //! the series converges, which gives no more than the guess ([`lindstedt_orbit`]).
 
 use super::turn::TimeDomain;
+use super::wanted::Wanted;
 use super::{Evaluate, Evaluation, Trajectory};
 use crate::refusal::Refused;
-use crate::{Answer, DerivationError, Error, Number, Oscillator, Remark, Standing, Status, Work};
-use lindstedt_equation::{AmplitudeRole, Condition};
-use lindstedt_number::ball::Ball;
-use lindstedt_orbit::{Failure, Field, Kind, Proof, Request, Stability, Start, prove};
+use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Status, Work};
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_orbit::{Failure, Kind, Proof, Request, Stability, Start, guesses, prove};
+use rug::Float;
 use rug::float::Round;
-use rug::{Float, Rational};
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Harmonics of the guess from the expansion; Newton's method finds the others.
 const GUESSED: usize = 11;
+
+/// The largest mode of the inverse from a guess of the second rank.
+const MODES_OF_A_GUESS: usize = 120;
+
+/// An orbit and what else was found, or why there is none.
+type Outcome = Result<(Proof, Vec<Proof>), Failure>;
 
 /// Digits of the expansion's sum for it.
 const DIGITS_OF_A_GUESS: u32 = 16;
@@ -37,10 +42,20 @@ pub struct ProvedOrbit {
     pub minimum: Option<Number>,
     /// The exponent of a limit cycle that is not zero (Liouville); empty for a member of a family.
     pub floquet_exponent: Vec<Number>,
-    /// What the exponent proves of a limit cycle.
+    /// The sum of the two exponents of a response to a force (Liouville).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exponent_sum: Option<Number>,
+    /// The product of its two Floquet multipliers: e to the sum times the period.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub multiplier_product: Option<Number>,
+    /// What the exponents prove.
     pub stable: Option<bool>,
     /// The proof, or what it failed on.
     pub proof: Verdict,
+    /// Other orbits at the same values: a force may have several responses, an equation several limit
+    /// cycles (the first is the one that the motion from x = 2 approaches). The list need not be complete.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub further: Vec<ProvedOrbit>,
 }
 
 /// How the contraction test ended.
@@ -84,10 +99,12 @@ pub struct Bounds {
 }
 
 impl Oscillator {
-    /// Proves the periodic orbit at the values set: a limit cycle, or the member of a family with the
-    /// amplitude given. Period, frequency, x at phase 0, extrema and the Floquet exponent are enclosed
+    /// Proves the periodic orbit at the values set: a limit cycle, the member of a family with the
+    /// amplitude given, or the responses to a force with its period. Period, frequency, x at phase 0, extrema and the Floquet exponent are enclosed
     /// to `work.digits` digits ([`Status::Proved`]); the guess is the motion in the time domain, else
-    /// the sum of the expansion, else one harmonic. For equations that are polynomial in x and x' with rational coefficients.
+    /// the sum of the expansion, else harmonic balance (of responses the only one). For equations that are
+    /// polynomial in x and x' with rational coefficients, and x'' + c sin(q x) = 0; a small parameter is
+    /// not needed.
     ///
     /// Where the proof fails the estimated period stands as before, and what failed is said
     /// ([`Standing::Undecided`]). Cost: third power of the modes (400: a second).
@@ -108,54 +125,67 @@ impl Oscillator {
     /// ```
     pub fn prove(&self, question: &Evaluate, work: &Work) -> Result<Answer<ProvedOrbit>, Error> {
         let start = Instant::now();
-        let (case, mut remarks) = self.settled()?;
-        let (mut found, outcome) = case.attempt(question, work)?;
-        if outcome.is_err() {
+        self.without_pi()?;
+        let (case, mut remarks) = self.placed()?;
+        let wanted = case.wanted(work.digits)?;
+        let (mut found, outcome) = case.attempt(&wanted, question, work)?;
+        if outcome.is_err() && case.has_expansion() {
             found = case.period(question, work).ok().or(found);
+        }
+        if wanted.is_substituted() {
+            let what = "proved for u = sin(q x/2), q the factor of x in the sine: u is polynomial";
+            remarks.push(Remark(what.to_owned()));
         }
         let order = found.as_ref().map(|found| found.order);
         let (value, standing) = match outcome {
-            Ok(proof) => {
-                let cycle = case.condition() == Some(Condition::LimitCycle);
+            Ok((first, others)) => {
                 let digits = work.printed_digits();
-                (ProvedOrbit::new(&proof, cycle, digits), Standing::Complete)
+                let orbit = |proof: &Proof| ProvedOrbit::new(proof, &wanted, digits);
+                let further = others.iter().map(orbit).collect();
+                (ProvedOrbit { further, ..orbit(&first) }, Standing::Complete)
             }
             Err(failure) => {
                 remarks.push(Remark(format!("not proved: {failure}")));
                 (ProvedOrbit::estimated(found, &failure), Standing::Undecided)
             }
         };
-        let at = case.setting()?.at.into_iter().map(|(name, value)| (name, value.to_string()));
-        let header = self.header(at.collect(), order, "contraction proof", start);
+        let at = case.values_of_proof()?.into_iter();
+        let at = at.map(|(name, value)| (name, value.to_string())).collect();
+        let header = self.header(at, order, "contraction proof", start);
         Ok(Answer { header, value, standing, remarks })
     }
 
     /// The proof from the first guess that leads to one: the motion in the time domain, then those of the
-    /// expansion, which is made only then.
+    /// expansion, which is made only then, then harmonic balance.
     fn attempt(
         &self,
+        wanted: &Wanted,
         question: &Evaluate,
         work: &Work,
-    ) -> Result<(Option<Evaluation>, Result<Proof, Failure>), Error> {
-        let (field, kind) = self.field()?;
+    ) -> Result<(Option<Evaluation>, Outcome), Error> {
         let request =
             Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() };
-        let moving = self
-            .setting()
-            .and_then(|setting| TimeDomain::new(&setting, &work.stop).start(&work.stop));
+        // Some guesses belong to no orbit.
+        let guessed = Request { modes_limit: MODES_OF_A_GUESS, ..request.clone() };
         let mut outcome = Err(Failure::NoStart);
-        if let Ok(start) = moving {
-            outcome = prove(&field, &kind, &start, &request);
-        }
         let mut found = None;
-        // With too few modes no other guess is better.
-        if !matches!(outcome, Ok(_) | Err(Failure::NoContraction { .. } | Failure::Stopped)) {
-            let rough = Work { digits: DIGITS_OF_A_GUESS.min(work.digits), ..work.clone() };
-            found = self.period(question, &rough).ok();
-            for start in self.starts(found.as_ref(), &kind, question, &rough) {
-                outcome = prove(&field, &kind, &start, &request);
-                if matches!(outcome, Ok(_) | Err(Failure::Stopped)) {
-                    break;
+        if !wanted.is_forced() {
+            let moving = self.setting().and_then(|setting| {
+                wanted.start(&TimeDomain::new(&setting, &work.stop), &work.stop)
+            });
+            if let Some(start) = wanted.closed.clone().or(moving.ok()) {
+                outcome = prove(&wanted.field, &wanted.kind, &start, &request);
+            }
+            // With too few modes no other guess is better.
+            let ends = |found: &Result<_, _>| matches!(found, Ok(_) | Err(Failure::Stopped));
+            if !ends(&outcome) && !matches!(outcome, Err(Failure::NoContraction { .. })) {
+                let rough = Work { digits: DIGITS_OF_A_GUESS.min(work.digits), ..work.clone() };
+                found = self.period(question, &rough).ok();
+                for start in self.starts(found.as_ref(), wanted, question, &rough) {
+                    outcome = prove(&wanted.field, &wanted.kind, &start, &guessed);
+                    if ends(&outcome) {
+                        break;
+                    }
                 }
             }
         }
@@ -163,57 +193,21 @@ impl Oscillator {
             let hint = "raise --limit-seconds, or ask for fewer --digits";
             return Err(Refused::stopped("stopped before the proof was finished", hint).into());
         }
-        Ok((found, outcome))
+        Ok((found, with_others(wanted, outcome, &guessed)))
     }
 
-    /// The vector field with its values, and which orbit of it is meant. A small parameter that has the
-    /// amplitude in it is, in the equation of x itself, its other part.
-    pub(crate) fn field(&self) -> Result<(Field, Kind), Error> {
-        if !matches!(self.condition(), Some(condition) if condition != Condition::FreeAmplitude) {
-            let message = "an amplitude that drifts belongs to no periodic orbit";
-            return Err(Refused::no_answer("no-proof", message, "`evaluate --start`").into());
-        }
-        // With what the values set determine: n of a power law gives delta.
-        let known = self.setting()?.at.into_iter();
-        let mut values: BTreeMap<String, Rational> =
-            known.filter_map(|(name, value)| Some((name, value.as_rational()?.clone()))).collect();
-        let small = &self.problem().small;
-        if self.problem().amplitude == AmplitudeRole::InSmallParameter {
-            let cards = self.problem().parameters.iter().filter(|card| card.name != "amplitude");
-            let part = cards.filter_map(|card| values.get(&*card.name)).next().cloned();
-            if let Some(part) = part {
-                values.entry(small.to_string()).or_insert(part);
-            }
-        }
-        let amplitude = || values.get("amplitude").cloned().unwrap_or_else(|| Rational::from(1));
-        let kind = match self.condition() {
-            Some(Condition::LimitCycle) => Kind::LimitCycle,
-            Some(Condition::FundamentalAmplitude) => Kind::FundamentalAmplitude(amplitude()),
-            _ => Kind::InitialAmplitude(amplitude()),
-        };
-        let problem = || self.problem().name.to_string();
-        let field =
-            Field::of_problem(self.problem(), &values).map_err(|failure| match failure {
-                Failure::NoValue(name) => {
-                    Error::from(DerivationError::Unset { problem: problem(), name })
-                }
-                other => {
-                    let hint =
-                        "`evaluate` without --prove estimates it; a closed form is certified there";
-                    Refused::no_answer("no-proof", other.to_string(), hint).into()
-                }
-            })?;
-        Ok((field, kind))
-    }
-
-    /// Guesses: the expansion's sum, then one harmonic.
+    /// Guesses: the expansion's sum, then one harmonic, then harmonic balance.
     fn starts(
         &self,
         found: Option<&Evaluation>,
-        kind: &Kind,
+        wanted: &Wanted,
         question: &Evaluate,
         work: &Work,
     ) -> Vec<Start> {
+        let balanced = guesses(&wanted.field, &wanted.kind, &work.stop).unwrap_or_default();
+        if wanted.is_substituted() {
+            return balanced;
+        }
         let mut starts = Vec::new();
         let path = found.filter(|f| f.period.is_some() || f.exact_period.is_some());
         let path = path.zip(self.setting().ok()).and_then(|(f, setting)| {
@@ -224,7 +218,7 @@ impl Oscillator {
         {
             starts.push(Start { frequency: path.frequency(), cosines, sines });
         }
-        let amplitude = match kind {
+        let amplitude = match &wanted.kind {
             Kind::InitialAmplitude(a) | Kind::FundamentalAmplitude(a) => a.to_f64(),
             // That of van der Pol's equation: one harmonic is a guess for weak cycles only.
             _ => 2.0,
@@ -232,6 +226,7 @@ impl Oscillator {
         let period = found.map(|found| found.best_period.midpoint().to_f64());
         let guessed = period.map(|period| std::f64::consts::TAU / period);
         let guessed = guessed.filter(|omega| omega.is_finite() && *omega > 0.0);
+        starts.extend(balanced);
         for frequency in guessed.into_iter().chain([1.0]) {
             starts.push(Start { frequency, cosines: vec![0.0, amplitude], sines: Vec::new() });
         }
@@ -239,21 +234,62 @@ impl Oscillator {
     }
 }
 
+/// A response, or a limit cycle where more than one is likely, with the others that are proved from the guesses
+/// of harmonic balance, the smallest first; there may be more.
+fn with_others(wanted: &Wanted, first: Result<Proof, Failure>, request: &Request) -> Outcome {
+    let mut proofs: Vec<Proof> = Vec::new();
+    let several = wanted.is_forced() || wanted.kind == Kind::LimitCycle;
+    let starts = match several {
+        true => guesses(&wanted.field, &wanted.kind, &request.stop)?,
+        false => Vec::new(),
+    };
+    let mut failure = match first {
+        Ok(proof) if starts.len() < 2 => return Ok((proof, proofs)),
+        Ok(proof) => {
+            proofs.push(proof);
+            Failure::NoStart
+        }
+        Err(failure) if wanted.is_forced() => failure,
+        Err(failure) => return Err(failure),
+    };
+    for start in starts {
+        match prove(&wanted.field, &wanted.kind, &start, request) {
+            Ok(proof) if proofs.iter().all(|other| other.is_separate_from(&proof)) => {
+                proofs.push(proof);
+            }
+            Ok(_) => {}
+            Err(Failure::Stopped) => return Err(Failure::Stopped),
+            Err(other) => failure = other,
+        }
+    }
+    let mut proofs = proofs.into_iter();
+    let first = proofs.next().ok_or(failure)?;
+    Ok((first, proofs.collect()))
+}
+
 impl ProvedOrbit {
-    fn new(proof: &Proof, cycle: bool, digits: usize) -> Self {
+    fn new(proof: &Proof, wanted: &Wanted, digits: usize) -> Self {
         let number = |ball: &Ball| Some(Number::of_ball(ball, digits).weaken(Status::Proved));
-        let exponent = number(&proof.exponent).filter(|_| cycle);
+        let (cycle, forced) = (wanted.kind == Kind::LimitCycle, wanted.is_forced());
+        let state = wanted.state((proof.displacement.clone(), proof.velocity.clone()));
+        let (amplitude, velocity) = state.unzip();
+        let zero = || Balls::new(proof.maximum.midpoint().prec()).zero();
+        let extremum = |u: &Ball| Some(wanted.state((u.clone(), zero()))?.0);
+        let product = Some(proof.multiplier_product()).filter(|_| forced);
+        let known = |ball: Option<Ball>| ball.as_ref().and_then(number);
         Self {
             period: number(&proof.period),
             frequency: number(&proof.frequency),
-            amplitude: number(&proof.displacement),
-            velocity: number(&proof.velocity),
-            maximum: number(&proof.maximum),
-            minimum: number(&proof.minimum),
-            floquet_exponent: exponent.into_iter().collect(),
+            amplitude: known(amplitude),
+            velocity: known(velocity),
+            maximum: known(extremum(&proof.maximum)),
+            minimum: known(extremum(&proof.minimum)),
+            floquet_exponent: number(&proof.exponent).filter(|_| cycle).into_iter().collect(),
+            exponent_sum: number(&proof.exponent).filter(|_| forced),
+            multiplier_product: known(product),
             stable: match proof.stability {
+                Stability::Unstable if cycle || forced => Some(false),
                 Stability::Stable if cycle => Some(true),
-                Stability::Unstable if cycle => Some(false),
                 _ => None,
             },
             proof: Verdict::Proved {
@@ -268,6 +304,7 @@ impl ProvedOrbit {
                     z2: proof.bounds.z2,
                 }),
             },
+            further: Vec::new(),
         }
     }
 
@@ -289,8 +326,11 @@ impl ProvedOrbit {
             maximum: None,
             minimum: None,
             floquet_exponent: Vec::new(),
+            exponent_sum: None,
+            multiplier_product: None,
             stable: None,
             proof: Verdict::Failed { failed, why: failure.to_string() },
+            further: Vec::new(),
         }
     }
 }

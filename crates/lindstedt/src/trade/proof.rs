@@ -16,10 +16,10 @@ pub(super) fn period(
     digits: u32,
     stop: Stop,
 ) -> Result<Option<Ball>, Failure> {
-    let Ok((field, kind)) = case.field() else { return Ok(None) };
-    let Ok(start) = motion.start(&stop) else { return Ok(None) };
+    let Ok(wanted) = case.wanted(digits) else { return Ok(None) };
+    let Ok(start) = wanted.start(motion, &stop) else { return Ok(None) };
     let request = Request { digits, stop, ..Request::default() };
-    Ok(Some(prove(&field, &kind, &start, &request)?.period))
+    Ok(Some(prove(&wanted.field, &wanted.kind, &start, &request)?.period))
 }
 
 /// A bound of the relative distance of what a run found from the proved period.

@@ -22,43 +22,60 @@ impl Present for Answer<ProvedOrbit> {
         let value = &self.value;
         let values: Vec<String> =
             self.header.at.iter().map(|(n, v)| format!("{n} = {v}")).collect();
-        let title = format!("{}: {}", self.header.problem, values.join(", "));
-        let named = [
-            ("period", &value.period),
-            ("frequency", &value.frequency),
-            ("x at phase 0", &value.amplitude),
-            ("x' at phase 0", &value.velocity),
-            ("largest x", &value.maximum),
-            ("least x", &value.minimum),
-        ];
-        let known =
-            named.into_iter().filter_map(|(name, number)| Some((name, shown(number.as_ref()?))));
-        let exponents = value.floquet_exponent.iter().map(|e| ("Floquet exponent", shown(e)));
-        let page = Document::titled(title).lines(known.chain(exponents));
-        match &value.proof {
-            ProofVerdict::Failed { failed, why } => page.words(format!(
-                "Not proved ({failed}): {why}. This says nothing against the orbit."
-            )),
-            ProofVerdict::Proved { modes, weight, radius, unique_within, bounds } => {
-                let stable = match value.stable {
-                    Some(true) => " It is stable.",
-                    Some(false) => " It is unstable.",
-                    None => "",
-                };
-                let words = format!(
-                    "Proved: there is exactly one periodic orbit within {} of these Fourier coefficients, and no \
-                     second one within {}.{stable}",
-                    radius.decimal, unique_within.decimal
-                );
-                page.words(Text::words(words)).lines([
-                    ("modes", modes.to_string()),
-                    ("weight nu", weight.to_string()),
-                    ("Y0", bounds.y0.decimal.clone()),
-                    ("Z0", format!("{:e}", bounds.z0)),
-                    ("Z1", format!("{:.4}", bounds.z1)),
-                    ("Z2", format!("{:.4}", bounds.z2)),
-                ])
-            }
+        let title = match &values[..] {
+            [] => self.header.problem.clone(),
+            _ => format!("{}: {}", self.header.problem, values.join(", ")),
+        };
+        let page = orbit(Document::titled(title), value);
+        let others = value.further.len();
+        let page = match others {
+            0 => page,
+            1 => page.words("One more orbit at the same values (there may be others):"),
+            _ => page
+                .words(format!("{others} more orbits at the same values (there may be others):")),
+        };
+        value.further.iter().fold(page, orbit)
+    }
+}
+
+/// One orbit.
+fn orbit(page: Document, value: &ProvedOrbit) -> Document {
+    let named = [
+        ("period", &value.period),
+        ("frequency", &value.frequency),
+        ("x at phase 0", &value.amplitude),
+        ("x' at phase 0", &value.velocity),
+        ("largest x", &value.maximum),
+        ("least x", &value.minimum),
+        ("sum of the Floquet exponents", &value.exponent_sum),
+        ("product of the multipliers", &value.multiplier_product),
+    ];
+    let known =
+        named.into_iter().filter_map(|(name, number)| Some((name, shown(number.as_ref()?))));
+    let exponents = value.floquet_exponent.iter().map(|e| ("Floquet exponent", shown(e)));
+    let page = page.lines(known.chain(exponents));
+    match &value.proof {
+        ProofVerdict::Failed { failed, why } => page
+            .words(format!("Not proved ({failed}): {why}. This says nothing against the orbit.")),
+        ProofVerdict::Proved { modes, weight, radius, unique_within, bounds } => {
+            let stable = match value.stable {
+                Some(true) => " It is stable.",
+                Some(false) => " It is unstable.",
+                None => "",
+            };
+            let words = format!(
+                "Proved: there is exactly one periodic orbit within {} of these Fourier coefficients, and no \
+                 second one within {}.{stable}",
+                radius.decimal, unique_within.decimal
+            );
+            page.words(Text::words(words)).lines([
+                ("modes", modes.to_string()),
+                ("weight nu", weight.to_string()),
+                ("Y0", bounds.y0.decimal.clone()),
+                ("Z0", format!("{:e}", bounds.z0)),
+                ("Z1", format!("{:.4}", bounds.z1)),
+                ("Z2", format!("{:.4}", bounds.z2)),
+            ])
         }
     }
 }

@@ -1,0 +1,126 @@
+//! Proved orbits of whole problems: against closed forms, and all that are expected.
+#![allow(clippy::unwrap_used)]
+
+use lindstedt::evaluate::{ProofVerdict, ProvedOrbit};
+use lindstedt::{Error, Evaluate, Number, Oscillator, Refusal, Work};
+use rug::Rational;
+
+fn case(equation: &str, values: &[(&str, &str)]) -> Oscillator {
+    let parse = |text: &str| match text.contains('=') {
+        true => Oscillator::parse(text),
+        false => Oscillator::builtin(text),
+    };
+    let bare = parse(equation).unwrap();
+    values.iter().fold(bare, |case, (name, value)| case.set(name, value).unwrap())
+}
+
+fn proved(equation: &str, values: &[(&str, &str)]) -> Result<ProvedOrbit, Error> {
+    Ok(case(equation, values).prove(&Evaluate::default(), &Work::default())?.value)
+}
+
+/// A printed decimal, exactly.
+fn decimal(text: &str) -> Rational {
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let number: rug::Integer = format!("{whole}{fraction}").parse().unwrap();
+    let power = exponent.parse::<i32>().unwrap() - fraction.len() as i32;
+    Rational::from(number) * rug::ops::Pow::pow(Rational::from(10), power)
+}
+
+fn middle(number: &Option<Number>) -> Rational {
+    decimal(&number.as_ref().unwrap().decimal)
+}
+
+fn error(number: &Option<Number>) -> Rational {
+    number.as_ref().unwrap().error.as_deref().map_or(Rational::new(), decimal)
+}
+
+/// 4 K(sin(a/2)) lies in the ball, which has 28 digits at least; the largest x is a.
+#[test]
+fn pendulums_contain_their_closed_form() {
+    for a in ["1", "3", "157/50"] {
+        let values = [("amplitude", a)];
+        let orbit = proved("pendulum", &values).unwrap();
+        let closed = case("pendulum", &values);
+        let closed = closed.evaluate(&Evaluate::default(), &Work::default()).unwrap().value;
+        let period = middle(&orbit.period);
+        let distance = (middle(&closed.exact_period) - &period).abs();
+        // Both are rounded to 30 digits.
+        let rounding = period.clone() / decimal("1e29");
+        assert!(distance <= error(&orbit.period) + rounding, "{a}: {:?}", orbit.period);
+        assert!(error(&orbit.period) < period / decimal("1e28"), "{a}");
+        let a: Rational = a.parse().unwrap();
+        assert!((middle(&orbit.maximum) - &a).abs() <= error(&orbit.maximum), "{a}");
+        assert!((middle(&orbit.minimum) + &a).abs() <= error(&orbit.minimum), "{a}");
+    }
+}
+
+/// x'' + 2 sin(x/3) = 0 is the pendulum of z = x/3 with the stiffness 2/3.
+#[test]
+fn a_sine_is_recognised_in_the_equation() {
+    let scaled = proved("x'' + 2*sin(x/3) = 0", &[("amplitude", "3")]).unwrap();
+    let plain = proved("pendulum", &[]).unwrap();
+    let squares = middle(&scaled.period).square() / middle(&plain.period).square();
+    assert!((squares - Rational::from((3, 2))).abs() < decimal("1e-27"));
+    let sum = proved("x'' + x + eps*(sin(x) - x) = 0", &[("eps", "1")]).unwrap();
+    assert_eq!(sum.period.unwrap().decimal, plain.period.unwrap().decimal);
+    for (equation, values) in [
+        ("x'' + sin(x) + x = 0", [("amplitude", "1")]),
+        ("x'' + x*sin(x) = 0", [("amplitude", "1")]),
+        ("x'' + abs(x)*sin(x) = 0", [("amplitude", "1")]),
+        ("x'' - sin(x) = 0", [("amplitude", "1")]),
+        ("x'' + sin(x) = 0", [("amplitude", "4")]),
+        ("pendulum", [("delta", "1/2")]),
+    ] {
+        let refused = proved(equation, &values).unwrap_err();
+        assert_eq!(refused.code(), "no-proof", "{equation}: {refused}");
+    }
+}
+
+fn largest(orbit: &ProvedOrbit) -> f64 {
+    middle(&orbit.maximum).to_f64()
+}
+
+fn all(orbit: ProvedOrbit) -> Vec<ProvedOrbit> {
+    let mut list = vec![orbit];
+    let further = std::mem::take(&mut list[0].further);
+    list.extend(further);
+    assert!(list.iter().all(|o| matches!(o.proof, ProofVerdict::Proved { .. })));
+    list
+}
+
+/// The two stable responses and the one between them, and the responses in both wells and over the hill.
+#[test]
+fn responses_to_a_force_are_proved_with_every_parameter_set() {
+    let duffing = "x'' + d*x' + x + x^3/2 - F*cos(13/10*t) = 0";
+    let three = all(proved(duffing, &[("d", "1/10"), ("F", "3/10")]).unwrap());
+    let sizes: Vec<f64> = three.iter().map(largest).collect();
+    // Amplitudes by the balance of one harmonic: 0.49, 1.09, 1.49.
+    let near = [0.489_414, 1.096_356, 1.516_913];
+    assert!(sizes.iter().zip(near).all(|(a, b)| (a - b).abs() < 1e-6), "{sizes:?}");
+    assert_eq!(sizes.len(), 3);
+    for orbit in &three {
+        // Liouville: e^(-d T), T = 20 pi/13.
+        let product = middle(&orbit.multiplier_product).to_f64();
+        assert!((product - (-2.0 * std::f64::consts::PI / 13.0).exp()).abs() < 1e-14);
+        assert!((middle(&orbit.exponent_sum).to_f64() + 0.1).abs() < 1e-15);
+        assert!(orbit.stable.is_none() && orbit.floquet_exponent.is_empty());
+    }
+    let wells = all(proved("x'' - x + x^3 + x'/4 - 1/10*cos(t) = 0", &[]).unwrap());
+    let sizes: Vec<f64> = wells.iter().map(largest).collect();
+    assert!(sizes.len() == 3 && sizes[0] < 0.1 && sizes[1] < -0.9 && sizes[2] > 1.0, "{sizes:?}");
+}
+
+/// A small parameter is not needed; of two limit cycles both are there, one of them unstable.
+#[test]
+fn limit_cycles_are_proved_without_a_small_parameter() {
+    let one = proved("x'' + x + (x^2 - 1)*x' = 0", &[]).unwrap();
+    assert!(one.period.unwrap().decimal.starts_with("6.663286859323130189699682"));
+    assert!(one.further.is_empty());
+    let two = "x'' + x + eps*(x^2 - 1)*x'*(1 - x^2/25) = 0";
+    let two = all(proved(two, &[("eps", "1/10")]).unwrap());
+    let stable: Vec<Option<bool>> = two.iter().map(|orbit| orbit.stable).collect();
+    assert_eq!(stable, [Some(true), Some(false)]);
+    // The averaged amplitudes are sqrt(26 -+ sqrt(476)), 2.045 and 6.916 (rounded).
+    assert!((largest(&two[0]) - 2.045).abs() < 0.01 && (largest(&two[1]) - 6.916).abs() < 0.1);
+}

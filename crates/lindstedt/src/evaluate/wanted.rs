@@ -1,0 +1,135 @@
+//! Which orbit of which polynomial field a case asks for, and how x follows from it.
+
+use super::turn::TimeDomain;
+use crate::refusal::Refused;
+use crate::{DerivationError, Error, Exact, Oscillator};
+use lindstedt_algebra::Stop;
+use lindstedt_equation::{AmplitudeRole, Condition};
+use lindstedt_evaluation::setting::check_names;
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_orbit::{Failure, Field, Kind, Sine, Start};
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// A field, which orbit of it is meant, and how x follows from its unknown.
+pub(crate) struct Wanted {
+    pub field: Field,
+    pub kind: Kind,
+    /// The unknown is sin(q y/2) with x = factor y.
+    sine: Option<(Sine, Rational)>,
+    /// The motion in closed form, in doubles.
+    pub closed: Option<Start>,
+}
+
+impl Wanted {
+    /// Whether the unknown is not x itself.
+    pub fn is_substituted(&self) -> bool {
+        self.sine.is_some()
+    }
+
+    pub fn is_forced(&self) -> bool {
+        matches!(self.kind, Kind::Forced(_))
+    }
+
+    /// The first guess: the closed form of a pendulum, else the motion in the time domain.
+    pub fn start(&self, motion: &TimeDomain<'_>, stop: &Stop) -> Result<Start, Error> {
+        self.closed.clone().map_or_else(|| motion.start(stop), Ok)
+    }
+
+    /// (x, x') where the unknown and its derivative are known.
+    pub fn state(&self, (u, rate): (Ball, Ball)) -> Option<(Ball, Ball)> {
+        let Some((sine, factor)) = &self.sine else { return Some((u, rate)) };
+        let (y, velocity) = sine.state(&u, &rate)?;
+        let balls = Balls::new(u.midpoint().prec());
+        let times = |ball: &Ball| balls.mul_rational(ball, factor);
+        Some((times(&y), times(&velocity)))
+    }
+}
+
+impl Oscillator {
+    /// The polynomial field with its values and which orbit of it is meant, its data known to so many
+    /// digits. A small parameter that has the amplitude in it is, in the equation of x itself, its
+    /// other part.
+    pub(crate) fn wanted(&self, digits: u32) -> Result<Wanted, Error> {
+        let mut values: BTreeMap<String, Rational> = self
+            .values_of_proof()?
+            .into_iter()
+            .filter_map(|(name, value)| Some((name, value.as_rational()?.clone())))
+            .collect();
+        let problem = self.problem();
+        if problem.amplitude == AmplitudeRole::InSmallParameter {
+            let cards = problem.parameters.iter().filter(|card| card.name != "amplitude");
+            let part = cards.filter_map(|card| values.get(&*card.name)).next().cloned();
+            if let Some(part) = part {
+                values.entry(problem.small.to_string()).or_insert(part);
+            }
+        }
+        let amplitude = || values.get("amplitude").cloned().unwrap_or_else(|| Rational::from(1));
+        let condition = self.condition_of_proof();
+        let initial = matches!(condition, None | Some(Condition::InitialAmplitude));
+        let equation = problem.time_domain.as_ref().unwrap_or(&problem.equation);
+        if let Some(sine) = Sine::of(equation, &problem.small, &values).filter(|_| initial) {
+            // Its equation is in y = x/a.
+            let scaled = problem.amplitude == AmplitudeRole::InSums;
+            let one = || Rational::from(1);
+            let (start, factor) = if scaled { (one(), amplitude()) } else { (amplitude(), one()) };
+            let (field, kind) =
+                sine.field(&start, digits).map_err(|failure| self.unproved(failure))?;
+            let closed = Some(sine.start(&start));
+            return Ok(Wanted { field, kind, sine: Some((sine, factor)), closed });
+        }
+        let field =
+            Field::of_problem(problem, &values).map_err(|failure| self.unproved(failure))?;
+        let kind = match condition {
+            _ if !field.is_autonomous() => Kind::Forced(1),
+            None if field.is_reversible() => Kind::InitialAmplitude(amplitude()),
+            None => Kind::LimitCycle,
+            Some(Condition::FreeAmplitude) => {
+                let message = "an amplitude that drifts belongs to no periodic orbit";
+                return Err(Refused::no_answer("no-proof", message, "`evaluate --start`").into());
+            }
+            Some(Condition::LimitCycle) => Kind::LimitCycle,
+            Some(Condition::FundamentalAmplitude) => Kind::FundamentalAmplitude(amplitude()),
+            _ => Kind::InitialAmplitude(amplitude()),
+        };
+        Ok(Wanted { field, kind, sine: None, closed: None })
+    }
+
+    /// The values that enter, with what those set determine (n of a power law gives delta). An equation that
+    /// is not expanded needs no more than what is set.
+    pub(crate) fn values_of_proof(&self) -> Result<Vec<(String, Exact)>, Error> {
+        if self.has_expansion() {
+            return Ok(self.setting()?.at);
+        }
+        let mut given = self.given().clone();
+        given.remove("amplitude");
+        check_names(self.problem(), &given)?;
+        Ok(self.all_values())
+    }
+
+    /// Whether there is a series whose sum is a guess.
+    pub(crate) fn has_expansion(&self) -> bool {
+        let fixed = self.condition().is_some_and(|c| c != Condition::FreeAmplitude);
+        fixed && self.check().is_ok()
+    }
+
+    /// The condition; nothing where it only says that the equation is not expanded.
+    fn condition_of_proof(&self) -> Option<Condition> {
+        let drifts = self.condition() == Some(Condition::FreeAmplitude);
+        let asked = self.asked_condition().is_some() || self.check().is_ok();
+        self.condition().filter(|_| asked || !drifts)
+    }
+
+    fn unproved(&self, failure: Failure) -> Error {
+        match failure {
+            Failure::NoValue(name) => {
+                DerivationError::Unset { problem: self.problem().name.to_string(), name }.into()
+            }
+            other => {
+                let hint =
+                    "`evaluate` without --prove estimates it; a closed form is certified there";
+                Refused::no_answer("no-proof", other.to_string(), hint).into()
+            }
+        }
+    }
+}
