@@ -4,6 +4,9 @@
 //! [`ProblemFile::parse`] reads a TOML file with the equation and everything that is to be said
 //! about it; [`write`](write()) writes such a file. Text in, trees out: no file is opened here.
 
+#![warn(clippy::too_many_lines)]
+
+mod declared;
 mod error;
 mod file;
 mod file_error;

@@ -1,12 +1,15 @@
 //! From the keys of a problem file to the problem: each key is read, and checked, by itself.
 
+use crate::declared::{
+    Parameters, formal_names, orders, parameters, small_name, undeclared, unused,
+};
 use crate::error::{ParseError, ParseErrorKind, excerpt};
 use crate::file::{AMPLITUDES, ASKED, CONDITIONS, ProblemFile, UNNAMED, misplaced};
 use crate::file_error::{FileError, FileErrorKind};
 use crate::grammar::{locate, parse_equation, parse_expression};
 use crate::history::{is_range, ranges, start};
 use crate::meaning::Meanings;
-use crate::names::{Names, PI, canonical_name, is_parameter_name};
+use crate::names::{Names, canonical_name};
 use crate::reader::Reader;
 use crate::schema::{self, Schema};
 use lindstedt_equation::print::Style;
@@ -14,39 +17,20 @@ use lindstedt_equation::{
     AccelerationFault, AmplitudeRole, Condition, Crossing, Expression, Impact, ParameterCard,
     Problem, Synchronous,
 };
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use toml::Spanned;
-
-/// `[parameters]`.
-struct Parameters {
-    /// Those with a value of their own.
-    cards: Vec<ParameterCard>,
-    units: BTreeMap<String, String>,
-    /// Those that others determine.
-    follows: BTreeMap<String, String>,
-    /// The names of all.
-    declared: BTreeSet<String>,
-}
 
 pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, FileError> {
     let name = problem_name(reader, &schema)?;
     let small = small_name(reader, &schema)?;
     let Parameters { mut cards, units, follows, declared } = parameters(reader, &schema, &small)?;
-    let mut names = match &schema.parameters {
-        Some(_) => Names::only(&small, declared.iter().map(String::as_str)),
-        None => Names::any(&small),
-    };
-    names.formal = formal_names(reader, &schema)?;
+    let mut names = known_names(reader, &schema, &small, &declared)?;
     let orders = orders(reader, &schema, &declared)?;
     let tie = schema.synchronous.as_ref();
     let synchronous = tie.map(|tie| synchronous(reader, tie, &declared)).transpose()?;
-    let tie = synchronous.as_ref();
-    let meanings = Meanings::read(reader, &schema, &names, &follows, &orders, tie)?;
-    let read = |text| read_equation(reader, text, &names, &meanings);
-    let equation = read(&schema.equation)?;
-    let time_domain = schema.time_domain.as_ref().map(read).transpose()?;
-    let wall = schema.impact.as_ref();
-    let impact = wall.map(|wall| impact(reader, wall, &names, &meanings)).transpose()?;
+    let meanings =
+        Meanings::read(reader, &schema, &names, &follows, &orders, synchronous.as_ref())?;
+    let Formulas { equation, time_domain, impact } = formulas(reader, &schema, &names, &meanings)?;
     cards.extend(undeclared([Some(&equation), time_domain.as_ref()], impact.as_ref(), &declared));
     names.parameters = Some(cards.iter().map(|card| card.name.to_string()).collect());
     names.parameters.iter_mut().for_each(|list| list.extend(declared.iter().cloned()));
@@ -57,20 +41,9 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
         cards.push(ParameterCard::new("amplitude", meaning, "1"));
     }
     let (initial, history) = start(reader, schema.initial.as_ref(), &names)?;
-    if !equation.contains(&Expression::Small)
-        && conditions.iter().any(|c| *c != Condition::FreeAmplitude)
-    {
-        let kind = FileErrorKind::NoSmallParameter { name: small };
-        return Err(reader.error(kind, schema.equation.span().start));
-    }
+    check_expansion(reader, &schema, (&equation, &small), &conditions)?;
     let known = |name: &str| declared.contains(name) || name == small || name == "amplitude";
-    let fixed = listed(reader, "fixed", &schema.fixed, &known)?;
-    let swept = listed(reader, "swept", &schema.swept, &known)?;
-    if let Some((name, word)) =
-        swept.iter().zip(&schema.swept).find(|(name, _)| fixed.contains(name))
-    {
-        return Err(reader.error(FileErrorKind::Twice { name: name.clone() }, word.span().start));
-    }
+    let (fixed, swept) = fixed_and_swept(reader, &schema, &known)?;
     let unused = unused(&schema, &equation, amplitude, &declared, &follows);
     let mut problem = Problem::new(name, equation)
         .with_title(schema.title.clone())
@@ -101,22 +74,70 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     })
 }
 
-/// The parameters without a table: those that equations and wall mention, without a value; and the number
-/// pi, which no table declares.
-fn undeclared(
-    equations: [Option<&Expression>; 2],
-    wall: Option<&Impact>,
+/// The names that the formulas may use: those declared, or any where no table declares them.
+fn known_names(
+    reader: &Reader<'_>,
+    schema: &Schema,
+    small: &str,
     declared: &BTreeSet<String>,
-) -> Vec<ParameterCard> {
-    let parts = wall.into_iter().flat_map(|wall| [&wall.position, &wall.restitution]);
-    let all = equations.into_iter().flatten().chain(parts);
-    let mentioned: BTreeSet<String> = all.flat_map(Expression::parameters).collect();
-    let card = |name: String| {
-        let (meaning, default) = if name == PI { ("the number pi", PI) } else { ("", "") };
-        ParameterCard::new(name, meaning, default)
+) -> Result<Names, FileError> {
+    let names = match &schema.parameters {
+        Some(_) => Names::only(small, declared.iter().map(String::as_str)),
+        None => Names::any(small),
     };
-    let open = |name: &String| !declared.contains(name) && name != "amplitude";
-    mentioned.into_iter().filter(open).map(card).collect()
+    Ok(Names { formal: formal_names(reader, schema)?, ..names })
+}
+
+/// What is written as formulas.
+struct Formulas {
+    equation: Expression,
+    time_domain: Option<Expression>,
+    impact: Option<Impact>,
+}
+
+fn formulas(
+    reader: &Reader<'_>,
+    schema: &Schema,
+    names: &Names,
+    meanings: &Meanings,
+) -> Result<Formulas, FileError> {
+    let read = |text| read_equation(reader, text, names, meanings);
+    let wall = schema.impact.as_ref();
+    Ok(Formulas {
+        equation: read(&schema.equation)?,
+        time_domain: schema.time_domain.as_ref().map(read).transpose()?,
+        impact: wall.map(|wall| impact(reader, wall, names, meanings)).transpose()?,
+    })
+}
+
+/// What is to be expanded must contain what it is expanded in.
+fn check_expansion(
+    reader: &Reader<'_>,
+    schema: &Schema,
+    (equation, small): (&Expression, &str),
+    conditions: &[Condition],
+) -> Result<(), FileError> {
+    let expands = conditions.iter().any(|c| *c != Condition::FreeAmplitude);
+    if equation.contains(&Expression::Small) || !expands {
+        return Ok(());
+    }
+    let kind = FileErrorKind::NoSmallParameter { name: small.to_owned() };
+    Err(reader.error(kind, schema.equation.span().start))
+}
+
+/// `fixed` and `swept`, which have no name in common.
+fn fixed_and_swept(
+    reader: &Reader<'_>,
+    schema: &Schema,
+    known: &dyn Fn(&str) -> bool,
+) -> Result<(Vec<String>, Vec<String>), FileError> {
+    let fixed = listed(reader, "fixed", &schema.fixed, known)?;
+    let swept = listed(reader, "swept", &schema.swept, known)?;
+    let mut all = swept.iter().zip(&schema.swept);
+    if let Some((name, word)) = all.find(|(name, _)| fixed.contains(name)) {
+        return Err(reader.error(FileErrorKind::Twice { name: name.clone() }, word.span().start));
+    }
+    Ok((fixed, swept))
 }
 
 fn problem_name(reader: &Reader<'_>, schema: &Schema) -> Result<String, FileError> {
@@ -128,64 +149,6 @@ fn problem_name(reader: &Reader<'_>, schema: &Schema) -> Result<String, FileErro
         return Err(reader.error(kind, word.span().start));
     }
     Ok(name.clone())
-}
-
-/// A name as it is used, if a parameter may have it.
-fn parameter_name(
-    reader: &Reader<'_>,
-    word: &Spanned<String>,
-    what: &'static str,
-) -> Result<String, FileError> {
-    let name = canonical_name(word.get_ref());
-    if is_parameter_name(&name) {
-        return Ok(name);
-    }
-    let kind = FileErrorKind::Name { name: excerpt(word.get_ref()), what };
-    Err(reader.error(kind, word.span().start))
-}
-
-fn small_name(reader: &Reader<'_>, schema: &Schema) -> Result<String, FileError> {
-    match &schema.small {
-        None => Ok("eps".to_owned()),
-        Some(small) => parameter_name(reader, small, "small parameter"),
-    }
-}
-
-fn formal_names(reader: &Reader<'_>, schema: &Schema) -> Result<BTreeSet<String>, FileError> {
-    schema.formal.iter().map(|word| parameter_name(reader, word, "formal function")).collect()
-}
-
-fn parameters(reader: &Reader<'_>, schema: &Schema, small: &str) -> Result<Parameters, FileError> {
-    let (mut cards, mut units, mut follows) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
-    let mut declared = BTreeSet::new();
-    for (key, parameter) in schema.parameters.iter().flat_map(|table| &table.0) {
-        let name = parameter_name(reader, key, "parameter")?;
-        if !declared.insert(name.clone()) {
-            return Err(reader.error(FileErrorKind::Twice { name }, key.span().start));
-        }
-        if !parameter.unit.is_empty() {
-            units.insert(name.clone(), parameter.unit.clone());
-        }
-        if let Some(how) = &parameter.follows {
-            let wrong = if parameter.value.is_some() {
-                Some("it has a value, too")
-            } else if name == "amplitude" || name == small {
-                Some("the amplitude and the small parameter have values of their own")
-            } else {
-                None
-            };
-            if let Some(reason) = wrong {
-                let kind = FileErrorKind::Follows { name, reason: reason.to_owned() };
-                return Err(reader.error(kind, key.span().start));
-            }
-            follows.insert(name, how.clone());
-            continue;
-        }
-        let default = parameter.value.as_ref().map(|v| reader.value(v)).transpose()?;
-        let meaning = parameter.meaning.clone();
-        cards.push(ParameterCard::new(name, meaning, default.unwrap_or_default()));
-    }
-    Ok(Parameters { cards, units, follows, declared })
 }
 
 fn impact(
@@ -298,75 +261,6 @@ fn asked(reader: &Reader<'_>, schema: &Schema) -> Result<Vec<String>, FileError>
         Ok(word.get_ref().clone())
     };
     schema.asked.iter().map(one).collect()
-}
-
-/// The parameters that are declared and occur nowhere.
-fn unused(
-    schema: &Schema,
-    equation: &Expression,
-    amplitude: AmplitudeRole,
-    declared: &BTreeSet<String>,
-    follows: &BTreeMap<String, String>,
-) -> Vec<String> {
-    let mut texts = vec![&schema.equation];
-    texts.extend(&schema.time_domain);
-    if let Some(wall) = &schema.impact {
-        texts.extend([&wall.position, &wall.restitution]);
-    }
-    if let Some(tie) = &schema.synchronous {
-        texts.extend([&tie.delay, &tie.periods, &tie.frequency]);
-    }
-    let mut texts: Vec<&str> = texts.into_iter().map(|text| text.get_ref().as_str()).collect();
-    if let Some(initial) = &schema.initial {
-        let exact = [&initial.x, &initial.velocity].into_iter().flatten();
-        texts.extend(exact.map(|value| value.get_ref().0.as_str()));
-        texts.extend(initial.history.iter().map(|text| text.get_ref().as_str()));
-    }
-    texts.extend(follows.values().map(String::as_str));
-    let mut occurring = equation.parameters();
-    occurring.extend(texts.into_iter().flat_map(words));
-    // The amplitude, and the parts of a small parameter that is composed, stand in no equation.
-    let parts = match amplitude {
-        AmplitudeRole::InSmallParameter => declared,
-        // n = 1 + 2 delta.
-        AmplitudeRole::ScalesFrequency { .. } => &BTreeSet::from(["n".to_owned()]),
-        _ => &BTreeSet::new(),
-    };
-    let is_unused = |name: &&String| {
-        !parts.contains(*name) && **name != "amplitude" && !occurring.contains(*name)
-    };
-    declared.iter().filter(is_unused).cloned().collect()
-}
-
-/// The words of an expression as names.
-fn words(text: &str) -> impl Iterator<Item = String> {
-    let parts = text.split(|c: char| !c.is_alphanumeric() && c != '_');
-    parts.filter(|word| !word.is_empty()).map(canonical_name)
-}
-
-/// The order table; names must be parameters, orders at most 100.
-fn orders(
-    reader: &Reader<'_>,
-    schema: &Schema,
-    declared: &BTreeSet<String>,
-) -> Result<BTreeMap<String, u32>, FileError> {
-    let mut orders = BTreeMap::new();
-    for (key, order) in &schema.orders.0 {
-        let name = canonical_name(key.get_ref());
-        if !declared.contains(&name) {
-            let kind = FileErrorKind::Undeclared { key: "orders", name: excerpt(&name) };
-            return Err(reader.error(kind, key.span().start));
-        }
-        if *order > 100 {
-            let found = order.to_string();
-            let kind = FileErrorKind::Word { key: "orders", found, known: "0 to 100" };
-            return Err(reader.error(kind, key.span().start));
-        }
-        if orders.insert(name.clone(), *order).is_some() {
-            return Err(reader.error(FileErrorKind::Twice { name }, key.span().start));
-        }
-    }
-    Ok(orders)
 }
 
 /// An equation with x'' alone and what stands for its parameters.

@@ -3,9 +3,8 @@
 use crate::file::{AMPLITUDES, ProblemFile};
 use crate::names::PI;
 use lindstedt_equation::print::Style;
-use lindstedt_equation::{Crossing, Expression, Problem};
+use lindstedt_equation::{Crossing, Expression, ParameterCard, Problem};
 use std::collections::BTreeSet;
-use std::fmt::Write;
 
 /// The file of a problem, which [`ProblemFile::parse`] reads back as an equal problem.
 ///
@@ -28,101 +27,122 @@ impl ProblemFile {
 }
 
 fn render(problem: &Problem, file: Option<&ProblemFile>) -> String {
-    let mut text = String::new();
-    let mut line = |key: &str, value: &str| {
-        let _ = writeln!(text, "{key} = {}", quoted(value));
-    };
-    let side = |e: &Expression| format!("{} = 0", e.print(&problem.small, Style::Text));
-    line("name", &problem.name);
-    line("title", &problem.title);
-    line("equation", &side(&problem.equation));
-    if let Some(equation) = &problem.time_domain {
-        line("time_domain", &side(equation));
+    let mut text = head(problem);
+    if let Some(file) = file {
+        text += &questions(file);
     }
-    line("small", &problem.small);
-    let conditions: Vec<String> = problem.conditions.iter().map(|c| quoted(c.name())).collect();
+    let declared = problem.parameters.iter().filter(|card| card.name != PI);
+    let cards = declared.map(|card| declaration(card, file));
+    let follow = undeclared(problem).into_iter().map(|name| determined(problem, file, &name));
+    let table: String = cards.chain(follow).collect();
+    if !problem.parameters.is_empty() || !table.is_empty() {
+        text += "\n[parameters]\n";
+    }
+    text + &table + &file.map_or_else(String::new, initial) + &wall(problem)
+}
+
+/// `key = value`; for a list `key = [value, ...]`.
+fn line(key: &str, value: &str) -> String {
+    format!("{key} = {value}\n")
+}
+
+fn list<'a>(names: impl IntoIterator<Item = &'a String>) -> String {
+    let quoted: Vec<String> = names.into_iter().map(|name| quoted(name)).collect();
+    format!("[{}]", quoted.join(", "))
+}
+
+fn printed(problem: &Problem, e: &Expression) -> String {
+    e.print(&problem.small, Style::Text)
+}
+
+/// The equations and what is to be said about them.
+fn head(problem: &Problem) -> String {
+    let side = |e: &Expression| quoted(&format!("{} = 0", printed(problem, e)));
+    let mut text = line("name", &quoted(&problem.name))
+        + &line("title", &quoted(&problem.title))
+        + &line("equation", &side(&problem.equation));
+    if let Some(equation) = &problem.time_domain {
+        text += &line("time_domain", &side(equation));
+    }
+    text += &line("small", &quoted(&problem.small));
+    let conditions: Vec<String> = problem.conditions.iter().map(|c| c.name().to_owned()).collect();
     let conditions = match &conditions[..] {
-        [one] => one.clone(),
-        list => format!("[{}]", list.join(", ")),
+        [one] => quoted(one),
+        several => list(several),
     };
-    let _ = writeln!(text, "condition = {conditions}");
-    let role = AMPLITUDES.iter().find(|(_, known)| *known == problem.amplitude);
-    if let Some((name, _)) = role {
-        let _ = writeln!(text, "amplitude = {}", quoted(name));
+    text += &line("condition", &conditions);
+    if let Some((name, _)) = AMPLITUDES.iter().find(|(_, known)| *known == problem.amplitude) {
+        text += &line("amplitude", &quoted(name));
     }
     let formal = formal_names(problem);
     if !formal.is_empty() {
-        let list: Vec<String> = formal.iter().map(|name| quoted(name)).collect();
-        let _ = writeln!(text, "formal = [{}]", list.join(", "));
+        text += &line("formal", &list(&formal));
     }
-    let _ = writeln!(text, "notes = {}", quoted(&problem.notes));
-    let _ = writeln!(text, "source = {}", quoted(&problem.source));
-    for (key, list) in file
-        .into_iter()
-        .flat_map(|f| [("fixed", &f.fixed), ("swept", &f.swept), ("asked", &f.asked)])
-    {
-        if !list.is_empty() {
-            let range = |name: &String| match file.and_then(|f| f.ranges.get(name)) {
-                Some(range) if key == "swept" => quoted(&format!("{name}={range}")),
-                _ => quoted(name),
-            };
-            let list: Vec<String> = list.iter().map(range).collect();
-            let _ = writeln!(text, "{key} = [{}]", list.join(", "));
-        }
+    text + &line("notes", &quoted(&problem.notes)) + &line("source", &quoted(&problem.source))
+}
+
+/// What a file asks for.
+fn questions(file: &ProblemFile) -> String {
+    let range = |name: &String| match file.ranges.get(name) {
+        Some(range) => format!("{name}={range}"),
+        None => name.clone(),
+    };
+    let swept = file.swept.iter().map(range).collect();
+    let all = [("fixed", &file.fixed), ("swept", &swept), ("asked", &file.asked)];
+    let some = all.into_iter().filter(|(_, names)| !names.is_empty());
+    some.map(|(key, names)| line(key, &list(names))).collect()
+}
+
+/// A parameter with its card.
+fn declaration(card: &ParameterCard, file: Option<&ProblemFile>) -> String {
+    let (value, meaning) = (quoted(&card.default), quoted(&card.meaning));
+    let value = if card.default.is_empty() { String::new() } else { format!("value = {value}, ") };
+    let unit = file.and_then(|f| f.units.get(&*card.name));
+    let unit = unit.map_or(String::new(), |unit| format!("unit = {}, ", quoted(unit)));
+    line(&card.name, &format!("{{ {value}{unit}meaning = {meaning} }}"))
+}
+
+/// A parameter that others determine.
+fn determined(problem: &Problem, file: Option<&ProblemFile>, name: &str) -> String {
+    // The delay of whole periods follows from its tie, also without a file.
+    let tie = problem.synchronous.as_ref().filter(|tie| *tie.delay == *name);
+    let tied = tie.map(|tie| format!("2*pi*{}/{}", tie.periods, tie.frequency));
+    let value = || file.and_then(|f| f.determined().get(name));
+    let how = tied.or_else(|| value().map(|value| printed(problem, value)));
+    let how = how.map_or_else(String::new, |how| format!("follows = {} ", quoted(&how)));
+    line(name, &format!("{{ {how}}}"))
+}
+
+fn initial(file: &ProblemFile) -> String {
+    let mut text = String::new();
+    if let Some([x, velocity]) = &file.initial {
+        text += &(line("x", &quoted(x)) + &line("velocity", &quoted(velocity)));
     }
-    let undeclared = undeclared(problem);
-    if !problem.parameters.is_empty() || !undeclared.is_empty() {
-        text.push_str("\n[parameters]\n");
+    if let Some((_, history)) = &file.history {
+        text += &line("history", &quoted(history));
     }
-    for card in problem.parameters.iter().filter(|card| card.name != PI) {
-        let (value, meaning) = (quoted(&card.default), quoted(&card.meaning));
-        let value =
-            if card.default.is_empty() { String::new() } else { format!("value = {value}, ") };
-        let unit = file.and_then(|f| f.units.get(&*card.name));
-        let unit = unit.map_or(String::new(), |unit| format!("unit = {}, ", quoted(unit)));
-        let _ = writeln!(text, "{} = {{ {value}{unit}meaning = {meaning} }}", card.name);
-    }
-    for name in undeclared {
-        // The delay of whole periods follows from its tie, also without a file.
-        let tie = problem.synchronous.as_ref().filter(|tie| tie.delay == *name);
-        let tied = tie.map(|tie| format!("2*pi*{}/{}", tie.periods, tie.frequency));
-        let value = || file.and_then(|f| f.determined().get(&name));
-        let printed = || value().map(|value| value.print(&problem.small, Style::Text));
-        let how = tied.or_else(printed);
-        let how = how.map_or_else(String::new, |how| format!("follows = {} ", quoted(&how)));
-        let _ = writeln!(text, "{name} = {{ {how}}}");
-    }
-    let (initial, history) =
-        file.map_or((None, None), |f| (f.initial.as_ref(), f.history.as_ref()));
-    if initial.is_some() || history.is_some() {
-        text.push_str("\n[initial]\n");
-    }
-    if let Some([x, velocity]) = initial {
-        let _ = write!(text, "x = {}\nvelocity = {}\n", quoted(x), quoted(velocity));
-    }
-    if let Some((_, history)) = history {
-        let _ = writeln!(text, "history = {}", quoted(history));
-    }
+    if text.is_empty() { text } else { format!("\n[initial]\n{text}") }
+}
+
+/// The wall, and the tie of a delay to the force.
+fn wall(problem: &Problem) -> String {
+    let mut text = String::new();
     if let Some(impact) = &problem.impact {
-        let print = |e: &Expression| quoted(&e.print(&problem.small, Style::Text));
+        let [position, restitution] =
+            [&impact.position, &impact.restitution].map(|e| quoted(&printed(problem, e)));
         let crossing = match impact.crossing {
             Crossing::Rising => "rising",
             Crossing::Falling => "falling",
         };
-        let _ = write!(
-            text,
-            "\n[impact]\nposition = {}\ncrossing = \"{crossing}\"\nrestitution = {}\n",
-            print(&impact.position),
-            print(&impact.restitution)
-        );
+        text += "\n[impact]\n";
+        text += &(line("position", &position) + &line("crossing", &quoted(crossing)));
+        text += &line("restitution", &restitution);
     }
     if let Some(tie) = &problem.synchronous {
-        let [delay, periods, frequency] =
-            [&tie.delay, &tie.periods, &tie.frequency].map(|name| quoted(name));
-        let _ = write!(
-            text,
-            "\n[synchronous]\ndelay = {delay}\nperiods = {periods}\nfrequency = {frequency}\n"
-        );
+        text += "\n[synchronous]\n";
+        let names = [&tie.delay, &tie.periods, &tie.frequency].map(|name| quoted(name));
+        let keys = ["delay", "periods", "frequency"];
+        text.extend(keys.iter().zip(&names).map(|(key, name)| line(key, name)));
     }
     text
 }

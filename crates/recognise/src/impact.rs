@@ -5,7 +5,7 @@ use crate::bound::{bind, missing, multiply_out, named, of_value, rest};
 use crate::in_pi::InPi;
 use crate::refusal::{Refusal, Why};
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
-use lindstedt_equation::{Crossing, Expression, Function, Problem, Unknown};
+use lindstedt_equation::{Crossing, Expression, Function, Problem, Synchronous, Unknown};
 use lindstedt_impact::parameters::{Branch, ExactParameters};
 use lindstedt_number::Exact;
 use rug::Rational;
@@ -36,7 +36,26 @@ struct Linear {
     constant: InPi,
     /// cos(omega t), sin(omega t).
     force: [InPi; 2],
+    /// omega, and the argument that it stands in.
+    frequency: Option<InPi>,
+    angle: Option<Expression>,
+    /// The time of the delayed terms.
+    delay: Option<Expression>,
     other_orders: bool,
+}
+
+/// The equation, divided as the terms want it, if all that it and the wall mention has a value.
+fn rest_within(problem: &Problem, values: &BTreeMap<String, Exact>) -> Result<Expression, Refusal> {
+    let wall = problem.impact.as_ref().ok_or(Refusal::NoWall)?;
+    let tie = problem.synchronous.as_ref();
+    let rest = rest(problem)?;
+    let mut used = rest.parameters();
+    used.extend(wall.position.parameters());
+    used.extend(wall.restitution.parameters());
+    used.extend(tie.iter().flat_map(|t| [t.periods.to_string(), t.frequency.to_string()]));
+    used.retain(|name| tie.is_none_or(|tie| tie.delay != *name));
+    missing(&used, values)?;
+    Ok(rest)
 }
 
 impl ImpactProblem {
@@ -51,89 +70,24 @@ impl ImpactProblem {
         periods: Option<u32>,
         branch: Branch,
     ) -> Result<Self, Refusal> {
-        let wall = problem.impact.as_ref().ok_or(Refusal::NoWall)?;
-        let tie = problem.synchronous.as_ref();
-        let rest = rest(problem)?;
-        let mut used = rest.parameters();
-        used.extend(wall.position.parameters());
-        used.extend(wall.restitution.parameters());
-        used.extend(tie.iter().flat_map(|t| [t.periods.to_string(), t.frequency.to_string()]));
-        used.retain(|name| tie.is_none_or(|tie| tie.delay != *name));
-        missing(&used, values)?;
+        let rest = rest_within(problem, values)?;
         // The delay that is tied to the force keeps its name.
         let bound = bind(&rest, values);
         let all = multiply_out(&bound)?;
-        let term = |m: &Monomial, q: &Rational| all.tree(m, q);
         let refuse = |m: &Monomial, q: &Rational, why| {
-            named(&rest, values, (term(m, q), why), &|all, m| shape(all, m).err())
+            named(&rest, values, (all.tree(m, q), why), &|all, m| shape(all, m).err())
         };
-        let mut linear = Linear::default();
-        let mut frequency: Option<InPi> = None;
-        let (mut delay, mut angle): (Option<Expression>, Option<Expression>) = (None, None);
         // eps = 1 in the end, unless the file or its reader says otherwise.
         let small = values.get(&*problem.small).and_then(Exact::as_rational).cloned();
-        let small = small.unwrap_or_else(|| Rational::from(1));
-        for (m, q) in &all.terms {
-            let q = &(0..m.order).fold(q.clone(), |q, _| q * &small);
-            let found = shape(&all, m).map_err(|why| refuse(m, q, why))?;
-            let irrational = || refuse(m, q, Why::Irrational);
-            let slot = match &found {
-                Shape::Constant => &mut linear.constant,
-                Shape::Displacement => &mut linear.stiffness,
-                Shape::Velocity => &mut linear.damping,
-                Shape::Delayed(time, velocity) => {
-                    if delay.as_ref().is_some_and(|known| known != time) {
-                        return Err(refuse(m, q, Why::OtherDelay));
-                    }
-                    delay = Some(time.clone());
-                    if *velocity { &mut linear.delayed_velocity } else { &mut linear.delayed }
-                }
-                Shape::Force(argument, sine) => {
-                    let omega = angular_frequency(argument).ok_or_else(irrational)?;
-                    // A cosine and a sine of one angle add up.
-                    if angle.as_ref().is_some_and(|known| known != argument) {
-                        return Err(refuse(m, q, Why::OtherFrequency));
-                    }
-                    (frequency, angle) = (Some(omega), Some(argument.clone()));
-                    let [cosine_part, sine_part] = &mut linear.force;
-                    if *sine { sine_part } else { cosine_part }
-                }
-            };
-            let bare = Monomial { parameters: m.parameters.clone(), ..Monomial::default() };
-            slot.add(&bare, q).ok_or_else(irrational)?;
-            let loops = matches!(found, Shape::Velocity | Shape::Delayed(..));
-            linear.other_orders |= loops && m.order != 1;
-        }
-        let omega = match (&frequency, tie) {
-            (Some(omega), _) => omega.clone(),
-            (None, Some(tie)) => values
-                .get(&*tie.frequency)
-                .and_then(|v| InPi::of(&of_value(v)))
-                .ok_or(Refusal::NoForce)?,
-            _ => return Err(Refusal::NoForce),
+        let linear = Linear::read(&all, &small.unwrap_or_else(|| Rational::from(1)), &refuse)?;
+        let tie = problem.synchronous.as_ref();
+        let tied = |tie: &Synchronous| {
+            values.get(&*tie.frequency).and_then(|value| InPi::of(&of_value(value)))
         };
-        let tied = tie.filter(|tie| {
-            let known = values.get(&*tie.frequency).and_then(|v| InPi::of(&of_value(v)));
-            known.as_ref() == Some(&omega)
-        });
-        let whole = |value: &Exact| {
-            let k = value.as_rational().filter(|q| q.is_integer()).and_then(|q| q.numer().to_u32());
-            k.filter(|k| *k > 0).ok_or_else(|| Refusal::Periods { value: value.to_string() })
-        };
-        let other_delay = |time: &Expression| Refusal::Term {
-            term: Box::new(Expression::DISPLACEMENT.delayed(time.clone())),
-            why: Why::OtherDelay,
-        };
-        let periods = match (&delay, tied) {
-            (Some(time), Some(tie)) if *time == Expression::parameter(&tie.delay) => {
-                whole(values.get(&*tie.periods).unwrap_or(&Exact::Rational(Rational::new())))?
-            }
-            (None, Some(tie)) if values.contains_key(&*tie.periods) => {
-                whole(values.get(&*tie.periods).unwrap_or(&Exact::Rational(Rational::new())))?
-            }
-            (Some(time), _) => periods_of(time, &omega).ok_or_else(|| other_delay(time))?,
-            (None, _) => periods.unwrap_or(1),
-        };
+        let omega = linear.frequency.clone().or_else(|| tie.and_then(tied));
+        let omega = omega.ok_or(Refusal::NoForce)?;
+        let tie = tie.filter(|tie| tied(tie).as_ref() == Some(&omega));
+        let periods = linear.periods((tie, values), &omega, periods)?;
         linear.parameters(problem, values, omega, periods, branch)
     }
 
@@ -169,6 +123,76 @@ impl ImpactProblem {
 }
 
 impl Linear {
+    /// The coefficients at this value of the small parameter.
+    fn read(
+        all: &Monomials,
+        small: &Rational,
+        refuse: &dyn Fn(&Monomial, &Rational, Why) -> Refusal,
+    ) -> Result<Self, Refusal> {
+        let mut linear = Self::default();
+        for (m, q) in &all.terms {
+            let q = &(0..m.order).fold(q.clone(), |q, _| q * small);
+            let found = shape(all, m).map_err(|why| refuse(m, q, why))?;
+            let loops = matches!(found, Shape::Velocity | Shape::Delayed(..));
+            linear.other_orders |= loops && m.order != 1;
+            let slot = linear.slot(found).map_err(|why| refuse(m, q, why))?;
+            let bare = Monomial { parameters: m.parameters.clone(), ..Monomial::default() };
+            slot.add(&bare, q).ok_or_else(|| refuse(m, q, Why::Irrational))?;
+        }
+        Ok(linear)
+    }
+
+    /// Where the coefficient of a term belongs; all delays are one, and all forces.
+    fn slot(&mut self, found: Shape) -> Result<&mut InPi, Why> {
+        Ok(match found {
+            Shape::Constant => &mut self.constant,
+            Shape::Displacement => &mut self.stiffness,
+            Shape::Velocity => &mut self.damping,
+            Shape::Delayed(time, velocity) => {
+                if self.delay.as_ref().is_some_and(|known| *known != time) {
+                    return Err(Why::OtherDelay);
+                }
+                self.delay = Some(time);
+                if velocity { &mut self.delayed_velocity } else { &mut self.delayed }
+            }
+            Shape::Force(argument, sine) => {
+                let omega = angular_frequency(&argument).ok_or(Why::Irrational)?;
+                // A cosine and a sine of one angle add up.
+                if self.angle.as_ref().is_some_and(|known| *known != argument) {
+                    return Err(Why::OtherFrequency);
+                }
+                (self.frequency, self.angle) = (Some(omega), Some(argument));
+                let [cosine_part, sine_part] = &mut self.force;
+                if sine { sine_part } else { cosine_part }
+            }
+        })
+    }
+
+    /// k: what the tie of the delay to the force says, if there is one, else what the delay says,
+    /// else `without`.
+    fn periods(
+        &self,
+        (tie, values): (Option<&Synchronous>, &BTreeMap<String, Exact>),
+        omega: &InPi,
+        without: Option<u32>,
+    ) -> Result<u32, Refusal> {
+        let whole = |tie: &Synchronous| {
+            let zero = Exact::Rational(Rational::new());
+            let value = values.get(&*tie.periods).unwrap_or(&zero);
+            let k = value.as_rational().filter(|q| q.is_integer()).and_then(|q| q.numer().to_u32());
+            k.filter(|k| *k > 0).ok_or_else(|| Refusal::Periods { value: value.to_string() })
+        };
+        match (&self.delay, tie) {
+            (Some(time), Some(tie)) if *time == Expression::parameter(&tie.delay) => whole(tie),
+            (None, Some(tie)) if values.contains_key(&*tie.periods) => whole(tie),
+            (Some(time), _) => periods_of(time, omega).ok_or_else(|| Refusal::Term {
+                term: Box::new(Expression::DISPLACEMENT.delayed(time.clone())),
+                why: Why::OtherDelay,
+            }),
+            (None, _) => Ok(without.unwrap_or(1)),
+        }
+    }
+
     fn parameters(
         &self,
         problem: &Problem,

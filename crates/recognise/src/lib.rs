@@ -4,6 +4,8 @@
 //! Terms are matched by what they are, multiplied out with the values of the parameters, never by
 //! their names. A term that does not fit is named; nothing is dropped.
 
+#![warn(clippy::too_many_lines)]
+
 mod bound;
 mod forces;
 mod impact;

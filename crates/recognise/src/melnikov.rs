@@ -35,6 +35,16 @@ pub enum Unperturbed {
     Numeric(Box<NumericOrbit>),
 }
 
+impl Unperturbed {
+    /// With s of x = s y + constant.
+    fn of(force: &Monomials) -> Result<(Self, Rational), Refusal> {
+        if let Some((potential, scale)) = potential::closed(force) {
+            return Ok((Self::Closed { potential, scale: scale.clone() }, scale));
+        }
+        Ok((Self::Numeric(Box::new(NumericOrbit::find(force)?)), Rational::from(1)))
+    }
+}
+
 /// A problem in the form that Melnikov's method takes.
 ///
 /// ```
@@ -127,14 +137,7 @@ impl MelnikovProblem {
         };
         let off = |e: &Expression| matches!(e, Expression::Time).then(|| Expression::integer(0));
         let law = FrictionLaw::new(&bound.substitute(&off), &friction)?;
-        let (unperturbed, scale) = match potential::closed(&force) {
-            Some((potential, scale)) => {
-                (Unperturbed::Closed { potential, scale: scale.clone() }, scale)
-            }
-            None => {
-                (Unperturbed::Numeric(Box::new(NumericOrbit::find(&force)?)), Rational::from(1))
-            }
-        };
+        let (unperturbed, scale) = Unperturbed::of(&force)?;
         let jumps = law.jumps();
         let (friction, belt_speed) = law.scaled(&scale);
         let found = Self { unperturbed, friction, forcing, belt_speed, amplitude, jumps };
