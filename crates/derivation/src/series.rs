@@ -8,7 +8,7 @@ use lindstedt_algebra::{RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::closed_forms::ClosedForms;
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
-use lindstedt_expand::{Binding, ExpandError, compile, conservative_period};
+use lindstedt_expand::{Binding, ExpandError, Period, compile, conservative_period};
 use lindstedt_number::Exact;
 use lindstedt_phase::Trigonometric;
 use lindstedt_series::Series;
@@ -150,25 +150,10 @@ fn exponential(ring: &PolynomialRing, rate: &Polynomial, order: usize) -> Vec<Po
 }
 
 /// The powers of the frequency and kappa of a polynomial force, where x(0) is the amplitude.
-fn polynomial_integral(
-    problem: &Problem,
-    ring: &PolynomialRing,
-    (condition, order): (Condition, usize),
-    stop: &Stop,
-    given: &dyn Binding<Rationals>,
-) -> Result<(Powers, Polynomial), Error> {
-    let unavailable = || Error::NoSuchRoute { problem: problem.name.to_string() };
-    if condition != Condition::InitialAmplitude {
-        return Err(unavailable());
-    }
-    let equation = compile(&Trigonometric::new(Rationals), &problem.equation, given, order)?;
-    let period = match conservative_period(&equation, order, stop) {
-        Err(ExpandError::UnsupportedTerm { .. }) => return Err(unavailable()),
-        other => other?,
-    };
+fn polynomial_integral(ring: &PolynomialRing, period: &Period) -> (Powers, Polynomial) {
     let lists = [&period.frequency_squared, &period.frequency, &period.period_over_2pi];
     let powers = Powers::rational(ring, lists.map(Vec::as_slice));
-    Ok((powers, ring.rational(&period.stiffness)))
+    (powers, ring.rational(&period.stiffness))
 }
 
 /// The powers of the frequency and kappa by the energy integral.
@@ -179,12 +164,19 @@ pub(crate) fn energy_integral(
     stop: &Stop,
     given: &dyn Binding<Rationals>,
 ) -> Result<(Powers, Polynomial), Error> {
+    let unavailable = || Error::NoSuchRoute { problem: problem.name.to_string() };
     if !has_logarithms(&problem.equation) {
-        return polynomial_integral(problem, ring, (condition, order), stop, given);
+        if condition != Condition::InitialAmplitude {
+            return Err(unavailable());
+        }
+        let equation = compile(&Trigonometric::new(Rationals), &problem.equation, given, order)?;
+        return match conservative_period(&equation, order, stop) {
+            Err(ExpandError::UnsupportedTerm { .. }) => Err(unavailable()),
+            found => Ok(polynomial_integral(ring, &found?)),
+        };
     }
     // Nothing comes from an interruption only, once the equation is known.
     let interrupted = || Error::from(ExpandError::Interrupted { order });
-    let unavailable = || Error::NoSuchRoute { problem: problem.name.to_string() };
     // The formulas hold for these two equations, whatever the problem is called.
     let x = || Expression::DISPLACEMENT;
     let square = || x().pow(2);

@@ -1,6 +1,7 @@
 //! Problems as data: an oscillator is an expression tree, a small parameter, a condition that
 //! fixes the amplitude, and a data card.
 
+mod at_point;
 mod canonical;
 mod classification;
 pub mod classify;

@@ -11,6 +11,8 @@
 //!
 //! What is summed is estimated, with its error; closed forms ([`closed`]) are certified.
 
+#![warn(clippy::too_many_lines)]
+
 pub mod averaged;
 pub mod closed;
 pub mod coefficients;
@@ -33,4 +35,4 @@ pub use fourier::Fourier;
 pub use json::Place;
 pub use names::{kind_name, method_flag, method_name, rounded, with_error};
 pub use period::{Evaluation, period};
-pub use solution::Trajectory;
+pub use solution::{Question, Trajectory};

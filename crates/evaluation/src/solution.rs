@@ -94,26 +94,28 @@ fn settled(
     None
 }
 
-impl Trajectory {
-    /// Derives the solution of a problem up to an order (one that takes about a second if nothing),
+/// Which solution is asked for.
+pub struct Question<'a> {
+    /// The problem.
+    pub setting: Setting,
+    /// The order; one that takes about a second if nothing.
+    pub order: Option<usize>,
     /// x(0) = a, x'(0) = 0 at phase 0.
-    ///
-    /// The frequency is the closed form's where there is one, else the resummed one, with its
-    /// error, of `evaluation` (by [`crate::period()`]); summed by its method. In doubles where a figure or
-    /// a function is meant.
+    pub phase: &'a Exact,
+    /// The period (by [`crate::period()`]), whose method sums x, too. The frequency is the closed form's
+    /// where there is one, else the resummed one, with its error.
+    pub evaluation: &'a Evaluation,
+    /// In doubles, where a figure or a function is meant.
+    pub in_doubles: bool,
+}
+
+impl Trajectory {
+    /// Derives the solution.
     ///
     /// # Errors
     /// Those of [`lindstedt_derivation::derive()`].
-    pub fn new(
-        setting: Setting,
-        order: Option<usize>,
-        phase: &Exact,
-        evaluation: &Evaluation,
-        in_doubles: bool,
-        work: &Work,
-    ) -> Result<Self, Error> {
-        let mut trajectory =
-            Self::without_error(setting, order, phase, evaluation, in_doubles, work)?;
+    pub fn new(question: Question<'_>, work: &Work) -> Result<Self, Error> {
+        let mut trajectory = Self::without_error(question, work)?;
         trajectory.speed = trajectory.largest_speed();
         Ok(trajectory)
     }
@@ -122,14 +124,8 @@ impl Trajectory {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn without_error(
-        setting: Setting,
-        order: Option<usize>,
-        phase: &Exact,
-        evaluation: &Evaluation,
-        in_doubles: bool,
-        work: &Work,
-    ) -> Result<Self, Error> {
+    pub fn without_error(question: Question<'_>, work: &Work) -> Result<Self, Error> {
+        let Question { setting, order, phase, evaluation, in_doubles } = question;
         let order = order.unwrap_or_else(|| default_order(&setting.form));
         let digits = if in_doubles { DOUBLE } else { work.printed_digits().min(30) };
         let phase = phase.clone();

@@ -4,11 +4,9 @@ use crate::bound::{PI, multiply_out};
 use crate::in_pi::InPi;
 use crate::refusal::{Refusal, Why};
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
-use lindstedt_equation::{Expression, Function, Operations, Unknown};
+use lindstedt_equation::{Expression, Function};
 use lindstedt_melnikov::{Friction, PolynomialFriction};
 use lindstedt_number::Exact;
-use rug::float::Constant;
-use rug::ops::Pow;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -225,61 +223,7 @@ fn sign_and_power(all: &Monomials, m: &Monomial) -> Option<(bool, u32)> {
     (m.x == 0).then_some((signs % 2 == 1, power))
 }
 
-/// Values at one w, which x' or x stands for.
-struct At<'a> {
-    w: &'a Float,
-}
-
-impl Operations for At<'_> {
-    type Value = Float;
-
-    fn number(&mut self, q: &Rational) -> Option<Float> {
-        Some(Float::with_val(self.w.prec(), q))
-    }
-
-    fn leaf(&mut self, leaf: &Expression) -> Option<Float> {
-        match leaf {
-            Expression::Parameter(name) if name == PI => {
-                Some(Float::with_val(self.w.prec(), Constant::Pi))
-            }
-            Expression::Unknown(Unknown { derivative: 0 | 1, delay: None, .. }) => {
-                Some(self.w.clone())
-            }
-            _ => None,
-        }
-    }
-
-    fn add(&mut self, a: Float, b: Float) -> Option<Float> {
-        Some(a + b)
-    }
-
-    fn multiply(&mut self, a: Float, b: Float) -> Option<Float> {
-        Some(a * b)
-    }
-
-    fn power(&mut self, base: &Expression, exponent: &Expression) -> Option<Float> {
-        let value = base.evaluate(self)?;
-        Some(match exponent.as_number() {
-            Some(n) if n.is_integer() => value.pow(n.numer().to_i32()?),
-            _ => value.pow(exponent.evaluate(self)?),
-        })
-    }
-
-    fn function(&mut self, function: Function, argument: &Expression) -> Option<Float> {
-        let z = argument.evaluate(self)?;
-        Some(match function {
-            Function::Ln => z.ln(),
-            Function::Exp => z.exp(),
-            Function::Sin => z.sin(),
-            Function::Cos => z.cos(),
-            Function::Abs => z.abs(),
-            Function::Sign if z.is_zero() => z,
-            Function::Sign => z.signum(),
-        })
-    }
-}
-
 /// The value of a bound expression in x' alone (or, in [`crate::numeric`], in x alone) at w.
 pub(crate) fn evaluate(e: &Expression, w: &Float) -> Option<Float> {
-    e.evaluate(&mut At { w })
+    e.at_point(w, &BTreeMap::new())
 }

@@ -1,10 +1,7 @@
 //! a(t) and psi(t): exponentials where the rates are linear, else integrated.
 
 use super::truncated::Truncated;
-use lindstedt_equation::Expression;
-use lindstedt_simulate::{
-    Digits, Integrator, Model, Parameters, Settings, SimulateError, Trajectory,
-};
+use lindstedt_simulate::{Digits, Integrator, Settings, SimulateError, Trajectory};
 use rug::Float;
 use std::ops::ControlFlow;
 
@@ -107,19 +104,7 @@ fn run(
 ) -> Result<(), SimulateError> {
     let real = Digits::for_digits(digits);
     let bits = real_bits(&real);
-    let mut parameters = Parameters::new();
-    let mut sides = Vec::new();
-    for (name, terms) in ["A", "B"].iter().zip(&system.rates) {
-        let mut sum = vec![Expression::integer(0)];
-        for (n, c) in terms {
-            let symbol = format!("{name}{n}").replace('-', "m");
-            let c = if backward { Float::with_val(c.prec(), -c) } else { c.clone() };
-            parameters.set(&symbol, c);
-            sum.push(Expression::parameter(&symbol) * Expression::DISPLACEMENT.pow(i64::from(*n)));
-        }
-        sides.push(Expression::Sum(sum).canonical());
-    }
-    let compiled = Model::first_order(&["a", "psi"], &sides)?.compile(real, &parameters)?;
+    let compiled = system.system(real, backward)?;
     let start: Vec<Float> = system.start.iter().map(|x| Float::with_val(bits, x)).collect();
     let settings = Settings::for_digits(digits);
     let mut flow = Integrator::new(&compiled, &Float::new(bits), &start, settings)?;

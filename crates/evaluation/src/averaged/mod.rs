@@ -31,7 +31,7 @@ use rest::{Rest, looked_at};
 use rug::Float;
 pub use start::Start;
 use std::collections::BTreeMap;
-use truncated::Truncated;
+pub use truncated::Truncated;
 
 /// A quantity at one time.
 #[derive(Clone, Debug)]
@@ -93,6 +93,44 @@ pub struct Motion {
     digits: usize,
 }
 
+/// a(0), psi(0), as given or with the given x(0), x'(0).
+fn resolved(
+    problem: &Problem,
+    start: &Start,
+    full: &Truncated,
+    bits: u32,
+) -> Result<[Float; 2], Error> {
+    let float = |value: &Exact| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
+    match start {
+        Start::Amplitude(a, psi) => Ok([float(a), float(psi)]),
+        Start::State(x, v) => {
+            full.invert(&[float(x), float(v)]).ok_or_else(|| Error::NoSuchStart {
+                problem: problem.name.to_string(),
+                displacement: x.to_string(),
+                velocity: v.to_string(),
+            })
+        }
+    }
+}
+
+/// Rates with their errors, if these are known.
+fn rate_numbers(
+    rates: &[Float; 2],
+    errors: Option<[f64; 2]>,
+    digits: usize,
+) -> [Option<Number>; 2] {
+    [0, 1].map(|k| {
+        let (rate, balls) = (&rates[k], Balls::new(rates[k].prec()));
+        match errors {
+            Some(errors) => {
+                let error = Float::with_val(53, errors[k]);
+                Number::estimated(&balls.from_parts(rate, &error), digits)
+            }
+            None => plain(&balls.from_parts(rate, &Float::new(53)), digits, false),
+        }
+    })
+}
+
 /// Orders without which nothing is known of the rest.
 const FEWEST: usize = 2;
 
@@ -138,22 +176,10 @@ impl Motion {
         small: &Float,
         at: Vec<(String, Exact)>,
     ) -> Result<Self, Error> {
-        let bits = small.prec();
         let order = found.solution.len().saturating_sub(1);
-        let float = |value: &Exact| Float::with_val(bits, value.ball(Balls::new(bits)).midpoint());
         let mut full = Truncated::new(found, small, order);
+        full.start = resolved(problem, start, &full, small.prec())?;
         let given = start;
-        full.start = match given {
-            Start::Amplitude(a, psi) => [float(a), float(psi)],
-            Start::State(x, v) => {
-                let state = [float(x), float(v)];
-                full.invert(&state).ok_or_else(|| Error::NoSuchStart {
-                    problem: problem.name.to_string(),
-                    displacement: x.to_string(),
-                    velocity: v.to_string(),
-                })?
-            }
-        };
         let start = full.start.clone();
         let is_autonomous = found.forcing.is_zero() && found.delays.is_empty();
         let is_reversible = is_autonomous && is_reversible(&problem.equation);
@@ -162,18 +188,10 @@ impl Motion {
         let ratio = Some(rest.quotient(&full, &near)).filter(|q| !q.is_nan());
         let known = ratio.filter(|q| *q < 1.0 && order >= FEWEST);
         let errors = known.map(|q| rest.rates(q, &near));
-        let number = |rates: &[Float; 2], k: usize, scale: f64| {
-            let balls = Balls::new(bits);
-            match errors {
-                Some(errors) => {
-                    let error = Float::with_val(53, errors[k] * if k == 0 { scale } else { 1.0 });
-                    Number::estimated(&balls.from_parts(&rates[k], &error), digits)
-                }
-                None => plain(&balls.from_parts(&rates[k], &Float::new(53)), digits, false),
-            }
+        let numbers = |rates: [Float; 2], scale: f64| {
+            let errors = errors.map(|[first, second]| [first * scale, second]);
+            rate_numbers(&rates, errors, digits)
         };
-        let numbers =
-            |rates: [Float; 2], scale: f64| [number(&rates, 0, scale), number(&rates, 1, scale)];
         let linear = full.linear().map(|rates| numbers(rates, 1.0));
         let rate_numbers = numbers(full.rate(&start[0]), start[0].to_f64());
         let start_error = match (given, ratio) {

@@ -1,23 +1,26 @@
 //! The averaged expansion broken off at an order, as functions of amplitude and phase.
 
 use lindstedt_derivation::averaging::numbers::{Harmonic, Numbers, Terms};
+use lindstedt_equation::{Expression, Function};
+use lindstedt_simulate::{Digits, Model, Parameters, SimulateError, System};
 use rug::Float;
 use rug::ops::Pow;
+use std::collections::BTreeMap;
 
 /// Steps of Newton's method; with a Jacobian from differences every step gains a third of the bits.
 const MOST_STEPS: usize = 200;
 
-/// The expansion to an order, with the small parameter put in.
+/// x_N of an averaged expansion at one value of the small parameter: a' and psi' as sums of c a^n, x as
+/// harmonics c(a) cos(k psi + m omega t) + s(a) sin(k psi + m omega t).
 #[derive(Clone, Debug)]
-pub(super) struct Truncated {
-    /// a' and psi' as sums of c a^n.
-    pub rates: [Terms; 2],
+pub struct Truncated {
+    pub(super) rates: [Terms; 2],
     /// eps^n u_n by order.
     solution: Vec<Vec<Harmonic>>,
     forcing: Float,
     frequency: Float,
     /// a(0), psi(0).
-    pub start: [Float; 2],
+    pub(super) start: [Float; 2],
     bits: u32,
 }
 
@@ -48,8 +51,21 @@ fn collect(orders: &[Terms], powers: &[Float], order: usize) -> Terms {
     sum
 }
 
+/// f(a) as an expression in the tree of a.
+fn tree(f: &Terms, a: &Expression) -> Expression {
+    let term = |(n, c): &(i32, Float)| number(c) * a.clone().pow(i64::from(*n));
+    Expression::Sum(f.iter().filter(|(_, c)| !c.is_zero()).map(term).collect())
+}
+
+fn number(c: &Float) -> Expression {
+    Expression::Number(c.to_rational().unwrap_or_default())
+}
+
 impl Truncated {
-    pub(super) fn new(found: &Numbers, small: &Float, order: usize) -> Self {
+    /// The expansion broken off at an order, at rest at a = psi = 0; `small` has the precision of all
+    /// that follows.
+    #[must_use]
+    pub fn new(found: &Numbers, small: &Float, order: usize) -> Self {
         let bits = small.prec();
         let power = |n: u32| Float::with_val(bits, small.pow(n));
         let powers: Vec<Float> = (0u32..).take(order + 1).map(power).collect();
@@ -129,17 +145,66 @@ impl Truncated {
     }
 
     /// x at a, psi and a time.
-    pub(super) fn value(&self, [a, psi]: &[Float; 2], time: &Float) -> Float {
+    #[must_use]
+    pub fn value(&self, [a, psi]: &[Float; 2], time: &Float) -> Float {
         let eta = Float::with_val(self.bits, &self.forcing * time);
         let [x, ..] = self.gradient(a, psi, &eta);
         x
     }
 
     /// x and x' at t = 0.
-    fn state(&self, [a, psi]: &[Float; 2]) -> [Float; 2] {
+    #[must_use]
+    pub fn state(&self, [a, psi]: &[Float; 2]) -> [Float; 2] {
         let [x, by_a, by_psi, by_eta] = self.gradient(a, psi, &Float::new(self.bits));
         let [rate, turn] = self.rate(a);
         [x, by_a * rate + by_psi * turn + by_eta * &self.forcing]
+    }
+
+    /// The flow of a and psi, in t or backwards.
+    ///
+    /// # Errors
+    /// Those of [`Model::compile`].
+    pub fn system(&self, real: Digits, backward: bool) -> Result<System<Digits>, SimulateError> {
+        let mut parameters = Parameters::new();
+        let mut sides = Vec::new();
+        for (name, terms) in ["A", "B"].iter().zip(&self.rates) {
+            let mut sum = vec![Expression::integer(0)];
+            for (n, c) in terms {
+                let symbol = format!("{name}{n}").replace('-', "m");
+                let c = if backward { Float::with_val(c.prec(), -c) } else { c.clone() };
+                parameters.set(&symbol, c);
+                let power = Expression::DISPLACEMENT.pow(i64::from(*n));
+                sum.push(Expression::parameter(&symbol) * power);
+            }
+            sides.push(Expression::Sum(sum).canonical());
+        }
+        Model::first_order(&["a", "psi"], &sides)?.compile(real, &parameters)
+    }
+
+    /// x_N(t) with a(t) and psi(t) as given expressions in t.
+    #[must_use]
+    pub fn history(&self, [a, psi]: &[Expression; 2]) -> Expression {
+        let mut merged: BTreeMap<(i32, i32), [Vec<Terms>; 2]> = BTreeMap::new();
+        for harmonic in self.solution.iter().flatten() {
+            let lists = merged.entry((harmonic.free, harmonic.forced)).or_default();
+            for (list, terms) in lists.iter_mut().zip(&harmonic.amplitudes) {
+                list.push(terms.clone());
+            }
+        }
+        let one = Float::with_val(self.bits, 1);
+        let mut terms = Vec::new();
+        for ((k, m), lists) in merged {
+            let forced = number(&Float::with_val(self.bits, &self.forcing * m));
+            let angle = Expression::integer(i64::from(k)) * psi.clone() + forced * Expression::Time;
+            for (list, function) in lists.iter().zip([Function::Cos, Function::Sin]) {
+                let ones = vec![one.clone(); list.len()];
+                let amplitude = collect(list, &ones, list.len());
+                if amplitude.iter().any(|(_, c)| !c.is_zero()) {
+                    terms.push(tree(&amplitude, a) * angle.clone().apply(function));
+                }
+            }
+        }
+        Expression::Sum(terms)
     }
 
     /// Bounds of |dx/da| and |dx/dpsi| over all phases.

@@ -16,8 +16,8 @@ pub use code::{Language, SolutionCode};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_evaluation::setting::Setting;
 pub use lindstedt_evaluation::{
-    Displacement, Displacements, Evaluation, Fourier, Place, Trajectory, kind_name, method_flag,
-    method_name, rounded, with_error,
+    Displacement, Displacements, Evaluation, Fourier, Place, Question, Trajectory, kind_name,
+    method_flag, method_name, rounded, with_error,
 };
 pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;
@@ -153,9 +153,9 @@ impl Oscillator {
             .into());
         }
         let in_doubles = question.times.as_ref().is_none_or(|times| times.range.is_none());
-        let (setting, phase) = (self.setting()?, &question.phase);
-        Trajectory::new(setting, question.order, phase, found, in_doubles, work)
-            .map_err(|error| self.unevaluated(error.into()))
+        let (setting, order, phase) = (self.setting()?, question.order, &question.phase);
+        let asked = Question { setting, order, phase, evaluation: found, in_doubles };
+        Trajectory::new(asked, work).map_err(|error| self.unevaluated(error.into()))
     }
 
     /// The period of a settled case.

@@ -3,7 +3,7 @@
 
 use super::turn::TimeDomain;
 use super::wanted::Wanted;
-use super::{Evaluate, Evaluation, Trajectory};
+use super::{Evaluate, Evaluation, Question, Trajectory};
 use crate::refusal::Refused;
 use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Status, Work};
 use lindstedt_number::ball::{Ball, Balls};
@@ -210,9 +210,10 @@ impl Oscillator {
         }
         let mut starts = Vec::new();
         let path = found.filter(|f| f.period.is_some() || f.exact_period.is_some());
-        let path = path.zip(self.setting().ok()).and_then(|(f, setting)| {
+        let path = path.zip(self.setting().ok()).and_then(|(evaluation, setting)| {
             let (order, phase) = (question.order, &question.phase);
-            Trajectory::without_error(setting, order, phase, f, true, work).ok()
+            let asked = Question { setting, order, phase, evaluation, in_doubles: true };
+            Trajectory::without_error(asked, work).ok()
         });
         if let Some((path, (cosines, sines))) = path.and_then(|p| p.guess(GUESSED).map(|g| (p, g)))
         {

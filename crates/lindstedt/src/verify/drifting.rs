@@ -3,9 +3,10 @@
 use super::{Comparison, Verify};
 use crate::averaging::AveragingSettings;
 use crate::{Error, Oscillator, Progress};
-use lindstedt_derivation::averaging::numbers::{Harmonic, Numbers, Terms, numbers};
+use lindstedt_derivation::averaging::numbers::{Numbers, numbers};
 use lindstedt_derivation::{DerivationError, all_values};
-use lindstedt_equation::{Expression, Function};
+use lindstedt_equation::Expression;
+use lindstedt_evaluation::averaged::Truncated;
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::Balls;
 use lindstedt_simulate::{
@@ -14,90 +15,7 @@ use lindstedt_simulate::{
 };
 use rug::ops::Pow;
 use rug::{Float, Rational};
-use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
-
-/// A Laurent polynomial in a.
-type Polynomial = BTreeMap<i32, Float>;
-
-/// x_N at one value of the small parameter.
-struct Truncated {
-    bits: u32,
-    /// da/dt and dpsi/dt.
-    rates: [Polynomial; 2],
-    /// c(a) cos(k psi + m omega t) + s(a) sin(k psi + m omega t), by (k, m).
-    harmonics: BTreeMap<(i32, i32), [Polynomial; 2]>,
-    /// omega.
-    forcing: Float,
-}
-
-fn value(f: &Polynomial, a: &Float, bits: u32) -> Float {
-    let term = |(n, c): (&i32, &Float)| Float::with_val(bits, a.pow(*n)) * c;
-    f.iter().map(term).fold(Float::new(bits), |sum, x| sum + x)
-}
-
-fn derivative(f: &Polynomial) -> Polynomial {
-    f.iter().map(|(n, c)| (n - 1, c.clone() * *n)).collect()
-}
-
-/// f(a) as an expression in the tree of a.
-fn tree(f: &Polynomial, a: &Expression) -> Expression {
-    let number = |c: &Float| Expression::Number(c.to_rational().unwrap_or_default());
-    let term = |(n, c): (&i32, &Float)| match n {
-        0 => number(c),
-        1 => number(c) * a.clone(),
-        n => number(c) * a.clone().pow(i64::from(*n)),
-    };
-    Expression::Sum(f.iter().map(term).collect())
-}
-
-impl Truncated {
-    /// x and dx/dt at a, psi, t.
-    fn value(&self, a: &Float, psi: &Float, t: &Float) -> [Float; 2] {
-        let bits = self.bits;
-        let zero = || Float::new(bits);
-        let (drift, rate) = (value(&self.rates[0], a, bits), value(&self.rates[1], a, bits));
-        let (mut x, mut v) = (zero(), zero());
-        for ((k, m), [c, s]) in &self.harmonics {
-            let turn = |psi: &Float, t: &Float| {
-                Float::with_val(bits, psi * *k) + Float::with_val(bits, t * *m) * &self.forcing
-            };
-            let (sin, cos) = turn(psi, t).sin_cos(zero());
-            let speed = turn(&rate, &Float::with_val(bits, 1));
-            let [dc, ds] = [c, s].map(|f| value(&derivative(f), a, bits) * &drift);
-            let (c, s) = (value(c, a, bits), value(s, a, bits));
-            x += Float::with_val(bits, &c * &cos) + Float::with_val(bits, &s * &sin);
-            v += (dc + Float::with_val(bits, &s * &speed)) * &cos;
-            v += (ds - Float::with_val(bits, &c * &speed)) * &sin;
-        }
-        [x, v]
-    }
-
-    /// The flow of a and psi, in t or backwards.
-    fn flow(&self, real: Digits, forward: bool) -> Result<System<Digits>, Error> {
-        let a = Expression::parameter("a");
-        let sign = Expression::integer(if forward { 1 } else { -1 });
-        let rates = self.rates.each_ref().map(|rate| sign.clone() * tree(rate, &a));
-        Ok(Model::first_order(&["a", "psi"], &rates)?.compile(real, &Parameters::new())?)
-    }
-
-    /// x_N(t) with a(t) and psi(t) as given expressions in t.
-    fn history(&self, [a, psi]: [Expression; 2]) -> Expression {
-        let number = |x: &Float| Expression::Number(x.to_rational().unwrap_or_default());
-        let mut terms = Vec::new();
-        for ((k, m), [c, s]) in &self.harmonics {
-            let turn = Expression::integer(i64::from(*k)) * psi.clone();
-            let forced = number(&Float::with_val(self.bits, &self.forcing * *m));
-            let angle = turn + forced * Expression::Time;
-            for (f, function) in [(c, Function::Cos), (s, Function::Sin)] {
-                if !f.is_empty() {
-                    terms.push(tree(f, &a) * angle.clone().apply(function));
-                }
-            }
-        }
-        Expression::Sum(terms)
-    }
-}
 
 /// An averaged expansion and its judge.
 pub(super) struct Drifting {
@@ -166,44 +84,9 @@ impl Drifting {
         })
     }
 
-    /// sum_n eps^n f_n.
-    fn sum<'a>(
-        &self,
-        orders: impl Iterator<Item = Option<&'a Terms>>,
-        small: &Rational,
-    ) -> Polynomial {
-        let mut sum = Polynomial::new();
-        for (n, f) in orders.enumerate() {
-            let power = Rational::from(small.pow(n as u32));
-            for (exponent, c) in f.into_iter().flatten() {
-                let entry = sum.entry(*exponent).or_insert_with(|| Float::new(self.bits));
-                *entry += Float::with_val(self.bits, c * &power);
-            }
-        }
-        sum.retain(|_, c| !c.is_zero());
-        sum
-    }
-
     fn truncated(&self, small: &Rational) -> Truncated {
-        let Numbers { frequency, forcing, amplitude_rate, phase_rate, solution, .. } =
-            &self.numbers;
-        let rate = |orders: &[Terms]| self.sum(orders.iter().map(Some), small);
-        let mut phase_rate = rate(phase_rate);
-        *phase_rate.entry(0).or_insert_with(|| Float::new(self.bits)) += frequency;
-        let key = |h: &Harmonic| (h.free, h.forced);
-        let keys: BTreeSet<_> = solution.iter().flatten().map(key).collect();
-        let part = |wanted, which: usize| {
-            let orders = solution.iter();
-            let term =
-                orders.map(|u| Some(&u.iter().find(|h| key(h) == wanted)?.amplitudes[which]));
-            self.sum(term, small)
-        };
-        Truncated {
-            bits: self.bits,
-            rates: [rate(amplitude_rate), phase_rate],
-            harmonics: keys.into_iter().map(|key| (key, [part(key, 0), part(key, 1)])).collect(),
-            forcing: Float::with_val(self.bits, forcing),
-        }
+        let order = self.numbers.solution.len().saturating_sub(1);
+        Truncated::new(&self.numbers, &Float::with_val(self.bits, small), order)
     }
 
     pub(super) fn compare(
@@ -214,8 +97,7 @@ impl Drifting {
     ) -> Result<Comparison, Error> {
         let truncated = self.truncated(small);
         let expected = self.expansion(&truncated, digits + 16, goes_on)?;
-        let zero = Float::new(self.bits);
-        let start = truncated.value(&self.start, &zero, &zero);
+        let start = truncated.state(&[self.start.clone(), Float::new(self.bits)]);
         let history = self.history(&truncated, digits + 16)?;
         let coarse = self.run(small, &start, history.as_ref(), digits, goes_on)?;
         let fine = self.run(small, &start, history.as_ref(), digits + 8, goes_on)?;
@@ -236,15 +118,11 @@ impl Drifting {
         goes_on: &dyn Fn() -> bool,
     ) -> Result<Vec<Float>, Error> {
         let real = Digits::for_digits(digits);
-        let system = truncated.flow(real, true)?;
+        let system = truncated.system(real, false)?;
         let start = [real.float(&self.start), real.zero()];
         let [a, psi] = self.values(&system, &start, [0, 1], digits, goes_on)?;
-        let all = a.iter().zip(&psi).zip(&self.times);
-        let x = |((a, psi), t): ((&Float, &Float), &Float)| {
-            let [x, _] = truncated.value(a, psi, t);
-            x
-        };
-        Ok(all.map(x).collect())
+        let all = a.into_iter().zip(psi).zip(&self.times);
+        Ok(all.map(|((a, psi), t)| truncated.value(&[a, psi], t)).collect())
     }
 
     /// x_N(t) before t = 0 as an expression in t, where there is a delay: a and psi by their Taylor
@@ -254,7 +132,7 @@ impl Drifting {
             return Ok(None);
         };
         let real = Digits::for_digits(digits);
-        let system = truncated.flow(real, false)?;
+        let system = truncated.system(real, true)?;
         let start = [real.float(&self.start), real.zero()];
         let precision = Precision::for_digits(digits);
         let mut flow = Integrator::new(&system, &real.zero(), &start, precision)?;
@@ -285,7 +163,7 @@ impl Drifting {
                 |sum: Expression, (k, c): (usize, &Float)| Expression::Time * sum + number(k, c);
             rest.fold(number(k, c), horner)
         };
-        Ok(Some(truncated.history([in_time(&a), in_time(&psi)])))
+        Ok(Some(truncated.history(&[in_time(&a), in_time(&psi)])))
     }
 
     /// x at the times.
