@@ -10,6 +10,7 @@
 pub(crate) mod answer;
 mod chaos;
 mod diagram;
+mod equation;
 pub(crate) mod growth;
 mod history;
 mod orbit;

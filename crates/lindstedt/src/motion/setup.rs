@@ -1,5 +1,8 @@
 //! What is integrated: the equation for x itself with values, start, history and forcing.
 
+use super::equation::{
+    determined, friction, is_linear, linked, meaning, values, with_small, without_phases,
+};
 use super::history::{Evaluator, at_time, flying, free_flight, named};
 use super::orbit::{Orbit, recognised};
 use super::{Branch, Start};
@@ -7,17 +10,12 @@ use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{Error, Exact, Oscillator};
 use lindstedt_derivation::check_parameters;
-use lindstedt_equation::Function::{Abs, Cos, Sign, Sin};
-use lindstedt_equation::monomials::expand;
 use lindstedt_equation::print::Style;
-use lindstedt_equation::{
-    AmplitudeRole, Condition, Crossing, Expression, Impact, ParameterCard, Problem,
-};
+use lindstedt_equation::{Condition, Crossing, Expression, Impact, Problem};
 use lindstedt_expand::Excitation;
 use lindstedt_problem_file::History;
 use lindstedt_simulate::{Digits, Flow, Model, Parameters, Quantity, Real as _};
 use rug::{Float, Rational};
-use std::collections::BTreeMap;
 
 /// On the orbit itself nothing but rounding errors would tell stable from unstable in a sweep.
 const SWEPT_PERTURBATION: (u32, u32) = (1, 1000);
@@ -359,169 +357,5 @@ impl Case<'_> {
         };
         let names = self.problem.parameters.iter().map(|card| card.name.to_string());
         names.filter(free).collect()
-    }
-}
-
-/// The problem with a card of its small parameter: without a value it is one.
-fn with_small(problem: &Problem) -> Problem {
-    let mut problem = problem.clone();
-    let known = problem.parameters.iter().any(|card| card.name == problem.small);
-    if problem.amplitude != AmplitudeRole::InSmallParameter && !known {
-        let (name, meaning) = (problem.small.clone(), "small parameter".into());
-        problem.parameters.push(ParameterCard { name, meaning, default: "1".into() });
-    }
-    problem
-}
-
-/// n = 1 + 2 delta, where a problem has both: whichever is given determines the other.
-fn linked(problem: &Problem, mut given: BTreeMap<String, Exact>) -> BTreeMap<String, Exact> {
-    let rational = |name: &str| given.get(name).and_then(Exact::as_rational).cloned();
-    let other = match (rational("n"), rational("delta")) {
-        (Some(n), None) => ("delta", (n - 1u32) / 2u32),
-        (None, Some(delta)) => ("n", delta * 2u32 + 1u32),
-        _ => return given,
-    };
-    if problem.parameters.iter().any(|card| card.name == other.0) {
-        given.insert(other.0.to_owned(), other.1.into());
-    }
-    given
-}
-
-/// All parameters of the card: given, or by default; a default that is no number stands for itself.
-fn values(
-    problem: &Problem,
-    given: &BTreeMap<String, Exact>,
-    branch: Option<Branch>,
-) -> Vec<(String, String)> {
-    let value = |card: &ParameterCard| {
-        let default = || {
-            let value = Exact::parse(&card.default);
-            value.map_or_else(|_| card.default.to_string(), |value| value.to_string())
-        };
-        let text = match (given.get(&*card.name), branch) {
-            (Some(value), _) => value.to_string(),
-            (None, Some(branch)) if card.name == "branch" => {
-                if branch == Branch::Plus { "+" } else { "-" }.to_owned()
-            }
-            _ => default(),
-        };
-        (card.name.to_string(), text)
-    };
-    problem.parameters.iter().map(value).collect()
-}
-
-/// What determines a parameter that has no value of its own because it contains pi.
-fn meaning(oscillator: &Oscillator, e: &Expression) -> Option<Expression> {
-    match e {
-        Expression::Parameter(name) => oscillator.problem_file().determined().get(&**name).cloned(),
-        _ => None,
-    }
-}
-
-/// The equation for x itself, and the name of its small parameter, with what determines parameters
-/// put in, there and in the wall.
-fn determined(
-    oscillator: &Oscillator,
-    problem: &mut Problem,
-    parameters: &mut Parameters,
-) -> (Expression, String) {
-    if !oscillator.problem_file().determined().is_empty() {
-        parameters.set("pi", Exact::PiTimes(Rational::from(1)));
-    }
-    let put_in = |e: &Expression| e.substitute(&|e| meaning(oscillator, e));
-    if let Some(wall) = &mut problem.impact {
-        wall.position = put_in(&wall.position);
-        wall.restitution = put_in(&wall.restitution);
-    }
-    let small = problem.small.to_string();
-    let at_one = parameters.get(&small).and_then(Quantity::rational) == Some(Rational::from(1));
-    let equation = match (&problem.time_domain, problem.amplitude) {
-        // The equation for x/a.
-        (Some(equation), AmplitudeRole::InSums) => {
-            let amplitude = || Expression::parameter("amplitude").pow(-1);
-            let scaled = |e: &Expression| {
-                matches!(e, Expression::Unknown(_)).then(|| e.clone() * amplitude())
-            };
-            if at_one { embedded(equation) } else { equation.clone() }.substitute(&scaled)
-        }
-        (Some(equation), _) => equation.clone(),
-        (None, _) => problem.equation.clone(),
-    };
-    let equation = put_in(&equation);
-    // Duffing's rho = eps A^2 belongs to x/A; the coefficient for x is eps.
-    let of_x = problem.amplitude == AmplitudeRole::InSmallParameter;
-    let small = if of_x && parameters.get("eps").is_some() { "eps".to_owned() } else { small };
-    (equation, small)
-}
-
-/// An equation with the force x S(delta ln x^2), S(z) = sin(a e^(z/2))/(a e^(z/2)), at delta = 1: S is
-/// even in e^(z/2), which is x then but for its sign, so that the force is sin(a x)/a.
-fn embedded(equation: &Expression) -> Expression {
-    let one = |e: &Expression| (*e == Expression::Small).then(|| Expression::integer(1));
-    let x = || Expression::DISPLACEMENT;
-    let root = x().pow(2).pow(Expression::Number(Rational::from((1, 2)))).canonical();
-    let equation = equation.substitute(&one).canonical();
-    let equation = equation.map(&|e| (*e == root).then(x));
-    let sine = |e: &Expression| {
-        let Expression::Product(factors) = e else { return None };
-        let angle = factors.iter().find_map(|factor| match factor {
-            Expression::Function(Sin, angle) => Some((**angle).clone()),
-            _ => None,
-        })?;
-        let inverse = angle.clone().pow(-1).canonical();
-        let both = [&x(), &inverse].iter().all(|wanted| factors.contains(wanted));
-        let others = factors.iter().filter(|f| **f != x() && **f != inverse).cloned();
-        let slope = angle.substitute(&|e| (*e == x()).then(|| Expression::integer(1)));
-        both.then(|| Expression::Product(others.chain([slope.pow(-1)]).collect()))
-    };
-    equation.map(&sine)
-}
-
-/// The equation with cos(omega t) for cos(omega t + p) and the same for sin: the period of a force
-/// does not depend on its phase.
-fn without_phases(e: &Expression) -> Expression {
-    let out = |e: Expression| {
-        let e = e.canonical();
-        e.multiplied_out().unwrap_or(e).canonical()
-    };
-    let plain = |e: &Expression| {
-        let Expression::Function(function @ (Cos | Sin), z) = e else { return None };
-        let at = |time: i64| at_time(z, &Expression::integer(time));
-        let bend = out(at(2) - 2 * at(1) + at(0));
-        let driven = z.contains(&Expression::Time) && !z.nodes().any(is_state);
-        (driven && bend == Expression::integer(0))
-            .then(|| (out(at(1) - at(0)) * Expression::Time).apply(*function))
-    };
-    e.map(&plain)
-}
-
-fn is_state(e: &Expression) -> bool {
-    matches!(e, Expression::Unknown(_))
-}
-
-/// Whether the equation is linear in x, x', x'' and their delayed values.
-fn is_linear(equation: &Expression) -> bool {
-    let degree = |(atom, n): (&Expression, u32)| match atom {
-        Expression::Unknown(_) => n,
-        other if other.nodes().any(is_state) => 2,
-        _ => 0,
-    };
-    expand(equation).is_some_and(|all| {
-        all.terms.keys().all(|m| {
-            let atoms = m.atoms.iter().filter_map(|(key, n)| Some((all.atoms.get(key)?, *n)));
-            m.x + m.velocity + atoms.map(degree).sum::<u32>() <= 1
-        })
-    })
-}
-
-/// The argument of a sign or absolute value that has the velocity in it: dry friction.
-fn friction(equation: &Expression) -> Option<&Expression> {
-    let is_friction = |e: &Expression| match e {
-        Expression::Function(Abs | Sign, argument) => argument.contains(&Expression::VELOCITY),
-        _ => false,
-    };
-    match equation.find(&is_friction)? {
-        Expression::Function(_, argument) => Some(&**argument),
-        _ => None,
     }
 }
