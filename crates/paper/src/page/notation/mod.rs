@@ -1,81 +1,11 @@
 //! The linear notation of the paper's formulas, `x'' + x^3/6 = eps sin t`, as LaTeX. Everything is shown,
 //! whatever it is: a bracket that the print forgot stays forgotten.
 
-/// What a token is, and what a piece is for those beside it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    /// A letter or a word: as a piece a letter with its indices.
-    Word,
-    /// A decimal number, with its exponent.
-    Number,
-    /// A sign, or several that belong together.
-    Sign,
-    /// A function or another upright word.
-    Upright,
-    /// Something in brackets.
-    Group,
-    /// The space between two factors.
-    Space,
-    /// A fraction, a root.
-    Tall,
-}
+mod pieces;
+mod tokens;
 
-/// A token with its place.
-#[derive(Clone, Copy, Debug)]
-struct Token<'a> {
-    kind: Kind,
-    text: &'a str,
-    /// Whether a space stands before it.
-    spaced: bool,
-}
-
-/// A part of a formula as it is set.
-#[derive(Clone, Debug)]
-struct Piece {
-    latex: String,
-    kind: Kind,
-    /// How many marks wide it is, about.
-    width: usize,
-    /// Whether brackets around it must grow.
-    tall: bool,
-    /// What stands between round brackets, if it is such a pair.
-    inside: Option<String>,
-}
-
-/// Signs of several characters, and signs that LaTeX writes otherwise.
-const SIGNS: [(&str, &str); 16] = [
-    ("...", r"\ldots "),
-    ("->", r"\to "),
-    ("<=", r"\le "),
-    (">=", r"\ge "),
-    ("!=", r"\ne "),
-    ("+-", r"\pm "),
-    ("-+", r"\mp "),
-    ("{", r"\{"),
-    ("}", r"\}"),
-    ("%", r"\%"),
-    ("&", r"\&"),
-    ("#", r"\#"),
-    ("^", r"\hat{\ }"),
-    ("_", r"\_"),
-    ("\\", r"\backslash "),
-    ("\u{2014}", r"\text{\u{2014}}"),
-];
-
-const GREEK: [&str; 24] = [
-    "alpha", "beta", "gamma", "delta", "eta", "theta", "kappa", "lambda", "mu", "xi", "pi", "rho",
-    "sigma", "tau", "phi", "psi", "omega", "zeta", "nu", "Gamma", "Delta", "Lambda", "Sigma",
-    "Omega",
-];
-
-const FUNCTIONS: [&str; 8] = ["cos", "sin", "tan", "cosh", "sinh", "tanh", "exp", "ln"];
-
-/// Small changes of a letter, and delayed quantities: a letter with its index.
-const PERTURBED: [&str; 6] = ["dC", "dD", "dT", "dphi", "dtau", "dx"];
-const DELAYED: [&str; 2] = ["xT", "zT"];
-
-/// Fractions with longer parts are written with a slash.
-const LONG: usize = 26;
+use pieces::{LONG, Piece, divide, joined, number, sign, width, word};
+use tokens::{Kind, Token, tokens};
 
 /// A formula as LaTeX.
 pub(crate) fn latex(formula: &str) -> String {
@@ -88,116 +18,6 @@ pub(crate) fn latex(formula: &str) -> String {
         latex += &parser.next().map(|token| sign(token.text).latex).unwrap_or_default();
     }
     latex
-}
-
-/// Cuts a formula into tokens.
-fn tokens(line: &str) -> Vec<Token<'_>> {
-    let (mut list, mut rest) = (Vec::new(), line);
-    loop {
-        let trimmed = rest.trim_start();
-        let Some(first) = trimmed.chars().next() else { return list };
-        let spaced = trimmed.len() < rest.len();
-        let (kind, length) = match first {
-            'a'..='z' | 'A'..='Z' => {
-                let end = trimmed.find(|c: char| !c.is_ascii_alphanumeric());
-                (Kind::Word, end.unwrap_or(trimmed.len()))
-            }
-            '0'..='9' => (Kind::Number, number_length(trimmed)),
-            first => {
-                let known = SIGNS.iter().find(|(sign, _)| trimmed.starts_with(sign));
-                (Kind::Sign, known.map_or(first.len_utf8(), |(sign, _)| sign.len()))
-            }
-        };
-        let (text, tail) = trimmed.split_at(length);
-        list.push(Token { kind, text, spaced });
-        rest = tail;
-    }
-}
-
-/// The length of the decimal number at the beginning.
-fn number_length(rest: &str) -> usize {
-    let digits = |from: usize| rest.bytes().skip(from).take_while(u8::is_ascii_digit).count();
-    let mut end = digits(0);
-    if rest[end..].starts_with('.') && digits(end + 1) > 0 {
-        end += 1 + digits(end + 1);
-    }
-    if rest[end..].starts_with('e') {
-        let sign = usize::from(rest[end + 1..].starts_with(['+', '-']));
-        let exponent = digits(end + 1 + sign);
-        end += if exponent > 0 { 1 + sign + exponent } else { 0 };
-    }
-    end
-}
-
-fn joined(pieces: &[Piece]) -> String {
-    pieces.iter().map(|piece| piece.latex.as_str()).collect()
-}
-
-fn width(pieces: &[Piece]) -> usize {
-    pieces.iter().map(|piece| piece.width).sum()
-}
-
-impl Piece {
-    fn new(latex: impl Into<String>, kind: Kind, width: usize) -> Self {
-        Self { latex: latex.into(), kind, width, tall: false, inside: None }
-    }
-
-    /// Whether it can be divided: neither sign nor space.
-    fn is_factor(&self) -> bool {
-        !matches!(self.kind, Kind::Sign | Kind::Space)
-    }
-}
-
-fn sign(text: &str) -> Piece {
-    let known = SIGNS.iter().find(|(sign, _)| *sign == text);
-    Piece::new(known.map_or(text, |(_, latex)| latex), Kind::Sign, 1)
-}
-
-fn number(text: &str) -> Piece {
-    let latex = match text.split_once('e') {
-        Some((digits, power)) => format!(r"{digits}\cdot 10^{{{}}}", power.trim_start_matches('+')),
-        None => text.to_owned(),
-    };
-    Piece::new(latex, Kind::Number, text.len())
-}
-
-/// The letter of a name without index.
-fn letter(word: &str) -> Option<String> {
-    match word {
-        "eps" => Some(r"\varepsilon ".to_owned()),
-        // O1, O2, ... are the names of orbits.
-        "O" => None,
-        word if word.len() == 1 => Some(word.to_owned()),
-        word => GREEK.contains(&word).then(|| format!("\\{word} ")),
-    }
-}
-
-/// A word with its own index; `divides` tells that a slash stands beside it: then dx is a differential.
-fn word(text: &str, divides: bool) -> (Piece, String) {
-    let upright = |latex: String| (Piece::new(latex, Kind::Upright, text.len()), String::new());
-    let italic = |latex: String, index: &str| {
-        (Piece::new(latex, Kind::Word, 1 + index.len()), index.to_owned())
-    };
-    if FUNCTIONS.contains(&text) {
-        return upright(format!("\\{text} "));
-    }
-    let base = text.trim_end_matches(|c: char| c.is_ascii_digit());
-    if let Some(base_letter) = letter(base) {
-        return italic(base_letter, &text[base.len()..]);
-    }
-    if DELAYED.contains(&text) {
-        return italic(text[..1].to_owned(), &text[1..]);
-    }
-    match text.strip_prefix('d').and_then(letter) {
-        Some(of) if PERTURBED.contains(&text) && !divides => italic(format!(r"\delta {of}"), ""),
-        Some(of) => italic(format!("d{of}"), ""),
-        // A short word in a formula is a product (2kx).
-        None if text.len() == 2 && base.len() == 2 => italic(text.to_owned(), ""),
-        None if ["sech", "csch", "sgn"].contains(&text) => {
-            upright(format!(r"\operatorname{{{text}}}"))
-        }
-        None => upright(format!(r"\text{{{text}}}")),
-    }
 }
 
 /// The bracket that closes another, with both in LaTeX.
@@ -405,49 +225,6 @@ impl<'a> Parser<'_, 'a> {
 /// A word with its own index alone.
 fn indexed((piece, index): (Piece, String)) -> Piece {
     Parser { tokens: &[], at: 0 }.scripts(piece, index)
-}
-
-/// A fraction of the last factor, or a quotient with a slash where a part is long.
-fn divide(pieces: &mut Vec<Piece>, below: &[Piece]) {
-    let mut from = pieces.len().saturating_sub(1);
-    let is_group = |n: usize| pieces.get(n).is_some_and(|piece| piece.inside.is_some());
-    if is_group(from) && from > 0 && pieces[from - 1].is_factor() {
-        // What stands directly before a bracket is applied to it: z(t)/gamma.
-        from -= 1;
-    } else {
-        from = numerator(pieces, from);
-    }
-    let above = pieces.split_off(from);
-    if width(&above) > LONG || width(below) > LONG || below.is_empty() {
-        pieces.extend(above);
-        pieces.push(sign("/"));
-        pieces.extend_from_slice(below);
-        return;
-    }
-    let bare = |part: &[Piece]| match part {
-        [Piece { inside: Some(inside), .. }] => inside.clone(),
-        part => joined(part),
-    };
-    let latex = format!(r"\frac{{{}}}{{{}}}", bare(&above), bare(below));
-    let fraction = Piece::new(latex, Kind::Tall, width(&above).max(width(below)));
-    pieces.push(Piece { tall: true, ..fraction });
-}
-
-/// Where a numerator begins that takes in the letters and numbers before its last factor: 2 pi k/omega.
-fn numerator(pieces: &[Piece], last: usize) -> usize {
-    let is_plain = |n: usize| matches!(pieces[n].kind, Kind::Word | Kind::Number);
-    let mut from = last;
-    // 2a/b.
-    if from > 0 && pieces[from - 1].kind == Kind::Number {
-        from -= 1;
-    }
-    while from >= 2 && pieces[from - 1].kind == Kind::Space && is_plain(from - 2) {
-        from -= 2;
-    }
-    // The argument of a function without brackets (cos 2 beta t/2) stays with it.
-    let is_argument =
-        from >= 2 && pieces[from - 1].kind == Kind::Space && pieces[from - 2].kind == Kind::Upright;
-    if is_argument { last } else { from }
 }
 
 #[cfg(test)]
