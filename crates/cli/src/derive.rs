@@ -14,7 +14,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     session.check_writable(&[])?;
     let order = options.order as usize;
     if oscillator.condition() == Some(Condition::FreeAmplitude) {
-        return session.show(oscillator.average(order, &work), &[]);
+        return session.show(oscillator.averaged(order, &work), &[]);
     }
     let tier = match options.tier {
         TierName::Exact => {

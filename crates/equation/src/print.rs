@@ -5,7 +5,7 @@
 //! and a factor 1 beside others is left out. Sums in sums and products in products are flat,
 //! which addition and multiplication allow.
 
-use crate::{Expression, Function, Unknown};
+use crate::{Expression, Function, Text, Unknown};
 use rug::Rational;
 use std::cmp::Ordering;
 
@@ -33,7 +33,13 @@ impl Expression {
     /// ```
     #[must_use]
     pub fn print(&self, small: &str, style: Style) -> String {
-        Printer { small, style }.sum(self)
+        self.print_named(small, &[], style)
+    }
+
+    /// The same with names for the unknowns; those without one are x, x_2, ...
+    #[must_use]
+    pub fn print_named(&self, small: &str, names: &[Text], style: Style) -> String {
+        Printer { small, names, style }.sum(self)
     }
 }
 
@@ -47,6 +53,7 @@ struct Written {
 /// What the printing of every node needs.
 struct Printer<'a> {
     small: &'a str,
+    names: &'a [Text],
     style: Style,
 }
 
@@ -210,15 +217,18 @@ impl Printer<'_> {
     /// x, x', x''(t - T); the second unknown is x_2.
     fn unknown(&self, unknown: &Unknown) -> String {
         let n = unknown.derivative as usize;
-        let stem = match (self.latex(), n) {
-            (true, 1..=4) => format!(r"\{}ot{{x}}", "d".repeat(n)),
-            (true, 5..) => format!("x^{{({n})}}"),
-            _ => "x".to_owned(),
+        let name = match (self.names.get(unknown.index), unknown.index) {
+            (Some(name), _) => name.to_string(),
+            (None, 0) => "x".to_owned(),
+            (None, k) => format!("x_{}", k + 1),
         };
-        let index = match (unknown.index, self.latex()) {
-            (0, _) => String::new(),
-            (k, false) => format!("_{}", k + 1),
-            (k, true) => format!("_{{{}}}", k + 1),
+        let name = if self.latex() { latex_name(&name) } else { name };
+        // The dots stand over the letter, not over its index.
+        let (letter, index) = name.split_at(name.find('_').unwrap_or(name.len()));
+        let stem = match (self.latex(), n) {
+            (true, 1..=4) => format!(r"\{}ot{{{letter}}}", "d".repeat(n)),
+            (true, 5..) => format!("{letter}^{{({n})}}"),
+            _ => letter.to_owned(),
         };
         let primes = if self.latex() { String::new() } else { "'".repeat(n) };
         let time = unknown.delay.as_deref().map(|delay| Expression::Time - delay.clone());

@@ -1,6 +1,7 @@
 //! A problem: an equation with what is needed to expand it and to talk about it.
 
 use crate::Expression;
+use crate::print::Style;
 use crate::symmetry::is_reversible;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -166,6 +167,10 @@ pub struct Problem {
     pub title: Text,
     /// The left side of equation = 0, as it is expanded.
     pub equation: Expression,
+    /// The left sides of the equations of further unknowns; empty where x is the only one.
+    pub others: Vec<Expression>,
+    /// The names of the unknowns where there are several; in expressions they are numbers.
+    pub unknowns: Vec<Text>,
     /// The same equation with its formal functions written out, for integration in time; nothing
     /// when `equation` has none.
     pub time_domain: Option<Expression>,
@@ -195,6 +200,8 @@ impl Problem {
         Self {
             name: name.into(),
             title: "".into(),
+            others: Vec::new(),
+            unknowns: Vec::new(),
             time_domain: None,
             impact: None,
             synchronous: None,
@@ -206,6 +213,12 @@ impl Problem {
             source: "".into(),
             equation,
         }
+    }
+
+    /// The equations of further unknowns, and the names of all of them.
+    #[must_use]
+    pub fn with_others(self, others: Vec<Expression>, unknowns: Vec<Text>) -> Self {
+        Self { others, unknowns, ..self }
     }
 
     /// Its title, one line.
@@ -272,5 +285,28 @@ impl Problem {
     #[must_use]
     pub fn with_source(self, source: impl Into<Text>) -> Self {
         Self { source: source.into(), ..self }
+    }
+}
+
+impl Problem {
+    /// The left sides of all equations, unknown k in equation k.
+    pub fn equations(&self) -> impl Iterator<Item = &Expression> {
+        [&self.equation].into_iter().chain(&self.others)
+    }
+
+    /// The name of unknown k, from 0.
+    #[must_use]
+    pub fn unknown(&self, k: usize) -> String {
+        let usual = || if k == 0 { "x".to_owned() } else { format!("x_{}", k + 1) };
+        self.unknowns.get(k).map_or_else(usual, ToString::to_string)
+    }
+
+    /// The equations as one line, `... = 0; ... = 0`.
+    #[must_use]
+    pub fn print(&self, style: Style) -> String {
+        let side =
+            |e: &Expression| format!("{} = 0", e.print_named(&self.small, &self.unknowns, style));
+        let separator = if style == Style::Text { "; " } else { r",\quad " };
+        self.equations().map(side).collect::<Vec<_>>().join(separator)
     }
 }

@@ -37,7 +37,7 @@ impl From<usize> for Derive {
 }
 
 /// An averaged expansion, the values that were put in, and what is to be said of them.
-type Averaged = (Averaging, BTreeMap<String, Exact>, Option<Remark>);
+type PolarForm = (Averaging, BTreeMap<String, Exact>, Option<Remark>);
 
 impl Oscillator {
     /// The expansion of omega^2, omega and T/2 pi in the small parameter and of x_0, x_1, ... as
@@ -156,7 +156,7 @@ impl Oscillator {
         let values = self.all_values().into_iter().collect();
         check_delays(&self.problem().equation, &values)?;
         free.check()?;
-        let (mut value, at, taken) = free.averaged(order, work)?;
+        let (mut value, at, taken) = free.polar(order, work)?;
         let names: &[&str] = match value.is_linear() {
             true => &["growth_rate", "frequency", "solution"],
             // A_n(a)/a and B_n(a).
@@ -179,7 +179,7 @@ impl Oscillator {
     }
 
     /// The averaged expansion, the values that were put in, and what is to be said of them.
-    fn averaged(&self, order: usize, work: &Work) -> Result<Averaged, Error> {
+    fn polar(&self, order: usize, work: &Work) -> Result<PolarForm, Error> {
         let average = |parameters: &BTreeMap<String, Exact>| {
             let settings = AveragingSettings {
                 order,

@@ -1,6 +1,7 @@
 //! Errors of the facade.
 
 use crate::refusal::{Kind, Refusal, Refused};
+use lindstedt_algebra::PhaseError;
 use lindstedt_derivation::DerivationError;
 use lindstedt_evaluation::EvaluationError;
 use lindstedt_expand::ExpandError;
@@ -131,6 +132,13 @@ impl Error {
     #[must_use]
     pub fn is_interrupted(&self) -> bool {
         matches!(self.expand(), Some(ExpandError::Interrupted { .. }))
+    }
+
+    /// Whether a force in resonance is the reason.
+    #[must_use]
+    pub fn is_resonance(&self) -> bool {
+        let source = self.expand();
+        matches!(source, Some(ExpandError::Phase { source: PhaseError::Resonance { .. }, .. }))
     }
 
     /// What the driver said.

@@ -64,6 +64,7 @@ pub use lindstedt_problem_file::ProblemFile;
 pub use motion::Simulate;
 pub use oscillator::Oscillator;
 pub use refusal::{Kind, Refusal, Refused};
+pub use resonance::Averaged;
 pub use stability::Stability;
 pub use threshold::Threshold;
 pub use verify::Verify;

@@ -70,7 +70,8 @@ impl Oscillator {
             let name = &card.name;
             let message =
                 format!("{name} is the name of an unknown, and it has no equation of its own");
-            let hint = "a problem file may declare a parameter of that name";
+            let hint = "its equation stands behind a `;`, or among the `equations` of a file; a problem file \
+                        may declare a parameter of that name";
             return Err(Refused::usage("second-unknown", message, hint).into());
         }
         // The root of the impact velocity has no place in an equation.
@@ -88,7 +89,8 @@ impl Oscillator {
         Ok(Self { problem, file, origin, values, condition, bare, remarks })
     }
 
-    /// An oscillator from its equation in the small parameter `eps`; other names are parameters
+    /// An oscillator from its equation in the small parameter `eps`, or from several with `;` between them,
+    /// one for every unknown; other names are parameters
     /// without a value. What its amplitude is follows from the form of the equation: free to drift
     /// with t or a delay, given where none drifts, that of a limit cycle otherwise.
     ///
@@ -96,9 +98,17 @@ impl Oscillator {
     /// [`Error::Parse`] with the position in the text; [`Refused`] for the name of a second unknown, which
     /// is never taken for a constant.
     pub fn parse(equation: &str) -> Result<Self, Error> {
+        let list: Vec<&str> = equation.split(';').filter(|e| !e.trim().is_empty()).collect();
+        let names = match &list[..] {
+            [_, _, ..] => Names::any("eps").of_system(list.iter().copied()),
+            _ => Names::any("eps"),
+        };
         // A place in the equation, not in a file.
-        parse_equation(equation, &Names::any("eps"))?;
-        let text = format!("equation = {equation:?}\n");
+        list.iter().try_for_each(|text| parse_equation(text, &names).map(drop))?;
+        let text = match &list[..] {
+            [_, _, ..] => format!("equations = {list:?}\n"),
+            _ => format!("equation = {equation:?}\n"),
+        };
         Ok(Self { bare: true, ..Self::file(&text)? })
     }
 
@@ -279,12 +289,28 @@ impl Oscillator {
         classification::refusal(error, Some(&self.file), &self.origin)
     }
 
-    /// Refuses a parameter that follows from pi: expansions take expressions over the rational
+    /// Refuses several unknowns, and a parameter that follows from pi: expansions take expressions over the rational
     /// numbers, and the delay of whole periods by its tie.
     ///
     /// # Errors
     /// [`Refused`].
     pub fn without_pi(&self) -> Result<(), Error> {
+        self.single()?;
+        self.values_without_pi()
+    }
+
+    /// Refuses several unknowns: averaging alone takes them.
+    pub(crate) fn single(&self) -> Result<(), Error> {
+        if self.problem.others.is_empty() {
+            return Ok(());
+        }
+        let message = "this question is for one unknown, and there are several equations";
+        let hint = "`lindstedt derive` averages them";
+        Err(Refused::no_answer("several-unknowns", message, hint).into())
+    }
+
+    /// The same for any number of unknowns.
+    pub(crate) fn values_without_pi(&self) -> Result<(), Error> {
         let tied = self.problem.synchronous.as_ref().map(|tie| &*tie.delay);
         let determined = self.file.determined();
         let Some(name) = determined.keys().find(|name| Some(name.as_str()) != tied) else {
@@ -305,11 +331,10 @@ impl Oscillator {
         tier: &'static str,
         start: Instant,
     ) -> Header {
-        let equation = self.problem.equation.print(&self.problem.small, Style::Text);
         Header {
             schema: SCHEMA,
             problem: self.problem.name.to_string(),
-            equation: format!("{equation} = 0"),
+            equation: self.problem.print(Style::Text),
             at,
             order,
             tier,

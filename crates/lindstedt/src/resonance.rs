@@ -1,10 +1,55 @@
 //! The slow flow of a problem: averaging at resonance and of several unknowns.
 
-use crate::{Answer, Error, Oscillator, SlowFlow, Work};
-use lindstedt_derivation::resonance::{FlowSettings, slow_flow};
+use crate::averaging::{Averaging, AveragingSettings};
+use crate::{Answer, DerivationError, Error, Oscillator, SlowFlow, Work};
+use lindstedt_derivation::resonance::slow_flow;
+use lindstedt_equation::Expression;
+use serde::Serialize;
 use std::time::Instant;
 
+/// Averaged equations: those of amplitude and phase, or of complex amplitudes where a force is in
+/// resonance or detuned, or where there are several unknowns.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum Averaged {
+    /// Krylov, Bogoliubov, Mitropolsky.
+    Polar(Averaging),
+    /// At resonance.
+    Flow(SlowFlow),
+}
+
 impl Oscillator {
+    /// The averaged equations, by [`Self::average`] where the amplitude and the phase of one unknown are all,
+    /// by [`Self::slow_flow`] at a resonance (met at whichever order), with a detuned force, or for several
+    /// unknowns.
+    ///
+    /// # Errors
+    /// Those of both.
+    pub fn averaged(&self, order: usize, work: &Work) -> Result<Answer<Averaged>, Error> {
+        let flow = || Ok(self.slow_flow(order, work)?.map(Averaged::Flow));
+        if !self.problem().others.is_empty() || self.is_detuned() {
+            return flow();
+        }
+        match self.average(order, work) {
+            Err(error) if error.is_resonance() => flow().map_err(|flow| match flow {
+                Error::Derivation(DerivationError::Resonance(_)) => error,
+                other => other,
+            }),
+            other => Ok(other?.map(Averaged::Polar)),
+        }
+    }
+
+    /// Whether the phase of a force contains the small parameter.
+    fn is_detuned(&self) -> bool {
+        let detuned = |e: &Expression| match e {
+            Expression::Function(_, angle) => {
+                angle.contains(&Expression::Time) && angle.contains(&Expression::Small)
+            }
+            _ => false,
+        };
+        self.problem().equation.nodes().any(detuned)
+    }
+
     /// The slow flow up to an order: with complex amplitudes z_j, E = e^{i eta} and the phase eta of the
     /// force,
     ///
@@ -34,14 +79,15 @@ impl Oscillator {
     /// ```
     pub fn slow_flow(&self, order: usize, work: &Work) -> Result<Answer<SlowFlow>, Error> {
         let start = Instant::now();
-        self.without_pi()?;
-        let problem = self.problem();
-        let cards = problem.parameters.iter().map(|card| card.name.to_string());
-        let cards: Vec<_> = cards.map(|name| (name.clone(), self.value(&name))).collect();
-        let stop = work.stop.clone();
-        let settings = FlowSettings { order, given: self.given(), cards: &cards, stop };
-        let equations = std::slice::from_ref(&problem.equation);
-        let found = slow_flow(equations, &settings, &mut |progress| work.goes_on(progress));
+        self.values_without_pi()?;
+        let settings = AveragingSettings {
+            order,
+            parameters: self.given().clone(),
+            stop: work.stop.clone(),
+            memory: work.memory,
+            ..AveragingSettings::default()
+        };
+        let found = slow_flow(self.problem(), &settings, &mut |progress| work.goes_on(progress));
         let value = found.map_err(|error| self.refusal(error.into()))?;
         let mut remarks = self.remarks().to_vec();
         let checked = value.checked_orders.is_some();

@@ -88,14 +88,15 @@ pub(crate) fn parameters(
 
 /// The parameters without a table: those that equations and wall mention, without a value; and the number
 /// pi, which no table declares.
-pub(crate) fn undeclared(
-    equations: [Option<&Expression>; 2],
+pub(crate) fn undeclared<'a>(
+    equations: impl Iterator<Item = &'a Expression>,
     wall: Option<&Impact>,
     declared: &BTreeSet<String>,
 ) -> Vec<ParameterCard> {
     let parts = wall.into_iter().flat_map(|wall| [&wall.position, &wall.restitution]);
-    let all = equations.into_iter().flatten().chain(parts);
-    let mentioned: BTreeSet<String> = all.flat_map(Expression::parameters).collect();
+    let parts = parts.flat_map(Expression::parameters);
+    let mentioned: BTreeSet<String> =
+        equations.flat_map(Expression::parameters).chain(parts).collect();
     let card = |name: String| {
         let (meaning, default) = if name == PI { ("the number pi", PI) } else { ("", "") };
         ParameterCard::new(name, meaning, default)
@@ -105,15 +106,14 @@ pub(crate) fn undeclared(
 }
 
 /// The parameters that are declared and occur nowhere.
-pub(crate) fn unused(
+pub(crate) fn unused<'a>(
     schema: &Schema,
-    equation: &Expression,
+    equations: impl Iterator<Item = &'a Expression>,
     amplitude: AmplitudeRole,
     declared: &BTreeSet<String>,
     follows: &BTreeMap<String, String>,
 ) -> Vec<String> {
-    let mut texts = vec![&schema.equation];
-    texts.extend(&schema.time_domain);
+    let mut texts: Vec<_> = schema.equations.iter().chain(&schema.time_domain).collect();
     if let Some(wall) = &schema.impact {
         texts.extend([&wall.position, &wall.restitution]);
     }
@@ -127,7 +127,7 @@ pub(crate) fn unused(
         texts.extend(initial.history.iter().map(|text| text.get_ref().as_str()));
     }
     texts.extend(follows.values().map(String::as_str));
-    let mut occurring = equation.parameters();
+    let mut occurring: Vec<String> = equations.flat_map(Expression::parameters).collect();
     occurring.extend(texts.into_iter().flat_map(words));
     // The amplitude, and the parts of a small parameter that is composed, stand in no equation.
     let parts = match amplitude {

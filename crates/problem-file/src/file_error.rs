@@ -100,6 +100,14 @@ pub enum FileErrorKind {
         /// Why not.
         reason: String,
     },
+    /// As many unknowns as equations are needed.
+    #[error("{equations} equations for the unknowns {unknowns}")]
+    Unknowns {
+        /// The names with primes.
+        unknowns: String,
+        /// How many equations there are.
+        equations: usize,
+    },
     /// The small parameter does not occur in the equation.
     #[error("the small parameter {name} does not occur in the equation")]
     NoSmallParameter {
@@ -140,6 +148,7 @@ impl FileError {
                 "an expression in parameters with a value and pi, as in \"2*pi*k/omega\"".into()
             }
             FileErrorKind::HalfAStart => "give both, or a history alone".into(),
+            FileErrorKind::Unknowns { .. } => "one equation with x'' for every unknown x".into(),
             FileErrorKind::Range { .. } => "NAME=LO..HI:COUNT, as in \"gamma=1/2..1:100\"".into(),
             FileErrorKind::Undeclared { .. } => "declare it under [parameters]".into(),
             _ => "see `lindstedt problems --show vibro-impact` for a complete file".into(),

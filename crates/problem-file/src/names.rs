@@ -1,5 +1,6 @@
 //! Names: Greek letters and their spellings, reserved words, what an equation may mention.
 
+use crate::lexer::{Kind, Token, tokens};
 use lindstedt_equation::Function;
 use std::collections::BTreeSet;
 
@@ -110,18 +111,42 @@ pub struct Names {
     pub parameters: Option<BTreeSet<String>>,
     /// Formal functions F(z) = sum_n F_n z^n/n!.
     pub formal: BTreeSet<String>,
+    /// The unknowns, by their numbers.
+    pub unknowns: Vec<String>,
 }
 
 impl Names {
-    /// Any name that is not reserved is a parameter.
+    /// Any name that is not reserved is a parameter; x is the unknown.
     pub fn any(small: &str) -> Self {
-        Self { small: canonical_name(small), parameters: None, formal: BTreeSet::new() }
+        let (formal, unknowns) = (BTreeSet::new(), vec!["x".to_owned()]);
+        Self { small: canonical_name(small), parameters: None, formal, unknowns }
+    }
+
+    /// The same with the unknowns of several equations: the names with primes, in the order in which they
+    /// occur.
+    #[must_use]
+    pub fn of_system<'a>(mut self, equations: impl IntoIterator<Item = &'a str>) -> Self {
+        let mut unknowns: Vec<String> = Vec::new();
+        for list in equations.into_iter().filter_map(|text| tokens(text).ok()) {
+            for pair in list.windows(2) {
+                let [Token { kind: Kind::Name(name), .. }, Token { kind: Kind::Primes(_), .. }] =
+                    pair
+                else {
+                    continue;
+                };
+                if !unknowns.contains(name) {
+                    unknowns.push(name.clone());
+                }
+            }
+        }
+        self.unknowns = unknowns;
+        self
     }
 
     /// These parameters and no others.
     pub fn only<'a>(small: &str, parameters: impl IntoIterator<Item = &'a str>) -> Self {
         let parameters = Some(parameters.into_iter().map(canonical_name).collect());
-        Self { small: canonical_name(small), parameters, formal: BTreeSet::new() }
+        Self { parameters, ..Self::any(small) }
     }
 
     /// The declared name that is spelled most like this one, if one is near: of a name with one

@@ -41,21 +41,24 @@ impl Parser<'_> {
     }
 
     fn name(&mut self, name: &str, at: &Range<usize>) -> Parsed {
+        let unknown = self.names.unknowns.iter().position(|unknown| unknown == name);
         if let Kind::Primes(order) = self.token().kind {
-            if name != "x" {
+            let Some(unknown) = unknown else {
                 let kind = ParseErrorKind::NotDifferentiable { name: excerpt(name) };
                 return Err(self.error(kind));
-            }
+            };
             let derivative = match order {
-                1 => Expression::VELOCITY,
-                2 => Expression::ACCELERATION,
+                1 => 1,
+                2 => 2,
                 order => return Err(self.error(ParseErrorKind::Derivative { order })),
             };
             self.advance();
-            return self.at_a_time(derivative, at.start);
+            return self.at_a_time(Expression::unknown(unknown, derivative), at.start);
+        }
+        if let Some(unknown) = unknown {
+            return self.at_a_time(Expression::unknown(unknown, 0), at.start);
         }
         match name {
-            "x" => return self.at_a_time(Expression::DISPLACEMENT, at.start),
             "t" => return Ok(Expression::Time),
             "taylor" => return self.taylor(),
             "sqrt" => {
@@ -150,7 +153,11 @@ impl Parser<'_> {
             Expression::Product(factors)
                 if matches!(factors.first(), Some(Expression::Number(q)) if q.cmp0() == Ordering::Less)
         );
-        let inner_varies = what.find(&|e| *e == Expression::ACCELERATION || *e == Expression::Time);
+        let varies = |e: &Expression| match e {
+            Expression::Unknown(unknown) => unknown.derivative > 1,
+            other => *other == Expression::Time,
+        };
+        let inner_varies = what.find(&varies);
         if later || !delay.is_constant() || inner_varies.is_some() {
             return Err(refused());
         }

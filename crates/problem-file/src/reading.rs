@@ -30,11 +30,16 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     let synchronous = tie.map(|tie| synchronous(reader, tie, &declared)).transpose()?;
     let meanings =
         Meanings::read(reader, &schema, &names, &follows, &orders, synchronous.as_ref())?;
-    let Formulas { equation, time_domain, impact } = formulas(reader, &schema, &names, &meanings)?;
-    cards.extend(undeclared([Some(&equation), time_domain.as_ref()], impact.as_ref(), &declared));
+    let Formulas { equation, others, time_domain, impact } =
+        formulas(reader, &schema, &names, &meanings)?;
+    let sides = [&equation].into_iter().chain(&others);
+    cards.extend(undeclared(sides.clone().chain(&time_domain), impact.as_ref(), &declared));
     names.parameters = Some(cards.iter().map(|card| card.name.to_string()).collect());
     names.parameters.iter_mut().for_each(|list| list.extend(declared.iter().cloned()));
-    let conditions = conditions(reader, &schema, &equation)?;
+    let conditions = match schema.condition {
+        None if !others.is_empty() => vec![Condition::FreeAmplitude],
+        _ => conditions(reader, &schema, &equation)?,
+    };
     let amplitude = amplitude(reader, &schema, (&equation, &small), &conditions, &declared)?;
     if amplitude == AmplitudeRole::Scaled && !declared.contains("amplitude") {
         let meaning = "a: x(0), or the first harmonic; x = a y is expanded";
@@ -44,8 +49,12 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     check_expansion(reader, &schema, (&equation, &small), &conditions)?;
     let known = |name: &str| declared.contains(name) || name == small || name == "amplitude";
     let (fixed, swept) = fixed_and_swept(reader, &schema, &known)?;
-    let unused = unused(&schema, &equation, amplitude, &declared, &follows);
+    let unused = unused(&schema, sides, amplitude, &declared, &follows);
+    let several = !others.is_empty();
+    let unknowns = names.unknowns.iter().filter(|_| several).map(|name| name.clone().into());
+    let unknowns = unknowns.collect();
     let mut problem = Problem::new(name, equation)
+        .with_others(others, unknowns)
         .with_title(schema.title.clone())
         .with_small(small)
         .under(conditions, amplitude)
@@ -58,8 +67,8 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
         asked: asked(reader, &schema)?,
         named: schema.name.is_some(),
         declares: schema.parameters.is_some(),
-        start: reader.content(&schema.equation),
-        equation: schema.equation.get_ref().clone(),
+        start: reader.content(schema.first()),
+        equation: schema.first().get_ref().clone(),
         text: reader.text.to_owned(),
         problem,
         units,
@@ -74,7 +83,8 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     })
 }
 
-/// The names that the formulas may use: those declared, or any where no table declares them.
+/// The names that the formulas may use: those declared, or any where no table declares them; and the unknowns,
+/// as many as there are equations.
 fn known_names(
     reader: &Reader<'_>,
     schema: &Schema,
@@ -85,12 +95,23 @@ fn known_names(
         Some(_) => Names::only(small, declared.iter().map(String::as_str)),
         None => Names::any(small),
     };
-    Ok(Names { formal: formal_names(reader, schema)?, ..names })
+    let names = Names { formal: formal_names(reader, schema)?, ..names };
+    if schema.equations.len() == 1 {
+        return Ok(names);
+    }
+    let names = names.of_system(schema.equations.iter().map(|text| text.get_ref().as_str()));
+    let (unknowns, equations) = (names.unknowns.len(), schema.equations.len());
+    if unknowns == equations {
+        return Ok(names);
+    }
+    let kind = FileErrorKind::Unknowns { unknowns: names.unknowns.join(", "), equations };
+    Err(reader.error(kind, schema.first().span().start))
 }
 
 /// What is written as formulas.
 struct Formulas {
     equation: Expression,
+    others: Vec<Expression>,
     time_domain: Option<Expression>,
     impact: Option<Impact>,
 }
@@ -104,7 +125,8 @@ fn formulas(
     let read = |text| read_equation(reader, text, names, meanings);
     let wall = schema.impact.as_ref();
     Ok(Formulas {
-        equation: read(&schema.equation)?,
+        equation: read(schema.first())?,
+        others: schema.equations.iter().skip(1).map(read).collect::<Result<_, _>>()?,
         time_domain: schema.time_domain.as_ref().map(read).transpose()?,
         impact: wall.map(|wall| impact(reader, wall, names, meanings)).transpose()?,
     })
@@ -122,7 +144,7 @@ fn check_expansion(
         return Ok(());
     }
     let kind = FileErrorKind::NoSmallParameter { name: small.to_owned() };
-    Err(reader.error(kind, schema.equation.span().start))
+    Err(reader.error(kind, schema.first().span().start))
 }
 
 /// `fixed` and `swept`, which have no name in common.
@@ -271,6 +293,10 @@ fn read_equation(
     meanings: &Meanings,
 ) -> Result<Expression, FileError> {
     let equation = parse_equation(text.get_ref(), names).map_err(|e| reader.inside(text, e))?;
+    if names.unknowns.len() > 1 {
+        // Masses may couple.
+        return Ok(meanings.put_in(&equation));
+    }
     let alone = equation.acceleration_alone().map_err(|fault| {
         let whole = 0..text.get_ref().len();
         let (kind, at) = match fault {

@@ -14,7 +14,10 @@ pub(crate) struct Schema {
     pub name: Option<Spanned<String>>,
     #[serde(default)]
     pub title: String,
-    pub equation: Spanned<String>,
+    equation: Option<Spanned<String>>,
+    /// One for every unknown; the one of `equation` where that is given.
+    #[serde(default)]
+    pub equations: Vec<Spanned<String>>,
     pub small: Option<Spanned<String>>,
     pub condition: Option<Spanned<OneOrMany>>,
     pub amplitude: Option<Spanned<String>>,
@@ -38,6 +41,23 @@ pub(crate) struct Schema {
     pub notes: String,
     #[serde(default)]
     pub source: String,
+}
+
+impl Schema {
+    /// With `equation` among the equations; nothing where there is none, or both keys.
+    pub fn with_equations(mut self) -> Option<Self> {
+        match self.equation.take() {
+            None => {}
+            Some(single) if self.equations.is_empty() => self.equations.push(single),
+            Some(_) => return None,
+        }
+        (!self.equations.is_empty()).then_some(self)
+    }
+
+    /// The equation of the first unknown.
+    pub fn first(&self) -> &Spanned<String> {
+        &self.equations[0]
+    }
 }
 
 #[derive(Deserialize)]

@@ -37,7 +37,11 @@ impl ProblemFile {
             let at = error.span().map_or(0, |span| span.start);
             reader.error(FileErrorKind::Toml { message }, at)
         })?;
-        read(&reader, schema)
+        let missing = || {
+            let message = "one of the keys `equation` and `equations` is needed".to_owned();
+            reader.error(FileErrorKind::Toml { message }, 0)
+        };
+        read(&reader, schema.with_equations().ok_or_else(missing)?)
     }
 }
 

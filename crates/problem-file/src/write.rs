@@ -52,15 +52,18 @@ fn list<'a>(names: impl IntoIterator<Item = &'a String>) -> String {
 }
 
 fn printed(problem: &Problem, e: &Expression) -> String {
-    e.print(&problem.small, Style::Text)
+    e.print_named(&problem.small, &problem.unknowns, Style::Text)
 }
 
 /// The equations and what is to be said about them.
 fn head(problem: &Problem) -> String {
     let side = |e: &Expression| quoted(&format!("{} = 0", printed(problem, e)));
-    let mut text = line("name", &quoted(&problem.name))
-        + &line("title", &quoted(&problem.title))
-        + &line("equation", &side(&problem.equation));
+    let mut text = line("name", &quoted(&problem.name)) + &line("title", &quoted(&problem.title));
+    let equations: Vec<String> = problem.equations().map(side).collect();
+    text += &match &equations[..] {
+        [single] => line("equation", single),
+        several => line("equations", &format!("[{}]", several.join(", "))),
+    };
     if let Some(equation) = &problem.time_domain {
         text += &line("time_domain", &side(equation));
     }
@@ -154,7 +157,7 @@ fn quoted(text: &str) -> String {
 
 fn expressions(problem: &Problem) -> Vec<&Expression> {
     let impact = problem.impact.iter().flat_map(|i| [&i.position, &i.restitution]);
-    [&problem.equation].into_iter().chain(&problem.time_domain).chain(impact).collect()
+    problem.equations().chain(&problem.time_domain).chain(impact).collect()
 }
 
 fn formal_names(problem: &Problem) -> BTreeSet<String> {

@@ -11,26 +11,31 @@
 
 mod error;
 mod forces;
+mod json;
 mod modes;
+mod motion;
+mod polar;
+mod print;
 mod system;
 
 pub use error::ResonanceError;
+pub use motion::Motion;
+pub use polar::{Polar, PolarTerm};
+pub use print::{print_name, print_turns};
 pub use system::{Beside, System};
 
-use crate::averaging::constant;
+use crate::averaging::{AveragingSettings, constant};
 use crate::error::DerivationError as Error;
+use crate::values::value;
 use crate::work::Progress;
-use lindstedt_algebra::Stop;
-use lindstedt_equation::Expression;
+use lindstedt_algebra::AmplitudeAlgebra;
 use lindstedt_equation::print::Style;
+use lindstedt_equation::{Expression, Problem};
 use lindstedt_expand::resonance::{Nearest, check_flow, resonant};
 use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
-use lindstedt_number::Exact;
 use lindstedt_phase::amplitudes::scalars::Integers;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes};
 use rug::{Integer, Rational};
-use std::collections::BTreeMap;
-use system::Values;
 
 type Element = AmplitudeElement<Integer>;
 
@@ -41,6 +46,8 @@ pub type Terms = Vec<AmplitudeTerm>;
 /// A slow flow that was substituted into its equations, as plain data.
 #[derive(Clone, Debug)]
 pub struct SlowFlow {
+    /// The problem.
+    pub problem: Problem,
     /// What was averaged.
     pub system: System,
     /// The highest order derived.
@@ -65,24 +72,30 @@ impl SlowFlow {
         self.system.frequencies.len()
     }
 
+    /// The names of the x_j: those of the unknowns, or q_1, q_2, ... of the modes.
+    #[must_use]
+    pub fn coordinates(&self) -> Vec<String> {
+        let mode = |j| format!("q_{}", j + 1);
+        match (&self.system.shapes, self.unknowns()) {
+            (Some(_), n) => (0..n).map(mode).collect(),
+            (None, n) => (0..n).map(|j| self.problem.unknown(j)).collect(),
+        }
+    }
+
+    /// The names of the factors of a monomial, in the order of its exponents.
+    #[must_use]
+    pub fn factors(&self) -> Vec<String> {
+        let index = |j| if self.unknowns() == 1 { String::new() } else { format!("_{}", j + 1) };
+        let pair = |j| ["z", "zbar"].map(|name| format!("{name}{}", index(j)));
+        let amplitudes = (0..self.unknowns()).flat_map(pair);
+        amplitudes.chain(["E".to_owned()]).chain(self.system.symbols.iter().cloned()).collect()
+    }
+
     /// The smallest divisor of all orders.
     #[must_use]
     pub fn nearest(&self) -> Option<&Nearest> {
         self.nearest.iter().min_by(|a, b| a.size.cmp_abs(&b.size))
     }
-}
-
-/// What to average.
-#[derive(Clone, Debug)]
-pub struct FlowSettings<'a> {
-    /// The highest order.
-    pub order: usize,
-    /// Values that are put in, by name; what is not listed stays a symbol, unless a frequency depends on it.
-    pub given: &'a BTreeMap<String, Exact>,
-    /// Values for those, by name and in the order in which symbols are printed.
-    pub cards: &'a [(String, Option<Exact>)],
-    /// Asked within the orders whether to stop.
-    pub stop: Stop,
 }
 
 struct Symbols<'a>(&'a Amplitudes<Integers>);
@@ -96,7 +109,8 @@ impl Binding<Amplitudes<Integers>> for Symbols<'_> {
     }
 }
 
-/// The slow flow of the left sides of `equations` = 0, unknown j in equation j.
+/// The slow flow of a problem. Parameters of the equations that are not among those of the settings stay
+/// symbols, unless a frequency depends on them: then they have the values of their cards.
 ///
 /// Exact; the residual of every order vanishes identically. Cost: O(N^2) products of polynomials whose
 /// length grows like N^(symbols + 1).
@@ -105,28 +119,23 @@ impl Binding<Amplitudes<Integers>> for Symbols<'_> {
 /// [`ResonanceError`] by name for what is no such system; [`ExpandError`] for terms that are no polynomial.
 ///
 /// ```
-/// use lindstedt_derivation::resonance::{FlowSettings, slow_flow};
-/// use lindstedt_equation::{Expression, Function};
-/// // x'' + x + eps (x^3 - F cos((1 + eps sigma) t)) = 0.
-/// let (x, small) = (Expression::DISPLACEMENT, Expression::Small);
-/// let rate = Expression::integer(1) + small.clone() * Expression::parameter("sigma");
-/// let force = Expression::parameter("F") * (rate * Expression::Time).apply(Function::Cos);
-/// let equation = Expression::ACCELERATION + x.clone() + small * (x.pow(3) - force);
-/// let (given, cards) = Default::default();
-/// let settings = FlowSettings { order: 2, given: &given, cards, stop: Default::default() };
-/// let found = slow_flow(&[equation], &settings, &mut |_| true)?;
+/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::slow_flow};
+/// use lindstedt_problem_file::ProblemFile;
+/// let text = "equation = \"x'' + x + eps*x^3 = eps*F*cos((1 + eps*sigma)*t)\"";
+/// let problem = ProblemFile::parse(text)?.problem;
+/// let found = slow_flow(&problem, &AveragingSettings::default(), &mut |_| true)?;
 /// assert_eq!((found.checked_orders, found.flow[0][1].len()), (Some(2), 2));
-/// # Ok::<(), lindstedt_derivation::DerivationError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn slow_flow(
-    equations: &[Expression],
-    settings: &FlowSettings<'_>,
+    problem: &Problem,
+    settings: &AveragingSettings,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<SlowFlow, Error> {
-    let cards = |name: &str| settings.cards.iter().find(|(card, _)| card == name)?.1.clone();
-    let values = Values { given: settings.given, cards: &cards };
-    let order: Vec<String> = settings.cards.iter().map(|(name, _)| name.clone()).collect();
-    let system = System::of(equations, &values, &order)?;
+    let equations: Vec<Expression> = problem.equations().cloned().collect();
+    let cards = |name: &str| value(problem, &settings.parameters, name);
+    let order: Vec<String> = problem.parameters.iter().map(|card| card.name.to_string()).collect();
+    let system = System::of(&equations, &settings.parameters, &cards, &order)?;
     let names: Vec<&str> = system.symbols.iter().map(String::as_str).collect();
     let algebra = Amplitudes::new(Integers, &system.frequencies, &system.force, &names);
     let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: names.len() })?;
@@ -157,13 +166,22 @@ pub fn slow_flow(
     let mut flow: Vec<Vec<Terms>> =
         found.flow.iter().map(|list| list.iter().map(terms).collect()).collect();
     for (j, list) in flow.iter_mut().enumerate() {
-        use lindstedt_algebra::AmplitudeAlgebra;
         list[0] = terms(&algebra.by_time(&algebra.amplitude(j)));
     }
     let solution = found.solution.iter().map(|list| list.iter().map(terms).collect()).collect();
     let detuning = found.detuning.iter().map(terms).collect();
     let order = found.order();
-    Ok(SlowFlow { system, order, checked_orders, flow, solution, detuning, nearest: found.nearest })
+    let problem = problem.clone();
+    Ok(SlowFlow {
+        problem,
+        system,
+        order,
+        checked_orders,
+        flow,
+        solution,
+        detuning,
+        nearest: found.nearest,
+    })
 }
 
 /// A divisor below this says that a resonance was missed by a little.

@@ -112,26 +112,18 @@ fn written(e: &Expression) -> Expression {
     })
 }
 
-/// Values: those that are given, and those of the cards.
-pub(super) struct Values<'a> {
-    pub given: &'a BTreeMap<String, Exact>,
-    pub cards: &'a dyn Fn(&str) -> Option<Exact>,
-}
-
-impl Values<'_> {
-    fn rational(&self, name: &str, value: &Exact) -> Result<Rational, Error> {
-        let value = value
-            .as_rational()
-            .ok_or_else(|| Error::Irrational { name: name.to_owned(), value: value.to_string() })?;
-        Ok(value.clone())
-    }
+fn rational(name: &str, value: &Exact) -> Result<Rational, Error> {
+    let irrational = || Error::Irrational { name: name.to_owned(), value: value.to_string() };
+    value.as_rational().cloned().ok_or_else(irrational)
 }
 
 impl System {
-    /// Prepares the left sides of equations; `order` is the order in which symbols are printed.
+    /// Prepares the left sides of equations with the values given, and those of the cards where a frequency
+    /// depends on them; `order` is the order in which symbols are printed.
     pub(super) fn of(
         equations: &[Expression],
-        values: &Values<'_>,
+        given: &BTreeMap<String, Exact>,
+        cards: &dyn Fn(&str) -> Option<Exact>,
         order: &[String],
     ) -> Result<Self, Error> {
         for e in equations.iter().flat_map(Expression::nodes) {
@@ -150,8 +142,8 @@ impl System {
         let mut bound = BTreeMap::new();
         let mentioned: BTreeSet<String> =
             equations.iter().flat_map(Expression::parameters).collect();
-        for (name, value) in values.given.iter().filter(|(name, _)| mentioned.contains(*name)) {
-            bound.insert(name.clone(), values.rational(name, value)?);
+        for (name, value) in given.iter().filter(|(name, _)| mentioned.contains(*name)) {
+            bound.insert(name.clone(), rational(name, value)?);
         }
         let equations = put_in(equations, &bound);
         // What the frequencies depend on has its value, too.
@@ -161,9 +153,8 @@ impl System {
         let needed: BTreeSet<String> =
             entries.chain(&rates).flat_map(Expression::parameters).collect();
         for name in needed {
-            let value =
-                (values.cards)(&name).ok_or(ResonanceError::Unset { name: name.clone() })?;
-            bound.insert(name.clone(), values.rational(&name, &value)?);
+            let value = cards(&name).ok_or(ResonanceError::Unset { name: name.clone() })?;
+            bound.insert(name.clone(), rational(&name, &value)?);
         }
         let equations = put_in(&equations, &bound);
         let (phase, equations) = phase(&equations)?;

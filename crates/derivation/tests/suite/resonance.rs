@@ -3,10 +3,11 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use lindstedt_derivation::DerivationError;
-use lindstedt_derivation::resonance::{FlowSettings, ResonanceError, SlowFlow, slow_flow};
+use lindstedt_derivation::averaging::AveragingSettings;
+use lindstedt_derivation::resonance::{PolarTerm, ResonanceError, SlowFlow, slow_flow};
 use lindstedt_number::Exact;
 use lindstedt_phase::amplitudes::AmplitudeTerm;
-use lindstedt_problem_file::{Names, parse_equation};
+use lindstedt_problem_file::ProblemFile;
 use rug::Rational;
 use std::collections::BTreeMap;
 
@@ -14,11 +15,13 @@ type Powers = BTreeMap<String, i32>;
 type Named = BTreeMap<Powers, [Rational; 2]>;
 
 fn found(equation: &str, order: usize, set: &[(&str, &str)]) -> Result<SlowFlow, DerivationError> {
-    let equation = parse_equation(equation, &Names::any("eps")).unwrap();
+    let list: Vec<String> = equation.split(';').map(|text| format!("{text:?}")).collect();
+    let file = format!("equations = [{}]", list.join(", "));
+    let problem = ProblemFile::parse(&file).unwrap().problem;
     let value = |(name, text): &(&str, &str)| ((*name).to_owned(), Exact::parse(text).unwrap());
-    let given = set.iter().map(value).collect();
-    let settings = FlowSettings { order, given: &given, cards: &[], stop: Default::default() };
-    slow_flow(&[equation], &settings, &mut |_| true)
+    let parameters = set.iter().map(value).collect();
+    let settings = AveragingSettings { order, parameters, ..AveragingSettings::default() };
+    slow_flow(&problem, &settings, &mut |_| true)
 }
 
 fn flow(equation: &str, order: usize, set: &[(&str, &str)]) -> SlowFlow {
@@ -55,6 +58,7 @@ fn reference_flows() {
     let cases = [
         ("primary", format!("{weak} = eps*F*cos(t)")),
         ("superharmonic", format!("{weak} = F*cos(t/3)")),
+        ("internal_1_2", "x1'' + x1 + eps*2*x1*x2; x2'' + 4*x2 + eps*(s*x2 + x1^2)".to_owned()),
         ("van_der_pol_forced", "x'' + x + eps*(s*x - (1 - x^2)*x') = eps*F*cos(t)".to_owned()),
     ];
     let number = |v: &serde_json::Value| v.as_str().unwrap().parse::<Rational>().unwrap();
@@ -111,4 +115,139 @@ fn refusals() {
     is("x'' + x = eps*cos(omega*t)", |e| matches!(e, Unset { .. }));
     is("x'' + x + eps*x(t - 1) = eps*cos(t)", |e| matches!(e, Delay { .. }));
     is("x'' + x = eps*cos(t) + eps*cos(t^2)", |e| matches!(e, NotAForce { .. }));
+}
+
+/// Terms by hand: `1/4 i h zbar1 E`, without the sign of multiplication.
+fn by_hand(list: &[&str]) -> Named {
+    let term = |text: &&str| {
+        let mut words = text.split_whitespace().peekable();
+        let number: Rational = words.next().unwrap().parse().unwrap();
+        let imaginary = words.next_if_eq(&"i").is_some();
+        let parts = [number, Rational::new()];
+        let [a, b] = parts;
+        let power = |word: &str| match word.split_once('^') {
+            Some((name, n)) => (name.to_owned(), n.parse().unwrap()),
+            None => (word.to_owned(), 1),
+        };
+        (words.map(power).collect(), if imaginary { [b, a] } else { [a, b] })
+    };
+    list.iter().map(term).collect()
+}
+
+/// Nayfeh and Mook, Nonlinear Oscillations (1979), chapters 4 to 6, from the equations as they are written.
+#[test]
+fn first_orders_by_hand() {
+    let weak = "x'' + x + eps*(s*x + 2*mu*x' + al*x^3)";
+    let common = ["1/2 i s z1", "-1 mu z1", "3/2 i al z1^2 zbar1"];
+    let cases: [(String, &[&str]); 4] = [
+        (format!("{weak} = eps*F*cos(t)"), &["-1/4 i F E"]),
+        (format!("{weak} + eps*h*x*cos(2*t) = 0"), &["1/4 i h zbar1 E"]),
+        (format!("{weak} = F*cos(3*t)"), &["-3/32 i al F zbar1^2 E", "3/256 i al F^2 z1"]),
+        (format!("{weak} = F*cos(t/3)"), &["729/8192 i al F^3 E^3", "243/256 i al F^2 z1"]),
+    ];
+    for (equation, more) in cases {
+        let found = flow(&equation, 1, &[]);
+        let expected = by_hand(&[&common, more].concat());
+        assert_eq!(named(&found, &found.flow[0][1]), expected, "{equation}");
+    }
+    // V = eps (al x^4/4 + be x^3 y) + eps s y^2/2, 1:3.
+    let internal = "x'' + x + eps*(al*x^3 + 3*be*x^2*y); y'' + 9*y + eps*(s*y + be*x^3)";
+    let found = flow(internal, 2, &[]);
+    let first = by_hand(&["3/2 i al z1^2 zbar1", "3/2 i be zbar1^2 z2"]);
+    assert_eq!(named(&found, &found.flow[0][1]), first);
+    let second = by_hand(&["1/6 i s z2", "1/6 i be z1^3"]);
+    assert_eq!(named(&found, &found.flow[1][1]), second);
+}
+
+/// Polar form of the primary resonance, as books have it: a' = F/2 sin gamma - mu a,
+/// a gamma' = sigma a - 3/8 al a^3 + F/2 cos gamma.
+#[test]
+fn polar_form() {
+    let equation = "x'' + x + eps*(2*mu*x' + al*x^3) = eps*F*cos((1 + eps*sigma)*t)";
+    let found = flow(equation, 1, &[]);
+    assert_eq!(found.system.symbols, ["F", "al", "mu", "sigma"]);
+    let polar = found.polar().unwrap();
+    let list = |terms: &[PolarTerm]| -> Vec<(u32, u32, bool, Vec<i32>, String)> {
+        let one = |t: &PolarTerm| {
+            (t.power, t.harmonic, t.sine, t.symbols.clone(), t.coefficient.to_string())
+        };
+        terms.iter().map(one).collect()
+    };
+    assert_eq!(polar.slow, Some([1, 1]));
+    let half = |sine| (0, 1, sine, vec![1, 0, 0, 0], "1/2".to_owned());
+    let amplitude = [half(true), (1, 0, false, vec![0, 0, 1, 0], "-1".to_owned())];
+    assert_eq!(list(&polar.amplitude[0]), amplitude);
+    let phase = [
+        half(false),
+        (1, 0, false, vec![0, 0, 0, 1], "1".to_owned()),
+        (3, 0, false, vec![0, 1, 0, 0], "-3/8".to_owned()),
+    ];
+    assert_eq!(list(&polar.phase[0]), phase);
+}
+
+/// The edges of Mathieu's first tongues, DLMF 28.6.1 to 28.6.5: y'' + (a - 2 q cos 2t) y = 0 with a = m^2 + s
+/// and q = eps. In the frame of the force z' = i (A z + B zbar), and a real or imaginary z stands still
+/// where A + B = 0 (y even) or A - B = 0 (y odd).
+#[test]
+fn edges_of_the_first_tongues() {
+    type Series = Vec<Rational>;
+    let product = |a: &Series, b: &Series| -> Series {
+        let at = |n: usize| (0..=n).map(|k| Rational::from(&a[k] * &b[n - k])).sum();
+        (0..a.len()).map(at).collect()
+    };
+    let odd = |s: Series| s.into_iter().enumerate().map(|(n, c)| if n % 2 == 0 { c } else { -c });
+    let read = |list: &[&str]| -> Series { list.iter().map(|q| q.parse().unwrap()).collect() };
+    // (a - m^2)/q, order by order.
+    let first =
+        ["1", "-1/8", "-1/64", "-1/1536", "11/36864", "49/589824", "55/9437184", "-83/35389440"];
+    let second = ["0", "5/12", "0", "-763/13824", "0", "1002401/79626240"];
+    let below = ["0", "-1/12", "0", "5/13824", "0", "-289/79626240"];
+    // b_1(q) = a_1(-q): (b_1 - 1)/q changes sign at even orders.
+    let mirrored: Series = odd(read(&first)).map(|c| -c).collect();
+    let cases =
+        [(1, 1, read(&first)), (1, -1, mirrored), (4, 1, read(&second)), (4, -1, read(&below))];
+    for (square, sign, edge) in cases {
+        let order = edge.len();
+        let found = flow(&format!("x'' + {square}*x + eps*(s*x - 2*x*cos(2*t)) = 0"), order, &[]);
+        let mut sum = vec![Rational::new(); order];
+        for n in 1..=order {
+            for term in &found.flow[0][n] {
+                let [z, zbar, _, s] = [0, 1, 2, 3].map(|i| term.exponents[i]);
+                assert!(term.re.is_zero() && z + zbar == 1);
+                let mut power = vec![Rational::new(); order];
+                power[0] = Rational::from(1);
+                power = (0..s).fold(power, |power, _| product(&power, &edge));
+                for (k, c) in power.iter().enumerate().take(order + 1 - n) {
+                    sum[n - 1 + k] += Rational::from(&term.im * c) * if z == 1 { 1 } else { sign };
+                }
+            }
+        }
+        assert!(sum.iter().all(Rational::is_zero), "{square} {sign}: {sum:?}");
+    }
+}
+
+/// What was refused by name of several unknowns; a near miss is one beyond 1/1000.
+#[test]
+fn refusals_of_several_unknowns() {
+    use ResonanceError::{NearMiss, NoRationalModes, NotDiagonalisable};
+    let kerschen = refused("x'' + 2*x - y + eps*x^3/2; y'' + 2*y - x");
+    assert!(matches!(kerschen, NoRationalModes { .. }), "{kerschen}");
+    assert_eq!(refused("x'' + x + y; y'' + y + eps*x^3"), NotDiagonalisable);
+    let near = refused("x'' + x + eps*x*y; y'' + 4.000004000001*y + eps*x^2");
+    let NearMiss { order, harmonic, size } = near else { panic!("{near}") };
+    assert_eq!((order, harmonic), (1, vec![-1, 1, 0]));
+    assert!((size + 2e-6).abs() < 1e-11, "{size}");
+}
+
+/// Coupled springs 5/2 and 3/2 have the modes 1:2; the energy of the slow flow is kept: a detuning in the
+/// second spring moves no amplitude at order one.
+#[test]
+fn modes_of_coupled_masses() {
+    let found = flow("2*x'' + 5*x - 3*y + eps*x^3; 2*y'' + 5*y - 3*x + eps*s*y", 2, &[]);
+    let one = |n: i32| Rational::from(n);
+    assert_eq!(found.system.frequencies, [1, 2]);
+    assert_eq!(found.system.shapes, Some(vec![vec![one(1), one(1)], vec![one(1), one(-1)]]));
+    // x'' of the modes: q_1'' = (x'' + y'')/2, so that eps x^3/2 is halved, and s/2.
+    let expected = by_hand(&["3/8 i z1^2 zbar1", "3/4 i z1 z2 zbar2", "1/8 i s z1"]);
+    assert_eq!(named(&found, &found.flow[0][1]), expected);
 }

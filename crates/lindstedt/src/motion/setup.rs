@@ -57,6 +57,7 @@ impl Setup {
         swept: bool,
         digits: u32,
     ) -> Result<Self, Error> {
+        oscillator.single()?;
         let mut problem = with_small(oscillator.problem());
         let given = linked(&problem, oscillator.given().clone());
         check_parameters(&problem, &given)?;

@@ -57,6 +57,7 @@ fn sign(branch: Branch) -> &'static str {
 
 impl<'a> Subject<'a> {
     pub fn new(oscillator: &'a Oscillator, question: &'a Stability) -> Result<Self, Error> {
+        oscillator.single()?;
         let values = oscillator.form_values(&["k", PERIODS])?;
         let problem = oscillator.problem();
         let card = |name: &str| problem.parameters.iter().find(|card| card.name == name);

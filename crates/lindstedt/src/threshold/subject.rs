@@ -32,6 +32,7 @@ pub(super) type Changes<'a> = [(&'a Range, &'a Exact)];
 
 impl<'a> Subject<'a> {
     pub fn new(oscillator: &'a Oscillator, work: &'a Work) -> Result<Self, Error> {
+        oscillator.single()?;
         let values = oscillator.form_values(&[])?;
         let problem = oscillator.problem();
         let found = MelnikovProblem::new(problem, &values);

@@ -111,7 +111,8 @@ fn rate(terms: &[RateTerm], style: Style) -> String {
     if line.is_empty() { "0".to_owned() } else { shortened(line, style) }
 }
 
-fn shortened(line: String, style: Style) -> String {
+/// A formula, or how long it is.
+pub(super) fn shortened(line: String, style: Style) -> String {
     let count = line.len();
     match style {
         _ if count <= PRINTED_CHARACTERS => line,

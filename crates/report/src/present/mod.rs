@@ -8,6 +8,7 @@ mod estimate;
 mod evaluate;
 mod motion;
 mod prove;
+mod resonance;
 mod stability;
 mod sweep;
 mod threshold;
@@ -64,8 +65,7 @@ fn both(print: impl Fn(Style) -> String) -> Formula {
 
 /// The equation of a problem.
 fn equation(problem: &Problem) -> Formula {
-    let side = |style| format!("{} = 0", problem.equation.print(&problem.small, style));
-    Formula::new(side(print::Style::Text), side(print::Style::Latex))
+    Formula::new(problem.print(print::Style::Text), problem.print(print::Style::Latex))
 }
 
 /// A condition in words.

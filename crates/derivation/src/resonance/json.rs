@@ -1,0 +1,114 @@
+//! The plain form of a slow flow.
+
+use super::polar::{Polar, PolarTerm};
+use super::{SlowFlow, Terms};
+use lindstedt_equation::Condition;
+use lindstedt_number::Object;
+use lindstedt_phase::amplitudes::AmplitudeTerm;
+use rug::Rational;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+/// A monomial: the powers of its factors by name, and its coefficient.
+#[derive(Serialize)]
+struct Monomial<'a> {
+    powers: Object<&'a str, i32>,
+    re: String,
+    im: String,
+}
+
+/// A term of a rate: coefficient * symbols * a^power * function(harmonic * gamma).
+#[derive(Serialize)]
+struct Wave<'a> {
+    power: u32,
+    harmonic: u32,
+    function: Option<&'static str>,
+    symbols: Object<&'a str, i32>,
+    coefficient: String,
+}
+
+#[derive(Serialize)]
+struct Nearest<'a> {
+    order: usize,
+    unknown: &'a str,
+    harmonic: &'a [i32],
+    size: String,
+}
+
+#[derive(Serialize)]
+struct Residual {
+    checked_orders: Option<usize>,
+    zero: Option<bool>,
+}
+
+fn powers<'a>(names: &'a [String], exponents: &[i32]) -> Object<&'a str, i32> {
+    let all = names.iter().map(String::as_str).zip(exponents.iter().copied());
+    Object(all.filter(|(_, n)| *n != 0).collect())
+}
+
+fn monomials<'a>(names: &'a [String], terms: &Terms) -> Vec<Monomial<'a>> {
+    let one = |t: &AmplitudeTerm| Monomial {
+        powers: powers(names, &t.exponents),
+        re: t.re.to_string(),
+        im: t.im.to_string(),
+    };
+    terms.iter().map(one).collect()
+}
+
+fn waves<'a>(symbols: &'a [String], orders: &[Vec<PolarTerm>]) -> Vec<Vec<Wave<'a>>> {
+    let one = |t: &PolarTerm| Wave {
+        power: t.power,
+        harmonic: t.harmonic,
+        function: (t.harmonic > 0).then_some(if t.sine { "sin" } else { "cos" }),
+        symbols: powers(symbols, &t.symbols),
+        coefficient: t.coefficient.to_string(),
+    };
+    orders.iter().map(|terms| terms.iter().map(one).collect()).collect()
+}
+
+impl Serialize for SlowFlow {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (system, names) = (&self.system, self.factors());
+        let texts = |list: &[Rational]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
+        let lists = |orders: &[Vec<Terms>]| -> Vec<Vec<Vec<Monomial<'_>>>> {
+            let unknown = |list: &Vec<Terms>| list.iter().map(|t| monomials(&names, t)).collect();
+            orders.iter().map(unknown).collect()
+        };
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("parameter", &*self.problem.small)?;
+        map.serialize_entry("normalisation", &Condition::FreeAmplitude)?;
+        map.serialize_entry("unknowns", &self.coordinates())?;
+        map.serialize_entry("frequencies", &texts(&system.frequencies))?;
+        let shapes = system.shapes.as_ref();
+        let shapes = shapes.map(|rows| rows.iter().map(|row| texts(row)).collect::<Vec<_>>());
+        map.serialize_entry("shapes", &shapes)?;
+        map.serialize_entry("force", &system.force.to_string())?;
+        let detuning: Vec<_> = self.detuning.iter().map(|t| monomials(&names, t)).collect();
+        map.serialize_entry("detuning", &detuning)?;
+        let beside = system.beside.as_ref().map(|b| (b.symbol.as_str(), b.rate.to_string()));
+        map.serialize_entry("beside", &beside.map(|pair| Object(vec![pair])))?;
+        map.serialize_entry("symbols", &system.symbols)?;
+        map.serialize_entry("flow", &lists(&self.flow))?;
+        map.serialize_entry("solution", &lists(&self.solution))?;
+        if let Some(Polar { slow, amplitude, phase }) = self.polar() {
+            map.serialize_entry("slow_phase", &slow)?;
+            let [amplitude, phase] = [amplitude, phase].map(|list| waves(&system.symbols, &list));
+            let rates = vec![("amplitude_rate", amplitude), ("phase_rate", phase)];
+            map.serialize_entry("polar", &Object(rates))?;
+        }
+        let unknowns = self.coordinates();
+        let near = self.nearest.iter().map(|near| Nearest {
+            order: near.order,
+            unknown: &unknowns[near.unknown],
+            harmonic: &near.harmonic,
+            size: near.size.to_string(),
+        });
+        let list: Vec<_> = near.collect();
+        map.serialize_entry("nearest", &list)?;
+        let checked_orders = self.checked_orders;
+        let residual = Residual { checked_orders, zero: checked_orders.map(|_| true) };
+        map.serialize_entry("residual", &residual)?;
+        map.serialize_entry("method", &Object(vec![("name", "averaging at resonance")]))?;
+        map.end()
+    }
+}

@@ -1,0 +1,245 @@
+//! A truncated slow flow and the equations it belongs to, as systems of first order to integrate.
+//!
+//! At one value of the small parameter, z_j = u_j + i v_j: u_j', v_j' from z_j' = i nu_j z_j + sum eps^n f_{j,n},
+//! and x_j by its rate D x_j along that flow, D as in [`lindstedt_expand::resonance`].
+
+use super::{SlowFlow, Terms};
+use lindstedt_equation::{Expression, Function, Unknown};
+use rug::{Rational, ops::Pow};
+use std::collections::BTreeMap;
+
+/// Polynomials in z_1, zbar_1, ..., E, or in u_1, v_1, ..., E: complex coefficients by exponents.
+type Polynomial = BTreeMap<Vec<i32>, [Rational; 2]>;
+
+/// y' = rates(y, t), y(0) = start.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// The names of the states.
+    pub names: Vec<String>,
+    /// Their rates in these names and t.
+    pub rates: Vec<Expression>,
+    /// Their values at t = 0.
+    pub start: Vec<Rational>,
+}
+
+/// Values of the symbols and of the small parameter.
+struct At<'a> {
+    flow: &'a SlowFlow,
+    small: &'a Rational,
+    symbols: Vec<Rational>,
+}
+
+fn add(sum: &mut Polynomial, key: Vec<i32>, [re, im]: [Rational; 2]) {
+    let entry = sum.entry(key).or_default();
+    entry[0] += re;
+    entry[1] += im;
+}
+
+fn times([a, b]: &[Rational; 2], [c, d]: &[Rational; 2]) -> [Rational; 2] {
+    [Rational::from(a * c) - Rational::from(b * d), Rational::from(a * d) + Rational::from(b * c)]
+}
+
+fn product(f: &Polynomial, g: &Polynomial) -> Polynomial {
+    let mut sum = Polynomial::new();
+    for (v, a) in f {
+        for (w, b) in g {
+            add(&mut sum, v.iter().zip(w).map(|(v, w)| v + w).collect(), times(a, b));
+        }
+    }
+    sum
+}
+
+impl At<'_> {
+    /// sum eps^n of a list of orders.
+    fn sum(&self, orders: &[Terms], first: u32) -> Polynomial {
+        let phases = 2 * self.flow.unknowns() + 1;
+        let mut sum = Polynomial::new();
+        for (n, term) in
+            (first..).zip(orders).flat_map(|(n, terms)| terms.iter().map(move |t| (n, t)))
+        {
+            let (phase, exponents) = term.exponents.split_at(phases);
+            let mut size = Rational::from(self.small.pow(n));
+            for (value, n) in self.symbols.iter().zip(exponents) {
+                size *= Rational::from(value.pow(*n));
+            }
+            let parts = [&term.re, &term.im].map(|c| Rational::from(c * &size));
+            add(&mut sum, phase.to_vec(), parts);
+        }
+        sum
+    }
+
+    /// eta'.
+    fn force_rate(&self) -> Rational {
+        let detuning = self.sum(&self.flow.detuning, 1);
+        detuning.into_values().map(|[re, _]| re).sum::<Rational>() + &self.flow.system.force
+    }
+
+    /// D x, whose real part is the rate.
+    fn rate(&self, x: &Polynomial, flows: &[Polynomial]) -> Polynomial {
+        let last = 2 * flows.len();
+        let turn = self.force_rate();
+        let mut sum = Polynomial::new();
+        for (key, c) in x {
+            let m = Rational::from(key[last]) * &turn;
+            add(&mut sum, key.clone(), times(c, &[Rational::new(), m]));
+        }
+        for (j, flow) in flows.iter().enumerate() {
+            // d/dz_j, twice its real part.
+            let slope = x.iter().filter(|(key, _)| key[2 * j] != 0).map(|(key, c)| {
+                let mut lower = key.clone();
+                lower[2 * j] -= 1;
+                (lower, c.each_ref().map(|c| Rational::from(c * (2 * key[2 * j]))))
+            });
+            for (key, c) in product(&slope.collect(), flow) {
+                add(&mut sum, key, c);
+            }
+        }
+        sum
+    }
+}
+
+/// The polynomial in u and v.
+fn cartesian(f: &Polynomial) -> Polynomial {
+    let mut sum = Polynomial::new();
+    for (key, c) in f {
+        let last = key.len() - 1;
+        let mut constant = vec![0; key.len()];
+        constant[last] = key[last];
+        let mut part = Polynomial::from([(constant, c.clone())]);
+        for (i, n) in key[..last].iter().enumerate() {
+            let unit = |i: usize| (0..key.len()).map(|k| i32::from(k == i)).collect::<Vec<_>>();
+            let sign = Rational::from(if i % 2 == 0 { 1 } else { -1 });
+            let (even, odd) = (i - i % 2, i - i % 2 + 1);
+            let factor = Polynomial::from([
+                (unit(even), [Rational::from(1), Rational::new()]),
+                (unit(odd), [Rational::new(), sign]),
+            ]);
+            part = (0..*n).fold(part, |part, _| product(&part, &factor));
+        }
+        part.into_iter().for_each(|(key, c)| add(&mut sum, key, c));
+    }
+    sum
+}
+
+/// The real (0) or imaginary (1) part as an expression, with E = e^{i eta}.
+fn tree(f: &Polynomial, part: usize, names: &[String], eta: &Expression) -> Expression {
+    let mut sum = Vec::new();
+    for (key, [re, im]) in f {
+        let (powers, m) = (&key[..key.len() - 1], key[key.len() - 1]);
+        let angle = || Expression::integer(m.into()) * eta.clone();
+        // (re + i im)(cos + i sin).
+        let [cos, sin] =
+            if part == 0 { [re.clone(), -im.clone()] } else { [im.clone(), re.clone()] };
+        for (c, function) in [(cos, Function::Cos), (sin, Function::Sin)] {
+            if c.is_zero() || m == 0 && function == Function::Sin {
+                continue;
+            }
+            let mut factors = vec![Expression::Number(c)];
+            let powers = names.iter().zip(powers).filter(|(_, n)| **n != 0);
+            factors.extend(powers.map(|(name, n)| Expression::parameter(name).pow(i64::from(*n))));
+            if m != 0 {
+                factors.push(angle().apply(function));
+            }
+            sum.push(Expression::Product(factors).canonical());
+        }
+    }
+    Expression::Sum(sum).canonical()
+}
+
+impl SlowFlow {
+    /// The truncated slow flow from z_j = amplitude/2 as a system in u_1, v_1, ..., x_1, ..., and the equations
+    /// themselves from the same x_j(0) and x_j'(0) as one in x_1, w_1 = x_1', ...; of the modes where there are
+    /// shapes. Nothing where a symbol has no value.
+    #[must_use]
+    pub fn motions(
+        &self,
+        small: &Rational,
+        values: &dyn Fn(&str) -> Option<Rational>,
+        amplitude: &Rational,
+    ) -> Option<[Motion; 2]> {
+        let beside = self.system.beside.as_ref();
+        let symbol = |name: &String| match beside.filter(|beside| beside.symbol == *name) {
+            Some(beside) => Some(Rational::from(&beside.rate - &self.system.force) / small),
+            None => values(name),
+        };
+        let symbols: Vec<_> = self.system.symbols.iter().map(symbol).collect::<Option<_>>()?;
+        let at = At { flow: self, small, symbols };
+        let unknowns = self.unknowns();
+        let mut names: Vec<String> =
+            (1..=unknowns).flat_map(|j| [format!("u_{j}"), format!("v_{j}")]).collect();
+        let flows: Vec<_> = self.flow.iter().map(|orders| at.sum(orders, 0)).collect();
+        let eta = Expression::Number(at.force_rate()) * Expression::Time;
+        let mut rates = Vec::new();
+        for flow in flows.iter().map(cartesian) {
+            rates.extend([0, 1].map(|part| tree(&flow, part, &names, &eta)));
+        }
+        let half = Rational::from(amplitude / 2);
+        let mut start: Vec<_> = (0..2 * unknowns)
+            .map(|i| if i % 2 == 0 { half.clone() } else { Rational::new() })
+            .collect();
+        // z = zbar and E = 1.
+        let at_start = |f: &Polynomial| -> Rational {
+            let size = |key: &Vec<i32>| key[..2 * unknowns].iter().sum::<i32>();
+            f.iter().map(|(key, [re, _])| Rational::from((&half).pow(size(key))) * re).sum()
+        };
+        let mut velocities = Vec::new();
+        for (j, orders) in self.solution.iter().enumerate() {
+            let x = at.sum(orders, 0);
+            let rate = at.rate(&x, &flows);
+            rates.push(tree(&cartesian(&rate), 0, &names[..2 * unknowns], &eta));
+            start.push(at_start(&x));
+            velocities.push(at_start(&rate));
+            names.push(format!("x_{}", j + 1));
+        }
+        let positions = start[2 * unknowns..].to_vec();
+        let equations = self.in_time(&at, values)?;
+        let names_of = |j: usize| [format!("x_{}", j + 1), format!("w_{}", j + 1)];
+        let full = Motion {
+            names: (0..unknowns).flat_map(names_of).collect(),
+            rates: equations,
+            start: positions.into_iter().zip(velocities).flat_map(|(x, v)| [x, v]).collect(),
+        };
+        Some([Motion { names, rates, start }, full])
+    }
+
+    /// x_j' = w_j, w_j' = ... from the equations, with numbers for all names.
+    fn in_time(
+        &self,
+        at: &At<'_>,
+        values: &dyn Fn(&str) -> Option<Rational>,
+    ) -> Option<Vec<Expression>> {
+        // One unknown: as it was written, with its own force.
+        let single = self.unknowns() == 1;
+        let written = [self.problem.equation.clone()];
+        let equations = if single { &written[..] } else { &self.system.equations };
+        let pace = match self.system.force.is_zero() {
+            true => Rational::from(1),
+            false => at.force_rate() / &self.system.force,
+        };
+        let change = |e: &Expression| match e {
+            Expression::Small => Some(Expression::Number(at.small.clone())),
+            Expression::Parameter(name) => values(name).map(Expression::Number),
+            Expression::Unknown(Unknown { index, derivative, delay: None }) => {
+                let letter = if *derivative == 0 { "x" } else { "w" };
+                Some(Expression::parameter(&format!("{letter}_{}", index + 1)))
+            }
+            Expression::Time if !single => {
+                Some(Expression::Number(pace.clone()) * Expression::Time)
+            }
+            _ => None,
+        };
+        let mut rates = Vec::new();
+        for (j, equation) in equations.iter().enumerate() {
+            let acceleration = Expression::unknown(j, 2);
+            let rest: Vec<_> =
+                equation.terms().iter().filter(|term| **term != acceleration).cloned().collect();
+            let right = (-Expression::Sum(rest)).map(&change).canonical();
+            let unset = |name: &String| !name.starts_with("x_") && !name.starts_with("w_");
+            if right.parameters().iter().any(unset) {
+                return None;
+            }
+            rates.extend([Expression::parameter(&format!("w_{}", j + 1)), right]);
+        }
+        Some(rates)
+    }
+}

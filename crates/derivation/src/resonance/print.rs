@@ -1,0 +1,140 @@
+//! Slow flows as text and as LaTeX: `-1/4*i*F*E + (1/2*i*s - mu)*z + 3/2*i*al*z^2*zbar`.
+
+use super::{PolarTerm, SlowFlow};
+use lindstedt_coeff::print::{Style, Term, latex_name, parenthesize, power, print_sum};
+use lindstedt_phase::amplitudes::AmplitudeTerm;
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// A name of a factor or an unknown: in LaTeX z_1, \bar z_1, \mu.
+#[must_use]
+pub fn print_name(name: &str, style: Style) -> String {
+    match (style, name.strip_prefix("zbar")) {
+        (Style::Text, _) => name.to_owned(),
+        (Style::Latex, Some(index)) => format!(r"\bar z{index}"),
+        (Style::Latex, None) => latex_name(name),
+    }
+}
+
+/// Powers of named factors.
+fn factors(names: &[String], exponents: &[i32], style: Style) -> Vec<String> {
+    let all = names.iter().zip(exponents).filter(|(_, n)| **n != 0);
+    all.map(|(factor, n)| power(&print_name(factor, style), i64::from(*n), style)).collect()
+}
+
+/// n phase.
+#[must_use]
+pub fn print_turns(n: u32, phase: &str, style: Style) -> String {
+    match (n, style) {
+        (1, Style::Text) => phase.to_owned(),
+        (1, Style::Latex) => latex_name(phase),
+        (n, Style::Text) => format!("{n}*{phase}"),
+        (n, Style::Latex) => format!("{n}{}", latex_name(phase)),
+    }
+}
+
+impl SlowFlow {
+    /// The name of the small parameter.
+    fn small(&self, style: Style) -> String {
+        print_name(&self.problem.small, style)
+    }
+
+    /// A polynomial in the amplitudes, its terms collected by amplitudes and phase.
+    #[must_use]
+    pub fn print(&self, terms: &[AmplitudeTerm], style: Style) -> String {
+        let names = self.factors();
+        let phases = 2 * self.unknowns() + 1;
+        let mut collected: BTreeMap<(i32, Vec<i32>), Vec<Term>> = BTreeMap::new();
+        for term in terms {
+            let (phase, symbols) = term.exponents.split_at(phases);
+            let degree = phase[..phases - 1].iter().sum();
+            // Words that begin with z come first within a degree.
+            let key = (degree, phase.iter().map(|e| -e).collect());
+            let symbols = factors(&names[phases..], symbols, style);
+            let list = collected.entry(key).or_default();
+            for (coefficient, i) in [(&term.re, None), (&term.im, Some("i".to_owned()))] {
+                if !coefficient.is_zero() {
+                    let factors = i.into_iter().chain(symbols.clone()).collect();
+                    list.push(Term { coefficient: coefficient.clone(), factors });
+                }
+            }
+        }
+        let whole = |line| Term { coefficient: Rational::from(1), factors: vec![line] };
+        let sum = collected.into_iter().map(|((_, phase), list)| {
+            let phase: Vec<i32> = phase.iter().map(|e| -e).collect();
+            let phase = factors(&names, &phase, style);
+            match <[Term; 1]>::try_from(list) {
+                Ok([single]) => single.times(phase),
+                Err(list) if phase.is_empty() => whole(print_sum(&list, style)),
+                Err(list) => whole(parenthesize(&print_sum(&list, style), style)).times(phase),
+            }
+        });
+        print_sum(&sum.collect::<Vec<_>>(), style)
+    }
+
+    /// eta' = Omega + eps sigma_1 + ...
+    #[must_use]
+    pub fn print_force(&self, style: Style) -> String {
+        let count = 2 * self.unknowns() + 1;
+        let names = &self.factors()[count..];
+        let mut sum = vec![Term { coefficient: self.system.force.clone(), factors: Vec::new() }];
+        for (n, sigma) in self.detuning.iter().enumerate() {
+            for term in sigma {
+                let symbols = factors(names, &term.exponents[count..], style);
+                let small = power(&self.small(style), n as i64 + 1, style);
+                let term = Term { coefficient: term.re.clone(), factors: vec![small] };
+                sum.push(term.times(symbols));
+            }
+        }
+        print_sum(&sum, style)
+    }
+
+    /// The unknowns in terms of the modes; empty where they are the same.
+    #[must_use]
+    pub fn print_shapes(&self, style: Style) -> Vec<String> {
+        let modes = self.coordinates();
+        let row = |(i, row): (usize, &Vec<Rational>)| {
+            let terms = row.iter().zip(&modes).filter(|(q, _)| !q.is_zero());
+            let term = |(q, mode): (&Rational, &String)| Term {
+                coefficient: q.clone(),
+                factors: vec![print_name(mode, style)],
+            };
+            let sum = print_sum(&terms.map(term).collect::<Vec<_>>(), style);
+            format!("{} = {sum}", print_name(&self.problem.unknown(i), style))
+        };
+        self.system.shapes.iter().flatten().enumerate().map(row).collect()
+    }
+
+    /// sum eps^n (...) of a rate in polar form, from n = 1, with `leading` before it.
+    #[must_use]
+    pub fn print_rate(
+        &self,
+        leading: Option<Rational>,
+        orders: &[Vec<PolarTerm>],
+        style: Style,
+    ) -> String {
+        let first = leading.map(|coefficient| Term { coefficient, factors: vec!["a".to_owned()] });
+        let mut sum: Vec<Term> = first.into_iter().collect();
+        for (n, terms) in orders.iter().enumerate().filter(|(_, terms)| !terms.is_empty()) {
+            let terms: Vec<Term> = terms.iter().map(|term| self.wave(term, style)).collect();
+            let line = parenthesize(&print_sum(&terms, style), style);
+            let factor = power(&self.small(style), n as i64 + 1, style);
+            sum.push(Term { coefficient: Rational::from(1), factors: vec![factor, line] });
+        }
+        print_sum(&sum, style)
+    }
+
+    fn wave(&self, term: &PolarTerm, style: Style) -> Term {
+        let mut all = factors(&self.system.symbols, &term.symbols, style);
+        if term.power > 0 {
+            all.push(power("a", i64::from(term.power), style));
+        }
+        if term.harmonic > 0 {
+            let backslash = if style == Style::Latex { r"\" } else { "" };
+            let function = if term.sine { "sin" } else { "cos" };
+            let angle = print_turns(term.harmonic, "gamma", style);
+            all.push(format!("{backslash}{function}({angle})"));
+        }
+        Term { coefficient: term.coefficient.clone(), factors: all }
+    }
+}

@@ -1,0 +1,164 @@
+//! Slow flows: averaged equations at resonance, in complex amplitudes and, for one unknown, in polar form.
+
+use super::average::shortened;
+use super::{Present, both, equation};
+use crate::Document;
+use lindstedt::unstable::coeff::print::Style;
+use lindstedt::unstable::derivation::resonance::{Polar, Terms, print_name, print_turns};
+use lindstedt::{Answer, Averaged, SlowFlow};
+
+impl Present for Answer<SlowFlow> {
+    fn document(&self) -> Document {
+        let board = Board(&self.value);
+        let problem = &self.value.problem;
+        let title = format!("{}: {}", problem.name, problem.title);
+        let page = Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
+        board.checks(board.polar(board.flow(board.system(page))))
+    }
+}
+
+/// The page of either form.
+impl Present for Answer<Averaged> {
+    fn document(&self) -> Document {
+        match &self.value {
+            Averaged::Polar(value) => self.clone().map(|_| value.clone()).document(),
+            Averaged::Flow(value) => self.clone().map(|_| value.clone()).document(),
+        }
+    }
+}
+
+struct Board<'a>(&'a SlowFlow);
+
+impl Board<'_> {
+    /// z, or z_2 of several unknowns.
+    fn indexed(&self, stem: &str, j: usize) -> String {
+        if self.0.unknowns() == 1 { stem.to_owned() } else { format!("{stem}_{}", j + 1) }
+    }
+
+    /// u_n, or u_{jn} of several unknowns.
+    fn order(&self, stem: &str, j: usize, n: usize, style: Style) -> String {
+        let index = if self.0.unknowns() == 1 { String::new() } else { (j + 1).to_string() };
+        print_name(&format!("{stem}_{index}{n}"), style)
+    }
+
+    fn polynomial(&self, terms: &Terms, style: Style) -> String {
+        shortened(self.0.print(terms, style), style)
+    }
+
+    /// The unknowns, their modes, the force.
+    fn system(&self, mut page: Document) -> Document {
+        let flow = self.0;
+        let amplitude = "Normalisation: z is the complex amplitude of the first harmonic: corrections have none.";
+        page = page.words(amplitude);
+        for i in 0..flow.system.shapes.as_ref().map_or(0, Vec::len) {
+            page = page.formula(both(|style| flow.print_shapes(style).swap_remove(i)));
+        }
+        for (j, coordinate) in flow.coordinates().iter().enumerate() {
+            page = page.formula(both(|style| {
+                let z = ["z", "zbar"].map(|z| print_name(&self.indexed(z, j), style));
+                let x = print_name(coordinate, style);
+                self.series(&format!("{x} = {} + {}", z[0], z[1]), "u", j, style)
+            }));
+        }
+        if flow.system.force > 0 {
+            page = page.formula(both(|style| match style {
+                Style::Text => format!("E = exp(i*eta)   eta' = {}", flow.print_force(style)),
+                Style::Latex => {
+                    format!(r"E = e^{{i\eta}},\quad \dot\eta = {}", flow.print_force(style))
+                }
+            }));
+        }
+        let Some(beside) = &flow.system.beside else { return page };
+        let (rate, at, small) = (&beside.rate, &flow.system.force, &flow.problem.small);
+        let symbol = &beside.symbol;
+        page.words(format!("{symbol} = ({rate} - {at})/{small}: the force is detuned."))
+    }
+
+    /// left + u_1 eps + ...
+    fn series(&self, left: &str, stem: &str, j: usize, style: Style) -> String {
+        let first = self.order(stem, j, 1, style);
+        let small = print_name(&self.0.problem.small, style);
+        match style {
+            Style::Text => format!("{left} + {first}*{small} + ..."),
+            Style::Latex => format!(r"{left} + {first}\,{small} + \dots"),
+        }
+    }
+
+    /// f_n and u_n, order by order.
+    fn flow(&self, mut page: Document) -> Document {
+        let flow = self.0;
+        for j in 0..flow.unknowns() {
+            page = page.formula(both(|style| {
+                let z = print_name(&self.indexed("z", j), style);
+                let left =
+                    if style == Style::Text { format!("{z}'") } else { format!(r"\dot {z}") };
+                let rate = self.polynomial(&flow.flow[j][0], style);
+                self.series(&format!("{left} = {rate}"), "f", j, style)
+            }));
+        }
+        for n in 0..=flow.order {
+            for j in 0..flow.unknowns() {
+                let lists = [("f", &flow.flow[j][n]), ("u", &flow.solution[j][n])];
+                for (stem, terms) in lists.into_iter().skip(usize::from(n == 0)) {
+                    page = page.formula(both(|style| {
+                        let left = self.order(stem, j, n, style);
+                        format!("{left} = {}", self.polynomial(terms, style))
+                    }));
+                }
+            }
+        }
+        page
+    }
+
+    /// a' and a gamma', or a psi', of one unknown.
+    fn polar(&self, page: Document) -> Document {
+        let Some(Polar { slow, amplitude, phase }) = self.0.polar() else { return page };
+        let gamma = |style| {
+            let [t, s] = slow?;
+            let turns = [(t, "eta"), (s, "psi")].map(|(n, phase)| print_turns(n, phase, style));
+            Some(turns.join(" - "))
+        };
+        let ansatz = both(|style| match (style, gamma(style)) {
+            (Style::Text, None) => "z = a/2*exp(i*psi)".to_owned(),
+            (Style::Text, Some(gamma)) => format!("z = a/2*exp(i*psi)   gamma = {gamma}"),
+            (Style::Latex, None) => r"z = \frac{a}{2}\,e^{i\psi}".to_owned(),
+            (Style::Latex, Some(gamma)) => {
+                format!(r"z = \frac{{a}}{{2}}\,e^{{i\psi}},\quad \gamma = {gamma}")
+            }
+        });
+        // In the frame of the force nothing is left at order zero.
+        let (second, nu) = match slow {
+            Some(_) => (["a*gamma'", r"a\,\dot\gamma"], None),
+            None => (["a*psi'", r"a\,\dot\psi"], self.0.system.frequencies.first()),
+        };
+        let rates = [(["a'", r"\dot a"], None, &amplitude), (second, nu, &phase)];
+        let mut page = page.heading("Polar form").formula(ansatz);
+        for (left, nu, orders) in rates {
+            page = page.formula(both(|style| {
+                let rate = self.0.print_rate(nu.cloned(), orders, style);
+                let left = left[usize::from(style == Style::Latex)];
+                format!("{left} = {}", shortened(rate, style))
+            }));
+        }
+        page
+    }
+
+    fn checks(&self, mut page: Document) -> Document {
+        if let Some(near) = self.0.nearest() {
+            let unknown = &self.0.coordinates()[near.unknown];
+            let (size, order) = (&near.size, near.order);
+            let harmonic: Vec<String> = near.harmonic.iter().map(ToString::to_string).collect();
+            let harmonic = harmonic.join(", ");
+            page = page.words(format!(
+                "Nearest divisor: {size} of the square of the frequency of {unknown}, harmonic ({harmonic}), \
+                 order {order}."
+            ));
+        }
+        page.words(match self.0.checked_orders {
+            Some(last) => format!(
+                "Residual: the expansion substituted into the equation vanishes identically at orders 0 to {last}."
+            ),
+            None => "Residual: the orders were not checked.".to_owned(),
+        })
+    }
+}
