@@ -26,6 +26,7 @@ pub use system::{Beside, System};
 
 use crate::averaging::{AveragingSettings, constant};
 use crate::error::DerivationError as Error;
+use crate::limits::unknown_parameter;
 use crate::values::value;
 use crate::work::Progress;
 use lindstedt_algebra::AmplitudeAlgebra;
@@ -132,6 +133,11 @@ pub fn slow_flow(
     settings: &AveragingSettings,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<SlowFlow, Error> {
+    let card = |name: &str| problem.parameters.iter().any(|card| card.name == *name);
+    let known = |name: &String| card(name) || **name == *problem.small;
+    if let Some(name) = settings.parameters.keys().find(|name| !known(name)) {
+        return Err(unknown_parameter(problem, name));
+    }
     let equations: Vec<Expression> = problem.equations().cloned().collect();
     let cards = |name: &str| value(problem, &settings.parameters, name);
     let order: Vec<String> = problem.parameters.iter().map(|card| card.name.to_string()).collect();

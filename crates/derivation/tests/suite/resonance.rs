@@ -251,3 +251,96 @@ fn modes_of_coupled_masses() {
     let expected = by_hand(&["3/8 i z1^2 zbar1", "3/4 i z1 z2 zbar2", "1/8 i s z1"]);
     assert_eq!(named(&found, &found.flow[0][1]), expected);
 }
+
+/// f'(x) of R^4 by differences.
+fn jacobian(f: &dyn Fn([f64; 4]) -> [f64; 4], x: [f64; 4]) -> [[f64; 4]; 4] {
+    let h = 1e-4;
+    let mut rows = [[0.0; 4]; 4];
+    for k in 0..4 {
+        let moved = |sign: f64| {
+            let mut y = x;
+            y[k] += sign * h;
+            f(y)
+        };
+        let [above, below] = [moved(1.0), moved(-1.0)];
+        for i in 0..4 {
+            rows[i][k] = (above[i] - below[i]) / (2.0 * h);
+        }
+    }
+    rows
+}
+
+/// Newton's method, the linear equations by elimination.
+fn newton(f: &dyn Fn([f64; 4]) -> [f64; 4], mut x: [f64; 4]) -> [f64; 4] {
+    for _ in 0..30 {
+        let (mut a, mut b) = (jacobian(f, x), f(x));
+        for k in 0..4 {
+            let size = |i: &usize| a[*i][k].abs();
+            let pivot = (k..4).max_by(|i, j| size(i).total_cmp(&size(j))).unwrap();
+            a.swap(k, pivot);
+            b.swap(k, pivot);
+            for i in (0..4).filter(|i| *i != k) {
+                let factor = a[i][k] / a[k][k];
+                let row = a[k];
+                a[i].iter_mut().zip(row).for_each(|(x, y)| *x -= factor * y);
+                b[i] -= factor * b[k];
+            }
+        }
+        (0..4).for_each(|k| x[k] -= b[k] / a[k][k]);
+    }
+    x
+}
+
+/// Steady states of the forced van der Pol oscillator with a double eigenvalue zero. At first order the point
+/// of Guckenheimer and Holmes, section 2.1: sigma = 1/4, F = 1; at eps = 0.1 the stroboscopic map of the equation
+/// has it at (0.2484755, 1.0186359), integrated with 13 digits by a prototype, and the errors fall by order.
+#[test]
+fn the_bogdanov_takens_point_of_locking() {
+    let equation = "x'' + x - eps*(1 - x^2)*x' = eps*F*cos((1 + eps*sigma)*t)";
+    let found = flow(equation, 5, &[]);
+    let power = |z: [f64; 2], n: i32| {
+        (0..n).fold([1.0, 0.0], |w: [f64; 2], _| {
+            [w[0] * z[0] - w[1] * z[1], w[0] * z[1] + w[1] * z[0]]
+        })
+    };
+    // (sum eps^(n-1) f_n - i sigma w) in the frame of the force.
+    let field = |order: usize, eps: f64, [u, v, sigma, force]: [f64; 4]| {
+        let mut sum = [sigma * v, -sigma * u];
+        for n in 1..=order {
+            for t in &found.flow[0][n] {
+                let [a, b] = [power([u, v], t.exponents[0]), power([u, -v], t.exponents[1])];
+                let w = [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
+                let size = eps.powi(n as i32 - 1)
+                    * force.powi(t.exponents[3])
+                    * sigma.powi(t.exponents[4]);
+                let [re, im] = [t.re.to_f64() * size, t.im.to_f64() * size];
+                sum[0] += re * w[0] - im * w[1];
+                sum[1] += re * w[1] + im * w[0];
+            }
+        }
+        sum
+    };
+    let point = |order: usize, eps: f64| {
+        let conditions = |x: [f64; 4]| {
+            let whole = |y: [f64; 4]| {
+                let [a, b] = field(order, eps, y);
+                [a, b, 0.0, 0.0]
+            };
+            let [[a, b, ..], [c, d, ..], ..] = jacobian(&whole, x);
+            let [re, im] = field(order, eps, x);
+            [re, im, a + d, a * d - b * c]
+        };
+        let [_, _, sigma, force] = newton(&conditions, [0.5, -0.5, 0.25, 1.0]);
+        // The same with -x and -F.
+        [sigma, force.abs()]
+    };
+    assert_eq!(found.system.symbols, ["F", "sigma"]);
+    let [sigma, force] = point(1, 0.0);
+    assert!((sigma - 0.25).abs() < 1e-6 && (force - 1.0).abs() < 1e-6, "{sigma} {force}");
+    let errors = [1.9e-2, 2.7e-4, 1.6e-5, 1.3e-6];
+    for (order, expected) in (1..).zip(errors) {
+        let [sigma, force] = point(order, 0.1);
+        let error = (sigma - 0.248_475_5).hypot(force - 1.018_635_9);
+        assert!((error / expected - 1.0).abs() < 0.1, "{order}: {error:e}");
+    }
+}
