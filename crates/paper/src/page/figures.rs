@@ -66,8 +66,11 @@ fn framed(title: &str, across: Axis, up: Axis) -> Figure {
 fn agreement(region: &Region) -> Drawn {
     let rates = &region.sample.rates;
     let across = Axis::linear("share of true verdicts in percent");
-    let mut figure =
-        framed("Rules against the truth", across, Axis::named("", rates.iter().map(|r| r.rule)));
+    let mut figure = framed(
+        "Rules against the truth",
+        across,
+        Axis::named("rule", rates.iter().map(|r| r.rule)),
+    );
     for (n, rate) in (1u32..).zip(rates) {
         let colour = match rate.rule {
             "G" => colours::GREEN,

@@ -82,3 +82,17 @@ pub(super) fn range(places: impl Iterator<Item = f64>) -> Option<Range<f64>> {
     let margin = 0.04 * (high - low).max(1e-6 * high.abs()).max(1e-9);
     (low <= high && (high - low).is_finite()).then_some(low - margin..high + margin)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stand_at_whole_places() {
+        let axis = Axis::named("rule", ["first", "second rule"]);
+        let words = [0.0, 1.0, 1.5, 2.0, 3.0].map(|place| axis.tick(place, &(0.9..2.1)));
+        assert_eq!(words, ["", "first", "", "second rule", ""]);
+        assert_eq!(axis.widest(&(0.9..2.1)), 11);
+        assert_eq!(Axis::linear("x").widest(&(0.0..10.0)), 2);
+    }
+}
