@@ -1,9 +1,10 @@
 //! K[a, 1/a]: functions of the amplitude a, the constants of an averaged expansion.
 
 use crate::print::{Print, Style, Term, power};
-use crate::sparse::{Accumulator, Monomial, Sparse};
+use crate::sparse::{Monomial, Sparse};
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::Rational;
+use std::collections::BTreeMap;
 
 /// a^exponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -122,11 +123,19 @@ impl<K: RationalAlgebra> Ring for AmplitudePolynomials<K> {
         f.mul(&self.coefficients, g)
     }
     fn sum_of_products(&self, pairs: &[(&Self::Element, &Self::Element)]) -> Self::Element {
-        let mut sum = Accumulator::default();
+        // K sums the products of one power at once.
+        let mut powers: BTreeMap<AmplitudePower, Vec<(&K::Element, &K::Element)>> = BTreeMap::new();
         for (f, g) in pairs {
-            sum.add_product(&self.coefficients, f, g);
+            for (m, x) in f.terms() {
+                for (n, y) in g.terms() {
+                    powers.entry(m.times(n)).or_default().push((x, y));
+                }
+            }
         }
-        sum.finish(&self.coefficients)
+        let k = &self.coefficients;
+        let terms = powers.into_iter().map(|(m, list)| (m, k.sum_of_products(&list)));
+        let nonzero = terms.filter(|(_, c)| !k.is_zero(c)).collect();
+        Sparse::from_increasing(nonzero).unwrap_or_default()
     }
 }
 

@@ -248,25 +248,29 @@ impl Derivation {
         }
     }
 
-    /// The right side f_n of x_n'' + x_n = f_n - W_n x_0'', printed where it has at most `most` terms, and
-    /// their number; empty beyond the orders derived.
-    pub fn print_right_side(&self, n: usize, style: Style, most: usize) -> (String, usize) {
+    /// The right side f_n of x_n'' + x_n = f_n - W_n x_0'' in every style, printed where it has at most `most`
+    /// terms, and their number; empty beyond the orders derived. Nothing where f_n is not formed, as it would
+    /// cost more than all the rest: in the Lobachevsky ring where x_n has more than ten times `most` terms.
+    pub fn print_right_side(
+        &self,
+        n: usize,
+        styles: [Style; 2],
+        most: usize,
+    ) -> Option<([String; 2], usize)> {
         if n > self.order {
-            return (String::new(), 0);
+            return Some(Default::default());
         }
         match &self.solution {
             Solution::Lobachevsky(expansion) => {
                 let algebra = Lobachevsky::new(self.ring.clone());
-                let f = expansion.right_side(&algebra, n);
-                let terms = algebra.terms(&f);
-                (if terms > most { String::new() } else { algebra.print(&f, "tau", style) }, terms)
+                let formed = expansion.solution[n].len() <= 10 * most;
+                formed.then(|| print_few(&algebra, &expansion.right_side(&algebra, n), styles, most))
             }
-            Solution::FrequencyOnly => (String::new(), 0),
+            Solution::FrequencyOnly => Some(Default::default()),
             Solution::Rational(proved) => {
                 let algebra = Trigonometric::new(Rationals);
                 let f = proved.expansion.right_side(&algebra, n);
-                let terms = algebra.terms(&f);
-                (if terms > most { String::new() } else { algebra.print(&f, "tau", style) }, terms)
+                Some(print_few(&algebra, &f, styles, most))
             }
         }
     }
@@ -284,4 +288,16 @@ impl Derivation {
             }
         }
     }
+}
+
+/// A function in every style, where it has at most so many terms, and their number.
+fn print_few<A: PrintPhase + FunctionAlgebra>(
+    algebra: &A,
+    f: &A::Element,
+    styles: [Style; 2],
+    most: usize,
+) -> ([String; 2], usize) {
+    let terms = algebra.terms(f);
+    let print = |style| if terms > most { String::new() } else { algebra.print(f, "tau", style) };
+    (styles.map(print), terms)
 }

@@ -16,7 +16,11 @@
 //! [`crate::expand`] with another policy for the amplitude: `Scheme`.
 
 mod check;
+mod complex;
 mod delayed;
+mod linear;
+#[cfg(test)]
+mod tests;
 
 pub use check::check_averaged;
 
@@ -28,6 +32,7 @@ use delayed::Tower;
 use lindstedt_algebra::{
     Averaged, AveragingAlgebra, FunctionAlgebra, LinearPart, RationalAlgebra, Ring,
 };
+use linear::{Affine, Linear};
 use rug::Rational;
 
 type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
@@ -58,7 +63,8 @@ impl<A: AveragingAlgebra> AveragedExpansion<A> {
 
 /// Derives the averaged expansion up to an order; `observer` as in [`crate::expand`].
 ///
-/// Cost: O(N^2) derivations and products of phase functions, O(N^3) derivations with delays.
+/// Cost: O(N^2) derivations and products of phase functions, O(N^3) derivations with delays. Where the equation is linear,
+/// O(N^2) products of constants (`linear`).
 ///
 /// # Errors
 /// [`ExpandError`] says at which order and why no expansion of this form exists or could be found:
@@ -69,20 +75,39 @@ pub fn average<A: AveragingAlgebra>(
     order: usize,
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<AveragedExpansion<A>, ExpandError> {
-    let mut averaging = Averaging::start(algebra, equation)?;
+    let start = Averaging::start(algebra, equation)?;
+    let Some(affine) = Affine::of(algebra, equation, order) else {
+        return general(start, order, observer);
+    };
+    let mut linear = Linear::start(start, affine).ok_or(ExpandError::NotWeaklyNonlinear)?;
+    let work = run(&mut linear, order, observer)?;
+    let (part, rates, solution) = linear.parts();
+    Ok(finished(part, rates, solution, work))
+}
+
+/// The scheme for any equation.
+fn general<A: AveragingAlgebra>(
+    mut averaging: Averaging<'_, A>,
+    order: usize,
+    observer: &mut dyn FnMut(&OrderWork) -> bool,
+) -> Result<AveragedExpansion<A>, ExpandError> {
     let work = run(&mut averaging, order, observer)?;
-    // An order that was interrupted has provisional values.
+    let Averaging { linear, amplitude_rate, phase_rate, x, .. } = averaging;
+    Ok(finished(linear, [amplitude_rate, phase_rate], x, work))
+}
+
+/// The orders that are finished: an order that was interrupted has provisional values.
+fn finished<A: AveragingAlgebra>(
+    linear: LinearPart<Constant<A>>,
+    [mut amplitude_rate, mut phase_rate]: [Vec<Constant<A>>; 2],
+    mut solution: Vec<A::Element>,
+    work: Vec<OrderWork>,
+) -> AveragedExpansion<A> {
     let finished = work.len() + 1;
-    averaging.x.truncate(finished);
-    averaging.amplitude_rate.truncate(finished);
-    averaging.phase_rate.truncate(finished);
-    Ok(AveragedExpansion {
-        linear: averaging.linear,
-        amplitude_rate: averaging.amplitude_rate,
-        phase_rate: averaging.phase_rate,
-        solution: averaging.x,
-        work,
-    })
+    solution.truncate(finished);
+    amplitude_rate.truncate(finished);
+    phase_rate.truncate(finished);
+    AveragedExpansion { linear, amplitude_rate, phase_rate, solution, work }
 }
 
 struct Averaging<'a, A: AveragingAlgebra> {

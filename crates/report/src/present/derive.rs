@@ -132,19 +132,22 @@ impl Board<'_> {
         }))
     }
 
-    /// x_n'' + x_n = f_n - W_n x_0''.
+    /// x_n'' + x_n = f_n - W_n x_0'', with f_n by its name where it is too long to be formed.
     fn right_side(&self, n: usize) -> Formula {
-        both(|style| {
-            let (right_side, terms) = self.0.print_right_side(n, style, PRINTED_TERMS);
-            let right_side = match terms {
-                0 => String::new(),
-                1..=PRINTED_TERMS => right_side,
-                _ => counted(terms, style),
+        let styles = [Style::Text, Style::Latex];
+        let found = self.0.print_right_side(n, styles, PRINTED_TERMS);
+        let [text, latex] = styles.map(|style| {
+            let right_side = match &found {
+                None => indexed("f", n, style),
+                Some((_, 0)) => String::new(),
+                Some((printed, 1..=PRINTED_TERMS)) => printed[usize::from(style == Style::Latex)].clone(),
+                Some((_, terms)) => counted(*terms, style),
             };
             let (x, w) = (indexed("x", n, style), indexed("W", n, style));
             let times = if style == Style::Text { "*" } else { "\\," };
             format!("{x}'' + {x} = {right_side} - {w}{times}x_0''").replace("=  -", "= -")
-        })
+        });
+        Formula::new(text, latex)
     }
 
     /// The condition that leaves no secular term, and the W_n that it gives.
