@@ -124,7 +124,7 @@ impl<K: RationalAlgebra> Ring for AmplitudePolynomials<K> {
     }
     fn sum_of_products(&self, pairs: &[(&Self::Element, &Self::Element)]) -> Self::Element {
         // K sums the products of one power at once.
-        let mut powers: BTreeMap<AmplitudePower, Vec<(&K::Element, &K::Element)>> = BTreeMap::new();
+        let mut powers: BTreeMap<_, Vec<_>> = BTreeMap::new();
         for (f, g) in pairs {
             for (m, x) in f.terms() {
                 for (n, y) in g.terms() {

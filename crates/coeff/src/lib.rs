@@ -6,7 +6,9 @@ pub mod floats;
 pub mod packed;
 pub mod parameters;
 pub mod polynomial;
+mod power_product;
 pub mod print;
+mod product;
 pub mod quotient;
 pub mod sparse;
 

@@ -261,9 +261,13 @@ impl Ring for ParameterField {
         self.canonical(numerator, denominator)
     }
     /// Products without denominators are reduced once, in their sum.
-    fn sum_of_products(&self, pairs: &[(&ParameterFraction, &ParameterFraction)]) -> ParameterFraction {
+    fn sum_of_products(
+        &self,
+        pairs: &[(&ParameterFraction, &ParameterFraction)],
+    ) -> ParameterFraction {
         let whole = |f: &ParameterFraction| f.denominator.is_empty();
-        let (plain, others): (Vec<_>, Vec<_>) = pairs.iter().partition(|(a, b)| whole(a) && whole(b));
+        let (plain, others): (Vec<_>, Vec<_>) =
+            pairs.iter().partition(|(a, b)| whole(a) && whole(b));
         let plain: Vec<_> = plain.iter().map(|(a, b)| (&a.numerator, &b.numerator)).collect();
         let mut sum = polynomial(self.reduce(self.ring.sum_of_products(&plain)));
         for (a, b) in others {

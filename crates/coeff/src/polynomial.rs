@@ -1,122 +1,13 @@
 //! Q[named constants]: polynomials with rational coefficients and Laurent exponents in the
 //! log-cosine moments mu_m, the sums S_n, ln 2, pi, zeta(k) and formal parameters.
 
+pub use crate::power_product::{PowerProduct, Symbol};
+use crate::product;
 use crate::sparse::{Accumulator, Monomial, Sparse};
 use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
 use rug::Rational;
-use smallvec::SmallVec;
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-
-/// A constant that has a name. Nothing is assumed about its value: identities between constants
-/// (zeta(2) = pi^2/6, the closed forms of mu_m) are theorems applied by name elsewhere.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Symbol {
-    /// A formal parameter, by its position in [`PolynomialRing::parameters`].
-    Parameter(u16),
-    /// S_n, the n-th Taylor coefficient of a formal function, n! [z^n] F(z).
-    Sum(u16),
-    /// mu_m = (1/m!) <(-ln|cos t|)^m>, the log-cosine moments.
-    Moment(u16),
-    /// ln 2.
-    LogTwo,
-    /// pi.
-    Pi,
-    /// zeta(k).
-    Zeta(u16),
-}
-
-impl Symbol {
-    /// The weight that makes the expansions homogeneous: mu_m, zeta(m) and S_m have weight m,
-    /// ln 2 and pi weight 1, parameters weight 0.
-    pub fn weight(self) -> u32 {
-        match self {
-            Self::Parameter(_) => 0,
-            Self::Sum(n) | Self::Moment(n) | Self::Zeta(n) => u32::from(n),
-            Self::LogTwo | Self::Pi => 1,
-        }
-    }
-}
-
-/// A product of powers of symbols: strictly increasing symbols, exponents not zero.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Default)]
-pub struct PowerProduct(SmallVec<[(Symbol, i16); 4]>);
-
-impl PowerProduct {
-    /// symbol^exponent.
-    pub fn power(symbol: Symbol, exponent: i16) -> Self {
-        let mut factors = SmallVec::new();
-        if exponent != 0 {
-            factors.push((symbol, exponent));
-        }
-        Self(factors)
-    }
-
-    /// The product of powers of strictly increasing symbols; powers with exponent zero are left out.
-    pub(crate) fn increasing(factors: impl Iterator<Item = (Symbol, i16)>) -> Self {
-        Self(factors.filter(|(_, exponent)| *exponent != 0).collect())
-    }
-
-    /// The factors, symbols increasing.
-    pub fn factors(&self) -> &[(Symbol, i16)] {
-        &self.0
-    }
-
-    /// The sum of weight times exponent.
-    pub fn weight(&self) -> i64 {
-        self.0.iter().map(|&(s, e)| i64::from(s.weight()) * i64::from(e)).sum()
-    }
-}
-
-impl Ord for PowerProduct {
-    /// By weight, then by the list of factors: a fixed order for printing and comparing.
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.weight().cmp(&other.weight()).then_with(|| self.0.cmp(&other.0))
-    }
-}
-
-impl PartialOrd for PowerProduct {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Monomial for PowerProduct {
-    fn unit() -> Self {
-        Self::default()
-    }
-
-    fn times(&self, other: &Self) -> Self {
-        let (a, b) = (&self.0, &other.0);
-        let mut product = SmallVec::with_capacity(a.len() + b.len());
-        let (mut i, mut j) = (0, 0);
-        while i < a.len() && j < b.len() {
-            match a[i].0.cmp(&b[j].0) {
-                Ordering::Less => {
-                    product.push(a[i]);
-                    i += 1;
-                }
-                Ordering::Greater => {
-                    product.push(b[j]);
-                    j += 1;
-                }
-                Ordering::Equal => {
-                    // Exponents are bounded by the order of the expansion, far below i16.
-                    let exponent = a[i].1.saturating_add(b[j].1);
-                    if exponent != 0 {
-                        product.push((a[i].0, exponent));
-                    }
-                    i += 1;
-                    j += 1;
-                }
-            }
-        }
-        product.extend_from_slice(&a[i..]);
-        product.extend_from_slice(&b[j..]);
-        Self(product)
-    }
-}
 
 /// An element of [`PolynomialRing`].
 pub type Polynomial = Sparse<PowerProduct, Rational>;
@@ -206,9 +97,12 @@ impl Ring for PolynomialRing {
         if let ([(m, x)], [(n, y)]) = (a.terms(), b.terms()) {
             return Sparse::term(&Rationals, m.times(n), Rational::from(x * y));
         }
-        a.mul(&Rationals, b)
+        product::sum_of_products(&[(a, b)]).unwrap_or_else(|| a.mul(&Rationals, b))
     }
     fn sum_of_products(&self, pairs: &[(&Polynomial, &Polynomial)]) -> Polynomial {
+        if let Some(sum) = product::sum_of_products(pairs) {
+            return sum;
+        }
         let mut sum = Accumulator::default();
         for (a, b) in pairs {
             sum.add_product(&Rationals, a, b);
@@ -227,10 +121,9 @@ impl RationalAlgebra for PolynomialRing {
     /// The inverse of a single term; polynomials with more terms are no units.
     fn reciprocal(&self, a: &Polynomial) -> Option<Polynomial> {
         let [(monomial, coefficient)] = a.terms() else { return None };
-        let mut inverse = monomial.clone();
-        for factor in &mut inverse.0 {
-            factor.1 = factor.1.checked_neg()?;
-        }
+        let factors: Option<Vec<_>> =
+            monomial.factors().iter().map(|&(s, e)| Some((s, e.checked_neg()?))).collect();
+        let inverse = PowerProduct::increasing(factors?.into_iter());
         Some(Sparse::term(&Rationals, inverse, Rational::from(coefficient.recip_ref())))
     }
     fn as_rational(&self, a: &Polynomial) -> Option<Rational> {

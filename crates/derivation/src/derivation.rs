@@ -250,7 +250,7 @@ impl Derivation {
 
     /// The right side f_n of x_n'' + x_n = f_n - W_n x_0'' in every style, printed where it has at most `most`
     /// terms, and their number; empty beyond the orders derived. Nothing where f_n is not formed, as it would
-    /// cost more than all the rest: in the Lobachevsky ring where x_n has more than ten times `most` terms.
+    /// cost more than all the rest: in the Lobachevsky ring where x_n has more than twice `most` terms.
     pub fn print_right_side(
         &self,
         n: usize,
@@ -263,8 +263,9 @@ impl Derivation {
         match &self.solution {
             Solution::Lobachevsky(expansion) => {
                 let algebra = Lobachevsky::new(self.ring.clone());
-                let formed = expansion.solution[n].len() <= 10 * most;
-                formed.then(|| print_few(&algebra, &expansion.right_side(&algebra, n), styles, most))
+                let formed = expansion.solution[n].len() <= 2 * most;
+                formed
+                    .then(|| print_few(&algebra, &expansion.right_side(&algebra, n), styles, most))
             }
             Solution::FrequencyOnly => Some(Default::default()),
             Solution::Rational(proved) => {

@@ -148,8 +148,12 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
             Node::Sum(terms) => {
                 let mut sum = algebra.zero();
                 for (q, term) in terms {
-                    let value = self.coefficient(*term, n)?;
-                    algebra.add_assign(&mut sum, &algebra.scale(&value, q));
+                    self.ensure(*term, n)?;
+                    match self.known(*term, n) {
+                        Some(value) if *q == 1 => algebra.add_assign(&mut sum, value),
+                        Some(value) => algebra.add_assign(&mut sum, &algebra.scale(value, q)),
+                        None => {}
+                    }
                 }
                 Ok(sum)
             }

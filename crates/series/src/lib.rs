@@ -76,8 +76,8 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
                 return ring.coefficient_of_square(&pairs, middle);
             }
             let range = n.saturating_sub(b.len().saturating_sub(1))..a.len().min(n + 1);
-            let pairs: Vec<(&E, &E)> =
-                range.filter_map(|k| Some((a.get(k)?, b.get(n - k)?))).collect();
+            let mut pairs: Vec<(&E, &E)> = Vec::with_capacity(range.len());
+            pairs.extend(range.filter_map(|k| Some((a.get(k)?, b.get(n - k)?))));
             ring.sum_of_products(&pairs)
         };
         // Late coefficients cost most: hand them out first.

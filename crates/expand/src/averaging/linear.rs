@@ -15,16 +15,19 @@
 //! general scheme derives the same, slower, and is its judge in the tests.
 
 use super::complex::{Complex, Pair, factor, oscillation};
-use super::{Averaging, Constant, step_back};
+use super::{AveragedExpansion, Averaging, Constant, finished, step_back};
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
-use crate::driver::Scheme;
+use crate::driver::{OrderWork, Scheme};
 use lindstedt_algebra::{
     Averaged, AveragingAlgebra, FunctionAlgebra, LinearPart, RationalAlgebra, Ring,
 };
 use rug::Rational;
 use std::cell::Cell;
 use std::collections::BTreeMap;
+
+/// A complex constant.
+type Number<A> = Pair<Constant<A>>;
 
 /// An unknown: its delay, and whether it is the velocity.
 type Unknown = (Option<usize>, bool);
@@ -134,9 +137,9 @@ pub(super) struct Linear<'a, A: AveragingAlgebra> {
     linear: LinearPart<Constant<A>>,
     equation: Affine<A>,
     /// lambda.
-    root: Vec<Pair<Constant<A>>>,
+    root: Vec<Number<A>>,
     /// e^(-i omega_0 T) and G for every delay.
-    delays: Vec<(Pair<Constant<A>>, Vec<Pair<Constant<A>>>)>,
+    delays: Vec<(Number<A>, Vec<Number<A>>)>,
     /// A, B and u.
     rates: [Vec<Constant<A>>; 2],
     solution: Vec<A::Element>,
@@ -170,26 +173,26 @@ impl<'a, A: AveragingAlgebra> Linear<'a, A> {
         })
     }
 
-    /// The linear part, the rates and the solution.
-    pub(super) fn parts(self) -> (LinearPart<Constant<A>>, [Vec<Constant<A>>; 2], Vec<A::Element>) {
-        (self.linear, self.rates, self.solution)
+    /// The expansion with the orders that are finished.
+    pub(super) fn finish(self, work: Vec<OrderWork>) -> AveragedExpansion<A> {
+        finished(self.linear, self.rates, self.solution, work)
     }
 
     /// sum_k a_k b_{n-k} over a range of k.
     fn convolution(
         &self,
-        a: &[Pair<Constant<A>>],
-        b: &[Pair<Constant<A>>],
+        a: &[Number<A>],
+        b: &[Number<A>],
         range: std::ops::RangeInclusive<usize>,
         n: usize,
-    ) -> Pair<Constant<A>> {
+    ) -> Number<A> {
         let pairs: Vec<_> = range.filter_map(|k| Some((a.get(k)?, b.get(n - k)?))).collect();
         self.products.set(self.products.get() + pairs.len() as u64);
         self.complex.sum_of_products(&pairs)
     }
 
     /// Order n of the factor of a e^(i psi) that an unknown is.
-    fn value(&self, (delay, velocity): Unknown, n: usize) -> Pair<Constant<A>> {
+    fn value(&self, (delay, velocity): Unknown, n: usize) -> Number<A> {
         let one = [self.complex.one()];
         let (turn, late) = match delay {
             Some(delay) => (&self.delays[delay].0, &self.delays[delay].1[..]),
@@ -211,7 +214,7 @@ impl<'a, A: AveragingAlgebra> Linear<'a, A> {
     }
 
     /// G_n from lambda_1, ..., lambda_n as far as they are known.
-    fn late(&self, delay: usize, n: usize) -> Option<Pair<Constant<A>>> {
+    fn late(&self, delay: usize, n: usize) -> Option<Number<A>> {
         let constants = self.complex.0;
         let weighted = |k: usize| {
             let weight = Rational::from(k);
@@ -225,7 +228,7 @@ impl<'a, A: AveragingAlgebra> Linear<'a, A> {
 
     /// Order n of what remains of the equation with lambda_n = p_n = 0: the factor of a e^(i psi), and a function of
     /// eta.
-    fn rest(&self, n: usize) -> Option<(Pair<Constant<A>>, A::Element)> {
+    fn rest(&self, n: usize) -> Option<(Number<A>, A::Element)> {
         let (algebra, zero) = (self.algebra, self.complex.0.zero());
         let mut free = self.convolution(&self.root, &self.root, 1..=n - 1, n);
         let mut forced = self.equation.source.get(n).cloned().unwrap_or_else(|| algebra.zero());

@@ -81,8 +81,7 @@ pub fn average<A: AveragingAlgebra>(
     };
     let mut linear = Linear::start(start, affine).ok_or(ExpandError::NotWeaklyNonlinear)?;
     let work = run(&mut linear, order, observer)?;
-    let (part, rates, solution) = linear.parts();
-    Ok(finished(part, rates, solution, work))
+    Ok(linear.finish(work))
 }
 
 /// The scheme for any equation.

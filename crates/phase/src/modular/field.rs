@@ -160,24 +160,17 @@ impl PrimeField {
     /// sum_i c_i a_i[j] for every j, as long as the longest row.
     pub(super) fn combination(&self, terms: &[(&[u64], u64)]) -> Vec<u64> {
         let longest = terms.iter().map(|(row, _)| row.len()).max().unwrap_or(0);
-        let mut sums = vec![0u128; longest];
-        for (done, rows) in terms.chunks(PASS).enumerate() {
-            let mut common = 0;
-            if let [(a, s), (b, t), (c, u), (d, v)] = rows {
-                common = a.len().min(b.len()).min(c.len()).min(d.len());
-                let [a, b, c, d] = [a, b, c, d].map(|row| &row[..common]);
-                for (j, sum) in sums[..common].iter_mut().enumerate() {
-                    *sum += wide(a[j], *s) + wide(b[j], *t) + wide(c[j], *u) + wide(d[j], *v);
-                }
+        let mut result = Vec::with_capacity(longest);
+        for start in (0..longest).step_by(BLOCK) {
+            let mut block = [0u128; BLOCK];
+            let sums = &mut block[..BLOCK.min(longest - start)];
+            for (done, rows) in terms.chunks(PASS).enumerate() {
+                add_rows(sums, start, rows);
+                self.fold_all(sums, done);
             }
-            for (row, factor) in rows {
-                for (sum, &x) in sums[common..].iter_mut().zip(&row[common..]) {
-                    *sum += wide(x, *factor);
-                }
-            }
-            self.fold_all(&mut sums, done);
+            result.extend(sums.iter().map(|&sum| self.reduce(sum)));
         }
-        sums.iter().map(|&sum| self.reduce(sum)).collect()
+        result
     }
 
     /// After every fifth pass: 20 products are less than 2^127 - p 2^64.
@@ -251,6 +244,27 @@ impl PrimeField {
         (2u64..1000)
             .map(|base| self.power(self.integer(&Integer::from(base)), cofactor))
             .find(|&root| prime_factors.iter().all(|q| self.power(root, n / q) != self.one()))
+    }
+}
+
+/// Adds c_i a_i\[start + j\] to sum j, over as many as there are.
+#[inline(always)]
+fn add_rows(sums: &mut [u128], start: usize, rows: &[(&[u64], u64)]) {
+    let end = start + sums.len();
+    let part = |row| <[u64]>::get(row, start..end.min(row.len())).unwrap_or_default();
+    let mut common = 0;
+    if let [(a, s), (b, t), (c, u), (d, v)] = rows {
+        let [a, b, c, d] = [a, b, c, d].map(|row| part(row));
+        common = a.len().min(b.len()).min(c.len()).min(d.len());
+        let [a, b, c, d] = [a, b, c, d].map(|row| &row[..common]);
+        for (j, sum) in sums[..common].iter_mut().enumerate() {
+            *sum += wide(a[j], *s) + wide(b[j], *t) + wide(c[j], *u) + wide(d[j], *v);
+        }
+    }
+    for (row, factor) in rows {
+        for (sum, &x) in sums.iter_mut().zip(part(row)).skip(common) {
+            *sum += wide(x, *factor);
+        }
     }
 }
 

@@ -215,9 +215,10 @@ impl Modular {
     /// The element with given Fourier coefficients.
     pub fn from_harmonics(&self, harmonics: [Vec<u64>; 2]) -> ModularElement {
         let parts = SYMMETRIES.map(|symmetry| {
-            let list = &harmonics[usize::from(symmetry.sine)];
-            let coefficient = |k| list.get(symmetry.harmonic(k)).copied();
-            self.part(symmetry, (0..self.points).map_while(coefficient).collect())
+            let list = harmonics[usize::from(symmetry.sine)].iter();
+            let own = list.skip(symmetry.harmonic(0)).step_by(2).take(self.points);
+            let length = own.clone().rposition(|&c| c != 0)? + 1;
+            self.part(symmetry, own.take(length).copied().collect())
         });
         ModularElement { parts }
     }
@@ -273,7 +274,11 @@ impl Modular {
             for p in SYMMETRIES {
                 for q in SYMMETRIES {
                     if let (Some(a), Some(b)) = (&f.parts[p.index()], &g.parts[q.index()]) {
-                        factors[p.times(q).index()].push((a.values(), b.values()));
+                        let list = &mut factors[p.times(q).index()];
+                        if list.is_empty() {
+                            list.reserve(pairs.len());
+                        }
+                        list.push((a.values(), b.values()));
                     }
                 }
             }

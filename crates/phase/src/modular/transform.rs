@@ -174,27 +174,23 @@ impl Transform {
         })
     }
 
-    /// y_n = sum_m w^(mn) u_m; `input` is u with u_m at (m mod s) r + m/s, the result has y_n at
-    /// (n mod r) s + n/r.
-    fn fourier(&self, input: &[u64]) -> Vec<u64> {
+    /// y_n = sum_m w^(mn) u_m in place: u_m stands at (m mod s) r + m/s, and then y_n at (n mod r) s + n/r.
+    fn fourier(&self, list: &mut [u64]) {
         let (r, s) = (self.rows, self.columns);
-        let mut turned = vec![0; self.points];
-        let mut scratch = vec![0; 2 * s.max(r) + 2];
-        for (u, out) in input.chunks(r).zip(turned.chunks_mut(r)) {
-            self.row_matrix.apply(&self.field, u, out, &mut scratch);
-        }
-        let mut middle = vec![0; self.points];
-        for (column, (list, twiddles)) in turned.chunks(r).zip(self.twiddles.chunks(r)).enumerate()
-        {
-            for (row, (value, twiddle)) in list.iter().zip(twiddles).enumerate() {
-                middle[row * s + column] = self.field.mul(value, twiddle);
+        let mut room = vec![0; self.points + r + 2 * s.max(r) + 2];
+        let (middle, rest) = room.split_at_mut(self.points);
+        let (row, scratch) = rest.split_at_mut(r);
+        let parts = list.chunks(r).zip(self.twiddles.chunks(r));
+        for (column, (u, twiddles)) in parts.enumerate() {
+            self.row_matrix.apply(&self.field, u, row, scratch);
+            let places = middle[column..].iter_mut().step_by(s);
+            for ((place, value), twiddle) in places.zip(&*row).zip(twiddles) {
+                *place = self.field.mul(value, twiddle);
             }
         }
-        let mut output = vec![0; self.points];
-        for (list, out) in middle.chunks(s).zip(output.chunks_mut(s)) {
-            self.column_matrix.apply(&self.field, list, out, &mut scratch);
+        for (u, out) in middle.chunks(s).zip(list.chunks_mut(s)) {
+            self.column_matrix.apply(&self.field, u, out, scratch);
         }
-        output
     }
 
     /// sum_m a_m cos 2m theta_j, m < Q, for every j.
@@ -206,9 +202,9 @@ impl Transform {
             let value = self.field.two(at(m), self.entry[0][m], at(q - m), self.entry[1][m]);
             u[self.place_in[m] as usize] = value;
         }
-        let v = self.fourier(&u);
+        self.fourier(&mut u);
         let source = |j: usize| if j.is_multiple_of(2) { j / 2 } else { q - 1 - j / 2 };
-        (0..q).map(|j| v[self.place_out[source(j)] as usize]).collect()
+        (0..q).map(|j| u[self.place_out[source(j)] as usize]).collect()
     }
 
     /// The a_m of the values: a_m = (z^-m V_(Q-m) + z^m V_m)/Q with V the transform of v.
@@ -219,7 +215,7 @@ impl Transform {
             let n = if j.is_multiple_of(2) { j / 2 } else { q - 1 - j / 2 };
             v[self.place_in[n] as usize] = value;
         }
-        let v = self.fourier(&v);
+        self.fourier(&mut v);
         let at = |n: usize| v[self.place_out[if n == q { 0 } else { n }] as usize];
         let each =
             (0..q).map(|m| self.field.two(at(q - m), self.exit[0][m], at(m), self.exit[1][m]));

@@ -140,7 +140,9 @@ impl Board<'_> {
             let right_side = match &found {
                 None => indexed("f", n, style),
                 Some((_, 0)) => String::new(),
-                Some((printed, 1..=PRINTED_TERMS)) => printed[usize::from(style == Style::Latex)].clone(),
+                Some((printed, 1..=PRINTED_TERMS)) => {
+                    printed[usize::from(style == Style::Latex)].clone()
+                }
                 Some((_, terms)) => counted(*terms, style),
             };
             let (x, w) = (indexed("x", n, style), indexed("W", n, style));
