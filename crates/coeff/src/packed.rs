@@ -4,6 +4,7 @@
 //! weight and need few bits: 6 for S_1 at order 16, 2 for S_18. The exponent of S_0 has either sign.
 
 use crate::polynomial::{Polynomial, PowerProduct, Symbol};
+use crate::product;
 use crate::sparse::{Accumulator, Monomial, Sparse};
 use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
 use rug::Rational;
@@ -136,17 +137,21 @@ impl Ring for PackedSums {
         if let ([(m, x)], [(n, y)]) = (a.terms(), b.terms()) {
             return Sparse::term(&Rationals, m.times(n), Rational::from(x * y));
         }
-        a.mul(&Rationals, b)
+        self.sum_of_products(&[(a, b)])
     }
     fn sum_of_products(
         &self,
         pairs: &[(&PackedPolynomial, &PackedPolynomial)],
     ) -> PackedPolynomial {
-        let mut sum = Accumulator::default();
-        for (a, b) in pairs {
-            sum.add_product(&Rationals, a, b);
+        if product::is_short(pairs) {
+            let mut sum = Accumulator::default();
+            pairs.iter().for_each(|(a, b)| sum.add_product(&Rationals, a, b));
+            return sum.finish(&Rationals);
         }
-        sum.finish(&Rationals)
+        let sum = product::in_words(pairs, |_, Packed(word)| *word);
+        let mut terms: Vec<_> = sum.map(|(word, c)| (Packed(word), c)).collect();
+        terms.sort_unstable_by_key(|(m, _)| *m);
+        Sparse::from_increasing(terms).unwrap_or_default()
     }
 }
 
@@ -204,6 +209,15 @@ mod tests {
         let product = ring.unpack(&ring.mul(&a, &b));
         assert_eq!(product, target.mul(&ring.unpack(&a), &ring.unpack(&b)));
         assert_eq!(ring.pack(&product), Some(ring.mul(&a, &b)));
+        // Long enough for the sum over words, with S_0 of either sign and what cancels.
+        let long =
+            element(&[(0, -3), (0, 2), (1, 4), (1, 1), (2, 2), (2, 1), (3, 1), (4, 1), (5, 1)]);
+        let minus = ring.neg(&long);
+        let pairs = [(&long, &long), (&minus, &a), (&long, &a)];
+        let square = ring.unpack(&ring.sum_of_products(&pairs));
+        let mut directly = Accumulator::default();
+        directly.add_product(&Rationals, &ring.unpack(&long), &ring.unpack(&long));
+        assert_eq!(square, directly.finish(&Rationals));
         assert_eq!(ring.pack(&target.symbol(Symbol::Moment(1))), None);
         assert_eq!(ring.pack(&target.power(Symbol::Sum(2), -1)), None);
         assert_eq!(ring.reciprocal(&ring.sum(2).unwrap()), None);

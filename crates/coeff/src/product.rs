@@ -6,14 +6,15 @@
 //! common divisor before the end.
 
 use crate::power_product::{PowerProduct, Symbol};
-use crate::sparse::Sparse;
+use crate::sparse::{Monomial, Sparse};
 use rug::{Integer, Rational};
 use rustc_hash::FxHashMap;
 
 /// Where a product of fewer terms is formed, packing is no gain.
 const FEWEST: usize = 64;
 
-type Polynomial = Sparse<PowerProduct, Rational>;
+type Over<M> = Sparse<M, Rational>;
+type Polynomial = Over<PowerProduct>;
 
 /// The pairs of factors.
 type Pairs<'a> = [(&'a Polynomial, &'a Polynomial)];
@@ -93,42 +94,60 @@ impl Layout {
 
 /// sum a_i b_i; nothing where it is short or the exponents have no room.
 pub(crate) fn sum_of_products(pairs: &Pairs<'_>) -> Option<Polynomial> {
-    let products: usize = pairs.iter().map(|(a, b)| a.terms().len() * b.terms().len()).sum();
-    if products < FEWEST {
+    if is_short(pairs) {
         return None;
     }
     let layout = Layout::new(pairs)?;
-    let denominators: Vec<[Integer; 2]> =
-        pairs.iter().map(|(a, b)| [a, b].map(|f| denominator(f))).collect();
-    let mut common = Integer::from(1);
-    for [a, b] in &denominators {
-        common.lcm_mut(&Integer::from(a * b));
-    }
-    let mut sums: FxHashMap<u128, Integer> = FxHashMap::default();
-    for ((a, b), [_, own]) in pairs.iter().zip(&denominators) {
-        // The right factor over its own denominator, the left one over the rest of the common one.
-        let left = packed(&layout, 0, a, &Integer::from(common.div_exact_ref(own)));
-        let right = packed(&layout, 1, b, own);
-        for (m, x) in &left {
-            for (n, y) in &right {
-                *sums.entry(m + n).or_default() += x * y;
-            }
-        }
-    }
-    let nonzero = sums.into_iter().filter(|(_, c)| !c.is_zero());
-    let over = |(word, c): (u128, Integer)| {
+    let over = |(word, c): (u128, Rational)| {
         let monomial = layout.unpack(word);
-        (monomial.weight(), monomial, Rational::from((c, common.clone())))
+        (monomial.weight(), monomial, c)
     };
-    let mut terms: Vec<_> = nonzero.map(over).collect();
+    let sum = in_words(pairs, |side, monomial| layout.pack(side, monomial));
+    let mut terms: Vec<_> = sum.map(over).collect();
     terms.sort_unstable_by(|(v, m, _), (w, n, _)| {
         v.cmp(w).then_with(|| m.factors().cmp(n.factors()))
     });
     Sparse::from_increasing(terms.into_iter().map(|(_, monomial, c)| (monomial, c)).collect())
 }
 
+/// Whether a sum of products has so few terms that it is formed directly.
+pub(crate) fn is_short<M: Monomial>(pairs: &[(&Over<M>, &Over<M>)]) -> bool {
+    pairs.iter().map(|(a, b)| a.terms().len() * b.terms().len()).sum::<usize>() < FEWEST
+}
+
+/// The terms of sum a_i b_i that do not vanish, in any order; the words of the left (0) and the right (1) factors are
+/// added.
+pub(crate) fn in_words<M: Monomial>(
+    pairs: &[(&Over<M>, &Over<M>)],
+    word: impl Fn(usize, &M) -> u128,
+) -> impl Iterator<Item = (u128, Rational)> {
+    let denominators: Vec<[Integer; 2]> =
+        pairs.iter().map(|(a, b)| [a, b].map(|f| denominator(f))).collect();
+    let mut common = Integer::from(1);
+    for [a, b] in &denominators {
+        common.lcm_mut(&Integer::from(a * b));
+    }
+    let packed = |side: usize, f: &Over<M>, over: &Integer| -> Vec<(u128, Integer)> {
+        let numerator = |c: &Rational| Integer::from(over.div_exact_ref(c.denom())) * c.numer();
+        f.terms().iter().map(|(m, c)| (word(side, m), numerator(c))).collect()
+    };
+    let mut sums: FxHashMap<u128, Integer> = FxHashMap::default();
+    for ((a, b), [_, own]) in pairs.iter().zip(&denominators) {
+        // The right factor over its own denominator, the left one over the rest of the common one.
+        let left = packed(0, a, &Integer::from(common.div_exact_ref(own)));
+        let right = packed(1, b, own);
+        for (m, x) in &left {
+            for (n, y) in &right {
+                *sums.entry(m.wrapping_add(*n)).or_default() += x * y;
+            }
+        }
+    }
+    let nonzero = sums.into_iter().filter(|(_, c)| !c.is_zero());
+    nonzero.map(move |(word, c)| (word, Rational::from((c, common.clone()))))
+}
+
 /// The least common denominator of the coefficients.
-fn denominator(f: &Polynomial) -> Integer {
+fn denominator<M: Monomial>(f: &Over<M>) -> Integer {
     let mut common = Integer::from(1);
     for (_, c) in f.terms() {
         if *c.denom() != 1 {
@@ -136,12 +155,6 @@ fn denominator(f: &Polynomial) -> Integer {
         }
     }
     common
-}
-
-/// Words and numerators over a denominator.
-fn packed(layout: &Layout, side: usize, f: &Polynomial, over: &Integer) -> Vec<(u128, Integer)> {
-    let numerator = |c: &Rational| Integer::from(over.div_exact_ref(c.denom())) * c.numer();
-    f.terms().iter().map(|(m, c)| (layout.pack(side, m), numerator(c))).collect()
 }
 
 #[cfg(test)]
