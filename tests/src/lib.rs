@@ -6,7 +6,8 @@ pub mod mathematics;
 pub mod measure;
 
 use lindstedt::{
-    Derivation, unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
+    Derivation, Quantity, unstable::derivation::Settings, unstable::derivation::derive,
+    unstable::problems,
 };
 
 /// The checked expansion of a built-in problem with its default settings, to an order.
@@ -36,9 +37,8 @@ pub fn with(name: &str, settings: Settings) -> Derivation {
 /// # Panics
 /// When the series or the digits do not exist.
 #[allow(clippy::panic)]
-pub fn decimal(result: &Derivation, series: &str, n: usize, digits: usize) -> String {
-    let Some(named) = result.named(series) else { panic!("no series {series}") };
-    match result.number(named, n, digits) {
+pub fn decimal(result: &Derivation, series: Quantity, n: usize, digits: usize) -> String {
+    match result.number(series, n, digits) {
         Ok(number) => number.decimal,
         Err(error) => panic!("{series} {n}: {error}"),
     }

@@ -15,7 +15,7 @@ use lindstedt::unstable::number::ball::Balls;
 use lindstedt::unstable::number::ball::ring::{BallRing, Enclosure};
 use lindstedt::unstable::phase::{Delay, Torus};
 use lindstedt::{
-    DerivationError as Error, Exact, unstable::derivation::Settings,
+    DerivationError as Error, Exact, Quantity, unstable::derivation::Settings,
     unstable::derivation::derive as derive_problem, unstable::problems,
 };
 use rug::{Float, Rational};
@@ -128,7 +128,7 @@ fn duffing_to_order_20_is_the_fundamental_normalisation() {
     for (n, rate) in result.phase_rate.iter().enumerate().skip(1) {
         let [(power, c)] = rate.terms() else { panic!("one power of a at order {n}") };
         assert_eq!(power.0, 2 * n as i32);
-        assert_eq!(Some(c.to_string()), fixed.exact("frequency", n), "order {n}");
+        assert_eq!(Some(c.to_string()), fixed.exact(Quantity::Frequency, n), "order {n}");
     }
     assert!(shown(&result.amplitude_rate).iter().all(|rate| rate == "0"));
     assert_eq!(shown(&result.phase_rate)[2], "-15/256*a^4");

@@ -7,11 +7,11 @@ use lindstedt::unstable::expand::{
     Binding, ExpandError, Request, check, compile, expand, leading_amplitude,
 };
 use lindstedt::unstable::phase::Trigonometric;
-use lindstedt::{Solution, unstable::derivation::Settings, unstable::problems};
+use lindstedt::{Quantity, Solution, unstable::derivation::Settings, unstable::problems};
 use lindstedt_tests::{expansion, with};
 use rug::Rational;
 
-fn coefficients(result: &lindstedt::Derivation, series: &str) -> Vec<String> {
+fn coefficients(result: &lindstedt::Derivation, series: Quantity) -> Vec<String> {
     (0..=result.order).map(|n| result.exact(series, n).unwrap()).collect()
 }
 
@@ -20,10 +20,10 @@ fn duffing_in_the_initial_amplitude_normalisation() {
     let result = expansion("duffing", 6);
     let expected =
         ["1", "3/8", "-21/256", "81/2048", "-6549/262144", "37737/2097152", "-936183/67108864"];
-    assert_eq!(coefficients(&result, "frequency"), expected);
+    assert_eq!(coefficients(&result, Quantity::Frequency), expected);
     let expected =
         ["1", "3/4", "-3/128", "9/512", "-1779/131072", "5643/524288", "-146661/16777216"];
-    assert_eq!(coefficients(&result, "frequency_squared"), expected);
+    assert_eq!(coefficients(&result, Quantity::FrequencySquared), expected);
 }
 
 #[test]
@@ -31,7 +31,7 @@ fn duffing_in_the_fundamental_amplitude_normalisation() {
     let condition = Some(Condition::FundamentalAmplitude);
     let result = with("duffing", Settings { order: 5, condition, ..Settings::default() });
     let expected = ["1", "3/8", "-15/256", "123/8192", "-921/262144", "579/2097152"];
-    assert_eq!(coefficients(&result, "frequency"), expected);
+    assert_eq!(coefficients(&result, Quantity::Frequency), expected);
     // The corrections have no first harmonic, by definition.
     let Solution::Rational(proved) = &result.solution else { panic!("over Q") };
     for x in &proved.expansion.solution[1..] {
@@ -56,11 +56,11 @@ fn van_der_pol_limit_cycle() {
         "0",
         "28160413/2293235712000",
     ];
-    assert_eq!(coefficients(&result, "frequency"), expected);
-    let amplitude = coefficients(&result, "amplitude");
+    assert_eq!(coefficients(&result, Quantity::Frequency), expected);
+    let amplitude = coefficients(&result, Quantity::Amplitude);
     let expected = ["2", "0", "1/96", "0", "-1033/552960", "0", "1019689/55738368000"];
     assert_eq!(amplitude[..7], expected);
-    let period = coefficients(&result, "period_over_2pi");
+    let period = coefficients(&result, Quantity::Period);
     let expected = ["1", "0", "1/16", "0", "-5/3072", "0", "-431/884736", "0", "557039/5096079360"];
     assert_eq!(period[..9], expected);
 }
@@ -235,7 +235,7 @@ fn an_unlucky_prime_is_no_verdict() {
         let settings = Settings { order: 1, ..Settings::default() };
         let result =
             lindstedt::unstable::derivation::derive(&problem, &settings, &mut |_| true).unwrap();
-        assert_eq!(result.exact("frequency_squared", 1).as_deref(), Some("3/4"));
+        assert_eq!(result.exact(Quantity::FrequencySquared, 1).as_deref(), Some("3/4"));
     }
 }
 
@@ -251,7 +251,7 @@ fn labels_do_not_stand_for_equations() {
     let four = Expression::ACCELERATION + 4 * (x() * x().pow(2).pow(Expression::Small));
     assert!(derive("power-law", four.clone(), lindstedt::Route::EnergyIntegral).is_err());
     let driver = derive("power-law", four, lindstedt::Route::Driver).unwrap();
-    assert_eq!(driver.exact("frequency_squared", 1).as_deref(), Some("4 - 8*ln(2)"));
+    assert_eq!(driver.exact(Quantity::FrequencySquared, 1).as_deref(), Some("4 - 8*ln(2)"));
     // A second formal function has no coefficients of its own.
     let argument = || Expression::Small * x().pow(2).ln();
     let two = Expression::ACCELERATION
@@ -267,6 +267,6 @@ fn labels_do_not_stand_for_equations() {
     assert!(derive("power-law", steep, lindstedt::Route::Driver).is_err());
     // Orders that were not derived are not zero.
     let result = expansion("duffing", 2);
-    assert_eq!(result.exact("frequency", 3), None);
+    assert_eq!(result.exact(Quantity::Frequency, 3), None);
     assert_eq!(result.terms(3), 0);
 }

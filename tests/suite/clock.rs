@@ -31,8 +31,8 @@ fn assert_same(clock: &Derivation, driver: &Derivation) {
     assert_eq!(clock.series.len(), driver.series.len());
     for (a, b) in clock.series.iter().zip(&driver.series) {
         assert_eq!(
-            (a.name, a.half_power, &a.coefficients),
-            (b.name, b.half_power, &b.coefficients)
+            (a.quantity, a.half_power, &a.coefficients),
+            (b.quantity, b.half_power, &b.coefficients)
         );
     }
 }

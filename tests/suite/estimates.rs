@@ -5,7 +5,7 @@
 use lindstedt::unstable::algebra::RationalAlgebra;
 use lindstedt::unstable::series::resummation::{Method, Resummed, Sample, UniformMap, resum};
 use lindstedt::{
-    Error, Evaluate, EvaluationError, Oscillator, Work, unstable::derivation::Settings,
+    Error, Evaluate, EvaluationError, Oscillator, Quantity, Work, unstable::derivation::Settings,
     unstable::derivation::derive, unstable::problems,
 };
 use rug::{Float, Rational};
@@ -164,7 +164,7 @@ fn limit_cycle(order: usize) -> Vec<Rational> {
     let problem = problems::find("van-der-pol").unwrap();
     let settings = Settings { order, ..Settings::default() };
     let result = derive(&problem, &settings, &mut |_| true).unwrap();
-    let series = &result.named("period_over_2pi").unwrap().coefficients;
+    let series = &result.named(Quantity::Period).unwrap().coefficients;
     series.iter().step_by(2).map(|c| result.ring.as_rational(c).unwrap()).collect()
 }
 

@@ -62,13 +62,13 @@ fn orders_of_the_lobachevsky_ring() {
                     // Every order that was announced is there, exact; nothing of the next one.
                     assert_eq!(result.order, orders.len(), "{name} {limit}");
                     for series in &result.series {
-                        let complete = whole.named(series.name).unwrap();
+                        let complete = whole.named(series.quantity).unwrap();
                         assert_eq!(series.coefficients.len(), result.order + 1);
                         assert_eq!(
                             series.coefficients[..],
                             complete.coefficients[..=result.order],
                             "{name} {limit} {}",
-                            series.name
+                            series.quantity
                         );
                     }
                     for n in 0..=result.order {

@@ -5,13 +5,13 @@
 use lindstedt::unstable::coeff::print::Style;
 use lindstedt::unstable::equation::{Condition, Problem};
 use lindstedt::{
-    Derivation, Exact, ProblemFile, Solution, unstable::derivation::Settings,
+    Derivation, Exact, ProblemFile, Quantity, Solution, unstable::derivation::Settings,
     unstable::derivation::derive, unstable::problems,
 };
 
 /// FNV-1a over the coefficients of omega^2, then x_0, x_1, ..., a line each.
 fn digest(result: &Derivation) -> u64 {
-    let exact = |n| result.exact("frequency_squared", n).unwrap() + "\n";
+    let exact = |n| result.exact(Quantity::FrequencySquared, n).unwrap() + "\n";
     let mut text: String = (0..=result.order).map(exact).collect();
     let x: Vec<String> =
         (0..=result.order).map(|n| result.print_solution(n, Style::Text)).collect();

@@ -9,7 +9,9 @@ use lindstedt::unstable::equation::{AmplitudeRole, Condition, Expression, Functi
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt::unstable::phase::lobachevsky_function::means;
 use lindstedt::unstable::series::Series;
-use lindstedt::{DerivationError, Exact, unstable::derivation::Settings, unstable::problems};
+use lindstedt::{
+    DerivationError, Exact, Quantity, unstable::derivation::Settings, unstable::problems,
+};
 use rug::{Float, Rational};
 
 /// omega^power of the power law from T/2pi = (1 + delta)^(-1/2) M(u), M(u) = sum_m mu_m u^m,
@@ -49,7 +51,7 @@ fn check_power_law(order: usize, digits: u32) {
         assert_eq!(series.coefficients.len(), truth.len());
         for (n, ((value, error), truth)) in series.coefficients.iter().zip(&truth).enumerate() {
             let distance = Float::with_val(53, value - truth).abs();
-            assert!(distance <= *error && *error <= allowed, "{} {n}: {distance}", series.name);
+            assert!(distance <= *error && *error <= allowed, "{} {n}: {distance}", series.quantity);
         }
     }
 }
@@ -105,7 +107,7 @@ fn forces_of_any_shape() {
     for (force, expected) in cases {
         for tier in [Tier::Collocation { digits: 18 }, Tier::Doubles] {
             let result = estimate(&perturbed(force.clone()), 3, tier).unwrap();
-            let series = result.named("period_over_2pi").unwrap();
+            let series = result.named(Quantity::Period).unwrap();
             for ((value, error), text) in series.coefficients.iter().zip(expected) {
                 let truth = Float::with_val(80, Float::parse(text).unwrap());
                 let distance = Float::with_val(53, value - truth).abs();
@@ -138,7 +140,7 @@ fn dry_spring() {
         c *= Rational::from((2 * k + 1, 2 * k + 2));
     }
     let two_over_pi = Float::with_val(200, 2) / Float::with_val(200, rug::float::Constant::Pi);
-    let series = result.named("period_over_2pi").unwrap();
+    let series = result.named(Quantity::Period).unwrap();
     for (n, (value, error)) in series.coefficients.iter().enumerate() {
         let truth =
             Float::with_val(200, -&angle.coefficients[n]) * &two_over_pi + u32::from(n == 0);
@@ -151,23 +153,22 @@ fn dry_spring() {
 #[test]
 fn damped_and_renormalised() {
     let cases = [
-        ("van-der-pol", None, "amplitude"),
-        ("duffing", Some(Condition::FundamentalAmplitude), "initial_displacement"),
-        ("duffing", None, "frequency"),
+        ("van-der-pol", None, Quantity::Amplitude),
+        ("duffing", Some(Condition::FundamentalAmplitude), Quantity::InitialDisplacement),
+        ("duffing", None, Quantity::Frequency),
     ];
     for (name, condition, series) in cases {
         let problem = problems::find(name).unwrap();
         let settings = Settings { order: 5, condition, ..Settings::default() };
         let exact =
             lindstedt::unstable::derivation::derive(&problem, &settings, &mut |_| true).unwrap();
-        let named = exact.named(series).unwrap();
         for tier in
             [Tier::Collocation { digits: 20 }, Tier::Doubles, Tier::Fourier { harmonics: 64 }]
         {
             let result = derive(&problem, &settings, tier, &mut |_| true).unwrap();
             for (n, (value, error)) in result.named(series).unwrap().coefficients.iter().enumerate()
             {
-                let truth = exact.ball(named, n, Balls::new(200)).unwrap();
+                let truth = exact.ball(series, n, Balls::new(200)).unwrap();
                 let distance = Float::with_val(53, value - truth.midpoint()).abs();
                 assert!(
                     distance <= *error && *error < 1e-6,
@@ -280,10 +281,10 @@ fn files_in_the_numeric_tiers() {
             lindstedt::unstable::derivation::derive(&problem, &settings, &mut |_| true).unwrap();
         for tier in [Tier::Collocation { digits: 20 }, Tier::Doubles] {
             let found = derive(&problem, &settings, tier, &mut |_| true).unwrap();
-            for name in ["frequency", "period_over_2pi"] {
-                let (series, known) = (found.named(name).unwrap(), exact.named(name).unwrap());
+            for name in [Quantity::Frequency, Quantity::Period] {
+                let series = found.named(name).unwrap();
                 for (n, (value, error)) in series.coefficients.iter().enumerate() {
-                    let ball = exact.ball(known, n, Balls::new(200)).unwrap();
+                    let ball = exact.ball(name, n, Balls::new(200)).unwrap();
                     let distance = Float::with_val(64, value - ball.midpoint()).abs();
                     assert!(distance <= *error, "{text}{tier:?} {name} {n}: {distance} > {error}");
                     assert!(*error < 1e-4, "{tier:?} {name} {n}: {error}");

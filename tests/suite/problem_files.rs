@@ -9,7 +9,7 @@ use lindstedt::unstable::equation::classify::{Algebra, Method, Reason, classify}
 use lindstedt::unstable::equation::{Condition, Problem};
 use lindstedt::unstable::problem_file::write;
 use lindstedt::{
-    Derivation, DerivationError, Error, Oscillator, ProblemFile, Work,
+    Derivation, DerivationError, Error, Oscillator, ProblemFile, Quantity, Work,
     unstable::derivation::Settings, unstable::derivation::derive,
     unstable::derivation::known_values, unstable::problems,
 };
@@ -67,10 +67,8 @@ fn every_example_is_classified_and_the_expandable_ones_expand_to_order_10() {
         // What the file says is what is written and read again.
         let again = ProblemFile::parse(&file.to_text()).unwrap();
         assert_eq!(again.problem, file.problem, "{stem}");
-        assert_eq!(
-            [&again.fixed, &again.swept, &again.asked],
-            [&file.fixed, &file.swept, &file.asked]
-        );
+        assert_eq!([&again.fixed, &again.swept], [&file.fixed, &file.swept]);
+        assert_eq!(again.asked, file.asked);
         assert_eq!((&again.units, &again.follows), (&file.units, &file.follows));
         if parts.takes(Method::LindstedtPoincare) {
             let order = if parts.algebra == Algebra::Lobachevsky { 8 } else { 10 };
@@ -87,7 +85,7 @@ fn every_example_is_classified_and_the_expandable_ones_expand_to_order_10() {
 
 #[test]
 fn published_coefficients() {
-    let list = |result: &Derivation, series: &str, orders: &[usize]| -> Vec<String> {
+    let list = |result: &Derivation, series: Quantity, orders: &[usize]| -> Vec<String> {
         orders.iter().map(|n| result.exact(series, *n).unwrap()).collect()
     };
     // Rayleigh: the derivative of its solution solves van der Pol's equation, so the frequency is
@@ -95,7 +93,7 @@ fn published_coefficients() {
     let rayleigh = expand(&example("rayleigh"), 10);
     let expected =
         ["-1/16", "17/3072", "35/884736", "-678899/5096079360", "28160413/2293235712000"];
-    assert_eq!(list(&rayleigh, "frequency", &[2, 4, 6, 8, 10]), expected);
+    assert_eq!(list(&rayleigh, Quantity::Frequency, &[2, 4, 6, 8, 10]), expected);
     // Helmholtz-Duffing: A. H. Nayfeh and D. T. Mook, Nonlinear Oscillations (1979), (2.3.32):
     // omega = omega_0 [1 + (9 alpha_3 omega_0^2 - 10 alpha_2^2)/(24 omega_0^4) eps^2 a^2].
     let problem = example("helmholtz-duffing");
@@ -107,7 +105,7 @@ fn published_coefficients() {
             settings.parameters.insert(name.into(), lindstedt::Exact::parse(value).unwrap());
         }
         let result = derive(&problem, &settings, &mut |_| true).unwrap();
-        assert_eq!(list(&result, "frequency", &[1, 2]), ["0", expected]);
+        assert_eq!(list(&result, Quantity::Frequency, &[1, 2]), ["0", expected]);
     }
     // Duffing-van der Pol: amplitude 2 of van der Pol in Duffing's 3/8 beta a^2, both averaged in
     // Nayfeh and Mook, sections 2.3 and 3.1.7; with beta = 0 van der Pol's series.
@@ -117,10 +115,10 @@ fn published_coefficients() {
         let mut settings = Settings { order: 2, ..Settings::default() };
         settings.parameters.insert("beta".into(), lindstedt::Exact::parse(beta).unwrap());
         let result = derive(&problem, &settings, &mut |_| true).unwrap();
-        assert_eq!(result.exact("frequency", 1).as_deref(), Some(first));
-        assert_eq!(result.exact("amplitude", 0).as_deref(), Some("2"));
+        assert_eq!(result.exact(Quantity::Frequency, 1).as_deref(), Some(first));
+        assert_eq!(result.exact(Quantity::Amplitude, 0).as_deref(), Some("2"));
         if let Some(second) = second {
-            assert_eq!(result.exact("frequency", 2).as_deref(), Some(second));
+            assert_eq!(result.exact(Quantity::Frequency, 2).as_deref(), Some(second));
         }
     }
 }
@@ -137,7 +135,7 @@ fn high_degrees() {
             rug::Integer::from(1) << degree,
         ));
         let result = result.derive(1, &Work::default()).unwrap().value;
-        assert_eq!(result.exact("frequency", 1), Some(expected.to_string()), "{degree}");
+        assert_eq!(result.exact(Quantity::Frequency, 1), Some(expected.to_string()), "{degree}");
     }
 }
 
@@ -174,7 +172,7 @@ fn files_give_what_the_built_in_problems_give() {
     ] {
         let (file, own) =
             (expand(&example(name), 5), expand(&problems::find(built_in).unwrap(), 5));
-        for series in ["frequency", "frequency_squared", "period_over_2pi"] {
+        for series in [Quantity::Frequency, Quantity::FrequencySquared, Quantity::Period] {
             for n in 0..=5 {
                 assert_eq!(file.exact(series, n), own.exact(series, n), "{name} {series} {n}");
             }
@@ -207,7 +205,7 @@ fn amplitude_and_time_are_scaled_in_the_tree() {
     for n in 0..=4u32 {
         let scaled = rug::Rational::from((1, 4u64.pow(n)));
         let value = |r: &Derivation| -> rug::Rational {
-            r.exact("frequency", n as usize).unwrap().parse().unwrap()
+            r.exact(Quantity::Frequency, n as usize).unwrap().parse().unwrap()
         };
         assert_eq!(value(&half), value(&one) * scaled);
     }
@@ -219,12 +217,12 @@ fn amplitude_and_time_are_scaled_in_the_tree() {
         .unwrap()
         .value;
     assert_eq!(fast.time_scale, rug::Rational::from((3, 2)));
-    assert_eq!(fast.exact("frequency", 0).as_deref(), Some("3/2"));
-    assert_eq!(fast.exact("frequency", 2).as_deref(), Some("-1/24"));
-    assert_eq!(fast.exact("frequency", 4).as_deref(), Some("17/10368"));
-    assert_eq!(fast.exact("frequency_squared", 0).as_deref(), Some("9/4"));
-    assert_eq!(fast.exact("period_over_2pi", 0).as_deref(), Some("2/3"));
-    assert_eq!(fast.exact("amplitude", 0).as_deref(), Some("2"));
+    assert_eq!(fast.exact(Quantity::Frequency, 0).as_deref(), Some("3/2"));
+    assert_eq!(fast.exact(Quantity::Frequency, 2).as_deref(), Some("-1/24"));
+    assert_eq!(fast.exact(Quantity::Frequency, 4).as_deref(), Some("17/10368"));
+    assert_eq!(fast.exact(Quantity::FrequencySquared, 0).as_deref(), Some("9/4"));
+    assert_eq!(fast.exact(Quantity::Period, 0).as_deref(), Some("2/3"));
+    assert_eq!(fast.exact(Quantity::Amplitude, 0).as_deref(), Some("2"));
     // An irrational omega_0 with x' is refused, without x' it is not.
     let irrational = Oscillator::parse("x'' + 2 x = eps (1 - x^2) x'").unwrap();
     let refused = irrational.derive(2, &Work::default());

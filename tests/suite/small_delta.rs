@@ -10,7 +10,9 @@ use lindstedt::unstable::phase::Lobachevsky;
 use lindstedt::unstable::phase::evaluate::PhaseFunctions;
 use lindstedt::unstable::phase::lobachevsky::Word;
 use lindstedt::unstable::phase::lobachevsky_function::{LambdaTable, Point};
-use lindstedt::{Exact, Solution, unstable::derivation::Settings, unstable::derivation::energy};
+use lindstedt::{
+    Exact, Quantity, Solution, unstable::derivation::Settings, unstable::derivation::energy,
+};
 use lindstedt_tests::{decimal, expansion, with};
 use rug::float::Constant;
 use rug::ops::Pow;
@@ -53,7 +55,9 @@ fn power_law_to_order_12_is_the_taylor_series_of_the_closed_form() {
     let result = expansion("power-law", 12);
     assert_eq!(result.checked_orders, Some(12));
     for n in 0..=12 {
-        for (name, expected) in [("period_over_2pi", &period), ("frequency_squared", &squared)] {
+        for (name, expected) in
+            [(Quantity::Period, &period), (Quantity::FrequencySquared, &squared)]
+        {
             let derived = decimal(&result, name, n, 45);
             let derived = Float::with_val(bits, Float::parse(&derived).unwrap());
             let error = Float::with_val(bits, &derived - &expected[n]).abs();
@@ -73,11 +77,14 @@ fn published_values_of_the_power_law() {
         (4, "0.00968729961522442612386201024683", "0.00161535988670617687611737639770"),
         (5, "0.000489473294832618730018131494618", "-0.00115966415468489562344211883505"),
     ] {
-        assert_eq!(decimal(&result, "frequency_squared", n, 30), alpha);
-        assert_eq!(decimal(&result, "period_over_2pi", n, 30), t);
+        assert_eq!(decimal(&result, Quantity::FrequencySquared, n, 30), alpha);
+        assert_eq!(decimal(&result, Quantity::Period, n, 30), t);
     }
-    assert_eq!(result.exact("frequency_squared", 1).as_deref(), Some("1 - 2*ln(2)"));
-    assert_eq!(result.exact("frequency_squared", 2).as_deref(), Some("2*ln(2)^2 - 1/12*pi^2"));
+    assert_eq!(result.exact(Quantity::FrequencySquared, 1).as_deref(), Some("1 - 2*ln(2)"));
+    assert_eq!(
+        result.exact(Quantity::FrequencySquared, 2).as_deref(),
+        Some("2*ln(2)^2 - 1/12*pi^2")
+    );
 }
 
 #[test]
@@ -181,7 +188,7 @@ fn the_driver_agrees_with_the_energy_integral() {
     let sums: Vec<_> = (0..=7).map(|n| ring.symbol(Symbol::Sum(n))).collect();
     let period = energy::period_over_2pi(&ring, &sums, 7).unwrap();
     let pendulum = expansion_of_pendulum();
-    let derived = pendulum.named("period_over_2pi").unwrap();
+    let derived = pendulum.named(Quantity::Period).unwrap();
     assert_eq!(derived.coefficients, period);
 }
 
@@ -216,7 +223,7 @@ fn pendulum_numbers() {
     // Amplitude 1; computed independently (mpmath 1.3.0) for this project's embedding.
     let result = expansion("pendulum", 4);
     let ratio = |n: usize| {
-        let numbers = [n, 0].map(|n| decimal(&result, "frequency_squared", n, 40));
+        let numbers = [n, 0].map(|n| decimal(&result, Quantity::FrequencySquared, n, 40));
         let [a, b] = numbers.map(|text| Float::with_val(200, Float::parse(&text).unwrap()));
         (a / b).to_string_radix(10, Some(18))
     };
@@ -234,7 +241,7 @@ fn pendulum_numbers() {
         (2, 0.141866157792787),
         (3, -0.0865942924118355),
     ] {
-        let t: f64 = decimal(&result, "period_over_2pi", n, 20).parse().unwrap();
+        let t: f64 = decimal(&result, Quantity::Period, n, 20).parse().unwrap();
         assert!((t * std::f64::consts::TAU - expected).abs() < 1e-13);
     }
 }
@@ -259,9 +266,9 @@ fn pendulum_at_other_amplitudes() {
                 .sum()
         };
         let ln2 = std::f64::consts::LN_2;
-        let w: f64 = decimal(&result, "frequency_squared", 1, 20).parse().unwrap();
+        let w: f64 = decimal(&result, Quantity::FrequencySquared, 1, 20).parse().unwrap();
         assert!((w - s(1) * (1.0 - 2.0 * ln2)).abs() < 1e-14, "{value}");
-        let w: f64 = decimal(&result, "frequency_squared", 0, 20).parse().unwrap();
+        let w: f64 = decimal(&result, Quantity::FrequencySquared, 0, 20).parse().unwrap();
         assert!((w - amplitude.sin() / amplitude).abs() < 1e-14);
     }
 }
@@ -274,7 +281,7 @@ fn an_amplitude_of_the_power_law_scales_the_frequency() {
     let scaled = with("power-law", Settings { order: 3, parameters, ..Settings::default() });
     let plain = expansion("power-law", 3);
     let value = |r: &lindstedt::Derivation, n| -> f64 {
-        decimal(r, "frequency_squared", n, 20).parse().unwrap()
+        decimal(r, Quantity::FrequencySquared, n, 20).parse().unwrap()
     };
     let log = 2.0 * 1.5f64.ln();
     let expected = value(&plain, 3)
@@ -282,7 +289,10 @@ fn an_amplitude_of_the_power_law_scales_the_frequency() {
         + log * log / 2.0 * value(&plain, 1)
         + log.powi(3) / 6.0;
     assert!((value(&scaled, 3) - expected).abs() < 1e-14);
-    assert_eq!(scaled.exact("frequency_squared", 1).as_deref(), Some("1 + 2*ln(a) - 2*ln(2)"));
+    assert_eq!(
+        scaled.exact(Quantity::FrequencySquared, 1).as_deref(),
+        Some("1 + 2*ln(a) - 2*ln(2)")
+    );
 }
 
 /// x(tau; delta) of the power law in scaled time, without any expansion in delta of x: energy

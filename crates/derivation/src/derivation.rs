@@ -9,7 +9,7 @@ use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing};
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::description::Description;
-use lindstedt_equation::{Condition, Problem};
+use lindstedt_equation::{Condition, Problem, Quantity};
 use lindstedt_expand::Expansion;
 use lindstedt_multimodular as multimodular;
 use lindstedt_number::ball::{Ball, Balls};
@@ -78,7 +78,7 @@ impl Derivation {
     /// # Errors
     /// As [`Self::number`].
     pub fn with_numbers(mut self, digits: usize) -> Result<Self, DerivationError> {
-        let numbers = self.series.iter().map(|series| self.numbers(series, digits));
+        let numbers = self.series.iter().map(|series| self.numbers(series.quantity, digits));
         self.numbers = numbers.collect::<Result<_, _>>()?;
         Ok(self)
     }
@@ -92,14 +92,14 @@ impl Derivation {
         }
     }
 
-    /// The series of that name.
-    pub fn named(&self, name: &str) -> Option<&NamedSeries> {
-        self.series.iter().find(|series| series.name == name)
+    /// The series of that quantity.
+    pub fn named(&self, quantity: Quantity) -> Option<&NamedSeries> {
+        self.series.iter().find(|series| series.quantity == quantity)
     }
 
     /// Coefficient n of a series as an exact expression.
-    pub fn exact(&self, name: &str, n: usize) -> Option<String> {
-        let series = self.named(name)?;
+    pub fn exact(&self, quantity: Quantity, n: usize) -> Option<String> {
+        let series = self.named(quantity)?;
         series.coefficients.get(n)?;
         Some(self.print_coefficient(series, n, Style::Text))
     }
@@ -108,14 +108,15 @@ impl Derivation {
     ///
     /// ```
     /// use lindstedt_derivation::{Settings, derive};
+    /// use lindstedt_equation::Quantity;
     /// let problem = lindstedt_problems::find("duffing").ok_or("no such problem")?;
     /// let duffing = derive(&problem, &Settings { order: 2, ..Settings::default() }, &mut |_| true)?;
-    /// let first = duffing.ratio("frequency_squared", 1);
+    /// let first = duffing.ratio(Quantity::FrequencySquared, 1);
     /// assert_eq!(first.map(|q| q.to_string()).as_deref(), Some("3/4"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn ratio(&self, name: &str, n: usize) -> Option<Ratio<BigInt>> {
-        let series = self.named(name)?;
+    pub fn ratio(&self, quantity: Quantity, n: usize) -> Option<Ratio<BigInt>> {
+        let series = self.named(quantity)?;
         let product = self.with_prefactor(series, series.coefficients.get(n)?)?;
         self.ring.as_rational(&product).map(|q| to_ratio(&q))
     }
@@ -198,15 +199,27 @@ impl Derivation {
     /// Coefficient n of a series as a number with `digits` digits.
     ///
     /// # Errors
+    /// [`DerivationError::NoValue`] for a coefficient that was not derived;
     /// [`DerivationError::NotEnoughBits`] when the digits cannot be reached.
+    ///
+    /// ```
+    /// use lindstedt_derivation::{Settings, derive};
+    /// use lindstedt_equation::Quantity;
+    /// let problem = lindstedt_problems::find("power-law").ok_or("no such problem")?;
+    /// let law = derive(&problem, &Settings { order: 1, ..Settings::default() }, &mut |_| true)?;
+    /// let number = law.number(Quantity::FrequencySquared, 1, 10)?;
+    /// assert_eq!(number.exact.as_deref(), Some("1 - 2*ln(2)"));
+    /// assert_eq!(number.decimal, "-0.3862943611");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn number(
         &self,
-        series: &NamedSeries,
+        quantity: Quantity,
         n: usize,
         digits: usize,
     ) -> Result<Number, DerivationError> {
-        let exact = self.print_coefficient(series, n, Style::Text);
-        Ok(certified(Some(exact), digits, |balls| self.ball(series, n, balls))?)
+        let exact = self.exact(quantity, n).ok_or(DerivationError::NoValue)?;
+        Ok(certified(Some(exact), digits, |balls| self.ball(quantity, n, balls))?)
     }
 
     /// All coefficients of a series as numbers.
@@ -215,15 +228,16 @@ impl Derivation {
     /// As [`Self::number`].
     pub fn numbers(
         &self,
-        series: &NamedSeries,
+        quantity: Quantity,
         digits: usize,
     ) -> Result<Vec<Number>, DerivationError> {
-        let orders = (0..series.coefficients.len()).into_par_iter();
-        orders.map(|n| self.number(series, n, digits)).collect()
+        let length = self.named(quantity).map_or(0, |series| series.coefficients.len());
+        (0..length).into_par_iter().map(|n| self.number(quantity, n, digits)).collect()
     }
 
     /// Coefficient n of a series as a ball.
-    pub fn ball(&self, series: &NamedSeries, n: usize, balls: Balls) -> Option<Ball> {
+    pub fn ball(&self, quantity: Quantity, n: usize, balls: Balls) -> Option<Ball> {
+        let series = self.named(quantity)?;
         let value = self.constants.evaluate(series.coefficients.get(n)?, balls)?;
         if series.half_power == 0 {
             return Some(value);

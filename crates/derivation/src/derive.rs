@@ -53,9 +53,10 @@ struct Task<'a> {
 /// # Example
 /// ```
 /// use lindstedt_derivation::{Settings, derive};
+/// use lindstedt_equation::Quantity;
 /// let problem = lindstedt_problems::find("duffing").ok_or("no such problem")?;
 /// let result = derive(&problem, &Settings { order: 3, ..Settings::default() }, &mut |_| true)?;
-/// assert_eq!(result.exact("frequency", 2).as_deref(), Some("-21/256"));
+/// assert_eq!(result.exact(Quantity::Frequency, 2).as_deref(), Some("-21/256"));
 /// assert_eq!(result.checked_orders, Some(3));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -27,7 +27,7 @@ struct Method {
 
 impl Serialize for Derivation {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let series = self.series.iter().map(|series| series.name).zip(&self.numbers);
+        let series = self.series.iter().map(|series| series.quantity.name()).zip(&self.numbers);
         let series = Object(series.collect());
         let orders = 0..self.solved();
         let solution: Vec<String> =

@@ -7,20 +7,20 @@ use crate::limits::has_logarithms;
 use lindstedt_algebra::{RationalAlgebra, Rationals, Ring, Stop};
 use lindstedt_coeff::closed_forms::ClosedForms;
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
-use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem, Quantity};
 use lindstedt_expand::{Binding, ExpandError, Period, compile, conservative_period};
 use lindstedt_number::Exact;
 use lindstedt_phase::Trigonometric;
 use lindstedt_series::Series;
 use rayon::prelude::*;
 use rug::Rational;
+use rug::ops::Pow;
 
 /// A power series that belongs to the result: prefactor * sum c_n eps^n.
 #[derive(Clone, Debug)]
 pub struct NamedSeries {
-    /// `frequency_squared`, `frequency`, `period_over_2pi`; `amplitude` (x(0) of a limit cycle),
-    /// `initial_displacement` (x(0) when the first harmonic is fixed).
-    pub name: &'static str,
+    /// What it is the series of: a power of the frequency, or x(0) where the condition leaves it open.
+    pub quantity: Quantity,
     /// A factor kappa^(half_power/2) in front, kappa the linear stiffness; 0 when kappa = 1.
     pub half_power: i32,
     /// The coefficients in the small parameter, exact.
@@ -112,7 +112,8 @@ pub(crate) fn series(
         _ => 0,
     };
     let half_power = |power: i32| if *stiffness == ring.one() { 0 } else { power };
-    let named = |name, list, power: i32| -> Result<NamedSeries, Error> {
+    let named = |quantity: Quantity, list| -> Result<NamedSeries, Error> {
+        let power = quantity.power();
         let log = ring.symbol(Symbol::Parameter(0));
         let log = ring.scale(&log, &Rational::from((rate * power, 2)));
         let mut coefficients = close(list)?;
@@ -120,21 +121,15 @@ pub(crate) fn series(
             let factor = Series::truncated(exponential(ring, &log, order));
             coefficients = Series::truncated(coefficients).mul(ring, &factor, order).coefficients;
         }
-        Ok(NamedSeries { name, half_power: half_power(power), coefficients })
+        Ok(NamedSeries { quantity, half_power: half_power(power), coefficients })
     };
     let mut list = vec![
-        named("frequency_squared", powers.squared, 2)?,
-        named("frequency", powers.first, 1)?,
-        named("period_over_2pi", powers.inverse, -1)?,
+        named(Quantity::FrequencySquared, powers.squared)?,
+        named(Quantity::Frequency, powers.first)?,
+        named(Quantity::Period, powers.inverse)?,
     ];
-    // x(0), where the condition does not fix it.
-    let name = match condition {
-        Condition::InitialAmplitude => None,
-        Condition::FundamentalAmplitude | Condition::FreeAmplitude => Some("initial_displacement"),
-        Condition::LimitCycle => Some("amplitude"),
-    };
-    if let Some(name) = name {
-        list.push(NamedSeries { name, half_power: 0, coefficients: amplitudes });
+    if let Some(quantity) = Quantity::start(condition) {
+        list.push(NamedSeries { quantity, half_power: 0, coefficients: amplitudes });
     }
     Ok(list)
 }
@@ -217,12 +212,7 @@ pub(crate) fn undo_time_scale(series: &mut [NamedSeries], ring: &PolynomialRing,
         return;
     }
     for named in series {
-        let factor = match named.name {
-            "frequency_squared" => Rational::from(w * w),
-            "frequency" => w.clone(),
-            "period_over_2pi" => Rational::from(w.recip_ref()),
-            _ => continue,
-        };
+        let factor = w.clone().pow(named.quantity.power());
         for coefficient in &mut named.coefficients {
             *coefficient = ring.scale(coefficient, &factor);
         }

@@ -11,6 +11,7 @@ mod methods;
 pub mod monomials;
 pub mod print;
 mod problem;
+mod quantity;
 mod roots;
 mod saddle;
 mod smooth;
@@ -22,4 +23,5 @@ pub use expression::{Expression, Function, Unknown};
 pub use problem::{
     AmplitudeRole, Condition, Crossing, Impact, ParameterCard, Problem, Synchronous, Text,
 };
+pub use quantity::{Quantity, UnknownName};
 pub use walk::Operations;

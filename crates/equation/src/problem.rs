@@ -2,9 +2,12 @@
 
 use crate::Expression;
 use crate::print::Style;
+use crate::quantity::UnknownName;
 use crate::symmetry::is_reversible;
 use serde::Serialize;
 use std::borrow::Cow;
+use std::fmt;
+use std::str::FromStr;
 
 /// Text of a data card: a literal of a built-in problem or a string read from a problem file.
 pub type Text = Cow<'static, str>;
@@ -24,7 +27,25 @@ pub enum Condition {
     FreeAmplitude,
 }
 
+impl fmt::Display for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Condition {
+    type Err = UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
+        UnknownName::find("condition", text, &Self::ALL, Self::name)
+    }
+}
+
 impl Condition {
+    /// All of them.
+    pub const ALL: [Self; 4] =
+        [Self::InitialAmplitude, Self::FundamentalAmplitude, Self::LimitCycle, Self::FreeAmplitude];
+
     /// The usual one: the initial amplitude for equations that keep their form when time runs backwards,
     /// a limit cycle for those that do not, a free amplitude with forcing or delay; none where nothing is
     /// small: such an equation is for the time domain.

@@ -5,6 +5,7 @@ use crate::setting::{Form, Setting};
 use crate::{closed, coefficients};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_derivation::{Derivation, DerivationError as Error, Progress, refuse_above};
+use lindstedt_equation::Quantity;
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_series::resummation::{Growth, Sample, UniformMap, growth};
@@ -248,7 +249,7 @@ struct Series {
 
 impl Series {
     fn new(derivation: Derivation) -> Result<Self, Error> {
-        let series = derivation.named("period_over_2pi").ok_or(Error::NoValue)?;
+        let series = derivation.named(Quantity::Period).ok_or(Error::NoValue)?;
         let ring = &derivation.ring;
         let rational = |c| ring.as_rational(c).filter(|_| series.half_power == 0);
         let exact = series.coefficients.iter().map(rational).collect();
@@ -275,14 +276,13 @@ impl Series {
         }
         let (derivation, known) = (self.derivation, self.known);
         Box::new(move |bits| {
-            let series = derivation.named("period_over_2pi")?;
             let one = |k: usize| {
                 let scale = power(&ratio, k * step).recip();
                 let mut work = bits;
                 // Polynomials in constants cancel; a coefficient that is zero is so exactly.
                 loop {
                     let balls = Balls::new(work).with_guard(64);
-                    let ball = derivation.ball(series, k * step, balls)?;
+                    let ball = derivation.ball(Quantity::Period, k * step, balls)?;
                     let ball = balls.mul_rational(&ball, &scale);
                     let zero = ball.is_exact() && ball.midpoint().is_zero();
                     if zero || ball.relative_accuracy_bits() >= i64::from(bits) {
@@ -418,7 +418,7 @@ pub fn coefficients_of(
     ratio: &Rational,
 ) -> Result<Coefficients, Error> {
     let mut series = Series::new(derivation)?;
-    let length = series.derivation.named("period_over_2pi").map_or(0, |s| s.coefficients.len());
+    let length = series.derivation.named(Quantity::Period).map_or(0, |s| s.coefficients.len());
     // A series that has one term only, or whose steps are longer as far as it goes.
     if series.step % step != 0 && series.known > 1 {
         return Err(Error::NoValue);

@@ -1,12 +1,12 @@
 //! An oscillator of your own: Rayleigh's equation, its limit cycle to order 6, judged twice.
 
-use lindstedt::{Error, Evaluate, Oscillator, Verify, Work};
+use lindstedt::{Error, Evaluate, Oscillator, Quantity, Verify, Work};
 
 fn main() -> Result<(), Error> {
     let oscillator = Oscillator::parse("x'' + x = eps*(x' - x'^3/3)")?;
     let rayleigh = oscillator.derive(6, &Work::default())?.value;
     for n in 0..=rayleigh.order {
-        let coefficient = rayleigh.exact("frequency", n).ok_or(Error::NoValue)?;
+        let coefficient = rayleigh.exact(Quantity::Frequency, n).ok_or(Error::NoValue)?;
         println!("frequency, coefficient of eps^{n}: {coefficient}");
     }
     let checked = rayleigh.checked_orders.ok_or(Error::NoValue)?;

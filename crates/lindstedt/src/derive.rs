@@ -6,7 +6,8 @@ use crate::numeric::{self, Estimate, Tier};
 use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{
-    Answer, Derivation, Error, Exact, Oscillator, Progress, Remark, Route, Solution, Standing, Work,
+    Answer, Derivation, Error, Exact, Oscillator, Progress, Quantity, Remark, Route, Solution,
+    Standing, Work,
 };
 use lindstedt_algebra::PhaseError;
 use lindstedt_derivation::DerivationError;
@@ -55,9 +56,9 @@ impl Oscillator {
     /// [`Error`] with the reason: nothing is ever dropped or approximated silently.
     ///
     /// ```
-    /// use lindstedt::{Oscillator, Work};
+    /// use lindstedt::{Oscillator, Quantity, Work};
     /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?.derive(3, &Work::default())?.value;
-    /// assert_eq!(duffing.exact("frequency", 2).as_deref(), Some("-21/256"));
+    /// assert_eq!(duffing.exact(Quantity::Frequency, 2).as_deref(), Some("-21/256"));
     /// assert_eq!(duffing.checked_orders, Some(3));
     /// # Ok::<(), lindstedt::Error>(())
     /// ```
@@ -86,9 +87,9 @@ impl Oscillator {
             remarks.extend(self.start_remark(Taken::Amplitude));
         }
         let solved = !matches!(value.solution, Solution::FrequencyOnly);
-        remarks.extend(
-            self.missing(&|name| value.named(name).is_some() || name == "solution" && solved),
-        );
+        remarks.extend(self.missing(&|asked| {
+            value.named(asked).is_some() || asked == Quantity::Solution && solved
+        }));
         let unchecked = solved && value.checked_orders.is_none();
         let done = value.order < question.order || unchecked;
         let standing = self.standing(done, value.order, !unchecked, &mut remarks);
@@ -157,14 +158,11 @@ impl Oscillator {
         check_delays(&self.problem().equation, &values)?;
         free.check()?;
         let (mut value, at, taken) = free.polar(order, work)?;
-        let names: &[&str] = match value.is_linear() {
-            true => &["growth_rate", "frequency", "solution"],
-            // A_n(a)/a and B_n(a).
-            false => &["solution", "growth_rate", "frequency"],
-        };
+        // A_n(a)/a, B_n(a) and x.
+        let had = [Quantity::GrowthRate, Quantity::Frequency, Quantity::Solution];
         let mut remarks = self.remarks().to_vec();
         remarks.extend(taken);
-        remarks.extend(self.missing(&|name| names.contains(&name)));
+        remarks.extend(self.missing(&|asked| had.contains(&asked)));
         value.convergence = convergence::of(&value, &at);
         value.description = free.describe().ok();
         let diverges = value.convergence.as_ref().filter(|found| found.diverges());
@@ -278,9 +276,9 @@ impl Oscillator {
     }
 
     /// What the problem file asks for and the answer does not have.
-    pub(crate) fn missing(&self, has: &dyn Fn(&str) -> bool) -> Option<Remark> {
-        let asked = self.problem_file().asked.iter().map(String::as_str);
-        let missing: Vec<&str> = asked.filter(|name| !has(name)).collect();
+    pub(crate) fn missing(&self, has: &dyn Fn(Quantity) -> bool) -> Option<Remark> {
+        let asked = self.problem_file().asked.iter().filter(|asked| !has(**asked));
+        let missing: Vec<&str> = asked.map(|asked| asked.name()).collect();
         let list = missing.join(", ");
         let text = || Remark(format!("asked for in the file, but not in this result: {list}"));
         (!missing.is_empty()).then(text)

@@ -2,9 +2,9 @@
 //! exact arithmetic, each substituted back into its equation.
 //!
 //! ```
-//! use lindstedt::{Oscillator, Work};
+//! use lindstedt::{Oscillator, Quantity, Work};
 //! let power_law = Oscillator::builtin("power-law")?.derive(2, &Work::default())?.value;
-//! assert_eq!(power_law.exact("frequency_squared", 1).as_deref(), Some("1 - 2*ln(2)"));
+//! assert_eq!(power_law.exact(Quantity::FrequencySquared, 1).as_deref(), Some("1 - 2*ln(2)"));
 //! # Ok::<(), lindstedt::Error>(())
 //! ```
 //!
@@ -58,6 +58,7 @@ pub use lindstedt_derivation::{
     Derivation, DerivationError, NamedSeries, Progress, Route, Solution, Work, averaging, numeric,
     resonance::SlowFlow,
 };
+pub use lindstedt_equation::{Condition, Problem, Quantity};
 pub use lindstedt_evaluation::EvaluationError;
 pub use lindstedt_number::{Exact, Number, NumberError, Status};
 pub use lindstedt_problem_file::ProblemFile;

@@ -3,7 +3,7 @@
 use super::compare::{Term, compare_sums, word};
 use super::orders::Case;
 use super::{Reader, Row, Section, lobachevsky, periods, plain, show};
-use lindstedt::{Error, unstable::derivation::energy};
+use lindstedt::{Error, Quantity, unstable::derivation::energy};
 use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
@@ -121,7 +121,7 @@ fn phase_row(case: &Case) -> Option<Row> {
 
 fn frequency_row(case: &Case) -> Option<Row> {
     let order = case.expansion.order();
-    let exact = |n| case.derivation.exact("frequency_squared", n).unwrap_or_default();
+    let exact = |n| case.derivation.exact(Quantity::FrequencySquared, n).unwrap_or_default();
     let second_route =
         energy::power_law_frequency(&case.derivation.ring, 2, u16::try_from(order).ok()?);
     Some(plain(
@@ -244,14 +244,14 @@ fn constants(ring: &PolynomialRing) -> Vec<Term<Polynomial>> {
 fn result_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
     let ring = &case.derivation.ring;
     let words = constants(ring);
-    let coefficient = |name, n: usize| case.derivation.named(name)?.coefficients.get(n).cloned();
-    let alpha = coefficient("frequency_squared", 1)?;
+    let coefficient =
+        |quantity, n: usize| case.derivation.named(quantity)?.coefficients.get(n).cloned();
+    let alpha = coefficient(Quantity::FrequencySquared, 1)?;
     let product = ring.mul(&ring.symbol(Symbol::Pi), &ring.symbol(Symbol::LogTwo));
     let printed = [Term::new(4, "pi ln 2", product)];
     let findings = compare_sums(ring, &printed, &alpha, &words);
     // alpha_1 = d omega^2/d delta at 0, by a difference of the exact period at n = 1 +- 2 delta.
-    let series = case.derivation.named("frequency_squared")?;
-    let value = case.derivation.ball(series, 1, balls)?;
+    let value = case.derivation.ball(Quantity::FrequencySquared, 1, balls)?;
     let estimate = periods::frequency_squared_slope(balls)?;
     let literal = balls.mul_i64(&balls.mul(&balls.pi(), &balls.ln_2()), 4);
     let alpha_row = Row::new(
@@ -269,7 +269,7 @@ fn result_rows(case: &Case, balls: Balls) -> Option<Vec<Row>> {
             show(&literal, 6)
         ),
     );
-    let period = coefficient("period_over_2pi", 1)?;
+    let period = coefficient(Quantity::Period, 1)?;
     let printed = [Term::new(-2, "ln 2", ring.symbol(Symbol::LogTwo))];
     let findings = compare_sums(ring, &printed, &period, &words);
     let at_one = balls.sub(&balls.one(), &balls.mul_i64(&balls.ln_2(), 2));

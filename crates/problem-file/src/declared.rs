@@ -163,7 +163,7 @@ pub(crate) fn orders(
         }
         if *order > 100 {
             let found = order.to_string();
-            let kind = FileErrorKind::Word { key: "orders", found, known: "0 to 100" };
+            let kind = FileErrorKind::Word { key: "orders", found, known: "0 to 100".to_owned() };
             return Err(reader.error(kind, key.span().start));
         }
         if orders.insert(name.clone(), *order).is_some() {

@@ -7,7 +7,7 @@ use crate::history::History;
 use crate::meaning::Meanings;
 use crate::names::Names;
 use lindstedt_equation::print::Style;
-use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
+use lindstedt_equation::{AmplitudeRole, Expression, Problem, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Bytes of a problem file; look at the size of a file before reading it.
@@ -34,7 +34,7 @@ pub struct ProblemFile {
     /// LO..HI:COUNT of those of `swept` that have a range.
     pub ranges: BTreeMap<String, String>,
     /// Quantities that are asked for.
-    pub asked: Vec<String>,
+    pub asked: Vec<Quantity>,
     /// Parameters that are declared and occur nowhere.
     pub unused: Vec<String>,
     /// The names that the equation may mention.
@@ -54,14 +54,6 @@ pub struct ProblemFile {
 /// The name of a problem whose file has none.
 pub(crate) const UNNAMED: &str = "oscillator";
 
-/// The names of the conditions.
-pub const CONDITIONS: [(&str, Condition); 4] = [
-    (Condition::InitialAmplitude.name(), Condition::InitialAmplitude),
-    (Condition::FundamentalAmplitude.name(), Condition::FundamentalAmplitude),
-    (Condition::LimitCycle.name(), Condition::LimitCycle),
-    (Condition::FreeAmplitude.name(), Condition::FreeAmplitude),
-];
-
 /// The names of the ways in which an amplitude enters.
 pub const AMPLITUDES: [(&str, AmplitudeRole); 6] = [
     ("scaled", AmplitudeRole::Scaled),
@@ -71,10 +63,6 @@ pub const AMPLITUDES: [(&str, AmplitudeRole); 6] = [
     ("determined", AmplitudeRole::Determined),
     ("free", AmplitudeRole::Free),
 ];
-
-/// Quantities that can be asked for.
-pub(crate) const ASKED: &str = "frequency, frequency_squared, period_over_2pi, amplitude, \
-                     initial_displacement, growth_rate, solution";
 
 /// Why an amplitude cannot enter in this way. The roles of the built-in problems are claims about
 /// the equation, and a claim is checked.

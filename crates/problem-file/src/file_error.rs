@@ -45,7 +45,7 @@ pub enum FileErrorKind {
         /// What stands there.
         found: String,
         /// What it takes.
-        known: &'static str,
+        known: String,
     },
     /// A name that no parameter can have.
     #[error("{name:?} is not a name for a {what}")]

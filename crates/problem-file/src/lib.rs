@@ -25,7 +25,7 @@ mod trees;
 mod write;
 
 pub use error::{Expectation, Limit, ParseError, ParseErrorKind, position};
-pub use file::{AMPLITUDES, CONDITIONS, LARGEST_FILE, ProblemFile};
+pub use file::{AMPLITUDES, LARGEST_FILE, ProblemFile};
 pub use file_error::{FileError, FileErrorKind, RoleReason};
 pub use grammar::{locate, parse_equation, parse_expression};
 pub use history::History;

@@ -47,10 +47,10 @@ impl Reader<'_> {
         word: &str,
         at: Range<usize>,
         list: &[(&str, T)],
-        known: &'static str,
     ) -> Result<T, FileError> {
         let found = list.iter().find(|(name, _)| *name == word).map(|(_, value)| value.clone());
-        let kind = || FileErrorKind::Word { key, found: excerpt(word), known };
+        let names = || list.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+        let kind = || FileErrorKind::Word { key, found: excerpt(word), known: names() };
         found.ok_or_else(|| self.error(kind(), at.start))
     }
 }

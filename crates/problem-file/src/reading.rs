@@ -4,7 +4,7 @@ use crate::declared::{
     Parameters, formal_names, orders, parameters, small_name, undeclared, unused,
 };
 use crate::error::{ParseError, ParseErrorKind, excerpt};
-use crate::file::{AMPLITUDES, ASKED, CONDITIONS, ProblemFile, UNNAMED, misplaced};
+use crate::file::{AMPLITUDES, ProblemFile, UNNAMED, misplaced};
 use crate::file_error::{FileError, FileErrorKind};
 use crate::grammar::{locate, parse_equation, parse_expression};
 use crate::history::{is_range, ranges, start};
@@ -15,7 +15,7 @@ use crate::schema::{self, Schema};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{
     AccelerationFault, AmplitudeRole, Condition, Crossing, Expression, Impact, ParameterCard,
-    Problem, Synchronous,
+    Problem, Quantity, Synchronous,
 };
 use std::collections::BTreeSet;
 use toml::Spanned;
@@ -185,7 +185,7 @@ fn impact(
     };
     let crossings = [("rising", Crossing::Rising), ("falling", Crossing::Falling)];
     let (word, at) = (wall.crossing.get_ref(), wall.crossing.span());
-    let crossing = reader.word("crossing", word, at, &crossings, "rising, falling")?;
+    let crossing = reader.word("crossing", word, at, &crossings)?;
     let position = expression(&wall.position)?;
     Ok(Impact { position, crossing, restitution: expression(&wall.restitution)? })
 }
@@ -217,11 +217,11 @@ fn conditions(
     schema: &Schema,
     equation: &Expression,
 ) -> Result<Vec<Condition>, FileError> {
-    let known = "initial-amplitude, fundamental-amplitude, limit-cycle, free-amplitude";
     let Some(list) = &schema.condition else {
         return Ok(Condition::usual(equation).into_iter().collect());
     };
-    let one = |word: &String| reader.word("condition", word, list.span(), &CONDITIONS, known);
+    let known = Condition::ALL.map(|condition| (condition.name(), condition));
+    let one = |word: &String| reader.word("condition", word, list.span(), &known);
     list.get_ref().0.iter().map(one).collect()
 }
 
@@ -232,14 +232,13 @@ fn amplitude(
     conditions: &[Condition],
     declared: &BTreeSet<String>,
 ) -> Result<AmplitudeRole, FileError> {
-    let known = "scaled, scales-frequency, in-sums, in-small-parameter, determined, free";
     let (word, at) = match &schema.amplitude {
         None => ("", 0..0),
         Some(word) => (&**word.get_ref(), word.span()),
     };
     let role = match &schema.amplitude {
         None => AmplitudeRole::usual(conditions.first()),
-        Some(_) => reader.word("amplitude", word, at.clone(), &AMPLITUDES, known)?,
+        Some(_) => reader.word("amplitude", word, at.clone(), &AMPLITUDES)?,
     };
     match misplaced(role, equation, small, declared) {
         None => Ok(role),
@@ -276,12 +275,9 @@ fn listed(
     list.iter().map(one).collect()
 }
 
-fn asked(reader: &Reader<'_>, schema: &Schema) -> Result<Vec<String>, FileError> {
-    let known: Vec<(&str, ())> = ASKED.split(", ").map(|word| (word.trim(), ())).collect();
-    let one = |word: &Spanned<String>| {
-        reader.word("asked", word.get_ref(), word.span(), &known, ASKED)?;
-        Ok(word.get_ref().clone())
-    };
+fn asked(reader: &Reader<'_>, schema: &Schema) -> Result<Vec<Quantity>, FileError> {
+    let known = Quantity::ALL.map(|quantity| (quantity.name(), quantity));
+    let one = |word: &Spanned<String>| reader.word("asked", word.get_ref(), word.span(), &known);
     schema.asked.iter().map(one).collect()
 }
 

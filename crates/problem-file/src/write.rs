@@ -91,7 +91,8 @@ fn questions(file: &ProblemFile) -> String {
         None => name.clone(),
     };
     let swept = file.swept.iter().map(range).collect();
-    let all = [("fixed", &file.fixed), ("swept", &swept), ("asked", &file.asked)];
+    let asked = file.asked.iter().map(ToString::to_string).collect();
+    let all = [("fixed", &file.fixed), ("swept", &swept), ("asked", &asked)];
     let some = all.into_iter().filter(|(_, names)| !names.is_empty());
     some.map(|(key, names)| line(key, &list(names))).collect()
 }

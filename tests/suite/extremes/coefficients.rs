@@ -62,8 +62,8 @@ fn exact_grid(orders: &[(usize, Route)], digits: &[usize]) -> Grid {
                     for (series, power) in result.series.iter().zip([2, 1, -1]) {
                         let truth = truth(power, order, amplitude, bits);
                         for (n, truth) in truth.iter().enumerate() {
-                            let label = format!("{label} {} {n} digits {digits}", series.name);
-                            match result.number(series, n, digits) {
+                            let label = format!("{label} {} {n} digits {digits}", series.quantity);
+                            match result.number(series.quantity, n, digits) {
                                 Ok(found) => grid.number(
                                     &label,
                                     &found,
@@ -106,7 +106,7 @@ fn numeric_grid(orders: &[usize], tiers: &[Tier]) -> Grid {
                         for (n, ((value, error), truth)) in
                             series.coefficients.iter().zip(truth).enumerate()
                         {
-                            let label = format!("{label} {} {n}", series.name);
+                            let label = format!("{label} {} {n}", series.quantity);
                             grid.estimated(&label, value, error, truth, 1_500);
                         }
                     }

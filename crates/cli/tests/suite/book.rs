@@ -234,12 +234,12 @@ fn toml_blocks_are_problem_files() -> Outcome {
 mod readme {
     //! The library example of the README.
 
-    use lindstedt::{Oscillator, Work};
+    use lindstedt::{Oscillator, Quantity, Work};
 
     fn main() -> Result<(), Box<dyn std::error::Error>> {
         let oscillator = Oscillator::parse("x'' + x + eps*(x^2 - 1)*x' = 0")?;
         let result = oscillator.derive(6, &Work::default())?.value;
-        assert_eq!(result.exact("frequency", 6).as_deref(), Some("35/884736"));
+        assert_eq!(result.exact(Quantity::Frequency, 6).as_deref(), Some("35/884736"));
         assert_eq!(result.checked_orders, Some(6));
         Ok(())
     }
@@ -253,11 +253,11 @@ mod readme {
 #[rustfmt::skip]
 #[test]
 fn tour_of_an_own_oscillator() -> Outcome {
-    use lindstedt::{Oscillator, Work};
+    use lindstedt::{Oscillator, Quantity, Work};
 
     let quintic = Oscillator::parse("x'' + x + eps*x^5 = 0")?;
     let result = quintic.derive(3, &Work::default())?.value;
-    assert_eq!(result.exact("frequency_squared", 1).as_deref(), Some("5/8"));
+    assert_eq!(result.exact(Quantity::FrequencySquared, 1).as_deref(), Some("5/8"));
     assert_eq!(result.checked_orders, Some(3));
     Ok(())
 }
@@ -265,10 +265,10 @@ fn tour_of_an_own_oscillator() -> Outcome {
 #[rustfmt::skip]
 #[test]
 fn problem_files_from_rust() -> Outcome {
-    use lindstedt::{Oscillator, Work};
+    use lindstedt::{Oscillator, Quantity, Work};
 
     let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
     let result = duffing.set("amplitude", "1/2")?.derive(4, &Work::default())?.value;
-    assert_eq!(result.exact("frequency", 1).as_deref(), Some("3/32"));
+    assert_eq!(result.exact(Quantity::Frequency, 1).as_deref(), Some("3/32"));
     Ok(())
 }

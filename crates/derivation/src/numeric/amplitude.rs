@@ -1,6 +1,6 @@
 //! An amplitude that scales the frequency.
 
-use super::estimate::{Estimate, POWERS, rounding};
+use super::estimate::{Estimate, rounding};
 use crate::settings::Settings;
 use lindstedt_equation::{AmplitudeRole, Problem};
 use lindstedt_number::ball::Balls;
@@ -23,9 +23,10 @@ pub(super) fn scaled_to_amplitude(
         return estimate;
     };
     for series in &mut estimate.series {
-        let Some((_, power)) = POWERS.iter().find(|(name, _)| *name == series.name) else {
+        let power = series.quantity.power();
+        if power == 0 {
             continue;
-        };
+        }
         let rate = Float::with_val(work, log.midpoint() * (exponent * power)) / 2u32;
         let mut factor = vec![Float::with_val(work, 1)];
         for n in 1..series.coefficients.len() {

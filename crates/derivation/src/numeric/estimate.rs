@@ -1,7 +1,8 @@
 //! An expansion in estimated numbers, as data.
 
-use lindstedt_equation::Condition;
+use lindstedt_equation::{Condition, Quantity};
 use lindstedt_number::{Number, Object};
+use rug::ops::Pow;
 use rug::{Float, Rational};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -29,8 +30,8 @@ pub enum Tier {
 /// A series of estimated numbers.
 #[derive(Clone, Debug)]
 pub struct EstimatedSeries {
-    /// As in [`crate::NamedSeries::name`].
-    pub name: &'static str,
+    /// As in [`crate::NamedSeries::quantity`].
+    pub quantity: Quantity,
     /// From order 0: the coefficient and the estimate of its absolute error.
     pub coefficients: Vec<(Float, Float)>,
 }
@@ -76,7 +77,7 @@ impl Serialize for Estimate {
             bits: u32,
             products: u64,
         }
-        let named = self.series.iter().map(|series| series.name).zip(&self.numbers);
+        let named = self.series.iter().map(|series| series.quantity.name()).zip(&self.numbers);
         let series = Object(named.collect());
         let method = Method {
             name: "the same recursion on two grids",
@@ -108,10 +109,10 @@ impl Estimate {
         self
     }
 
-    /// The series of that name.
+    /// The series of that quantity.
     #[must_use]
-    pub fn named(&self, name: &str) -> Option<&EstimatedSeries> {
-        self.series.iter().find(|series| series.name == name)
+    pub fn named(&self, quantity: Quantity) -> Option<&EstimatedSeries> {
+        self.series.iter().find(|series| series.quantity == quantity)
     }
 }
 
@@ -132,12 +133,7 @@ impl Estimate {
             return;
         }
         for named in &mut self.series {
-            let factor = match named.name {
-                "frequency_squared" => Rational::from(w * w),
-                "frequency" => w.clone(),
-                "period_over_2pi" => Rational::from(w.recip_ref()),
-                _ => continue,
-            };
+            let factor = w.clone().pow(named.quantity.power());
             for (value, error) in &mut named.coefficients {
                 *value *= &factor;
                 *error *= &factor;
@@ -145,10 +141,6 @@ impl Estimate {
         }
     }
 }
-
-/// The series of powers of the frequency.
-pub(super) const POWERS: [(&str, i32); 3] =
-    [("frequency_squared", 2), ("frequency", 1), ("period_over_2pi", -1)];
 
 /// 64 roundings at so many bits.
 pub(super) fn rounding(value: &Float, bits: u32) -> Float {

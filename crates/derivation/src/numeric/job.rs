@@ -2,12 +2,12 @@
 
 use super::amplitude::scaled_to_amplitude;
 use super::binding::{ExactValues, Given, as_powers};
-use super::estimate::{Estimate, EstimatedSeries, POWERS, Tier, rounding};
+use super::estimate::{Estimate, EstimatedSeries, Tier, rounding};
 use crate::error::DerivationError as Error;
 use crate::settings::Settings;
 use lindstedt_algebra::{PhaseAlgebra, Rationals};
 use lindstedt_coeff::floats::{Doubles, Floats, Reals};
-use lindstedt_equation::{Condition, Problem};
+use lindstedt_equation::{Condition, Problem, Quantity};
 use lindstedt_expand::{ExpandError, OrderWork, Request, compile, expand, leading_amplitude};
 use lindstedt_phase::Trigonometric;
 use lindstedt_phase::collocation::{Collocation, Grid};
@@ -39,7 +39,7 @@ pub(super) fn limit_memory(settings: &Settings, nodes: usize, bits: u32) -> Resu
 struct Run {
     nodes: usize,
     products: u64,
-    series: Vec<(&'static str, Vec<Float>)>,
+    series: Vec<(Quantity, Vec<Float>)>,
 }
 
 pub(super) struct Job<'a> {
@@ -118,7 +118,7 @@ impl Job<'_> {
                 return Ok(estimate);
             }
             let values = |s: &EstimatedSeries| {
-                (s.name, s.coefficients.iter().map(|(v, _)| v.clone()).collect())
+                (s.quantity, s.coefficients.iter().map(|(v, _)| v.clone()).collect())
             };
             let series = plain.series.iter().map(values).collect();
             coarse = Some(Run { nodes: plain.nodes, products: plain.products, series });
@@ -137,7 +137,7 @@ impl Job<'_> {
     /// same error in both: where the error has reached the largest coefficient, nothing is said of
     /// this one and of those that follow from it (an infinite error).
     fn compare(&self, tier: Tier, coarse: &[Run], fine: Run, bits: u32) -> Estimate {
-        let estimated = |(index, (name, values)): (usize, (&'static str, Vec<Float>))| {
+        let estimated = |(index, (quantity, values)): (usize, (Quantity, Vec<Float>))| {
             let mut error = rounding(&Float::with_val(53, 1), bits);
             let safety = if matches!(tier, Tier::Fourier { .. }) { 16u32 } else { 4 };
             let mut coefficients = Vec::new();
@@ -157,7 +157,7 @@ impl Job<'_> {
                 }
                 coefficients.push((value, error.clone()));
             }
-            EstimatedSeries { name, coefficients }
+            EstimatedSeries { quantity, coefficients }
         };
         let series: Vec<_> = fine.series.into_iter().enumerate().map(estimated).collect();
         Estimate {
@@ -203,22 +203,17 @@ impl Job<'_> {
         let squared = Series::truncated(expansion.frequency_squared);
         let root = kappa.sqrt();
         let mut series = Vec::new();
-        for (name, power) in POWERS {
+        for quantity in Quantity::POWERS {
+            let power = quantity.power();
             let half = Rational::from((power, 2));
             let list = squared.power(reals, &half).ok_or(Error::NoValue)?;
             let factor = rug::ops::Pow::pow(root.clone(), power);
             let value = |c: &_| reals.to_float(c) * &factor;
-            series.push((name, list.coefficients.iter().map(value).collect()));
+            series.push((quantity, list.coefficients.iter().map(value).collect()));
         }
-        let name = match self.condition {
-            Condition::InitialAmplitude => None,
-            Condition::FundamentalAmplitude | Condition::FreeAmplitude => {
-                Some("initial_displacement")
-            }
-            Condition::LimitCycle => Some("amplitude"),
-        };
-        if let Some(name) = name {
-            series.push((name, expansion.amplitude.iter().map(|c| reals.to_float(c)).collect()));
+        if let Some(quantity) = Quantity::start(self.condition) {
+            series
+                .push((quantity, expansion.amplitude.iter().map(|c| reals.to_float(c)).collect()));
         }
         let products = expansion.work.iter().map(|work| work.products).sum();
         Ok(Run { nodes, products, series })

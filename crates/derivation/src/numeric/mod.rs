@@ -35,10 +35,11 @@ use lindstedt_expand::OrderWork;
 /// ```
 /// use lindstedt_derivation::Settings;
 /// use lindstedt_derivation::numeric::{Tier, derive};
+/// use lindstedt_equation::Quantity;
 /// let problem = lindstedt_problems::find("power-law").ok_or("no such problem")?;
 /// let settings = Settings { order: 3, ..Settings::default() };
 /// let result = derive(&problem, &settings, Tier::Collocation { digits: 30 }, &mut |_| true)?;
-/// let alpha = result.named("frequency_squared").and_then(|s| s.number(1, 30)).ok_or("none")?;
+/// let alpha = result.named(Quantity::FrequencySquared).and_then(|s| s.number(1, 30)).ok_or("none")?;
 /// assert_eq!(alpha.decimal, "-0.386294361119890618834464242916");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -302,7 +302,8 @@ impl Case<'_> {
         }
         let asked = &self.oscillator.problem_file().asked;
         if !asked.is_empty() {
-            let list = asked.join(", ");
+            let list: Vec<&str> = asked.iter().map(|asked| asked.name()).collect();
+            let list = list.join(", ");
             self.remarks.push(format!("asked for in the file, not answered by a motion: {list}"));
         }
         let (wall, sweepable) = (self.problem.impact.is_some(), self.sweepable());

@@ -9,6 +9,7 @@ use crate::{Error, Route, Solution};
 use lindstedt_algebra::Stop;
 use lindstedt_coeff::Polynomial;
 use lindstedt_derivation::{Settings, derive};
+use lindstedt_equation::Quantity;
 use lindstedt_expand::ExpandError;
 use rug::{Float, Rational};
 
@@ -84,7 +85,7 @@ impl Bench<'_> {
         let settings = self.settings(order, Route::Driver, stop);
         let result =
             numeric::derive(&self.setting.problem, &settings, tier, &mut |_| !stop.asked())?;
-        let series = result.named("period_over_2pi").ok_or(Error::NoValue)?;
+        let series = result.named(Quantity::Period).ok_or(Error::NoValue)?;
         // As `numeric` predicts it: twelve lists of values per order.
         let value = if result.bits <= 53 { 8 } else { u64::from(result.bits) / 8 + 48 };
         let bytes = (order as u64 + 1) * result.nodes as u64 * value * 12;

@@ -3,7 +3,7 @@
 use super::cycle::cycle;
 use super::{Comparison, Verify};
 use crate::{Derivation, Error, Oscillator};
-use lindstedt_equation::{AmplitudeRole, Condition};
+use lindstedt_equation::{AmplitudeRole, Condition, Quantity};
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::evaluate::PhaseFunctions;
@@ -46,8 +46,7 @@ impl Periodic {
         let bits = Digits::for_digits(digits + 8).bits();
         let balls = Balls::new(bits).with_guard(64);
         let float = |ball: &Ball| Float::with_val(bits, ball.midpoint());
-        let series = d.named("frequency_squared").ok_or(Error::NoValue)?;
-        let ball = |n| d.ball(series, n, balls).ok_or(Error::NoValue);
+        let ball = |n| d.ball(Quantity::FrequencySquared, n, balls).ok_or(Error::NoValue);
         let frequency_squared = (0..=d.order).map(|n| Ok(float(&ball(n)?)));
         let frequency_squared = frequency_squared.collect::<Result<Vec<_>, Error>>()?;
         // No point is an odd multiple of pi/2, where cos tau = 0 and ln|cos tau| has no value:

@@ -176,7 +176,7 @@ impl Board<'_> {
         let result = self.0;
         let small = both(|style| self.small(style));
         for (series, numbers) in result.series.iter().zip(&result.numbers) {
-            let name = series.name.replace('_', " ");
+            let name = series.quantity.name().replace('_', " ");
             let line = Text::words(format!("{name} in powers of ")).formula(small.clone()).and(":");
             page = page.words(line);
             for (n, number) in numbers.iter().enumerate() {

@@ -16,7 +16,7 @@ impl Present for Answer<Estimate> {
             result.nodes, result.bits
         ));
         for (series, numbers) in result.series.iter().zip(&result.numbers) {
-            let name = series.name.replace('_', " ");
+            let name = series.quantity.name().replace('_', " ");
             page = page.words(format!("{name} in powers of {}:", result.parameter));
             for (n, number) in numbers.iter().enumerate() {
                 page = page.formula(match number {
@@ -44,7 +44,7 @@ impl Present for Answer<Estimate> {
                 let (decimal, error) = number.as_ref().map_or_else(Default::default, |number| {
                     (number.decimal.clone(), number.error.clone().unwrap_or_default())
                 });
-                table = table.row([series.name.to_owned(), n.to_string(), decimal, error]);
+                table = table.row([series.quantity.to_string(), n.to_string(), decimal, error]);
             }
         }
         Some(table)

@@ -25,12 +25,12 @@ mod quintic {
 #[rustfmt::skip]
 #[test]
 fn quintic_by_the_energy_integral() -> Outcome {
-    use lindstedt::{unstable::derivation::Settings, unstable::derivation::derive};
+    use lindstedt::{Quantity, unstable::derivation::Settings, unstable::derivation::derive};
 
     let settings = Settings { order: 2, ..Settings::default() };
     let result = derive(&quintic::problem(), &settings, &mut |_| true)?;
-    assert_eq!(result.exact("period_over_2pi", 1).as_deref(), Some("-5/16"));
-    assert_eq!(result.exact("period_over_2pi", 2).as_deref(), Some("515/3072"));
+    assert_eq!(result.exact(Quantity::Period, 1).as_deref(), Some("-5/16"));
+    assert_eq!(result.exact(Quantity::Period, 2).as_deref(), Some("515/3072"));
     Ok(())
 }
 
