@@ -3,12 +3,14 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test fails by panicking
 
-use lindstedt::averaging::{Averaging, AveragingSettings, Coefficient, average as average_problem};
 use lindstedt::unstable::algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt::unstable::coeff::PolynomialRing;
 use lindstedt::unstable::coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials};
 use lindstedt::unstable::coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt::unstable::coeff::print::{Print, Style};
+use lindstedt::unstable::derivation::averaging::{
+    Averaging, AveragingSettings, Coefficient, average as average_problem,
+};
 use lindstedt::unstable::equation::{Condition, Expression, Function, ParameterCard, Problem};
 use lindstedt::unstable::expand::{AveragedExpansion, Binding, average, check_averaged, compile};
 use lindstedt::unstable::number::ball::Balls;

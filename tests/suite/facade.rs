@@ -6,6 +6,7 @@ mod closed;
 mod coefficients;
 mod constants;
 mod energy;
+mod face;
 mod few;
 mod front;
 mod growth;

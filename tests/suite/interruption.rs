@@ -2,9 +2,9 @@
 //! one, and the questions within one order are many. Counted, not timed.
 #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
-use lindstedt::averaging::{Averaging, AveragingSettings, average};
-use lindstedt::numeric::{Tier, derive as derive_numbers};
 use lindstedt::unstable::algebra::Stop;
+use lindstedt::unstable::derivation::averaging::{Averaging, AveragingSettings, average};
+use lindstedt::unstable::derivation::numeric::{Tier, derive as derive_numbers};
 use lindstedt::unstable::series::resummation::{
     Method, ResummationError, Sample, UniformMap, resum_until,
 };

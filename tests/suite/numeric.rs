@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
-use lindstedt::numeric::{Estimate, Tier, derive};
 use lindstedt::unstable::algebra::{RationalAlgebra, Ring};
 use lindstedt::unstable::coeff::floats::Floats;
+use lindstedt::unstable::derivation::numeric::{Estimate, Tier, derive};
 use lindstedt::unstable::equation::{AmplitudeRole, Condition, Expression, Function, Problem};
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt::unstable::phase::lobachevsky_function::means;

@@ -47,15 +47,10 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
 /// One axis or two.
 fn axes(texts: &[String]) -> Result<(Axis, Option<Axis>), Failure> {
     let mut axes = texts.iter().map(|text| Axis::parse(text));
-    let columns = axes.next().transpose()?;
-    let rows = axes.next().transpose()?;
-    match (columns, axes.next()) {
-        (Some(columns), None) => Ok((columns, rows)),
-        _ => {
-            let message = "at most two parameters are swept".to_owned();
-            Err(Failure::usage("sweep", message, "one --sweep or two"))
-        }
-    }
+    let (columns, rows) = (axes.next().transpose()?, axes.next().transpose()?);
+    let both = columns.filter(|_| axes.next().is_none()).map(|columns| (columns, rows));
+    let message = "at most two parameters are swept".to_owned();
+    both.ok_or_else(|| Failure::usage("sweep", message, "one --sweep or two"))
 }
 
 fn averaged(

@@ -23,6 +23,16 @@ use rug::Rational;
 use std::collections::BTreeMap;
 
 /// The solution, in the algebra that the equation needed.
+///
+/// ```
+/// use lindstedt_derivation::{Solution, Settings, derive};
+/// let problem = lindstedt_problems::find("duffing").ok_or("no such problem")?;
+/// let settings = Settings { order: 1, ..Settings::default() };
+/// let duffing = derive(&problem, &settings, &mut |_| true)?;
+/// let Solution::Rational(proved) = &duffing.solution else { panic!("over Q") };
+/// assert_eq!(proved.expansion.order(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Solution {
@@ -36,7 +46,19 @@ pub enum Solution {
 
 /// A checked expansion: nothing leaves [`crate::derive()`] that was not substituted back
 /// (`checked_orders`), but for [`crate::Route::EnergyIntegral`], which has no solution to substitute.
+///
+/// ```
+/// use lindstedt_equation::Quantity;
+/// use lindstedt_derivation::{Settings, derive};
+/// let problem = lindstedt_problems::find("van-der-pol").ok_or("no such problem")?;
+/// let settings = Settings { order: 2, ..Settings::default() };
+/// let cycle = derive(&problem, &settings, &mut |_| true)?;
+/// assert_eq!(cycle.exact(Quantity::Frequency, 2).as_deref(), Some("-1/16"));
+/// assert_eq!((cycle.checked_orders, cycle.terms(0)), (Some(2), 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Derivation {
     /// The problem as it was expanded: values put in, x and t scaled.
     pub problem: Problem,

@@ -5,6 +5,16 @@ use lindstedt_number::NumberError;
 use thiserror::Error;
 
 /// Why the engine has no expansion.
+///
+/// ```
+/// use lindstedt_derivation::{DerivationError, Settings, derive};
+/// use lindstedt_number::Exact;
+/// let problem = lindstedt_problems::find("pendulum").ok_or("no such problem")?;
+/// let parameters = [("amplitude".to_owned(), Exact::from(4))].into();
+/// let error = derive(&problem, &Settings { parameters, ..Settings::default() }, &mut |_| true);
+/// assert!(matches!(error, Err(DerivationError::OutsideDomain { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DerivationError {

@@ -1,7 +1,6 @@
 //! The plain form of a derivation.
 
 use crate::derivation::{Derivation, Solution};
-use crate::settings::Route;
 use lindstedt_coeff::print::Style;
 use lindstedt_number::Object;
 use serde::ser::SerializeMap;
@@ -40,11 +39,7 @@ impl Serialize for Derivation {
         };
         let method = Method {
             name,
-            route: match self.route {
-                Route::Clock => "clock",
-                Route::EnergyIntegral => "energy",
-                Route::Driver | Route::Automatic => "driver",
-            },
+            route: self.route.name(),
             primes: proved.map(|proved| proved.primes),
             proof_primes: proved.map(|proved| proved.proof_primes),
         };

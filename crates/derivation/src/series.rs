@@ -17,7 +17,19 @@ use rug::Rational;
 use rug::ops::Pow;
 
 /// A power series that belongs to the result: prefactor * sum c_n eps^n.
+///
+/// ```
+/// use lindstedt_equation::Quantity;
+/// use lindstedt_derivation::{Settings, derive};
+/// let problem = lindstedt_problems::find("power-law").ok_or("no such problem")?;
+/// let settings = Settings { order: 3, ..Settings::default() };
+/// let law = derive(&problem, &settings, &mut |_| true)?;
+/// assert_eq!(law.named(Quantity::Period).map(|series| series.coefficients.len()), Some(4));
+/// assert!(law.named(Quantity::Amplitude).is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct NamedSeries {
     /// What it is the series of: a power of the frequency, or x(0) where the condition leaves it open.
     pub quantity: Quantity,

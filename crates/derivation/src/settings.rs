@@ -2,9 +2,11 @@
 
 use crate::error::DerivationError as Error;
 use lindstedt_algebra::Stop;
-use lindstedt_equation::{Condition, Problem};
+use lindstedt_equation::{Condition, Problem, UnknownName};
 use lindstedt_number::Exact;
 use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
 
 /// What to derive.
 #[derive(Clone, Debug)]
@@ -38,6 +40,15 @@ impl Default for Settings {
 }
 
 /// How the series are derived.
+///
+/// ```
+/// use lindstedt_derivation::{Route, Settings, derive};
+/// let problem = lindstedt_problems::find("duffing").ok_or("no such problem")?;
+/// let settings = Settings { order: 2, route: "energy".parse()?, ..Settings::default() };
+/// let found = derive(&problem, &settings, &mut |_| true)?;
+/// assert_eq!((found.route, found.solved()), (Route::EnergyIntegral, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Route {
     /// By the clock where the equation allows it, else by the driver.
@@ -51,6 +62,36 @@ pub enum Route {
     /// By the energy integral: the frequency alone, to much higher order; for forces
     /// x F(small ln x^2), and for polynomial ones where x(0) is the amplitude.
     EnergyIntegral,
+}
+
+impl Route {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Automatic, Self::Driver, Self::Clock, Self::EnergyIntegral];
+
+    /// `auto`, `driver`, `clock`, `energy`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Automatic => "auto",
+            Self::Driver => "driver",
+            Self::Clock => "clock",
+            Self::EnergyIntegral => "energy",
+        }
+    }
+}
+
+impl fmt::Display for Route {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Route {
+    type Err = UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
+        UnknownName::find("route", text, &Self::ALL, Self::name)
+    }
 }
 
 /// The normalisation asked for, if the problem offers it; its own if none is.

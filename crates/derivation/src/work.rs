@@ -5,6 +5,19 @@ use std::fmt;
 use std::sync::Arc;
 
 /// What long work reports while it goes on.
+///
+/// ```
+/// use lindstedt_derivation::{Progress, Settings, derive};
+/// let problem = lindstedt_problems::find("power-law").ok_or("no such problem")?;
+/// let mut orders = 0;
+/// let mut told = |progress| {
+///     orders += usize::from(matches!(progress, Progress::Order(..)));
+///     true
+/// };
+/// derive(&problem, &Settings { order: 2, ..Settings::default() }, &mut told)?;
+/// assert!(orders >= 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Progress {

@@ -16,6 +16,7 @@ mod roots;
 mod saddle;
 mod smooth;
 pub mod symmetry;
+mod unknown;
 mod walk;
 
 pub use canonical::AccelerationFault;
@@ -23,5 +24,6 @@ pub use expression::{Expression, Function, Unknown};
 pub use problem::{
     AmplitudeRole, Condition, Crossing, Impact, ParameterCard, Problem, Synchronous, Text,
 };
-pub use quantity::{Quantity, UnknownName};
+pub use quantity::Quantity;
+pub use unknown::UnknownName;
 pub use walk::Operations;

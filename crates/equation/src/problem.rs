@@ -2,8 +2,8 @@
 
 use crate::Expression;
 use crate::print::Style;
-use crate::quantity::UnknownName;
 use crate::symmetry::is_reversible;
+use crate::unknown::UnknownName;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::fmt;
@@ -13,6 +13,12 @@ use std::str::FromStr;
 pub type Text = Cow<'static, str>;
 
 /// What fixes the amplitude (and the phase) of the solution, order by order.
+///
+/// ```
+/// use lindstedt_equation::Condition;
+/// assert_eq!("limit-cycle".parse(), Ok(Condition::LimitCycle));
+/// assert_eq!(Condition::FreeAmplitude.to_string(), "free-amplitude");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Condition {

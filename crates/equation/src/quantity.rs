@@ -1,6 +1,7 @@
 //! What can be asked of an expansion.
 
 use crate::Condition;
+use crate::unknown::UnknownName;
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
@@ -102,32 +103,5 @@ impl FromStr for Quantity {
 impl Serialize for Quantity {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name())
-    }
-}
-
-/// A word that is not one of a closed list.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no {what} {found:?}; known: {}", known.join(", "))]
-pub struct UnknownName {
-    /// What was expected.
-    pub what: &'static str,
-    /// The word, at most 60 characters of it.
-    pub found: String,
-    /// The words there are.
-    pub known: Vec<&'static str>,
-}
-
-impl UnknownName {
-    /// The member of the list with that name.
-    pub(crate) fn find<T: Copy>(
-        what: &'static str,
-        text: &str,
-        all: &[T],
-        name: fn(T) -> &'static str,
-    ) -> Result<T, Self> {
-        all.iter().copied().find(|member| name(*member) == text).ok_or_else(|| {
-            let known = all.iter().map(|member| name(*member)).collect();
-            Self { what, found: text.chars().take(60).collect(), known }
-        })
     }
 }

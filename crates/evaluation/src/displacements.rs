@@ -1,11 +1,11 @@
 //! x(t) as data.
 
-use crate::names::method_flag;
 use lindstedt_number::{Exact, Number};
 use lindstedt_series::resummation::Method;
 
 /// x at one time.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Displacement {
     /// The time.
     pub time: Exact,
@@ -19,6 +19,7 @@ pub struct Displacement {
 
 /// x(t) at the times asked for.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Displacements {
     /// The order of the solution.
     pub order: usize,
@@ -34,7 +35,7 @@ impl Displacements {
     /// The methods as they are asked for.
     #[must_use]
     pub fn summed_by(&self) -> String {
-        let methods: Vec<&str> = self.methods.iter().map(|m| method_flag(*m)).collect();
+        let methods: Vec<&str> = self.methods.iter().map(|m| m.name()).collect();
         methods.join(" or ")
     }
 }

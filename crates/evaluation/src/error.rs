@@ -6,6 +6,12 @@ use lindstedt_number::NumberError;
 use thiserror::Error;
 
 /// Why an expansion has no value at the parameters given.
+///
+/// ```
+/// use lindstedt_evaluation::EvaluationError;
+/// let error = EvaluationError::NotPositive { amplitude: "-1".to_owned() };
+/// assert_eq!(error.to_string(), "the amplitude -1 is not positive");
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum EvaluationError {
@@ -24,6 +30,7 @@ pub enum EvaluationError {
         /// The problem.
         problem: String,
         /// Why.
+        #[source]
         reason: lindstedt_series::resummation::ResummationError,
     },
     /// Newton's method found no amplitude and phase for the state asked for.

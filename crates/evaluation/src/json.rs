@@ -2,10 +2,10 @@
 
 use crate::digits::Digits;
 use crate::displacements::{Displacement, Displacements};
-use crate::names::{kind_name, method_flag, rounded};
+use crate::names::{kind_name, rounded};
 use crate::period::Evaluation;
 use lindstedt_number::{Number, Status};
-use lindstedt_series::resummation::{Complex, Growth, Picture};
+use lindstedt_series::resummation::{Complex, Growth, Method, Picture, ResummationError};
 use rug::{Float, Integer};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -139,20 +139,18 @@ impl Evaluation {
     }
 
     fn all_tried(&self) -> Vec<Tried> {
-        let one = |(method, found): &(_, Result<Float, _>)| {
+        let one = |(method, found): &(Method, Result<Float, ResummationError>)| {
             let shown = |error: &Float| error.is_finite().then(|| format!("{error:.2e}"));
             let refused = found.as_ref().err().map(ToString::to_string);
-            Tried { resum: method_flag(*method), error: found.as_ref().ok().map(shown), refused }
+            Tried { resum: method.name(), error: found.as_ref().ok().map(shown), refused }
         };
-        let tried: &Vec<(_, Result<Float, lindstedt_series::resummation::ResummationError>)> =
-            &self.resummed.tried;
-        tried.iter().map(one).collect()
+        self.resummed.tried.iter().map(one).collect()
     }
 }
 
 impl Serialize for Evaluation {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let method = method_flag(self.resummed.method);
+        let method = self.resummed.method.name();
         let best = self.best_truncation.as_ref();
         let best =
             best.map(|(order, number)| Truncation { order: *order, period: number.as_ref() });

@@ -33,6 +33,6 @@ pub use displacements::{Displacement, Displacements};
 pub use error::EvaluationError;
 pub use fourier::Fourier;
 pub use json::Place;
-pub use names::{kind_name, method_flag, method_name, rounded, with_error};
+pub use names::{kind_name, method_name, rounded, with_error};
 pub use period::{Evaluation, period};
 pub use solution::{Question, Trajectory};

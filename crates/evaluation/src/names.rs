@@ -46,20 +46,6 @@ pub fn method_name(method: Method) -> &'static str {
     }
 }
 
-/// The name of a method where it is asked for.
-#[must_use]
-pub fn method_flag(method: Method) -> &'static str {
-    match method {
-        Method::PartialSum => "none",
-        Method::Pade => "pade",
-        Method::Uniform => "uniform",
-        Method::UniformPade => "uniform-pade",
-        Method::ConformalPade => "conformal",
-        Method::BorelPade => "borel-pade",
-        _ => "another",
-    }
-}
-
 /// The name of a kind of singularity.
 #[must_use]
 pub fn kind_name(kind: Kind) -> &'static str {

@@ -18,6 +18,7 @@ use rug::Float;
 
 /// A period and how it was found.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Evaluation {
     /// The parameters, the derived ones included.
     pub at: Vec<(String, Exact)>,

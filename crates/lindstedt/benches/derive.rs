@@ -2,8 +2,8 @@
 //! numeric tiers, averaging.
 
 use divan::Bencher;
-use lindstedt::averaging::{AveragingSettings, average};
-use lindstedt::numeric::{self, Tier};
+use lindstedt::unstable::derivation::averaging::{AveragingSettings, average};
+use lindstedt::unstable::derivation::numeric::{self, Tier};
 use lindstedt::{
     Exact, Route, unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
 };

@@ -2,12 +2,40 @@
 
 use lindstedt_number::as_map;
 use serde::Serialize;
+use std::fmt;
 
 /// The version of the JSON form; it grows when a key changes its meaning.
 pub const SCHEMA: u32 = 1;
 
+impl fmt::Display for Standing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Complete => f.write_str("complete"),
+            Self::Stopped { done } => write!(f, "stopped, {done} done"),
+            Self::Undecided => f.write_str("undecided"),
+            Self::NoAnswer => f.write_str("no answer"),
+        }
+    }
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
 /// What an answer belongs to, in the same words for all verbs.
+///
+/// ```
+/// use lindstedt::{Oscillator, Work};
+/// let duffing = Oscillator::builtin("duffing")?.set("eps", "1/2")?;
+/// let header = duffing.evaluate(&Default::default(), &Work::default())?.header;
+/// assert_eq!(header.equation, "x'' + x + rho*x^3 = 0");
+/// assert_eq!(header.at[0], ("eps".to_owned(), "1/2".to_owned()));
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Header {
     /// [`SCHEMA`].
     pub schema: u32,
@@ -28,6 +56,16 @@ pub struct Header {
 }
 
 /// How far an answer goes; one exit code each on the command line.
+///
+/// ```
+/// use lindstedt::{Oscillator, Standing, Stop, Work};
+/// let law = Oscillator::builtin("power-law")?;
+/// let work = Work { stop: Stop::new(|| true), ..Work::default() };
+/// let found = law.derive(3, &work);
+/// assert!(found.is_err() || found.is_ok_and(|answer| answer.standing != Standing::Complete));
+/// assert_eq!(law.derive(1, &Work::default())?.standing, Standing::Complete);
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
     /// All that was asked for.
@@ -44,6 +82,14 @@ pub enum Standing {
 }
 
 /// Something to know beside the answer, in one line.
+///
+/// ```
+/// use lindstedt::Oscillator;
+/// let text = "equation = \"x'' + x + eps*x^3 = 0\"\n[parameters]\nk = { value = \"2\" }\n";
+/// let remark = Oscillator::file(text)?.remarks()[0].to_string();
+/// assert_eq!(remark, "parameter k is declared and occurs nowhere");
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
 pub struct Remark(pub String);
@@ -52,7 +98,17 @@ pub struct Remark(pub String);
 ///
 /// As JSON it is one object: the keys of the header, then those of the value, then `remarks` where
 /// there are any.
+///
+/// ```
+/// use lindstedt::{Oscillator, Quantity, Work};
+/// let answer = Oscillator::parse("x'' + x + eps*x^3 = 0")?.derive(1, &Work::default())?;
+/// assert_eq!((answer.header.tier, answer.header.order), ("exact", Some(1)));
+/// let first = answer.map(|value| value.exact(Quantity::Frequency, 1)).value;
+/// assert_eq!(first.as_deref(), Some("3/8"));
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Answer<T> {
     /// What it belongs to.
     #[serde(flatten)]

@@ -7,7 +7,14 @@ use lindstedt_equation::print::Style;
 use serde::Serialize;
 
 /// A list of problems.
+///
+/// ```
+/// use lindstedt::catalogue::Catalogue;
+/// let names: Vec<String> = Catalogue::builtin().problems.into_iter().map(|p| p.name).collect();
+/// assert_eq!(names[..3], ["power-law", "pendulum", "vibro-impact"]);
+/// ```
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Catalogue {
     /// The problems.
     pub problems: Vec<Entry>,
@@ -15,6 +22,7 @@ pub struct Catalogue {
 
 /// A problem as data.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Entry {
     /// Its name.
     pub name: String,
@@ -47,6 +55,7 @@ pub struct Entry {
 
 /// A parameter.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Parameter {
     /// Its name.
     pub name: String,

@@ -1,8 +1,8 @@
 //! The question `derive`: exact, averaged, or in estimated numbers.
 
-use crate::averaging::{self, Averaging, AveragingSettings};
+use crate::averaging::Averaging;
 use crate::convergence;
-use crate::numeric::{self, Estimate, Tier};
+use crate::numeric::{Estimate, Tier};
 use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{
@@ -10,9 +10,8 @@ use crate::{
     Standing, Work,
 };
 use lindstedt_algebra::PhaseError;
-use lindstedt_derivation::DerivationError;
-use lindstedt_derivation::Settings;
-use lindstedt_derivation::check_delays;
+use lindstedt_derivation::averaging::{self, AveragingSettings};
+use lindstedt_derivation::{DerivationError, Settings, check_delays, numeric};
 use lindstedt_equation::classify::{Method, Reason};
 use lindstedt_equation::description::Description;
 use lindstedt_equation::{AmplitudeRole, Condition};
@@ -23,6 +22,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// What to derive.
+///
+/// ```
+/// use lindstedt::{Derive, Oscillator, Quantity, Route, Work};
+/// let question = Derive { order: 12, route: Route::EnergyIntegral };
+/// let law = Oscillator::builtin("power-law")?.derive(question, &Work::default())?.value;
+/// assert!(law.number(Quantity::Frequency, 1, 10)?.decimal.starts_with("-0.19314718"));
+/// assert_eq!((law.order, law.checked_orders), (12, None)); // no solution to substitute
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Derive {
     /// The highest order.
@@ -101,7 +109,18 @@ impl Oscillator {
     /// whose exact solution has millions of terms.
     ///
     /// # Errors
-    /// As [`numeric::derive`].
+    /// As [`lindstedt_derivation::numeric::derive`].
+    ///
+    /// ```
+    /// use lindstedt::{Error, Oscillator, Quantity, Work, numeric::Tier};
+    /// let force = Oscillator::parse("x'' + x + eps*sin(x) = 0")?;
+    /// let found = force.estimate(1, Tier::Collocation { digits: 12 }, &Work::default())?.value;
+    /// let period = found.named(Quantity::Period).ok_or(Error::NoValue)?;
+    /// // -J_1(1), by another route.
+    /// let first = period.number(1, 12).ok_or(Error::NoValue)?;
+    /// assert!(first.decimal.starts_with("-0.44005058574"));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
     pub fn estimate(
         &self,
         order: usize,
@@ -223,8 +242,15 @@ impl Oscillator {
     /// What the equation is made of, and which methods take it, in words.
     ///
     /// # Errors
-    /// [`lindstedt_equation::classify::ClassifyError`].
-    pub fn describe(&self) -> Result<Description, lindstedt_equation::classify::ClassifyError> {
+    /// As [`Oscillator::classify`].
+    ///
+    /// ```
+    /// use lindstedt::Oscillator;
+    /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+    /// assert!(pendulum.describe()?.methods.iter().any(|method| method.method == "time domain"));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn describe(&self) -> Result<Description, Error> {
         Ok(Description::new(&self.classify()?, &self.problem().small))
     }
 

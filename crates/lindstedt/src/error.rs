@@ -3,6 +3,8 @@
 use crate::refusal::{Kind, Refusal, Refused};
 use lindstedt_algebra::PhaseError;
 use lindstedt_derivation::DerivationError;
+use lindstedt_equation::UnknownName;
+use lindstedt_equation::classify::ClassifyError;
 use lindstedt_evaluation::EvaluationError;
 use lindstedt_expand::ExpandError;
 use lindstedt_number::NumberError;
@@ -10,6 +12,14 @@ use lindstedt_problem_file::{FileError, ParseError};
 use thiserror::Error;
 
 /// Why there is no answer. Each kind maps to one exit code of the command line.
+///
+/// ```
+/// use lindstedt::{Error, Kind, Oscillator, Refusal, Work};
+/// let missing = Oscillator::parse("x'' + k*x + eps*x' = 0")?.derive(2, &Work::default());
+/// let error = missing.err().ok_or(Error::NoValue)?;
+/// assert_eq!((error.code(), error.kind()), ("no-method", Kind::NoAnswer));
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -19,6 +29,18 @@ pub enum Error {
     /// The expansion has no value.
     #[error(transparent)]
     Evaluation(EvaluationError),
+    /// The equation cannot be classified.
+    #[error(transparent)]
+    Classify(#[from] ClassifyError),
+    /// A form of equations that a method needs is not that of this one.
+    #[error(transparent)]
+    Recognise(#[from] lindstedt_recognise::Refusal),
+    /// The proof does not take the equation.
+    #[error(transparent)]
+    Orbit(#[from] lindstedt_orbit::Failure),
+    /// A word that is not one of a closed list.
+    #[error(transparent)]
+    Name(#[from] UnknownName),
     /// A refusal put together from several reasons.
     #[error(transparent)]
     Refused(#[from] Refused),
@@ -111,6 +133,11 @@ impl Refusal for Error {
             Self::Simulate(error) => return error.parts(),
             Self::Melnikov(error) => return error.parts(),
             Self::Impact(error) => return error.parts(),
+            Self::Recognise(error) => return error.parts(),
+            Self::Orbit(error) => return error.parts(),
+            Self::Classify(ClassifyError::TooManyTerms { .. }) => (Undecided, "too-large", ""),
+            Self::Classify(_) => (NoAnswer, "no-method", ""),
+            Self::Name(error) => return (Usage, "usage", error.known.join(", ")),
             Self::File(error) => {
                 let kind = if error.is_limit() { Undecided } else { Usage };
                 return (kind, "problem-file", error.hint());

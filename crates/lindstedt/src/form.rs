@@ -3,7 +3,7 @@
 
 use crate::grid::Axis;
 use crate::refusal::{Refusal as _, Refused};
-use crate::{Error, Exact, Kind, Oscillator};
+use crate::{Error, Exact, Oscillator};
 use lindstedt_equation::Expression;
 use lindstedt_equation::print::Style;
 use lindstedt_problem_file::canonical_name;
@@ -98,32 +98,16 @@ impl Oscillator {
         let place = refusal.term().map_or(String::new(), |term| self.place(term));
         let message = format!("{}{place}: {text}", self.origin());
         let small = &self.problem().small;
-        let (kind, code, hint) = match &refusal {
-            Refusal::MissingValues { names } => {
-                let follows = &self.problem_file().follows;
-                let how = names.iter().find_map(|name| Some((name, follows.get(name)?)));
-                let hint = how.map_or_else(
-                    || "give it under [parameters] or with --set NAME=VALUE".to_owned(),
-                    |(name, how)| {
-                        format!("{name} follows: {how}; {}", FOLLOWS.replace("NAME", name))
-                    },
-                );
-                (Kind::Usage, "missing-value", hint)
+        let (kind, code, mut hint) = refusal.parts();
+        if let Refusal::MissingValues { names } = &refusal {
+            let follows = &self.problem_file().follows;
+            if let Some((name, how)) = names.iter().find_map(|name| follows.get_key_value(name)) {
+                hint = format!("{name} follows: {how}; {}", FOLLOWS.replace("NAME", name));
             }
-            Refusal::Periods { .. } => (Kind::Usage, "parameter", "k = 1, 2, ...".to_owned()),
-            Refusal::TooManyTerms { .. } => (Kind::Undecided, "too-large", String::new()),
-            Refusal::Melnikov(error) => (error.kind(), error.code(), error.hint()),
+        } else if code == "no-method" && !self.problem().equation.contains(&Expression::Small) {
             // Without it every term is one of order zero.
-            _ if !self.problem().equation.contains(&Expression::Small) => {
-                let hint =
-                    format!("a factor {small}, or orders = {{ NAME = 1 }}, marks the small terms");
-                (Kind::NoAnswer, "no-method", hint)
-            }
-            _ => {
-                let hint = "`lindstedt problems --show FILE` lists the methods";
-                (Kind::NoAnswer, "no-method", hint.to_owned())
-            }
-        };
+            hint = format!("a factor {small}, or orders = {{ NAME = 1 }}, marks the small terms");
+        }
         Refused { code, kind, message, hint }.into()
     }
 }

@@ -1,16 +1,25 @@
 //! One or two swept parameters, and what was computed at their values.
 
 use crate::refusal::Refused;
-use crate::{Error, Exact, Progress, Work};
+use crate::{Error, Exact, Oscillator, Progress, Standing, Work};
 use lindstedt_problem_file::canonical_name;
 use rayon::prelude::*;
 use rug::Rational;
-use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use std::str::FromStr;
 
 /// The most values of an axis.
 const MOST_VALUES: usize = 1_000_000;
 
 /// The values of a swept parameter, in order.
+///
+/// ```
+/// use lindstedt::grid::Axis;
+/// let axis: Axis = "omega=1..2:3".parse()?;
+/// assert_eq!(axis.doubles(), [1.0, 1.5, 2.0]);
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// The parameter.
@@ -89,6 +98,14 @@ impl Axis {
     }
 }
 
+impl FromStr for Axis {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        Self::parse(text)
+    }
+}
+
 /// `count` values from `low` to `high` in equal steps; nothing where only one end is a multiple of
 /// pi other than zero.
 fn steps(low: &Exact, high: &Exact, count: usize) -> Option<Vec<Exact>> {
@@ -108,6 +125,13 @@ fn steps(low: &Exact, high: &Exact, count: usize) -> Option<Vec<Exact>> {
 }
 
 /// What was computed at every point of one or two axes; row by row, the first axis along the columns.
+///
+/// ```
+/// use lindstedt::{Work, grid::{Axis, Grid}};
+/// let squares = Grid::compute(Axis::parse("a=0..3:4")?, None, &Work::default(), |a, _| a.to_f64().powi(2));
+/// assert_eq!(squares.points, [Some(0.0), Some(1.0), Some(4.0), Some(9.0)]);
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Grid<T> {
     /// The first swept parameter.
@@ -145,7 +169,46 @@ impl<T: Send> Grid<T> {
     }
 }
 
+impl<T: Send> Grid<T> {
+    /// What a question to the same oscillator with the values of every point gives, each in silence.
+    pub(crate) fn of_cases(
+        oscillator: &Oscillator,
+        columns: Axis,
+        rows: Option<Axis>,
+        work: &Work,
+        ask: impl Fn(&Oscillator, &Work) -> T + Sync,
+    ) -> Self {
+        let names = [&columns].into_iter().chain(&rows).map(|axis| axis.name.clone());
+        let (names, silent) = (Vec::from_iter(names), Work { progress: None, ..work.clone() });
+        Self::compute(columns, rows, work, |x, y| {
+            let values = names.iter().zip([x].into_iter().chain(y));
+            let case = oscillator.clone();
+            ask(&values.fold(case, |case, (name, value)| case.with(name, value.clone())), &silent)
+        })
+    }
+}
+
 impl<T> Grid<T> {
+    /// Complete, or stopped after so many points.
+    pub(crate) fn standing(&self) -> Standing {
+        let done = self.done();
+        if self.is_complete() { Standing::Complete } else { Standing::Stopped { done } }
+    }
+
+    /// `columns`, `rows`, and `points` in order.
+    pub(crate) fn serialize_with<'a, S: Serializer, P: Serialize>(
+        &'a self,
+        serializer: S,
+        point: impl Fn(&'a Exact, Option<&'a Exact>, Option<&'a T>) -> P,
+    ) -> Result<S::Ok, S::Error> {
+        let points: Vec<P> = self.iter().map(|(x, y, found)| point(x, y, found)).collect();
+        let mut map = serializer.serialize_map(Some(3))?;
+        map.serialize_entry("columns", &self.columns)?;
+        map.serialize_entry("rows", &self.rows)?;
+        map.serialize_entry("points", &points)?;
+        map.end()
+    }
+
     /// The same grid with something else at its points.
     pub fn map<U>(self, point: impl Fn(T) -> Option<U>) -> Grid<U> {
         let Self { columns, rows, points } = self;
@@ -182,7 +245,7 @@ impl<T> Grid<T> {
 }
 
 impl Serialize for Axis {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         use serde::ser::SerializeStruct;
         let mut object = serializer.serialize_struct("Axis", 2)?;
         object.serialize_field("parameter", &self.name)?;

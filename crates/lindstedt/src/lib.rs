@@ -23,6 +23,10 @@
 struct Readme;
 
 mod answer;
+/// What [`Oscillator::average`] answers with.
+pub mod averaging {
+    pub use lindstedt_derivation::averaging::{Averaging, Coefficient, RateTerm};
+}
 pub mod catalogue;
 pub mod classification;
 mod convergence;
@@ -32,6 +36,10 @@ pub mod evaluate;
 mod form;
 pub mod grid;
 pub mod motion;
+/// What [`Oscillator::estimate`] is asked and answers with.
+pub mod numeric {
+    pub use lindstedt_derivation::numeric::{Estimate, EstimatedSeries, Tier};
+}
 mod oscillator;
 pub mod refusal;
 mod resonance;
@@ -54,9 +62,9 @@ pub use answer::{Answer, Header, Remark, SCHEMA, Standing};
 pub use derive::Derive;
 pub use error::Error;
 pub use evaluate::Evaluate;
+pub use lindstedt_algebra::Stop;
 pub use lindstedt_derivation::{
-    Derivation, DerivationError, NamedSeries, Progress, Route, Solution, Work, averaging, numeric,
-    resonance::SlowFlow,
+    Derivation, DerivationError, NamedSeries, Progress, Route, Solution, Work, resonance::SlowFlow,
 };
 pub use lindstedt_equation::{Condition, Problem, Quantity};
 pub use lindstedt_evaluation::EvaluationError;

@@ -3,12 +3,14 @@
 use crate::answer::{Header, SCHEMA};
 use crate::refusal::Refused;
 use crate::{Error, Exact, Remark, classification};
-use lindstedt_equation::classify::{Classification, ClassifyError};
+use lindstedt_equation::classify::Classification;
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{AmplitudeRole, Condition, ParameterCard, Problem};
 use lindstedt_problem_file::{Names, PI, ProblemFile, canonical_name, parse_equation};
 use rug::Rational;
 use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
 use std::time::Instant;
 
 /// An oscillator: an equation with what a problem file says about it, the values that are set, and
@@ -44,6 +46,12 @@ impl Oscillator {
     ///
     /// # Errors
     /// [`Refused`] with the names there are.
+    ///
+    /// ```
+    /// use lindstedt::Oscillator;
+    /// assert_eq!(Oscillator::builtin("duffing")?.to_string(), "x'' + x + rho*x^3 = 0");
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
     pub fn builtin(name: &str) -> Result<Self, Error> {
         let stick_slip = lindstedt_problems::stick_slip::problem;
         let mut all = lindstedt_problems::all();
@@ -63,6 +71,13 @@ impl Oscillator {
     /// # Errors
     /// [`Error::File`] with line and column; [`Refused`] for the name of a second unknown where no table
     /// declares it as a parameter.
+    ///
+    /// ```
+    /// use lindstedt::{Exact, Oscillator};
+    /// let text = "equation = \"x'' + x + eps*b*x^3 = 0\"\n[parameters]\nb = { value = \"1/3\" }\n";
+    /// assert_eq!(Oscillator::file(text)?.value("b"), Some(Exact::from((1, 3))));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
     pub fn file(text: &str) -> Result<Self, Error> {
         let file = ProblemFile::parse(text)?;
         let second = file.problem.parameters.iter().find(|card| is_unknown(&card.name));
@@ -97,6 +112,13 @@ impl Oscillator {
     /// # Errors
     /// [`Error::Parse`] with the position in the text; [`Refused`] for the name of a second unknown, which
     /// is never taken for a constant.
+    ///
+    /// ```
+    /// use lindstedt::{Condition, Oscillator};
+    /// let cycle: Oscillator = "x'' + x = eps*(1 - x^2)*x'".parse()?;
+    /// assert_eq!(cycle.condition(), Some(Condition::LimitCycle));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
     pub fn parse(equation: &str) -> Result<Self, Error> {
         let list: Vec<&str> = equation.split(';').filter(|e| !e.trim().is_empty()).collect();
         let names = match &list[..] {
@@ -109,16 +131,34 @@ impl Oscillator {
             [_, _, ..] => format!("equations = {list:?}\n"),
             _ => format!("equation = {equation:?}\n"),
         };
-        Ok(Self { bare: true, ..Self::file(&text)? })
+        Ok(Self { bare: true, ..Self::file(&text)?.without_places() })
     }
 
     /// An oscillator from a problem made in Rust.
     ///
     /// # Errors
     /// [`Error::File`] where the problem contradicts itself.
+    ///
+    /// ```
+    /// use lindstedt::unstable::equation::Expression;
+    /// use lindstedt::{Oscillator, Problem, Quantity, Work};
+    /// let x = Expression::DISPLACEMENT;
+    /// let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(5);
+    /// let quintic = Oscillator::from_problem(&Problem::new("quintic", equation))?;
+    /// let found = quintic.derive(1, &Work::default())?.value;
+    /// assert_eq!(found.exact(Quantity::Period, 1).as_deref(), Some("-5/16"));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
     pub fn from_problem(problem: &Problem) -> Result<Self, Error> {
         // A card that the equation does not mention is no slip of a writer.
-        Ok(Self { remarks: Vec::new(), ..Self::file(&lindstedt_problem_file::write(problem))? })
+        let written = Self::file(&lindstedt_problem_file::write(problem))?;
+        Ok(Self { remarks: Vec::new(), ..written.without_places() })
+    }
+
+    /// Nobody has the file: refusals show the piece of the equation, not its place.
+    fn without_places(mut self) -> Self {
+        self.file.forget_places();
+        self
     }
 
     /// The same oscillator with what its file is called in messages. A problem without a name of its own
@@ -144,6 +184,14 @@ impl Oscillator {
     /// # Errors
     /// [`DerivationError::BadValue`](crate::DerivationError::BadValue); [`Refused`] for the number pi, which
     /// is no parameter.
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, Quantity, Work};
+    /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?.set("amplitude", "2")?;
+    /// let found = duffing.derive(1, &Work::default())?.value;
+    /// assert_eq!(found.exact(Quantity::Frequency, 1).as_deref(), Some("3/2"));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
     pub fn set(self, name: &str, value: &str) -> Result<Self, Error> {
         if canonical_name(name.trim()) == PI {
             let message = "pi is a number: it has no other value";
@@ -169,6 +217,14 @@ impl Oscillator {
     ///
     /// # Errors
     /// [`Refused`] where the problem does not offer it.
+    ///
+    /// ```
+    /// use lindstedt::{Condition, Oscillator, Quantity, Work};
+    /// let duffing = Oscillator::builtin("duffing")?.under(Condition::FundamentalAmplitude)?;
+    /// let found = duffing.derive(2, &Work::default())?.value;
+    /// assert_eq!(found.exact(Quantity::Frequency, 2).as_deref(), Some("-15/256"));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
     pub fn under(mut self, condition: Condition) -> Result<Self, Error> {
         if self.bare {
             self.problem.conditions = vec![condition];
@@ -260,9 +316,16 @@ impl Oscillator {
     /// What the equation is made of and which methods take it.
     ///
     /// # Errors
-    /// [`ClassifyError`].
-    pub fn classify(&self) -> Result<Classification, ClassifyError> {
-        classification::of(&self.problem, &self.values)
+    /// [`Error::Classify`].
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, unstable::equation::classify::Method};
+    /// let parts = Oscillator::builtin("stick-slip")?.classify()?;
+    /// assert!(parts.takes(Method::Melnikov) && !parts.takes(Method::LindstedtPoincare));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn classify(&self) -> Result<Classification, Error> {
+        Ok(classification::of(&self.problem, &self.values)?)
     }
 
     /// Refuses, before any work, an equation that the expansion under the condition does not take,
@@ -334,12 +397,28 @@ impl Oscillator {
         Header {
             schema: SCHEMA,
             problem: self.problem.name.to_string(),
-            equation: self.problem.print(Style::Text),
+            equation: self.to_string(),
             at,
             order,
             tier,
             seconds: start.elapsed().as_secs_f64(),
         }
+    }
+}
+
+/// Its equation, `... = 0`, as a problem file has it.
+impl fmt::Display for Oscillator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.problem.print(Style::Text))
+    }
+}
+
+/// As [`Oscillator::parse`].
+impl FromStr for Oscillator {
+    type Err = Error;
+
+    fn from_str(equation: &str) -> Result<Self, Error> {
+        Self::parse(equation)
     }
 }
 

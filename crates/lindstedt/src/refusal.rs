@@ -6,6 +6,12 @@ pub(crate) use engines::averages;
 use std::fmt;
 
 /// What kind of refusal it is; one exit code each on the command line.
+///
+/// ```
+/// use lindstedt::{Kind, Oscillator, Refusal};
+/// let refused = Oscillator::parse("x'' + x + eps*y = 0").err().map(|error| error.kind());
+/// assert_eq!(refused, Some(Kind::Usage));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The question makes no sense as it is put.
@@ -18,8 +24,26 @@ pub enum Kind {
     Stopped,
 }
 
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Usage => "usage",
+            Self::NoAnswer => "no answer",
+            Self::Undecided => "undecided",
+            Self::Stopped => "interrupted",
+        })
+    }
+}
+
 /// An error with a name for programs, its kind, and what to do about it. Its words are those of its
 /// `Display`.
+///
+/// ```
+/// use lindstedt::{Oscillator, Refusal};
+/// let error = Oscillator::builtin("pendulun").err();
+/// assert_eq!(error.as_ref().map(Refusal::code), Some("unknown-problem"));
+/// assert!(error.is_some_and(|error| error.hint().contains("pendulum")));
+/// ```
 pub trait Refusal: fmt::Display {
     /// Kind, code and hint, side by side.
     fn parts(&self) -> (Kind, &'static str, String);
@@ -39,7 +63,14 @@ pub trait Refusal: fmt::Display {
 
 /// A refusal that was put together where several reasons meet: the terms of an equation, the place
 /// of the term in its file, the options of a question.
+///
+/// ```
+/// use lindstedt::{Error, Refusal, Refused};
+/// let refused = Refused::usage("set", "pi is a number: it has no other value", "");
+/// assert_eq!(Error::from(refused).code(), "set");
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Refused {
     /// The name for programs.
     pub code: &'static str,

@@ -1,7 +1,8 @@
 //! The slow flow of a problem: averaging at resonance and of several unknowns.
 
-use crate::averaging::{Averaging, AveragingSettings};
+use crate::averaging::Averaging;
 use crate::{Answer, DerivationError, Error, Oscillator, SlowFlow, Work};
+use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::resonance::slow_flow;
 use lindstedt_equation::Expression;
 use serde::Serialize;

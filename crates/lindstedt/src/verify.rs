@@ -43,6 +43,15 @@ use std::time::Instant;
 pub use verdict::{Comparison, TOLERANCE, Verdict, Verification};
 
 /// What to verify.
+///
+/// ```
+/// use lindstedt::{Oscillator, Verify, Work, verify::Verdict};
+/// let small = Verify::read_small("1/100,1/200,1/400")?;
+/// let question = Verify { order: 1, small, ..Verify::default() };
+/// let cycle = Oscillator::builtin("van-der-pol")?;
+/// assert_eq!(cycle.verify(&question, &Work::default())?.value.verdict, Verdict::Agrees);
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Verify {
     /// N.
@@ -77,22 +86,34 @@ impl Verify {
     /// # Errors
     /// [`Refused`] with the value that does not fit.
     pub fn read_small(text: &str) -> Result<Vec<Rational>, Error> {
-        let wrong = |message: String| Refused::usage("small", message, "1/100,1/200,1/400");
         let mut list: Vec<Rational> = Vec::new();
         for part in text.split(',') {
             let value = Exact::parse(part)?;
-            let Some(q) = value.as_rational().filter(|q| !q.is_zero()) else {
-                return Err(wrong(format!("{part:?} is no rational number other than zero")).into());
-            };
-            if list.last().is_some_and(|last| q.cmp_abs(last).is_ge()) {
-                return Err(wrong(format!("{part} is not smaller than the value before")).into());
-            }
-            list.push(q.clone());
+            let rational = value.as_rational().cloned();
+            list.push(rational.ok_or_else(|| Self::wrong(format!("{part:?} is irrational")))?);
         }
-        if list.len() < 2 || list.len() > 100 {
-            return Err(wrong("2 to 100 values are needed".to_owned()).into());
+        let question = Self { small: list, ..Self::default() };
+        question.check_small()?;
+        Ok(question.small)
+    }
+
+    fn wrong(message: String) -> Refused {
+        Refused::usage("small", message, "1/100,1/200,1/400")
+    }
+
+    /// 2 to 100 values that decrease in modulus, none zero.
+    fn check_small(&self) -> Result<(), Refused> {
+        if self.small.iter().any(Rational::is_zero) {
+            return Err(Self::wrong("0 is no value of a small parameter".to_owned()));
         }
-        Ok(list)
+        if let Some(pair) = self.small.windows(2).find(|pair| pair[1].cmp_abs(&pair[0]).is_ge()) {
+            let message = format!("{} is not smaller than the value before", pair[1]);
+            return Err(Self::wrong(message));
+        }
+        if self.small.len() < 2 || self.small.len() > 100 {
+            return Err(Self::wrong("2 to 100 values are needed".to_owned()));
+        }
+        Ok(())
     }
 }
 
@@ -116,6 +137,7 @@ impl Oscillator {
     /// ```
     pub fn verify(&self, question: &Verify, work: &Work) -> Result<Answer<Verification>, Error> {
         let start = Instant::now();
+        question.check_small()?;
         self.without_pi()?;
         self.check_free()?;
         self.check()?;
@@ -157,6 +179,15 @@ impl Oscillator {
     ///
     /// # Errors
     /// As there.
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, Verify, Work, verify::Verdict};
+    /// let (duffing, work) = (Oscillator::parse("x'' + x + eps*x^3 = 0")?, Work::default());
+    /// let expansion = duffing.derive(1, &work)?.value;
+    /// let found = duffing.verify_derivation(&expansion, &Verify::default(), &work)?.value;
+    /// assert!(found.observed_order.is_some_and(|slope| (slope - 2.0).abs() < 0.01));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
     pub fn verify_derivation(
         &self,
         derivation: &Derivation,
@@ -164,6 +195,7 @@ impl Oscillator {
         work: &Work,
     ) -> Result<Answer<Verification>, Error> {
         let start = Instant::now();
+        question.check_small()?;
         let value = self.against_time(derivation, question, work)?;
         let header = self.header(Vec::new(), Some(derivation.order), "time domain", start);
         let remarks = self.remarks().to_vec();

@@ -89,6 +89,22 @@ pub struct Proved {
 ///
 /// # Errors
 /// [`Error::Expand`] as the driver over Q would, or interrupted.
+///
+/// ```
+/// use lindstedt_algebra::Stop;
+/// use lindstedt_multimodular::{RationalBinding, derive};
+/// use rug::Rational;
+///
+/// struct NoNames;
+/// impl RationalBinding for NoNames {
+///     fn parameter(&self, _: &str) -> Option<Rational> { None }
+/// }
+/// let duffing = lindstedt_problems::find("duffing").ok_or("no such problem")?;
+/// let (equation, condition) = (&duffing.equation, duffing.conditions[0]);
+/// let proved = derive(equation, &NoNames, condition, 3, &Stop::default(), &mut |_| true)?;
+/// assert_eq!(proved.frequency[3], Rational::from((81, 2048)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn derive(
     equation: &Expression,
     binding: &dyn RationalBinding,

@@ -1,6 +1,11 @@
 //! What can go wrong with a number.
 
 /// Why there is no number, or not so many digits of it.
+///
+/// ```
+/// use lindstedt_number::{Exact, NumberError};
+/// assert!(matches!("1/0".parse::<Exact>(), Err(NumberError::BadValue { .. })));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NumberError {

@@ -16,6 +16,12 @@ const SHOWN: usize = 4;
 const BEYOND: usize = 2;
 
 /// What is known about a number; the class only ever weakens, from the first to the last.
+///
+/// ```
+/// use lindstedt_number::Status;
+/// assert!(Status::Exact < Status::Certified && Status::Proved < Status::Estimated);
+/// assert_eq!(Status::NoEstimate.to_string(), "no-estimate");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
@@ -30,6 +36,26 @@ pub enum Status {
     Estimated,
     /// Computed, but nothing is known of its error: too few orders, or terms that do not decrease.
     NoEstimate,
+}
+
+impl Status {
+    /// Its name in results: `exact`, `certified`, `proved`, `estimated`, `no-estimate`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Certified => "certified",
+            Self::Proved => "proved",
+            Self::Estimated => "estimated",
+            Self::NoEstimate => "no-estimate",
+        }
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
 }
 
 /// A number as it leaves the program. |decimal - true value| <= error where the status is exact,

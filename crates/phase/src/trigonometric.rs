@@ -20,6 +20,15 @@ pub struct TrigonometricPolynomial<E> {
 /// Products cost O(n^2) coefficient products; everything else is linear in the number of
 /// harmonics. Over Q high orders
 /// are computed by [`crate::Modular`] instead, modulo many primes.
+///
+/// ```
+/// use lindstedt_algebra::{PhaseAlgebra, Rationals, Ring};
+/// use lindstedt_phase::Trigonometric;
+/// let algebra = Trigonometric::new(Rationals);
+/// let square = algebra.mul(&algebra.cosine(), &algebra.cosine());
+/// // cos^2 = 1/2 + cos(2 psi)/2.
+/// assert_eq!((square.cos[0].to_f64(), square.cos[2].to_f64()), (0.5, 0.5));
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Trigonometric<C> {
     constants: C,

@@ -14,6 +14,14 @@ use std::collections::{BTreeMap, BTreeSet};
 pub const LARGEST_FILE: u64 = 256 * 1024;
 
 /// A problem with everything that its file says.
+///
+/// ```
+/// use lindstedt_problem_file::ProblemFile;
+/// let file = ProblemFile::parse("equation = \"x'' + x + eps*k*x^3 = 0\"\n")?;
+/// assert_eq!(file.problem.parameters[0].name, "k");
+/// assert_eq!(file.locate_equation(), Some((1, 13)));
+/// # Ok::<(), lindstedt_problem_file::FileError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProblemFile {
     /// The problem; parameters with an order are multiplied by the small parameter to that power, and what
@@ -123,6 +131,11 @@ impl ProblemFile {
     pub fn locate(&self, term: &Expression) -> Option<(usize, usize)> {
         let found = locate(&self.equation, &self.names, term)?;
         Some(position(&self.text, self.start? + found.start))
+    }
+
+    /// Forgets where the equation stands: its text was made, not written by somebody.
+    pub fn forget_places(&mut self) {
+        self.start = None;
     }
 
     /// The text of the file.

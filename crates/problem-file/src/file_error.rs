@@ -29,8 +29,8 @@ pub enum FileErrorKind {
         message: String,
     },
     /// An equation or expression cannot be read.
-    #[error("{0}")]
-    Equation(ParseError),
+    #[error(transparent)]
+    Equation(#[from] ParseError),
     /// The file is too large.
     #[error("more than {limit} bytes in a problem file")]
     TooLarge {
@@ -121,6 +121,7 @@ pub enum FileErrorKind {
 #[error("line {line}, column {column}: {kind}")]
 pub struct FileError {
     /// What.
+    #[source]
     pub kind: FileErrorKind,
     /// The line, from 1.
     pub line: usize,

@@ -12,6 +12,17 @@ use rug::Rational;
 
 /// Coefficients from order 0; everything beyond the list is unknown, unless the series is a
 /// polynomial.
+///
+/// ```
+/// use lindstedt_algebra::Rationals;
+/// use lindstedt_series::Series;
+/// use rug::Rational;
+/// let square = Series::truncated([1, 1, 0].map(Rational::from).to_vec());
+/// // sqrt(1 + eps) = 1 + eps/2 - eps^2/8 + ...
+/// let root = square.power(&Rationals, &Rational::from((1, 2))).ok_or("no root")?;
+/// assert_eq!(root.coefficients[2], Rational::from((-1, 8)));
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series<E> {
     /// The coefficients from order 0.

@@ -1,9 +1,9 @@
 //! The coefficients of the power law: exact, by collocation, in doubles, by Fourier series.
 
 use super::support::{Grid, rational, set};
-use lindstedt::numeric::{Tier, derive as derive_numbers};
 use lindstedt::unstable::algebra::Ring;
 use lindstedt::unstable::coeff::floats::Floats;
+use lindstedt::unstable::derivation::numeric::{Tier, derive as derive_numbers};
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt::unstable::phase::lobachevsky_function::means;
 use lindstedt::unstable::series::Series;

@@ -2,7 +2,9 @@
 
 use super::support::{Grid, rational, set};
 use lindstedt::Exact;
-use lindstedt::averaging::{AveragingSettings, Coefficient, RateTerm, average};
+use lindstedt::unstable::derivation::averaging::{
+    AveragingSettings, Coefficient, RateTerm, average,
+};
 use lindstedt::unstable::problems;
 use lindstedt_impact::flow::rates;
 use lindstedt_impact::parameters::{Branch, ExactParameters};

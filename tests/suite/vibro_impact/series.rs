@@ -2,7 +2,9 @@
 //! sums against the root itself.
 
 use super::support::Random;
-use lindstedt::averaging::{Averaging, AveragingSettings, Coefficient, RateTerm, average};
+use lindstedt::unstable::derivation::averaging::{
+    Averaging, AveragingSettings, Coefficient, RateTerm, average,
+};
 use lindstedt::{Exact, unstable::problems};
 use lindstedt_impact::flow::{characteristic_root, rates};
 use lindstedt_impact::parameters::{Branch, ExactParameters};

@@ -50,6 +50,7 @@ impl Default for AveragingSettings {
 
 /// One term c a^exponent of a rate.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RateTerm {
     /// The power of the amplitude.
     pub exponent: i32,
@@ -76,7 +77,19 @@ pub enum Coefficient {
 ///   x = a cos psi + ..., da/dt = sum eps^n A_n(a), dpsi/dt = sum eps^n B_n(a) with B_0 = omega_0;
 ///
 /// no other term of x contains cos psi or sin psi.
+///
+/// ```
+/// use lindstedt_derivation::averaging::{AveragingSettings, average};
+/// let problem = lindstedt_problems::find("van-der-pol").ok_or("no such problem")?;
+/// let settings = AveragingSettings { order: 1, ..AveragingSettings::default() };
+/// let cycle = average(&problem, &settings, &mut |_| true)?;
+/// // A_1 = a/2 - a^3/8.
+/// let exponents: Vec<i32> = cycle.amplitude_rate[1].iter().map(|term| term.exponent).collect();
+/// assert_eq!(exponents, [1, 3]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Averaging {
     /// The problem.
     pub problem: Problem,

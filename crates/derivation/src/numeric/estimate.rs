@@ -29,6 +29,7 @@ pub enum Tier {
 
 /// A series of estimated numbers.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct EstimatedSeries {
     /// As in [`crate::NamedSeries::quantity`].
     pub quantity: Quantity,
@@ -38,6 +39,7 @@ pub struct EstimatedSeries {
 
 /// An expansion in estimated numbers.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Estimate {
     /// The tier.
     pub tier: Tier,

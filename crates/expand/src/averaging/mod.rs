@@ -69,6 +69,29 @@ impl<A: AveragingAlgebra> AveragedExpansion<A> {
 /// # Errors
 /// [`ExpandError`] says at which order and why no expansion of this form exists or could be found:
 /// resonances are named by their harmonic.
+///
+/// ```
+/// use lindstedt_algebra::{RationalAlgebra, Rationals};
+/// use lindstedt_equation::Expression;
+/// use lindstedt_expand::{Binding, average, check_averaged, compile};
+/// use lindstedt_phase::Torus;
+/// use rug::Rational;
+///
+/// struct NoNames;
+/// impl<C: RationalAlgebra> Binding<C> for NoNames {
+///     fn parameter(&self, _: &str) -> Option<C::Element> { None }
+///     fn formal(&self, _: &str, _: usize) -> Option<C::Element> { None }
+/// }
+/// let x = Expression::DISPLACEMENT;
+/// let duffing = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3);
+/// let torus = Torus::new(Rationals, Rational::from(1), None, Vec::new());
+/// let equation = compile(&torus, &duffing, &NoNames, 1)?;
+/// let found = average(&torus, &equation, 1, &mut |_| true)?;
+/// assert_eq!(check_averaged(&torus, &equation, &found)?, 1);
+/// // dpsi/dt = 1 + eps 3/8 a^2.
+/// assert!(format!("{:?}", found.phase_rate[1]).contains("3/8"));
+/// # Ok::<(), lindstedt_expand::ExpandError>(())
+/// ```
 pub fn average<A: AveragingAlgebra>(
     algebra: &A,
     equation: &Equation<A>,

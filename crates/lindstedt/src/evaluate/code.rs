@@ -23,6 +23,7 @@ type Term = (usize, f64, f64);
 
 /// A solution as a function of time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct SolutionCode {
     /// The language.
     pub language: Language,

@@ -17,7 +17,7 @@ use lindstedt_equation::{Condition, Expression};
 use lindstedt_evaluation::setting::Setting;
 pub use lindstedt_evaluation::{
     Displacement, Displacements, Evaluation, Fourier, Place, Question, Trajectory, kind_name,
-    method_flag, method_name, rounded, with_error,
+    method_name, rounded, with_error,
 };
 pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;
@@ -29,6 +29,16 @@ pub use sweep::{EvaluationSweep, SweptPeriod};
 pub use times::Times;
 
 /// What to evaluate.
+///
+/// ```
+/// use lindstedt::{Error, Evaluate, Oscillator, Work};
+/// let question = Evaluate { order: Some(24), method: "pade".parse().ok(), ..Evaluate::default() };
+/// let duffing = Oscillator::builtin("duffing")?.set("eps", "1/2")?;
+/// let found = duffing.evaluate(&question, &Work::default())?.value;
+/// let period = found.period.ok_or(Error::NoValue)?;
+/// assert!(period.decimal.starts_with("5.366659355191767"));
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Evaluate {
     /// The highest order of the expansion; a quick one if nothing.

@@ -27,6 +27,7 @@ const DIGITS_OF_A_GUESS: u32 = 16;
 
 /// A periodic orbit, proved or as it was estimated before.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct ProvedOrbit {
     /// The period.
     pub period: Option<Number>,
@@ -87,6 +88,7 @@ pub enum Verdict {
 /// The bounds of the contraction test.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "UPPERCASE")]
+#[non_exhaustive]
 pub struct Bounds {
     /// How far one Newton step goes.
     pub y0: Number,

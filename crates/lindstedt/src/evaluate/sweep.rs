@@ -2,13 +2,14 @@
 
 use super::Evaluate;
 use crate::grid::{Axis, Grid};
-use crate::{Answer, Error, Exact, Number, Oscillator, Remark, Standing, Work};
-use serde::ser::SerializeMap;
-use serde::{Serialize, Serializer};
+use crate::{Answer, Error, Exact, Number, Oscillator, Remark, Work};
+use serde::Serialize;
+use serde::ser::Serializer;
 use std::time::Instant;
 
 /// The period at one point; what has not one digit is nothing.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct SweptPeriod {
     /// The period by resummation.
     pub period: Option<Number>,
@@ -16,13 +17,17 @@ pub struct SweptPeriod {
     pub frequency: Option<Number>,
     /// The period by the closed form.
     pub exact_period: Option<Number>,
+    /// The order of the expansion.
+    #[serde(skip)]
+    pub order: usize,
 }
 
 /// The period at every point, or why there is none.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct EvaluationSweep {
     /// The points.
-    pub grid: Grid<Result<SweptPeriod, String>>,
+    pub grid: Grid<Result<SweptPeriod, Error>>,
 }
 
 impl Oscillator {
@@ -50,80 +55,44 @@ impl Oscillator {
         work: &Work,
     ) -> Result<Answer<EvaluationSweep>, Error> {
         let start = Instant::now();
-        let names = [Some(columns.name.clone()), rows.as_ref().map(|axis| axis.name.clone())];
-        let silent = Work { progress: None, ..work.clone() };
-        let point = |x: &Exact, y: Option<&Exact>| {
-            let values = [Some(x), y].into_iter().zip(&names);
-            let pairs = values.filter_map(|(value, name)| Some((name.as_deref()?, value?.clone())));
-            let case = pairs.fold(self.clone(), |case, (name, value)| case.with(name, value));
-            let (case, _) = case.settled()?;
-            case.period(question, &silent)
-        };
-        let grid = Grid::compute(columns, rows, work, point);
-        let order = grid.points.iter().flatten().find_map(|found| Some(found.as_ref().ok()?.order));
-        let plain = |found: Result<super::Evaluation, Error>| match found {
-            Ok(found) => Ok(SweptPeriod {
-                period: found.period,
-                frequency: found.frequency,
-                exact_period: found.exact_period,
-            }),
-            Err(error) => Err(error),
-        };
-        let (done, complete) = (grid.done(), grid.is_complete());
-        let mut points = Vec::with_capacity(grid.points.len());
-        let mut refused: Option<Error> = None;
-        let mut without = 0;
-        for found in grid.points {
-            let found = found.map(plain);
-            without += usize::from(!matches!(&found, Some(Ok(found)) if found.period.is_some()));
-            points.push(found.map(|found| {
-                found.map_err(|error| {
-                    let text = error.to_string();
-                    refused.get_or_insert(error);
-                    text
-                })
-            }));
+        let grid: Grid<Result<_, Error>> =
+            Grid::of_cases(self, columns, rows, work, |case, work| {
+                let found = case.settled()?.0.period(question, work)?;
+                let (period, frequency) = (found.period, found.frequency);
+                let (exact_period, order) = (found.exact_period, found.order);
+                Ok(SweptPeriod { period, frequency, exact_period, order })
+            });
+        let found = || grid.points.iter().flatten();
+        let order = found().find_map(|point| Some(point.as_ref().ok()?.order));
+        if let (None, Some(Err(error))) = (order, found().next()) {
+            return Err(error.clone());
         }
-        if let Some(error) = refused.filter(|_| order.is_none()) {
-            return Err(error);
-        }
+        let with = found().filter(|point| matches!(point, Ok(point) if point.period.is_some()));
+        let (all, without) = (grid.points.len(), grid.points.len() - with.count());
         let mut remarks = self.remarks().to_vec();
         if without > 0 {
-            let all = points.len();
             remarks.push(Remark(format!("{without} of {all} points have no period with a digit")));
         }
-        let standing = if complete { Standing::Complete } else { Standing::Stopped { done } };
-        let grid = Grid { columns: grid.columns, rows: grid.rows, points };
+        let standing = grid.standing();
         let header = self.header(self.given_text(), order, "resummation", start);
         Ok(Answer { header, value: EvaluationSweep { grid }, standing, remarks })
     }
 }
 
-#[derive(Serialize)]
-struct Point<'a> {
-    values: Vec<String>,
-    #[serde(flatten)]
-    found: Option<&'a SweptPeriod>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    refused: Option<&'a str>,
-}
-
-impl<'a> Point<'a> {
-    fn new(at: (&Exact, Option<&Exact>, Option<&'a Result<SweptPeriod, String>>)) -> Self {
-        let (x, y, found) = at;
-        let values = std::iter::once(x).chain(y).map(ToString::to_string).collect();
-        let refused = found.and_then(|found| found.as_ref().err()).map(String::as_str);
-        Self { values, found: found.and_then(|found| found.as_ref().ok()), refused }
-    }
-}
-
 impl Serialize for EvaluationSweep {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let points: Vec<Point<'_>> = self.grid.iter().map(Point::new).collect();
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("columns", &self.grid.columns)?;
-        map.serialize_entry("rows", &self.grid.rows)?;
-        map.serialize_entry("points", &points)?;
-        map.end()
+        #[derive(Serialize)]
+        struct Point<'a> {
+            values: Vec<&'a Exact>,
+            #[serde(flatten)]
+            found: Option<&'a SweptPeriod>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            refused: Option<String>,
+        }
+        self.grid.serialize_with(serializer, |x, y, point| {
+            let refused = point.and_then(|point| Some(point.as_ref().err()?.to_string()));
+            let found = point.and_then(|point| point.as_ref().ok());
+            Point { values: [x].into_iter().chain(y).collect(), found, refused }
+        })
     }
 }

@@ -4,6 +4,7 @@ use crate::refusal::Refused;
 use crate::{Error, Exact};
 use lindstedt_number::ball::Balls;
 use rug::Rational;
+use std::str::FromStr;
 
 /// The most times of one table.
 const MOST_TIMES: u32 = 100_000;
@@ -38,6 +39,14 @@ fn rational(text: &str) -> Result<Rational, Error> {
     let value = Exact::parse(text)?;
     let nearest = || value.ball(Balls::new(200)).midpoint().to_rational();
     value.as_rational().cloned().or_else(nearest).ok_or_else(|| usage(text))
+}
+
+impl FromStr for Times {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        Self::parse(text)
+    }
 }
 
 impl Times {

@@ -19,6 +19,7 @@ pub(super) struct Pair {
 
 /// A state at a time.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct State {
     /// t.
     pub t: Number,
@@ -35,6 +36,7 @@ pub struct State {
 
 /// An event.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Event {
     /// `impact`, `accumulation`, `rest`, `departure`, `stick`, `slip`, `switch`.
     pub kind: &'static str,
@@ -53,6 +55,7 @@ pub struct Event {
 
 /// The points of a section.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Points {
     /// Which.
     pub kind: Section,
@@ -69,6 +72,7 @@ fn places<S: Serializer>(points: &[State], serializer: S) -> Result<S::Ok, S::Er
 
 /// What was started from.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Begin {
     /// x(0): as it was given, else a few digits.
     pub x: String,
@@ -80,6 +84,7 @@ pub struct Begin {
 
 /// Infinitely many impacts in a finite time.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Rest {
     /// Where they accumulate.
     pub t: Number,
@@ -89,6 +94,7 @@ pub struct Rest {
 
 /// How far deviations from the periodic orbit tell of its stability.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct LinearRegime {
     /// Impacts at which they are linear in the perturbation, and no rounding errors.
     pub impacts: usize,
@@ -98,6 +104,7 @@ pub struct LinearRegime {
 
 /// What the integration cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Steps {
     /// Steps taken.
     pub steps: u64,
@@ -109,6 +116,7 @@ pub struct Steps {
 
 /// The result of [`Oscillator::motion`](crate::Oscillator::motion).
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Motion {
     /// The digits asked for.
     pub digits: u32,

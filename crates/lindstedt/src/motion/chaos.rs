@@ -56,6 +56,7 @@ impl Default for Chaos {
 
 /// The largest Lyapunov exponent.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Exponent {
     /// Its value; minus infinity where every perturbation is forgotten.
     #[serde(flatten)]
@@ -70,6 +71,7 @@ pub struct Exponent {
 
 /// The 0-1 test of every m-th point.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Test {
     /// K: 0 for regular, 1 for chaotic motion.
     #[serde(flatten)]
@@ -84,6 +86,7 @@ pub struct Test {
 
 /// The 0-1 tests.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct ZeroOneTest {
     /// What is tested.
     pub series: &'static str,
@@ -95,6 +98,7 @@ pub struct ZeroOneTest {
 
 /// The result of [`Oscillator::chaos`].
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Diagnosis {
     /// Those of doubles.
     pub digits: u32,

@@ -48,6 +48,7 @@ impl Bifurcation {
 
 /// The points over one value, or why there are none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Column {
     /// The value.
     pub value: f64,
@@ -81,6 +82,7 @@ impl Journal for () {
 
 /// What was swept.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Swept {
     /// The parameter.
     pub parameter: String,
@@ -98,6 +100,7 @@ pub struct Swept {
 
 /// The result of [`Oscillator::bifurcation`].
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Diagram {
     /// None: a section of a motion with perturbations that grow is typical of it.
     pub digits: Option<u32>,
@@ -127,6 +130,17 @@ impl Oscillator {
     /// # Errors
     /// [`Refused`] for a parameter that cannot be varied and for a section that there is not. A motion
     /// that fails is a column with its reason.
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, Work, motion::Bifurcation};
+    /// let question = Bifurcation { skipped: 20, kept: 3, ..Bifurcation::over("gamma=0.3..0.4:2") };
+    /// let (belt, work) = (Oscillator::builtin("stick-slip")?, Work::default());
+    /// let columns = belt.bifurcation(&question, &work)?.value.sweep.columns;
+    /// assert!(columns.iter().all(|column| column.points.len() == 3));
+    /// // With a journal that keeps nothing it is the same.
+    /// assert_eq!(belt.bifurcation_resumed(&question, &work, &mut ())?.value.sweep.columns, columns);
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
     pub fn bifurcation(
         &self,
         question: &Bifurcation,

@@ -105,6 +105,15 @@ pub enum View {
 }
 
 /// The question for a motion.
+///
+/// ```
+/// use lindstedt::{Oscillator, Simulate, Work, motion::End};
+/// let ball = Oscillator::builtin("vibro-impact")?;
+/// let question = Simulate { end: Some(End::Impacts(1)), ..Simulate::default() };
+/// let motion = ball.motion(&question, &Work { digits: 8, ..Work::default() })?.value;
+/// assert_eq!(motion.events[0].t.decimal, "1.9039955");
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Simulate {
     /// Where it starts.

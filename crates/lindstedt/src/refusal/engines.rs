@@ -188,6 +188,40 @@ impl Refusal for ImpactError {
     }
 }
 
+impl Refusal for lindstedt_orbit::Failure {
+    fn parts(&self) -> (Kind, &'static str, String) {
+        use lindstedt_orbit::Failure;
+        let estimates = "`evaluate` without --prove estimates it; a closed form is certified there";
+        let (kind, code, hint) = match self {
+            Failure::Stopped => (Stopped, "interrupted", ""),
+            Failure::NoValue(_) => (Usage, "no-value-set", "--set NAME=VALUE, for example 1/10"),
+            Failure::Singular { .. }
+            | Failure::NotConverged { .. }
+            | Failure::NoContraction { .. }
+            | Failure::Residual { .. }
+            | Failure::NoPeriod { .. } => (Undecided, "could-not-decide", ""),
+            _ => (NoAnswer, "no-proof", estimates),
+        };
+        (kind, code, hint.to_owned())
+    }
+}
+
+impl Refusal for lindstedt_recognise::Refusal {
+    fn parts(&self) -> (Kind, &'static str, String) {
+        use lindstedt_recognise::Refusal;
+        let (kind, code, hint) = match self {
+            Refusal::MissingValues { .. } => {
+                (Usage, "missing-value", "give it under [parameters] or with --set NAME=VALUE")
+            }
+            Refusal::Periods { .. } => (Usage, "parameter", "k = 1, 2, ..."),
+            Refusal::TooManyTerms { .. } => (Undecided, "too-large", ""),
+            Refusal::Melnikov(error) => return error.parts(),
+            _ => (NoAnswer, "no-method", "`lindstedt problems --show FILE` lists the methods"),
+        };
+        (kind, code, hint.to_owned())
+    }
+}
+
 impl Refusal for MelnikovError {
     fn parts(&self) -> (Kind, &'static str, String) {
         let (kind, code, hint) = match self {

@@ -22,6 +22,7 @@ const FLIP_POINTS: usize = 201;
 
 /// Prediction and truth over one or two parameters, in doubles.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Chart {
     /// The verdicts; nothing where the work was stopped.
     pub grid: Grid<Point>,
@@ -41,6 +42,7 @@ pub struct Chart {
 
 /// Counts of a comparison.
 #[derive(Clone, Copy, Debug, Default)]
+#[non_exhaustive]
 pub struct LeftOutAndAgreement {
     /// Of the points that were compared.
     pub agreement: Agreement,

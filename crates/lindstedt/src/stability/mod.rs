@@ -111,6 +111,7 @@ impl Stability {
 /// The answer about an impact orbit. Certified, or estimated in doubles; what is estimated in both
 /// says so.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct OrbitStability {
     /// The parameters of the form above, where they are not those of the problem.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "as_map")]
@@ -134,6 +135,7 @@ pub struct OrbitStability {
 
 /// Why there is no stability to speak of.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct NoOrbit {
     /// `no-orbit`, or `undecided` where the flight touches the wall.
     pub code: &'static str,

@@ -43,6 +43,7 @@ pub type Multiplier = [Number; 2];
 
 /// The orbit of the true system.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct TrueOrbit {
     /// Whether it exists; nothing where the flight touches the wall.
     pub exists: Option<bool>,
@@ -74,6 +75,7 @@ pub struct TrueOrbit {
 
 /// The orbit of the averaged flow.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct PredictedOrbit {
     /// Yes.
     pub exists: bool,
@@ -91,6 +93,7 @@ pub struct PredictedOrbit {
 
 /// What averaging predicts.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Predicted {
     /// The order of the flow.
     pub order: usize,
@@ -151,6 +154,7 @@ pub enum Aware {
 
 /// The truth about the delayed system.
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub struct Truth {
     /// The verdict; nothing where undecided or neutral.
     pub stable: Option<bool>,
@@ -175,6 +179,7 @@ pub struct Truth {
 
 /// Growth of the return map by iteration.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct ReturnMap {
     /// The factor per impact.
     pub growth_per_impact: f64,

@@ -50,6 +50,7 @@ pub struct Threshold {
 /// The threshold of an oscillator. Closed forms are certified; orbits that are followed
 /// numerically and quadratures are estimated.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct HomoclinicThreshold {
     /// gamma_c: of several orbits the least.
     pub gamma_c: Number,
@@ -96,6 +97,7 @@ pub struct HomoclinicThreshold {
 
 /// The lowest harmonic force in the symbols of the problem.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Harmonic {
     /// cos(omega t + phase), or with a factor x.
     pub term: String,
@@ -112,6 +114,7 @@ pub struct Harmonic {
 
 /// The parameter of a list of zeros.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct ZerosOf {
     /// Its name.
     pub parameter: String,
@@ -121,6 +124,7 @@ pub struct ZerosOf {
 
 /// Where the belt is as fast as the mass on its loop.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Cusp {
     /// |v*| = V.
     pub vstar: Number,
@@ -132,6 +136,7 @@ pub struct Cusp {
 
 /// The threshold on one orbit.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Orbit {
     /// Which; with its saddle where there are several.
     pub name: String,
@@ -147,6 +152,7 @@ pub struct Orbit {
 
 /// A resonance of period 2 pi m/omega.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Resonance {
     /// m.
     pub m: u32,
@@ -190,6 +196,7 @@ impl Crossing {
 
 /// What first order is worth.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Validity {
     /// In words.
     pub verdict: &'static str,

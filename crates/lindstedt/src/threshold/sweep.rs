@@ -22,6 +22,7 @@ pub(super) const MOST_CURVES: usize = 12;
 
 /// The signed threshold along one parameter or over two.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Sweep {
     /// The doubles nearest to the values, and nothing where there is no value.
     pub grid: Grid<f64>,
@@ -35,6 +36,7 @@ pub struct Sweep {
 
 /// Points without a value, for one reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Blank {
     /// In words.
     pub reason: String,
@@ -44,6 +46,7 @@ pub struct Blank {
 
 /// The marked points of one curve.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Marks {
     /// The v* where the threshold vanishes.
     pub zeros: Vec<f64>,

@@ -13,6 +13,7 @@ const MEMORY: &str = "estimated: numbers kept at once times their size";
 
 /// The result of [`crate::Oscillator::trade`].
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Trade {
     /// The problem, whose equation is printed as a formula.
     #[serde(skip)]
@@ -107,6 +108,7 @@ pub struct Row {
 
 /// A run that was not made.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct LeftOut {
     /// The method.
     #[serde(flatten)]
@@ -148,6 +150,7 @@ fn in_words<S: Serializer>(reason: &Reason, serializer: S) -> Result<S::Ok, S::E
 
 /// The rows for what was asked for.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Recommendation {
     /// The relative error asked for.
     pub error: Option<f64>,

@@ -1,7 +1,6 @@
 //! The routes to a period.
 
 use super::Plan;
-use crate::evaluate::method_flag;
 use lindstedt_equation::{AmplitudeRole, Problem};
 use lindstedt_series::resummation;
 
@@ -139,7 +138,7 @@ impl Summation {
     pub fn name(&self) -> &'static str {
         match self {
             Self::PartialSum => "none",
-            Self::Resummed(method) => method_flag(*method),
+            Self::Resummed(method) => method.name(),
         }
     }
 }

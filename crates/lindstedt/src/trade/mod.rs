@@ -41,6 +41,14 @@ use std::time::Instant;
 use truth::Truth;
 
 /// What is run.
+///
+/// ```
+/// use lindstedt::{Oscillator, Work, trade::Plan};
+/// let plan = Plan { orders: vec![4], digits: vec![16], harmonics: vec![], repeats: 1, ..Plan::default() };
+/// let trade = Oscillator::builtin("duffing")?.set("eps", "1/10")?.trade(&plan, &Work::default())?.value;
+/// assert!(trade.rows.iter().any(|row| row.true_error < 1e-6));
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Orders of the series.

@@ -1,8 +1,8 @@
 //! Averaged expansions against the time domain: x_N(t) by the truncated rates of a and psi.
 
 use super::{Comparison, Verify};
-use crate::averaging::AveragingSettings;
 use crate::{Error, Oscillator, Progress};
+use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::averaging::numbers::{Numbers, numbers};
 use lindstedt_derivation::{DerivationError, all_values};
 use lindstedt_equation::Expression;

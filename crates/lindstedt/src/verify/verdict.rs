@@ -11,6 +11,7 @@ pub const TOLERANCE: f64 = 0.05;
 
 /// The comparison at one value of the small parameter.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Comparison {
     /// The value.
     pub small: Rational,
@@ -71,6 +72,7 @@ pub enum Verdict {
 
 /// The result of [`crate::Oscillator::verify`].
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Verification {
     /// The name of the small parameter.
     pub parameter: String,

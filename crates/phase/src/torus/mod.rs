@@ -46,6 +46,14 @@ pub struct Delay<E> {
 /// The algebra over a ring K of numbers or parameters, with the rates omega_0 of psi and omega of eta at
 /// order zero and the delays T_j: what averaging needs ([`AveragingAlgebra`]). Exact over an exact K; over
 /// balls every coefficient is an enclosure.
+///
+/// ```
+/// use lindstedt_algebra::{Rationals, Ring};
+/// use lindstedt_phase::Torus;
+/// use rug::Rational;
+/// let torus = Torus::new(Rationals, Rational::from(1), None, Vec::new());
+/// assert!(torus.is_zero(&torus.add(&torus.one(), &torus.neg(&torus.one()))));
+/// ```
 #[derive(Clone, Debug)]
 pub struct Torus<K: RationalAlgebra> {
     constants: AmplitudePolynomials<K>,

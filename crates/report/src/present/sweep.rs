@@ -6,44 +6,37 @@ use crate::{Document, Figure, Table};
 use lindstedt::evaluate::{EvaluationSweep, SweptPeriod};
 use lindstedt::{Answer, Number};
 
-/// The names of the axes, then those of the values.
-fn head(sweep: &EvaluationSweep, values: &[&str]) -> Table {
-    let axes = std::iter::once(&sweep.grid.columns).chain(&sweep.grid.rows);
-    Table::new(axes.map(|axis| axis.name.as_str()).chain(values.iter().copied()))
-}
-
-/// A table with the cells of each point; of one that was refused the reason stands in the first.
-fn filled<const N: usize>(
+/// A row for every point: its values, and its cells; of one that was refused the reason is in the cell of
+/// that index.
+fn table<const N: usize>(
     sweep: &EvaluationSweep,
-    table: Table,
+    names: [&str; N],
+    refused: usize,
     cells: impl Fn(&SweptPeriod) -> [String; N],
-    refused: impl Fn(&str) -> [String; N],
 ) -> Table {
+    let axes = [&sweep.grid.columns].into_iter().chain(&sweep.grid.rows);
+    let table = Table::new(axes.map(|axis| axis.name.as_str()).chain(names));
     sweep.grid.iter().fold(table, |table, (x, y, found)| {
+        let without = |reason: String| {
+            std::array::from_fn(|n| if n == refused { reason.clone() } else { String::new() })
+        };
         let cells = match found {
-            None => refused("not reached"),
-            Some(Err(reason)) => refused(reason),
+            None => without("not reached".to_owned()),
+            Some(Err(error)) => without(error.to_string()),
             Some(Ok(found)) => cells(found),
         };
-        let values = std::iter::once(x).chain(y).map(ToString::to_string);
-        table.row(values.chain(cells))
+        table.row([x].into_iter().chain(y).map(ToString::to_string).chain(cells))
     })
 }
 
 fn shown(number: Option<&Number>) -> String {
-    match number {
-        None => "not one digit".to_owned(),
-        Some(Number { decimal, error: Some(error), .. }) => format!("{decimal} +- {error}"),
-        Some(Number { decimal, .. }) => format!("{decimal} (no estimate)"),
-    }
+    number.map_or_else(|| "not one digit".to_owned(), ToString::to_string)
 }
 
-fn decimal(number: Option<&Number>) -> String {
-    number.map(|number| number.decimal.clone()).unwrap_or_default()
-}
-
-fn error(number: Option<&Number>) -> String {
-    number.and_then(|number| number.error.clone()).unwrap_or_default()
+/// Its decimal and its error, empty where there is none.
+fn parts(number: Option<&Number>) -> [String; 2] {
+    let error = |number: &Number| number.error.clone().unwrap_or_default();
+    number.map_or_else(Default::default, |number| [number.decimal.clone(), error(number)])
 }
 
 fn title(answer: &Answer<EvaluationSweep>) -> String {
@@ -53,22 +46,19 @@ fn title(answer: &Answer<EvaluationSweep>) -> String {
 
 impl Present for Answer<EvaluationSweep> {
     fn document(&self) -> Document {
-        let values = ["period", "frequency", "exact period"];
-        let cells = |found: &SweptPeriod| {
-            let exact = decimal(found.exact_period.as_ref());
+        let names = ["period", "frequency", "exact period"];
+        Document::titled(title(self)).table(table(&self.value, names, 0, |found| {
+            let [exact, _] = parts(found.exact_period.as_ref());
             [shown(found.period.as_ref()), shown(found.frequency.as_ref()), exact]
-        };
-        let refused = |reason: &str| [reason.to_owned(), String::new(), String::new()];
-        let page = Document::titled(title(self));
-        page.table(filled(&self.value, head(&self.value, &values), cells, refused))
+        }))
     }
 
     /// The period over the first parameter, a curve for every value of the second.
     fn figure(&self) -> Option<Figure> {
         let grid = &self.value.grid;
-        let across = Axis::linear(grid.columns.name.as_str());
-        let frame = Figure::new(title(self), across, Axis::linear("period"));
-        let rows = grid.points.chunks(grid.columns.values.len().max(1)).enumerate();
+        let frame =
+            Figure::new(title(self), Axis::linear(&*grid.columns.name), Axis::linear("period"));
+        let rows = grid.points.chunks(grid.width()).enumerate();
         Some(rows.fold(frame, |frame, (index, row)| {
             let colour = colours::CYCLE[index % colours::CYCLE.len()];
             let value = grid.rows.as_ref().and_then(|axis| axis.values.get(index).zip(Some(axis)));
@@ -85,24 +75,11 @@ impl Present for Answer<EvaluationSweep> {
     fn table(&self) -> Option<Table> {
         let names =
             ["period", "period_error", "frequency", "frequency_error", "exact_period", "refused"];
-        let cells = |found: &SweptPeriod| {
-            let SweptPeriod { period, frequency, exact_period } = found;
-            let (period, frequency) = (period.as_ref(), frequency.as_ref());
-            let exact = decimal(exact_period.as_ref());
-            [
-                decimal(period),
-                error(period),
-                decimal(frequency),
-                error(frequency),
-                exact,
-                String::new(),
-            ]
-        };
-        let refused = |reason: &str| {
-            let mut cells: [String; 6] = Default::default();
-            cells[5] = reason.to_owned();
-            cells
-        };
-        Some(filled(&self.value, head(&self.value, &names), cells, refused))
+        Some(table(&self.value, names, 5, |found| {
+            let [period, period_error] = parts(found.period.as_ref());
+            let [frequency, frequency_error] = parts(found.frequency.as_ref());
+            let [exact, _] = parts(found.exact_period.as_ref());
+            [period, period_error, frequency, frequency_error, exact, String::new()]
+        }))
     }
 }

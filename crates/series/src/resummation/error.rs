@@ -40,6 +40,12 @@ pub enum ResummationError {
     /// The approximants have a pole at the point or do not exist.
     #[error("the approximants are not defined at the point")]
     Undefined,
+    /// No method has this name.
+    #[error("there is no method of resummation {found:?}")]
+    UnknownMethod {
+        /// The name, at most 60 characters of it.
+        found: String,
+    },
     /// It was told to stop.
     #[error("stopped before the sum was finished")]
     Stopped,

@@ -9,8 +9,16 @@ use super::{Estimate, Growth, Map, Pade, ResummationError, Singularity, growth, 
 use lindstedt_algebra::Stop;
 use rug::Float;
 use rug::float::Special;
+use std::fmt;
+use std::str::FromStr;
 
 /// A way from coefficients to a value.
+///
+/// ```
+/// use lindstedt_series::resummation::Method;
+/// assert_eq!("borel-pade".parse(), Ok(Method::BorelPade));
+/// assert_eq!(Method::PartialSum.to_string(), "none");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Method {
@@ -29,7 +37,37 @@ pub enum Method {
     BorelPade,
 }
 
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Method {
+    type Err = ResummationError;
+
+    fn from_str(text: &str) -> Result<Self, ResummationError> {
+        let found = || text.chars().take(60).collect();
+        let method = Self::ALL.into_iter().find(|method| method.name() == text);
+        method.ok_or_else(|| ResummationError::UnknownMethod { found: found() })
+    }
+}
+
 impl Method {
+    /// Its name in questions and results: `none`, `pade`, `uniform`, `uniform-pade`, `conformal`,
+    /// `borel-pade`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::PartialSum => "none",
+            Self::Pade => "pade",
+            Self::Uniform => "uniform",
+            Self::UniformPade => "uniform-pade",
+            Self::ConformalPade => "conformal",
+            Self::BorelPade => "borel-pade",
+        }
+    }
+
     /// All of them, in the order in which `auto` prefers them among equals.
     pub const ALL: [Self; 6] = [
         Self::PartialSum,
