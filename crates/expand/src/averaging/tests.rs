@@ -86,7 +86,7 @@ fn both(
 
 #[test]
 fn the_root_is_what_the_general_scheme_derives() {
-    let order = 4;
+    let order = 3;
     let [linear, judge] = both(&delay_loop(Expression::integer(0)), order).unwrap();
     assert_eq!(linear.amplitude_rate, judge.amplitude_rate);
     assert_eq!(linear.phase_rate, judge.phase_rate);
@@ -96,6 +96,18 @@ fn the_root_is_what_the_general_scheme_derives() {
     let products: Vec<u64> = linear.work.iter().map(|work| work.products).collect();
     assert_eq!(products.len(), order);
     assert!(products.iter().zip(1u64..).all(|(p, n)| *p <= 6 * n + 6), "{products:?}");
+}
+
+/// Orders at which every weight of the recurrence of G has a part, in two symbols less.
+#[test]
+fn the_same_to_order_six() {
+    let (x, symbol) = (Expression::DISPLACEMENT, Expression::parameter);
+    let force = symbol("A") * x.clone().delayed(symbol("T")) - symbol("c") * Expression::VELOCITY;
+    let equation =
+        Expression::ACCELERATION + symbol("alpha").pow(2) * x - Expression::Small * force;
+    let [linear, judge] = both(&equation, 6).unwrap();
+    assert_eq!(linear.amplitude_rate, judge.amplitude_rate);
+    assert_eq!(linear.phase_rate, judge.phase_rate);
 }
 
 #[test]
