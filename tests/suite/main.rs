@@ -17,5 +17,6 @@ mod numeric;
 mod paper;
 mod paper_section_2;
 mod problem_files;
+mod respond;
 mod small_delta;
 mod vibro_impact;

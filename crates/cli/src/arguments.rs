@@ -25,6 +25,8 @@ pub enum Command {
     Evaluate(EvaluateOptions),
     /// The Melnikov threshold of homoclinic chaos: value, zeros, cusps, curves, surfaces.
     Threshold(ThresholdOptions),
+    /// Steady states at resonance: response curves, folds, stability; all states, their number proved.
+    Respond(RespondOptions),
     /// Stability of the vibro-impact orbit: the averaged prediction beside the exact truth, charts.
     Stability(StabilityOptions),
     /// Speed against accuracy: every tier at every order and precision, timed, beside the truth.
@@ -232,6 +234,31 @@ pub struct ThresholdOptions {
     pub plot: Vec<PathBuf>,
     #[command(flatten)]
     pub precision: Precision,
+}
+
+#[derive(Debug, Args)]
+pub struct RespondOptions {
+    /// A built-in name, the path of a problem file (.toml), or an equation in quotes.
+    pub problem: String,
+    /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, 2.5e-3).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// The parameter that varies, in COUNT steps at least; two: folds and Hopf points in their plane; none: all states at the
+    /// values set.
+    #[arg(long, value_name = "NAME=LO..HI[:COUNT]")]
+    pub sweep: Vec<String>,
+    /// Orders of the slow flow.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=60))]
+    pub order: u32,
+    /// The largest amplitude looked at; by default one that has all states of the first order.
+    #[arg(long = "box", value_name = "AMPLITUDE")]
+    pub amplitude: Option<String>,
+    /// x and x' at t = 0: which state does the motion go to?
+    #[arg(long, value_name = "X,V", allow_hyphen_values = true)]
+    pub start: Option<String>,
+    /// A figure (.svg) or a table (.csv) of the sweep; may be given twice.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -9,6 +9,7 @@ mod failure;
 mod output;
 mod paper;
 mod problems;
+mod respond;
 mod session;
 mod simulate;
 mod stability;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Threshold(options) => threshold::run(options, &session),
         Command::Simulate(options) => simulate::run(options, &session),
         Command::Verify(options) => verify::run(options, &session),
+        Command::Respond(options) => respond::run(options, &session),
         Command::Stability(options) => stability::run(options, &session),
         Command::Trade(options) => trade::run(options, &session),
         Command::Paper(options) => paper::run(options, &session),

@@ -8,6 +8,7 @@
 //! | [`period()`] | the sum of that series |
 //! | [`Trajectory`] | x(t), summed phase by phase |
 //! | [`averaged`] | a(t), psi(t), x(t) of an averaged oscillator |
+//! | [`rotating`] | a slow flow at resonance in the frame in which it is autonomous |
 //!
 //! What is summed is estimated, with its error; closed forms ([`closed`]) are certified.
 
@@ -24,6 +25,7 @@ mod fourier;
 mod json;
 mod names;
 mod period;
+pub mod rotating;
 pub mod setting;
 mod solution;
 pub mod source;

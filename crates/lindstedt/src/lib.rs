@@ -43,6 +43,7 @@ pub mod numeric {
 mod oscillator;
 pub mod refusal;
 mod resonance;
+pub mod respond;
 pub mod stability;
 pub mod start;
 pub mod threshold;
@@ -74,6 +75,7 @@ pub use motion::Simulate;
 pub use oscillator::Oscillator;
 pub use refusal::{Kind, Refusal, Refused};
 pub use resonance::Averaged;
+pub use respond::Respond;
 pub use stability::Stability;
 pub use threshold::Threshold;
 pub use verify::Verify;

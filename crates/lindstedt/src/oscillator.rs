@@ -211,6 +211,12 @@ impl Oscillator {
         self
     }
 
+    /// The same oscillator with a parameter as its card has it.
+    pub(crate) fn without(mut self, name: &str) -> Self {
+        self.values.remove(name);
+        self
+    }
+
     /// The same oscillator under another condition. Averaging needs nothing of an equation that was
     /// written for a constant amplitude, so a free one need not be listed; what the amplitude is under
     /// the others only the file can say.

@@ -137,6 +137,14 @@ fn first_missing<'a>(expected: &[&'a str], text: &str) -> Option<&'a str> {
     expected.iter().copied().find(|line| !lines.any(|shown| shown.contains(line.trim_end())))
 }
 
+/// The words of a command; what stands in quotes is one.
+fn words(command: &str) -> impl Iterator<Item = &str> {
+    command.split('"').enumerate().flat_map(|(n, part)| match n % 2 {
+        0 => part.split_whitespace().collect(),
+        _ => vec![part],
+    })
+}
+
 #[test]
 fn console_blocks_show_what_the_program_prints() -> Outcome {
     let mut wrong = Vec::new();
@@ -150,7 +158,7 @@ fn console_blocks_show_what_the_program_prints() -> Outcome {
             let command = command.ok_or("a console block starts with $ lindstedt")?;
             if !outputs.contains_key(command) {
                 let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
-                    .args(command.split_whitespace())
+                    .args(words(command))
                     .current_dir(root())
                     .output()?;
                 let mut shown = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -17,6 +17,8 @@ pub struct Course {
     pub parameter: usize,
     /// Its range.
     pub range: [f64; 2],
+    /// Another variable with a range.
+    pub second: Option<(usize, [f64; 2])>,
     /// The first so many rows and variables are a vector field: its eigenvalues are the exponents.
     pub unknowns: usize,
     /// The branch ends where |x_i| exceeds this, for the unknowns; their unit, too.
@@ -59,6 +61,13 @@ pub struct Branch {
     pub closed: bool,
     /// Whether it was followed to the ends of the range or the reach on both sides.
     pub complete: bool,
+}
+
+/// A solution of a square system with its exponents.
+#[must_use]
+pub fn state_at(system: &System, at: &[f64]) -> Point {
+    let (_, slopes) = system.derivatives(at);
+    Point { at: at.to_vec(), exponents: eigenvalues(at.len(), &slopes), change: None }
 }
 
 /// The eigenvalues of a row-major matrix.
@@ -113,8 +122,11 @@ pub fn follow(system: &System, start: &[f64], course: &Course) -> Option<Branch>
     if system.rows() + 1 != n || start.len() != n || course.parameter >= n {
         return None;
     }
-    let width = course.range[1] - course.range[0];
-    let units = (0..n).map(|i| if i == course.parameter { width } else { course.reach });
+    let units = (0..n).map(|i| match course.second {
+        _ if i == course.parameter => course.range[1] - course.range[0],
+        Some((other, [low, high])) if i == other => high - low,
+        _ => course.reach,
+    });
     let tracer = Tracer { system, course, units: units.collect() };
     let first = tracer.first(start)?;
     let (mut points, end) = tracer.trace(&first, course.most);
@@ -228,8 +240,13 @@ impl Tracer<'_> {
             }
             if let Some(edge) = self.edge(&to) {
                 let last = self.at_edge(&from, &to, edge);
-                points.extend(self.changes(&from, length, &last));
-                points.push(last.point);
+                // A start at the edge is its own end.
+                let moved =
+                    last.scaled.iter().zip(&from.scaled).any(|(a, b)| (a - b).abs() > 1e-12);
+                if moved {
+                    points.extend(self.changes(&from, length, &last));
+                    points.push(last.point);
+                }
                 return (points, End::Edge);
             }
             points.extend(self.changes(&from, length, &to));
@@ -259,6 +276,11 @@ impl Tracer<'_> {
         let [low, high] = course.range;
         if !(low..=high).contains(&parameter) {
             return Some((course.parameter, parameter.clamp(low, high)));
+        }
+        if let Some((other, [low, high])) = course.second
+            && !(low..=high).contains(&state.point.at[other])
+        {
+            return Some((other, state.point.at[other].clamp(low, high)));
         }
         let far = (0..course.unknowns).find(|i| state.point.at[*i].abs() > course.reach)?;
         Some((far, course.reach.copysign(state.point.at[far])))
@@ -312,13 +334,15 @@ impl Tracer<'_> {
     /// The zero of a function along a step, by regula falsi (Illinois) on its length.
     fn locate(&self, from: &State, length: f64, test: Test<'_>) -> Option<(f64, State)> {
         let (mut low, mut high) = (0.0, length);
-        let (mut at_low, mut at_high) = (test(from), test(&self.step(from, length)?.0));
-        let mut last = None;
+        let far = self.step(from, length)?.0;
+        let (mut at_low, mut at_high) = (test(from), test(&far));
+        let mut last = Some((length, far));
         let mut kept = 0i32;
         for _ in 0..60 {
             let middle = (low * at_high - high * at_low) / (at_high - at_low);
             let middle = if middle > low && middle < high { middle } else { 0.5 * (low + high) };
-            let (state, _) = self.step(from, middle)?;
+            // Where branches cross, Newton's method ends a little before the point.
+            let Some((state, _)) = self.step(from, middle) else { break };
             let value = test(&state);
             last = Some((middle, state));
             if value == 0.0 || high - low < 1e-13 * length {

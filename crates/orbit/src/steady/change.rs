@@ -67,6 +67,23 @@ impl Flow {
         (0..at.len()).all(|i| near(&i)).then_some(zero)
     }
 
+    /// Whether a point at which the parameter turns back is one where branches cross: G_p lies in the range of G_w, within
+    /// rounding.
+    pub(crate) fn is_crossing(&self, values: &[Option<Exact>], at: &[f64]) -> bool {
+        let n = self.unknowns();
+        let system = self.system(values);
+        if system.variables() != n + 1 || at.len() != n + 1 {
+            return false;
+        }
+        let (_, slopes) = system.derivatives(at);
+        let jacobian = DMatrix::from_fn(n, n, |i, j| slopes[i * (n + 1) + j]);
+        let by_parameter = DVector::from_fn(n, |i, _| slopes[i * (n + 1) + n]);
+        let size = jacobian.norm();
+        let svd = jacobian.svd(true, false);
+        let Some(left) = svd.u.as_ref() else { return false };
+        left.column(svd.singular_values.imin()).dot(&by_parameter).abs() < 1e-5 * size
+    }
+
     /// G_w.
     fn jacobian(&self, values: &[Option<Exact>], at: &[f64]) -> Option<DMatrix<f64>> {
         let n = self.unknowns();

@@ -3,9 +3,10 @@
 //!
 //! * **All** of them in a box, with proof of their number: subdivision with an interval test ([`all_zeros`]); a box
 //!   that has them all ([`bound`]).
-//! * Branches over any parameter, with the exponents of every point ([`follow`]).
+//! * Branches over any parameter, with the exponents of every point ([`follow`]); all that pass given values, closed ones
+//!   too ([`Survey`]).
 //! * Folds, Hopf points, cusps, Bogdanov-Takens points: zeros of larger polynomial systems, proved by the same test
-//!   ([`Flow::change_near`], [`Flow::on_folds`]).
+//!   ([`Flow::change_near`]); their curves over two parameters ([`Plane`]).
 //! * Where a start state goes ([`settle`]).
 //!
 //! ```
@@ -32,15 +33,19 @@ mod branch;
 mod change;
 mod flow;
 mod krawczyk;
+mod plane;
 mod polynomial;
 mod search;
 mod settle;
+mod survey;
 #[cfg(test)]
 mod tests;
 
-pub use branch::{Branch, Course, Point, follow};
+pub use branch::{Branch, Course, Point, follow, state_at};
 pub use flow::{Change, ComplexTerm, Flow};
 pub use krawczyk::{Region, Zero, zero_near};
+pub use plane::{Curve, Diagram, Plane};
 pub use polynomial::{Polynomial, System};
 pub use search::{Found, Limits, all_zeros, bound};
 pub use settle::{Fate, settle};
+pub use survey::{Located, Response, Survey};

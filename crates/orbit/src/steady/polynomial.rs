@@ -93,6 +93,7 @@ impl Mul for &Polynomial {
 /// What polynomials are evaluated over.
 pub(crate) trait Scalar: Copy + Add<Output = Self> + Mul<Output = Self> {
     const ZERO: Self;
+    const ONE: Self;
     fn integer(n: u32) -> Self;
     fn coefficient(term: &Term) -> Self;
     fn powi(self, n: u32) -> Self;
@@ -100,6 +101,7 @@ pub(crate) trait Scalar: Copy + Add<Output = Self> + Mul<Output = Self> {
 
 impl Scalar for f64 {
     const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
     fn integer(n: u32) -> Self {
         f64::from(n)
     }
@@ -113,6 +115,7 @@ impl Scalar for f64 {
 
 impl Scalar for Interval {
     const ZERO: Self = Self::ZERO;
+    const ONE: Self = Self::ONE;
     fn integer(n: u32) -> Self {
         Self::point(f64::from(n))
     }
@@ -212,39 +215,44 @@ impl System {
         at.iter().flat_map(|x| power(*x)).collect()
     }
 
-    fn product<T: Scalar>(&self, term: &Term, powers: &[T], but: Option<usize>) -> T {
-        let stride = self.largest as usize + 1;
-        let factor = |(k, (i, e)): (usize, &(usize, u32))| {
-            let lower = u32::from(but == Some(k));
-            powers[i * stride + (e - lower) as usize]
-        };
-        let coefficient = T::coefficient(term);
-        term.powers.iter().enumerate().map(factor).fold(coefficient, |product, f| product * f)
-    }
-
     /// The values of the polynomials.
     pub(crate) fn values<T: Scalar>(&self, at: &[T]) -> Vec<T> {
         let powers = self.powers(at);
-        let value = |row: &Vec<Term>| {
-            row.iter().map(|term| self.product(term, &powers, None)).fold(T::ZERO, |a, b| a + b)
+        let stride = self.largest as usize + 1;
+        let product = |term: &Term| {
+            let factors = term.powers.iter().map(|(i, e)| powers[i * stride + *e as usize]);
+            factors.fold(T::coefficient(term), |product, factor| product * factor)
         };
+        let value = |row: &Vec<Term>| row.iter().map(product).fold(T::ZERO, |a, b| a + b);
         self.rows.iter().map(value).collect()
     }
 
     /// The values and the derivatives, row by row.
     pub(crate) fn derivatives<T: Scalar>(&self, at: &[T]) -> (Vec<T>, Vec<T>) {
         let powers = self.powers(at);
+        let stride = self.largest as usize + 1;
         let n = self.variables;
         let mut slopes = vec![T::ZERO; self.rows.len() * n];
         let mut values = vec![T::ZERO; self.rows.len()];
+        // The coefficient times the factors before each.
+        let mut before = Vec::with_capacity(n);
         for ((row, value), slopes) in
             self.rows.iter().zip(&mut values).zip(slopes.chunks_exact_mut(n.max(1)))
         {
             for term in row {
-                *value = *value + self.product(term, &powers, None);
-                for (k, (i, e)) in term.powers.iter().enumerate() {
-                    let slope = self.product(term, &powers, Some(k)) * T::integer(*e);
+                let mut product = T::coefficient(term);
+                before.clear();
+                for (i, e) in &term.powers {
+                    before.push(product);
+                    product = product * powers[i * stride + *e as usize];
+                }
+                *value = *value + product;
+                let mut after = T::ONE;
+                for ((i, e), before) in term.powers.iter().zip(&before).rev() {
+                    let place = i * stride + *e as usize;
+                    let slope = *before * (powers[place - 1] * T::integer(*e)) * after;
                     slopes[*i] = slopes[*i] + slope;
+                    after = after * powers[place];
                 }
             }
         }

@@ -102,7 +102,7 @@ fn primary_resonance_states() {
 
 fn course(parameter: usize, range: [f64; 2], step: f64) -> Course {
     let stop = Default::default();
-    Course { parameter, range, unknowns: 2, reach: 2.0, step, most: 20_000, stop }
+    Course { parameter, range, second: None, unknowns: 2, reach: 2.0, step, most: 20_000, stop }
 }
 
 /// The whole curve over s; both folds, where d(F^2)/d(a^2) = 0, proved.
@@ -278,4 +278,57 @@ fn starts_settle_on_different_branches() {
         unreachable!()
     };
     assert!(amplitude(&low) < 0.5 && amplitude(&high) > 1.0);
+}
+
+/// Below the cusp: the branch near zero and the closed one, each once; two folds.
+#[test]
+fn a_closed_branch_is_found_once() {
+    let flow = van_der_pol();
+    let samples = ["-1/10", "0", "1/10"].map(|text| Exact::parse(text).unwrap());
+    let values = vec![None, Exact::parse("1/2").ok()];
+    let course = course(2, [-1.0, 1.0], 0.01);
+    let limits = Limits::default();
+    let survey = Survey { flow: &flow, values, samples: samples.to_vec(), course, limits };
+    let response = survey.run().unwrap();
+    let closed: Vec<bool> = response.branches.iter().map(|branch| branch.closed).collect();
+    assert_eq!(closed.iter().filter(|closed| **closed).count(), 1);
+    assert_eq!(closed.len(), 2);
+    let counts: Vec<usize> = response.searches.iter().map(|(_, found)| found.zeros.len()).collect();
+    assert_eq!(counts, [3, 3, 3]);
+    let folds: Vec<_> = response.changes.iter().filter(|c| c.change == Change::Fold).collect();
+    assert_eq!(folds.len(), 2);
+    assert!(folds.iter().all(|fold| fold.proved.is_some()));
+}
+
+/// The lock-in of van der Pol's oscillator in the plane of detuning and force: one cusp and one Bogdanov-Takens point on each
+/// side, curves of folds and of Hopf points.
+#[test]
+fn lock_in_diagram() {
+    let flow = van_der_pol();
+    let exact = |list: &[&str]| list.iter().map(|text| Exact::parse(text).unwrap()).collect();
+    let samples: [Vec<Exact>; 2] = [exact(&["0", "1/5", "2/5"]), exact(&["1/2", "6/5"])];
+    let plane = Plane {
+        flow: &flow,
+        values: vec![None, None],
+        open: [0, 1],
+        samples,
+        course: course(2, [-1.0, 1.0], 5e-3),
+        second: [0.1, 2.0],
+        limits: Limits::default(),
+    };
+    let diagram = plane.run().unwrap();
+    let count = |change| diagram.corners.iter().filter(|corner| corner.0 == change).count();
+    assert_eq!((count(Change::Cusp), count(Change::BogdanovTakens)), (2, 2));
+    for (change, zero) in &diagram.corners {
+        let place = zero.middle();
+        // Guckenheimer and Holmes: sigma = 2 s, gamma = F/2.
+        let known = match change {
+            Change::Cusp => (1.0 / 3f64.sqrt(), (8.0f64 / 27.0).sqrt()),
+            _ => (0.5, 0.5),
+        };
+        assert!((2.0 * place[2].abs() - known.0).abs() < 1e-12, "{change:?} {place:?}");
+        assert!((0.5 * place[3] - known.1).abs() < 1e-12);
+    }
+    let of = |change| diagram.curves.iter().filter(|curve| curve.change == change).count();
+    assert!(of(Change::Fold) >= 1 && of(Change::Hopf) >= 2, "{}", of(Change::Hopf));
 }

@@ -9,6 +9,7 @@ mod evaluate;
 mod motion;
 mod prove;
 mod resonance;
+mod respond;
 mod stability;
 mod sweep;
 mod threshold;

@@ -1,0 +1,267 @@
+//! The question `respond`: steady states at resonance, response curves, folds, stability.
+
+mod answer;
+mod subject;
+
+use crate::grid::Axis;
+use crate::refusal::Refused;
+use crate::{Answer, Error, Exact, Oscillator, Remark, Standing, Work};
+pub use answer::{
+    Branch, Change, Corner, Curve, Destination, Estimate, Point, Response, State, States,
+};
+use lindstedt_orbit::steady::{self, Fate, Plane, Survey, settle};
+use std::time::Instant;
+use subject::Subject;
+
+/// What to look for.
+#[derive(Clone, Debug, Default)]
+pub struct Respond {
+    /// The orders of the slow flow; 2 if nothing.
+    pub order: Option<usize>,
+    /// The parameter that varies: its range, and with how many steps at least a branch goes through it; nothing for the
+    /// states at the values set.
+    pub sweep: Option<Axis>,
+    /// A second one: curves of folds and Hopf points, cusps and Bogdanov-Takens points in the plane of the two.
+    pub second: Option<Axis>,
+    /// The largest amplitude that is looked at; if nothing, one that has all steady states of the slow flow of order one.
+    pub amplitude: Option<Exact>,
+    /// x and x' at t = 0: where does the motion go?
+    pub start: Option<[Exact; 2]>,
+}
+
+impl Respond {
+    /// Reads `NAME=LO..HI[:COUNT]` or `NAME=V1,V2,...`; without a count 200 steps.
+    ///
+    /// # Errors
+    /// Those of [`Axis::parse`]; [`Refused`] for what a file calls fixed.
+    pub fn read_sweep(oscillator: &Oscillator, text: &str) -> Result<Axis, Error> {
+        let counted = text.rsplit_once("..").is_none_or(|(_, rest)| rest.contains(':'));
+        let steps = if counted { String::new() } else { format!(":{STEPS}") };
+        oscillator.axis(&format!("{text}{steps}"))
+    }
+
+    /// Reads `X,V`.
+    ///
+    /// # Errors
+    /// [`Refused`] with the form that is expected, [`DerivationError::BadValue`](crate::DerivationError::BadValue).
+    pub fn read_start(text: &str) -> Result<[Exact; 2], Error> {
+        let Some((x, velocity)) = text.split_once(',') else {
+            let message = "a start state is X,V";
+            return Err(Refused::usage("start", message, "--start 1/2,0").into());
+        };
+        Ok([Exact::parse(x)?, Exact::parse(velocity)?])
+    }
+}
+
+/// Steps through a range of which no number is given.
+const STEPS: usize = 201;
+/// Orders of the slow flow.
+const ORDER: usize = 2;
+/// Searches along a sweep, for one unknown and for several.
+const SEARCHES: [usize; 2] = [9, 3];
+/// Steps through a range, however few values are listed.
+const LEAST_STEPS: usize = 60;
+/// Points of one branch at most.
+const MOST_POINTS: usize = 100_000;
+/// How long a start state is followed, in eps t.
+const LONG: f64 = 1e4;
+
+impl Oscillator {
+    /// The steady states of the slow flow at resonance, which are the periodic responses: with a `sweep` the branches
+    /// over it with their folds and Hopf points, else all states at the values set.
+    ///
+    /// With x_j = a_j cos(k_j eta + phi_j) + ..., eta the phase of the force, a and phi are accurate to
+    /// O(eps^N) for N orders. The number of states is *proved* for the truncated slow flow within the box of amplitudes that
+    /// is said; where that failed, the states found stand in the answer and it is undecided. Amplitudes and phases of single
+    /// states are enclosed ([`Status::Proved`](crate::Status::Proved)), those along branches and all exponents are
+    /// estimated in doubles. A closed branch is found where it reaches over one of the values searched. Cost: the slow flow; a
+    /// search with proof per value, milliseconds for one unknown, seconds for two; microseconds per point.
+    ///
+    /// # Errors
+    /// [`Refused`] without a force or without a resonance, for walls and jumps, where no box is known; those of
+    /// [`Oscillator::slow_flow`].
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, Respond, Work};
+    /// let forced = Oscillator::parse("x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t)/2")?;
+    /// let forced = forced.set("eps", "1/10")?.set("sigma", "1")?;
+    /// let answer = forced.respond(&Respond::default(), &Work::default())?;
+    /// let states = &answer.value.states[0];
+    /// assert_eq!((states.count, states.count_proved), (3, true));
+    /// let stable = states.list.iter().filter(|state| state.stable == Some(true)).count();
+    /// assert_eq!(stable, 2);
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn respond(&self, question: &Respond, work: &Work) -> Result<Answer<Response>, Error> {
+        let start = Instant::now();
+        let subject = Subject::new(self, question, work)?;
+        let mut value = match (&question.sweep, &question.second) {
+            (None, _) => subject.states()?,
+            (Some(axis), None) => subject.branches(axis)?,
+            (Some(first), Some(second)) => subject.plane(first, second)?,
+        };
+        if let Some(from) = &question.start {
+            value.leads_to = Some(subject.destination(from, &value)?);
+        }
+        let mut remarks = self.remarks().to_vec();
+        let undecided = value.states.iter().filter(|states| !states.count_proved).count();
+        if undecided > 0 {
+            let place = if value.parameter.is_some() { "at a value searched " } else { "" };
+            remarks.push(Remark(format!(
+                "{place}the number of steady states is not decided: a double one, or too many boxes"
+            )));
+        }
+        let broken = value.branches.iter().filter(|branch| !branch.complete).count();
+        if broken > 0 {
+            remarks.push(Remark(format!("{broken} branches were not followed to their ends")));
+        }
+        let standing = match question.sweep {
+            _ if work.stop.asked() => Standing::Stopped { done: value.branches.len() },
+            None if undecided > 0 => Standing::Undecided,
+            _ => Standing::Complete,
+        };
+        let header = self.header(subject.shown_values(), Some(subject.order), "exact", start);
+        Ok(Answer { header, value, standing, remarks })
+    }
+}
+
+impl Subject<'_> {
+    /// All states at the values set.
+    fn states(&self) -> Result<Response, Error> {
+        let values = self.values([None, None]);
+        let (reach, complete) = self.reach(std::slice::from_ref(&values))?;
+        let system = self.rotating.flow.system(&values);
+        let found = steady::all_zeros(&system, &self.region(reach), &self.limits());
+        let found = found.ok_or_else(not_determined)?;
+        let mut response = self.empty(reach, complete);
+        response.states.push(self.shown_states(None, &system, &found));
+        Ok(response)
+    }
+
+    /// The branches over the parameter.
+    fn branches(&self, axis: &Axis) -> Result<Response, Error> {
+        let samples = self.samples(axis)?;
+        let at: Vec<_> = samples.iter().map(|sample| self.values([Some(sample), None])).collect();
+        let (reach, complete) = self.reach(&at)?;
+        let course = self.course(&samples, axis, reach)?;
+        let values = self.values([None, None]);
+        let survey = Survey {
+            flow: &self.rotating.flow,
+            values: values.clone(),
+            samples,
+            course: course.clone(),
+            limits: self.limits(),
+        };
+        let found = survey.run().ok_or_else(not_determined)?;
+        let mut response = self.empty(reach, complete);
+        response.parameter = Some(axis.name.clone());
+        response.branches = found.branches.iter().map(|b| self.shown_branch(b)).collect();
+        for change in &found.changes {
+            let list = match change.change {
+                steady::Change::Fold => &mut response.folds,
+                steady::Change::Hopf => &mut response.hopf,
+                _ => &mut response.crossings,
+            };
+            list.push(self.shown_change(change));
+        }
+        for (sample, found) in &found.searches {
+            let system = self.rotating.flow.system(&self.values([Some(sample), None]));
+            response.states.push(self.shown_states(Some(sample), &system, found));
+        }
+        response.backbone = self.backbone(&values, &course);
+        Ok(response)
+    }
+
+    fn course(&self, samples: &[Exact], axis: &Axis, reach: f64) -> Result<steady::Course, Error> {
+        Ok(steady::Course {
+            parameter: 0,
+            range: ends(samples)?,
+            second: None,
+            unknowns: 0,
+            reach,
+            step: 1.0 / axis.values.len().max(LEAST_STEPS) as f64,
+            most: MOST_POINTS,
+            stop: self.work.stop.clone(),
+        })
+    }
+
+    /// The curves in the plane of two parameters.
+    fn plane(&self, first: &Axis, second: &Axis) -> Result<Response, Error> {
+        let samples = [self.samples(first)?, self.chosen(second)];
+        let pairs =
+            samples[0].iter().flat_map(|a| samples[1].iter().map(move |b| [Some(a), Some(b)]));
+        let at: Vec<_> = pairs.map(|pair| self.values(pair)).collect();
+        let (reach, complete) = self.reach(&at)?;
+        let values = self.values([None, None]);
+        let open = self.open();
+        let [Some(a), Some(b)] = open else { return Err(not_determined()) };
+        let plane = Plane {
+            flow: &self.rotating.flow,
+            values,
+            open: [a, b],
+            course: self.course(&samples[0], first, reach)?,
+            second: ends(&samples[1])?,
+            samples,
+            limits: self.limits(),
+        };
+        let found = plane.run().ok_or_else(not_determined)?;
+        let mut response = self.empty(reach, complete);
+        response.parameter = Some(first.name.clone());
+        response.second = Some(second.name.clone());
+        let places = plane.places();
+        response.curves = found.curves.iter().map(|c| self.shown_curve(c, places)).collect();
+        for (change, zero) in &found.corners {
+            let list = match change {
+                steady::Change::Cusp => &mut response.cusps,
+                _ => &mut response.bogdanov_takens,
+            };
+            list.push(self.shown_corner(zero, places));
+        }
+        Ok(response)
+    }
+
+    /// Where a start state goes.
+    fn destination(&self, from: &[Exact; 2], response: &Response) -> Result<Destination, Error> {
+        if self.rotating.turns.len() != 1 || response.parameter.is_some() {
+            let message = "a start state is followed for one unknown and without a sweep";
+            return Err(Refused::usage("start", message, "lindstedt simulate").into());
+        }
+        let start = self.start(from.each_ref().map(Exact::to_f64));
+        let system = self.rotating.flow.system(&self.values([None, None]));
+        let reach = response.amplitude_limit.value / 2.0;
+        let fate = settle(&system, &start, reach, LONG, &self.work.stop);
+        let states = response.states.first().map_or(&[][..], |states| &states.list);
+        Ok(match fate {
+            Fate::Steady(w) => {
+                let near = |state: &State| {
+                    state.at.iter().zip(&w).all(|(a, b)| (a - b).abs() < 1e-6 * reach)
+                };
+                let amplitudes = self.amplitudes(&w);
+                let state = states.iter().position(near);
+                Destination { fate: "steady", state, amplitudes }
+            }
+            Fate::Moving(w) => {
+                Destination { fate: "moving", state: None, amplitudes: self.amplitudes(&w) }
+            }
+            Fate::Away => Destination { fate: "away", state: None, amplitudes: Vec::new() },
+        })
+    }
+}
+
+/// The least and the largest of some values.
+fn ends(samples: &[Exact]) -> Result<[f64; 2], Error> {
+    let values = samples.iter().map(Exact::to_f64);
+    let low = values.clone().fold(f64::INFINITY, f64::min);
+    let high = values.fold(f64::NEG_INFINITY, f64::max);
+    if low < high {
+        return Ok([low, high]);
+    }
+    let message = "a sweep needs two different ends";
+    Err(Refused::usage("sweep", message, "--sweep NAME=LO..HI:COUNT").into())
+}
+
+/// A slow flow whose steady states are not isolated.
+fn not_determined() -> Error {
+    let message = "the slow flow leaves more than one parameter open";
+    Refused::usage("no-value-set", message, "--set NAME=VALUE").into()
+}

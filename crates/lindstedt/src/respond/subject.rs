@@ -1,0 +1,430 @@
+//! The slow flow of a question with its values, and what is shown of its states.
+
+use super::answer::{Branch, Change, Corner, Curve, Estimate, Point, Response, State, States};
+use super::{ORDER, Respond, SEARCHES};
+use crate::grid::Axis;
+use crate::refusal::Refused;
+use crate::{DerivationError, Error, Exact, Number, Oscillator, SlowFlow, Status, Work};
+use lindstedt_evaluation::rotating::{Rotating, forced_part, rotating};
+use lindstedt_number::ball::Balls;
+use lindstedt_number::certified;
+use lindstedt_number::interval::Interval;
+use lindstedt_number::real::{Certified, Real};
+use lindstedt_orbit::steady::{
+    self, Course, Found, Limits, Located, System, Zero, all_zeros, bound, follow,
+};
+use rug::Rational;
+
+/// Bits of enclosures of states, which doubles bound.
+const BITS: u32 = 80;
+/// Digits of them at most.
+const DIGITS: usize = 15;
+/// The box is so many times as large as that of order one, for higher orders.
+const ROOM: f64 = 1.25;
+/// How far beside the range a backbone may begin, in widths of it.
+const BESIDE: f64 = 4.0;
+
+type Values = Vec<Option<Exact>>;
+
+pub(super) struct Subject<'a> {
+    oscillator: &'a Oscillator,
+    pub(super) work: &'a Work,
+    pub(super) order: usize,
+    slow: SlowFlow,
+    pub(super) rotating: Rotating,
+    /// The names of what varies, among the parameters of the flow.
+    swept: [Option<String>; 2],
+    /// omega = factor (Omega + eps sigma), where sigma varies in the place of omega.
+    factor: Option<Rational>,
+    small: Option<Rational>,
+    amplitude: Option<f64>,
+}
+
+impl<'a> Subject<'a> {
+    pub(super) fn new(
+        oscillator: &'a Oscillator,
+        question: &Respond,
+        work: &'a Work,
+    ) -> Result<Self, Error> {
+        let problem = oscillator.problem();
+        if problem.impact.is_some() {
+            let message = "a wall: the flow between two impacts is no slow flow";
+            let hint = "`lindstedt stability` has the orbits with impacts and their stability";
+            return Err(Refused::no_answer("no-response", message, hint).into());
+        }
+        let order = question.order.unwrap_or(ORDER).max(1);
+        let small = problem.small.to_string();
+        let name = |axis: &Option<Axis>| axis.as_ref().map(|axis| axis.name.clone());
+        let mut swept = [name(&question.sweep), name(&question.second)];
+        let varies = |known: &String| swept.iter().flatten().any(|name| name == known);
+        let mut case = oscillator.clone();
+        for (known, value) in oscillator.all_values() {
+            case = if varies(&known) { case.without(&known) } else { case };
+            if known != small && !varies(&known) {
+                case = case.with(&known, value);
+            }
+        }
+        let asked = |case: &Oscillator| Ok::<_, Error>(case.slow_flow(order, work)?.value);
+        let mut slow = asked(&case);
+        let mut factor = None;
+        let open = |slow: &SlowFlow, name: &String| slow.system.symbols.contains(name);
+        if let Some(axis) = &question.sweep
+            && axis.name != small
+            && !slow.as_ref().is_ok_and(|slow| open(slow, &axis.name))
+        {
+            let name = &axis.name;
+            // A frequency: its detuning varies in its place.
+            let with = |value: &Exact| asked(&case.clone().with(name, value.clone()));
+            let beside = axis.values.iter().find_map(|value| {
+                let slow = with(value).ok()?;
+                let beside = slow.system.beside.clone()?;
+                Some((slow, beside, value.as_rational()?.clone()))
+            });
+            if let Some((found, beside, value)) = beside {
+                factor = Some(value / beside.rate);
+                swept[0] = Some(beside.symbol);
+                slow = Ok(found);
+            } else if slow.is_ok() {
+                return Err(no_part(name));
+            }
+        }
+        let slow = slow.map_err(|error| not_weak(oscillator, error))?;
+        if let Some(name) =
+            swept.iter().flatten().find(|name| **name != small && !open(&slow, name))
+        {
+            return Err(no_part(name));
+        }
+        let rotating = rotating(&slow, &small, order).ok_or_else(no_force)?;
+        let value = oscillator.value(&small).filter(|_| !swept.contains(&Some(small.clone())));
+        let small = value.as_ref().and_then(Exact::as_rational).cloned();
+        let amplitude = question.amplitude.as_ref().map(Exact::to_f64);
+        let subject =
+            Self { oscillator, work, order, slow, rotating, swept, factor, small, amplitude };
+        subject.check()?;
+        Ok(subject)
+    }
+
+    /// Refuses parameters without a value.
+    fn check(&self) -> Result<(), Error> {
+        let names = self.rotating.flow.parameters.iter();
+        let unset = names.zip(self.values([None, None])).find(|(name, value)| {
+            value.is_none() && !self.swept.iter().flatten().any(|it| it == *name)
+        });
+        let problem = self.oscillator.problem().name.to_string();
+        match unset {
+            Some((name, _)) => Err(DerivationError::Unset { problem, name: name.clone() }.into()),
+            None if self.amplitude.is_some_and(|a| !a.is_finite() || a <= 0.0) => {
+                let message = "the largest amplitude is a positive number";
+                Err(Refused::usage("box", message, "--box 2").into())
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The values of the flow's parameters, those of what varies as given.
+    pub(super) fn values(&self, varying: [Option<&Exact>; 2]) -> Values {
+        let small = &self.oscillator.problem().small;
+        let detuning = |name: &str| {
+            let beside = self.slow.system.beside.as_ref().filter(|it| it.symbol == name)?;
+            let away = Rational::from(&beside.rate - &self.slow.system.force);
+            Some(Exact::Rational(away / self.small.as_ref()?))
+        };
+        let place = |name: &String| self.swept.iter().position(|it| it.as_ref() == Some(name));
+        let value = |name: &String| match place(name) {
+            Some(place) => varying[place].cloned(),
+            None if **name == **small => self.small.clone().map(Exact::Rational),
+            None => detuning(name).or_else(|| self.oscillator.value(name)),
+        };
+        self.rotating.flow.parameters.iter().map(value).collect()
+    }
+
+    /// Which of the flow's parameters vary.
+    pub(super) fn open(&self) -> [Option<usize>; 2] {
+        let names = &self.rotating.flow.parameters;
+        let place = |name: &Option<String>| names.iter().position(|it| Some(it) == name.as_ref());
+        self.swept.each_ref().map(place)
+    }
+
+    /// The values that enter, for the header.
+    pub(super) fn shown_values(&self) -> Vec<(String, String)> {
+        let varies = |name: &String| self.swept.iter().flatten().any(|swept| swept == name);
+        let all = self.oscillator.all_values().into_iter();
+        all.filter(|(name, _)| !varies(name)).map(|(n, v)| (n, v.to_string())).collect()
+    }
+
+    /// Values of an axis at which all states are looked for: a list as it is, of a range some.
+    pub(super) fn chosen(&self, axis: &Axis) -> Vec<Exact> {
+        let most = SEARCHES[usize::from(self.rotating.turns.len() > 1)];
+        let last = axis.values.len().max(1) - 1;
+        let mut chosen: Vec<usize> = match last {
+            last if last < most || !axis.is_equidistant() => (0..=last).collect(),
+            last => (0..most).map(|k| k * last / (most - 1)).collect(),
+        };
+        chosen.dedup();
+        chosen.into_iter().map(|k| axis.values[k].clone()).collect()
+    }
+
+    /// Those of the first parameter, as the flow has it.
+    pub(super) fn samples(&self, axis: &Axis) -> Result<Vec<Exact>, Error> {
+        let values = self.chosen(axis).into_iter();
+        let Some(factor) = &self.factor else { return Ok(values.collect()) };
+        let unset = || DerivationError::Unset {
+            problem: self.oscillator.problem().name.to_string(),
+            name: self.oscillator.problem().small.to_string(),
+        };
+        let small = self.small.as_ref().ok_or_else(unset)?;
+        let detuning = |value: Exact| {
+            let rate = Rational::from(value.as_rational()? / factor);
+            Some(Exact::Rational((rate - &self.slow.system.force) / small))
+        };
+        values.map(|value| detuning(value).ok_or(Error::NoValue)).collect()
+    }
+
+    /// What is shown of a value of the flow's parameter.
+    fn shown_value(&self, value: f64) -> f64 {
+        match (&self.factor, &self.small) {
+            (Some(factor), Some(small)) => {
+                factor.to_f64() * (self.slow.system.force.to_f64() + small.to_f64() * value)
+            }
+            _ => value,
+        }
+    }
+
+    /// The half side of the box that is searched, and whether it has all states: that asked for, else a bound of the
+    /// steady states of order one.
+    pub(super) fn reach(&self, at: &[Values]) -> Result<(f64, bool), Error> {
+        let largest = |flow: &steady::Flow| {
+            at.iter().try_fold(0.0f64, |most, values| Some(most.max(bound(&flow.system(values))?)))
+        };
+        let whole = largest(&self.rotating.flow);
+        let reach = match self.amplitude {
+            Some(amplitude) => amplitude / 2.0,
+            None => {
+                let small = self.oscillator.problem().small.to_string();
+                let first = rotating(&self.slow, &small, 1).ok_or_else(no_force)?;
+                let bound = largest(&first.flow).ok_or_else(|| {
+                    let message = "no bound of the steady states follows from the first order";
+                    Refused::undecided("box", message, "--box AMPLITUDE says how far to look")
+                })?;
+                ROOM * bound
+            }
+        };
+        Ok((reach, whole.is_some_and(|whole| whole <= reach)))
+    }
+
+    pub(super) fn region(&self, reach: f64) -> Vec<Interval> {
+        vec![Interval::new(-reach, reach); self.rotating.flow.unknowns()]
+    }
+
+    pub(super) fn limits(&self) -> Limits {
+        Limits { stop: self.work.stop.clone(), ..Limits::default() }
+    }
+
+    pub(super) fn empty(&self, reach: f64, complete: bool) -> Response {
+        Response {
+            parameter: None,
+            turns: self.rotating.turns.iter().map(ToString::to_string).collect(),
+            amplitude_limit: Estimate { value: 2.0 * reach },
+            complete,
+            branches: Vec::new(),
+            folds: Vec::new(),
+            hopf: Vec::new(),
+            crossings: Vec::new(),
+            states: Vec::new(),
+            backbone: Vec::new(),
+            second: None,
+            curves: Vec::new(),
+            cusps: Vec::new(),
+            bogdanov_takens: Vec::new(),
+            leads_to: None,
+        }
+    }
+
+    /// w of a start state: z to leading order.
+    pub(super) fn start(&self, [x, velocity]: [f64; 2]) -> [f64; 2] {
+        let values: Vec<Rational> = (self.values([None, None]).iter())
+            .map(|value| value.as_ref().and_then(Exact::as_rational).cloned().unwrap_or_default())
+            .collect();
+        let [forced, rate] = forced_part(&self.slow, &values);
+        let nu = self.slow.system.frequencies[0].to_f64();
+        [0.5 * (x - forced), -0.5 * (velocity - rate) / nu]
+    }
+
+    pub(super) fn amplitudes(&self, w: &[f64]) -> Vec<Estimate> {
+        w.chunks_exact(2).map(|w| Estimate { value: 2.0 * w[0].hypot(w[1]) }).collect()
+    }
+
+    /// Exponents per unit of t.
+    fn exponents(&self, point: &steady::Point) -> Vec<[Estimate; 2]> {
+        let small = match &self.small {
+            Some(small) => small.to_f64(),
+            None => point.at.last().copied().unwrap_or(1.0),
+        };
+        let scaled = |x: f64| Estimate { value: small * x };
+        point.exponents.iter().map(|x| [scaled(x.re), scaled(x.im)]).collect()
+    }
+
+    pub(super) fn shown_branch(&self, branch: &steady::Branch) -> Branch {
+        let point = |point: &steady::Point| {
+            let (value, w) = point.at.split_last().unwrap_or((&0.0, &[]));
+            let phase = |w: &[f64]| Estimate { value: w[1].atan2(w[0]) };
+            Point {
+                value: Estimate { value: self.shown_value(*value) },
+                amplitudes: self.amplitudes(w),
+                phases: w.chunks_exact(2).map(phase).collect(),
+                stable: point.is_stable(),
+                exponents: self.exponents(point),
+            }
+        };
+        let steady::Branch { points, closed, complete } = branch;
+        Branch { points: points.iter().map(point).collect(), closed: *closed, complete: *complete }
+    }
+
+    pub(super) fn shown_change(&self, change: &Located) -> Change {
+        let n = self.rotating.flow.unknowns();
+        let Some(zero) = &change.proved else {
+            let amplitudes = self.amplitudes(&change.at[..n]);
+            return Change {
+                value: Number::double(self.shown_value(change.at[n])),
+                amplitudes: amplitudes.iter().map(|a| Number::double(a.value)).collect(),
+                branch: change.branch,
+            };
+        };
+        let amplitudes = zero.enclosure[..n].chunks_exact(2).map(|w| polar(w).0).collect();
+        Change { value: self.proved_value(zero.enclosure[n]), amplitudes, branch: change.branch }
+    }
+
+    fn proved_value(&self, value: Interval) -> Number {
+        let mut shown = real(value);
+        if let (Some(factor), Some(small)) = (&self.factor, &self.small) {
+            let number = |q: &Rational| Certified::from_rational(Balls::new(BITS), q);
+            shown = (shown * number(small) + number(&self.slow.system.force)) * number(factor);
+        }
+        proved(&shown)
+    }
+
+    pub(super) fn shown_states(
+        &self,
+        sample: Option<&Exact>,
+        system: &System,
+        found: &Found,
+    ) -> States {
+        let mut list: Vec<State> = Vec::new();
+        for zero in &found.zeros {
+            let point = steady::state_at(system, &zero.middle());
+            let (amplitudes, phases) = zero.enclosure.chunks_exact(2).map(polar).unzip();
+            let stable = point.is_stable();
+            let exponents = self.exponents(&point);
+            list.push(State { amplitudes, phases, stable, exponents, at: point.at });
+        }
+        let size = |state: &State| state.at.iter().map(|x| x * x).sum::<f64>();
+        list.sort_by(|a, b| size(b).total_cmp(&size(a)).then(b.at[0].total_cmp(&a.at[0])));
+        States {
+            value: sample.and_then(|value| self.shown_sample(value)),
+            count: list.len(),
+            count_proved: found.is_proved(),
+            undecided: found.undecided.len(),
+            boxes: found.boxes,
+            list,
+        }
+    }
+
+    fn shown_sample(&self, value: &Exact) -> Option<Number> {
+        let exact = match (value.as_rational(), &self.factor, &self.small) {
+            (Some(q), Some(factor), Some(small)) => {
+                let rate = Rational::from(q * small) + &self.slow.system.force;
+                Exact::Rational(rate * factor)
+            }
+            _ => value.clone(),
+        };
+        certified(Some(exact.to_string()), DIGITS, |balls| Some(exact.ball(balls))).ok()
+    }
+
+    /// A curve in the plane of two parameters.
+    pub(super) fn shown_curve(&self, curve: &steady::Curve, places: [usize; 2]) -> Curve {
+        let point = |point: &steady::Point| {
+            [self.shown_value(point.at[places[0]]), point.at[places[1]]]
+                .map(|value| Estimate { value })
+        };
+        let kind = if curve.change == steady::Change::Fold { "fold" } else { "hopf" };
+        let points = curve.branch.points.iter().map(point).collect();
+        Curve { kind, points, closed: curve.branch.closed }
+    }
+
+    pub(super) fn shown_corner(&self, zero: &Zero, places: [usize; 2]) -> Corner {
+        let n = self.rotating.flow.unknowns();
+        let [first, second] = places.map(|place| zero.enclosure[place]);
+        Corner {
+            values: [self.proved_value(first), proved(&real(second))],
+            amplitudes: zero.enclosure[..n].chunks_exact(2).map(|w| polar(w).0).collect(),
+        }
+    }
+
+    /// The curve of free motion: from |w| = 0, also where that lies beside the range.
+    pub(super) fn backbone(&self, values: &Values, course: &Course) -> Vec<[Estimate; 2]> {
+        let Some(flow) = &self.rotating.backbone else { return Vec::new() };
+        let [low, high] = course.range;
+        let wide = [low - BESIDE * (high - low), high + BESIDE * (high - low)];
+        let still = std::iter::once(Some(Exact::Rational(Rational::new())));
+        let given: Values = still.chain(values.iter().cloned()).collect();
+        let range = [Interval::new(wide[0], wide[1])];
+        let at_rest = all_zeros(&System::new(&flow.rows, &given), &range, &self.limits());
+        let starts = at_rest.into_iter().flat_map(|found| found.zeros);
+        let system = flow.system(values);
+        let step = course.step / (1.0 + 2.0 * BESIDE);
+        let course = Course { parameter: 1, unknowns: 1, range: wide, step, ..course.clone() };
+        let branches =
+            starts.filter_map(|zero| follow(&system, &[0.0, zero.enclosure[0].middle()], &course));
+        let points = branches.flat_map(|branch| branch.points);
+        let inside =
+            |point: &steady::Point| point.at[0] >= 0.0 && (low..=high).contains(&point.at[1]);
+        let shown = |point: steady::Point| {
+            [self.shown_value(point.at[1]), 2.0 * point.at[0]].map(|value| Estimate { value })
+        };
+        points.filter(inside).map(shown).collect()
+    }
+}
+
+fn real(x: Interval) -> Certified {
+    Certified::new(Balls::new(BITS), x.ball())
+}
+
+fn proved(x: &Certified) -> Number {
+    Number::of_ball(x.ball(), DIGITS).weaken(Status::Proved)
+}
+
+/// 2 |w| and the angle of an enclosed w.
+fn polar(w: &[Interval]) -> (Number, Option<Number>) {
+    let (re, im) = (real(w[0]), real(w[1]));
+    let square = re.square() + im.square();
+    let phase = (square.is_positive()).then(|| proved(&im.atan2(&re)));
+    (proved(&square.sqrt().doubled()), phase)
+}
+
+fn no_force() -> Error {
+    let message = "without a force there is no response: the phase of a steady state is free";
+    let hint = "`lindstedt evaluate` has the periodic motions, `derive --normalisation free` their slow flow";
+    Refused::no_answer("no-response", message, hint).into()
+}
+
+fn no_part(name: &str) -> Error {
+    let message = format!("the slow flow does not depend on {name}");
+    Refused::no_answer("no-response", message, "a parameter of the equation varies").into()
+}
+
+/// The refusal of a problem that has no slow flow, with the verb that serves.
+fn not_weak(oscillator: &Oscillator, error: Error) -> Error {
+    use crate::{Kind, Refusal};
+    let (kind, code, hint) = error.parts();
+    if kind != Kind::NoAnswer {
+        return error;
+    }
+    let problem = oscillator.problem();
+    let other = match problem.conditions.is_empty() {
+        true => "`lindstedt threshold` and `lindstedt simulate` take motions beside a saddle",
+        false => "`lindstedt evaluate` has the periods of strongly nonlinear motions",
+    };
+    let message = format!("no response from a slow flow: {error}");
+    let hint = if hint.is_empty() { other.to_owned() } else { format!("{hint}; {other}") };
+    Refused { code, kind, message, hint }.into()
+}

@@ -1,0 +1,132 @@
+//! Response curves: all branches of steady states over one parameter that pass a list of its values.
+//!
+//! At every value all states of a box are found, with proof of their number; each that no branch passes yet starts
+//! one. So a closed branch (an isola) is found where it reaches over one of the values, whatever else there is.
+
+use super::branch::{Branch, Course, follow};
+use super::flow::{Change, Flow};
+use super::krawczyk::{Zero, newton};
+use super::search::{Found, Limits, all_zeros};
+use lindstedt_number::Exact;
+use lindstedt_number::interval::Interval;
+
+/// What is asked.
+#[derive(Clone, Debug)]
+pub struct Survey<'a> {
+    /// The vector field.
+    pub flow: &'a Flow,
+    /// The values of its parameters, in order; nothing for the one that varies, [`Course::parameter`].
+    pub values: Vec<Option<Exact>>,
+    /// The values at which all states are looked for.
+    pub samples: Vec<Exact>,
+    /// The range, the reach (the half sides of the box) and the step.
+    pub course: Course,
+    /// Of each search.
+    pub limits: Limits,
+}
+
+/// A change on a branch.
+#[derive(Clone, Debug)]
+pub struct Located {
+    /// Which.
+    pub change: Change,
+    /// The index of the branch.
+    pub branch: usize,
+    /// The unknowns and the parameter.
+    pub at: Vec<f64>,
+    /// The same with proof, with the vectors that belong to it.
+    pub proved: Option<Zero>,
+}
+
+/// The branches.
+#[derive(Clone, Debug)]
+pub struct Response {
+    /// The branches.
+    pub branches: Vec<Branch>,
+    /// Where states change.
+    pub changes: Vec<Located>,
+    /// The states at the samples.
+    pub searches: Vec<(Exact, Found)>,
+}
+
+impl Survey<'_> {
+    /// The branches that pass the samples within the box. Nothing where `values` leaves other than one parameter open.
+    /// Cost: a search per sample, and some Newton steps per point.
+    #[must_use]
+    pub fn run(&self) -> Option<Response> {
+        let n = self.flow.unknowns();
+        let open: Vec<usize> =
+            (0..self.values.len()).filter(|i| self.values[*i].is_none()).collect();
+        let [open] = open[..] else { return None };
+        let course = Course { parameter: n, unknowns: n, ..self.course.clone() };
+        let system = self.flow.system(&self.values);
+        let region = vec![Interval::new(-course.reach, course.reach); n];
+        let mut response =
+            Response { branches: Vec::new(), changes: Vec::new(), searches: Vec::new() };
+        for sample in &self.samples {
+            let mut values = self.values.clone();
+            values[open] = Some(sample.clone());
+            let fixed = self.flow.system(&values);
+            let found = all_zeros(&fixed, &region, &self.limits)?;
+            let value = sample.to_f64();
+            for zero in &found.zeros {
+                let known = |branch: &Branch| {
+                    branch.points.windows(2).any(|two| {
+                        let state = crossing(&two[0].at, &two[1].at, value);
+                        let state = state.and_then(|guess| newton(&fixed, &guess));
+                        state.is_some_and(|state| is_near(&state, zero, course.reach))
+                    })
+                };
+                if response.branches.iter().any(known) {
+                    continue;
+                }
+                let start: Vec<f64> = zero.middle().into_iter().chain([value]).collect();
+                response.branches.extend(follow(&system, &start, &course));
+            }
+            response.searches.push((sample.clone(), found));
+            if course.stop.asked() {
+                break;
+            }
+        }
+        response.changes = self.changes(&response.branches);
+        Some(response)
+    }
+
+    fn changes(&self, branches: &[Branch]) -> Vec<Located> {
+        let marked = branches.iter().enumerate().flat_map(|(index, branch)| {
+            branch.points.iter().filter_map(move |point| Some((index, point, point.change?)))
+        });
+        let mut list: Vec<Located> = Vec::new();
+        for (branch, point, mut change) in marked {
+            if change == Change::Fold && self.flow.is_crossing(&self.values, &point.at) {
+                change = Change::Crossing;
+            }
+            let near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-4 * self.course.reach;
+            let same = |known: &Located| {
+                known.change == change && known.at.iter().zip(&point.at).all(near)
+            };
+            // Each of two branches knows their crossing.
+            if change == Change::Crossing && list.iter().any(same) {
+                continue;
+            }
+            let proved = self.flow.change_near(change, &self.values, &point.at);
+            list.push(Located { change, branch, at: point.at.clone(), proved });
+        }
+        list.sort_by(|a, b| a.at[a.at.len() - 1].total_cmp(&b.at[b.at.len() - 1]));
+        list
+    }
+}
+
+/// The unknowns between two points where the parameter, their last entry, has a value.
+fn crossing(a: &[f64], b: &[f64], value: f64) -> Option<Vec<f64>> {
+    let ((last_a, a), (last_b, b)) = (a.split_last()?, b.split_last()?);
+    if (last_a - value) * (last_b - value) > 0.0 {
+        return None;
+    }
+    let share = if last_a == last_b { 0.0 } else { (value - last_a) / (last_b - last_a) };
+    Some(a.iter().zip(b).map(|(a, b)| a + share * (b - a)).collect())
+}
+
+fn is_near(state: &[f64], zero: &Zero, reach: f64) -> bool {
+    zero.middle().iter().zip(state).all(|(a, b)| (a - b).abs() < 1e-7 * reach)
+}

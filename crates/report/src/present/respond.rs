@@ -1,0 +1,289 @@
+//! Steady states at resonance: the states, the response curve with its backbone.
+
+use super::Present;
+use crate::figure::{Axis, Mark, colours};
+use crate::{Document, Figure, Formula, Table, Text};
+use lindstedt::respond::{Change, Corner, Estimate, Point, Response, State, States};
+use lindstedt::unstable::coeff::print::latex_name;
+use lindstedt::{Answer, Number};
+
+/// The number of an unknown in names, where there are several.
+fn index(value: &Response, j: usize) -> String {
+    if value.turns.len() == 1 { String::new() } else { format!("_{}", j + 1) }
+}
+
+fn title(answer: &Answer<Response>) -> String {
+    let order = answer.header.order.unwrap_or_default();
+    let over = answer.value.parameter.as_ref().map(|name| match &answer.value.second {
+        None => format!(" over {name}"),
+        Some(second) => format!(" over {name} and {second}"),
+    });
+    format!("{}: steady states{}, order {order}", answer.header.problem, over.unwrap_or_default())
+}
+
+fn word(stable: Option<bool>) -> &'static str {
+    match stable {
+        Some(true) => "stable",
+        Some(false) => "unstable",
+        None => "neutral",
+    }
+}
+
+fn exponent([re, im]: &[Estimate; 2]) -> String {
+    if im.value == 0.0 {
+        format!("{:.6}", re.value)
+    } else {
+        format!("{:.6} {} {:.6}i", re.value, if im.value < 0.0 { '-' } else { '+' }, im.value.abs())
+    }
+}
+
+fn amplitude(value: &Response, j: usize) -> Text {
+    let index = index(value, j);
+    Formula::new(format!("a{index}"), format!("a{index}")).into()
+}
+
+fn phase(value: &Response, j: usize) -> Text {
+    let index = index(value, j);
+    Formula::new(format!("phi{index}"), format!(r"\varphi{index}")).into()
+}
+
+fn columns(value: &Response) -> impl Iterator<Item = Text> {
+    (0..value.turns.len()).flat_map(|j| [amplitude(value, j), phase(value, j)])
+}
+
+fn state(state: &State) -> Vec<Text> {
+    let pairs = state.amplitudes.iter().zip(&state.phases);
+    let phase = |phase: &Option<Number>| phase.as_ref().map_or("-".into(), Text::number);
+    let mut cells: Vec<Text> = pairs.flat_map(|(a, p)| [Text::number(a), phase(p)]).collect();
+    let exponents: Vec<String> = state.exponents.iter().map(exponent).collect();
+    cells.extend([word(state.stable).into(), exponents.join(", ").into()]);
+    cells
+}
+
+fn states(value: &Response, states: &States) -> Table {
+    let head = columns(value).chain(["stability".into(), "exponents".into()]);
+    states.list.iter().map(state).fold(Table::new(head), Table::row)
+}
+
+fn proof(states: &States) -> String {
+    let proof = if states.count_proved { "exactly so many, proved" } else { "number not decided" };
+    let open = match states.undecided {
+        0 => String::new(),
+        n => format!("; {n} parts of the box are undecided"),
+    };
+    format!("{} ({proof}{open})", states.count)
+}
+
+fn changes(value: &Response) -> impl Iterator<Item = (&'static str, &Change)> {
+    let list = |name, list| std::iter::repeat(name).zip(list);
+    list("fold", &value.folds)
+        .chain(list("Hopf point", &value.hopf))
+        .chain(list("crossing of branches", &value.crossings))
+}
+
+/// The searches and the points of change of a sweep.
+fn sweep(value: &Response, name: &str) -> Document {
+    let formula = || Text::from(Formula::new(name, latex_name(name)));
+    let searches = value.states.iter().map(|states| {
+        let value = states.value.as_ref();
+        let at = value.and_then(|value| value.exact.clone()).unwrap_or_default();
+        let stable = states.list.iter().filter(|state| state.stable == Some(true)).count();
+        [at, proof(states), stable.to_string()]
+    });
+    let head: [Text; 3] = [formula(), "steady states".into(), "of them stable".into()];
+    let page = Document::default().table(searches.fold(Table::new(head), Table::row));
+    let head = ["".into(), formula()].into_iter();
+    let table = Table::new(head.chain((0..value.turns.len()).map(|j| amplitude(value, j))));
+    let mut rows = changes(value).peekable();
+    if rows.peek().is_none() {
+        return page.words("no folds, no Hopf points");
+    }
+    page.table(rows.fold(table, |table, (word, change)| {
+        let amplitudes = change.amplitudes.iter().map(Text::number);
+        let cells = [word.into(), Text::number(&change.value)].into_iter();
+        table.row(cells.chain(amplitudes).collect::<Vec<_>>())
+    }))
+}
+
+fn corners(value: &Response) -> impl Iterator<Item = (&'static str, &Corner)> {
+    let list = |name, list| std::iter::repeat(name).zip(list);
+    list("cusp", &value.cusps).chain(list("Bogdanov-Takens point", &value.bogdanov_takens))
+}
+
+/// The points in the plane of two parameters.
+fn plane(value: &Response, names: [&String; 2]) -> Document {
+    let count = |kind| value.curves.iter().filter(|curve| curve.kind == kind).count();
+    let words = format!("curves: {} of folds, {} of Hopf points", count("fold"), count("hopf"));
+    let formula = |name: &String| Text::from(Formula::new(name, latex_name(name)));
+    let head = ["".into()].into_iter().chain(names.map(formula));
+    let table = Table::new(head.chain((0..value.turns.len()).map(|j| amplitude(value, j))));
+    let rows: Vec<_> = corners(value).collect();
+    let page = Document::default().words(words);
+    if rows.is_empty() {
+        return page.words("no cusps, no Bogdanov-Takens points");
+    }
+    page.table(rows.into_iter().fold(table, |table, (word, corner)| {
+        let numbers = corner.values.iter().chain(&corner.amplitudes).map(Text::number);
+        table.row([word.into()].into_iter().chain(numbers).collect::<Vec<_>>())
+    }))
+}
+
+fn decimal(number: &Number) -> f64 {
+    number.decimal.parse().unwrap_or(f64::NAN)
+}
+
+/// Curves of folds and of Hopf points in the plane of two parameters.
+fn curves(value: &Response, title: String, [first, second]: [&String; 2]) -> Figure {
+    let mut figure = Figure::new(title, Axis::linear(first), Axis::linear(second));
+    for curve in &value.curves {
+        let (name, colour) = match curve.kind {
+            "fold" => ("folds", colours::BLUE),
+            _ => ("Hopf points", colours::VERMILION),
+        };
+        let points = curve.points.iter().map(|[x, y]| (x.value, y.value));
+        figure = figure.layer(Some(name), Mark::Line(2), colour, points);
+    }
+    for (word, corner) in corners(value) {
+        let [x, y] = &corner.values;
+        let mark = if word == "cusp" { Mark::Disc(4) } else { Mark::Triangle(6) };
+        figure = figure.layer(Some(word), mark, colours::BLACK, [(decimal(x), decimal(y))]);
+    }
+    figure
+}
+
+impl Present for Answer<Response> {
+    fn document(&self) -> Document {
+        let value = &self.value;
+        let at: Vec<String> = self.header.at.iter().map(|(n, v)| format!("{n} = {v}")).collect();
+        let whole = if value.complete {
+            "all states of the truncated slow flow lie in it"
+        } else {
+            "the truncated slow flow may have states beyond"
+        };
+        let limit = format!("amplitudes to {:.4}: {whole}", value.amplitude_limit.value);
+        let mut lines: Vec<(Text, Text)> = vec![("box".into(), limit.into())];
+        if !at.is_empty() {
+            lines.insert(0, ("at".into(), at.join(", ").into()));
+        }
+        let motion = |(j, turn): (usize, &String)| {
+            let i = index(value, j);
+            let (text, latex) = match turn.split_once('/') {
+                _ if turn == "1" => Default::default(),
+                None => (format!("{turn} "), format!("{turn} ")),
+                Some((p, q)) => (format!("({turn}) "), format!(r"\frac{{{p}}}{{{q}}} ")),
+            };
+            let text = format!("x{i} = a{i} cos({text}eta + phi{i}) + ...");
+            let latex = format!(r"x{i} = a{i} \cos({latex}\eta + \varphi{i}) + \ldots");
+            ("motion".into(), Formula::new(text, latex).into())
+        };
+        lines.extend(value.turns.iter().enumerate().map(motion));
+        if let (Some(first), Some(second)) = (&value.parameter, &value.second) {
+            return Document::titled(title(self))
+                .lines(lines)
+                .append(plane(value, [first, second]));
+        }
+        if let Some(name) = &value.parameter {
+            let closed = value.branches.iter().filter(|branch| branch.closed).count();
+            let points: usize = value.branches.iter().map(|branch| branch.points.len()).sum();
+            let count = value.branches.len();
+            let words = format!("{count}, of them {closed} closed; {points} points");
+            lines.push(("branches".into(), words.into()));
+            return Document::titled(title(self)).lines(lines).append(sweep(value, name));
+        }
+        let found = value.states.first();
+        lines.extend(found.map(|states| ("steady states".into(), proof(states).into())));
+        if let Some(to) = &value.leads_to {
+            let words = match (to.fate, to.state) {
+                (_, Some(state)) => format!("state {} of the table", state + 1),
+                ("steady", None) => "a steady state beyond the box".to_owned(),
+                ("moving", None) => "no steady state: the amplitudes still move".to_owned(),
+                _ => "away".to_owned(),
+            };
+            lines.push(("the start leads to".into(), words.into()));
+        }
+        let page = Document::titled(title(self)).lines(lines);
+        found.into_iter().fold(page, |page, found| page.table(states(value, found)))
+    }
+
+    /// Amplitudes over the parameter, stable and unstable parts drawn apart, the backbone below them.
+    fn figure(&self) -> Option<Figure> {
+        let value = &self.value;
+        let name = value.parameter.as_ref()?;
+        if let Some(second) = &value.second {
+            return Some(curves(value, title(self), [name, second]));
+        }
+        let up = Axis::linear(if value.turns.len() == 1 { "amplitude" } else { "amplitudes" });
+        let mut figure = Figure::new(title(self), Axis::linear(name), up);
+        if !value.backbone.is_empty() {
+            let points = value.backbone.iter().map(|[x, a]| (x.value, a.value));
+            figure = figure.layer(Some("free motion"), Mark::Line(1), colours::GREY, points);
+        }
+        for j in 0..value.turns.len() {
+            let colour = colours::CYCLE[j % colours::CYCLE.len()];
+            for branch in &value.branches {
+                for (stable, part) in parts(&branch.points) {
+                    let mark = if stable == Some(false) { Mark::Dashed(2) } else { Mark::Line(2) };
+                    let name = format!("{}{}", word(stable), index(value, j).replace('_', " "));
+                    let points = part.iter().map(|p| (p.value.value, p.amplitudes[j].value));
+                    figure = figure.layer(Some(&name), mark, colour, points);
+                }
+            }
+        }
+        for (word, change) in changes(value) {
+            let points = change.amplitudes.iter().map(|a| (decimal(&change.value), decimal(a)));
+            let mark = if word == "fold" { Mark::Disc(4) } else { Mark::Triangle(5) };
+            figure = figure.layer(Some(word), mark, colours::BLACK, points);
+        }
+        Some(figure)
+    }
+
+    /// Every point of every branch; without a sweep every state.
+    fn table(&self) -> Option<Table> {
+        let value = &self.value;
+        let Some(name) = &value.parameter else {
+            return value.states.first().map(|found| states(value, found));
+        };
+        if value.second.is_some() {
+            return self.figure().map(|figure| figure.table());
+        }
+        let mut head = vec!["branch".to_owned(), name.clone()];
+        let numbers = 0..value.turns.len();
+        head.extend(
+            numbers
+                .map(|j| index(value, j))
+                .flat_map(|j| [format!("amplitude{j}"), format!("phase{j}")]),
+        );
+        head.push("stable".to_owned());
+        let exponents =
+            (1..=2 * value.turns.len()).flat_map(|k| [format!("re_{k}"), format!("im_{k}")]);
+        head.extend(exponents);
+        let branches = value.branches.iter().enumerate();
+        let rows = branches.flat_map(|(n, branch)| branch.points.iter().map(move |p| (n, p)));
+        Some(rows.fold(Table::new(head), |table, (n, point)| {
+            let digits = |x: &Estimate| format!("{:?}", x.value);
+            let mut cells = vec![n.to_string(), digits(&point.value)];
+            let pairs = point.amplitudes.iter().zip(&point.phases);
+            cells.extend(pairs.flat_map(|(a, phase)| [digits(a), digits(phase)]));
+            cells.push(word(point.stable).to_owned());
+            cells.extend(point.exponents.iter().flatten().map(digits));
+            table.row(cells)
+        }))
+    }
+}
+
+/// Runs of points that are equally stable; each begins with the last point of the one before. A single neutral point, a
+/// fold, counts to what is before it.
+fn parts(points: &[Point]) -> Vec<(Option<bool>, &[Point])> {
+    let mut parts = Vec::new();
+    let (mut first, mut own) = (0, None);
+    for (k, point) in points.iter().enumerate() {
+        let stable = point.stable.or(own);
+        if stable != own && own.is_some() {
+            parts.push((own, &points[first..k]));
+            first = k - 1;
+        }
+        own = stable;
+    }
+    parts.push((own, &points[first..]));
+    parts
+}

@@ -1,0 +1,126 @@
+//! Steady states at resonance against periodic orbits that are proved without any expansion, and against closed forms.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use lindstedt::grid::Axis;
+use lindstedt::respond::Response;
+use lindstedt::unstable::orbit::{Field, Kind, Request, Start, prove};
+use lindstedt::{Oscillator, Respond, Work};
+use rug::Rational;
+
+fn ask(equation: &str, values: &[(&str, &str)], question: &Respond) -> Response {
+    let start = Oscillator::parse(equation).unwrap();
+    let set = |case: Oscillator, (name, value): &(&str, &str)| case.set(name, value).unwrap();
+    let case = values.iter().fold(start, set);
+    case.respond(question, &Work::default()).unwrap().value
+}
+
+fn to_order(order: usize) -> Respond {
+    Respond { order: Some(order), ..Respond::default() }
+}
+
+/// N orders of the slow flow give the first harmonic of the true orbit to O(eps^N), and Liouville's trace
+/// -2 eps mu to O(eps^(N + 1)).
+#[test]
+fn steady_amplitudes_against_proved_orbits() {
+    let equation = "x'' + x + eps*(3/5*x + 2/7*x' + x^3) = eps*cos(t)/2";
+    let smalls = [20, 40, 80].map(|n| Rational::from((1, n)));
+    let mut errors = [[0.0f64; 3]; 4];
+    let mut traces = [[0.0f64; 3]; 4];
+    for (k, small) in smalls.iter().enumerate() {
+        let problem = Oscillator::parse(equation).unwrap();
+        let values = [("eps".to_owned(), small.clone())].into();
+        let field = Field::new(&problem.problem().equation, "eps", &values).unwrap();
+        let mut truth = None;
+        for order in (1..=4).rev() {
+            let set = [("eps", &*small.to_string())];
+            let found = ask(equation, &set, &to_order(order));
+            assert_eq!((found.states[0].count, found.states[0].count_proved), (1, true));
+            let state = &found.states[0].list[0];
+            let number = |text: &str| text.parse::<f64>().unwrap();
+            let amplitude = number(&state.amplitudes[0].decimal);
+            let phase = number(&state.phases[0].as_ref().unwrap().decimal);
+            let truth = *truth.get_or_insert_with(|| {
+                let cosines = vec![0.0, amplitude * phase.cos()];
+                let sines = vec![0.0, -amplitude * phase.sin()];
+                let start = Start { frequency: 1.0, cosines, sines };
+                let proof = prove(&field, &Kind::Forced(1), &start, &Request::default()).unwrap();
+                let (cosine, sine) = proof.harmonic(1);
+                cosine.midpoint().to_f64().hypot(sine.midpoint().to_f64())
+            });
+            errors[order - 1][k] = (amplitude - truth).abs();
+            let trace: f64 = state.exponents.iter().map(|[re, _]| re.value).sum();
+            traces[order - 1][k] = (trace + 2.0 / 7.0 * small.to_f64()).abs();
+        }
+    }
+    for order in 1..=4 {
+        let [_, b, c] = errors[order - 1];
+        let slope = (b / c).log2();
+        println!("order {order}: {:?}, slope {slope:.2}", errors[order - 1]);
+        assert!((slope - order as f64).abs() < 0.2, "order {order}: slope {slope}");
+        let [a, _, c] = traces[order - 1];
+        // Order one is exact.
+        assert!(c < 1e-15 || (a / c).log2() / 2.0 > order as f64 + 0.8, "{:?}", traces[order - 1]);
+    }
+}
+
+/// The Bogdanov-Takens point of the forced oscillator of van der Pol at eps = 1/10: that of the stroboscopic map lies at
+/// sigma = 0.2484755, F = 1.0186359 (both multipliers 1; integration with 13 digits). The errors of orders 1, 2, 3, 4 are
+/// 1.9e-2, 2.7e-4, 1.6e-5, 1.3e-6.
+#[test]
+fn lock_in_against_the_stroboscopic_map() {
+    let equation = "x'' + x = eps*((1 - x^2)*x' + F*cos((1 + eps*sigma)*t))";
+    for (order, known) in [(1, 1.9e-2), (2, 2.7e-4), (3, 1.6e-5), (4, 1.3e-6)] {
+        let question = Respond {
+            sweep: Some(Axis::parse("sigma=0,1/5,2/5").unwrap()),
+            second: Some(Axis::parse("F=4/5,6/5").unwrap()),
+            ..to_order(order)
+        };
+        let found = ask(equation, &[("eps", "1/10")], &question);
+        let [point] = &found.bogdanov_takens[..] else {
+            panic!("order {order}: {:?}", found.bogdanov_takens)
+        };
+        let [sigma, force] =
+            [&point.values[0], &point.values[1]].map(|value| value.decimal.parse::<f64>().unwrap());
+        let error = (sigma - 0.2484755).hypot(force - 1.0186359);
+        println!("order {order}: {error:.2e}");
+        assert!((0.9 * known..1.1 * known).contains(&error), "order {order}: {error:e}");
+    }
+}
+
+/// Principal parametric resonance: mu^2 + (sigma - 3 a^2/8)^2 = h^2/16 at order one, x = a cos(eta/2 + phi).
+#[test]
+fn parametric_states() {
+    let equation = "x'' + x + eps*(x'/5 + x^3 + h*x*cos(2*(1 + eps*sigma)*t)) = 0";
+    let set = [("eps", "1/10"), ("h", "1"), ("sigma", "1/4")];
+    let found = ask(equation, &set, &to_order(1));
+    assert_eq!((found.turns[0].as_str(), found.complete), ("1/2", true));
+    let states = &found.states[0];
+    // At rest; two of either amplitude, half a turn apart.
+    assert_eq!((states.count, states.count_proved), (5, true));
+    let root = (0.0625f64 - 0.01).sqrt();
+    let known = [0.25 + root, 0.25 + root, 0.25 - root, 0.25 - root, 0.0];
+    for (state, known) in states.list.iter().zip(known) {
+        let a: f64 = state.amplitudes[0].decimal.parse().unwrap();
+        assert!((0.375 * a * a - known).abs() < 1e-12, "{a}");
+        assert_eq!(state.phases[0].is_none(), known == 0.0);
+    }
+    let stable: Vec<_> = states.list.iter().map(|state| state.stable).collect();
+    assert_eq!(stable, [true, true, false, false, true].map(Some));
+}
+
+/// The detuning follows from omega; a curve over omega is that over sigma.
+#[test]
+fn sweeps_of_the_frequency() {
+    let question = |text| Respond { sweep: Some(Axis::parse(text).unwrap()), ..to_order(2) };
+    let set = [("eps", "1/10")];
+    let by_sigma = "x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t)/2";
+    let by_sigma = ask(by_sigma, &set, &question("sigma=-1..3:50"));
+    let by_omega = "x'' + x + eps*(x'/5 + x^3) = eps*cos(omega*t)/2";
+    let by_omega = ask(by_omega, &set, &question("omega=9/10..13/10:50"));
+    assert_eq!((by_sigma.folds.len(), by_omega.folds.len()), (2, 2));
+    for (a, b) in by_sigma.folds.iter().zip(&by_omega.folds) {
+        let [a, b] = [&a.value, &b.value].map(|value| value.decimal.parse::<f64>().unwrap());
+        assert!((1.0 + 0.1 * a - b).abs() < 1e-12);
+    }
+}
