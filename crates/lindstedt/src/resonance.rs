@@ -3,6 +3,7 @@
 use crate::averaging::Averaging;
 use crate::{Answer, DerivationError, Error, Oscillator, SlowFlow, Work};
 use lindstedt_derivation::averaging::AveragingSettings;
+use lindstedt_derivation::check_parameters;
 use lindstedt_derivation::resonance::slow_flow;
 use lindstedt_equation::Expression;
 use serde::Serialize;
@@ -28,7 +29,8 @@ impl Oscillator {
     /// Those of both.
     pub fn averaged(&self, order: usize, work: &Work) -> Result<Answer<Averaged>, Error> {
         let flow = || Ok(self.slow_flow(order, work)?.map(Averaged::Flow));
-        if !self.problem().others.is_empty() || self.is_detuned() {
+        if self.has_flow_alone() {
+            check_parameters(self.problem(), self.given())?;
             return flow();
         }
         match self.average(order, work) {
@@ -40,15 +42,17 @@ impl Oscillator {
         }
     }
 
-    /// Whether the phase of a force contains the small parameter.
-    fn is_detuned(&self) -> bool {
+    /// Whether amplitude and phase are not all: several unknowns, or a force whose phase contains the small
+    /// parameter.
+    pub(crate) fn has_flow_alone(&self) -> bool {
         let detuned = |e: &Expression| match e {
             Expression::Function(_, angle) => {
                 angle.contains(&Expression::Time) && angle.contains(&Expression::Small)
             }
             _ => false,
         };
-        self.problem().equation.nodes().any(detuned)
+        let problem = self.problem();
+        !problem.others.is_empty() || problem.equation.nodes().any(detuned)
     }
 
     /// The slow flow up to an order: with complex amplitudes z_j, E = e^{i eta} and the phase eta of the

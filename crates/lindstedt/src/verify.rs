@@ -20,11 +20,14 @@
 //!   da/dt = sum eps^n A_n(a), dpsi/dt = sum eps^n B_n(a) are truncated at N and integrated. With
 //!   a delay T the start is a function: x_N(t) for -T <= t <= 0 by the same rates. Any other
 //!   history excites other roots of the characteristic equation, which the expansion leaves out.
-//!   A wall takes no part: the expansion is that of the flight.
+//!   A wall takes no part: the expansion is that of the flight;
+//! - slow flow (averaging at resonance): the same with z_j(0) = a/2 in place of a and psi, for all unknowns
+//!   at once, those of the modes where the linear part couples them.
 
 mod cycle;
 mod drifting;
 mod periodic;
+mod resonant;
 mod run;
 mod verdict;
 
@@ -37,8 +40,9 @@ use lindstedt_derivation::{Settings, derive};
 use lindstedt_equation::{AmplitudeRole, Condition};
 use lindstedt_expand::ExpandError;
 use periodic::Periodic;
+use resonant::Resonant;
 use rug::Rational;
-use run::{compare_all, with_digits};
+use run::{Compare, compare_all, with_digits};
 use std::time::Instant;
 pub use verdict::{Comparison, TOLERANCE, Verdict, Verification};
 
@@ -138,9 +142,12 @@ impl Oscillator {
     pub fn verify(&self, question: &Verify, work: &Work) -> Result<Answer<Verification>, Error> {
         let start = Instant::now();
         question.check_small()?;
-        self.without_pi()?;
+        self.values_without_pi()?;
         self.check_free()?;
-        self.check()?;
+        let flows = self.has_flow_alone();
+        if !flows {
+            self.check()?;
+        }
         if self.condition().is_none() {
             let message = format!("{} has no expansion that could be verified", self.origin());
             let hint = "`simulate` takes it, `problems --show` lists the methods";
@@ -148,7 +155,13 @@ impl Oscillator {
         }
         let condition = condition(self.problem(), self.asked_condition())?;
         let found = if condition == Condition::FreeAmplitude {
-            self.drifting(question, work)
+            match flows {
+                true => self.resonant(question, work),
+                false => match self.drifting(question, work) {
+                    Err(error) if error.is_resonance() => self.resonant(question, work),
+                    other => other,
+                },
+            }
         } else {
             self.derived(condition, question, work)
                 .and_then(|derivation| self.against_time(&derivation, question, work))
@@ -224,20 +237,31 @@ impl Oscillator {
     }
 
     fn drifting(&self, question: &Verify, work: &Work) -> Result<Verification, Error> {
-        let small = &*self.problem().small;
-        with_digits(question.order, Condition::FreeAmplitude, question, &mut |digits| {
+        self.free(question, work, &|digits| {
             let expansion = Drifting::new(self, question, digits, &mut |p| work.goes_on(p))?;
-            let compare = |value: &Rational, goes_on: &dyn Fn() -> bool| {
-                expansion.compare(value, digits, goes_on)
-            };
-            let found = compare_all(question, question.order, &compare, work)?;
-            Ok(Verification::new(
-                small,
-                (Condition::FreeAmplitude, question.order),
-                question,
-                digits,
-                found,
-            ))
+            Ok(Box::new(move |value, goes_on| expansion.compare(value, digits, goes_on)))
+        })
+    }
+
+    fn resonant(&self, question: &Verify, work: &Work) -> Result<Verification, Error> {
+        self.free(question, work, &|digits| {
+            let expansion = Resonant::new(self, question, digits, &mut |p| work.goes_on(p))?;
+            Ok(Box::new(move |value, goes_on| expansion.compare(value, digits, goes_on)))
+        })
+    }
+
+    /// All comparisons of an expansion with free amplitude.
+    fn free(
+        &self,
+        question: &Verify,
+        work: &Work,
+        judge: &dyn Fn(u32) -> Result<Box<Compare<'static>>, Error>,
+    ) -> Result<Verification, Error> {
+        let (small, order) = (&*self.problem().small, question.order);
+        with_digits(order, Condition::FreeAmplitude, question, &mut |digits| {
+            let found = compare_all(question, order, &*judge(digits)?, work)?;
+            let what = (Condition::FreeAmplitude, order);
+            Ok(Verification::new(small, what, question, digits, found))
         })
     }
 
@@ -294,7 +318,8 @@ impl Oscillator {
             return self.condition() == Some(Condition::FreeAmplitude) || enters;
         }
         let is_card = problem.parameters.iter().any(|card| card.name == *name);
-        let mentioned = problem.equation.parameters().iter().any(|known| known == name);
+        let mentioned =
+            problem.equations().any(|e| e.parameters().iter().any(|known| known == name));
         let tie = problem.synchronous.as_ref();
         let tied = tie.is_some_and(|tie| tie.periods == *name);
         let determined = tie.is_some_and(|tie| tie.delay == *name);

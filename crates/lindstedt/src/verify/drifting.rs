@@ -62,21 +62,13 @@ impl Drifting {
         if order < question.order {
             return Err(ExpandError::Interrupted { order }.into());
         }
-        let samples = question.samples.max(2);
-        let window = Float::with_val(bits, rug::float::Constant::Pi)
-            * (2 * question.periods.max(1))
-            / &numbers.frequency;
-        // Not at a whole part of the period, where delays end too.
-        let time = |j: u32| {
-            let part = (1009 * u64::from(j) - 505, 1009 * u64::from(samples));
-            Float::with_val(bits, &window * Rational::from(part))
-        };
+        let times = sample_times(question, &numbers.frequency);
         let mut judged = problem.clone();
         judged.impact = None;
         Ok(Self {
             bits,
             start,
-            times: (1..=samples).map(time).collect(),
+            times,
             model: Model::of_problem(&judged)?,
             parameters: Parameters::of_problem(problem, oscillator.given()),
             small: problem.small.to_string(),
@@ -101,13 +93,7 @@ impl Drifting {
         let history = self.history(&truncated, digits + 16)?;
         let coarse = self.run(small, &start, history.as_ref(), digits, goes_on)?;
         let fine = self.run(small, &start, history.as_ref(), digits + 8, goes_on)?;
-        let [mut error, mut simulation_error, mut size] = [0; 3].map(|_| Float::new(64));
-        for ((x, coarse), fine) in expected.iter().zip(&coarse).zip(&fine) {
-            error.max_mut(&Float::with_val(64, x - fine).abs());
-            simulation_error.max_mut(&Float::with_val(64, fine - coarse).abs());
-            size.max_mut(&Float::with_val(64, fine.abs_ref()));
-        }
-        Ok(Comparison { small: small.clone(), error, simulation_error, size, slope: None })
+        Ok(largest_gaps(small, &expected, &coarse, &fine))
     }
 
     /// x_N at the times.
@@ -120,8 +106,8 @@ impl Drifting {
         let real = Digits::for_digits(digits);
         let system = truncated.system(real, false)?;
         let start = [real.float(&self.start), real.zero()];
-        let [a, psi] = self.values(&system, &start, [0, 1], digits, goes_on)?;
-        let all = a.into_iter().zip(psi).zip(&self.times);
+        let lists = self.values(&system, &start, &[0, 1], digits, goes_on)?;
+        let all = lists[0].iter().cloned().zip(lists[1].iter().cloned()).zip(&self.times);
         Ok(all.map(|((a, psi), t)| truncated.value(&[a, psi], t)).collect())
     }
 
@@ -183,39 +169,77 @@ impl Drifting {
         }
         let system = model.compile(real, &parameters)?;
         let start = start.each_ref().map(|x| real.float(x));
-        let [x] = self.values(&system, &start, [0], digits, goes_on)?;
-        Ok(x)
+        Ok(self.values(&system, &start, &[0], digits, goes_on)?.concat())
     }
 
-    /// States at the times.
-    fn values<const N: usize>(
+    fn values(
         &self,
         system: &System<Digits>,
         start: &[Float],
-        states: [usize; N],
+        places: &[usize],
         digits: u32,
         goes_on: &dyn Fn() -> bool,
-    ) -> Result<[Vec<Float>; N], Error> {
-        let real = *system.real();
-        let precision = Precision::for_digits(digits);
-        let mut flow = Integrator::new(system, &real.zero(), start, precision)?;
-        let mut trajectory = Trajectory::new(real);
-        let end = self.times.last().map_or_else(|| real.zero(), |t| real.float(t));
-        let outcome = flow.advance(&end, &mut |report| {
-            if goes_on() { trajectory.record(report) } else { ControlFlow::Break(()) }
-        })?;
-        if outcome == Outcome::Stopped {
-            let order = self.numbers.solution.len().saturating_sub(1);
-            return Err(ExpandError::Interrupted { order }.into());
-        }
-        let mut lists = states.map(|_| Vec::new());
-        for t in self.times.iter().map(|t| real.float(t)) {
-            for (list, state) in lists.iter_mut().zip(states) {
-                let last = || flow.state().get(state).cloned();
-                let value = if t >= *flow.time() { last() } else { trajectory.value(state, &t) };
-                list.push(value.ok_or(Error::NoValue)?);
-            }
-        }
-        Ok(lists)
+    ) -> Result<Vec<Vec<Float>>, Error> {
+        let order = self.numbers.solution.len().saturating_sub(1);
+        states(system, start, places, (&self.times, order), digits, goes_on)
     }
+}
+
+/// Times on a window of so many periods, not at a whole part of the period, where delays end too.
+pub(super) fn sample_times(question: &Verify, frequency: &Float) -> Vec<Float> {
+    let (bits, samples) = (frequency.prec(), question.samples.max(2));
+    let window =
+        Float::with_val(bits, rug::float::Constant::Pi) * (2 * question.periods.max(1)) / frequency;
+    let time = |j: u32| {
+        let part = (1009 * u64::from(j) - 505, 1009 * u64::from(samples));
+        Float::with_val(bits, &window * Rational::from(part))
+    };
+    (1..=samples).map(time).collect()
+}
+
+/// The largest differences from the expansion and between two integrations.
+pub(super) fn largest_gaps(
+    small: &Rational,
+    expected: &[Float],
+    coarse: &[Float],
+    fine: &[Float],
+) -> Comparison {
+    let [mut error, mut simulation_error, mut size] = [0; 3].map(|_| Float::new(64));
+    for ((x, coarse), fine) in expected.iter().zip(coarse).zip(fine) {
+        error.max_mut(&Float::with_val(64, x - fine).abs());
+        simulation_error.max_mut(&Float::with_val(64, fine - coarse).abs());
+        size.max_mut(&Float::with_val(64, fine.abs_ref()));
+    }
+    Comparison { small: small.clone(), error, simulation_error, size, slope: None }
+}
+
+/// States at the times, place by place; stopped work says how many orders there are.
+pub(super) fn states(
+    system: &System<Digits>,
+    start: &[Float],
+    places: &[usize],
+    (times, order): (&[Float], usize),
+    digits: u32,
+    goes_on: &dyn Fn() -> bool,
+) -> Result<Vec<Vec<Float>>, Error> {
+    let real = *system.real();
+    let precision = Precision::for_digits(digits);
+    let mut flow = Integrator::new(system, &real.zero(), start, precision)?;
+    let mut trajectory = Trajectory::new(real);
+    let end = times.last().map_or_else(|| real.zero(), |t| real.float(t));
+    let outcome = flow.advance(&end, &mut |report| {
+        if goes_on() { trajectory.record(report) } else { ControlFlow::Break(()) }
+    })?;
+    if outcome == Outcome::Stopped {
+        return Err(ExpandError::Interrupted { order }.into());
+    }
+    let mut lists = vec![Vec::new(); places.len()];
+    for t in times.iter().map(|t| real.float(t)) {
+        for (list, place) in lists.iter_mut().zip(places) {
+            let last = || flow.state().get(*place).cloned();
+            let value = if t >= *flow.time() { last() } else { trajectory.value(*place, &t) };
+            list.push(value.ok_or(Error::NoValue)?);
+        }
+    }
+    Ok(lists)
 }

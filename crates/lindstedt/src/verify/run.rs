@@ -35,7 +35,8 @@ pub(super) fn with_digits(
 }
 
 /// A comparison at one value, which asks now and then whether to go on.
-type Compare<'a> = dyn Fn(&Rational, &dyn Fn() -> bool) -> Result<Comparison, Error> + Sync + 'a;
+pub(super) type Compare<'a> =
+    dyn Fn(&Rational, &dyn Fn() -> bool) -> Result<Comparison, Error> + Sync + 'a;
 
 /// All comparisons, on as many threads as there are processors.
 pub(super) fn compare_all(
