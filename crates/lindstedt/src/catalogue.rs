@@ -67,7 +67,6 @@ pub struct Parameter {
 
 impl Entry {
     fn new(problem: &Problem) -> Self {
-        let equation = |style| format!("{} = 0", problem.equation.print(&problem.small, style));
         let parameter = |card: &lindstedt_equation::ParameterCard| Parameter {
             name: card.name.to_string(),
             default: card.default.to_string(),
@@ -76,8 +75,8 @@ impl Entry {
         Self {
             name: problem.name.to_string(),
             title: problem.title.to_string(),
-            equation: equation(Style::Text),
-            latex: equation(Style::Latex),
+            equation: problem.print(Style::Text),
+            latex: problem.print(Style::Latex),
             parameter: problem.small.to_string(),
             normalisations: problem.conditions.iter().map(|c| c.name()).collect(),
             parameters: problem.parameters.iter().map(parameter).collect(),
@@ -106,7 +105,8 @@ impl Oscillator {
     pub fn entry(&self) -> Catalogue {
         let mut entry = Entry::new(self.problem());
         entry.file = Some(self.problem_file().to_text());
-        entry.classification = self.describe().ok();
+        // What an equation is made of is said of one unknown.
+        entry.classification = self.single().ok().and_then(|()| self.describe().ok());
         Catalogue { problems: vec![entry] }
     }
 }
