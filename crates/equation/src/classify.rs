@@ -164,16 +164,14 @@ fn forcing(
     Forcing { order: monomial.order, frequency, parametric, resonance, term }
 }
 
-/// omega of cos(omega t + phase) or sin(omega t + phase).
+/// omega of cos(omega t + phase) or sin(omega t + phase), at order zero where the force is detuned.
 fn frequency_of(e: &Expression) -> Option<Expression> {
     let Expression::Function(Function::Sin | Function::Cos, argument) = e else { return None };
     let all = expand(argument)?;
     let time = |m: &Monomial| m.atoms.get("t") == Some(&1) && m.atoms.len() == 1;
-    let linear = all
-        .terms
-        .keys()
-        .all(|m| (m.atoms.is_empty() || time(m)) && m.order == 0 && m.x == 0 && m.velocity == 0);
-    let frequency = all.coefficient(time);
+    let phase = |m: &Monomial| m.atoms.is_empty() && m.order == 0;
+    let linear = all.terms.keys().all(|m| (phase(m) || time(m)) && m.x == 0 && m.velocity == 0);
+    let frequency = all.coefficient(|m| time(m) && m.order == 0);
     (linear && frequency != Expression::integer(0)).then_some(frequency)
 }
 

@@ -197,7 +197,8 @@ fn angle(force: &Expression) -> Option<BTreeMap<String, i32>> {
     };
     let Some(Expression::Function(_, z)) = force.find(&harmonic) else { return None };
     let all = expand(z)?;
-    let [(monomial, _)] = all.terms.iter().collect::<Vec<_>>()[..] else { return None };
+    let mut leading = all.terms.keys().filter(|monomial| monomial.order == 0);
+    let (Some(monomial), None) = (leading.next(), leading.next()) else { return None };
     Some(monomial.parameters.clone())
 }
 

@@ -11,6 +11,15 @@ use std::time::Instant;
 
 /// Averaged equations: those of amplitude and phase, or of complex amplitudes where a force is in
 /// resonance or detuned, or where there are several unknowns.
+///
+/// ```
+/// use lindstedt::{Averaged, Oscillator, Work};
+/// let cycle = Oscillator::parse("x'' + x = eps*(1 - x^2)*x'")?;
+/// let locked = Oscillator::parse("x'' + x = eps*(1 - x^2)*x' + eps*F*cos(t)")?;
+/// assert!(matches!(cycle.averaged(1, &Work::default())?.value, Averaged::Polar(_)));
+/// assert!(matches!(locked.averaged(1, &Work::default())?.value, Averaged::Flow(_)));
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
 pub enum Averaged {
@@ -27,6 +36,15 @@ impl Oscillator {
     ///
     /// # Errors
     /// Those of both.
+    ///
+    /// ```
+    /// use lindstedt::{Averaged, Oscillator, Work};
+    /// let spring = Oscillator::parse("x'' + x + eps*x*y; y'' + 4*y + eps*x^2")?;
+    /// let Averaged::Flow(flow) = spring.averaged(1, &Work::default())?.value else { panic!() };
+    /// // f_11 = (i/2) zbar_1 z_2: the modes exchange their energy.
+    /// assert_eq!(flow.flow[0][1][0].exponents, [0, 1, 1, 0, 0]);
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
     pub fn averaged(&self, order: usize, work: &Work) -> Result<Answer<Averaged>, Error> {
         let flow = || Ok(self.slow_flow(order, work)?.map(Averaged::Flow));
         if self.has_flow_alone() {

@@ -47,6 +47,18 @@ pub type Terms = Vec<AmplitudeTerm>;
 /// A slow flow that was substituted into its equations, as plain data.
 ///
 /// ```
+/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::slow_flow};
+/// use lindstedt_problem_file::ProblemFile;
+/// let text = "equation = \"x'' + x + eps*h*x*cos(2*t) = 0\"";
+/// let problem = ProblemFile::parse(text)?.problem;
+/// let found = slow_flow(&problem, &AveragingSettings::default(), &mut |_| true)?;
+/// // f_1 = (i/4) h zbar E: exponents of z, zbar, E, h.
+/// let [term] = &found.flow[0][1][..] else { panic!("one term") };
+/// assert_eq!((&term.exponents[..], term.im.to_string().as_str()), (&[0, 1, 1, 1][..], "1/4"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// ```
 /// use lindstedt_derivation::resonance::{FlowSettings, slow_flow};
 /// let duffing = lindstedt_problems::find("duffing").ok_or("no such problem")?;
 /// let (given, stop) = (Default::default(), Default::default());
