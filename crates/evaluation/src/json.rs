@@ -171,6 +171,9 @@ impl Serialize for Evaluation {
         map.serialize_entry("singularity", &self.singularity())?;
         map.serialize_entry("pade", &self.picture.as_ref().map(pade))?;
         map.serialize_entry("solution", &self.solution)?;
+        if let Some(improved) = &self.improved {
+            map.serialize_entry("improved", improved)?;
+        }
         map.end()
     }
 }

@@ -36,5 +36,5 @@ pub use error::EvaluationError;
 pub use fourier::Fourier;
 pub use json::Place;
 pub use names::{kind_name, method_name, rounded, with_error};
-pub use period::{Evaluation, period};
+pub use period::{Evaluation, Improved, period};
 pub use solution::{Question, Trajectory};

@@ -15,6 +15,7 @@ use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{Exact, Number, certified};
 use lindstedt_series::resummation::{Method, Pade, Picture, Resummed, Sample, resum_until};
 use rug::Float;
+use serde::Serialize;
 
 /// A period and how it was found.
 #[derive(Clone, Debug)]
@@ -57,6 +58,34 @@ pub struct Evaluation {
     pub asked: Option<Method>,
     /// x(t), where times were asked for.
     pub solution: Option<Displacements>,
+    /// What the sum gave, where Newton's method gives more digits.
+    pub improved: Option<Improved>,
+}
+
+/// Why the period is not that of the sum.
+#[derive(Clone, Debug, Serialize)]
+pub struct Improved {
+    /// The period by the sum; nothing where not one digit was supported.
+    pub sum: Option<Number>,
+    /// Where Newton's method started: `the sum`, `the motion in time` or `harmonic balance`.
+    pub from: &'static str,
+    /// The modes it took.
+    pub modes: usize,
+}
+
+impl Evaluation {
+    /// The same with a period in the place of the sum's; the error is an estimate, too.
+    pub fn improve(&mut self, period: &Ball, digits: usize, from: &'static str, modes: usize) {
+        let balls = Balls::new(period.midpoint().prec());
+        let turn = balls.mul_i64(&balls.pi(), 2);
+        let frequency = balls.div(&turn, period);
+        self.frequency = frequency.and_then(|ball| Number::estimated(&ball, digits));
+        let sum = std::mem::replace(&mut self.period, Number::estimated(period, digits));
+        (self.best_period, self.is_estimated, self.no_estimate) = (period.clone(), true, false);
+        let how = format!("; Newton's method in Fourier space from {from}, {modes} modes");
+        self.verdict.push_str(&how);
+        self.improved = Some(Improved { sum, from, modes });
+    }
 }
 
 /// The order that takes well below a second.
@@ -128,6 +157,7 @@ pub fn period(
         variable: source.variable.clone(),
         asked: method,
         solution: None,
+        improved: None,
     };
     result.verdict = result.describe();
     Ok(result)

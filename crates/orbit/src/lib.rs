@@ -60,7 +60,7 @@ pub use family::{Member, family};
 pub use field::Field;
 pub use guesses::guesses;
 pub use proof::{Proof, Stability, Status};
-pub use prove::prove;
+pub use prove::{Approximation, approximate, prove};
 pub use radii::Bounds;
 pub use sine::Sine;
 pub use space::Parity;

@@ -21,6 +21,8 @@ const RESOLVED: f64 = 1e-4;
 const FINELY: f64 = 1e-9;
 /// Bits beyond the digits: weights of the modes, sums.
 const GUARD_BITS: u32 = 44;
+/// Bits of the steps that estimate the error.
+const FURTHER_BITS: u32 = 20;
 /// The numerical solution has at most this many times the modes of the inverse.
 const MOST_TIMES: usize = 40;
 /// Weights that are tried: nu = 1 + c/N.
@@ -75,6 +77,72 @@ pub fn prove(
             return attempt;
         }
         modes = ((modes as f64 * more) as usize + 1).min(request.modes_limit);
+    }
+}
+
+/// An orbit that Newton's method found; nothing proves it.
+#[derive(Clone, Debug)]
+pub struct Approximation {
+    /// omega.
+    pub frequency: Float,
+    /// Its estimated error: what further steps changed, and the bound at which they ended.
+    pub error: Float,
+    /// The largest mode of the inverse.
+    pub modes: usize,
+}
+
+/// Newton's method without the proof: to as many digits as are asked for, every residual formed without
+/// rounding. Ends where a step is below 10^-digits of the largest harmonic; six more digits are computed to
+/// estimate the error.
+///
+/// # Errors
+/// [`Failure`]: what Newton's method failed on.
+///
+/// ```
+/// use lindstedt_equation::Expression;
+/// use lindstedt_orbit::{Field, Kind, Request, Start, approximate};
+/// let (x, y) = (Expression::DISPLACEMENT, Expression::VELOCITY);
+/// let field = Field::new(&(Expression::ACCELERATION + x.clone() + (x.pow(2) - 1) * y), "eps", &Default::default())?;
+/// let start = Start { frequency: 0.94, cosines: vec![0.0, 2.0], sines: vec![] };
+/// let found = approximate(&field, &Kind::LimitCycle, &start, &Request::default())?;
+/// // 2 pi over the period by integration with 34 digits.
+/// assert!((found.frequency.to_f64() - 0.942_955_847_441_610_0).abs() < 1e-15 && found.error < 1e-15);
+/// # Ok::<(), lindstedt_orbit::Failure>(())
+/// ```
+pub fn approximate(
+    field: &Field,
+    kind: &Kind,
+    start: &Start,
+    request: &Request,
+) -> Result<Approximation, Failure> {
+    let (task, guess) = Task::new(field, kind, start)?;
+    let (centre, mut modes) = resolved(&task, guess, request)?;
+    let bits = (f64::from(request.digits) * std::f64::consts::LOG2_10) as u32 + GUARD_BITS;
+    let centre = centre.with_bits(bits.max(crate::task::FAST_BITS));
+    let goal = centre.largest() / Float::with_val(53, Float::i_pow_u(10, request.digits)) / 16u32;
+    loop {
+        let values = centre.values(&task.field);
+        let linear = Linear::new(centre.frequency.to_f64(), &values, task.rows);
+        let inverse = invert(&linear, modes)?;
+        let most = MOST_TIMES * modes;
+        let to = |centre: &Centre, target: &Float| {
+            refine(&task, centre.clone(), &inverse, target, most, &request.stop)
+        };
+        let found = to(&centre, &goal).and_then(|rough| {
+            let fine = to(&rough, &Float::with_val(53, &goal >> FURTHER_BITS))?;
+            Ok((rough, fine))
+        });
+        match found {
+            Ok((rough, fine)) => {
+                let change = Float::with_val(53, rough.frequency - &fine.frequency).abs();
+                let frequency = Float::with_val(bits, &fine.frequency);
+                return Ok(Approximation { frequency, error: change + goal, modes });
+            }
+            Err(Failure::NotConverged { .. }) if modes < request.modes_limit => {
+                modes = (modes * 3 / 2).min(request.modes_limit);
+            }
+            Err(failure) => return Err(failure),
+        }
     }
 }
 

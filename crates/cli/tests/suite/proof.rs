@@ -124,3 +124,96 @@ fn limit_cycles_are_proved_without_a_small_parameter() {
     // The averaged amplitudes are sqrt(26 -+ sqrt(476)), 2.045 and 6.916 (rounded).
     assert!((largest(&two[0]) - 2.045).abs() < 0.01 && (largest(&two[1]) - 6.916).abs() < 0.1);
 }
+
+/// A linear congruential generator (Knuth's constants): the same problems everywhere.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, n: u64) -> u64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % n
+    }
+
+    /// n/20 with -20 < n < 20.
+    fn fraction(&mut self) -> Rational {
+        Rational::from((self.below(39) as i64 - 19, 20))
+    }
+}
+
+/// A conservative oscillator with x(0) = 1, or a self-excited one, and its small parameter: 1/2, 1, 3/2 or 2.
+fn random(dice: &mut Dice, self_excited: bool) -> (String, String) {
+    let [a, b, c] = std::array::from_fn(|_| dice.fraction());
+    let small = Rational::from((1 + dice.below(4), 2));
+    let equation = match self_excited {
+        true => {
+            // The averaged amplitude is 2, which the exact expansion needs.
+            let (b, c) = (b / 4, c / 4);
+            format!("x'' + x + eps*((x^2 + ({a})*x - 1)*x' + ({b})*x^2 + ({c})*x^3) = 0")
+        }
+        false => {
+            let c = Rational::from(c.abs_ref());
+            format!("x'' + x + eps*(({a})/2*x^2 + ({b})*x*x'^2 + {c}*x^3) = 0")
+        }
+    };
+    (equation, small.to_string())
+}
+
+/// Decimal digits that a number states.
+fn digits(number: &Option<Number>) -> f64 {
+    let (middle, error) = match number {
+        Some(_) => (middle(number), error(number)),
+        None => return 0.0,
+    };
+    (middle.to_f64().abs() / error.to_f64()).log10().max(0.0)
+}
+
+/// Equation, digits of the sum, of Newton's method from it, of the proof. No estimate contradicts the proof.
+fn row(equation: &str, small: &str) -> (String, [f64; 3]) {
+    let oscillator = case(equation, &[("eps", small)]);
+    let found = oscillator.evaluate(&Evaluate::default(), &Work::default()).unwrap().value;
+    let proved = oscillator.prove(&Evaluate::default(), &Work::default()).unwrap().value;
+    let sum = found.improved.as_ref().map_or(found.period.clone(), |how| how.sum.clone());
+    if matches!(proved.proof, ProofVerdict::Proved { .. }) {
+        for estimate in [&sum, &found.period].into_iter().filter(|number| number.is_some()) {
+            let distance = (middle(estimate) - middle(&proved.period)).abs();
+            let allowed = error(estimate) + error(&proved.period);
+            assert!(distance <= allowed, "{equation}, {small}: {estimate:?} {:?}", proved.period);
+        }
+    }
+    let certain = match proved.proof {
+        ProofVerdict::Proved { .. } => digits(&proved.period),
+        _ => 0.0,
+    };
+    (format!("{equation}, eps = {small}"), [digits(&sum), digits(&found.period), certain])
+}
+
+/// The rows of the table whose number leaves no rest.
+fn rows(each: usize) -> Vec<(String, [f64; 3])> {
+    let mut dice = Dice(20);
+    let problems: Vec<_> = (0..40).map(|i| random(&mut dice, i % 2 == 1)).collect();
+    problems.iter().step_by(each).map(|(equation, small)| row(equation, small)).collect()
+}
+
+/// Every ninth of the forty: the sum states a few digits, Newton's method and the proof all.
+#[test]
+fn random_problems_have_all_digits() {
+    for (name, [sum, newton, proved]) in rows(9) {
+        assert!(sum < 29.0 && newton >= 28.0 && proved >= 28.0, "{name}: {sum} {newton} {proved}");
+    }
+}
+
+#[test]
+#[ignore = "the table of the book, half a minute"]
+fn the_table_of_forty() {
+    let rows = rows(1);
+    for (name, [sum, newton, proved]) in &rows {
+        println!("| `{name}` | {sum:.0} | {newton:.0} | {proved:.0} |");
+    }
+    let median = |k: usize| {
+        let mut list: Vec<f64> = rows.iter().map(|(_, all)| all[k]).collect();
+        list.sort_by(f64::total_cmp);
+        list[list.len() / 2]
+    };
+    println!("{:.1} {:.1} {:.1}", median(0), median(1), median(2));
+}

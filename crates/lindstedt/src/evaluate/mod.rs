@@ -3,6 +3,7 @@
 
 pub mod averaged;
 mod code;
+mod improve;
 mod prove;
 mod sweep;
 mod times;
@@ -16,8 +17,8 @@ pub use code::{Language, SolutionCode};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_evaluation::setting::Setting;
 pub use lindstedt_evaluation::{
-    Displacement, Displacements, Evaluation, Fourier, Place, Question, Trajectory, kind_name,
-    method_name, rounded, with_error,
+    Displacement, Displacements, Evaluation, Fourier, Improved, Place, Question, Trajectory,
+    kind_name, method_name, rounded, with_error,
 };
 pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;
@@ -63,7 +64,8 @@ impl Oscillator {
     /// The period, 2 pi over it, and with times the solution x(t).
     ///
     /// The series of T/2pi in the small parameter is summed; which quantity is truncated matters, and
-    /// it is always this one. `period` and `frequency` are estimated; `exact_period` is certified, and
+    /// it is always this one. Where neither order nor method is asked for and the sum has fewer digits than
+    /// were, Newton's method in Fourier space goes on from it, and that is said ([`Improved`]). `period` and `frequency` are estimated; `exact_period` is certified, and
     /// there for x'' + k x (x^2)^delta, x'' + k x + c eps x^3 and the pendulum with a given amplitude.
     /// A small parameter that only counts orders is 1; x(0) of a file is its amplitude.
     ///
@@ -101,6 +103,9 @@ impl Oscillator {
                 standing = Standing::Stopped { done: found.points.len() };
             }
             value.solution = Some(found);
+        }
+        if question.order.is_none() && question.method.is_none() {
+            case.improve(&mut value, question, work);
         }
         if standing == Standing::Complete && value.period.is_none() {
             let none = "the expansion gives not one digit of the period here";
@@ -154,7 +159,8 @@ impl Oscillator {
         question: &Evaluate,
         work: &Work,
     ) -> Result<Trajectory, Error> {
-        if found.period.is_none() && found.exact_period.is_none() {
+        let summed = found.improved.as_ref().map_or(&found.period, |improved| &improved.sum);
+        if summed.is_none() && found.exact_period.is_none() {
             return Err(Refused::undecided(
                 "no-value",
                 "the period has not one digit at these parameters, so x(t) has none",

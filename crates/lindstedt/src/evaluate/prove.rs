@@ -6,6 +6,7 @@ use super::wanted::Wanted;
 use super::{Evaluate, Evaluation, Question, Trajectory};
 use crate::refusal::Refused;
 use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Status, Work};
+use lindstedt_algebra::Stop;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_orbit::{Failure, Kind, Proof, Request, Stability, Start, guesses, prove};
 use rug::Float;
@@ -172,10 +173,7 @@ impl Oscillator {
         let mut outcome = Err(Failure::NoStart);
         let mut found = None;
         if !wanted.is_forced() {
-            let moving = self.setting().and_then(|setting| {
-                wanted.start(&TimeDomain::new(&setting, &work.stop), &work.stop)
-            });
-            if let Some(start) = wanted.closed.clone().or(moving.ok()) {
+            if let Some(start) = self.by_motion(wanted, &work.stop) {
                 outcome = prove(&wanted.field, &wanted.kind, &start, &request);
             }
             // With too few modes no other guess is better.
@@ -198,6 +196,31 @@ impl Oscillator {
         Ok((found, with_others(wanted, outcome, &guessed)))
     }
 
+    /// A guess from the closed form or from the motion in the time domain.
+    pub(super) fn by_motion(&self, wanted: &Wanted, stop: &Stop) -> Option<Start> {
+        let moving = || {
+            let setting = self.setting().ok()?;
+            wanted.start(&TimeDomain::new(&setting, stop), stop).ok()
+        };
+        wanted.closed.clone().or_else(moving)
+    }
+
+    /// A guess from the expansion's sum, where it has a digit.
+    pub(super) fn by_sum(
+        &self,
+        found: Option<&Evaluation>,
+        question: &Evaluate,
+        work: &Work,
+    ) -> Option<Start> {
+        let found = found.filter(|f| f.period.is_some() || f.exact_period.is_some())?;
+        let (order, phase) = (question.order, &question.phase);
+        let setting = self.setting().ok()?;
+        let asked = Question { setting, order, phase, evaluation: found, in_doubles: true };
+        let path = Trajectory::without_error(asked, work).ok()?;
+        let (cosines, sines) = path.guess(GUESSED)?;
+        Some(Start { frequency: path.frequency(), cosines, sines })
+    }
+
     /// Guesses: the expansion's sum, then one harmonic, then harmonic balance.
     fn starts(
         &self,
@@ -210,17 +233,7 @@ impl Oscillator {
         if wanted.is_substituted() {
             return balanced;
         }
-        let mut starts = Vec::new();
-        let path = found.filter(|f| f.period.is_some() || f.exact_period.is_some());
-        let path = path.zip(self.setting().ok()).and_then(|(evaluation, setting)| {
-            let (order, phase) = (question.order, &question.phase);
-            let asked = Question { setting, order, phase, evaluation, in_doubles: true };
-            Trajectory::without_error(asked, work).ok()
-        });
-        if let Some((path, (cosines, sines))) = path.and_then(|p| p.guess(GUESSED).map(|g| (p, g)))
-        {
-            starts.push(Start { frequency: path.frequency(), cosines, sines });
-        }
+        let mut starts: Vec<Start> = self.by_sum(found, question, work).into_iter().collect();
         let amplitude = match &wanted.kind {
             Kind::InitialAmplitude(a) | Kind::FundamentalAmplitude(a) => a.to_f64(),
             // That of van der Pol's equation: one harmonic is a guess for weak cycles only.

@@ -16,10 +16,13 @@ use lindstedt_simulate::{
     Trajectory,
 };
 use rug::Float;
+use std::cell::Cell;
 use std::ops::ControlFlow;
 
 /// Turns after which a limit cycle must have been reached.
 const MOST_TURNS: usize = 1000;
+/// Pieces of the solution without a turning point after which the motion has escaped.
+const MOST_SEGMENTS: u32 = 20_000;
 /// Digits of the motion that a guess is made from.
 const ROUGH: u32 = 8;
 /// Points of that motion: a quarter as many harmonics.
@@ -123,6 +126,7 @@ impl<'a> TimeDomain<'a> {
         let mut before: Option<Turn> = None;
         let mut found = None;
         let mut turns = 0;
+        let segments = Cell::new(0);
         let mut observe = |event: &Event<'_, R>| {
             let time = real.to_float(event.time);
             let x = event.before.first().map_or_else(|| Float::new(bits), |x| real.to_float(x));
@@ -133,6 +137,7 @@ impl<'a> TimeDomain<'a> {
                     && near(&before.x, &turn.x, tolerance.sqrt() * size)
             });
             (turns, last) = (turns + 1, time);
+            segments.set(0);
             if !cycle || settled {
                 found = Some(turn);
             } else {
@@ -141,7 +146,9 @@ impl<'a> TimeDomain<'a> {
             found.is_some() || turns >= MOST_TURNS
         };
         flow.advance(&real.double(1e6), &mut |report| {
+            segments.set(segments.get() + 1);
             let ends = stop.asked()
+                || segments.get() > MOST_SEGMENTS
                 || matches!(report, Report::Event(event)
                     if event.kind == (EventKind::Section { section: 0, rising: false })
                         && observe(event));

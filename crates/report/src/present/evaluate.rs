@@ -77,6 +77,10 @@ fn periods(answer: &Answer<Evaluation>) -> Vec<Line> {
         (name("period ", "T", "T"), number(&value.period)),
         (name("frequency ", "2*pi/T", "2\\pi/T"), number(&value.frequency)),
     ];
+    if let Some(improved) = &value.improved {
+        let sum = with_error(improved.sum.as_ref(), "estimated", "no estimate", "not one digit");
+        lines.push(("  by the sum".into(), sum.into()));
+    }
     if let Some(exact) = &value.exact_period {
         let form = exact.exact.as_deref().unwrap_or_default();
         let closed = Text::words(format!("{} = ", exact.decimal)).code(form);
