@@ -5,8 +5,9 @@
 //! and a factor 1 beside others is left out. Sums in sums and products in products are flat,
 //! which addition and multiplication allow.
 
-use crate::{Expression, Function, Text, Unknown};
+use crate::{Expression, Function, Unknown};
 use rug::Rational;
+use std::borrow::Cow;
 use std::cmp::Ordering;
 
 /// How to write.
@@ -38,7 +39,7 @@ impl Expression {
 
     /// The same with names for the unknowns; those without one are x, x_2, ...
     #[must_use]
-    pub fn print_named(&self, small: &str, names: &[Text], style: Style) -> String {
+    pub fn print_named(&self, small: &str, names: &[Cow<'static, str>], style: Style) -> String {
         Printer { small, names, style }.sum(self)
     }
 }
@@ -53,7 +54,7 @@ struct Written {
 /// What the printing of every node needs.
 struct Printer<'a> {
     small: &'a str,
-    names: &'a [Text],
+    names: &'a [Cow<'static, str>],
     style: Style,
 }
 

@@ -20,6 +20,29 @@ use rug::Rational;
 use std::cmp::Ordering;
 use std::ops::Range;
 
+impl Names {
+    /// The same with the unknowns of several equations: the names with primes, in the order in which they
+    /// occur.
+    #[must_use]
+    pub fn of_system<'a>(mut self, equations: impl IntoIterator<Item = &'a str>) -> Self {
+        let mut unknowns: Vec<String> = Vec::new();
+        for list in equations.into_iter().filter_map(|text| tokens(text).ok()) {
+            for pair in list.windows(2) {
+                let [Token { kind: Kind::Name(name), .. }, Token { kind: Kind::Primes(_), .. }] =
+                    pair
+                else {
+                    continue;
+                };
+                if !unknowns.contains(name) {
+                    unknowns.push(name.clone());
+                }
+            }
+        }
+        self.unknowns = unknowns;
+        self
+    }
+}
+
 /// Parentheses, powers and functions inside each other.
 const DEEPEST: usize = 64;
 /// The largest whole exponent, and the largest degree in x and x' that powers may lead to.

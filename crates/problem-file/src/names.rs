@@ -1,6 +1,5 @@
 //! Names: Greek letters and their spellings, reserved words, what an equation may mention.
 
-use crate::lexer::{Kind, Token, tokens};
 use lindstedt_equation::Function;
 use std::collections::BTreeSet;
 
@@ -120,27 +119,6 @@ impl Names {
     pub fn any(small: &str) -> Self {
         let (formal, unknowns) = (BTreeSet::new(), vec!["x".to_owned()]);
         Self { small: canonical_name(small), parameters: None, formal, unknowns }
-    }
-
-    /// The same with the unknowns of several equations: the names with primes, in the order in which they
-    /// occur.
-    #[must_use]
-    pub fn of_system<'a>(mut self, equations: impl IntoIterator<Item = &'a str>) -> Self {
-        let mut unknowns: Vec<String> = Vec::new();
-        for list in equations.into_iter().filter_map(|text| tokens(text).ok()) {
-            for pair in list.windows(2) {
-                let [Token { kind: Kind::Name(name), .. }, Token { kind: Kind::Primes(_), .. }] =
-                    pair
-                else {
-                    continue;
-                };
-                if !unknowns.contains(name) {
-                    unknowns.push(name.clone());
-                }
-            }
-        }
-        self.unknowns = unknowns;
-        self
     }
 
     /// These parameters and no others.

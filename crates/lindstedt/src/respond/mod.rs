@@ -14,6 +14,15 @@ use std::time::Instant;
 use subject::Subject;
 
 /// What to look for.
+///
+/// ```
+/// use lindstedt::{Oscillator, Respond, Work};
+/// let forced = Oscillator::parse("x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t)/2")?;
+/// let forced = forced.set("eps", "1/10")?.set("sigma", "1")?;
+/// let question = Respond { order: Some(2), ..Respond::default() };
+/// assert_eq!(forced.respond(&question, &Work::default())?.value.states[0].count, 3);
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Respond {
     /// The orders of the slow flow; 2 if nothing.
