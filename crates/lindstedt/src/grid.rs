@@ -222,6 +222,11 @@ impl<T> Grid<T> {
         self.columns.values.len().max(1)
     }
 
+    /// The first axis, then the second.
+    pub fn axes(&self) -> impl Iterator<Item = &Axis> {
+        [&self.columns].into_iter().chain(&self.rows)
+    }
+
     /// The number of points that were reached.
     #[must_use]
     pub fn done(&self) -> usize {

@@ -20,6 +20,9 @@ pub struct SweptPeriod {
     /// The order of the expansion.
     #[serde(skip)]
     pub order: usize,
+    /// The values that enter.
+    #[serde(skip)]
+    at: Vec<(String, Exact)>,
 }
 
 /// The period at every point, or why there is none.
@@ -59,22 +62,31 @@ impl Oscillator {
             Grid::of_cases(self, columns, rows, work, |case, work| {
                 let found = case.settled()?.0.period(question, work)?;
                 let (period, frequency) = (found.period, found.frequency);
-                let (exact_period, order) = (found.exact_period, found.order);
-                Ok(SweptPeriod { period, frequency, exact_period, order })
+                let (exact_period, order, at) = (found.exact_period, found.order, found.at);
+                Ok(SweptPeriod { period, frequency, exact_period, order, at })
             });
         let found = || grid.points.iter().flatten();
-        let order = found().find_map(|point| Some(point.as_ref().ok()?.order));
-        if let (None, Some(Err(error))) = (order, found().next()) {
+        let first = found().find_map(|point| point.as_ref().ok());
+        if let (None, Some(Err(error))) = (first, found().next()) {
             return Err(error.clone());
         }
+        // What all points share: derived values may vary with those that are swept.
+        let swept = |name: &str| grid.axes().any(|axis| axis.name == name);
+        let shared = |pair| found().flatten().all(|point| point.at.contains(pair));
+        let at = first.iter().flat_map(|point| &point.at);
+        let at = at.filter(|pair| !swept(&pair.0) && shared(pair));
+        let at = at.map(|(name, value)| (name.clone(), value.to_string())).collect();
         let with = found().filter(|point| matches!(point, Ok(point) if point.period.is_some()));
-        let (all, without) = (grid.points.len(), grid.points.len() - with.count());
+        let (all, done, without) = (grid.points.len(), grid.done(), grid.done() - with.count());
         let mut remarks = self.remarks().to_vec();
         if without > 0 {
-            remarks.push(Remark(format!("{without} of {all} points have no period with a digit")));
+            remarks.push(Remark(format!("{without} of {done} points have no period with a digit")));
+        }
+        if done < all {
+            remarks.push(Remark(format!("stopped: {} of {all} points were not reached", all - done)));
         }
         let standing = grid.standing();
-        let header = self.header(self.given_text(), order, "resummation", start);
+        let header = self.header(at, first.map(|point| point.order), "resummation", start);
         Ok(Answer { header, value: EvaluationSweep { grid }, standing, remarks })
     }
 }

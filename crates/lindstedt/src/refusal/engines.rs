@@ -25,6 +25,11 @@ impl Refusal for ExpandError {
             error if averages(error) => {
                 (NoAnswer, "no-expansion", "averaging takes it: --normalisation free")
             }
+            Self::UnknownName { .. } => (
+                Usage,
+                "no-value-set",
+                "--set NAME=VALUE; --normalisation free keeps parameters of the small terms as symbols",
+            ),
             _ => (NoAnswer, "no-expansion", ""),
         };
         (kind, code, hint.to_owned())
@@ -162,9 +167,10 @@ impl Refusal for SimulateError {
                 "could-not-decide",
                 "more --digits, or a start beside the degenerate one",
             ),
-            Self::MissingParameter { .. } | Self::BadRestitution { .. } => {
-                (NoAnswer, "outside-domain", "see `lindstedt problems`")
+            Self::MissingParameter { .. } => {
+                (Usage, "no-value-set", "--set NAME=VALUE, for example 1/10")
             }
+            Self::BadRestitution { .. } => (NoAnswer, "outside-domain", "see `lindstedt problems`"),
             _ => (NoAnswer, "no-trajectory", "another start, or a shorter time"),
         };
         (kind, code, hint.to_owned())
@@ -211,7 +217,7 @@ impl Refusal for lindstedt_recognise::Refusal {
         use lindstedt_recognise::Refusal;
         let (kind, code, hint) = match self {
             Refusal::MissingValues { .. } => {
-                (Usage, "missing-value", "give it under [parameters] or with --set NAME=VALUE")
+                (Usage, "no-value-set", "give it under [parameters] or with --set NAME=VALUE")
             }
             Refusal::Periods { .. } => (Usage, "parameter", "k = 1, 2, ..."),
             Refusal::TooManyTerms { .. } => (Undecided, "too-large", ""),

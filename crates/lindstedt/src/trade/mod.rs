@@ -211,7 +211,7 @@ impl<'a> Bench<'a> {
             Err(failure) => (None, Some(failure)),
         };
         let simulate = |digits| simulation::in_digits(&motion, digits, &work.stop);
-        let truth = Truth::new((setting, &source), (bits, digits), proved.as_ref(), &simulate)?;
+        let truth = Truth::new(&source, (bits, digits), proved.as_ref(), &simulate)?;
         Ok(Self { plan, work, setting, source, motion, proved, failure, truth, bits })
     }
 

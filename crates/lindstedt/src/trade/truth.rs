@@ -9,20 +9,10 @@ use lindstedt_number::ball::{Ball, Balls};
 use rug::Float;
 use rug::float::Round;
 
-/// T(1) of x'' - (1 - x^2) x' + x = 0 to 98 digits: mpmath 1.3.0 with 125 digits, Taylor series of
-/// order 150 and the secant method on the section x' = 0; the integrator of this project agrees,
-/// and the first 13 digits are in Andersen and Geer (1982).
-const VAN_DER_POL: &str = concat!(
-    "6.66328685932313018969968203048232870681264631688387",
-    "665511486318208092586484560686486896662005327122"
-);
-/// Its relative error.
-const VAN_DER_POL_ERROR: f64 = 1e-97;
-
 /// The true period at given parameters.
 pub(super) struct Truth {
     pub(super) period: Float,
-    /// Its relative error: rounding, the digits of a reference, the estimate of the integrator.
+    /// Its relative error: rounding, the radius of the proof, the estimate of the integrator.
     uncertainty: f64,
     /// Its formula or source. From the time domain: the integrator's own rows are then judged by the same
     /// integrator with more digits.
@@ -30,10 +20,10 @@ pub(super) struct Truth {
 }
 
 impl Truth {
-    /// The closed form of `source`, else the reference (van der Pol at 1), else what was proved, else
+    /// The closed form of `source`, else what was proved, else
     /// the time domain.
     pub(super) fn new(
-        (setting, source): (&Setting, &Source),
+        source: &Source,
         (bits, digits): (u32, u32),
         proved: Option<&Ball>,
         simulate: &dyn Fn(u32) -> Result<Found, Error>,
@@ -45,14 +35,6 @@ impl Truth {
                 .ok_or(Error::NoValue)?;
             let period = Float::with_val(bits, ball.midpoint());
             return Ok(Self { period, uncertainty: rounding, source: text.clone() });
-        }
-        let known = lindstedt_problems::find("van-der-pol");
-        let is_known = known.is_some_and(|known| known.equation == setting.problem.equation);
-        if is_known && setting.rational_small().is_some_and(|small| small == 1) {
-            let reference = Float::parse(VAN_DER_POL).map_err(|_| Error::NoValue)?;
-            let uncertainty = rounding.max(VAN_DER_POL_ERROR);
-            let (period, source) = (Float::with_val(bits, reference), "reference of 98 digits");
-            return Ok(Self { period, uncertainty, source: source.to_owned() });
         }
         if let Some(ball) = proved {
             let period = Float::with_val(bits, ball.midpoint());

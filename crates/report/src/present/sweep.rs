@@ -14,7 +14,7 @@ fn table<const N: usize>(
     refused: usize,
     cells: impl Fn(&SweptPeriod) -> [String; N],
 ) -> Table {
-    let axes = [&sweep.grid.columns].into_iter().chain(&sweep.grid.rows);
+    let axes = sweep.grid.axes();
     let table = Table::new(axes.map(|axis| axis.name.as_str()).chain(names));
     sweep.grid.iter().fold(table, |table, (x, y, found)| {
         let without = |reason: String| {
@@ -41,7 +41,9 @@ fn parts(number: Option<&Number>) -> [String; 2] {
 
 fn title(answer: &Answer<EvaluationSweep>) -> String {
     let order = answer.header.order.map(|order| format!(", order {order}"));
-    format!("{}: period{}", answer.header.problem, order.unwrap_or_default())
+    let at = answer.header.at.iter().map(|(name, value)| format!(", {name} = {value}"));
+    let at: String = at.collect();
+    format!("{}: period{}{at}", answer.header.problem, order.unwrap_or_default())
 }
 
 impl Present for Answer<EvaluationSweep> {
