@@ -76,7 +76,7 @@ pub struct ProblemsOptions {
 
 #[derive(Debug, Args)]
 pub struct DeriveOptions {
-    /// power-law, pendulum, vibro-impact, duffing, van-der-pol, or the path of a problem file (.toml).
+    /// power-law, pendulum, vibro-impact, duffing, van-der-pol; a problem file (.toml); or an equation in quotes.
     pub problem: String,
     /// The highest order.
     #[arg(long, default_value_t = 4, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
@@ -114,7 +114,7 @@ pub enum TierName {
 
 #[derive(Debug, Args)]
 pub struct EvaluateOptions {
-    /// power-law, pendulum, duffing, van-der-pol, vibro-impact, or the path of a problem file (.toml).
+    /// power-law, pendulum, duffing, van-der-pol, vibro-impact; a problem file (.toml); or an equation in quotes.
     pub problem: String,
     /// The highest order; a quick one if not given.
     #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1_000_000_000))]
@@ -215,7 +215,7 @@ impl From<Language> for lindstedt::evaluate::Language {
 
 #[derive(Debug, Args)]
 pub struct ThresholdOptions {
-    /// stick-slip, or the path of a problem file (.toml).
+    /// stick-slip; a problem file (.toml); or an equation in quotes.
     pub problem: String,
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
@@ -263,7 +263,7 @@ pub struct RespondOptions {
 
 #[derive(Debug, Args)]
 pub struct StabilityOptions {
-    /// vibro-impact, or the path of a problem file (.toml) with a wall.
+    /// vibro-impact; or the path of a problem file (.toml) with a wall.
     pub problem: String,
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3); branch=+ or branch=-.
     #[arg(long = "set", value_name = "NAME=VALUE")]
@@ -292,7 +292,7 @@ pub struct StabilityOptions {
 
 #[derive(Debug, Args)]
 pub struct TradeOptions {
-    /// power-law, pendulum, duffing, van-der-pol, or a problem file (.toml).
+    /// power-law, pendulum, duffing, van-der-pol; a problem file (.toml); or an equation in quotes.
     pub problem: String,
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
@@ -396,8 +396,8 @@ pub enum Normalisation {
 
 #[derive(Debug, Args)]
 pub struct SimulateOptions {
-    /// power-law, pendulum, duffing, van-der-pol, vibro-impact, stick-slip, or the path of a problem
-    /// file (.toml).
+    /// power-law, pendulum, duffing, van-der-pol, vibro-impact, stick-slip; a problem file (.toml); or an
+    /// equation in quotes.
     pub problem: String,
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
@@ -485,7 +485,7 @@ pub enum Figure {
 
 #[derive(Debug, Args)]
 pub struct VerifyOptions {
-    /// power-law, pendulum, vibro-impact, duffing, van-der-pol, or the path of a problem file (.toml).
+    /// power-law, pendulum, vibro-impact, duffing, van-der-pol; a problem file (.toml); or an equation in quotes.
     pub problem: String,
     /// The order N; the observed order should be N + 1.
     #[arg(long, default_value_t = 4, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]

@@ -28,7 +28,10 @@ pub enum DerivationError {
     #[error("no more 61-bit primes for this order")]
     OutOfPrimes,
     /// A rational value is needed where the parameter stands.
-    #[error("{name} = {value} is irrational, but exact derivations of this problem are over Q")]
+    #[error(
+        "{value} is irrational{}, and the equation is brought into its form over Q",
+        for_parameter(name, value)
+    )]
     Irrational {
         /// The parameter.
         name: String,
@@ -155,4 +158,9 @@ fn without(missing: &[String]) -> String {
         [] => String::new(),
         names => format!(" (without a value: {})", names.join(", ")),
     }
+}
+
+/// Whose value it is; the number pi is its own.
+fn for_parameter(name: &str, value: &str) -> String {
+    if name == value { String::new() } else { format!(" ({name})") }
 }

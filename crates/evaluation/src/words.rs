@@ -35,7 +35,9 @@ impl Evaluation {
             },
         });
         if let Some((order, number)) = &self.best_truncation {
-            let value = number.as_ref().map_or_else(String::new, |n| format!(": {}", n.decimal));
+            let value = number
+                .as_ref()
+                .map_or_else(String::new, |n| format!(", which gives {}", n.decimal));
             parts.push(format!("best truncation at order {order}{value}"));
         }
         let method = method_name(self.resummed.method);

@@ -101,7 +101,12 @@ impl Oscillator {
         let unchecked = solved && value.checked_orders.is_none();
         let done = value.order < question.order || unchecked;
         let standing = self.standing(done, value.order, !unchecked, &mut remarks);
-        let header = self.header(self.entering(&value), Some(value.order), "exact", start);
+        let at = self.entering(&value);
+        let idle =
+            self.given().iter().filter(|(name, _)| !at.iter().any(|(known, _)| known == *name));
+        let idle = idle.map(|(name, q)| format!("no coefficient depends on {name} = {q}"));
+        remarks.extend(idle.map(Remark));
+        let header = self.header(at, Some(value.order), "exact", start);
         Ok(Answer { header, value, standing, remarks })
     }
 

@@ -28,7 +28,7 @@ fn escaped(words: &str) -> String {
 
 impl Writer for Latex {
     fn words(&self, words: &str) -> String {
-        escaped(words)
+        escaped(words).replace(" +- ", r" $\pm$ ")
     }
     fn inline(&self, formula: &Formula) -> String {
         format!("${}$", formula.latex)
