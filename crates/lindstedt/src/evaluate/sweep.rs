@@ -83,7 +83,8 @@ impl Oscillator {
             remarks.push(Remark(format!("{without} of {done} points have no period with a digit")));
         }
         if done < all {
-            remarks.push(Remark(format!("stopped: {} of {all} points were not reached", all - done)));
+            remarks
+                .push(Remark(format!("stopped: {} of {all} points were not reached", all - done)));
         }
         let standing = grid.standing();
         let header = self.header(at, first.map(|point| point.order), "resummation", start);
