@@ -1,7 +1,7 @@
 //! What every verb answers with.
 
 use lindstedt_number::as_map;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// The version of the JSON form; it grows when a key changes its meaning.
@@ -96,8 +96,8 @@ pub struct Remark(pub String);
 
 /// A plain answer: its header, its value, how far it goes, and what is to be said beside it.
 ///
-/// As JSON it is one object: the keys of the header, then those of the value, then `remarks` where
-/// there are any.
+/// As JSON it is one object: the keys of the header, then those of the value, then `standing`, and
+/// `remarks` where there are any.
 ///
 /// ```
 /// use lindstedt::{Oscillator, Quantity, Work};
@@ -116,12 +116,16 @@ pub struct Answer<T> {
     /// The value.
     #[serde(flatten)]
     pub value: T,
-    /// How far it goes.
-    #[serde(skip)]
+    /// How far it goes; as JSON the words of its `Display`.
+    #[serde(serialize_with = "in_words")]
     pub standing: Standing,
     /// What is to be said beside it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub remarks: Vec<Remark>,
+}
+
+fn in_words<S: Serializer>(standing: &Standing, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(standing)
 }
 
 impl<T> Answer<T> {
