@@ -1,6 +1,6 @@
 //! What is built in, and one problem with all that is known before any work.
 
-use crate::Oscillator;
+use crate::{Oscillator, SCHEMA};
 use lindstedt_equation::Problem;
 use lindstedt_equation::description::Description;
 use lindstedt_equation::print::Style;
@@ -16,6 +16,8 @@ use serde::Serialize;
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct Catalogue {
+    /// [`SCHEMA`].
+    pub schema: u32,
     /// The problems.
     pub problems: Vec<Entry>,
 }
@@ -95,7 +97,7 @@ impl Catalogue {
     pub fn builtin() -> Self {
         let mut list = lindstedt_problems::all();
         list.push(lindstedt_problems::stick_slip::problem());
-        Self { problems: list.iter().map(Entry::new).collect() }
+        Self { schema: SCHEMA, problems: list.iter().map(Entry::new).collect() }
     }
 }
 
@@ -107,6 +109,6 @@ impl Oscillator {
         entry.file = Some(self.problem_file().to_text());
         // What an equation is made of is said of one unknown.
         entry.classification = self.single().ok().and_then(|()| self.describe().ok());
-        Catalogue { problems: vec![entry] }
+        Catalogue { schema: SCHEMA, problems: vec![entry] }
     }
 }

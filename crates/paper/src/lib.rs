@@ -160,7 +160,8 @@ pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<
         };
         workers.into_iter().map(join).collect::<Result<Vec<_>, Error>>()
     })?;
-    let mut paper = Paper { trust: Trust::default(), sections: Vec::new(), complete: true };
+    let (schema, trust) = (lindstedt::SCHEMA, Trust::default());
+    let mut paper = Paper { schema, trust, sections: Vec::new(), complete: true };
     for (section, trust, complete) in parts {
         paper.trust.add(trust);
         paper.complete &= complete;

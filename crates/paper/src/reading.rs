@@ -6,6 +6,8 @@ use serde::Serialize;
 /// What was read.
 #[derive(Clone, Debug, Serialize)]
 pub struct Paper {
+    /// The version of the JSON form, [`lindstedt::SCHEMA`].
+    pub schema: u32,
     /// Where the methods can be trusted.
     pub trust: Trust,
     /// The sections, in the order of the paper; with the rows finished when the observer stopped the work.

@@ -67,6 +67,7 @@ impl Serialize for Averaging {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("parameter", &*self.problem.small)?;
         map.serialize_entry("normalisation", &Condition::FreeAmplitude)?;
+        map.serialize_entry("symbols", &self.symbols)?;
         if self.is_linear() {
             let series = Object(vec![("growth_rate", numbers(a)), ("frequency", numbers(b))]);
             map.serialize_entry("series", &series)?;

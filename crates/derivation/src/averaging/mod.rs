@@ -106,6 +106,8 @@ pub struct Averaging {
     pub solution: Vec<[String; 2]>,
     /// Terms of u_n.
     pub terms: Vec<usize>,
+    /// The parameters without a value, which the formulas keep.
+    pub symbols: Vec<String>,
     /// Whether the coefficients are exact (rational numbers or formulas); otherwise they are
     /// certified and the residual encloses zero.
     pub exact: bool,

@@ -213,6 +213,7 @@ impl<'a> Task<'a> {
             phase_rate,
             solution: over.solution.clone(),
             terms: over.terms.clone(),
+            symbols: self.names.iter().filter(|n| self.value(n).is_none()).cloned().collect(),
             exact,
             convergence: None,
             description: None,

@@ -3,8 +3,7 @@
 use super::Evaluate;
 use crate::grid::{Axis, Grid};
 use crate::{Answer, Error, Exact, Number, Oscillator, Remark, Work};
-use serde::Serialize;
-use serde::ser::Serializer;
+use serde::{Serialize, Serializer};
 use std::time::Instant;
 
 /// The period at one point; what has not one digit is nothing.
@@ -77,14 +76,10 @@ impl Oscillator {
         let at = at.filter(|pair| !swept(&pair.0) && shared(pair));
         let at = at.map(|(name, value)| (name.clone(), value.to_string())).collect();
         let with = found().filter(|point| matches!(point, Ok(point) if point.period.is_some()));
-        let (all, done, without) = (grid.points.len(), grid.done(), grid.done() - with.count());
+        let (done, without) = (grid.done(), grid.done() - with.count());
         let mut remarks = self.remarks().to_vec();
         if without > 0 {
             remarks.push(Remark(format!("{without} of {done} points have no period with a digit")));
-        }
-        if done < all {
-            remarks
-                .push(Remark(format!("stopped: {} of {all} points were not reached", all - done)));
         }
         let standing = grid.standing();
         let header = self.header(at, first.map(|point| point.order), "resummation", start);

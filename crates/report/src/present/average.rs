@@ -19,6 +19,10 @@ impl Present for Answer<Averaging> {
         page = classification(page, result.description.as_ref());
         page = page.formula(equation(problem)).formula(ansatz(&problem.small));
         page = page.words(format!("Normalisation: {}.", condition_text(Condition::FreeAmplitude)));
+        if !result.symbols.is_empty() {
+            page = page
+                .words(format!("Without a value, kept as symbols: {}.", result.symbols.join(", ")));
+        }
         for n in 0..=result.order {
             page = page.formula(solution(result, n));
             for (name, rates) in [("A", &result.amplitude_rate), ("B", &result.phase_rate)] {

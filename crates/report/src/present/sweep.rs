@@ -3,35 +3,8 @@
 use super::Present;
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Table};
-use lindstedt::evaluate::{EvaluationSweep, SweptPeriod};
+use lindstedt::evaluate::EvaluationSweep;
 use lindstedt::{Answer, Number};
-
-/// A row for every point: its values, and its cells; of one that was refused the reason is in the cell of
-/// that index.
-fn table<const N: usize>(
-    sweep: &EvaluationSweep,
-    names: [&str; N],
-    refused: usize,
-    cells: impl Fn(&SweptPeriod) -> [String; N],
-) -> Table {
-    let axes = sweep.grid.axes();
-    let table = Table::new(axes.map(|axis| axis.name.as_str()).chain(names));
-    sweep.grid.iter().fold(table, |table, (x, y, found)| {
-        let without = |reason: String| {
-            std::array::from_fn(|n| if n == refused { reason.clone() } else { String::new() })
-        };
-        let cells = match found {
-            None => without("not reached".to_owned()),
-            Some(Err(error)) => without(error.to_string()),
-            Some(Ok(found)) => cells(found),
-        };
-        table.row([x].into_iter().chain(y).map(ToString::to_string).chain(cells))
-    })
-}
-
-fn shown(number: Option<&Number>) -> String {
-    number.map_or_else(|| "not one digit".to_owned(), ToString::to_string)
-}
 
 /// Its decimal and its error, empty where there is none.
 fn parts(number: Option<&Number>) -> [String; 2] {
@@ -48,11 +21,7 @@ fn title(answer: &Answer<EvaluationSweep>) -> String {
 
 impl Present for Answer<EvaluationSweep> {
     fn document(&self) -> Document {
-        let names = ["period", "frequency", "exact period"];
-        Document::titled(title(self)).table(table(&self.value, names, 0, |found| {
-            let [exact, _] = parts(found.exact_period.as_ref());
-            [shown(found.period.as_ref()), shown(found.frequency.as_ref()), exact]
-        }))
+        self.table().into_iter().fold(Document::titled(title(self)), Document::table)
     }
 
     /// The period over the first parameter, a curve for every value of the second.
@@ -74,14 +43,27 @@ impl Present for Answer<EvaluationSweep> {
         }))
     }
 
+    /// The parameters, then the numbers; of a point without them the reason, last.
     fn table(&self) -> Option<Table> {
         let names =
             ["period", "period_error", "frequency", "frequency_error", "exact_period", "refused"];
-        Some(table(&self.value, names, 5, |found| {
-            let [period, period_error] = parts(found.period.as_ref());
-            let [frequency, frequency_error] = parts(found.frequency.as_ref());
-            let [exact, _] = parts(found.exact_period.as_ref());
-            [period, period_error, frequency, frequency_error, exact, String::new()]
+        let grid = &self.value.grid;
+        let table = Table::new(grid.axes().map(|axis| axis.name.as_str()).chain(names));
+        Some(grid.iter().fold(table, |table, (x, y, found)| {
+            let reason = match found {
+                None => "not reached".to_owned(),
+                Some(Err(error)) => error.to_string(),
+                Some(Ok(found)) if found.period.is_none() => "not one digit".to_owned(),
+                Some(Ok(_)) => String::new(),
+            };
+            let found = found.and_then(|found| found.as_ref().ok());
+            let [period, frequency, [exact, _]] = [
+                parts(found.and_then(|found| found.period.as_ref())),
+                parts(found.and_then(|found| found.frequency.as_ref())),
+                parts(found.and_then(|found| found.exact_period.as_ref())),
+            ];
+            let values = [x].into_iter().chain(y).map(ToString::to_string);
+            table.row(values.chain(period).chain(frequency).chain([exact, reason]))
         }))
     }
 }

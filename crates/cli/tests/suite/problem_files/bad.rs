@@ -118,8 +118,8 @@ const FILES: [(i32, &str, &str); 41] = [
         "the name k is not declared",
     ),
     (2, "name = 'a'\nequation = \"x'' + x + eps*x^3\"\nswept = ['eps=1..2']", "is no range"),
-    (2, "", "missing field `equation`"),
-    (2, "name = 'a'", "missing field `equation`"),
+    (2, "", "one of the keys `equation` and `equations` is needed"),
+    (2, "name = 'a'", "one of the keys `equation` and `equations` is needed"),
     (
         2,
         "equation = \"x'' + x + eps*pi*x^3\"\n[parameters]\npi = {}",
