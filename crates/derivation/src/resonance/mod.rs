@@ -57,16 +57,6 @@ pub type Terms = Vec<AmplitudeTerm>;
 /// assert_eq!((&term.exponents[..], term.im.to_string().as_str()), (&[0, 1, 1, 1][..], "1/4"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-///
-/// ```
-/// use lindstedt_derivation::resonance::{FlowSettings, slow_flow};
-/// let duffing = lindstedt_problems::find("duffing").ok_or("no such problem")?;
-/// let (given, stop) = (Default::default(), Default::default());
-/// let settings = FlowSettings { order: 1, given: &given, cards: &[], stop };
-/// let flow = slow_flow(&[duffing.equation], &settings, &mut |_| true)?;
-/// assert_eq!((flow.checked_orders, flow.flow[0][1].len()), (Some(1), 1));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct SlowFlow {
     /// The problem.
