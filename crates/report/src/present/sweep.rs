@@ -21,7 +21,8 @@ fn title(answer: &Answer<EvaluationSweep>) -> String {
 
 impl Present for Answer<EvaluationSweep> {
     fn document(&self) -> Document {
-        self.table().into_iter().fold(Document::titled(title(self)), Document::table)
+        let page = self.table().into_iter().fold(Document::titled(title(self)), Document::table);
+        page.words("Period and frequency are estimated; the exact period is a closed form.")
     }
 
     /// The period over the first parameter, a curve for every value of the second.
