@@ -12,7 +12,9 @@ use lindstedt::unstable::derivation::averaging::{
     Averaging, AveragingSettings, Coefficient, average as average_problem,
 };
 use lindstedt::unstable::equation::{Condition, Expression, Function, ParameterCard, Problem};
-use lindstedt::unstable::expand::{AveragedExpansion, Binding, average, check_averaged, compile};
+use lindstedt::unstable::expand::{
+    AveragedExpansion, Binding, average, check_averaged, compile_system,
+};
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt::unstable::number::ball::ring::{BallRing, Enclosure};
 use lindstedt::unstable::phase::{Delay, Torus};
@@ -39,7 +41,7 @@ fn derive(
     equation: &Expression,
     order: usize,
 ) -> AveragedExpansion<Torus<Rationals>> {
-    let graph = compile(algebra, equation, &Nothing, order).unwrap();
+    let graph = compile_system(algebra, std::slice::from_ref(equation), &Nothing, order).unwrap();
     let expansion = average(algebra, &graph, order, &mut |_| true).unwrap();
     assert_eq!(check_averaged(algebra, &graph, &expansion), Ok(order));
     expansion
@@ -100,7 +102,7 @@ fn resonances_are_named_at_their_order() {
         let force = (Expression::Time * Expression::Number(frequency.clone())).apply(Function::Cos);
         let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3) - force;
         let algebra = Torus::new(Rationals, Rational::from(1), Some(frequency), Vec::new());
-        let graph = compile(&algebra, &equation, &Nothing, 3).unwrap();
+        let graph = compile_system(&algebra, &[equation], &Nothing, 3).unwrap();
         average(&algebra, &graph, 3, &mut |_| true).err().map(|error| error.to_string())
     };
     let message = |order, harmonic| {
@@ -197,7 +199,7 @@ fn symbolic_rates_of_the_delay_loop() {
         }
     }
     let named = Named(&k, algebra.constants().clone());
-    let graph = compile(&algebra, &delay_loop().equation, &named, 3).unwrap();
+    let graph = compile_system(&algebra, &[delay_loop().equation], &named, 3).unwrap();
     let result = average(&algebra, &graph, 3, &mut |_| true).unwrap();
     assert_eq!(check_averaged(&algebra, &graph, &result), Ok(3));
 
@@ -397,7 +399,7 @@ fn amplitude_equation_at_hopf_points() {
         let equation = Expression::ACCELERATION + number(1, 20) * v + number(11, 10) * x.clone()
             - number(3, 5) * late
             + Expression::Small * x.pow(3);
-        let graph = compile(&algebra, &equation, &Unbound, 2).unwrap();
+        let graph = compile_system(&algebra, &[equation], &Unbound, 2).unwrap();
         let result = average(&algebra, &graph, 2, &mut |_| true).unwrap();
         assert_eq!(check_averaged(&algebra, &graph, &result), Ok(2));
         let [(power, c)] = result.amplitude_rate[1].terms() else { panic!("one power") };
@@ -424,7 +426,7 @@ fn refusals() {
 #[test]
 fn a_wrong_expansion_is_noticed() {
     let algebra = plain();
-    let graph = compile(&algebra, &van_der_pol(), &Nothing, 4).unwrap();
+    let graph = compile_system(&algebra, &[van_der_pol()], &Nothing, 4).unwrap();
     let right = average(&algebra, &graph, 4, &mut |_| true).unwrap();
     let ring = algebra.constants();
     let spoil = |change: &dyn Fn(&mut AveragedExpansion<Torus<Rationals>>)| {

@@ -1,6 +1,6 @@
 //! Algebras of polynomials in complex amplitudes.
 
-use crate::{FunctionAlgebra, PhaseError};
+use crate::{ForcedAlgebra, PhaseError};
 use rug::Rational;
 
 /// What averaging with resonance asks of an algebra of polynomials in the amplitudes z_1, zbar_1, ...,
@@ -9,7 +9,7 @@ use rug::Rational;
 /// At order zero z_j' = i nu_j z_j and eta' = Omega, so that D_0 = d/dt multiplies the monomial
 /// z^p zbar^q E^m by i lambda, lambda = sum_j (p_j - q_j) nu_j + m Omega. Laws: D_0 and the derivatives
 /// satisfy Leibniz' rule, conjugation is a homomorphism that exchanges z_j with zbar_j and E with 1/E.
-pub trait AmplitudeAlgebra: FunctionAlgebra {
+pub trait AmplitudeAlgebra: ForcedAlgebra {
     /// M.
     fn unknowns(&self) -> usize;
     /// nu_j.

@@ -1,6 +1,6 @@
 //! Algebras of functions of an amplitude, a fast phase and a forcing phase.
 
-use crate::{FunctionAlgebra, PhaseError, Ring};
+use crate::{ForcedAlgebra, FunctionAlgebra, PhaseError, Ring};
 
 /// Shorthand for the functions of the amplitude.
 type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
@@ -10,7 +10,7 @@ type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
 ///
 /// At order zero psi advances at the rate omega_0 and eta at the rate omega, so that
 /// d/dt = D_0 = omega_0 d/dpsi + omega d/deta, and f(t - T) = exp(-T D_0) f.
-pub trait AveragingAlgebra: FunctionAlgebra {
+pub trait AveragingAlgebra: ForcedAlgebra {
     /// a cos psi.
     fn generating_solution(&self) -> Self::Element;
     /// The amplitudes of cos psi and sin psi in f, functions of a.

@@ -16,6 +16,8 @@ mod stop;
 pub use amplitudes::{AmplitudeAlgebra, Split};
 pub use averaging::{Averaged, AveragingAlgebra, LinearPart};
 pub use clock::{ClockAlgebra, StillAndClock};
-pub use phase::{Elementary, FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution, combination};
+pub use phase::{
+    Elementary, ForcedAlgebra, FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution, combination,
+};
 pub use ring::{RationalAlgebra, Rationals, Ring};
 pub use stop::Stop;

@@ -46,14 +46,16 @@ pub trait FunctionAlgebra: RationalAlgebra {
     fn interrupted(&self) -> bool {
         false
     }
-    /// The number of delays that the algebra knows; 0 where time is the phase alone.
+}
+
+/// An algebra in which time is more than the phase: with a forcing phase eta, or values at earlier times.
+pub trait ForcedAlgebra: FunctionAlgebra {
+    /// The number of delays that the algebra knows.
     fn delays(&self) -> usize {
         0
     }
-    /// (cos m eta, sin m eta) of a forcing phase eta; nothing in algebras without one.
-    fn forcing(&self, _multiple: u32) -> Option<(Self::Element, Self::Element)> {
-        None
-    }
+    /// (cos m eta, sin m eta); nothing where there is no force.
+    fn forcing(&self, multiple: u32) -> Option<(Self::Element, Self::Element)>;
 }
 
 /// What the equation u'' + u = f asks of an algebra of functions of the phase psi.

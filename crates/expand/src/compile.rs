@@ -6,7 +6,7 @@
 
 use crate::ExpandError;
 use crate::excitation::Excitation;
-use lindstedt_algebra::{Elementary, FunctionAlgebra, RationalAlgebra, Ring};
+use lindstedt_algebra::{Elementary, ForcedAlgebra, FunctionAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function, Unknown};
 use rug::Rational;
@@ -34,13 +34,8 @@ pub(crate) enum Node<E> {
         /// The position of the delay in [`Excitation::delays`].
         delay: Option<usize>,
     },
-    /// cos(m eta) or sin(m eta) of the forcing phase eta = omega t.
-    Forcing {
-        /// m.
-        multiple: u32,
-        /// Whether it is the sine.
-        sine: bool,
-    },
+    /// cos(m eta) or sin(m eta) of the forcing phase eta = omega t: a position in [`Equation::forcing`].
+    Forcing(usize),
     /// sum q_i node_i.
     Sum(Vec<(Rational, NodeId)>),
     /// The product of two nodes.
@@ -102,6 +97,8 @@ impl<E> Node<E> {
 pub struct Equation<A: FunctionAlgebra> {
     pub(crate) nodes: Vec<Node<<A::Constants as Ring>::Element>>,
     pub(crate) roots: Vec<NodeId>,
+    /// The functions of the forcing phase that occur.
+    pub(crate) forcing: Vec<A::Element>,
 }
 
 impl<A: FunctionAlgebra> Equation<A> {
@@ -116,7 +113,8 @@ impl<A: FunctionAlgebra> Equation<A> {
     }
 }
 
-/// Compiles the left side of `equation = 0` for expansion up to `order`.
+/// Compiles the left side of `equation = 0` for expansion up to `order`; t and delays are what
+/// [`compile_system`] takes.
 ///
 /// # Errors
 /// [`ExpandError`] naming the term that cannot be taken or the name without a value.
@@ -126,23 +124,39 @@ pub fn compile<A: FunctionAlgebra>(
     binding: &dyn Binding<A::Constants>,
     order: usize,
 ) -> Result<Equation<A>, ExpandError> {
-    compile_system(algebra, std::slice::from_ref(equation), binding, order)
+    compile_in_time(algebra, std::slice::from_ref(equation), binding, order, (0, &|_| None))
 }
 
-/// Compiles the left sides of `equations[j]` = 0, in each of which x_j'' stands alone.
+/// Compiles the left sides of `equations[j]` = 0, in each of which x_j'' stands alone, with the delays
+/// and the forcing phase of the algebra.
 ///
 /// # Errors
 /// As [`compile`].
-pub fn compile_system<A: FunctionAlgebra>(
+pub fn compile_system<A: ForcedAlgebra>(
     algebra: &A,
     equations: &[Expression],
     binding: &dyn Binding<A::Constants>,
     order: usize,
 ) -> Result<Equation<A>, ExpandError> {
+    let forcing = |multiple| algebra.forcing(multiple);
+    compile_in_time(algebra, equations, binding, order, (algebra.delays(), &forcing))
+}
+
+/// The number of delays, and (cos m eta, sin m eta) where there is a force.
+type Time<'a, E> = (usize, &'a dyn Fn(u32) -> Option<(E, E)>);
+
+fn compile_in_time<A: FunctionAlgebra>(
+    algebra: &A,
+    equations: &[Expression],
+    binding: &dyn Binding<A::Constants>,
+    order: usize,
+    time: Time<'_, A::Element>,
+) -> Result<Equation<A>, ExpandError> {
     let excitation = Excitation::of(&Expression::Sum(equations.to_vec()))?;
     let unknowns = equations.len();
+    let (nodes, forcing) = (Vec::new(), Vec::new());
     let mut compiler =
-        Compiler { algebra, binding, order, excitation, unknowns, nodes: Vec::new() };
+        Compiler { algebra, binding, order, time, excitation, unknowns, nodes, forcing };
     let mut roots = Vec::new();
     for (j, equation) in equations.iter().enumerate() {
         let acceleration = Expression::unknown(j, 2);
@@ -162,7 +176,7 @@ pub fn compile_system<A: FunctionAlgebra>(
         }
         roots.push(root);
     }
-    Ok(Equation { nodes: compiler.nodes, roots })
+    Ok(Equation { nodes: compiler.nodes, roots, forcing: compiler.forcing })
 }
 
 /// A larger degree is a different problem, and exponents of the algebras are bounded by it.
@@ -173,7 +187,7 @@ fn degree<E>(nodes: &[Node<E>], root: NodeId) -> usize {
     let mut degrees: Vec<usize> = Vec::new();
     for node in nodes {
         degrees.push(match node {
-            Node::Constant(_) | Node::Small | Node::Forcing { .. } => 0,
+            Node::Constant(_) | Node::Small | Node::Forcing(_) => 0,
             Node::Displacement | Node::Velocity | Node::Unknown { .. } => 1,
             Node::Sum(terms) => terms.iter().map(|(_, t)| degrees[*t]).max().unwrap_or(0),
             Node::Product(a, b) => degrees[*a].saturating_add(degrees[*b]),
@@ -189,9 +203,11 @@ struct Compiler<'a, A: FunctionAlgebra> {
     algebra: &'a A,
     binding: &'a dyn Binding<A::Constants>,
     order: usize,
+    time: Time<'a, A::Element>,
     excitation: Excitation,
     unknowns: usize,
     nodes: Vec<Node<<A::Constants as Ring>::Element>>,
+    forcing: Vec<A::Element>,
 }
 
 impl<A: FunctionAlgebra> Compiler<'_, A> {
@@ -243,7 +259,7 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
         Ok(self.push(node))
     }
 
-    /// x, x', or one of them at an earlier time that the algebra knows.
+    /// x, x', or one of them at an earlier time that is known.
     fn unknown(&self, unknown: &Unknown) -> Option<Node<<A::Constants as Ring>::Element>> {
         if unknown.index >= self.unknowns || unknown.derivative > 1 {
             return None;
@@ -253,7 +269,7 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
             None => None,
             Some(delay) => {
                 let known = self.excitation.delays.iter().position(|known| known == delay);
-                Some(known.filter(|&delay| delay < self.algebra.delays())?)
+                Some(known.filter(|&delay| delay < self.time.0)?)
             }
         };
         Some(Node::unknown(index, velocity, delay))
@@ -263,9 +279,15 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
     fn forcing(&mut self, function: Function, argument: &Expression) -> Option<NodeId> {
         let signed = self.excitation.multiple(argument)?;
         let multiple = u32::try_from(signed.unsigned_abs()).ok()?;
-        self.algebra.forcing(multiple)?;
+        let (cos, sin) = (self.time.1)(multiple)?;
         let sine = function == Function::Sin;
-        let node = self.push(Node::Forcing { multiple, sine });
+        let element = if sine { sin } else { cos };
+        let known = self.forcing.iter().position(|known| *known == element);
+        let index = known.unwrap_or_else(|| {
+            self.forcing.push(element);
+            self.forcing.len() - 1
+        });
+        let node = self.push(Node::Forcing(index));
         let sign = Rational::from(if sine && signed < 0 { -1 } else { 1 });
         Some(self.push(Node::Sum(vec![(sign, node)])))
     }

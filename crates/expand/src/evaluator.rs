@@ -22,7 +22,7 @@ pub(crate) struct Evaluator<'a, A: FunctionAlgebra> {
 /// The highest order at which a node can be different from zero, if there is one.
 fn degree<E>(node: &Node<E>) -> Option<usize> {
     match node {
-        Node::Constant(_) | Node::Forcing { .. } => Some(0),
+        Node::Constant(_) | Node::Forcing(_) => Some(0),
         Node::Small => Some(1),
         _ => None,
     }
@@ -134,14 +134,11 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
         match &equation.nodes[node] {
             Node::Constant(c) if n == 0 => Ok(algebra.embed(c)),
             Node::Small if n == 1 => Ok(algebra.one()),
-            Node::Forcing { multiple, sine } if n == 0 => {
-                let (cos, sin) = algebra.forcing(*multiple).ok_or_else(|| unsupported("t"))?;
-                Ok(if *sine { sin } else { cos })
-            }
+            &Node::Forcing(index) if n == 0 => Ok(equation.forcing[index].clone()),
             // Orders of x and x' beyond those assigned are the provisional zero.
             Node::Constant(_)
             | Node::Small
-            | Node::Forcing { .. }
+            | Node::Forcing(_)
             | Node::Displacement
             | Node::Velocity
             | Node::Unknown { .. } => Ok(algebra.zero()),
@@ -319,7 +316,7 @@ impl<'a, A: FunctionAlgebra> Evaluator<'a, A> {
                 Ok::<_, ExpandError>([algebra.mul(&f[0], &tangent[0]), first])
             };
             let tangent = match node {
-                Node::Constant(_) | Node::Small | Node::Forcing { .. } => still(),
+                Node::Constant(_) | Node::Small | Node::Forcing(_) => still(),
                 Node::Displacement | Node::Velocity | Node::Unknown { .. } => {
                     direction(node).unwrap_or_else(still)
                 }

@@ -13,8 +13,8 @@ use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_expand::{
-    AveragedExpansion, Binding, Excitation, ExpandError, average as expand_average, check_averaged,
-    compile, linear_part,
+    AveragedExpansion, Binding, Equation, Excitation, ExpandError, average as expand_average,
+    check_averaged, compile_system, linear_part,
 };
 use lindstedt_number::ball::Balls;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
@@ -131,8 +131,7 @@ impl<'a> Task<'a> {
             forcing.clone(),
             times.iter().map(waiting).collect(),
         );
-        let bound = Bound { ring: provisional.constants().clone(), values };
-        let graph = compile(&provisional, &self.problem.equation, &bound, self.settings.order)?;
+        let graph = self.compiled(&provisional, values)?;
         let linear = linear_part(&provisional, &graph)?;
         let constants = provisional.constants();
         let zero = |f: &AmplitudePolynomial<K::Element>| constants.is_zero(f);
@@ -165,14 +164,23 @@ impl<'a> Task<'a> {
         Ok((torus.with_stop(self.settings.stop.clone()), frequency))
     }
 
+    fn compiled<K: Coefficients>(
+        &self,
+        torus: &Torus<K>,
+        values: &dyn Fn(&str) -> Option<K::Element>,
+    ) -> Result<Equation<Torus<K>>, ExpandError> {
+        let bound = Bound { ring: torus.constants().clone(), values };
+        let equation = std::slice::from_ref(&self.problem.equation);
+        compile_system(torus, equation, &bound, self.settings.order)
+    }
+
     fn derive<K: Coefficients + Print>(
         &self,
         (algebra, frequency): (Torus<K>, K::Element),
         values: &dyn Fn(&str) -> Option<K::Element>,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Over<K>, Error> {
-        let bound = Bound { ring: algebra.constants().clone(), values };
-        let graph = compile(&algebra, &self.problem.equation, &bound, self.settings.order)?;
+        let graph = self.compiled(&algebra, values)?;
         let mut on_order =
             |work: &lindstedt_expand::OrderWork| observer(Progress::Order(work.order, work.terms));
         let expansion = expand_average(&algebra, &graph, self.settings.order, &mut on_order)?;

@@ -75,7 +75,7 @@ fn is_linear<E>(nodes: &[Node<E>]) -> bool {
     for node in nodes {
         let kind = match node {
             Node::Constant(_) | Node::Small => 0,
-            Node::Forcing { .. } => 1,
+            Node::Forcing(_) => 1,
             Node::Displacement | Node::Velocity | Node::Unknown { .. } => 2,
             Node::Sum(terms) => terms.iter().map(|(_, term)| kinds[*term]).max().unwrap_or(0),
             &Node::Product(a, b) if kinds[a].min(kinds[b]) == 0 || kinds[a].max(kinds[b]) < 2 => {
@@ -130,10 +130,7 @@ impl<A: AveragingAlgebra> Judge<'_, A> {
                 Node::Unknown { index: 0, velocity: true, delay: Some(delay) } => {
                     self.delayed(&velocity, *delay)?
                 }
-                Node::Forcing { multiple, sine } => {
-                    let (cos, sin) = algebra.forcing(*multiple).ok_or_else(unsupported)?;
-                    Series::polynomial(vec![if *sine { sin } else { cos }])
-                }
+                &Node::Forcing(index) => Series::polynomial(vec![equation.forcing[index].clone()]),
                 node => {
                     polynomial_value(algebra, node, &values, self.order).ok_or_else(unsupported)?
                 }
@@ -163,7 +160,7 @@ impl<A: AveragingAlgebra> Judge<'_, A> {
             let value = match node {
                 Node::Constant(c) => Series::polynomial(vec![real(c.clone())]),
                 Node::Small => Series::polynomial(vec![complex.zero(), complex.one()]),
-                Node::Forcing { .. } => Series::polynomial(Vec::new()),
+                Node::Forcing(_) => Series::polynomial(Vec::new()),
                 Node::Displacement => Series::polynomial(vec![complex.one()]),
                 Node::Velocity => root.clone(),
                 &Node::Unknown { velocity, delay: Some(delay), .. } => {

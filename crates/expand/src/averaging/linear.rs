@@ -46,10 +46,7 @@ impl<A: AveragingAlgebra> Affine<A> {
             let value = match node {
                 Node::Constant(c) => Self::source(vec![algebra.embed(c)]),
                 Node::Small => Self::source(vec![algebra.zero(), algebra.one()]),
-                Node::Forcing { multiple, sine } => {
-                    let (cos, sin) = algebra.forcing(*multiple)?;
-                    Self::source(vec![if *sine { sin } else { cos }])
-                }
+                &Node::Forcing(index) => Self::source(vec![equation.forcing[index].clone()]),
                 Node::Displacement => Self::unknown(algebra, (None, false)),
                 Node::Velocity => Self::unknown(algebra, (None, true)),
                 &Node::Unknown { index: 0, velocity, delay } => {

@@ -1,11 +1,12 @@
 //! The linear case against the general scheme.
 
 use super::{Affine, AveragedExpansion, Averaging, average, check_averaged, general};
-use crate::{Binding, ExpandError, compile};
-use lindstedt_algebra::{FunctionAlgebra, Ring};
+use crate::{Binding, ExpandError, compile, compile_system};
+use lindstedt_algebra::{ForcedAlgebra, FunctionAlgebra, Ring};
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::amplitude::AmplitudePolynomials;
 use lindstedt_coeff::parameters::ParameterField;
+use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
 use lindstedt_phase::{Delay, Torus};
 
@@ -52,7 +53,8 @@ fn both(
     order: usize,
 ) -> Result<[AveragedExpansion<Torus<ParameterField>>; 2], ExpandError> {
     let algebra = torus();
-    let graph = compile(&algebra, equation, &Named(algebra.constants().clone()), order)?;
+    let named = Named(algebra.constants().clone());
+    let graph = compile_system(&algebra, std::slice::from_ref(equation), &named, order)?;
     let linear = average(&algebra, &graph, order, &mut |_| true)?;
     let judge = general(Averaging::start(&algebra, &graph)?, order, &mut |_| true)?;
     assert_eq!(check_averaged(&algebra, &graph, &linear), Ok(order));
@@ -114,8 +116,8 @@ fn the_same_to_order_six() {
 fn the_equation_decides() {
     let algebra = torus();
     let route = |more| {
-        let graph =
-            compile(&algebra, &delay_loop(more), &Named(algebra.constants().clone()), 2).unwrap();
+        let named = Named(algebra.constants().clone());
+        let graph = compile_system(&algebra, &[delay_loop(more)], &named, 2).unwrap();
         Affine::of(&algebra, &graph, 2).is_some()
     };
     let x = || Expression::DISPLACEMENT;
@@ -123,4 +125,21 @@ fn the_equation_decides() {
     assert!(!route(x() * x()));
     assert!(!route(x() * (Expression::parameter("omega") * Expression::Time).apply(Function::Cos)));
     assert!(!route(x() * x().delayed(Expression::parameter("T"))));
+}
+
+/// The compiler without time names the delayed term and the force, over an algebra that knows both.
+#[test]
+fn time_is_for_algebras_that_are_asked_for_it() {
+    let algebra = torus();
+    let named = Named(algebra.constants().clone());
+    let x = Expression::DISPLACEMENT;
+    let late = x.clone().delayed(Expression::parameter("T"));
+    let force = (Expression::parameter("omega") * Expression::Time).apply(Function::Cos);
+    for term in [late, force] {
+        let equation = Expression::ACCELERATION + x.clone() + Expression::Small * term.clone();
+        let refused = compile(&algebra, &equation, &named, 2).map(|_| ());
+        let term = term.print("eps", Style::Text);
+        assert_eq!(refused, Err(ExpandError::UnsupportedTerm { term }));
+        assert!(compile_system(&algebra, &[equation], &named, 2).is_ok());
+    }
 }

@@ -36,10 +36,7 @@ pub fn check_flow<A: AmplitudeAlgebra>(
             Node::Velocity => velocity[0].clone(),
             Node::Unknown { index, velocity: false, delay: None } => x[*index].clone(),
             Node::Unknown { index, velocity: true, delay: None } => velocity[*index].clone(),
-            Node::Forcing { multiple, sine } => {
-                let (cos, sin) = algebra.forcing(*multiple).ok_or_else(unsupported)?;
-                Series::polynomial(vec![if *sine { sin } else { cos }])
-            }
+            &Node::Forcing(index) => Series::polynomial(vec![equation.forcing[index].clone()]),
             node => polynomial_value(algebra, node, &values, order).ok_or_else(unsupported)?,
         };
         values.push(value);

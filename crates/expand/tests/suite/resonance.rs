@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use lindstedt_algebra::{AmplitudeAlgebra, FunctionAlgebra, RationalAlgebra, Rationals, Ring};
+use lindstedt_algebra::{AmplitudeAlgebra, ForcedAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_expand::resonance::{SlowFlow, check_flow, resonant};

@@ -2,7 +2,7 @@
 
 use super::words::{LARGEST, Word, exponents};
 use super::{AmplitudeElement, Amplitudes, Scalars, Term};
-use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Ring};
+use lindstedt_algebra::{ForcedAlgebra, FunctionAlgebra, RationalAlgebra, Ring};
 use rug::{Integer, Rational};
 use rustc_hash::FxHashMap;
 use std::sync::atomic::Ordering;
@@ -250,6 +250,9 @@ impl<S: Scalars> FunctionAlgebra for Amplitudes<S> {
     fn interrupted(&self) -> bool {
         self.overflowed() || self.stop.asked()
     }
+}
+
+impl<S: Scalars> ForcedAlgebra for Amplitudes<S> {
     fn forcing(&self, multiple: u32) -> Option<(Self::Element, Self::Element)> {
         let multiple = i32::try_from(multiple).ok().filter(|m| *m <= LARGEST)?;
         let place = super::words::unit(self.phases() - 1);

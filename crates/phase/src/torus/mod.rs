@@ -9,8 +9,8 @@
 mod print;
 
 use lindstedt_algebra::{
-    Averaged, AveragingAlgebra, FunctionAlgebra, LinearPart, PhaseError, RationalAlgebra, Ring,
-    Stop,
+    Averaged, AveragingAlgebra, ForcedAlgebra, FunctionAlgebra, LinearPart, PhaseError,
+    RationalAlgebra, Ring, Stop,
 };
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials};
 use rug::Rational;
@@ -358,6 +358,9 @@ impl<K: RationalAlgebra> FunctionAlgebra for Torus<K> {
     fn terms(&self, f: &Self::Element) -> usize {
         f.harmonics.values().flatten().map(|c| c.terms().len()).sum()
     }
+}
+
+impl<K: RationalAlgebra> ForcedAlgebra for Torus<K> {
     fn delays(&self) -> usize {
         self.delays.len()
     }
