@@ -19,6 +19,9 @@ pub struct Rotating {
     pub flow: Flow,
     /// k_j.
     pub turns: Vec<Rational>,
+    /// How many of the k_j the resonances fix, the rank of their relations: where it is less than the number of
+    /// unknowns, a motion may be steady in another frame than this.
+    pub fixed: usize,
     /// Im (w'/w)/eps of free motion as a polynomial in |w| and the parameters, of a single unknown: zero on the
     /// backbone.
     pub backbone: Option<Flow>,
@@ -37,7 +40,34 @@ pub fn rotating(slow: &SlowFlow, small: &str, order: usize) -> Option<Rotating> 
     let equations: Vec<Vec<ComplexTerm>> =
         (0..turns.len()).map(|j| equation(slow, j, &turns[j], order)).collect();
     let backbone = (turns.len() == 1).then(|| backbone(slow, &turns[0], &names, order));
-    Some(Rotating { flow: Flow::of_complex(&equations, &names), turns, backbone })
+    let fixed = fixed(slow, order);
+    Some(Rotating { flow: Flow::of_complex(&equations, &names), turns, fixed, backbone })
+}
+
+/// The rank of the vectors p - q - e_j of all terms z^p zbar^q E^m of f_j: each is a relation (p - q - e_j) k = -m.
+/// Nothing is fixed where no term knows the force.
+fn fixed(slow: &SlowFlow, order: usize) -> usize {
+    let unknowns = slow.unknowns();
+    let (mut rows, mut forced): (Vec<Vec<Rational>>, bool) = (Vec::new(), false);
+    for j in 0..unknowns {
+        for term in slow.flow[j].iter().take(order + 1).skip(1).flatten() {
+            forced |= term.exponents[2 * unknowns] != 0;
+            let relation = |k: usize| {
+                let own = i32::from(k == j);
+                Rational::from(term.exponents[2 * k] - term.exponents[2 * k + 1] - own)
+            };
+            let mut row: Vec<Rational> = (0..unknowns).map(relation).collect();
+            for known in &rows {
+                let Some(pivot) = known.iter().position(|x| !x.is_zero()) else { continue };
+                let factor = Rational::from(&row[pivot] / &known[pivot]);
+                row.iter_mut().zip(known).for_each(|(x, y)| *x -= Rational::from(&factor * y));
+            }
+            if row.iter().any(|x| !x.is_zero()) {
+                rows.push(row);
+            }
+        }
+    }
+    if forced { rows.len() } else { 0 }
 }
 
 fn power(e: i32) -> u32 {

@@ -176,7 +176,10 @@ pub fn slow_flow(
     }
     refuse_near_miss(&found.nearest)?;
     observer(Progress::Checking);
-    let checked_orders = match check_flow(&algebra, &graph, &found) {
+    let checked = check_flow(&algebra, &graph, &found);
+    let checked_orders = match checked {
+        // What was multiplied after the work was stopped means nothing, for better or worse.
+        _ if settings.stop.asked() => None,
         Err(ExpandError::Interrupted { .. }) => None,
         other => Some(other?),
     };

@@ -74,6 +74,9 @@ pub enum Verdict {
         radius: Box<Number>,
         /// The distance within which there is no second orbit.
         unique_within: Box<Number>,
+        /// The functions among which there is no second one; nothing where these are all.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        among: Option<&'static str>,
         /// The bounds of the test.
         bounds: Box<Bounds>,
     },
@@ -313,6 +316,12 @@ impl ProvedOrbit {
                 weight: proof.weight,
                 radius: Box::new(above(&proof.radius)),
                 unique_within: Box::new(below(&proof.unique_within)),
+                among: match (proof.parity.odd, proof.parity.even) {
+                    (true, true) => Some("even functions of the phase of odd harmonics"),
+                    (true, false) => Some("functions of odd harmonics, x(t + T/2) = -x(t)"),
+                    (false, true) => Some("even functions of the phase"),
+                    (false, false) => None,
+                },
                 bounds: Box::new(Bounds {
                     y0: above(&proof.bounds.y0),
                     z0: proof.bounds.z0,

@@ -120,6 +120,11 @@ impl Oscillator {
                 "{place}the number of steady states is not decided: a double one, or too many boxes"
             )));
         }
+        if subject.rotating.fixed < subject.rotating.turns.len() {
+            let text = "the resonances of these orders leave a phase free: a motion that is steady in another \
+                        rotating frame is none of these states";
+            remarks.push(Remark(text.to_owned()));
+        }
         let broken = value.branches.iter().filter(|branch| !branch.complete).count();
         if broken > 0 {
             remarks.push(Remark(format!("{broken} branches were not followed to their ends")));
@@ -233,6 +238,10 @@ impl Subject<'_> {
     fn destination(&self, from: &[Exact; 2], response: &Response) -> Result<Destination, Error> {
         if self.rotating.turns.len() != 1 || response.parameter.is_some() {
             let message = "a start state is followed for one unknown and without a sweep";
+            return Err(Refused::usage("start", message, "lindstedt simulate").into());
+        }
+        if self.runs_backwards() {
+            let message = "a start state is followed for a positive small parameter";
             return Err(Refused::usage("start", message, "lindstedt simulate").into());
         }
         let start = self.start(from.each_ref().map(Exact::to_f64));

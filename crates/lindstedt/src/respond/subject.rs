@@ -74,18 +74,16 @@ impl<'a> Subject<'a> {
         {
             let name = &axis.name;
             // A frequency: its detuning varies in its place.
-            let with = |value: &Exact| asked(&case.clone().with(name, value.clone()));
-            let beside = axis.values.iter().find_map(|value| {
-                let slow = with(value).ok()?;
-                let beside = slow.system.beside.clone()?;
-                Some((slow, beside, value.as_rational()?.clone()))
-            });
-            if let Some((found, beside, value)) = beside {
-                factor = Some(value / beside.rate);
-                swept[0] = Some(beside.symbol);
-                slow = Ok(found);
+            if let Some((value, ratio, symbol)) = forcing_frequency(&case, axis, work)? {
+                factor = Some(ratio);
+                swept[0] = Some(symbol);
+                slow = asked(&case.clone().with(name, value));
             } else if slow.is_ok() {
                 return Err(no_part(name));
+            } else if slow.as_ref().is_err_and(|error| is_unset(error, name)) {
+                let message = format!("no value of {name} lies within a tenth of a resonance");
+                let hint = "a range about a resonance, or the detuning as a parameter of its own";
+                return Err(Refused::no_answer("no-response", message, hint).into());
             }
         }
         let slow = slow.map_err(|error| not_weak(oscillator, error))?;
@@ -95,9 +93,16 @@ impl<'a> Subject<'a> {
             return Err(no_part(name));
         }
         let rotating = rotating(&slow, &small, order).ok_or_else(no_force)?;
+        if rotating.fixed == 0 {
+            let message =
+                format!("up to order {order} no resonance couples the force to an amplitude");
+            let hint = "a frequency nearer to a resonance (or the detuning as a parameter), a higher --order";
+            return Err(Refused::no_answer("no-response", message, hint).into());
+        }
         let value = oscillator.value(&small).filter(|_| !swept.contains(&Some(small.clone())));
         let small = value.as_ref().and_then(Exact::as_rational).cloned();
         let amplitude = question.amplitude.as_ref().map(Exact::to_f64);
+        let order = order.min(slow.order);
         let subject =
             Self { oscillator, work, order, slow, rotating, swept, factor, small, amplitude };
         subject.check()?;
@@ -106,6 +111,10 @@ impl<'a> Subject<'a> {
 
     /// Refuses parameters without a value.
     fn check(&self) -> Result<(), Error> {
+        if self.small.as_ref().is_some_and(Rational::is_zero) {
+            let message = "at zero the small parameter leaves no slow flow";
+            return Err(Refused::usage("parameter", message, "a small value other than 0").into());
+        }
         let names = self.rotating.flow.parameters.iter();
         let unset = names.zip(self.values([None, None])).find(|(name, value)| {
             value.is_none() && !self.swept.iter().flatten().any(|it| it == *name)
@@ -264,6 +273,22 @@ impl<'a> Subject<'a> {
         point.exponents.iter().map(|x| [scaled(x.re), scaled(x.im)]).collect()
     }
 
+    pub(super) fn runs_backwards(&self) -> bool {
+        self.small.as_ref().is_some_and(|small| *small < 0)
+    }
+
+    /// As [`steady::Point::is_stable`] has it of w'/eps; of a negative small parameter the slow flow runs backwards.
+    fn is_stable(&self, point: &steady::Point) -> Option<bool> {
+        let varies = self.small.is_none();
+        let backwards = varies && point.at.last().is_some_and(|small| *small < 0.0);
+        if !backwards && !self.runs_backwards() {
+            return point.is_stable();
+        }
+        let mut reversed = point.clone();
+        reversed.exponents.iter_mut().for_each(|x| *x = -*x);
+        reversed.is_stable()
+    }
+
     pub(super) fn shown_branch(&self, branch: &steady::Branch) -> Branch {
         let point = |point: &steady::Point| {
             let (value, w) = point.at.split_last().unwrap_or((&0.0, &[]));
@@ -272,7 +297,7 @@ impl<'a> Subject<'a> {
                 value: Estimate { value: self.shown_value(*value) },
                 amplitudes: self.amplitudes(w),
                 phases: w.chunks_exact(2).map(phase).collect(),
-                stable: point.is_stable(),
+                stable: self.is_stable(point),
                 exponents: self.exponents(point),
             }
         };
@@ -313,7 +338,7 @@ impl<'a> Subject<'a> {
         for zero in &found.zeros {
             let point = steady::state_at(system, &zero.middle());
             let (amplitudes, phases) = zero.enclosure.chunks_exact(2).map(polar).unzip();
-            let stable = point.is_stable();
+            let stable = self.is_stable(&point);
             let exponents = self.exponents(&point);
             list.push(State { amplitudes, phases, stable, exponents, at: point.at });
         }
@@ -397,8 +422,61 @@ fn proved(x: &Certified) -> Number {
 fn polar(w: &[Interval]) -> (Number, Option<Number>) {
     let (re, im) = (real(w[0]), real(w[1]));
     let square = re.square() + im.square();
-    let phase = (square.is_positive()).then(|| proved(&im.atan2(&re)));
-    (proved(&square.sqrt().doubled()), phase)
+    // About the negative axis the principal value jumps: there it is taken from the opposite direction.
+    let turned = || {
+        Certified::new(Balls::new(BITS), Balls::new(BITS).pi()) + (-im.clone()).atan2(&-re.clone())
+    };
+    let phase = if w[0].high() < 0.0 { turned() } else { im.atan2(&re) };
+    let phase = square.is_positive().then_some(phase).filter(|phase| phase.ball().is_finite());
+    (proved(&square.sqrt().doubled()), phase.map(|phase| proved(&phase)))
+}
+
+/// Whether an error says that this name has no value.
+fn is_unset(error: &Error, name: &str) -> bool {
+    use crate::Refusal;
+    error.code() == "no-value-set" && error.to_string().contains(name)
+}
+
+/// Most values of a range at which the resonance beside it is looked for.
+const LOOKED_AT: usize = 41;
+
+/// Whether an axis is the frequency of the force: a value of it beside a resonance, omega/rate, and the name
+/// of the detuning.
+///
+/// # Errors
+/// [`Refused`] where values lie beside different resonances, or the frequencies of the oscillator vary.
+fn forcing_frequency(
+    case: &Oscillator,
+    axis: &Axis,
+    work: &Work,
+) -> Result<Option<(Exact, Rational, String)>, Error> {
+    let beside = |value: &Rational| {
+        let with = case.clone().with(&axis.name, Exact::Rational(value.clone()));
+        let system = with.slow_flow(1, work).ok()?.value.system;
+        Some((system.force, system.beside?))
+    };
+    let stride = axis.values.len().div_ceil(LOOKED_AT).max(1);
+    let ends = axis.values.iter().step_by(stride).chain(axis.values.last());
+    let values = ends.filter_map(|value| value.as_rational().cloned());
+    let found: Vec<_> = values.filter_map(|value| Some((beside(&value)?, value))).collect();
+    let Some(((force, first), value)) = found.first() else { return Ok(None) };
+    let factor = Rational::from(value / &first.rate);
+    let shifted = value * Rational::from((1001, 1000));
+    let moves =
+        beside(&shifted).is_some_and(|(_, it)| Rational::from(&shifted / &it.rate) == factor);
+    if !moves {
+        let message = format!("a frequency of the oscillator depends on {}", axis.name);
+        let hint = "only the frequency of the force varies; set others value by value";
+        return Err(Refused::no_answer("no-response", message, hint).into());
+    }
+    if let Some(((other, _), _)) = found.iter().find(|((other, _), _)| other != force) {
+        let message = format!(
+            "the range of {} passes two resonances, {force} and {other} as rates of the force's phase",
+            axis.name
+        );
+        return Err(Refused::usage("sweep", message, "one resonance at a time").into());
+    }
+    Ok(Some((Exact::Rational(value.clone()), factor, first.symbol.clone())))
 }
 
 fn no_force() -> Error {

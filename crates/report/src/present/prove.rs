@@ -57,7 +57,8 @@ fn orbit(page: Document, value: &ProvedOrbit) -> Document {
     match &value.proof {
         ProofVerdict::Failed { failed, why } => page
             .words(format!("Not proved ({failed}): {why}. This says nothing against the orbit.")),
-        ProofVerdict::Proved { modes, weight, radius, unique_within, bounds } => {
+        ProofVerdict::Proved { modes, weight, radius, unique_within, among, bounds } => {
+            let among = among.map_or_else(String::new, |among| format!(", both among the {among}"));
             let stable = match value.stable {
                 Some(true) => " It is stable.",
                 Some(false) => " It is unstable.",
@@ -65,7 +66,7 @@ fn orbit(page: Document, value: &ProvedOrbit) -> Document {
             };
             let words = format!(
                 "Proved: there is exactly one periodic orbit within {} of these Fourier coefficients, and no \
-                 second one within {}.{stable}",
+                 second one within {}{among}.{stable}",
                 radius.decimal, unique_within.decimal
             );
             page.words(Text::words(words)).lines([

@@ -160,7 +160,10 @@ impl Present for Answer<Response> {
         } else {
             "the truncated slow flow may have states beyond"
         };
-        let limit = format!("amplitudes to {:.4}: {whole}", value.amplitude_limit.value);
+        let limit = format!(
+            "a cos(phi) and a sin(phi) up to {:.4} in size: {whole}",
+            value.amplitude_limit.value
+        );
         let mut lines: Vec<(Text, Text)> = vec![("box".into(), limit.into())];
         if !at.is_empty() {
             lines.insert(0, ("at".into(), at.join(", ").into()));
