@@ -426,7 +426,8 @@ fn polar(w: &[Interval]) -> (Number, Option<Number>) {
     let turned = || {
         Certified::new(Balls::new(BITS), Balls::new(BITS).pi()) + (-im.clone()).atan2(&-re.clone())
     };
-    let phase = if w[0].high() < 0.0 { turned() } else { im.atan2(&re) };
+    let cut = w[0].high() < 0.0 && w[1].contains(0.0);
+    let phase = if cut { turned() } else { im.atan2(&re) };
     let phase = square.is_positive().then_some(phase).filter(|phase| phase.ball().is_finite());
     (proved(&square.sqrt().doubled()), phase.map(|phase| proved(&phase)))
 }
