@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 /// (zeta(2) = pi^2/6, the closed forms of mu_m) are theorems applied by name elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Symbol {
-    /// A formal parameter, by its position in [`PolynomialRing::parameters`].
+    /// A formal parameter, by its position in [`PolynomialRing::parameters`](crate::PolynomialRing).
     Parameter(u16),
     /// S_n, the n-th Taylor coefficient of a formal function, n! [z^n] F(z).
     Sum(u16),

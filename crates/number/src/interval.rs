@@ -1,5 +1,5 @@
 //! Closed intervals with doubles as ends, every operation rounded outwards: what searches by subdivision
-//! compute with, where a [`Ball`](crate::ball::Ball) per operation would be too slow.
+//! compute with, where a [`Ball`] per operation would be too slow.
 //!
 //! A result contains every value of the operation on points of its operands. Nearest rounding followed by a step to
 //! the next double is outward rounding. What is not a number, and what overflows, becomes the whole line.
