@@ -29,6 +29,7 @@ mod drifting;
 mod periodic;
 mod resonant;
 mod run;
+mod sampled;
 mod verdict;
 
 use crate::refusal::Refused;

@@ -1,6 +1,8 @@
 //! The question `respond`: steady states at resonance, response curves, folds, stability.
 
 mod answer;
+mod frequency;
+mod shown;
 mod subject;
 
 use crate::grid::Axis;

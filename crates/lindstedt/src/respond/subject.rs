@@ -1,24 +1,16 @@
 //! The slow flow of a question with its values, and what is shown of its states.
 
-use super::answer::{Branch, Change, Corner, Curve, Estimate, Point, Response, State, States};
+use super::answer::{Estimate, Response};
+use super::frequency::forcing_frequency;
 use super::{ORDER, Respond, SEARCHES};
 use crate::grid::Axis;
 use crate::refusal::Refused;
-use crate::{DerivationError, Error, Exact, Number, Oscillator, SlowFlow, Status, Work};
+use crate::{DerivationError, Error, Exact, Oscillator, SlowFlow, Work};
 use lindstedt_evaluation::rotating::{Rotating, forced_part, rotating};
-use lindstedt_number::ball::Balls;
-use lindstedt_number::certified;
 use lindstedt_number::interval::Interval;
-use lindstedt_number::real::{Certified, Real};
-use lindstedt_orbit::steady::{
-    self, Course, Found, Limits, Located, System, Zero, all_zeros, bound, follow,
-};
+use lindstedt_orbit::steady::{self, Course, Limits, System, all_zeros, bound, follow};
 use rug::Rational;
 
-/// Bits of enclosures of states, which doubles bound.
-const BITS: u32 = 80;
-/// Digits of them at most.
-const DIGITS: usize = 15;
 /// The box is so many times as large as that of order one, for higher orders.
 const ROOM: f64 = 1.25;
 /// How far beside the range a backbone may begin, in widths of it.
@@ -30,13 +22,13 @@ pub(super) struct Subject<'a> {
     oscillator: &'a Oscillator,
     pub(super) work: &'a Work,
     pub(super) order: usize,
-    slow: SlowFlow,
+    pub(super) slow: SlowFlow,
     pub(super) rotating: Rotating,
     /// The names of what varies, among the parameters of the flow.
     swept: [Option<String>; 2],
     /// omega = factor (Omega + eps sigma), where sigma varies in the place of omega.
-    factor: Option<Rational>,
-    small: Option<Rational>,
+    pub(super) factor: Option<Rational>,
+    pub(super) small: Option<Rational>,
     amplitude: Option<f64>,
 }
 
@@ -189,16 +181,6 @@ impl<'a> Subject<'a> {
         values.map(|value| detuning(value).ok_or(Error::NoValue)).collect()
     }
 
-    /// What is shown of a value of the flow's parameter.
-    fn shown_value(&self, value: f64) -> f64 {
-        match (&self.factor, &self.small) {
-            (Some(factor), Some(small)) => {
-                factor.to_f64() * (self.slow.system.force.to_f64() + small.to_f64() * value)
-            }
-            _ => value,
-        }
-    }
-
     /// The half side of the box that is searched, and whether it has all states: that asked for, else a bound of the
     /// steady states of order one.
     pub(super) fn reach(&self, at: &[Values]) -> Result<(f64, bool), Error> {
@@ -264,7 +246,7 @@ impl<'a> Subject<'a> {
     }
 
     /// Exponents per unit of t.
-    fn exponents(&self, point: &steady::Point) -> Vec<[Estimate; 2]> {
+    pub(super) fn exponents(&self, point: &steady::Point) -> Vec<[Estimate; 2]> {
         let small = match &self.small {
             Some(small) => small.to_f64(),
             None => point.at.last().copied().unwrap_or(1.0),
@@ -278,7 +260,7 @@ impl<'a> Subject<'a> {
     }
 
     /// As [`steady::Point::is_stable`] has it of w'/eps; of a negative small parameter the slow flow runs backwards.
-    fn is_stable(&self, point: &steady::Point) -> Option<bool> {
+    pub(super) fn is_stable(&self, point: &steady::Point) -> Option<bool> {
         let varies = self.small.is_none();
         let backwards = varies && point.at.last().is_some_and(|small| *small < 0.0);
         if !backwards && !self.runs_backwards() {
@@ -287,102 +269,6 @@ impl<'a> Subject<'a> {
         let mut reversed = point.clone();
         reversed.exponents.iter_mut().for_each(|x| *x = -*x);
         reversed.is_stable()
-    }
-
-    pub(super) fn shown_branch(&self, branch: &steady::Branch) -> Branch {
-        let point = |point: &steady::Point| {
-            let (value, w) = point.at.split_last().unwrap_or((&0.0, &[]));
-            let phase = |w: &[f64]| Estimate { value: w[1].atan2(w[0]) };
-            Point {
-                value: Estimate { value: self.shown_value(*value) },
-                amplitudes: self.amplitudes(w),
-                phases: w.chunks_exact(2).map(phase).collect(),
-                stable: self.is_stable(point),
-                exponents: self.exponents(point),
-            }
-        };
-        let steady::Branch { points, closed, complete } = branch;
-        Branch { points: points.iter().map(point).collect(), closed: *closed, complete: *complete }
-    }
-
-    pub(super) fn shown_change(&self, change: &Located) -> Change {
-        let n = self.rotating.flow.unknowns();
-        let Some(zero) = &change.proved else {
-            let amplitudes = self.amplitudes(&change.at[..n]);
-            return Change {
-                value: Number::double(self.shown_value(change.at[n])),
-                amplitudes: amplitudes.iter().map(|a| Number::double(a.value)).collect(),
-                branch: change.branch,
-            };
-        };
-        let amplitudes = zero.enclosure[..n].chunks_exact(2).map(|w| polar(w).0).collect();
-        Change { value: self.proved_value(zero.enclosure[n]), amplitudes, branch: change.branch }
-    }
-
-    fn proved_value(&self, value: Interval) -> Number {
-        let mut shown = real(value);
-        if let (Some(factor), Some(small)) = (&self.factor, &self.small) {
-            let number = |q: &Rational| Certified::from_rational(Balls::new(BITS), q);
-            shown = (shown * number(small) + number(&self.slow.system.force)) * number(factor);
-        }
-        proved(&shown)
-    }
-
-    pub(super) fn shown_states(
-        &self,
-        sample: Option<&Exact>,
-        system: &System,
-        found: &Found,
-    ) -> States {
-        let mut list: Vec<State> = Vec::new();
-        for zero in &found.zeros {
-            let point = steady::state_at(system, &zero.middle());
-            let (amplitudes, phases) = zero.enclosure.chunks_exact(2).map(polar).unzip();
-            let stable = self.is_stable(&point);
-            let exponents = self.exponents(&point);
-            list.push(State { amplitudes, phases, stable, exponents, at: point.at });
-        }
-        let size = |state: &State| state.at.iter().map(|x| x * x).sum::<f64>();
-        list.sort_by(|a, b| size(b).total_cmp(&size(a)).then(b.at[0].total_cmp(&a.at[0])));
-        States {
-            value: sample.and_then(|value| self.shown_sample(value)),
-            count: list.len(),
-            count_proved: found.is_proved(),
-            undecided: found.undecided.len(),
-            boxes: found.boxes,
-            list,
-        }
-    }
-
-    fn shown_sample(&self, value: &Exact) -> Option<Number> {
-        let exact = match (value.as_rational(), &self.factor, &self.small) {
-            (Some(q), Some(factor), Some(small)) => {
-                let rate = Rational::from(q * small) + &self.slow.system.force;
-                Exact::Rational(rate * factor)
-            }
-            _ => value.clone(),
-        };
-        certified(Some(exact.to_string()), DIGITS, |balls| Some(exact.ball(balls))).ok()
-    }
-
-    /// A curve in the plane of two parameters.
-    pub(super) fn shown_curve(&self, curve: &steady::Curve, places: [usize; 2]) -> Curve {
-        let point = |point: &steady::Point| {
-            [self.shown_value(point.at[places[0]]), point.at[places[1]]]
-                .map(|value| Estimate { value })
-        };
-        let kind = if curve.change == steady::Change::Fold { "fold" } else { "hopf" };
-        let points = curve.branch.points.iter().map(point).collect();
-        Curve { kind, points, closed: curve.branch.closed }
-    }
-
-    pub(super) fn shown_corner(&self, zero: &Zero, places: [usize; 2]) -> Corner {
-        let n = self.rotating.flow.unknowns();
-        let [first, second] = places.map(|place| zero.enclosure[place]);
-        Corner {
-            values: [self.proved_value(first), proved(&real(second))],
-            amplitudes: zero.enclosure[..n].chunks_exact(2).map(|w| polar(w).0).collect(),
-        }
     }
 
     /// The curve of free motion: from |w| = 0, also where that lies beside the range.
@@ -410,74 +296,10 @@ impl<'a> Subject<'a> {
     }
 }
 
-fn real(x: Interval) -> Certified {
-    Certified::new(Balls::new(BITS), x.ball())
-}
-
-fn proved(x: &Certified) -> Number {
-    Number::of_ball(x.ball(), DIGITS).weaken(Status::Proved)
-}
-
-/// 2 |w| and the angle of an enclosed w.
-fn polar(w: &[Interval]) -> (Number, Option<Number>) {
-    let (re, im) = (real(w[0]), real(w[1]));
-    let square = re.square() + im.square();
-    // About the negative axis the principal value jumps: there it is taken from the opposite direction.
-    let turned = || {
-        Certified::new(Balls::new(BITS), Balls::new(BITS).pi()) + (-im.clone()).atan2(&-re.clone())
-    };
-    let cut = w[0].high() < 0.0 && w[1].contains(0.0);
-    let phase = if cut { turned() } else { im.atan2(&re) };
-    let phase = square.is_positive().then_some(phase).filter(|phase| phase.ball().is_finite());
-    (proved(&square.sqrt().doubled()), phase.map(|phase| proved(&phase)))
-}
-
 /// Whether an error says that this name has no value.
 fn is_unset(error: &Error, name: &str) -> bool {
     use crate::Refusal;
     error.code() == "no-value-set" && error.to_string().contains(name)
-}
-
-/// Most values of a range at which the resonance beside it is looked for.
-const LOOKED_AT: usize = 41;
-
-/// Whether an axis is the frequency of the force: a value of it beside a resonance, omega/rate, and the name
-/// of the detuning.
-///
-/// # Errors
-/// [`Refused`] where values lie beside different resonances, or the frequencies of the oscillator vary.
-fn forcing_frequency(
-    case: &Oscillator,
-    axis: &Axis,
-    work: &Work,
-) -> Result<Option<(Exact, Rational, String)>, Error> {
-    let beside = |value: &Rational| {
-        let with = case.clone().with(&axis.name, Exact::Rational(value.clone()));
-        let system = with.slow_flow(1, work).ok()?.value.system;
-        Some((system.force, system.beside?))
-    };
-    let stride = axis.values.len().div_ceil(LOOKED_AT).max(1);
-    let ends = axis.values.iter().step_by(stride).chain(axis.values.last());
-    let values = ends.filter_map(|value| value.as_rational().cloned());
-    let found: Vec<_> = values.filter_map(|value| Some((beside(&value)?, value))).collect();
-    let Some(((force, first), value)) = found.first() else { return Ok(None) };
-    let factor = Rational::from(value / &first.rate);
-    let shifted = value * Rational::from((1001, 1000));
-    let moves =
-        beside(&shifted).is_some_and(|(_, it)| Rational::from(&shifted / &it.rate) == factor);
-    if !moves {
-        let message = format!("a frequency of the oscillator depends on {}", axis.name);
-        let hint = "only the frequency of the force varies; set others value by value";
-        return Err(Refused::no_answer("no-response", message, hint).into());
-    }
-    if let Some(((other, _), _)) = found.iter().find(|((other, _), _)| other != force) {
-        let message = format!(
-            "the range of {} passes two resonances, {force} and {other} as rates of the force's phase",
-            axis.name
-        );
-        return Err(Refused::usage("sweep", message, "one resonance at a time").into());
-    }
-    Ok(Some((Exact::Rational(value.clone()), factor, first.symbol.clone())))
 }
 
 fn no_force() -> Error {

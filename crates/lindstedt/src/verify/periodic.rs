@@ -1,6 +1,7 @@
 //! Expansions of periodic solutions, at points of the phase, against the time domain.
 
 use super::cycle::cycle;
+use super::sampled::{largest_gaps, states};
 use super::{Comparison, Verify};
 use crate::{Derivation, Error, Oscillator};
 use lindstedt_equation::{AmplitudeRole, Condition, Quantity};
@@ -8,12 +9,9 @@ use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::evaluate::PhaseFunctions;
 use lindstedt_phase::lobachevsky_function::Point;
-use lindstedt_simulate::{
-    Digits, Integrator, Model, Outcome, Parameters, Real, Settings as Precision, Trajectory,
-};
+use lindstedt_simulate::{Digits, Model, Parameters, Real, Settings as Precision};
 use rayon::prelude::*;
 use rug::{Float, Rational};
-use std::ops::ControlFlow;
 
 /// An expansion at points of the phase, order by order, and its judge.
 pub(super) struct Periodic {
@@ -123,14 +121,8 @@ impl Periodic {
             self.turns.iter().map(|q| Float::with_val(self.bits, &pi * q) / &frequency).collect();
         let coarse = self.run(small, &frequency, &times, digits, goes_on)?;
         let fine = self.run(small, &frequency, &times, digits + 8, goes_on)?;
-        let [mut error, mut simulation_error, mut size] = [0; 3].map(|_| Float::new(64));
-        for ((terms, coarse), fine) in self.values.iter().zip(&coarse).zip(&fine) {
-            let x = self.sum(terms, small);
-            error.max_mut(&Float::with_val(64, &x - fine).abs());
-            simulation_error.max_mut(&Float::with_val(64, fine - coarse).abs());
-            size.max_mut(&Float::with_val(64, fine.abs_ref()));
-        }
-        Ok(Comparison { small: small.clone(), error, simulation_error, size, slope: None })
+        let expected: Vec<Float> = self.values.iter().map(|terms| self.sum(terms, small)).collect();
+        Ok(largest_gaps(small, &expected, &coarse, &fine))
     }
 
     /// x at the times.
@@ -161,22 +153,7 @@ impl Periodic {
             _ => [real.float(&expanded[0]), real.float(&(expanded[1].clone() * frequency))],
         };
         let system = self.model.compile(real, &parameters)?;
-        let mut flow = Integrator::new(&system, &real.zero(), &start, precision)?;
-        let mut trajectory = Trajectory::new(real);
-        let end = times.last().map_or_else(|| real.zero(), |t| real.float(t));
-        let outcome = flow.advance(&end, &mut |report| {
-            if goes_on() { trajectory.record(report) } else { ControlFlow::Break(()) }
-        })?;
-        if outcome == Outcome::Stopped {
-            return Err(self.interrupted());
-        }
-        // The end of the last segment may be rounded to just before the end itself.
-        let last = || flow.state().first().cloned();
-        let value = |t: &Float| {
-            let t = real.float(t);
-            if t >= *flow.time() { last() } else { trajectory.value(0, &t) }
-        };
-        times.iter().map(|t| value(t).ok_or(Error::NoValue)).collect()
+        Ok(states(&system, &start, &[0], (times, self.order), digits, goes_on)?.concat())
     }
 
     fn interrupted(&self) -> Error {

@@ -1,6 +1,6 @@
 //! Slow flows against the time domain: x_N(t) by the truncated flow.
 
-use super::drifting::{largest_gaps, sample_times, states};
+use super::sampled::{largest_gaps, sample_times, states};
 use super::{Comparison, Verify};
 use crate::{Error, Oscillator, Progress, SlowFlow};
 use lindstedt_derivation::averaging::AveragingSettings;

@@ -1,0 +1,146 @@
+//! What is shown of the states, branches and changes of a subject.
+
+use super::answer::{Branch, Change, Corner, Curve, Estimate, Point, State, States};
+use super::subject::Subject;
+use crate::{Exact, Number, Status};
+use lindstedt_number::ball::Balls;
+use lindstedt_number::certified;
+use lindstedt_number::interval::Interval;
+use lindstedt_number::real::{Certified, Real};
+use lindstedt_orbit::steady::{self, Found, Located, System, Zero};
+use rug::Rational;
+
+/// Bits of enclosures of states, which doubles bound.
+const BITS: u32 = 80;
+/// Digits of them at most.
+const DIGITS: usize = 15;
+
+impl Subject<'_> {
+    /// What is shown of a value of the flow's parameter.
+    pub(super) fn shown_value(&self, value: f64) -> f64 {
+        match (&self.factor, &self.small) {
+            (Some(factor), Some(small)) => {
+                factor.to_f64() * (self.slow.system.force.to_f64() + small.to_f64() * value)
+            }
+            _ => value,
+        }
+    }
+
+    pub(super) fn shown_branch(&self, branch: &steady::Branch) -> Branch {
+        let point = |point: &steady::Point| {
+            let (value, w) = point.at.split_last().unwrap_or((&0.0, &[]));
+            let phase = |w: &[f64]| Estimate { value: w[1].atan2(w[0]) };
+            Point {
+                value: Estimate { value: self.shown_value(*value) },
+                amplitudes: self.amplitudes(w),
+                phases: w.chunks_exact(2).map(phase).collect(),
+                stable: self.is_stable(point),
+                exponents: self.exponents(point),
+            }
+        };
+        let steady::Branch { points, closed, complete } = branch;
+        Branch { points: points.iter().map(point).collect(), closed: *closed, complete: *complete }
+    }
+
+    pub(super) fn shown_change(&self, change: &Located) -> Change {
+        let n = self.rotating.flow.unknowns();
+        let Some(zero) = &change.proved else {
+            let amplitudes = self.amplitudes(&change.at[..n]);
+            return Change {
+                value: Number::double(self.shown_value(change.at[n])),
+                amplitudes: amplitudes.iter().map(|a| Number::double(a.value)).collect(),
+                branch: change.branch,
+            };
+        };
+        let amplitudes = zero.enclosure[..n].chunks_exact(2).map(|w| polar(w).0).collect();
+        Change { value: self.proved_value(zero.enclosure[n]), amplitudes, branch: change.branch }
+    }
+
+    fn proved_value(&self, value: Interval) -> Number {
+        let mut shown = real(value);
+        if let (Some(factor), Some(small)) = (&self.factor, &self.small) {
+            let number = |q: &Rational| Certified::from_rational(Balls::new(BITS), q);
+            shown = (shown * number(small) + number(&self.slow.system.force)) * number(factor);
+        }
+        proved(&shown)
+    }
+
+    pub(super) fn shown_states(
+        &self,
+        sample: Option<&Exact>,
+        system: &System,
+        found: &Found,
+    ) -> States {
+        let mut list: Vec<State> = Vec::new();
+        for zero in &found.zeros {
+            let point = steady::state_at(system, &zero.middle());
+            let (amplitudes, phases) = zero.enclosure.chunks_exact(2).map(polar).unzip();
+            let stable = self.is_stable(&point);
+            let exponents = self.exponents(&point);
+            list.push(State { amplitudes, phases, stable, exponents, at: point.at });
+        }
+        let size = |state: &State| state.at.iter().map(|x| x * x).sum::<f64>();
+        list.sort_by(|a, b| size(b).total_cmp(&size(a)).then(b.at[0].total_cmp(&a.at[0])));
+        States {
+            value: sample.and_then(|value| self.shown_sample(value)),
+            count: list.len(),
+            count_proved: found.is_proved(),
+            undecided: found.undecided.len(),
+            boxes: found.boxes,
+            list,
+        }
+    }
+
+    fn shown_sample(&self, value: &Exact) -> Option<Number> {
+        let exact = match (value.as_rational(), &self.factor, &self.small) {
+            (Some(q), Some(factor), Some(small)) => {
+                let rate = Rational::from(q * small) + &self.slow.system.force;
+                Exact::Rational(rate * factor)
+            }
+            _ => value.clone(),
+        };
+        certified(Some(exact.to_string()), DIGITS, |balls| Some(exact.ball(balls))).ok()
+    }
+
+    /// A curve in the plane of two parameters.
+    pub(super) fn shown_curve(&self, curve: &steady::Curve, places: [usize; 2]) -> Curve {
+        let point = |point: &steady::Point| {
+            [self.shown_value(point.at[places[0]]), point.at[places[1]]]
+                .map(|value| Estimate { value })
+        };
+        let kind = if curve.change == steady::Change::Fold { "fold" } else { "hopf" };
+        let points = curve.branch.points.iter().map(point).collect();
+        Curve { kind, points, closed: curve.branch.closed }
+    }
+
+    pub(super) fn shown_corner(&self, zero: &Zero, places: [usize; 2]) -> Corner {
+        let n = self.rotating.flow.unknowns();
+        let [first, second] = places.map(|place| zero.enclosure[place]);
+        Corner {
+            values: [self.proved_value(first), proved(&real(second))],
+            amplitudes: zero.enclosure[..n].chunks_exact(2).map(|w| polar(w).0).collect(),
+        }
+    }
+}
+
+fn real(x: Interval) -> Certified {
+    Certified::new(Balls::new(BITS), x.ball())
+}
+
+fn proved(x: &Certified) -> Number {
+    Number::of_ball(x.ball(), DIGITS).weaken(Status::Proved)
+}
+
+/// 2 |w| and the angle of an enclosed w.
+fn polar(w: &[Interval]) -> (Number, Option<Number>) {
+    let (re, im) = (real(w[0]), real(w[1]));
+    let square = re.square() + im.square();
+    // About the negative axis the principal value jumps: there it is taken from the opposite direction.
+    let turned = || {
+        Certified::new(Balls::new(BITS), Balls::new(BITS).pi()) + (-im.clone()).atan2(&-re.clone())
+    };
+    let cut = w[0].high() < 0.0 && w[1].contains(0.0);
+    let phase = if cut { turned() } else { im.atan2(&re) };
+    let phase = square.is_positive().then_some(phase).filter(|phase| phase.ball().is_finite());
+    (proved(&square.sqrt().doubled()), phase.map(|phase| proved(&phase)))
+}
