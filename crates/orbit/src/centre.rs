@@ -145,6 +145,22 @@ impl Centre {
         [x, slope, both]
     }
 
+    /// The distance from another numerical solution in the norm with the weight nu and the weight of the
+    /// frequency, which does not count without.
+    pub(crate) fn distance(&self, other: &Self, nu: Up, scale: Option<f64>) -> Up {
+        let bits = self.bits.max(other.bits);
+        let (mut apart, other) = (self.clone().with_bits(bits), other.clone().with_bits(bits));
+        apart.modes.resize(self.modes.modes().max(other.modes.modes()));
+        let parts =
+            [(&mut apart.modes.re, &other.modes.re), (&mut apart.modes.im, &other.modes.im)];
+        for (mine, others) in parts {
+            mine.iter_mut().zip(others).for_each(|(a, b)| *a -= b);
+        }
+        let [.., both] = apart.norms(nu);
+        let detuned = Rational::from(&self.frequency - &other.frequency);
+        both + scale.map_or(Up::ZERO, |scale| Up::of(&detuned) * Up(scale))
+    }
+
     /// The largest amplitude of a harmonic, roughly.
     pub(crate) fn largest(&self) -> Float {
         let parts = self.modes.re.iter().chain(&self.modes.im).map(|n| n.clone().abs());

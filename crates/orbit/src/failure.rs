@@ -50,6 +50,17 @@ pub enum Failure {
         /// The modes.
         modes: usize,
     },
+    /// Could not decide: the orbit found is not the one that was followed, as far as its size says.
+    #[error("the orbit found is far from its prediction: a fold, or a step that is too large")]
+    Jump,
+    /// Could not decide: the ball of a part of an interval does not meet that of its neighbour.
+    #[error(
+        "the ball of radius {radius:.3e} of a part of the interval does not meet that of its neighbour"
+    )]
+    Apart {
+        /// The radius.
+        radius: f64,
+    },
     /// Could not decide: Z0 + Z1 >= 1 with as many modes as were allowed. Z0 is the defect of the inverse
     /// on its modes, Z1 what it neglects.
     #[error("no contraction on {modes} modes: Z0 = {z0:.3e}, Z1 = {z1:.3e}")]

@@ -85,6 +85,7 @@ impl Field {
             Kind::InitialAmplitude(a) => vec![a.to_f64() - middle],
             Kind::InitialWithin { value, .. } => vec![value.to_f64() - middle],
             Kind::FundamentalAmplitude(a) => vec![a.to_f64()],
+            Kind::FundamentalWithin { value, .. } => vec![value.to_f64()],
             Kind::Forced(_) => AMPLITUDES.map(|j| 2f64.powi(j)).collect(),
             Kind::LimitCycle => {
                 let work = |j: i32| self.work(middle, f64::from(j) * STEP);

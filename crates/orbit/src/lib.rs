@@ -56,7 +56,7 @@ mod upward;
 mod write;
 
 pub use failure::Failure;
-pub use family::{Member, family};
+pub use family::{Cover, Member, cover, family};
 pub use field::Field;
 pub use guesses::guesses;
 pub use proof::{Proof, Stability, Status};

@@ -137,7 +137,7 @@ impl Orbit {
     }
 
     /// A critical point of x near a phase, by Newton's method (not rigorous).
-    fn critical(&self, phase: f64) -> Ball {
+    pub(crate) fn critical(&self, phase: f64) -> Ball {
         let mut at = Float::with_val(self.balls.bits(), phase);
         let mut before = f64::INFINITY;
         for _ in 0..60 {

@@ -4,8 +4,9 @@ use crate::bounds::{Frame, Measure, Weights};
 use crate::centre::Centre;
 use crate::orbit::Orbit;
 use crate::radii::{Bounds, Radii};
-use crate::start::Start;
+use crate::start::{Start, in_phase};
 use crate::task::Task;
+use crate::upward::Up;
 use crate::{Condition, Failure, Parity};
 use lindstedt_number::ball::{Ball, Balls};
 use rug::float::Round;
@@ -87,7 +88,13 @@ pub struct Proof {
     pub stability: Stability,
     #[serde(skip)]
     orbit: Orbit,
+    /// The condition, its value and the error of that; nothing of a forced orbit.
+    #[serde(skip)]
+    condition: Option<(Condition, Rational, Up)>,
 }
+
+/// Bits behind the point of a guess.
+const EXACT_BITS: u32 = 256;
 
 /// Everything that follows.
 pub(crate) fn conclude(
@@ -137,6 +144,7 @@ pub(crate) fn conclude(
         exponent,
         radius: radii.radius,
         orbit,
+        condition: task.rows.condition.map(|c| (c, task.value.clone(), task.error)),
     })
 }
 
@@ -203,6 +211,55 @@ impl Proof {
     #[must_use]
     pub fn start(&self) -> Start {
         Start::of(&self.orbit.centre)
+    }
+
+    /// The distance of a guess, its doubles cut below 10^-70, from the numerical solution in the norm of the
+    /// proof, rounded up; of a limit cycle with its phase moved so that the first harmonic has no sine. Where
+    /// it is at most `unique_within`, no other orbit is in a ball with the guess.
+    #[must_use]
+    pub fn distance_from(&self, start: &Start) -> Float {
+        let is_free = self.condition.is_some();
+        let modes = if is_free { in_phase(start.complex()) } else { start.complex() };
+        let centre = Centre::from_doubles(EXACT_BITS, start.frequency, &modes);
+        let scale = is_free.then_some(self.frequency_weight);
+        Float::with_val(53, self.orbit.centre.distance(&centre, Up(self.weight), scale).0)
+    }
+
+    /// Whether it is proved that this and another proof of the same question speak of one orbit: the ball in which
+    /// the one is has no point outside the ball in which the other is alone. Where coefficients are known
+    /// within balls: at every value that both contain.
+    ///
+    /// `false` says nothing; that they are different orbits is [`Self::is_separate_from`].
+    #[must_use]
+    pub fn is_same_as(&self, other: &Self) -> bool {
+        self.surrounds(other) || other.surrounds(self)
+    }
+
+    /// Whether the ball with the other's orbit lies in the one in which this orbit is alone. The norms must be
+    /// comparable: that of the other at least this one, but for the weights of the frequency.
+    fn surrounds(&self, other: &Self) -> bool {
+        let (mine, others) = (self.parity, other.parity);
+        let is_among = (!mine.odd || others.odd) && (!mine.even || others.even);
+        let one_question = match (&self.condition, &other.condition) {
+            (None, None) => true,
+            (Some((mine, a, near)), Some((others, b, by))) => {
+                mine == others && Up::of(&Rational::from(a - b)) <= *near + *by
+            }
+            _ => false,
+        };
+        if !one_question || self.weight > other.weight || !is_among {
+            return false;
+        }
+        let scale = self.condition.as_ref().map(|_| self.frequency_weight);
+        let apart = self.orbit.centre.distance(&other.orbit.centre, Up(self.weight), scale);
+        let times = Up(self.frequency_weight).over(other.frequency_weight).max(Up::ONE);
+        let reach = apart + Up::of_float(&other.radius) * times;
+        reach.0 <= self.unique_within.to_f64_round(Round::Down)
+    }
+
+    /// The precision of the numbers.
+    pub(crate) fn balls(&self) -> Balls {
+        self.orbit.balls
     }
 
     /// A lower bound of the distance between the numerical solutions of two proofs in the norm with

@@ -4,11 +4,14 @@ use crate::bounds::{Frame, Measure, Weights};
 use crate::centre::Centre;
 use crate::linear::{Inverse, Linear};
 use crate::newton::{balance, invert, refine};
+use crate::orbit::Orbit;
 use crate::proof::conclude;
 use crate::radii::{Radii, decide};
 use crate::task::Task;
+use crate::upward::Up;
 use crate::{Condition, Failure, Field, Kind, Proof, Request, Start};
-use rug::Float;
+use lindstedt_number::ball::{Ball, Balls};
+use rug::{Float, Rational};
 
 /// Modes of the first balance.
 const FIRST_MODES: usize = 10;
@@ -29,6 +32,8 @@ const MOST_TIMES: usize = 40;
 const WEIGHTS: [f64; 5] = [0.0, 0.5, 2.0, 6.0, 15.0];
 /// Refinements until the radius confirms the digits.
 const MOST_REFINEMENTS: u32 = 4;
+/// Digits of the numerical solution where the coefficients are known to fewer.
+const FEW_DIGITS: u32 = 10;
 /// A sum Z0 + Z1 with which no other weight is tried.
 const GOOD: f64 = 0.5;
 
@@ -66,7 +71,7 @@ pub fn prove(
     let bits = (f64::from(request.digits) * std::f64::consts::LOG2_10) as u32 + GUARD_BITS;
     let mut centre = centre.with_bits(bits.max(crate::task::FAST_BITS));
     loop {
-        let attempt = attempt(&task, &mut centre, modes, request);
+        let attempt = attempt(&task, &mut centre, modes, request, MOST_REFINEMENTS);
         let more = match attempt {
             Ok(proof) => return Ok(proof),
             Err(Failure::NoContraction { z0, z1, .. }) => ((z0 + z1) / 0.7).clamp(1.25, 2.0),
@@ -80,6 +85,20 @@ pub fn prove(
     }
 }
 
+/// The proof for coefficients that are known within balls, whatever its radius: the modes are those of a neighbour.
+pub(crate) fn uniform(
+    field: &Field,
+    kind: &Kind,
+    start: &Start,
+    modes: usize,
+    request: &Request,
+) -> Result<Proof, Failure> {
+    let (task, guess) = Task::new(field, kind, start)?;
+    let mut centre = balance(&task, guess, modes, &request.stop)?;
+    let few = Request { digits: FEW_DIGITS, ..request.clone() };
+    attempt(&task, &mut centre, modes, &few, 1)
+}
+
 /// An orbit that Newton's method found; nothing proves it.
 #[derive(Clone, Debug)]
 pub struct Approximation {
@@ -89,6 +108,28 @@ pub struct Approximation {
     pub error: Float,
     /// The largest mode of the inverse.
     pub modes: usize,
+    orbit: Orbit,
+}
+
+impl Approximation {
+    /// (x, x') at a phase tau in radians; the radii are the estimated errors.
+    #[must_use]
+    pub fn at_phase(&self, phase: &Ball) -> (Ball, Ball) {
+        self.orbit.at_phase(phase)
+    }
+
+    /// The phase at which x' = 0 nearest to tau = 0, from where a limit cycle with this phase counts; 0 where
+    /// Newton's method finds none.
+    #[must_use]
+    pub fn rest(&self) -> Ball {
+        self.orbit.critical(0.0)
+    }
+
+    /// The harmonics in doubles.
+    #[must_use]
+    pub fn start(&self) -> Start {
+        Start::of(&self.orbit.centre)
+    }
 }
 
 /// Newton's method without the proof: to as many digits as are asked for, every residual formed without
@@ -134,9 +175,19 @@ pub fn approximate(
         });
         match found {
             Ok((rough, fine)) => {
-                let change = Float::with_val(53, rough.frequency - &fine.frequency).abs();
+                let change =
+                    Float::with_val(53, Rational::from(&rough.frequency - &fine.frequency)).abs();
                 let frequency = Float::with_val(bits, &fine.frequency);
-                return Ok(Approximation { frequency, error: change + goal, modes });
+                let error = change + &goal;
+                let balls = Balls::new(bits);
+                let apart = rough.distance(&fine, Up::ONE, None);
+                let orbit = Orbit {
+                    radius: goal + Float::with_val(53, apart.0),
+                    frequency: balls.from_parts(&frequency, &error),
+                    centre: fine,
+                    balls,
+                };
+                return Ok(Approximation { frequency, error, modes, orbit });
             }
             Err(Failure::NotConverged { .. }) if modes < request.modes_limit => {
                 modes = (modes * 3 / 2).min(request.modes_limit);
@@ -208,6 +259,7 @@ fn attempt(
     centre: &mut Centre,
     modes: usize,
     request: &Request,
+    mut tries: u32,
 ) -> Result<Proof, Failure> {
     let linear = |centre: &Centre| {
         let values = centre.values(&task.field);
@@ -217,7 +269,6 @@ fn attempt(
     let inverse = invert(&linear(centre).1, modes)?;
     let goal = centre.largest() / Float::with_val(53, Float::i_pow_u(10, request.digits)) / 4u32;
     let mut target = Float::with_val(53, &goal / 16u32);
-    let mut tries = MOST_REFINEMENTS;
     loop {
         let most = MOST_TIMES * modes;
         *centre = refine(task, centre.clone(), &inverse, &target, most, &request.stop)?;

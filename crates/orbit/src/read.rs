@@ -169,11 +169,19 @@ impl Field {
     ) -> Result<(Self, crate::Kind), Failure> {
         let bits = (f64::from(digits + 15) * std::f64::consts::LOG2_10) as u32 + 8;
         let balls = Balls::new(bits);
-        let angle = balls.from_rational(amplitude);
-        if *amplitude <= 0 || !balls.sub(&balls.pi(), &angle).is_positive() {
+        Self::swinging(kappa, &balls.from_rational(amplitude), balls)
+    }
+
+    /// The same for all amplitudes within a ball.
+    pub(crate) fn swinging(
+        kappa: &Rational,
+        angle: &Ball,
+        balls: Balls,
+    ) -> Result<(Self, crate::Kind), Failure> {
+        if !angle.is_positive() || !balls.sub(&balls.pi(), angle).is_positive() {
             return Err(Failure::NoStart);
         }
-        let half = balls.mul_power_of_two(&angle, -1);
+        let half = balls.mul_power_of_two(angle, -1);
         let k = balls.sin(&half);
         let u = Expression::DISPLACEMENT;
         let number = |q: Rational| Expression::Number(q);
@@ -181,7 +189,7 @@ impl Field {
         let cubic = number(-2 * kappa.clone()) * u.pow(3);
         let equation = Expression::ACCELERATION + number(kappa.clone()) * linear + cubic;
         let values = BTreeMap::from([("k".to_owned(), k.clone())]);
-        let field = Self::within(&equation, "eps", &values, bits)?;
+        let field = Self::within(&equation, "eps", &values, balls.bits())?;
         let (value, error) = parts(&k).ok_or(Failure::NoStart)?;
         let error = Rational::from_f64(error.0).unwrap_or_default();
         Ok((field, crate::Kind::InitialWithin { value, error }))

@@ -2,6 +2,7 @@
 //! z'' + c q sin z = 0, and u = sin(z/2) obeys u'' = -c q ((1 + k^2) u - 2 u^3), k = sin(z(0)/2)
 //! ([`Field::pendulum`]).
 
+use crate::family::interval;
 use crate::{Failure, Field, Kind, Start};
 use lindstedt_equation::{Expression, Function, Operations};
 use lindstedt_number::ball::{Ball, Balls};
@@ -70,6 +71,26 @@ impl Sine {
     pub fn field(&self, amplitude: &Rational, digits: u32) -> Result<(Field, Kind), Failure> {
         let stiffness = Rational::from(&self.force * &self.rate);
         Field::pendulum(&stiffness, &Rational::from(amplitude * &self.rate), digits)
+    }
+
+    /// The field of u and the question for all swings from x(0) = `amplitude` to that of another sine with the
+    /// same stiffness c q.
+    ///
+    /// # Errors
+    /// [`Failure::NoStart`] for another stiffness, and where q x(0) is not between 0 and pi.
+    pub fn between(
+        &self,
+        amplitude: &Rational,
+        to: (&Self, &Rational),
+    ) -> Result<(Field, Kind), Failure> {
+        let (other, end) = to;
+        let stiffness = Rational::from(&self.force * &self.rate);
+        if stiffness != Rational::from(&other.force * &other.rate) {
+            return Err(Failure::NoStart);
+        }
+        let ends = [Rational::from(amplitude * &self.rate), Rational::from(end * &other.rate)];
+        let balls = Balls::new(128);
+        Field::swinging(&stiffness, &interval(balls, &ends), balls)
     }
 
     /// u in doubles: k cd(t') with t' = sqrt(c q) t, by its Fourier series in the nome.

@@ -66,11 +66,16 @@ impl Start {
 
     /// Whether frequency and harmonics agree, relative to their size.
     pub(crate) fn is_near(&self, other: &Self, relative: f64) -> bool {
+        self.distance(other) <= relative
+    }
+
+    /// The distance of the harmonics or of the frequencies, relative to their size.
+    pub(crate) fn distance(&self, other: &Self) -> f64 {
         let (a, b) = (self.complex(), other.complex());
         let at = |list: &[Complex<f64>], k: usize| list.get(k).copied().unwrap_or_default();
         let apart = (0..a.len().max(b.len())).map(|k| 2.0 * (at(&a, k) - at(&b, k)).norm());
-        apart.sum::<f64>() <= relative * self.size()
-            && (self.frequency - other.frequency).abs() <= relative * self.frequency
+        let apart = apart.sum::<f64>() / self.size();
+        apart.max((self.frequency - other.frequency).abs() / self.frequency)
     }
 
     /// c_k = (cosine_k - i sine_k)/2.

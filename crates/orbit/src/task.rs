@@ -29,6 +29,13 @@ pub enum Kind {
     },
     /// The same with the first harmonic a cos tau.
     FundamentalAmplitude(Rational),
+    /// The same where a is known within an error.
+    FundamentalWithin {
+        /// The middle.
+        value: Rational,
+        /// The largest distance from it.
+        error: Rational,
+    },
     /// The response to the force, with this many periods of the force as its period (1 for a
     /// harmonic response, at most 100).
     Forced(u32),
@@ -44,6 +51,20 @@ pub struct Request {
     pub modes_limit: usize,
     /// Asked between the parts of the work.
     pub stop: Stop,
+}
+
+impl Kind {
+    /// The same question for all amplitudes between two numbers; nothing where no amplitude is asked for.
+    #[must_use]
+    pub fn between(&self, ends: &[Rational; 2]) -> Option<Self> {
+        let value = Rational::from(&ends[0] + &ends[1]) / 2u32;
+        let error = Rational::from(&ends[1] - &ends[0]).abs() / 2u32;
+        match self {
+            Self::InitialAmplitude(_) => Some(Self::InitialWithin { value, error }),
+            Self::FundamentalAmplitude(_) => Some(Self::FundamentalWithin { value, error }),
+            _ => None,
+        }
+    }
 }
 
 impl Default for Request {
@@ -112,6 +133,7 @@ impl Task {
             Kind::InitialAmplitude(a) => (Some(Condition::AtZero), a.clone()),
             Kind::InitialWithin { value, .. } => (Some(Condition::AtZero), value.clone()),
             Kind::FundamentalAmplitude(a) => (Some(Condition::Cosine), a.clone()),
+            Kind::FundamentalWithin { value, .. } => (Some(Condition::Cosine), value.clone()),
             Kind::Forced(_) => (None, Rational::new()),
         };
         let family = autonomous && *kind != Kind::LimitCycle;
@@ -142,7 +164,9 @@ impl Task {
             centre.frequency = rate;
         }
         let error = match kind {
-            Kind::InitialWithin { error, .. } => Up::of(error),
+            Kind::InitialWithin { error, .. } | Kind::FundamentalWithin { error, .. } => {
+                Up::of(error)
+            }
             _ => Up::ZERO,
         };
         Ok((Self { field, rows: Rows { parity, condition }, value, error }, centre))

@@ -3,5 +3,6 @@
 
 mod classics;
 mod common;
+mod families;
 mod random;
 mod sharpness;

@@ -126,9 +126,9 @@ fn trial(count: usize, seed: u64) -> (usize, usize) {
 }
 
 #[test]
-fn a_hundred_random_orbits_are_where_they_are_proved_to_be() {
-    let (done, tried) = trial(100, 1);
-    assert!(tried > 60 && done * 10 >= tried * 9, "{done} of {tried}");
+fn random_orbits_are_where_they_are_proved_to_be() {
+    let (done, tried) = trial(24, 1);
+    assert!(tried > 16 && done * 10 >= tried * 9, "{done} of {tried}");
 }
 
 #[test]

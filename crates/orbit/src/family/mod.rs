@@ -1,5 +1,11 @@
 //! A proved orbit followed in a parameter or in the amplitude, each point proved.
 
+mod between;
+mod cover;
+
+pub(crate) use between::interval;
+pub use cover::{Cover, cover};
+
 use crate::{Failure, Field, Kind, Proof, Request, Start, prove};
 use rug::Rational;
 
@@ -20,8 +26,9 @@ const MOST_HALVINGS: u32 = 6;
 /// between are passed through (not returned). Ends after the first point that fails, which may be where
 /// the family turns back.
 ///
-/// Between the points nothing is proved; a field with the whole interval as its coefficient
-/// ([`Field::within`]) proves it, where its bounds suffice.
+/// Between the points nothing is proved; [`cover`] does that, where its bounds suffice. A step after which the
+/// orbit is farther from its prediction than from the orbit before is too large, too: it may be
+/// another branch.
 ///
 /// # Errors
 /// What `problem` returns for the first value; later failures stand in their [`Member`].
@@ -94,6 +101,10 @@ fn approach(
         let start = extrapolated(passed, &target);
         let last = next == 1;
         let found = at(&target, &start, if last { request } else { &rough });
+        let found = found.and_then(|proof| match is_predicted(passed, &start, &proof.start()) {
+            true => Ok(proof),
+            false => Err(Failure::Jump),
+        });
         match found {
             Ok(proof) => {
                 passed.push((target, proof.start()));
@@ -111,6 +122,18 @@ fn approach(
             }
         }
     }
+}
+
+/// Changes of this share of the orbit are not looked at.
+const SMALL: f64 = 1e-2;
+
+/// Whether an orbit is nearer to its prediction than to the orbit before.
+fn is_predicted(passed: &[(Rational, Start)], predicted: &Start, found: &Start) -> bool {
+    let Some((_, last)) = passed.last() else { return true };
+    let (missed, moved) = (found.distance(predicted), found.distance(last));
+    // With one orbit before there is no direction: the step itself must be small.
+    let allowed = if passed.len() > 1 { 0.5 * moved } else { 0.5 };
+    missed <= allowed.max(SMALL)
 }
 
 /// The straight line through the last two orbits.

@@ -1,0 +1,139 @@
+//! All values of a parameter between two proved orbits.
+//!
+//! On a part of the interval the field has balls for coefficients, and one contraction test proves
+//! an orbit for each value in it. Two tests belong to one family where the orbit of the one lies in the ball
+//! in which that of the other is alone, at the value that they share ([`Proof::is_same_as`]). A chain of
+//! parts from one neighbour to the other proves: for every value between there is exactly one orbit near the
+//! numerical ones, and the neighbours are its ends.
+
+use super::between::middle;
+use super::extrapolated;
+use crate::prove::uniform;
+use crate::{Failure, Field, Kind, Proof, Request};
+use lindstedt_number::ball::Ball;
+use rug::{Float, Rational};
+
+/// Halvings of the whole interval for its smallest part.
+const MOST_HALVINGS: u32 = 7;
+/// How much longer the part after one that succeeded is.
+const LONGER: (u32, u32) = (3, 2);
+
+/// What is proved of the values between two neighbours.
+#[derive(Clone, Debug)]
+pub struct Cover {
+    /// The parts of the interval with a contraction test each.
+    pub parts: u32,
+    /// The largest distance of an orbit from the numerical one of its part.
+    pub radius: Float,
+    /// The frequencies of all orbits.
+    pub frequency: Option<Ball>,
+    /// The value up to which the parts reach.
+    pub until: Rational,
+    /// Why they do not reach the other end; nothing where they do.
+    pub failure: Option<Failure>,
+}
+
+/// Proves the orbits for all values between two proved ones; `problem` is the field and the question for
+/// all values between two numbers ([`Field::between`]). Ends at the first part that fails, halved
+/// seven times. The cost is a proof of few digits per part.
+///
+/// ```
+/// use lindstedt_equation::{Expression, Problem};
+/// use lindstedt_orbit::{Field, Kind, Request, Start, cover, family};
+/// use std::collections::BTreeMap;
+/// let x = Expression::DISPLACEMENT;
+/// let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3);
+/// let duffing = Problem::new("duffing", equation);
+/// let kind = Kind::InitialAmplitude(1.into());
+/// let at = |eps: &rug::Rational| {
+///     let values = BTreeMap::from([("eps".to_owned(), eps.clone())]);
+///     Ok((Field::of_problem(&duffing, &values)?, kind.clone()))
+/// };
+/// let between = |ends: &[rug::Rational; 2]| {
+///     Ok((Field::between(&duffing, &BTreeMap::new(), "eps", ends)?, kind.clone()))
+/// };
+/// let start = Start { frequency: 1.17, cosines: vec![0.0, 1.0], sines: vec![] };
+/// let ends = [(1, 2), (3, 5)].map(rug::Rational::from);
+/// let members = family(&ends, at, &start, &Request::default())?;
+/// let proofs: Vec<_> = members.iter().flat_map(|m| &m.proof).collect();
+/// let between = cover(&ends, [proofs[0], proofs[1]], between, &Request::default());
+/// assert!(between.failure.is_none());
+/// # Ok::<(), lindstedt_orbit::Failure>(())
+/// ```
+pub fn cover(
+    ends: &[Rational; 2],
+    proofs: [&Proof; 2],
+    problem: impl Fn(&[Rational; 2]) -> Result<(Field, Kind), Failure>,
+    request: &Request,
+) -> Cover {
+    let [left, right] = proofs;
+    let ends_in_doubles = [(ends[0].clone(), left.start()), (ends[1].clone(), right.start())];
+    let modes = left.modes.max(right.modes);
+    let part = |part: &[Rational; 2], before: &Proof| {
+        if request.stop.asked() {
+            return Err(Failure::Stopped);
+        }
+        let (field, kind) = problem(part)?;
+        let start = extrapolated(&ends_in_doubles, &middle(part));
+        let proof = uniform(&field, &kind, &start, modes, request)?;
+        let meets = proof.is_same_as(before) && (part[1] != ends[1] || proof.is_same_as(right));
+        if meets { Ok(proof) } else { Err(Failure::Apart { radius: proof.radius.to_f64() }) }
+    };
+    let whole = Rational::from(&ends[1] - &ends[0]);
+    let smallest = Rational::from(whole.abs_ref()) >> MOST_HALVINGS;
+    let mut cover = Cover {
+        parts: 0,
+        radius: Float::new(53),
+        frequency: None,
+        until: ends[0].clone(),
+        failure: None,
+    };
+    let (mut width, mut last): (Rational, Option<Proof>) = (whole, None);
+    while cover.until != ends[1] {
+        let rest = Rational::from(&ends[1] - &cover.until);
+        if Rational::from(rest.abs_ref()) <= *width.as_abs() {
+            width = rest;
+        }
+        let to = Rational::from(&cover.until + &width);
+        match part(&[cover.until.clone(), to.clone()], last.as_ref().unwrap_or(left)) {
+            Ok(proof) => {
+                cover.add(&proof, to);
+                last = Some(proof);
+                width *= Rational::from(LONGER);
+            }
+            Err(failure) => {
+                width /= 2;
+                let ends = matches!(failure, Failure::Stopped) || !is_local(&failure);
+                if ends || *width.as_abs() < smallest {
+                    cover.failure = Some(failure);
+                    return cover;
+                }
+            }
+        }
+    }
+    cover
+}
+
+/// Whether a shorter part may succeed.
+fn is_local(failure: &Failure) -> bool {
+    matches!(
+        failure,
+        Failure::NoContraction { .. }
+            | Failure::Residual { .. }
+            | Failure::Apart { .. }
+            | Failure::NoPeriod { .. }
+            | Failure::NotConverged { .. }
+    )
+}
+
+impl Cover {
+    fn add(&mut self, proof: &Proof, to: Rational) {
+        self.parts += 1;
+        self.until = to;
+        if proof.radius > self.radius {
+            self.radius.clone_from(&proof.radius);
+        }
+        let hull = |other: &Ball| proof.balls().hull(other, &proof.frequency);
+        self.frequency = Some(self.frequency.as_ref().map_or(proof.frequency.clone(), hull));
+    }
+}

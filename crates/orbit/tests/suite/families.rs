@@ -1,0 +1,125 @@
+//! All values between two proved orbits, and orbits told apart.
+
+use crate::common::{duffing, field, guess, proved, q, x, y};
+use lindstedt_equation::{Expression, Function, Problem};
+use lindstedt_number::ball::Ball;
+use lindstedt_orbit::{Cover, Failure, Field, Kind, Proof, Request, Start, cover, guesses, prove};
+use rug::Rational;
+use std::collections::BTreeMap;
+
+type Values = BTreeMap<String, Rational>;
+
+fn at(name: &str, value: &Rational) -> Values {
+    Values::from([(name.to_owned(), value.clone())])
+}
+
+/// The proofs at both ends and in the middle, and what is proved between.
+fn between(
+    problem: &Problem,
+    kind: &Kind,
+    name: &str,
+    ends: &[Rational; 2],
+    start: &Start,
+) -> (Vec<Proof>, Cover) {
+    let middle = Rational::from(&ends[0] + &ends[1]) / 2;
+    let proofs: Vec<Proof> = [&ends[0], &middle, &ends[1]]
+        .map(|value| {
+            let field = Field::of_problem(problem, &at(name, value)).unwrap();
+            prove(&field, kind, start, &Request::default()).unwrap()
+        })
+        .into();
+    let part = |part: &[Rational; 2]| {
+        Ok((Field::between(problem, &at(name, &ends[0]), name, part)?, kind.clone()))
+    };
+    let found = cover(ends, [&proofs[0], &proofs[2]], part, &Request::default());
+    (proofs, found)
+}
+
+fn inside(outer: &Ball, inner: &Ball) -> bool {
+    outer.lower() <= inner.lower() && inner.upper() <= outer.upper()
+}
+
+#[test]
+fn all_cycles_between_two_are_one_family() {
+    let damping = Expression::Small * (x().pow(2) - 1) * y();
+    let equation = Expression::ACCELERATION + x() + damping;
+    let problem = Problem::new("cycle", equation);
+    let start = Start { frequency: 0.94, cosines: vec![0.0, 2.0], sines: vec![] };
+    let ends = [q2(1, 1), q2(1001, 1000)];
+    let (proofs, found) = between(&problem, &Kind::LimitCycle, "eps", &ends, &start);
+    assert!(found.failure.is_none() && found.until == ends[1], "{:?}", found.failure);
+    let frequencies = found.frequency.unwrap();
+    assert!(proofs.iter().all(|proof| inside(&frequencies, &proof.frequency)));
+    // Neither much wider than what the ends need.
+    assert!(frequencies.radius().to_f64() < 0.1, "{frequencies:?}");
+}
+
+fn q2(n: i64, d: i64) -> Rational {
+    Rational::from((n, d))
+}
+
+/// x'' + x'/10 + x + x^3/2 = (3/10) cos(w t): the unit of time varies with w.
+fn response() -> Problem {
+    let angle = Expression::parameter("w") * Expression::Time;
+    let spring = x() + q(1, 2) * x().pow(3);
+    let equation =
+        Expression::ACCELERATION + q(1, 10) * y() + spring - q(3, 10) * angle.apply(Function::Cos);
+    Problem::new("response", equation)
+}
+
+#[test]
+fn responses_between_two_frequencies_are_proved_and_branches_are_not_mixed() {
+    let (problem, kind) = (response(), Kind::Forced(1));
+    let ends = [q2(13, 10), q2(651, 500)];
+    let field = |w: &Rational| Field::of_problem(&problem, &at("w", w)).unwrap();
+    let starts = guesses(&field(&ends[0]), &kind, &Default::default()).unwrap();
+    let (proofs, found) = between(&problem, &kind, "w", &ends, &starts[0]);
+    assert!(found.failure.is_none(), "{:?}", found.failure);
+    assert!(found.parts > 0);
+    // From the small response at one end to the large one at the other nothing is proved.
+    let other = prove(&field(&ends[1]), &kind, &starts[2], &Request::default()).unwrap();
+    let part = |part: &[Rational; 2]| {
+        Ok((Field::between(&problem, &at("w", &ends[0]), "w", part)?, kind.clone()))
+    };
+    let mixed = cover(&ends, [&proofs[0], &other], part, &Request::default());
+    assert!(mixed.failure.is_some());
+}
+
+#[test]
+fn amplitudes_between_two_have_the_periods_between() {
+    let field = field(&duffing(q(1, 1)));
+    let start = guess(&duffing(q(1, 1)), [1.0, 0.0], 0.0).unwrap();
+    let ends = [q2(1, 1), q2(21, 20)];
+    for kind in [Kind::InitialAmplitude(1.into()), Kind::FundamentalAmplitude(1.into())] {
+        let amplitude = |a: &Rational| match kind {
+            Kind::InitialAmplitude(_) => Kind::InitialAmplitude(a.clone()),
+            _ => Kind::FundamentalAmplitude(a.clone()),
+        };
+        let at = |a: &Rational| prove(&field, &amplitude(a), &start, &Request::default()).unwrap();
+        let proofs = [at(&ends[0]), at(&ends[1])];
+        let part =
+            |part: &[Rational; 2]| Ok((field.clone(), kind.between(part).ok_or(Failure::NoStart)?));
+        let found = cover(&ends, [&proofs[0], &proofs[1]], part, &Request::default());
+        assert!(found.failure.is_none(), "{:?}", found.failure);
+        assert!(inside(&found.frequency.unwrap(), &at(&q2(51, 50)).frequency));
+    }
+}
+
+#[test]
+fn the_ball_of_a_neighbour_excludes_an_orbit_and_its_own_holds_it() {
+    let equation = duffing(q(1, 2));
+    let start = guess(&equation, [1.0, 0.0], 0.0).unwrap();
+    let at = |a: Rational, digits| {
+        proved(&equation, &Kind::InitialAmplitude(a), &start, digits).unwrap()
+    };
+    let (one, fine) = (at(1.into(), 12), at(1.into(), 30));
+    let neighbour = at(q2(1001, 1000), 12);
+    assert!(neighbour.is_separate_from(&one) && !fine.is_separate_from(&one));
+    assert!(fine.is_same_as(&one) && one.is_same_as(&fine));
+    // The guess is within the ball of uniqueness, a far one is not.
+    assert!(fine.distance_from(&one.start()) < fine.unique_within);
+    let far = Start { cosines: vec![0.0, 3.0], ..one.start() };
+    assert!(fine.distance_from(&far) > fine.unique_within);
+    // Another amplitude is another question, however near it is.
+    assert!(!neighbour.is_same_as(&one) && neighbour.distance_from(&one.start()) < 0.01);
+}
