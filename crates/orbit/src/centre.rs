@@ -145,6 +145,20 @@ impl Centre {
         [x, slope, both]
     }
 
+    /// The phase of the largest x on a grid, in doubles.
+    pub(crate) fn top(&self) -> f64 {
+        let modes = self.doubles();
+        let points = 16 * modes.len().max(16);
+        let value = |j: usize| -> f64 {
+            let wave = Complex::from_polar(1.0, std::f64::consts::TAU * j as f64 / points as f64);
+            let sum = modes.iter().rev().fold(Complex::<f64>::default(), |sum, c| sum * wave + c);
+            2.0 * sum.re
+        };
+        let values = (0..points).map(|j| (j, value(j)));
+        let best = values.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(j, _)| j);
+        std::f64::consts::TAU * best as f64 / points as f64
+    }
+
     /// The distance from another numerical solution in the norm with the weight nu and the weight of the
     /// frequency, which does not count without.
     pub(crate) fn distance(&self, other: &Self, nu: Up, scale: Option<f64>) -> Up {

@@ -68,7 +68,8 @@ impl Field {
     /// Whether x(tau) -> -x(tau + pi) maps solutions to solutions: every term is odd.
     pub(crate) fn is_odd(&self) -> bool {
         let odd = |t: &Term| t.factor.keys().all(|h| (t.x + t.velocity + h) % 2 == 1);
-        self.terms.iter().all(odd)
+        let spread = |s: &Spread| (s.x + s.velocity + s.harmonic) % 2 == 1;
+        self.terms.iter().all(odd) && self.spread.iter().all(spread)
     }
 
     /// Whether x(tau) -> x(-tau) maps solutions to solutions: even powers of x', cosines.
@@ -76,7 +77,7 @@ impl Field {
     pub fn is_reversible(&self) -> bool {
         let even =
             |t: &Term| t.velocity.is_multiple_of(2) && t.factor.values().all(|(_, b)| b.is_zero());
-        self.terms.iter().all(even)
+        self.terms.iter().all(even) && self.spread.iter().all(|s| s.velocity.is_multiple_of(2))
     }
 
     /// The symmetry that F keeps.

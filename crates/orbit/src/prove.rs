@@ -118,11 +118,10 @@ impl Approximation {
         self.orbit.at_phase(phase)
     }
 
-    /// The phase at which x' = 0 nearest to tau = 0, from where a limit cycle with this phase counts; 0 where
-    /// Newton's method finds none.
+    /// The phase of the largest x, where x' = 0.
     #[must_use]
     pub fn rest(&self) -> Ball {
-        self.orbit.critical(0.0)
+        self.orbit.critical(self.orbit.centre.top())
     }
 
     /// The harmonics in doubles.

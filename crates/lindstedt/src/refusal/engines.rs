@@ -205,7 +205,9 @@ impl Refusal for lindstedt_orbit::Failure {
             | Failure::NotConverged { .. }
             | Failure::NoContraction { .. }
             | Failure::Residual { .. }
-            | Failure::NoPeriod { .. } => (Undecided, "could-not-decide", ""),
+            | Failure::NoPeriod { .. }
+            | Failure::Jump
+            | Failure::Apart { .. } => (Undecided, "could-not-decide", ""),
             _ => (NoAnswer, "no-proof", estimates),
         };
         (kind, code, hint.to_owned())

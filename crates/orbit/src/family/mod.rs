@@ -18,6 +18,8 @@ pub struct Member {
     pub proof: Result<Proof, Failure>,
 }
 
+/// Modes of an inverse beyond those of the numerical orbit before.
+const MORE_MODES: usize = 60;
 /// Halvings of a step over which Newton's method does not go.
 const MOST_HALVINGS: u32 = 6;
 
@@ -92,6 +94,8 @@ fn approach(
     at: &dyn Fn(&Rational, &Start, &Request) -> Result<Proof, Failure>,
 ) -> Result<Proof, Failure> {
     // A failing step shall fail soon: few digits, and few more modes than before.
+    let most = passed.last().map_or(0, |(_, orbit)| orbit.cosines.len()) + MORE_MODES;
+    let request = &Request { modes_limit: request.modes_limit.min(most), ..request.clone() };
     let rough = Request { digits: 10, ..request.clone() };
     let whole = Rational::from(value - from);
     let (mut done, mut part) = (Rational::new(), Rational::from(1));
