@@ -12,11 +12,11 @@ use rug::Rational;
 pub trait AmplitudeAlgebra: ForcedAlgebra {
     /// M.
     fn unknowns(&self) -> usize;
-    /// nu_j.
-    fn frequency(&self, j: usize) -> Rational;
+    /// nu_j^2.
+    fn frequency_squared(&self, j: usize) -> Rational;
     /// Omega, as a constant; 0 where there is no force.
     fn force_rate(&self) -> Self::Element;
-    /// z_j.
+    /// z_j; 0 where the unknown has no amplitude of its own.
     fn amplitude(&self, j: usize) -> Self::Element;
     /// The complex conjugate.
     fn conjugate(&self, f: &Self::Element) -> Self::Element;
@@ -29,7 +29,7 @@ pub trait AmplitudeAlgebra: ForcedAlgebra {
     /// D_0 f.
     fn by_time(&self, f: &Self::Element) -> Self::Element;
     /// Solves (D_0^2 + nu_j^2) u + 2 i nu_j f + conj(2 i nu_j f) = g for a real g: monomials of the
-    /// eigenvalue lambda = nu_j go to f, those of -nu_j to its conjugate, the others are divided by
+    /// eigenvalue lambda = nu_j > 0 go to f, those of -nu_j to its conjugate, the others are divided by
     /// nu_j^2 - lambda^2 and go to u. So u is real and has no monomial with |lambda| = nu_j.
     ///
     /// # Errors

@@ -13,6 +13,9 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     let work = session.precise_work(&options.precision)?;
     session.check_writable(&[])?;
     let order = options.order as usize;
+    if let Some(name) = oscillator.unknown() {
+        return session.show(oscillator.parameter_series(name, order, &work), &[]);
+    }
     if oscillator.condition() == Some(Condition::FreeAmplitude) {
         return session.show(oscillator.averaged(order, &work), &[]);
     }

@@ -74,6 +74,10 @@ pub trait Binding<C: Ring> {
     fn parameter(&self, name: &str) -> Option<C::Element>;
     /// F_n of a formal function F.
     fn formal(&self, name: &str, n: usize) -> Option<C::Element>;
+    /// Whether a parameter is a series in the small parameter that is found with the solution.
+    fn is_sought(&self, _: &str) -> bool {
+        false
+    }
     /// A power of constants that is no natural one, as 1/m; nothing where the ring has none.
     fn power(&self, _: &Expression) -> Option<C::Element> {
         None
@@ -225,6 +229,9 @@ impl<A: FunctionAlgebra> Compiler<'_, A> {
             || ExpandError::UnsupportedTerm { term: expression.print("eps", Style::Text) };
         let node = match expression {
             Expression::Number(q) => Node::Constant(constants.rational(q)),
+            Expression::Parameter(name) if self.binding.is_sought(name) => {
+                Node::unknown(self.unknowns, false, None)
+            }
             Expression::Parameter(name) => Node::Constant(
                 self.binding
                     .parameter(name)

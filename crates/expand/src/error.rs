@@ -35,6 +35,12 @@ pub enum ExpandError {
         /// j, from 0.
         unknown: usize,
     },
+    /// No value of the parameter that is sought removes the resonant part of this order.
+    #[error("order {order}: no value of the parameter that is sought keeps the motion periodic")]
+    NotBalanced {
+        /// The order.
+        order: usize,
+    },
     /// At order zero the equation is not a linear oscillator.
     #[error("without the small parameter the equation is not linear in x alone")]
     NotWeaklyNonlinear,

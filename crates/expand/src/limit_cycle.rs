@@ -8,7 +8,8 @@ use crate::ExpandError;
 use crate::compile::{Equation, Node};
 use crate::evaluator::Evaluator;
 use lindstedt_algebra::{PhaseAlgebra, RationalAlgebra};
-use rug::{Integer, Rational};
+use lindstedt_series::univariate::{count_positive_roots, rational_root, trim};
+use rug::Rational;
 
 /// The positive root of S.
 pub(crate) fn leading_amplitude<A: PhaseAlgebra>(
@@ -86,105 +87,12 @@ fn interpolate(values: &[Rational]) -> Vec<Rational> {
     trim(coefficients)
 }
 
-fn trim(mut polynomial: Vec<Rational>) -> Vec<Rational> {
-    while polynomial.last().is_some_and(Rational::is_zero) {
-        polynomial.pop();
-    }
-    polynomial
-}
-
-/// The number of distinct positive roots of a polynomial without root at zero (Sturm's theorem
-/// on (0, infinity)).
-fn count_positive_roots(polynomial: &[Rational]) -> usize {
-    let derivative: Vec<Rational> =
-        (1u32..).zip(polynomial.iter().skip(1)).map(|(k, c)| Rational::from(c * k)).collect();
-    let mut chain = vec![polynomial.to_vec(), trim(derivative)];
-    while let [.., a, b] = &chain[..]
-        && !b.is_empty()
-    {
-        let remainder = remainder(a, b).into_iter().map(|c| -c).collect();
-        chain.push(trim(remainder));
-    }
-    let variations = |end: fn(&[Rational]) -> Option<&Rational>| {
-        let signs: Vec<bool> = chain
-            .iter()
-            .filter_map(|p| end(p))
-            .filter(|c| !c.is_zero())
-            .map(Rational::is_positive)
-            .collect();
-        signs.windows(2).filter(|w| w[0] != w[1]).count()
-    };
-    variations(<[Rational]>::first).saturating_sub(variations(<[Rational]>::last))
-}
-
-/// The remainder of the division of polynomials, b not empty.
-fn remainder(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
-    let mut rest = a.to_vec();
-    while rest.len() >= b.len() {
-        let (Some(top), Some(lead)) = (rest.last(), b.last()) else { break };
-        let factor = Rational::from(top / lead);
-        let shift = rest.len() - b.len();
-        for (k, c) in b.iter().enumerate() {
-            rest[shift + k] -= Rational::from(c * &factor);
-        }
-        rest.pop();
-        rest = trim(rest);
-    }
-    rest
-}
-
-/// The positive rational root, by the rational root theorem; candidates are divisors found by
-/// trial division up to 10^6, beyond which a root is treated as irrational.
-fn rational_root(polynomial: &[Rational]) -> Option<Rational> {
-    let mut denominator = Integer::from(1);
-    for c in polynomial {
-        denominator.lcm_mut(c.denom());
-    }
-    let integral = |c: &Rational| Rational::from(c * &denominator).numer().clone().abs();
-    let numerators = divisors(&integral(polynomial.first()?));
-    let denominators = divisors(&integral(polynomial.last()?));
-    let value = |a: &Rational| polynomial.iter().rev().fold(Rational::new(), |sum, c| sum * a + c);
-    let candidates = numerators
-        .iter()
-        .flat_map(|p| denominators.iter().map(move |q| Rational::from((p.clone(), q.clone()))));
-    candidates.into_iter().find(|a| value(a).is_zero())
-}
-
-fn divisors(n: &Integer) -> Vec<Integer> {
-    let mut list = Vec::new();
-    for d in 1u32..=1_000_000 {
-        if Integer::from(d) * d > *n {
-            break;
-        }
-        if n.is_divisible_u(d) {
-            list.push(Integer::from(d));
-            list.push(Integer::from(n / d));
-        }
-    }
-    list
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn polynomial(coefficients: &[i32]) -> Vec<Rational> {
         coefficients.iter().map(|&c| Rational::from(c)).collect()
-    }
-
-    #[test]
-    fn positive_roots_are_counted_and_found() {
-        // (z - 2/3)(z + 5)(z^2 + 1), scaled by 3.
-        let one = polynomial(&[-10, 13, -7, 13, 3]);
-        assert_eq!(count_positive_roots(&one), 1);
-        assert_eq!(rational_root(&one), Some(Rational::from((2, 3))));
-        let two = polynomial(&[6, -5, 1]);
-        assert_eq!(count_positive_roots(&two), 2);
-        let irrational = polynomial(&[-2, 0, 1]);
-        assert_eq!(count_positive_roots(&irrational), 1);
-        assert_eq!(rational_root(&irrational), None);
-        assert_eq!(count_positive_roots(&polynomial(&[1, 0, 1])), 0);
-        assert_eq!(count_positive_roots(&[]), 0);
     }
 
     #[test]

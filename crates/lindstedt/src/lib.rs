@@ -25,7 +25,9 @@ struct Readme;
 mod answer;
 /// What [`Oscillator::average`] answers with.
 pub mod averaging {
-    pub use lindstedt_derivation::averaging::{Averaging, Coefficient, RateTerm};
+    pub use lindstedt_derivation::averaging::{
+        Algebraic, Averaging, Coefficient, Cycle, Cycles, RateTerm, print_series,
+    };
 }
 pub mod catalogue;
 pub mod classification;

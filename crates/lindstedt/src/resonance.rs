@@ -4,7 +4,7 @@ use crate::averaging::Averaging;
 use crate::{Answer, DerivationError, Error, Oscillator, SlowFlow, Work};
 use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::check_parameters;
-use lindstedt_derivation::resonance::slow_flow;
+use lindstedt_derivation::resonance::{self, NormalMode, Sought, SoughtBranch};
 use lindstedt_equation::Expression;
 use serde::Serialize;
 use std::time::Instant;
@@ -50,6 +50,12 @@ impl Oscillator {
         if self.has_flow_alone() {
             check_parameters(self.problem(), self.given())?;
             return flow();
+        }
+        // A frequency that was given beside a resonance is swept by its detuning.
+        if resonance::is_beside(self.problem(), self.given())
+            && let Ok(found) = flow()
+        {
+            return Ok(found);
         }
         match self.average(order, work) {
             Err(error) if error.is_resonance() => flow().map_err(|flow| match flow {
@@ -103,14 +109,9 @@ impl Oscillator {
     pub fn slow_flow(&self, order: usize, work: &Work) -> Result<Answer<SlowFlow>, Error> {
         let start = Instant::now();
         self.values_without_pi()?;
-        let settings = AveragingSettings {
-            order,
-            parameters: self.given().clone(),
-            stop: work.stop.clone(),
-            memory: work.memory,
-            ..AveragingSettings::default()
-        };
-        let found = slow_flow(self.problem(), &settings, &mut |progress| work.goes_on(progress));
+        let settings = self.averaging(order, work);
+        let found =
+            resonance::slow_flow(self.problem(), &settings, &mut |progress| work.goes_on(progress));
         let value = found.map_err(|error| self.refusal(error.into()))?;
         let mut remarks = self.remarks().to_vec();
         let checked = value.checked_orders.is_some();
@@ -118,6 +119,104 @@ impl Oscillator {
         let standing = self.standing(stopped, value.order, checked, &mut remarks);
         let at = value.system.bound.iter().map(|(name, q)| (name.clone(), q.to_string()));
         let header = self.header(at.collect(), Some(value.order), "exact", start);
+        Ok(Answer { header, value, standing, remarks })
+    }
+
+    fn averaging(&self, order: usize, work: &Work) -> AveragingSettings {
+        AveragingSettings {
+            order,
+            parameters: self.given().clone(),
+            digits: work.printed_digits(),
+            stop: work.stop.clone(),
+            memory: work.memory,
+        }
+    }
+
+    /// The parameter that the problem file seeks (`unknown = "a"`).
+    ///
+    /// ```
+    /// use lindstedt::Oscillator;
+    /// let text = "equation = \"x'' + (a - 2*eps*cos(2*t))*x = 0\"\nunknown = \"a\"";
+    /// assert_eq!(Oscillator::file(text)?.unknown(), Some("a"));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    #[must_use]
+    pub fn unknown(&self) -> Option<&str> {
+        self.problem_file().unknown.as_deref()
+    }
+
+    /// The parameter `name` as a series in the small parameter, for which a motion x = A cos(nu t) + ... or
+    /// A sin(nu t) + ... of the forced oscillator stays periodic, nu^2 being its linear stiffness at the value
+    /// of the parameter: solvability fixes it order by order. For Mathieu's equation the edges of the tongues.
+    /// Exact, and substituted back.
+    ///
+    /// # Errors
+    /// [`Error`] with the reason: no value given, no rational nu, no value that keeps the motion periodic.
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, Work, unstable::coeff::print::Style};
+    /// let mathieu = Oscillator::parse("x'' + (a - 2*eps*cos(2*t))*x = 0")?.set("a", "4")?;
+    /// let found = mathieu.parameter_series("a", 4, &Work::default())?.value;
+    /// // a_2(q) of DLMF 28.6.
+    /// assert_eq!(found.print_series(&found.branches[0], Style::Text), "4 + 5/12*eps^2 - 763/13824*eps^4");
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn parameter_series(
+        &self,
+        name: &str,
+        order: usize,
+        work: &Work,
+    ) -> Result<Answer<Sought>, Error> {
+        let start = Instant::now();
+        self.values_without_pi()?;
+        let settings = self.averaging(order, work);
+        let mut goes_on = |progress| work.goes_on(progress);
+        let found = resonance::sought(self.problem(), name, &settings, &mut goes_on);
+        let value = found.map_err(|error| self.refusal(error.into()))?;
+        let mut remarks = self.remarks().to_vec();
+        let done = value.branches.iter().map(SoughtBranch::order).min().unwrap_or(0);
+        let checked = value.branches.iter().all(|branch| branch.checked_orders.is_some());
+        let standing = self.standing(done < order || !checked, done, checked, &mut remarks);
+        let header = self.header(self.given_text(), Some(done), "exact", start);
+        Ok(Answer { header, value, standing, remarks })
+    }
+
+    /// A nonlinear normal mode, by its number from 1: all unknowns move with one frequency,
+    ///
+    ///   Omega^2 = nu^2 (1 + sum eps^n w_n(rho)),   x_i = sum eps^n x_{i,n}(a, psi),   psi' = Omega,
+    ///
+    /// rho = a^2 and a the amplitude of the first harmonic of the mode: backbone and shape, from the slow flow
+    /// with the amplitude of this mode alone. The squares of the frequencies are rational numbers. Exact, and
+    /// substituted back.
+    ///
+    /// # Errors
+    /// [`Error`] with the reason: a force, internal resonance, linear modes without rational form.
+    ///
+    /// ```
+    /// use lindstedt::{Oscillator, Work, unstable::coeff::print::Style};
+    /// let masses = Oscillator::parse("x'' + 2*x - y + eps*x^3/2; y'' + 2*y - x")?;
+    /// let mode = masses.normal_mode(2, 1, &Work::default())?.value;
+    /// assert_eq!(mode.square, 3);
+    /// assert_eq!(mode.print_in_amplitude(&mode.frequency_squared, Style::Text), "1 + 1/16*rho*eps");
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn normal_mode(
+        &self,
+        mode: usize,
+        order: usize,
+        work: &Work,
+    ) -> Result<Answer<NormalMode>, Error> {
+        let start = Instant::now();
+        self.values_without_pi()?;
+        let settings = self.averaging(order, work);
+        let mut goes_on = |progress| work.goes_on(progress);
+        let found = resonance::normal_mode(self.problem(), mode, &settings, &mut goes_on);
+        let value = found.map_err(|error| self.refusal(error.into()))?;
+        let mut remarks = self.remarks().to_vec();
+        let checked = value.checked_orders.is_some();
+        let stopped = value.order < order || !checked;
+        let standing = self.standing(stopped, value.order, checked, &mut remarks);
+        let header = self.header(self.given_text(), Some(value.order), "exact", start);
         Ok(Answer { header, value, standing, remarks })
     }
 }

@@ -35,6 +35,8 @@ pub struct ProblemFile {
     pub initial: Option<[String; 2]>,
     /// The motion before t = 0, and as it was written.
     pub history: Option<(History, String)>,
+    /// The parameter that is sought as a series, by solvability.
+    pub unknown: Option<String>,
     /// Parameters that are held fixed.
     pub fixed: Vec<String>,
     /// Parameters that are swept.

@@ -48,13 +48,12 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
     let (initial, history) = start(reader, schema.initial.as_ref(), &names)?;
     check_expansion(reader, &schema, (&equation, &small), &conditions)?;
     let known = |name: &str| declared.contains(name) || name == small || name == "amplitude";
-    let (fixed, swept) = fixed_and_swept(reader, &schema, &known)?;
+    let (fixed, swept, unknown) = fixed_and_swept(reader, &schema, &known, &cards)?;
     let unused = unused(&schema, sides, amplitude, &declared, &follows);
     let several = !others.is_empty();
     let unknowns = names.unknowns.iter().filter(|_| several).map(|name| name.clone().into());
-    let unknowns = unknowns.collect();
     let mut problem = Problem::new(name, equation)
-        .with_others(others, unknowns)
+        .with_others(others, unknowns.collect())
         .with_title(schema.title.clone())
         .with_small(small)
         .under(conditions, amplitude)
@@ -75,6 +74,7 @@ pub(crate) fn read(reader: &Reader<'_>, schema: Schema) -> Result<ProblemFile, F
         follows,
         initial,
         history,
+        unknown,
         fixed,
         meanings,
         ranges: ranges(&schema.swept),
@@ -147,19 +147,25 @@ fn check_expansion(
     Err(reader.error(kind, schema.first().span().start))
 }
 
-/// `fixed` and `swept`, which have no name in common.
+/// `fixed`, `swept`, `unknown`.
+type Chosen = (Vec<String>, Vec<String>, Option<String>);
+
+/// `fixed` and `swept`, which have no name in common, and `unknown`.
 fn fixed_and_swept(
     reader: &Reader<'_>,
     schema: &Schema,
     known: &dyn Fn(&str) -> bool,
-) -> Result<(Vec<String>, Vec<String>), FileError> {
+    cards: &[ParameterCard],
+) -> Result<Chosen, FileError> {
     let fixed = listed(reader, "fixed", &schema.fixed, known)?;
     let swept = listed(reader, "swept", &schema.swept, known)?;
     let mut all = swept.iter().zip(&schema.swept);
     if let Some((name, word)) = all.find(|(name, _)| fixed.contains(name)) {
         return Err(reader.error(FileErrorKind::Twice { name: name.clone() }, word.span().start));
     }
-    Ok((fixed, swept))
+    let occurs = |name: &str| cards.iter().any(|card| card.name == *name);
+    let unknown = listed(reader, "unknown", schema.unknown.as_slice(), &occurs)?.pop();
+    Ok((fixed, swept, unknown))
 }
 
 fn problem_name(reader: &Reader<'_>, schema: &Schema) -> Result<String, FileError> {

@@ -37,6 +37,7 @@ pub(crate) struct Schema {
     pub swept: Vec<Spanned<String>>,
     #[serde(default)]
     pub asked: Vec<Spanned<String>>,
+    pub unknown: Option<Spanned<String>>,
     #[serde(default)]
     pub notes: String,
     #[serde(default)]

@@ -94,7 +94,8 @@ fn questions(file: &ProblemFile) -> String {
     let asked = file.asked.iter().map(ToString::to_string).collect();
     let all = [("fixed", &file.fixed), ("swept", &swept), ("asked", &asked)];
     let some = all.into_iter().filter(|(_, names)| !names.is_empty());
-    some.map(|(key, names)| line(key, &list(names))).collect()
+    let unknown = file.unknown.iter().map(|name| line("unknown", &quoted(name)));
+    unknown.chain(some.map(|(key, names)| line(key, &list(names)))).collect()
 }
 
 /// A parameter with its card.

@@ -5,6 +5,7 @@
 //! the results: the frequency from its square, the period from the frequency.
 
 pub mod resummation;
+pub mod univariate;
 
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rayon::prelude::*;

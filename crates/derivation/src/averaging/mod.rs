@@ -1,10 +1,13 @@
 //! Averaging of a problem: rates of amplitude and phase as formulas or as numbers.
 
 mod coefficients;
+mod cycles;
 mod json;
 pub mod numbers;
 mod task;
 mod values;
+
+pub use cycles::{Algebraic, Cycle, Cycles, print_series};
 
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
@@ -111,6 +114,9 @@ pub struct Averaging {
     /// Whether the coefficients are exact (rational numbers or formulas); otherwise they are
     /// certified and the residual encloses zero.
     pub exact: bool,
+    /// The limit cycles with their Floquet exponents; nothing where values are missing or irrational, or no
+    /// rate of the amplitude depends on it otherwise than linearly.
+    pub cycles: Option<Cycles>,
     /// Where the averaged series of an impact oscillator converges, with a value for every parameter.
     pub convergence: Option<Convergence>,
     /// What the equation is made of.

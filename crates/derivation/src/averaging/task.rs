@@ -1,6 +1,7 @@
 //! One averaging: the field its coefficients are taken from, rational numbers, symbols or enclosures.
 
 use super::coefficients::{Coefficients, with_angles};
+use super::cycles::cycles;
 use super::values::{Given, constant, enclosed};
 use super::{Averaging, AveragingSettings, Coefficient, RateTerm};
 use crate::error::DerivationError as Error;
@@ -223,6 +224,7 @@ impl<'a> Task<'a> {
             terms: over.terms.clone(),
             symbols: self.names.iter().filter(|n| self.value(n).is_none()).cloned().collect(),
             exact,
+            cycles: None,
             convergence: None,
             description: None,
         })
@@ -255,7 +257,8 @@ impl<'a> Task<'a> {
     ) -> Result<Option<Averaging>, Error> {
         let Some(over) = self.over_rationals(observer)? else { return Ok(None) };
         let number = |q: &Rational| Ok(Coefficient::Number(rational(q, self.settings.digits)?));
-        self.finish(&over, true, &number).map(Some)
+        let cycles = cycles(&over.frequency, &over.expansion, self.settings.digits)?;
+        Ok(Some(Averaging { cycles, ..self.finish(&over, true, &number)? }))
     }
 
     /// Over the field of the parameters without a value.

@@ -24,7 +24,7 @@ pub enum ResonanceError {
         term: String,
     },
     /// x_k'' in another form than with a number as its factor.
-    #[error("x'' must stand with a number as its factor, but the equation contains {term}")]
+    #[error("an acceleration must stand with a number as its factor, but there is {term}")]
     Acceleration {
         /// The term.
         term: String,
@@ -43,6 +43,18 @@ pub enum ResonanceError {
         /// The equations there are.
         equations: usize,
     },
+    /// A parameter is sought in a system of several unknowns.
+    #[error("{unknowns} unknowns: a parameter is sought for one")]
+    SoughtOfSeveral {
+        /// The unknowns.
+        unknowns: usize,
+    },
+    /// A parameter that is sought and does not occur.
+    #[error("{name} is sought, but does not occur in the equation")]
+    NotSought {
+        /// The parameter.
+        name: String,
+    },
     /// A parameter that the frequencies depend on has no value.
     #[error("the frequencies depend on {name}, which has no value")]
     Unset {
@@ -55,6 +67,42 @@ pub enum ResonanceError {
         /// The squares, where they are rational.
         squares: String,
     },
+    /// The modes of a coupled linear part have no rational form.
+    #[error(
+        "strongly coupled modes without rational form: a square of their frequencies is irrational"
+    )]
+    NoRationalForm,
+    /// The frequency of a mode is a root, and the velocity occurs.
+    #[error(
+        "the frequency of the mode is the root of {square}, and a velocity occurs: exact orders need a rational one"
+    )]
+    IrrationalMode {
+        /// Its square.
+        square: String,
+    },
+    /// A normal mode of a number that there is not.
+    #[error("mode {mode}: there are {modes}")]
+    NoSuchMode {
+        /// The number, from 1.
+        mode: usize,
+        /// The modes there are.
+        modes: usize,
+    },
+    /// A normal mode of a forced oscillator.
+    #[error("a normal mode is free: the equation has a force")]
+    ForcedMode,
+    /// A mode whose frequency is a whole multiple of that of the normal mode, and which that one drives.
+    #[error(
+        "order {order}: mode {mode} has {multiple} times the frequency and is driven: no mode moves alone"
+    )]
+    InternalResonance {
+        /// The order.
+        order: usize,
+        /// The number of the mode, from 1.
+        mode: usize,
+        /// The ratio of the frequencies.
+        multiple: i32,
+    },
     /// nu^2 <= 0.
     #[error("the linear part does not oscillate: the square of a frequency is {square}")]
     NoOscillation {
@@ -66,14 +114,13 @@ pub enum ResonanceError {
     NotDiagonalisable,
     /// A divisor that is almost zero.
     #[error(
-        "order {order}: the harmonic {harmonic:?} (multiples of the frequencies and of the force's) misses a resonance \
-         by {size:e}"
+        "order {order}: the harmonic {harmonic} misses a resonance by {size:e} of the square of the frequency"
     )]
     NearMiss {
         /// The order.
         order: usize,
-        /// k_1, ..., k_M, m.
-        harmonic: Vec<i32>,
+        /// k_1 nu_1 + ... + k_M nu_M + m Omega.
+        harmonic: String,
         /// 1 - lambda^2/nu^2.
         size: f64,
     },

@@ -1,20 +1,29 @@
-//! The phases of the forces: cos and sin of (A + eps B_1 + eps^2 B_2 + ...) t, all of them whole multiples of
-//! one phase eta with eta' = Omega + eps sigma_1 + eps^2 sigma_2 + ...
+//! The phases of the forces: cos and sin of (A + eps B_1 + eps^2 B_2 + ...) t + phi, all of them whole multiples
+//! of one phase eta with eta' = Omega + eps sigma_1 + eps^2 sigma_2 + ..., up to constants.
 
-use super::ResonanceError;
-use lindstedt_equation::monomials::{Monomial, Monomials, expand};
+use super::{Names, ResonanceError};
+use lindstedt_equation::monomials::{Monomial, expand};
+use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
 use rug::{Integer, Rational};
 
 /// The rate of an angle, order by order in the small parameter.
 type Rate = Vec<Expression>;
 
-/// The force's phase.
+/// The force's phase: eta' = rate + eps detuning_1 + ..., eta(0) = start.
 pub(super) struct Phase {
     /// Omega > 0, or 0 where there is no force.
     pub rate: Rational,
     /// sigma_1, sigma_2, ...
     pub detuning: Vec<Expression>,
+    /// eta at t = 0: a number or a constant of parameters.
+    pub start: Expression,
+}
+
+/// rate * t + start.
+struct Angle {
+    rate: Rate,
+    start: Expression,
 }
 
 /// Whether this is a harmonic function of the time.
@@ -23,71 +32,124 @@ pub(super) fn is_wave(e: &Expression) -> bool {
         if angle.contains(&Expression::Time))
 }
 
-/// The rate of an angle rate * t; nothing for an angle of another form.
-fn rate(angle: &Expression) -> Option<Rate> {
+/// The parts of an angle rate * t + start; nothing for an angle of another form.
+fn parts(angle: &Expression) -> Option<Angle> {
     let all = expand(angle)?;
-    let linear = |m: &Monomial| m.x == 0 && m.velocity == 0 && m.atoms.len() == 1;
-    let in_time = |m: &Monomial| linear(m) && m.atoms.get("t") == Some(&1);
-    let highest = all.terms.keys().map(|m| m.order).max()?;
-    all.terms.keys().all(in_time).then(|| (0..=highest).map(|n| of_order(&all, n)).collect())
+    let still = |m: &Monomial| m.x == 0 && m.velocity == 0;
+    let in_time = |m: &Monomial| still(m) && m.atoms.len() == 1 && m.atoms.get("t") == Some(&1);
+    let at_start = |m: &Monomial| still(m) && m.atoms.is_empty() && m.order == 0;
+    let highest = all.terms.keys().filter(|m| in_time(m)).map(|m| m.order).max()?;
+    let order = |n| all.coefficient(|m| m.order == n && in_time(m));
+    let known = all.terms.keys().all(|m| in_time(m) || at_start(m));
+    let start = all.coefficient(at_start);
+    known.then(|| Angle { rate: (0..=highest).map(order).collect(), start })
 }
 
-fn of_order(all: &Monomials, n: u32) -> Expression {
-    all.coefficient(|m| m.order == n)
+/// An angle of numbers, later by `delay`.
+pub(super) fn delayed(angle: &Expression, delay: &Expression) -> Option<Expression> {
+    let rate = parts(angle)?.rate.swap_remove(0);
+    (angle.clone() - rate * delay.clone()).multiplied_out().map(|e| e.canonical())
 }
 
 /// The rates at order zero of all angles: what must have a value.
-pub(super) fn leading_rates(equations: &[Expression]) -> Result<Vec<Expression>, ResonanceError> {
+pub(super) fn leading_rates(
+    equations: &[Expression],
+    names: Names<'_>,
+) -> Result<Vec<Expression>, ResonanceError> {
     let nodes = equations.iter().flat_map(Expression::nodes).filter(|e| is_wave(e));
-    nodes.map(|wave| Ok(angle_of(wave)?.swap_remove(0))).collect()
+    nodes.map(|wave| Ok(angle_of(wave, names)?.rate.swap_remove(0))).collect()
 }
 
-fn angle_of(wave: &Expression) -> Result<Rate, ResonanceError> {
-    let refused = || ResonanceError::NotAForce { term: super::shown(wave) };
+fn angle_of(wave: &Expression, names: Names<'_>) -> Result<Angle, ResonanceError> {
+    let refused = || ResonanceError::NotAForce { term: names.shown(wave) };
     let Expression::Function(_, angle) = wave else { return Err(refused()) };
-    rate(angle).ok_or_else(refused)
+    parts(angle).ok_or_else(refused)
 }
 
-/// The phase of all forces, and the equations with cos(m Omega t) in the place of every force: with the
-/// detuning taken out.
-pub(super) fn phase(equations: &[Expression]) -> Result<(Phase, Vec<Expression>), ResonanceError> {
-    let mut found: Vec<(Rational, Rate)> = Vec::new();
+/// a - ratio * b, multiplied out; nothing where that vanishes.
+fn gap(a: &Expression, ratio: &Rational, b: &Expression) -> Option<Expression> {
+    let gap = a.clone() - Expression::Number(ratio.clone()) * b.clone();
+    gap.multiplied_out()
+        .map(|e| e.canonical())
+        .filter(|e| e.as_number().is_none_or(|q| !q.is_zero()))
+}
+
+/// The phase of all forces, and the equations with functions of m Omega t in the place of every force: with
+/// the detuning and the phase at t = 0 taken out. That of the first force is eta's; what another one is ahead of
+/// it stays, as constants cos(phi) and sin(phi).
+pub(super) fn phase(
+    equations: &[Expression],
+    names: Names<'_>,
+) -> Result<(Phase, Vec<Expression>), ResonanceError> {
+    let mut found: Vec<(Rational, Angle)> = Vec::new();
     for wave in equations.iter().flat_map(Expression::nodes).filter(|e| is_wave(e)) {
-        let mut rate = angle_of(wave)?;
-        let slow = || ResonanceError::NotAForce { term: super::shown(wave) };
-        let leading = rate.remove(0).as_number().filter(|q| !q.is_zero()).ok_or_else(slow)?;
-        found.push((leading, rate));
+        let mut angle = angle_of(wave, names)?;
+        let slow = || ResonanceError::NotAForce { term: names.shown(wave) };
+        let leading = angle.rate.remove(0).as_number().filter(|q| !q.is_zero()).ok_or_else(slow)?;
+        found.push((leading, angle));
     }
-    let Some((first, detuning)) = found.first() else {
-        return Ok((Phase { rate: Rational::new(), detuning: Vec::new() }, equations.to_vec()));
+    let Some((first, Angle { rate: detuning, start })) = found.first() else {
+        let phase = Phase { rate: Rational::new(), detuning: Vec::new(), start: 0.into() };
+        return Ok((phase, equations.to_vec()));
     };
     // A harmonic of the same phase is detuned in the same ratio.
-    for (rate, own) in &found {
+    for (rate, Angle { rate: own, .. }) in &found {
         let ratio = Rational::from(rate / first);
-        let orders = own.len().max(detuning.len());
         let at = |list: &Rate, n: usize| list.get(n).cloned().unwrap_or_else(|| 0.into());
-        let same = (0..orders).all(|n| {
-            let gap = at(own, n) - Expression::Number(ratio.clone()) * at(detuning, n);
-            expand(&gap).is_some_and(|all| all.terms.is_empty())
-        });
-        if !same {
+        let differs = |n| gap(&at(own, n), &ratio, &at(detuning, n)).is_some();
+        if (0..own.len().max(detuning.len())).any(differs) {
             return Err(ResonanceError::SecondPhase);
         }
     }
     let omega = found.iter().fold(Rational::new(), |omega, (rate, _)| divisor(&omega, rate));
     let scale = Expression::Number(Rational::from(&omega / first));
-    let detuning = detuning.iter().map(|sigma| (scale.clone() * sigma.clone()).canonical());
-    let phase = Phase { rate: omega, detuning: detuning.collect() };
+    let scaled = |e: &Expression| (scale.clone() * e.clone()).canonical();
+    let phase = Phase {
+        rate: omega,
+        detuning: detuning.iter().map(scaled).collect(),
+        start: scaled(start),
+    };
     let rewritten = |e: &Expression| {
         let (Expression::Function(function, _), true) = (e, is_wave(e)) else { return None };
-        let leading = angle_of(e).ok()?.swap_remove(0).as_number()?;
-        Some((Expression::Number(leading) * Expression::Time).apply(*function))
+        let Angle { mut rate, start: own } = angle_of(e, names).ok()?;
+        let leading = rate.swap_remove(0).as_number()?;
+        let ahead = gap(&own, &Rational::from(&leading / first), start);
+        Some(ahead_of(*function, Expression::Number(leading) * Expression::Time, ahead))
     };
     Ok((phase, equations.iter().map(|e| e.map(&rewritten)).collect()))
 }
 
+/// A function of angle + ahead: cos(angle) cos(ahead) - sin(angle) sin(ahead), or the sine.
+fn ahead_of(function: Function, angle: Expression, ahead: Option<Expression>) -> Expression {
+    let cosine = function == Function::Cos;
+    let Some(ahead) = ahead else { return angle.apply(function) };
+    let other = if cosine { Function::Sin } else { Function::Cos };
+    let sign = Expression::integer(if cosine { -1 } else { 1 });
+    let [cos, sin] = turned(&ahead);
+    cos * angle.clone().apply(function) + sign * sin * angle.apply(other)
+}
+
+/// Cosine and sine of a constant: numbers at whole quarters of a turn, else constants of that name.
+fn turned(ahead: &Expression) -> [Expression; 2] {
+    let quarters = ahead.clone() * Expression::integer(2) * Expression::parameter("pi").pow(-1);
+    let quarters = quarters.multiplied_out().and_then(|e| e.canonical().as_number());
+    let whole = quarters.filter(Rational::is_integer).map(|q| q.numer().mod_u(4));
+    match whole {
+        Some(n) => {
+            let cos = [1, 0, -1, 0];
+            let at = |n: u32| Expression::integer(cos[n as usize % 4]);
+            // sin of n quarters is the cosine of n - 1.
+            [at(n), at(n + 3)]
+        }
+        None => [Function::Cos, Function::Sin].map(|function| {
+            let text = ahead.clone().apply(function).print("eps", Style::Text);
+            Expression::parameter(&text)
+        }),
+    }
+}
+
 /// The largest rational number of which both are whole multiples; of 0 and q, |q|.
-fn divisor(p: &Rational, q: &Rational) -> Rational {
+pub(super) fn divisor(p: &Rational, q: &Rational) -> Rational {
     let [left, right] =
         [Integer::from(p.numer() * q.denom()), Integer::from(q.numer() * p.denom())];
     Rational::from((left.gcd(&right), Integer::from(p.denom() * q.denom())))

@@ -1,7 +1,8 @@
 //! The plain form of a slow flow.
 
 use super::polar::{Polar, PolarTerm};
-use super::{SlowFlow, Terms};
+use super::{NormalMode, SlowFlow, Sought, SoughtBranch, Terms};
+use lindstedt_coeff::print::Style;
 use lindstedt_equation::Condition;
 use lindstedt_number::Object;
 use lindstedt_phase::amplitudes::AmplitudeTerm;
@@ -66,6 +67,65 @@ fn waves<'a>(symbols: &'a [String], orders: &[Vec<PolarTerm>]) -> Vec<Vec<Wave<'
     orders.iter().map(|terms| terms.iter().map(one).collect()).collect()
 }
 
+impl Serialize for NormalMode {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let texts = |list: &[Rational]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
+        let orders = |list: &[Terms]| -> Vec<String> {
+            list.iter().map(|terms| self.print_order(terms, Style::Text)).collect()
+        };
+        let shape = |list: &Vec<Terms>| -> Vec<String> {
+            list.iter().map(|terms| self.print_shape(terms, Style::Text)).collect()
+        };
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("parameter", &*self.problem.small)?;
+        map.serialize_entry("mode", &self.mode)?;
+        map.serialize_entry("square", &self.square.to_string())?;
+        map.serialize_entry("ratios", &texts(&self.ratios))?;
+        let shapes: Vec<_> = self.shapes.iter().map(|row| texts(row)).collect();
+        map.serialize_entry("shapes", &shapes)?;
+        map.serialize_entry("symbols", &self.symbols)?;
+        map.serialize_entry("frequency_squared", &orders(&self.frequency_squared))?;
+        map.serialize_entry("growth_rate", &orders(&self.growth))?;
+        map.serialize_entry("solution", &self.solution.iter().map(shape).collect::<Vec<_>>())?;
+        let checked_orders = self.checked_orders;
+        let residual = Residual { checked_orders, zero: checked_orders.map(|_| true) };
+        map.serialize_entry("residual", &residual)?;
+        map.serialize_entry("method", &Object(vec![("name", "averaging at resonance")]))?;
+        map.end()
+    }
+}
+
+/// One motion of a parameter that is sought.
+#[derive(Serialize)]
+struct Branch {
+    starts_with: &'static str,
+    series: Vec<String>,
+    solution: Vec<String>,
+    residual: Residual,
+}
+
+impl Serialize for Sought {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let branch = |branch: &SoughtBranch| Branch {
+            starts_with: if branch.sine { "sin" } else { "cos" },
+            series: branch.series.iter().map(|t| self.print_coefficient(t, Style::Text)).collect(),
+            solution: branch.solution.iter().map(|t| self.print_motion(t, Style::Text)).collect(),
+            residual: Residual {
+                checked_orders: branch.checked_orders,
+                zero: branch.checked_orders.map(|_| true),
+            },
+        };
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("parameter", &*self.problem.small)?;
+        map.serialize_entry("unknown", &self.parameter)?;
+        map.serialize_entry("frequency", &self.frequency.to_string())?;
+        map.serialize_entry("symbols", &self.symbols)?;
+        map.serialize_entry("branches", &self.branches.iter().map(branch).collect::<Vec<_>>())?;
+        map.serialize_entry("method", &Object(vec![("name", "Lindstedt-Poincare")]))?;
+        map.end()
+    }
+}
+
 impl Serialize for SlowFlow {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let (system, names) = (&self.system, self.factors());
@@ -83,6 +143,9 @@ impl Serialize for SlowFlow {
         let shapes = shapes.map(|rows| rows.iter().map(|row| texts(row)).collect::<Vec<_>>());
         map.serialize_entry("shapes", &shapes)?;
         map.serialize_entry("force", &system.force.to_string())?;
+        if let Some(start) = self.print_start(Style::Text) {
+            map.serialize_entry("start", &start)?;
+        }
         let detuning: Vec<_> = self.detuning.iter().map(|t| monomials(&names, t)).collect();
         map.serialize_entry("detuning", &detuning)?;
         let beside = system.beside.as_ref().map(|b| (b.symbol.as_str(), b.rate.to_string()));

@@ -14,14 +14,18 @@ mod forces;
 mod json;
 mod modes;
 mod motion;
+mod normal_mode;
 mod polar;
 mod print;
+mod sought;
 mod system;
 
 pub use error::ResonanceError;
 pub use motion::Motion;
+pub use normal_mode::{NormalMode, normal_mode};
 pub use polar::{Polar, PolarTerm};
 pub use print::{print_name, print_turns};
+pub use sought::{Sought, SoughtBranch, sought};
 pub use system::{Beside, System};
 
 use crate::averaging::{AveragingSettings, constant};
@@ -34,9 +38,11 @@ use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_expand::resonance::{Nearest, check_flow, resonant};
 use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
+use lindstedt_number::Exact;
 use lindstedt_phase::amplitudes::scalars::Integers;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes};
 use rug::{Integer, Rational};
+use std::collections::BTreeMap;
 
 type Element = AmplitudeElement<Integer>;
 
@@ -122,6 +128,16 @@ impl Binding<Amplitudes<Integers>> for Symbols<'_> {
     }
 }
 
+/// Whether a force of the problem, with these values, has a frequency beside a resonance: then
+/// [`slow_flow`] takes it as detuned.
+#[must_use]
+pub fn is_beside(problem: &Problem, given: &BTreeMap<String, Exact>) -> bool {
+    let equations: Vec<Expression> = problem.equations().cloned().collect();
+    let cards = |name: &str| value(problem, given, name);
+    let system = System::of(&equations, given, &cards, Names(problem), true);
+    system.is_ok_and(|system| system.beside.is_some())
+}
+
 /// The slow flow of a problem. Parameters of the equations that are not among those of the settings stay
 /// symbols, unless a frequency depends on them: then they have the values of their cards.
 ///
@@ -152,20 +168,22 @@ pub fn slow_flow(
     }
     let equations: Vec<Expression> = problem.equations().cloned().collect();
     let cards = |name: &str| value(problem, &settings.parameters, name);
-    let order: Vec<String> = problem.parameters.iter().map(|card| card.name.to_string()).collect();
-    let system = System::of(&equations, &settings.parameters, &cards, &order)?;
+    let system = System::of(&equations, &settings.parameters, &cards, Names(problem), true)?;
     let names: Vec<&str> = system.symbols.iter().map(String::as_str).collect();
     let algebra = Amplitudes::new(Integers, &system.frequencies, &system.force, &names);
     let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: names.len() })?;
     let algebra = algebra.with_stop(settings.stop.clone());
     let graph = compile_system(&algebra, &system.equations, &Symbols(&algebra), settings.order)?;
     let sigma = |e: &Expression| {
-        let refused = || ResonanceError::NotAForce { term: shown(e) };
+        let refused = || ResonanceError::NotAForce { term: Names(problem).shown(e) };
         constant(&algebra, e, &|name| algebra.symbol(name)).ok_or_else(refused)
     };
     let detuning = system.detuning.iter().map(sigma).collect::<Result<Vec<_>, _>>()?;
-    let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
+    let mut room = Room::new(settings);
+    let mut on_order =
+        |work: &OrderWork| observer(Progress::Order(work.order, work.terms)) && room.has_next(work);
     let found = resonant(&algebra, &graph, settings.order, &detuning, &mut on_order);
+    room.checked()?;
     let too_high = || Error::from(ResonanceError::TooHigh { order: settings.order });
     let found = found.map_err(|error| match error {
         ExpandError::Interrupted { .. } if algebra.overflowed() => too_high(),
@@ -205,6 +223,44 @@ pub fn slow_flow(
     })
 }
 
+/// What the next order is predicted to need, from the terms of those before it.
+struct Room {
+    bytes: f64,
+    last: f64,
+    order: usize,
+    limit: u64,
+    too_large: Option<(usize, f64)>,
+}
+
+/// Bytes held for one term of the motion, a rule of thumb: a word, two integers of some limbs, and those again
+/// for the rates, the nodes of the equation and the products in progress.
+const BYTES: f64 = 7000.0;
+
+impl Room {
+    fn new(settings: &AveragingSettings) -> Self {
+        let (limit, order) = (settings.memory, settings.order);
+        Self { bytes: 0.0, last: 0.0, order, limit, too_large: None }
+    }
+
+    fn has_next(&mut self, work: &OrderWork) -> bool {
+        let now = work.terms as f64 * BYTES;
+        let growth = if self.last > 0.0 { now / self.last } else { 1.0 };
+        self.bytes += now;
+        self.last = now;
+        let next = self.bytes + now * growth;
+        if work.order < self.order && next > self.limit as f64 {
+            self.too_large = Some((work.order + 1, next));
+        }
+        self.too_large.is_none()
+    }
+
+    fn checked(&self) -> Result<(), Error> {
+        let Some((order, bytes)) = self.too_large else { return Ok(()) };
+        let exponent = bytes.log10().round() as u64;
+        Err(Error::TooLarge { order, exponent, limit: self.limit >> 20 })
+    }
+}
+
 /// A divisor below this says that a resonance was missed by a little.
 const NEAR_MISS: (i32, i32) = (1, 1000);
 
@@ -214,12 +270,32 @@ fn refuse_near_miss(nearest: &[Nearest]) -> Result<(), ResonanceError> {
         None => Ok(()),
         Some(near) => Err(ResonanceError::NearMiss {
             order: near.order,
-            harmonic: near.harmonic.clone(),
+            harmonic: sum_of_harmonics(&near.harmonic),
             size: near.size.to_f64(),
         }),
     }
 }
 
-fn shown(e: &Expression) -> String {
-    e.print("eps", Style::Text)
+/// k_1 nu_1 + ... + m Omega, in words.
+fn sum_of_harmonics(harmonic: &[i32]) -> String {
+    let last = harmonic.len() - 1;
+    let term = |(j, k): (usize, &i32)| lindstedt_coeff::print::Term {
+        coefficient: Rational::from(*k),
+        factors: vec![if j == last { "Omega".to_owned() } else { format!("nu_{}", j + 1) }],
+    };
+    let terms = harmonic.iter().enumerate().filter(|(_, k)| **k != 0).map(term);
+    lindstedt_coeff::print::print_sum(
+        &terms.collect::<Vec<_>>(),
+        lindstedt_coeff::print::Style::Text,
+    )
+}
+
+/// The names of the user.
+#[derive(Clone, Copy)]
+struct Names<'a>(&'a Problem);
+
+impl Names<'_> {
+    fn shown(self, e: &Expression) -> String {
+        e.print_named(&self.0.small, &self.0.unknowns, Style::Text)
+    }
 }

@@ -6,31 +6,52 @@ use rug::{Integer, Rational};
 /// A square matrix of rational numbers, by rows.
 pub(super) type Matrix = Vec<Vec<Rational>>;
 
-/// x = P q with q_j'' + nu_j^2 q_j.
-pub(super) struct Modes {
-    /// nu_j > 0.
-    pub frequencies: Vec<Rational>,
+/// x = P q with q_j'' + nu_j^2 q_j, the squares of the frequencies rational.
+pub(super) struct Spectrum {
+    /// nu_j^2.
+    pub squares: Vec<Rational>,
     /// P, the shapes as columns; nothing where x is q.
     pub shapes: Option<Matrix>,
     /// P^-1 M^-1: what the other terms of the equations are multiplied by.
     pub inverse: Matrix,
 }
 
+impl Spectrum {
+    /// nu_j > 0, where they are rational.
+    pub(super) fn frequencies(&self) -> Result<Vec<Rational>, ResonanceError> {
+        roots(&self.squares)
+    }
+
+    /// With mode k before the others.
+    pub(super) fn with_first(self, k: usize) -> Self {
+        let n = self.squares.len();
+        let identity = || {
+            let row = |i| (0..n).map(|j| Rational::from(u32::from(i == j))).collect();
+            (0..n).map(row).collect()
+        };
+        let mut shapes: Matrix = self.shapes.unwrap_or_else(identity);
+        let (mut squares, mut inverse) = (self.squares, self.inverse);
+        squares[..=k].rotate_right(1);
+        inverse[..=k].rotate_right(1);
+        shapes.iter_mut().for_each(|row| row[..=k].rotate_right(1));
+        Self { squares, shapes: Some(shapes), inverse }
+    }
+}
+
 /// The modes of M x'' + K x. Where both are diagonal the unknowns stay what they are.
 ///
 /// The characteristic polynomial of M^-1 K is made integral; its roots are real where there are modes, so
 /// that Newton's method from above, in integers, finds the largest one or shows that it is none. Cost: O(n^4).
-pub(super) fn modes(mass: &Matrix, stiffness: &Matrix) -> Result<Modes, ResonanceError> {
+pub(super) fn spectrum(mass: &Matrix, stiffness: &Matrix) -> Result<Spectrum, ResonanceError> {
     let n = mass.len();
     let inverse = inverted(mass).ok_or(ResonanceError::NotDiagonalisable)?;
     let matrix = product(&inverse, stiffness);
     let diagonal = |m: &Matrix| (0..n).all(|i| (0..n).all(|j| i == j || m[i][j].is_zero()));
     if diagonal(&matrix) && diagonal(mass) {
         let squares: Vec<_> = (0..n).map(|j| matrix[j][j].clone()).collect();
-        return Ok(Modes { frequencies: roots(&squares)?, shapes: None, inverse });
+        return Ok(Spectrum { squares, shapes: None, inverse });
     }
     let squares = eigenvalues(&matrix)?;
-    let frequencies = roots(&squares)?;
     let mut columns: Vec<Vec<Rational>> = Vec::new();
     let mut distinct = squares.clone();
     distinct.dedup();
@@ -43,7 +64,7 @@ pub(super) fn modes(mass: &Matrix, stiffness: &Matrix) -> Result<Modes, Resonanc
     let shapes: Matrix =
         (0..n).map(|i| columns.iter().map(|column| column[i].clone()).collect()).collect();
     let back = inverted(&shapes).ok_or(ResonanceError::NotDiagonalisable)?;
-    Ok(Modes { frequencies, inverse: product(&back, &inverse), shapes: Some(shapes) })
+    Ok(Spectrum { squares, inverse: product(&back, &inverse), shapes: Some(shapes) })
 }
 
 /// The positive roots of positive rational squares.
@@ -137,9 +158,7 @@ fn eigenvalues(matrix: &Matrix) -> Result<Vec<Rational>, ResonanceError> {
     }
     let mut found = Vec::new();
     while polynomial.len() > 1 {
-        let root = largest_root(&polynomial).ok_or_else(|| ResonanceError::NoRationalModes {
-            squares: "of the linear part".to_owned(),
-        })?;
+        let root = largest_root(&polynomial).ok_or(ResonanceError::NoRationalForm)?;
         let mut carried = Integer::new();
         for c in &mut polynomial {
             *c += Integer::from(&carried * &root);
@@ -186,23 +205,30 @@ mod tests {
     #[test]
     fn shapes_and_refusals() {
         let unit = matrix(&[&[1, 0], &[0, 1]]);
+        let refused = |stiffness: &Matrix| {
+            spectrum(&unit, stiffness).and_then(|found| found.frequencies()).err()
+        };
         // Two masses with equal springs and a coupling of 3/2: squares 1 and 4.
         let half = Rational::from((1, 2));
         let coupled = vec![
             vec![Rational::from(5) * &half, Rational::from(-3) * &half],
             vec![Rational::from(-3) * &half, Rational::from(5) * &half],
         ];
-        let found = modes(&unit, &coupled);
-        let Ok(found) = found else { panic!("rational modes") };
-        assert_eq!(found.frequencies, [1, 2]);
+        let Ok(found) = spectrum(&unit, &coupled) else { panic!("rational modes") };
+        assert_eq!(found.frequencies(), Ok([1, 2].map(Rational::from).to_vec()));
         assert_eq!(found.shapes, Some(matrix(&[&[1, 1], &[1, -1]])));
-        let sheared = modes(&unit, &matrix(&[&[1, 1], &[0, 1]])).err();
+        let second = found.with_first(1);
+        assert_eq!(
+            (&second.squares[0], second.shapes),
+            (&4.into(), Some(matrix(&[&[1, 1], &[-1, 1]])))
+        );
+        let sheared = refused(&matrix(&[&[1, 1], &[0, 1]]));
         assert_eq!(sheared, Some(ResonanceError::NotDiagonalisable));
-        let kerschen = modes(&unit, &matrix(&[&[2, -1], &[-1, 2]])).err();
+        let kerschen = refused(&matrix(&[&[2, -1], &[-1, 2]]));
         assert!(matches!(kerschen, Some(ResonanceError::NoRationalModes { .. })));
-        let golden = modes(&unit, &matrix(&[&[2, -1], &[-1, 1]])).err();
-        assert!(matches!(golden, Some(ResonanceError::NoRationalModes { .. })));
-        let saddle = modes(&unit, &matrix(&[&[0, 1], &[1, 0]])).err();
+        let golden = refused(&matrix(&[&[2, -1], &[-1, 1]]));
+        assert_eq!(golden, Some(ResonanceError::NoRationalForm));
+        let saddle = refused(&matrix(&[&[0, 1], &[1, 0]]));
         assert!(matches!(saddle, Some(ResonanceError::NoOscillation { .. })));
     }
 }

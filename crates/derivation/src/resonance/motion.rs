@@ -3,6 +3,7 @@
 //! At one value of the small parameter, z_j = u_j + i v_j: u_j', v_j' from z_j' = i nu_j z_j + sum eps^n f_{j,n},
 //! and x_j by its rate D x_j along that flow, D as in [`lindstedt_expand::resonance`].
 
+use super::forces::{delayed, is_wave};
 use super::{SlowFlow, Terms};
 use lindstedt_equation::{Expression, Function, Unknown};
 use rug::{Rational, ops::Pow};
@@ -228,12 +229,23 @@ impl SlowFlow {
             }
             _ => None,
         };
+        // In the time from eta = 0 on.
+        let delay = match at.force_rate() {
+            rate if rate.is_zero() || !single => Expression::integer(0),
+            rate => self.system.start.map(&change) * Expression::Number(rate.recip()),
+        };
+        let started = |e: &Expression| match e {
+            Expression::Function(function, angle) if is_wave(e) => {
+                Some(delayed(angle, &delay)?.apply(*function))
+            }
+            _ => None,
+        };
         let mut rates = Vec::new();
         for (j, equation) in equations.iter().enumerate() {
             let acceleration = Expression::unknown(j, 2);
             let rest: Vec<_> =
                 equation.terms().iter().filter(|term| **term != acceleration).cloned().collect();
-            let right = (-Expression::Sum(rest)).map(&change).canonical();
+            let right = (-Expression::Sum(rest)).map(&change).map(&started).canonical();
             let unset = |name: &String| !name.starts_with("x_") && !name.starts_with("w_");
             if right.parameters().iter().any(unset) {
                 return None;

@@ -17,7 +17,7 @@ pub fn print_name(name: &str, style: Style) -> String {
 }
 
 /// Powers of named factors.
-fn factors(names: &[String], exponents: &[i32], style: Style) -> Vec<String> {
+pub(super) fn factors(names: &[String], exponents: &[i32], style: Style) -> Vec<String> {
     let all = names.iter().zip(exponents).filter(|(_, n)| **n != 0);
     all.map(|(factor, n)| power(&print_name(factor, style), i64::from(*n), style)).collect()
 }
@@ -87,6 +87,18 @@ impl SlowFlow {
             }
         }
         print_sum(&sum, style)
+    }
+
+    /// eta(0); nothing where it is 0.
+    #[must_use]
+    pub fn print_start(&self, style: Style) -> Option<String> {
+        let start = &self.system.start;
+        let zero = start.as_number().is_some_and(|q| q.is_zero());
+        let style = match style {
+            Style::Text => lindstedt_equation::print::Style::Text,
+            Style::Latex => lindstedt_equation::print::Style::Latex,
+        };
+        (!zero).then(|| start.print(&self.problem.small, style))
     }
 
     /// The unknowns in terms of the modes; empty where they are the same.

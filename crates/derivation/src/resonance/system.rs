@@ -1,8 +1,8 @@
 //! From the equations of a problem to what is averaged: values put in, modes, the phase of the forces.
 
-use super::ResonanceError;
 use super::forces::{Phase, is_wave, leading_rates, near, phase};
-use super::modes::{Matrix, Modes, modes};
+use super::modes::{Matrix, Spectrum, spectrum};
+use super::{Names, ResonanceError};
 use crate::error::DerivationError as Error;
 use lindstedt_equation::monomials::{MOST_TERMS, Monomial, Monomials, expand};
 use lindstedt_equation::{Expression, Unknown};
@@ -21,6 +21,8 @@ pub struct System {
     pub force: Rational,
     /// sigma_1, sigma_2, ... of eta' = Omega + sum eps^n sigma_n.
     pub detuning: Vec<Expression>,
+    /// eta at t = 0; 0 where no force has a phase.
+    pub start: Expression,
     /// Names without a value, in the order of printing.
     pub symbols: Vec<String>,
     /// P of x = P q, where the unknowns are no modes.
@@ -73,12 +75,12 @@ struct Linear {
     stiffness: BTreeMap<usize, Expression>,
 }
 
-fn linear(equation: &Expression) -> Result<Linear, ResonanceError> {
+fn linear(equation: &Expression, names: Names<'_>) -> Result<Linear, ResonanceError> {
     let all = at_zero(equation)?;
     let mut linear = Linear { mass: BTreeMap::new(), stiffness: BTreeMap::new() };
     for (m, q) in &all.terms {
         let refused =
-            || ResonanceError::NotWeaklyNonlinear { term: super::shown(&written(&all.tree(m, q))) };
+            || ResonanceError::NotWeaklyNonlinear { term: names.shown(&written(&all.tree(m, q))) };
         let mut found = unknowns_of(m);
         let (first, second) = (found.next(), found.next());
         let force = m.parameters.contains_key(WAVE);
@@ -117,19 +119,28 @@ fn rational(name: &str, value: &Exact) -> Result<Rational, Error> {
     value.as_rational().cloned().ok_or_else(irrational)
 }
 
-impl System {
+/// Equations with the values put in and the phases of the forces taken out, and their linear part.
+pub(super) struct Prepared {
+    pub equations: Vec<Expression>,
+    pub phase: Phase,
+    pub mass: Matrix,
+    pub stiffness: Matrix,
+    pub bound: BTreeMap<String, Rational>,
+}
+
+impl Prepared {
     /// Prepares the left sides of equations with the values given, and those of the cards where a frequency
-    /// depends on them; `order` is the order in which symbols are printed.
+    /// depends on them.
     pub(super) fn of(
         equations: &[Expression],
         given: &BTreeMap<String, Exact>,
         cards: &dyn Fn(&str) -> Option<Exact>,
-        order: &[String],
+        names: Names<'_>,
     ) -> Result<Self, Error> {
         for e in equations.iter().flat_map(Expression::nodes) {
             match e {
                 Expression::Unknown(unknown) if unknown.delay.is_some() => {
-                    return Err(ResonanceError::Delay { term: super::shown(e) }.into());
+                    return Err(ResonanceError::Delay { term: names.shown(e) }.into());
                 }
                 Expression::Unknown(unknown) if unknown.index >= equations.len() => {
                     let count = unknown.index + 1;
@@ -147,9 +158,9 @@ impl System {
         }
         let equations = put_in(equations, &bound);
         // What the frequencies depend on has its value, too.
-        let parts = equations.iter().map(linear).collect::<Result<Vec<_>, _>>()?;
+        let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
         let entries = parts.iter().flat_map(|p| p.mass.values().chain(p.stiffness.values()));
-        let rates = leading_rates(&equations)?;
+        let rates = leading_rates(&equations, names)?;
         let needed: BTreeSet<String> =
             entries.chain(&rates).flat_map(Expression::parameters).collect();
         for name in needed {
@@ -157,57 +168,68 @@ impl System {
             bound.insert(name.clone(), rational(&name, &value)?);
         }
         let equations = put_in(&equations, &bound);
-        let (phase, equations) = phase(&equations)?;
-        let parts = equations.iter().map(linear).collect::<Result<Vec<_>, _>>()?;
+        let (phase, equations) = phase(&equations, names)?;
+        let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
         let matrix = |of: &dyn Fn(&Linear) -> &BTreeMap<usize, Expression>| -> Matrix {
             let entry = |p: &Linear, j| of(p).get(&j).and_then(Expression::as_number);
             let row = |p| (0..parts.len()).map(|j| entry(p, j).unwrap_or_default()).collect();
             parts.iter().map(row).collect()
         };
-        let modes = modes(&matrix(&|p| &p.mass), &matrix(&|p| &p.stiffness))?;
-        let equations = separated(&equations, &modes)?;
-        Ok(Self::with_phase(equations, modes, phase, order).with_bound(bound))
+        let (mass, stiffness) = (matrix(&|p| &p.mass), matrix(&|p| &p.stiffness));
+        Ok(Self { equations, phase, mass, stiffness, bound })
     }
+}
 
-    fn with_bound(self, bound: BTreeMap<String, Rational>) -> Self {
-        Self { bound, ..self }
-    }
-
-    fn with_phase(
-        equations: Vec<Expression>,
-        modes: Modes,
-        phase: Phase,
-        order: &[String],
-    ) -> Self {
-        let Modes { frequencies, shapes, .. } = modes;
-        let Phase { rate, mut detuning } = phase;
-        let all = equations.iter().chain(&detuning).flat_map(Expression::parameters);
-        let mut symbols: Vec<String> = order.to_vec();
-        let used: BTreeSet<String> = all.collect();
-        symbols.retain(|name| used.contains(name));
-        let unlisted: Vec<_> = used.into_iter().filter(|name| !symbols.contains(name)).collect();
-        symbols.extend(unlisted);
-        let at = (rate > 0).then(|| near(&rate, &frequencies)).flatten();
-        let Some(at) = at else {
-            let (bound, beside) = (BTreeMap::new(), None);
-            return Self {
-                equations,
-                frequencies,
-                force: rate,
-                detuning,
-                symbols,
-                shapes,
-                bound,
-                beside,
-            };
+impl System {
+    /// What is averaged. A force beside a resonance is detuned by a symbol where `detune` says so.
+    pub(super) fn of(
+        equations: &[Expression],
+        given: &BTreeMap<String, Exact>,
+        cards: &dyn Fn(&str) -> Option<Exact>,
+        names: Names<'_>,
+        detune: bool,
+    ) -> Result<Self, Error> {
+        let prepared = Prepared::of(equations, given, cards, names)?;
+        let modes = spectrum(&prepared.mass, &prepared.stiffness)?;
+        let frequencies = modes.frequencies()?;
+        let equations = separated(&prepared.equations, &modes, names)?;
+        let system = Self {
+            frequencies,
+            shapes: modes.shapes,
+            bound: prepared.bound,
+            ..Self::with_phase(equations, prepared.phase, names)
         };
-        let free = |name: &&str| !symbols.iter().any(|known| known == name);
-        let symbol = ["sigma", "detuning", "sigma_0"].into_iter().find(free).unwrap_or("sigma_1");
-        symbols.push(symbol.to_owned());
-        if detuning.is_empty() {
-            detuning.push(0.into());
+        Ok(if detune { system.detuned() } else { system })
+    }
+
+    fn with_phase(equations: Vec<Expression>, phase: Phase, names: Names<'_>) -> Self {
+        let Phase { rate, detuning, start } = phase;
+        let symbols = symbols(equations.iter().chain(&detuning), names);
+        Self {
+            equations,
+            frequencies: Vec::new(),
+            force: rate,
+            detuning,
+            start,
+            symbols,
+            shapes: None,
+            bound: BTreeMap::new(),
+            beside: None,
         }
-        detuning[0] = (detuning[0].clone() + Expression::parameter(symbol)).canonical();
+    }
+
+    /// With the symbol of the detuning where the force is beside a resonance.
+    fn detuned(mut self) -> Self {
+        let rate = self.force.clone();
+        let at = (rate > 0).then(|| near(&rate, &self.frequencies)).flatten();
+        let Some(at) = at else { return self };
+        let free = |name: &&str| !self.symbols.iter().any(|known| known == name);
+        let symbol = ["sigma", "detuning", "sigma_0"].into_iter().find(free).unwrap_or("sigma_1");
+        self.symbols.push(symbol.to_owned());
+        if self.detuning.is_empty() {
+            self.detuning.push(0.into());
+        }
+        self.detuning[0] = (self.detuning[0].clone() + Expression::parameter(symbol)).canonical();
         // The harmonics m eta keep m.
         let scale = Rational::from(&at / &rate);
         let moved = |e: &Expression| {
@@ -217,11 +239,25 @@ impl System {
             let angle = Expression::Number(scale.clone()) * (**angle).clone();
             Some(angle.canonical().apply(*function))
         };
-        let equations = equations.iter().map(|e| e.map(&moved)).collect();
-        let beside = Some(Beside { rate, symbol: symbol.to_owned() });
-        let bound = BTreeMap::new();
-        Self { equations, frequencies, force: at, detuning, symbols, shapes, bound, beside }
+        self.equations = self.equations.iter().map(|e| e.map(&moved)).collect();
+        self.start = (Expression::Number(scale.clone()) * self.start).canonical();
+        self.force = at;
+        self.beside = Some(Beside { rate, symbol: symbol.to_owned() });
+        self
     }
+}
+
+/// The names that occur, in the order of the data card, which is that of printing.
+pub(super) fn symbols<'a>(
+    equations: impl Iterator<Item = &'a Expression>,
+    names: Names<'_>,
+) -> Vec<String> {
+    let used: BTreeSet<String> = equations.flat_map(Expression::parameters).collect();
+    let cards = names.0.parameters.iter().map(|card| card.name.to_string());
+    let mut symbols: Vec<String> = cards.filter(|name| used.contains(name)).collect();
+    let unlisted: Vec<_> = used.into_iter().filter(|name| !symbols.contains(name)).collect();
+    symbols.extend(unlisted);
+    symbols
 }
 
 fn put_in(equations: &[Expression], values: &BTreeMap<String, Rational>) -> Vec<Expression> {
@@ -233,9 +269,13 @@ fn put_in(equations: &[Expression], values: &BTreeMap<String, Rational>) -> Vec<
 }
 
 /// q_j'' + the rest of equation j, with x = P q in it.
-fn separated(equations: &[Expression], modes: &Modes) -> Result<Vec<Expression>, ResonanceError> {
+pub(super) fn separated(
+    equations: &[Expression],
+    modes: &Spectrum,
+    names: Names<'_>,
+) -> Result<Vec<Expression>, ResonanceError> {
     let without: Vec<Expression> =
-        equations.iter().map(without_acceleration).collect::<Result<_, _>>()?;
+        equations.iter().map(|e| without_acceleration(e, names)).collect::<Result<_, _>>()?;
     let shape = |e: &Expression| {
         let (Some(shapes), Expression::Unknown(unknown)) = (&modes.shapes, e) else { return None };
         let part = |(j, p): (usize, &Rational)| {
@@ -254,7 +294,10 @@ fn separated(equations: &[Expression], modes: &Modes) -> Result<Vec<Expression>,
 }
 
 /// The equation without the x_k'', which stand in terms of their own with constant factors.
-fn without_acceleration(equation: &Expression) -> Result<Expression, ResonanceError> {
+fn without_acceleration(
+    equation: &Expression,
+    names: Names<'_>,
+) -> Result<Expression, ResonanceError> {
     let accelerated =
         |e: &Expression| matches!(e, Expression::Unknown(Unknown { derivative: 2.., .. }));
     let alone = |term: &Expression| match term {
@@ -269,7 +312,7 @@ fn without_acceleration(equation: &Expression) -> Result<Expression, ResonanceEr
         let (with, rest): (Vec<_>, Vec<_>) = e.terms().iter().cloned().partition(holds);
         match with.iter().find(|term| !alone(term)) {
             None => Ok(Expression::Sum(rest).canonical()),
-            Some(term) => Err(ResonanceError::Acceleration { term: super::shown(term) }),
+            Some(term) => Err(ResonanceError::Acceleration { term: names.shown(term) }),
         }
     };
     split(&equation.canonical()).or_else(|error| {

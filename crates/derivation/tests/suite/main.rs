@@ -1,3 +1,6 @@
 //! What is derived against numbers from elsewhere.
 
+mod cycles;
+mod normal_mode;
 mod resonance;
+mod sought;

@@ -30,11 +30,14 @@ pub fn check_flow<A: AmplitudeAlgebra>(
     let x: Vec<_> = found.solution.iter().map(|x| Series::truncated(x.clone())).collect();
     let velocity: Vec<_> = x.iter().map(|x| judge.rate(x)).collect();
     let mut values: Vec<Series<A::Element>> = Vec::new();
+    let sought = Series::truncated(found.parameter.clone());
     for node in &equation.nodes {
         let value = match node {
             Node::Displacement => x[0].clone(),
             Node::Velocity => velocity[0].clone(),
-            Node::Unknown { index, velocity: false, delay: None } => x[*index].clone(),
+            Node::Unknown { index, velocity: false, delay: None } => {
+                x.get(*index).unwrap_or(&sought).clone()
+            }
             Node::Unknown { index, velocity: true, delay: None } => velocity[*index].clone(),
             &Node::Forcing(index) => Series::polynomial(vec![equation.forcing[index].clone()]),
             node => polynomial_value(algebra, node, &values, order).ok_or_else(unsupported)?,
@@ -68,6 +71,8 @@ fn normalisation<A: AmplitudeAlgebra>(
     for (j, list) in found.solution.iter().enumerate() {
         for (order, x) in list.iter().enumerate() {
             let rest = match order {
+                // The harmonics nu_j of a motion without slow change are those it was started with.
+                0 if !found.parameter.is_empty() => algebra.zero(),
                 0 => algebra.sub(x, &algebra.twice_real(&algebra.amplitude(j))),
                 _ => x.clone(),
             };

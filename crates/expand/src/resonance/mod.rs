@@ -16,9 +16,12 @@
 //! the harmonic nu_j in x_j. Without force and with M = 1 this is the averaging of Krylov, Bogoliubov
 //! and Mitropolsky in other coordinates: f = z h(|z|^2), a = 2 |z|, a' = a Re h, psi' = nu + Im h.
 
+mod balance;
 mod check;
 
 pub use check::check_flow;
+
+use balance::Balance;
 
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
@@ -36,6 +39,8 @@ pub struct SlowFlow<E> {
     pub solution: Vec<Vec<E>>,
     /// sigma_1, sigma_2, ... of eta' = Omega + sum eps^n sigma_n, as it was given.
     pub detuning: Vec<E>,
+    /// p_0, p_1, ... of the parameter that was sought, known to the order before the last; see [`periodic`].
+    pub parameter: Vec<E>,
     /// The smallest divisor of every order and unknown.
     pub nearest: Vec<Nearest>,
     /// The work, order by order.
@@ -108,14 +113,32 @@ pub fn resonant<A: AmplitudeAlgebra>(
     detuning: &[A::Element],
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<SlowFlow<A::Element>, ExpandError> {
-    let mut averaging = Resonant::start(algebra, equation, detuning)?;
-    let work = run(&mut averaging, order, observer)?;
-    // An order that was interrupted has provisional values.
-    let finished = work.len() + 1;
-    let Resonant { mut flow, mut x, mut nearest, .. } = averaging;
-    flow.iter_mut().chain(&mut x).for_each(|list| list.truncate(finished));
-    nearest.retain(|near| near.order < finished);
-    Ok(SlowFlow { flow, solution: x, detuning: detuning.to_vec(), nearest, work })
+    let generating = |j| algebra.twice_real(&algebra.amplitude(j));
+    let generating = (0..algebra.unknowns()).map(generating).collect();
+    Resonant::start(algebra, equation, detuning, generating)?.finish(order, observer)
+}
+
+/// The motion x_j = `generating[j]` + sum eps^n u_{j,n} without slow change, for functions of the force's
+/// phase alone (of the harmonics nu_j), and the parameter p = p_0 + eps p_1 + ... that keeps it so: order n
+/// of the equations has no part in the harmonics nu_j for one p_{n-1}. The equation contains eps p, p where
+/// the binding says it is sought, and at order one not its powers.
+///
+/// Lindstedt's loop: the edges of the tongues of Mathieu's equation, where a = nu^2 + eps p. A policy of
+/// [`resonant`]: the same split, whose resonant part p removes.
+///
+/// # Errors
+/// As [`resonant`]; [`ExpandError::NotBalanced`] at the order at which no p does.
+pub fn periodic<A: AmplitudeAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    order: usize,
+    detuning: &[A::Element],
+    generating: Vec<A::Element>,
+    observer: &mut dyn FnMut(&OrderWork) -> bool,
+) -> Result<SlowFlow<A::Element>, ExpandError> {
+    let mut loops = Resonant::start(algebra, equation, detuning, generating)?;
+    loops.balance = Some(Balance::new(algebra, equation, &loops.x, &loops.velocity)?);
+    loops.finish(order, observer)
 }
 
 struct Resonant<'a, A: AmplitudeAlgebra> {
@@ -129,6 +152,8 @@ struct Resonant<'a, A: AmplitudeAlgebra> {
     /// Whether coefficient n of a node depends on x_{j,n} or its rate.
     sensitive: Vec<bool>,
     nearest: Vec<Nearest>,
+    /// The parameter that is sought, if one is.
+    balance: Option<Balance<A::Element>>,
 }
 
 impl<A: AmplitudeAlgebra> Scheme for Resonant<'_, A> {
@@ -159,6 +184,9 @@ impl<A: AmplitudeAlgebra> Scheme for Resonant<'_, A> {
             let phase = |source| ExpandError::Phase { order: n, source };
             parts.push(algebra.split(j, &g).map_err(phase)?);
         }
+        if let Some(balance) = &mut self.balance {
+            balance.settle(&mut self.evaluator, n, &mut parts)?;
+        }
         for (j, Split { flow, response, nearest }) in parts.into_iter().enumerate() {
             let change = algebra.add(&algebra.by_time(&response), &algebra.twice_real(&flow));
             algebra.add_assign(&mut self.velocity[j][n], &change);
@@ -184,24 +212,42 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
         algebra: &'a A,
         equation: &'a Equation<A>,
         detuning: &'a [A::Element],
+        generating: Vec<A::Element>,
     ) -> Result<Self, ExpandError> {
         let unknowns = equation.roots.len();
-        if unknowns != algebra.unknowns() {
+        if unknowns != algebra.unknowns() || unknowns != generating.len() {
             return Err(ExpandError::NotTheFrequency { unknown: unknowns });
         }
-        let generating = |j| algebra.twice_real(&algebra.amplitude(j));
-        let x: Vec<_> = (0..unknowns).map(|j| vec![generating(j)]).collect();
+        let x: Vec<_> = generating.into_iter().map(|x| vec![x]).collect();
         let velocity = x.iter().map(|x| vec![algebra.by_time(&x[0])]).collect();
         let evaluator = Evaluator::new(algebra, equation);
         let flow = (0..unknowns).map(|_| vec![algebra.zero()]).collect();
-        let (sensitive, nearest) = (Vec::new(), Vec::new());
+        let (sensitive, nearest, balance) = (Vec::new(), Vec::new(), None);
         let mut averaging =
-            Self { algebra, evaluator, detuning, flow, x, velocity, sensitive, nearest };
+            Self { algebra, evaluator, detuning, flow, x, velocity, sensitive, nearest, balance };
         averaging.assign(0);
         averaging.sensitive = averaging.linearise()?;
         averaging.evaluator = Evaluator::new(algebra, equation);
         averaging.order_zero()?;
         Ok(averaging)
+    }
+
+    /// Derives the orders.
+    fn finish(
+        mut self,
+        order: usize,
+        observer: &mut dyn FnMut(&OrderWork) -> bool,
+    ) -> Result<SlowFlow<A::Element>, ExpandError> {
+        let work = run(&mut self, order, observer)?;
+        // An order that was interrupted has provisional values.
+        let finished = work.len() + 1;
+        let Self { mut flow, mut x, mut nearest, balance, .. } = self;
+        flow.iter_mut().chain(&mut x).for_each(|list| list.truncate(finished));
+        nearest.retain(|near| near.order < finished);
+        let mut parameter = balance.map_or_else(Vec::new, |balance| balance.values);
+        parameter.truncate(finished - 1);
+        let detuning = self.detuning.to_vec();
+        Ok(SlowFlow { flow, solution: x, detuning, parameter, nearest, work })
     }
 
     /// Checks that order zero is x_j'' + nu_j^2 x_j + what depends on eta alone; the nodes whose order n
@@ -220,7 +266,7 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
             }
             for (j, root) in roots.iter().enumerate() {
                 let expected = match j == index && !velocity {
-                    true => Rational::from(algebra.frequency(j).square_ref()),
+                    true => algebra.frequency_squared(j),
                     false => Rational::new(),
                 };
                 let gap = algebra.sub(&tangents[*root][0], &algebra.rational(&expected));

@@ -54,7 +54,15 @@ impl Refusal for ResonanceError {
                 (Usage, "second-unknown", "one equation for every unknown, separated by `;`")
             }
             Self::Unset { .. } => (Usage, "no-value-set", "--set NAME=VALUE, for example 1/10"),
-            Self::NoRationalModes { .. } => (
+            Self::NotSought { .. } => {
+                (Usage, "unknown-parameter", "see `lindstedt problems --show NAME`")
+            }
+            Self::SoughtOfSeveral { .. } | Self::ForcedMode => (NoAnswer, "no-method", ""),
+            Self::NoSuchMode { .. } => (Usage, "no-such-mode", "modes are counted from 1"),
+            Self::InternalResonance { .. } => {
+                (NoAnswer, "internal-resonance", "the slow flow has all modes (`derive`)")
+            }
+            Self::NoRationalModes { .. } | Self::NoRationalForm | Self::IrrationalMode { .. } => (
                 NoAnswer,
                 "no-rational-modes",
                 "exact orders need frequencies with rational ratios; a small difference is a detuning \

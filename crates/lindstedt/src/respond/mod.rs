@@ -242,6 +242,10 @@ impl Subject<'_> {
             let message = "a start state is followed for one unknown and without a sweep";
             return Err(Refused::usage("start", message, "lindstedt simulate").into());
         }
+        if self.has_phase() {
+            let message = "a start state is followed for a force without a phase at t = 0";
+            return Err(Refused::usage("start", message, "lindstedt simulate").into());
+        }
         if self.runs_backwards() {
             let message = "a start state is followed for a positive small parameter";
             return Err(Refused::usage("start", message, "lindstedt simulate").into());

@@ -255,6 +255,11 @@ impl<'a> Subject<'a> {
         point.exponents.iter().map(|x| [scaled(x.re), scaled(x.im)]).collect()
     }
 
+    /// Whether eta is not 0 at t = 0.
+    pub(super) fn has_phase(&self) -> bool {
+        self.slow.system.start.as_number().is_none_or(|start| !start.is_zero())
+    }
+
     pub(super) fn runs_backwards(&self) -> bool {
         self.small.as_ref().is_some_and(|small| *small < 0)
     }

@@ -60,9 +60,13 @@ pub struct AmplitudeTerm {
 pub struct Amplitudes<S> {
     scalars: S,
     symbols: Vec<String>,
-    /// q nu_j, q Omega with the common denominator q.
+    /// q nu_j of the amplitudes and q Omega with the common denominator q.
     rates: Vec<i64>,
     common: i64,
+    /// nu_j^2 of the unknowns.
+    squares: Vec<Rational>,
+    /// The force is e^{i step eta}.
+    step: i32,
     stop: Stop,
     overflow: AtomicBool,
 }
@@ -84,8 +88,10 @@ impl<S: Scalars> Amplitudes<S> {
         let common = all().fold(Integer::from(1), |q, nu| q.lcm(nu.denom()));
         let rate = |nu: &Rational| Rational::from(nu * &common).numer().to_i32().map(i64::from);
         Some(Self {
+            squares: frequencies.iter().map(|nu| nu.clone().square()).collect(),
             rates: all().map(rate).collect::<Option<_>>()?,
             common: i64::from(common.to_i32()?),
+            step: 1,
             scalars,
             symbols: symbols.iter().map(|name| (*name).to_owned()).collect(),
             stop: Stop::default(),
@@ -97,6 +103,31 @@ impl<S: Scalars> Amplitudes<S> {
     #[must_use]
     pub fn with_stop(self, stop: Stop) -> Self {
         Self { stop, ..self }
+    }
+
+    /// The algebra for more unknowns than there are amplitudes, with nu_j^2 of all of them: those behind have no
+    /// amplitude of their own, and nu_j need not be rational.
+    #[must_use]
+    pub fn with_unknowns(self, squares: Vec<Rational>) -> Self {
+        Self { squares, ..self }
+    }
+
+    /// The algebra in which eta has a whole part of the force's frequency: cos m eta of the equation is the
+    /// harmonic m times `step` here.
+    #[must_use]
+    pub fn with_step(self, step: i32) -> Self {
+        Self { step, ..self }
+    }
+
+    /// (cos m eta, sin m eta); nothing for exponents that words do not hold.
+    pub fn wave(&self, m: i32) -> Option<[AmplitudeElement<S::Element>; 2]> {
+        let place = words::unit(self.phases() - 1);
+        let fits = m.checked_abs().is_some_and(|m| m <= words::LARGEST);
+        let power = self.monomial(place * Word::from(fits.then_some(m)?), false);
+        let half = self.weighted(&power, false, |_| Rational::from((1, 2)));
+        // sin = (E - 1/E)/(2 i).
+        let turned = self.weighted(&power, true, |_| Rational::from((-1, 2)));
+        Some([half, turned].map(|f| self.with_conjugate(&f)))
     }
 
     /// Whether an exponent beyond 127 was needed.
@@ -142,6 +173,12 @@ impl<S: Scalars> Amplitudes<S> {
     fn eigenvalue(&self, word: Word) -> i64 {
         let (digits, _) = words::exponents(word, self.phases());
         self.harmonic(&digits).iter().zip(&self.rates).map(|(k, rate)| i64::from(*k) * rate).sum()
+    }
+
+    /// q^2 nu_j^2, where it is whole: otherwise no eigenvalue is resonant.
+    fn square(&self, j: usize) -> Option<i128> {
+        let square = Rational::from(&self.squares[j] * Integer::from(self.common).square());
+        square.is_integer().then(|| square.numer().to_i128()).flatten()
     }
 
     /// p_1 - q_1, ..., p_M - q_M, m.

@@ -254,12 +254,7 @@ impl<S: Scalars> FunctionAlgebra for Amplitudes<S> {
 
 impl<S: Scalars> ForcedAlgebra for Amplitudes<S> {
     fn forcing(&self, multiple: u32) -> Option<(Self::Element, Self::Element)> {
-        let multiple = i32::try_from(multiple).ok().filter(|m| *m <= LARGEST)?;
-        let place = super::words::unit(self.phases() - 1);
-        let power = self.monomial(place * Word::from(multiple), false);
-        let half = self.weighted(&power, false, |_| Rational::from((1, 2)));
-        // sin = (E - 1/E)/(2 i).
-        let turned = self.weighted(&power, true, |_| Rational::from((-1, 2)));
-        Some((self.with_conjugate(&half), self.with_conjugate(&turned)))
+        let [cos, sin] = self.wave(i32::try_from(multiple).ok()?.checked_mul(self.step)?)?;
+        Some((cos, sin))
     }
 }

@@ -4,7 +4,9 @@ use super::average::shortened;
 use super::{Present, both, equation};
 use crate::Document;
 use lindstedt::unstable::coeff::print::Style;
-use lindstedt::unstable::derivation::resonance::{Polar, Terms, print_name, print_turns};
+use lindstedt::unstable::derivation::resonance::{
+    NormalMode, Polar, Sought, Terms, print_name, print_turns,
+};
 use lindstedt::{Answer, Averaged, SlowFlow};
 
 impl Present for Answer<SlowFlow> {
@@ -24,6 +26,88 @@ impl Present for Answer<Averaged> {
             Averaged::Polar(value) => self.clone().map(|_| value.clone()).document(),
             Averaged::Flow(value) => self.clone().map(|_| value.clone()).document(),
         }
+    }
+}
+
+impl Present for Answer<Sought> {
+    fn document(&self) -> Document {
+        let found = &self.value;
+        let problem = &found.problem;
+        let title = format!("{}: {}", problem.name, problem.title);
+        let mut page =
+            Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
+        let (name, nu) = (&found.parameter, &found.frequency);
+        page = page.words(format!(
+            "Sought: {name}, for which x stays periodic with the frequency {nu}; corrections have no part of that frequency."
+        ));
+        for branch in &found.branches {
+            page = page.formula(both(|style| {
+                format!("{} = {}", print_name(name, style), found.print_series(branch, style))
+            }));
+            for (n, terms) in branch.solution.iter().enumerate() {
+                page = page.formula(both(|style| {
+                    let x = shortened(found.print_motion(terms, style), style);
+                    format!("{} = {x}", print_name(&format!("x_{n}"), style))
+                }));
+            }
+            page = page.words(residual(branch.checked_orders));
+        }
+        page
+    }
+}
+
+impl Present for Answer<NormalMode> {
+    fn document(&self) -> Document {
+        let mode = &self.value;
+        let problem = &mode.problem;
+        let title = format!("{}: {}", problem.name, problem.title);
+        let mut page =
+            Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
+        page = page.words(format!(
+            "Normal mode {}: nu^2 = {}; a is the amplitude of its first harmonic, rho = a^2, psi' = Omega.",
+            mode.mode, mode.square
+        ));
+        page = page.formula(both(|style| {
+            let line = shortened(mode.print_in_amplitude(&mode.frequency_squared, style), style);
+            match style {
+                Style::Text => format!("Omega^2/nu^2 = {line}"),
+                Style::Latex => format!(r"\Omega^2/\nu^2 = {line}"),
+            }
+        }));
+        if mode.growth.iter().any(|terms| !terms.is_empty()) {
+            page = page.formula(both(|style| {
+                let line = shortened(mode.print_in_amplitude(&mode.growth, style), style);
+                match style {
+                    Style::Text => format!("a'/(nu*a) = {line}"),
+                    Style::Latex => format!(r"\dot a/(\nu a) = {line}"),
+                }
+            }));
+        }
+        for n in 0..=mode.order {
+            for (i, orders) in mode.solution.iter().enumerate() {
+                page = page.formula(both(|style| {
+                    let x = print_name(&problem.unknown(i), style);
+                    let index =
+                        if style == Style::Text { format!("{n}") } else { format!("{{({n})}}") };
+                    let mark = if style == Style::Text { "_" } else { "^" };
+                    format!(
+                        "{x}{mark}{index} = {}",
+                        shortened(mode.print_shape(&orders[n], style), style)
+                    )
+                }));
+            }
+        }
+        page.words(residual(mode.checked_orders))
+    }
+}
+
+/// What became of the substitution into the equation.
+fn residual(checked_orders: Option<usize>) -> String {
+    match checked_orders {
+        Some(last) => format!(
+            "Residual: the expansion substituted into the equation vanishes identically at orders 0 to {last}."
+        ),
+        None => "Residual: the orders were not checked.".to_owned(),
     }
 }
 
@@ -67,6 +151,13 @@ impl Board<'_> {
                     format!(r"E = e^{{i\eta}},\quad \dot\eta = {}", flow.print_force(style))
                 }
             }));
+            if flow.print_start(Style::Text).is_some() {
+                let start = |style| flow.print_start(style).unwrap_or_default();
+                page = page.formula(both(|style| match style {
+                    Style::Text => format!("eta(0) = {}", start(style)),
+                    Style::Latex => format!(r"\eta(0) = {}", start(style)),
+                }));
+            }
         }
         let Some(beside) = &flow.system.beside else { return page };
         let (rate, at, small) = (&beside.rate, &flow.system.force, &flow.problem.small);
@@ -154,11 +245,6 @@ impl Board<'_> {
                  order {order}."
             ));
         }
-        page.words(match self.0.checked_orders {
-            Some(last) => format!(
-                "Residual: the expansion substituted into the equation vanishes identically at orders 0 to {last}."
-            ),
-            None => "Residual: the orders were not checked.".to_owned(),
-        })
+        page.words(residual(self.0.checked_orders))
     }
 }

@@ -1,0 +1,323 @@
+//! The limit cycles of an averaged oscillator and their Floquet exponents, as exact series.
+//!
+//! a -> -a with psi -> psi + pi changes nothing, so that A_n = a R_n(a^2) and B_n are polynomials in
+//! rho = a^2. With R_k the first that does not vanish, a cycle is a zero of
+//!
+//!   G(rho) = sum_{n >= k} eps^{n-k} R_n(rho),   rho = r + eps rho_1 + ...,   R_k(r) = 0, r > 0:
+//!
+//! rho_j is algebraic over Q, an element of Q\[r\]/m for every factor m of R_k with simple roots, and one
+//! series holds at all roots of m. The nontrivial exponent per unit of t is A'(a) there,
+//!
+//!   lambda = 2 rho eps^k dG/drho,   of order k: 2 r R_k'(r) eps^k + ...,   not zero at a simple root;
+//!
+//! the other one is 0, along psi. The frequency is psi' there. At a multiple root of R_k there is no such
+//! series (cycles may meet): it is named.
+
+use crate::error::DerivationError as Error;
+use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
+use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePower};
+use lindstedt_coeff::print::{Style, Term, parenthesize, power, print_sum};
+use lindstedt_expand::AveragedExpansion;
+use lindstedt_number::Number;
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_phase::Torus;
+use lindstedt_series::Series;
+use lindstedt_series::univariate::{
+    Residues, positive_roots, rational_root, refined, simple_and_multiple, trim,
+};
+use rug::Rational;
+use serde::Serialize;
+
+/// The limit cycles of an averaged oscillator whose amplitude does not vanish with the small parameter.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct Cycles {
+    /// k: the first order with A_k != 0.
+    pub leading_order: usize,
+    /// All of them, by increasing amplitude.
+    pub cycles: Vec<Cycle>,
+    /// a_0 of the multiple roots, where amplitude and exponent are no power series in the small parameter.
+    pub degenerate: Vec<Number>,
+}
+
+/// One limit cycle, exact: coefficients are polynomials in r = a_0^2.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct Cycle {
+    /// m, monic, from the constant on: m(r) = 0. Of degree 1 where r is rational.
+    #[serde(serialize_with = "as_text")]
+    pub polynomial: Vec<Rational>,
+    /// a_0, the amplitude at order zero.
+    pub amplitude: Number,
+    /// Orders 0, 1, ... of a^2.
+    pub squared_amplitude: Vec<Algebraic>,
+    /// Orders 0, 1, ... of the Floquet exponent per unit of t.
+    pub exponent: Vec<Algebraic>,
+    /// Orders 0, 1, ... of the frequency.
+    pub frequency: Vec<Algebraic>,
+    /// Whether the exponent is negative for small positive values of the small parameter.
+    pub stable: bool,
+    /// An interval with r alone.
+    #[serde(skip)]
+    root: [Rational; 2],
+}
+
+/// c_0 + c_1 r + ... and its value.
+#[derive(Clone, Debug, Serialize)]
+pub struct Algebraic {
+    /// c_0, c_1, ...
+    #[serde(skip)]
+    pub element: Vec<Rational>,
+    /// The value, with the polynomial as its exact form.
+    #[serde(flatten)]
+    pub number: Number,
+}
+
+fn as_text<S: serde::Serializer>(list: &[Rational], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&print(list, Style::Text))
+}
+
+/// The terms of a polynomial in r.
+fn terms(list: &[Rational], style: Style) -> Vec<Term> {
+    let terms = (0i64..).zip(list).filter(|(_, c)| !c.is_zero());
+    let term = |(k, c): (i64, &Rational)| Term {
+        coefficient: c.clone(),
+        factors: (k > 0).then(|| power("r", k, style)).into_iter().collect(),
+    };
+    terms.map(term).collect()
+}
+
+fn print(list: &[Rational], style: Style) -> String {
+    print_sum(&terms(list, style), style)
+}
+
+/// c_0 + c_1 small + ... with polynomials in r as coefficients.
+#[must_use]
+pub fn print_series(series: &[Algebraic], small: &str, style: Style) -> String {
+    let mut sum = Vec::new();
+    for (n, c) in (0i64..).zip(series).filter(|(_, c)| !c.element.is_empty()) {
+        let factor = (n > 0).then(|| power(small, n, style));
+        sum.push(match <[Term; 1]>::try_from(terms(&c.element, style)) {
+            Ok([single]) => single.times(factor),
+            Err(list) => {
+                let line = print_sum(&list, style);
+                let line = if n > 0 { parenthesize(&line, style) } else { line };
+                Term { coefficient: Rational::from(1), factors: vec![line] }.times(factor)
+            }
+        });
+    }
+    print_sum(&sum, style)
+}
+
+impl Cycle {
+    /// m(r), whose root r = a_0^2 is.
+    #[must_use]
+    pub fn print_polynomial(&self, style: Style) -> String {
+        print(&self.polynomial, style)
+    }
+
+    /// A series of this cycle summed at one value of the small parameter, and its last term that does not
+    /// vanish.
+    #[must_use]
+    pub fn sum(&self, series: &[Algebraic], small: &Ball, balls: Balls) -> [Ball; 2] {
+        let r = enclosed(&self.polynomial, &self.root, balls);
+        let mut power = balls.one();
+        let mut found = [balls.zero(), balls.zero()];
+        for c in series.iter().map(|c| &c.element) {
+            if !c.is_empty() {
+                let term = balls.mul(&value(c, &r, balls), &power);
+                found = [balls.add(&found[0], &term), balls.abs(&term)];
+            }
+            power = balls.mul(&power, small);
+        }
+        found
+    }
+
+    /// Whether a_0^2 is rational: then all coefficients are.
+    #[must_use]
+    pub fn is_rational(&self) -> bool {
+        self.polynomial.len() <= 2
+    }
+}
+
+/// Coefficients of a polynomial in rho.
+type InSquare = Vec<Rational>;
+
+/// f/a^offset as a polynomial in a^2, if it is one.
+fn in_square(f: &AmplitudePolynomial<Rational>, offset: i32) -> Option<InSquare> {
+    let mut list = InSquare::new();
+    for (AmplitudePower(exponent), c) in f.terms() {
+        let twice = usize::try_from(exponent - offset).ok().filter(|e| e % 2 == 0)?;
+        list.resize(list.len().max(twice / 2 + 1), Rational::new());
+        list[twice / 2] += c;
+    }
+    Some(list)
+}
+
+/// What the cycles come from: R_n and B_n, from n = 0.
+struct Rates {
+    amplitude: Vec<InSquare>,
+    phase: Vec<InSquare>,
+    leading_order: usize,
+}
+
+/// The cycles, their coefficients with so many digits; nothing where every A_n vanishes, none depends on
+/// a, or the rates are not of that form.
+pub(super) fn cycles(
+    frequency: &Rational,
+    expansion: &AveragedExpansion<Torus<Rationals>>,
+    digits: usize,
+) -> Result<Option<Cycles>, Error> {
+    let in_squares = |list: &[AmplitudePolynomial<Rational>], offset| {
+        list.iter().map(|f| in_square(f, offset)).collect::<Option<Vec<_>>>()
+    };
+    let amplitude = in_squares(&expansion.amplitude_rate, 1);
+    let (Some(amplitude), Some(mut phase)) = (amplitude, in_squares(&expansion.phase_rate, 0))
+    else {
+        return Ok(None);
+    };
+    if amplitude.iter().all(|r| r.len() < 2) {
+        return Ok(None);
+    }
+    phase[0] = vec![frequency.clone()];
+    let Some(leading_order) = amplitude.iter().position(|r| !r.is_empty()) else { return Ok(None) };
+    let rates = Rates { amplitude, phase, leading_order };
+    let at_zero = |c: &&Rational| c.is_zero();
+    let zeros = rates.amplitude[leading_order].iter().take_while(at_zero).count();
+    let [mut simple, multiple] = simple_and_multiple(&rates.amplitude[leading_order][zeros..]);
+    let mut found = Vec::new();
+    while let Some(root) = rational_root(&simple).filter(|_| simple.len() > 2) {
+        let factor = vec![-root, Rational::from(1)];
+        [simple, _] = lindstedt_series::univariate::divided(&simple, &factor);
+        found.extend(rates.at_roots(factor, digits)?);
+    }
+    if simple.len() > 1 {
+        found.extend(rates.at_roots(simple, digits)?);
+    }
+    found.sort_by(|(a, _), (b, _)| a[0].cmp(&b[0]));
+    let mut degenerate = Vec::new();
+    for root in positive_roots(&multiple) {
+        degenerate.push(root_of_root(&multiple, &root, digits)?);
+    }
+    let cycles = found.into_iter().map(|(_, cycle)| cycle).collect();
+    Ok(Some(Cycles { leading_order, cycles, degenerate }))
+}
+
+/// c_0 + c_1 r + ...
+fn value(element: &[Rational], r: &Ball, balls: Balls) -> Ball {
+    let step = |sum: Ball, c| balls.add(&balls.mul(&sum, r), &balls.from_rational(c));
+    element.iter().rev().fold(balls.zero(), step)
+}
+
+/// A root of a polynomial at so many bits.
+fn enclosed(polynomial: &[Rational], root: &[Rational; 2], balls: Balls) -> Ball {
+    let [low, high] = refined(polynomial, root, balls.bits());
+    balls.hull(&balls.from_rational(&low), &balls.from_rational(&high))
+}
+
+/// sqrt r, exact where it is rational.
+fn root_of_root(
+    polynomial: &[Rational],
+    root: &[Rational; 2],
+    digits: usize,
+) -> Result<Number, Error> {
+    let [low, high] = refined(polynomial, root, 1);
+    let rational =
+        if low == high { lindstedt_equation::classify::rational_root(&low) } else { None };
+    let exact = rational.map(|q| q.to_string());
+    let value = |balls: Balls| balls.sqrt(&enclosed(polynomial, root, balls));
+    Ok(lindstedt_number::certified(exact, digits, value)?)
+}
+
+impl Rates {
+    /// One cycle for every positive root of a factor, with the interval of the root.
+    fn at_roots(
+        &self,
+        modulus: Vec<Rational>,
+        digits: usize,
+    ) -> Result<Vec<([Rational; 2], Cycle)>, Error> {
+        let roots = positive_roots(&modulus);
+        let field = Residues::new(modulus);
+        let Some([square, exponent, frequency]) = self.series(&field).filter(|_| !roots.is_empty())
+        else {
+            return Ok(Vec::new());
+        };
+        let mut list = Vec::new();
+        for root in roots {
+            let modulus = field.modulus();
+            let number = |element: &Vec<Rational>| {
+                let value = |balls| Some(value(element, &enclosed(modulus, &root, balls), balls));
+                let exact = Some(print(element, Style::Text));
+                let number = lindstedt_number::certified(exact, digits, value)?;
+                Ok(Algebraic { element: element.clone(), number })
+            };
+            let numbers =
+                |list: &[Vec<Rational>]| list.iter().map(number).collect::<Result<Vec<_>, Error>>();
+            let exponent = numbers(&exponent)?;
+            let leading = &exponent[self.leading_order].number.decimal;
+            let cycle = Cycle {
+                polynomial: modulus.to_vec(),
+                amplitude: root_of_root(modulus, &root, digits)?,
+                squared_amplitude: numbers(&square)?,
+                stable: leading.starts_with('-'),
+                frequency: numbers(&frequency)?,
+                exponent,
+                root: root.clone(),
+            };
+            list.push((root, cycle));
+        }
+        Ok(list)
+    }
+
+    /// a^2, lambda and the frequency over Q\[r\]/m, as far as the orders of the rates reach.
+    fn series(&self, field: &Residues) -> Option<[Vec<Vec<Rational>>; 3]> {
+        let k = self.leading_order;
+        let orders = self.amplitude.len() - k;
+        let slopes: Vec<InSquare> =
+            self.amplitude.iter().map(|r| lindstedt_series::univariate::derivative(r)).collect();
+        let mut square = vec![field.root()];
+        let slope = self.sum(field, &slopes[k..], &square, 1).swap_remove(0);
+        let inverse = field.reciprocal(&slope)?;
+        for n in 1..orders {
+            square.push(field.zero());
+            let gap = self.sum(field, &self.amplitude[k..], &square, n + 1).swap_remove(n);
+            square[n] = field.neg(&field.mul(&gap, &inverse));
+        }
+        let slope = self.sum(field, &slopes[k..], &square, orders);
+        let twice = Series::truncated(square.clone()).map(|c| field.scale(c, &Rational::from(2)));
+        let exponent = twice.mul(field, &Series::truncated(slope), orders - 1).coefficients;
+        let exponent = std::iter::repeat_n(field.zero(), k).chain(exponent).collect();
+        // B_0 does not depend on a.
+        let frequency = self.sum(field, &self.phase, &square, orders + 1);
+        Some([square, exponent, frequency])
+    }
+
+    /// The first orders of sum eps^n p_n(rho) along the series of rho; of order 0 of p_n rho is not needed
+    /// where p_0 is constant.
+    fn sum(
+        &self,
+        field: &Residues,
+        list: &[InSquare],
+        square: &[Vec<Rational>],
+        orders: usize,
+    ) -> Vec<Vec<Rational>> {
+        let mut rho = square.to_vec();
+        rho.resize(orders, field.zero());
+        let rho = Series::truncated(rho);
+        let mut sum = vec![field.zero(); orders];
+        for (n, p) in list.iter().enumerate().take(orders) {
+            let constant = |c: &Rational| {
+                let mut list = vec![field.zero(); orders];
+                list[0] = field.rational(c);
+                Series::truncated(list)
+            };
+            let step =
+                |sum: Series<_>, c| sum.mul(field, &rho, orders - 1).add(field, &constant(c));
+            let value = p.iter().rev().fold(constant(&Rational::new()), step);
+            for (total, c) in sum[n..].iter_mut().zip(&value.coefficients) {
+                field.add_assign(total, c);
+            }
+        }
+        sum.into_iter().map(trim).collect()
+    }
+}

@@ -1,0 +1,319 @@
+//! Nonlinear normal modes: the slow flow restricted to one mode.
+//!
+//! With the time tau = nu t of the mode, q_j'' + kappa_j q_j + eps (...) = 0, kappa_j = nu_j^2/nu^2 rational even
+//! where the frequencies are not; of all amplitudes z of this mode alone is there, so that
+//!
+//!   dz/dtau = i z + sum eps^n f_n(z, zbar) = z (i Omega/nu + A),   q_j = delta_j (z + zbar) + sum eps^n u_{j,n}(z, zbar),
+//!
+//! Omega and A being polynomials in rho = a^2 = 4 |z|^2: the backbone and the growth, and x = P q the shape. A
+//! mode j with kappa_j = k^2, which the harmonic k drives, ends it: internal resonance, where no mode moves
+//! alone.
+
+use super::modes::{Matrix, Spectrum, spectrum};
+use super::system::{Prepared, separated, symbols};
+use super::{Element, Names, ResonanceError, Symbols, Terms, refuse_near_miss};
+use crate::averaging::AveragingSettings;
+use crate::error::DerivationError as Error;
+use crate::values::value;
+use crate::work::Progress;
+use lindstedt_coeff::print::{Style, Term, parenthesize, power, print_sum};
+use lindstedt_equation::classify::rational_root;
+use lindstedt_equation::{Expression, Problem, Unknown};
+use lindstedt_expand::resonance::{SlowFlow as Found, check_flow, resonant};
+use lindstedt_expand::{ExpandError, OrderWork, compile_system};
+use lindstedt_phase::amplitudes::scalars::Integers;
+use lindstedt_phase::amplitudes::{AmplitudeTerm, Amplitudes};
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// A nonlinear normal mode, substituted into its equations, as plain data.
+///
+/// ```
+/// use lindstedt_coeff::print::Style;
+/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::normal_mode};
+/// use lindstedt_problem_file::ProblemFile;
+/// // Two masses, the first on a cubic spring; in phase their linear frequency is 1.
+/// let text = "equations = [\"x'' + 2*x - y + eps*x^3/2\", \"y'' + 2*y - x\"]";
+/// let problem = ProblemFile::parse(text)?.problem;
+/// let mode = normal_mode(&problem, 1, &AveragingSettings::default(), &mut |_| true)?;
+/// let backbone = mode.print_in_amplitude(&mode.frequency_squared, Style::Text);
+/// assert_eq!(backbone, "1 + 3/16*rho*eps - 101/2048*rho^2*eps^2");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct NormalMode {
+    /// The problem.
+    pub problem: Problem,
+    /// The number of the mode, from 1.
+    pub mode: usize,
+    /// nu^2.
+    pub square: Rational,
+    /// kappa_j, that of the mode (1) first.
+    pub ratios: Vec<Rational>,
+    /// P of x = P q, by rows, the shape of the mode first.
+    pub shapes: Matrix,
+    /// Names without a value.
+    pub symbols: Vec<String>,
+    /// The highest order derived.
+    pub order: usize,
+    /// (Omega/nu)^2 order by order: polynomials in rho and the symbols.
+    pub frequency_squared: Vec<Terms>,
+    /// A/nu order by order, in the same way; all empty where the equations are conservative.
+    pub growth: Vec<Terms>,
+    /// x_{i,n} at `[i][n]`: polynomials in z, zbar (and a zero for E) and the symbols.
+    pub solution: Vec<Vec<Terms>>,
+    /// Orders 0..=this leave no residual; nothing where there was no time to check.
+    pub checked_orders: Option<usize>,
+}
+
+/// The normal mode of a number (from 1, by increasing frequency where the unknowns are coupled), to the order
+/// of the settings. Parameters as for [`super::slow_flow`].
+///
+/// Exact; every order is substituted back.
+///
+/// # Errors
+/// [`ResonanceError`] by name: a force, internal resonance, squares of frequencies that are not rational, a
+/// velocity where the frequency is a root.
+pub fn normal_mode(
+    problem: &Problem,
+    mode: usize,
+    settings: &AveragingSettings,
+    observer: &mut dyn FnMut(Progress) -> bool,
+) -> Result<NormalMode, Error> {
+    let equations: Vec<Expression> = problem.equations().cloned().collect();
+    let cards = |name: &str| value(problem, &settings.parameters, name);
+    let names = Names(problem);
+    let prepared = Prepared::of(&equations, &settings.parameters, &cards, names)?;
+    if !prepared.phase.rate.is_zero() {
+        return Err(ResonanceError::ForcedMode.into());
+    }
+    let modes = spectrum(&prepared.mass, &prepared.stiffness)?;
+    let count = modes.squares.len();
+    let index = mode.checked_sub(1).filter(|index| *index < count);
+    let modes = modes.with_first(index.ok_or(ResonanceError::NoSuchMode { mode, modes: count })?);
+    let square = modes.squares[0].clone();
+    if square <= 0 {
+        return Err(ResonanceError::NoOscillation { square: square.to_string() }.into());
+    }
+    let equations = separated(&prepared.equations, &modes, names)?;
+    let equations = in_own_time(&equations, &square)?;
+    let symbols = symbols(equations.iter(), names);
+    let list: Vec<&str> = symbols.iter().map(String::as_str).collect();
+    let ratios: Vec<_> =
+        modes.squares.iter().map(|other| Rational::from(other / &square)).collect();
+    let algebra = Amplitudes::new(Integers, &[1.into()], &Rational::new(), &list);
+    let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: list.len() })?;
+    let algebra = algebra.with_unknowns(ratios.clone()).with_stop(settings.stop.clone());
+    let graph = compile_system(&algebra, &equations, &Symbols(&algebra), settings.order)?;
+    let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
+    let found = resonant(&algebra, &graph, settings.order, &[], &mut on_order);
+    let too_high = ResonanceError::TooHigh { order: settings.order };
+    let found = match found {
+        _ if algebra.overflowed() => return Err(too_high.into()),
+        found => found?,
+    };
+    refuse_internal(&algebra, &found)?;
+    refuse_near_miss(&found.nearest)?;
+    observer(Progress::Checking);
+    let checked_orders = match check_flow(&algebra, &graph, &found) {
+        _ if settings.stop.asked() => None,
+        Err(ExpandError::Interrupted { .. }) => None,
+        other => Some(other?),
+    };
+    let terms = |f: &Element| algebra.rational_terms(f).unwrap_or_default();
+    let rates = found.flow[0].iter().map(|f| in_amplitude(&terms(f))).collect::<Vec<_>>();
+    let solution = (0..count).map(|i| unknown(&modes, i, &found, &terms)).collect();
+    Ok(NormalMode {
+        problem: problem.clone(),
+        mode,
+        square,
+        ratios,
+        shapes: modes.shapes.unwrap_or_default(),
+        symbols,
+        order: found.order(),
+        frequency_squared: squared(&rates),
+        growth: rates.into_iter().map(|[growth, _]| listed(growth)).collect(),
+        solution,
+        checked_orders,
+    })
+}
+
+/// The equations divided by nu^2, in the time nu t.
+fn in_own_time(
+    equations: &[Expression],
+    square: &Rational,
+) -> Result<Vec<Expression>, ResonanceError> {
+    let root = rational_root(square);
+    let velocity = |e: &Expression| matches!(e, Expression::Unknown(Unknown { derivative: 1, .. }));
+    if root.is_none() && equations.iter().flat_map(Expression::nodes).any(velocity) {
+        return Err(ResonanceError::IrrationalMode { square: square.to_string() });
+    }
+    let faster = |e: &Expression| {
+        let root = root.clone().filter(|_| velocity(e))?;
+        Some(Expression::Number(root) * e.clone())
+    };
+    let scale = Expression::Number(Rational::from(square.recip_ref()));
+    let equation = |(j, equation): (usize, &Expression)| {
+        let acceleration = Expression::unknown(j, 2);
+        let rest = equation.terms().iter().filter(|term| **term != acceleration);
+        let rest = rest.map(|term| (scale.clone() * term.map(&faster)).canonical());
+        let rest = rest.flat_map(|term| term.terms().to_vec()).collect::<Vec<_>>();
+        Expression::Sum([acceleration.clone()].into_iter().chain(rest).collect())
+    };
+    Ok(equations.iter().enumerate().map(equation).collect())
+}
+
+fn refuse_internal(
+    algebra: &Amplitudes<Integers>,
+    found: &Found<Element>,
+) -> Result<(), ResonanceError> {
+    for (j, flow) in found.flow.iter().enumerate().skip(1) {
+        for (order, f) in flow.iter().enumerate() {
+            let terms = algebra.rational_terms(f).unwrap_or_default();
+            if let Some(term) = terms.first() {
+                let multiple = term.exponents[0] - term.exponents[1];
+                return Err(ResonanceError::InternalResonance { order, mode: j + 1, multiple });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// x_i order by order, from the modes.
+fn unknown(
+    modes: &Spectrum,
+    i: usize,
+    found: &Found<Element>,
+    terms: &dyn Fn(&Element) -> Terms,
+) -> Vec<Terms> {
+    let row = modes.shapes.iter().flatten().nth(i);
+    let order = |n: usize| {
+        let mut sum = BTreeMap::<Vec<i32>, [Rational; 2]>::new();
+        for (p, list) in row.into_iter().flatten().zip(&found.solution) {
+            for term in list.get(n).map(terms).unwrap_or_default() {
+                let entry = sum.entry(term.exponents).or_default();
+                entry[0] += Rational::from(p * &term.re);
+                entry[1] += Rational::from(p * &term.im);
+            }
+        }
+        let kept = sum.into_iter().filter(|(_, c)| !c.iter().all(Rational::is_zero));
+        kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect()
+    };
+    (0..=found.order()).map(order).collect()
+}
+
+/// Exponents of rho and the symbols.
+type InAmplitude = BTreeMap<Vec<i32>, Rational>;
+
+/// Real and imaginary part of f/z, with |z|^2 = rho/4.
+fn in_amplitude(terms: &Terms) -> [InAmplitude; 2] {
+    let mut parts = [InAmplitude::new(), InAmplitude::new()];
+    for term in terms {
+        let k = term.exponents[1];
+        let key: Vec<i32> = [k].into_iter().chain(term.exponents[3..].iter().copied()).collect();
+        for (part, c) in parts.iter_mut().zip([&term.re, &term.im]) {
+            *part.entry(key.clone()).or_default() += Rational::from(c >> (2 * k.unsigned_abs()));
+        }
+    }
+    parts
+}
+
+/// (1 + sum eps^n Omega_n)^2, order by order.
+fn squared(rates: &[[InAmplitude; 2]]) -> Vec<Terms> {
+    let symbols = rates.iter().flatten().flat_map(|r| r.keys()).map(Vec::len).max().unwrap_or(1);
+    let one = InAmplitude::from([(vec![0; symbols], Rational::from(1))]);
+    let order = |n: usize| if n == 0 { &one } else { &rates[n][1] };
+    let coefficient = |n: usize| {
+        let mut sum = InAmplitude::new();
+        for k in 0..=n {
+            for (v, a) in order(k) {
+                for (w, b) in order(n - k) {
+                    let key = v.iter().zip(w).map(|(v, w)| v + w).collect();
+                    *sum.entry(key).or_default() += Rational::from(a * b);
+                }
+            }
+        }
+        listed(sum)
+    };
+    (0..rates.len()).map(coefficient).collect()
+}
+
+fn listed(sum: InAmplitude) -> Terms {
+    let terms = sum.into_iter().filter(|(_, c)| !c.is_zero());
+    terms.map(|(exponents, re)| AmplitudeTerm { exponents, re, im: Rational::new() }).collect()
+}
+
+impl NormalMode {
+    /// nu, where it is rational.
+    #[must_use]
+    pub fn frequency(&self) -> Option<Rational> {
+        rational_root(&self.square)
+    }
+
+    fn factors(&self, powers: &[(&str, i32)], symbols: &[i32], style: Style) -> Vec<String> {
+        let symbols = super::print::factors(&self.symbols, symbols, style);
+        let powers = powers.iter().filter(|(_, n)| *n != 0);
+        let powers =
+            powers.map(|(name, n)| power(&super::print_name(name, style), i64::from(*n), style));
+        symbols.into_iter().chain(powers).collect()
+    }
+
+    /// One order of [`Self::frequency_squared`] or [`Self::growth`].
+    #[must_use]
+    pub fn print_order(&self, terms: &Terms, style: Style) -> String {
+        print_sum(&self.order_terms(terms, style), style)
+    }
+
+    fn order_terms(&self, terms: &Terms, style: Style) -> Vec<Term> {
+        let term = |term: &AmplitudeTerm| Term {
+            coefficient: term.re.clone(),
+            factors: self.factors(&[("rho", term.exponents[0])], &term.exponents[1..], style),
+        };
+        terms.iter().map(term).collect()
+    }
+
+    /// [`Self::frequency_squared`] or [`Self::growth`] as a series in the small parameter.
+    #[must_use]
+    pub fn print_in_amplitude(&self, orders: &[Terms], style: Style) -> String {
+        let small = super::print_name(&self.problem.small, style);
+        let mut sum = Vec::new();
+        for (n, terms) in (0i64..).zip(orders).filter(|(_, terms)| !terms.is_empty()) {
+            let factor = (n > 0).then(|| power(&small, n, style));
+            sum.push(match <[Term; 1]>::try_from(self.order_terms(terms, style)) {
+                Ok([single]) => single.times(factor),
+                Err(list) => {
+                    let line = parenthesize(&print_sum(&list, style), style);
+                    Term { coefficient: Rational::from(1), factors: vec![line] }.times(factor)
+                }
+            });
+        }
+        print_sum(&sum, style)
+    }
+
+    /// One order of an unknown as a sum of cosines and sines of psi, psi' = Omega, z = a/2 e^{i psi}.
+    #[must_use]
+    pub fn print_shape(&self, terms: &Terms, style: Style) -> String {
+        let mut sum = Vec::new();
+        for term in terms {
+            let [p, q] = [term.exponents[0], term.exponents[1]];
+            let twice = u32::from(p > q);
+            if p < q {
+                continue;
+            }
+            // c z^p zbar^q + conj = 2 (a/2)^{p+q} (Re c cos - Im c sin).
+            let scale = |c: &Rational| Rational::from(c << twice) >> (p + q).unsigned_abs();
+            let parts = [("cos", scale(&term.re)), ("sin", -scale(&term.im))];
+            for (function, c) in parts.into_iter().filter(|(_, c)| !c.is_zero()) {
+                let mut factors = self.factors(&[("a", p + q)], &term.exponents[3..], style);
+                if p > q {
+                    let angle = super::print_turns((p - q).unsigned_abs(), "psi", style);
+                    let backslash = if style == Style::Latex { r"\" } else { "" };
+                    factors.push(format!("{backslash}{function}({angle})"));
+                }
+                sum.push(Term { coefficient: c, factors });
+            }
+        }
+        print_sum(&sum, style)
+    }
+}

@@ -1,0 +1,304 @@
+//! The parameter for which the motion of a forced oscillator stays periodic, order by order: the edges of
+//! the tongues of Mathieu's and Hill's equations.
+//!
+//!   x'' + a x + eps (...) = 0,   a = a_0 + eps a_1 + ...,   a_0 = nu^2 the value given,
+//!   x = A cos(nu t) + ... or A sin(nu t) + ...,   no correction with the frequency nu,
+//!
+//! nu and the force's frequency being whole multiples of one frequency. Each of the two motions has its a; at
+//! even and odd ones of Mathieu's equation they are a_m(q) and b_m(q) (DLMF 28.6).
+
+use super::forces::divisor;
+use super::{Element, Names, ResonanceError, System, Terms};
+use crate::averaging::{AveragingSettings, constant};
+use crate::error::DerivationError as Error;
+use crate::values::value;
+use crate::work::Progress;
+use lindstedt_algebra::RationalAlgebra;
+use lindstedt_coeff::print::{Style, Term, parenthesize, power, print_sum};
+use lindstedt_equation::{Expression, Problem};
+use lindstedt_expand::resonance::{check_flow, periodic};
+use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
+use lindstedt_phase::amplitudes::scalars::Integers;
+use lindstedt_phase::amplitudes::{AmplitudeTerm, Amplitudes};
+use rug::Rational;
+
+/// A parameter as a series, for every motion that stays periodic.
+///
+/// ```
+/// use lindstedt_coeff::print::Style;
+/// use lindstedt_derivation::{averaging::AveragingSettings, resonance::sought};
+/// use lindstedt_problem_file::ProblemFile;
+/// let text = "equation = \"x'' + (a - 2*eps*cos(2*t))*x = 0\"\n[parameters]\na = { value = \"1\" }";
+/// let problem = ProblemFile::parse(text)?.problem;
+/// let found = sought(&problem, "a", &AveragingSettings::default(), &mut |_| true)?;
+/// // a_1 = 1 + q - q^2/8 - ..., b_1 = 1 - q - q^2/8 + ...
+/// let series: Vec<_> = found.branches.iter().map(|b| found.print_series(b, Style::Text)).collect();
+/// assert_eq!(series, ["1 + eps - 1/8*eps^2", "1 - eps - 1/8*eps^2"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Sought {
+    /// The problem.
+    pub problem: Problem,
+    /// The name of the parameter.
+    pub parameter: String,
+    /// nu.
+    pub frequency: Rational,
+    /// The frequency of which nu and the force's are whole multiples.
+    pub base: Rational,
+    /// Names without a value.
+    pub symbols: Vec<String>,
+    /// The orders asked for.
+    pub order: usize,
+    /// The motions: of the cosine, of the sine; one where there is no force.
+    pub branches: Vec<SoughtBranch>,
+}
+
+/// One motion and the series of the parameter.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct SoughtBranch {
+    /// Whether x begins with the sine.
+    pub sine: bool,
+    /// a_0, a_1, ...: polynomials in the symbols.
+    pub series: Vec<Terms>,
+    /// x_0, x_1, ...: the exponent of E is the harmonic of the base frequency.
+    pub solution: Vec<Terms>,
+    /// Orders 0..=this leave no residual; nothing where there was no time to check.
+    pub checked_orders: Option<usize>,
+}
+
+impl SoughtBranch {
+    /// The highest order derived.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.series.len().saturating_sub(1)
+    }
+}
+
+/// Parameters by name, one of which is sought.
+struct Symbols<'a>(&'a Amplitudes<Integers>, &'a str);
+
+impl Binding<Amplitudes<Integers>> for Symbols<'_> {
+    fn parameter(&self, name: &str) -> Option<Element> {
+        self.0.symbol(name)
+    }
+    fn formal(&self, _: &str, _: usize) -> Option<Element> {
+        None
+    }
+    fn is_sought(&self, name: &str) -> bool {
+        name == self.1
+    }
+}
+
+/// The parameter `name` for which the motion of frequency nu = sqrt(a_0) stays periodic; a_0 is its value
+/// among the settings or on its card. The amplitude A is the value of `amplitude`, else 1; other parameters
+/// as for [`super::slow_flow`].
+///
+/// Exact; every order is substituted back. Cost: for Mathieu's equation O(N^3) products of numbers.
+///
+/// # Errors
+/// [`ResonanceError`] for what is no such system; [`ExpandError::NotBalanced`] where no value keeps one of
+/// the motions periodic.
+pub fn sought(
+    problem: &Problem,
+    name: &str,
+    settings: &AveragingSettings,
+    observer: &mut dyn FnMut(Progress) -> bool,
+) -> Result<Sought, Error> {
+    let (start, equation) = beginning(problem, name, settings)?;
+    let mut given = settings.parameters.clone();
+    given.remove(name);
+    let amplitude = given.remove("amplitude");
+    let amplitude = amplitude.and_then(|a| a.as_rational().cloned()).unwrap_or_else(|| 1.into());
+    let cards = |known: &str| value(problem, &given, known).filter(|_| known != name);
+    let system = System::of(&[equation], &given, &cards, Names(problem), false)?;
+    let frequency = system.frequencies.first().cloned().unwrap_or_default();
+    let base = divisor(&frequency, &system.force);
+    let whole = |rate: &Rational| {
+        let high = ResonanceError::TooHigh { order: settings.order };
+        Rational::from(rate / &base).numer().to_i32().ok_or(high)
+    };
+    let (harmonic, step) = (whole(&frequency)?, whole(&system.force)?);
+    let symbols: Vec<String> =
+        system.symbols.iter().filter(|known| *known != name).cloned().collect();
+    let names: Vec<&str> = symbols.iter().map(String::as_str).collect();
+    let algebra = Amplitudes::new(Integers, &system.frequencies, &base, &names);
+    let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: names.len() })?;
+    let algebra = algebra.with_step(step.max(1)).with_stop(settings.stop.clone());
+    let mut found = Sought {
+        problem: problem.clone(),
+        parameter: name.to_owned(),
+        frequency,
+        base,
+        symbols,
+        order: settings.order,
+        branches: Vec::new(),
+    };
+    let task = Task {
+        algebra: &algebra,
+        system: &system,
+        settings,
+        start: &start,
+        name,
+        step,
+        names: Names(problem),
+    };
+    let mut refused = None;
+    for sine in [false, true].into_iter().take(if step == 0 { 1 } else { 2 }) {
+        let high = ResonanceError::TooHigh { order: settings.order };
+        let [cos, sin] = algebra.wave(harmonic).ok_or(high)?;
+        let generating = algebra.scale(if sine { &sin } else { &cos }, &amplitude);
+        match task.branch(sine, generating, observer) {
+            Ok(branch) => found.branches.push(branch),
+            Err(error @ Error::Expand(ExpandError::NotBalanced { .. })) => refused = Some(error),
+            Err(error) => return Err(error),
+        }
+    }
+    match refused {
+        Some(error) if found.branches.is_empty() => Err(error),
+        _ => Ok(found),
+    }
+}
+
+/// a_0, and the equation with a_0 + eps a in the place of a.
+fn beginning(
+    problem: &Problem,
+    name: &str,
+    settings: &AveragingSettings,
+) -> Result<(Rational, Expression), Error> {
+    if !problem.others.is_empty() {
+        let unknowns = 1 + problem.others.len();
+        return Err(ResonanceError::SoughtOfSeveral { unknowns }.into());
+    }
+    if !problem.equation.parameters().iter().any(|known| known == name) {
+        return Err(ResonanceError::NotSought { name: name.to_owned() }.into());
+    }
+    let unset = || ResonanceError::Unset { name: name.to_owned() };
+    let start = value(problem, &settings.parameters, name).ok_or_else(unset)?;
+    let irrational = || Error::Irrational { name: name.to_owned(), value: start.to_string() };
+    let start = start.as_rational().ok_or_else(irrational)?.clone();
+    let around = |e: &Expression| match e {
+        Expression::Parameter(known) if known == name => Some(
+            Expression::Number(start.clone()) + Expression::Small * Expression::parameter(name),
+        ),
+        _ => None,
+    };
+    let equation = problem.equation.substitute(&around).canonical();
+    Ok((start, equation))
+}
+
+struct Task<'a> {
+    algebra: &'a Amplitudes<Integers>,
+    system: &'a System,
+    settings: &'a AveragingSettings,
+    start: &'a Rational,
+    name: &'a str,
+    step: i32,
+    names: Names<'a>,
+}
+
+impl Task<'_> {
+    fn branch(
+        &self,
+        sine: bool,
+        generating: Element,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<SoughtBranch, Error> {
+        let (algebra, order) = (self.algebra, self.settings.order);
+        let binding = Symbols(algebra, self.name);
+        let graph = compile_system(algebra, &self.system.equations, &binding, order)?;
+        // The phase of the force turns `step` times as fast as that of the algebra.
+        let scale = Rational::from((1, self.step.max(1)));
+        let sigma = |e: &Expression| {
+            let refused = || ResonanceError::NotAForce { term: self.names.shown(e) };
+            let sigma = constant(algebra, e, &|name| algebra.symbol(name)).ok_or_else(refused)?;
+            Ok::<_, ResonanceError>(algebra.scale(&sigma, &scale))
+        };
+        let detuning = self.system.detuning.iter().map(sigma).collect::<Result<Vec<_>, _>>()?;
+        let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
+        let found = periodic(algebra, &graph, order, &detuning, vec![generating], &mut on_order)?;
+        if algebra.overflowed() {
+            return Err(ResonanceError::TooHigh { order }.into());
+        }
+        observer(Progress::Checking);
+        let checked_orders = match check_flow(algebra, &graph, &found) {
+            _ if self.settings.stop.asked() => None,
+            Err(ExpandError::Interrupted { .. }) => None,
+            other => Some(other?),
+        };
+        let terms = |f: &Element| algebra.rational_terms(f).unwrap_or_default();
+        let start = algebra.rational(self.start);
+        Ok(SoughtBranch {
+            sine,
+            series: std::iter::once(&start).chain(&found.parameter).map(terms).collect(),
+            solution: found.solution.iter().flatten().map(terms).collect(),
+            checked_orders,
+        })
+    }
+}
+
+impl Sought {
+    /// The exponents of the symbols behind those of z, zbar and E.
+    fn symbols_of(&self, exponents: &[i32], style: Style) -> Vec<String> {
+        super::print::factors(&self.symbols, exponents.get(3..).unwrap_or_default(), style)
+    }
+
+    /// One coefficient of the series.
+    fn terms(&self, terms: &Terms, style: Style) -> Vec<Term> {
+        let term = |term: &AmplitudeTerm| Term {
+            coefficient: term.re.clone(),
+            factors: self.symbols_of(&term.exponents, style),
+        };
+        terms.iter().map(term).collect()
+    }
+
+    /// a_n.
+    #[must_use]
+    pub fn print_coefficient(&self, terms: &Terms, style: Style) -> String {
+        print_sum(&self.terms(terms, style), style)
+    }
+
+    /// a_0 + a_1 eps + ...
+    #[must_use]
+    pub fn print_series(&self, branch: &SoughtBranch, style: Style) -> String {
+        let small = super::print_name(&self.problem.small, style);
+        let mut sum = Vec::new();
+        for (n, terms) in (0i64..).zip(&branch.series).filter(|(_, terms)| !terms.is_empty()) {
+            let factor = (n > 0).then(|| power(&small, n, style));
+            sum.push(match <[Term; 1]>::try_from(self.terms(terms, style)) {
+                Ok([single]) => single.times(factor),
+                Err(list) => {
+                    let line = parenthesize(&print_sum(&list, style), style);
+                    Term { coefficient: Rational::from(1), factors: vec![line] }.times(factor)
+                }
+            });
+        }
+        print_sum(&sum, style)
+    }
+
+    /// x_n as a sum of cosines and sines of t.
+    #[must_use]
+    pub fn print_motion(&self, terms: &Terms, style: Style) -> String {
+        let mut sum = Vec::new();
+        for term in terms.iter().filter(|term| term.exponents[2] >= 0) {
+            let m = term.exponents[2];
+            let twice = Rational::from(if m == 0 { 1 } else { 2 });
+            // c E^m + conj = 2 Re c cos - 2 Im c sin.
+            let parts = [("cos", term.re.clone()), ("sin", -term.im.clone())];
+            for (function, c) in parts.into_iter().filter(|(_, c)| !c.is_zero()) {
+                let mut factors = self.symbols_of(&term.exponents, style);
+                if m != 0 {
+                    let rate = Rational::from(&self.base * m);
+                    let angle = Term { coefficient: rate, factors: vec!["t".to_owned()] };
+                    let angle = print_sum(&[angle], style);
+                    let backslash = if style == Style::Latex { r"\" } else { "" };
+                    factors.push(format!("{backslash}{function}({angle})"));
+                }
+                sum.push(Term { coefficient: c * &twice, factors });
+            }
+        }
+        print_sum(&sum, style)
+    }
+}

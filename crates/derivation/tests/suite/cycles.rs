@@ -1,0 +1,62 @@
+//! Limit cycles of averaged equations and their Floquet exponents.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use lindstedt_coeff::print::Style;
+use lindstedt_derivation::averaging::{AveragingSettings, Cycles, average, print_series};
+use lindstedt_problem_file::ProblemFile;
+
+fn cycles(equation: &str, order: usize) -> Cycles {
+    let problem = ProblemFile::parse(&format!("equation = {equation:?}")).unwrap().problem;
+    let settings = AveragingSettings { order, digits: 12, ..AveragingSettings::default() };
+    average(&problem, &settings, &mut |_| true).unwrap().cycles.unwrap()
+}
+
+/// lambda = -eps <1 - x^2> over the period, from the known solution of van der Pol's equation.
+#[test]
+fn exponent_of_van_der_pol() {
+    let found = cycles("x'' + x = eps*(1 - x^2)*x'", 7);
+    let [cycle] = &found.cycles[..] else { panic!("one cycle") };
+    assert_eq!(
+        print_series(&cycle.exponent, "eps", Style::Text),
+        "-eps - 1/16*eps^3 + 11/4608*eps^5 + 4859/5308416*eps^7"
+    );
+    // The frequency of the cycle in Lindstedt's expansion.
+    assert_eq!(
+        print_series(&cycle.frequency, "eps", Style::Text),
+        "1 - 1/16*eps^2 + 17/3072*eps^4 + 35/884736*eps^6"
+    );
+    assert!(cycle.stable);
+    assert_eq!(cycle.amplitude.decimal, "2.00000000000");
+}
+
+/// (1 - x^4) x': R_1 = 1/2 - rho^2/16, a_0 = 8^(1/4), lambda_1 = 2 rho R_1' = -rho^2/4 = -2.
+#[test]
+fn algebraic_amplitude() {
+    let found = cycles("x'' + x = eps*(1 - x^4)*x'", 3);
+    let [cycle] = &found.cycles[..] else { panic!("one cycle") };
+    assert_eq!(cycle.print_polynomial(Style::Text), "-8 + r^2");
+    assert_eq!(cycle.amplitude.decimal, "1.68179283051");
+    let exponent = &cycle.exponent;
+    assert_eq!(
+        (&*exponent[1].number.decimal, &*exponent[2].number.decimal),
+        ("-2.00000000000", "0")
+    );
+}
+
+/// A_1 = (rho - 1)(rho - 4) a/8: the inner cycle is stable (2 rho R' = -3/4), the outer one is not (3); and
+/// (rho^2 - 5 rho + 5) with both amplitudes irrational, whose product of leading exponents is rational.
+#[test]
+fn every_cycle_with_its_sign() {
+    let found = cycles("x'' + x = eps*(1 - 5*x^2 + 2*x^4)*x'", 2);
+    let leading = found.cycles.iter().map(|c| c.exponent[1].number.exact.as_deref().unwrap());
+    assert_eq!(leading.collect::<Vec<_>>(), ["-3/4", "3"]);
+    assert_eq!(found.cycles.iter().map(|c| c.stable).collect::<Vec<_>>(), [true, false]);
+    let found = cycles("x'' + x = eps*(5 - 20*x^2 + 8*x^4)*x'", 3);
+    let amplitudes: Vec<_> = found.cycles.iter().map(|c| c.amplitude.decimal.as_str()).collect();
+    assert_eq!(amplitudes, ["1.17557050458", "1.90211303259"]);
+    assert_eq!(found.cycles.iter().map(|c| c.stable).collect::<Vec<_>>(), [true, false]);
+    // (rho - 1)^2: the order of the averaging does not decide.
+    let found = cycles("x'' + x = eps*(1 - 8*x^2 + 8*x^4)*x'", 2);
+    assert_eq!((found.cycles.len(), &*found.degenerate[0].decimal), (0, "1.00000000000"));
+}
