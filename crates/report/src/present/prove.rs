@@ -29,6 +29,8 @@ impl Present for Answer<ProvedOrbit> {
         let page = orbit(Document::titled(title), value);
         let others = value.further.len();
         let page = match others {
+            // The guesses of a response, or of a cycle, may miss one.
+            0 if value.exponent_sum.is_some() => page.words("There may be others."),
             0 => page,
             1 => page.words("One more orbit at the same values (there may be others):"),
             _ => page
