@@ -124,3 +124,84 @@ fn sweeps_of_the_frequency() {
         assert!((1.0 + 0.1 * a - b).abs() < 1e-12);
     }
 }
+
+/// Three states that are each other turned by a third of a turn lie within the largest amplitude together or not at all.
+#[test]
+fn the_largest_amplitude_is_that_of_a_disc() {
+    let equation = "x'' + x + eps*(x'/5 + x^3) = F*cos((3 + eps*sigma)*t)";
+    let set = [("eps", "1/10"), ("F", "10"), ("sigma", "1")];
+    for (limit, count) in [("5.9007", 1), ("5.9009", 4)] {
+        let amplitude = Some(lindstedt::Exact::parse(limit).unwrap());
+        let found = ask(equation, &set, &Respond { amplitude, ..to_order(2) });
+        let states = &found.states[0];
+        assert_eq!((states.count, states.count_proved, states.at_edge), (count, true, 0));
+    }
+}
+
+/// The equation itself, integrated along the frequency, lies on the upper branch upwards and on the lower one downwards.
+#[test]
+fn what_follows_the_sweep_lies_on_the_branches() {
+    let equation = "x'' + x + eps*(x'/5 + x^3) = eps*cos(omega*t)/2";
+    let sweep = Some(Axis::parse("omega=21/20,11/10,23/20").unwrap());
+    let found = ask(equation, &[("eps", "1/10")], &Respond { sweep, follow: true, ..to_order(4) });
+    let [up, down] = found.followed.as_ref().unwrap();
+    let known = |states: usize, state: usize| -> f64 {
+        found.states[states].list[state].amplitudes[0].decimal.parse().unwrap()
+    };
+    let read = |list: &[lindstedt::respond::Reading], k: usize| {
+        list[k].amplitudes.as_ref().unwrap()[0].value
+    };
+    assert_eq!(found.states[1].count, 3);
+    // 100 periods leave e^(-2 pi) of the way from one value to the next, two thousandths.
+    let pairs =
+        [(read(up, 1), known(1, 0)), (read(down, 1), known(1, 2)), (read(down, 2), known(0, 0))];
+    for (read, known) in pairs {
+        assert!((read - known).abs() < 5e-3, "{read} {known}");
+    }
+}
+
+/// Along the slow flow of x'' + x + 2 eps x y = y'' + 4 y + eps x^2 = 0 the energy changes by O(eps^(N + 1)), and at order one
+/// |z_1|^2 + 4 |z_2|^2 not at all.
+#[test]
+fn energy_along_hamiltonian_slow_flows() {
+    use lindstedt::unstable::simulate::{
+        Doubles, Integrator, Model, Parameters, Settings, Trajectory,
+    };
+    let case = Oscillator::parse("x'' + x + 2*eps*x*y = 0; y'' + 4*y + eps*x^2 = 0").unwrap();
+    for order in 1..=3 {
+        let flow = case.slow_flow(order, &Work::default()).unwrap().value;
+        let drifts = [20, 40].map(|n| {
+            let eps = Rational::from((1, n));
+            let [slow, _] = flow.motions(&eps, &|_| None, &Rational::from((1, 2))).unwrap();
+            let names: Vec<&str> = slow.names.iter().map(String::as_str).collect();
+            let model = Model::first_order(&names, &slow.rates).unwrap();
+            let system = model.compile(Doubles, &Parameters::new()).unwrap();
+            let start: Vec<f64> = slow.start.iter().map(Rational::to_f64).collect();
+            let mut motion =
+                Integrator::new(&system, &0.0, &start, Settings::for_digits(16)).unwrap();
+            let mut line = Trajectory::new(Doubles);
+            motion.advance(&9.0, &mut |report| line.record(report)).unwrap();
+            let at = |k: usize, t: f64| line.value(k, &t).unwrap();
+            let rate = |k: usize, t: f64| {
+                let h = 1e-2;
+                let step = |m: f64| at(k, t + m * h) - at(k, t - m * h);
+                (45.0 * step(1.0) - 9.0 * step(2.0) + step(3.0)) / (60.0 * h)
+            };
+            let energy = |t: f64| {
+                let (x, y, eps) = (at(4, t), at(5, t), eps.to_f64());
+                let motion = rate(4, t).powi(2) + rate(5, t).powi(2);
+                0.5 * (motion + x * x) + 2.0 * y * y + eps * x * x * y
+            };
+            let square = |t: f64| {
+                at(0, t).powi(2) + at(1, t).powi(2) + 4.0 * (at(2, t).powi(2) + at(3, t).powi(2))
+            };
+            let drift = |of: &dyn Fn(f64) -> f64| {
+                (1..8).map(|k| (of(f64::from(k)) - of(0.5)).abs()).fold(0.0, f64::max)
+            };
+            assert!(order > 1 || drift(&square) < 1e-12);
+            drift(&energy)
+        });
+        let slope = (drifts[0] / drifts[1]).log2();
+        assert!(slope > order as f64 + 0.7, "order {order}: {drifts:?}");
+    }
+}

@@ -147,3 +147,32 @@ pub(crate) fn compile_wall<R: Real>(
         direction: if wall.crossing == Crossing::Rising { 1 } else { -1 },
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Doubles, Integrator, Model, Parameters, Settings};
+
+    /// 2 x'' + y'' + 3 x = 0 = x'' + 2 y'' + 3 y: x + y = cos t, x - y = cos(sqrt 3 t)/2.
+    #[test]
+    fn masses_that_couple() -> Result<(), SimulateError> {
+        let term = |q: i64, k, n| Expression::integer(q) * Expression::unknown(k, n);
+        let equations = [[2, 1, 3, 0], [1, 2, 0, 3]]
+            .map(|[a, b, c, d]| term(a, 0, 2) + term(b, 1, 2) + term(c, 0, 0) + term(d, 1, 0));
+        let model = Model::of_unknowns(&equations.each_ref())?;
+        let system = model.compile(Doubles, &Parameters::new())?;
+        let start = [0.75, 0.0, 0.25, 0.0];
+        let mut flow = Integrator::new(&system, &0.0, &start, Settings::for_digits(16))?;
+        flow.advance(&2.0, &mut |_| std::ops::ControlFlow::Continue(()))?;
+        let [x, _, y, _] = flow.state() else { return Err(SimulateError::UnexpectedState) };
+        let (sum, difference) = (2f64.cos(), 0.5 * (2.0 * 3f64.sqrt()).cos());
+        assert!((x + y - sum).abs() < 1e-13 && (x - y - difference).abs() < 1e-13, "{x} {y}");
+        // One of the accelerations is not there.
+        let none = Expression::DISPLACEMENT + Expression::unknown(1, 0);
+        assert_eq!(
+            accelerations(&[&equations[0], &none]).err(),
+            Some(SimulateError::NotSecondOrder)
+        );
+        Ok(())
+    }
+}

@@ -11,9 +11,10 @@ use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_expand::Excitation;
 use lindstedt_simulate::{Flow, Model, Parameters, Quantity};
+use rug::Rational;
 
 const AT_AMPLITUDE: &str = "all at rest at the amplitude";
-const AT_ONE: &str = "all at rest at 1, nothing else is given";
+const AT_A_TENTH: &str = "all at rest at 1/10, nothing else is given";
 
 /// The system x_k'' = ... with its values.
 pub(super) fn several(oscillator: &Oscillator, start: &Start) -> Result<Setup, Error> {
@@ -36,7 +37,7 @@ pub(super) fn several(oscillator: &Oscillator, start: &Start) -> Result<Setup, E
     let mut state = state(start, &problem, &parameters)?;
     let chosen = start.state.is_none().then_some(match parameters.get("amplitude") {
         Some(_) => AT_AMPLITUDE,
-        None => AT_ONE,
+        None => AT_A_TENTH,
     });
     let others = state.split_off(2);
     let [x, v] = <[Quantity; 2]>::try_from(state).map_err(|_| Error::NoValue)?;
@@ -71,7 +72,7 @@ pub(super) fn several(oscillator: &Oscillator, start: &Start) -> Result<Setup, E
     })
 }
 
-/// The state asked for, x_1, x_1', x_2, x_2', ..., else at rest at the amplitude, else at 1.
+/// The state asked for, x_1, x_1', x_2, x_2', ..., else at rest at the amplitude, else at 1/10.
 fn state(
     start: &Start,
     problem: &Problem,
@@ -79,7 +80,8 @@ fn state(
 ) -> Result<Vec<Quantity>, Error> {
     let states = 2 * problem.equations().count();
     let Some(state) = &start.state else {
-        let at = parameters.get("amplitude").cloned().unwrap_or_else(|| 1.into());
+        let at =
+            parameters.get("amplitude").cloned().unwrap_or_else(|| Rational::from((1, 10)).into());
         return Ok((0..states).map(|k| if k % 2 == 0 { at.clone() } else { 0.into() }).collect());
     };
     if state.len() == states {
