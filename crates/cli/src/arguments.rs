@@ -255,6 +255,10 @@ pub struct RespondOptions {
     /// The largest amplitude looked at; by default one that has all states of the first order.
     #[arg(long = "box", value_name = "AMPLITUDE")]
     pub amplitude: Option<String>,
+    /// With --sweep: the equation itself integrated along the values, upwards and downwards, each from the end of the one
+    /// before: where it jumps.
+    #[arg(long, requires = "sweep")]
+    pub follow: bool,
     /// x and x' at t = 0: which state does the motion go to?
     #[arg(long, value_name = "X,V", allow_hyphen_values = true)]
     pub start: Option<String>,
@@ -404,8 +408,8 @@ pub struct SimulateOptions {
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// x(0) and x'(0); by default those of the file, else at rest at the amplitude, on the orbit (vibro-impact), 1/10
-    /// and 0 (stick-slip).
+    /// x(0) and x'(0), with several unknowns X,V,Y,W,...; by default those of the file, else at rest at the amplitude, on the
+    /// orbit (vibro-impact), 1/10 and 0 (stick-slip).
     #[arg(long, value_name = "X,V", allow_hyphen_values = true)]
     pub state: Option<String>,
     /// The motion before t = 0, for an equation with a delay: constant, free-flight (without
@@ -433,6 +437,9 @@ pub struct SimulateOptions {
     /// has the range that a problem file says (swept).
     #[arg(long, value_name = "NAME=LO..HI:COUNT", allow_hyphen_values = true)]
     pub sweep: Option<String>,
+    /// With --sweep: every value starts from the last point of the one before, upwards and then downwards.
+    #[arg(long, requires = "sweep", conflicts_with = "resume")]
+    pub follow: bool,
     /// Points of the section that are left out at the beginning [default: 200 with --sweep, 500
     /// periods with --lyapunov and --zero-one, else 0].
     #[arg(long, value_name = "N")]

@@ -15,6 +15,7 @@ pub fn run(options: &RespondOptions, session: &Session<'_>) -> Outcome {
         sweep: axes.next().transpose()?,
         second: axes.next().transpose()?,
         amplitude: amplitude.transpose().map_err(Error::from)?,
+        follow: options.follow,
         start: options.start.as_deref().map(Respond::read_start).transpose()?,
     };
     if axes.next().is_some() {

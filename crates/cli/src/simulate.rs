@@ -30,7 +30,7 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
         return session.show(oscillator.chaos(&question, &work), &[]);
     }
     if let Some(sweep) = &options.sweep {
-        let question = Bifurcation { start, ..Bifurcation::over(sweep) };
+        let question = Bifurcation { start, follow: options.follow, ..Bifurcation::over(sweep) };
         return diagram(options, session, &oscillator, &work, question);
     }
     let question = Simulate {

@@ -67,9 +67,10 @@ impl fmt::Display for Status {
 /// ```
 /// use lindstedt_number::{Number, Status, ball::Balls};
 ///
-/// let pi = Number::of_ball(&Balls::new(64).pi(), 10);
+/// let pi = Number::of_ball(&Balls::new(64).pi(), 10).ok_or("no digit")?;
 /// assert_eq!((pi.decimal.as_str(), pi.status), ("3.141592654", Status::Certified));
 /// assert_eq!(pi.weaken(Status::Estimated).to_string(), "3.141592654 +- 4.2e-10 (estimated)");
+/// # Ok::<(), &str>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Number {
@@ -94,18 +95,22 @@ impl Number {
     }
 
     /// As many of the digits asked for as are certain; an enclosure of zero is 0 with its radius,
-    /// a ball of radius 0 that a decimal of so many digits is, is exact.
+    /// a ball of radius 0 that a decimal of so many digits is, is exact. Nothing where the ball is no bounded set: it
+    /// says nothing about a number.
     #[must_use]
-    pub fn of_ball(ball: &Ball, digits: usize) -> Self {
+    pub fn of_ball(ball: &Ball, digits: usize) -> Option<Self> {
+        if !ball.is_finite() || !ball.midpoint().is_finite() {
+            return None;
+        }
         let known = ball.relative_accuracy_bits().max(0) as f64 * std::f64::consts::LOG10_2;
         let certain = if ball.is_exact() { digits } else { digits.min((known as usize).max(1)) };
         let decimal = decimal(ball, certain).unwrap_or_else(|| "0".to_owned());
         let number = Self::enclosed_as(ball, decimal);
         if ball.is_exact() && number.error.is_none() {
             let exact = Some(number.decimal.clone());
-            return Self { exact, status: Status::Exact, ..number };
+            return Some(Self { exact, status: Status::Exact, ..number });
         }
-        number
+        Some(number)
     }
 
     /// All the digits asked for, or 0 for an enclosure of zero to twice the digits; nothing where
@@ -255,7 +260,9 @@ mod tests {
         let error = Float::with_val(53, 1e-3);
         let value = Float::with_val(200, rug::float::Constant::Pi);
         assert_eq!(Number::with_error(&value, &error, 30).unwrap().decimal, "3.1416");
-        assert_eq!(Number::of_ball(&wide, 30).decimal, "3.14");
+        assert_eq!(Number::of_ball(&wide, 30).unwrap().decimal, "3.14");
+        let nowhere = balls.add_error(&pi, &Float::with_val(53, f64::INFINITY));
+        assert_eq!(Number::of_ball(&nowhere, 30), None);
         assert_eq!(Number::of_all_digits(&wide, 30), None);
         assert_eq!(Number::of_all_digits(&pi, 5).unwrap().decimal, "3.1416");
         let zero = balls.sub(&pi, &pi);

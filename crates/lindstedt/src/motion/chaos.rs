@@ -137,6 +137,7 @@ impl Oscillator {
             let message = format!("{kept} periods tell nothing, at least {LEAST} do");
             return Err(Refused::usage("chaos", message, "--periods 2000").into());
         }
+        self.single()?;
         let setup = Setup::new(self, &question.start, false, precomputed(work))?;
         let mut remarks = self.remarks().to_vec();
         remarks.extend(setup.remarks.iter().cloned().map(Remark));
@@ -157,10 +158,9 @@ impl Oscillator {
         };
         let lyapunov = question.lyapunov.then(|| run.lyapunov()).transpose()?;
         let zero_one = question.zero_one.then(|| run.zero_one()).transpose()?;
-        let [x, v] = run.setup.flow.start.each_ref().map(answer::shown);
         let value = Diagnosis {
             digits: 16,
-            start: answer::Begin { x, v, chosen: run.setup.chosen },
+            start: answer::Begin::new(&run.setup),
             history: run.setup.history,
             skip: skipped,
             kept,

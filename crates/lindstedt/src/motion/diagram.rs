@@ -35,6 +35,8 @@ pub struct Bifurcation {
     pub skipped: u32,
     /// Points that are kept.
     pub kept: u32,
+    /// Whether every value but the first starts from the last point of the one before, upwards and then down again.
+    pub follow: bool,
 }
 
 impl Bifurcation {
@@ -42,7 +44,7 @@ impl Bifurcation {
     #[must_use]
     pub fn over(sweep: &str) -> Self {
         let (start, sweep) = (Start::default(), sweep.to_owned());
-        Self { start, sweep, section: None, skipped: 200, kept: 100 }
+        Self { start, sweep, section: None, skipped: 200, kept: 100, follow: false }
     }
 }
 
@@ -96,6 +98,9 @@ pub struct Swept {
     pub status: Status,
     /// One per finished value.
     pub columns: Vec<Column>,
+    /// The same downwards, where values follow each other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub back: Option<Vec<Column>>,
 }
 
 /// The result of [`Oscillator::bifurcation`].
@@ -122,7 +127,8 @@ const TIER: &str = "doubles, without an error: a section of a motion with pertur
 
 impl Oscillator {
     /// The points of a section over the values of a parameter, after a transient, every value from
-    /// the same start; on all cores, in order.
+    /// the same start; on all cores, in order. Where values [follow](Bifurcation::follow) each other, one after the other:
+    /// of two attractors the motion stays at its own as long as there is one, which upwards and downwards is another.
     ///
     /// In doubles, without an error: of chaotic motion the points are typical, not those of one
     /// motion.
@@ -160,8 +166,15 @@ impl Oscillator {
         journal: &mut dyn Journal,
     ) -> Result<Answer<Diagram>, Error> {
         let begin = Instant::now();
-        let setup = Setup::new(self, &question.start, true, precomputed(work))?;
+        let mut setup = Setup::new(self, &question.start, true, precomputed(work))?;
         let axis = self.swept(&question.sweep, &setup)?;
+        setup.flow.forcing = setup.forcing_at(&axis)?;
+        // What varies has no value of its own.
+        setup.at.retain(|(name, value)| *name != axis.name || !value.is_empty());
+        if question.follow && setup.orbit.is_some() {
+            let message = "the orbit of the start is that of every value";
+            return Err(Refused::usage("sweep", message, "--state X,V").into());
+        }
         if question.kept == 0 {
             return Err(Refused::usage("sweep", "no points to keep", "--periods 100").into());
         }
@@ -173,25 +186,19 @@ impl Oscillator {
         let known =
             columns.iter().zip(&task.values).take_while(|(c, q)| c.exact == answer::shown(q));
         columns.truncate(known.count());
-        task.compute(&mut columns, work, journal)?;
-        let count: usize = columns.iter().map(|column| column.points.len()).sum();
-        let empty = columns.iter().filter(|column| column.points.is_empty()).count();
-        let verdict = format!(
-            "{} of {} values of {}, {empty} without points, {count} points in all",
-            columns.len(),
-            task.values.len(),
-            task.name,
-        );
+        let back = task.compute_all(&mut columns, work, journal)?;
+        let verdict = task.verdict(&columns, back.as_ref());
         let mut remarks = self.remarks().to_vec();
         remarks.extend(task.setup.remarks.drain(..).map(Remark));
-        let (done, complete) = (columns.len(), columns.len() == task.values.len());
-        if !complete {
+        let whole = |list: &Vec<Column>| list.len() == task.values.len();
+        let complete = whole(&columns) && back.as_ref().is_none_or(whole);
+        let done = columns.len();
+        if !complete && !question.follow {
             remarks.push(Remark("stopped; with --resume FILE it can be continued".to_owned()));
         }
-        let [x, v] = task.setup.flow.start.each_ref().map(answer::shown);
         let value = Diagram {
             digits: None,
-            start: answer::Begin { x, v, chosen: task.setup.chosen },
+            start: answer::Begin::new(&task.setup),
             history: task.setup.history,
             sweep: Swept {
                 parameter: task.name,
@@ -200,6 +207,7 @@ impl Oscillator {
                 kept: question.kept,
                 status: Status::Estimated,
                 columns,
+                back,
             },
             complete,
             verdict,
@@ -260,7 +268,7 @@ impl Task<'_> {
         let others: Vec<String> = others.map(|(name, value)| format!("{name}={value}")).collect();
         let ends = [self.values.first(), self.values.last()];
         let [low, high] = ends.map(|q| q.map(answer::shown).unwrap_or_default());
-        let start = self.setup.flow.start.each_ref().map(|q| q.float(64).to_f64());
+        let start: Vec<f64> = self.setup.flow.states().map(|q| q.float(64).to_f64()).collect();
         format!(
             "{} {}; {} = {low}..{high}:{}; start {start:?}; {:?}; skip {}, keep {}; {}",
             self.setup.name,
@@ -274,13 +282,49 @@ impl Task<'_> {
         )
     }
 
-    /// The columns after those that there are.
-    fn compute(
-        &self,
+    /// The columns after those that there are; where they follow each other all of them, and those downwards.
+    fn compute_all(
+        &mut self,
         columns: &mut Vec<Column>,
         work: &Work,
         journal: &mut dyn Journal,
-    ) -> Result<(), Error> {
+    ) -> Result<Option<Vec<Column>>, Error> {
+        let start: Vec<f64> = self.setup.flow.states().map(|q| q.float(64).to_f64()).collect();
+        if !self.question.follow {
+            return self.compute(columns, start, work, journal).map(|_| None);
+        }
+        columns.clear();
+        let end = self.compute(columns, start, work, &mut ())?;
+        let mut back = Vec::new();
+        self.values.reverse();
+        self.compute(&mut back, end, work, &mut ())?;
+        self.values.reverse();
+        Ok(Some(back))
+    }
+
+    fn verdict(&self, columns: &[Column], back: Option<&Vec<Column>>) -> String {
+        let all = || columns.iter().chain(back.into_iter().flatten());
+        let count: usize = all().map(|column| column.points.len()).sum();
+        let empty = all().filter(|column| column.points.is_empty()).count();
+        let ways = match back {
+            Some(_) => " upwards and downwards, each from the end of the one before",
+            None => "",
+        };
+        let (done, values) = (columns.len(), self.values.len());
+        format!(
+            "{done} of {values} values of {}{ways}, {empty} without points, {count} points in all",
+            self.name
+        )
+    }
+
+    /// The columns after those that there are, from a start; the state at the end of the last one.
+    fn compute(
+        &self,
+        columns: &mut Vec<Column>,
+        start: Vec<f64>,
+        work: &Work,
+        journal: &mut dyn Journal,
+    ) -> Result<Vec<f64>, Error> {
         let mut model = self.setup.flow.model.clone();
         if self.section == Section::Velocity {
             model = model.with_section(Expression::VELOCITY);
@@ -293,7 +337,7 @@ impl Task<'_> {
         };
         let settings = DiagramSettings {
             time: 0.0,
-            start: self.setup.flow.start.iter().map(|q| q.float(64).to_f64()).collect(),
+            start: start.clone(),
             section: match self.section {
                 Section::Stroboscopic => simulate::Section::Period(forcing),
                 Section::Impact => events(Surface::Wall(0), None),
@@ -302,7 +346,7 @@ impl Task<'_> {
             periods: self.periods()?,
             transient: self.question.skipped,
             kept: self.question.kept,
-            follow: false,
+            follow: self.question.follow,
             integration: Settings { most_impacts: 10_000_000, ..Settings::for_digits(16) },
         };
         let sweep = Sweep {
@@ -315,16 +359,20 @@ impl Task<'_> {
         let tick = || flow(!work.stop.asked());
         let range = columns.len()..self.values.len();
         let all = range.end;
+        let mut last = start;
         diagram(&sweep, &Doubles, &settings, range, &tick, &mut |found| {
             let Some(value) = self.values.get(found.index) else { return flow(false) };
             let column = self.column(value, &found.points);
+            if let Some(point) = found.points.as_ref().ok().and_then(|points| points.last()) {
+                last.clone_from(&point.state);
+            }
             let kept = journal.keep(&column);
             if kept {
                 columns.push(column);
             }
             flow(work.goes_on(Progress::Parts(columns.len(), all)) && kept)
         });
-        Ok(())
+        Ok(last)
     }
 
     fn column(

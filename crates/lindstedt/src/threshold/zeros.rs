@@ -81,7 +81,7 @@ fn changes_of_sign(
         }
         let balls = Balls::new(bits + 32);
         let ends = balls.hull(&balls.from_rational(&a), &balls.from_rational(&b));
-        let number = Number::of_ball(&ends, digits);
+        let Some(number) = Number::of_ball(&ends, digits) else { continue };
         found.push(match subject.found.class() {
             Class::Estimated => number.weaken(Status::Estimated),
             Class::Certified => number,
