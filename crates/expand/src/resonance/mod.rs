@@ -109,7 +109,7 @@ pub fn resonant<A: AmplitudeAlgebra>(
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<SlowFlow<A::Element>, ExpandError> {
     let mut averaging = Resonant::start(algebra, equation, detuning)?;
-    let work = run(&mut averaging, order, observer)?;
+    let work = run(&mut averaging, 1..=order, observer)?;
     // An order that was interrupted has provisional values.
     let finished = work.len() + 1;
     let Resonant { mut flow, mut x, mut nearest, .. } = averaging;
