@@ -10,6 +10,7 @@ use lindstedt_simulate::{
     self as simulate, DiagramSettings, Doubles, Point, Quantity, Settings, Surface, Sweep, diagram,
 };
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -62,12 +63,14 @@ pub struct Column {
 
 /// Where finished columns are kept, so that a diagram that was stopped goes on.
 pub trait Journal {
-    /// The columns of an earlier run, from the first on; nothing where the work is to be given up.
-    /// `identity` is one line that determines every number; a column whose value is not that of the
-    /// diagram is not used, nor what comes after it.
+    /// The columns of an earlier run, in any order; nothing where the work is to be given up.
+    /// `identity` is one line that determines every number; a column whose value is none of the
+    /// diagram is not used, and what is missing between others is computed again.
     fn begin(&mut self, identity: &str) -> Option<Vec<Column>>;
     /// The next finished column; whether to go on.
     fn keep(&mut self, column: &Column) -> bool;
+    /// All columns are there.
+    fn complete(&mut self) {}
 }
 
 /// Nothing is kept.
@@ -149,7 +152,7 @@ impl Oscillator {
         self.bifurcation_resumed(question, work, &mut ())
     }
 
-    /// The same from where a journal ends, which is told every finished column.
+    /// The same without what a journal has already; it is told every finished column.
     ///
     /// # Errors
     /// As there; [`Refused`] as stopped where the journal gives up.
@@ -169,11 +172,10 @@ impl Oscillator {
         let values = axis.values.iter().map(|value| Quantity::from(value.clone())).collect();
         let mut task = Task { question, setup, name: axis.name, section, values };
         let given_up = || Refused::stopped("the file of the sweep cannot be used", "");
-        let mut columns = journal.begin(&task.identity()).ok_or_else(given_up)?;
-        let known =
-            columns.iter().zip(&task.values).take_while(|(c, q)| c.exact == answer::shown(q));
-        columns.truncate(known.count());
+        let kept = journal.begin(&task.identity()).ok_or_else(given_up)?;
+        let (mut columns, lost) = task.known(kept);
         task.compute(&mut columns, work, journal)?;
+        let columns: Vec<Column> = columns.into_iter().flatten().collect();
         let count: usize = columns.iter().map(|column| column.points.len()).sum();
         let empty = columns.iter().filter(|column| column.points.is_empty()).count();
         let verdict = format!(
@@ -185,7 +187,13 @@ impl Oscillator {
         let mut remarks = self.remarks().to_vec();
         remarks.extend(task.setup.remarks.drain(..).map(Remark));
         let (done, complete) = (columns.len(), columns.len() == task.values.len());
-        if !complete {
+        let lost = (!lost.is_empty()).then(|| {
+            format!("{} = {}: lost in the journal, computed again", task.name, lost.join(", "))
+        });
+        remarks.extend(lost.map(Remark));
+        if complete {
+            journal.complete();
+        } else {
             remarks.push(Remark("stopped; with --resume FILE it can be continued".to_owned()));
         }
         let [x, v] = task.setup.flow.start.each_ref().map(answer::shown);
@@ -274,10 +282,23 @@ impl Task<'_> {
         )
     }
 
-    /// The columns after those that there are.
+    /// The columns that were kept, each in its place, and the values that are missing before the last of them.
+    fn known(&self, kept: Vec<Column>) -> (Vec<Option<Column>>, Vec<String>) {
+        let mut kept: HashMap<String, Column> =
+            kept.into_iter().map(|column| (column.exact.clone(), column)).collect();
+        let shown: Vec<String> = self.values.iter().map(answer::shown).collect();
+        let columns: Vec<Option<Column>> = shown.iter().map(|value| kept.remove(value)).collect();
+        let last = columns.iter().rposition(Option::is_some).unwrap_or(0);
+        let places = columns.iter().zip(&shown).take(last);
+        let lost = places.filter(|(column, _)| column.is_none()).map(|(_, value)| value.clone());
+        let lost = lost.collect();
+        (columns, lost)
+    }
+
+    /// The columns that are missing.
     fn compute(
         &self,
-        columns: &mut Vec<Column>,
+        columns: &mut [Option<Column>],
         work: &Work,
         journal: &mut dyn Journal,
     ) -> Result<(), Error> {
@@ -313,17 +334,29 @@ impl Task<'_> {
         };
         let flow = |on: bool| if on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
         let tick = || flow(!work.stop.asked());
-        let range = columns.len()..self.values.len();
-        let all = range.end;
-        diagram(&sweep, &Doubles, &settings, range, &tick, &mut |found| {
-            let Some(value) = self.values.get(found.index) else { return flow(false) };
-            let column = self.column(value, &found.points);
-            let kept = journal.keep(&column);
-            if kept {
-                columns.push(column);
-            }
-            flow(work.goes_on(Progress::Parts(columns.len(), all)) && kept)
-        });
+        let (all, mut done) = (columns.len(), columns.iter().flatten().count());
+        let mut goes_on = true;
+        let mut begin = 0;
+        while let Some(first) =
+            columns.iter().skip(begin).position(Option::is_none).filter(|_| goes_on)
+        {
+            let first = begin + first;
+            let gap = columns.iter().skip(first).take_while(|column| column.is_none()).count();
+            let range = first..first + gap;
+            begin = range.end;
+            diagram(&sweep, &Doubles, &settings, range, &tick, &mut |found| {
+                let place = self.values.get(found.index).zip(columns.get_mut(found.index));
+                let Some((value, place)) = place else { return flow(false) };
+                let column = self.column(value, &found.points);
+                goes_on = journal.keep(&column);
+                if goes_on {
+                    *place = Some(column);
+                    done += 1;
+                }
+                goes_on &= work.goes_on(Progress::Parts(done, all));
+                flow(goes_on)
+            });
+        }
         Ok(())
     }
 
