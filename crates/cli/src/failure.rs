@@ -16,6 +16,8 @@ pub const NO_ANSWER: u8 = 3;
 pub const UNDECIDED: u8 = 4;
 /// File trouble.
 pub const FILE: u8 = 5;
+/// Stopped: what did it has the last word ([`crate::session::Session::failed`]).
+pub const STOPPED: u8 = 130;
 
 /// Why a command failed.
 #[derive(Debug)]
@@ -94,8 +96,8 @@ fn exit_code(kind: Kind) -> u8 {
     match kind {
         Kind::Usage => USAGE,
         Kind::NoAnswer => NO_ANSWER,
-        // What stopped it says more ([`crate::session::Session::failed`]).
-        Kind::Undecided | Kind::Stopped => UNDECIDED,
+        Kind::Undecided => UNDECIDED,
+        Kind::Stopped => STOPPED,
     }
 }
 

@@ -1,7 +1,7 @@
 //! What all commands share: format, output, progress, what ends them.
 
 use crate::arguments::{Common, Format, Normalisation, Precision};
-use crate::failure::{FILE, Failure, NO_ANSWER, UNDECIDED, USAGE};
+use crate::failure::{FILE, Failure, NO_ANSWER, STOPPED, UNDECIDED};
 use crate::terminal::warn;
 use crate::watch::{Limits, Watch};
 use crate::{Outcome, output};
@@ -204,10 +204,8 @@ impl<'a> Session<'a> {
     /// A failure of this run: of stopped work with what stopped it.
     pub fn failed(&self, failure: Failure) -> Failure {
         self.done();
-        let Some(why) = self.watch.reason() else { return failure };
-        if matches!(failure.exit, USAGE | FILE) {
-            return failure;
-        }
+        let why = self.watch.reason().filter(|_| failure.exit == STOPPED);
+        let Some(why) = why else { return failure };
         let hint = why.hint.map_or(failure.hint, str::to_owned);
         let message = format!("{}: {}", why.words, failure.message);
         Failure { exit: why.exit, code: why.code, message, hint }
