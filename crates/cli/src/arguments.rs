@@ -62,8 +62,7 @@ pub struct Common {
     /// Stop after so many seconds with what is finished (exit code 4).
     #[arg(long, global = true, value_name = "S", value_parser = seconds)]
     pub limit_seconds: Option<f64>,
-    /// Stop before more memory is taken (512M, 8G), with what is finished (exit code 4); work that is
-    /// predicted to need more than twice as much is refused.
+    /// Stop before more memory is taken (512M, 8G), with what is finished (exit code 4).
     #[arg(long, global = true, value_name = "SIZE", default_value = "8G", value_parser = memory_size)]
     pub limit_memory: u64,
 }
