@@ -241,7 +241,7 @@ impl Watch {
             let working = phase == Phase::Working as usize;
             if working && state.limits.overdue(state.start, before.unwrap_or(0.0)) {
                 self.end(&REASONS[TIME]);
-            } else if state.limits.full(15) {
+            } else if state.limits.full(10) {
                 self.end(&REASONS[MEMORY]);
             }
         }
