@@ -143,9 +143,10 @@ pub fn read(
         .map(|(place, entry)| {
             let sender = sender.clone();
             std::thread::spawn(move || {
-                let told = read_section(options, entry, &|event| sender.send((place, event)));
+                let told =
+                    read_section(options, entry, &|event| sender.send((place, event)).is_ok());
                 // An error means that nobody waits any more.
-                let _ = sender.send((place, Event::Ended(told)));
+                let _ = sender.send((place, Event::Ended(Box::new(told))));
             })
         })
         .collect();
@@ -159,7 +160,7 @@ pub fn read(
                 let _ = answer.send(goes_on);
             }
             Ok((place, Event::Finished(read))) => parts[place] = Some(*read),
-            Ok((place, Event::Ended(read))) => parts[place] = Some(read?),
+            Ok((place, Event::Ended(read))) => parts[place] = Some((*read)?),
             Err(RecvTimeoutError::Disconnected) => break,
             Err(RecvTimeoutError::Timeout) if stop.asked() => match left.checked_sub(LOOK) {
                 Some(less) => left = less,
@@ -200,19 +201,19 @@ enum Event {
     /// A part is finished: all so far.
     Finished(Box<Read>),
     /// The section is at its end.
-    Ended(Result<Read, Error>),
+    Ended(Box<Result<Read, Error>>),
 }
 
-/// One section; `tell` takes what is said to the one that called.
-fn read_section<E>(
+/// One section; `tell` takes what is said to the one that called, and says whether it still listens.
+fn read_section(
     options: Options,
     (number, title, parts): &Entry,
-    tell: &dyn Fn(Event) -> Result<(), E>,
+    tell: &dyn Fn(Event) -> bool,
 ) -> Result<Read, Error> {
     // The observer belongs to the thread that called: it is asked, and waited for.
     let mut observer = |what: &str| {
         let (answer, answered) = sync_channel(1);
-        tell(Event::Next(what.to_owned(), answer)).is_ok() && answered.recv().unwrap_or(false)
+        tell(Event::Next(what.to_owned(), answer)) && answered.recv().unwrap_or(false)
     };
     let (balls, trust) = (Balls::new(BITS), Trust::default());
     let observer = &mut observer;
@@ -223,7 +224,7 @@ fn read_section<E>(
             return Ok((section, reader.trust, false));
         }
         let so_far = Event::Finished(Box::new((section.clone(), reader.trust.clone(), false)));
-        if tell(so_far).is_err() {
+        if !tell(so_far) {
             return Ok((section, reader.trust, false));
         }
     }
