@@ -2,6 +2,7 @@
 
 #![allow(clippy::panic, reason = "a test that panics has failed")]
 
+use lindstedt::Stop;
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt_paper::{Decimal, Findings, Options, Paper, Row, Section, Verdict, read};
 use lindstedt_report::{Span, mathml};
@@ -14,7 +15,7 @@ fn counted() -> &'static (Paper, usize) {
     static PAPER: OnceLock<(Paper, usize)> = OnceLock::new();
     let found = PAPER.get_or_init(|| {
         let mut steps = 0;
-        let paper = read(Options::QUICK, &mut |_| {
+        let paper = read(Options::QUICK, &Stop::default(), &mut |_| {
             steps += 1;
             true
         });
@@ -330,14 +331,14 @@ fn printed_decimals() {
 #[test]
 fn interruption() {
     let mut calls = 0;
-    let stop = read(Options::QUICK, &mut |what| {
+    let stop = read(Options::QUICK, &Stop::default(), &mut |what| {
         calls += 1;
         !what.contains("pendulum")
     });
     let rows = stop.as_ref().ok().and_then(|p| p.section(4)).map(|s| s.rows.len());
     assert!(stop.is_ok_and(|paper| !paper.complete));
     assert!(rows.is_some_and(|n| n > 25 && n < section().rows.len()), "{rows:?}");
-    let at_once = read(Options::QUICK, &mut |_| false);
+    let at_once = read(Options::QUICK, &Stop::default(), &mut |_| false);
     assert!(at_once.is_ok_and(|paper| !paper.complete && paper.sections.is_empty()));
 }
 

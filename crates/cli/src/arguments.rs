@@ -62,7 +62,7 @@ pub struct Common {
     /// Stop after so many seconds with what is finished (exit code 4).
     #[arg(long, global = true, value_name = "S", value_parser = seconds)]
     pub limit_seconds: Option<f64>,
-    /// Refuse work that is predicted to need more memory (512M, 8G).
+    /// Stop before more memory is taken (512M, 8G), with what is finished (exit code 4).
     #[arg(long, global = true, value_name = "SIZE", default_value = "8G", value_parser = memory_size)]
     pub limit_memory: u64,
 }
@@ -157,7 +157,7 @@ pub struct EvaluateOptions {
     #[arg(long, value_name = "FILE")]
     pub plot: Vec<PathBuf>,
     /// The solution as a function in this language instead of the report.
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, conflicts_with = "plot")]
     pub code: Option<Language>,
     /// Harmonics in the code.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=512))]

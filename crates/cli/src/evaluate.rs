@@ -13,7 +13,7 @@ use lindstedt::{Error, Evaluate, Exact, Oscillator, Work};
 pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     let oscillator = session.oscillator(&options.problem, &options.set, options.normalisation)?;
     let work = session.precise_work(&options.precision)?;
-    session.check_writable(&options.plot)?;
+    session.check_writable(&options.problem, &options.plot, None)?;
     let shown = !options.plot.is_empty() || options.code.is_some();
     let times = options.times.as_deref().map(Times::parse).transpose()?;
     let times = times.or_else(|| shown.then(Times::default));

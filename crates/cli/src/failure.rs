@@ -16,8 +16,8 @@ pub const NO_ANSWER: u8 = 3;
 pub const UNDECIDED: u8 = 4;
 /// File trouble.
 pub const FILE: u8 = 5;
-/// Interrupted.
-pub const INTERRUPTED: u8 = 130;
+/// Stopped: what did it has the last word ([`crate::session::Session::failed`]).
+pub const STOPPED: u8 = 130;
 
 /// Why a command failed.
 #[derive(Debug)]
@@ -97,7 +97,7 @@ fn exit_code(kind: Kind) -> u8 {
         Kind::Usage => USAGE,
         Kind::NoAnswer => NO_ANSWER,
         Kind::Undecided => UNDECIDED,
-        Kind::Stopped => INTERRUPTED,
+        Kind::Stopped => STOPPED,
     }
 }
 
@@ -118,10 +118,10 @@ pub fn usage(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
     let first: Vec<&str> = text.lines().take_while(|line| !line.trim().is_empty()).collect();
     let message = first.join(" ").trim_start_matches("error: ").to_owned();
-    let wants_json = std::env::args().any(|a| a == "--format=json")
-        || std::env::args()
-            .zip(std::env::args().skip(1))
-            .any(|(a, b)| a == "--format" && b == "json");
+    let given: Vec<String> =
+        std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect();
+    let wants_json = given.iter().any(|argument| argument == "--format=json")
+        || given.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json");
     let format = if wants_json { Format::Json } else { Format::Text };
     Failure::usage("usage", message, "see `lindstedt --help`").report(format)
 }

@@ -143,7 +143,8 @@ fn held_by_the_net() -> Result<BTreeMap<String, String>, Box<dyn Error>> {
     let mut held = BTreeMap::new();
     for entry in std::fs::read_dir(folder)? {
         let snapshot = std::fs::read_to_string(entry?.path())?;
-        let command = snapshot.lines().find_map(|line| line.strip_prefix("description: lindstedt "));
+        let command =
+            snapshot.lines().find_map(|line| line.strip_prefix("description: lindstedt "));
         let text = snapshot.split("==== ").find(|part| part.starts_with("text "));
         held.extend(command.zip(text).map(|(a, b)| (a.to_owned(), b.to_owned())));
     }

@@ -10,7 +10,8 @@ use lindstedt_simulate::{
     self as simulate, DiagramSettings, Doubles, Point, Quantity, Settings, Surface, Sweep, diagram,
 };
 use serde::{Deserialize, Serialize};
-use std::ops::ControlFlow;
+use std::collections::HashMap;
+use std::ops::{ControlFlow, Range};
 use std::time::Instant;
 
 /// The question for a bifurcation diagram.
@@ -64,12 +65,14 @@ pub struct Column {
 
 /// Where finished columns are kept, so that a diagram that was stopped goes on.
 pub trait Journal {
-    /// The columns of an earlier run, from the first on; nothing where the work is to be given up.
-    /// `identity` is one line that determines every number; a column whose value is not that of the
-    /// diagram is not used, nor what comes after it.
+    /// The columns of an earlier run, in any order; nothing where the work is to be given up.
+    /// `identity` is one line that determines every number; a column whose value is none of the
+    /// diagram is not used, and what is missing between others is computed again.
     fn begin(&mut self, identity: &str) -> Option<Vec<Column>>;
     /// The next finished column; whether to go on.
     fn keep(&mut self, column: &Column) -> bool;
+    /// All columns are there.
+    fn complete(&mut self) {}
 }
 
 /// Nothing is kept.
@@ -155,7 +158,7 @@ impl Oscillator {
         self.bifurcation_resumed(question, work, &mut ())
     }
 
-    /// The same from where a journal ends, which is told every finished column.
+    /// The same without what a journal has already; it is told every finished column.
     ///
     /// # Errors
     /// As there; [`Refused`] as stopped where the journal gives up.
@@ -182,18 +185,23 @@ impl Oscillator {
         let values = axis.values.iter().map(|value| Quantity::from(value.clone())).collect();
         let mut task = Task { question, setup, name: axis.name, section, values };
         let given_up = || Refused::stopped("the file of the sweep cannot be used", "");
-        let mut columns = journal.begin(&task.identity()).ok_or_else(given_up)?;
-        let known =
-            columns.iter().zip(&task.values).take_while(|(c, q)| c.exact == answer::shown(q));
-        columns.truncate(known.count());
+        let kept = journal.begin(&task.identity()).ok_or_else(given_up)?;
+        let (mut columns, lost) = task.known(kept);
         let back = task.compute_all(&mut columns, work, journal)?;
+        let columns: Vec<Column> = columns.into_iter().flatten().collect();
         let verdict = task.verdict(&columns, back.as_ref());
         let mut remarks = self.remarks().to_vec();
         remarks.extend(task.setup.remarks.drain(..).map(Remark));
         let whole = |list: &Vec<Column>| list.len() == task.values.len();
         let complete = whole(&columns) && back.as_ref().is_none_or(whole);
         let done = columns.len();
-        if !complete && !question.follow {
+        let lost = (!lost.is_empty()).then(|| {
+            format!("{} = {}: lost in the journal, computed again", task.name, lost.join(", "))
+        });
+        remarks.extend(lost.map(Remark));
+        if complete {
+            journal.complete();
+        } else if !question.follow {
             remarks.push(Remark("stopped; with --resume FILE it can be continued".to_owned()));
         }
         let value = Diagram {
@@ -282,10 +290,23 @@ impl Task<'_> {
         )
     }
 
-    /// The columns after those that there are; where they follow each other all of them, and those downwards.
+    /// The columns that were kept, each in its place, and the values that are missing before the last of them.
+    fn known(&self, kept: Vec<Column>) -> (Vec<Option<Column>>, Vec<String>) {
+        let mut kept: HashMap<String, Column> =
+            kept.into_iter().map(|column| (column.exact.clone(), column)).collect();
+        let shown: Vec<String> = self.values.iter().map(answer::shown).collect();
+        let columns: Vec<Option<Column>> = shown.iter().map(|value| kept.remove(value)).collect();
+        let last = columns.iter().rposition(Option::is_some).unwrap_or(0);
+        let places = columns.iter().zip(&shown).take(last);
+        let lost = places.filter(|(column, _)| column.is_none()).map(|(_, value)| value.clone());
+        let lost = lost.collect();
+        (columns, lost)
+    }
+
+    /// The columns that are missing; where they follow each other all of them, and those downwards.
     fn compute_all(
         &mut self,
-        columns: &mut Vec<Column>,
+        columns: &mut [Option<Column>],
         work: &Work,
         journal: &mut dyn Journal,
     ) -> Result<Option<Vec<Column>>, Error> {
@@ -293,13 +314,13 @@ impl Task<'_> {
         if !self.question.follow {
             return self.compute(columns, start, work, journal).map(|_| None);
         }
-        columns.clear();
+        columns.fill(None);
         let end = self.compute(columns, start, work, &mut ())?;
-        let mut back = Vec::new();
+        let mut back = vec![None; columns.len()];
         self.values.reverse();
         self.compute(&mut back, end, work, &mut ())?;
         self.values.reverse();
-        Ok(Some(back))
+        Ok(Some(back.into_iter().flatten().collect()))
     }
 
     fn verdict(&self, columns: &[Column], back: Option<&Vec<Column>>) -> String {
@@ -317,10 +338,10 @@ impl Task<'_> {
         )
     }
 
-    /// The columns after those that there are, from a start; the state at the end of the last one.
+    /// The columns that are missing, from a start; the state at the end of the last one.
     fn compute(
         &self,
-        columns: &mut Vec<Column>,
+        columns: &mut [Option<Column>],
         start: Vec<f64>,
         work: &Work,
         journal: &mut dyn Journal,
@@ -357,21 +378,29 @@ impl Task<'_> {
         };
         let flow = |on: bool| if on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
         let tick = || flow(!work.stop.asked());
-        let range = columns.len()..self.values.len();
-        let all = range.end;
+        let (all, mut done) = (columns.len(), columns.iter().flatten().count());
+        let mut goes_on = true;
         let mut last = start;
-        diagram(&sweep, &Doubles, &settings, range, &tick, &mut |found| {
-            let Some(value) = self.values.get(found.index) else { return flow(false) };
-            let column = self.column(value, &found.points);
-            if let Some(point) = found.points.as_ref().ok().and_then(|points| points.last()) {
-                last.clone_from(&point.state);
+        for range in gaps(columns) {
+            if !goes_on {
+                break;
             }
-            let kept = journal.keep(&column);
-            if kept {
-                columns.push(column);
-            }
-            flow(work.goes_on(Progress::Parts(columns.len(), all)) && kept)
-        });
+            diagram(&sweep, &Doubles, &settings, range, &tick, &mut |found| {
+                let place = self.values.get(found.index).zip(columns.get_mut(found.index));
+                let Some((value, place)) = place else { return flow(false) };
+                let column = self.column(value, &found.points);
+                if let Some(point) = found.points.as_ref().ok().and_then(|points| points.last()) {
+                    last.clone_from(&point.state);
+                }
+                goes_on = journal.keep(&column);
+                if goes_on {
+                    *place = Some(column);
+                    done += 1;
+                }
+                goes_on &= work.goes_on(Progress::Parts(done, all));
+                flow(goes_on)
+            });
+        }
         Ok(last)
     }
 
@@ -414,4 +443,16 @@ impl Swept {
             Section::Stroboscopic => (0, "displacement x"),
         }
     }
+}
+
+/// The runs of what is missing.
+fn gaps(columns: &[Option<Column>]) -> Vec<Range<usize>> {
+    let mut gaps: Vec<Range<usize>> = Vec::new();
+    for (i, _) in columns.iter().enumerate().filter(|(_, column)| column.is_none()) {
+        match gaps.last_mut().filter(|gap| gap.end == i) {
+            Some(gap) => gap.end = i + 1,
+            None => gaps.push(i..i + 1),
+        }
+    }
+    gaps
 }

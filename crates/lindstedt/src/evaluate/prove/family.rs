@@ -290,11 +290,11 @@ impl Family<'_> {
         };
         let Cover { parts, frequency, failure, .. } = cover(&ends, proofs, problem, &self.request);
         let digits = work.printed_digits();
-        let number = |ball| Number::of_ball(&ball, digits).weaken(Status::Proved);
+        let number = |ball| Some(Number::of_ball(&ball, digits)?.weaken(Status::Proved));
         Between {
             proved: failure.is_none(),
             parts,
-            frequency: frequency.map(number),
+            frequency: frequency.and_then(number),
             why: failure.map(|failure| failure.to_string()),
         }
     }

@@ -187,13 +187,13 @@ impl ProvedOrbit {
         digits: usize,
     ) -> Vec<ProvedState> {
         let Some(times) = &question.times else { return Vec::new() };
-        let number = |ball: &Ball| Number::of_ball(ball, digits).weaken(Status::Proved);
+        let number = |ball: &Ball| Some(Number::of_ball(ball, digits)?.weaken(Status::Proved));
         let balls = Balls::new(proof.frequency.midpoint().prec());
         let phase = question.phase.ball(balls);
         let state = |t: Exact| {
             let turned = balls.mul(&proof.frequency, &t.ball(balls));
             let (x, velocity) = wanted.state(proof.at_phase(&balls.add(&turned, &phase)))?;
-            let (x, velocity) = (number(&x), number(&velocity));
+            let (x, velocity) = (number(&x)?, number(&velocity)?);
             Some(ProvedState { t, x, velocity })
         };
         let last = proof.period.midpoint().to_f64();
