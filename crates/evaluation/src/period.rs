@@ -210,12 +210,13 @@ impl Sum {
         // A measured error above the value leaves no digit, and a sum that is no period has none.
         let size = self.period.midpoint();
         let none = self.is_estimated && self.period.radius() >= size;
-        if *size <= 0 || self.no_estimate && none {
+        if *size <= 0 || none {
             None
         } else if self.no_estimate {
             few::plain(ball, digits, self.is_estimated)
         } else {
-            Number::estimated(ball, digits)
+            // Not rounded to the error: a coarse decimal would be worse than the estimate.
+            Number::with_error(ball.midpoint(), ball.radius(), digits)
         }
     }
 
