@@ -52,16 +52,16 @@ const TABLE: [(i32, &str, &str, &str, &str); 62] = [
         2,
         "parameter",
         "stability vibro-impact --set k=1/2",
-        "k=2",
-        "stability vibro-impact --set k=2 --f64 --predictor kbm",
+        "k=1",
+        "stability vibro-impact --set k=1 --f64 --predictor kbm",
     ),
     (2, "parameter", "stability vibro-impact --set P0=0", "problems", "problems"),
     (
         3,
         "no-proof",
-        "evaluate docs/examples/sign-power.toml --set eps=1/10 --prove",
+        "evaluate docs/examples/sign-power.toml --set delta=1/10 --prove",
         "without --prove",
-        "evaluate docs/examples/sign-power.toml --set eps=1/10 --order 8",
+        "evaluate docs/examples/sign-power.toml --set delta=1/10 --order 8",
     ),
     (
         2,
@@ -332,7 +332,7 @@ const TABLE: [(i32, &str, &str, &str, &str); 62] = [
         "no-response",
         "respond van-der-pol",
         "evaluate",
-        "evaluate van-der-pol --set eps=1/10 --order 8",
+        "evaluate van-der-pol --set eps=1/10 --digits 8",
     ),
     (3, "figure", "simulate duffing --until 1 --figure section --plot x.svg", "--figure", ""),
     (
@@ -357,7 +357,7 @@ const TABLE: [(i32, &str, &str, &str, &str); 62] = [
         "derive duffing --order 3",
     ),
     (5, "file", "derive nothing.toml", "path", ""),
-    (5, "file", "derive docs", "known", ""),
+    (5, "file", "evaluate duffing --order 4 --out no-such-folder/x", "path", ""),
 ];
 
 /// Codes of the table that no single quick line meets, and why.
