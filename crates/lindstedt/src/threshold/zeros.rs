@@ -3,6 +3,7 @@
 use super::subject::{Range, Subject};
 use crate::refusal::Refused;
 use crate::{Error, Exact, Number, Status};
+use lindstedt_algebra::Stop;
 use lindstedt_melnikov::Class;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::certified;
@@ -72,7 +73,8 @@ fn changes_of_sign(
         match subject.signed(Balls::new(bits), &[(range, &value)]) {
             Ok(ball) if !ball.contains_zero() => Side::Known(ball.is_positive()),
             Ok(ball) if ball.is_exact() => Side::Zero,
-            _ => Side::Unknown,
+            Ok(_) => Side::Unknown,
+            Err(_) => Side::Nothing,
         }
     };
     let width = Rational::from(high - low);
@@ -82,49 +84,62 @@ fn changes_of_sign(
         n => &width * Rational::from((1009 * n, 1009 * CELLS + 1)) + low,
     };
     let class = subject.found.class();
-    let number = |ball: &Ball| match class {
-        Class::Estimated => Number::of_ball(ball, digits).weaken(Status::Estimated),
-        Class::Certified => Number::of_ball(ball, digits),
+    let number = |[a, b]: [Rational; 2]| {
+        let balls = Balls::new(bits + 32);
+        let ball = balls.hull(&balls.from_rational(&a), &balls.from_rational(&b));
+        match class {
+            Class::Estimated => Number::of_ball(&ball, digits).weaken(Status::Estimated),
+            Class::Certified => Number::of_ball(&ball, digits),
+        }
     };
-    let balls = Balls::new(bits + 32);
+    let stop = &subject.work.stop;
+    let found = crossings(&at, &side, bits, stop).ok_or_else(|| {
+        let hint = "raise --limit-seconds, or ask for fewer --digits";
+        Refused::stopped("stopped before all zeros were found", hint)
+    })?;
+    let vanishing = found.iter().filter(|[a, b]| a == b).count();
+    if vanishing > ISOLATED {
+        let (name, all) = (&range.axis.name, CELLS + 1);
+        let message =
+            format!("the signed threshold is zero at {vanishing} of {all} values of {name}");
+        return Err(
+            Refused::no_answer("no-answer", message, "--sweep shows where it is not").into()
+        );
+    }
+    Ok(found.into_iter().map(number).collect())
+}
+
+/// The ends between which the sign changes, one after the other; nothing where the work was stopped.
+fn crossings(
+    at: &dyn Fn(i64) -> Rational,
+    side: &dyn Fn(&Rational) -> Side,
+    bits: u32,
+    stop: &Stop,
+) -> Option<Vec<[Rational; 2]>> {
     let mut found = Vec::new();
     // The last node whose sign is known; nothing behind a zero.
     let mut before: Option<(Rational, bool)> = None;
-    let mut vanishing = 0;
     for n in 0..=CELLS {
-        if subject.work.stop.asked() {
-            let hint = "raise --limit-seconds, or ask for fewer --digits";
-            return Err(Refused::stopped("stopped before all zeros were found", hint).into());
+        if stop.asked() {
+            return None;
         }
         let node = at(n);
         match side(&node) {
             Side::Unknown => {}
+            Side::Nothing => before = None,
             Side::Zero => {
-                found.push(number(&balls.from_rational(&node)));
-                (before, vanishing) = (None, vanishing + 1);
+                found.push([node.clone(), node]);
+                before = None;
             }
             Side::Known(here) => {
                 if let Some((from, there)) = before.filter(|(_, there)| *there != here) {
-                    let [a, b] = halved(&side, [from, node.clone()], there, bits);
-                    found.push(number(
-                        &balls.hull(&balls.from_rational(&a), &balls.from_rational(&b)),
-                    ));
+                    found.push(halved(side, [from, node.clone()], there, bits));
                 }
                 before = Some((node, here));
             }
         }
     }
-    if vanishing > ISOLATED {
-        let name = &range.axis.name;
-        let message = format!(
-            "the signed threshold is zero at {vanishing} of {} values of {name}",
-            CELLS + 1
-        );
-        return Err(
-            Refused::no_answer("no-answer", message, "--sweep shows where it is not").into()
-        );
-    }
-    Ok(found)
+    Some(found)
 }
 
 /// The signed threshold at a value.
@@ -133,8 +148,10 @@ enum Side {
     Known(bool),
     /// Zero exactly.
     Zero,
-    /// Not decided, or no threshold.
+    /// Not told from zero.
     Unknown,
+    /// No threshold.
+    Nothing,
 }
 
 /// The ends between which the sign changes, halved as long as it is decided; both the zero where one
@@ -151,7 +168,7 @@ fn halved(
             Side::Known(here) if here == left => a = middle,
             Side::Known(_) => b = middle,
             Side::Zero => return [middle.clone(), middle],
-            Side::Unknown => break,
+            Side::Unknown | Side::Nothing => break,
         }
     }
     [a, b]
