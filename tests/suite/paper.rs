@@ -395,7 +395,8 @@ fn verdicts_of_section_3() {
             assert!(row.verdict == Verdict::Misprint && row.evidence.contains(evidence), "{row:?}");
         }
     }
-    assert_eq!(rows.len() - expected.len() - 4, numbered(3).count(Verdict::Agrees));
+    let others = expected.iter().filter(|row| row.1 != Verdict::Agrees).count();
+    assert_eq!(rows.len() - others - 4, numbered(3).count(Verdict::Agrees));
     for label in ["(18)", "(19)", "(20)", "(21)", "critical points", "x_0", "(22), 1", "(24)"] {
         assert_eq!(melnikov(label).verdict, Verdict::Agrees, "{label}");
     }

@@ -215,7 +215,9 @@ impl Sum {
         } else if self.no_estimate {
             few::plain(ball, digits, self.is_estimated)
         } else {
-            // Not rounded to the error: a coarse decimal would be worse than the estimate.
+            // Where there is a digit: not rounded to the error, a coarse decimal would be worse than the
+            // estimate.
+            Number::estimated(ball, digits)?;
             Number::with_error(ball.midpoint(), ball.radius(), digits)
         }
     }

@@ -34,7 +34,7 @@ pub fn not_a_number(text: &str, question: &str) -> Option<String> {
     let mut words = text.split(|c: char| !is_word(c));
     let named = |word: &&str| {
         let word = word.to_ascii_lowercase();
-        matches!(&*word, "inf" | "nan" | "infinity") && !question.to_lowercase().contains(&word)
+        matches!(&*word, "inf" | "nan") && !question.to_lowercase().contains(&word)
     };
     words.find(named).map(ToOwned::to_owned)
 }
