@@ -271,7 +271,7 @@ fn estimates_hold() {
     let mut count = Count::default();
     closed_forms(11, 30, 17, &mut count);
     van_der_pol(12, 40, 20, &mut count);
-    proved(13, 6, 10, &mut count);
+    proved(13, 4, 10, &mut count);
     count.print();
     assert!(count.failures.is_empty());
     assert!(count.useful > 60, "{count:?}");
