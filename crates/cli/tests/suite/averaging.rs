@@ -44,11 +44,7 @@ fn keys(value: &Value, path: &str, found: &mut std::collections::BTreeSet<String
 /// A program that read one order reads all.
 #[test]
 fn every_order_has_the_same_keys() {
-    let cases: [&[&str]; 3] = [
-        &["van-der-pol", "--normalisation", "free"],
-        &["vibro-impact"],
-        &["x'' + x + eps*(x'/5 + k*x^3) = eps*F*cos(3*t)", "--normalisation", "free"],
-    ];
+    let cases: [&[&str]; 2] = [&["van-der-pol", "--normalisation", "free"], &["vibro-impact"]];
     for case in cases {
         let of = |order: &str| {
             let mut found = std::collections::BTreeSet::new();

@@ -361,7 +361,7 @@ const TABLE: [(i32, &str, &str, &str, &str); 62] = [
 ];
 
 /// Codes of the table that no single quick line meets, and why.
-const ELSEWHERE: [(&str, &str); 14] = [
+const ELSEWHERE: [(&str, &str); 15] = [
     ("could-not-decide", "a degenerate point: the tests of thresholds and impacts"),
     ("initial-data", "a file: the tests of problem files"),
     ("interrupted", "Ctrl-C: the tests of interruption"),
@@ -375,6 +375,7 @@ const ELSEWHERE: [(&str, &str); 14] = [
     ("not-evaluated", "the tests of files with a wall"),
     ("out-of-primes", "more than a minute"),
     ("times", "the tests of `simulate`"),
+    ("too-many-symbols", "the tests of slow flows"),
     ("undecided", "the tests of stability"),
 ];
 

@@ -64,7 +64,9 @@ fn breach(format: &str, shown: &str) -> Option<String> {
             "html" | "markdown" if line.contains("<script") || line.contains("<img") => {
                 return Some(line.to_owned());
             }
-            "markdown" if line.contains("](javascript") => return Some(line.to_owned()),
+            "markdown" if line.replace("\\]", "").contains("](javascript") => {
+                return Some(line.to_owned());
+            }
             _ => {}
         }
     }

@@ -27,15 +27,17 @@ fn long_periods_and_overflow() {
     for omega in ["omega=1e-6", "omega=1e300", "omega=1e-300"] {
         let output = run(&[&["--set", omega], &quick[..]].concat());
         let shown = String::from_utf8_lossy(&output.stdout).into_owned();
-        assert!(!shown.contains("NaN") && !shown.contains("T-periodic"), "{omega}: {shown}");
+        assert!(!shown.contains("NaN"), "{omega}: {shown}");
         let found: Value = serde_json::from_str(&shown).unwrap();
-        let exists = &found["orbit"]["exists"];
+        let orbit = &found["orbit"];
+        assert!(!orbit.to_string().contains("T-periodic"), "{omega}: {orbit}");
+        let exists = &orbit["exists"];
         let expected = match exists {
             Value::Bool(true) => 0,
             Value::Null => 4,
             _ => 3,
         };
-        assert_eq!(output.status.code(), Some(expected), "{omega}: {}", found["orbit"]);
+        assert_eq!(output.status.code(), Some(expected), "{omega}: {orbit}");
     }
     let periodic = run(&["--set", "c=0", "--set", "omega=1", "--set", "alpha=2", "--f64"]);
     assert_eq!(periodic.status.code(), Some(3));
