@@ -3,7 +3,8 @@
 use crate::arguments::Format;
 use crate::terminal::warn;
 use lindstedt::unstable::simulate::SimulateError;
-use lindstedt::{Error, Kind, NumberError, Refusal, Refused};
+use lindstedt::{Error, Kind, NumberError, Refusal, Refused, general_hint};
+use lindstedt_report::json_line;
 use serde_json::json;
 use std::io::Write;
 use std::process::ExitCode;
@@ -47,16 +48,26 @@ impl Failure {
         }
     }
 
+    /// What to do about it, in general where nothing is known in particular.
+    fn hint(&self) -> &str {
+        let kind = match self.exit {
+            USAGE | FILE => Kind::Usage,
+            NO_ANSWER => Kind::NoAnswer,
+            INTERRUPTED => Kind::Stopped,
+            _ => Kind::Undecided,
+        };
+        if self.hint.is_empty() { general_hint(kind, self.code) } else { &self.hint }
+    }
+
     /// Prints the failure; in JSON mode on standard output, where a program reads.
     pub fn report(&self, format: Format) -> ExitCode {
+        let hint = self.hint();
         if format == Format::Json {
             let error =
-                json!({"error": {"code": self.code, "message": self.message, "hint": self.hint}});
-            let _ = writeln!(std::io::stdout(), "{error}");
-        } else if self.hint.is_empty() {
-            warn(&self.message);
+                json!({"error": {"code": self.code, "message": self.message, "hint": hint}});
+            let _ = write!(std::io::stdout(), "{}", json_line(&error).unwrap_or_default());
         } else {
-            warn(&format!("{} ({})", self.message, self.hint));
+            warn(&format!("{} ({hint})", self.message));
         }
         ExitCode::from(self.exit)
     }

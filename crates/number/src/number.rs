@@ -4,7 +4,7 @@ use crate::NumberError;
 use crate::ball::{Ball, Balls};
 use crate::digits::{certify, decimal, error_string};
 use rug::{Float, Rational};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// Precision is escalated up to this before "not enough bits" is answered: 10 000 digits and a
@@ -12,6 +12,8 @@ use std::fmt;
 const MOST_BITS: u32 = 1 << 18;
 /// The digits of a number whose error nothing is known of: more would look as if they were.
 const SHOWN: usize = 4;
+/// Stands for the decimal of what is no number.
+pub const UNDEFINED: &str = "undefined";
 /// Digits beyond those that a measured error leaves.
 const BEYOND: usize = 2;
 
@@ -76,7 +78,8 @@ impl fmt::Display for Status {
 pub struct Number {
     /// The closed form, if there is one.
     pub exact: Option<String>,
-    /// Its decimal value.
+    /// Its decimal value; [`UNDEFINED`] where the computation gave none (null as data).
+    #[serde(serialize_with = "defined")]
     pub decimal: String,
     /// A bound on |decimal - true value|, or its estimate; nothing when they are equal, and without
     /// an estimate.
@@ -86,9 +89,20 @@ pub struct Number {
 }
 
 impl Number {
-    /// A double whose rounding errors were not tracked, in the fewest digits that tell it apart.
+    /// What is no number: overflow, 0/0, a ball that knows nothing.
+    #[must_use]
+    pub fn undefined() -> Self {
+        let decimal = UNDEFINED.to_owned();
+        Self { exact: None, decimal, error: None, status: Status::NoEstimate }
+    }
+
+    /// A double whose rounding errors were not tracked, in the fewest digits that tell it apart;
+    /// [`Number::undefined`] for infinities and NaN.
     #[must_use]
     pub fn double(x: f64) -> Self {
+        if !x.is_finite() {
+            return Self::undefined();
+        }
         // 0, not -0.
         let decimal = format!("{:e}", x + 0.0);
         Self { exact: None, decimal, error: None, status: Status::Estimated }
@@ -195,6 +209,11 @@ impl Number {
     }
 }
 
+/// A decimal as data.
+fn defined<S: Serializer>(decimal: &str, to: S) -> Result<S::Ok, S::Error> {
+    if decimal == UNDEFINED { to.serialize_none() } else { to.serialize_str(decimal) }
+}
+
 /// The digits of the midpoint.
 fn centre(ball: &Ball, digits: usize) -> Option<String> {
     let balls = Balls::new(ball.midpoint().prec());
@@ -205,6 +224,7 @@ impl fmt::Display for Number {
     /// The decimal, with its error where that is an estimate.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (&self.error, self.status) {
+            _ if self.decimal == UNDEFINED => f.write_str(UNDEFINED),
             (Some(error), Status::Estimated) => {
                 write!(f, "{} +- {error} (estimated)", self.decimal)
             }
@@ -268,6 +288,9 @@ mod tests {
         let zero = balls.sub(&pi, &pi);
         assert_eq!(Number::of_all_digits(&zero, 5).unwrap().decimal, "0");
         assert_eq!(Number::double(-0.0).decimal, "0e0");
+        for nothing in [Number::double(f64::NAN), Number::of_ball(&balls.indeterminate(), 9)] {
+            assert_eq!((nothing.to_string(), nothing.error), (UNDEFINED.to_owned(), None));
+        }
     }
 
     #[test]

@@ -72,7 +72,7 @@ impl Oscillator {
     /// there for x'' + k x (x^2)^delta, x'' + k x + c eps x^3 and the pendulum with a given amplitude.
     /// A small parameter that only counts orders is 1; x(0) of a file is its amplitude.
     ///
-    /// Undecided where not one digit of the period is supported; stopped work leaves the times that
+    /// Undecided where not one digit of the period is supported, or nothing is known of its error; stopped work leaves the times that
     /// were reached.
     ///
     /// # Errors
@@ -118,6 +118,12 @@ impl Oscillator {
         }
         if standing == Standing::Complete && value.period.is_none() {
             let none = "the expansion gives not one digit of the period here";
+            remarks.push(Remark(none.to_owned()));
+            standing = Standing::Undecided;
+        }
+        if standing == Standing::Complete && value.is_without_estimate() {
+            let none = "nothing is known of the error: too few coefficients, and no closed form; \
+                        a higher --order, or --prove";
             remarks.push(Remark(none.to_owned()));
             standing = Standing::Undecided;
         }

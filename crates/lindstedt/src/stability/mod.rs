@@ -143,7 +143,7 @@ pub struct NoOrbit {
     pub code: &'static str,
     /// In words.
     pub message: Option<Remark>,
-    /// Empty.
+    /// What to do about it.
     pub hint: &'static str,
 }
 
@@ -209,7 +209,13 @@ impl Oscillator {
         if standing != Standing::Complete {
             let code = if standing == Standing::NoAnswer { "no-orbit" } else { "undecided" };
             let message = value.warnings.first().cloned();
-            value.error = Some(NoOrbit { code, message, hint: "" });
+            let hint = match code {
+                "no-orbit" => {
+                    "`lindstedt simulate` shows what the motion does; --set branch=- is the other root"
+                }
+                _ => "more --digits, or other values",
+            };
+            value.error = Some(NoOrbit { code, message, hint });
         }
         let mut remarks = self.remarks().to_vec();
         remarks.extend(value.warnings.iter().cloned());
