@@ -53,7 +53,7 @@ impl Failure {
         let kind = match self.exit {
             USAGE | FILE => Kind::Usage,
             NO_ANSWER => Kind::NoAnswer,
-            INTERRUPTED => Kind::Stopped,
+            STOPPED => Kind::Stopped,
             _ => Kind::Undecided,
         };
         if self.hint.is_empty() { general_hint(kind, self.code) } else { &self.hint }

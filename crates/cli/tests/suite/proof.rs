@@ -163,7 +163,7 @@ fn displacements_of_a_proved_cycle_are_enclosed() {
     let state = [&first.x, &first.velocity].map(|n| Exact::parse(&n.decimal).unwrap());
     let times = Some(Simulate::read_times("3").unwrap());
     let simulated = Simulate {
-        start: Start { state: Some(state), ..Start::default() },
+        start: Start { state: Some(state.to_vec()), ..Start::default() },
         times,
         ..Simulate::default()
     };

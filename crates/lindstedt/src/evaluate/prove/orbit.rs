@@ -132,7 +132,7 @@ impl ProvedOrbit {
     }
 
     pub(super) fn new(proof: &Proof, wanted: &Wanted, digits: usize) -> Self {
-        let number = |ball: &Ball| Some(Number::of_ball(ball, digits).weaken(Status::Proved));
+        let number = |ball: &Ball| Some(Number::of_ball(ball, digits)?.weaken(Status::Proved));
         let (cycle, forced) = (wanted.kind == Kind::LimitCycle, wanted.is_forced());
         let state = wanted.state((proof.displacement.clone(), proof.velocity.clone()));
         let (amplitude, velocity) = state.unzip();
