@@ -148,9 +148,12 @@ impl StickSlip {
 
     /// The zero in a parameter that G is linear in, -G(0)/(G(1) - G(0)), if there is one.
     fn linear_zero(&self, balls: Balls, axis: Axis) -> Option<Option<Ball>> {
-        let at = |value: i64| self.clone().with(axis, Exact::from(value)).g(balls);
-        let constant = at(0)?;
-        let slope = balls.sub(&at(1)?, &constant);
+        let zero = || Exact::from(0);
+        // G is homogeneous in the three: what it is without the other two is the slope, exactly zero where
+        // dry friction does no work.
+        let alone = Self { dry: zero(), alpha: zero(), beta: zero(), ..self.clone() };
+        let slope = alone.with(axis, Exact::from(1)).g(balls)?;
+        let constant = self.clone().with(axis, zero()).g(balls)?;
         if slope.is_exact() && slope.contains_zero() {
             return (!constant.contains_zero()).then_some(None);
         }
