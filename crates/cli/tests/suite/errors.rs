@@ -334,7 +334,6 @@ const TABLE: [(i32, &str, &str, &str, &str); 62] = [
         "evaluate",
         "evaluate van-der-pol --set eps=1/10 --digits 8",
     ),
-    (3, "figure", "simulate duffing --until 1 --figure section --plot x.svg", "--figure", ""),
     (
         2,
         "box",
@@ -361,19 +360,28 @@ const TABLE: [(i32, &str, &str, &str, &str); 62] = [
 ];
 
 /// Codes of the table that no single quick line meets, and why.
-const ELSEWHERE: [(&str, &str); 15] = [
+const ELSEWHERE: [(&str, &str); 24] = [
     ("could-not-decide", "a degenerate point: the tests of thresholds and impacts"),
+    ("figure", "a warning beside the answer: the tests of outputs"),
+    ("follow", "the tests of `respond`"),
+    ("format", "the tests of outputs"),
+    ("hung-up", "a signal: the tests of interruption"),
     ("initial-data", "a file: the tests of problem files"),
+    ("internal-resonance", "the tests of normal modes"),
     ("interrupted", "Ctrl-C: the tests of interruption"),
     ("irrational", "a file with pi among its values"),
+    ("limit-memory", "the tests of interruption"),
     ("no-answer", "files of Melnikov's method"),
     ("no-periodic-orbit", "the tests of `verify`"),
     ("no-reference", "the tests of `trade`"),
     ("no-series", "a motion whose maxima cease"),
+    ("no-such-mode", "the tests of normal modes"),
     ("no-value", "the tests of `evaluate`"),
     ("not-enough-digits", "the extremes"),
     ("not-evaluated", "the tests of files with a wall"),
     ("out-of-primes", "more than a minute"),
+    ("same-file", "the tests of outputs"),
+    ("terminated", "a signal: the tests of interruption"),
     ("times", "the tests of `simulate`"),
     ("too-many-symbols", "the tests of slow flows"),
     ("undecided", "the tests of stability"),

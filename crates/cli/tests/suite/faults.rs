@@ -73,7 +73,7 @@ fn limited(times: u64) {
     let mut refused = 0;
     for round in 0..times {
         std::fs::write(folder.0.join("a.json"), "old").unwrap();
-        let output = folder.under(&format!("-f {}", random(round, 60)), &command);
+        let output = folder.under(&format!("-f {}", round * 80 / times), &command);
         let text = folder.text("a.json");
         if output.status.code() == Some(5) {
             refused += 1;

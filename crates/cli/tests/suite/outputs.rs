@@ -112,7 +112,8 @@ fn what_was_there_stays_when_the_disk_is_full() {
         &[&["evaluate", "duffing"], &plotted[..]].concat(),
     ] {
         let output = folder.under("-f 1", command);
-        let error = String::from_utf8_lossy(&output.stderr);
+        let error = [output.stdout, output.stderr].concat();
+        let error = String::from_utf8_lossy(&error);
         assert_eq!(output.status.code(), Some(5), "{command:?}: {error}");
         assert!(error.contains("cannot write old."), "{error}");
         assert_eq!(folder.names(), ["old.svg", "old.txt"]);
@@ -164,7 +165,7 @@ fn arguments_that_are_no_text() {
         let output = command.arg(word).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{output:?}");
     }
-    let mut command = folder.program(&["derive", "duffing", "--order", "1", "--out"]);
-    assert_eq!(command.arg(word).status().unwrap().code(), Some(0));
+    let mut command = folder.program(&["derive", "duffing", "--order", "1"]);
+    assert_eq!(command.arg("--out").arg(word).status().unwrap().code(), Some(0));
     assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1);
 }
