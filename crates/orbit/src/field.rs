@@ -1,52 +1,74 @@
-//! The right side of x'' = g(x, x', t) as a polynomial whose coefficients are trigonometric
-//! polynomials of the phase.
+//! The right sides of x_i'' = g_i(x, x', t) as polynomials in the unknowns, their velocities and functions
+//! of these, with coefficients that are trigonometric polynomials of the phase.
 //!
-//! g = sum_t f_t(tau) x^(i_t) (x')^(j_t), f_t rational and of period 2 pi in tau = omega t. With
-//! z = dx/dtau a velocity is omega z: every term is a monomial in (omega, x, z), which is all
-//! that the residual, its derivatives and the bounds need.
+//! With z = dx/dtau a velocity is omega z: every term is a monomial in omega, x, z and the functions, which
+//! is all that the residual, its derivatives and the bounds need. Functions (sines, exponentials, roots)
+//! are elements of the same algebra, computed and enclosed where the orbit is known
+//! ([`crate::function`]); their derivatives are polynomials in functions again, so that no further
+//! unknowns, and no constraints that tie them, are needed.
 
-use crate::Parity;
+use crate::function::Function;
+use crate::space::Signs;
 use crate::upward::Up;
 use rug::Rational;
 use std::collections::BTreeMap;
-use std::ops::Mul;
 
 /// f = sum_h (a_h cos h tau + b_h sin h tau): (a_h, b_h) by h.
 pub(crate) type Trigonometric = BTreeMap<u32, (Rational, Rational)>;
 
-/// f(tau) x^x (x')^velocity.
+/// f(tau) times powers of the variables: x_1..x_N, x_1'..x_N', the functions; missing powers are 0.
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
     pub(crate) factor: Trigonometric,
-    pub(crate) x: u32,
-    pub(crate) velocity: u32,
+    pub(crate) powers: Vec<u32>,
 }
 
-/// A coefficient known within `size`: an uncertain multiple of x^x (x')^velocity and of waves up to a harmonic.
+/// A coefficient known within `size`: an uncertain multiple of a monomial and of waves up to a harmonic.
 #[derive(Clone, Debug)]
 pub(crate) struct Spread {
     pub(crate) size: Up,
-    pub(crate) x: u32,
-    pub(crate) velocity: u32,
+    pub(crate) powers: Vec<u32>,
     pub(crate) harmonic: u32,
 }
 
-/// x'' = g(x, x', t), g a polynomial in x and x' with rational coefficients that may be multiplied by cosines
-/// and sines of multiples of one frequency.
-#[derive(Clone, Debug)]
-pub struct Field {
+/// A polynomial in the variables.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Polynomial {
     pub(crate) terms: Vec<Term>,
     /// What is uncertain of the coefficients.
     pub(crate) spread: Vec<Spread>,
+}
+
+/// x_i'' = g_i(x, x', t): each g_i a polynomial in the unknowns, their velocities, and sines, cosines,
+/// exponentials and powers of such polynomials, with rational coefficients that may be multiplied by
+/// cosines and sines of multiples of one frequency.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// g_i.
+    pub(crate) forces: Vec<Polynomial>,
+    /// dg_i/dx_k, then dg_i/dx_k', by i and k.
+    pub(crate) first: Vec<Vec<Polynomial>>,
+    /// The second derivatives that are not 0: i, two variables, the derivative.
+    pub(crate) second: Vec<(usize, [usize; 2], Polynomial)>,
+    /// sum_k x_k' dg_i/dx_k'.
+    pub(crate) flow: Vec<Polynomial>,
+    pub(crate) functions: Vec<Function>,
     /// The largest frequency of which all the frequencies of the force are multiples.
     pub(crate) force: Option<Rational>,
 }
 
 impl Field {
-    /// The largest degree in (x, x').
+    /// The largest degree in the unknowns, their velocities and the functions.
     #[must_use]
     pub fn degree(&self) -> u32 {
-        self.terms.iter().map(|t| t.x.saturating_add(t.velocity)).max().unwrap_or(0)
+        let terms = self.forces.iter().flat_map(|g| &g.terms);
+        terms.map(|t| t.powers.iter().fold(0, |s: u32, n| s.saturating_add(*n))).max().unwrap_or(0)
+    }
+
+    /// How many unknowns there are.
+    #[must_use]
+    pub fn unknowns(&self) -> usize {
+        self.forces.len()
     }
 
     /// Whether no force depends on time.
@@ -58,81 +80,163 @@ impl Field {
     /// The field for a period of `periods` periods of the force: harmonics are multiplied.
     pub(crate) fn over(&self, periods: u32) -> Self {
         let mut field = self.clone();
-        for term in &mut field.terms {
-            let factor = std::mem::take(&mut term.factor);
-            term.factor = factor.into_iter().map(|(h, w)| (h.saturating_mul(periods), w)).collect();
+        for polynomial in field.polynomials() {
+            for term in &mut polynomial.terms {
+                let factor = std::mem::take(&mut term.factor);
+                term.factor =
+                    factor.into_iter().map(|(h, w)| (h.saturating_mul(periods), w)).collect();
+            }
+            for spread in &mut polynomial.spread {
+                spread.harmonic = spread.harmonic.saturating_mul(periods);
+            }
         }
         field
     }
 
-    /// Whether x(tau) -> -x(tau + pi) maps solutions to solutions: every term is odd.
-    pub(crate) fn is_odd(&self) -> bool {
-        let odd = |t: &Term| t.factor.keys().all(|h| (t.x + t.velocity + h) % 2 == 1);
-        self.terms.iter().all(odd)
+    fn polynomials(&mut self) -> impl Iterator<Item = &mut Polynomial> {
+        let first = self.first.iter_mut().flatten();
+        let second = self.second.iter_mut().map(|(.., p)| p);
+        let arguments = self.functions.iter_mut().map(|f| &mut f.argument);
+        self.forces.iter_mut().chain(first).chain(second).chain(&mut self.flow).chain(arguments)
     }
 
-    /// Whether x(tau) -> x(-tau) maps solutions to solutions: even powers of x', cosines.
+    /// Whether x_k(tau + pi) = s_k x_k(tau) is kept, s_k = -1 where the bit is set.
+    pub(crate) fn keeps_shift(&self, minus: u64) -> bool {
+        self.keeps(&|v| minus >> (v % self.unknowns()) & 1 == 1, &|h, a, b| {
+            (!a.is_zero() || !b.is_zero()).then_some(h % 2 == 1)
+        }, minus)
+    }
+
+    /// Whether x_k(-tau) = s_k x_k(tau) is kept, s_k = -1 where the bit is set.
+    pub(crate) fn keeps_reversal(&self, minus: u64) -> bool {
+        let n = self.unknowns();
+        self.keeps(&|v| (minus >> (v % n) & 1 == 1) != (v >= n), &|_, a, b| match () {
+            () if !a.is_zero() && !b.is_zero() => None,
+            () => Some(!b.is_zero()),
+        }, minus)
+    }
+
+    /// Whether g_i changes its sign as x_i does where the variables and the waves change theirs.
+    fn keeps(
+        &self,
+        variable: &dyn Fn(usize) -> bool,
+        wave: &dyn Fn(u32, &Rational, &Rational) -> Option<bool>,
+        minus: u64,
+    ) -> bool {
+        let n = 2 * self.unknowns();
+        let mut signs: Vec<Option<bool>> = (0..n).map(|v| Some(variable(v))).collect();
+        for function in &self.functions {
+            let sign = function.argument.sign(&signs, wave);
+            signs.push(function.kind.sign(sign));
+        }
+        let kept = |(i, g): (usize, &Polynomial)| {
+            g.terms.is_empty() || g.sign(&signs, wave) == Some(minus >> i & 1 == 1)
+        };
+        self.forces.iter().enumerate().all(kept)
+    }
+
+    /// Whether x(tau) -> x(-tau) maps solutions to solutions; of several unknowns the further ones may
+    /// change their sign.
     #[must_use]
     pub fn is_reversible(&self) -> bool {
-        let even =
-            |t: &Term| t.velocity.is_multiple_of(2) && t.factor.values().all(|(_, b)| b.is_zero());
-        self.terms.iter().all(even)
+        self.signs(false).iter().any(|minus| minus & 1 == 0)
     }
 
-    /// The symmetry that F keeps.
-    pub(crate) fn parity(&self, reversible: bool) -> Parity {
-        Parity { odd: self.is_odd(), even: reversible && self.is_reversible() }
+    /// The patterns of signs of one symmetry that F keeps: of the shift by pi (never all +), or of the
+    /// reversal of time.
+    pub(crate) fn signs(&self, shift: bool) -> Signs {
+        let most = if self.unknowns() > MOST_SIGNS { 1 } else { self.unknowns() };
+        let all = 0..1u64 << most;
+        match shift {
+            true => all.skip(1).filter(|minus| self.keeps_shift(*minus)).collect(),
+            false => all.filter(|minus| self.keeps_reversal(*minus)).collect(),
+        }
     }
 
-    /// dg/dx'.
-    pub(crate) fn by_velocity(&self) -> Self {
-        let terms = self.terms.iter().filter(|t| t.velocity > 0);
-        let derivative = |t: &Term| {
-            let n = t.velocity;
-            let times =
-                |(a, b): &(Rational, Rational)| (Rational::from(a * n), Rational::from(b * n));
-            let factor = t.factor.iter().map(|(h, wave)| (*h, times(wave))).collect();
-            Term { factor, x: t.x, velocity: n - 1 }
-        };
-        let spread = self.spread.iter().filter(|s| s.velocity > 0).map(|s| {
-            let size = s.size * Up(f64::from(s.velocity));
-            Spread { size, velocity: s.velocity - 1, ..s.clone() }
-        });
-        let spread = spread.collect();
-        Self { terms: terms.map(derivative).collect(), spread, force: self.force.clone() }
+    /// The sum of dg_i/dx_i'.
+    pub(crate) fn divergence(&self) -> Polynomial {
+        let n = self.unknowns();
+        let mut sum = Polynomial::default();
+        for (i, row) in self.first.iter().enumerate() {
+            sum.terms.extend(row[n + i].terms.iter().cloned());
+            sum.spread.extend(row[n + i].spread.iter().cloned());
+        }
+        sum
     }
+}
 
-    /// sum_t |f_t| d^p/domega^p d^q/dx^q d^r/dz^r (omega^j x^i z^j) at nonnegative bounds: the
-    /// derivative of the majorant polynomial, what is uncertain included. |f| = sum_h (|a_h| + |b_h|) nu^h.
-    pub(crate) fn majorant(&self, at: [Up; 3], nu: Up, derivative: [u32; 3]) -> Up {
-        let term = |t: &Term| {
-            let size = t.factor.iter();
-            let size: Up = size.map(|(h, (a, b))| (Up::of(a) + Up::of(b)) * nu.powi(*h)).sum();
-            monomial(size, t.x, t.velocity, at, derivative)
-        };
-        let sum: Up = self.terms.iter().map(term).sum();
-        sum + self.uncertainty(at, nu, derivative)
+/// Unknowns up to which all patterns of signs are tried.
+const MOST_SIGNS: usize = 8;
+
+impl Polynomial {
+    /// sum_t |f_t| variables^powers at bounds of the variables, what is uncertain included.
+    /// |f| = sum_h (|a_h| + |b_h|) nu^h.
+    pub(crate) fn majorant(&self, at: &[Up], nu: Up) -> Up {
+        let term = |t: &Term| t.size(nu) * monomial(&t.powers, at, None);
+        self.terms.iter().map(term).sum::<Up>() + self.uncertainty(at, nu)
     }
 
     /// The same for what is uncertain alone.
-    pub(crate) fn uncertainty(&self, at: [Up; 3], nu: Up, derivative: [u32; 3]) -> Up {
-        let term =
-            |s: &Spread| monomial(s.size * nu.powi(s.harmonic), s.x, s.velocity, at, derivative);
+    pub(crate) fn uncertainty(&self, at: &[Up], nu: Up) -> Up {
+        let term = |s: &Spread| s.size * nu.powi(s.harmonic) * monomial(&s.powers, at, None);
         self.spread.iter().map(term).sum()
     }
+
+    /// A bound of the derivative of the majorant by one variable.
+    pub(crate) fn slope(&self, at: &[Up], nu: Up, variable: usize) -> Up {
+        let spread = self.spread.iter().map(|s| (s.size * nu.powi(s.harmonic), &s.powers));
+        let terms = self.terms.iter().map(|t| (t.size(nu), &t.powers));
+        terms.chain(spread).map(|(size, powers)| size * monomial(powers, at, Some(variable))).sum()
+    }
+
+    /// By how much the polynomial can change where each variable changes by so much, up to these bounds.
+    pub(crate) fn change(&self, at: &[Up], by: &[Up], nu: Up) -> Up {
+        let part = |(v, by): (usize, &Up)| match by.0 {
+            0.0 => Up::ZERO,
+            _ => *by * self.slope(at, nu, v),
+        };
+        by.iter().enumerate().map(part).sum()
+    }
+
+    /// Whether the sign changes (`true`) where those of the variables and waves do; nothing where it has
+    /// no one answer.
+    fn sign(
+        &self,
+        signs: &[Option<bool>],
+        wave: &dyn Fn(u32, &Rational, &Rational) -> Option<bool>,
+    ) -> Option<bool> {
+        let mut found = None;
+        for term in &self.terms {
+            let mut sign = false;
+            for (v, n) in term.powers.iter().enumerate().filter(|(_, n)| **n > 0) {
+                sign ^= signs[v]? && n % 2 == 1;
+            }
+            for (h, (a, b)) in &term.factor {
+                let sign = sign ^ wave(*h, a, b)?;
+                if *found.get_or_insert(sign) != sign {
+                    return None;
+                }
+            }
+        }
+        Some(found.unwrap_or(false))
+    }
 }
 
-/// size d^p/domega^p d^q/dx^q d^r/dz^r (omega^j x^i z^j).
-fn monomial(size: Up, x: u32, velocity: u32, at: [Up; 3], derivative: [u32; 3]) -> Up {
-    let exponents = [velocity, x, velocity];
-    (0..3).map(|i| power(at[i], exponents[i], derivative[i])).fold(size, Mul::mul)
+impl Term {
+    fn size(&self, nu: Up) -> Up {
+        let waves = self.factor.iter();
+        waves.map(|(h, (a, b))| (Up::of(a) + Up::of(b)) * nu.powi(*h)).sum()
+    }
 }
 
-/// d^p x^n.
-fn power(x: Up, n: u32, p: u32) -> Up {
-    if p > n {
+/// The monomial, or its derivative by a variable.
+fn monomial(powers: &[u32], at: &[Up], by: Option<usize>) -> Up {
+    if by.is_some_and(|v| powers.get(v).is_none_or(|n| *n == 0)) {
         return Up::ZERO;
     }
-    let falling = (n - p + 1..=n).fold(Up::ONE, |f, k| f * Up(f64::from(k)));
-    falling * x.powi(n - p)
+    let power = |(v, n): (usize, &u32)| match by {
+        Some(by) if by == v => Up(f64::from(*n)) * at[v].powi(n - 1),
+        _ => at[v].powi(*n),
+    };
+    powers.iter().enumerate().filter(|(_, n)| **n > 0).map(power).fold(Up::ONE, |a, b| a * b)
 }

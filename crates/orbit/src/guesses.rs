@@ -1,5 +1,6 @@
 //! Guesses without a simulation: harmonic balance in doubles from a grid of single harmonics.
 
+use crate::doubles::InDoubles;
 use crate::newton::balance;
 use crate::task::Task;
 use crate::{Failure, Field, Kind, Start};
@@ -60,10 +61,10 @@ pub fn guesses(field: &Field, kind: &Kind, stop: &Stop) -> Result<Vec<Start>, Fa
             cosines: vec![middle, radius * angle.cos()],
             sines: vec![0.0, radius * angle.sin()],
         };
-        let (task, guess) = Task::new(field, kind, &single)?;
+        let (task, guess) = Task::new(field, kind, std::slice::from_ref(&single))?;
         match balance(&task, guess, MODES, stop) {
             Ok(centre) => {
-                let start = Start::of(&centre);
+                let start = Start::of(&centre.frequency, &centre.component(0));
                 let new = found.iter().all(|other| !other.is_near(&start, SAME));
                 if new && (forced || start.oscillates(OSCILLATES)) {
                     found.push(start);
@@ -128,11 +129,6 @@ impl Field {
 
     /// g without its force.
     fn value(&self, x: f64, velocity: f64) -> f64 {
-        let power = |base: f64, n: u32| base.powi(n.min(64) as i32);
-        let term = |t: &crate::field::Term| {
-            let factor = t.factor.get(&0).map_or(0.0, |(a, _)| a.to_f64());
-            factor * power(x, t.x) * power(velocity, t.velocity)
-        };
-        self.terms.iter().map(term).sum()
+        InDoubles::new(self).accelerations(&[x, velocity], None)[0]
     }
 }

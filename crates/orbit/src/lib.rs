@@ -33,25 +33,32 @@
 
 mod bounds;
 mod centre;
+mod doubles;
+mod exact;
 mod failure;
 mod family;
 mod field;
+mod function;
 mod guesses;
 mod laurent;
 mod linear;
+mod modes;
 mod newton;
 mod orbit;
 mod proof;
 mod prove;
 mod radii;
 mod read;
+mod reader;
 mod sine;
 mod space;
 mod start;
+mod sum;
 pub mod steady;
 mod task;
 #[cfg(test)]
 mod tests;
+mod transform;
 mod upward;
 mod write;
 
@@ -59,8 +66,9 @@ pub use failure::Failure;
 pub use family::{Cover, Member, cover, family};
 pub use field::Field;
 pub use guesses::guesses;
-pub use proof::{Proof, Stability, Status};
-pub use prove::{Approximation, approximate, prove};
+pub use modes::guesses_all;
+pub use proof::{Motion, Proof, Stability, Status};
+pub use prove::{Approximation, approximate, prove, prove_all};
 pub use radii::Bounds;
 pub use sine::Sine;
 pub use space::Parity;

@@ -1,7 +1,8 @@
 //! The guess from which Newton's method starts.
 
-use crate::centre::Centre;
+use crate::centre::Component;
 use nalgebra::Complex;
+use rug::Rational;
 use std::f64::consts::TAU;
 
 /// A guess of a periodic orbit: x = sum_k (cosine_k cos k tau + sine_k sin k tau), tau = omega t;
@@ -43,11 +44,11 @@ impl Start {
     }
 
     /// The numerical solution in doubles.
-    pub(crate) fn of(centre: &Centre) -> Self {
-        let modes = centre.doubles();
+    pub(crate) fn of(frequency: &Rational, component: &Component) -> Self {
+        let modes = component.doubles();
         let times = |k: usize| if k == 0 { 1.0 } else { 2.0 };
         Self {
-            frequency: centre.frequency.to_f64(),
+            frequency: frequency.to_f64(),
             cosines: modes.iter().enumerate().map(|(k, c)| times(k) * c.re).collect(),
             sines: modes.iter().map(|c| -2.0 * c.im).collect(),
         }
@@ -90,12 +91,14 @@ impl Start {
     }
 }
 
-/// The same orbit with its phase moved so that the first harmonic is a positive multiple of cos
-/// tau.
-pub(crate) fn in_phase(mut modes: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
-    let angle = modes.get(1).map_or(0.0, |c| c.arg());
-    for (k, c) in modes.iter_mut().enumerate() {
-        *c *= Complex::from_polar(1.0, -angle * k as f64);
+/// The same orbit with its phase moved so that the first harmonic of the first unknown is a positive multiple
+/// of cos tau.
+pub(crate) fn in_phase(mut unknowns: Vec<Vec<Complex<f64>>>) -> Vec<Vec<Complex<f64>>> {
+    let angle = unknowns[0].get(1).map_or(0.0, |c| c.arg());
+    for modes in &mut unknowns {
+        for (k, c) in modes.iter_mut().enumerate() {
+            *c *= Complex::from_polar(1.0, -angle * k as f64);
+        }
     }
-    modes
+    unknowns
 }

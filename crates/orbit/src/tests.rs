@@ -1,10 +1,10 @@
 //! What must fail fails: forged centres and inverses, and every bound left out in turn.
 
-use crate::bounds::{Contraction, Frame, Measure, Weights};
+use crate::bounds::{Contraction, Frame, Measure};
 use crate::centre::Centre;
 use crate::field::Field;
-use crate::linear::{Inverse, Linear};
-use crate::newton::{balance, invert};
+use crate::linear::Inverse;
+use crate::newton::{balance, invert, linearised};
 use crate::radii::{Radii, decide};
 use crate::space::Parity;
 use crate::start::Start;
@@ -49,10 +49,9 @@ fn judge(
     inverse: &Inverse,
     without: Without,
 ) -> Result<Radii, Failure> {
-    let values = centre.values(&task.field);
-    let linear = Linear::new(centre.frequency.to_f64(), &values, task.rows);
+    let (values, linear) = linearised(task, centre)?;
     let frame = Frame::new(task, centre, &values, &linear, inverse);
-    let weights = Weights::new(1.0, frame.reach());
+    let weights = frame.weights(1.0)?;
     let mut bounds: Contraction = frame.contraction(Measure::Norm, &weights);
     match without {
         Without::Y0 => bounds.y0 = Float::new(53),
@@ -67,14 +66,12 @@ fn judge(
 }
 
 fn inverse_at(task: &Task, centre: &Centre, modes: usize) -> Inverse {
-    let values = centre.values(&task.field);
-    let linear = Linear::new(centre.frequency.to_f64(), &values, task.rows);
-    invert(&linear, modes).unwrap()
+    invert(&linearised(task, centre).unwrap().1, modes).unwrap()
 }
 
 /// A cycle balanced on 30 modes: the truth to 1e-9, and its inverse.
 fn cycle() -> (Task, Centre, Inverse) {
-    let (task, guess) = Task::new(&van_der_pol(), &Kind::LimitCycle, &wave()).unwrap();
+    let (task, guess) = Task::new(&van_der_pol(), &Kind::LimitCycle, &[wave()]).unwrap();
     let centre = balance(&task, guess, 40, &Stop::default()).unwrap();
     let inverse = inverse_at(&task, &centre, 30);
     (task, centre, inverse)
@@ -85,7 +82,7 @@ fn moved(centre: &Centre, amount: f64) -> Centre {
     let mut forged = centre.clone();
     let mut step = vec![Complex::default(); 4];
     step[3].re = amount / 2.0;
-    forged.add(0.0, &step, 0);
+    forged.add(0.0, &[step], 0);
     forged
 }
 
@@ -116,7 +113,7 @@ fn a_moved_centre_is_refused_or_its_ball_reaches_the_truth() {
 fn a_forged_amplitude_is_refused() {
     let duffing = field(x() + x().pow(3));
     let start = Start { frequency: 1.3, cosines: vec![0.0, 1.0], sines: vec![] };
-    let (mut task, guess) = Task::new(&duffing, &Kind::InitialAmplitude(1.into()), &start).unwrap();
+    let (mut task, guess) = Task::new(&duffing, &Kind::InitialAmplitude(1.into()), &[start]).unwrap();
     let centre = balance(&task, guess, 20, &Stop::default()).unwrap();
     let inverse = inverse_at(&task, &centre, 20);
     assert!(judge(&task, &centre, &inverse, Without::Nothing).unwrap().radius < 1e-8);
@@ -149,10 +146,10 @@ fn a_small_inverse_is_seen_by_z0_alone() {
 
 /// A task without unknown frequency, omega = 1.
 fn at_rate_one(rest: Expression, modes: &[f64]) -> (Task, Centre) {
-    let rows = Rows { parity: Parity { odd: false, even: true }, condition: None };
+    let rows = Rows { parity: Parity { even: true, ..Parity::default() }, condition: None };
     let modes: Vec<_> = modes.iter().map(|re| Complex::new(*re, 0.0)).collect();
     let task = Task { field: field(rest), rows, value: Rational::new(), error: Up::ZERO };
-    (task, Centre::from_doubles(72, 1.0, &modes))
+    (task, Centre::from_doubles(72, 1.0, &[modes]))
 }
 
 #[test]

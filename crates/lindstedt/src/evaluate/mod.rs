@@ -23,7 +23,7 @@ pub use lindstedt_evaluation::{
 pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;
 use lindstedt_series::resummation::Method;
-pub use prove::{Bounds, ProvedOrbit, Verdict as ProofVerdict};
+pub use prove::{Bounds, ProvedOrbit, UnknownOrbit, Verdict as ProofVerdict};
 use rug::Rational;
 use std::time::Instant;
 pub use sweep::{EvaluationSweep, SweptPeriod};

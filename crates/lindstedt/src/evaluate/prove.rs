@@ -8,7 +8,9 @@ use crate::refusal::Refused;
 use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Status, Work};
 use lindstedt_algebra::Stop;
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_orbit::{Failure, Kind, Proof, Request, Stability, Start, guesses, prove};
+use lindstedt_orbit::{
+    Failure, Kind, Motion, Proof, Request, Stability, Start, guesses, guesses_all, prove, prove_all,
+};
 use rug::Float;
 use rug::float::Round;
 use serde::Serialize;
@@ -42,6 +44,9 @@ pub struct ProvedOrbit {
     pub maximum: Option<Number>,
     /// The least x.
     pub minimum: Option<Number>,
+    /// The same of further unknowns, where there are several equations.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unknowns: Vec<UnknownOrbit>,
     /// The exponent of a limit cycle that is not zero (Liouville); empty for a member of a family.
     pub floquet_exponent: Vec<Number>,
     /// The sum of the two exponents of a response to a force (Liouville).
@@ -58,6 +63,22 @@ pub struct ProvedOrbit {
     /// cycles (the first is the one that the motion from x = 2 approaches). The list need not be complete.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub further: Vec<ProvedOrbit>,
+}
+
+/// What is proved of a further unknown.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct UnknownOrbit {
+    /// Its name.
+    pub name: String,
+    /// Its value at phase 0.
+    pub displacement: Number,
+    /// Its derivative there.
+    pub velocity: Number,
+    /// The largest value.
+    pub maximum: Number,
+    /// The least value.
+    pub minimum: Number,
 }
 
 /// How the contraction test ended.
@@ -108,9 +129,11 @@ impl Oscillator {
     /// Proves the periodic orbit at the values set: a limit cycle, the member of a family with the
     /// amplitude given, or the responses to a force with its period. Period, frequency, x at phase 0, extrema and the Floquet exponent are enclosed
     /// to `work.digits` digits ([`Status::Proved`]); the guess is the motion in the time domain, else
-    /// the sum of the expansion, else harmonic balance (of responses the only one). For equations that are
-    /// polynomial in x and x' with rational coefficients, and x'' + c sin(q x) = 0; a small parameter is
-    /// not needed.
+    /// the sum of the expansion, else harmonic balance (of responses the only one). For one equation or
+    /// several, made of polynomials, rational powers, sines, cosines and exponentials of the unknowns and
+    /// their velocities with rational coefficients; a small parameter is not needed. Of several
+    /// unknowns the guesses are the normal modes continued in the amplitude of the first, or the motion
+    /// once it repeats itself.
     ///
     /// Where the proof fails the estimated period stands as before, and what failed is said
     /// ([`Standing::Undecided`]). Cost: third power of the modes (400: a second).
@@ -131,10 +154,13 @@ impl Oscillator {
     /// ```
     pub fn prove(&self, question: &Evaluate, work: &Work) -> Result<Answer<ProvedOrbit>, Error> {
         let start = Instant::now();
-        self.without_pi()?;
+        self.values_without_pi()?;
         let (case, mut remarks) = self.placed()?;
         let wanted = case.wanted(work.digits)?;
-        let (mut found, outcome) = case.attempt(&wanted, question, work)?;
+        let (mut found, outcome) = match self.problem().others.is_empty() {
+            true => case.attempt(&wanted, question, work)?,
+            false => (None, all_of(&wanted, &case.request(work))),
+        };
         if outcome.is_err() && case.has_expansion() {
             found = case.period(question, work).ok().or(found);
         }
@@ -146,7 +172,8 @@ impl Oscillator {
         let (value, standing) = match outcome {
             Ok((first, others)) => {
                 let digits = work.printed_digits();
-                let orbit = |proof: &Proof| ProvedOrbit::new(proof, &wanted, digits);
+                let names = |k: usize| self.problem().unknown(k);
+                let orbit = |proof: &Proof| ProvedOrbit::new(proof, &wanted, digits, &names);
                 let further = others.iter().map(orbit).collect();
                 (ProvedOrbit { further, ..orbit(&first) }, Standing::Complete)
             }
@@ -169,8 +196,7 @@ impl Oscillator {
         question: &Evaluate,
         work: &Work,
     ) -> Result<(Option<Evaluation>, Outcome), Error> {
-        let request =
-            Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() };
+        let request = self.request(work);
         // Some guesses belong to no orbit.
         let guessed = Request { modes_limit: MODES_OF_A_GUESS, ..request.clone() };
         let mut outcome = Err(Failure::NoStart);
@@ -197,6 +223,10 @@ impl Oscillator {
             return Err(Refused::stopped("stopped before the proof was finished", hint).into());
         }
         Ok((found, with_others(wanted, outcome, &guessed)))
+    }
+
+    fn request(&self, work: &Work) -> Request {
+        Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() }
     }
 
     /// A guess from the closed form or from the motion in the time domain.
@@ -286,15 +316,56 @@ fn with_others(wanted: &Wanted, first: Result<Proof, Failure>, request: &Request
     Ok((first, proofs.collect()))
 }
 
+/// Of several unknowns: the orbits that are proved from all guesses.
+fn all_of(wanted: &Wanted, request: &Request) -> Outcome {
+    let (field, kind) = (&wanted.field, &wanted.kind);
+    let mut proofs: Vec<Proof> = Vec::new();
+    let mut failure = Failure::NoStart;
+    for starts in guesses_all(field, kind, &request.stop)? {
+        match prove_all(field, kind, &starts, request) {
+            Ok(proof) if proofs.iter().all(|other| other.is_separate_from(&proof)) => {
+                proofs.push(proof);
+            }
+            Ok(_) => {}
+            Err(Failure::Stopped) => return Err(Failure::Stopped),
+            Err(other) => failure = other,
+        }
+    }
+    let mut proofs = proofs.into_iter();
+    Ok((proofs.next().ok_or(failure)?, proofs.collect()))
+}
+
+impl UnknownOrbit {
+    fn new(motion: &Motion, name: String, number: &dyn Fn(&Ball) -> Number) -> Self {
+        Self {
+            name,
+            displacement: number(&motion.displacement),
+            velocity: number(&motion.velocity),
+            maximum: number(&motion.maximum),
+            minimum: number(&motion.minimum),
+        }
+    }
+}
+
 impl ProvedOrbit {
-    fn new(proof: &Proof, wanted: &Wanted, digits: usize) -> Self {
+    fn new(
+        proof: &Proof,
+        wanted: &Wanted,
+        digits: usize,
+        name: &dyn Fn(usize) -> String,
+    ) -> Self {
         let number = |ball: &Ball| Some(Number::of_ball(ball, digits).weaken(Status::Proved));
+        let plain = |ball: &Ball| Number::of_ball(ball, digits).weaken(Status::Proved);
+        let further = proof.further.iter().enumerate();
+        let unknowns = further.map(|(k, motion)| UnknownOrbit::new(motion, name(k + 1), &plain));
         let (cycle, forced) = (wanted.kind == Kind::LimitCycle, wanted.is_forced());
+        // Of several unknowns the sum of the exponents is no exponent.
+        let planar = proof.further.is_empty();
         let state = wanted.state((proof.displacement.clone(), proof.velocity.clone()));
         let (amplitude, velocity) = state.unzip();
         let zero = || Balls::new(proof.maximum.midpoint().prec()).zero();
         let extremum = |u: &Ball| Some(wanted.state((u.clone(), zero()))?.0);
-        let product = Some(proof.multiplier_product()).filter(|_| forced);
+        let product = Some(proof.multiplier_product()).filter(|_| forced || cycle && !planar);
         let known = |ball: Option<Ball>| ball.as_ref().and_then(number);
         Self {
             period: number(&proof.period),
@@ -303,8 +374,9 @@ impl ProvedOrbit {
             velocity: known(velocity),
             maximum: known(extremum(&proof.maximum)),
             minimum: known(extremum(&proof.minimum)),
-            floquet_exponent: number(&proof.exponent).filter(|_| cycle).into_iter().collect(),
-            exponent_sum: number(&proof.exponent).filter(|_| forced),
+            unknowns: unknowns.collect(),
+            floquet_exponent: number(&proof.exponent).filter(|_| cycle && planar).into_iter().collect(),
+            exponent_sum: number(&proof.exponent).filter(|_| forced || cycle && !planar),
             multiplier_product: known(product),
             stable: match proof.stability {
                 Stability::Unstable if cycle || forced => Some(false),
@@ -317,10 +389,11 @@ impl ProvedOrbit {
                 radius: Box::new(above(&proof.radius)),
                 unique_within: Box::new(below(&proof.unique_within)),
                 among: match (proof.parity.odd, proof.parity.even) {
+                    (false, false) => None,
+                    _ if !planar => Some("motions with the symmetries of this one"),
                     (true, true) => Some("even functions of the phase of odd harmonics"),
                     (true, false) => Some("functions of odd harmonics, x(t + T/2) = -x(t)"),
                     (false, true) => Some("even functions of the phase"),
-                    (false, false) => None,
                 },
                 bounds: Box::new(Bounds {
                     y0: above(&proof.bounds.y0),
@@ -350,6 +423,7 @@ impl ProvedOrbit {
             velocity: None,
             maximum: None,
             minimum: None,
+            unknowns: Vec::new(),
             floquet_exponent: Vec::new(),
             exponent_sum: None,
             multiplier_product: None,

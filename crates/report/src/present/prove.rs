@@ -52,7 +52,17 @@ fn orbit(page: Document, value: &ProvedOrbit) -> Document {
     ];
     let known =
         named.into_iter().filter_map(|(name, number)| Some((name, shown(number.as_ref()?))));
-    let exponents = value.floquet_exponent.iter().map(|e| ("Floquet exponent", shown(e)));
+    let unknowns = value.unknowns.iter().flat_map(|unknown| {
+        let name = &unknown.name;
+        [
+            (format!("{name} at phase 0"), shown(&unknown.displacement)),
+            (format!("{name}' at phase 0"), shown(&unknown.velocity)),
+            (format!("largest {name}"), shown(&unknown.maximum)),
+            (format!("least {name}"), shown(&unknown.minimum)),
+        ]
+    });
+    let known = known.map(|(name, number)| (name.to_owned(), number)).chain(unknowns);
+    let exponents = value.floquet_exponent.iter().map(|e| ("Floquet exponent".to_owned(), shown(e)));
     let page = page.lines(known.chain(exponents));
     match &value.proof {
         ProofVerdict::Failed { failed, why } => page
