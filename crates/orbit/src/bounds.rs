@@ -259,7 +259,8 @@ impl<'a> Frame<'a> {
         let frequency = (by_frequency + weights.uncertain[2]).over(self.scale);
         let slope = if self.extra() == 1 { column.max(frequency) } else { column };
         let residual: Up = self.field.forces.iter().map(part).sum();
-        let of_functions = Float::with_val(53, (inverse * weights.uncertain[0]).0) >> self.centre.bits;
+        let of_functions =
+            Float::with_val(53, (inverse * weights.uncertain[0]).0) >> self.centre.bits;
         let residual = Float::with_val(53, (inverse * residual + condition).0);
         let residual = Float::with_val_round(53, &residual + &of_functions, Round::Up).0;
         (residual, inverse * slope)

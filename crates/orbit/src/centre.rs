@@ -251,7 +251,7 @@ impl<'a> Variables<'a> {
             let rate: u32 = term.powers.iter().skip(n).take(n).sum();
             let power = rug::ops::Pow::pow(self.centre.frequency.clone(), rate as i32 - less);
             let degree: u32 = term.powers.iter().sum();
-            let factor = Rational::from(factor * power) >> (bits * degree);
+            let factor = (factor * power) >> (bits * degree);
             Part { factor, modes: self.get(&term.powers), wave: term.factor.clone() }
         };
         polynomial.terms.iter().map(part).collect()

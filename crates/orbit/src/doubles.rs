@@ -26,13 +26,7 @@ impl InDoubles {
         let mut variables = state.to_vec();
         for (kind, argument) in &self.functions {
             let p = value(argument, &variables, phase);
-            variables.push(match kind {
-                Operation::Exponential => p.exp(),
-                Operation::Sine => p.sin(),
-                Operation::Cosine => p.cos(),
-                Operation::Root(1) => p.recip(),
-                Operation::Root(q) => p.powf(-1.0 / f64::from(*q)),
-            });
+            variables.push(kind.in_doubles(p));
         }
         self.forces.iter().map(|g| value(g, &variables, phase)).collect()
     }
@@ -52,6 +46,19 @@ impl InDoubles {
         let d = slope(&along(&c, h), time + h);
         let mean = |i: usize| (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]) / 6.0;
         state.iter().enumerate().map(|(i, x)| x + h * mean(i)).collect()
+    }
+}
+
+impl Operation {
+    /// The value at a value of the argument; not a number where there is none.
+    pub(crate) fn in_doubles(self, p: f64) -> f64 {
+        match self {
+            Self::Exponential => p.exp(),
+            Self::Sine => p.sin(),
+            Self::Cosine => p.cos(),
+            Self::Root(1) => p.recip(),
+            Self::Root(q) => p.powf(-1.0 / f64::from(q)),
+        }
     }
 }
 

@@ -128,7 +128,8 @@ impl Exact {
     }
 
     pub(crate) fn minus(&self, other: &Self) -> Self {
-        let part = |f: &Self, factor: Rational| Part { factor, modes: f.modes.clone(), wave: unit() };
+        let part =
+            |f: &Self, factor: Rational| Part { factor, modes: f.modes.clone(), wave: unit() };
         combine(vec![part(self, self.scale.clone()), part(other, -other.scale.clone())])
     }
 

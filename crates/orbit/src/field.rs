@@ -7,7 +7,8 @@
 //! ([`crate::function`]); their derivatives are polynomials in functions again, so that no further
 //! unknowns, and no constraints that tie them, are needed.
 
-use crate::function::Function;
+use crate::function::{Function, Operation};
+use crate::read::common_measure;
 use crate::space::Signs;
 use crate::upward::Up;
 use rug::Rational;
@@ -102,18 +103,24 @@ impl Field {
 
     /// Whether x_k(tau + pi) = s_k x_k(tau) is kept, s_k = -1 where the bit is set.
     pub(crate) fn keeps_shift(&self, minus: u64) -> bool {
-        self.keeps(&|v| minus >> (v % self.unknowns()) & 1 == 1, &|h, a, b| {
-            (!a.is_zero() || !b.is_zero()).then_some(h % 2 == 1)
-        }, minus)
+        self.keeps(
+            &|v| minus >> (v % self.unknowns()) & 1 == 1,
+            &|h, a, b| (!a.is_zero() || !b.is_zero()).then_some(h % 2 == 1),
+            minus,
+        )
     }
 
     /// Whether x_k(-tau) = s_k x_k(tau) is kept, s_k = -1 where the bit is set.
     pub(crate) fn keeps_reversal(&self, minus: u64) -> bool {
         let n = self.unknowns();
-        self.keeps(&|v| (minus >> (v % n) & 1 == 1) != (v >= n), &|_, a, b| match () {
-            () if !a.is_zero() && !b.is_zero() => None,
-            () => Some(!b.is_zero()),
-        }, minus)
+        self.keeps(
+            &|v| (minus >> (v % n) & 1 == 1) != (v >= n),
+            &|_, a, b| match () {
+                () if !a.is_zero() && !b.is_zero() => None,
+                () => Some(!b.is_zero()),
+            },
+            minus,
+        )
     }
 
     /// Whether g_i changes its sign as x_i does where the variables and the waves change theirs.
@@ -151,6 +158,26 @@ impl Field {
             true => all.skip(1).filter(|minus| self.keeps_shift(*minus)).collect(),
             false => all.filter(|minus| self.keeps_reversal(*minus)).collect(),
         }
+    }
+
+    /// q where x (alone) occurs in sines and cosines of multiples of q x only: it is an angle.
+    pub(crate) fn angle(&self) -> Option<f64> {
+        let holds = |t: &Term| t.powers.first().is_some_and(|n| *n > 0);
+        if self.unknowns() > 1 || self.forces[0].terms.iter().any(holds) {
+            return None;
+        }
+        let mut rates: Vec<Rational> = Vec::new();
+        for function in &self.functions {
+            for term in function.argument.terms.iter().filter(|t| holds(t)) {
+                let constant = term.factor.iter().next().filter(|_| term.factor.len() == 1)?;
+                let waves = matches!(function.kind, Operation::Sine | Operation::Cosine);
+                if term.powers != [1] || *constant.0 != 0 || !waves {
+                    return None;
+                }
+                rates.push(constant.1.0.clone().abs());
+            }
+        }
+        rates.into_iter().reduce(|a, b| common_measure(&a, &b)).map(|q| q.to_f64())
     }
 
     /// The sum of dg_i/dx_i'.

@@ -13,7 +13,8 @@ use crate::centre::Variables;
 use crate::exact::Exact;
 use crate::field::Polynomial;
 use crate::laurent::Laurent;
-use crate::transform::samples_to_modes;
+use crate::task::FAST_BITS;
+use crate::transform::{doubles_to_modes, samples_to_modes};
 use crate::upward::Up;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Float;
@@ -87,10 +88,17 @@ const MOST_NORM: f64 = 200.0;
 
 impl Function {
     /// Approximations over 2^bits: of this one, and of the cosine with a sine.
-    pub(crate) fn approximate(&self, variables: &mut Variables<'_>) -> Result<Vec<Laurent>, Failure> {
+    pub(crate) fn approximate(
+        &self,
+        variables: &mut Variables<'_>,
+    ) -> Result<Vec<Laurent>, Failure> {
         let argument = variables.exact(&self.argument, 0);
-        let refused = || Failure::NoFunction { argument: argument.norm(Up::ONE, 0).0 };
-        samples_to_modes(&argument, variables.bits(), |p| self.kind.value(p)).ok_or_else(refused)
+        let (kind, bits) = (self.kind, variables.bits());
+        let found = match bits <= FAST_BITS {
+            true => doubles_to_modes(&argument, bits, kind.list()),
+            false => samples_to_modes(&argument, bits, |p| kind.value(p)),
+        };
+        found.ok_or_else(|| Failure::NoFunction { argument: argument.norm(Up::ONE, 0).0 })
     }
 
     /// The approximations with what ties them.
@@ -101,6 +109,14 @@ impl Function {
 }
 
 impl Operation {
+    /// This one, and the cosine with a sine.
+    pub(crate) fn list(&self) -> &[Self] {
+        match self {
+            Self::Sine | Self::Cosine => &[Self::Sine, Self::Cosine],
+            other => std::slice::from_ref(other),
+        }
+    }
+
     /// The values at a value of the argument; nothing where there is none.
     fn value(self, p: &Float) -> Option<Vec<Float>> {
         match self {
@@ -207,13 +223,16 @@ mod tests {
         const BITS: u32 = 120;
         let (nu, p) = (Up(1.1), argument());
         let shift = rug::Integer::from(1) << 40u32;
-        for kind in [Operation::Exponential, Operation::Sine, Operation::Root(1), Operation::Root(2)] {
+        for kind in
+            [Operation::Exponential, Operation::Sine, Operation::Root(1), Operation::Root(2)]
+        {
             let p = match kind {
                 Operation::Root(_) => Exact::over_power(Laurent::one(), 0).minus(&p.scaled(-1)),
                 _ => p.clone(),
             };
             let list = samples_to_modes(&p, BITS, |x| kind.value(x)).unwrap();
-            let error = |list: &[Laurent]| Tied::new(kind, p.clone(), list, BITS).error(nu, Up::ZERO);
+            let error =
+                |list: &[Laurent]| Tied::new(kind, p.clone(), list, BITS).error(nu, Up::ZERO);
             let right = error(&list).unwrap();
             assert!(right.0 < 1e7, "{kind:?}: {right:?}");
             for k in [0, 2] {

@@ -123,7 +123,12 @@ impl Field {
         let force = |j: i32| self.value(at(j), 0.0);
         let change = |a: f64, b: f64| a * b < 0.0 || (a == 0.0 && b != 0.0);
         let changes = (-CELLS..CELLS).filter(|j| change(force(*j), force(j + 1)));
-        let places: Vec<f64> = changes.map(|j| (at(j) + at(j + 1)) / 2.0).collect();
+        // Where x is an angle, those of one turn.
+        let most = self.angle().map_or(f64::INFINITY, |rate| std::f64::consts::PI / rate);
+        let places = changes
+            .map(|j| (at(j) + at(j + 1)) / 2.0)
+            .filter(|x| *x > STEP - most && *x <= most + STEP);
+        let places: Vec<f64> = places.collect();
         if places.is_empty() { vec![0.0] } else { places }
     }
 

@@ -53,8 +53,8 @@ mod reader;
 mod sine;
 mod space;
 mod start;
-mod sum;
 pub mod steady;
+mod sum;
 mod task;
 #[cfg(test)]
 mod tests;

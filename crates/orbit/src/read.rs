@@ -154,7 +154,8 @@ impl Field {
         let (value, error) = parts(&k).ok_or(Failure::NoStart)?;
         let error = Rational::from_f64(error.0).unwrap_or_default();
         Ok((field, crate::Kind::InitialWithin { value, error }))
-    }}
+    }
+}
 
 fn read(
     equations: &[Expression],
@@ -238,7 +239,7 @@ fn measure(forces: &[Sum], functions: &[(Operation, Sum)]) -> Option<Rational> {
 
 /// The largest q of which a and b are integer multiples: gcd of numerators over lcm of
 /// denominators.
-fn common_measure(a: &Rational, b: &Rational) -> Rational {
+pub(crate) fn common_measure(a: &Rational, b: &Rational) -> Rational {
     let numerator = Integer::from(a.numer() * b.denom()).gcd(&Integer::from(b.numer() * a.denom()));
     Rational::from((numerator, (a.denom() * b.denom()).complete()))
 }
@@ -251,11 +252,7 @@ struct Collector<'a> {
 }
 
 impl Collector<'_> {
-    fn field(
-        self,
-        forces: &[Sum],
-        functions: &[(Operation, Sum)],
-    ) -> Result<Field, Failure> {
+    fn field(self, forces: &[Sum], functions: &[(Operation, Sum)]) -> Result<Field, Failure> {
         let n = forces.len();
         let too_large = || Failure::TooLarge { degree: MOST_DEGREE, harmonic: 0 };
         let by = |sum: &Sum, v: usize| sum.by(v, 2 * n, functions).ok_or_else(too_large);

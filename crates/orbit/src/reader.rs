@@ -51,11 +51,7 @@ impl Reader {
         if argument.0.keys().any(|key| key.time > 0) {
             return self.refuse(Failure::NotPolynomial(Expression::Time));
         }
-        let (list, at) = match operation {
-            Operation::Sine => (&[Operation::Sine, Operation::Cosine][..], 0),
-            Operation::Cosine => (&[Operation::Sine, Operation::Cosine][..], 1),
-            _ => (std::slice::from_ref(&operation), 0),
-        };
+        let (list, at) = (operation.list(), usize::from(operation == Operation::Cosine));
         let known = (list[0], argument);
         let found = self.functions.iter().position(|f| *f == known);
         let found = found.unwrap_or_else(|| {
@@ -71,14 +67,16 @@ impl Reader {
     fn wave(&mut self, argument: Sum, sine: bool) -> Option<Sum> {
         let mut rest = argument;
         let time = Key { time: 1, ..Key::default() };
-        let only = Sum(rest.0.remove(&time).map(|waves| (Key::default(), waves)).into_iter().collect());
+        let only =
+            Sum(rest.0.remove(&time).map(|waves| (Key::default(), waves)).into_iter().collect());
         let Some(rate) = only.as_number() else {
             return self.refuse(Failure::NotPolynomial(Expression::Time));
         };
         if rest.0.is_empty() {
             return Some(Sum::wave(&rate, sine));
         }
-        let [s, c] = [Operation::Sine, Operation::Cosine].map(|kind| self.named(kind, rest.clone()));
+        let [s, c] =
+            [Operation::Sine, Operation::Cosine].map(|kind| self.named(kind, rest.clone()));
         let (s, c) = (s?, c?);
         if rate.is_zero() {
             return Some(if sine { s } else { c });
@@ -120,7 +118,9 @@ impl Operations for Reader {
     fn leaf(&mut self, leaf: &Expression) -> Option<Sum> {
         let one = Rational::from(1);
         match leaf {
-            Expression::Unknown(Unknown { index, derivative, delay: None }) if *index < self.unknowns => {
+            Expression::Unknown(Unknown { index, derivative, delay: None })
+                if *index < self.unknowns =>
+            {
                 match derivative {
                     0 => Some(Sum::variable(*index)),
                     1 => Some(Sum::variable(self.unknowns + index)),

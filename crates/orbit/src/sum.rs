@@ -122,7 +122,9 @@ impl Sum {
     pub(crate) fn as_number(&self) -> Option<Rational> {
         match self.0.iter().next() {
             None => Some(Rational::new()),
-            Some((key, waves)) if self.0.len() == 1 && *key == Key::default() && waves.len() == 1 => {
+            Some((key, waves))
+                if self.0.len() == 1 && *key == Key::default() && waves.len() == 1 =>
+            {
                 waves.get(&Rational::new()).map(|(a, _)| a.clone())
             }
             _ => None,
@@ -131,16 +133,20 @@ impl Sum {
 
     /// The total derivative by a variable, the functions being those of `functions` from the variable
     /// `first` on.
-    pub(crate) fn by(&self, v: usize, first: usize, functions: &[(Operation, Self)]) -> Option<Self> {
+    pub(crate) fn by(
+        &self,
+        v: usize,
+        first: usize,
+        functions: &[(Operation, Self)],
+    ) -> Option<Self> {
         let mut sum = Self::default();
         for (key, waves) in &self.0 {
             for (w, n) in key.powers.iter().enumerate().filter(|(_, n)| **n > 0) {
                 let inner = match w.checked_sub(first) {
                     None if w == v => Self::number(Rational::from(1)),
                     None => continue,
-                    Some(i) => derivative(i, first, functions)?.times(
-                        &functions[i].1.by(v, first, functions)?,
-                    )?,
+                    Some(i) => derivative(i, first, functions)?
+                        .times(&functions[i].1.by(v, first, functions)?)?,
                 };
                 let mut lower = key.clone();
                 lower.powers[w] -= 1;

@@ -225,7 +225,8 @@ fn parity(
 ) -> Result<Parity, Failure> {
     let total: f64 = modes.iter().flatten().map(|c| c.norm()).sum();
     let miss = |parity: Parity| -> f64 {
-        let all = modes.iter().enumerate().flat_map(|(i, list)| (0..list.len()).map(move |k| (i, k)));
+        let all =
+            modes.iter().enumerate().flat_map(|(i, list)| (0..list.len()).map(move |k| (i, k)));
         let one = |(i, k): (usize, usize)| {
             let c = modes[i][k];
             let kept: Complex<f64> = parity.waves(i, k).map(|w| w.complex(w.of(c))).sum();

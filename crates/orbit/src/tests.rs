@@ -113,7 +113,8 @@ fn a_moved_centre_is_refused_or_its_ball_reaches_the_truth() {
 fn a_forged_amplitude_is_refused() {
     let duffing = field(x() + x().pow(3));
     let start = Start { frequency: 1.3, cosines: vec![0.0, 1.0], sines: vec![] };
-    let (mut task, guess) = Task::new(&duffing, &Kind::InitialAmplitude(1.into()), &[start]).unwrap();
+    let (mut task, guess) =
+        Task::new(&duffing, &Kind::InitialAmplitude(1.into()), &[start]).unwrap();
     let centre = balance(&task, guess, 20, &Stop::default()).unwrap();
     let inverse = inverse_at(&task, &centre, 20);
     assert!(judge(&task, &centre, &inverse, Without::Nothing).unwrap().radius < 1e-8);

@@ -2,6 +2,7 @@
 //! as many bits as are asked for. Nothing here is an enclosure.
 
 use crate::exact::Exact;
+use crate::function::Operation;
 use crate::laurent::Laurent;
 use rug::Float;
 use rug::float::Constant;
@@ -37,6 +38,48 @@ pub(crate) fn samples_to_modes(
     }
 }
 
+/// The same in doubles, where no more is worth while, by sums.
+pub(crate) fn doubles_to_modes(
+    argument: &Exact,
+    bits: u32,
+    functions: &[Operation],
+) -> Option<Vec<Laurent>> {
+    let half = argument.doubles(0);
+    let points = (4 * half.len()).next_power_of_two().max(LEAST);
+    let turn = std::f64::consts::TAU / points as f64;
+    let waves: Vec<(f64, f64)> = (0..points).map(|j| (turn * j as f64).sin_cos()).collect();
+    let at = |j: usize| -> f64 {
+        let term = |(k, c): (usize, &nalgebra::Complex<f64>)| {
+            let (sin, cos) = waves[j * k % points];
+            if k == 0 { c.re } else { 2.0 * (c.re * cos - c.im * sin) }
+        };
+        half.iter().enumerate().map(term).sum()
+    };
+    let samples: Vec<f64> = (0..points).map(at).collect();
+    let one = |function: &Operation| {
+        let values: Vec<f64> = samples.iter().map(|p| function.in_doubles(*p)).collect();
+        values.iter().all(|x| x.is_finite()).then(|| {
+            let mut f = Laurent::zero(points / 2 - 1);
+            for k in 0..points / 2 {
+                let (mut re, mut im) = (0.0, 0.0);
+                for (j, x) in values.iter().enumerate() {
+                    let (sin, cos) = waves[j * k % points];
+                    re += x * cos;
+                    im -= x * sin;
+                }
+                let whole = |x: f64| {
+                    let scaled = Float::with_val(64, x / points as f64) << bits;
+                    scaled.to_integer().unwrap_or_default()
+                };
+                f.re[k] = whole(re);
+                f.im[k] = if k == 0 { rug::Integer::new() } else { whole(im) };
+            }
+            f
+        })
+    };
+    functions.iter().map(one).collect()
+}
+
 fn sampled(argument: &Exact, bits: u32, points: usize) -> Vec<Float> {
     let mut list: Vec<Complex> = vec![[Float::new(bits), Float::new(bits)]; points];
     let of = |n: &rug::Integer| Float::with_val(bits, n) * &argument.scale;
@@ -55,8 +98,10 @@ fn sampled(argument: &Exact, bits: u32, points: usize) -> Vec<Float> {
 /// c_k, rounded to integers over 2^bits.
 fn modes(values: Vec<Float>, bits: u32) -> Laurent {
     let (points, precision) = (values.len(), bits + GUARD_BITS);
-    let mut list: Vec<Complex> =
-        values.into_iter().map(|x| [Float::with_val(precision, x), Float::new(precision)]).collect();
+    let mut list: Vec<Complex> = values
+        .into_iter()
+        .map(|x| [Float::with_val(precision, x), Float::new(precision)])
+        .collect();
     transform(&mut list, -1, precision);
     let mut f = Laurent::zero(points / 2 - 1);
     for (k, [re, im]) in list.into_iter().take(points / 2).enumerate() {

@@ -43,7 +43,9 @@ impl Up {
 
     /// e^self - 1.
     pub(crate) fn exponential_less_one(self) -> Self {
-        Self::of_float(&Float::with_val_round(53, Float::with_val(53, self.0).exp_m1_ref(), Round::Up).0)
+        Self::of_float(
+            &Float::with_val_round(53, Float::with_val(53, self.0).exp_m1_ref(), Round::Up).0,
+        )
     }
 
     pub(crate) fn powi(self, n: u32) -> Self {

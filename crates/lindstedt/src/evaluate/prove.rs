@@ -348,12 +348,7 @@ impl UnknownOrbit {
 }
 
 impl ProvedOrbit {
-    fn new(
-        proof: &Proof,
-        wanted: &Wanted,
-        digits: usize,
-        name: &dyn Fn(usize) -> String,
-    ) -> Self {
+    fn new(proof: &Proof, wanted: &Wanted, digits: usize, name: &dyn Fn(usize) -> String) -> Self {
         let number = |ball: &Ball| Some(Number::of_ball(ball, digits).weaken(Status::Proved));
         let plain = |ball: &Ball| Number::of_ball(ball, digits).weaken(Status::Proved);
         let further = proof.further.iter().enumerate();
@@ -375,7 +370,10 @@ impl ProvedOrbit {
             maximum: known(extremum(&proof.maximum)),
             minimum: known(extremum(&proof.minimum)),
             unknowns: unknowns.collect(),
-            floquet_exponent: number(&proof.exponent).filter(|_| cycle && planar).into_iter().collect(),
+            floquet_exponent: number(&proof.exponent)
+                .filter(|_| cycle && planar)
+                .into_iter()
+                .collect(),
             exponent_sum: number(&proof.exponent).filter(|_| forced || cycle && !planar),
             multiplier_product: known(product),
             stable: match proof.stability {

@@ -1,9 +1,9 @@
 //! What is true on a whole ball about the centre: bounds of the variables, and Z2.
 
 use super::{Contraction, Frame, Weights};
+use crate::Failure;
 use crate::centre::Variables;
 use crate::field::Polynomial;
-use crate::Failure;
 use crate::function::{Operation, from_units};
 use crate::upward::Up;
 use rug::{Float, Rational};
@@ -82,7 +82,8 @@ impl Frame<'_> {
         };
         let mixed = mixed.into_iter().enumerate().map(|(k, size)| size + by_velocity(k));
         let twice = Up(2.0);
-        let mixed = bounds.inverse * mixed.fold(Up::ZERO, Up::max) + twice * frequency * bounds.bend;
+        let mixed =
+            bounds.inverse * mixed.fold(Up::ZERO, Up::max) + twice * frequency * bounds.bend;
         let (.., size) = self.centre.norms(nu);
         let square = bounds.inverse * square + twice * bounds.bend * (size + Up::of_float(r));
         both.max(mixed.over(self.scale)).max(square.over(self.scale).over(self.scale))

@@ -79,7 +79,9 @@ impl Frame<'_> {
         let n = self.linear.unknowns;
         let column = |h: usize| {
             let mut sum = 0.0;
-            for (i, l) in (0..n).flat_map(|i| (-(self.band() as i64)..=self.band() as i64).map(move |l| (i, l))) {
+            for (i, l) in (0..n)
+                .flat_map(|i| (-(self.band() as i64)..=self.band() as i64).map(move |l| (i, l)))
+            {
                 let entry = i * n + h;
                 let (u, v) = (at(&self.linear.by_x[entry], l), at(&self.linear.by_slope[entry], l));
                 let size = (u.re.abs() + u.im.abs()) / j as f64 + v.re.abs() + v.im.abs();
@@ -107,7 +109,8 @@ impl Frame<'_> {
             for (lists, kept) in self.whole.iter().zip(kept) {
                 for entry in entries() {
                     for (k, c) in lists[entry].iter().enumerate() {
-                        let size = if k < kept[entry].len() { 0.0 } else { c.re.abs() + c.im.abs() };
+                        let size =
+                            if k < kept[entry].len() { 0.0 } else { c.re.abs() + c.im.abs() };
                         sum += 2.0 * (size + DROPPED) * weights.above(k);
                     }
                     terms += lists[entry].len();

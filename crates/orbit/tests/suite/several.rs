@@ -67,9 +67,13 @@ fn closes(rests: &[Expression], proof: &Proof) {
     let real = Digits::for_digits(40);
     let model = Model::first_order(&names, &right_sides).unwrap();
     let system = model.compile(real, &Parameters::new()).unwrap();
-    let states: Vec<_> =
-        (0..n).map(|k| proof.unknown_at(k, &Rational::new()).unwrap()).collect();
-    let start: Vec<Float> = states.iter().map(|(x, _)| x).chain(states.iter().map(|(_, v)| v)).map(|b| Float::with_val(BITS, b.midpoint())).collect();
+    let states: Vec<_> = (0..n).map(|k| proof.unknown_at(k, &Rational::new()).unwrap()).collect();
+    let start: Vec<Float> = states
+        .iter()
+        .map(|(x, _)| x)
+        .chain(states.iter().map(|(_, v)| v))
+        .map(|b| Float::with_val(BITS, b.midpoint()))
+        .collect();
     let start: Vec<_> = start.iter().map(|x| real.float(x)).collect();
     let zero = real.float(&Float::new(53));
     let mut flow = Integrator::new(&system, &zero, &start, Settings::for_digits(40)).unwrap();
@@ -125,7 +129,9 @@ fn curved_normal_modes_close() {
 #[test]
 fn coupled_cycles_close() {
     let rest = |i: usize, detuned: i64| {
-        q(10 + detuned, 10) * x(i) + q(1, 2) * (x(i).pow(2) - 1) * v(i) + q(1, 2) * (v(i) - v(1 - i))
+        q(10 + detuned, 10) * x(i)
+            + q(1, 2) * (x(i).pow(2) - 1) * v(i)
+            + q(1, 2) * (v(i) - v(1 - i))
     };
     let rests = [rest(0, 0), rest(1, 2)];
     let proofs = orbits("two van der Pols", &rests, &Kind::LimitCycle);

@@ -62,7 +62,8 @@ fn orbit(page: Document, value: &ProvedOrbit) -> Document {
         ]
     });
     let known = known.map(|(name, number)| (name.to_owned(), number)).chain(unknowns);
-    let exponents = value.floquet_exponent.iter().map(|e| ("Floquet exponent".to_owned(), shown(e)));
+    let exponents =
+        value.floquet_exponent.iter().map(|e| ("Floquet exponent".to_owned(), shown(e)));
     let page = page.lines(known.chain(exponents));
     match &value.proof {
         ProofVerdict::Failed { failed, why } => page
