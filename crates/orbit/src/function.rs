@@ -200,7 +200,7 @@ impl Tied {
             return small(eta, 0.5).then(|| norm * (twice * eta + Up(4.0) * uncertain));
         }
         let own = (self.start + Up(4.0) * own * bound) * bound;
-        let norm = norm + from_units(own, self.bits);
+        let norm = norm + twice * from_units(own, self.bits);
         Some(own + twice * norm * uncertain)
     }
 }

@@ -1,7 +1,8 @@
 //! Periodic orbits in Fourier space: Newton's method to any number of digits, and the proof that
 //! exactly one orbit is within a radius of the numbers.
 //!
-//! x'' = g(x, x', t) with a polynomial g ([`Field`]), tau = omega t, x = sum_k c_k e^(i k tau):
+//! x'' = g(x, x', t), one unknown or several, g made of polynomials, rational powers, sines, cosines and
+//! exponentials ([`Field`]), tau = omega t, x = sum_k c_k e^(i k tau):
 //!
 //! F(omega, x) = omega^2 d^2x/dtau^2 - g(x, omega dx/dtau, tau) = 0.
 //!
@@ -12,7 +13,8 @@
 //! no part.
 //!
 //! Three tiers of arithmetic. Coefficients of the solution are integers over a power of 2 and every
-//! residual is formed *exactly*, by products of long integers: no rounding to argue about. The
+//! residual is formed *exactly*, by products of long integers: no rounding to argue about (functions of
+//! the solution are enclosed by what ties them to their argument, formed exactly as well). The
 //! linear algebra is in doubles with a-priori bounds of its rounding errors. What is enclosed at the end
 //! is in balls.
 //!

@@ -335,7 +335,8 @@ fn weighed(
         // With a large weight the functions may not be enclosed any more.
         let weights = match frame.weights(1.0 + c / modes as f64) {
             Ok(weights) => weights,
-            Err(failure) => return best.map_err(|_| failure),
+            Err(failure) if matches!(best, Err(Failure::Stopped)) => return Err(failure),
+            Err(_) => break,
         };
         let contraction = frame.contraction(Measure::Norm, &weights);
         let found = decide(&contraction, modes, |r| frame.z2(&contraction, &weights, r));

@@ -12,7 +12,7 @@ use crate::task::{Kind, Rows, Task};
 use crate::upward::Up;
 use crate::{Condition, Failure, Request, prove};
 use lindstedt_algebra::Stop;
-use lindstedt_equation::Expression;
+use lindstedt_equation::{Expression, Function};
 use nalgebra::Complex;
 use rug::{Float, Rational};
 
@@ -188,4 +188,37 @@ fn the_condition_counts_in_the_tail() {
     let column: f64 = inverse.matrix.column(0).iter().skip(1).map(|a| a.abs()).sum();
     let radii = judge(&task, &centre, &inverse, Without::Nothing).unwrap();
     assert!(radii.bounds.z1 > column / 13.0);
+}
+
+/// A centre of x'' + e^x - 1 = 0 or of two coupled oscillators with one coefficient moved: the ball reaches
+/// the truth, or the test refuses; without Y0 it would not see it.
+#[test]
+fn moved_centres_of_functions_and_of_systems_are_seen() {
+    let toda = field(x().apply(Function::Exp) - 1);
+    let coupled = |i: usize| {
+        let [x, other] = [i, 1 - i].map(|k| Expression::unknown(k, 0));
+        Expression::unknown(i, 2) + (i as i64 + 2) * x.clone() - other + x.pow(3)
+    };
+    let equations = [coupled(0), coupled(1)];
+    let list: Vec<_> = equations.iter().collect();
+    let system = Field::of_equations(&list, "eps", &Default::default()).unwrap();
+    let start = Start { frequency: 1.2, cosines: vec![0.0, 0.5], sines: vec![] };
+    let kind = Kind::InitialAmplitude(Rational::from((1, 2)));
+    for (field, unknown) in [(toda, 0), (system, 1)] {
+        let starts = vec![start.clone(); field.unknowns()];
+        let (task, guess) = Task::new(&field, &kind, &starts).unwrap();
+        let centre = balance(&task, guess, 24, &Stop::default()).unwrap();
+        let inverse = inverse_at(&task, &centre, 24);
+        assert!(judge(&task, &centre, &inverse, Without::Nothing).unwrap().radius < 1e-8);
+        let mut step = vec![vec![Complex::default(); 4]; field.unknowns()];
+        step[unknown][3].re = 1e-5 / 2.0;
+        let mut forged = centre.clone();
+        forged.add(0.0, &step, 0);
+        let seen = judge(&task, &forged, &inverse, Without::Nothing).unwrap();
+        assert!(seen.radius > 3e-5 && seen.radius < 2e-3, "{}", seen.radius);
+        assert!(judge(&task, &forged, &inverse, Without::Y0).unwrap().radius < 3e-5);
+        step[unknown][3].re = 0.2;
+        forged.add(0.0, &step, 0);
+        assert!(judge(&task, &forged, &inverse, Without::Nothing).is_err());
+    }
 }

@@ -412,6 +412,7 @@ impl ProvedOrbit {
             Failure::Singular { .. } => "inverse",
             Failure::NotConverged { .. } => "Newton",
             Failure::NoPeriod { .. } => "radius",
+            Failure::NoFunction { .. } => "function",
             _ => "guess",
         };
         Self {

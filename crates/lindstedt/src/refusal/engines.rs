@@ -204,6 +204,7 @@ impl Refusal for lindstedt_orbit::Failure {
             Failure::Singular { .. }
             | Failure::NotConverged { .. }
             | Failure::NoContraction { .. }
+            | Failure::NoFunction { .. }
             | Failure::Residual { .. }
             | Failure::NoPeriod { .. } => (Undecided, "could-not-decide", ""),
             _ => (NoAnswer, "no-proof", estimates),
