@@ -12,11 +12,12 @@ mod tail;
 
 use crate::centre::{Centre, Values, Variables};
 use crate::exact::{Doubles, ERROR, power_of_two};
-use crate::field::{Field, Polynomial};
+use crate::field::Field;
 use crate::function::Tied;
 use crate::laurent::Laurent;
 use crate::linear::{Inverse, Linear, at};
 use crate::newton::residuals;
+use crate::polynomial::Polynomial;
 use crate::space::Wave;
 use crate::task::Task;
 use crate::upward::{Up, gamma, raised};

@@ -3,8 +3,10 @@
 
 use crate::Failure;
 use crate::exact::{Exact, Part, combine, unit};
-use crate::field::{Field, Polynomial};
+use crate::field::{Field, Function};
 use crate::laurent::Laurent;
+use crate::polynomial::{Polynomial, Term};
+use crate::transform::{doubles_to_modes, samples_to_modes};
 use crate::upward::Up;
 use nalgebra::Complex;
 use rug::{Complete, Float, Integer, Rational};
@@ -17,6 +19,9 @@ pub(crate) struct Centre {
     pub(crate) frequency: Rational,
     pub(crate) unknowns: Vec<Laurent>,
 }
+
+/// Bits behind the point in the tier of doubles.
+pub(crate) const FAST_BITS: u32 = 72;
 
 /// One unknown of it.
 #[derive(Clone, Debug)]
@@ -213,7 +218,7 @@ impl<'a> Variables<'a> {
         let mut variables = Self::known(centre, &[]);
         let first = variables.list.len();
         while let Some(next) = field.functions.get(variables.list.len() - first) {
-            let functions = next.approximate(&mut variables)?;
+            let functions = variables.approximate(next)?;
             variables.list.extend(functions);
         }
         Ok(variables)
@@ -225,6 +230,17 @@ impl<'a> Variables<'a> {
         list.extend(centre.unknowns.iter().map(Laurent::derivative));
         list.extend_from_slice(functions);
         Self { centre, list, known: BTreeMap::new() }
+    }
+
+    /// Approximations over 2^bits of a function, and of the cosine with a sine.
+    fn approximate(&mut self, function: &Function) -> Result<Vec<Laurent>, Failure> {
+        let argument = self.exact(&function.argument, 0);
+        let (kind, bits) = (function.kind, self.bits());
+        let found = match bits <= FAST_BITS {
+            true => doubles_to_modes(&argument, bits, kind.list()),
+            false => samples_to_modes(&argument, bits, |p| kind.value(p)),
+        };
+        found.ok_or_else(|| Failure::NoFunction { argument: argument.norm(Up::ONE, 0).0 })
     }
 
     pub(crate) fn bits(&self) -> u32 {
@@ -247,7 +263,7 @@ impl<'a> Variables<'a> {
     /// The terms times `factor` and omega^-less, of a polynomial.
     fn parts(&mut self, polynomial: &Polynomial, less: i32, factor: &Rational) -> Vec<Part> {
         let (n, bits) = (self.centre.unknowns.len(), self.centre.bits);
-        let part = |term: &crate::field::Term| {
+        let part = |term: &Term| {
             let rate: u32 = term.powers.iter().skip(n).take(n).sum();
             let power = rug::ops::Pow::pow(self.centre.frequency.clone(), rate as i32 - less);
             let degree: u32 = term.powers.iter().sum();

@@ -1,8 +1,8 @@
 //! A field in doubles, and its motion: for guesses, nothing more.
 
 use crate::Field;
-use crate::field::Polynomial;
-use crate::function::Operation;
+use crate::operation::Operation;
+use crate::polynomial::{Polynomial, Term};
 
 /// A field with its coefficients in doubles.
 pub(crate) struct InDoubles {
@@ -49,21 +49,8 @@ impl InDoubles {
     }
 }
 
-impl Operation {
-    /// The value at a value of the argument; not a number where there is none.
-    pub(crate) fn in_doubles(self, p: f64) -> f64 {
-        match self {
-            Self::Exponential => p.exp(),
-            Self::Sine => p.sin(),
-            Self::Cosine => p.cos(),
-            Self::Root(1) => p.recip(),
-            Self::Root(q) => p.powf(-1.0 / f64::from(q)),
-        }
-    }
-}
-
 fn terms(polynomial: &Polynomial) -> Terms {
-    let term = |t: &crate::field::Term| {
+    let term = |t: &Term| {
         let waves = t.factor.iter().map(|(h, (a, b))| (f64::from(*h), a.to_f64(), b.to_f64()));
         (waves.collect(), t.powers.clone())
     };

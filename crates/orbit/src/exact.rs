@@ -1,7 +1,7 @@
 //! Trigonometric polynomials with rational coefficients over one denominator, and as doubles.
 
-use crate::field::Trigonometric;
 use crate::laurent::Laurent;
+use crate::polynomial::Trigonometric;
 use crate::upward::Up;
 use nalgebra::Complex;
 use rug::float::Round;

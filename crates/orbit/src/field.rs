@@ -7,37 +7,16 @@
 //! ([`crate::function`]); their derivatives are polynomials in functions again, so that no further
 //! unknowns, and no constraints that tie them, are needed.
 
-use crate::function::{Function, Operation};
-use crate::read::common_measure;
+use crate::operation::Operation;
+use crate::polynomial::{Polynomial, Term};
 use crate::space::Signs;
-use crate::upward::Up;
-use rug::Rational;
-use std::collections::BTreeMap;
+use rug::{Complete, Integer, Rational};
 
-/// f = sum_h (a_h cos h tau + b_h sin h tau): (a_h, b_h) by h.
-pub(crate) type Trigonometric = BTreeMap<u32, (Rational, Rational)>;
-
-/// f(tau) times powers of the variables: x_1..x_N, x_1'..x_N', the functions; missing powers are 0.
+/// A function of a polynomial in the variables before it.
 #[derive(Clone, Debug)]
-pub(crate) struct Term {
-    pub(crate) factor: Trigonometric,
-    pub(crate) powers: Vec<u32>,
-}
-
-/// A coefficient known within `size`: an uncertain multiple of a monomial and of waves up to a harmonic.
-#[derive(Clone, Debug)]
-pub(crate) struct Spread {
-    pub(crate) size: Up,
-    pub(crate) powers: Vec<u32>,
-    pub(crate) harmonic: u32,
-}
-
-/// A polynomial in the variables.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Polynomial {
-    pub(crate) terms: Vec<Term>,
-    /// What is uncertain of the coefficients.
-    pub(crate) spread: Vec<Spread>,
+pub(crate) struct Function {
+    pub(crate) kind: Operation,
+    pub(crate) argument: Polynomial,
 }
 
 /// x_i'' = g_i(x, x', t): each g_i a polynomial in the unknowns, their velocities, and sines, cosines,
@@ -195,75 +174,9 @@ impl Field {
 /// Unknowns up to which all patterns of signs are tried.
 const MOST_SIGNS: usize = 8;
 
-impl Polynomial {
-    /// sum_t |f_t| variables^powers at bounds of the variables, what is uncertain included.
-    /// |f| = sum_h (|a_h| + |b_h|) nu^h.
-    pub(crate) fn majorant(&self, at: &[Up], nu: Up) -> Up {
-        let term = |t: &Term| t.size(nu) * monomial(&t.powers, at, None);
-        self.terms.iter().map(term).sum::<Up>() + self.uncertainty(at, nu)
-    }
-
-    /// The same for what is uncertain alone.
-    pub(crate) fn uncertainty(&self, at: &[Up], nu: Up) -> Up {
-        let term = |s: &Spread| s.size * nu.powi(s.harmonic) * monomial(&s.powers, at, None);
-        self.spread.iter().map(term).sum()
-    }
-
-    /// A bound of the derivative of the majorant by one variable.
-    pub(crate) fn slope(&self, at: &[Up], nu: Up, variable: usize) -> Up {
-        let spread = self.spread.iter().map(|s| (s.size * nu.powi(s.harmonic), &s.powers));
-        let terms = self.terms.iter().map(|t| (t.size(nu), &t.powers));
-        terms.chain(spread).map(|(size, powers)| size * monomial(powers, at, Some(variable))).sum()
-    }
-
-    /// By how much the polynomial can change where each variable changes by so much, up to these bounds.
-    pub(crate) fn change(&self, at: &[Up], by: &[Up], nu: Up) -> Up {
-        let part = |(v, by): (usize, &Up)| match by.0 {
-            0.0 => Up::ZERO,
-            _ => *by * self.slope(at, nu, v),
-        };
-        by.iter().enumerate().map(part).sum()
-    }
-
-    /// Whether the sign changes (`true`) where those of the variables and waves do; nothing where it has
-    /// no one answer.
-    fn sign(
-        &self,
-        signs: &[Option<bool>],
-        wave: &dyn Fn(u32, &Rational, &Rational) -> Option<bool>,
-    ) -> Option<bool> {
-        let mut found = None;
-        for term in &self.terms {
-            let mut sign = false;
-            for (v, n) in term.powers.iter().enumerate().filter(|(_, n)| **n > 0) {
-                sign ^= signs[v]? && n % 2 == 1;
-            }
-            for (h, (a, b)) in &term.factor {
-                let sign = sign ^ wave(*h, a, b)?;
-                if *found.get_or_insert(sign) != sign {
-                    return None;
-                }
-            }
-        }
-        Some(found.unwrap_or(false))
-    }
-}
-
-impl Term {
-    fn size(&self, nu: Up) -> Up {
-        let waves = self.factor.iter();
-        waves.map(|(h, (a, b))| (Up::of(a) + Up::of(b)) * nu.powi(*h)).sum()
-    }
-}
-
-/// The monomial, or its derivative by a variable.
-fn monomial(powers: &[u32], at: &[Up], by: Option<usize>) -> Up {
-    if by.is_some_and(|v| powers.get(v).is_none_or(|n| *n == 0)) {
-        return Up::ZERO;
-    }
-    let power = |(v, n): (usize, &u32)| match by {
-        Some(by) if by == v => Up(f64::from(*n)) * at[v].powi(n - 1),
-        _ => at[v].powi(*n),
-    };
-    powers.iter().enumerate().filter(|(_, n)| **n > 0).map(power).fold(Up::ONE, |a, b| a * b)
+/// The largest q of which a and b are integer multiples: gcd of numerators over lcm of
+/// denominators.
+pub(crate) fn common_measure(a: &Rational, b: &Rational) -> Rational {
+    let numerator = Integer::from(a.numer() * b.denom()).gcd(&Integer::from(b.numer() * a.denom()));
+    Rational::from((numerator, (a.denom() * b.denom()).complete()))
 }

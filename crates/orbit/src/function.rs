@@ -8,36 +8,13 @@
 //!   rho_s = s' - p' c;
 //! * root: with 1 - p e^q = d the root p^(-1/q) is e (1 - d)^(-1/q), the binomial series.
 
-use crate::Failure;
 use crate::centre::Variables;
 use crate::exact::Exact;
-use crate::field::Polynomial;
+use crate::field::Function;
 use crate::laurent::Laurent;
-use crate::task::FAST_BITS;
-use crate::transform::{doubles_to_modes, samples_to_modes};
+use crate::operation::Operation;
 use crate::upward::Up;
 use lindstedt_number::ball::{Ball, Balls};
-use rug::Float;
-
-/// Which function of its argument.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Operation {
-    /// e^p.
-    Exponential,
-    /// sin p; the cosine of the same argument follows it.
-    Sine,
-    /// cos p; the sine of the same argument stands before it.
-    Cosine,
-    /// p^(-1/q).
-    Root(u32),
-}
-
-/// A function of a polynomial in the variables before it.
-#[derive(Clone, Debug)]
-pub(crate) struct Function {
-    pub(crate) kind: Operation,
-    pub(crate) argument: Polynomial,
-}
 
 /// Approximations at a centre (of a sine also its cosine), with what ties them to their argument.
 #[derive(Clone, Debug)]
@@ -52,79 +29,14 @@ pub(crate) struct Tied {
     bits: u32,
 }
 
-impl Operation {
-    /// How the sign of the function changes where that of its argument does; nothing for neither.
-    pub(crate) fn sign(self, argument: Option<bool>) -> Option<bool> {
-        match self {
-            Self::Sine => argument,
-            Self::Cosine => argument.map(|_| false),
-            Self::Exponential | Self::Root(_) => argument.filter(|changes| !changes),
-        }
-    }
-
-    /// Bounds of the function and of its derivative where its argument differs by at most `by` from the one at
-    /// which the function is `size` (and its partner, cosine or sine, `partner`).
-    pub(crate) fn outer(self, size: Up, partner: Up, by: Up) -> [Up; 2] {
-        let rise = by.exponential_less_one();
-        match self {
-            Self::Exponential => [size * (Up::ONE + rise); 2],
-            // cosh <= 1 + rise^2/2, sinh <= rise.
-            Self::Sine | Self::Cosine => {
-                let cosh = Up::ONE + rise * rise * Up(0.5);
-                [size * cosh + partner * rise, partner * cosh + size * rise]
-            }
-            // |1 + d/p|^(-1/q) <= 1/(1 - t), t = |1/p| |d|; the derivative is -root^(q + 1)/q.
-            Self::Root(q) => {
-                let left = (1.0 - (size.powi(q) * by).0).next_down();
-                let outer = if left > 0.0 { size.over(left) } else { Up(f64::INFINITY) };
-                [outer, outer.powi(q + 1)]
-            }
-        }
-    }
-}
-
 /// The largest norm of an argument that an exponential is taken of.
 const MOST_NORM: f64 = 200.0;
 
 impl Function {
-    /// Approximations over 2^bits: of this one, and of the cosine with a sine.
-    pub(crate) fn approximate(
-        &self,
-        variables: &mut Variables<'_>,
-    ) -> Result<Vec<Laurent>, Failure> {
-        let argument = variables.exact(&self.argument, 0);
-        let (kind, bits) = (self.kind, variables.bits());
-        let found = match bits <= FAST_BITS {
-            true => doubles_to_modes(&argument, bits, kind.list()),
-            false => samples_to_modes(&argument, bits, |p| kind.value(p)),
-        };
-        found.ok_or_else(|| Failure::NoFunction { argument: argument.norm(Up::ONE, 0).0 })
-    }
-
     /// The approximations with what ties them.
     pub(crate) fn tie(&self, variables: &mut Variables<'_>, functions: &[Laurent]) -> Tied {
         let argument = variables.exact(&self.argument, 0);
         Tied::new(self.kind, argument, functions, variables.bits())
-    }
-}
-
-impl Operation {
-    /// This one, and the cosine with a sine.
-    pub(crate) fn list(&self) -> &[Self] {
-        match self {
-            Self::Sine | Self::Cosine => &[Self::Sine, Self::Cosine],
-            other => std::slice::from_ref(other),
-        }
-    }
-
-    /// The values at a value of the argument; nothing where there is none.
-    fn value(self, p: &Float) -> Option<Vec<Float>> {
-        match self {
-            Self::Exponential => Some(vec![p.clone().exp()]),
-            Self::Sine | Self::Cosine => Some(vec![p.clone().sin(), p.clone().cos()]),
-            Self::Root(1) => (!p.is_zero()).then(|| vec![p.clone().recip()]),
-            Self::Root(q) => (*p > 0).then(|| vec![p.clone().root(q).recip()]),
-        }
     }
 }
 
@@ -208,6 +120,7 @@ impl Tied {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::transform::samples_to_modes;
 
     fn argument() -> Exact {
         // 1/2 + 2 * 3/8 cos tau - 2 * 1/8 sin 2 tau.

@@ -1,7 +1,7 @@
 //! From a guess to a theorem.
 
 use crate::bounds::{Frame, Measure, Weights};
-use crate::centre::Centre;
+use crate::centre::{Centre, FAST_BITS};
 use crate::linear::Inverse;
 use crate::newton::{balance, invert, linearised, refine};
 use crate::orbit::Orbit;
@@ -99,7 +99,7 @@ pub fn prove_all(
     let (task, guess) = Task::new(field, kind, starts)?;
     let (centre, mut modes) = resolved(&task, guess, request)?;
     let bits = (f64::from(request.digits) * std::f64::consts::LOG2_10) as u32 + GUARD_BITS;
-    let mut centre = centre.with_bits(bits.max(crate::task::FAST_BITS));
+    let mut centre = centre.with_bits(bits.max(FAST_BITS));
     loop {
         let attempt = attempt(&task, &mut centre, modes, request, MOST_REFINEMENTS);
         let more = match attempt {
@@ -190,7 +190,7 @@ pub fn approximate(
     let (task, guess) = Task::new(field, kind, std::slice::from_ref(start))?;
     let (centre, mut modes) = resolved(&task, guess, request)?;
     let bits = (f64::from(request.digits) * std::f64::consts::LOG2_10) as u32 + GUARD_BITS;
-    let centre = centre.with_bits(bits.max(crate::task::FAST_BITS));
+    let centre = centre.with_bits(bits.max(FAST_BITS));
     let goal = centre.largest() / Float::with_val(53, Float::i_pow_u(10, request.digits)) / 16u32;
     loop {
         let inverse = invert(&linearised(&task, &centre)?.1, modes)?;

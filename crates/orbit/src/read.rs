@@ -2,14 +2,15 @@
 //! gathered.
 
 use crate::Failure;
-use crate::field::{Field, Polynomial, Spread, Term};
-use crate::function::{Function as Named, Operation};
+use crate::field::{Field, Function as Named, common_measure};
+use crate::operation::Operation;
+use crate::polynomial::{Polynomial, Spread, Term};
 use crate::reader::Reader;
 use crate::sum::{Key, Sum};
 use crate::upward::Up;
 use lindstedt_equation::{AccelerationFault, Expression, Problem};
 use lindstedt_number::ball::{Ball, Balls};
-use rug::{Complete, Integer, Rational};
+use rug::{Complete, Rational};
 use std::collections::BTreeMap;
 
 /// The largest degree in the variables and the largest harmonic of a force: more would only fill memory.
@@ -235,13 +236,6 @@ fn measure(forces: &[Sum], functions: &[(Operation, Sum)]) -> Option<Rational> {
     let waves = sums.flat_map(|sum| sum.0.values());
     let angles = waves.flat_map(|waves| waves.keys().cloned()).filter(|q| !q.is_zero());
     angles.reduce(|a, b| common_measure(&a, &b))
-}
-
-/// The largest q of which a and b are integer multiples: gcd of numerators over lcm of
-/// denominators.
-pub(crate) fn common_measure(a: &Rational, b: &Rational) -> Rational {
-    let numerator = Integer::from(a.numer() * b.denom()).gcd(&Integer::from(b.numer() * a.denom()));
-    Rational::from((numerator, (a.denom() * b.denom()).complete()))
 }
 
 /// From sums to polynomials: harmonics of one frequency, balls in the place of parameters.

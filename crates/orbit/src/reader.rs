@@ -2,7 +2,7 @@
 //! become functions.
 
 use crate::Failure;
-use crate::function::Operation;
+use crate::operation::Operation;
 use crate::sum::{Key, Sum};
 use lindstedt_equation::{Expression, Function, Operations, Unknown};
 use rug::Rational;

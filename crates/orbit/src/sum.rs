@@ -1,7 +1,7 @@
 //! Sums of products of waves in time, powers of the variables and of parameters, with their derivatives: what
 //! an equation is read into.
 
-use crate::function::Operation;
+use crate::operation::Operation;
 use rug::{Complete, Rational};
 use std::collections::BTreeMap;
 

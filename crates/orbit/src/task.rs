@@ -2,7 +2,7 @@
 //! amplitude.
 
 use crate::Failure;
-use crate::centre::Centre;
+use crate::centre::{Centre, FAST_BITS};
 use crate::exact::Exact;
 use crate::field::Field;
 use crate::space::{Parity, Wave};
@@ -195,8 +195,6 @@ impl Task {
     }
 }
 
-/// Bits behind the point in the tier of doubles.
-pub(crate) const FAST_BITS: u32 = 72;
 /// Periods of the force in one of the response; more are taken as so many.
 const MOST_PERIODS: u32 = 100;
 /// Modes that a symmetry forbids are taken as noise below this fraction.

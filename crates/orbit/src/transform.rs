@@ -2,8 +2,8 @@
 //! as many bits as are asked for. Nothing here is an enclosure.
 
 use crate::exact::Exact;
-use crate::function::Operation;
 use crate::laurent::Laurent;
+use crate::operation::Operation;
 use rug::Float;
 use rug::float::Constant;
 

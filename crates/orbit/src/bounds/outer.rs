@@ -3,8 +3,9 @@
 use super::{Contraction, Frame, Weights};
 use crate::Failure;
 use crate::centre::Variables;
-use crate::field::Polynomial;
-use crate::function::{Operation, from_units};
+use crate::function::from_units;
+use crate::operation::Operation;
+use crate::polynomial::Polynomial;
 use crate::upward::Up;
 use rug::{Float, Rational};
 
