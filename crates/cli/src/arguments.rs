@@ -134,8 +134,10 @@ pub struct EvaluateOptions {
     #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
     pub times: Option<String>,
     /// The orbit as a theorem: period, frequency, amplitude and Floquet exponent enclosed, with the
-    /// radius of the contraction proof; of a forced equation its responses with the force's period.
-    #[arg(long, conflicts_with_all = ["times", "code", "phase", "start", "state", "sweep", "plot", "f64"])]
+    /// radius of the contraction proof; of a forced equation its responses with the force's period. With
+    /// --times x(t) is enclosed; with --sweep every orbit of a family, and all values between where a
+    /// uniform bound covers them.
+    #[arg(long, conflicts_with_all = ["code", "start", "state"])]
     pub prove: bool,
     /// Period and frequency over NAME=LO..HI:COUNT or NAME=V1,V2,...; at most two, the first along
     /// the horizontal axis.

@@ -57,6 +57,20 @@ impl Component {
     pub(crate) fn doubles(&self) -> Vec<Complex<f64>> {
         Exact::over_power(self.modes.clone(), self.bits).doubles(0)
     }
+
+    /// The phase of the largest x on a grid, in doubles.
+    pub(crate) fn top(&self) -> f64 {
+        let modes = self.doubles();
+        let points = 16 * modes.len().max(16);
+        let value = |j: usize| -> f64 {
+            let wave = Complex::from_polar(1.0, std::f64::consts::TAU * j as f64 / points as f64);
+            let sum = modes.iter().rev().fold(Complex::<f64>::default(), |sum, c| sum * wave + c);
+            2.0 * sum.re
+        };
+        let values = (0..points).map(|j| (j, value(j)));
+        let best = values.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(j, _)| j);
+        std::f64::consts::TAU * best as f64 / points as f64
+    }
 }
 
 impl Centre {
@@ -238,7 +252,7 @@ impl<'a> Variables<'a> {
         let (kind, bits) = (function.kind, self.bits());
         let found = match bits <= FAST_BITS {
             true => doubles_to_modes(&argument, bits, kind.list()),
-            false => samples_to_modes(&argument, bits, |p| kind.value(p)),
+            false => samples_to_modes(&argument, bits, kind),
         };
         found.ok_or_else(|| Failure::NoFunction { argument: argument.norm(Up::ONE, 0).0 })
     }

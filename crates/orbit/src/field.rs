@@ -61,13 +61,10 @@ impl Field {
     pub(crate) fn over(&self, periods: u32) -> Self {
         let mut field = self.clone();
         for polynomial in field.polynomials() {
-            for term in &mut polynomial.terms {
-                let factor = std::mem::take(&mut term.factor);
-                term.factor =
-                    factor.into_iter().map(|(h, w)| (h.saturating_mul(periods), w)).collect();
-            }
-            for spread in &mut polynomial.spread {
-                spread.harmonic = spread.harmonic.saturating_mul(periods);
+            let terms = polynomial.terms.iter_mut().map(|t| &mut t.factor);
+            for factor in terms.chain(polynomial.spread.iter_mut().map(|s| &mut s.factor)) {
+                let waves = std::mem::take(factor).into_iter();
+                *factor = waves.map(|(h, w)| (h.saturating_mul(periods), w)).collect();
             }
         }
         field
@@ -84,7 +81,7 @@ impl Field {
     pub(crate) fn keeps_shift(&self, minus: u64) -> bool {
         self.keeps(
             &|v| minus >> (v % self.unknowns()) & 1 == 1,
-            &|h, a, b| (!a.is_zero() || !b.is_zero()).then_some(h % 2 == 1),
+            &|h, _, _| Some(h % 2 == 1),
             minus,
         )
     }
@@ -116,7 +113,7 @@ impl Field {
             signs.push(function.kind.sign(sign));
         }
         let kept = |(i, g): (usize, &Polynomial)| {
-            g.terms.is_empty() || g.sign(&signs, wave) == Some(minus >> i & 1 == 1)
+            g.is_zero() || g.sign(&signs, wave) == Some(minus >> i & 1 == 1)
         };
         self.forces.iter().enumerate().all(kept)
     }

@@ -67,7 +67,7 @@ mod upward;
 mod write;
 
 pub use failure::Failure;
-pub use family::{Cover, Member, cover, family};
+pub use family::{Cover, Member, cover, family, family_all};
 pub use field::Field;
 pub use guesses::guesses;
 pub use modes::guesses_all;

@@ -25,6 +25,14 @@ impl Operation {
         }
     }
 
+    /// Whether the function is smooth between values of its argument: a root where they have one sign.
+    pub(crate) fn takes(self, negative: impl Iterator<Item = bool>) -> bool {
+        let Self::Root(q) = self else { return true };
+        let (mut above, mut below) = (false, false);
+        negative.for_each(|is| if is { below = true } else { above = true });
+        !below || (q == 1 && !above)
+    }
+
     /// The values at a value of the argument; nothing where there is none.
     pub(crate) fn value(self, p: &Float) -> Option<Vec<Float>> {
         match self {

@@ -15,12 +15,12 @@ pub(crate) struct Term {
     pub(crate) powers: Vec<u32>,
 }
 
-/// A coefficient known within `size`: an uncertain multiple of a monomial and of waves up to a harmonic.
+/// What is uncertain of a coefficient: a monomial times f(tau), times a number of at most `size`.
 #[derive(Clone, Debug)]
 pub(crate) struct Spread {
     pub(crate) size: Up,
     pub(crate) powers: Vec<u32>,
-    pub(crate) harmonic: u32,
+    pub(crate) factor: Trigonometric,
 }
 
 /// A polynomial in the variables.
@@ -32,23 +32,28 @@ pub(crate) struct Polynomial {
 }
 
 impl Polynomial {
+    /// Whether there is no term.
+    pub(crate) fn is_zero(&self) -> bool {
+        self.terms.is_empty() && self.spread.is_empty()
+    }
+
     /// sum_t |f_t| variables^powers at bounds of the variables, what is uncertain included.
     /// |f| = sum_h (|a_h| + |b_h|) nu^h.
     pub(crate) fn majorant(&self, at: &[Up], nu: Up) -> Up {
-        let term = |t: &Term| t.size(nu) * monomial(&t.powers, at, None);
+        let term = |t: &Term| size(&t.factor, nu) * monomial(&t.powers, at, None);
         self.terms.iter().map(term).sum::<Up>() + self.uncertainty(at, nu)
     }
 
     /// The same for what is uncertain alone.
     pub(crate) fn uncertainty(&self, at: &[Up], nu: Up) -> Up {
-        let term = |s: &Spread| s.size * nu.powi(s.harmonic) * monomial(&s.powers, at, None);
+        let term = |s: &Spread| s.bound(nu) * monomial(&s.powers, at, None);
         self.spread.iter().map(term).sum()
     }
 
     /// A bound of the derivative of the majorant by one variable.
     pub(crate) fn slope(&self, at: &[Up], nu: Up, variable: usize) -> Up {
-        let spread = self.spread.iter().map(|s| (s.size * nu.powi(s.harmonic), &s.powers));
-        let terms = self.terms.iter().map(|t| (t.size(nu), &t.powers));
+        let spread = self.spread.iter().map(|s| (s.bound(nu), &s.powers));
+        let terms = self.terms.iter().map(|t| (size(&t.factor, nu), &t.powers));
         terms.chain(spread).map(|(size, powers)| size * monomial(powers, at, Some(variable))).sum()
     }
 
@@ -68,13 +73,20 @@ impl Polynomial {
         signs: &[Option<bool>],
         wave: &dyn Fn(u32, &Rational, &Rational) -> Option<bool>,
     ) -> Option<bool> {
+        let terms = self.terms.iter().map(|t| (&t.powers, &t.factor));
+        // The middle of an uncertain coefficient may vanish where the others do not.
+        let spread = self.spread.iter().map(|s| (&s.powers, &s.factor));
         let mut found = None;
-        for term in &self.terms {
+        for (powers, factor) in terms.chain(spread) {
+            let waves = factor.iter().filter(|(_, (a, b))| !a.is_zero() || !b.is_zero());
+            if waves.clone().next().is_none() {
+                continue;
+            }
             let mut sign = false;
-            for (v, n) in term.powers.iter().enumerate().filter(|(_, n)| **n > 0) {
+            for (v, n) in powers.iter().enumerate().filter(|(_, n)| **n > 0) {
                 sign ^= signs[v]? && n % 2 == 1;
             }
-            for (h, (a, b)) in &term.factor {
+            for (h, (a, b)) in waves {
                 let sign = sign ^ wave(*h, a, b)?;
                 if *found.get_or_insert(sign) != sign {
                     return None;
@@ -85,11 +97,15 @@ impl Polynomial {
     }
 }
 
-impl Term {
-    fn size(&self, nu: Up) -> Up {
-        let waves = self.factor.iter();
-        waves.map(|(h, (a, b))| (Up::of(a) + Up::of(b)) * nu.powi(*h)).sum()
+impl Spread {
+    fn bound(&self, nu: Up) -> Up {
+        self.size * size(&self.factor, nu)
     }
+}
+
+/// |f| = sum_h (|a_h| + |b_h|) nu^h.
+fn size(factor: &Trigonometric, nu: Up) -> Up {
+    factor.iter().map(|(h, (a, b))| (Up::of(a) + Up::of(b)) * nu.powi(*h)).sum()
 }
 
 /// The monomial, or its derivative by a variable.

@@ -254,6 +254,12 @@ impl Proof {
         Some(self.orbits.get(i)?.at(time))
     }
 
+    /// The same at a phase tau in radians.
+    #[must_use]
+    pub fn unknown_at_phase(&self, i: usize, phase: &Ball) -> Option<(Ball, Ball)> {
+        Some(self.orbits.get(i)?.at_phase(phase))
+    }
+
     /// The product of all Floquet multipliers, e^(sum of the exponents times the period) (Liouville).
     #[must_use]
     pub fn multiplier_product(&self) -> Ball {

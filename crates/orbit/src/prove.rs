@@ -119,11 +119,11 @@ pub fn prove_all(
 pub(crate) fn uniform(
     field: &Field,
     kind: &Kind,
-    start: &Start,
+    starts: &[Start],
     modes: usize,
     request: &Request,
 ) -> Result<Proof, Failure> {
-    let (task, guess) = Task::new(field, kind, std::slice::from_ref(start))?;
+    let (task, guess) = Task::new(field, kind, starts)?;
     let mut centre = balance(&task, guess, modes, &request.stop)?;
     let few = Request { digits: FEW_DIGITS, ..request.clone() };
     attempt(&task, &mut centre, modes, &few, 1)
@@ -148,11 +148,10 @@ impl Approximation {
         self.orbit.at_phase(phase)
     }
 
-    /// The phase at which x' = 0 nearest to tau = 0, from where a limit cycle with this phase counts; 0 where
-    /// Newton's method finds none.
+    /// The phase of the largest x, where x' = 0.
     #[must_use]
     pub fn rest(&self) -> Ball {
-        self.orbit.critical(0.0)
+        self.orbit.critical(self.orbit.centre.top())
     }
 
     /// The harmonics in doubles.

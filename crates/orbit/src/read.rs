@@ -102,6 +102,16 @@ impl Field {
         read(&[equation.substitute(&named)], small, values, Balls::new(bits))
     }
 
+    /// The same of several equations, the small parameter a parameter.
+    pub(crate) fn of_equations_within(
+        equations: &[Expression],
+        small: &str,
+        values: &BTreeMap<String, Ball>,
+        bits: u32,
+    ) -> Result<Self, Failure> {
+        read(equations, small, values, Balls::new(bits))
+    }
+
     /// The field of a problem, its time-domain form where it has one.
     ///
     /// # Errors
@@ -110,11 +120,7 @@ impl Field {
         problem: &Problem,
         values: &BTreeMap<String, Rational>,
     ) -> Result<Self, Failure> {
-        let mut equations: Vec<&Expression> = problem.equations().collect();
-        if let (Some(equation), [first]) = (&problem.time_domain, &mut equations[..]) {
-            *first = equation;
-        }
-        Self::of_equations(&equations, &problem.small, values)
+        Self::of_equations(&in_time(problem), &problem.small, values)
     }
 
     /// x'' + kappa sin x = 0 with x(0) = a, 0 < a < pi, by u = sin(x/2): u'' = -kappa (1 + k^2) u + 2 kappa u^3
@@ -156,6 +162,15 @@ impl Field {
         let error = Rational::from_f64(error.0).unwrap_or_default();
         Ok((field, crate::Kind::InitialWithin { value, error }))
     }
+}
+
+/// The equations of a problem, the one in time where there is one.
+pub(crate) fn in_time(problem: &Problem) -> Vec<&Expression> {
+    let mut equations: Vec<&Expression> = problem.equations().collect();
+    if let (Some(equation), [first]) = (&problem.time_domain, &mut equations[..]) {
+        *first = equation;
+    }
+    equations
 }
 
 fn read(
@@ -298,11 +313,9 @@ impl Collector<'_> {
             let factor = waves.iter().map(scaled).collect();
             polynomial.terms.push(Term { factor, powers: key.powers.clone() });
             if radius != Up::ZERO {
-                let fastest = waves.keys().max().map_or(0, harmonic);
-                let size: Up = waves.values().map(|(a, b)| Up::of(a) + Up::of(b)).sum();
-                let size = size * radius;
-                let powers = key.powers.clone();
-                polynomial.spread.push(Spread { size, powers, harmonic: fastest });
+                let factor = waves.iter().map(|(q, wave)| (harmonic(q), wave.clone())).collect();
+                let (size, powers) = (radius, key.powers.clone());
+                polynomial.spread.push(Spread { size, powers, factor });
             }
         }
         Ok(polynomial)

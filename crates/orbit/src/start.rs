@@ -67,16 +67,14 @@ impl Start {
 
     /// Whether frequency and harmonics agree, relative to their size.
     pub(crate) fn is_near(&self, other: &Self, relative: f64) -> bool {
-        self.distance(other) <= relative
+        distance(std::slice::from_ref(self), std::slice::from_ref(other)) <= relative
     }
 
-    /// The distance of the harmonics or of the frequencies, relative to their size.
-    pub(crate) fn distance(&self, other: &Self) -> f64 {
+    /// sum_k |c_k| of the difference, twice those that oscillate.
+    fn apart(&self, other: &Self) -> f64 {
         let (a, b) = (self.complex(), other.complex());
         let at = |list: &[Complex<f64>], k: usize| list.get(k).copied().unwrap_or_default();
-        let apart = (0..a.len().max(b.len())).map(|k| 2.0 * (at(&a, k) - at(&b, k)).norm());
-        let apart = apart.sum::<f64>() / self.size();
-        apart.max((self.frequency - other.frequency).abs() / self.frequency)
+        (0..a.len().max(b.len())).map(|k| 2.0 * (at(&a, k) - at(&b, k)).norm()).sum()
     }
 
     /// c_k = (cosine_k - i sine_k)/2.
@@ -89,6 +87,14 @@ impl Start {
         };
         (0..modes).map(one).collect()
     }
+}
+
+/// The distance of the harmonics of all unknowns or of the frequencies, relative to the size of the first.
+pub(crate) fn distance(one: &[Start], other: &[Start]) -> f64 {
+    let apart: f64 = one.iter().zip(other).map(|(a, b)| a.apart(b)).sum();
+    let apart = apart / one.iter().map(Start::size).sum::<f64>();
+    let detuned = one.iter().zip(other).map(|(a, b)| (a.frequency - b.frequency).abs() / a.frequency);
+    detuned.fold(apart, f64::max)
 }
 
 /// The same orbit with its phase moved so that the first harmonic of the first unknown is a positive multiple

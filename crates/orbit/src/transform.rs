@@ -20,12 +20,16 @@ type Complex = [Float; 2];
 pub(crate) fn samples_to_modes(
     argument: &Exact,
     bits: u32,
-    function: impl Fn(&Float) -> Option<Vec<Float>>,
+    kind: Operation,
 ) -> Option<Vec<Laurent>> {
     let mut points: usize = (4 * (argument.modes.modes() + 1)).next_power_of_two().max(LEAST);
     loop {
         let samples = sampled(argument, bits + GUARD_BITS, points);
-        let values: Vec<Vec<Float>> = samples.iter().map(&function).collect::<Option<_>>()?;
+        if !kind.takes(samples.iter().map(|p| *p <= 0)) {
+            return None;
+        }
+        let values = samples.iter().map(|p| kind.value(p));
+        let values: Vec<Vec<Float>> = values.collect::<Option<_>>()?;
         let count = values.first().map_or(0, Vec::len);
         let one = |i: usize| modes(values.iter().map(|v| v[i].clone()).collect(), bits);
         let lists: Vec<Laurent> = (0..count).map(one).collect();
@@ -56,6 +60,9 @@ pub(crate) fn doubles_to_modes(
         half.iter().enumerate().map(term).sum()
     };
     let samples: Vec<f64> = (0..points).map(at).collect();
+    if !functions.iter().all(|f| f.takes(samples.iter().map(|p| *p <= 0.0))) {
+        return None;
+    }
     let one = |function: &Operation| {
         let values: Vec<f64> = samples.iter().map(|p| function.in_doubles(*p)).collect();
         values.iter().all(|x| x.is_finite()).then(|| {

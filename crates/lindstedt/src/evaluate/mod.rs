@@ -23,7 +23,10 @@ pub use lindstedt_evaluation::{
 pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;
 use lindstedt_series::resummation::Method;
-pub use prove::{Bounds, ProvedOrbit, UnknownOrbit, Verdict as ProofVerdict};
+pub use prove::{
+    Between, Bounds, EndOfBranch, Expansion, ProvedBranch, ProvedFamily, ProvedMember, ProvedOrbit,
+    ProvedState, UnknownOrbit, UnknownState, Verdict as ProofVerdict,
+};
 use rug::Rational;
 use std::time::Instant;
 pub use sweep::{EvaluationSweep, SweptPeriod};
@@ -94,18 +97,24 @@ impl Oscillator {
         let (case, mut remarks) = self.settled()?;
         let mut value = case.period(question, work)?;
         let mut standing = Standing::Complete;
+        let improved = case.improve(&mut value, question, work);
         if let Some(times) = &question.times {
-            let path = case.trajectory(&value, question, work)?;
-            let found = path.table(&times.list(path.period), work);
+            let found = match improved {
+                Some(found) => {
+                    let last = value.best_period.midpoint().to_f64();
+                    found.table(&value, &times.list(last), &question.phase, work)
+                }
+                None => {
+                    let path = case.trajectory(&value, question, work)?;
+                    path.table(&times.list(path.period), work)
+                }
+            };
             if !found.complete {
                 let stopped = "stopped; the times not reached are missing";
                 remarks.push(Remark(stopped.to_owned()));
                 standing = Standing::Stopped { done: found.points.len() };
             }
             value.solution = Some(found);
-        }
-        if question.order.is_none() && question.method.is_none() {
-            case.improve(&mut value, question, work);
         }
         if standing == Standing::Complete && value.period.is_none() {
             let none = "the expansion gives not one digit of the period here";
@@ -140,11 +149,19 @@ impl Oscillator {
     ) -> Result<Answer<SolutionCode>, Error> {
         let start = Instant::now();
         let (case, remarks) = self.settled()?;
-        let found = case.period(question, work)?;
-        let path = case.trajectory(&found, question, work)?;
-        let value = SolutionCode::new(&self.problem().name, &path, language, harmonics)?;
+        let mut found = case.period(question, work)?;
+        let improved = case.improve(&mut found, question, work);
+        let by_newton = improved.and_then(|it| Some((it.fourier(harmonics)?, it.frequency())));
+        let name = &self.problem().name;
+        let (value, order) = match by_newton {
+            Some(series) => (SolutionCode::by_newton(name, series, language), found.order),
+            None => {
+                let path = case.trajectory(&found, question, work)?;
+                (SolutionCode::new(name, &path, language, harmonics)?, path.order())
+            }
+        };
         let at = found.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
-        let header = self.header(at, Some(path.order()), "resummation", start);
+        let header = self.header(at, Some(order), "resummation", start);
         Ok(Answer { header, value, standing: Standing::Complete, remarks })
     }
 

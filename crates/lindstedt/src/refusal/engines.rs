@@ -206,7 +206,9 @@ impl Refusal for lindstedt_orbit::Failure {
             | Failure::NoContraction { .. }
             | Failure::NoFunction { .. }
             | Failure::Residual { .. }
-            | Failure::NoPeriod { .. } => (Undecided, "could-not-decide", ""),
+            | Failure::NoPeriod { .. }
+            | Failure::Jump
+            | Failure::Apart { .. } => (Undecided, "could-not-decide", ""),
             _ => (NoAnswer, "no-proof", estimates),
         };
         (kind, code, hint.to_owned())

@@ -6,6 +6,7 @@ mod classification;
 mod derive;
 mod estimate;
 mod evaluate;
+mod family;
 mod motion;
 mod prove;
 mod resonance;
