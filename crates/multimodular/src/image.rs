@@ -1,6 +1,6 @@
 //! The image of an expansion modulo one prime: derived, and substituted into the equation.
 
-use crate::lift::Lifted;
+use crate::lifted::Lifted;
 use crate::{Error, Over, RationalBinding};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_equation::Expression;

@@ -14,11 +14,13 @@
 
 mod image;
 mod lift;
+mod lifted;
 #[cfg(test)]
 mod tests;
 
 use image::{Image, Job};
-use lift::{Lifted, Remaindering};
+use lift::Remaindering;
+use lifted::Lifted;
 use lindstedt_algebra::{RationalAlgebra, Rationals, Stop};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_expand::{

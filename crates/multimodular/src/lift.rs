@@ -1,6 +1,7 @@
 //! From images modulo primes to numbers over Q.
 
 use crate::image::{Image, Place};
+use crate::lifted::Lifted;
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_expand::OrderNumbers;
 use lindstedt_phase::modular::PrimeField;
@@ -183,14 +184,6 @@ pub(crate) fn longest(numbers: &OrderNumbers) -> u32 {
         q.numer().significant_bits() + more
     });
     own.chain(series).max().unwrap_or(1)
-}
-
-/// One order over Q, in lowest terms.
-pub(crate) struct Lifted {
-    /// W_n, omega_n, T_n.
-    pub series: [Rational; 3],
-    pub amplitude: Rational,
-    pub solution: TrigonometricPolynomial<Rational>,
 }
 
 impl Lifted {

@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 use crate::image::{Image, Job, Place};
-use crate::lift::{Lifted, Remaindering};
+use crate::lift::Remaindering;
+use crate::lifted::Lifted;
 use crate::{Error, RationalAlgebraOfPhase, RationalBinding, derive};
 use lindstedt_algebra::{Rationals, Ring, Stop};
 use lindstedt_equation::{Condition, Expression};

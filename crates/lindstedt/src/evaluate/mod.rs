@@ -25,7 +25,7 @@ use lindstedt_problem_file::parse_equation;
 use lindstedt_series::resummation::Method;
 pub use prove::{
     Between, Bounds, EndOfBranch, Expansion, ProvedBranch, ProvedFamily, ProvedMember, ProvedOrbit,
-    ProvedState, Verdict as ProofVerdict,
+    ProvedState, UnknownOrbit, UnknownState, Verdict as ProofVerdict,
 };
 use rug::Rational;
 use std::time::Instant;

@@ -58,7 +58,8 @@ impl Oscillator {
         let condition = self.condition_of_proof();
         let initial = matches!(condition, None | Some(Condition::InitialAmplitude));
         let equation = problem.time_domain.as_ref().unwrap_or(&problem.equation);
-        if let Some(sine) = Sine::of(equation, &problem.small, &values).filter(|_| initial) {
+        let single = || initial && problem.others.is_empty();
+        if let Some(sine) = Sine::of(equation, &problem.small, &values).filter(|_| single()) {
             // Its equation is in y = x/a.
             let scaled = problem.amplitude == AmplitudeRole::InSums;
             let one = || Rational::from(1);
@@ -119,11 +120,14 @@ impl Oscillator {
     /// Whether there is a series whose sum is a guess.
     pub(crate) fn has_expansion(&self) -> bool {
         let fixed = self.condition().is_some_and(|c| c != Condition::FreeAmplitude);
-        fixed && self.check().is_ok()
+        fixed && self.problem().others.is_empty() && self.check().is_ok()
     }
 
     /// The condition; nothing where it only says that the equation is not expanded.
     fn condition_of_proof(&self) -> Option<Condition> {
+        if !self.problem().others.is_empty() {
+            return self.asked_condition();
+        }
         let drifts = self.condition() == Some(Condition::FreeAmplitude);
         let asked = self.asked_condition().is_some() || self.check().is_ok();
         self.condition().filter(|_| asked || !drifts)
@@ -165,10 +169,13 @@ impl Between<'_> {
         let values = [self.low, self.high].map(|case| case.coefficients_of_proof().ok());
         let [Some(first), Some(last)] = values else { return Err(Failure::NoStart) };
         let problem = self.low.problem();
-        let equation = problem.time_domain.as_ref().unwrap_or(&problem.equation);
+        let first_one = problem.time_domain.as_ref().unwrap_or(&problem.equation);
+        let holds = |part: &Expression| {
+            first_one.contains(part) || problem.others.iter().any(|e| e.contains(part))
+        };
         let occurs = |name: &str| {
-            equation.contains(&Expression::parameter(name))
-                || (*name == *problem.small && equation.contains(&Expression::Small))
+            holds(&Expression::parameter(name))
+                || (*name == *problem.small && holds(&Expression::Small))
         };
         let mut varying = first.iter().filter(|(name, value)| last.get(*name) != Some(value));
         let varying = varying.by_ref().filter(|(name, _)| occurs(name));

@@ -1,5 +1,6 @@
 //! Largest Lyapunov exponent and 0-1 test: numbers that tell chaos from regular motion.
 
+use super::set_up;
 use super::setup::Setup;
 use super::{Start, answer, precomputed};
 use crate::refusal::Refused;
@@ -138,7 +139,7 @@ impl Oscillator {
             return Err(Refused::usage("chaos", message, "--periods 2000").into());
         }
         self.single()?;
-        let setup = Setup::new(self, &question.start, false, precomputed(work))?;
+        let setup = set_up(self, &question.start, false, precomputed(work))?;
         let mut remarks = self.remarks().to_vec();
         remarks.extend(setup.remarks.iter().cloned().map(Remark));
         if setup.orbit.is_some() {

@@ -1,5 +1,6 @@
 //! Bifurcation diagrams: the points of a section over a parameter, resumable.
 
+use super::set_up;
 use super::setup::Setup;
 use super::{Section, Start, answer, increasing, precomputed, section};
 use crate::grid::Axis;
@@ -169,7 +170,7 @@ impl Oscillator {
         journal: &mut dyn Journal,
     ) -> Result<Answer<Diagram>, Error> {
         let begin = Instant::now();
-        let mut setup = Setup::new(self, &question.start, true, precomputed(work))?;
+        let mut setup = set_up(self, &question.start, true, precomputed(work))?;
         let axis = self.swept(&question.sweep, &setup)?;
         setup.flow.forcing = setup.forcing_at(&axis)?;
         // What varies has no value of its own.

@@ -4,6 +4,7 @@
 //! x at n equidistant times of the period 2 pi q/Omega of a response with the harmonics k_j = p_j/q gives
 //! a_j e^(i phi_j) = (2/n) sum_m x_j(t_m) e^(-2 pi i p_j m/n), but for harmonics n - p_j and higher.
 
+use super::set_up;
 use super::setup::Setup;
 use super::{Start, precomputed};
 use crate::grid::Axis;
@@ -63,7 +64,7 @@ impl Oscillator {
         turns: &[Rational],
         work: &Work,
     ) -> Result<[Vec<Reading>; 2], Error> {
-        let setup = Setup::new(self, &Start::default(), true, precomputed(work))?;
+        let setup = set_up(self, &Start::default(), true, precomputed(work))?;
         let usage = |message: String| Refused::usage("follow", message, "lindstedt simulate");
         if !setup.sweepable.contains(&axis.name) {
             return Err(usage(format!("{} cannot be varied in time", axis.name)).into());

@@ -165,6 +165,19 @@ fn increasing(values: &[Exact]) -> Result<(), String> {
     falls.map_or(Ok(()), |pair| Err(format!("{} comes after {}", pair[1], pair[0])))
 }
 
+/// The motion of one unknown or of several. What is computed beforehand has `digits` digits and some more.
+fn set_up(
+    oscillator: &Oscillator,
+    start: &Start,
+    swept: bool,
+    digits: u32,
+) -> Result<Setup, Error> {
+    match oscillator.problem().others.is_empty() {
+        true => Setup::single(oscillator, start, swept, digits),
+        false => several::several(oscillator, start),
+    }
+}
+
 impl Oscillator {
     /// The motion from a start to an end: its events, samples and section, integrated until the
     /// digits of `work` are there.
@@ -188,7 +201,7 @@ impl Oscillator {
     /// ```
     pub fn motion(&self, question: &Simulate, work: &Work) -> Result<Answer<Motion>, Error> {
         let begin = Instant::now();
-        let setup = Setup::new(self, &question.start, false, precomputed(work))?;
+        let setup = set_up(self, &question.start, false, precomputed(work))?;
         let mut plan = plan(question, setup)?;
         let (pair, working) = integrate(&mut plan, work)?;
         let half = if plan.perturbed() && pair.finer.is_some() {

@@ -5,7 +5,6 @@ use super::equation::{
 };
 use super::history::{Evaluator, at_time, flying, free_flight, named};
 use super::orbit::{Orbit, recognised};
-use super::several::several;
 use super::{Branch, Start};
 use crate::grid::Axis;
 use crate::refusal::Refused;
@@ -54,16 +53,13 @@ pub(super) struct Setup {
 }
 
 impl Setup {
-    /// What is computed beforehand has `digits` digits and some more.
-    pub fn new(
+    /// Of one unknown. What is computed beforehand has `digits` digits and some more.
+    pub fn single(
         oscillator: &Oscillator,
         start: &Start,
         swept: bool,
         digits: u32,
     ) -> Result<Self, Error> {
-        if !oscillator.problem().others.is_empty() {
-            return several(oscillator, start);
-        }
         let mut problem = with_small(oscillator.problem());
         let given = linked(&problem, oscillator.given().clone());
         check_parameters(&problem, &given)?;

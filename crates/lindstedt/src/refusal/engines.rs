@@ -229,6 +229,7 @@ impl Refusal for lindstedt_orbit::Failure {
             Failure::Singular { .. }
             | Failure::NotConverged { .. }
             | Failure::NoContraction { .. }
+            | Failure::NoFunction { .. }
             | Failure::Residual { .. }
             | Failure::NoPeriod { .. }
             | Failure::Jump

@@ -67,7 +67,7 @@ pub fn cover(
     request: &Request,
 ) -> Cover {
     let [left, right] = proofs;
-    let ends_in_doubles = [(ends[0].clone(), left.start()), (ends[1].clone(), right.start())];
+    let ends_in_doubles = [(ends[0].clone(), left.starts()), (ends[1].clone(), right.starts())];
     let modes = left.modes.max(right.modes);
     let part = |part: &[Rational; 2], before: &Proof| {
         if request.stop.asked() {
@@ -125,6 +125,7 @@ fn is_local(failure: &Failure) -> bool {
             | Failure::Residual { .. }
             | Failure::Apart { .. }
             | Failure::NoPeriod { .. }
+            | Failure::NoFunction { .. }
             | Failure::NotConverged { .. }
     )
 }

@@ -4,7 +4,7 @@ use super::Present;
 use super::evaluate::time;
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Table, Text};
-use lindstedt::evaluate::{ProofVerdict, ProvedOrbit};
+use lindstedt::evaluate::{ProofVerdict, ProvedOrbit, ProvedState};
 use lindstedt::{Answer, Number, Status};
 
 fn shown(number: &Number) -> String {
@@ -31,6 +31,7 @@ impl Present for Answer<ProvedOrbit> {
         let page = orbit(Document::titled(title), value);
         let others = value.further.len();
         let page = match others {
+            0 if !value.unknowns.is_empty() => page.words("There may be other orbits."),
             0 if value.exponent_sum.is_some() => page.words("There may be other responses."),
             0 => page,
             1 => page.words("One more orbit at the same values (there may be others):"),
@@ -54,16 +55,27 @@ impl Present for Answer<ProvedOrbit> {
     }
 
     fn table(&self) -> Option<Table> {
-        let head = Table::new(["orbit", "t", "x", "x_error", "velocity", "velocity_error"]);
+        let head = ["orbit", "t", "x", "x_error", "velocity", "velocity_error"].map(str::to_owned);
+        let further = self.value.unknowns.iter().flat_map(|unknown| {
+            let name = &unknown.name;
+            ["", "_error", "_velocity", "_velocity_error"].map(|what| format!("{name}{what}"))
+        });
+        let head = Table::new(head.into_iter().chain(further));
         let table = self.value.all().enumerate().fold(head, |table, (index, orbit)| {
             orbit.solution.iter().fold(table, |table, state| {
                 let error = |number: &Number| number.error.clone().unwrap_or_default();
-                let [x, v] = [&state.x, &state.velocity].map(|n| [n.decimal.clone(), error(n)]);
-                table.row([(index + 1).to_string(), time(&state.t)].into_iter().chain(x).chain(v))
+                let states = numbers(state).flat_map(|n| [n.decimal.clone(), error(n)]);
+                table.row([(index + 1).to_string(), time(&state.t)].into_iter().chain(states))
             })
         });
         (!self.value.solution.is_empty()).then_some(table)
     }
+}
+
+/// x, x', and the same of further unknowns.
+fn numbers(state: &ProvedState) -> impl Iterator<Item = &Number> {
+    let further = state.unknowns.iter().flat_map(|u| [&u.displacement, &u.velocity]);
+    [&state.x, &state.velocity].into_iter().chain(further)
 }
 
 /// x and x' at the times asked for.
@@ -75,10 +87,14 @@ fn states(page: Document, value: &ProvedOrbit) -> Document {
         Some(error) => format!("{} +- {error}", number.decimal),
         None => number.decimal.clone(),
     };
-    let rows = value.solution.iter();
-    let rows = rows.map(|state| [time(&state.t), number(&state.x), number(&state.velocity)]);
-    let head = Table::new(["t", "x (proved)", "x' (proved)"]);
-    page.table(rows.fold(head, Table::row))
+    let names = value.unknowns.iter().flat_map(|unknown| {
+        [format!("{} (proved)", unknown.name), format!("{}' (proved)", unknown.name)]
+    });
+    let head = ["t", "x (proved)", "x' (proved)"].map(str::to_owned);
+    let head = Table::new(head.into_iter().chain(names));
+    page.table(value.solution.iter().fold(head, |table, state| {
+        table.row(std::iter::once(time(&state.t)).chain(numbers(state).map(number)))
+    }))
 }
 
 /// One orbit.
@@ -95,7 +111,18 @@ fn orbit(page: Document, value: &ProvedOrbit) -> Document {
     ];
     let known =
         named.into_iter().filter_map(|(name, number)| Some((name, shown(number.as_ref()?))));
-    let exponents = value.floquet_exponent.iter().map(|e| ("Floquet exponent", shown(e)));
+    let unknowns = value.unknowns.iter().flat_map(|unknown| {
+        let name = &unknown.name;
+        [
+            (format!("{name} at phase 0"), shown(&unknown.displacement)),
+            (format!("{name}' at phase 0"), shown(&unknown.velocity)),
+            (format!("largest {name}"), shown(&unknown.maximum)),
+            (format!("least {name}"), shown(&unknown.minimum)),
+        ]
+    });
+    let known = known.map(|(name, number)| (name.to_owned(), number)).chain(unknowns);
+    let exponents =
+        value.floquet_exponent.iter().map(|e| ("Floquet exponent".to_owned(), shown(e)));
     let page = states(page.lines(known.chain(exponents)), value);
     let page = match &value.expansion {
         None => page,

@@ -10,7 +10,9 @@ use crate::evaluate::wanted::{Between as Uniform, Wanted};
 use crate::grid::Axis;
 use crate::refusal::Refused;
 use crate::{Answer, Error, Exact, Number, Oscillator, Progress, Remark, Standing, Status, Work};
-use lindstedt_orbit::{Cover, Failure, Kind, Proof, Request, Start, cover, family, guesses, prove};
+use lindstedt_orbit::{
+    Cover, Failure, Kind, Proof, Request, Start, cover, family_all, guesses_all, prove_all,
+};
 use rayon::prelude::*;
 use rug::Rational;
 use serde::Serialize;
@@ -121,7 +123,7 @@ impl Oscillator {
         work: &Work,
     ) -> Result<Answer<ProvedFamily>, Error> {
         let start = Instant::now();
-        self.without_pi()?;
+        self.values_without_pi()?;
         let value = |value: &Exact| value.as_rational().cloned();
         let values: Option<Vec<Rational>> = axis.values.iter().map(value).collect();
         let values = values.filter(|values| !values.is_empty()).ok_or_else(|| {
@@ -178,10 +180,10 @@ impl Family<'_> {
         for i in 0..=last {
             let case = self.case(&self.values[i])?;
             let wanted = case.wanted(self.request.digits)?;
-            match case.attempt(&wanted, question, work)?.1 {
+            match case.all_or_first(&wanted, question, work)?.1 {
                 Ok((first, others)) => {
                     for proof in std::iter::once(first).chain(others) {
-                        self.follow(i, &proof.start())?;
+                        self.follow(i, &proof.starts())?;
                     }
                     break;
                 }
@@ -211,18 +213,18 @@ impl Family<'_> {
             return Ok(());
         }
         let few = Request { modes_limit: MODES_OF_A_GUESS, ..self.request.clone() };
-        for start in guesses(&wanted.field, &wanted.kind, &few.stop).unwrap_or_default() {
-            let Ok(proof) = prove(&wanted.field, &wanted.kind, &start, &few) else { continue };
+        for starts in guesses_all(&wanted.field, &wanted.kind, &few.stop).unwrap_or_default() {
+            let Ok(proof) = prove_all(&wanted.field, &wanted.kind, &starts, &few) else { continue };
             let known = self.found.iter().filter_map(|found| found.at(i));
             if known.into_iter().all(|other| other.is_separate_from(&proof)) {
-                self.follow(i, &proof.start())?;
+                self.follow(i, &proof.starts())?;
             }
         }
         Ok(())
     }
 
     /// The branch through an orbit at a value, to both sides.
-    fn follow(&mut self, i: usize, start: &Start) -> Result<(), Error> {
+    fn follow(&mut self, i: usize, starts: &[Start]) -> Result<(), Error> {
         let up: Vec<usize> = (i..self.values.len()).collect();
         let down: Vec<usize> = (0..=i).rev().collect();
         let (mut ends, mut sides) = (Vec::new(), Vec::new());
@@ -236,7 +238,7 @@ impl Family<'_> {
                 })?;
                 Ok((wanted.field, wanted.kind))
             };
-            let members = family(&values, problem, start, &self.request)?;
+            let members = family_all(&values, problem, starts, &self.request)?;
             let mut proofs = Vec::new();
             for (i, member) in side.into_iter().zip(members) {
                 match member.proof {
@@ -260,10 +262,11 @@ impl Family<'_> {
     /// A branch as data.
     fn branch(&self, found: &Found, work: &Work) -> Result<ProvedBranch, Error> {
         let last = found.proofs.len() - 1;
+        let names = |k: usize| self.oscillator.problem().unknown(k);
         let point = |k: usize| {
             let (i, proof) = (found.first + k, &found.proofs[k]);
             let next = (k < last).then(|| self.between(i, [proof, &found.proofs[k + 1]], work));
-            let orbit = ProvedOrbit::new(proof, &self.wanted(i)?, work.printed_digits());
+            let orbit = ProvedOrbit::new(proof, &self.wanted(i)?, work.printed_digits(), &names);
             Ok(ProvedMember { value: self.axis.values[i].clone(), orbit, between: next })
         };
         let done = |(k, point)| {

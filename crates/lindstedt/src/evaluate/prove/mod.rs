@@ -12,8 +12,12 @@ use crate::refusal::Refused;
 use crate::{Answer, Error, Oscillator, Remark, Standing, Work};
 pub use family::{Between, EndOfBranch, ProvedBranch, ProvedFamily, ProvedMember};
 use lindstedt_algebra::Stop;
-use lindstedt_orbit::{Failure, Kind, Proof, Request, Start, guesses, prove};
-pub use orbit::{Bounds, Expansion, ProvedOrbit, ProvedState, Verdict};
+use lindstedt_orbit::{
+    Failure, Kind, Proof, Request, Start, guesses, guesses_all, prove, prove_all,
+};
+pub use orbit::{
+    Bounds, Expansion, ProvedOrbit, ProvedState, UnknownOrbit, UnknownState, Verdict,
+};
 use std::time::Instant;
 
 /// Harmonics of the guess from the expansion; Newton's method finds the others.
@@ -32,9 +36,11 @@ impl Oscillator {
     /// Proves the periodic orbit at the values set: a limit cycle, the member of a family with the
     /// amplitude given, or the responses to a force with its period. Period, frequency, x at phase 0, extrema and the Floquet exponent are enclosed
     /// to `work.digits` digits ([`Status::Proved`](crate::Status::Proved)); the guess is the motion in the time domain, else
-    /// the sum of the expansion, else harmonic balance (of responses the only one). For equations that are
-    /// polynomial in x and x' with rational coefficients, and x'' + c sin(q x) = 0; a small parameter is
-    /// not needed.
+    /// the sum of the expansion, else harmonic balance (of responses the only one). For one equation or
+    /// several, made of polynomials, rational powers, sines, cosines and exponentials of the unknowns and
+    /// their velocities with rational coefficients; a small parameter is not needed. Of several
+    /// unknowns the guesses are the normal modes continued in the amplitude of the first, or the motion
+    /// once it repeats itself.
     ///
     /// Where the proof fails the estimated period stands as before, and what failed is said
     /// ([`Standing::Undecided`]). Cost: third power of the modes (400: a second).
@@ -55,10 +61,10 @@ impl Oscillator {
     /// ```
     pub fn prove(&self, question: &Evaluate, work: &Work) -> Result<Answer<ProvedOrbit>, Error> {
         let start = Instant::now();
-        self.without_pi()?;
+        self.values_without_pi()?;
         let (case, mut remarks) = self.placed()?;
         let wanted = case.wanted(work.digits)?;
-        let (mut found, outcome) = case.attempt(&wanted, question, work)?;
+        let (mut found, outcome) = case.all_or_first(&wanted, question, work)?;
         if outcome.is_err() && case.has_expansion() {
             found = case.period(question, work).ok().or(found);
         }
@@ -72,10 +78,11 @@ impl Oscillator {
                 let all: Vec<Proof> = std::iter::once(first).chain(others).collect();
                 let of_sum = case.of_the_sum(&all, &wanted, question, work);
                 let digits = work.printed_digits();
+                let names = |k: usize| self.problem().unknown(k);
                 let orbit = |(i, proof): (usize, &Proof)| ProvedOrbit {
                     expansion: of_sum.clone().filter(|(found, _)| *found == i).map(|(_, how)| how),
-                    solution: ProvedOrbit::states(proof, &wanted, question, digits),
-                    ..ProvedOrbit::new(proof, &wanted, digits)
+                    solution: ProvedOrbit::states(proof, &wanted, question, digits, &names),
+                    ..ProvedOrbit::new(proof, &wanted, digits, &names)
                 };
                 let mut orbits: Vec<ProvedOrbit> = all.iter().enumerate().map(orbit).collect();
                 // That of the expansion, where it is known, is the one that was asked for.
@@ -96,6 +103,19 @@ impl Oscillator {
         Ok(Answer { header, value, standing, remarks })
     }
 
+    /// Of several unknowns all orbits, of one that of the first guess and its companions.
+    fn all_or_first(
+        &self,
+        wanted: &Wanted,
+        question: &Evaluate,
+        work: &Work,
+    ) -> Result<(Option<Evaluation>, Outcome), Error> {
+        match self.problem().others.is_empty() {
+            true => self.attempt(wanted, question, work),
+            false => Ok((None, all_of(wanted, &self.request(work)))),
+        }
+    }
+
     /// The proof from the first guess that leads to one: the motion in the time domain, then those of the
     /// expansion, which is made only then, then harmonic balance.
     fn attempt(
@@ -104,8 +124,7 @@ impl Oscillator {
         question: &Evaluate,
         work: &Work,
     ) -> Result<(Option<Evaluation>, Outcome), Error> {
-        let request =
-            Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() };
+        let request = self.request(work);
         // Some guesses belong to no orbit.
         let guessed = Request { modes_limit: MODES_OF_A_GUESS, ..request.clone() };
         let mut outcome = Err(Failure::NoStart);
@@ -132,6 +151,10 @@ impl Oscillator {
             return Err(Refused::stopped("stopped before the proof was finished", hint).into());
         }
         Ok((found, with_others(wanted, outcome, &guessed)))
+    }
+
+    fn request(&self, work: &Work) -> Request {
+        Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() }
     }
 
     /// A guess from the closed form or from the motion in the time domain.
@@ -219,4 +242,23 @@ fn with_others(wanted: &Wanted, first: Result<Proof, Failure>, request: &Request
     let mut proofs = proofs.into_iter();
     let first = proofs.next().ok_or(failure)?;
     Ok((first, proofs.collect()))
+}
+
+/// Of several unknowns: the orbits that are proved from all guesses.
+fn all_of(wanted: &Wanted, request: &Request) -> Outcome {
+    let (field, kind) = (&wanted.field, &wanted.kind);
+    let mut proofs: Vec<Proof> = Vec::new();
+    let mut failure = Failure::NoStart;
+    for starts in guesses_all(field, kind, &request.stop)? {
+        match prove_all(field, kind, &starts, request) {
+            Ok(proof) if proofs.iter().all(|other| other.is_separate_from(&proof)) => {
+                proofs.push(proof);
+            }
+            Ok(_) => {}
+            Err(Failure::Stopped) => return Err(Failure::Stopped),
+            Err(other) => failure = other,
+        }
+    }
+    let mut proofs = proofs.into_iter();
+    Ok((proofs.next().ok_or(failure)?, proofs.collect()))
 }

@@ -4,7 +4,7 @@ use crate::evaluate::wanted::Wanted;
 use crate::evaluate::{Evaluate, Evaluation};
 use crate::{Exact, Number, Status};
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_orbit::{Failure, Kind, Proof, Stability};
+use lindstedt_orbit::{Failure, Kind, Motion, Proof, Stability};
 use rug::Float;
 use rug::float::Round;
 use serde::Serialize;
@@ -25,9 +25,13 @@ pub struct ProvedOrbit {
     pub maximum: Option<Number>,
     /// The least x.
     pub minimum: Option<Number>,
+    /// The same of further unknowns, where there are several equations.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unknowns: Vec<UnknownOrbit>,
     /// The exponent of a limit cycle that is not zero (Liouville); empty for a member of a family.
     pub floquet_exponent: Vec<Number>,
-    /// The sum of the two exponents of a response to a force (Liouville).
+    /// The sum of the two exponents of a response to a force (Liouville); of several unknowns that of all
+    /// exponents, of a limit cycle, too.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exponent_sum: Option<Number>,
     /// The product of its two Floquet multipliers: e to the sum times the period.
@@ -59,6 +63,37 @@ pub struct ProvedState {
     pub x: Number,
     /// x'.
     pub velocity: Number,
+    /// The same of further unknowns, where there are several equations.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unknowns: Vec<UnknownState>,
+}
+
+/// A further unknown and its derivative at a time.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct UnknownState {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub displacement: Number,
+    /// Its derivative.
+    pub velocity: Number,
+}
+
+/// What is proved of a further unknown.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct UnknownOrbit {
+    /// Its name.
+    pub name: String,
+    /// Its value at phase 0.
+    pub displacement: Number,
+    /// Its derivative there.
+    pub velocity: Number,
+    /// The largest value.
+    pub maximum: Number,
+    /// The least value.
+    pub minimum: Number,
 }
 
 /// What ties an expansion to a proved orbit.
@@ -116,6 +151,42 @@ pub struct Bounds {
     pub z2: f64,
 }
 
+impl UnknownOrbit {
+    fn new(motion: &Motion, name: String, digits: usize) -> Self {
+        Self {
+            name,
+            displacement: proved(&motion.displacement, digits),
+            velocity: proved(&motion.velocity, digits),
+            maximum: proved(&motion.maximum, digits),
+            minimum: proved(&motion.minimum, digits),
+        }
+    }
+}
+
+impl Verdict {
+    fn of(proof: &Proof) -> Self {
+        Self::Proved {
+            modes: proof.modes,
+            weight: proof.weight,
+            radius: Box::new(above(&proof.radius)),
+            unique_within: Box::new(below(&proof.unique_within)),
+            among: match (proof.parity.odd, proof.parity.even) {
+                (false, false) => None,
+                _ if !proof.further.is_empty() => Some("motions with the symmetries of this one"),
+                (true, true) => Some("even functions of the phase of odd harmonics"),
+                (true, false) => Some("functions of odd harmonics, x(t + T/2) = -x(t)"),
+                (false, true) => Some("even functions of the phase"),
+            },
+            bounds: Box::new(Bounds {
+                y0: above(&proof.bounds.y0),
+                z0: proof.bounds.z0,
+                z1: proof.bounds.z1,
+                z2: proof.bounds.z2,
+            }),
+        }
+    }
+}
+
 impl ProvedOrbit {
     /// This orbit and the others at the same values.
     pub fn all(&self) -> impl Iterator<Item = &Self> {
@@ -131,14 +202,25 @@ impl ProvedOrbit {
         }
     }
 
-    pub(super) fn new(proof: &Proof, wanted: &Wanted, digits: usize) -> Self {
-        let number = |ball: &Ball| Some(Number::of_ball(ball, digits)?.weaken(Status::Proved));
+    pub(super) fn new(
+        proof: &Proof,
+        wanted: &Wanted,
+        digits: usize,
+        name: &dyn Fn(usize) -> String,
+    ) -> Self {
+        let number = |ball: &Ball| Some(proved(ball, digits));
+        let further = proof.further.iter().enumerate();
+        let unknowns = further.map(|(k, motion)| UnknownOrbit::new(motion, name(k + 1), digits));
         let (cycle, forced) = (wanted.kind == Kind::LimitCycle, wanted.is_forced());
+        // Of several unknowns the sum of the exponents is no exponent.
+        let planar = proof.further.is_empty();
+        let exponent = || number(&proof.exponent);
+        let sum = forced || cycle && !planar;
         let state = wanted.state((proof.displacement.clone(), proof.velocity.clone()));
         let (amplitude, velocity) = state.unzip();
         let zero = || Balls::new(proof.maximum.midpoint().prec()).zero();
         let extremum = |u: &Ball| Some(wanted.state((u.clone(), zero()))?.0);
-        let product = Some(proof.multiplier_product()).filter(|_| forced);
+        let product = Some(proof.multiplier_product()).filter(|_| sum);
         let known = |ball: Option<Ball>| ball.as_ref().and_then(number);
         Self {
             period: number(&proof.period),
@@ -147,32 +229,16 @@ impl ProvedOrbit {
             velocity: known(velocity),
             maximum: known(extremum(&proof.maximum)),
             minimum: known(extremum(&proof.minimum)),
-            floquet_exponent: number(&proof.exponent).filter(|_| cycle).into_iter().collect(),
-            exponent_sum: number(&proof.exponent).filter(|_| forced),
+            unknowns: unknowns.collect(),
+            floquet_exponent: exponent().filter(|_| cycle && planar).into_iter().collect(),
+            exponent_sum: exponent().filter(|_| sum),
             multiplier_product: known(product),
             stable: match proof.stability {
                 Stability::Unstable if cycle || forced => Some(false),
                 Stability::Stable if cycle => Some(true),
                 _ => None,
             },
-            proof: Verdict::Proved {
-                modes: proof.modes,
-                weight: proof.weight,
-                radius: Box::new(above(&proof.radius)),
-                unique_within: Box::new(below(&proof.unique_within)),
-                among: match (proof.parity.odd, proof.parity.even) {
-                    (true, true) => Some("even functions of the phase of odd harmonics"),
-                    (true, false) => Some("functions of odd harmonics, x(t + T/2) = -x(t)"),
-                    (false, true) => Some("even functions of the phase"),
-                    (false, false) => None,
-                },
-                bounds: Box::new(Bounds {
-                    y0: above(&proof.bounds.y0),
-                    z0: proof.bounds.z0,
-                    z1: proof.bounds.z1,
-                    z2: proof.bounds.z2,
-                }),
-            },
+            proof: Verdict::of(proof),
             expansion: None,
             solution: Vec::new(),
             further: Vec::new(),
@@ -185,16 +251,23 @@ impl ProvedOrbit {
         wanted: &Wanted,
         question: &Evaluate,
         digits: usize,
+        name: &dyn Fn(usize) -> String,
     ) -> Vec<ProvedState> {
         let Some(times) = &question.times else { return Vec::new() };
-        let number = |ball: &Ball| Some(Number::of_ball(ball, digits)?.weaken(Status::Proved));
         let balls = Balls::new(proof.frequency.midpoint().prec());
         let phase = question.phase.ball(balls);
         let state = |t: Exact| {
             let turned = balls.mul(&proof.frequency, &t.ball(balls));
-            let (x, velocity) = wanted.state(proof.at_phase(&balls.add(&turned, &phase)))?;
-            let (x, velocity) = (number(&x)?, number(&velocity)?);
-            Some(ProvedState { t, x, velocity })
+            let turned = balls.add(&turned, &phase);
+            let (x, velocity) = wanted.state(proof.at_phase(&turned))?;
+            let further = |k: usize| {
+                let (x, velocity) = proof.unknown_at_phase(k, &turned)?;
+                let (displacement, velocity) = (proved(&x, digits), proved(&velocity, digits));
+                Some(UnknownState { name: name(k), displacement, velocity })
+            };
+            let unknowns = (1..=proof.further.len()).filter_map(further).collect();
+            let (x, velocity) = (proved(&x, digits), proved(&velocity, digits));
+            Some(ProvedState { t, x, velocity, unknowns })
         };
         let last = proof.period.midpoint().to_f64();
         times.list(last).into_iter().filter_map(state).collect()
@@ -208,6 +281,7 @@ impl ProvedOrbit {
             Failure::Singular { .. } => "inverse",
             Failure::NotConverged { .. } => "Newton",
             Failure::NoPeriod { .. } => "radius",
+            Failure::NoFunction { .. } => "function",
             _ => "guess",
         };
         Self {
@@ -217,6 +291,7 @@ impl ProvedOrbit {
             velocity: None,
             maximum: None,
             minimum: None,
+            unknowns: Vec::new(),
             floquet_exponent: Vec::new(),
             exponent_sum: None,
             multiplier_product: None,
@@ -227,6 +302,10 @@ impl ProvedOrbit {
             further: Vec::new(),
         }
     }
+}
+
+fn proved(ball: &Ball, digits: usize) -> Number {
+    Number::of_ball(ball, digits).weaken(Status::Proved)
 }
 
 /// A bound, rounded up to four digits.
