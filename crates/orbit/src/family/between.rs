@@ -120,18 +120,19 @@ impl Clock<'_> {
             Expression::Unknown(Unknown { derivative: 2, .. }) => Some(Expression::integer(0)),
             _ => None,
         };
-        let times = |rest: &Expression| {
-            Expression::parameter(RATES[1]) * rest.map(&|e| self.change(e))
-        };
+        let times =
+            |rest: &Expression| Expression::parameter(RATES[1]) * rest.map(&|e| self.change(e));
         let one = |equation: &Expression| match equations.len() {
             1 => {
                 let alone = equation.acceleration_alone().map_err(Failure::Acceleration)?;
                 Ok(Expression::ACCELERATION + times(&alone.substitute(&still)))
             }
-            // What multiplies the accelerations is what differs from the rest.
+            // The terms with accelerations are what differs from the rest.
             _ => {
                 let rest = equation.substitute(&still);
-                Ok(equation.clone() - rest.clone() + times(&rest))
+                let inertia = (equation.clone() - rest.clone()).multiplied_out();
+                let refused = || Failure::NotPolynomial(equation.clone());
+                Ok(inertia.ok_or_else(refused)? + times(&rest))
             }
         };
         equations.iter().map(one).collect()
@@ -140,9 +141,8 @@ impl Clock<'_> {
     /// An angle that turns with a multiple of the parameter, in the time s.
     fn moved(&self, angle: &Expression) -> Option<Expression> {
         let (rest, rate) = turning(angle)?;
-        let put = |by: &Expression| {
-            rate.substitute(&|e| (*e == self.parameter()).then(|| by.clone()))
-        };
+        let put =
+            |by: &Expression| rate.substitute(&|e| (*e == self.parameter()).then(|| by.clone()));
         let times = Expression::parameter(RATES[0]);
         let more = put(&(times.clone() * self.parameter())).multiplied_out()?;
         let is_proportional = Some(more) == (times * rate.clone()).multiplied_out();
