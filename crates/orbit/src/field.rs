@@ -79,11 +79,7 @@ impl Field {
 
     /// Whether x_k(tau + pi) = s_k x_k(tau) is kept, s_k = -1 where the bit is set.
     pub(crate) fn keeps_shift(&self, minus: u64) -> bool {
-        self.keeps(
-            &|v| minus >> (v % self.unknowns()) & 1 == 1,
-            &|h, _, _| Some(h % 2 == 1),
-            minus,
-        )
+        self.keeps(&|v| minus >> (v % self.unknowns()) & 1 == 1, &|h, _, _| Some(h % 2 == 1), minus)
     }
 
     /// Whether x_k(-tau) = s_k x_k(tau) is kept, s_k = -1 where the bit is set.

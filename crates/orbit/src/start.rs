@@ -93,7 +93,8 @@ impl Start {
 pub(crate) fn distance(one: &[Start], other: &[Start]) -> f64 {
     let apart: f64 = one.iter().zip(other).map(|(a, b)| a.apart(b)).sum();
     let apart = apart / one.iter().map(Start::size).sum::<f64>();
-    let detuned = one.iter().zip(other).map(|(a, b)| (a.frequency - b.frequency).abs() / a.frequency);
+    let detuned =
+        one.iter().zip(other).map(|(a, b)| (a.frequency - b.frequency).abs() / a.frequency);
     detuned.fold(apart, f64::max)
 }
 

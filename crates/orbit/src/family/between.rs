@@ -120,18 +120,19 @@ impl Clock<'_> {
             Expression::Unknown(Unknown { derivative: 2, .. }) => Some(Expression::integer(0)),
             _ => None,
         };
-        let times = |rest: &Expression| {
-            Expression::parameter(RATES[1]) * rest.map(&|e| self.change(e))
-        };
+        let times =
+            |rest: &Expression| Expression::parameter(RATES[1]) * rest.map(&|e| self.change(e));
         let one = |equation: &Expression| match equations.len() {
             1 => {
                 let alone = equation.acceleration_alone().map_err(Failure::Acceleration)?;
                 Ok(Expression::ACCELERATION + times(&alone.substitute(&still)))
             }
-            // What multiplies the accelerations is what differs from the rest.
+            // The terms with accelerations are what differs from the rest.
             _ => {
                 let rest = equation.substitute(&still);
-                Ok(equation.clone() - rest.clone() + times(&rest))
+                let inertia = (equation.clone() - rest.clone()).multiplied_out();
+                let refused = || Failure::NotPolynomial(equation.clone());
+                Ok(inertia.ok_or_else(refused)? + times(&rest))
             }
         };
         equations.iter().map(one).collect()
@@ -140,9 +141,8 @@ impl Clock<'_> {
     /// An angle that turns with a multiple of the parameter, in the time s.
     fn moved(&self, angle: &Expression) -> Option<Expression> {
         let (rest, rate) = turning(angle)?;
-        let put = |by: &Expression| {
-            rate.substitute(&|e| (*e == self.parameter()).then(|| by.clone()))
-        };
+        let put =
+            |by: &Expression| rate.substitute(&|e| (*e == self.parameter()).then(|| by.clone()));
         let times = Expression::parameter(RATES[0]);
         let more = put(&(times.clone() * self.parameter())).multiplied_out()?;
         let is_proportional = Some(more) == (times * rate.clone()).multiplied_out();
@@ -181,4 +181,49 @@ fn turning(angle: &Expression) -> Option<(Expression, Expression)> {
     let rate = (at(1) - rest.clone()).multiplied_out()?;
     let line = (rest.clone() + rate.clone() * Expression::Time).multiplied_out()?;
     (angle.multiplied_out()? == line).then_some((rest, rate))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Clock, RATES};
+    use crate::{Field, Kind, Request, guesses_all, prove_all};
+    use lindstedt_equation::{Expression, Function};
+    use rug::Rational;
+    use std::collections::BTreeMap;
+
+    fn number(numerator: i64, denominator: i64) -> Expression {
+        Expression::Number((numerator, denominator).into())
+    }
+
+    /// With numbers in the place of the rates the equations in the time s have the harmonics of those in t.
+    #[test]
+    fn another_clock_shows_the_same_harmonics() {
+        let [x, u] = [0, 1].map(|k| Expression::unknown(k, 0));
+        let [y, v] = [0, 1].map(|k| Expression::unknown(k, 1));
+        let [a, b] = [0, 1].map(|k| Expression::unknown(k, 2));
+        let wave = |angle: Expression| angle.apply(Function::Cos);
+        let turn = Expression::parameter("w") * Expression::Time;
+        let damping = number(1, 2) * y.clone().apply(Function::Sin);
+        let force = number(1, 5) * wave(turn + number(1, 10) * y);
+        let single = a.clone() + damping + 2 * x.clone() - force;
+        let other = 2 * b + number(1, 2) * v + 2 * u.clone() + u.clone().pow(3) - x;
+        for equations in [vec![single.clone()], vec![single - u, other]] {
+            let (w, middle) = (Rational::from((7, 5)), Rational::from((13, 10)));
+            let ratio = Rational::from(&w / &middle);
+            let square = Rational::from(ratio.square_ref()).recip();
+            let pairs = [("w", w), (RATES[0], ratio), (RATES[1], square)];
+            let values: BTreeMap<_, _> = pairs.map(|(name, q)| (name.to_owned(), q)).into();
+            let scaled = Clock { name: "w", middle: &middle }.scaled(&equations).unwrap();
+            let kind = Kind::Forced(1);
+            let [plain, scaled] = [equations, scaled].map(|equations| {
+                let list: Vec<_> = equations.iter().collect();
+                let field = Field::of_equations(&list, "eps", &values).unwrap();
+                let starts = guesses_all(&field, &kind, &Default::default()).unwrap();
+                prove_all(&field, &kind, &starts[0], &Request::default()).unwrap()
+            });
+            assert!(!plain.frequency.overlaps(&scaled.frequency));
+            assert!((1..4).all(|k| plain.harmonic(k).0.overlaps(&scaled.harmonic(k).0)));
+            assert!((1..4).all(|k| plain.harmonic(k).1.overlaps(&scaled.harmonic(k).1)));
+        }
+    }
 }

@@ -100,7 +100,7 @@ pub fn cover(
         let to = Rational::from(&cover.until + &width);
         match part(&[cover.until.clone(), to.clone()], last.as_ref().unwrap_or(left)) {
             Ok(proof) => {
-                cover.add(&proof, to);
+                cover.add(&proof, to, proofs);
                 last = Some(proof);
                 width *= Rational::from(LONGER);
             }
@@ -131,13 +131,16 @@ fn is_local(failure: &Failure) -> bool {
 }
 
 impl Cover {
-    fn add(&mut self, proof: &Proof, to: Rational) {
+    fn add(&mut self, proof: &Proof, to: Rational, [left, right]: [&Proof; 2]) {
         self.parts += 1;
         self.until = to;
         if proof.radius > self.radius {
             self.radius.clone_from(&proof.radius);
         }
-        let hull = |other: &Ball| proof.balls().hull(other, &proof.frequency);
-        self.frequency = Some(self.frequency.as_ref().map_or(proof.frequency.clone(), hull));
+        let hull = |one: &Ball, other: &Ball| proof.balls().hull(one, other);
+        // That of a force which varies is, of a part, the one in its middle: those of the ends are its limits.
+        let known = self.frequency.take();
+        let known = known.unwrap_or_else(|| hull(&left.frequency, &right.frequency));
+        self.frequency = Some(hull(&known, &proof.frequency));
     }
 }

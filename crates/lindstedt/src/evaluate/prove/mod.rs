@@ -15,9 +15,7 @@ use lindstedt_algebra::Stop;
 use lindstedt_orbit::{
     Failure, Kind, Proof, Request, Start, guesses, guesses_all, prove, prove_all,
 };
-pub use orbit::{
-    Bounds, Expansion, ProvedOrbit, ProvedState, UnknownOrbit, UnknownState, Verdict,
-};
+pub use orbit::{Bounds, Expansion, ProvedOrbit, ProvedState, UnknownOrbit, UnknownState, Verdict};
 use std::time::Instant;
 
 /// Harmonics of the guess from the expansion; Newton's method finds the others.
