@@ -5,7 +5,6 @@
 //! a_j e^(i phi_j) = (2/n) sum_m x_j(t_m) e^(-2 pi i p_j m/n), but for harmonics n - p_j and higher.
 
 use super::set_up;
-use super::setup::Setup;
 use super::{Start, precomputed};
 use crate::grid::Axis;
 use crate::refusal::Refused;

@@ -305,7 +305,7 @@ impl ProvedOrbit {
 }
 
 fn proved(ball: &Ball, digits: usize) -> Number {
-    Number::of_ball(ball, digits).weaken(Status::Proved)
+    Number::of_ball(ball, digits).unwrap_or_else(Number::undefined).weaken(Status::Proved)
 }
 
 /// A bound, rounded up to four digits.
