@@ -5,8 +5,8 @@
 use lindstedt::unstable::algebra::RationalAlgebra;
 use lindstedt::unstable::series::resummation::{Method, Resummed, Sample, UniformMap, resum};
 use lindstedt::{
-    Error, Evaluate, EvaluationError, Oscillator, Quantity, Work, unstable::derivation::Settings,
-    unstable::derivation::derive, unstable::problems,
+    Error, Evaluate, EvaluationError, Number, Oscillator, Quantity, Status, Work,
+    unstable::derivation::Settings, unstable::derivation::derive, unstable::problems,
 };
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
@@ -204,11 +204,74 @@ fn van_der_pol(seed: u64, order: usize, cases: usize, count: &mut Count) {
     }
 }
 
+/// Equations whose orbit the contraction test proves, with the small parameter's range in thousandths.
+const PROVED: [(&str, i64, i64); 10] = [
+    ("x'' + x = eps*(1 - x'^2)*x'", 50, 3_000),
+    ("x'' + x + eps*x^2 = 0", -450, 450),
+    ("x'' + x + eps*(x^2 + 2*x^3) = 0", -200, 800),
+    ("x'' + x + eps*x^5 = 0", -900, 9_000),
+    ("x'' + x + eps*(2*x^3 - x^5/2) = 0", -300, 600),
+    ("x'' + x + eps*(x^3 + 3*x^5) = 0", -200, 5_000),
+    ("x'' + x = eps*((1 - x^2)*x' + x^3/2)", 50, 900),
+    ("x'' + x = eps*((1 - x^2)*x' - x^3)", 50, 2_000),
+    ("x'' + x = eps*(1 - x^2 + x'^2/10)*x'", 50, 1_500),
+    ("x'' + x + eps*(x^3 - x*x'^2/3) = 0", 50, 2_000),
+];
+
+/// Truth by the proof of the orbit, which knows nothing of the series.
+fn proved(seed: u64, cases: usize, most: u64, count: &mut Count) {
+    let mut g = Generator(seed);
+    let work = Work { digits: 30, ..Work::default() };
+    for _ in 0..cases {
+        let (equation, low, high) = PROVED[g.below(PROVED.len() as u64) as usize];
+        let value = g.thousandths(low, high);
+        let orders = [4 + g.below(most - 4) as usize, 4 + g.below(most - 4) as usize];
+        let methods = [g.method(), g.method()];
+        let oscillator = Oscillator::parse(equation).unwrap().set("eps", &value).unwrap();
+        let Ok(truth) = oscillator.prove(&Evaluate::default(), &work) else { continue };
+        let truth = truth.value;
+        let Some(period) = truth.period.filter(|p| p.status == Status::Proved) else { continue };
+        if !truth.further.is_empty() {
+            continue;
+        }
+        let exact = over_two_pi(&period.decimal);
+        for order in orders {
+            for method in [None].into_iter().chain(methods) {
+                let question = Evaluate { order: Some(order), method, ..Evaluate::default() };
+                let label = format!("{equation} eps = {value} order {order} {method:?}");
+                match oscillator.evaluate(&question, &Work::default()) {
+                    Ok(found) => {
+                        check_printed(&label, found.value.period.as_ref(), &period.decimal);
+                        count.add(label, (method, order), Ok(&found.value.resummed), &exact);
+                    }
+                    Err(Error::Evaluation(EvaluationError::Resummation { .. })) => {
+                        count.add(label, (method, order), Err(()), &exact);
+                    }
+                    Err(other) => panic!("{label}: {other}"),
+                }
+            }
+        }
+    }
+}
+
+/// A printed period is positive, and its error above the true one.
+fn check_printed(label: &str, period: Option<&Number>, exact: &str) {
+    let Some(period) = period else { return };
+    let read = |text: &str| Float::with_val(BITS, Float::parse(text).unwrap());
+    let value = read(&period.decimal);
+    assert!(value > 0, "{label}: {period}");
+    if let Some(error) = &period.error {
+        let off = Float::with_val(53, value - read(exact)).abs();
+        assert!(off <= read(error) * 1.000_001 + 1e-27, "{label}: {period}, in truth {exact}");
+    }
+}
+
 #[test]
 fn estimates_hold() {
     let mut count = Count::default();
     closed_forms(11, 30, 17, &mut count);
     van_der_pol(12, 40, 20, &mut count);
+    proved(13, 4, 10, &mut count);
     count.print();
     assert!(count.failures.is_empty());
     assert!(count.useful > 60, "{count:?}");
@@ -218,9 +281,12 @@ fn estimates_hold() {
 #[ignore = "minutes"]
 fn every_estimate() {
     let mut count = Count::default();
-    for seed in 200..204 {
+    let first = std::env::var("LINDSTEDT_SEED").ok().and_then(|seed| seed.parse().ok());
+    let first = first.unwrap_or(200);
+    for seed in first..first + 4 {
         closed_forms(seed, 60, 28, &mut count);
         van_der_pol(seed, 80, 40, &mut count);
+        proved(seed, 60, 20, &mut count);
         println!("seed {seed}: {} held, {} violated", count.held, count.failures.len());
     }
     count.print();

@@ -124,3 +124,38 @@ fn sweeps_of_the_frequency() {
         assert!((1.0 + 0.1 * a - b).abs() < 1e-12);
     }
 }
+
+/// Three states that are each other turned by a third of a turn lie within the largest amplitude together or not at all.
+#[test]
+fn the_largest_amplitude_is_that_of_a_disc() {
+    let equation = "x'' + x + eps*(x'/5 + x^3) = F*cos((3 + eps*sigma)*t)";
+    let set = [("eps", "1/10"), ("F", "10"), ("sigma", "1")];
+    for (limit, count) in [("5.9007", 1), ("5.9009", 4)] {
+        let amplitude = Some(lindstedt::Exact::parse(limit).unwrap());
+        let found = ask(equation, &set, &Respond { amplitude, ..to_order(2) });
+        let states = &found.states[0];
+        assert_eq!((states.count, states.count_proved, states.at_edge), (count, true, 0));
+    }
+}
+
+/// The equation itself, integrated along the frequency, lies on the upper branch upwards and on the lower one downwards.
+#[test]
+fn what_follows_the_sweep_lies_on_the_branches() {
+    let equation = "x'' + x + eps*(x'/5 + x^3) = eps*cos(omega*t)/2";
+    let sweep = Some(Axis::parse("omega=21/20,11/10,23/20").unwrap());
+    let found = ask(equation, &[("eps", "1/10")], &Respond { sweep, follow: true, ..to_order(4) });
+    let [up, down] = found.followed.as_ref().unwrap();
+    let known = |states: usize, state: usize| -> f64 {
+        found.states[states].list[state].amplitudes[0].decimal.parse().unwrap()
+    };
+    let read = |list: &[lindstedt::respond::Reading], k: usize| {
+        list[k].amplitudes.as_ref().unwrap()[0].value
+    };
+    assert_eq!(found.states[1].count, 3);
+    // 100 periods leave e^(-2 pi) of the way from one value to the next, two thousandths.
+    let pairs =
+        [(read(up, 1), known(1, 0)), (read(down, 1), known(1, 2)), (read(down, 2), known(0, 0))];
+    for (read, known) in pairs {
+        assert!((read - known).abs() < 5e-3, "{read} {known}");
+    }
+}

@@ -62,7 +62,7 @@ pub struct Common {
     /// Stop after so many seconds with what is finished (exit code 4).
     #[arg(long, global = true, value_name = "S", value_parser = seconds)]
     pub limit_seconds: Option<f64>,
-    /// Refuse work that is predicted to need more memory (512M, 8G).
+    /// Stop before more memory is taken (512M, 8G), with what is finished (exit code 4).
     #[arg(long, global = true, value_name = "SIZE", default_value = "8G", value_parser = memory_size)]
     pub limit_memory: u64,
 }
@@ -140,8 +140,10 @@ pub struct EvaluateOptions {
     #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
     pub times: Option<String>,
     /// The orbit as a theorem: period, frequency, amplitude and Floquet exponent enclosed, with the
-    /// radius of the contraction proof; of a forced equation its responses with the force's period.
-    #[arg(long, conflicts_with_all = ["times", "code", "phase", "start", "state", "sweep", "plot", "f64"])]
+    /// radius of the contraction proof; of a forced equation its responses with the force's period. With
+    /// --times x(t) is enclosed; with --sweep every orbit of a family, and all values between where a
+    /// uniform bound covers them.
+    #[arg(long, conflicts_with_all = ["code", "start", "state"])]
     pub prove: bool,
     /// Period and frequency over NAME=LO..HI:COUNT or NAME=V1,V2,...; at most two, the first along
     /// the horizontal axis.
@@ -161,7 +163,7 @@ pub struct EvaluateOptions {
     #[arg(long, value_name = "FILE")]
     pub plot: Vec<PathBuf>,
     /// The solution as a function in this language instead of the report.
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, conflicts_with = "plot")]
     pub code: Option<Language>,
     /// Harmonics in the code.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=512))]
@@ -259,6 +261,10 @@ pub struct RespondOptions {
     /// The largest amplitude looked at; by default one that has all states of the first order.
     #[arg(long = "box", value_name = "AMPLITUDE")]
     pub amplitude: Option<String>,
+    /// With --sweep: the equation itself integrated along the values, upwards and downwards, each from the end of the one
+    /// before: where it jumps.
+    #[arg(long, requires = "sweep")]
+    pub follow: bool,
     /// x and x' at t = 0: which state does the motion go to?
     #[arg(long, value_name = "X,V", allow_hyphen_values = true)]
     pub start: Option<String>,
@@ -408,8 +414,8 @@ pub struct SimulateOptions {
     /// A parameter: NAME=VALUE with an exact value (1/3, 0.1, pi/4, 2.5e-3).
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// x(0) and x'(0); by default those of the file, else at rest at the amplitude, on the orbit (vibro-impact), 1/10
-    /// and 0 (stick-slip).
+    /// x(0) and x'(0), with several unknowns X,V,Y,W,...; by default those of the file, else at rest at the amplitude, on the
+    /// orbit (vibro-impact), 1/10 and 0 (stick-slip).
     #[arg(long, value_name = "X,V", allow_hyphen_values = true)]
     pub state: Option<String>,
     /// The motion before t = 0, for an equation with a delay: constant, free-flight (without
@@ -437,6 +443,9 @@ pub struct SimulateOptions {
     /// has the range that a problem file says (swept).
     #[arg(long, value_name = "NAME=LO..HI:COUNT", allow_hyphen_values = true)]
     pub sweep: Option<String>,
+    /// With --sweep: every value starts from the last point of the one before, upwards and then downwards.
+    #[arg(long, requires = "sweep", conflicts_with = "resume")]
+    pub follow: bool,
     /// Points of the section that are left out at the beginning [default: 200 with --sweep, 500
     /// periods with --lyapunov and --zero-one, else 0].
     #[arg(long, value_name = "N")]

@@ -11,7 +11,7 @@ use lindstedt::{Derive, Route};
 pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     let oscillator = session.oscillator(&options.problem, &options.set, options.normalisation)?;
     let work = session.precise_work(&options.precision)?;
-    session.check_writable(&[])?;
+    session.check_writable(&options.problem, &[], None)?;
     let order = options.order as usize;
     if let Some(name) = options.unknown.as_deref().or(oscillator.unknown()) {
         return session.show(oscillator.parameter_series(name, order, &work), &[]);

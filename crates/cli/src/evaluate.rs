@@ -13,7 +13,7 @@ use lindstedt::{Error, Evaluate, Exact, Oscillator, Work};
 pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     let oscillator = session.oscillator(&options.problem, &options.set, options.normalisation)?;
     let work = session.precise_work(&options.precision)?;
-    session.check_writable(&options.plot)?;
+    session.check_writable(&options.problem, &options.plot, None)?;
     let shown = !options.plot.is_empty() || options.code.is_some();
     let times = options.times.as_deref().map(Times::parse).transpose()?;
     let times = times.or_else(|| shown.then(Times::default));
@@ -28,11 +28,18 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     }
     let (order, method) = (options.order.map(|order| order as usize), options.resum.into());
     let question = Evaluate { order, method, times, phase: Exact::parse(&options.phase)? };
-    if options.prove {
-        return session.show(oscillator.prove(&question, &work), &[]);
+    if options.prove && options.sweep.is_empty() {
+        return session.show(oscillator.prove(&question, &work), &options.plot);
     }
     if !options.sweep.is_empty() {
         let (columns, rows) = axes(&options.sweep)?;
+        if options.prove {
+            if rows.is_some() {
+                let message = "a proved family is over one parameter".to_owned();
+                return Err(Failure::usage("sweep", message, "one --sweep"));
+            }
+            return session.show(oscillator.prove_sweep(&question, columns, &work), &options.plot);
+        }
         let swept = oscillator.evaluate_sweep(&question, columns, rows, &work);
         return session.show(swept, &options.plot);
     }

@@ -3,7 +3,8 @@
 use crate::arguments::Format;
 use crate::terminal::warn;
 use lindstedt::unstable::simulate::SimulateError;
-use lindstedt::{Error, Kind, NumberError, Refusal, Refused};
+use lindstedt::{Error, Kind, NumberError, Refusal, Refused, general_hint};
+use lindstedt_report::json_line;
 use serde_json::json;
 use std::io::Write;
 use std::process::ExitCode;
@@ -16,8 +17,8 @@ pub const NO_ANSWER: u8 = 3;
 pub const UNDECIDED: u8 = 4;
 /// File trouble.
 pub const FILE: u8 = 5;
-/// Interrupted.
-pub const INTERRUPTED: u8 = 130;
+/// Stopped: what did it has the last word ([`crate::session::Session::failed`]).
+pub const STOPPED: u8 = 130;
 
 /// Why a command failed.
 #[derive(Debug)]
@@ -47,16 +48,26 @@ impl Failure {
         }
     }
 
+    /// What to do about it, in general where nothing is known in particular.
+    fn hint(&self) -> &str {
+        let kind = match self.exit {
+            USAGE | FILE => Kind::Usage,
+            NO_ANSWER => Kind::NoAnswer,
+            STOPPED => Kind::Stopped,
+            _ => Kind::Undecided,
+        };
+        if self.hint.is_empty() { general_hint(kind, self.code) } else { &self.hint }
+    }
+
     /// Prints the failure; in JSON mode on standard output, where a program reads.
     pub fn report(&self, format: Format) -> ExitCode {
+        let hint = self.hint();
         if format == Format::Json {
             let error =
-                json!({"error": {"code": self.code, "message": self.message, "hint": self.hint}});
-            let _ = writeln!(std::io::stdout(), "{error}");
-        } else if self.hint.is_empty() {
-            warn(&self.message);
+                json!({"error": {"code": self.code, "message": self.message, "hint": hint}});
+            let _ = write!(std::io::stdout(), "{}", json_line(&error).unwrap_or_default());
         } else {
-            warn(&format!("{} ({})", self.message, self.hint));
+            warn(&format!("{} ({hint})", self.message));
         }
         ExitCode::from(self.exit)
     }
@@ -97,7 +108,7 @@ fn exit_code(kind: Kind) -> u8 {
         Kind::Usage => USAGE,
         Kind::NoAnswer => NO_ANSWER,
         Kind::Undecided => UNDECIDED,
-        Kind::Stopped => INTERRUPTED,
+        Kind::Stopped => STOPPED,
     }
 }
 
@@ -118,10 +129,10 @@ pub fn usage(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
     let first: Vec<&str> = text.lines().take_while(|line| !line.trim().is_empty()).collect();
     let message = first.join(" ").trim_start_matches("error: ").to_owned();
-    let wants_json = std::env::args().any(|a| a == "--format=json")
-        || std::env::args()
-            .zip(std::env::args().skip(1))
-            .any(|(a, b)| a == "--format" && b == "json");
+    let given: Vec<String> =
+        std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect();
+    let wants_json = given.iter().any(|argument| argument == "--format=json")
+        || given.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json");
     let format = if wants_json { Format::Json } else { Format::Text };
     Failure::usage("usage", message, "see `lindstedt --help`").report(format)
 }

@@ -17,6 +17,7 @@ mod terminal;
 mod threshold;
 mod trade;
 mod verify;
+mod watch;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -44,7 +45,7 @@ fn main() -> ExitCode {
     };
     match outcome {
         Ok(code) => ExitCode::from(code),
-        Err(failure) => failure.report(session.format()),
+        Err(failure) => session.failed(failure).report(session.format()),
     }
 }
 

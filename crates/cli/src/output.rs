@@ -1,32 +1,112 @@
-//! Writing results.
+//! Writing results: every file appears whole under its name, or what was there stays.
 
 use crate::failure::{FILE, Failure};
-use std::io::Write;
+use same_file::is_same_file;
+use std::fs::{File, OpenOptions, Permissions, metadata};
+use std::io::{Error, ErrorKind, Result, Write};
 use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// Links that are followed at most.
+const MOST_LINKS: usize = 40;
 
 /// Writes a result to the file asked for or to standard output.
 ///
 /// A reader that closes the pipe early (`| head`) is no failure.
-pub fn write(out: Option<&Path>, text: &str) -> Result<(), Failure> {
-    let Some(path) = out else {
-        let mut stdout = std::io::stdout().lock();
-        return match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
-            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-                Err(trouble("standard output", &error))
-            }
-            _ => Ok(()),
-        };
-    };
-    std::fs::write(path, text).map_err(|error| trouble(&path.display().to_string(), &error))
+pub fn write(out: Option<&Path>, text: &str) -> std::result::Result<(), Failure> {
+    if let Some(path) = out {
+        return write_file(path, text);
+    }
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(trouble("standard output", &error))
+        }
+        _ => Ok(()),
+    }
 }
 
-/// Fails now rather than after the work if a file cannot be written.
-pub fn check_file(path: &Path) -> Result<(), Failure> {
-    let existed = path.exists();
-    let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
-    opened.map_err(|error| trouble(&path.display().to_string(), &error))?;
-    if !existed {
-        let _ = std::fs::remove_file(path);
+/// Writes a file beside the one that a name leads to, and gives it the name when its last byte is on the disk.
+pub fn write_file(path: &Path, text: &str) -> std::result::Result<(), Failure> {
+    let written = || -> Result<()> {
+        let target = target(path)?;
+        // A device or a pipe has no name to take over.
+        if metadata(&target).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+            return OpenOptions::new().write(true).open(&target)?.write_all(text.as_bytes());
+        }
+        let mut file = beside(&target)?;
+        file.write_all(text.as_bytes())?;
+        file.as_file().sync_all()?;
+        file.persist(&target).map(drop).map_err(|error| error.error)
+    };
+    written().map_err(|error| trouble(&path.display().to_string(), &error))
+}
+
+/// Fails now rather than after the work if a file cannot be written; makes and deletes nothing that stays.
+pub fn check_file(path: &Path) -> std::result::Result<(), Failure> {
+    let checked = || -> Result<()> {
+        let target = target(path)?;
+        match metadata(&target) {
+            // To open a pipe waits for its reader.
+            Ok(found) if !found.is_file() && !found.is_dir() => Ok(()),
+            _ => beside(&target).map(drop),
+        }
+    };
+    checked().map_err(|error| trouble(&path.display().to_string(), &error))
+}
+
+/// An empty file in the folder of another one, with its permissions, if that one may be written.
+fn beside(target: &Path) -> Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".lindstedt-");
+    #[cfg(unix)]
+    let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let there: Option<Permissions> = match OpenOptions::new().append(true).open(target) {
+        Ok(file) => Some(file.metadata()?.permissions()),
+        Err(error) if error.kind() == ErrorKind::NotFound => None,
+        Err(error) => return Err(error),
+    };
+    let file = builder.tempfile_in(folder(target))?;
+    if let Some(permissions) = there {
+        file.as_file().set_permissions(permissions)?;
+    }
+    Ok(file)
+}
+
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Where a name leads to, through links, whether anything is there or not.
+fn target(path: &Path) -> Result<PathBuf> {
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match std::fs::read_link(&path) {
+            Ok(link) => path = folder(&path).join(link),
+            Err(_) => {
+                let name = path.file_name().ok_or(ErrorKind::InvalidInput)?;
+                return Ok(folder(&path).canonicalize()?.join(name));
+            }
+        }
+    }
+    Err(Error::other("too many links"))
+}
+
+/// Refuses two names of one file, of which at least one is written.
+pub fn check_distinct(
+    written: &[(&str, &Path)],
+    read: Option<(&str, &Path)>,
+) -> std::result::Result<(), Failure> {
+    let all: Vec<_> = read.into_iter().chain(written.iter().copied()).collect();
+    for (place, (what, path)) in all.iter().enumerate() {
+        let same = |other: &Path| {
+            let targets = target(path).ok().zip(target(other).ok());
+            targets.is_some_and(|(a, b)| a == b) || is_same_file(path, other).unwrap_or(false)
+        };
+        if let Some((other, _)) = all[..place].iter().find(|(_, other)| same(other)) {
+            let message = format!("{what} and {other} are one file, {}", path.display());
+            return Err(Failure::usage("same-file", message, "give each a name of its own"));
+        }
     }
     Ok(())
 }
@@ -37,7 +117,7 @@ pub fn is(path: &Path, kind: &str) -> bool {
 }
 
 /// Refuses names that are neither figure nor table.
-pub fn check_plots(paths: &[PathBuf]) -> Result<(), Failure> {
+pub fn check_plots(paths: &[PathBuf]) -> std::result::Result<(), Failure> {
     match paths.iter().find(|path| !is(path, "svg") && !is(path, "csv")) {
         None => Ok(()),
         Some(path) => {
@@ -47,13 +127,18 @@ pub fn check_plots(paths: &[PathBuf]) -> Result<(), Failure> {
     }
 }
 
-/// Writes a figure or a table.
-pub fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text).map_err(|error| trouble(&path.display().to_string(), &error))
+/// The file that lines are added to, for this run alone.
+pub fn open_to_append(path: &Path) -> Result<File> {
+    let file = OpenOptions::new().append(true).create(true).open(path)?;
+    match file.try_lock() {
+        Err(std::fs::TryLockError::WouldBlock) => Err(Error::other("another run writes it")),
+        // Where files cannot be locked nothing is known about other runs.
+        _ => Ok(file),
+    }
 }
 
 /// A failure of the file system.
-pub fn trouble(what: &str, error: &std::io::Error) -> Failure {
+pub fn trouble(what: &str, error: &Error) -> Failure {
     Failure {
         exit: FILE,
         code: "file",

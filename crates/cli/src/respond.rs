@@ -15,6 +15,7 @@ pub fn run(options: &RespondOptions, session: &Session<'_>) -> Outcome {
         sweep: axes.next().transpose()?,
         second: axes.next().transpose()?,
         amplitude: amplitude.transpose().map_err(Error::from)?,
+        follow: options.follow,
         start: options.start.as_deref().map(Respond::read_start).transpose()?,
     };
     if axes.next().is_some() {
@@ -22,6 +23,6 @@ pub fn run(options: &RespondOptions, session: &Session<'_>) -> Outcome {
         return Err(Failure::usage("sweep", message, "one --sweep or two"));
     }
     session.check_sweep(&options.plot, options.sweep.len(), 1)?;
-    session.check_writable(&options.plot)?;
+    session.check_writable(&options.problem, &options.plot, None)?;
     session.show(oscillator.respond(&question, &session.work()), &options.plot)
 }

@@ -1,24 +1,20 @@
-//! What all commands share: format, output, progress, limits, Ctrl-C.
+//! What all commands share: format, output, progress, what ends them.
 
 use crate::arguments::{Common, Format, Normalisation, Precision};
-use crate::failure::{FILE, Failure, INTERRUPTED, NO_ANSWER, UNDECIDED};
+use crate::failure::{FILE, Failure, NO_ANSWER, STOPPED, UNDECIDED};
 use crate::terminal::warn;
+use crate::watch::{Limits, Watch};
 use crate::{Outcome, output};
 use indicatif::{ProgressBar, ProgressStyle};
-use lindstedt::unstable::algebra::Stop;
 use lindstedt::unstable::equation::Condition;
 use lindstedt::unstable::problem_file::{FileError, LARGEST_FILE, canonical_name};
-use lindstedt::{
-    Answer, Error, Exact, Kind, Oscillator, Progress, Refusal, Remark, Standing, Work,
-};
+use lindstedt::{Answer, Error, Exact, Oscillator, Progress, Remark, Standing, Work};
 use lindstedt_report::{Format as Written, Present};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::time::{Duration, Instant};
 
 /// No result is printed with more digits than this: the contract of exact evaluation.
 const MOST_DIGITS: u64 = 10_000;
@@ -26,8 +22,9 @@ const MOST_DIGITS: u64 = 10_000;
 /// One run of the program.
 pub struct Session<'a> {
     common: &'a Common,
-    start: Instant,
-    interrupts: Arc<AtomicU32>,
+    limits: Limits,
+    /// The clock, the signals and the memory.
+    pub watch: Watch,
     bar: ProgressBar,
 }
 
@@ -35,19 +32,13 @@ impl<'a> Session<'a> {
     /// Starts the clock and catches Ctrl-C: the first asks the work to stop at the next order,
     /// the second ends the program.
     pub fn start(common: &'a Common) -> Self {
-        let interrupts = Arc::new(AtomicU32::new(0));
-        let counter = Arc::clone(&interrupts);
-        let _ = ctrlc::set_handler(move || {
-            if counter.fetch_add(1, Ordering::SeqCst) > 0 {
-                std::process::exit(i32::from(INTERRUPTED));
-            }
-            warn("stopping after the step in progress; Ctrl-C again to stop at once");
-        });
         let bar = if common.quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
         if let Ok(style) = ProgressStyle::with_template("{spinner} [{elapsed}] {msg}") {
             bar.set_style(style);
         }
-        Self { common, start: Instant::now(), interrupts, bar }
+        let limits = Limits::new(common.limit_seconds, common.limit_memory);
+        let watch = Watch::start(limits, common.format, bar.clone());
+        Self { common, limits, watch, bar }
     }
 
     pub fn format(&self) -> Format {
@@ -56,37 +47,6 @@ impl<'a> Session<'a> {
 
     pub fn out(&self) -> Option<&Path> {
         self.common.out.as_deref()
-    }
-
-    pub fn memory(&self) -> u64 {
-        self.common.limit_memory
-    }
-
-    pub fn elapsed(&self) -> Duration {
-        self.start.elapsed()
-    }
-
-    pub fn interrupted(&self) -> bool {
-        self.interrupts.load(Ordering::SeqCst) > 0
-    }
-
-    pub fn out_of_time(&self) -> bool {
-        self.common.limit_seconds.is_some_and(|limit| self.elapsed().as_secs_f64() > limit)
-    }
-
-    /// Whether the work should go on.
-    pub fn goes_on(&self) -> bool {
-        !self.interrupted() && !self.out_of_time()
-    }
-
-    /// The same question for the threads of the engine.
-    pub fn stop(&self) -> Stop {
-        let interrupts = Arc::clone(&self.interrupts);
-        let (start, limit) = (self.start, self.common.limit_seconds);
-        Stop::new(move || {
-            interrupts.load(Ordering::SeqCst) > 0
-                || limit.is_some_and(|limit| start.elapsed().as_secs_f64() > limit)
-        })
     }
 
     /// The means of a question.
@@ -99,8 +59,8 @@ impl<'a> Session<'a> {
             bar.tick();
         };
         Work {
-            memory: self.memory(),
-            stop: self.stop(),
+            memory: self.limits.memory(),
+            stop: self.watch.stop(),
             progress: Some(Arc::new(progress)),
             ..Work::default()
         }
@@ -120,9 +80,9 @@ impl<'a> Session<'a> {
         set: &[String],
         normalisation: Option<Normalisation>,
     ) -> Result<Oscillator, Failure> {
-        let oscillator = if name.contains(['\'', '=']) {
+        let oscillator = if is_equation(name) {
             Oscillator::parse(name)?
-        } else if name.ends_with(".toml") {
+        } else if is_file(name) {
             Oscillator::file(&read(name)?).map_err(|error| at_place(name, error))?.called(name)
         } else {
             Oscillator::builtin(name)?
@@ -162,11 +122,22 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Fails now rather than after the work if what is asked for cannot be written.
-    pub fn check_writable(&self, plots: &[PathBuf]) -> Result<(), Failure> {
+    /// Fails now rather than after the work if what is asked for cannot be written, or would be written
+    /// over what is read or written beside it.
+    pub fn check_writable(
+        &self,
+        problem: &str,
+        plots: &[PathBuf],
+        journal: Option<&Path>,
+    ) -> Result<(), Failure> {
         output::check_plots(plots)?;
-        plots.iter().try_for_each(|path| output::check_file(path))?;
-        self.out().map_or(Ok(()), output::check_file)
+        let plotted = plots.iter().map(|path| ("--plot", path.as_path()));
+        let out = self.out().map(|path| ("--out", path));
+        let journal = journal.map(|path| ("--resume", path));
+        let written: Vec<_> = out.into_iter().chain(journal).chain(plotted).collect();
+        let read = is_file(problem).then(|| ("the problem file", Path::new(problem)));
+        output::check_distinct(&written, read)?;
+        written.iter().try_for_each(|(_, path)| output::check_file(path))
     }
 
     /// Prints an answer in the format asked for, writes its figures and tables, says its remarks.
@@ -175,17 +146,32 @@ impl<'a> Session<'a> {
         Answer<T>: Present,
     {
         self.done();
-        let answer = answer.map_err(|error| self.failure(&error))?;
-        for path in plots {
-            output::write_file(path, &plotted(&answer, path)?)?;
-        }
-        self.print(&answer)?;
+        let answer = answer?;
+        let text = self.written(&answer)?;
+        let drawn = plots.iter().map(|path| Ok((path, plotted(&answer, path)?)));
+        let drawn: Result<Vec<(&PathBuf, Option<String>)>, Failure> = drawn.collect();
+        // What was found is printed, whatever becomes of its figures.
+        self.watch.writing();
+        let files = drawn.and_then(|drawn| {
+            drawn.into_iter().try_fold(0, |code, (path, text)| match text {
+                Some(text) => output::write_file(path, &text).map(|()| code),
+                None => {
+                    warn(&format!("there is nothing to draw: {} is not written", path.display()));
+                    Ok(NO_ANSWER)
+                }
+            })
+        });
+        output::write(self.out(), &text)?;
         self.say_remarks(&answer.remarks);
-        Ok(match answer.standing {
-            Standing::Complete => 0,
-            Standing::NoAnswer => NO_ANSWER,
-            Standing::Undecided => UNDECIDED,
-            Standing::Stopped { .. } => self.stopped(),
+        let undrawn = files?;
+        Ok(match (answer.standing, self.watch.reason()) {
+            (Standing::Complete, _) => undrawn,
+            (Standing::NoAnswer, _) => NO_ANSWER,
+            (Standing::Stopped { .. }, Some(why)) => {
+                warn(&format!("{}: not everything is finished", why.words));
+                why.exit
+            }
+            (Standing::Undecided | Standing::Stopped { .. }, _) => UNDECIDED,
         })
     }
 
@@ -196,7 +182,13 @@ impl<'a> Session<'a> {
 
     /// Prints what can be shown in the format asked for.
     pub fn print<A: Serialize + Present>(&self, answer: &A) -> Result<(), Failure> {
-        let text = match self.format() {
+        let text = self.written(answer)?;
+        self.watch.writing();
+        output::write(self.out(), &text)
+    }
+
+    fn written<A: Serialize + Present>(&self, answer: &A) -> Result<String, Failure> {
+        Ok(match self.format() {
             Format::Json => lindstedt_report::json(answer).map_err(|error| Failure {
                 exit: UNDECIDED,
                 code: "undecided",
@@ -206,25 +198,17 @@ impl<'a> Session<'a> {
             Format::Text => Written::Text.write(&answer.document()),
             Format::Latex => Written::Latex.write(&answer.document()),
             Format::Markdown => Written::Markdown.write(&answer.document()),
-        };
-        output::write(self.out(), &text)
+        })
     }
 
-    /// The exit code of stopped work.
-    fn stopped(&self) -> u8 {
-        if self.interrupted() { INTERRUPTED } else { UNDECIDED }
-    }
-
-    /// A refusal; of stopped work with what stopped it.
-    fn failure(&self, error: &Error) -> Failure {
-        let failure = Failure::of(error);
-        match error.kind() {
-            Kind::Stopped if self.interrupted() => {
-                Failure { exit: INTERRUPTED, code: "interrupted", ..failure }
-            }
-            Kind::Stopped => Failure { exit: UNDECIDED, code: "limit-seconds", ..failure },
-            _ => failure,
-        }
+    /// A failure of this run: of stopped work with what stopped it.
+    pub fn failed(&self, failure: Failure) -> Failure {
+        self.done();
+        let why = self.watch.reason().filter(|_| failure.exit == STOPPED);
+        let Some(why) = why else { return failure };
+        let hint = why.hint.map_or(failure.hint, str::to_owned);
+        let message = format!("{}: {}", why.words, failure.message);
+        Failure { exit: why.exit, code: why.code, message, hint }
     }
 
     /// How many steps there are: from now on the bar shows what part is done.
@@ -244,6 +228,7 @@ impl<'a> Session<'a> {
 
     /// Clears the progress line before results are printed.
     pub fn done(&self) {
+        self.watch.showing();
         self.bar.finish_and_clear();
     }
 }
@@ -261,22 +246,27 @@ fn words(progress: &Progress) -> Option<String> {
     })
 }
 
-/// The contents of a figure or a table, as the name of the file says.
-fn plotted<T>(answer: &Answer<T>, path: &Path) -> Result<String, Failure>
+/// The contents of a figure or a table, as the name of the file says; nothing where there is nothing to draw.
+fn plotted<T>(answer: &Answer<T>, path: &Path) -> Result<Option<String>, Failure>
 where
     Answer<T>: Present,
 {
-    let nothing = || Failure {
-        exit: NO_ANSWER,
-        code: "figure",
-        message: "there is nothing to draw".to_owned(),
-        hint: String::new(),
-    };
     if output::is(path, "csv") {
-        return answer.table().map(|table| table.csv()).ok_or_else(nothing);
+        return Ok(answer.table().map(|table| table.csv()));
     }
-    let figure = answer.figure().ok_or_else(nothing)?;
-    figure.svg().map_err(|error| Failure { message: error.to_string(), ..nothing() })
+    let undrawn =
+        |message: String| Failure { exit: NO_ANSWER, code: "figure", message, hint: String::new() };
+    let figure = answer.figure().map(|figure| figure.svg());
+    figure.transpose().map_err(|error| undrawn(error.to_string()))
+}
+
+/// Whether a problem is named by its file.
+fn is_file(problem: &str) -> bool {
+    problem.ends_with(".toml") && !is_equation(problem)
+}
+
+fn is_equation(problem: &str) -> bool {
+    problem.contains(['\'', '='])
 }
 
 /// The number of digits asked for.

@@ -14,7 +14,7 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
     let (branch, set) = Stability::read_branch(&options.set)?;
     let oscillator = session.oscillator(&options.problem, &set, None)?;
     let work = session.precise_work(&options.precision)?;
-    session.check_writable(&options.plot)?;
+    session.check_writable(&options.problem, &options.plot, options.resume.as_deref())?;
     check(options)?;
     let perturbation = options.perturb.as_deref().map(Start::read_perturbation).transpose()?;
     let state = options.state.as_deref().map(Start::read_state).transpose()?;
@@ -30,7 +30,7 @@ pub fn run(options: &SimulateOptions, session: &Session<'_>) -> Outcome {
         return session.show(oscillator.chaos(&question, &work), &[]);
     }
     if let Some(sweep) = &options.sweep {
-        let question = Bifurcation { start, ..Bifurcation::over(sweep) };
+        let question = Bifurcation { start, follow: options.follow, ..Bifurcation::over(sweep) };
         return diagram(options, session, &oscillator, &work, question);
     }
     let question = Simulate {

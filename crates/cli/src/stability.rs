@@ -30,6 +30,6 @@ pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
         sweep: options.sweep.iter().map(|text| oscillator.axis(text)).collect::<Result<_, _>>()?,
     };
     session.check_sweep(&options.plot, question.sweep.len(), 2)?;
-    session.check_writable(&options.plot)?;
+    session.check_writable(&options.problem, &options.plot, None)?;
     session.show(oscillator.stability(&question, &work), &options.plot)
 }

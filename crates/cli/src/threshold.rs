@@ -15,6 +15,6 @@ pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
         subharmonics: options.subharmonics,
     };
     session.check_sweep(&options.plot, question.sweep.len(), 1)?;
-    session.check_writable(&options.plot)?;
+    session.check_writable(&options.problem, &options.plot, None)?;
     session.show(oscillator.threshold(&question, &work), &options.plot)
 }

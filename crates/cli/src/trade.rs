@@ -17,6 +17,6 @@ pub fn run(options: &TradeOptions, session: &Session<'_>) -> Outcome {
         error: options.wanted,
         seconds: options.within,
     };
-    session.check_writable(&options.plot)?;
+    session.check_writable(&options.problem, &options.plot, None)?;
     session.show(oscillator.trade(&plan, &session.work()), &options.plot)
 }

@@ -14,7 +14,7 @@ pub fn run(options: &VerifyOptions, session: &Session<'_>) -> Outcome {
         digits: options.digits,
         ..Verify::default()
     };
-    session.check_writable(&options.plot)?;
+    session.check_writable(&options.problem, &options.plot, None)?;
     let answer = oscillator.verify(&question, &session.work());
     session.show(answer, &options.plot)
 }

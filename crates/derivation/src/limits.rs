@@ -19,7 +19,10 @@ pub(crate) fn unknown_parameter(problem: &Problem, name: &str) -> Error {
     let known: Vec<&str> = problem.parameters.iter().map(|card| &*card.name).collect();
     let mut known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
     if *name == *problem.small {
-        known += &format!(" ({name} is the small parameter: no coefficient depends on it)");
+        known += &format!(
+            " ({name} is the small parameter: no coefficient depends on it, `lindstedt evaluate` takes its \
+             value)"
+        );
     }
     Error::UnknownParameter { problem: problem.name.to_string(), name: name.to_owned(), known }
 }

@@ -1,9 +1,11 @@
 //! A classification in words and printed terms.
 
 use crate::Expression;
-use crate::classify::{Algebra, Classification, Forcing, Method, Reason, Symmetry, Term};
+use crate::classify::{Algebra, Classification, Forcing, Method, Reason, Symmetry, Term, evaluate};
 use crate::print::Style;
+use rug::Rational;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// What an equation is made of and which methods take it, in words and printed terms.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -161,6 +163,11 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
             "{} is no polynomial in x, x' and ln x^2 (of f regular at 0, taylor(f(z), 9) asks for one)",
             show(e)
         ),
+        // A root of what is not 0 at rest is analytic there.
+        Reason::NotReal(e @ Expression::Power(base, _)) if is_regular_at_rest(base) => format!(
+            "{} is not real everywhere: write taylor({0}, 9), its polynomial of degree 9",
+            show(e)
+        ),
         Reason::NotReal(e) => format!(
             "{} is not real everywhere: write x*(x^2)^delta, sign(x)*abs(x)^p, ln(x^2)",
             show(e)
@@ -181,6 +188,15 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
         Reason::Formal(e) => format!("{} is a formal function", show(e)),
         Reason::OutsideDomain(what) => what.clone(),
     }
+}
+
+/// Whether a base is a number other than 0 at x = x' = 0 and without the small parameter.
+fn is_regular_at_rest(base: &Expression) -> bool {
+    let rest = base.substitute(&|leaf| match leaf {
+        Expression::Unknown(_) | Expression::Small => Some(Expression::Number(Rational::new())),
+        _ => None,
+    });
+    evaluate(&rest, &BTreeMap::new()).is_some_and(|value| !value.is_zero())
 }
 
 /// The beginning of a long term.

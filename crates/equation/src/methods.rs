@@ -143,6 +143,18 @@ fn lindstedt(
     against
 }
 
+/// An unknown or its acceleration times a constant.
+fn is_coupling(e: &Expression) -> bool {
+    match e {
+        Expression::Unknown(unknown) => unknown.derivative != 1 && unknown.delay.is_none(),
+        Expression::Product(factors) => {
+            let mut varying = factors.iter().filter(|factor| !factor.is_constant());
+            varying.next().is_some_and(is_coupling) && varying.next().is_none()
+        }
+        _ => false,
+    }
+}
+
 fn averaging(
     problem: &Problem,
     rest: &Expression,
@@ -151,8 +163,9 @@ fn averaging(
 ) -> Vec<Reason> {
     let mut against = weak.to_vec();
     // A constant force of order zero moves the centre: the response to it is no expansion's first term, but
-    // part of u_0.
-    let strong = parts.strong.iter().find(|term| !term.term.is_constant());
+    // part of u_0. What couples several unknowns linearly belongs to their normal modes.
+    let coupling = |e: &Expression| !problem.others.is_empty() && is_coupling(e);
+    let strong = parts.strong.iter().find(|t| !t.term.is_constant() && !coupling(&t.term));
     let first = parts.strong.first().map(|term| &term.term);
     if strong.map(|term| &term.term) != first {
         against.retain(|reason| !matches!(reason, Reason::NotWeaklyNonlinear(_)));

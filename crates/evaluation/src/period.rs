@@ -12,7 +12,7 @@ use lindstedt_algebra::Stop;
 use lindstedt_derivation::{DerivationError, Progress, Work};
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_number::{Exact, Number, certified};
+use lindstedt_number::{Exact, Number, Status, certified};
 use lindstedt_series::resummation::{Method, Pade, Picture, Resummed, Sample, resum_until};
 use rug::Float;
 use serde::Serialize;
@@ -74,6 +74,12 @@ pub struct Improved {
 }
 
 impl Evaluation {
+    /// Whether there is a period, but nothing is known of its error.
+    #[must_use]
+    pub fn is_without_estimate(&self) -> bool {
+        self.period.as_ref().is_some_and(|period| period.status == Status::NoEstimate)
+    }
+
     /// The same with a period in the place of the sum's; the error is an estimate, too.
     pub fn improve(&mut self, period: &Ball, digits: usize, from: &'static str, modes: usize) {
         let balls = Balls::new(period.midpoint().prec());
@@ -201,14 +207,18 @@ impl Sum {
     }
 
     fn number(&self, ball: &Ball, digits: usize) -> Option<Number> {
-        // A measured error above the value leaves no digit.
-        let size = self.period.midpoint().clone().abs();
-        if self.no_estimate && self.is_estimated && *self.period.radius() >= size {
+        // A measured error above the value leaves no digit, and a sum that is no period has none.
+        let size = self.period.midpoint();
+        let none = self.is_estimated && self.period.radius() >= size;
+        if *size <= 0 || none {
             None
         } else if self.no_estimate {
             few::plain(ball, digits, self.is_estimated)
         } else {
-            Number::estimated(ball, digits)
+            // Where there is a digit: not rounded to the error, a coarse decimal would be worse than the
+            // estimate.
+            Number::estimated(ball, digits)?;
+            Number::with_error(ball.midpoint(), ball.radius(), digits)
         }
     }
 

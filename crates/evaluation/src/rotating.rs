@@ -11,6 +11,7 @@ use lindstedt_derivation::resonance::{SlowFlow, Terms};
 use lindstedt_orbit::steady::{ComplexTerm, Flow, Polynomial};
 use rug::Rational;
 use rug::ops::Pow;
+use std::collections::BTreeSet;
 
 /// The autonomous slow flow.
 #[derive(Clone, Debug)]
@@ -22,6 +23,8 @@ pub struct Rotating {
     /// How many of the k_j the resonances fix, the rank of their relations: where it is less than the number of
     /// unknowns, a motion may be steady in another frame than this.
     pub fixed: usize,
+    /// Unknowns of which the force fixes a combination of the phases alone.
+    pub combination: Option<Vec<usize>>,
     /// Im (w'/w)/eps of free motion as a polynomial in |w| and the parameters, of a single unknown: zero on the
     /// backbone.
     pub backbone: Option<Flow>,
@@ -40,34 +43,74 @@ pub fn rotating(slow: &SlowFlow, small: &str, order: usize) -> Option<Rotating> 
     let equations: Vec<Vec<ComplexTerm>> =
         (0..turns.len()).map(|j| equation(slow, j, &turns[j], order)).collect();
     let backbone = (turns.len() == 1).then(|| backbone(slow, &turns[0], &names, order));
-    let fixed = fixed(slow, order);
-    Some(Rotating { flow: Flow::of_complex(&equations, &names), turns, fixed, backbone })
+    let relations = Relations::of(slow, order);
+    let (fixed, combination) = (relations.fixed(), relations.combination());
+    let flow = Flow::of_complex(&equations, &names);
+    Some(Rotating { flow, turns, fixed, combination, backbone })
 }
 
-/// The rank of the vectors p - q - e_j of all terms z^p zbar^q E^m of f_j: each is a relation (p - q - e_j) k = -m.
-/// Nothing is fixed where no term knows the force.
-fn fixed(slow: &SlowFlow, order: usize) -> usize {
-    let unknowns = slow.unknowns();
-    let (mut rows, mut forced): (Vec<Vec<Rational>>, bool) = (Vec::new(), false);
-    for j in 0..unknowns {
-        for term in slow.flow[j].iter().take(order + 1).skip(1).flatten() {
-            forced |= term.exponents[2 * unknowns] != 0;
-            let relation = |k: usize| {
-                let own = i32::from(k == j);
-                Rational::from(term.exponents[2 * k] - term.exponents[2 * k + 1] - own)
-            };
-            let mut row: Vec<Rational> = (0..unknowns).map(relation).collect();
-            for known in &rows {
-                let Some(pivot) = known.iter().position(|x| !x.is_zero()) else { continue };
-                let factor = Rational::from(&row[pivot] / &known[pivot]);
-                row.iter_mut().zip(known).for_each(|(x, y)| *x -= Rational::from(&factor * y));
-            }
-            if row.iter().any(|x| !x.is_zero()) {
-                rows.push(row);
+/// What fixes the k_j: every term z^p zbar^q E^m of f_j is a relation (p - q - e_j) k = -m.
+#[derive(Default)]
+struct Relations {
+    /// Independent ones.
+    rows: Vec<Vec<Rational>>,
+    /// Sets of unknowns that relations tie together, and whether one of these knows the force.
+    groups: Vec<(BTreeSet<usize>, bool)>,
+}
+
+impl Relations {
+    fn of(slow: &SlowFlow, order: usize) -> Self {
+        let mut relations = Self::default();
+        for j in 0..slow.unknowns() {
+            for term in slow.flow[j].iter().take(order + 1).skip(1).flatten() {
+                relations.add(j, &term.exponents, slow.unknowns());
             }
         }
+        relations
     }
-    if forced { rows.len() } else { 0 }
+
+    fn add(&mut self, j: usize, exponents: &[i32], unknowns: usize) {
+        let relation = |k: usize| exponents[2 * k] - exponents[2 * k + 1] - i32::from(k == j);
+        let mut row: Vec<Rational> = (0..unknowns).map(|k| relation(k).into()).collect();
+        let mut tied: BTreeSet<usize> = (0..unknowns).filter(|k| !row[*k].is_zero()).collect();
+        if tied.is_empty() {
+            return;
+        }
+        let mut forced = exponents[2 * unknowns] != 0;
+        self.groups.retain(|(group, knows)| {
+            let apart = group.is_disjoint(&tied);
+            if !apart {
+                tied.extend(group);
+                forced |= knows;
+            }
+            apart
+        });
+        self.groups.push((tied, forced));
+        for known in &self.rows {
+            let Some(pivot) = known.iter().position(|x| !x.is_zero()) else { continue };
+            let factor = Rational::from(&row[pivot] / &known[pivot]);
+            row.iter_mut().zip(known).for_each(|(x, y)| *x -= Rational::from(&factor * y));
+        }
+        if row.iter().any(|x| !x.is_zero()) {
+            self.rows.push(row);
+        }
+    }
+
+    /// How many of the k_j are fixed: none where no term knows the force.
+    fn fixed(&self) -> usize {
+        if self.groups.iter().any(|(_, forced)| *forced) { self.rows.len() } else { 0 }
+    }
+
+    /// Unknowns of which the force fixes a combination of the phases alone.
+    fn combination(&self) -> Option<Vec<usize>> {
+        let within = |group: &BTreeSet<usize>| {
+            let touches = |row: &&Vec<Rational>| group.iter().any(|k| !row[*k].is_zero());
+            self.rows.iter().filter(touches).count()
+        };
+        let found =
+            self.groups.iter().find(|(group, forced)| *forced && within(group) < group.len());
+        found.map(|(group, _)| group.iter().copied().collect())
+    }
 }
 
 fn power(e: i32) -> u32 {

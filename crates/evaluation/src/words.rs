@@ -131,7 +131,8 @@ impl Evaluation {
     #[must_use]
     pub fn tried(&self) -> Vec<(&'static str, String)> {
         let text = |found: &Result<Float, ResummationError>| match found {
-            Ok(error) => short(error),
+            Ok(error) if error.is_finite() => short(error),
+            Ok(_) => "no estimate".to_owned(),
             Err(reason) => reason.to_string(),
         };
         self.resummed.tried.iter().map(|(m, found)| (method_name(*m), text(found))).collect()

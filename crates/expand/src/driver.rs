@@ -16,6 +16,7 @@ use crate::limit_cycle;
 use lindstedt_algebra::{FunctionAlgebra, PhaseAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::Condition;
 use rug::Rational;
+use std::ops::RangeInclusive;
 
 type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
 
@@ -142,8 +143,38 @@ pub fn expand<A: PhaseAlgebra>(
     request: &Request,
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<Expansion<A>, ExpandError> {
+    extend(algebra, equation, request, Known { solution: &[], squared: &[] }, observer)
+}
+
+/// The first orders of an expansion: x_n and W_n, n = 0, ..., m.
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a, A: PhaseAlgebra> {
+    /// x_n; the last one of a limit cycle with its amplitude, which the order after it fixes.
+    pub solution: &'a [A::Element],
+    /// W_n.
+    pub squared: &'a [Constant<A>],
+}
+
+/// The same as [`expand`] where the first orders are known: their right sides are not formed again.
+///
+/// Nothing is checked; work is counted from the first order that was derived.
+///
+/// # Errors
+/// Those of [`expand`].
+pub fn extend<A: PhaseAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    request: &Request,
+    known: Known<'_, A>,
+    observer: &mut dyn FnMut(&OrderWork) -> bool,
+) -> Result<Expansion<A>, ExpandError> {
     let mut driver = Driver::start(algebra, equation, request)?;
-    let work = run(&mut driver, request.order, observer)?;
+    let mut first = 1;
+    for (x, w) in known.solution.iter().zip(known.squared).skip(1).take(request.order) {
+        driver.take(first, x.clone(), w.clone())?;
+        first += 1;
+    }
+    let work = run(&mut driver, first..=request.order, observer)?;
     driver.finish(work)
 }
 
@@ -162,11 +193,11 @@ pub(crate) trait Scheme {
 /// The loop over the orders; stops early when the observer says so or the algebra is interrupted.
 pub(crate) fn run(
     scheme: &mut dyn Scheme,
-    order: usize,
+    orders: RangeInclusive<usize>,
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<Vec<OrderWork>, ExpandError> {
     let mut list = Vec::new();
-    for n in 1..=order {
+    for n in orders {
         let before = scheme.products();
         match scheme.step(n) {
             Err(ExpandError::Interrupted { .. }) => break,
@@ -246,9 +277,6 @@ impl<A: PhaseAlgebra> Scheme for Driver<'_, A> {
         }
         // f_n - W_n x_0'' = f_n + W_n a_0 cos psi has no cos psi left:
         let secular = constants.mul(&split.cos_amplitude, &self.inverse_amplitude);
-        self.frequency_squared.push(constants.neg(&secular));
-        self.extend_frequency(n);
-
         let mut x = split.response;
         if self.condition == Condition::FundamentalAmplitude {
             let harmonic = algebra.first_harmonic(&x);
@@ -257,20 +285,7 @@ impl<A: PhaseAlgebra> Scheme for Driver<'_, A> {
             x = algebra.sub(&x, &algebra.scale_by(&algebra.cosine(), &c));
             x = algebra.sub(&x, &algebra.scale_by(&algebra.sine(), &s));
         }
-        let slope = algebra.derivative(&x);
-        self.second_derivatives.push(algebra.derivative(&slope));
-        self.slopes.push(slope);
-        self.forget(n);
-        self.evaluator.assign(&Node::Displacement, n, x.clone());
-        self.x.push(x);
-        if self.evaluator.equation.has_velocity() {
-            let velocity = self.velocity(n);
-            self.evaluator.assign(&Node::Velocity, n, velocity);
-        }
-        if self.condition == Condition::LimitCycle && self.limit_cycle.is_none() {
-            self.limit_cycle = Some(self.prepare_limit_cycle()?);
-        }
-        Ok(())
+        self.take(n, x, constants.neg(&secular))
     }
 }
 
@@ -330,6 +345,27 @@ impl<'a, A: PhaseAlgebra> Driver<'a, A> {
         };
         driver.forget(1);
         Ok(driver)
+    }
+
+    /// Order n, with all that follows from it at once.
+    fn take(&mut self, n: usize, x: A::Element, squared: Constant<A>) -> Result<(), ExpandError> {
+        let algebra = self.algebra;
+        self.frequency_squared.push(squared);
+        self.extend_frequency(n);
+        let slope = algebra.derivative(&x);
+        self.second_derivatives.push(algebra.derivative(&slope));
+        self.slopes.push(slope);
+        self.forget(n);
+        self.evaluator.assign(&Node::Displacement, n, x.clone());
+        self.x.push(x);
+        if self.evaluator.equation.has_velocity() {
+            let velocity = self.velocity(n);
+            self.evaluator.assign(&Node::Velocity, n, velocity);
+        }
+        if self.condition == Condition::LimitCycle && self.limit_cycle.is_none() {
+            self.limit_cycle = Some(self.prepare_limit_cycle()?);
+        }
+        Ok(())
     }
 
     /// Fails after an interruption: the values of the order in progress mean nothing.

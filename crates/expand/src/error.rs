@@ -42,7 +42,10 @@ pub enum ExpandError {
         order: usize,
     },
     /// At order zero the equation is not a linear oscillator.
-    #[error("without the small parameter the equation is not linear in x alone")]
+    #[error(
+        "without the small parameter the equation is not x'' + k*x: it has damping, a delay or a nonlinear \
+         term"
+    )]
     NotWeaklyNonlinear,
     /// The factor of x at order zero cannot be divided by.
     #[error("the linear stiffness vanishes or cannot be inverted")]

@@ -22,9 +22,9 @@ pub use clock::{
     ClockExpansion, ClockFrequency, ClockMean, check_clock, clock_variable, expand_clock,
 };
 pub use compile::{Binding, Equation, compile, compile_system};
-pub use driver::{Expansion, OrderWork, Request, expand, leading_amplitude};
+pub use driver::{Expansion, Known, OrderWork, Request, expand, extend, leading_amplitude};
 pub use error::ExpandError;
 pub use excitation::Excitation;
 pub use period::{Period, conservative_period};
-pub use residual::{check, check_normalisation};
+pub use residual::{check, check_from, check_normalisation};
 pub use residual_bound::{OrderNumbers, ResidualBound};

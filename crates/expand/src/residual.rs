@@ -33,7 +33,21 @@ pub fn check<A: PhaseAlgebra>(
     equation: &Equation<A>,
     expansion: &Expansion<A>,
 ) -> Result<usize, ExpandError> {
-    let result = substitute(algebra, equation, expansion);
+    check_from(algebra, equation, expansion, 0)
+}
+
+/// The same where the orders below `first` are known to be right: what enters none of the others is not formed, and
+/// nothing is said about them.
+///
+/// # Errors
+/// Those of [`check`].
+pub fn check_from<A: PhaseAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    expansion: &Expansion<A>,
+    first: usize,
+) -> Result<usize, ExpandError> {
+    let result = substitute(algebra, equation, expansion, first);
     if algebra.interrupted() {
         return Err(ExpandError::Interrupted { order: expansion.order() });
     }
@@ -44,6 +58,7 @@ fn substitute<A: PhaseAlgebra>(
     algebra: &A,
     equation: &Equation<A>,
     expansion: &Expansion<A>,
+    first: usize,
 ) -> Result<usize, ExpandError> {
     check_normalisation(algebra, expansion)?;
     let constants = algebra.constants();
@@ -59,6 +74,7 @@ fn substitute<A: PhaseAlgebra>(
         order: solution.len() - 1,
         solution: Series::truncated(solution),
         squared: Series::truncated(squared),
+        first,
         ..Judge::new(algebra, equation, expansion, order)
     };
     let values = judge.values();
@@ -66,9 +82,12 @@ fn substitute<A: PhaseAlgebra>(
     let inertia = judge.over_frequency(
         &judge.squared.map(|w| constants.mul(w, &expansion.stiffness)),
         &judge.solution.map(|x| algebra.derivative(&algebra.derivative(x))),
+        first,
     );
     let mut residual = inertia.add(algebra, &values[equation.root()]);
     let after = residual.coefficients.split_off(residual.coefficients.len().min(order + 1));
+    let known = residual.coefficients.len().min(first);
+    residual.coefficients[..known].fill(algebra.zero());
     judge.must_vanish(&residual, order + 1)?;
     if judge.order > order {
         let broken = ExpandError::Residual { order: judge.order };
@@ -140,6 +159,8 @@ pub(crate) struct Judge<'a, A: PhaseAlgebra> {
     equation: &'a Equation<A>,
     expansion: &'a Expansion<A>,
     order: usize,
+    /// The first order of the residual that is asked for.
+    first: usize,
     pub(crate) solution: Series<A::Element>,
     pub(crate) squared: Series<<A::Constants as Ring>::Element>,
 }
@@ -153,27 +174,59 @@ impl<'a, A: PhaseAlgebra> Judge<'a, A> {
     ) -> Self {
         let solution = Series::truncated(expansion.solution.clone());
         let squared = Series::truncated(expansion.frequency_squared.clone());
-        Self { algebra, equation, expansion, order, solution, squared }
+        Self { algebra, equation, expansion, order, first: 0, solution, squared }
     }
 
-    /// The values of all nodes.
+    /// The values of all nodes, each from the first order on that enters what is asked for.
     pub(crate) fn values(&self) -> Vec<Series<A::Element>> {
         let mut values: Vec<Series<A::Element>> = Vec::new();
-        for id in 0..self.equation.nodes.len() {
-            let value = self.value(id, &values);
+        for (id, first) in self.needed().into_iter().enumerate() {
+            let value = self.value(id, first, &values);
             values.push(value);
         }
         values
     }
 
-    /// A series of constants times a series of functions.
+    /// The first order of every node that enters the residual: of what is multiplied by eps one less than that of the
+    /// product, of other factors order zero.
+    fn needed(&self) -> Vec<usize> {
+        let nodes = &self.equation.nodes;
+        let mut needed = vec![usize::MAX; nodes.len()];
+        let root = self.equation.root();
+        needed[root] = self.first;
+        for (id, node) in nodes.iter().enumerate().rev() {
+            let own = needed[id];
+            let mut ask = |operand: NodeId, first: usize| {
+                needed[operand] = needed[operand].min(first);
+            };
+            match node {
+                _ if own == usize::MAX => {}
+                Node::Sum(terms) => terms.iter().for_each(|(_, term)| ask(*term, own)),
+                &Node::Product(a, b) if nodes[a] == Node::Small => ask(b, own.saturating_sub(1)),
+                &Node::Product(a, b) if nodes[b] == Node::Small => ask(a, own.saturating_sub(1)),
+                &Node::Product(a, b) => [a, b].into_iter().for_each(|operand| ask(operand, 0)),
+                _ => {}
+            }
+        }
+        let transcendental = |node: &Node<_>| {
+            !matches!(node, Node::Constant(_) | Node::Small | Node::Sum(_) | Node::Product(..))
+                && !matches!(node, Node::Displacement | Node::Velocity)
+        };
+        if nodes.iter().any(transcendental) { vec![0; nodes.len()] } else { needed }
+    }
+
+    /// A series of constants times a series of functions, with zero below the order `first`.
     pub(crate) fn over_frequency(
         &self,
         constants: &Series<<A::Constants as Ring>::Element>,
         f: &Series<A::Element>,
+        first: usize,
     ) -> Series<A::Element> {
         let is_zero = |c| self.algebra.constants().is_zero(c);
         let coefficient = |n: usize| {
+            if n < first {
+                return self.algebra.zero();
+            }
             let pairs = constants.coefficients.iter().zip(f.coefficients[..=n].iter().rev());
             let terms: Vec<_> = pairs.filter(|(c, _)| !is_zero(c)).map(|(c, f)| (f, c)).collect();
             self.algebra.linear_combination(&terms)
@@ -181,14 +234,17 @@ impl<'a, A: PhaseAlgebra> Judge<'a, A> {
         Series::truncated((0..f.coefficients.len()).map(coefficient).collect())
     }
 
-    fn value(&self, id: NodeId, values: &[Series<A::Element>]) -> Series<A::Element> {
+    fn value(&self, id: NodeId, first: usize, values: &[Series<A::Element>]) -> Series<A::Element> {
         let algebra = self.algebra;
         match &self.equation.nodes[id] {
             Node::Displacement => self.solution.clone(),
             Node::Velocity => {
                 let frequency = self.squared.square_root(algebra.constants());
                 let frequency = frequency.unwrap_or(Series::truncated(Vec::new()));
-                self.over_frequency(&frequency, &self.solution.map(|x| algebra.derivative(x)))
+                self.over_frequency(&frequency, &self.solution.map(|x| algebra.derivative(x)), 0)
+            }
+            &Node::Product(a, b) => {
+                values[a].mul_from(algebra, &values[b], first.min(self.order), self.order)
             }
             node => polynomial_value(algebra, node, values, self.order)
                 .unwrap_or_else(|| Series::truncated(self.expansion.certificates[id].clone())),

@@ -2,15 +2,14 @@
 
 use crate::aware::impact_aware;
 use crate::characteristic::{Characteristic, Kick};
-use crate::equivalent::{Drive, equivalent_orbit};
 use crate::error::ImpactError;
 use crate::flight::clearance;
 use crate::flow::{Flow, Scratch, free_delay};
-use crate::map::{ImpactMap, Verdict};
+use crate::map::Verdict;
 use crate::orbit::{Orbit, orbit};
 use crate::parameters::Parameters;
 pub use crate::parameters::Swept;
-use crate::prediction::{Variant, predict};
+use crate::prediction::{Ground, Variant};
 use crate::zeros::{exact_verdict, leading_modulus};
 use lindstedt_number::complex::Complex;
 use rayon::prelude::*;
@@ -67,7 +66,7 @@ pub struct Plan {
     pub predictor: Option<(Predictor, usize)>,
     /// The exact verdict by G with this kick.
     pub exact: Option<Kick>,
-    /// Whether the exact spectral radius is wanted besides the verdict.
+    /// Whether the spectral radii are wanted besides the verdicts.
     pub radius: bool,
 }
 
@@ -79,7 +78,7 @@ pub struct Point {
     /// The exact verdict; `None` without a true orbit (its flight is checked for penetration) or if
     /// not asked for; neutral if undecided.
     pub exact: Option<Verdict>,
-    /// Predicted max |gamma|; NaN if there is none.
+    /// Predicted max |gamma|; NaN if not asked for or if there is none.
     pub predicted_radius: f64,
     /// Exact max |gamma|; NaN if not asked for or not found.
     pub exact_radius: f64,
@@ -111,8 +110,8 @@ pub struct Chart {
 /// Computes a chart on rayon's threads. `observer` receives the number of finished rows, after each
 /// and now and then within a long one, and stops the work by returning false.
 ///
-/// Cost per point: a prediction some 0.2 microseconds (order 1), an exact verdict some 50
-/// evaluations of G. Estimated: doubles without error bounds.
+/// Cost per point: a prediction of order n some n^2 products, and for variant E the orbit of the predicted flow; an
+/// exact verdict some 50 evaluations of G. Estimated: doubles without error bounds.
 ///
 /// # Errors
 /// [`ImpactError::BadAxes`], [`ImpactError::OrderZero`], [`ImpactError::Cancelled`].
@@ -160,7 +159,8 @@ pub fn chart(
 struct Fixed {
     time: f64,
     delay: Complex<f64>,
-    drive: Result<Drive<f64>, ImpactError>,
+    /// What the predicted map takes besides the flow, for a prediction by averaging.
+    ground: Option<Ground<f64>>,
     orbit: Option<Result<Orbit<f64>, ImpactError>>,
     /// Whether the flight of the true orbit passes through the wall: then there is no such orbit.
     penetrates: bool,
@@ -180,12 +180,21 @@ impl Fixed {
             matches!(found, Ok(Some(found)) if found.margin > 0.0)
         };
         let found = orbit.as_ref().and_then(|found| found.as_ref().ok());
+        let ground = match plan.predictor {
+            // Refuses c >= 2 alpha, as the single prediction does.
+            Some((Predictor::Kbm(variant), _))
+                if Flow::uncontrolled(parameters).is_ok()
+                    && (variant != Variant::S || found.is_some()) =>
+            {
+                Ground::new(variant, parameters, found).ok()
+            }
+            _ => None,
+        };
         Self {
             penetrates: plan.exact.is_some() && found.is_some_and(through),
             time,
             delay: free_delay(parameters, &time),
-            // Refuses c >= 2 alpha, as the single prediction does.
-            drive: Flow::uncontrolled(parameters).and_then(|_| Drive::new(parameters)),
+            ground,
             orbit,
         }
     }
@@ -202,20 +211,21 @@ fn evaluate(
     seeds: &mut Vec<Complex<f64>>,
 ) -> Point {
     let mut point = Point { penetrates: fixed.penetrates, ..Point::EMPTY };
-    match (plan.predictor, fixed.orbit()) {
-        (Some((Predictor::Kbm(variant), order)), _) => {
-            if let Ok(map) = predicted_map(parameters, fixed, variant, order, scratch) {
-                point.predicted = Some(map.verdict());
-                point.predicted_radius = map.spectral_radius();
-            }
-        }
+    let predicted = match (plan.predictor, fixed.orbit()) {
+        (Some((Predictor::Kbm(_), order)), _) => fixed.ground.as_ref().and_then(|ground| {
+            scratch.fill(parameters, &fixed.time, &fixed.delay, order);
+            let map = ground.map(&scratch.flow()?).ok()?;
+            Some((map.verdict(), plan.radius.then(|| map.spectral_radius())))
+        }),
         (Some((Predictor::ImpactAware(kick), order)), Some(orbit)) => {
-            if let Ok(found) = impact_aware(parameters, orbit, kick, order) {
-                point.predicted = Some(found.verdict());
-                point.predicted_radius = found.spectral_radius();
-            }
+            let found = impact_aware(parameters, orbit, kick, order).ok();
+            found.map(|found| (found.verdict(), plan.radius.then(|| found.spectral_radius())))
         }
-        _ => {}
+        _ => None,
+    };
+    if let Some((verdict, radius)) = predicted {
+        point.predicted = Some(verdict);
+        point.predicted_radius = radius.unwrap_or(f64::NAN);
     }
     if let (Some(kick), Some(orbit)) = (plan.exact, fixed.orbit().filter(|_| !fixed.penetrates)) {
         let g = Characteristic::new(parameters, orbit, kick);
@@ -225,25 +235,6 @@ fn evaluate(
         }
     }
     point
-}
-
-fn predicted_map(
-    parameters: &Parameters<f64>,
-    fixed: &Fixed,
-    variant: Variant,
-    order: usize,
-    scratch: &mut Scratch<f64>,
-) -> Result<ImpactMap<f64>, ImpactError> {
-    scratch.fill(parameters, &fixed.time, &fixed.delay, order);
-    let flow = scratch.flow().ok_or(ImpactError::OrderZero)?;
-    if variant == Variant::E {
-        // Without the polynomial, which the verdict does not need.
-        let drive = fixed.drive.as_ref().map_err(Clone::clone)?;
-        let orbit = equivalent_orbit(&flow, drive)?;
-        return Ok(ImpactMap::of_orbit(&flow, drive, &orbit));
-    }
-    Flow::uncontrolled(parameters)?;
-    Ok(predict(variant, parameters, &flow, fixed.orbit())?.map)
 }
 
 /// How prediction and truth compare over a chart.

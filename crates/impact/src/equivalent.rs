@@ -135,6 +135,12 @@ pub fn equivalent_orbit<S: Real>(
     let small = versed - e.clone() * &gap; // e^2 - e cos
     let (e_minus, inverse_minus) = if growing { (large, small) } else { (small, large) };
     let size = delta.to_f64() / e.to_f64();
+    if !delta.is_finite() {
+        return Err(ImpactError::Undecided {
+            what: "the orbit of the prediction",
+            bits: s.precision(),
+        });
+    }
     if size < PERIODIC || !delta.is_positive() {
         return Err(ImpactError::PeriodicFreeFlow { delta: size });
     }

@@ -108,9 +108,19 @@ pub fn orbit<S: Real>(parameters: &Parameters<S>) -> Result<Orbit<S>, ImpactErro
     let one = alpha.integer(1);
     let determinant = -(j.re.clone() * &j_slope.im) + j.im.clone() * &j_slope.re;
     let thrust = force.to_f64() * period.to_f64();
-    let relative = determinant.to_f64().abs() * omega.to_f64() / (thrust * thrust);
-    if relative < PERIODIC || determinant.sign().is_none_or(|sign| sign.is_eq()) {
+    let swing = omega.to_f64() * parameters.forced_amplitude().to_f64();
+    let velocity_scale = if swing.is_finite() { swing.min(thrust) } else { thrust };
+    // E Delta; where the force is near its resonance and F large, with P0 T for omega F.
+    let relative = determinant.to_f64().abs() * omega.to_f64() / (velocity_scale * velocity_scale);
+    let undecided = |what| ImpactError::Undecided { what, bits: alpha.precision() };
+    if !relative.is_finite() {
+        return Err(undecided("the impact orbit at values of this size"));
+    }
+    if relative < PERIODIC || determinant.sign().is_some_and(|sign| sign.is_eq()) {
         return Err(ImpactError::PeriodicFreeFlow { delta: relative });
+    }
+    if determinant.sign().is_none() {
+        return Err(undecided("whether the free flow is T-periodic"));
     }
     // Solve [J.re, -J.im; J'.re, -J'.im](cos, sin) = right for the parts without and with v.
     let solve = |first: &S, second: &S| {
@@ -126,9 +136,6 @@ pub fn orbit<S: Real>(parameters: &Parameters<S>) -> Result<Orbit<S>, ImpactErro
     let half_linear = p_cos.clone() * &w_cos + p_sin.clone() * &w_sin;
     // |p.w|^2 - |w|^2(|p|^2 - 1) = |w|^2 - (p x w)^2
     let cross = p_cos.clone() * &w_sin - p_sin.clone() * &w_cos;
-    let amplitude = parameters.forced_amplitude().to_f64();
-    let swing = omega.to_f64() * amplitude;
-    let velocity_scale = if swing.is_finite() { swing.min(thrust) } else { thrust };
     let equation = VelocityEquation {
         discriminant: quadratic.clone() - cross.square(),
         constant: p_cos.square() + p_sin.square() - &one,

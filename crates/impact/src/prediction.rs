@@ -8,7 +8,7 @@
 use crate::equivalent::{Drive, EquivalentOrbit, equivalent_orbit};
 use crate::error::ImpactError;
 use crate::flow::{Flow, Rates};
-use crate::map::{Amplitudes, ImpactMap, Polynomial, polynomial};
+use crate::map::{ImpactMap, Polynomial};
 use crate::orbit::{Orbit, orbit};
 use crate::parameters::Parameters;
 use lindstedt_number::complex::Complex;
@@ -68,41 +68,70 @@ pub fn predict<S: Real>(
     true_orbit: Option<&Orbit<S>>,
 ) -> Result<Prediction<S>, ImpactError> {
     flow.validate()?;
-    if variant == Variant::S {
-        let map = match true_orbit {
-            Some(orbit) => saltation_map(parameters, flow, orbit),
-            None => saltation_map(parameters, flow, &orbit(parameters)?),
-        };
-        return Ok(Prediction { flow: flow.clone(), orbit: None, polynomial: None, map });
-    }
-    let drive = Drive::new(parameters)?;
-    let form = match variant {
-        Variant::E => equivalent_orbit(flow, &drive)?,
-        _ => equivalent_orbit(&Flow::uncontrolled(parameters)?, &drive)?,
+    let ground = Ground::new(variant, parameters, true_orbit)?;
+    let (form, polynomial) = match &ground {
+        Ground::Own(drive) => {
+            let form = equivalent_orbit(flow, drive)?;
+            let polynomial = form.polynomial(flow, drive);
+            (Some(form), Some(polynomial))
+        }
+        Ground::Literal(drive, form) => (Some(form.clone()), Some(form.polynomial(flow, drive))),
+        Ground::True(..) => (None, None),
     };
-    let polynomial = polynomial(flow, &drive, &Amplitudes::of(&form));
-    let map = match variant {
-        Variant::E => ImpactMap::of_orbit(flow, &drive, &form),
-        _ => polynomial.map(),
-    };
-    Ok(Prediction { flow: flow.clone(), orbit: Some(form), polynomial: Some(polynomial), map })
+    let map = ground.map(flow)?;
+    Ok(Prediction { flow: flow.clone(), orbit: form, polynomial, map })
 }
 
-fn saltation_map<S: Real>(
-    parameters: &Parameters<S>,
-    flow: &Flow<S>,
-    orbit: &Orbit<S>,
-) -> ImpactMap<S> {
-    // F is not needed for the map.
-    let drive = Drive {
-        omega: parameters.omega.clone(),
-        period: orbit.period.clone(),
-        restitution: parameters.restitution.clone(),
-        wall: parameters.wall.clone(),
-        forced_amplitude: parameters.omega.integer(0),
-        branch: parameters.branch,
-    };
-    ImpactMap::from_saltation(flow, &drive, &orbit.saltation)
+/// What a variant takes from the oscillator besides the flow: nothing of it depends on the gains A, B.
+pub(crate) enum Ground<S> {
+    /// E.
+    Own(Drive<S>),
+    /// P: the orbit of the uncontrolled flow.
+    Literal(Drive<S>, EquivalentOrbit<S>),
+    /// S: the saltation of the true orbit.
+    True(Drive<S>, S),
+}
+
+impl<S: Real> Ground<S> {
+    /// The errors of [`predict`] that do not depend on the flow.
+    pub(crate) fn new(
+        variant: Variant,
+        parameters: &Parameters<S>,
+        true_orbit: Option<&Orbit<S>>,
+    ) -> Result<Self, ImpactError> {
+        let of_orbit = |orbit: &Orbit<S>| {
+            // F is not needed for the map.
+            let drive = Drive {
+                omega: parameters.omega.clone(),
+                period: orbit.period.clone(),
+                restitution: parameters.restitution.clone(),
+                wall: parameters.wall.clone(),
+                forced_amplitude: parameters.omega.integer(0),
+                branch: parameters.branch,
+            };
+            Self::True(drive, orbit.saltation.clone())
+        };
+        Ok(match (variant, true_orbit) {
+            (Variant::E, _) => Self::Own(Drive::new(parameters)?),
+            (Variant::P, _) => {
+                let drive = Drive::new(parameters)?;
+                let form = equivalent_orbit(&Flow::uncontrolled(parameters)?, &drive)?;
+                Self::Literal(drive, form)
+            }
+            (Variant::S, Some(orbit)) => of_orbit(orbit),
+            (Variant::S, None) => of_orbit(&orbit(parameters)?),
+        })
+    }
+
+    /// The predicted map.
+    pub(crate) fn map(&self, flow: &Flow<S>) -> Result<ImpactMap<S>, ImpactError> {
+        flow.validate()?;
+        Ok(match self {
+            Self::Own(drive) => ImpactMap::of_orbit(flow, drive, &equivalent_orbit(flow, drive)?),
+            Self::Literal(drive, form) => form.polynomial(flow, drive).map(),
+            Self::True(drive, saltation) => ImpactMap::from_saltation(flow, drive, saltation),
+        })
+    }
 }
 
 /// The impact map of the uncontrolled oscillator (A = B = 0) on its true orbit; any damping.

@@ -17,7 +17,7 @@ pub fn divergence(found: &Convergence) -> String {
 /// The convergence of an averaged series as data.
 #[derive(Clone, Debug, Serialize)]
 pub struct Radius {
-    /// The least |eps| of a branch point; `inf` without control and damping.
+    /// The least |eps| of a branch point; `infinite` without control and damping.
     pub radius: Option<Finite>,
     /// |lambda_N/lambda_(N-1)| of the last two terms.
     pub ratio: Option<Finite>,
@@ -42,7 +42,7 @@ impl Finite {
         match x {
             x if x.is_finite() => Some(Self::Number(x)),
             x if x.is_nan() => None,
-            x => Some(Self::Word(x.to_string())),
+            _ => Some(Self::Word("infinite".to_owned())),
         }
     }
 }

@@ -30,6 +30,11 @@ pub(crate) fn impact_velocity<S: Real>(
 ) -> Result<S, ImpactError> {
     let VelocityEquation { quadratic: a, half_linear: h, constant: g, discriminant, .. } = equation;
     let size = a.to_f64() * equation.resonance_scale;
+    let out_of_range =
+        || ImpactError::Undecided { what: "the impact velocity", bits: a.precision() };
+    if !size.is_finite() {
+        return Err(out_of_range());
+    }
     if a.sign().is_none_or(|sign| sign.is_eq()) || size.sqrt() < RESONANCE {
         return Err(ImpactError::ImpactResonance { size });
     }
@@ -44,6 +49,9 @@ pub(crate) fn impact_velocity<S: Real>(
         (Branch::Minus, true) => -((root + h) / a),
         (Branch::Minus, false) => g.clone() / (root - h),
     };
+    if !velocity.is_finite() {
+        return Err(out_of_range());
+    }
     if !velocity.is_positive() {
         let undecided = velocity.sign().is_none();
         if undecided && velocity.to_f64().abs() < GRAZING * equation.velocity_scale {

@@ -38,6 +38,14 @@ pub fn of(
     Ok(parts)
 }
 
+/// What to do with frequencies that have no common measure,
+const FORCES: &str = "forces are averaged together where their frequencies are rational multiples of one: approximate the \
+     ratio by a fraction; `lindstedt simulate` takes them as they are";
+/// with x = 0 as a saddle,
+const SADDLE: &str = "x = 0 is a saddle: put x = c + y with a centre c, or `lindstedt simulate`";
+/// and with terms that are not small.
+const SMALL_TERMS: &str =
+    "a factor of the small parameter marks the small terms; `lindstedt simulate` takes it as it is";
 /// What a file says for the amplitude to be averaged.
 const AVERAGES: &str =
     "averaging takes it: condition = \"free-amplitude\" in the file, or --normalisation free";
@@ -100,7 +108,11 @@ pub fn check(
         };
         let Some(reason) = against(Method::Averaging).find(plain) else { return Ok(()) };
         let at = place(file, path, reason.term());
-        let hint = if nothing_small { marks } else { String::new() };
+        let hint = match reason {
+            _ if nothing_small => marks,
+            Reason::Frequency(_) => FORCES.to_owned(),
+            _ => String::new(),
+        };
         return refused(at, reason_text(reason, small), hint);
     }
     let at = match reason {
@@ -140,7 +152,13 @@ fn next_best(
     } else if nothing_small {
         None
     } else {
-        Some("`lindstedt problems --show FILE` lists the methods")
+        Some(match reason {
+            Reason::NegativeStiffness => SADDLE,
+            Reason::NotWeaklyNonlinear(_) => SMALL_TERMS,
+            _ => {
+                "`lindstedt simulate` takes it; `lindstedt problems --show FILE` lists the methods"
+            }
+        })
     }
 }
 

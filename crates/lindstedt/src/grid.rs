@@ -29,6 +29,17 @@ pub struct Axis {
 }
 
 impl Axis {
+    /// At most so many of the values at equal distances, both ends among them.
+    pub(crate) fn every(&self, most: usize) -> Self {
+        let last = self.values.len().max(1) - 1;
+        let stride = last.div_ceil(most.max(2) - 1).max(1);
+        let mut values: Vec<Exact> = self.values.iter().step_by(stride).cloned().collect();
+        if !last.is_multiple_of(stride) {
+            values.extend(self.values.last().cloned());
+        }
+        Self { name: self.name.clone(), values }
+    }
+
     /// Reads `NAME=LO..HI:COUNT` (equal steps, both ends included, exact) or `NAME=V1,V2,...`.
     ///
     /// # Errors

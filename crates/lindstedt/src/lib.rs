@@ -75,7 +75,7 @@ pub use lindstedt_number::{Exact, Number, NumberError, Status};
 pub use lindstedt_problem_file::ProblemFile;
 pub use motion::Simulate;
 pub use oscillator::Oscillator;
-pub use refusal::{Kind, Refusal, Refused};
+pub use refusal::{Kind, Refusal, Refused, general_hint};
 pub use resonance::Averaged;
 pub use respond::Respond;
 pub use stability::Stability;

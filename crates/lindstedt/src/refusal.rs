@@ -55,9 +55,47 @@ pub trait Refusal: fmt::Display {
     fn kind(&self) -> Kind {
         self.parts().0
     }
-    /// What to do about it; empty where nothing helps.
+    /// What to do about it.
     fn hint(&self) -> String {
-        self.parts().2
+        let (kind, code, hint) = self.parts();
+        if hint.is_empty() { general_hint(kind, code).to_owned() } else { hint }
+    }
+}
+
+/// What to do about a refusal of which no more is known than its kind and its code.
+///
+/// ```
+/// use lindstedt::{Kind, general_hint};
+/// assert!(general_hint(Kind::Undecided, "no such code").contains("--digits"));
+/// ```
+#[must_use]
+pub fn general_hint(kind: Kind, code: &str) -> &'static str {
+    match (code, kind) {
+        ("set", _) => "every name once, as in --set eps=1/10 --set amplitude=2",
+        ("range" | "sweep" | "times", _) => {
+            "NAME=LO..HI:COUNT, as in omega=0..1:11; at most two sweeps, of different parameters"
+        }
+        ("parameter" | "outside-domain", _) => {
+            "`lindstedt problems` lists the parameters and what they mean"
+        }
+        ("no-expansion" | "no-method", _) => {
+            "`lindstedt simulate` takes it; `lindstedt problems --show FILE` lists the methods of a file"
+        }
+        ("not-evaluated", _) => {
+            "`lindstedt derive` expands it; `lindstedt threshold`, `stability`, `simulate` give its numbers"
+        }
+        ("no-orbit", _) => "`lindstedt simulate` shows what the motion does there",
+        ("no-answer", _) => "other values of the parameters; --sweep shows where there is one",
+        ("no-value", _) => "another value of the parameters, or `lindstedt simulate`",
+        ("not-diagonalisable", _) => "frequencies that differ a little have modes",
+        ("too-large", _) => "lower --order, set more parameters, or raise --limit-memory",
+        ("problem-file", _) => "`lindstedt problems --show duffing` prints a file to begin with",
+        ("file", _) => "look at the path, what is free on the disk, and the permissions",
+        ("figure", _) => "another --figure, a longer motion, or --plot NAME.csv",
+        (_, Kind::Usage) => "`lindstedt VERB --help` lists the options",
+        (_, Kind::NoAnswer) => "other values of the parameters, or `lindstedt simulate`",
+        (_, Kind::Undecided) => "more --digits, or values a little beside these",
+        (_, Kind::Stopped) => "raise --limit-seconds, or ask for less: --order, --digits",
     }
 }
 
@@ -66,7 +104,7 @@ pub trait Refusal: fmt::Display {
 ///
 /// ```
 /// use lindstedt::{Error, Refusal, Refused};
-/// let refused = Refused::usage("set", "pi is a number: it has no other value", "");
+/// let refused = Refused::usage("set", "pi is a number: it has no other value", "leave it out");
 /// assert_eq!(Error::from(refused).code(), "set");
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -78,7 +116,7 @@ pub struct Refused {
     pub kind: Kind,
     /// One line for people.
     pub message: String,
-    /// What to do about it.
+    /// What to do about it; [`general_hint`] stands for an empty one.
     pub hint: String,
 }
 

@@ -1,11 +1,10 @@
-//! The threshold in f64: stable forms, no allocation per point, surfaces on all cores.
+//! The threshold in f64 by stable forms; surfaces of them are in `surface`.
 //!
 //! gamma = G cosh(z)/(2z), z = pi omega/(2 sqrt a), G as in [`crate::StickSlip::g`]. Why
 //! 1 - |v*|/V is not formed as it stands: `docs/src/melnikov.md`.
 
 use crate::MelnikovError;
 use crate::hyperbolic::FRAC_PI_2_LOW;
-use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, LN_2};
 
 /// The parameters in f64; names as in [`crate::StickSlip`].
@@ -152,14 +151,14 @@ fn speed_gap(a: f64, b: f64, v: f64) -> f64 {
 
 /// The factor cosh(z)/(2z) of gamma as a product.
 #[derive(Clone, Copy)]
-struct ForcingFactor {
+pub(crate) struct ForcingFactor {
     // 1, or e^{z/2}: neither half overflows for z < 1400.
     first: f64,
     second: f64,
 }
 
 /// z = pi omega/(2 sqrt a) as a double-double, cosh(zh + zl) = cosh zh + zl sinh zh.
-fn forcing_factor(a: f64, omega: f64) -> ForcingFactor {
+pub(crate) fn forcing_factor(a: f64, omega: f64) -> ForcingFactor {
     let root = a.sqrt();
     let root_low = (-root).mul_add(root, a) / (2.0 * root);
     let u = omega / root;
@@ -182,6 +181,12 @@ fn forcing_factor(a: f64, omega: f64) -> ForcingFactor {
 }
 
 impl ForcingFactor {
+    /// The factor itself, where it is far from the ends of the range.
+    pub(crate) fn moderate(&self) -> Option<f64> {
+        let factor = self.first * self.second;
+        is_near_one(factor).then_some(factor)
+    }
+
     /// ln of the factor, formed only on demand: ln cosh z = z + ln(1 + e^{-2z}) - ln 2.
     fn ln(a: f64, omega: f64) -> f64 {
         let z = omega / a.sqrt() * FRAC_PI_2;
@@ -194,34 +199,85 @@ impl ForcingFactor {
     }
 }
 
-/// (G, sum of the |terms|) in plain f64.
-#[inline]
-fn g_plain(p: &FastPoint) -> (f64, f64) {
-    let speed = p.a / (2.0 * p.b).sqrt();
-    let gap = speed_gap_quick(p.a, p.b, p.belt_speed);
-    let dry = if gap > 0.0 { 2.0 * p.dry * gap.sqrt() } else { 0.0 };
-    let linear = 4.0 / 3.0 * speed * p.alpha;
-    let mixed = 4.0 * speed * p.beta * (p.belt_speed * p.belt_speed);
-    let cubic = 32.0 / 35.0 * p.beta * (speed * speed * speed);
-    let sum = (dry - linear) + (mixed + cubic);
-    (sum, dry.abs() + linear.abs() + mixed.abs() + cubic.abs())
+/// V = a/sqrt(2b) as the sum of a double and its rounding error, and 1/V.
+#[derive(Clone, Copy)]
+pub(crate) struct LoopSpeed {
+    high: f64,
+    low: f64,
+    inverse: f64,
 }
 
-/// [`speed_gap`] without rescaling where the squares are far from the ends of the range.
-#[inline]
-fn speed_gap_quick(a: f64, b: f64, v: f64) -> f64 {
-    let twice_b = 2.0 * b;
-    let p = twice_b * v;
-    let q = p * v;
-    let square = a * a;
-    if !(square > 1e-200 && square < 1e200 && q < 1e200 && (q > 1e-200 || v == 0.0)) {
-        return speed_gap(a, b, v);
+impl LoopSpeed {
+    /// For a and b near 1.
+    pub(crate) fn new(a: f64, b: f64) -> Self {
+        let root = (2.0 * b).sqrt();
+        let root_low = (-root).mul_add(root, 2.0 * b) / (2.0 * root);
+        let high = a / root;
+        let low = ((-high).mul_add(root, a) - high * root_low) / root;
+        Self { high, low, inverse: 1.0 / high }
     }
-    let p_low = twice_b.mul_add(v, -p);
-    let q_low = p.mul_add(v, -q);
-    let square_low = a.mul_add(a, -square);
-    let numerator = (square - q) + ((square_low - q_low) - p_low * v);
-    numerator / (a * (a + twice_b.sqrt() * v.abs()))
+}
+
+/// What gamma is made of where nothing comes near the ends of the range.
+#[derive(Clone, Copy)]
+pub(crate) struct Terms {
+    pub(crate) speed: LoopSpeed,
+    /// 2 T0, 4 alpha V/3, 4 beta V, 32 beta V^3/35.
+    pub(crate) dry: f64,
+    pub(crate) linear: f64,
+    pub(crate) mixed: f64,
+    pub(crate) cubic: f64,
+    pub(crate) belt: f64,
+    pub(crate) factor: f64,
+}
+
+impl Terms {
+    pub(crate) fn new(p: &FastPoint, speed: LoopSpeed, factor: f64) -> Self {
+        let v = speed.high;
+        Self {
+            speed,
+            dry: 2.0 * p.dry,
+            linear: 4.0 / 3.0 * v * p.alpha,
+            mixed: 4.0 * v * p.beta,
+            cubic: 32.0 / 35.0 * p.beta * (v * v * v),
+            belt: p.belt_speed,
+            factor,
+        }
+    }
+
+    /// 4 V/3.
+    pub(crate) fn linear_slope(&self) -> f64 {
+        4.0 / 3.0 * self.speed.high
+    }
+
+    /// gamma; the smaller it is the less it is worth, see [`is_certain`].
+    ///
+    /// 1 - |v*|/V is ((V - |v*|) + V_low)/V: the difference is exact near |v*| = V, where it cancels.
+    #[inline(always)]
+    pub(crate) fn value(&self) -> f64 {
+        let LoopSpeed { high, low, inverse } = self.speed;
+        let gap = ((high - self.belt.abs()) + low) * inverse;
+        let gap = if gap > 0.0 { gap } else { 0.0 };
+        let dry = self.dry * gap.sqrt();
+        let smooth = self.mixed * (self.belt * self.belt) + self.cubic;
+        self.factor * ((dry - self.linear) + smooth)
+    }
+}
+
+/// Whether no product of a few such numbers reaches the upper end of the range.
+pub(crate) fn is_moderate(x: f64) -> bool {
+    x.abs() < 1e40
+}
+
+/// Nor the lower one.
+pub(crate) fn is_near_one(x: f64) -> bool {
+    (1e-40..1e40).contains(&x)
+}
+
+/// Whether underflow had no part in a sum of moderate terms.
+#[inline(always)]
+pub(crate) fn is_certain(value: f64) -> bool {
+    value.abs() > 1e-240
 }
 
 /// G with exponents that cannot overflow.
@@ -302,6 +358,12 @@ impl FastPoint {
         Ok(FastThreshold { signed, ln_abs, error })
     }
 
+    /// Whether the plain form of G serves.
+    pub(crate) fn is_moderate(&self) -> bool {
+        let others = [self.dry, self.alpha, self.beta, self.belt_speed];
+        is_near_one(self.a) && is_near_one(self.b) && others.into_iter().all(is_moderate)
+    }
+
     /// The point with one parameter changed.
     #[must_use]
     #[inline]
@@ -319,19 +381,13 @@ impl FastPoint {
     }
 }
 
-/// G times the factor.
-#[inline]
-fn value(p: &FastPoint, factor: &ForcingFactor) -> f64 {
-    combine(p, g_plain(p), factor)
-}
-
-/// G times the factor; the scaled path where the plain one leaves the range.
-#[inline]
-fn combine(p: &FastPoint, (g, size): (f64, f64), factor: &ForcingFactor) -> f64 {
-    let plain = g * factor.first * factor.second;
-    let small = plain.abs();
-    if size < 1e290 && size > 1e-290 && small < 1e290 && small > 1e-290 {
-        return plain;
+/// G times the factor; the scaled path where the plain one may leave the range.
+pub(crate) fn value(p: &FastPoint, factor: &ForcingFactor) -> f64 {
+    if let (true, Some(factor)) = (p.is_moderate(), factor.moderate()) {
+        let plain = Terms::new(p, LoopSpeed::new(p.a, p.b), factor).value();
+        if is_certain(plain) {
+            return plain;
+        }
     }
     let (g, _) = g_scaled(p);
     let (first, second) = (Scaled::new(factor.first), Scaled::new(factor.second));
@@ -341,55 +397,4 @@ fn combine(p: &FastPoint, (g, size): (f64, f64), factor: &ForcingFactor) -> f64 
     }
     let ln = g.ln_abs() + ForcingFactor::ln(p.a, p.omega);
     if g.mantissa == 0.0 { 0.0 } else { ln.exp().copysign(g.mantissa) }
-}
-
-/// The signed thresholds over a grid: `table[i * columns.len() + j]` at row i and column j.
-///
-/// NaN where a parameter leaves its domain (not finite, or a, b, omega <= 0). The rows run on all
-/// cores of the current rayon pool; nothing is allocated per point. What depends on one axis only
-/// is computed once: the factor cosh(z)/(2z) on a and omega, G on everything but omega.
-///
-/// # Errors
-/// [`MelnikovError::WrongTableSize`] where `table` does not have rows x columns entries.
-pub fn surface(
-    point: &FastPoint,
-    rows: (Axis, &[f64]),
-    columns: (Axis, &[f64]),
-    table: &mut [f64],
-) -> Result<(), MelnikovError> {
-    let expected = rows.1.len().saturating_mul(columns.1.len());
-    if table.len() != expected {
-        return Err(MelnikovError::WrongTableSize { expected, found: table.len() });
-    }
-    if columns.1.is_empty() {
-        return Ok(());
-    }
-    let in_factor = |axis| matches!(axis, Axis::A | Axis::Omega);
-    let per_column = in_factor(columns.0) && !in_factor(rows.0);
-    let column_factor = |&column: &f64| {
-        let at = point.with(columns.0, column);
-        forcing_factor(at.a, at.omega)
-    };
-    let factors: Vec<ForcingFactor> =
-        if per_column { columns.1.iter().map(column_factor).collect() } else { Vec::new() };
-    let lines = table.par_chunks_mut(columns.1.len()).zip(rows.1.par_iter());
-    lines.for_each(|(line, &row)| {
-        let base = point.with(rows.0, row);
-        let shared = forcing_factor(base.a, base.omega);
-        let shared_g = g_plain(&base);
-        for (j, (entry, &column)) in line.iter_mut().zip(columns.1).enumerate() {
-            let at = base.with(columns.0, column);
-            if at.check().is_err() {
-                *entry = f64::NAN;
-                continue;
-            }
-            let g = if columns.0 == Axis::Omega { shared_g } else { g_plain(&at) };
-            *entry = match factors.get(j) {
-                Some(factor) => combine(&at, g, factor),
-                None if in_factor(columns.0) => combine(&at, g, &forcing_factor(at.a, at.omega)),
-                None => combine(&at, g, &shared),
-            };
-        }
-    });
-    Ok(())
 }

@@ -15,9 +15,40 @@ const CELLS: i64 = 512;
 pub struct ParameterZeros {
     /// The zeros, ascending; each enclosed by a proved change of sign.
     pub zeros: Vec<Ball>,
+    /// Whole intervals of zeros: dry friction alone does no work where |v*| >= V.
+    pub intervals: Vec<[Ball; 2]>,
     /// Whether there are provably no others in the range. In v* the zeros are those of a quartic
-    /// and of a square root; in the other parameters they are the sign changes on a grid.
+    /// and of a square root, T0, alpha and beta enter linearly; in a and b they are the sign changes
+    /// on a grid.
     pub complete: bool,
+}
+
+impl ParameterZeros {
+    fn all(zeros: Vec<Ball>) -> Self {
+        Self { zeros, intervals: Vec::new(), complete: true }
+    }
+}
+
+/// Whether a < b; nothing where it is not decided.
+fn is_below(balls: Balls, a: &Ball, b: &Ball) -> Option<bool> {
+    let gap = balls.sub(b, a);
+    let decided = gap.is_positive() || gap.is_negative() || gap.is_exact();
+    decided.then(|| gap.is_positive())
+}
+
+/// The zeros in a closed range; nothing where one is not told from an end.
+fn within(
+    balls: Balls,
+    list: impl IntoIterator<Item = Ball>,
+    [low, high]: &[Ball; 2],
+) -> Option<Vec<Ball>> {
+    let mut zeros = Vec::new();
+    for zero in list {
+        if !is_below(balls, &zero, low)? && !is_below(balls, high, &zero)? {
+            zeros.push(zero);
+        }
+    }
+    Some(zeros)
 }
 
 impl StickSlip {
@@ -72,27 +103,61 @@ impl StickSlip {
         }
         changed.check()?;
         if axis == Axis::Omega {
-            return Ok(ParameterZeros { zeros: Vec::new(), complete: true });
+            return Ok(ParameterZeros::all(Vec::new()));
         }
-        if axis == Axis::BeltSpeed {
-            let positive = self.zeros(balls)?;
-            let mirrored = positive.iter().rev().map(|zero| balls.neg(zero));
-            let (low, high) = (low.ball(balls), high.ball(balls));
-            let mut zeros = Vec::new();
-            for zero in mirrored.chain(positive.iter().cloned()) {
-                let (above, below) = (balls.sub(&zero, &low), balls.sub(&high, &zero));
-                if above.is_negative() || below.is_negative() {
-                    continue;
+        let range = [low.ball(balls), high.ball(balls)];
+        match axis {
+            Axis::BeltSpeed => {
+                let positive = self.zeros(balls)?;
+                if self.alpha.sign().is_eq() && self.beta.sign().is_eq() {
+                    let intervals = self.idle_speeds(balls, &range).ok_or(undecided)?;
+                    return Ok(ParameterZeros { intervals, ..ParameterZeros::all(Vec::new()) });
                 }
-                if !above.is_positive() || !below.is_positive() {
-                    return Err(undecided);
-                }
-                zeros.push(zero);
+                let mirrored = positive.iter().rev().map(|zero| balls.neg(zero));
+                let list = mirrored.chain(positive.iter().cloned());
+                within(balls, list, &range).ok_or(undecided).map(ParameterZeros::all)
             }
-            return Ok(ParameterZeros { zeros, complete: true });
+            Axis::Dry | Axis::Alpha | Axis::Beta => {
+                let zero = self.linear_zero(balls, axis).ok_or(undecided.clone())?;
+                within(balls, zero, &range).ok_or(undecided).map(ParameterZeros::all)
+            }
+            _ => {
+                let zeros = self.scan(balls, axis, low, high).ok_or(undecided)?;
+                Ok(ParameterZeros { complete: false, ..ParameterZeros::all(zeros) })
+            }
         }
-        let zeros = self.scan(balls, axis, low, high).ok_or(undecided)?;
-        Ok(ParameterZeros { zeros, complete: false })
+    }
+
+    /// The part of a range where |v*| >= V.
+    fn idle_speeds(&self, balls: Balls, [low, high]: &[Ball; 2]) -> Option<Vec<[Ball; 2]>> {
+        let speed = self.loop_speed(balls)?;
+        let mirror = balls.neg(&speed);
+        let least =
+            |a: &Ball, b: &Ball| Some(if is_below(balls, a, b)? { a.clone() } else { b.clone() });
+        let greatest =
+            |a: &Ball, b: &Ball| Some(if is_below(balls, a, b)? { b.clone() } else { a.clone() });
+        let parts = [[low.clone(), least(high, &mirror)?], [greatest(low, &speed)?, high.clone()]];
+        let mut found = Vec::new();
+        for [from, to] in parts {
+            if is_below(balls, &from, &to)? {
+                found.push([from, to]);
+            }
+        }
+        Some(found)
+    }
+
+    /// The zero in a parameter that G is linear in, -G(0)/(G(1) - G(0)), if there is one.
+    fn linear_zero(&self, balls: Balls, axis: Axis) -> Option<Option<Ball>> {
+        let zero = || Exact::from(0);
+        // G is homogeneous in the three: what it is without the other two is the slope, exactly zero where
+        // dry friction does no work.
+        let alone = Self { dry: zero(), alpha: zero(), beta: zero(), ..self.clone() };
+        let slope = alone.with(axis, Exact::from(1)).g(balls)?;
+        let constant = self.clone().with(axis, zero()).g(balls)?;
+        if slope.is_exact() && slope.contains_zero() {
+            return (!constant.contains_zero()).then_some(None);
+        }
+        Some(Some(balls.div(&balls.neg(&constant), &slope)?))
     }
 
     fn scan(&self, balls: Balls, axis: Axis, low: &Exact, high: &Exact) -> Option<Vec<Ball>> {

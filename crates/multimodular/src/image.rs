@@ -1,10 +1,12 @@
 //! The image of an expansion modulo one prime: derived, and substituted into the equation.
 
+use crate::lifted::Lifted;
 use crate::{Error, Over, RationalBinding};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_equation::Expression;
 use lindstedt_expand::{
-    Equation, ExpandError, Expansion, OrderNumbers, Request, check, compile, expand,
+    Equation, ExpandError, Expansion, Known, OrderNumbers, OrderWork, Request, check_from, compile,
+    extend,
 };
 use lindstedt_phase::Modular;
 use lindstedt_phase::modular::PrimeField;
@@ -107,15 +109,25 @@ impl Job<'_> {
         Ok((algebra, equation))
     }
 
-    /// The image of the expansion modulo p, checked; of the orders before `from` nothing is kept. Inside:
-    /// why there is none modulo this prime.
+    /// The image of the expansion modulo p, checked from the orders on that are not proved yet; nothing is kept of
+    /// those. Inside: why there is none modulo this prime.
     pub(crate) fn image(
         &self,
         field: PrimeField,
-        from: usize,
+        proved: &[Lifted],
     ) -> Result<Result<Image, ExpandError>, Error> {
         let (algebra, equation) = self.over(field)?;
-        let found = expand(&algebra, &equation, &self.request, &mut |_| !self.stop.asked());
+        let mut known = (Vec::new(), Vec::new());
+        for (order, lifted) in proved.iter().enumerate() {
+            let Some((squared, harmonics)) = lifted.modulo(&field) else {
+                return Ok(Err(ExpandError::Residual { order }));
+            };
+            known.0.push(algebra.from_harmonics(harmonics));
+            known.1.push(squared);
+        }
+        let known = Known { solution: &known.0, squared: &known.1 };
+        let go_on = &mut |_: &OrderWork| !self.stop.asked();
+        let found = extend(&algebra, &equation, &self.request, known, go_on);
         self.go_on()?;
         let expansion = match found {
             Ok(expansion) => expansion,
@@ -140,18 +152,19 @@ impl Job<'_> {
             values.push(value);
         }
         let mut image = Image { field, places: Arc::new(places), values };
-        self.check(&algebra, &equation, &image)?;
-        (0..from).for_each(|n| image.forget(n));
+        self.check(&algebra, &equation, &image, proved.len())?;
+        (0..proved.len()).for_each(|n| image.forget(n));
         Ok(Ok(image))
     }
 
-    /// Substitutes an image into the equation modulo its prime. What is checked is what is lifted: its
-    /// numbers alone enter here, with the amplitude and the stiffness over Q.
+    /// Substitutes an image into the equation modulo its prime; the orders below `first` are proved. What is checked is
+    /// what is lifted: its numbers alone enter here, with the amplitude and the stiffness over Q.
     pub(crate) fn check(
         &self,
         algebra: &Modular,
         equation: &Equation<Modular>,
         image: &Image,
+        first: usize,
     ) -> Result<(), Error> {
         let field = algebra.field();
         let size = 2 * self.points + 1;
@@ -191,7 +204,7 @@ impl Job<'_> {
             work: Vec::new(),
             certificates: Vec::new(),
         };
-        let checked = check(algebra, equation, &expansion)?;
+        let checked = check_from(algebra, equation, &expansion, first)?;
         let broken = Error::from(ExpandError::Residual { order: checked });
         if checked == self.request.order { Ok(()) } else { Err(broken) }
     }

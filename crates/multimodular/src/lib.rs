@@ -10,14 +10,17 @@
 //! Then it is *proved*, by induction: modulo each of these primes the equations of the orders up to n have one
 //! solution, which is the image and, the orders below being right, what they are modulo p; so the residual of
 //! order n is divisible by all the primes and smaller than their product: zero.
+//! A prime that is first needed at order m begins there, from the orders below as they are modulo p.
 
 mod image;
 mod lift;
+mod lifted;
 #[cfg(test)]
 mod tests;
 
 use image::{Image, Job};
-use lift::{Lifted, Remaindering};
+use lift::Remaindering;
+use lifted::Lifted;
 use lindstedt_algebra::{RationalAlgebra, Rationals, Stop};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_expand::{
@@ -135,8 +138,8 @@ pub fn derive(
     numbers *= job.request.leading_amplitude.denom();
     let primes = PrimeField::with_roots_of_unity(roots, 1 << 61);
     let primes = primes.filter(|field| field.integer(&numbers) != 0);
-    let mut ladder = Ladder { job: &job, primes, images: Vec::new(), bound, needs: Vec::new() };
-    ladder.climb(observer)
+    let (images, found, needs) = (Vec::new(), Vec::new(), Vec::new());
+    Ladder { job: &job, primes, images, bound, found, needs }.climb(observer)
 }
 
 /// The loop over the orders.
@@ -146,13 +149,14 @@ struct Ladder<'a, P> {
     /// The first one judges what the others give.
     images: Vec<Image>,
     bound: ResidualBound,
+    /// The orders that are proved.
+    found: Vec<Lifted>,
     /// The primes that every order needed.
     needs: Vec<usize>,
 }
 
 impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
-    fn climb(&mut self, observer: &mut dyn FnMut(usize) -> bool) -> Result<Proved, Error> {
-        let mut found: Vec<Lifted> = Vec::new();
+    fn climb(mut self, observer: &mut dyn FnMut(usize) -> bool) -> Result<Proved, Error> {
         self.more(3, observer)?;
         let mut remaindering = Remaindering::new(&self.images[1..]);
         // Bits of a residual, and of the numerators, above those of the denominator.
@@ -178,19 +182,16 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
             let lifting = u64::from(lift::MARGIN + lift::longest(&numbers) + 4);
             excess = bits.max(lifting) as i64 - i64::from(numbers.denominator.significant_bits());
             self.needs.push(remaindering.primes());
-            found.push(Lifted::new(&numbers, &self.images[0], n));
+            self.found.push(Lifted::new(&numbers, &self.images[0], n));
             self.images.iter_mut().for_each(|image| image.forget(n));
         }
         let primes = self.images.len() - 1;
-        let (expansion, [frequency, period]) = self.assemble(found);
+        let (expansion, [frequency, period]) = self.assemble();
         Ok(Proved { expansion, frequency, period, primes, proof_primes: primes + 1 })
     }
 
     /// The expansion over Q, and the series of the frequency and the period.
-    fn assemble(
-        &self,
-        found: Vec<Lifted>,
-    ) -> (Expansion<RationalAlgebraOfPhase>, [Vec<Rational>; 2]) {
+    fn assemble(self) -> (Expansion<RationalAlgebraOfPhase>, [Vec<Rational>; 2]) {
         let mut expansion = Expansion {
             condition: self.job.request.condition,
             stiffness: self.job.stiffness.clone(),
@@ -201,7 +202,7 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
             certificates: Vec::new(),
         };
         let mut series = [Vec::new(), Vec::new()];
-        for order in found {
+        for order in self.found {
             let [squared, frequency, period] = order.series;
             expansion.frequency_squared.push(squared);
             expansion.amplitude.push(order.amplitude);
@@ -240,20 +241,19 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
     }
 
     /// How many more primes to take at once: those that are needed, and where the growth so far continues,
-    /// nearly those of the last order; at most as many as there are.
+    /// nearly those of the last order; few, because the later a prime comes the fewer orders are left to it.
     fn batch(&self, n: usize, own: usize) -> usize {
         let have = self.images.len() - 1;
         let half = self.needs.get(n / 2).copied().unwrap_or(own);
         let slope = (own.saturating_sub(half), n - n / 2);
         let rest = self.job.request.order - n;
         let last = own + slope.0 * rest / slope.1.max(1);
-        let (least, most) = (own.saturating_sub(have).max(1), have.max(2));
+        let (least, most) = (own.saturating_sub(have).max(1), (have / 8).max(have.clamp(2, 8)));
         (last * 9 / 10).saturating_sub(have).min(most).max(least)
     }
 
     /// Images modulo more primes, each of them checked.
     fn more(&mut self, count: usize, observer: &mut dyn FnMut(usize) -> bool) -> Result<(), Error> {
-        let from = self.needs.len();
         let wanted = self.images.len() + count;
         while self.images.len() < wanted {
             let missing = wanted - self.images.len();
@@ -261,8 +261,9 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
             if fields.is_empty() {
                 return Err(Error::OutOfPrimes);
             }
-            let job = self.job;
-            let new: Vec<_> = fields.into_par_iter().map(|field| job.image(field, from)).collect();
+            let (job, proved) = (self.job, &self.found);
+            let new: Vec<_> =
+                fields.into_par_iter().map(|field| job.image(field, proved)).collect();
             // A prime can be unlucky (a denominator or a pivot vanishes modulo it): it is skipped. What
             // fails modulo all of them fails over Q.
             let mut failure = None;

@@ -1,8 +1,10 @@
 //! From images modulo primes to numbers over Q.
 
 use crate::image::{Image, Place};
+use crate::lifted::Lifted;
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_expand::OrderNumbers;
+use lindstedt_phase::modular::PrimeField;
 use lindstedt_phase::trigonometric::TrigonometricPolynomial;
 use rayon::prelude::*;
 use rug::{Integer, Rational};
@@ -184,14 +186,6 @@ pub(crate) fn longest(numbers: &OrderNumbers) -> u32 {
     own.chain(series).max().unwrap_or(1)
 }
 
-/// One order over Q, in lowest terms.
-pub(crate) struct Lifted {
-    /// W_n, omega_n, T_n.
-    pub series: [Rational; 3],
-    pub amplitude: Rational,
-    pub solution: TrigonometricPolynomial<Rational>,
-}
-
 impl Lifted {
     /// From numerators over their common denominator; what they belong to is written in an image.
     pub(crate) fn new(numbers: &OrderNumbers, image: &Image, n: usize) -> Self {
@@ -216,5 +210,17 @@ impl Lifted {
         let amplitude = Rational::from((amplitude, denominator.clone()));
         let series = [&numbers.squared, &numbers.frequency, &numbers.period].map(Clone::clone);
         Self { series, amplitude, solution }
+    }
+
+    /// W_n and the amplitudes of cosines and sines modulo p; nothing where p divides a denominator.
+    pub(crate) fn modulo(&self, field: &PrimeField) -> Option<(u64, [Vec<u64>; 2])> {
+        let TrigonometricPolynomial { cos, sin } = &self.solution;
+        let all = self.series[..1].iter().chain(cos).chain(sin);
+        let inverses = field.reciprocals(&field.integers(all.clone().map(Rational::denom)))?;
+        let numerators = field.integers(all.map(Rational::numer)).into_iter();
+        let mut residues = numerators.zip(inverses).map(|(c, inverse)| field.mul(&c, &inverse));
+        let squared = residues.next()?;
+        let cosines = residues.by_ref().take(cos.len()).collect();
+        Some((squared, [cosines, residues.collect()]))
     }
 }

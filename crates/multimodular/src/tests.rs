@@ -3,12 +3,13 @@
 
 use crate::image::{Image, Job, Place};
 use crate::lift::Remaindering;
+use crate::lifted::Lifted;
 use crate::{Error, RationalAlgebraOfPhase, RationalBinding, derive};
 use lindstedt_algebra::{Rationals, Ring, Stop};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_expand::{
-    Binding, ExpandError, Expansion, OrderNumbers, Request, ResidualBound, check, compile,
-    conservative_period, expand, leading_amplitude,
+    Binding, ExpandError, Expansion, Known, OrderNumbers, OrderWork, Request, ResidualBound, check,
+    check_from, compile, conservative_period, expand, extend, leading_amplitude,
 };
 use lindstedt_phase::modular::PrimeField;
 use lindstedt_phase::{Modular, Trigonometric};
@@ -135,7 +136,7 @@ fn with_images(count: usize, test: impl Fn(&Job<'_>, Vec<Image>)) {
     let job =
         Job { equation: &equation, binding: &NoNames, request, stiffness, points, stop: &stop };
     let fields = PrimeField::with_roots_of_unity(roots, 1 << 61).take(count);
-    let images = fields.map(|field| job.image(field, 0).unwrap().unwrap()).collect();
+    let images = fields.map(|field| job.image(field, &[]).unwrap().unwrap()).collect();
     test(&job, images);
 }
 
@@ -148,18 +149,60 @@ fn places(image: &Image) -> Vec<(usize, Place)> {
 fn a_broken_image_is_refused() {
     with_images(1, |job, images| {
         let (algebra, equation) = job.over(images[0].field).unwrap();
-        assert_eq!(job.check(&algebra, &equation, &images[0]), Ok(()));
+        assert_eq!(job.check(&algebra, &equation, &images[0], 0), Ok(()));
         let mut refused = 0;
         for (n, place) in places(&images[0]) {
             let mut broken = images[0].clone();
             let field = broken.field;
             broken.change(n, place, |value| field.add(&value, &field.one()));
-            let answer = job.check(&algebra, &equation, &broken);
-            assert!(matches!(answer, Err(Error::Expand(_))), "{n} {place:?}: {answer:?}");
+            // Whatever orders below are taken for granted.
+            for first in 0..=n {
+                let answer = job.check(&algebra, &equation, &broken, first);
+                assert!(matches!(answer, Err(Error::Expand(_))), "{n} {place:?}: {answer:?}");
+            }
             refused += 1;
         }
         assert_eq!(refused, 3 * (ORDER + 1) + (ORDER + 1) * (ORDER + 2) / 2);
     });
+}
+
+/// A prime that begins with the orders that are proved gives what it gives from the start, and with a wrong one below
+/// something else.
+#[test]
+fn a_late_prime_gives_the_same_image() {
+    with_images(7, |job, mut images| {
+        let late = images.pop().unwrap();
+        let numbers = (0..=ORDER).map(|n| Lifted::new(&lifted(&images, n).unwrap(), &images[0], n));
+        let mut proved: Vec<Lifted> = numbers.collect();
+        for m in 1..=ORDER {
+            let found = job.image(late.field, &proved[..m]).unwrap().unwrap();
+            assert!((0..m).all(|n| found.values(n).is_empty()));
+            assert!((m..=ORDER).all(|n| found.values(n) == late.values(n)), "{m}");
+        }
+        proved[2].solution.cos[1] += 1;
+        let found = job.image(late.field, &proved[..4]);
+        assert!(
+            !found.is_ok_and(|image| image.is_ok_and(|found| found.values(4) == late.values(4)))
+        );
+    });
+}
+
+/// Orders that are known cost no products but for what the others need of them.
+#[test]
+fn known_orders_are_not_derived_again() {
+    let equation = (Expression::ACCELERATION + x(1) + small(1) * x(3)).canonical();
+    let algebra = Trigonometric::new(Rationals);
+    let compiled = compile(&algebra, &equation, &NoNames, 9).unwrap();
+    let condition = Condition::InitialAmplitude;
+    let request = Request { condition, order: 9, leading_amplitude: Rational::from(1) };
+    let whole = expand(&algebra, &compiled, &request, &mut |_| true).unwrap();
+    let known = Known { solution: &whole.solution[..8], squared: &whole.frequency_squared[..8] };
+    let rest = extend(&algebra, &compiled, &request, known, &mut |_| true).unwrap();
+    assert_eq!(rest.solution, whole.solution);
+    assert_eq!(rest.frequency_squared, whole.frequency_squared);
+    let products = |work: &[OrderWork]| work.iter().map(|work| work.products).sum::<u64>();
+    assert_eq!((products(&whole.work), products(&rest.work)), (77, 43));
+    assert_eq!(check_from(&algebra, &compiled, &rest, 8), Ok(9));
 }
 
 fn lifted(images: &[Image], n: usize) -> Option<OrderNumbers> {

@@ -4,7 +4,7 @@ use crate::NumberError;
 use crate::ball::{Ball, Balls};
 use crate::digits::{certify, decimal, error_string};
 use rug::{Float, Rational};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// Precision is escalated up to this before "not enough bits" is answered: 10 000 digits and a
@@ -12,6 +12,8 @@ use std::fmt;
 const MOST_BITS: u32 = 1 << 18;
 /// The digits of a number whose error nothing is known of: more would look as if they were.
 const SHOWN: usize = 4;
+/// Stands for the decimal of what is no number.
+pub const UNDEFINED: &str = "undefined";
 /// Digits beyond those that a measured error leaves.
 const BEYOND: usize = 2;
 
@@ -67,15 +69,17 @@ impl fmt::Display for Status {
 /// ```
 /// use lindstedt_number::{Number, Status, ball::Balls};
 ///
-/// let pi = Number::of_ball(&Balls::new(64).pi(), 10);
+/// let pi = Number::of_ball(&Balls::new(64).pi(), 10).ok_or("no digit")?;
 /// assert_eq!((pi.decimal.as_str(), pi.status), ("3.141592654", Status::Certified));
 /// assert_eq!(pi.weaken(Status::Estimated).to_string(), "3.141592654 +- 4.2e-10 (estimated)");
+/// # Ok::<(), &str>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Number {
     /// The closed form, if there is one.
     pub exact: Option<String>,
-    /// Its decimal value.
+    /// Its decimal value; [`UNDEFINED`] where the computation gave none (null as data).
+    #[serde(serialize_with = "defined")]
     pub decimal: String,
     /// A bound on |decimal - true value|, or its estimate; nothing when they are equal, and without
     /// an estimate.
@@ -85,27 +89,42 @@ pub struct Number {
 }
 
 impl Number {
-    /// A double whose rounding errors were not tracked, in the fewest digits that tell it apart.
+    /// What is no number: overflow, 0/0, a ball that knows nothing.
+    #[must_use]
+    pub fn undefined() -> Self {
+        let decimal = UNDEFINED.to_owned();
+        Self { exact: None, decimal, error: None, status: Status::NoEstimate }
+    }
+
+    /// A double whose rounding errors were not tracked, in the fewest digits that tell it apart;
+    /// [`Number::undefined`] for infinities and NaN.
     #[must_use]
     pub fn double(x: f64) -> Self {
+        if !x.is_finite() {
+            return Self::undefined();
+        }
         // 0, not -0.
         let decimal = format!("{:e}", x + 0.0);
         Self { exact: None, decimal, error: None, status: Status::Estimated }
     }
 
     /// As many of the digits asked for as are certain; an enclosure of zero is 0 with its radius,
-    /// a ball of radius 0 that a decimal of so many digits is, is exact.
+    /// a ball of radius 0 that a decimal of so many digits is, is exact. Nothing where the ball is no bounded set: it
+    /// says nothing about a number.
     #[must_use]
-    pub fn of_ball(ball: &Ball, digits: usize) -> Self {
+    pub fn of_ball(ball: &Ball, digits: usize) -> Option<Self> {
+        if !ball.is_finite() || !ball.midpoint().is_finite() {
+            return None;
+        }
         let known = ball.relative_accuracy_bits().max(0) as f64 * std::f64::consts::LOG10_2;
         let certain = if ball.is_exact() { digits } else { digits.min((known as usize).max(1)) };
         let decimal = decimal(ball, certain).unwrap_or_else(|| "0".to_owned());
         let number = Self::enclosed_as(ball, decimal);
         if ball.is_exact() && number.error.is_none() {
             let exact = Some(number.decimal.clone());
-            return Self { exact, status: Status::Exact, ..number };
+            return Some(Self { exact, status: Status::Exact, ..number });
         }
-        number
+        Some(number)
     }
 
     /// All the digits asked for, or 0 for an enclosure of zero to twice the digits; nothing where
@@ -190,6 +209,11 @@ impl Number {
     }
 }
 
+/// A decimal as data.
+fn defined<S: Serializer>(decimal: &str, to: S) -> Result<S::Ok, S::Error> {
+    if decimal == UNDEFINED { to.serialize_none() } else { to.serialize_str(decimal) }
+}
+
 /// The digits of the midpoint.
 fn centre(ball: &Ball, digits: usize) -> Option<String> {
     let balls = Balls::new(ball.midpoint().prec());
@@ -200,6 +224,7 @@ impl fmt::Display for Number {
     /// The decimal, with its error where that is an estimate.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (&self.error, self.status) {
+            _ if self.decimal == UNDEFINED => f.write_str(UNDEFINED),
             (Some(error), Status::Estimated) => {
                 write!(f, "{} +- {error} (estimated)", self.decimal)
             }
@@ -255,12 +280,16 @@ mod tests {
         let error = Float::with_val(53, 1e-3);
         let value = Float::with_val(200, rug::float::Constant::Pi);
         assert_eq!(Number::with_error(&value, &error, 30).unwrap().decimal, "3.1416");
-        assert_eq!(Number::of_ball(&wide, 30).decimal, "3.14");
+        assert_eq!(Number::of_ball(&wide, 30).unwrap().decimal, "3.14");
+        let nowhere = balls.add_error(&pi, &Float::with_val(53, f64::INFINITY));
+        assert_eq!(Number::of_ball(&nowhere, 30), None);
         assert_eq!(Number::of_all_digits(&wide, 30), None);
         assert_eq!(Number::of_all_digits(&pi, 5).unwrap().decimal, "3.1416");
         let zero = balls.sub(&pi, &pi);
         assert_eq!(Number::of_all_digits(&zero, 5).unwrap().decimal, "0");
         assert_eq!(Number::double(-0.0).decimal, "0e0");
+        let nothing = Number::double(f64::NAN);
+        assert_eq!((nothing.to_string(), nothing.error), (UNDEFINED.to_owned(), None));
     }
 
     #[test]

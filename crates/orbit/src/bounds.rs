@@ -1,17 +1,23 @@
 //! The bounds of the contraction test, every one with its rounding errors.
 //!
-//! Norms. Unknowns: |(delta, h)| = s |delta| + |h_0| + sum_(k>0) k nu^k (|a_k| + |b_k|) for a
-//! frequency delta and a function h; right sides: sum nu^k (|a_k| + |b_k|), a Banach algebra (the
+//! Norms. Unknowns: |(delta, h)| = s |delta| + sum over the functions h of
+//! |h_0| + sum_(k>0) k nu^k (|a_k| + |b_k|); right sides: sum nu^k (|a_k| + |b_k|), a Banach algebra (the
 //! product of two waves is the mean of two waves). |h| and |dh/dtau| are both at most the norm.
 //!
 //! A = the inverse in doubles on the modes <= N, -1/(omega^2 k^2) beyond. T(c) = c - A F(c) has
 //! |T(c) - T(d)| <= (Z0 + Z1 + Z2 r) |c - d| on the ball of radius r, and |T(cbar) - cbar| <= Y0.
 
+mod outer;
 mod tail;
 
-use crate::centre::{Centre, Doubles, Values, power_of_two};
+use crate::centre::{Centre, Values, Variables};
+use crate::exact::{Doubles, ERROR, power_of_two};
 use crate::field::Field;
+use crate::function::Tied;
+use crate::laurent::Laurent;
 use crate::linear::{Inverse, Linear, at};
+use crate::newton::residuals;
+use crate::polynomial::Polynomial;
 use crate::space::Wave;
 use crate::task::Task;
 use crate::upward::{Up, gamma, raised};
@@ -21,7 +27,7 @@ use rug::float::Round;
 
 /// What the couplings beyond the band are cut to, relative to their sum.
 const BAND: f64 = 1e-10;
-/// What [`Doubles`] drop, relative to their exponent.
+/// What doubles drop, relative to their exponent.
 const DROPPED: f64 = 1e-260;
 
 /// Everything about a centre and an inverse that does not depend on the weight.
@@ -33,12 +39,15 @@ pub(crate) struct Frame<'a> {
     inverse: &'a Inverse,
     linear: Linear,
     /// g_x and omega g_y, uncut.
-    whole: [Doubles; 2],
+    whole: [Vec<Doubles>; 2],
+    functions: &'a [Laurent],
+    ties: Vec<Tied>,
     matrix: DMatrix<f64>,
     /// 1 - A D.
     defect: DMatrix<f64>,
     /// F and the condition, times 2^-exponent.
-    residual: Doubles,
+    residual: Vec<Doubles>,
+    exponent: i32,
     condition: f64,
     /// A lower bound of omega.
     frequency_below: f64,
@@ -46,11 +55,17 @@ pub(crate) struct Frame<'a> {
     scale: f64,
 }
 
-/// nu and the weights that follow.
+/// nu and what follows.
 pub(crate) struct Weights {
     nu: f64,
     /// Upper bounds and lower bounds of nu^k, k = 0..
     powers: Vec<(f64, f64)>,
+    /// Upper bounds of the variables at the centre, and their errors in units of 2^-bits.
+    at: Vec<Up>,
+    errors: Vec<Up>,
+    /// What the errors of the functions make uncertain of F (in units of 2^-bits), of DF on one unknown, and
+    /// of dF/domega.
+    uncertain: [Up; 3],
 }
 
 /// What a bound measures: all unknowns with their weights, or the frequency alone.
@@ -78,7 +93,7 @@ pub(crate) struct Contraction {
 
 impl Weights {
     /// The weights for nu >= 1 up to mode `modes`.
-    pub(crate) fn new(nu: f64, modes: usize) -> Self {
+    fn new(nu: f64, modes: usize) -> Self {
         let mut powers = vec![(1.0, 1.0)];
         for _ in 0..modes {
             let (above, below) = powers[powers.len() - 1];
@@ -87,7 +102,7 @@ impl Weights {
             let last = |x: f64| if exact { x } else { x.next_down() };
             powers.push((next(above * nu), last(below * nu)));
         }
-        Self { nu, powers }
+        Self { nu, powers, at: Vec::new(), errors: Vec::new(), uncertain: [Up::ZERO; 3] }
     }
 
     pub(crate) fn nu(&self) -> Up {
@@ -109,11 +124,11 @@ impl<'a> Frame<'a> {
     pub(crate) fn new(
         task: &'a Task,
         centre: &'a Centre,
-        values: &Values,
+        values: &'a Values,
         linear: &Linear,
         inverse: &'a Inverse,
     ) -> Self {
-        let whole = [values.by_x.doubles(Some(0)), values.by_slope.doubles(Some(0))];
+        let whole = [linear.by_x.clone(), linear.by_slope.clone()];
         let mut linear = linear.clone();
         linear.cut(BAND);
         let matrix = linear.matrix(inverse.modes);
@@ -121,12 +136,9 @@ impl<'a> Frame<'a> {
         for i in 0..defect.nrows() {
             defect[(i, i)] += 1.0;
         }
-        let mut residual = values.residual.doubles(None);
-        if residual.values.iter().all(|c| c.re == 0.0 && c.im == 0.0) {
-            residual.exponent = -(centre.bits as i32);
-        }
-        let condition = Float::with_val(53, task.condition(centre) >> residual.exponent).to_f64();
-        let [_, _, size] = centre.norms(Up::ONE);
+        let (residual, exponent) = residuals(&values.residual, centre.bits);
+        let condition = Float::with_val(53, task.condition(centre) >> exponent).to_f64();
+        let (.., size) = centre.norms(Up::ONE);
         let scale = power_of_two((size.0 / linear.frequency).log2().round() as i32);
         let frequency_below = centre.frequency.to_f64().next_down();
         Self {
@@ -136,9 +148,12 @@ impl<'a> Frame<'a> {
             inverse,
             linear,
             whole,
+            functions: &values.functions,
+            ties: ties(task, centre, &values.functions),
             matrix,
             defect,
             residual,
+            exponent,
             condition,
             frequency_below,
             scale,
@@ -147,8 +162,8 @@ impl<'a> Frame<'a> {
 
     /// The largest mode that any bound meets.
     pub(crate) fn reach(&self) -> usize {
-        let lists = self.whole.iter().chain([&self.residual]).map(|d| d.values.len());
-        let longest = lists.max().unwrap_or(0).max(self.linear.by_frequency.len());
+        let lists = self.whole.iter().flatten().chain(&self.residual);
+        let longest = lists.chain(&self.linear.by_frequency).map(Vec::len).max().unwrap_or(0);
         longest + self.inverse.modes + 2 * self.band() + 2
     }
 
@@ -158,11 +173,11 @@ impl<'a> Frame<'a> {
     }
 
     fn extra(&self) -> usize {
-        usize::from(self.linear.rows.condition.is_some())
+        self.linear.extra()
     }
 
     fn band(&self) -> usize {
-        self.linear.by_x.len().max(self.linear.by_slope.len()) - 1
+        self.linear.band()
     }
 
     /// An upper and a lower bound of the weight of the unknown i.
@@ -220,29 +235,42 @@ impl<'a> Frame<'a> {
         let alpha = self.columns(&numerators);
         let inverse = self.inverse_norm(measure, &alpha, weights, 0);
         let bend = self.inverse_norm(measure, &alpha, weights, 1);
-        let [y, z] = self.uncertain(inverse, &alpha, weights);
+        let (y, z) = self.uncertain(inverse, &alpha, weights);
         let y0 = self.y0(measure, &numerators, &alpha, weights);
-        let y0 = Float::with_val_round(53, &y0 + y.0, Round::Up).0;
+        let y0 = Float::with_val_round(53, &y0 + &y, Round::Up).0;
         let z1 = self.z1(measure, &alpha, weights) + inverse * self.outside_band(weights) + z;
         let z0 = self.z0(&numerators, &alpha, weights);
         Contraction { y0, z0, z1, inverse, bend }
     }
 
-    /// What uncertain coefficients and an uncertain condition add to Y0 and to Z1.
-    fn uncertain(&self, inverse: Up, alpha: &[f64], weights: &Weights) -> [Up; 2] {
-        let at = self.outer(weights, &Float::new(53));
-        let part = |derivative| self.field.uncertainty(at, weights.nu(), derivative);
+    /// What uncertain coefficients, an uncertain condition and the errors of the functions add to Y0 and to
+    /// Z1.
+    fn uncertain(&self, inverse: Up, alpha: &[f64], weights: &Weights) -> (Float, Up) {
+        let (nu, n) = (weights.nu(), self.field.unknowns());
+        let outer = self.outer(weights, &Float::new(53));
+        let part = |p: &Polynomial| p.uncertainty(&outer.at, nu);
         let condition = if self.extra() == 1 { Up(alpha[0]) * self.error } else { Up::ZERO };
-        let by_frequency = part([1, 0, 0]).over(self.scale);
-        let slope = by_frequency.max(part([0, 1, 0]) + part([0, 0, 1]));
-        [inverse * part([0, 0, 0]) + condition, inverse * slope]
+        let below = self.frequency_below;
+        let by_frequency = self.field.flow.iter().map(part).sum::<Up>().over(below);
+        let column = |k: usize| {
+            let row = |row: &Vec<Polynomial>| part(&row[k]) + outer.frequency * part(&row[n + k]);
+            self.field.first.iter().map(row).sum()
+        };
+        let column = (0..n).map(column).fold(Up::ZERO, Up::max) + weights.uncertain[1];
+        let frequency = (by_frequency + weights.uncertain[2]).over(self.scale);
+        let slope = if self.extra() == 1 { column.max(frequency) } else { column };
+        let residual: Up = self.field.forces.iter().map(part).sum();
+        let of_functions =
+            Float::with_val(53, (inverse * weights.uncertain[0]).0) >> self.centre.bits;
+        let residual = Float::with_val(53, (inverse * residual + condition).0);
+        let residual = Float::with_val_round(53, &residual + &of_functions, Round::Up).0;
+        (residual, inverse * slope)
     }
 
     /// Y0 >= |A F(cbar)|: the finite part is a product in doubles with its a-priori error, the tail
     /// sum_(k > N) |F_k| nu^k/(omega^2 k).
     fn y0(&self, measure: Measure, numerators: &[f64], alpha: &[f64], weights: &Weights) -> Float {
-        let values = &self.residual.values;
-        let at_wave = |w: &Wave| w.of(at(values, w.k as i64));
+        let at_wave = |w: &Wave| w.of(at(&self.residual[w.unknown], w.k as i64));
         let condition = (self.extra() == 1).then_some(self.condition);
         let all = condition.into_iter().chain(self.inverse.basis.iter().map(at_wave));
         let vector = DVector::from_iterator(numerators.len(), all);
@@ -250,16 +278,24 @@ impl<'a> Frame<'a> {
         let n = numerators.len();
         let sum = product.iter().zip(numerators).map(|(x, w)| x.abs() * w).sum();
         let sizes = alpha.iter().zip(vector.iter()).map(|(a, x)| a * (x.abs() + DROPPED)).sum();
-        let finite = raised(sum, n) + (gamma(n + 4) + Doubles::ERROR) * raised(sizes, n);
-        let mut tail = 0.0;
-        for (k, c) in values.iter().enumerate().skip(self.inverse.modes + 1) {
-            let size = 2.0 * (c.re.abs() + c.im.abs() + DROPPED);
-            tail += size * self.tail(measure, k, weights);
-        }
-        let tail = raised(tail, values.len() + 8) * (Up::ONE + Doubles::ERROR);
+        let finite = raised(sum, n) + (gamma(n + 4) + ERROR) * raised(sizes, n);
+        let tail = self.tail_of(&self.residual, measure, weights);
         let total = Float::with_val(53, (finite + tail).0);
         // Doubling by the exponent is exact.
-        total << self.residual.exponent
+        total << self.exponent
+    }
+
+    /// The tail rows of A on functions: sum_(k > N) |f_k| nu^k/(omega^2 k).
+    fn tail_of(&self, list: &[Doubles], measure: Measure, weights: &Weights) -> Up {
+        let (mut sum, mut terms) = (0.0, 8);
+        for f in list {
+            for (k, c) in f.iter().enumerate().skip(self.inverse.modes + 1) {
+                let size = 2.0 * (c.re.abs() + c.im.abs() + DROPPED);
+                sum += size * self.tail(measure, k, weights);
+            }
+            terms += f.len();
+        }
+        raised(sum, terms) * (Up::ONE + ERROR)
     }
 
     /// Z0 >= |1 - A D|: the computed defect and the a-priori error gamma_n |A| |D| of the product.
@@ -285,7 +321,7 @@ impl<'a> Frame<'a> {
             return self.matrix[(row, column)].abs();
         };
         let (w, h) = (self.inverse.basis[i], self.inverse.basis[j]);
-        let mut size = self.linear.coupling_size(w.k, h);
+        let mut size = self.linear.coupling_size(w.unknown, w.k, h);
         if w == h {
             let rate = self.linear.frequency * w.k as f64;
             size += rate * rate;
@@ -311,52 +347,23 @@ impl<'a> Frame<'a> {
         largest
     }
 
-    /// Z2(r) >= |A (DF(c) - DF(d))|/|c - d| for c, d in the ball of radius r: the second
-    /// derivatives of the majorant polynomial, and 2 omega d^2/dtau^2, 2 d^2x/dtau^2 of the inertia.
-    pub(crate) fn z2(&self, bounds: &Contraction, weights: &Weights, r: &Float) -> Up {
-        let (scale, free) = (self.scale, self.extra() == 1);
-        let at = self.outer(weights, r);
-        let (frequency, r) = (at[0], Up::of_float(r));
-        let [.., size] = self.centre.norms(weights.nu());
-        let g = |p, q, s| self.field.majorant(at, weights.nu(), [p, q, s]);
-        let twice = Up(2.0);
-        let both = bounds.inverse * (g(0, 2, 0) + twice * g(0, 1, 1) + g(0, 0, 2));
-        if !free {
-            return both;
-        }
-        let mixed = bounds.inverse * (g(1, 1, 0) + g(1, 0, 1)) + twice * frequency * bounds.bend;
-        let square = bounds.inverse * g(2, 0, 0) + twice * bounds.bend * (size + r);
-        both.max(mixed.over(scale)).max(square.over(scale).over(scale))
-    }
-
-    /// Upper bounds of (omega, |x|, |dx/dtau|) on the ball of radius r.
-    fn outer(&self, weights: &Weights, r: &Float) -> [Up; 3] {
-        let r = Up::of_float(r);
-        let [x, slope, _] = self.centre.norms(weights.nu());
-        let frequency = Up(self.centre.frequency.to_f64().next_up());
-        let free = self.extra() == 1;
-        let frequency = if free { frequency + r.over(self.scale) } else { frequency };
-        [frequency, x + r, slope + r]
-    }
-
-    /// A Lipschitz constant of a polynomial field p(omega, x, dx/dtau) on the ball of radius r.
-    pub(crate) fn slope(&self, field: &Field, weights: &Weights, r: &Float) -> Up {
-        let at = self.outer(weights, r);
-        let p = |derivative| field.majorant(at, weights.nu(), derivative);
-        let by_frequency = p([1, 0, 0]).over(self.scale);
-        let by_orbit = p([0, 1, 0]) + p([0, 0, 1]);
-        if self.extra() == 1 { by_frequency.max(by_orbit) } else { by_orbit }
-    }
-
-    /// What is uncertain of a polynomial field at the centre.
-    pub(crate) fn unknown(&self, field: &Field, weights: &Weights) -> Up {
-        field.uncertainty(self.outer(weights, &Float::new(53)), weights.nu(), [0, 0, 0])
-    }
-
     /// N.
     pub(crate) fn modes(&self) -> usize {
         self.inverse.modes
     }
+}
+
+/// The functions of a field with what ties them to their arguments; of a cosine with the sine.
+fn ties(task: &Task, centre: &Centre, functions: &[Laurent]) -> Vec<Tied> {
+    let mut variables = Variables::known(centre, functions);
+    let mut ties: Vec<Tied> = Vec::new();
+    let mut done = 0;
+    while let Some(function) = task.field.functions.get(done) {
+        let tied = function.tie(&mut variables, &functions[done..]);
+        done += tied.functions.len().max(1);
+        ties.push(tied);
+    }
+    ties
 }
 
 /// A factor below 1 that covers the roundings of a denominator.

@@ -1,85 +1,92 @@
-//! The numerical solution: dyadic Fourier coefficients and a rational frequency, with the exact
-//! value of everything that is a polynomial in them.
+//! The numerical solution: dyadic Fourier coefficients and a rational frequency, with the value of
+//! everything that is a polynomial in them, exactly; functions of them within their errors.
 
-use crate::field::{Field, Trigonometric};
+use crate::Failure;
+use crate::exact::{Exact, Part, combine, unit};
+use crate::field::{Field, Function};
 use crate::laurent::Laurent;
+use crate::polynomial::{Polynomial, Term};
+use crate::transform::{doubles_to_modes, samples_to_modes};
 use crate::upward::Up;
 use nalgebra::Complex;
 use rug::{Complete, Float, Integer, Rational};
 use std::collections::BTreeMap;
 
-/// x = sum_k c_k e^(i k tau), c_k = modes_k/2^bits, tau = omega t.
+/// x_i = sum_k c_k e^(i k tau), c_k = modes_k/2^bits, tau = omega t.
 #[derive(Clone, Debug)]
 pub(crate) struct Centre {
     pub(crate) bits: u32,
     pub(crate) frequency: Rational,
+    pub(crate) unknowns: Vec<Laurent>,
+}
+
+/// Bits behind the point in the tier of doubles.
+pub(crate) const FAST_BITS: u32 = 72;
+
+/// One unknown of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Component {
+    pub(crate) bits: u32,
     pub(crate) modes: Laurent,
 }
 
-/// A trigonometric polynomial: integer coefficients times one rational number.
-#[derive(Clone, Debug)]
-pub(crate) struct Exact {
-    pub(crate) modes: Laurent,
-    pub(crate) scale: Rational,
+/// The variables at a centre, over 2^bits: x_i, z_i = dx_i/dtau, the functions; with the products that were
+/// formed.
+pub(crate) struct Variables<'a> {
+    centre: &'a Centre,
+    list: Vec<Laurent>,
+    known: BTreeMap<Vec<u32>, Laurent>,
 }
 
-/// Complex coefficients k = 0.. in doubles times 2^exponent.
-#[derive(Clone, Debug)]
-pub(crate) struct Doubles {
-    /// Each real and imaginary part has a relative error below [`Doubles::ERROR`]; what is
-    /// smaller than 2^-900 became 0.
-    pub(crate) values: Vec<Complex<f64>>,
-    pub(crate) exponent: i32,
-}
-
-/// The powers x^i z^j of integer polynomials, each multiplied once.
-struct Powers {
-    x: Laurent,
-    z: Laurent,
-    known: BTreeMap<(u32, u32), Laurent>,
-}
-
-impl Powers {
-    fn get(&mut self, i: u32, j: u32) -> Laurent {
-        if (i, j) == (0, 0) {
-            return Laurent::one();
-        }
-        if let Some(power) = self.known.get(&(i, j)) {
-            return power.clone();
-        }
-        let power = if i > 0 {
-            self.get(i - 1, j).times(&self.x)
-        } else {
-            self.get(0, j - 1).times(&self.z)
-        };
-        self.known.insert((i, j), power.clone());
-        power
-    }
-}
-
-/// The exact values at a centre that Newton's method and the proof need.
+/// The values at a centre that Newton's method and the proof need; matrices by rows.
 pub(crate) struct Values {
-    /// F = omega^2 d^2x/dtau^2 - g(x, omega z, tau).
-    pub(crate) residual: Exact,
-    /// g_x.
-    pub(crate) by_x: Exact,
-    /// omega g_y: what dh/dtau is multiplied by.
-    pub(crate) by_slope: Exact,
-    /// dF/domega = 2 omega d^2x/dtau^2 - z g_y.
-    pub(crate) by_frequency: Exact,
+    /// F_i = omega^2 d^2x_i/dtau^2 - g_i(x, omega z, tau).
+    pub(crate) residual: Vec<Exact>,
+    /// dg_i/dx_k.
+    pub(crate) by_x: Vec<Exact>,
+    /// omega dg_i/dx_k': what dh_k/dtau is multiplied by.
+    pub(crate) by_slope: Vec<Exact>,
+    /// dF_i/domega = 2 omega d^2x_i/dtau^2 - sum_k z_k dg_i/dx_k'.
+    pub(crate) by_frequency: Vec<Exact>,
+    /// Approximations of the functions over 2^bits.
+    pub(crate) functions: Vec<Laurent>,
+}
+
+impl Component {
+    /// c_k in doubles.
+    pub(crate) fn doubles(&self) -> Vec<Complex<f64>> {
+        Exact::over_power(self.modes.clone(), self.bits).doubles(0)
+    }
+
+    /// The phase of the largest x on a grid, in doubles.
+    pub(crate) fn top(&self) -> f64 {
+        let modes = self.doubles();
+        let points = 16 * modes.len().max(16);
+        let value = |j: usize| -> f64 {
+            let wave = Complex::from_polar(1.0, std::f64::consts::TAU * j as f64 / points as f64);
+            let sum = modes.iter().rev().fold(Complex::<f64>::default(), |sum, c| sum * wave + c);
+            2.0 * sum.re
+        };
+        let values = (0..points).map(|j| (j, value(j)));
+        let best = values.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(j, _)| j);
+        std::f64::consts::TAU * best as f64 / points as f64
+    }
 }
 
 impl Centre {
     /// The coefficients c_k rounded to `bits` bits behind the point.
-    pub(crate) fn from_doubles(bits: u32, frequency: f64, modes: &[Complex<f64>]) -> Self {
+    pub(crate) fn from_doubles(bits: u32, frequency: f64, unknowns: &[Vec<Complex<f64>>]) -> Self {
         let round = |x: f64| {
             let scaled = Float::with_val(64, x) << bits;
             scaled.to_integer().unwrap_or_default()
         };
-        let re = modes.iter().map(|c| round(c.re)).collect();
-        let im = modes.iter().map(|c| round(c.im)).collect();
+        let one = |modes: &Vec<Complex<f64>>| {
+            let re = modes.iter().map(|c| round(c.re)).collect();
+            let im = modes.iter().map(|c| round(c.im)).collect();
+            Laurent { re, im }
+        };
         let frequency = dyadic(&Float::with_val(64, frequency), bits);
-        Self { bits, frequency, modes: Laurent { re, im } }
+        Self { bits, frequency, unknowns: unknowns.iter().map(one).collect() }
     }
 
     /// The same numbers with another precision, rounded where it is less.
@@ -93,56 +100,70 @@ impl Centre {
                 *c >>= old - bits;
             }
         };
-        self.modes.re.iter_mut().chain(&mut self.modes.im).for_each(change);
+        self.unknowns.iter_mut().flat_map(|f| f.re.iter_mut().chain(&mut f.im)).for_each(change);
         self.bits = bits;
         self
     }
 
-    /// c_k in doubles.
-    pub(crate) fn doubles(&self) -> Vec<Complex<f64>> {
-        let scale = Rational::from((1, Integer::from(1) << self.bits));
-        Exact { modes: self.modes.clone(), scale }.doubles(Some(0)).values
+    pub(crate) fn component(&self, i: usize) -> Component {
+        Component { bits: self.bits, modes: self.unknowns[i].clone() }
+    }
+
+    /// c_k in doubles, by unknowns.
+    pub(crate) fn doubles(&self) -> Vec<Vec<Complex<f64>>> {
+        (0..self.unknowns.len()).map(|i| self.component(i).doubles()).collect()
+    }
+
+    /// The modes |k| <= `modes` alone, zeros appended where there are fewer.
+    pub(crate) fn resize(&mut self, modes: usize) {
+        self.unknowns.iter_mut().for_each(|f| f.resize(modes));
+    }
+
+    /// The largest mode.
+    pub(crate) fn modes(&self) -> usize {
+        self.unknowns.iter().map(Laurent::modes).max().unwrap_or(0)
     }
 
     /// Adds a correction: doubles times 2^exponent.
-    pub(crate) fn add(&mut self, frequency: f64, modes: &[Complex<f64>], exponent: i32) {
+    pub(crate) fn add(&mut self, frequency: f64, step: &[Vec<Complex<f64>>], exponent: i32) {
         let bits = self.bits;
         let round = |x: f64| {
             let scaled = Float::with_val(64, x) << (bits as i32 + exponent);
             scaled.to_integer().unwrap_or_default()
         };
-        if modes.len() > self.modes.re.len() {
-            self.modes.resize(modes.len() - 1);
-        }
-        for (k, c) in modes.iter().enumerate() {
-            self.modes.re[k] += round(c.re);
-            self.modes.im[k] += round(c.im);
+        for (f, modes) in self.unknowns.iter_mut().zip(step) {
+            if modes.len() > f.re.len() {
+                f.resize(modes.len() - 1);
+            }
+            for (k, c) in modes.iter().enumerate() {
+                f.re[k] += round(c.re);
+                f.im[k] += round(c.im);
+            }
         }
         if frequency != 0.0 {
             self.frequency += dyadic(&(Float::with_val(64, frequency) << exponent), bits);
         }
     }
 
-    /// x(tau) at tau = 0, exactly.
-    pub(crate) fn at_zero(&self) -> Rational {
-        let twice: Integer = self.modes.re.iter().skip(1).sum();
-        let sum = self.modes.re.first().cloned().unwrap_or_default() + twice * 2;
-        Rational::from((sum, Integer::from(1) << self.bits))
-    }
-
-    /// (|x|_nu, |dx/dtau|_nu, the larger of |c_0| and |dx/dtau|_nu taken mode by mode).
-    pub(crate) fn norms(&self, nu: Up) -> [Up; 3] {
-        let (mut x, mut slope, mut both, mut power) = (Up::ZERO, Up::ZERO, Up::ZERO, Up::ONE);
-        for (k, (re, im)) in self.modes.re.iter().zip(&self.modes.im).enumerate() {
-            let scale = if k == 0 { 1.0 } else { 2.0 };
-            let size = Up(above(re, self.bits)) + Up(above(im, self.bits));
-            let size = size * Up(scale) * power;
-            x = x + size;
-            slope = slope + size * Up(k as f64);
-            both = both + size * Up(k.max(1) as f64);
-            power = power * nu;
+    /// |x_i|_nu by unknowns, |dx_i/dtau|_nu, and the sum over the unknowns of the larger of |c_0| and
+    /// |dx/dtau|_nu taken mode by mode.
+    pub(crate) fn norms(&self, nu: Up) -> (Vec<Up>, Vec<Up>, Up) {
+        let (mut sizes, mut slopes, mut both) = (Vec::new(), Vec::new(), Up::ZERO);
+        for modes in &self.unknowns {
+            let (mut x, mut slope, mut power) = (Up::ZERO, Up::ZERO, Up::ONE);
+            for (k, (re, im)) in modes.re.iter().zip(&modes.im).enumerate() {
+                let scale = if k == 0 { 1.0 } else { 2.0 };
+                let size = Up(above(re, self.bits)) + Up(above(im, self.bits));
+                let size = size * Up(scale) * power;
+                x = x + size;
+                slope = slope + size * Up(k as f64);
+                both = both + size * Up(k.max(1) as f64);
+                power = power * nu;
+            }
+            sizes.push(x);
+            slopes.push(slope);
         }
-        [x, slope, both]
+        (sizes, slopes, both)
     }
 
     /// The distance from another numerical solution in the norm with the weight nu and the weight of the
@@ -150,150 +171,131 @@ impl Centre {
     pub(crate) fn distance(&self, other: &Self, nu: Up, scale: Option<f64>) -> Up {
         let bits = self.bits.max(other.bits);
         let (mut apart, other) = (self.clone().with_bits(bits), other.clone().with_bits(bits));
-        apart.modes.resize(self.modes.modes().max(other.modes.modes()));
-        let parts =
-            [(&mut apart.modes.re, &other.modes.re), (&mut apart.modes.im, &other.modes.im)];
-        for (mine, others) in parts {
-            mine.iter_mut().zip(others).for_each(|(a, b)| *a -= b);
+        apart.resize(self.modes().max(other.modes()));
+        for (mine, others) in apart.unknowns.iter_mut().zip(&other.unknowns) {
+            mine.re.iter_mut().zip(&others.re).for_each(|(a, b)| *a -= b);
+            mine.im.iter_mut().zip(&others.im).for_each(|(a, b)| *a -= b);
         }
-        let [.., both] = apart.norms(nu);
+        let (.., both) = apart.norms(nu);
         let detuned = Rational::from(&self.frequency - &other.frequency);
         both + scale.map_or(Up::ZERO, |scale| Up::of(&detuned) * Up(scale))
     }
 
     /// The largest amplitude of a harmonic, roughly.
     pub(crate) fn largest(&self) -> Float {
-        let parts = self.modes.re.iter().chain(&self.modes.im).map(|n| n.clone().abs());
+        let all = self.unknowns.iter().flat_map(|f| f.re.iter().chain(&f.im));
+        let parts = all.map(|n| n.clone().abs());
         Float::with_val(53, parts.max().unwrap_or_default()) >> (self.bits - 1)
     }
 
-    fn powers(&self) -> Powers {
-        let z = self.modes.derivative();
-        Powers { x: self.modes.clone(), z, known: BTreeMap::new() }
-    }
-
     /// F at the centre.
-    pub(crate) fn residual(&self, field: &Field) -> Exact {
-        self.residual_with(field, &mut self.powers())
+    pub(crate) fn residual(&self, field: &Field) -> Result<Vec<Exact>, Failure> {
+        Ok(self.residual_with(field, &mut Variables::new(self, field)?))
     }
 
-    fn residual_with(&self, field: &Field, powers: &mut Powers) -> Exact {
+    fn residual_with(&self, field: &Field, variables: &mut Variables<'_>) -> Vec<Exact> {
         let square = self.frequency.clone().square();
-        let minus = |_, _| Rational::from(-1);
-        let parts = self.parts(field, powers, 0, 0, 0, minus);
-        self.with_inertia(square, parts)
+        let one = |(i, g): (usize, &Polynomial)| {
+            self.with_inertia(i, square.clone(), variables.parts(g, 0, &Rational::from(-1)))
+        };
+        field.forces.iter().enumerate().map(one).collect()
     }
 
-    /// factor d^2x/dtau^2 + the parts.
-    fn with_inertia(&self, factor: Rational, mut parts: Vec<Part>) -> Exact {
-        let bend = self.modes.derivative().derivative();
+    /// factor d^2x_i/dtau^2 + the parts.
+    fn with_inertia(&self, i: usize, factor: Rational, mut parts: Vec<Part>) -> Exact {
+        let bend = self.unknowns[i].derivative().derivative();
         parts.push(Part { factor: factor >> self.bits, modes: bend, wave: unit() });
         combine(parts)
     }
 
-    /// The mean over a period of a polynomial field, exactly.
-    pub(crate) fn mean(&self, field: &Field) -> Rational {
-        let one = |_, _| Rational::from(1);
-        let sum = combine(self.parts(field, &mut self.powers(), 0, 0, 0, one));
-        sum.modes.re.first().map_or(Rational::new(), |c| sum.scale * c)
-    }
-
     /// F and its derivatives at the centre.
-    pub(crate) fn values(&self, field: &Field) -> Values {
-        let mut powers = self.powers();
-        let residual = self.residual_with(field, &mut powers);
-        let by_x = self.parts(field, &mut powers, 0, 1, 0, |i, _| Rational::from(i));
-        let by_slope = self.parts(field, &mut powers, 0, 0, 1, |_, j| Rational::from(j));
-        let by_frequency = self.parts(field, &mut powers, 1, 0, 0, |_, j| -Rational::from(j));
-        let by_frequency = self.with_inertia((&self.frequency * 2u32).complete(), by_frequency);
-        Values { residual, by_x: combine(by_x), by_slope: combine(by_slope), by_frequency }
-    }
-
-    /// The terms c omega^(j-p) x^(i-q) z^(j-r) f times `factor(i, j)`.
-    fn parts(
-        &self,
-        field: &Field,
-        powers: &mut Powers,
-        p: u32,
-        q: u32,
-        r: u32,
-        factor: impl Fn(u32, u32) -> Rational,
-    ) -> Vec<Part> {
-        let mut parts = Vec::new();
-        for term in &field.terms {
-            let (i, j) = (term.x, term.velocity);
-            if j < p.max(r) || i < q {
-                continue;
-            }
-            let modes = powers.get(i - q, j - r);
-            let power = rug::ops::Pow::pow(self.frequency.clone(), j - p);
-            let factor = (factor(i, j) * power) >> (self.bits * (i - q + j - r));
-            parts.push(Part { factor, modes, wave: term.factor.clone() });
+    pub(crate) fn values(&self, field: &Field) -> Result<Values, Failure> {
+        let mut variables = Variables::new(self, field)?;
+        let n = field.unknowns();
+        let residual = self.residual_with(field, &mut variables);
+        let (mut by_x, mut by_slope, mut by_frequency) = (Vec::new(), Vec::new(), Vec::new());
+        let minus = Rational::from(-1);
+        for (i, row) in field.first.iter().enumerate() {
+            by_x.extend(row[..n].iter().map(|p| variables.exact(p, 0)));
+            by_slope.extend(row[n..].iter().map(|p| variables.exact(p, -1)));
+            let parts = variables.parts(&field.flow[i], 1, &minus);
+            by_frequency.push(self.with_inertia(i, (&self.frequency * 2u32).complete(), parts));
         }
-        parts
+        let functions = variables.list.split_off(2 * n);
+        Ok(Values { residual, by_x, by_slope, by_frequency, functions })
     }
 }
 
-struct Part {
-    factor: Rational,
-    modes: Laurent,
-    wave: Trigonometric,
-}
-
-fn unit() -> Trigonometric {
-    Trigonometric::from([(0, (Rational::from(1), Rational::new()))])
-}
-
-/// The sum of the parts over one denominator.
-fn combine(parts: Vec<Part>) -> Exact {
-    let mut denominator = Integer::from(1);
-    for part in &parts {
-        for (a, b) in part.wave.values() {
-            // A half for the complex coefficient (a - i b)/2 of cos and sin.
-            denominator.lcm_mut(&(part.factor.denom() * a.denom()).complete());
-            denominator.lcm_mut(&(part.factor.denom() * b.denom()).complete());
+impl<'a> Variables<'a> {
+    /// With approximations of the functions of a field.
+    pub(crate) fn new(centre: &'a Centre, field: &Field) -> Result<Self, Failure> {
+        let mut variables = Self::known(centre, &[]);
+        let first = variables.list.len();
+        while let Some(next) = field.functions.get(variables.list.len() - first) {
+            let functions = variables.approximate(next)?;
+            variables.list.extend(functions);
         }
+        Ok(variables)
     }
-    denominator *= 2;
-    let whole = |q: &Rational| (q * &denominator).complete().numer().clone();
-    let reach = |p: &Part| p.modes.modes() + p.wave.keys().max().map_or(0, |h| *h as usize);
-    let mut sum = Laurent::zero(parts.iter().map(reach).max().unwrap_or(0));
-    for part in &parts {
-        for (h, (a, b)) in &part.wave {
-            let half = |q: &Rational| if *h == 0 { q.clone() } else { q.clone() / 2 };
-            let re = whole(&(half(a) * &part.factor));
-            let im = whole(&-(half(b) * &part.factor));
-            shifted(&mut sum, &part.modes, *h as i64, &re, &im);
-            if *h > 0 {
-                shifted(&mut sum, &part.modes, -i64::from(*h), &re, &-im);
-            }
-        }
-    }
-    sum.trim();
-    Exact { modes: sum, scale: Rational::from((1, denominator)) }
-}
 
-/// sum += (re + i im) e^(i h tau) f.
-fn shifted(sum: &mut Laurent, f: &Laurent, h: i64, re: &Integer, im: &Integer) {
-    for k in 0..sum.re.len() {
-        let l = k as i64 - h;
-        let at = l.unsigned_abs() as usize;
-        let (Some(a), Some(b)) = (f.re.get(at), f.im.get(at)) else { continue };
-        let flip = l < 0;
-        sum.re[k] += re * a;
-        if !im.is_zero() {
-            sum.im[k] += im * a;
+    /// With functions that were computed.
+    pub(crate) fn known(centre: &'a Centre, functions: &[Laurent]) -> Self {
+        let mut list = centre.unknowns.clone();
+        list.extend(centre.unknowns.iter().map(Laurent::derivative));
+        list.extend_from_slice(functions);
+        Self { centre, list, known: BTreeMap::new() }
+    }
+
+    /// Approximations over 2^bits of a function, and of the cosine with a sine.
+    fn approximate(&mut self, function: &Function) -> Result<Vec<Laurent>, Failure> {
+        let argument = self.exact(&function.argument, 0);
+        let (kind, bits) = (function.kind, self.bits());
+        let found = match bits <= FAST_BITS {
+            true => doubles_to_modes(&argument, bits, kind.list()),
+            false => samples_to_modes(&argument, bits, kind),
+        };
+        found.ok_or_else(|| Failure::NoFunction { argument: argument.norm(Up::ONE, 0).0 })
+    }
+
+    pub(crate) fn bits(&self) -> u32 {
+        self.centre.bits
+    }
+
+    /// A product of powers; the last factor is the first variable in it.
+    fn get(&mut self, powers: &[u32]) -> Laurent {
+        let Some(first) = powers.iter().position(|n| *n > 0) else { return Laurent::one() };
+        if let Some(product) = self.known.get(powers) {
+            return product.clone();
         }
-        if !b.is_zero() {
-            let (by_re, by_im) = (Integer::from(re * b), Integer::from(im * b));
-            if flip {
-                sum.im[k] -= by_re;
-                sum.re[k] += by_im;
-            } else {
-                sum.im[k] += by_re;
-                sum.re[k] -= by_im;
-            }
-        }
+        let mut less = powers.to_vec();
+        less[first] -= 1;
+        let product = self.get(&less).times(&self.list[first]);
+        self.known.insert(powers.to_vec(), product.clone());
+        product
+    }
+
+    /// The terms times `factor` and omega^-less, of a polynomial.
+    fn parts(&mut self, polynomial: &Polynomial, less: i32, factor: &Rational) -> Vec<Part> {
+        let (n, bits) = (self.centre.unknowns.len(), self.centre.bits);
+        let part = |term: &Term| {
+            let rate: u32 = term.powers.iter().skip(n).take(n).sum();
+            let power = rug::ops::Pow::pow(self.centre.frequency.clone(), rate as i32 - less);
+            let degree: u32 = term.powers.iter().sum();
+            let factor = (factor * power) >> (bits * degree);
+            Part { factor, modes: self.get(&term.powers), wave: term.factor.clone() }
+        };
+        polynomial.terms.iter().map(part).collect()
+    }
+
+    /// A polynomial times omega^-less, exactly (but for the errors of the functions).
+    pub(crate) fn exact(&mut self, polynomial: &Polynomial, less: i32) -> Exact {
+        combine(self.parts(polynomial, less, &Rational::from(1)))
+    }
+
+    /// The mean over a period of a polynomial (but for the errors of the functions).
+    pub(crate) fn mean(&mut self, polynomial: &Polynomial) -> Rational {
+        let sum = self.exact(polynomial, 0);
+        sum.modes.re.first().map_or(Rational::new(), |c| sum.scale * c)
     }
 }
 
@@ -307,40 +309,4 @@ fn above(n: &Integer, bits: u32) -> f64 {
 fn dyadic(x: &Float, bits: u32) -> Rational {
     let scaled = Float::with_val(x.prec(), x << bits);
     Rational::from((scaled.to_integer().unwrap_or_default(), Integer::from(1) << bits))
-}
-
-impl Exact {
-    /// The coefficients in doubles: scaled so that the largest part is about 1, or by the given
-    /// exponent.
-    pub(crate) fn doubles(&self, exponent: Option<i32>) -> Doubles {
-        let (scale, shift) = split(&self.scale);
-        let parts = self.modes.re.iter().chain(&self.modes.im);
-        let largest = parts.map(Integer::significant_bits).max().unwrap_or(0);
-        let exponent = exponent.unwrap_or(largest as i32 + shift);
-        let double = |n: &Integer| {
-            let (mantissa, size) = n.to_f64_exp();
-            let power = size as i32 + shift - exponent;
-            if power < -900 { 0.0 } else { mantissa * scale * power_of_two(power) }
-        };
-        let both = self.modes.re.iter().zip(&self.modes.im);
-        let values = both.map(|(re, im)| Complex::new(double(re), double(im))).collect();
-        Doubles { values, exponent }
-    }
-}
-
-impl Doubles {
-    /// Truncation of the mantissa, of the scale, and their product: at most 2 + 2 + 1 units.
-    pub(crate) const ERROR: Up = Up(8.0 * crate::upward::UNIT);
-}
-
-/// q = mantissa 2^exponent, the mantissa of size about 1 and truncated.
-fn split(q: &Rational) -> (f64, i32) {
-    let float = Float::with_val(53, q);
-    let exponent = float.get_exp().unwrap_or(0);
-    ((float >> exponent).to_f64(), exponent)
-}
-
-/// 2^power; infinite or 0 where doubles end.
-pub(crate) fn power_of_two(power: i32) -> f64 {
-    2.0f64.powi(power)
 }

@@ -14,11 +14,23 @@ pub enum Failure {
     /// No such value: a name without a value.
     #[error("the name {0} has no value")]
     NoValue(String),
-    /// No such value: not a polynomial in x and x' with rational coefficients and a force of
-    /// cosines and sines with rational frequencies and without phases.
-    #[error("not a polynomial with rational coefficients")]
+    /// No such value: not made of the unknowns, their velocities and rational numbers by sums, products,
+    /// rational powers, sines, cosines and exponentials, with a force of cosines and sines with rational
+    /// frequencies.
+    #[error("not made of polynomials, rational powers, sines, cosines and exponentials")]
     NotPolynomial(Expression),
-    /// The degree in (x, x') or the highest harmonic of the force are beyond what is taken.
+    /// No such value: a force that is not smooth where the orbit passes, so that its Fourier coefficients decay
+    /// too slowly for any of the bounds.
+    #[error("a force that is not smooth at x = 0")]
+    NotSmooth(Expression),
+    /// Could not decide: a function of the orbit is not enclosed: its argument, of norm `argument`, is too
+    /// large for an exponential, or vanishes on the orbit or near it, where a root has no value.
+    #[error("a function of the orbit is not enclosed (norm of its argument {argument:.3e})")]
+    NoFunction {
+        /// The norm.
+        argument: f64,
+    },
+    /// The degree or the highest harmonic of the force are beyond what is taken.
     #[error("degree {degree}, harmonic {harmonic} of the force: too large")]
     TooLarge {
         /// The degree.

@@ -1,52 +1,54 @@
-//! The right side of x'' = g(x, x', t) as a polynomial whose coefficients are trigonometric
-//! polynomials of the phase.
+//! The right sides of x_i'' = g_i(x, x', t) as polynomials in the unknowns, their velocities and functions
+//! of these, with coefficients that are trigonometric polynomials of the phase.
 //!
-//! g = sum_t f_t(tau) x^(i_t) (x')^(j_t), f_t rational and of period 2 pi in tau = omega t. With
-//! z = dx/dtau a velocity is omega z: every term is a monomial in (omega, x, z), which is all
-//! that the residual, its derivatives and the bounds need.
+//! With z = dx/dtau a velocity is omega z: every term is a monomial in omega, x, z and the functions, which
+//! is all that the residual, its derivatives and the bounds need. Functions (sines, exponentials, roots)
+//! are elements of the same algebra, computed and enclosed where the orbit is known
+//! ([`crate::function`]); their derivatives are polynomials in functions again, so that no further
+//! unknowns, and no constraints that tie them, are needed.
 
-use crate::Parity;
-use crate::upward::Up;
-use rug::Rational;
-use std::collections::BTreeMap;
-use std::ops::Mul;
+use crate::operation::Operation;
+use crate::polynomial::{Polynomial, Term};
+use crate::space::Signs;
+use rug::{Complete, Integer, Rational};
 
-/// f = sum_h (a_h cos h tau + b_h sin h tau): (a_h, b_h) by h.
-pub(crate) type Trigonometric = BTreeMap<u32, (Rational, Rational)>;
-
-/// f(tau) x^x (x')^velocity.
+/// A function of a polynomial in the variables before it.
 #[derive(Clone, Debug)]
-pub(crate) struct Term {
-    pub(crate) factor: Trigonometric,
-    pub(crate) x: u32,
-    pub(crate) velocity: u32,
+pub(crate) struct Function {
+    pub(crate) kind: Operation,
+    pub(crate) argument: Polynomial,
 }
 
-/// A coefficient known within `size`: an uncertain multiple of x^x (x')^velocity and of waves up to a harmonic.
-#[derive(Clone, Debug)]
-pub(crate) struct Spread {
-    pub(crate) size: Up,
-    pub(crate) x: u32,
-    pub(crate) velocity: u32,
-    pub(crate) harmonic: u32,
-}
-
-/// x'' = g(x, x', t), g a polynomial in x and x' with rational coefficients that may be multiplied by cosines
-/// and sines of multiples of one frequency.
+/// x_i'' = g_i(x, x', t): each g_i a polynomial in the unknowns, their velocities, and sines, cosines,
+/// exponentials and powers of such polynomials, with rational coefficients that may be multiplied by
+/// cosines and sines of multiples of one frequency.
 #[derive(Clone, Debug)]
 pub struct Field {
-    pub(crate) terms: Vec<Term>,
-    /// What is uncertain of the coefficients.
-    pub(crate) spread: Vec<Spread>,
+    /// g_i.
+    pub(crate) forces: Vec<Polynomial>,
+    /// dg_i/dx_k, then dg_i/dx_k', by i and k.
+    pub(crate) first: Vec<Vec<Polynomial>>,
+    /// The second derivatives that are not 0: i, two variables, the derivative.
+    pub(crate) second: Vec<(usize, [usize; 2], Polynomial)>,
+    /// sum_k x_k' dg_i/dx_k'.
+    pub(crate) flow: Vec<Polynomial>,
+    pub(crate) functions: Vec<Function>,
     /// The largest frequency of which all the frequencies of the force are multiples.
     pub(crate) force: Option<Rational>,
 }
 
 impl Field {
-    /// The largest degree in (x, x').
+    /// The largest degree in the unknowns, their velocities and the functions.
     #[must_use]
     pub fn degree(&self) -> u32 {
-        self.terms.iter().map(|t| t.x.saturating_add(t.velocity)).max().unwrap_or(0)
+        let terms = self.forces.iter().flat_map(|g| &g.terms);
+        terms.map(|t| t.powers.iter().fold(0, |s: u32, n| s.saturating_add(*n))).max().unwrap_or(0)
+    }
+
+    /// How many unknowns there are.
+    #[must_use]
+    pub fn unknowns(&self) -> usize {
+        self.forces.len()
     }
 
     /// Whether no force depends on time.
@@ -58,81 +60,116 @@ impl Field {
     /// The field for a period of `periods` periods of the force: harmonics are multiplied.
     pub(crate) fn over(&self, periods: u32) -> Self {
         let mut field = self.clone();
-        for term in &mut field.terms {
-            let factor = std::mem::take(&mut term.factor);
-            term.factor = factor.into_iter().map(|(h, w)| (h.saturating_mul(periods), w)).collect();
+        for polynomial in field.polynomials() {
+            let terms = polynomial.terms.iter_mut().map(|t| &mut t.factor);
+            for factor in terms.chain(polynomial.spread.iter_mut().map(|s| &mut s.factor)) {
+                let waves = std::mem::take(factor).into_iter();
+                *factor = waves.map(|(h, w)| (h.saturating_mul(periods), w)).collect();
+            }
         }
         field
     }
 
-    /// Whether x(tau) -> -x(tau + pi) maps solutions to solutions: every term is odd.
-    pub(crate) fn is_odd(&self) -> bool {
-        let odd = |t: &Term| t.factor.keys().all(|h| (t.x + t.velocity + h) % 2 == 1);
-        self.terms.iter().all(odd)
+    fn polynomials(&mut self) -> impl Iterator<Item = &mut Polynomial> {
+        let first = self.first.iter_mut().flatten();
+        let second = self.second.iter_mut().map(|(.., p)| p);
+        let arguments = self.functions.iter_mut().map(|f| &mut f.argument);
+        self.forces.iter_mut().chain(first).chain(second).chain(&mut self.flow).chain(arguments)
     }
 
-    /// Whether x(tau) -> x(-tau) maps solutions to solutions: even powers of x', cosines.
+    /// Whether x_k(tau + pi) = s_k x_k(tau) is kept, s_k = -1 where the bit is set.
+    pub(crate) fn keeps_shift(&self, minus: u64) -> bool {
+        self.keeps(&|v| minus >> (v % self.unknowns()) & 1 == 1, &|h, _, _| Some(h % 2 == 1), minus)
+    }
+
+    /// Whether x_k(-tau) = s_k x_k(tau) is kept, s_k = -1 where the bit is set.
+    pub(crate) fn keeps_reversal(&self, minus: u64) -> bool {
+        let n = self.unknowns();
+        self.keeps(
+            &|v| (minus >> (v % n) & 1 == 1) != (v >= n),
+            &|_, a, b| match () {
+                () if !a.is_zero() && !b.is_zero() => None,
+                () => Some(!b.is_zero()),
+            },
+            minus,
+        )
+    }
+
+    /// Whether g_i changes its sign as x_i does where the variables and the waves change theirs.
+    fn keeps(
+        &self,
+        variable: &dyn Fn(usize) -> bool,
+        wave: &dyn Fn(u32, &Rational, &Rational) -> Option<bool>,
+        minus: u64,
+    ) -> bool {
+        let n = 2 * self.unknowns();
+        let mut signs: Vec<Option<bool>> = (0..n).map(|v| Some(variable(v))).collect();
+        for function in &self.functions {
+            let sign = function.argument.sign(&signs, wave);
+            signs.push(function.kind.sign(sign));
+        }
+        let kept = |(i, g): (usize, &Polynomial)| {
+            g.is_zero() || g.sign(&signs, wave) == Some(minus >> i & 1 == 1)
+        };
+        self.forces.iter().enumerate().all(kept)
+    }
+
+    /// Whether x(tau) -> x(-tau) maps solutions to solutions; of several unknowns the further ones may
+    /// change their sign.
     #[must_use]
     pub fn is_reversible(&self) -> bool {
-        let even =
-            |t: &Term| t.velocity.is_multiple_of(2) && t.factor.values().all(|(_, b)| b.is_zero());
-        self.terms.iter().all(even)
+        self.signs(false).iter().any(|minus| minus & 1 == 0)
     }
 
-    /// The symmetry that F keeps.
-    pub(crate) fn parity(&self, reversible: bool) -> Parity {
-        Parity { odd: self.is_odd(), even: reversible && self.is_reversible() }
+    /// The patterns of signs of one symmetry that F keeps: of the shift by pi (never all +), or of the
+    /// reversal of time.
+    pub(crate) fn signs(&self, shift: bool) -> Signs {
+        let most = if self.unknowns() > MOST_SIGNS { 1 } else { self.unknowns() };
+        let all = 0..1u64 << most;
+        match shift {
+            true => all.skip(1).filter(|minus| self.keeps_shift(*minus)).collect(),
+            false => all.filter(|minus| self.keeps_reversal(*minus)).collect(),
+        }
     }
 
-    /// dg/dx'.
-    pub(crate) fn by_velocity(&self) -> Self {
-        let terms = self.terms.iter().filter(|t| t.velocity > 0);
-        let derivative = |t: &Term| {
-            let n = t.velocity;
-            let times =
-                |(a, b): &(Rational, Rational)| (Rational::from(a * n), Rational::from(b * n));
-            let factor = t.factor.iter().map(|(h, wave)| (*h, times(wave))).collect();
-            Term { factor, x: t.x, velocity: n - 1 }
-        };
-        let spread = self.spread.iter().filter(|s| s.velocity > 0).map(|s| {
-            let size = s.size * Up(f64::from(s.velocity));
-            Spread { size, velocity: s.velocity - 1, ..s.clone() }
-        });
-        let spread = spread.collect();
-        Self { terms: terms.map(derivative).collect(), spread, force: self.force.clone() }
+    /// q where x (alone) occurs in sines and cosines of multiples of q x only: it is an angle.
+    pub(crate) fn angle(&self) -> Option<f64> {
+        let holds = |t: &Term| t.powers.first().is_some_and(|n| *n > 0);
+        if self.unknowns() > 1 || self.forces[0].terms.iter().any(holds) {
+            return None;
+        }
+        let mut rates: Vec<Rational> = Vec::new();
+        for function in &self.functions {
+            for term in function.argument.terms.iter().filter(|t| holds(t)) {
+                let constant = term.factor.iter().next().filter(|_| term.factor.len() == 1)?;
+                let waves = matches!(function.kind, Operation::Sine | Operation::Cosine);
+                if term.powers != [1] || *constant.0 != 0 || !waves {
+                    return None;
+                }
+                rates.push(constant.1.0.clone().abs());
+            }
+        }
+        rates.into_iter().reduce(|a, b| common_measure(&a, &b)).map(|q| q.to_f64())
     }
 
-    /// sum_t |f_t| d^p/domega^p d^q/dx^q d^r/dz^r (omega^j x^i z^j) at nonnegative bounds: the
-    /// derivative of the majorant polynomial, what is uncertain included. |f| = sum_h (|a_h| + |b_h|) nu^h.
-    pub(crate) fn majorant(&self, at: [Up; 3], nu: Up, derivative: [u32; 3]) -> Up {
-        let term = |t: &Term| {
-            let size = t.factor.iter();
-            let size: Up = size.map(|(h, (a, b))| (Up::of(a) + Up::of(b)) * nu.powi(*h)).sum();
-            monomial(size, t.x, t.velocity, at, derivative)
-        };
-        let sum: Up = self.terms.iter().map(term).sum();
-        sum + self.uncertainty(at, nu, derivative)
-    }
-
-    /// The same for what is uncertain alone.
-    pub(crate) fn uncertainty(&self, at: [Up; 3], nu: Up, derivative: [u32; 3]) -> Up {
-        let term =
-            |s: &Spread| monomial(s.size * nu.powi(s.harmonic), s.x, s.velocity, at, derivative);
-        self.spread.iter().map(term).sum()
+    /// The sum of dg_i/dx_i'.
+    pub(crate) fn divergence(&self) -> Polynomial {
+        let n = self.unknowns();
+        let mut sum = Polynomial::default();
+        for (i, row) in self.first.iter().enumerate() {
+            sum.terms.extend(row[n + i].terms.iter().cloned());
+            sum.spread.extend(row[n + i].spread.iter().cloned());
+        }
+        sum
     }
 }
 
-/// size d^p/domega^p d^q/dx^q d^r/dz^r (omega^j x^i z^j).
-fn monomial(size: Up, x: u32, velocity: u32, at: [Up; 3], derivative: [u32; 3]) -> Up {
-    let exponents = [velocity, x, velocity];
-    (0..3).map(|i| power(at[i], exponents[i], derivative[i])).fold(size, Mul::mul)
-}
+/// Unknowns up to which all patterns of signs are tried.
+const MOST_SIGNS: usize = 8;
 
-/// d^p x^n.
-fn power(x: Up, n: u32, p: u32) -> Up {
-    if p > n {
-        return Up::ZERO;
-    }
-    let falling = (n - p + 1..=n).fold(Up::ONE, |f, k| f * Up(f64::from(k)));
-    falling * x.powi(n - p)
+/// The largest q of which a and b are integer multiples: gcd of numerators over lcm of
+/// denominators.
+pub(crate) fn common_measure(a: &Rational, b: &Rational) -> Rational {
+    let numerator = Integer::from(a.numer() * b.denom()).gcd(&Integer::from(b.numer() * a.denom()));
+    Rational::from((numerator, (a.denom() * b.denom()).complete()))
 }

@@ -1,5 +1,6 @@
 //! Guesses without a simulation: harmonic balance in doubles from a grid of single harmonics.
 
+use crate::doubles::InDoubles;
 use crate::newton::balance;
 use crate::task::Task;
 use crate::{Failure, Field, Kind, Start};
@@ -60,10 +61,10 @@ pub fn guesses(field: &Field, kind: &Kind, stop: &Stop) -> Result<Vec<Start>, Fa
             cosines: vec![middle, radius * angle.cos()],
             sines: vec![0.0, radius * angle.sin()],
         };
-        let (task, guess) = Task::new(field, kind, &single)?;
+        let (task, guess) = Task::new(field, kind, std::slice::from_ref(&single))?;
         match balance(&task, guess, MODES, stop) {
             Ok(centre) => {
-                let start = Start::of(&centre);
+                let start = Start::of(&centre.frequency, &centre.component(0));
                 let new = found.iter().all(|other| !other.is_near(&start, SAME));
                 if new && (forced || start.oscillates(OSCILLATES)) {
                     found.push(start);
@@ -122,17 +123,17 @@ impl Field {
         let force = |j: i32| self.value(at(j), 0.0);
         let change = |a: f64, b: f64| a * b < 0.0 || (a == 0.0 && b != 0.0);
         let changes = (-CELLS..CELLS).filter(|j| change(force(*j), force(j + 1)));
-        let places: Vec<f64> = changes.map(|j| (at(j) + at(j + 1)) / 2.0).collect();
+        // Where x is an angle, those of one turn.
+        let most = self.angle().map_or(f64::INFINITY, |rate| std::f64::consts::PI / rate);
+        let places = changes
+            .map(|j| (at(j) + at(j + 1)) / 2.0)
+            .filter(|x| *x > STEP - most && *x <= most + STEP);
+        let places: Vec<f64> = places.collect();
         if places.is_empty() { vec![0.0] } else { places }
     }
 
     /// g without its force.
     fn value(&self, x: f64, velocity: f64) -> f64 {
-        let power = |base: f64, n: u32| base.powi(n.min(64) as i32);
-        let term = |t: &crate::field::Term| {
-            let factor = t.factor.get(&0).map_or(0.0, |(a, _)| a.to_f64());
-            factor * power(x, t.x) * power(velocity, t.velocity)
-        };
-        self.terms.iter().map(term).sum()
+        InDoubles::new(self).accelerations(&[x, velocity], None)[0]
     }
 }

@@ -1,7 +1,8 @@
 //! Periodic orbits in Fourier space: Newton's method to any number of digits, and the proof that
 //! exactly one orbit is within a radius of the numbers.
 //!
-//! x'' = g(x, x', t) with a polynomial g ([`Field`]), tau = omega t, x = sum_k c_k e^(i k tau):
+//! x'' = g(x, x', t), one unknown or several, g made of polynomials, rational powers, sines, cosines and
+//! exponentials ([`Field`]), tau = omega t, x = sum_k c_k e^(i k tau):
 //!
 //! F(omega, x) = omega^2 d^2x/dtau^2 - g(x, omega dx/dtau, tau) = 0.
 //!
@@ -12,7 +13,8 @@
 //! no part.
 //!
 //! Three tiers of arithmetic. Coefficients of the solution are integers over a power of 2 and every
-//! residual is formed *exactly*, by products of long integers: no rounding to argue about. The
+//! residual is formed *exactly*, by products of long integers: no rounding to argue about (functions of
+//! the solution are enclosed by what ties them to their argument, formed exactly as well). The
 //! linear algebra is in doubles with a-priori bounds of its rounding errors. What is enclosed at the end
 //! is in balls.
 //!
@@ -33,34 +35,44 @@
 
 mod bounds;
 mod centre;
+mod doubles;
+mod exact;
 mod failure;
 mod family;
 mod field;
+mod function;
 mod guesses;
 mod laurent;
 mod linear;
+mod modes;
 mod newton;
+mod operation;
 mod orbit;
+mod polynomial;
 mod proof;
 mod prove;
 mod radii;
 mod read;
+mod reader;
 mod sine;
 mod space;
 mod start;
 pub mod steady;
+mod sum;
 mod task;
 #[cfg(test)]
 mod tests;
+mod transform;
 mod upward;
 mod write;
 
 pub use failure::Failure;
-pub use family::{Cover, Member, cover, family};
+pub use family::{Cover, Member, cover, family, family_all};
 pub use field::Field;
 pub use guesses::guesses;
-pub use proof::{Proof, Stability, Status};
-pub use prove::{Approximation, approximate, prove};
+pub use modes::guesses_all;
+pub use proof::{Motion, Proof, Stability, Status};
+pub use prove::{Approximation, approximate, prove, prove_all};
 pub use radii::Bounds;
 pub use sine::Sine;
 pub use space::Parity;

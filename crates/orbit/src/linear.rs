@@ -1,7 +1,8 @@
-//! DF at the centre, in doubles: h -> omega^2 h'' - g_x h - omega g_y h' (' = d/dtau), and the
-//! column of the frequency.
+//! DF at the centre, in doubles: h -> omega^2 h_i'' - sum_k (dg_i/dx_k h_k + omega dg_i/dx_k' h_k')
+//! (' = d/dtau), and the column of the frequency.
 
-use crate::centre::{Doubles, Values};
+use crate::centre::Values;
+use crate::exact::{ERROR, Exact};
 use crate::space::Wave;
 use crate::upward::{UNIT, Up};
 use crate::{Condition, Rows};
@@ -9,30 +10,32 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
 
-/// DF as coefficients.
+/// DF as coefficients; matrices of functions by rows.
 #[derive(Clone, Debug)]
 pub(crate) struct Linear {
     pub(crate) frequency: f64,
-    /// g_x and omega g_y, k = 0..=band; what was left out of them has small norms.
-    pub(crate) by_x: Vec<C>,
-    pub(crate) by_slope: Vec<C>,
-    /// dF/domega, k = 0...
-    pub(crate) by_frequency: Vec<C>,
+    pub(crate) unknowns: usize,
+    /// dg_i/dx_k and omega dg_i/dx_k', modes 0..=band; what was left out of them has small norms.
+    pub(crate) by_x: Vec<Vec<C>>,
+    pub(crate) by_slope: Vec<Vec<C>>,
+    /// dF_i/domega, modes 0...
+    pub(crate) by_frequency: Vec<Vec<C>>,
     pub(crate) rows: Rows,
 }
 
-/// A correction: of the frequency and of c_k, k = 0...
+/// A correction: of the frequency and of the coefficients, modes 0... by unknowns.
 #[derive(Clone, Debug)]
 pub(crate) struct Step {
     pub(crate) frequency: f64,
-    pub(crate) modes: Vec<C>,
+    pub(crate) unknowns: Vec<Vec<C>>,
 }
 
 impl Linear {
     pub(crate) fn new(frequency: f64, values: &Values, rows: Rows) -> Self {
-        let coefficients = |e: &crate::centre::Exact| e.doubles(Some(0)).values;
+        let coefficients = |list: &[Exact]| list.iter().map(|e| e.doubles(0)).collect();
         Self {
             frequency,
+            unknowns: values.residual.len(),
             by_x: coefficients(&values.by_x),
             by_slope: coefficients(&values.by_slope),
             by_frequency: coefficients(&values.by_frequency),
@@ -40,60 +43,81 @@ impl Linear {
         }
     }
 
-    /// Leaves out the modes of g_x and g_y beyond the band outside which the rest is below
+    /// Leaves out the modes of the functions beyond the band outside which the rest is below
     /// `fraction` of their sizes.
     pub(crate) fn cut(&mut self, fraction: f64) {
-        for list in [&mut self.by_x, &mut self.by_slope] {
-            let total: f64 = list.iter().map(|c| c.norm()).sum();
-            let mut rest = 0.0;
-            while let Some(c) = list.last() {
-                rest += c.norm();
-                if rest > fraction * total || list.len() == 1 {
-                    break;
+        for lists in [&mut self.by_x, &mut self.by_slope] {
+            let total: f64 = lists.iter().flatten().map(|c| c.norm()).sum();
+            for list in lists {
+                let mut rest = 0.0;
+                while let Some(c) = list.last() {
+                    rest += c.norm();
+                    if rest > fraction * total || list.len() == 1 {
+                        break;
+                    }
+                    list.pop();
                 }
-                list.pop();
             }
         }
     }
 
-    /// The complex coefficient at mode k >= 0 of -(g_x h + omega g_y h') for a wave h.
-    pub(crate) fn coupling(&self, k: usize, h: Wave) -> C {
+    /// The largest mode of the functions.
+    pub(crate) fn band(&self) -> usize {
+        self.by_x.iter().chain(&self.by_slope).map(|f| f.len()).max().unwrap_or(1) - 1
+    }
+
+    /// The waves up to a mode.
+    pub(crate) fn basis(&self, modes: usize) -> Vec<Wave> {
+        self.rows.parity.basis(self.unknowns, modes)
+    }
+
+    /// Unknowns beside the waves: the frequency.
+    pub(crate) fn extra(&self) -> usize {
+        usize::from(self.rows.condition.is_some())
+    }
+
+    /// The complex coefficient at mode k >= 0 of row i of -(dg/dx h + omega dg/dx' h') for a wave h.
+    pub(crate) fn coupling(&self, i: usize, k: usize, h: Wave) -> C {
+        let entry = i * self.unknowns + h.unknown;
+        let (by_x, by_slope) = (&self.by_x[entry], &self.by_slope[entry]);
         let (k, j) = (k as i64, h.k as i64);
         if j == 0 {
-            return -at(&self.by_x, k);
+            return -at(by_x, k);
         }
-        let (u, v) = (at(&self.by_x, k - j), at(&self.by_slope, k - j));
-        let (s, t) = (at(&self.by_x, k + j), at(&self.by_slope, k + j));
-        let i = C::new(0.0, 0.5);
+        let (u, v) = (at(by_x, k - j), at(by_slope, k - j));
+        let (s, t) = (at(by_x, k + j), at(by_slope, k + j));
+        let half = C::new(0.0, 0.5);
         // h' = -j sin j tau, j cos j tau.
         if h.sine {
-            i * (u - s) - (v + t) * (0.5 * j as f64)
+            half * (u - s) - (v + t) * (0.5 * j as f64)
         } else {
-            -(u + s) * 0.5 - i * (v - t) * j as f64
+            -(u + s) * 0.5 - half * (v - t) * j as f64
         }
     }
 
     /// A bound of the sums of absolute values in [`Self::coupling`] as a real coefficient: its
     /// rounding error is at most 8 units of this.
-    pub(crate) fn coupling_size(&self, k: usize, h: Wave) -> f64 {
+    pub(crate) fn coupling_size(&self, i: usize, k: usize, h: Wave) -> f64 {
+        let entry = i * self.unknowns + h.unknown;
+        let (by_x, by_slope) = (&self.by_x[entry], &self.by_slope[entry]);
         let (k, j) = (k as i64, h.k as i64);
         let size = |list: &[C], k| {
             let c = at(list, k);
             c.re.abs() + c.im.abs()
         };
-        let x = size(&self.by_x, k - j) + size(&self.by_x, k + j);
-        let slope = size(&self.by_slope, k - j) + size(&self.by_slope, k + j);
+        let x = size(by_x, k - j) + size(by_x, k + j);
+        let slope = size(by_slope, k - j) + size(by_slope, k + j);
         x + slope * j as f64
     }
 
     /// The relative error of a coupling: of the coefficients, and of the operations.
     pub(crate) fn coupling_error() -> Up {
-        Doubles::ERROR + Up(16.0 * UNIT)
+        ERROR + Up(16.0 * UNIT)
     }
 
     /// The row of DF at a wave against the column of a wave.
     pub(crate) fn entry(&self, row: Wave, column: Wave) -> f64 {
-        let coupling = row.of(self.coupling(row.k, column));
+        let coupling = row.of(self.coupling(row.unknown, row.k, column));
         if row == column {
             let k = row.k as f64;
             coupling - self.frequency * self.frequency * k * k
@@ -104,8 +128,7 @@ impl Linear {
 
     /// DF on the unknowns up to `modes`.
     pub(crate) fn matrix(&self, modes: usize) -> DMatrix<f64> {
-        let basis = self.rows.parity.basis(modes);
-        let extra = usize::from(self.rows.condition.is_some());
+        let (basis, extra) = (self.basis(modes), self.extra());
         let n = basis.len() + extra;
         let mut matrix = DMatrix::zeros(n, n);
         for (j, column) in basis.iter().enumerate() {
@@ -118,51 +141,65 @@ impl Linear {
         }
         if extra == 1 {
             for (i, row) in basis.iter().enumerate() {
-                matrix[(i + 1, 0)] = row.of(at(&self.by_frequency, row.k as i64));
+                let by_frequency = &self.by_frequency[row.unknown];
+                matrix[(i + 1, 0)] = row.of(at(by_frequency, row.k as i64));
             }
         }
         matrix
     }
 
     /// DF applied to a step, up to its own modes: (condition, coefficients).
-    pub(crate) fn apply(&self, step: &Step) -> (f64, Vec<C>) {
-        let modes = step.modes.len() - 1;
-        let slope: Vec<C> =
-            step.modes.iter().enumerate().map(|(k, c)| c * C::new(0.0, k as f64)).collect();
-        let (x, slope) = (full(&step.modes), full(&slope));
-        let (by_x, by_slope) = (full(&self.by_x), full(&self.by_slope));
+    pub(crate) fn apply(&self, step: &Step) -> (f64, Vec<Vec<C>>) {
+        let n = self.unknowns;
+        let modes = step.unknowns[0].len() - 1;
+        let slope = |h: &Vec<C>| -> Vec<C> {
+            let each = h.iter().enumerate();
+            each.map(|(k, c)| c * C::new(0.0, k as f64)).collect()
+        };
+        let x: Vec<_> = step.unknowns.iter().map(|h| full(h)).collect();
+        let slopes: Vec<_> = step.unknowns.iter().map(|h| full(&slope(h))).collect();
+        let by_x: Vec<_> = self.by_x.iter().map(|f| full(f)).collect();
+        let by_slope: Vec<_> = self.by_slope.iter().map(|f| full(f)).collect();
         let square = self.frequency * self.frequency;
-        let row = |k: usize| {
-            let inertia = step.modes[k] * -(square * (k * k) as f64);
-            let product = convolution(&by_x, &x, k) + convolution(&by_slope, &slope, k);
-            inertia - product + at(&self.by_frequency, k as i64) * step.frequency
+        let row = |i: usize, k: usize| {
+            let inertia = step.unknowns[i][k] * -(square * (k * k) as f64);
+            let product = |j: usize| {
+                let entry = i * n + j;
+                convolution(&by_x[entry], &x[j], k) + convolution(&by_slope[entry], &slopes[j], k)
+            };
+            let product: C = (0..n).map(product).sum();
+            inertia - product + at(&self.by_frequency[i], k as i64) * step.frequency
         };
         let of = |condition: Condition| {
-            let waves = self.rows.parity.basis(modes);
-            waves.iter().map(|w| condition.of(*w) * w.of(step.modes[w.k])).sum()
+            let waves = self.basis(modes);
+            waves.iter().map(|w| condition.of(*w) * w.of(step.unknowns[w.unknown][w.k])).sum()
         };
-        (self.rows.condition.map_or(0.0, of), (0..=modes).map(row).collect())
+        let rows = (0..n).map(|i| (0..=modes).map(|k| row(i, k)).collect()).collect();
+        (self.rows.condition.map_or(0.0, of), rows)
     }
 
     /// A applied to (condition, coefficients): the inverse on its modes, the inverse of omega^2
     /// d^2/dtau^2 beyond.
-    pub(crate) fn precondition(&self, inverse: &Inverse, condition: f64, rows: &[C]) -> Step {
-        let extra = usize::from(self.rows.condition.is_some());
+    pub(crate) fn precondition(&self, inverse: &Inverse, condition: f64, rows: &[Vec<C>]) -> Step {
+        let extra = self.extra();
         let basis = &inverse.basis;
-        let at_row = |w: &Wave| w.of(at(rows, w.k as i64));
+        let at_row = |w: &Wave| w.of(at(&rows[w.unknown], w.k as i64));
         let start = (extra == 1).then_some(condition);
         let all = start.into_iter().chain(basis.iter().map(at_row));
         let vector = DVector::from_iterator(basis.len() + extra, all);
         let solution = &inverse.matrix * vector;
-        let mut modes = vec![C::default(); rows.len().max(inverse.modes + 1)];
+        let modes = rows[0].len().max(inverse.modes + 1);
+        let mut unknowns = vec![vec![C::default(); modes]; self.unknowns];
         for (w, value) in basis.iter().zip(solution.iter().skip(extra)) {
-            modes[w.k] += w.complex(*value);
+            unknowns[w.unknown][w.k] += w.complex(*value);
         }
-        for (k, c) in rows.iter().enumerate().skip(inverse.modes + 1) {
-            let rate = k as f64 * self.frequency;
-            modes[k] = *c / -(rate * rate);
+        for (h, row) in unknowns.iter_mut().zip(rows) {
+            for (k, c) in row.iter().enumerate().skip(inverse.modes + 1) {
+                let rate = k as f64 * self.frequency;
+                h[k] = *c / -(rate * rate);
+            }
         }
-        Step { frequency: if extra == 1 { solution[0] } else { 0.0 }, modes }
+        Step { frequency: if extra == 1 { solution[0] } else { 0.0 }, unknowns }
     }
 }
 

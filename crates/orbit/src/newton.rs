@@ -1,7 +1,8 @@
 //! Newton's method in Fourier space: on few modes in doubles, then to any number of digits.
 
 use crate::Failure;
-use crate::centre::{Centre, Doubles};
+use crate::centre::{Centre, Values};
+use crate::exact::Exact;
 use crate::linear::{Inverse, Linear, Step, at};
 use crate::task::Task;
 use lindstedt_algebra::Stop;
@@ -16,9 +17,12 @@ const CONVERGED: f64 = 1e-10;
 const MOST_SWEEPS: usize = 60;
 const GAIN: f64 = 1e-9;
 
-/// sum_k max(k, 1) |c_k|.
-fn size(modes: &[Complex<f64>]) -> f64 {
-    modes.iter().enumerate().map(|(k, c)| c.norm() * k.max(1) as f64).sum()
+/// sum_k max(k, 1) |c_k| over all unknowns.
+fn size(unknowns: &[Vec<Complex<f64>>]) -> f64 {
+    let one = |modes: &Vec<Complex<f64>>| -> f64 {
+        modes.iter().enumerate().map(|(k, c)| c.norm() * k.max(1) as f64).sum()
+    };
+    unknowns.iter().map(one).sum()
 }
 
 /// Harmonic balance: Newton's method on the modes up to `modes`.
@@ -28,32 +32,32 @@ pub(crate) fn balance(
     modes: usize,
     stop: &Stop,
 ) -> Result<Centre, Failure> {
-    centre.modes.resize(modes);
+    centre.resize(modes);
     let start = size(&centre.doubles());
     let mut before = f64::INFINITY;
     for _ in 0..MOST_STEPS {
         if stop.asked() {
             return Err(Failure::Stopped);
         }
-        let (linear, residual, condition) = state(task, &centre);
+        let (linear, residual, condition) = state(task, &centre)?;
         let matrix = linear.matrix(modes);
-        let basis = task.rows.parity.basis(modes);
+        let basis = linear.basis(modes);
         let condition = task.is_free().then_some(condition);
-        let rows = basis.iter().map(|w| w.of(at(&residual, w.k as i64)));
+        let rows = basis.iter().map(|w| w.of(at(&residual[w.unknown], w.k as i64)));
         let rows = condition.into_iter().chain(rows);
         let right = -DVector::from_iterator(matrix.nrows(), rows);
         let solution = matrix.lu().solve(&right).ok_or(Failure::Singular { modes })?;
-        let extra = usize::from(task.is_free());
-        let mut step = vec![Complex::default(); modes + 1];
+        let extra = linear.extra();
+        let mut step = vec![vec![Complex::default(); modes + 1]; linear.unknowns];
         for (w, value) in basis.iter().zip(solution.iter().skip(extra)) {
-            step[w.k] += w.complex(*value);
+            step[w.unknown][w.k] += w.complex(*value);
         }
         let change = size(&step);
         let frequency = if extra == 1 { solution[0] } else { 0.0 };
         let now = size(&centre.doubles());
         // A step larger than the orbit is shortened: far away the linear model means little.
         let factor = (0.5 * now / change).min(1.0);
-        step.iter_mut().for_each(|c| *c *= factor);
+        step.iter_mut().flatten().for_each(|c| *c *= factor);
         centre.add(frequency * factor, &step, 0);
         if !change.is_finite() || now > 1e3 * start || centre.frequency <= 0 {
             return Err(Failure::NotConverged { modes });
@@ -68,16 +72,31 @@ pub(crate) fn balance(
 }
 
 /// DF, F and the condition in doubles.
-fn state(task: &Task, centre: &Centre) -> (Linear, Vec<Complex<f64>>, f64) {
-    let values = centre.values(&task.field);
+type State = (Linear, Vec<Vec<Complex<f64>>>, f64);
+
+fn state(task: &Task, centre: &Centre) -> Result<State, Failure> {
+    let (values, linear) = linearised(task, centre)?;
+    let residual = values.residual.iter().map(|e| e.doubles(0)).collect();
+    Ok((linear, residual, task.condition(centre).to_f64()))
+}
+
+/// F and DF at a centre.
+pub(crate) fn linearised(task: &Task, centre: &Centre) -> Result<(Values, Linear), Failure> {
+    let values = centre.values(&task.field)?;
     let linear = Linear::new(centre.frequency.to_f64(), &values, task.rows);
-    (linear, values.residual.doubles(Some(0)).values, task.condition(centre).to_f64())
+    Ok((values, linear))
 }
 
 /// The inverse of DF on the modes up to `modes`.
 pub(crate) fn invert(linear: &Linear, modes: usize) -> Result<Inverse, Failure> {
     let matrix = linear.matrix(modes).try_inverse().ok_or(Failure::Singular { modes })?;
-    Ok(Inverse { modes, basis: linear.rows.parity.basis(modes), matrix })
+    Ok(Inverse { modes, basis: linear.basis(modes), matrix })
+}
+
+/// The residuals in doubles with one exponent.
+pub(crate) fn residuals(list: &[Exact], bits: u32) -> (Vec<Vec<Complex<f64>>>, i32) {
+    let largest = list.iter().filter_map(Exact::exponent).max().unwrap_or(-(bits as i32));
+    (list.iter().map(|e| e.doubles(largest)).collect(), largest)
 }
 
 /// Newton's method with every residual formed exactly; the linear equations are solved in doubles
@@ -99,23 +118,22 @@ pub(crate) fn refine(
             return Err(Failure::Stopped);
         }
         let (residual, model) = match linear.take() {
-            Some(linear) => (centre.residual(&task.field), linear),
+            Some(linear) => (centre.residual(&task.field)?, linear),
             None => {
-                let values = centre.values(&task.field);
-                let mut model = Linear::new(centre.frequency.to_f64(), &values, task.rows);
+                let (values, mut model) = linearised(task, &centre)?;
                 model.cut(1e-14);
                 (values.residual, model)
             }
         };
-        let residual = residual.doubles(None);
-        let modes = needed(&residual, &model, inverse, target).min(most_modes);
-        let condition = task.condition(&centre) >> residual.exponent;
-        let mut rows = residual.values;
-        rows.resize(modes + 1, Complex::default());
+        let (mut rows, exponent) = residuals(&residual, centre.bits);
+        let allowed = (Float::with_val(53, target / 8u32) >> exponent).to_f64();
+        let modes = needed(&rows, &model, inverse, allowed).min(most_modes);
+        let condition = task.condition(&centre) >> exponent;
+        rows.iter_mut().for_each(|row| row.resize(modes + 1, Complex::default()));
         let step = solve(&model, inverse, condition.to_f64(), &rows, stop);
-        let change = Float::with_val(53, size(&step.modes)) << residual.exponent;
-        centre.add(step.frequency, &step.modes, residual.exponent);
-        centre.modes.trim();
+        let change = Float::with_val(53, size(&step.unknowns)) << exponent;
+        centre.add(step.frequency, &step.unknowns, exponent);
+        centre.unknowns.iter_mut().for_each(|f| f.trim());
         if change <= *target {
             return Ok(centre);
         }
@@ -131,14 +149,14 @@ pub(crate) fn refine(
     }
 }
 
-/// The least number of modes beyond which the residual, divided by omega^2 k, sums to less than an
-/// eighth of the target.
-fn needed(residual: &Doubles, model: &Linear, inverse: &Inverse, target: &Float) -> usize {
-    let allowed = (Float::with_val(53, target / 8u32) >> residual.exponent).to_f64();
+/// The least number of modes beyond which the residual, divided by omega^2 k, sums to less than what is
+/// allowed.
+fn needed(rows: &[Vec<Complex<f64>>], model: &Linear, inverse: &Inverse, allowed: f64) -> usize {
     let mut rest = 0.0;
-    let mut k = residual.values.len().saturating_sub(1);
+    let mut k = rows.iter().map(|row| row.len()).max().unwrap_or(0).saturating_sub(1);
     while k > inverse.modes {
-        rest += 2.0 * residual.values[k].norm() / (model.frequency * model.frequency * k as f64);
+        let size: f64 = rows.iter().filter_map(|row| row.get(k)).map(|c| c.norm()).sum();
+        rest += 2.0 * size / (model.frequency * model.frequency * k as f64);
         if rest > allowed {
             break;
         }
@@ -152,26 +170,27 @@ fn solve(
     model: &Linear,
     inverse: &Inverse,
     condition: f64,
-    rows: &[Complex<f64>],
+    rows: &[Vec<Complex<f64>>],
     stop: &Stop,
 ) -> Step {
-    let minus: Vec<_> = rows.iter().map(|c| -c).collect();
+    let minus: Vec<Vec<_>> = rows.iter().map(|row| row.iter().map(|c| -c).collect()).collect();
     let mut step = model.precondition(inverse, -condition, &minus);
-    step.modes.resize(rows.len().max(inverse.modes + 1), Complex::default());
-    let first = size(&step.modes);
+    let first = size(&step.unknowns);
     let mut last = f64::INFINITY;
     for _ in 0..MOST_SWEEPS {
         let (of_condition, mut of_rows) = model.apply(&step);
-        for (out, c) in of_rows.iter_mut().zip(rows) {
-            *out = -(*out + c);
+        for (out, row) in of_rows.iter_mut().zip(rows) {
+            out.iter_mut().for_each(|c| *c = -*c);
+            out.iter_mut().zip(row).for_each(|(out, c)| *out -= c);
         }
         let correction = model.precondition(inverse, -(of_condition + condition), &of_rows);
-        let change = size(&correction.modes);
+        let change = size(&correction.unknowns);
         if !change.is_finite() || change > 2.0 * last || stop.asked() {
             break;
         }
         step.frequency += correction.frequency;
-        step.modes.iter_mut().zip(&correction.modes).for_each(|(c, d)| *c += d);
+        let pairs = step.unknowns.iter_mut().flatten().zip(correction.unknowns.iter().flatten());
+        pairs.for_each(|(c, d)| *c += d);
         last = change;
         if change < GAIN * first {
             break;

@@ -1,6 +1,6 @@
 //! What follows from a proof: the orbit at any phase and time, and its extrema, enclosed.
 
-use crate::centre::Centre;
+use crate::centre::Component;
 use crate::upward::{UNIT, Up};
 use lindstedt_number::ball::{Ball, Balls};
 use nalgebra::Complex;
@@ -10,7 +10,7 @@ use rug::{Float, Rational};
 /// The numerical solution with the radius within which the orbit is.
 #[derive(Clone, Debug)]
 pub(crate) struct Orbit {
-    pub(crate) centre: Centre,
+    pub(crate) centre: Component,
     /// |x - xbar| and |dx/dtau - dxbar/dtau| for all tau.
     pub(crate) radius: Float,
     pub(crate) frequency: Ball,
@@ -168,7 +168,7 @@ struct Search {
 }
 
 impl Search {
-    fn new(centre: &Centre, sign: f64) -> Self {
+    fn new(centre: &Component, sign: f64) -> Self {
         let modes: Vec<_> = centre.doubles().iter().map(|c| c * sign).collect();
         let norm = |power: i32| -> f64 {
             let size = |(k, c): (usize, &Complex<f64>)| c.norm() * (k as f64).powi(power);

@@ -80,17 +80,49 @@ pub struct Proof {
     /// The least x.
     #[serde(serialize_with = "crate::write::ball")]
     pub minimum: Ball,
-    /// The sum of the two Floquet exponents, the mean of dg/dx' over a period (Liouville). One
-    /// exponent of an autonomous equation is 0: then this is the other one.
+    /// The same of the second unknown and of further ones.
+    pub further: Vec<Motion>,
+    /// The sum of the Floquet exponents, two for each unknown, the mean of sum dg_i/dx_i' over a period
+    /// (Liouville). One exponent of an autonomous equation is 0: of one unknown, then, this is the other one.
+    /// Of several unknowns the exponents themselves are not enclosed.
     #[serde(serialize_with = "crate::write::ball")]
     pub exponent: Ball,
     /// What the exponent says.
     pub stability: Stability,
+    /// By unknowns.
     #[serde(skip)]
-    orbit: Orbit,
+    orbits: Vec<Orbit>,
+    /// The numbers within the radius of which they are.
+    #[serde(skip)]
+    centre: Centre,
     /// The condition, its value and the error of that; nothing of a forced orbit.
     #[serde(skip)]
     condition: Option<(Condition, Rational, Up)>,
+}
+
+/// What is proved of one unknown.
+#[derive(Clone, Debug, Serialize)]
+pub struct Motion {
+    /// x_i at tau = 0.
+    #[serde(serialize_with = "crate::write::ball")]
+    pub displacement: Ball,
+    /// x_i' at tau = 0.
+    #[serde(serialize_with = "crate::write::ball")]
+    pub velocity: Ball,
+    /// The largest x_i.
+    #[serde(serialize_with = "crate::write::ball")]
+    pub maximum: Ball,
+    /// The least x_i.
+    #[serde(serialize_with = "crate::write::ball")]
+    pub minimum: Ball,
+}
+
+impl Motion {
+    fn of(orbit: &Orbit, even_and_autonomous: bool) -> Self {
+        let (displacement, velocity) = orbit.at_phase(&orbit.balls.zero());
+        let (minimum, maximum) = orbit.extrema(even_and_autonomous);
+        Self { displacement, velocity, maximum, minimum }
+    }
 }
 
 /// Bits behind the point of a guess.
@@ -114,16 +146,29 @@ pub(crate) fn conclude(
     // A radius as large as the frequency proves an orbit, but no period.
     let period = balls.div(&turn, &frequency).filter(|_| frequency.is_positive());
     let period = period.ok_or_else(no_value)?;
-    let exponent = divergence(task, frame, &centre, weights, radius, balls);
+    let exponent = divergence(task, frame, weights, radius, balls);
     let cycle = task.rows.condition == Some(Condition::Sine);
-    let orbit = Orbit { centre, radius: radius.clone(), frequency: frequency.clone(), balls };
-    let (displacement, velocity) = orbit.at_phase(&balls.zero());
-    let first = orbit.harmonic(1);
-    let (minimum, maximum) = orbit.extrema(task.is_free() && task.rows.parity.even);
+    let one = |i: usize| {
+        let (centre, frequency) = (centre.component(i), frequency.clone());
+        Orbit { centre, radius: radius.clone(), frequency, balls }
+    };
+    let orbits: Vec<Orbit> = (0..centre.unknowns.len()).map(one).collect();
+    let single = orbits.len() == 1;
+    let planar = single && task.is_free() && task.rows.parity.even;
+    let mut motions = orbits.iter().map(|orbit| Motion::of(orbit, planar));
+    let Some(Motion { displacement, velocity, maximum, minimum }) = motions.next() else {
+        return Err(Failure::NoStart);
+    };
+    let further = motions.collect();
+    // Where any unknown has a first harmonic.
+    let waves = |orbit: &Orbit| {
+        let (a, b) = orbit.harmonic(1);
+        !a.contains_zero() || !b.contains_zero()
+    };
     Ok(Proof {
         status: Status::Proved,
         modes: frame.modes(),
-        solution_modes: orbit.centre.modes.modes(),
+        solution_modes: centre.modes(),
         weight: weights.nu().0,
         frequency_weight: frame.scale(),
         parity: task.rows.parity,
@@ -131,19 +176,21 @@ pub(crate) fn conclude(
         bounds: radii.bounds,
         frequency,
         period,
-        least_period: [&first.0, &first.1].iter().any(|ball| !ball.contains_zero()),
+        least_period: orbits.iter().any(waves),
         displacement,
         velocity,
         maximum,
         minimum,
+        further,
         stability: match () {
             () if exponent.is_positive() => Stability::Unstable,
-            () if cycle && exponent.is_negative() => Stability::Stable,
+            () if cycle && single && exponent.is_negative() => Stability::Stable,
             () => Stability::Undecided,
         },
         exponent,
         radius: radii.radius,
-        orbit,
+        orbits,
+        centre,
         condition: task.rows.condition.map(|c| (c, task.value.clone(), task.error)),
     })
 }
@@ -167,17 +214,18 @@ fn frequency_error(frame: &Frame<'_>, weights: &Weights, radius: &Float) -> Floa
 fn divergence(
     task: &Task,
     frame: &Frame<'_>,
-    centre: &Centre,
     weights: &Weights,
     radius: &Float,
     balls: Balls,
 ) -> Ball {
-    let by_velocity = task.field.by_velocity();
-    let value = centre.mean(&by_velocity);
+    let by_velocity = task.field.divergence();
+    let value = frame.mean(&by_velocity);
+    let of_functions = frame.error_of(&by_velocity, weights);
     let slope = frame.slope(&by_velocity, weights, radius);
     let error = Float::with_val_round(53, radius * slope.0, Round::Up).0;
     let unknown = frame.unknown(&by_velocity, weights);
     let error = Float::with_val_round(53, &error + unknown.0, Round::Up).0;
+    let error = Float::with_val_round(53, &error + &of_functions, Round::Up).0;
     balls.add_error(&balls.from_rational(&value), &error)
 }
 
@@ -185,44 +233,64 @@ impl Proof {
     /// (x, x') at a time, tau = omega t being 0 at t = 0: cost one sum over the modes.
     #[must_use]
     pub fn at(&self, time: &Rational) -> (Ball, Ball) {
-        self.orbit.at(time)
+        self.orbits[0].at(time)
     }
 
     /// (x, x') at a phase tau in radians.
     #[must_use]
     pub fn at_phase(&self, phase: &Ball) -> (Ball, Ball) {
-        self.orbit.at_phase(phase)
+        self.orbits[0].at_phase(phase)
     }
 
     /// The coefficients of cos k tau and of sin k tau.
     #[must_use]
     pub fn harmonic(&self, k: usize) -> (Ball, Ball) {
-        self.orbit.harmonic(k)
+        self.orbits[0].harmonic(k)
     }
 
-    /// The product of the two Floquet multipliers, e^(sum of the exponents times the period) (Liouville).
+    /// (x_i, x_i') of the unknown i, from 0, at a time; nothing where there are fewer.
+    #[must_use]
+    pub fn unknown_at(&self, i: usize, time: &Rational) -> Option<(Ball, Ball)> {
+        Some(self.orbits.get(i)?.at(time))
+    }
+
+    /// The same at a phase tau in radians.
+    #[must_use]
+    pub fn unknown_at_phase(&self, i: usize, phase: &Ball) -> Option<(Ball, Ball)> {
+        Some(self.orbits.get(i)?.at_phase(phase))
+    }
+
+    /// The product of all Floquet multipliers, e^(sum of the exponents times the period) (Liouville).
     #[must_use]
     pub fn multiplier_product(&self) -> Ball {
-        let balls = self.orbit.balls;
+        let balls = self.orbits[0].balls;
         balls.exp(&balls.mul(&self.exponent, &self.period))
     }
 
     /// The numerical solution as a guess for a neighbouring problem.
     #[must_use]
     pub fn start(&self) -> Start {
-        Start::of(&self.orbit.centre)
+        self.starts().into_iter().next().unwrap_or_default()
     }
 
-    /// The distance of a guess, its doubles cut below 10^-70, from the numerical solution in the norm of the
+    /// The same of all unknowns.
+    #[must_use]
+    pub fn starts(&self) -> Vec<Start> {
+        let one = |i: usize| Start::of(&self.centre.frequency, &self.centre.component(i));
+        (0..self.orbits.len()).map(one).collect()
+    }
+
+    /// The distance of a guess for x (of one unknown), its doubles cut below 10^-70, from the numerical solution in the norm of the
     /// proof, rounded up; of a limit cycle with its phase moved so that the first harmonic has no sine. Where
     /// it is at most `unique_within`, no other orbit is in a ball with the guess.
     #[must_use]
     pub fn distance_from(&self, start: &Start) -> Float {
         let is_free = self.condition.is_some();
-        let modes = if is_free { in_phase(start.complex()) } else { start.complex() };
+        let modes = vec![start.complex()];
+        let modes = if is_free { in_phase(modes) } else { modes };
         let centre = Centre::from_doubles(EXACT_BITS, start.frequency, &modes);
         let scale = is_free.then_some(self.frequency_weight);
-        Float::with_val(53, self.orbit.centre.distance(&centre, Up(self.weight), scale).0)
+        Float::with_val(53, self.centre.distance(&centre, Up(self.weight), scale).0)
     }
 
     /// Whether it is proved that this and another proof of the same question speak of one orbit: the ball in which
@@ -239,7 +307,9 @@ impl Proof {
     /// comparable: that of the other at least this one, but for the weights of the frequency.
     fn surrounds(&self, other: &Self) -> bool {
         let (mine, others) = (self.parity, other.parity);
-        let is_among = (!mine.odd || others.odd) && (!mine.even || others.even);
+        let is_odd = others.odd && others.keeping == mine.keeping;
+        let is_even = others.even && others.turning == mine.turning;
+        let is_among = (!mine.odd || is_odd) && (!mine.even || is_even);
         let one_question = match (&self.condition, &other.condition) {
             (None, None) => true,
             (Some((mine, a, near)), Some((others, b, by))) => {
@@ -251,7 +321,7 @@ impl Proof {
             return false;
         }
         let scale = self.condition.as_ref().map(|_| self.frequency_weight);
-        let apart = self.orbit.centre.distance(&other.orbit.centre, Up(self.weight), scale);
+        let apart = self.centre.distance(&other.centre, Up(self.weight), scale);
         let times = Up(self.frequency_weight).over(other.frequency_weight).max(Up::ONE);
         let reach = apart + Up::of_float(&other.radius) * times;
         reach.0 <= self.unique_within.to_f64_round(Round::Down)
@@ -259,7 +329,7 @@ impl Proof {
 
     /// The precision of the numbers.
     pub(crate) fn balls(&self) -> Balls {
-        self.orbit.balls
+        self.orbits[0].balls
     }
 
     /// A lower bound of the distance between the numerical solutions of two proofs in the norm with
@@ -270,9 +340,11 @@ impl Proof {
     pub fn is_separate_from(&self, other: &Self) -> bool {
         let modes = self.solution_modes.max(other.solution_modes);
         !self.frequency.overlaps(&other.frequency)
-            || (0..=modes).any(|k| {
-                let ((a, b), (c, d)) = (self.harmonic(k), other.harmonic(k));
-                !a.overlaps(&c) || !b.overlaps(&d)
+            || self.orbits.iter().zip(&other.orbits).any(|(one, two)| {
+                (0..=modes).any(|k| {
+                    let ((a, b), (c, d)) = (one.harmonic(k), two.harmonic(k));
+                    !a.overlaps(&c) || !b.overlaps(&d)
+                })
             })
     }
 }

@@ -1,9 +1,9 @@
 //! From a guess to a theorem.
 
 use crate::bounds::{Frame, Measure, Weights};
-use crate::centre::Centre;
-use crate::linear::{Inverse, Linear};
-use crate::newton::{balance, invert, refine};
+use crate::centre::{Centre, FAST_BITS};
+use crate::linear::Inverse;
+use crate::newton::{balance, invert, linearised, refine};
 use crate::orbit::Orbit;
 use crate::proof::conclude;
 use crate::radii::{Radii, decide};
@@ -66,10 +66,40 @@ pub fn prove(
     start: &Start,
     request: &Request,
 ) -> Result<Proof, Failure> {
-    let (task, guess) = Task::new(field, kind, start)?;
+    prove_all(field, kind, std::slice::from_ref(start), request)
+}
+
+/// The same for several unknowns, with a guess for each; the frequency is the first one's.
+///
+/// # Errors
+/// As [`prove`].
+///
+/// ```
+/// use lindstedt_equation::Expression;
+/// use lindstedt_orbit::{Field, Kind, Request, Start, prove_all};
+/// // x_1'' + 2 x_1 - x_2 + x_1^3 = 0 and the same with 1 and 2 exchanged: in phase they are one
+/// // Duffing oscillator, x'' + x + x^3 = 0.
+/// let equation = |i: usize| {
+///     let [x, other] = [i, 1 - i].map(|k| Expression::unknown(k, 0));
+///     Expression::unknown(i, 2) + 2 * x.clone() - other + x.pow(3)
+/// };
+/// let field = Field::of_equations(&[&equation(0), &equation(1)], "eps", &Default::default())?;
+/// let start = Start { frequency: 1.3, cosines: vec![0.0, 1.0], sines: vec![] };
+/// let kind = Kind::InitialAmplitude(1.into());
+/// let proof = prove_all(&field, &kind, &[start.clone(), start], &Request::default())?;
+/// assert!((proof.period.midpoint().to_f64() - 4.768_022_029_102_461).abs() < 1e-13);
+/// # Ok::<(), lindstedt_orbit::Failure>(())
+/// ```
+pub fn prove_all(
+    field: &Field,
+    kind: &Kind,
+    starts: &[Start],
+    request: &Request,
+) -> Result<Proof, Failure> {
+    let (task, guess) = Task::new(field, kind, starts)?;
     let (centre, mut modes) = resolved(&task, guess, request)?;
     let bits = (f64::from(request.digits) * std::f64::consts::LOG2_10) as u32 + GUARD_BITS;
-    let mut centre = centre.with_bits(bits.max(crate::task::FAST_BITS));
+    let mut centre = centre.with_bits(bits.max(FAST_BITS));
     loop {
         let attempt = attempt(&task, &mut centre, modes, request, MOST_REFINEMENTS);
         let more = match attempt {
@@ -89,11 +119,11 @@ pub fn prove(
 pub(crate) fn uniform(
     field: &Field,
     kind: &Kind,
-    start: &Start,
+    starts: &[Start],
     modes: usize,
     request: &Request,
 ) -> Result<Proof, Failure> {
-    let (task, guess) = Task::new(field, kind, start)?;
+    let (task, guess) = Task::new(field, kind, starts)?;
     let mut centre = balance(&task, guess, modes, &request.stop)?;
     let few = Request { digits: FEW_DIGITS, ..request.clone() };
     attempt(&task, &mut centre, modes, &few, 1)
@@ -118,17 +148,17 @@ impl Approximation {
         self.orbit.at_phase(phase)
     }
 
-    /// The phase at which x' = 0 nearest to tau = 0, from where a limit cycle with this phase counts; 0 where
-    /// Newton's method finds none.
+    /// The phase of the largest x, where x' = 0.
     #[must_use]
     pub fn rest(&self) -> Ball {
-        self.orbit.critical(0.0)
+        self.orbit.critical(self.orbit.centre.top())
     }
 
     /// The harmonics in doubles.
     #[must_use]
     pub fn start(&self) -> Start {
-        Start::of(&self.orbit.centre)
+        let frequency = self.frequency.to_rational().unwrap_or_default();
+        Start::of(&frequency, &self.orbit.centre)
     }
 }
 
@@ -156,15 +186,13 @@ pub fn approximate(
     start: &Start,
     request: &Request,
 ) -> Result<Approximation, Failure> {
-    let (task, guess) = Task::new(field, kind, start)?;
+    let (task, guess) = Task::new(field, kind, std::slice::from_ref(start))?;
     let (centre, mut modes) = resolved(&task, guess, request)?;
     let bits = (f64::from(request.digits) * std::f64::consts::LOG2_10) as u32 + GUARD_BITS;
-    let centre = centre.with_bits(bits.max(crate::task::FAST_BITS));
+    let centre = centre.with_bits(bits.max(FAST_BITS));
     let goal = centre.largest() / Float::with_val(53, Float::i_pow_u(10, request.digits)) / 16u32;
     loop {
-        let values = centre.values(&task.field);
-        let linear = Linear::new(centre.frequency.to_f64(), &values, task.rows);
-        let inverse = invert(&linear, modes)?;
+        let inverse = invert(&linearised(&task, &centre)?.1, modes)?;
         let most = MOST_TIMES * modes;
         let to = |centre: &Centre, target: &Float| {
             refine(&task, centre.clone(), &inverse, target, most, &request.stop)
@@ -184,7 +212,7 @@ pub fn approximate(
                 let orbit = Orbit {
                     radius: goal + Float::with_val(53, apart.0),
                     frequency: balls.from_parts(&frequency, &error),
-                    centre: fine,
+                    centre: fine.component(0),
                     balls,
                 };
                 return Ok(Approximation { frequency, error, modes, orbit });
@@ -222,22 +250,31 @@ fn resolved(task: &Task, guess: Centre, request: &Request) -> Result<(Centre, us
     balanced(task, guess, RESOLVED, request)
 }
 
+/// sum_i |c_k| by modes.
+fn sizes(centre: &Centre) -> Vec<f64> {
+    let mut sizes = vec![0.0; centre.modes() + 1];
+    for (k, c) in centre.doubles().iter().flat_map(|list| list.iter().enumerate()) {
+        sizes[k] += c.norm();
+    }
+    sizes
+}
+
 fn balanced(
     task: &Task,
     guess: Centre,
     fraction: f64,
     request: &Request,
 ) -> Result<(Centre, usize), Failure> {
-    let sizes: Vec<f64> = guess.doubles().iter().map(|c| c.norm()).collect();
-    let allowed = GUESSED * sizes.iter().sum::<f64>();
-    let beyond = |k: &usize| sizes.iter().skip(*k).sum::<f64>() < allowed;
-    let given = (0..sizes.len()).find(beyond).unwrap_or(sizes.len());
+    let guessed = sizes(&guess);
+    let allowed = GUESSED * guessed.iter().sum::<f64>();
+    let beyond = |k: &usize| guessed.iter().skip(*k).sum::<f64>() < allowed;
+    let given = (0..guessed.len()).find(beyond).unwrap_or(guessed.len());
     let mut modes = given.max(FIRST_MODES).min(request.modes_limit);
     let mut centre = guess;
     loop {
         let found = balance(task, centre.clone(), modes, &request.stop);
         if let Ok(found) = &found {
-            let sizes: Vec<f64> = found.doubles().iter().map(|c| c.norm()).collect();
+            let sizes = sizes(found);
             let highest: f64 = sizes.iter().skip(modes * 3 / 4).sum();
             if highest < fraction * sizes.iter().sum::<f64>() || modes >= request.modes_limit {
                 return Ok((found.clone(), modes));
@@ -261,18 +298,13 @@ fn attempt(
     request: &Request,
     mut tries: u32,
 ) -> Result<Proof, Failure> {
-    let linear = |centre: &Centre| {
-        let values = centre.values(&task.field);
-        let linear = Linear::new(centre.frequency.to_f64(), &values, task.rows);
-        (values, linear)
-    };
-    let inverse = invert(&linear(centre).1, modes)?;
+    let inverse = invert(&linearised(task, centre)?.1, modes)?;
     let goal = centre.largest() / Float::with_val(53, Float::i_pow_u(10, request.digits)) / 4u32;
     let mut target = Float::with_val(53, &goal / 16u32);
     loop {
         let most = MOST_TIMES * modes;
         *centre = refine(task, centre.clone(), &inverse, &target, most, &request.stop)?;
-        let (values, linear) = linear(centre);
+        let (values, linear) = linearised(task, centre)?;
         let frame = Frame::new(task, centre, &values, &linear, &inverse);
         let (weights, radii) = weighed(&frame, &inverse, request)?;
         tries -= 1;
@@ -299,7 +331,12 @@ fn weighed(
         if request.stop.asked() {
             return Err(Failure::Stopped);
         }
-        let weights = Weights::new(1.0 + c / modes as f64, frame.reach());
+        // With a large weight the functions may not be enclosed any more.
+        let weights = match frame.weights(1.0 + c / modes as f64) {
+            Ok(weights) => weights,
+            Err(failure) if matches!(best, Err(Failure::Stopped)) => return Err(failure),
+            Err(_) => break,
+        };
         let contraction = frame.contraction(Measure::Norm, &weights);
         let found = decide(&contraction, modes, |r| frame.z2(&contraction, &weights, r));
         let good = contraction.z0.0 + contraction.z1.0 < GOOD;

@@ -1,20 +1,21 @@
-//! From the equation to the polynomial: values put in, multiplied out, forces as waves.
+//! From equations to a field: values put in, multiplied out, forces as waves, functions of the unknowns
+//! gathered.
 
 use crate::Failure;
-use crate::field::{Field, Spread, Term};
+use crate::field::{Field, Function as Named, common_measure};
+use crate::operation::Operation;
+use crate::polynomial::{Polynomial, Spread, Term};
+use crate::reader::Reader;
+use crate::sum::{Key, Sum};
 use crate::upward::Up;
-use lindstedt_equation::monomials::{Monomial, expand};
-use lindstedt_equation::{Expression, Function, Problem};
+use lindstedt_equation::{AccelerationFault, Expression, Problem};
 use lindstedt_number::ball::{Ball, Balls};
-use rug::{Complete, Integer, Rational};
+use rug::{Complete, Rational};
 use std::collections::BTreeMap;
 
-/// The largest degree in (x, x') and the largest harmonic of a force: more would only fill memory.
+/// The largest degree in the variables and the largest harmonic of a force: more would only fill memory.
 const MOST_DEGREE: u32 = 64;
 const MOST_HARMONIC: u32 = 10_000;
-
-/// What x^n (x')^m is multiplied by: a cos q t + b sin q t by q.
-type Waves = BTreeMap<Rational, (Rational, Rational)>;
 
 impl Field {
     /// The field of an equation (= 0) with values for its parameters and for the small parameter,
@@ -22,7 +23,7 @@ impl Field {
     ///
     /// # Errors
     /// [`Failure::Acceleration`], [`Failure::NoValue`], [`Failure::NotPolynomial`],
-    /// [`Failure::TooLarge`].
+    /// [`Failure::NotSmooth`], [`Failure::TooLarge`].
     ///
     /// ```
     /// use lindstedt_equation::Expression;
@@ -39,12 +40,38 @@ impl Field {
         small: &str,
         values: &BTreeMap<String, Rational>,
     ) -> Result<Self, Failure> {
+        Self::of_equations(&[equation], small, values)
+    }
+
+    /// The field of several equations (= 0), as many as unknowns, of which each x_i'' has constant factors.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    ///
+    /// ```
+    /// use lindstedt_equation::Expression;
+    /// use lindstedt_orbit::Field;
+    /// // x_1'' + 2 x_1 - x_2 = 0, x_2'' + 2 x_2 - x_1 = 0.
+    /// let equation = |i: usize| {
+    ///     let [x, other] = [i, 1 - i].map(|k| Expression::unknown(k, 0));
+    ///     Expression::unknown(i, 2) + 2 * x - other
+    /// };
+    /// let field = Field::of_equations(&[&equation(0), &equation(1)], "eps", &Default::default())?;
+    /// assert_eq!((field.unknowns(), field.degree()), (2, 1));
+    /// # Ok::<(), lindstedt_orbit::Failure>(())
+    /// ```
+    pub fn of_equations(
+        equations: &[&Expression],
+        small: &str,
+        values: &BTreeMap<String, Rational>,
+    ) -> Result<Self, Failure> {
         let value = |e: &Expression| match e {
             Expression::Small => values.get(small).cloned().map(Expression::Number),
             Expression::Parameter(name) => values.get(name).cloned().map(Expression::Number),
             _ => None,
         };
-        Self::read(&equation.substitute(&value), small, &BTreeMap::new(), Balls::new(64))
+        let equations: Vec<_> = equations.iter().map(|e| e.substitute(&value)).collect();
+        read(&equations, small, &BTreeMap::new(), Balls::new(64))
     }
 
     /// The field of an equation with parameters that are known within balls: what is proved holds for
@@ -72,7 +99,17 @@ impl Field {
     ) -> Result<Self, Failure> {
         let named =
             |e: &Expression| (*e == Expression::Small).then(|| Expression::parameter(small));
-        Self::read(&equation.substitute(&named), small, values, Balls::new(bits))
+        read(&[equation.substitute(&named)], small, values, Balls::new(bits))
+    }
+
+    /// The same of several equations, the small parameter a parameter.
+    pub(crate) fn of_equations_within(
+        equations: &[Expression],
+        small: &str,
+        values: &BTreeMap<String, Ball>,
+        bits: u32,
+    ) -> Result<Self, Failure> {
+        read(equations, small, values, Balls::new(bits))
     }
 
     /// The field of a problem, its time-domain form where it has one.
@@ -83,76 +120,7 @@ impl Field {
         problem: &Problem,
         values: &BTreeMap<String, Rational>,
     ) -> Result<Self, Failure> {
-        let equation = problem.time_domain.as_ref().unwrap_or(&problem.equation);
-        Self::new(equation, &problem.small, values)
-    }
-
-    fn read(
-        equation: &Expression,
-        small: &str,
-        values: &BTreeMap<String, Ball>,
-        balls: Balls,
-    ) -> Result<Self, Failure> {
-        let equation = equation.canonical();
-        let unknown = |e: &Expression| match e {
-            Expression::Parameter(name) => !values.contains_key(name),
-            e => *e == Expression::Small,
-        };
-        match equation.find(&unknown) {
-            Some(Expression::Parameter(name)) => return Err(Failure::NoValue(name.clone())),
-            Some(_) => return Err(Failure::NoValue(small.to_owned())),
-            None => {}
-        }
-        let alone = equation.acceleration_alone().map_err(Failure::Acceleration)?;
-        let rest =
-            alone.substitute(&|e| (*e == Expression::ACCELERATION).then(|| Expression::integer(0)));
-        let refused = || Failure::NotPolynomial(rest.clone());
-        let expanded = expand(&rest).ok_or_else(refused)?;
-        let mut terms: BTreeMap<(u32, u32), Waves> = BTreeMap::new();
-        let mut spread = Vec::new();
-        for (monomial, q) in &expanded.terms {
-            let (middle, radius) = factor(monomial, q, values, balls).ok_or_else(refused)?;
-            let waves = waves(monomial, -middle, &expanded.atoms)?;
-            let fastest = waves.keys().max().cloned().unwrap_or_default();
-            spread.push((radius, monomial.x, monomial.velocity, fastest));
-            let sum = terms.entry((monomial.x, monomial.velocity)).or_default();
-            waves.into_iter().for_each(|(angle, (a, b))| add(sum, angle, a, b));
-        }
-        Self::collect(terms, spread)
-    }
-
-    fn collect(
-        terms: BTreeMap<(u32, u32), Waves>,
-        spread: Vec<(Up, u32, u32, Rational)>,
-    ) -> Result<Self, Failure> {
-        let angles = terms.values().flat_map(BTreeMap::keys).filter(|q| !q.is_zero());
-        let force = angles.cloned().reduce(|a, b| common_measure(&a, &b));
-        let harmonic = |angle: Rational| match &force {
-            Some(base) => (angle / base).numer().to_u32().unwrap_or(u32::MAX),
-            None => 0,
-        };
-        let term = |((x, velocity), waves): (_, Waves)| {
-            let nonzero = waves.into_iter().filter(|(_, (a, b))| !(a.is_zero() && b.is_zero()));
-            let factor = nonzero.map(|(angle, wave)| (harmonic(angle), wave)).collect();
-            Term { factor, x, velocity }
-        };
-        let terms = terms.into_iter().map(term).filter(|t| !t.factor.is_empty());
-        let terms: Vec<Term> = terms.collect();
-        let uncertain = spread.into_iter().filter(|(size, ..)| *size != Up::ZERO);
-        let uncertain = uncertain.map(|(size, x, velocity, fastest)| Spread {
-            size,
-            x,
-            velocity,
-            harmonic: harmonic(fastest),
-        });
-        let field = Self { terms, spread: uncertain.collect(), force };
-        let harmonics = field.terms.iter().filter_map(|t| t.factor.keys().max());
-        let harmonic = harmonics.max().copied().unwrap_or(0);
-        let degree = field.degree();
-        if degree > MOST_DEGREE || harmonic > MOST_HARMONIC {
-            return Err(Failure::TooLarge { degree, harmonic });
-        }
-        Ok(field)
+        Self::of_equations(&in_time(problem), &problem.small, values)
     }
 
     /// x'' + kappa sin x = 0 with x(0) = a, 0 < a < pi, by u = sin(x/2): u'' = -kappa (1 + k^2) u + 2 kappa u^3
@@ -196,94 +164,181 @@ impl Field {
     }
 }
 
+/// The equations of a problem, the one in time where there is one.
+pub(crate) fn in_time(problem: &Problem) -> Vec<&Expression> {
+    let mut equations: Vec<&Expression> = problem.equations().collect();
+    if let (Some(equation), [first]) = (&problem.time_domain, &mut equations[..]) {
+        *first = equation;
+    }
+    equations
+}
+
+fn read(
+    equations: &[Expression],
+    small: &str,
+    values: &BTreeMap<String, Ball>,
+    balls: Balls,
+) -> Result<Field, Failure> {
+    let unknown = |e: &Expression| match e {
+        Expression::Parameter(name) => !values.contains_key(name),
+        e => *e == Expression::Small,
+    };
+    let equations: Vec<_> = equations.iter().map(Expression::canonical).collect();
+    match equations.iter().find_map(|e| e.find(&unknown)) {
+        Some(Expression::Parameter(name)) => return Err(Failure::NoValue(name.clone())),
+        Some(_) => return Err(Failure::NoValue(small.to_owned())),
+        None => {}
+    }
+    let mut reader = Reader::new(equations.len());
+    let forces = match &equations[..] {
+        [equation] => {
+            let alone = equation.acceleration_alone().map_err(Failure::Acceleration)?;
+            let rest = reader.rest(&alone, &[])?;
+            vec![rest.scaled(&Rational::from(-1))]
+        }
+        several => accelerations(several, &mut reader)?,
+    };
+    let collector = Collector { force: measure(&forces, &reader.functions), values, balls };
+    collector.field(&forces, &reader.functions)
+}
+
+/// x_i'' from M x'' + rest = 0 with a rational matrix M.
+fn accelerations(equations: &[Expression], reader: &mut Reader) -> Result<Vec<Sum>, Failure> {
+    let n = equations.len();
+    let mut rows: Vec<(Vec<Rational>, Sum)> = Vec::new();
+    for equation in equations {
+        let rest = reader.rest(equation, &[])?;
+        let minus = rest.scaled(&Rational::from(-1));
+        let mut masses = Vec::new();
+        for k in 0..n {
+            let inside = || Failure::Acceleration(AccelerationFault::Inside(equation.clone()));
+            let mut mass = |at: i64| -> Result<Rational, Failure> {
+                let mut accelerations = vec![0; k + 1];
+                accelerations[k] = at;
+                let rest = reader.rest(equation, &accelerations)?;
+                rest.plus(&minus).as_number().ok_or_else(inside)
+            };
+            let one = mass(1)?;
+            // Linear: twice the acceleration gives twice the force.
+            if mass(2)? != Rational::from(2 * &one) {
+                return Err(inside());
+            }
+            masses.push(one);
+        }
+        rows.push((masses, minus));
+    }
+    // Gauss and Jordan.
+    for k in 0..n {
+        let missing = || Failure::Acceleration(AccelerationFault::Missing);
+        let pivot = (k..n).find(|i| !rows[*i].0[k].is_zero()).ok_or_else(missing)?;
+        rows.swap(k, pivot);
+        let factor = Rational::from(rows[k].0[k].recip_ref());
+        rows[k].0.iter_mut().for_each(|m| *m *= &factor);
+        rows[k].1 = rows[k].1.scaled(&factor);
+        let (masses, force) = rows[k].clone();
+        for (_, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != k) {
+            let factor = Rational::from(-&row.0[k]);
+            row.0.iter_mut().zip(&masses).for_each(|(m, other)| *m += (&factor * other).complete());
+            row.1 = row.1.clone().plus(&force.scaled(&factor));
+        }
+    }
+    Ok(rows.into_iter().map(|(_, force)| force).collect())
+}
+
+/// The largest frequency of which all frequencies are multiples.
+fn measure(forces: &[Sum], functions: &[(Operation, Sum)]) -> Option<Rational> {
+    let sums = forces.iter().chain(functions.iter().map(|(_, argument)| argument));
+    let waves = sums.flat_map(|sum| sum.0.values());
+    let angles = waves.flat_map(|waves| waves.keys().cloned()).filter(|q| !q.is_zero());
+    angles.reduce(|a, b| common_measure(&a, &b))
+}
+
+/// From sums to polynomials: harmonics of one frequency, balls in the place of parameters.
+struct Collector<'a> {
+    force: Option<Rational>,
+    values: &'a BTreeMap<String, Ball>,
+    balls: Balls,
+}
+
+impl Collector<'_> {
+    fn field(self, forces: &[Sum], functions: &[(Operation, Sum)]) -> Result<Field, Failure> {
+        let n = forces.len();
+        let too_large = || Failure::TooLarge { degree: MOST_DEGREE, harmonic: 0 };
+        let by = |sum: &Sum, v: usize| sum.by(v, 2 * n, functions).ok_or_else(too_large);
+        let (mut first, mut second, mut flow) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, g) in forces.iter().enumerate() {
+            let row = (0..2 * n).map(|v| by(g, v)).collect::<Result<Vec<_>, _>>()?;
+            let mut sum = Sum::default();
+            for (v, derivative) in row.iter().enumerate() {
+                if v >= n {
+                    let part = derivative.times(&Sum::variable(v)).ok_or_else(too_large)?;
+                    sum = sum.plus(&part);
+                }
+                for w in v..2 * n {
+                    let twice = by(derivative, w)?;
+                    if !twice.0.is_empty() {
+                        second.push((i, [v, w], self.polynomial(&twice)?));
+                    }
+                }
+            }
+            first.push(row.iter().map(|p| self.polynomial(p)).collect::<Result<_, _>>()?);
+            flow.push(self.polynomial(&sum)?);
+        }
+        let named = |(kind, argument): &(Operation, Sum)| {
+            Ok(Named { kind: *kind, argument: self.polynomial(argument)? })
+        };
+        let functions = functions.iter().map(named).collect::<Result<_, _>>()?;
+        let forces = forces.iter().map(|g| self.polynomial(g)).collect::<Result<_, _>>()?;
+        let field = Field { forces, first, second, flow, functions, force: self.force };
+        let terms = field.forces.iter().flat_map(|g| &g.terms);
+        let harmonic = terms.filter_map(|t| t.factor.keys().max()).max().copied().unwrap_or(0);
+        let degree = field.degree();
+        if degree > MOST_DEGREE || harmonic > MOST_HARMONIC {
+            return Err(Failure::TooLarge { degree, harmonic });
+        }
+        Ok(field)
+    }
+
+    fn polynomial(&self, sum: &Sum) -> Result<Polynomial, Failure> {
+        let mut polynomial = Polynomial::default();
+        for (key, waves) in &sum.0 {
+            let (middle, radius) = self.parameters(key)?;
+            let harmonic = |q: &Rational| match &self.force {
+                Some(base) => Rational::from(q / base).numer().to_u32().unwrap_or(u32::MAX),
+                None => 0,
+            };
+            let scaled = |(q, (a, b)): (&Rational, &(Rational, Rational))| {
+                (harmonic(q), (Rational::from(a * &middle), Rational::from(b * &middle)))
+            };
+            let factor = waves.iter().map(scaled).collect();
+            polynomial.terms.push(Term { factor, powers: key.powers.clone() });
+            if radius != Up::ZERO {
+                let factor = waves.iter().map(|(q, wave)| (harmonic(q), wave.clone())).collect();
+                let (size, powers) = (radius, key.powers.clone());
+                polynomial.spread.push(Spread { size, powers, factor });
+            }
+        }
+        Ok(polynomial)
+    }
+
+    /// The product of the powers of the parameters.
+    fn parameters(&self, key: &Key) -> Result<(Rational, Up), Failure> {
+        if key.parameters.is_empty() {
+            return Ok((Rational::from(1), Up::ZERO));
+        }
+        let mut product = self.balls.one();
+        for (name, n) in &key.parameters {
+            let value = self.values.get(name).and_then(|v| self.balls.powi(v, i64::from(*n)));
+            let value = value.ok_or_else(|| Failure::NoValue(name.clone()))?;
+            product = self.balls.mul(&product, &value);
+        }
+        let name = || key.parameters.keys().next().cloned().unwrap_or_default();
+        parts(&product).ok_or_else(|| Failure::NoValue(name()))
+    }
+}
+
 /// The midpoint and the radius of a ball.
 fn parts(ball: &Ball) -> Option<(Rational, Up)> {
     let radius = ball.is_finite().then(|| Up::of_float(ball.radius()))?;
     Some((ball.midpoint().to_rational()?, radius))
-}
-
-/// q times the powers of the parameters of a monomial: exactly where there are none.
-fn factor(
-    monomial: &Monomial,
-    q: &Rational,
-    values: &BTreeMap<String, Ball>,
-    balls: Balls,
-) -> Option<(Rational, Up)> {
-    if monomial.parameters.is_empty() {
-        return Some((q.clone(), Up::ZERO));
-    }
-    let mut product = balls.from_rational(q);
-    for (name, n) in &monomial.parameters {
-        product = balls.mul(&product, &balls.powi(values.get(name)?, i64::from(*n))?);
-    }
-    parts(&product)
-}
-
-/// The largest q of which a and b are integer multiples: gcd of numerators over lcm of
-/// denominators.
-fn common_measure(a: &Rational, b: &Rational) -> Rational {
-    let numerator = Integer::from(a.numer() * b.denom()).gcd(&Integer::from(b.numer() * a.denom()));
-    Rational::from((numerator, (a.denom() * b.denom()).complete()))
-}
-
-fn add(sum: &mut Waves, angle: Rational, a: Rational, b: Rational) {
-    // cos and sin of a negative angle.
-    let (angle, b) = if angle < 0 { (-angle, -b) } else { (angle, b) };
-    let b = if angle.is_zero() { Rational::new() } else { b };
-    let entry = sum.entry(angle).or_default();
-    entry.0 += a;
-    entry.1 += b;
-}
-
-/// q times the atoms of a monomial as a sum of a cos(angle t) + b sin(angle t).
-fn waves(
-    monomial: &Monomial,
-    q: Rational,
-    atoms: &BTreeMap<String, Expression>,
-) -> Result<Waves, Failure> {
-    let mut product = Waves::from([(Rational::new(), (q, Rational::new()))]);
-    let refused = |key: &String| {
-        Failure::NotPolynomial(atoms.get(key).cloned().unwrap_or(Expression::parameter(key)))
-    };
-    for (key, n) in &monomial.atoms {
-        let wave = atoms.get(key).and_then(wave).ok_or_else(|| refused(key))?;
-        for _ in 0..*n {
-            product = times(&product, &wave);
-        }
-    }
-    Ok(product)
-}
-
-/// cos(q t) or sin(q t): (q, whether it is the sine).
-fn wave(e: &Expression) -> Option<(Rational, bool)> {
-    let Expression::Function(function @ (Function::Cos | Function::Sin), angle) = e else {
-        return None;
-    };
-    let one = angle.substitute(&|e| (*e == Expression::Time).then(|| Expression::integer(1)));
-    let none = angle.substitute(&|e| (*e == Expression::Time).then(|| Expression::integer(0)));
-    let rate = one.as_number()?;
-    // Only q t: no phase, no power of t.
-    let linear = Expression::Product(vec![Expression::Number(rate.clone()), Expression::Time]);
-    let same = angle.multiplied_out()? == linear.multiplied_out()? || rate.is_zero();
-    (none.as_number()? == 0 && same && !rate.is_zero())
-        .then_some((rate, *function == Function::Sin))
-}
-
-/// A sum of waves times cos(q t) or sin(q t).
-fn times(sum: &Waves, (q, sine): &(Rational, bool)) -> Waves {
-    let mut product = Waves::new();
-    for (p, (a, b)) in sum {
-        let half = |q: &Rational| Rational::from(q / 2);
-        let (a, b) = (half(a), half(b));
-        let (plus, minus) = ((p + q).complete(), (p - q).complete());
-        if *sine {
-            // 2 cos p sin q = sin(p+q) - sin(p-q), 2 sin p sin q = cos(p-q) - cos(p+q).
-            add(&mut product, plus, -b.clone(), a.clone());
-            add(&mut product, minus, b, -a);
-        } else {
-            add(&mut product, plus, a.clone(), b.clone());
-            add(&mut product, minus, a, b);
-        }
-    }
-    product
 }

@@ -1,19 +1,31 @@
-//! The real basis 1, cos k tau, sin k tau up to a mode, with the symmetries that the equation keeps.
+//! The real basis 1, cos k tau, sin k tau up to a mode for every unknown, with the symmetries that the
+//! equations keep.
 
 use nalgebra::Complex;
 
+/// Patterns of signs: bit i stands for unknown i and is set where it changes its sign.
+pub(crate) type Signs = Vec<u64>;
+
 /// The symmetries of an orbit that F keeps; each halves the unknowns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Parity {
-    /// x(tau + pi) = -x(tau): odd harmonics alone.
+    /// x(tau + pi) = -x(tau): odd harmonics alone. Of several unknowns some may keep their sign: even
+    /// harmonics.
     pub odd: bool,
-    /// x(-tau) = x(tau): cosines alone.
+    /// x(-tau) = x(tau): cosines alone. Of several unknowns some may change their sign: sines.
     pub even: bool,
+    /// The unknowns that keep their sign under the shift.
+    #[serde(skip)]
+    pub(crate) keeping: u64,
+    /// The unknowns that change it under the reversal.
+    #[serde(skip)]
+    pub(crate) turning: u64,
 }
 
-/// cos k tau (or 1), or sin k tau.
+/// cos k tau (or 1), or sin k tau, of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Wave {
+    pub(crate) unknown: usize,
     pub(crate) k: usize,
     pub(crate) sine: bool,
 }
@@ -39,20 +51,24 @@ impl Wave {
 }
 
 impl Parity {
-    /// Whether mode k can be there.
-    pub(crate) fn has(self, k: usize) -> bool {
-        !self.odd || k % 2 == 1
+    /// Whether mode k of an unknown can be there.
+    pub(crate) fn has(self, unknown: usize, k: usize) -> bool {
+        !self.odd || (k % 2 == 1) != (self.keeping >> unknown & 1 == 1)
     }
 
-    /// The waves of mode k.
-    pub(crate) fn waves(self, k: usize) -> impl Iterator<Item = Wave> + Clone {
-        let cosine = self.has(k).then_some(Wave { k, sine: false });
-        let sine = (self.has(k) && !self.even && k > 0).then_some(Wave { k, sine: true });
+    /// The waves of mode k of an unknown.
+    pub(crate) fn waves(self, unknown: usize, k: usize) -> impl Iterator<Item = Wave> + Clone {
+        let has = self.has(unknown, k);
+        let turns = self.even && self.turning >> unknown & 1 == 1;
+        let cosine = (has && !turns).then_some(Wave { unknown, k, sine: false });
+        let sines = has && k > 0 && (!self.even || turns);
+        let sine = sines.then_some(Wave { unknown, k, sine: true });
         cosine.into_iter().chain(sine)
     }
 
-    /// The waves up to mode `modes`.
-    pub(crate) fn basis(self, modes: usize) -> Vec<Wave> {
-        (0..=modes).flat_map(|k| self.waves(k)).collect()
+    /// The waves up to mode `modes` of so many unknowns.
+    pub(crate) fn basis(self, unknowns: usize, modes: usize) -> Vec<Wave> {
+        let of = |i: usize| (0..=modes).flat_map(move |k| self.waves(i, k));
+        (0..unknowns).flat_map(of).collect()
     }
 }

@@ -1,7 +1,8 @@
 //! The guess from which Newton's method starts.
 
-use crate::centre::Centre;
+use crate::centre::Component;
 use nalgebra::Complex;
+use rug::Rational;
 use std::f64::consts::TAU;
 
 /// A guess of a periodic orbit: x = sum_k (cosine_k cos k tau + sine_k sin k tau), tau = omega t;
@@ -43,11 +44,11 @@ impl Start {
     }
 
     /// The numerical solution in doubles.
-    pub(crate) fn of(centre: &Centre) -> Self {
-        let modes = centre.doubles();
+    pub(crate) fn of(frequency: &Rational, component: &Component) -> Self {
+        let modes = component.doubles();
         let times = |k: usize| if k == 0 { 1.0 } else { 2.0 };
         Self {
-            frequency: centre.frequency.to_f64(),
+            frequency: frequency.to_f64(),
             cosines: modes.iter().enumerate().map(|(k, c)| times(k) * c.re).collect(),
             sines: modes.iter().map(|c| -2.0 * c.im).collect(),
         }
@@ -66,16 +67,14 @@ impl Start {
 
     /// Whether frequency and harmonics agree, relative to their size.
     pub(crate) fn is_near(&self, other: &Self, relative: f64) -> bool {
-        self.distance(other) <= relative
+        distance(std::slice::from_ref(self), std::slice::from_ref(other)) <= relative
     }
 
-    /// The distance of the harmonics or of the frequencies, relative to their size.
-    pub(crate) fn distance(&self, other: &Self) -> f64 {
+    /// sum_k |c_k| of the difference, twice those that oscillate.
+    fn apart(&self, other: &Self) -> f64 {
         let (a, b) = (self.complex(), other.complex());
         let at = |list: &[Complex<f64>], k: usize| list.get(k).copied().unwrap_or_default();
-        let apart = (0..a.len().max(b.len())).map(|k| 2.0 * (at(&a, k) - at(&b, k)).norm());
-        let apart = apart.sum::<f64>() / self.size();
-        apart.max((self.frequency - other.frequency).abs() / self.frequency)
+        (0..a.len().max(b.len())).map(|k| 2.0 * (at(&a, k) - at(&b, k)).norm()).sum()
     }
 
     /// c_k = (cosine_k - i sine_k)/2.
@@ -90,12 +89,23 @@ impl Start {
     }
 }
 
-/// The same orbit with its phase moved so that the first harmonic is a positive multiple of cos
-/// tau.
-pub(crate) fn in_phase(mut modes: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
-    let angle = modes.get(1).map_or(0.0, |c| c.arg());
-    for (k, c) in modes.iter_mut().enumerate() {
-        *c *= Complex::from_polar(1.0, -angle * k as f64);
+/// The distance of the harmonics of all unknowns or of the frequencies, relative to the size of the first.
+pub(crate) fn distance(one: &[Start], other: &[Start]) -> f64 {
+    let apart: f64 = one.iter().zip(other).map(|(a, b)| a.apart(b)).sum();
+    let apart = apart / one.iter().map(Start::size).sum::<f64>();
+    let detuned =
+        one.iter().zip(other).map(|(a, b)| (a.frequency - b.frequency).abs() / a.frequency);
+    detuned.fold(apart, f64::max)
+}
+
+/// The same orbit with its phase moved so that the first harmonic of the first unknown is a positive multiple
+/// of cos tau.
+pub(crate) fn in_phase(mut unknowns: Vec<Vec<Complex<f64>>>) -> Vec<Vec<Complex<f64>>> {
+    let angle = unknowns[0].get(1).map_or(0.0, |c| c.arg());
+    for modes in &mut unknowns {
+        for (k, c) in modes.iter_mut().enumerate() {
+            *c *= Complex::from_polar(1.0, -angle * k as f64);
+        }
     }
-    modes
+    unknowns
 }

@@ -2,7 +2,8 @@
 //! amplitude.
 
 use crate::Failure;
-use crate::centre::Centre;
+use crate::centre::{Centre, FAST_BITS};
+use crate::exact::Exact;
 use crate::field::Field;
 use crate::space::{Parity, Wave};
 use crate::start::{Start, in_phase};
@@ -11,14 +12,15 @@ use lindstedt_algebra::Stop;
 use nalgebra::Complex;
 use rug::{Float, Integer, Rational};
 
-/// Which periodic orbit of a field is meant.
+/// Which periodic orbit of a field is meant; of several unknowns, x is the first.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Kind {
     /// An isolated orbit of an autonomous equation, its frequency unknown. The phase: no sine in
     /// the first harmonic.
     LimitCycle,
-    /// A member of a family of an equation that is reversible (even in x'): even in time, x(0) = a.
+    /// A member of a family of an equation that is reversible (even in x'): even in time, x(0) = a. Further
+    /// unknowns may be odd in time.
     InitialAmplitude(Rational),
     /// The same where x(0) is known within an error: what is proved holds for each such value.
     InitialWithin {
@@ -92,7 +94,7 @@ impl Condition {
             Self::Cosine => wave.k == 1 && !wave.sine,
             Self::AtZero => !wave.sine,
         };
-        f64::from(u8::from(holds))
+        f64::from(u8::from(holds && wave.unknown == 0))
     }
 }
 
@@ -114,16 +116,13 @@ pub(crate) struct Task {
 }
 
 impl Task {
-    /// The task with the guess for it.
+    /// The task with the guess for it, one function for each unknown; the frequency is the first one's.
     pub(crate) fn new(
         field: &Field,
         kind: &Kind,
-        start: &Start,
+        starts: &[Start],
     ) -> Result<(Self, Centre), Failure> {
-        let mut modes = start.complex();
-        if modes.iter().any(|c| !c.re.is_finite() || !c.im.is_finite()) || modes.len() < 2 {
-            return Err(Failure::NoStart);
-        }
+        let mut modes = aligned(starts, field.unknowns())?;
         let autonomous = !matches!(kind, Kind::Forced(_));
         if autonomous != field.is_autonomous() {
             return Err(if autonomous { Failure::Forced } else { Failure::NotForced });
@@ -137,10 +136,7 @@ impl Task {
             Kind::Forced(_) => (None, Rational::new()),
         };
         let family = autonomous && *kind != Kind::LimitCycle;
-        if family && !field.is_reversible() {
-            return Err(Failure::NotReversible);
-        }
-        let mut frequency = start.frequency;
+        let mut frequency = starts[0].frequency;
         let mut field = field.clone();
         let mut exact = None;
         if let (Kind::Forced(periods), Some(force)) = (kind, &field.force) {
@@ -155,9 +151,11 @@ impl Task {
         if !(frequency.is_finite() && frequency > 0.0) {
             return Err(Failure::NoStart);
         }
-        let parity = parity(&field, family, &modes);
-        for (k, c) in modes.iter_mut().enumerate() {
-            *c = parity.waves(k).map(|w| w.complex(w.of(*c))).sum();
+        let parity = parity(&field, kind, family, &modes)?;
+        for (i, unknown) in modes.iter_mut().enumerate() {
+            for (k, c) in unknown.iter_mut().enumerate() {
+                *c = parity.waves(i, k).map(|w| w.complex(w.of(*c))).sum();
+            }
         }
         let mut centre = Centre::from_doubles(FAST_BITS, frequency, &modes);
         if let Some(rate) = exact {
@@ -186,28 +184,83 @@ impl Task {
     pub(crate) fn condition(&self, centre: &Centre) -> Float {
         let unit = Integer::from(1) << centre.bits;
         let mode = |list: &[Integer]| list.get(1).map_or(Integer::new(), |c| Integer::from(c * 2));
+        let first = &centre.unknowns[0];
         let form = match self.rows.condition {
             None => return Float::new(64),
-            Some(Condition::AtZero) => centre.at_zero(),
-            Some(Condition::Cosine) => Rational::from((mode(&centre.modes.re), unit)),
-            Some(Condition::Sine) => Rational::from((-mode(&centre.modes.im), unit)),
+            Some(Condition::AtZero) => Exact::over_power(first.clone(), centre.bits).at_zero(),
+            Some(Condition::Cosine) => Rational::from((mode(&first.re), unit)),
+            Some(Condition::Sine) => Rational::from((-mode(&first.im), unit)),
         };
         Float::with_val(64, form - &self.value)
     }
 }
 
-/// Bits behind the point in the tier of doubles.
-pub(crate) const FAST_BITS: u32 = 72;
 /// Periods of the force in one of the response; more are taken as so many.
 const MOST_PERIODS: u32 = 100;
 /// Modes that a symmetry forbids are taken as noise below this fraction.
 const NOISE: f64 = 2e-2;
+/// Where no unknown frequency tells that a response keeps a symmetry, they must be this small.
+const QUIET: f64 = 1e-6;
+
+/// The coefficients of all unknowns, as many of each.
+fn aligned(starts: &[Start], unknowns: usize) -> Result<Vec<Vec<Complex<f64>>>, Failure> {
+    let mut modes: Vec<Vec<Complex<f64>>> = starts.iter().map(Start::complex).collect();
+    let most = modes.iter().map(Vec::len).max().unwrap_or(0);
+    let finite = |c: &Complex<f64>| c.re.is_finite() && c.im.is_finite();
+    if modes.len() != unknowns || most < 2 || !modes.iter().flatten().all(finite) {
+        return Err(Failure::NoStart);
+    }
+    modes.iter_mut().for_each(|list| list.resize(most, Complex::default()));
+    Ok(modes)
+}
 
 /// The symmetries that the field keeps and the guess has.
-fn parity(field: &Field, family: bool, modes: &[Complex<f64>]) -> Parity {
-    let mut parity = field.parity(family);
-    let total: f64 = modes.iter().map(|c| c.norm()).sum();
-    let even: f64 = modes.iter().step_by(2).map(|c| c.norm()).sum();
-    parity.odd &= even <= NOISE * total;
-    parity
+fn parity(
+    field: &Field,
+    kind: &Kind,
+    family: bool,
+    modes: &[Vec<Complex<f64>>],
+) -> Result<Parity, Failure> {
+    let total: f64 = modes.iter().flatten().map(|c| c.norm()).sum();
+    let miss = |parity: Parity| -> f64 {
+        let all =
+            modes.iter().enumerate().flat_map(|(i, list)| (0..list.len()).map(move |k| (i, k)));
+        let one = |(i, k): (usize, usize)| {
+            let c = modes[i][k];
+            let kept: Complex<f64> = parity.waves(i, k).map(|w| w.complex(w.of(c))).sum();
+            (c - kept).norm()
+        };
+        all.map(one).sum()
+    };
+    let shifts = field.signs(true).into_iter().map(|minus| Parity {
+        odd: true,
+        keeping: !minus & ((1 << modes.len().min(63)) - 1),
+        ..Parity::default()
+    });
+    let turns = field.signs(false).into_iter().filter(|turning| turning & 1 == 0);
+    let turns = turns.map(|turning| Parity { even: true, turning, ..Parity::default() });
+    let nearest = |list: Vec<Parity>| {
+        let sized = list.into_iter().map(|parity| (miss(parity), parity));
+        sized.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let mut parity = Parity::default();
+    if let Some((off, shift)) = nearest(shifts.collect())
+        && off <= NOISE * total
+    {
+        parity = shift;
+    }
+    // A limit cycle that time maps to itself is none.
+    if *kind == Kind::LimitCycle {
+        return Ok(parity);
+    }
+    let turned = nearest(turns.collect());
+    if family && turned.is_none() {
+        return Err(Failure::NotReversible);
+    }
+    if let Some((off, turned)) = turned
+        && (family || off <= QUIET * total)
+    {
+        parity = Parity { even: true, turning: turned.turning, ..parity };
+    }
+    Ok(parity)
 }

@@ -1,10 +1,10 @@
 //! What must fail fails: forged centres and inverses, and every bound left out in turn.
 
-use crate::bounds::{Contraction, Frame, Measure, Weights};
+use crate::bounds::{Contraction, Frame, Measure};
 use crate::centre::Centre;
 use crate::field::Field;
-use crate::linear::{Inverse, Linear};
-use crate::newton::{balance, invert};
+use crate::linear::Inverse;
+use crate::newton::{balance, invert, linearised};
 use crate::radii::{Radii, decide};
 use crate::space::Parity;
 use crate::start::Start;
@@ -12,7 +12,7 @@ use crate::task::{Kind, Rows, Task};
 use crate::upward::Up;
 use crate::{Condition, Failure, Request, prove};
 use lindstedt_algebra::Stop;
-use lindstedt_equation::Expression;
+use lindstedt_equation::{Expression, Function};
 use nalgebra::Complex;
 use rug::{Float, Rational};
 
@@ -49,10 +49,9 @@ fn judge(
     inverse: &Inverse,
     without: Without,
 ) -> Result<Radii, Failure> {
-    let values = centre.values(&task.field);
-    let linear = Linear::new(centre.frequency.to_f64(), &values, task.rows);
+    let (values, linear) = linearised(task, centre)?;
     let frame = Frame::new(task, centre, &values, &linear, inverse);
-    let weights = Weights::new(1.0, frame.reach());
+    let weights = frame.weights(1.0)?;
     let mut bounds: Contraction = frame.contraction(Measure::Norm, &weights);
     match without {
         Without::Y0 => bounds.y0 = Float::new(53),
@@ -67,14 +66,12 @@ fn judge(
 }
 
 fn inverse_at(task: &Task, centre: &Centre, modes: usize) -> Inverse {
-    let values = centre.values(&task.field);
-    let linear = Linear::new(centre.frequency.to_f64(), &values, task.rows);
-    invert(&linear, modes).unwrap()
+    invert(&linearised(task, centre).unwrap().1, modes).unwrap()
 }
 
 /// A cycle balanced on 30 modes: the truth to 1e-9, and its inverse.
 fn cycle() -> (Task, Centre, Inverse) {
-    let (task, guess) = Task::new(&van_der_pol(), &Kind::LimitCycle, &wave()).unwrap();
+    let (task, guess) = Task::new(&van_der_pol(), &Kind::LimitCycle, &[wave()]).unwrap();
     let centre = balance(&task, guess, 40, &Stop::default()).unwrap();
     let inverse = inverse_at(&task, &centre, 30);
     (task, centre, inverse)
@@ -85,7 +82,7 @@ fn moved(centre: &Centre, amount: f64) -> Centre {
     let mut forged = centre.clone();
     let mut step = vec![Complex::default(); 4];
     step[3].re = amount / 2.0;
-    forged.add(0.0, &step, 0);
+    forged.add(0.0, &[step], 0);
     forged
 }
 
@@ -116,7 +113,8 @@ fn a_moved_centre_is_refused_or_its_ball_reaches_the_truth() {
 fn a_forged_amplitude_is_refused() {
     let duffing = field(x() + x().pow(3));
     let start = Start { frequency: 1.3, cosines: vec![0.0, 1.0], sines: vec![] };
-    let (mut task, guess) = Task::new(&duffing, &Kind::InitialAmplitude(1.into()), &start).unwrap();
+    let (mut task, guess) =
+        Task::new(&duffing, &Kind::InitialAmplitude(1.into()), &[start]).unwrap();
     let centre = balance(&task, guess, 20, &Stop::default()).unwrap();
     let inverse = inverse_at(&task, &centre, 20);
     assert!(judge(&task, &centre, &inverse, Without::Nothing).unwrap().radius < 1e-8);
@@ -149,10 +147,10 @@ fn a_small_inverse_is_seen_by_z0_alone() {
 
 /// A task without unknown frequency, omega = 1.
 fn at_rate_one(rest: Expression, modes: &[f64]) -> (Task, Centre) {
-    let rows = Rows { parity: Parity { odd: false, even: true }, condition: None };
+    let rows = Rows { parity: Parity { even: true, ..Parity::default() }, condition: None };
     let modes: Vec<_> = modes.iter().map(|re| Complex::new(*re, 0.0)).collect();
     let task = Task { field: field(rest), rows, value: Rational::new(), error: Up::ZERO };
-    (task, Centre::from_doubles(72, 1.0, &modes))
+    (task, Centre::from_doubles(72, 1.0, &[modes]))
 }
 
 #[test]
@@ -190,4 +188,37 @@ fn the_condition_counts_in_the_tail() {
     let column: f64 = inverse.matrix.column(0).iter().skip(1).map(|a| a.abs()).sum();
     let radii = judge(&task, &centre, &inverse, Without::Nothing).unwrap();
     assert!(radii.bounds.z1 > column / 13.0);
+}
+
+/// A centre of x'' + e^x - 1 = 0 or of two coupled oscillators with one coefficient moved: the ball reaches
+/// the truth, or the test refuses; without Y0 it would not see it.
+#[test]
+fn moved_centres_of_functions_and_of_systems_are_seen() {
+    let toda = field(x().apply(Function::Exp) - 1);
+    let coupled = |i: usize| {
+        let [x, other] = [i, 1 - i].map(|k| Expression::unknown(k, 0));
+        Expression::unknown(i, 2) + (i as i64 + 2) * x.clone() - other + x.pow(3)
+    };
+    let equations = [coupled(0), coupled(1)];
+    let list: Vec<_> = equations.iter().collect();
+    let system = Field::of_equations(&list, "eps", &Default::default()).unwrap();
+    let start = Start { frequency: 1.2, cosines: vec![0.0, 0.5], sines: vec![] };
+    let kind = Kind::InitialAmplitude(Rational::from((1, 2)));
+    for (field, unknown) in [(toda, 0), (system, 1)] {
+        let starts = vec![start.clone(); field.unknowns()];
+        let (task, guess) = Task::new(&field, &kind, &starts).unwrap();
+        let centre = balance(&task, guess, 24, &Stop::default()).unwrap();
+        let inverse = inverse_at(&task, &centre, 24);
+        assert!(judge(&task, &centre, &inverse, Without::Nothing).unwrap().radius < 1e-8);
+        let mut step = vec![vec![Complex::default(); 4]; field.unknowns()];
+        step[unknown][3].re = 1e-5 / 2.0;
+        let mut forged = centre.clone();
+        forged.add(0.0, &step, 0);
+        let seen = judge(&task, &forged, &inverse, Without::Nothing).unwrap();
+        assert!(seen.radius > 3e-5 && seen.radius < 2e-3, "{}", seen.radius);
+        assert!(judge(&task, &forged, &inverse, Without::Y0).unwrap().radius < 3e-5);
+        step[unknown][3].re = 0.2;
+        forged.add(0.0, &step, 0);
+        assert!(judge(&task, &forged, &inverse, Without::Nothing).is_err());
+    }
 }

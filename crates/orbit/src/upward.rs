@@ -3,6 +3,7 @@
 //! Every operation rounds up: the nearest double is followed by the next one. Long sums of
 //! nonnegative terms are formed in any order and raised once ([`raised`]).
 
+use rug::float::Round;
 use rug::{Float, Rational};
 use std::iter::Sum;
 use std::ops::{Add, Mul};
@@ -27,7 +28,7 @@ impl Up {
 
     /// |x| rounded up.
     pub(crate) fn of_float(x: &Float) -> Self {
-        Self(x.to_f64_round(rug::float::Round::AwayZero).abs())
+        Self(x.to_f64_round(Round::AwayZero).abs())
     }
 
     pub(crate) fn max(self, other: Self) -> Self {
@@ -38,6 +39,13 @@ impl Up {
     /// self / d for a lower bound d > 0 of the denominator.
     pub(crate) fn over(self, lower: f64) -> Self {
         Self((self.0 / lower).next_up())
+    }
+
+    /// e^self - 1.
+    pub(crate) fn exponential_less_one(self) -> Self {
+        Self::of_float(
+            &Float::with_val_round(53, Float::with_val(53, self.0).exp_m1_ref(), Round::Up).0,
+        )
     }
 
     pub(crate) fn powi(self, n: u32) -> Self {

@@ -155,7 +155,11 @@ impl Decimal {
             correct.len() == self.text.len()
                 && correct.chars().zip(self.text.chars()).filter(|(a, b)| a != b).count() == 1
         });
-        let correction = correct.map(|correct| format!("{correct} is one digit away"));
+        let correction = correct.map(|correct| {
+            let last = correct.chars().last() != self.text.chars().last();
+            let which = if last { ", wrong in its last digit" } else { "" };
+            format!("{correct} is one digit away{which}")
+        });
         Findings { holds: self.shows(value), correction, ..Findings::default() }
     }
 }

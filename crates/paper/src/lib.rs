@@ -39,10 +39,11 @@ pub use values::{Row, Section, Table};
 pub use verdict::{Findings, Verdict};
 pub use vibro_impact::reread;
 
-use lindstedt::Error;
+use lindstedt::{Error, Stop};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::digits::decimal;
-use std::sync::mpsc::{SyncSender, channel, sync_channel};
+use std::sync::mpsc::{RecvTimeoutError, SyncSender, channel, sync_channel};
+use std::time::Duration;
 
 /// How far to go.
 #[derive(Clone, Copy, Debug)]
@@ -116,55 +117,66 @@ impl Reader<'_> {
 /// Reads the paper (sections 2 to 4): derives, compares, tabulates.
 ///
 /// The sections are read side by side, one thread each. `observer` is told, on the calling thread, what
-/// comes next; when it returns `false` the work stops with the rows finished so far.
+/// comes next; when it returns `false`, or when `stop` says so, the work stops with the rows finished so far.
+/// `stop` is not waited for: after a tenth of a second a step in progress is left to its thread, which ends with it.
 ///
 /// # Errors
 /// [`Error`] when the engine cannot derive what the paper claims, or cannot reach the digits.
 ///
 /// # Example
 /// ```
+/// use lindstedt::Stop;
 /// use lindstedt_paper::{Options, Verdict, read};
-/// let paper = read(Options::QUICK, &mut |_| true)?;
+/// let paper = read(Options::QUICK, &Stop::default(), &mut |_| true)?;
 /// let section = paper.section(4).ok_or("no such section")?;
 /// let row = section.row("(42)").ok_or("no such row")?;
 /// assert_eq!(row.verdict, Verdict::Wrong);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<Paper, Error> {
-    let mut goes_on = true;
-    let parts = std::thread::scope(|scope| {
-        let (sender, receiver) = channel::<(String, SyncSender<bool>)>();
-        let workers: Vec<_> = (SECTIONS.iter())
-            .map(|entry| {
-                let sender = sender.clone();
-                scope.spawn(move || {
-                    // The observer belongs to the thread that called: it is asked, and waited for.
-                    let mut ask = |what: &str| {
-                        let (answer, answered) = sync_channel(1);
-                        let asked = sender.send((what.to_owned(), answer));
-                        asked.is_ok() && answered.recv().unwrap_or(false)
-                    };
-                    read_section(options, entry, &mut ask)
-                })
+pub fn read(
+    options: Options,
+    stop: &Stop,
+    observer: &mut dyn FnMut(&str) -> bool,
+) -> Result<Paper, Error> {
+    let (sender, receiver) = channel();
+    let workers: Vec<_> = (SECTIONS.iter().enumerate())
+        .map(|(place, entry)| {
+            let sender = sender.clone();
+            std::thread::spawn(move || {
+                let told =
+                    read_section(options, entry, &|event| sender.send((place, event)).is_ok());
+                // An error means that nobody waits any more.
+                let _ = sender.send((place, Event::Ended(Box::new(told))));
             })
-            .collect();
-        drop(sender);
-        for (what, answer) in receiver {
-            goes_on = goes_on && observer(&what);
-            // An error means that nobody waits any more.
-            let _ = answer.send(goes_on);
+        })
+        .collect();
+    drop(sender);
+    let mut parts: Vec<Option<Read>> = SECTIONS.iter().map(|_| None).collect();
+    let (mut goes_on, mut left) = (true, PATIENCE);
+    loop {
+        match receiver.recv_timeout(LOOK) {
+            Ok((_, Event::Next(what, answer))) => {
+                goes_on = goes_on && !stop.asked() && observer(&what);
+                let _ = answer.send(goes_on);
+            }
+            Ok((place, Event::Finished(read))) => parts[place] = Some(*read),
+            Ok((place, Event::Ended(read))) => parts[place] = Some((*read)?),
+            Err(RecvTimeoutError::Disconnected) => break,
+            Err(RecvTimeoutError::Timeout) if stop.asked() => match left.checked_sub(LOOK) {
+                Some(less) => left = less,
+                None => break,
+            },
+            Err(RecvTimeoutError::Timeout) => {}
         }
-        let join = |worker: std::thread::ScopedJoinHandle<'_, _>| match worker.join() {
-            Ok(section) => section,
-            Err(panic) => std::panic::resume_unwind(panic),
-        };
-        workers.into_iter().map(join).collect::<Result<Vec<_>, Error>>()
-    })?;
+    }
+    for worker in workers.into_iter().filter(std::thread::JoinHandle::is_finished) {
+        worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    }
     let (schema, trust) = (lindstedt::SCHEMA, Trust::default());
-    let mut paper = Paper { schema, trust, sections: Vec::new(), complete: true };
-    for (section, trust, complete) in parts {
+    let complete = parts.iter().all(|part| part.as_ref().is_some_and(|part| part.2));
+    let mut paper = Paper { schema, trust, sections: Vec::new(), complete };
+    for (section, trust, _) in parts.into_iter().flatten() {
         paper.trust.add(trust);
-        paper.complete &= complete;
         if !section.rows.is_empty() {
             paper.sections.push(section);
         }
@@ -173,18 +185,46 @@ pub fn read(options: Options, observer: &mut dyn FnMut(&str) -> bool) -> Result<
     Ok(paper)
 }
 
-/// One section, what it says about trust, and whether it is complete.
+/// How long a step in progress is waited for when the work is to stop.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// How often the caller's question is asked while nothing is said.
+const LOOK: Duration = Duration::from_millis(10);
+
+/// A section, what it says about trust, and whether it is complete.
+type Read = (Section, Trust, bool);
+
+/// What the thread of a section says.
+enum Event {
+    /// What comes next, and where the answer is awaited, whether to go on.
+    Next(String, SyncSender<bool>),
+    /// A part is finished: all so far.
+    Finished(Box<Read>),
+    /// The section is at its end.
+    Ended(Box<Result<Read, Error>>),
+}
+
+/// One section; `tell` takes what is said to the one that called, and says whether it still listens.
 fn read_section(
     options: Options,
     (number, title, parts): &Entry,
-    observer: &mut dyn FnMut(&str) -> bool,
-) -> Result<(Section, Trust, bool), Error> {
-    let balls = Balls::new(BITS);
-    let trust = Trust::default();
+    tell: &dyn Fn(Event) -> bool,
+) -> Result<Read, Error> {
+    // The observer belongs to the thread that called: it is asked, and waited for.
+    let mut observer = |what: &str| {
+        let (answer, answered) = sync_channel(1);
+        tell(Event::Next(what.to_owned(), answer)) && answered.recv().unwrap_or(false)
+    };
+    let (balls, trust) = (Balls::new(BITS), Trust::default());
+    let observer = &mut observer;
     let mut reader = Reader { options, balls, observer, trust, sample: None, tabled: Vec::new() };
     let mut section = Section { number: *number, title, rows: Vec::new(), tables: Vec::new() };
     for (what, part) in *parts {
         if !reader.goes_on(what) || !part(&mut reader, &mut section)? {
+            return Ok((section, reader.trust, false));
+        }
+        let so_far = Event::Finished(Box::new((section.clone(), reader.trust.clone(), false)));
+        if !tell(so_far) {
             return Ok((section, reader.trust, false));
         }
     }

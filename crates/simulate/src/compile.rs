@@ -39,7 +39,7 @@ pub(crate) struct Compiler<'a, R: Real> {
     exact: Vec<Float>,
     pub(crate) parameters: &'a Parameters,
     pub(crate) small: Option<&'a str>,
-    /// Names of the states; x is state 0 and x' state 1.
+    /// Names of the states; x_k is state 2 k and x_k' state 2 k + 1, k from 0.
     pub(crate) names: &'a [String],
     variables: usize,
 }
@@ -150,9 +150,9 @@ impl<'a, R: Real> Compiler<'a, R> {
                 let name = self.small.unwrap_or("the small parameter").to_owned();
                 Value::Constant(self.parameter(&name)?)
             }
-            Expression::Unknown(Unknown { index: 0, derivative: state @ (0 | 1), delay }) => {
+            Expression::Unknown(Unknown { index, derivative: derivative @ (0 | 1), delay }) => {
                 let by = delay.as_deref().map(|by| self.delay(by)).transpose()?;
-                self.state(*state as usize, by.as_ref())?
+                self.state(2 * index + *derivative as usize, by.as_ref())?
             }
             Expression::Unknown(_) => return Err(SimulateError::UnexpectedState),
             Expression::Time => Value::Row(self.push(Op::Time)),

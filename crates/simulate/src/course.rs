@@ -23,6 +23,8 @@ pub struct Moment {
     pub time: Float,
     /// x, x'.
     pub state: [Float; 2],
+    /// The same of further unknowns, one after the other.
+    pub others: Vec<Float>,
     /// Sticking, or resting at the wall.
     pub stuck: bool,
 }
@@ -114,7 +116,7 @@ impl Course {
     /// All numbers that are given, in order.
     fn numbers(&self) -> impl Iterator<Item = &Float> {
         let moments = [&self.last].into_iter().chain(&self.samples).chain(&self.points);
-        let moments = moments.flat_map(|m| [&m.time].into_iter().chain(&m.state));
+        let moments = moments.flat_map(|m| [&m.time].into_iter().chain(&m.state).chain(&m.others));
         let events = self.events.iter();
         let events = events.flat_map(|e| [&e.time].into_iter().chain(&e.before).chain(&e.after));
         moments.chain(events)

@@ -28,6 +28,8 @@ pub struct Flow {
     pub parameters: Parameters,
     /// x(0), x'(0).
     pub start: [Quantity; 2],
+    /// The same of further unknowns, one after the other.
+    pub others: Vec<Quantity>,
     /// The period of the force.
     pub forcing: Option<Quantity>,
     /// Whether dry friction makes the body stick.
@@ -59,6 +61,13 @@ pub struct Plan<'a> {
     pub section: Option<Cut>,
     /// Whether the line of a figure is kept.
     pub drawn: bool,
+}
+
+impl Flow {
+    /// The states at t = 0.
+    pub fn states(&self) -> impl Iterator<Item = &Quantity> {
+        self.start.iter().chain(&self.others)
+    }
 }
 
 impl Plan<'_> {
@@ -104,7 +113,7 @@ impl Plan<'_> {
         let system = model.compile(real.clone(), &self.flow.parameters)?;
         let bits = real.bits() + 64;
         let element = |q: &Quantity| real.float(&q.float(bits));
-        let start = self.flow.start.each_ref().map(element);
+        let start: Vec<_> = self.flow.states().map(element).collect();
         let settings = Settings { most_impacts: MOST_IMPACTS, ..Settings::for_digits(digits) };
         let mut flow = Integrator::new(&system, &real.zero(), &start, settings)?;
         let mut keeper = Keeper::new(self, &real, bits, &start);
@@ -117,15 +126,14 @@ impl Plan<'_> {
             ControlFlow::Continue(())
         })?;
         let stuck = flow.contact().is_some() || flow.modes().contains(&0);
-        let [x, v, ..] = flow.state() else { return Ok(keeper.course) };
-        keeper.rest(flow.time(), [x, v], stuck);
+        keeper.rest(flow.time(), flow.state(), stuck);
         let (mut course, ended) = (keeper.course, keeper.ended);
         let reached = match self.end {
             End::Time(_) => outcome == Outcome::Reached,
             _ => ended.is_some(),
         };
         course.complete = !stopped && reached;
-        course.last = moment(&real, flow.time(), [x, v], stuck);
+        course.last = moment(&real, flow.time(), flow.state(), stuck);
         if let Some(last) = ended {
             let end = last.time.to_f64();
             course.line.retain(|dot| dot.time <= end);
@@ -138,8 +146,19 @@ impl Plan<'_> {
     }
 }
 
-fn moment<R: Real>(real: &R, time: &R::Element, [x, v]: [&R::Element; 2], stuck: bool) -> Moment {
-    Moment { time: real.to_float(time), state: [real.to_float(x), real.to_float(v)], stuck }
+/// x, x' and the states of further unknowns.
+fn split<R: Real>(real: &R, states: &[R::Element]) -> ([Float; 2], Vec<Float>) {
+    let (first, others) = states.split_at(states.len().min(2));
+    let pair = match first {
+        [x, v] => [x, v].map(|x| real.to_float(x)),
+        _ => [Float::new(2), Float::new(2)],
+    };
+    (pair, others.iter().map(|x| real.to_float(x)).collect())
+}
+
+fn moment<R: Real>(real: &R, time: &R::Element, states: &[R::Element], stuck: bool) -> Moment {
+    let (state, others) = split(real, states);
+    Moment { time: real.to_float(time), state, others, stuck }
 }
 
 /// Collects what is reported.
@@ -159,14 +178,14 @@ struct Keeper<'p, R: Real> {
 }
 
 impl<'p, R: Real> Keeper<'p, R> {
-    fn new(plan: &'p Plan<'p>, real: &R, bits: u32, start: &[R::Element; 2]) -> Self {
+    fn new(plan: &'p Plan<'p>, real: &R, bits: u32, start: &[R::Element]) -> Self {
         let forcing = plan.flow.forcing.as_ref();
         let strobe = forcing.filter(|_| plan.section == Some(Cut::Stroboscopic));
         let course = Course {
             events: Vec::new(),
             samples: Vec::new(),
             points: Vec::new(),
-            last: moment(real, &real.zero(), start.each_ref(), false),
+            last: moment(real, &real.zero(), start, false),
             work: Work::default(),
             stuck_time: Float::new(real.bits()),
             line: Vec::new(),
@@ -195,25 +214,23 @@ impl<'p, R: Real> Keeper<'p, R> {
             Report::Busy => return false,
             Report::Event(_) if self.ended.is_some() => return true,
             Report::Event(event) => {
-                let pair = |states: &[R::Element]| match states {
-                    [x, v, ..] => [self.real.to_float(x), self.real.to_float(v)],
-                    _ => [Float::new(2), Float::new(2)],
-                };
-                let (before, after) = (pair(event.before), pair(event.after));
+                let (before, _) = split(&self.real, event.before);
+                let (after, others) = split(&self.real, event.after);
                 let time = self.real.to_float(event.time);
-                self.event(Happening { kind: event.kind, time, before, after });
+                self.event(Happening { kind: event.kind, time, before, after }, others);
             }
         }
         self.ended.is_some()
     }
 
-    fn event(&mut self, event: Happening) {
+    /// An event with the states of further unknowns, which do not jump.
+    fn event(&mut self, event: Happening, others: Vec<Float>) {
         let (section, end) = (self.plan.section, &self.plan.end);
         let maximum = matches!(event.kind, EventKind::Section { rising: false, .. });
         let impact = event.is_impact();
         let at = |state: &[Float; 2]| {
-            let (time, state) = (event.time.clone(), state.clone());
-            Moment { time, state, stuck: false }
+            let (time, state, others) = (event.time.clone(), state.clone(), others.clone());
+            Moment { time, state, others, stuck: false }
         };
         if (maximum && section == Some(Cut::Velocity)) || (impact && section == Some(Cut::Impact)) {
             self.course.points.push(at(&event.before));
@@ -251,6 +268,7 @@ impl<'p, R: Real> Keeper<'p, R> {
     fn segment(&mut self, segment: &Segment<'_, R>) {
         let real = self.real.clone();
         let stuck = segment.contact.is_some() || segment.modes.contains(&0);
+        let states = 2 + self.plan.flow.others.len();
         let end = real.sum(segment.start, segment.length);
         let at = |time: &R::Element| {
             let mut s = real.difference(time, segment.start);
@@ -258,7 +276,8 @@ impl<'p, R: Real> Keeper<'p, R> {
                 // During an accumulation of impacts, which is jumped over.
                 s = real.zero();
             }
-            moment(&real, time, [&segment.value(0, &s), &segment.value(1, &s)], stuck)
+            let states: Vec<_> = (0..states).map(|k| segment.value(k, &s)).collect();
+            moment(&real, time, &states, stuck)
         };
         while let Some(time) = self.times.get(self.course.samples.len()).filter(|t| **t < end) {
             self.course.samples.push(at(time));
@@ -282,7 +301,7 @@ impl<'p, R: Real> Keeper<'p, R> {
     }
 
     /// What falls on the end itself.
-    fn rest(&mut self, time: &R::Element, state: [&R::Element; 2], stuck: bool) {
+    fn rest(&mut self, time: &R::Element, state: &[R::Element], stuck: bool) {
         let real = self.real.clone();
         while let Some(t) = self.times.get(self.course.samples.len()).filter(|t| *t <= time) {
             self.course.samples.push(moment(&real, t, state, stuck));

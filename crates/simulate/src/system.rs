@@ -4,14 +4,15 @@ use crate::compile::{Compiler, Switch, Value};
 use crate::error::SimulateError;
 use crate::integrator::real::Real;
 use crate::quantity::Parameters;
-use crate::second_order::{Wall, compile_wall, split_acceleration};
+use crate::second_order::{Wall, accelerations, compile_wall};
 use crate::tape::{Op, Tape};
 use lindstedt_equation::{Expression, Impact, Problem};
 
 /// A description of a system of ordinary or delay differential equations with walls, switches
 /// (signs and absolute values in the expressions) and sections.
 ///
-/// In expressions x is the first state, x' the second; other states go by the names given.
+/// In expressions x is the first state, x' the second, those of x_2 the third and fourth and so on; states also go by the
+/// names given.
 ///
 /// ```
 /// use lindstedt_equation::Expression;
@@ -38,15 +39,24 @@ pub struct Model {
 impl Model {
     /// The equation `equation` = 0, solved for x'' (it must be linear in x''): states x, x'.
     pub fn second_order(equation: &Expression) -> Result<Self, SimulateError> {
-        let (factor, rest) = split_acceleration(equation)?;
-        let factor = factor.ok_or(SimulateError::NotSecondOrder)?;
-        let right = match factor {
-            Expression::Number(one) if one == 1 => -rest,
-            factor => -rest * factor.pow(-1),
-        };
-        let mut model = Self::first_order(&[], &[Expression::VELOCITY, right])?;
+        let right = accelerations(&[equation])?;
+        let mut model = Self::first_order(&[], &[&[Expression::VELOCITY], &right[..]].concat())?;
         model.second_order = true;
         Ok(model)
+    }
+
+    /// Equations `equations`\[k\] = 0 of as many unknowns, solved for the x_k'' (they must be linear in them): states
+    /// x_1, x_1', x_2, x_2', ...
+    ///
+    /// # Errors
+    /// [`SimulateError::NotSecondOrder`] where they are not, or do not determine the x_k''.
+    pub fn of_unknowns(equations: &[&Expression]) -> Result<Self, SimulateError> {
+        if let [equation] = equations {
+            return Self::second_order(equation);
+        }
+        let right = accelerations(equations)?;
+        let pairs = right.into_iter().enumerate().flat_map(|(k, e)| [Expression::unknown(k, 1), e]);
+        Self::first_order(&[], &pairs.collect::<Vec<_>>())
     }
 
     /// The system y_k' = `right_sides[k]`; state k goes by `names[k]`, the first two also by x
@@ -68,10 +78,11 @@ impl Model {
         })
     }
 
-    /// The equation of a problem in the time domain, with its wall.
+    /// The equations of a problem in the time domain, with its wall.
     pub fn of_problem(problem: &Problem) -> Result<Self, SimulateError> {
-        let equation = problem.time_domain.as_ref().unwrap_or(&problem.equation);
-        let mut model = Self::second_order(equation)?.with_small(&problem.small);
+        let first = problem.time_domain.as_ref().unwrap_or(&problem.equation);
+        let equations: Vec<_> = [first].into_iter().chain(&problem.others).collect();
+        let mut model = Self::of_unknowns(&equations)?.with_small(&problem.small);
         model.walls.extend(problem.impact.clone());
         Ok(model)
     }

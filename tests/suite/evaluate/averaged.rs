@@ -107,3 +107,38 @@ fn averaged_free_flight() {
         assert!(error < 1e-8, "{time}: {error:e}");
     }
 }
+
+/// The rates of x'' + x + eps (c x' + x(t - T)) = 0 are a root of lambda^2 + 1 + eps (c lambda + e^(-lambda T)), followed
+/// from i (Newton's method in doubles, 2000 steps of eps).
+#[test]
+fn rates_with_a_delay_against_the_characteristic_root() {
+    let equation = "x'' + x + eps*(c*x' + x(t - T)) = 0";
+    let case = lindstedt::Oscillator::parse(equation).unwrap();
+    let mut known = 0;
+    for (set, truth) in [
+        (["1/2", "10", "1/10"], [-0.020_861_205_462_9, 0.936_183_421_910_7]),
+        (["1/2", "10", "1/20"], [-0.021_081_869_210_8, 0.969_777_937_610_2]),
+        (["-1", "5", "1/10"], [0.005_502_437_159_3, 1.017_384_419_583_9]),
+        (["1", "3", "1/5"], [-0.041_953_353_084_4, 0.889_618_773_365_0]),
+        (["1/4", "8", "2/25"], [0.023_124_888_246_7, 0.996_562_016_193_7]),
+        (["3/2", "1", "1/4"], [-0.076_219_070_611_9, 1.053_837_150_232_5]),
+    ] {
+        let [c, delay, eps] = set;
+        for order in [2, 3, 4, 6] {
+            let set = [("c", c), ("T", delay), ("eps", eps)];
+            let motion = motion(case.problem(), order, &set, Start::Amplitude(1.into(), 0.into()));
+            for (found, truth) in motion.linear.clone().unwrap().iter().zip(truth) {
+                let Some(found) = found else { continue };
+                let Some(error) = &found.error else { continue };
+                let [value, error] = [&found.decimal, error].map(|x| x.parse::<f64>().unwrap());
+                // An estimate: two of the forty are too small by a tenth.
+                assert!(
+                    (value - truth).abs() <= 1.25 * error,
+                    "{set:?}, order {order}: {found}, {truth}"
+                );
+                known += 1;
+            }
+        }
+    }
+    assert!(known > 30, "{known}");
+}

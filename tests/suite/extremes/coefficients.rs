@@ -12,9 +12,9 @@ use lindstedt::{
 };
 use rug::{Float, Rational};
 
-/// omega^p of x'' + x (x^2)^delta = 0 at amplitude a: (1 + delta)^(p/2) M(u)^(-p) a^(p delta),
+/// omega^p of x'' + x (x^2)^delta = 0 at amplitude 1: (1 + delta)^(p/2) M(u)^(-p),
 /// M(u) = sum mu_m u^m = Gamma function, u = delta/(1 + delta).
-fn truth(power: i32, order: usize, amplitude: &str, bits: u32) -> Vec<Float> {
+fn truth_at_one(power: i32, order: usize, bits: u32) -> Series<Float> {
     let reals = Floats::new(bits);
     let moments = means(order, Balls::new(bits));
     let moments = Series::truncated(moments.iter().map(|mu| mu.midpoint().clone()).collect());
@@ -29,13 +29,19 @@ fn truth(power: i32, order: usize, amplitude: &str, bits: u32) -> Vec<Float> {
             binomial *= top / Rational::from(k + 1);
         }
     }
+    Series::truncated(series)
+}
+
+/// Times a^(p delta).
+fn truth(power: i32, at_one: &Series<Float>, amplitude: &str, bits: u32) -> Vec<Float> {
+    let (reals, order) = (Floats::new(bits), at_one.coefficients.len() - 1);
     let rate = Float::with_val(bits, rational(amplitude)).ln() * power;
     let mut factor = vec![reals.one()];
     for n in 1..=order {
         let next = Float::with_val(bits, &factor[n - 1] * &rate) / n as u32;
         factor.push(next);
     }
-    Series::truncated(series).mul(&reals, &Series::truncated(factor), order).coefficients
+    at_one.mul(&reals, &Series::truncated(factor), order).coefficients
 }
 
 const AMPLITUDES: [&str; 3] = ["1", "1e-300", "1e300"];
@@ -60,7 +66,8 @@ fn exact_grid(orders: &[(usize, Route)], digits: &[usize]) -> Grid {
                 for &digits in digits {
                     let bits = (digits as f64 * 3.4) as u32 + 300 + 80 * order as u32;
                     for (series, power) in result.series.iter().zip([2, 1, -1]) {
-                        let truth = truth(power, order, amplitude, bits);
+                        let truth =
+                            truth(power, &truth_at_one(power, order, bits), amplitude, bits);
                         for (n, truth) in truth.iter().enumerate() {
                             let label = format!("{label} {} {n} digits {digits}", series.quantity);
                             match result.number(series.quantity, n, digits) {
@@ -83,11 +90,12 @@ fn exact_grid(orders: &[(usize, Route)], digits: &[usize]) -> Grid {
 
 fn numeric_grid(orders: &[usize], tiers: &[Tier]) -> Grid {
     let mut grid = Grid::default();
-    for amplitude in AMPLITUDES {
-        for &order in orders {
-            let bits = 2_000 + 60 * order as u32;
+    for &order in orders {
+        let bits = 2_000 + 60 * order as u32;
+        let at_one = [2, 1, -1].map(|power| (power, truth_at_one(power, order, bits)));
+        for amplitude in AMPLITUDES {
             let truths: Vec<_> =
-                [2, 1, -1].iter().map(|p| truth(*p, order, amplitude, bits)).collect();
+                at_one.iter().map(|(power, one)| truth(*power, one, amplitude, bits)).collect();
             for &tier in tiers {
                 let label = format!("order {order} a = {amplitude} {tier:?}");
                 let settings = Settings {

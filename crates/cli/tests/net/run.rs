@@ -90,7 +90,7 @@ fn run(command: &str, format: &'static str) -> Output {
     let timed = command.starts_with("trade");
     let written = files.iter().filter_map(|name| {
         let text = std::fs::read_to_string(folder.join(name)).ok()?;
-        Some((name.clone(), mask::file(name, &text, timed)))
+        Some((name.clone(), mask::file(name, &own(text.into_bytes()), timed)))
     });
     Output {
         format,

@@ -28,6 +28,37 @@ fn flight<'a>(gains: &[&'a str; 2]) -> Vec<&'a str> {
     sets
 }
 
+/// The names of all objects, whatever the length of the lists.
+fn keys(value: &Value, path: &str, found: &mut std::collections::BTreeSet<String>) {
+    if let Some(object) = value.as_object() {
+        for (name, inner) in object {
+            found.insert(format!("{path}/{name}"));
+            keys(inner, &format!("{path}/{name}"), found);
+        }
+    }
+    for inner in value.as_array().into_iter().flatten() {
+        keys(inner, &format!("{path}[]"), found);
+    }
+}
+
+/// A program that read one order reads all.
+#[test]
+fn every_order_has_the_same_keys() {
+    let cases: [&[&str]; 2] = [&["van-der-pol", "--normalisation", "free"], &["vibro-impact"]];
+    for case in cases {
+        let of = |order: &str| {
+            let mut found = std::collections::BTreeSet::new();
+            keys(&json(&[case, &["--order", order]].concat()), "", &mut found);
+            // The monomials that occur are data.
+            found.retain(|key| !key.contains("/powers/"));
+            found
+        };
+        let first = of("1");
+        assert!(first.len() > 20, "{first:?}");
+        assert_eq!((of("2"), of("3")), (first.clone(), first), "{case:?}");
+    }
+}
+
 #[test]
 fn symbolic_first_order() {
     for format in ["text", "latex", "markdown"] {

@@ -137,6 +137,20 @@ fn first_missing<'a>(expected: &[&'a str], text: &str) -> Option<&'a str> {
     expected.iter().copied().find(|line| !lines.any(|shown| shown.contains(line.trim_end())))
 }
 
+/// What the commands of the net print as text, which the net holds against the program.
+fn held_by_the_net() -> Result<BTreeMap<String, String>, Box<dyn Error>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/net/snapshots");
+    let mut held = BTreeMap::new();
+    for entry in std::fs::read_dir(folder)? {
+        let snapshot = std::fs::read_to_string(entry?.path())?;
+        let command =
+            snapshot.lines().find_map(|line| line.strip_prefix("description: lindstedt "));
+        let text = snapshot.split("==== ").find(|part| part.starts_with("text "));
+        held.extend(command.zip(text).map(|(a, b)| (a.to_owned(), b.to_owned())));
+    }
+    Ok(held)
+}
+
 /// The words of a command; what stands in quotes is one.
 fn words(command: &str) -> impl Iterator<Item = &str> {
     command.split('"').enumerate().flat_map(|(n, part)| match n % 2 {
@@ -149,6 +163,8 @@ fn words(command: &str) -> impl Iterator<Item = &str> {
 fn console_blocks_show_what_the_program_prints() -> Outcome {
     let mut wrong = Vec::new();
     let mut commands = 0;
+    let held = held_by_the_net()?;
+    assert!(held.len() > 100, "only {} outputs of the net", held.len());
     // Several pages show parts of one long output.
     let mut outputs: BTreeMap<String, String> = BTreeMap::new();
     for (path, text) in pages()? {
@@ -156,6 +172,11 @@ fn console_blocks_show_what_the_program_prints() -> Outcome {
             let mut lines = block.lines();
             let command = lines.next().and_then(|line| line.strip_prefix("$ lindstedt "));
             let command = command.ok_or("a console block starts with $ lindstedt")?;
+            commands += 1;
+            let expected: Vec<&str> = lines.filter(|l| !l.trim().is_empty()).collect();
+            if held.get(command).is_some_and(|shown| first_missing(&expected, shown).is_none()) {
+                continue;
+            }
             if !outputs.contains_key(command) {
                 let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
                     .args(words(command))
@@ -166,11 +187,9 @@ fn console_blocks_show_what_the_program_prints() -> Outcome {
                 outputs.insert(command.to_owned(), shown);
             }
             let shown = outputs.get(command).map_or("", String::as_str);
-            let expected: Vec<&str> = lines.filter(|l| !l.trim().is_empty()).collect();
             if let Some(line) = first_missing(&expected, shown) {
                 wrong.push(format!("{}: {command}: {line}", path.display()));
             }
-            commands += 1;
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

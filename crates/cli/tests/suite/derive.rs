@@ -76,6 +76,26 @@ fn the_json_contract_holds() {
     }
 }
 
+/// x(0) over the first harmonic: at twice the amplitude the same series in eps A^2.
+#[test]
+fn initial_displacement_is_relative() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/examples/duffing.toml");
+    for (amplitude, first) in [("amplitude=1", "1/32"), ("amplitude=2", "1/8")] {
+        let found = json(&[
+            "derive",
+            file,
+            "--normalisation",
+            "fundamental",
+            "--order",
+            "1",
+            "--set",
+            amplitude,
+        ]);
+        let series = &found["series"]["initial_displacement"];
+        assert_eq!((&series[0]["exact"], &series[1]["exact"]), (&"1".into(), &first.into()));
+    }
+}
+
 #[test]
 fn high_orders_within_their_memory() {
     // Work, not time: the proof covers every order, and the record order of 1982 is exact here.

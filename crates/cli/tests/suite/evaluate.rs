@@ -164,7 +164,9 @@ fn a_printed_file_is_the_built_in_problem() {
         let path =
             file(&format!("{name}-{}", set.len()), &String::from_utf8(shown.stdout).unwrap());
         let run = |problem: &str| {
-            let arguments = ["--set", set, "--order", "8", "--times", "0..2:3"];
+            // A limit cycle is a series in eps^2.
+            let order = if name == "van-der-pol" { "12" } else { "8" };
+            let arguments = ["--set", set, "--order", order, "--times", "0..2:3"];
             let mut found = json(&[&[problem], &arguments[..]].concat());
             found["seconds"] = 0.into();
             found
@@ -239,7 +241,12 @@ fn few_coefficients() {
     let found = json(&["power-law", "--order", "0"]);
     assert_eq!(found["period"]["decimal"], "6.283");
     for order in ["0", "1", "3"] {
-        let found = json(&["van-der-pol", "--order", order, "--times", "0..1:2"]);
+        // Nobody vouches for it: exit code 4.
+        let output =
+            run(&["van-der-pol", "--order", order, "--times", "0..1:2", "--format", "json"]);
+        assert_eq!(output.status.code(), Some(4));
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(found["standing"], "undecided");
         // Four digits, and a class that says that nothing is known of their error.
         let period = &found["period"];
         assert!(period["error"].is_null() && period["status"] == "no-estimate", "{period}");
@@ -252,6 +259,25 @@ fn few_coefficients() {
         assert!(x["error"].is_null() && x["status"] == "no-estimate", "{order}: {x}");
         assert!(x["decimal"].as_str().unwrap().len() < 8, "{order}: {x}");
     }
+}
+
+/// A sum that is no period is not shown as one; the error is not that of a coarse decimal.
+#[test]
+fn a_period_is_positive_and_has_the_digits_of_its_error() {
+    for (equation, eps) in [
+        ("x'' + x + eps*x^5 = 0", "eps=4404/1000"),
+        ("x'' + x + eps*(x^2/2 + 3/2*x^3) = 0", "eps=1727/1000"),
+    ] {
+        let output = run(&[equation, "--set", eps, "--order", "5", "--resum", "none"]);
+        assert_eq!(output.status.code(), Some(4), "{equation}");
+        let shown = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(shown.contains("period T          not one digit"), "{shown}");
+    }
+    let found = json(&["duffing", "--set", "eps=20", "--order", "2"]);
+    let number = |key: &str| found["period"][key].as_str().unwrap().parse::<f64>().unwrap();
+    // Rounded to its error it would be 2 +- 0.57.
+    assert!((number("decimal") - 1.6).abs() < 0.1 && number("error") < 0.4, "{}", found["period"]);
+    assert!((number("decimal") - 1.601_205_990_328_808).abs() < number("error"));
 }
 
 /// a(t), psi(t), x(t) as table, figure and comma-separated values.

@@ -1,24 +1,36 @@
-//! Ctrl-C: exit code 130, from inside an order, a step, a chart.
+//! Signals and limits: from inside an order, a step, a chart; the exit code says which it was.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use crate::outputs::Folder;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
 
-/// It takes longer than this only where nobody looks for the interruption.
-const HANGS: Duration = Duration::from_secs(60);
+/// So many seconds of the processor between two looks at the flag, on both cores, are too many: measured
+/// 0.0 to 0.4.
+const LATE: f64 = 1.2;
 
-fn interrupted(arguments: &[&str]) -> (Option<i32>, String) {
+/// The processor's seconds that a program took.
+fn taken(child: &Child) -> Option<f64> {
+    let stat = std::fs::read_to_string(format!("/proc/{}/stat", child.id())).ok()?;
+    let words: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = |word: usize| words.get(word)?.parse::<f64>().ok();
+    Some((ticks(11)? + ticks(12)?) / 100.0)
+}
+
+fn interrupted(arguments: &[&str], signal: &str) -> (Option<i32>, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
     command.args(arguments).stdout(Stdio::null()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
-    std::thread::sleep(Duration::from_millis(700));
+    while taken(&child).unwrap() < 0.4 && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
     assert!(child.try_wait().unwrap().is_none(), "{arguments:?} was done too soon");
-    let kill = format!("kill -INT {}", child.id());
+    let kill = format!("kill -{signal} {}", child.id());
     assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
-    let begin = Instant::now();
+    let before = taken(&child).unwrap();
     while child.try_wait().unwrap().is_none() {
-        if begin.elapsed() > HANGS {
+        if taken(&child).unwrap() - before > LATE {
             child.kill().unwrap();
             child.wait().unwrap();
             panic!("{arguments:?} does not stop");
@@ -46,9 +58,78 @@ fn an_interruption_ends_the_work() {
         &["evaluate", "power-law", "--order", "400", "--digits", "800"],
         &["paper", "--quick"],
     ];
-    for arguments in cases {
-        let (code, message) = interrupted(arguments);
-        assert_eq!(code, Some(130), "{arguments:?}: {message}");
-        assert!(message.contains("stopping after the step in progress"), "{message}");
+    let signals = [("INT", 130), ("TERM", 143), ("HUP", 129)];
+    for (arguments, (signal, expected)) in cases.into_iter().zip(signals.into_iter().cycle()) {
+        let (code, message) = interrupted(arguments, signal);
+        assert_eq!(code, Some(expected), "{arguments:?}: {message}");
+        assert!(!message.is_empty(), "{arguments:?}");
     }
+}
+
+/// What the time limit stops says so, in every format, and nothing else; a figure of nothing is no error.
+#[test]
+fn a_limit_is_no_interruption() {
+    let folder = Folder::new("limit");
+    let chart = ["stability", "vibro-impact", "--sweep", "A=-1/3..1/3:3001", "--sweep"];
+    let chart = [&chart[..], &["B=-1/3..1/3:3001", "--plot", "a.svg", "--plot", "a.csv"]].concat();
+    let sweep = ["evaluate", "pendulum", "--sweep", "amplitude=1..2:400", "--plot", "a.csv"];
+    for command in [&chart[..], &sweep, &["derive", "pendulum", "--order", "20"]] {
+        for format in ["text", "json"] {
+            let asked = ["--limit-seconds", "0.2", "--format", format];
+            let output = folder.program(&[command, &asked].concat()).output().unwrap();
+            let said = [output.stdout, output.stderr].concat();
+            let said = String::from_utf8(said).unwrap();
+            assert_eq!(output.status.code(), Some(4), "{said}");
+            assert!(!said.contains("interrupted") && !said.contains("\"figure\""), "{said}");
+            assert!(said.contains("time limit") || said.contains("limit-seconds"), "{said}");
+            assert!(!said.contains("cannot be broken off"), "{command:?}: {said}");
+        }
+    }
+}
+
+/// The most resident memory of a program while it ran, in MiB, and how it ended.
+fn peak(command: &mut Command) -> (u64, Option<i32>) {
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let mut most = 0;
+    loop {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id()));
+        let status = status.unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let size = line.and_then(|text| text.trim_end_matches("kB").trim().parse().ok());
+        most = size.unwrap_or(0u64).max(most);
+        if let Some(status) = child.try_wait().unwrap() {
+            return (most >> 10, status.code());
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// The limit of memory is kept within a fifth, and the work under it ends as one that is stopped.
+#[test]
+fn memory_is_counted() {
+    let folder = Folder::new("memory");
+    for command in [
+        &["simulate", "van-der-pol", "--digits", "10000", "--until", "1"][..],
+        &["evaluate", "x'' + x + eps*x^1000 = 0", "--set", "eps=1/10"],
+    ] {
+        let (most, code) =
+            peak(&mut folder.program(&[command, &["--limit-memory", "40M"]].concat()));
+        assert!(most > 30, "{command:?} is no test of it: {most} MiB");
+        assert!(most <= 48, "{command:?}: {most} MiB");
+        assert_eq!(code, Some(4), "{command:?}");
+    }
+}
+
+/// Under a limit of the shell the program ends before GMP does.
+#[test]
+fn the_limit_of_the_process_counts() {
+    let folder = Folder::new("space");
+    for command in [
+        &["simulate", "van-der-pol", "--digits", "10000", "--until", "1"][..],
+        &["evaluate", "x'' + x + eps*x^1000 = 0", "--set", "eps=1/10", "--limit-seconds", "2"],
+    ] {
+        let output = folder.under("-v 400000", command);
+        assert_eq!(output.status.code(), Some(4), "{output:?}");
+    }
+    assert_eq!(folder.under("-v 400000", &["derive", "duffing"]).status.code(), Some(0));
 }

@@ -116,7 +116,7 @@ const DERIVED: &[Question] = &[
 
 const EVALUATED: &[Question] = &[
     ("evaluate duffing --order 6 --set eps=1/2", |o, w| library(o.evaluate(&orders(6), w))),
-    ("evaluate van-der-pol --order 8 --set eps=1/2", |o, w| library(o.evaluate(&orders(8), w))),
+    ("evaluate van-der-pol --order 12 --set eps=1/2", |o, w| library(o.evaluate(&orders(12), w))),
     ("evaluate power-law --order 6", |o, w| library(o.evaluate(&orders(6), w))),
     ("evaluate pendulum --order 4 --digits 12", |o, w| library(o.evaluate(&orders(4), w))),
     ("evaluate duffing --order 6 --set eps=1/2 --resum pade", |o, w| {

@@ -1,8 +1,10 @@
 //! Proved orbits of whole problems: against closed forms, and all that are expected.
 #![allow(clippy::unwrap_used)]
 
-use lindstedt::evaluate::{ProofVerdict, ProvedOrbit};
-use lindstedt::{Error, Evaluate, Number, Oscillator, Refusal, Work};
+use lindstedt::evaluate::{Language, ProofVerdict, ProvedFamily, ProvedOrbit, Times};
+use lindstedt::grid::Axis;
+use lindstedt::motion::{Simulate, Start};
+use lindstedt::{Error, Evaluate, Exact, Number, Oscillator, Refusal, Work};
 use rug::Rational;
 
 fn case(equation: &str, values: &[(&str, &str)]) -> Oscillator {
@@ -123,6 +125,82 @@ fn limit_cycles_are_proved_without_a_small_parameter() {
     assert_eq!(stable, [Some(true), Some(false)]);
     // The averaged amplitudes are sqrt(26 -+ sqrt(476)), 2.045 and 6.916 (rounded).
     assert!((largest(&two[0]) - 2.045).abs() < 0.01 && (largest(&two[1]) - 6.916).abs() < 0.1);
+}
+
+fn family(equation: &str, values: &[(&str, &str)], sweep: &str) -> ProvedFamily {
+    let axis = Axis::parse(sweep).unwrap();
+    let work = Work { digits: 12, ..Work::default() };
+    case(equation, values).prove_sweep(&Evaluate::default(), axis, &work).unwrap().value
+}
+
+/// The backbone of a hardening spring: every amplitude between two of its points has an orbit.
+#[test]
+fn a_backbone_is_proved_without_gaps() {
+    let found = family("duffing", &[("eps", "1")], "amplitude=1..6/5:3");
+    assert_eq!(found.branches.len(), 1);
+    let points = &found.branches[0].points;
+    let frequencies: Vec<f64> =
+        points.iter().map(|p| middle(&p.orbit.frequency).to_f64()).collect();
+    assert!(frequencies.len() == 3 && frequencies.is_sorted(), "{frequencies:?}");
+    assert!(points[..2].iter().all(|p| p.between.as_ref().is_some_and(|b| b.proved)));
+    // At a point between.
+    let between = proved("duffing", &[("eps", "1"), ("amplitude", "21/20")]).unwrap();
+    let hull = points[0].between.as_ref().unwrap().frequency.clone();
+    let distance = (middle(&hull) - middle(&between.frequency)).abs();
+    assert!(distance <= error(&hull), "{hull:?}");
+}
+
+/// x(t) is enclosed: at phase 0 it is what the orbit says, later what the integrator says.
+#[test]
+fn displacements_of_a_proved_cycle_are_enclosed() {
+    let cycle = case("van-der-pol", &[("eps", "1")]);
+    let times = Some(Times::parse("0..3:2").unwrap());
+    let question = Evaluate { times, ..Evaluate::default() };
+    let orbit = cycle.prove(&question, &Work::default()).unwrap().value;
+    let [first, last] = &orbit.solution[..] else { panic!("{:?}", orbit.solution) };
+    assert_eq!(first.x, orbit.amplitude.unwrap());
+    // By Taylor integration from the state at phase 0, as printed.
+    let state = [&first.x, &first.velocity].map(|n| Exact::parse(&n.decimal).unwrap());
+    let times = Some(Simulate::read_times("3").unwrap());
+    let simulated = Simulate {
+        start: Start { state: Some(state.to_vec()), ..Start::default() },
+        times,
+        ..Simulate::default()
+    };
+    let work = Work { digits: 26, ..Work::default() };
+    let moved = cycle.motion(&simulated, &work).unwrap().value.last;
+    for (a, b) in [(&last.x, &moved.x), (&last.velocity, &moved.v)] {
+        let distance = (decimal(&a.decimal) - decimal(&b.decimal)).abs();
+        let allowed = decimal(a.error.as_deref().unwrap()) + decimal("1e-24");
+        assert!(distance <= allowed && allowed < decimal("2e-24"), "{a:?} {b:?}");
+    }
+}
+
+/// Where the sum has few digits, x(t) and the program text are Newton's: at rest the orbit is at its
+/// proved maximum.
+#[test]
+fn the_motion_is_that_of_newtons_orbit() {
+    let cycle = case("van-der-pol", &[("eps", "2")]);
+    let times = Some(Times::parse("0..1:2").unwrap());
+    let question = Evaluate { times, ..Evaluate::default() };
+    let work = Work { digits: 20, ..Work::default() };
+    let found = cycle.evaluate(&question, &work).unwrap().value.solution.unwrap();
+    assert!(found.is_by_newton());
+    let largest = proved("van-der-pol", &[("eps", "2")]).unwrap().maximum;
+    let rest = found.points[0].value.clone();
+    assert!(
+        (middle(&rest) - middle(&largest)).abs() <= error(&rest) + decimal("1e-19"),
+        "{rest:?}"
+    );
+    assert!(error(&rest) < decimal("1e-17"));
+    let code = cycle.solution_code(&Evaluate::default(), Language::Rust, 40, &work).unwrap().value;
+    let at_rest: f64 = code.terms.iter().map(|(_, c, _)| c).sum();
+    assert!(
+        (at_rest - middle(&largest).to_f64()).abs() <= code.deviation + 1e-13,
+        "{}",
+        code.deviation
+    );
+    assert!(code.deviation < 1e-2 && code.code.contains("Newton"));
 }
 
 /// A linear congruential generator (Knuth's constants): the same problems everywhere.

@@ -20,6 +20,30 @@ fn json(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
+/// Damping over a long period is no periodic free flow, and what overflows is undecided, without NaN.
+#[test]
+fn long_periods_and_overflow() {
+    let quick = ["--f64", "--predictor", "kbm", "--format", "json"];
+    for omega in ["omega=1e-6", "omega=1e300", "omega=1e-300"] {
+        let output = run(&[&["--set", omega], &quick[..]].concat());
+        let shown = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(!shown.contains("NaN"), "{omega}: {shown}");
+        let found: Value = serde_json::from_str(&shown).unwrap();
+        let orbit = &found["orbit"];
+        assert!(!orbit.to_string().contains("T-periodic"), "{omega}: {orbit}");
+        let exists = &orbit["exists"];
+        let expected = match exists {
+            Value::Bool(true) => 0,
+            Value::Null => 4,
+            _ => 3,
+        };
+        assert_eq!(output.status.code(), Some(expected), "{omega}: {orbit}");
+    }
+    let periodic = run(&["--set", "c=0", "--set", "omega=1", "--set", "alpha=2", "--f64"]);
+    assert_eq!(periodic.status.code(), Some(3));
+    assert!(String::from_utf8_lossy(&periodic.stdout).contains("T-periodic"));
+}
+
 /// The numbers of a file of tests/data/vibro-impact.
 fn data(name: &str) -> Value {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/vibro-impact/");

@@ -38,6 +38,38 @@ fn the_numbers_of_the_paper() {
     assert_eq!(touching["cusp"]["signed"]["decimal"], "0");
 }
 
+/// Dry friction alone does no work where the belt is faster than the mass: intervals of zeros. In T0, alpha
+/// and beta the threshold is linear: one zero, exactly where it is, also at the end of the range.
+#[test]
+fn zeros_that_a_grid_does_not_see() {
+    let dry = ["--set", "alpha=0", "--set", "beta=0", "--digits", "12"];
+    let found = json(&[&dry[..], &["--zeros", "vstar=-2..2"]].concat());
+    let of = &found["zeros_of"];
+    assert_eq!(
+        (found["zeros"].as_array().unwrap().len(), &of["complete"]),
+        (0, &Value::Bool(true))
+    );
+    let ends: Vec<&str> =
+        (0..4).map(|n| of["intervals"][n / 2][n % 2]["decimal"].as_str().unwrap()).collect();
+    assert_eq!(ends, ["-2.00000000000", "-0.707106781187", "0.707106781187", "2.00000000000"]);
+    let inside = json(&[&dry[..], &["--zeros", "vstar=-1/2..1/2"]].concat());
+    assert!(inside["zeros_of"]["intervals"].is_null());
+    let cubic = ["--set", "T0=0", "--set", "alpha=0", "--digits", "12"];
+    for range in ["beta=-1..1", "beta=0..1", "beta=-1..0"] {
+        let found = json(&[&cubic[..], &["--zeros", range]].concat());
+        assert_eq!(found["zeros"].as_array().unwrap().len(), 1, "{range}: {}", found["zeros"]);
+        assert_eq!(found["zeros"][0]["decimal"], "0", "{range}");
+    }
+    let linear = json(&["--zeros", "alpha=0..2", "--digits", "12"]);
+    assert_eq!(linear["zeros_of"]["complete"], true);
+    let zero = format!("alpha={}", linear["zeros"][0]["decimal"].as_str().unwrap());
+    let there = json(&["--set", &zero, "--digits", "3"]);
+    assert!(there["gamma_c"]["decimal"].as_str().unwrap().parse::<f64>().unwrap() < 1e-9);
+    let none =
+        run(&["--set", "T0=0", "--set", "alpha=0", "--set", "beta=0", "--zeros", "vstar=0..1"]);
+    assert_eq!(none.status.code(), Some(3));
+}
+
 #[test]
 fn sweeps_in_one_and_two_parameters() {
     let curve = json(&["--sweep", "vstar=0..1:11"]);

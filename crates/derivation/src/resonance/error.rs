@@ -18,7 +18,9 @@ pub enum ResonanceError {
     )]
     SecondPhase,
     /// A term at order zero that is none of a linear oscillator.
-    #[error("without the small parameter the equation is not linear: it contains {term}")]
+    #[error(
+        "without the small parameter no oscillators x'' + nu^2*x with a force are left: there is {term}"
+    )]
     NotWeaklyNonlinear {
         /// The term.
         term: String,

@@ -263,7 +263,7 @@ fn names_and_memory_of_the_user() {
         slow_flow(problem, settings, &mut |_| true).unwrap_err().to_string()
     };
     let error = refused(&AveragingSettings::default(), &problem);
-    assert!(error.ends_with("it contains u*v"), "{error}");
+    assert!(error.ends_with("there is u*v"), "{error}");
     let text = "equation = \"x'' + x + eps*(s*x + al*x^3) = eps*F*cos(t)\"";
     let forced = ProblemFile::parse(text).unwrap().problem;
     let settings = AveragingSettings { order: 9, memory: 1 << 20, ..AveragingSettings::default() };

@@ -51,8 +51,9 @@ fn constant(c: i64) -> Power {
 /// factor q^n/s.
 fn over(n: usize, factor: i64, s: &Power) -> Power {
     let mut power = constant(0);
-    power.coefficients[n] = Rational::from(factor);
-    power.divided_by(&Rationals, s).unwrap()
+    let lead = s.coefficients[0].clone();
+    power.coefficients[n] = factor / lead.clone();
+    power.divided_by(&Rationals, &s.map(|c| Rational::from(c / &lead))).unwrap()
 }
 
 /// The recurrence (a - k^2) A_k = q (A_{k-2} + A_{k+2}) from above and from below, as continued fractions: the

@@ -1,14 +1,17 @@
 //! What the orders beyond N may add, judged by those that are known.
 //!
-//! The terms t_n of x, a'/a and psi' are taken to fall like q^n,
+//! The terms t_n of x and of the complex rate a'/a + i psi' are taken to fall like q^n,
 //!
-//!   q = max (|t_n|/t)^(1/n),   t = |x_0|, omega_0, omega_0,
+//!   q = max (|t_n|/t)^(1/n),   t = |x_0|, omega_0,
 //!
-//! over the last two orders n that do not vanish of each of the three: orders vanish by symmetry, two
-//! in a row by accident (B_3 = B_4 = 0 for x'' + x + eps (x^2 + x'^2) = 0), and say nothing. The rest
-//! is the larger of |t_n| q^(N - n) for these two n, and t q^(N + 1) where all orders vanish; but a' = 0
-//! to every order where the motion can be run backwards. |t_n| is the largest among amplitudes passed
-//! through and some below the largest one: a polynomial in a has zeros, as A_1 on a limit cycle.
+//! over the last two orders n that do not vanish of both: orders vanish by symmetry, two in a row by accident
+//! (B_3 = B_4 = 0 for x'' + x + eps (x^2 + x'^2) = 0), and say nothing. The rest of x is the larger of |t_n| q^(N - n) for
+//! these two n, that of the rates p times as much, p = min (4 q/(1 - q), max (1, q/(1 - q))), and t q^(N + 1) where all orders vanish; but a' = 0 to every
+//! order where the motion can be run backwards. A_n and B_n are judged together: with a delay the complex rate turns from
+//! order to order, and one of them may be small by accident. Of 2500 linear equations with a delay, whose rate is a root
+//! of the characteristic equation, p is too small for 2.6 % of the numbers, by more than 2 for 0.1 %, and 3.4 times too
+//! large in the median. |t_n| is the largest among amplitudes passed through and some below the largest one: a
+//! polynomial in a has zeros, as A_1 on a limit cycle.
 
 use super::truncated::Truncated;
 use lindstedt_derivation::averaging::numbers::{Numbers, Terms};
@@ -28,6 +31,9 @@ pub(super) struct Rest {
 
 /// Amplitudes from half the largest on that are looked at, besides those passed through.
 const BELOW: u32 = 4;
+
+/// Estimates of the rates are so many times the geometric rest.
+const SAFETY: f64 = 4.0;
 
 /// |sum c a^n|.
 fn size(terms: &Terms, a: &Float) -> f64 {
@@ -81,15 +87,17 @@ impl Rest {
         }
     }
 
-    /// |A_n|/a or |B_n| by n, the largest among the amplitudes.
-    fn sizes(&self, k: usize, amplitudes: &[Float]) -> Vec<f64> {
-        let at = |terms: &Terms, a: &Float| {
-            let divisor = if k == 0 { a.to_f64() } else { 1.0 };
-            let size = size(terms, a);
-            if size == 0.0 { 0.0 } else { size / divisor }
+    /// |A_n/a + i B_n| by n, the largest among the amplitudes.
+    fn sizes(&self, amplitudes: &[Float]) -> Vec<f64> {
+        let at = |[drift, turn]: [&Terms; 2], a: &Float| {
+            let drift = size(drift, a);
+            let drift = if drift == 0.0 { 0.0 } else { drift / a.to_f64() };
+            drift.hypot(size(turn, a))
         };
-        let largest = |terms| amplitudes.iter().map(|a| at(terms, a)).fold(0.0, largest);
-        self.rates[k].iter().map(largest).collect()
+        let [drift, turn] = &self.rates;
+        let pairs = drift.iter().zip(turn).map(|(drift, turn)| [drift, turn]);
+        let largest = |pair| amplitudes.iter().map(|a| at(pair, a)).fold(0.0, largest);
+        pairs.map(largest).collect()
     }
 
     fn of_x(&self, full: &Truncated, amplitudes: &[Float]) -> Vec<f64> {
@@ -101,27 +109,22 @@ impl Rest {
     pub(super) fn quotient(&self, full: &Truncated, amplitudes: &[Float]) -> f64 {
         let of_x = self.of_x(full, amplitudes);
         let scale = of_x.first().copied().unwrap_or_default();
-        let rates = [0, 1].map(|k| (self.sizes(k, amplitudes), self.frequency));
-        let [drift, turn] = rates;
-        let lists = [(of_x, scale), drift, turn];
+        let lists = [(of_x, scale), (self.sizes(amplitudes), self.frequency)];
         let roots = lists.iter().flat_map(|(sizes, scale)| {
             last_two(sizes).map(move |(n, size)| (size / scale).powf(1.0 / n as f64))
         });
         roots.fold(0.0, largest)
     }
 
-    /// The rests of a'/a and psi'.
+    /// The rests of a'/a and psi', q < 1.
     pub(super) fn rates(&self, q: f64, amplitudes: &[Float]) -> [f64; 2] {
-        [0, 1].map(|k| {
-            let sizes = self.sizes(k, amplitudes);
-            let rests = last_two(&sizes).map(|(n, size)| size * power(q, self.order - n));
-            let none = if k == 0 && self.is_reversible {
-                0.0
-            } else {
-                self.frequency * power(q, self.order + 1)
-            };
-            rests.reduce(largest).unwrap_or(none)
-        })
+        let sizes = self.sizes(amplitudes);
+        let last = last_two(&sizes).map(|(n, size)| size * power(q, self.order - n));
+        let rest = match last.reduce(largest) {
+            Some(last) => last * (SAFETY * q / (1.0 - q)).min((q / (1.0 - q)).max(1.0)),
+            None => self.frequency * power(q, self.order + 1),
+        };
+        [if self.is_reversible { 0.0 } else { rest }, rest]
     }
 
     /// The rest of x.

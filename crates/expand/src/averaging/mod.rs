@@ -103,7 +103,7 @@ pub fn average<A: AveragingAlgebra>(
         return general(start, order, observer);
     };
     let mut linear = Linear::start(start, affine).ok_or(ExpandError::NotWeaklyNonlinear)?;
-    let work = run(&mut linear, order, observer)?;
+    let work = run(&mut linear, 1..=order, observer)?;
     Ok(linear.finish(work))
 }
 
@@ -113,7 +113,7 @@ fn general<A: AveragingAlgebra>(
     order: usize,
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<AveragedExpansion<A>, ExpandError> {
-    let work = run(&mut averaging, order, observer)?;
+    let work = run(&mut averaging, 1..=order, observer)?;
     let Averaging { linear, amplitude_rate, phase_rate, x, .. } = averaging;
     Ok(finished(linear, [amplitude_rate, phase_rate], x, work))
 }

@@ -69,6 +69,7 @@ fn substitute<A: ClockAlgebra>(
     let inertia = judge.over_frequency(
         &judge.squared.map(|nu| constants.mul(nu, &expansion.stiffness)),
         &acceleration,
+        0,
     );
     let cube = product(&product(&g, &g), &g);
     let residual = inertia.add(algebra, &product(&cube, &values[equation.root()]));

@@ -84,7 +84,7 @@ pub fn expand_clock<A: ClockAlgebra>(
         velocities: vec![slope],
         driver,
     };
-    let work = run(&mut clock, request.order, observer)?;
+    let work = run(&mut clock, 1..=request.order, observer)?;
     let mut numbers = clock.numbers;
     let still = clock.driver.finish(work)?;
     numbers.truncate(still.solution.len());

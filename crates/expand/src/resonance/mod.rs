@@ -238,7 +238,7 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
         order: usize,
         observer: &mut dyn FnMut(&OrderWork) -> bool,
     ) -> Result<SlowFlow<A::Element>, ExpandError> {
-        let work = run(&mut self, order, observer)?;
+        let work = run(&mut self, 1..=order, observer)?;
         // An order that was interrupted has provisional values.
         let finished = work.len() + 1;
         let Self { mut flow, mut x, mut nearest, balance, .. } = self;

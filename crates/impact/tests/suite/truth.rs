@@ -445,6 +445,22 @@ fn a_chart_equals_its_points() {
     let wrong = agreement.false_stable + agreement.false_unstable;
     assert_eq!(agreement.equal + wrong, agreement.compared);
     assert!(agreement.false_stable > 0);
+    for variant in [Variant::P, Variant::S] {
+        let predictor = Some((Predictor::Kbm(variant), 2));
+        let found =
+            chart(&base, &Plan { predictor, exact: None, radius: false, ..plan }, &|_| true);
+        let found = found.unwrap();
+        for (index, point) in found.points.iter().enumerate() {
+            let p = Parameters {
+                displacement_gain: plan.columns.value(index % 9),
+                velocity_gain: plan.rows.value(index / 9),
+                ..base.clone()
+            };
+            let one = predict(variant, &p, &rates(&p, 2).flow(2).unwrap(), None);
+            assert_eq!(point.predicted, one.ok().map(|found| found.map.verdict()));
+            assert!(point.predicted_radius.is_nan());
+        }
+    }
     let stopped = chart(&base, &plan, &|_| false);
     assert_eq!(stopped.unwrap_err(), ImpactError::Cancelled);
     let twice = Plan { rows: plan.columns, ..plan };

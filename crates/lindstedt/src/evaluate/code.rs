@@ -59,6 +59,41 @@ impl SolutionCode {
         // Below the error of the expansion a coefficient is noise; where some phase has no estimate,
         // the measured deviation stands for it.
         let small = (size * trajectory.negligible()).max(error.unwrap_or(deviation));
+        let note = format!("expansion of order {}", trajectory.order());
+        let left_out = match error {
+            Some(_) => format!("terms below the error of the expansion, {small:.1e}, are left out"),
+            None => "no estimate at some phases: terms below the deviation are left out".to_owned(),
+        };
+        let words = [note, "the expansion".to_owned(), left_out];
+        let series = (list, deviation, trajectory.frequency());
+        Ok(Self::written(problem, series, small, language, words))
+    }
+
+    /// An orbit of Newton's method in Fourier space by its harmonics, and omega.
+    pub(super) fn by_newton(
+        problem: &str,
+        (series, omega): (Fourier, f64),
+        language: Language,
+    ) -> Self {
+        let small = series.error.unwrap_or_default();
+        let words = [
+            "Newton's method in Fourier space",
+            "it",
+            "terms of the size of rounding are left out",
+        ];
+        let series = (series.coefficients, series.deviation, omega);
+        Self::written(problem, series, small, language, words.map(str::to_owned))
+    }
+
+    /// The program text of (c_k, s_k), deviation and omega, without what is below `small`; in words what was
+    /// computed, what the deviation is from and what is left out.
+    fn written(
+        problem: &str,
+        (list, deviation, frequency): (Vec<(f64, f64)>, f64, f64),
+        small: f64,
+        language: Language,
+        [what, from, rest]: [String; 3],
+    ) -> Self {
         let keep = |x: f64| if x.abs() > small { x } else { 0.0 };
         let terms = list.iter().enumerate().map(|(k, &(c, s))| (k, keep(c), keep(s)));
         let terms: Vec<Term> = terms.filter(|(_, c, s)| *c != 0.0 || *s != 0.0).collect();
@@ -66,24 +101,17 @@ impl SolutionCode {
         let left_out = |x: f64| x - keep(x);
         let deviation =
             list.iter().fold(deviation, |d, &(c, s)| d + left_out(c).abs() + left_out(s).abs());
+        let harmonics = list.len().saturating_sub(1);
         let note = format!(
-            "{problem}: x(t), expansion of order {}, its first {harmonics} harmonics; deviation from \
-             the expansion {deviation:.1e}; {}",
-            trajectory.order(),
-            match error {
-                Some(_) =>
-                    format!("terms below the error of the expansion, {small:.1e}, are left out"),
-                None =>
-                    "no estimate at some phases: terms below the deviation are left out".to_owned(),
-            }
+            "{problem}: x(t), {what}, its first {harmonics} harmonics; deviation from {from} \
+             {deviation:.1e}; {rest}"
         );
-        let frequency = trajectory.frequency();
         let code = match language {
             Language::Rust => rust(&note, frequency, &terms),
             Language::Python => python(&note, frequency, &terms),
             Language::Latex => latex(&note, frequency, &terms),
         };
-        Ok(Self { language, frequency, terms, deviation, left_out_below: small, code })
+        Self { language, frequency, terms, deviation, left_out_below: small, code }
     }
 }
 

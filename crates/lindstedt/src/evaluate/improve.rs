@@ -1,7 +1,9 @@
 //! More digits than the sum has: Newton's method in Fourier space, from the sum.
 
-use super::{Evaluate, Evaluation};
-use crate::{Number, Oscillator, Work};
+use super::wanted::Wanted;
+use super::{Displacement, Displacements, Evaluate, Evaluation, Fourier};
+use crate::{Exact, Number, Oscillator, Work};
+use lindstedt_equation::Condition;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_orbit::{Approximation, Request, Start, approximate};
 use rug::Float;
@@ -11,22 +13,37 @@ const MOST_MODES: usize = 400;
 /// The orbit found must be that of the sum: within so many of its estimated errors.
 const SAME: u32 = 10;
 
+/// The orbit that Newton's method found.
+pub(super) struct Improvement {
+    wanted: Wanted,
+    found: Approximation,
+    /// The phase at which x' = 0.
+    rest: Ball,
+}
+
 impl Oscillator {
     /// Puts Newton's period in the place of one with fewer digits than were asked for, where the equation is
-    /// polynomial and there is no closed form. What does not agree with the sum is not taken.
-    pub(super) fn improve(&self, value: &mut Evaluation, question: &Evaluate, work: &Work) {
+    /// polynomial, there is no closed form, and neither order nor method was asked for. What does not agree with
+    /// the sum is not taken.
+    pub(super) fn improve(
+        &self,
+        value: &mut Evaluation,
+        question: &Evaluate,
+        work: &Work,
+    ) -> Option<Improvement> {
         let digits = work.printed_digits();
         let enough = value.period.as_ref().is_some_and(|period| has(period, digits));
-        if enough || value.exact_period.is_some() || work.doubles {
-            return;
+        let asked = question.order.is_some() || question.method.is_some();
+        if asked || enough || value.exact_period.is_some() || work.doubles {
+            return None;
         }
-        let Ok(wanted) = self.wanted(work.digits) else { return };
+        let wanted = self.wanted(work.digits).ok()?;
         let request =
             Request { digits: work.digits + 2, modes_limit: MOST_MODES, stop: work.stop.clone() };
         let found = |start: &Start| {
             let found = approximate(&wanted.field, &wanted.kind, start, &request).ok()?;
             let period = period(&found)?;
-            agrees(value, &period).then_some((period, found.modes))
+            agrees(value, &period).then_some((period, found))
         };
         let sum = self.by_sum(Some(value), question, work);
         let by_sum = sum.and_then(|start| Some(("the sum", found(&start)?)));
@@ -34,9 +51,73 @@ impl Oscillator {
             let start = self.by_motion(&wanted, &work.stop)?;
             Some(("the motion in time", found(&start)?))
         });
-        if let Some((from, (period, modes))) = improved {
-            value.improve(&period, digits, from, modes);
+        let (from, (period, found)) = improved?;
+        value.improve(&period, digits, from, found.modes);
+        let cycle = self.condition() == Some(Condition::LimitCycle);
+        let rest = if cycle { found.rest() } else { Balls::new(64).zero() };
+        Some(Improvement { wanted, found, rest })
+    }
+}
+
+/// Harmonics above this share of the largest are all that doubles show.
+const NEGLIGIBLE: f64 = 1e-15;
+
+impl Improvement {
+    /// x at times, x(t) = X(omega t + phase) with X'(0) = 0.
+    pub fn table(
+        &self,
+        value: &Evaluation,
+        times: &[Exact],
+        phase: &Exact,
+        work: &Work,
+    ) -> Displacements {
+        let balls = Balls::new(self.found.frequency.prec());
+        let frequency = balls.from_parts(&self.found.frequency, &self.found.error);
+        let begin = balls.add(&self.rest, &phase.ball(balls));
+        let digits = work.printed_digits();
+        let at = |time: &Exact| {
+            let turned = balls.mul(&frequency, &time.ball(balls));
+            let (x, _) = self.wanted.state(self.found.at_phase(&balls.add(&turned, &begin)))?;
+            let (double, error) = (x.midpoint().to_f64(), x.radius().to_f64());
+            Some(Displacement::new(time.clone(), Number::estimated(&x, digits), double, error))
+        };
+        let mut points = Vec::new();
+        for time in times {
+            if work.stop.asked() {
+                break;
+            }
+            points.extend(at(time));
         }
+        let complete = points.len() == times.len();
+        Displacements::by_newton(value.order, points, complete)
+    }
+
+    /// The harmonics in omega t up to one; what is left out deviates by at most the sum of its sizes.
+    pub fn fourier(&self, harmonics: usize) -> Option<Fourier> {
+        let start = self.found.start();
+        if self.wanted.is_substituted() {
+            return None;
+        }
+        let (sin, cos) = self.rest.midpoint().to_f64().sin_cos();
+        let (mut c, mut s) = (1.0, 0.0);
+        let mut list = Vec::new();
+        let modes = start.cosines.len().max(start.sines.len());
+        for k in 0..modes.max(harmonics + 1) {
+            let at = |list: &[f64]| list.get(k).copied().unwrap_or(0.0);
+            // a cos k(tau + p) + b sin k(tau + p) with c = cos k p, s = sin k p.
+            let (a, b) = (at(&start.cosines), at(&start.sines));
+            list.push((a * c + b * s, b * c - a * s));
+            (c, s) = (c * cos - s * sin, s * cos + c * sin);
+        }
+        let deviation = list.split_off(harmonics + 1).iter().map(|(a, b)| a.hypot(*b)).sum::<f64>();
+        let size = list.iter().fold(0.0f64, |m, (a, b)| m.max(a.abs()).max(b.abs()));
+        let error = Some(NEGLIGIBLE * size);
+        Some(Fourier { coefficients: list, deviation: deviation + NEGLIGIBLE * size, error })
+    }
+
+    /// omega.
+    pub fn frequency(&self) -> f64 {
+        self.found.frequency.to_f64()
     }
 }
 

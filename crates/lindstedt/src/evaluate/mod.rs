@@ -23,7 +23,10 @@ pub use lindstedt_evaluation::{
 pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;
 use lindstedt_series::resummation::Method;
-pub use prove::{Bounds, ProvedOrbit, Verdict as ProofVerdict};
+pub use prove::{
+    Between, Bounds, EndOfBranch, Expansion, ProvedBranch, ProvedFamily, ProvedMember, ProvedOrbit,
+    ProvedState, UnknownOrbit, UnknownState, Verdict as ProofVerdict,
+};
 use rug::Rational;
 use std::time::Instant;
 pub use sweep::{EvaluationSweep, SweptPeriod};
@@ -69,7 +72,7 @@ impl Oscillator {
     /// there for x'' + k x (x^2)^delta, x'' + k x + c eps x^3 and the pendulum with a given amplitude.
     /// A small parameter that only counts orders is 1; x(0) of a file is its amplitude.
     ///
-    /// Undecided where not one digit of the period is supported; stopped work leaves the times that
+    /// Undecided where not one digit of the period is supported, or nothing is known of its error; stopped work leaves the times that
     /// were reached.
     ///
     /// # Errors
@@ -94,9 +97,18 @@ impl Oscillator {
         let (case, mut remarks) = self.settled()?;
         let mut value = case.period(question, work)?;
         let mut standing = Standing::Complete;
+        let improved = case.improve(&mut value, question, work);
         if let Some(times) = &question.times {
-            let path = case.trajectory(&value, question, work)?;
-            let found = path.table(&times.list(path.period), work);
+            let found = match improved {
+                Some(found) => {
+                    let last = value.best_period.midpoint().to_f64();
+                    found.table(&value, &times.list(last), &question.phase, work)
+                }
+                None => {
+                    let path = case.trajectory(&value, question, work)?;
+                    path.table(&times.list(path.period), work)
+                }
+            };
             if !found.complete {
                 let stopped = "stopped; the times not reached are missing";
                 remarks.push(Remark(stopped.to_owned()));
@@ -104,11 +116,14 @@ impl Oscillator {
             }
             value.solution = Some(found);
         }
-        if question.order.is_none() && question.method.is_none() {
-            case.improve(&mut value, question, work);
-        }
         if standing == Standing::Complete && value.period.is_none() {
             let none = "the expansion gives not one digit of the period here";
+            remarks.push(Remark(none.to_owned()));
+            standing = Standing::Undecided;
+        }
+        if standing == Standing::Complete && value.is_without_estimate() {
+            let none = "nothing is known of the error: too few coefficients, and no closed form; \
+                        a higher --order, or --prove";
             remarks.push(Remark(none.to_owned()));
             standing = Standing::Undecided;
         }
@@ -140,11 +155,19 @@ impl Oscillator {
     ) -> Result<Answer<SolutionCode>, Error> {
         let start = Instant::now();
         let (case, remarks) = self.settled()?;
-        let found = case.period(question, work)?;
-        let path = case.trajectory(&found, question, work)?;
-        let value = SolutionCode::new(&self.problem().name, &path, language, harmonics)?;
+        let mut found = case.period(question, work)?;
+        let improved = case.improve(&mut found, question, work);
+        let by_newton = improved.and_then(|it| Some((it.fourier(harmonics)?, it.frequency())));
+        let name = &self.problem().name;
+        let (value, order) = match by_newton {
+            Some(series) => (SolutionCode::by_newton(name, series, language), found.order),
+            None => {
+                let path = case.trajectory(&found, question, work)?;
+                (SolutionCode::new(name, &path, language, harmonics)?, path.order())
+            }
+        };
         let at = found.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
-        let header = self.header(at, Some(path.order()), "resummation", start);
+        let header = self.header(at, Some(order), "resummation", start);
         Ok(Answer { header, value, standing: Standing::Complete, remarks })
     }
 

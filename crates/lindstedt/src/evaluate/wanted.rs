@@ -4,7 +4,7 @@ use super::turn::TimeDomain;
 use crate::refusal::Refused;
 use crate::{DerivationError, Error, Exact, Oscillator};
 use lindstedt_algebra::Stop;
-use lindstedt_equation::{AmplitudeRole, Condition};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression};
 use lindstedt_evaluation::setting::check_names;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_orbit::{Failure, Field, Kind, Sine, Start};
@@ -17,6 +17,8 @@ pub(crate) struct Wanted {
     pub kind: Kind,
     /// The unknown is sin(q y/2) with x = factor y.
     sine: Option<(Sine, Rational)>,
+    /// y(0).
+    angle: Option<Rational>,
     /// The motion in closed form, in doubles.
     pub closed: Option<Start>,
 }
@@ -51,24 +53,13 @@ impl Oscillator {
     /// digits. A small parameter that has the amplitude in it is, in the equation of x itself, its
     /// other part.
     pub(crate) fn wanted(&self, digits: u32) -> Result<Wanted, Error> {
-        let mut values: BTreeMap<String, Rational> = self
-            .values_of_proof()?
-            .into_iter()
-            .filter_map(|(name, value)| Some((name, value.as_rational()?.clone())))
-            .collect();
-        let problem = self.problem();
-        if problem.amplitude == AmplitudeRole::InSmallParameter {
-            let cards = problem.parameters.iter().filter(|card| card.name != "amplitude");
-            let part = cards.filter_map(|card| values.get(&*card.name)).next().cloned();
-            if let Some(part) = part {
-                values.entry(problem.small.to_string()).or_insert(part);
-            }
-        }
+        let (problem, values) = (self.problem(), self.coefficients_of_proof()?);
         let amplitude = || values.get("amplitude").cloned().unwrap_or_else(|| Rational::from(1));
         let condition = self.condition_of_proof();
         let initial = matches!(condition, None | Some(Condition::InitialAmplitude));
         let equation = problem.time_domain.as_ref().unwrap_or(&problem.equation);
-        if let Some(sine) = Sine::of(equation, &problem.small, &values).filter(|_| initial) {
+        let single = || initial && problem.others.is_empty();
+        if let Some(sine) = Sine::of(equation, &problem.small, &values).filter(|_| single()) {
             // Its equation is in y = x/a.
             let scaled = problem.amplitude == AmplitudeRole::InSums;
             let one = || Rational::from(1);
@@ -76,7 +67,8 @@ impl Oscillator {
             let (field, kind) =
                 sine.field(&start, digits).map_err(|failure| self.unproved(failure))?;
             let closed = Some(sine.start(&start));
-            return Ok(Wanted { field, kind, sine: Some((sine, factor)), closed });
+            let angle = Some(start);
+            return Ok(Wanted { field, kind, sine: Some((sine, factor)), angle, closed });
         }
         let field =
             Field::of_problem(problem, &values).map_err(|failure| self.unproved(failure))?;
@@ -92,7 +84,25 @@ impl Oscillator {
             Some(Condition::FundamentalAmplitude) => Kind::FundamentalAmplitude(amplitude()),
             _ => Kind::InitialAmplitude(amplitude()),
         };
-        Ok(Wanted { field, kind, sine: None, closed: None })
+        Ok(Wanted { field, kind, sine: None, angle: None, closed: None })
+    }
+
+    /// The rational values of all names in the equation of x itself.
+    fn coefficients_of_proof(&self) -> Result<BTreeMap<String, Rational>, Error> {
+        let mut values: BTreeMap<String, Rational> = self
+            .values_of_proof()?
+            .into_iter()
+            .filter_map(|(name, value)| Some((name, value.as_rational()?.clone())))
+            .collect();
+        let problem = self.problem();
+        if problem.amplitude == AmplitudeRole::InSmallParameter {
+            let cards = problem.parameters.iter().filter(|card| card.name != "amplitude");
+            let part = cards.filter_map(|card| values.get(&*card.name)).next().cloned();
+            if let Some(part) = part {
+                values.entry(problem.small.to_string()).or_insert(part);
+            }
+        }
+        Ok(values)
     }
 
     /// The values that enter, with what those set determine (n of a power law gives delta). An equation that
@@ -110,11 +120,14 @@ impl Oscillator {
     /// Whether there is a series whose sum is a guess.
     pub(crate) fn has_expansion(&self) -> bool {
         let fixed = self.condition().is_some_and(|c| c != Condition::FreeAmplitude);
-        fixed && self.check().is_ok()
+        fixed && self.problem().others.is_empty() && self.check().is_ok()
     }
 
     /// The condition; nothing where it only says that the equation is not expanded.
     fn condition_of_proof(&self) -> Option<Condition> {
+        if !self.problem().others.is_empty() {
+            return self.asked_condition();
+        }
         let drifts = self.condition() == Some(Condition::FreeAmplitude);
         let asked = self.asked_condition().is_some() || self.check().is_ok();
         self.condition().filter(|_| asked || !drifts)
@@ -126,6 +139,64 @@ impl Oscillator {
                 DerivationError::Unset { problem: self.problem().name.to_string(), name }.into()
             }
             other => other.into(),
+        }
+    }
+}
+
+/// A question for all values of a parameter between two numbers.
+pub(crate) struct Between<'a> {
+    pub name: &'a str,
+    pub ends: &'a [Rational; 2],
+    /// The case at either end.
+    pub low: &'a Oscillator,
+    pub high: &'a Oscillator,
+}
+
+/// Digits of the data of a uniform question, which is about an interval.
+const FEW_DIGITS: u32 = 20;
+
+impl Between<'_> {
+    /// The field with the interval for a coefficient, or the amplitude within the interval. Only one of
+    /// both may vary, and only one name of the equation.
+    pub fn question(&self) -> Result<(Field, Kind), Failure> {
+        let wanted = [self.low, self.high].map(|case| case.wanted(FEW_DIGITS).ok());
+        let [Some(low), Some(high)] = wanted else { return Err(Failure::NoStart) };
+        if let (Some((sine, _)), Some((other, _))) = (&low.sine, &high.sine) {
+            let starts = [&low.angle, &high.angle];
+            let [Some(start), Some(end)] = starts else { return Err(Failure::NoStart) };
+            return sine.between(start, (other, end));
+        }
+        let values = [self.low, self.high].map(|case| case.coefficients_of_proof().ok());
+        let [Some(first), Some(last)] = values else { return Err(Failure::NoStart) };
+        let problem = self.low.problem();
+        let first_one = problem.time_domain.as_ref().unwrap_or(&problem.equation);
+        let holds = |part: &Expression| {
+            first_one.contains(part) || problem.others.iter().any(|e| e.contains(part))
+        };
+        let occurs = |name: &str| {
+            holds(&Expression::parameter(name))
+                || (*name == *problem.small && holds(&Expression::Small))
+        };
+        let mut varying = first.iter().filter(|(name, value)| last.get(*name) != Some(value));
+        let varying = varying.by_ref().filter(|(name, _)| occurs(name));
+        let varying: Vec<&str> = varying.map(|(name, _)| name.as_str()).collect();
+        let kind = if low.kind == high.kind {
+            Some(low.kind.clone())
+        } else {
+            low.kind.between(self.ends)
+        };
+        let kind = kind.ok_or(Failure::NoStart)?;
+        match varying[..] {
+            [] if low.kind == high.kind || self.name == "amplitude" => Ok((low.field, kind)),
+            [name] if low.kind == high.kind => {
+                let same = [&first, &last].map(|values| values.get(name))
+                    == [&self.ends[0], &self.ends[1]].map(Some);
+                if !same {
+                    return Err(Failure::NoStart);
+                }
+                Ok((Field::between(problem, &first, name, self.ends)?, kind))
+            }
+            _ => Err(Failure::NoStart),
         }
     }
 }

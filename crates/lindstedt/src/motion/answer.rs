@@ -2,6 +2,7 @@
 
 use super::growth::{self, shifts};
 use super::plan::Plan;
+use super::setup::Setup;
 use super::{Section, View, difference};
 use crate::{Exact, Number, Work};
 use lindstedt_number::ball::Balls;
@@ -27,6 +28,9 @@ pub struct State {
     pub x: Number,
     /// x'.
     pub v: Number,
+    /// The same of further unknowns.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub others: Vec<[Number; 2]>,
     /// Sticking, or at rest at the wall.
     pub sticking: bool,
     /// t, x, x' in doubles.
@@ -78,8 +82,23 @@ pub struct Begin {
     pub x: String,
     /// x'(0).
     pub v: String,
+    /// The names of several unknowns.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unknowns: Vec<String>,
+    /// The same of further unknowns.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub others: Vec<[String; 2]>,
     /// How it was chosen, where it was not given.
     pub chosen: Option<&'static str>,
+}
+
+impl Begin {
+    pub(super) fn new(setup: &Setup) -> Self {
+        let [x, v] = setup.flow.start.each_ref().map(shown);
+        let pairs = setup.flow.others.chunks_exact(2);
+        let others = pairs.map(|pair| [0, 1].map(|k| shown(&pair[k]))).collect();
+        Self { x, v, unknowns: setup.unknowns.clone(), others, chosen: setup.chosen }
+    }
 }
 
 /// Infinitely many impacts in a finite time.
@@ -181,10 +200,12 @@ impl Numbers {
 
     fn state(&self, (a, b): (&Moment, &Moment)) -> State {
         let ([x, v], [finer_x, finer_v]) = (&a.state, &b.state);
+        let others = a.others.chunks_exact(2).zip(b.others.chunks_exact(2));
         State {
             t: self.number(&a.time, &b.time),
             x: self.number(x, finer_x),
             v: self.number(v, finer_v),
+            others: others.map(|(a, b)| [0, 1].map(|k| self.number(&a[k], &b[k]))).collect(),
             sticking: a.stuck,
             place: [a.time.to_f64(), x.to_f64(), v.to_f64()],
         }
@@ -239,7 +260,7 @@ impl Motion {
         let ratio = ratio.iter().zip(&fine_ratio).map(|(a, b)| numbers.number(a, b));
         let events = || course.events.iter().zip(&finer.events);
         let endless = events().filter(|(a, _)| matches!(a.kind, EventKind::Accumulation { .. }));
-        let [x, v] = plan.setup.flow.start.each_ref().map(shown);
+        let start = Begin::new(&plan.setup);
         let points = || Points {
             kind: plan.section.unwrap_or(Section::Velocity),
             points: numbers.states(&course.points, &finer.points),
@@ -247,7 +268,7 @@ impl Motion {
         };
         Self {
             digits: u32::try_from(work.printed_digits()).unwrap_or(u32::MAX),
-            start: Begin { x, v, chosen: plan.setup.chosen },
+            start,
             history: plan.setup.history,
             events: events().map(|pair| numbers.event(pair)).collect(),
             samples: numbers.states(&course.samples, &finer.samples),

@@ -1,5 +1,6 @@
 //! Largest Lyapunov exponent and 0-1 test: numbers that tell chaos from regular motion.
 
+use super::set_up;
 use super::setup::Setup;
 use super::{Start, answer, precomputed};
 use crate::refusal::Refused;
@@ -137,7 +138,8 @@ impl Oscillator {
             let message = format!("{kept} periods tell nothing, at least {LEAST} do");
             return Err(Refused::usage("chaos", message, "--periods 2000").into());
         }
-        let setup = Setup::new(self, &question.start, false, precomputed(work))?;
+        self.single()?;
+        let setup = set_up(self, &question.start, false, precomputed(work))?;
         let mut remarks = self.remarks().to_vec();
         remarks.extend(setup.remarks.iter().cloned().map(Remark));
         if setup.orbit.is_some() {
@@ -157,10 +159,9 @@ impl Oscillator {
         };
         let lyapunov = question.lyapunov.then(|| run.lyapunov()).transpose()?;
         let zero_one = question.zero_one.then(|| run.zero_one()).transpose()?;
-        let [x, v] = run.setup.flow.start.each_ref().map(answer::shown);
         let value = Diagnosis {
             digits: 16,
-            start: answer::Begin { x, v, chosen: run.setup.chosen },
+            start: answer::Begin::new(&run.setup),
             history: run.setup.history,
             skip: skipped,
             kept,

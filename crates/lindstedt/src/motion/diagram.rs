@@ -1,5 +1,6 @@
 //! Bifurcation diagrams: the points of a section over a parameter, resumable.
 
+use super::set_up;
 use super::setup::Setup;
 use super::{Section, Start, answer, increasing, precomputed, section};
 use crate::grid::Axis;
@@ -10,7 +11,8 @@ use lindstedt_simulate::{
     self as simulate, DiagramSettings, Doubles, Point, Quantity, Settings, Surface, Sweep, diagram,
 };
 use serde::{Deserialize, Serialize};
-use std::ops::ControlFlow;
+use std::collections::HashMap;
+use std::ops::{ControlFlow, Range};
 use std::time::Instant;
 
 /// The question for a bifurcation diagram.
@@ -35,6 +37,8 @@ pub struct Bifurcation {
     pub skipped: u32,
     /// Points that are kept.
     pub kept: u32,
+    /// Whether every value but the first starts from the last point of the one before, upwards and then down again.
+    pub follow: bool,
 }
 
 impl Bifurcation {
@@ -42,7 +46,7 @@ impl Bifurcation {
     #[must_use]
     pub fn over(sweep: &str) -> Self {
         let (start, sweep) = (Start::default(), sweep.to_owned());
-        Self { start, sweep, section: None, skipped: 200, kept: 100 }
+        Self { start, sweep, section: None, skipped: 200, kept: 100, follow: false }
     }
 }
 
@@ -62,12 +66,14 @@ pub struct Column {
 
 /// Where finished columns are kept, so that a diagram that was stopped goes on.
 pub trait Journal {
-    /// The columns of an earlier run, from the first on; nothing where the work is to be given up.
-    /// `identity` is one line that determines every number; a column whose value is not that of the
-    /// diagram is not used, nor what comes after it.
+    /// The columns of an earlier run, in any order; nothing where the work is to be given up.
+    /// `identity` is one line that determines every number; a column whose value is none of the
+    /// diagram is not used, and what is missing between others is computed again.
     fn begin(&mut self, identity: &str) -> Option<Vec<Column>>;
     /// The next finished column; whether to go on.
     fn keep(&mut self, column: &Column) -> bool;
+    /// All columns are there.
+    fn complete(&mut self) {}
 }
 
 /// Nothing is kept.
@@ -96,6 +102,9 @@ pub struct Swept {
     pub status: Status,
     /// One per finished value.
     pub columns: Vec<Column>,
+    /// The same downwards, where values follow each other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub back: Option<Vec<Column>>,
 }
 
 /// The result of [`Oscillator::bifurcation`].
@@ -122,7 +131,8 @@ const TIER: &str = "doubles, without an error: a section of a motion with pertur
 
 impl Oscillator {
     /// The points of a section over the values of a parameter, after a transient, every value from
-    /// the same start; on all cores, in order.
+    /// the same start; on all cores, in order. Where values [follow](Bifurcation::follow) each other, one after the other:
+    /// of two attractors the motion stays at its own as long as there is one, which upwards and downwards is another.
     ///
     /// In doubles, without an error: of chaotic motion the points are typical, not those of one
     /// motion.
@@ -149,7 +159,7 @@ impl Oscillator {
         self.bifurcation_resumed(question, work, &mut ())
     }
 
-    /// The same from where a journal ends, which is told every finished column.
+    /// The same without what a journal has already; it is told every finished column.
     ///
     /// # Errors
     /// As there; [`Refused`] as stopped where the journal gives up.
@@ -160,8 +170,15 @@ impl Oscillator {
         journal: &mut dyn Journal,
     ) -> Result<Answer<Diagram>, Error> {
         let begin = Instant::now();
-        let setup = Setup::new(self, &question.start, true, precomputed(work))?;
+        let mut setup = set_up(self, &question.start, true, precomputed(work))?;
         let axis = self.swept(&question.sweep, &setup)?;
+        setup.flow.forcing = setup.forcing_at(&axis)?;
+        // What varies has no value of its own.
+        setup.at.retain(|(name, value)| *name != axis.name || !value.is_empty());
+        if question.follow && setup.orbit.is_some() {
+            let message = "the orbit of the start is that of every value";
+            return Err(Refused::usage("sweep", message, "--state X,V").into());
+        }
         if question.kept == 0 {
             return Err(Refused::usage("sweep", "no points to keep", "--periods 100").into());
         }
@@ -169,29 +186,28 @@ impl Oscillator {
         let values = axis.values.iter().map(|value| Quantity::from(value.clone())).collect();
         let mut task = Task { question, setup, name: axis.name, section, values };
         let given_up = || Refused::stopped("the file of the sweep cannot be used", "");
-        let mut columns = journal.begin(&task.identity()).ok_or_else(given_up)?;
-        let known =
-            columns.iter().zip(&task.values).take_while(|(c, q)| c.exact == answer::shown(q));
-        columns.truncate(known.count());
-        task.compute(&mut columns, work, journal)?;
-        let count: usize = columns.iter().map(|column| column.points.len()).sum();
-        let empty = columns.iter().filter(|column| column.points.is_empty()).count();
-        let verdict = format!(
-            "{} of {} values of {}, {empty} without points, {count} points in all",
-            columns.len(),
-            task.values.len(),
-            task.name,
-        );
+        let kept = journal.begin(&task.identity()).ok_or_else(given_up)?;
+        let (mut columns, lost) = task.known(kept);
+        let back = task.compute_all(&mut columns, work, journal)?;
+        let columns: Vec<Column> = columns.into_iter().flatten().collect();
+        let verdict = task.verdict(&columns, back.as_ref());
         let mut remarks = self.remarks().to_vec();
         remarks.extend(task.setup.remarks.drain(..).map(Remark));
-        let (done, complete) = (columns.len(), columns.len() == task.values.len());
-        if !complete {
+        let whole = |list: &Vec<Column>| list.len() == task.values.len();
+        let complete = whole(&columns) && back.as_ref().is_none_or(whole);
+        let done = columns.len();
+        let lost = (!lost.is_empty()).then(|| {
+            format!("{} = {}: lost in the journal, computed again", task.name, lost.join(", "))
+        });
+        remarks.extend(lost.map(Remark));
+        if complete {
+            journal.complete();
+        } else if !question.follow {
             remarks.push(Remark("stopped; with --resume FILE it can be continued".to_owned()));
         }
-        let [x, v] = task.setup.flow.start.each_ref().map(answer::shown);
         let value = Diagram {
             digits: None,
-            start: answer::Begin { x, v, chosen: task.setup.chosen },
+            start: answer::Begin::new(&task.setup),
             history: task.setup.history,
             sweep: Swept {
                 parameter: task.name,
@@ -200,6 +216,7 @@ impl Oscillator {
                 kept: question.kept,
                 status: Status::Estimated,
                 columns,
+                back,
             },
             complete,
             verdict,
@@ -260,7 +277,7 @@ impl Task<'_> {
         let others: Vec<String> = others.map(|(name, value)| format!("{name}={value}")).collect();
         let ends = [self.values.first(), self.values.last()];
         let [low, high] = ends.map(|q| q.map(answer::shown).unwrap_or_default());
-        let start = self.setup.flow.start.each_ref().map(|q| q.float(64).to_f64());
+        let start: Vec<f64> = self.setup.flow.states().map(|q| q.float(64).to_f64()).collect();
         format!(
             "{} {}; {} = {low}..{high}:{}; start {start:?}; {:?}; skip {}, keep {}; {}",
             self.setup.name,
@@ -274,13 +291,62 @@ impl Task<'_> {
         )
     }
 
-    /// The columns after those that there are.
-    fn compute(
-        &self,
-        columns: &mut Vec<Column>,
+    /// The columns that were kept, each in its place, and the values that are missing before the last of them.
+    fn known(&self, kept: Vec<Column>) -> (Vec<Option<Column>>, Vec<String>) {
+        let mut kept: HashMap<String, Column> =
+            kept.into_iter().map(|column| (column.exact.clone(), column)).collect();
+        let shown: Vec<String> = self.values.iter().map(answer::shown).collect();
+        let columns: Vec<Option<Column>> = shown.iter().map(|value| kept.remove(value)).collect();
+        let last = columns.iter().rposition(Option::is_some).unwrap_or(0);
+        let places = columns.iter().zip(&shown).take(last);
+        let lost = places.filter(|(column, _)| column.is_none()).map(|(_, value)| value.clone());
+        let lost = lost.collect();
+        (columns, lost)
+    }
+
+    /// The columns that are missing; where they follow each other all of them, and those downwards.
+    fn compute_all(
+        &mut self,
+        columns: &mut [Option<Column>],
         work: &Work,
         journal: &mut dyn Journal,
-    ) -> Result<(), Error> {
+    ) -> Result<Option<Vec<Column>>, Error> {
+        let start: Vec<f64> = self.setup.flow.states().map(|q| q.float(64).to_f64()).collect();
+        if !self.question.follow {
+            return self.compute(columns, start, work, journal).map(|_| None);
+        }
+        columns.fill(None);
+        let end = self.compute(columns, start, work, &mut ())?;
+        let mut back = vec![None; columns.len()];
+        self.values.reverse();
+        self.compute(&mut back, end, work, &mut ())?;
+        self.values.reverse();
+        Ok(Some(back.into_iter().flatten().collect()))
+    }
+
+    fn verdict(&self, columns: &[Column], back: Option<&Vec<Column>>) -> String {
+        let all = || columns.iter().chain(back.into_iter().flatten());
+        let count: usize = all().map(|column| column.points.len()).sum();
+        let empty = all().filter(|column| column.points.is_empty()).count();
+        let ways = match back {
+            Some(_) => " upwards and downwards, each from the end of the one before",
+            None => "",
+        };
+        let (done, values) = (columns.len(), self.values.len());
+        format!(
+            "{done} of {values} values of {}{ways}, {empty} without points, {count} points in all",
+            self.name
+        )
+    }
+
+    /// The columns that are missing, from a start; the state at the end of the last one.
+    fn compute(
+        &self,
+        columns: &mut [Option<Column>],
+        start: Vec<f64>,
+        work: &Work,
+        journal: &mut dyn Journal,
+    ) -> Result<Vec<f64>, Error> {
         let mut model = self.setup.flow.model.clone();
         if self.section == Section::Velocity {
             model = model.with_section(Expression::VELOCITY);
@@ -293,7 +359,7 @@ impl Task<'_> {
         };
         let settings = DiagramSettings {
             time: 0.0,
-            start: self.setup.flow.start.iter().map(|q| q.float(64).to_f64()).collect(),
+            start: start.clone(),
             section: match self.section {
                 Section::Stroboscopic => simulate::Section::Period(forcing),
                 Section::Impact => events(Surface::Wall(0), None),
@@ -302,7 +368,7 @@ impl Task<'_> {
             periods: self.periods()?,
             transient: self.question.skipped,
             kept: self.question.kept,
-            follow: false,
+            follow: self.question.follow,
             integration: Settings { most_impacts: 10_000_000, ..Settings::for_digits(16) },
         };
         let sweep = Sweep {
@@ -313,18 +379,30 @@ impl Task<'_> {
         };
         let flow = |on: bool| if on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
         let tick = || flow(!work.stop.asked());
-        let range = columns.len()..self.values.len();
-        let all = range.end;
-        diagram(&sweep, &Doubles, &settings, range, &tick, &mut |found| {
-            let Some(value) = self.values.get(found.index) else { return flow(false) };
-            let column = self.column(value, &found.points);
-            let kept = journal.keep(&column);
-            if kept {
-                columns.push(column);
+        let (all, mut done) = (columns.len(), columns.iter().flatten().count());
+        let mut goes_on = true;
+        let mut last = start;
+        for range in gaps(columns) {
+            if !goes_on {
+                break;
             }
-            flow(work.goes_on(Progress::Parts(columns.len(), all)) && kept)
-        });
-        Ok(())
+            diagram(&sweep, &Doubles, &settings, range, &tick, &mut |found| {
+                let place = self.values.get(found.index).zip(columns.get_mut(found.index));
+                let Some((value, place)) = place else { return flow(false) };
+                let column = self.column(value, &found.points);
+                if let Some(point) = found.points.as_ref().ok().and_then(|points| points.last()) {
+                    last.clone_from(&point.state);
+                }
+                goes_on = journal.keep(&column);
+                if goes_on {
+                    *place = Some(column);
+                    done += 1;
+                }
+                goes_on &= work.goes_on(Progress::Parts(done, all));
+                flow(goes_on)
+            });
+        }
+        Ok(last)
     }
 
     fn column(
@@ -366,4 +444,16 @@ impl Swept {
             Section::Stroboscopic => (0, "displacement x"),
         }
     }
+}
+
+/// The runs of what is missing.
+fn gaps(columns: &[Option<Column>]) -> Vec<Range<usize>> {
+    let mut gaps: Vec<Range<usize>> = Vec::new();
+    for (i, _) in columns.iter().enumerate().filter(|(_, column)| column.is_none()) {
+        match gaps.last_mut().filter(|gap| gap.end == i) {
+            Some(gap) => gap.end = i + 1,
+            None => gaps.push(i..i + 1),
+        }
+    }
+    gaps
 }

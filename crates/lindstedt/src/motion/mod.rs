@@ -11,15 +11,18 @@ pub(crate) mod answer;
 mod chaos;
 mod diagram;
 mod equation;
+mod follow;
 pub(crate) mod growth;
 mod history;
 mod orbit;
 mod plan;
 mod setup;
+mod several;
 
 pub use answer::{Begin, Event, LinearRegime, Motion, Points, Rest, State, Steps};
 pub use chaos::{Chaos, Diagnosis, Exponent, Test, ZeroOneTest};
 pub use diagram::{Bifurcation, Column, Diagram, Journal, Swept};
+pub(crate) use follow::Reading;
 pub use lindstedt_impact::parameters::Branch;
 pub use lindstedt_simulate::{Cut as Section, Dot};
 
@@ -45,9 +48,9 @@ const USUAL: u32 = 20;
 /// Where a motion starts, as far as it is said.
 #[derive(Clone, Debug, Default)]
 pub struct Start {
-    /// x(0), x'(0); by default those of the problem file, else on the periodic impact orbit where a
-    /// wall and a delay of whole periods make one, else at rest at the amplitude.
-    pub state: Option<[Exact; 2]>,
+    /// x(0), x'(0), with several unknowns the same of all of them; by default those of the problem file, else on the
+    /// periodic impact orbit where a wall and a delay of whole periods make one, else at rest at the amplitude.
+    pub state: Option<Vec<Exact>>,
     /// The motion before t = 0, which a delay needs: `constant`, `free-flight`, or an expression in t.
     pub history: Option<String>,
     /// The root of the impact velocity of the periodic orbit; the larger one by default.
@@ -57,17 +60,27 @@ pub struct Start {
 }
 
 impl Start {
-    /// Reads a state `X,V`.
+    /// Reads a state `X,V`, with several unknowns `X,V,Y,W,...`.
     ///
     /// # Errors
-    /// [`Refused`] where there are not two values.
-    pub fn read_state(text: &str) -> Result<[Exact; 2], Error> {
+    /// [`Refused`] where the values do not come in pairs.
+    pub fn read_state(text: &str) -> Result<Vec<Exact>, Error> {
         let parts: Vec<&str> = text.split(',').collect();
-        let [x, v] = parts[..] else {
+        if parts.len() % 2 == 1 {
             let message = format!("{text:?} is not X,V");
             return Err(Refused::usage("state", message, "--state 1,-1/2").into());
+        }
+        Ok(parts.into_iter().map(Exact::parse).collect::<Result<_, _>>()?)
+    }
+
+    /// The state of one unknown.
+    fn pair(&self) -> Result<Option<[Exact; 2]>, Error> {
+        let Some(state) = &self.state else { return Ok(None) };
+        let [x, v] = &state[..] else {
+            let message = format!("{} values are no state of one unknown", state.len());
+            return Err(Refused::usage("state", message, "--state 1,-1/2").into());
         };
-        Ok([Exact::parse(x)?, Exact::parse(v)?])
+        Ok(Some([x.clone(), v.clone()]))
     }
 
     /// Reads a perturbation: a rational number other than zero.
@@ -152,6 +165,19 @@ fn increasing(values: &[Exact]) -> Result<(), String> {
     falls.map_or(Ok(()), |pair| Err(format!("{} comes after {}", pair[1], pair[0])))
 }
 
+/// The motion of one unknown or of several. What is computed beforehand has `digits` digits and some more.
+fn set_up(
+    oscillator: &Oscillator,
+    start: &Start,
+    swept: bool,
+    digits: u32,
+) -> Result<Setup, Error> {
+    match oscillator.problem().others.is_empty() {
+        true => Setup::single(oscillator, start, swept, digits),
+        false => several::several(oscillator, start),
+    }
+}
+
 impl Oscillator {
     /// The motion from a start to an end: its events, samples and section, integrated until the
     /// digits of `work` are there.
@@ -175,7 +201,7 @@ impl Oscillator {
     /// ```
     pub fn motion(&self, question: &Simulate, work: &Work) -> Result<Answer<Motion>, Error> {
         let begin = Instant::now();
-        let setup = Setup::new(self, &question.start, false, precomputed(work))?;
+        let setup = set_up(self, &question.start, false, precomputed(work))?;
         let mut plan = plan(question, setup)?;
         let (pair, working) = integrate(&mut plan, work)?;
         let half = if plan.perturbed() && pair.finer.is_some() {

@@ -6,6 +6,7 @@ use super::equation::{
 use super::history::{Evaluator, at_time, flying, free_flight, named};
 use super::orbit::{Orbit, recognised};
 use super::{Branch, Start};
+use crate::grid::Axis;
 use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{Error, Exact, Oscillator};
@@ -32,9 +33,9 @@ pub(super) struct Setup {
     /// The motion before t = 0, in words.
     pub history: Option<&'static str>,
     /// The frequency of the force in the parameters.
-    frequency: Option<Expression>,
+    pub frequency: Option<Expression>,
     /// The name of the small parameter.
-    small: String,
+    pub small: String,
     /// A wall bounds the motion.
     pub wall: bool,
     /// The equation is linear, without a wall.
@@ -47,17 +48,18 @@ pub(super) struct Setup {
     /// determines a motion.
     pub identity: String,
     pub remarks: Vec<String>,
+    /// The names of several unknowns.
+    pub unknowns: Vec<String>,
 }
 
 impl Setup {
-    /// What is computed beforehand has `digits` digits and some more.
-    pub fn new(
+    /// Of one unknown. What is computed beforehand has `digits` digits and some more.
+    pub fn single(
         oscillator: &Oscillator,
         start: &Start,
         swept: bool,
         digits: u32,
     ) -> Result<Self, Error> {
-        oscillator.single()?;
         let mut problem = with_small(oscillator.problem());
         let given = linked(&problem, oscillator.given().clone());
         check_parameters(&problem, &given)?;
@@ -78,6 +80,15 @@ impl Setup {
         };
         let begin = case.begin(start, swept)?;
         case.finished(begin, at)
+    }
+
+    /// The period of the force; where what varies determines it, at the first value.
+    pub fn forcing_at(&self, axis: &Axis) -> Result<Option<Quantity>, Error> {
+        let first = axis.values.first().cloned().map(Quantity::from);
+        let own = first.and_then(|value| self.period_at(&axis.name, &value)).transpose()?;
+        Ok(own
+            .map(|x| Quantity::Float(Float::with_val(53, x)))
+            .or_else(|| self.flow.forcing.clone()))
     }
 
     /// The period of the force where the parameter has this value, if it is one on which the
@@ -127,8 +138,8 @@ impl Case<'_> {
             Some(text) => Some(History::parse(text, &file.names)?),
             None => file.history.clone().map(|(history, _)| history),
         };
-        let state = match (&start.state, &file.initial) {
-            (Some(state), _) => Some(state.clone()),
+        let state = match (start.pair()?, &file.initial) {
+            (Some(state), _) => Some(state),
             (None, Some([x, v])) => {
                 // A first harmonic is no start.
                 if self.problem.conditions.first() != Some(&Condition::FundamentalAmplitude) {
@@ -314,6 +325,7 @@ impl Case<'_> {
                 model,
                 parameters: self.parameters,
                 start: begin.state,
+                others: Vec::new(),
                 forcing,
                 sticks: friction(&self.equation).is_some(),
             },
@@ -328,6 +340,7 @@ impl Case<'_> {
             small: self.small,
             orbit: self.orbit,
             remarks: self.remarks,
+            unknowns: Vec::new(),
         })
     }
 

@@ -30,6 +30,23 @@ impl Refusal for ExpandError {
                 "no-value-set",
                 "--set NAME=VALUE; --normalisation free keeps parameters of the small terms as symbols",
             ),
+            Self::UnsupportedTerm { term } if term.contains("t)") || term == "t" => (
+                NoAnswer,
+                "no-expansion",
+                "forces are averaged: `lindstedt derive`, near a resonance also `lindstedt respond`; \
+                 `lindstedt simulate` takes it as it is",
+            ),
+            Self::NotWeaklyNonlinear => (
+                NoAnswer,
+                "no-expansion",
+                "damping, delays and nonlinear terms need a factor of the small parameter: eps*x', \
+                 eps*x(t - T); `lindstedt simulate` takes the equation as it is",
+            ),
+            Self::NegativeStiffness => (
+                NoAnswer,
+                "no-expansion",
+                "x = 0 is a saddle: put x = c + y with a centre c, or `lindstedt simulate`",
+            ),
             _ => (NoAnswer, "no-expansion", ""),
         };
         (kind, code, hint.to_owned())
@@ -212,8 +229,11 @@ impl Refusal for lindstedt_orbit::Failure {
             Failure::Singular { .. }
             | Failure::NotConverged { .. }
             | Failure::NoContraction { .. }
+            | Failure::NoFunction { .. }
             | Failure::Residual { .. }
-            | Failure::NoPeriod { .. } => (Undecided, "could-not-decide", ""),
+            | Failure::NoPeriod { .. }
+            | Failure::Jump
+            | Failure::Apart { .. } => (Undecided, "could-not-decide", ""),
             _ => (NoAnswer, "no-proof", estimates),
         };
         (kind, code, hint.to_owned())

@@ -10,9 +10,11 @@ use serde::{Serialize, Serializer};
 pub struct Response {
     /// The parameter that varies.
     pub parameter: Option<String>,
+    /// What the x_j are called: the unknowns, or q_1, q_2, ... of the modes.
+    pub coordinates: Vec<String>,
     /// k_j.
     pub turns: Vec<String>,
-    /// The box: |Re|, |Im| of a e^(i phi) are at most this.
+    /// The largest a_j that is looked at.
     pub amplitude_limit: Estimate,
     /// Whether the truncated slow flow has no steady states beyond.
     pub complete: bool,
@@ -39,6 +41,9 @@ pub struct Response {
     /// Where folds and Hopf points meet, with two parameters.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub bogdanov_takens: Vec<Corner>,
+    /// The equation integrated along the values, upwards and downwards.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub followed: Option<[Vec<Reading>; 2]>,
     /// Where the start state goes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub leads_to: Option<Destination>,
@@ -109,6 +114,8 @@ pub struct States {
     pub count_proved: bool,
     /// Parts of the box that could not be decided.
     pub undecided: usize,
+    /// Proved states of which is not decided whether their amplitude is at most the limit.
+    pub at_edge: usize,
     /// Parts of the box that were looked at.
     pub boxes: usize,
     /// The states, the largest amplitude first.
@@ -130,6 +137,18 @@ pub struct State {
     /// Re w_1, Im w_1, ...
     #[serde(skip)]
     pub(crate) at: Vec<f64>,
+}
+
+/// The response of the equation itself at a value of the parameter, integrated.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct Reading {
+    /// The value.
+    pub value: Estimate,
+    /// a_j; nothing where the motion ended.
+    pub amplitudes: Option<Vec<Estimate>>,
+    /// phi_j.
+    pub phases: Option<Vec<Estimate>>,
 }
 
 /// Where a start state goes.

@@ -9,7 +9,7 @@ use crate::grid::Axis;
 use crate::refusal::Refused;
 use crate::{Answer, Error, Exact, Oscillator, Remark, Standing, Work};
 pub use answer::{
-    Branch, Change, Corner, Curve, Destination, Estimate, Point, Response, State, States,
+    Branch, Change, Corner, Curve, Destination, Estimate, Point, Reading, Response, State, States,
 };
 use lindstedt_orbit::steady::{self, Fate, Plane, Survey, settle};
 use std::time::Instant;
@@ -36,6 +36,9 @@ pub struct Respond {
     pub second: Option<Axis>,
     /// The largest amplitude that is looked at; if nothing, one that has all steady states of the slow flow of order one.
     pub amplitude: Option<Exact>,
+    /// With a sweep: also the equation itself, integrated along the values upwards and downwards, each from the end of the
+    /// one before.
+    pub follow: bool,
     /// x and x' at t = 0: where does the motion go?
     pub start: Option<[Exact; 2]>,
 }
@@ -74,6 +77,8 @@ const SEARCHES: [usize; 2] = [9, 3];
 const LEAST_STEPS: usize = 60;
 /// Points of one branch at most.
 const MOST_POINTS: usize = 100_000;
+/// Values at which the equation is integrated along a sweep.
+const MOST_FOLLOWED: usize = 101;
 /// How long a start state is followed, in eps t.
 const LONG: f64 = 1e4;
 
@@ -111,6 +116,9 @@ impl Oscillator {
             (Some(axis), None) => subject.branches(axis)?,
             (Some(first), Some(second)) => subject.plane(first, second)?,
         };
+        if let (Some(axis), None, true) = (&question.sweep, &question.second, question.follow) {
+            value.followed = Some(subject.followed(axis)?);
+        }
         if let Some(from) = &question.start {
             value.leads_to = Some(subject.destination(from, &value)?);
         }
@@ -122,7 +130,15 @@ impl Oscillator {
                 "{place}the number of steady states is not decided: a double one, or too many boxes"
             )));
         }
-        if subject.rotating.fixed < subject.rotating.turns.len() {
+        let combination = subject.rotating.combination.as_ref();
+        if let Some(modes) = combination {
+            let names: Vec<_> = modes.iter().map(|j| value.coordinates[*j].as_str()).collect();
+            remarks.push(Remark(format!(
+                "combination resonance of {}: the force fixes one combination of their phases, and their amplitudes may be \
+                 steady in other frames than this one; such motions are not among the states (`simulate` shows them)",
+                names.join(", ")
+            )));
+        } else if subject.rotating.fixed < subject.rotating.turns.len() {
             let text = "the resonances of these orders leave a phase free: a motion that is steady in another \
                         rotating frame is none of these states";
             remarks.push(Remark(text.to_owned()));
@@ -133,7 +149,7 @@ impl Oscillator {
         }
         let standing = match question.sweep {
             _ if work.stop.asked() => Standing::Stopped { done: value.branches.len() },
-            None if undecided > 0 => Standing::Undecided,
+            None if undecided > 0 || combination.is_some() => Standing::Undecided,
             _ => Standing::Complete,
         };
         let header = self.header(subject.shown_values(), Some(subject.order), "exact", start);
@@ -147,10 +163,11 @@ impl Subject<'_> {
         let values = self.values([None, None]);
         let (reach, complete) = self.reach(std::slice::from_ref(&values))?;
         let system = self.rotating.flow.system(&values);
-        let found = steady::all_zeros(&system, &self.region(reach), &self.limits());
+        let found = steady::all_zeros(&system, &self.region(reach), &self.limits(reach));
         let found = found.ok_or_else(not_determined)?;
         let mut response = self.empty(reach, complete);
-        response.states.push(self.shown_states(None, &system, &found));
+        let states = self.shown_states(None, &system, &found);
+        response.states.push(states.ok_or(Error::NoValue)?);
         Ok(response)
     }
 
@@ -166,7 +183,7 @@ impl Subject<'_> {
             values: values.clone(),
             samples,
             course: course.clone(),
-            limits: self.limits(),
+            limits: self.limits(reach),
         };
         let found = survey.run().ok_or_else(not_determined)?;
         let mut response = self.empty(reach, complete);
@@ -178,11 +195,12 @@ impl Subject<'_> {
                 steady::Change::Hopf => &mut response.hopf,
                 _ => &mut response.crossings,
             };
-            list.push(self.shown_change(change));
+            list.push(self.shown_change(change).ok_or(Error::NoValue)?);
         }
         for (sample, found) in &found.searches {
             let system = self.rotating.flow.system(&self.values([Some(sample), None]));
-            response.states.push(self.shown_states(Some(sample), &system, found));
+            let states = self.shown_states(Some(sample), &system, found);
+            response.states.push(states.ok_or(Error::NoValue)?);
         }
         response.backbone = self.backbone(&values, &course);
         Ok(response)
@@ -218,7 +236,7 @@ impl Subject<'_> {
             course: self.course(&samples[0], first, reach)?,
             second: ends(&samples[1])?,
             samples,
-            limits: self.limits(),
+            limits: self.limits(reach),
         };
         let found = plane.run().ok_or_else(not_determined)?;
         let mut response = self.empty(reach, complete);
@@ -231,9 +249,28 @@ impl Subject<'_> {
                 steady::Change::Cusp => &mut response.cusps,
                 _ => &mut response.bogdanov_takens,
             };
-            list.push(self.shown_corner(zero, places));
+            list.push(self.shown_corner(zero, places).ok_or(Error::NoValue)?);
         }
         Ok(response)
+    }
+
+    /// The equation itself along the values.
+    fn followed(&self, axis: &Axis) -> Result<[Vec<Reading>; 2], Error> {
+        let values = axis.every(MOST_FOLLOWED);
+        let found = self.in_time()?.followed(&values, &self.rotating.turns, self.work)?;
+        let reading = |found: &crate::motion::Reading| {
+            let number = |value| Estimate { value };
+            let polar = |part: &dyn Fn(&[f64; 2]) -> f64| {
+                let list = found.harmonics.as_ref()?.iter();
+                Some(list.map(|w| number(part(w))).collect::<Vec<_>>())
+            };
+            Reading {
+                value: number(found.value.to_f64()),
+                amplitudes: polar(&|w| w[0].hypot(w[1])),
+                phases: polar(&|w| w[1].atan2(w[0])),
+            }
+        };
+        Ok(found.each_ref().map(|list| list.iter().map(reading).collect()))
     }
 
     /// Where a start state goes.

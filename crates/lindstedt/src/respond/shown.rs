@@ -42,21 +42,23 @@ impl Subject<'_> {
         Branch { points: points.iter().map(point).collect(), closed: *closed, complete: *complete }
     }
 
-    pub(super) fn shown_change(&self, change: &Located) -> Change {
+    pub(super) fn shown_change(&self, change: &Located) -> Option<Change> {
         let n = self.rotating.flow.unknowns();
         let Some(zero) = &change.proved else {
             let amplitudes = self.amplitudes(&change.at[..n]);
-            return Change {
+            return Some(Change {
                 value: Number::double(self.shown_value(change.at[n])),
                 amplitudes: amplitudes.iter().map(|a| Number::double(a.value)).collect(),
                 branch: change.branch,
-            };
+            });
         };
-        let amplitudes = zero.enclosure[..n].chunks_exact(2).map(|w| polar(w).0).collect();
-        Change { value: self.proved_value(zero.enclosure[n]), amplitudes, branch: change.branch }
+        let amplitudes = zero.enclosure[..n].chunks_exact(2).map(amplitude);
+        let (amplitudes, value) =
+            (amplitudes.collect::<Option<_>>()?, self.proved_value(zero.enclosure[n])?);
+        Some(Change { value, amplitudes, branch: change.branch })
     }
 
-    fn proved_value(&self, value: Interval) -> Number {
+    fn proved_value(&self, value: Interval) -> Option<Number> {
         let mut shown = real(value);
         if let (Some(factor), Some(small)) = (&self.factor, &self.small) {
             let number = |q: &Rational| Certified::from_rational(Balls::new(BITS), q);
@@ -70,25 +72,27 @@ impl Subject<'_> {
         sample: Option<&Exact>,
         system: &System,
         found: &Found,
-    ) -> States {
+    ) -> Option<States> {
         let mut list: Vec<State> = Vec::new();
         for zero in &found.zeros {
             let point = steady::state_at(system, &zero.middle());
-            let (amplitudes, phases) = zero.enclosure.chunks_exact(2).map(polar).unzip();
+            let polar: Option<Vec<_>> = zero.enclosure.chunks_exact(2).map(polar).collect();
+            let (amplitudes, phases) = polar?.into_iter().unzip();
             let stable = self.is_stable(&point);
             let exponents = self.exponents(&point);
             list.push(State { amplitudes, phases, stable, exponents, at: point.at });
         }
         let size = |state: &State| state.at.iter().map(|x| x * x).sum::<f64>();
         list.sort_by(|a, b| size(b).total_cmp(&size(a)).then(b.at[0].total_cmp(&a.at[0])));
-        States {
+        Some(States {
             value: sample.and_then(|value| self.shown_sample(value)),
             count: list.len(),
             count_proved: found.is_proved(),
             undecided: found.undecided.len(),
+            at_edge: found.at_edge.len(),
             boxes: found.boxes,
             list,
-        }
+        })
     }
 
     fn shown_sample(&self, value: &Exact) -> Option<Number> {
@@ -113,13 +117,14 @@ impl Subject<'_> {
         Curve { kind, points, closed: curve.branch.closed }
     }
 
-    pub(super) fn shown_corner(&self, zero: &Zero, places: [usize; 2]) -> Corner {
+    pub(super) fn shown_corner(&self, zero: &Zero, places: [usize; 2]) -> Option<Corner> {
         let n = self.rotating.flow.unknowns();
         let [first, second] = places.map(|place| zero.enclosure[place]);
-        Corner {
-            values: [self.proved_value(first), proved(&real(second))],
-            amplitudes: zero.enclosure[..n].chunks_exact(2).map(|w| polar(w).0).collect(),
-        }
+        let amplitudes = zero.enclosure[..n].chunks_exact(2).map(amplitude);
+        Some(Corner {
+            values: [self.proved_value(first)?, proved(&real(second))?],
+            amplitudes: amplitudes.collect::<Option<_>>()?,
+        })
     }
 }
 
@@ -127,12 +132,18 @@ fn real(x: Interval) -> Certified {
     Certified::new(Balls::new(BITS), x.ball())
 }
 
-fn proved(x: &Certified) -> Number {
-    Number::of_ball(x.ball(), DIGITS).weaken(Status::Proved)
+/// Nothing of what is not bounded.
+fn proved(x: &Certified) -> Option<Number> {
+    Some(Number::of_ball(x.ball(), DIGITS)?.weaken(Status::Proved))
+}
+
+/// 2 |w| of an enclosed w.
+fn amplitude(w: &[Interval]) -> Option<Number> {
+    proved(&(real(w[0]).square() + real(w[1]).square()).sqrt().doubled())
 }
 
 /// 2 |w| and the angle of an enclosed w.
-fn polar(w: &[Interval]) -> (Number, Option<Number>) {
+fn polar(w: &[Interval]) -> Option<(Number, Option<Number>)> {
     let (re, im) = (real(w[0]), real(w[1]));
     let square = re.square() + im.square();
     // About the negative axis the principal value jumps: there it is taken from the opposite direction.
@@ -141,6 +152,6 @@ fn polar(w: &[Interval]) -> (Number, Option<Number>) {
     };
     let cut = w[0].high() < 0.0 && w[1].contains(0.0);
     let phase = if cut { turned() } else { im.atan2(&re) };
-    let phase = square.is_positive().then_some(phase).filter(|phase| phase.ball().is_finite());
-    (proved(&square.sqrt().doubled()), phase.map(|phase| proved(&phase)))
+    let phase = square.is_positive().then_some(phase).and_then(|phase| proved(&phase));
+    Some((amplitude(w)?, phase))
 }

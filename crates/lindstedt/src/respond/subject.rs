@@ -112,7 +112,13 @@ impl<'a> Subject<'a> {
             value.is_none() && !self.swept.iter().flatten().any(|it| it == *name)
         });
         let problem = self.oscillator.problem().name.to_string();
+        let beside = self.slow.system.beside.as_ref();
         match unset {
+            // A detuning that follows from the frequency and the small parameter, which has no value.
+            Some((name, _)) if beside.is_some_and(|it| it.symbol == *name) => {
+                let name = self.oscillator.problem().small.to_string();
+                Err(DerivationError::Unset { problem, name }.into())
+            }
             Some((name, _)) => Err(DerivationError::Unset { problem, name: name.clone() }.into()),
             None if self.amplitude.is_some_and(|a| !a.is_finite() || a <= 0.0) => {
                 let message = "the largest amplitude is a positive number";
@@ -181,7 +187,7 @@ impl<'a> Subject<'a> {
         values.map(|value| detuning(value).ok_or(Error::NoValue)).collect()
     }
 
-    /// The half side of the box that is searched, and whether it has all states: that asked for, else a bound of the
+    /// The largest |w_j| that is looked at, and whether it has all states: that asked for, else a bound of the
     /// steady states of order one.
     pub(super) fn reach(&self, at: &[Values]) -> Result<(f64, bool), Error> {
         let largest = |flow: &steady::Flow| {
@@ -189,7 +195,8 @@ impl<'a> Subject<'a> {
         };
         let whole = largest(&self.rotating.flow);
         let reach = match self.amplitude {
-            Some(amplitude) => amplitude / 2.0,
+            // Not further than there can be states.
+            Some(amplitude) => whole.map_or(amplitude / 2.0, |r| (ROOM * r).min(amplitude / 2.0)),
             None => {
                 let small = self.oscillator.problem().small.to_string();
                 let first = rotating(&self.slow, &small, 1).ok_or_else(no_force)?;
@@ -207,13 +214,14 @@ impl<'a> Subject<'a> {
         vec![Interval::new(-reach, reach); self.rotating.flow.unknowns()]
     }
 
-    pub(super) fn limits(&self) -> Limits {
-        Limits { stop: self.work.stop.clone(), ..Limits::default() }
+    pub(super) fn limits(&self, reach: f64) -> Limits {
+        Limits { modulus: Some(reach), stop: self.work.stop.clone(), ..Limits::default() }
     }
 
     pub(super) fn empty(&self, reach: f64, complete: bool) -> Response {
         Response {
             parameter: None,
+            coordinates: self.slow.coordinates(),
             turns: self.rotating.turns.iter().map(ToString::to_string).collect(),
             amplitude_limit: Estimate { value: 2.0 * reach },
             complete,
@@ -227,8 +235,18 @@ impl<'a> Subject<'a> {
             curves: Vec::new(),
             cusps: Vec::new(),
             bogdanov_takens: Vec::new(),
+            followed: None,
             leads_to: None,
         }
+    }
+
+    /// The oscillator, where its unknowns are those of the slow flow.
+    pub(super) fn in_time(&self) -> Result<&Oscillator, Error> {
+        if self.slow.system.shapes.is_none() {
+            return Ok(self.oscillator);
+        }
+        let message = "the states are those of modes, the motion that of the unknowns";
+        Err(Refused::usage("follow", message, "lindstedt simulate --sweep ... --follow").into())
     }
 
     /// w of a start state: z to leading order.
@@ -284,7 +302,7 @@ impl<'a> Subject<'a> {
         let still = std::iter::once(Some(Exact::Rational(Rational::new())));
         let given: Values = still.chain(values.iter().cloned()).collect();
         let range = [Interval::new(wide[0], wide[1])];
-        let at_rest = all_zeros(&System::new(&flow.rows, &given), &range, &self.limits());
+        let at_rest = all_zeros(&System::new(&flow.rows, &given), &range, &Limits::default());
         let starts = at_rest.into_iter().flat_map(|found| found.zeros);
         let system = flow.system(values);
         let step = course.step / (1.0 + 2.0 * BESIDE);

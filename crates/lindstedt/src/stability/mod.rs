@@ -18,7 +18,9 @@ use lindstedt_impact::parameters::{Branch, ExactParameters};
 use lindstedt_impact::prediction::Variant;
 use lindstedt_impact::report::{certified_stability_watched, stability_watched};
 use lindstedt_number::as_map;
+use lindstedt_number::real::Certified;
 use serde::Serialize;
+use std::cell::Cell;
 use std::time::Instant;
 use subject::Subject;
 
@@ -141,7 +143,7 @@ pub struct NoOrbit {
     pub code: &'static str,
     /// In words.
     pub message: Option<Remark>,
-    /// Empty.
+    /// What to do about it.
     pub hint: &'static str,
 }
 
@@ -184,7 +186,18 @@ impl Oscillator {
         } else {
             let report = certified_stability_watched(parameters, &request, work.digits, &work.stop);
             let digits = work.printed_digits();
-            subject.answer(&report.map_err(stopped)?, &|x| Number::of_ball(x.ball(), digits))
+            let unknown = Cell::new(false);
+            let number = |x: &Certified| {
+                let number = Number::of_ball(x.ball(), digits);
+                unknown.set(unknown.get() || number.is_none());
+                number.unwrap_or_else(|| Number::double(f64::NAN))
+            };
+            let value = subject.answer(&report.map_err(stopped)?, &number);
+            if unknown.get() {
+                let message = format!("a number has no digit left of {}", work.digits);
+                return Err(Refused::undecided("undecided", message, "more --digits").into());
+            }
+            value
         };
         value.grid = chart::compute(&subject, &sweep, work)?;
         let mut standing = match value.orbit.exists() {
@@ -196,7 +209,13 @@ impl Oscillator {
         if standing != Standing::Complete {
             let code = if standing == Standing::NoAnswer { "no-orbit" } else { "undecided" };
             let message = value.warnings.first().cloned();
-            value.error = Some(NoOrbit { code, message, hint: "" });
+            let hint = match code {
+                "no-orbit" => {
+                    "`lindstedt simulate` shows what the motion does; --set branch=- is the other root"
+                }
+                _ => "more --digits, or other values",
+            };
+            value.error = Some(NoOrbit { code, message, hint });
         }
         let mut remarks = self.remarks().to_vec();
         remarks.extend(value.warnings.iter().cloned());

@@ -13,8 +13,8 @@ pub enum Found<T> {
     There(T),
     /// It does not.
     Missing {
-        /// No.
-        exists: bool,
+        /// No; nothing where it was not decided.
+        exists: Option<bool>,
         /// Why.
         reason: String,
     },
@@ -22,7 +22,9 @@ pub enum Found<T> {
 
 impl<T> Found<T> {
     pub(super) fn missing(error: &ImpactError) -> Self {
-        Self::Missing { exists: false, reason: error.to_string() }
+        let decided =
+            !matches!(error, ImpactError::Undecided { .. } | ImpactError::NoConvergence { .. });
+        Self::Missing { exists: decided.then_some(false), reason: error.to_string() }
     }
 }
 
@@ -33,7 +35,7 @@ impl Found<TrueOrbit> {
     pub fn exists(&self) -> Option<bool> {
         match self {
             Self::There(orbit) => orbit.exists,
-            Self::Missing { .. } => Some(false),
+            Self::Missing { exists, .. } => *exists,
         }
     }
 }

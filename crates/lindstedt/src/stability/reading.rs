@@ -26,7 +26,7 @@ fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Stable => "stable",
         Verdict::Unstable => "unstable",
-        Verdict::Neutral => "undecided: a multiplier on or near the unit circle",
+        Verdict::Neutral => "undecided: a multiplier is not told from the unit circle",
     }
 }
 
@@ -180,8 +180,9 @@ impl Subject<'_> {
             Ok(found) => Found::There(writer.orbit(found)),
             Err(error) => Found::missing(error),
         };
-        let none = || Truth { verdict: "no orbit", ..Truth::default() };
         let exists = orbit.exists();
+        let verdict = if exists.is_none() { "undecided: no orbit was found" } else { "no orbit" };
+        let none = || Truth { verdict, ..Truth::default() };
         let exact = report.exact.as_ref();
         let truth = || exact.map_or_else(none, |found| writer.truth(self, found, exists));
         let beside = report.impact_aware.as_ref().filter(|_| self.question.predict);
@@ -205,7 +206,8 @@ impl Subject<'_> {
     ) -> Vec<String> {
         let mut list = Vec::new();
         match (orbit, orbit.exists()) {
-            (Found::Missing { reason, .. }, _) => list.push(format!("no orbit: {reason}")),
+            (Found::Missing { reason, .. }, Some(_)) => list.push(format!("no orbit: {reason}")),
+            (Found::Missing { reason, .. }, None) => list.push(reason.clone()),
             (_, Some(true)) => {}
             (_, Some(false)) => list.push(PENETRATES.to_owned()),
             (_, None) => {

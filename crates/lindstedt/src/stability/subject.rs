@@ -42,7 +42,7 @@ pub(super) struct Range {
 
 /// k as a number of periods.
 fn whole_periods(name: &str, k: &Exact) -> Result<u32, Error> {
-    let hint = format!("--set {name}=2");
+    let hint = format!("--set {name}=1");
     let whole = k.as_rational().filter(|q| q.is_integer() && **q > 0).ok_or_else(|| {
         Refused::usage("parameter", format!("{name} must be a positive integer"), &*hint)
     })?;

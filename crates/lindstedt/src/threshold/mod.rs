@@ -118,6 +118,9 @@ pub struct Harmonic {
 pub struct ZerosOf {
     /// Its name.
     pub parameter: String,
+    /// Whole intervals of zeros, beside the single ones.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub intervals: Vec<[Number; 2]>,
     /// Whether there are provably no others; else they are the changes of sign on a grid.
     pub complete: bool,
 }
@@ -244,9 +247,9 @@ impl Oscillator {
             }
         })?;
         if let Some(range) = zeros {
-            let (list, complete) = zeros::list(&subject, &range)?;
+            let zeros::Zeros { list, intervals, complete } = zeros::list(&subject, &range)?;
             value.zeros = list;
-            value.zeros_of = Some(ZerosOf { parameter: range.axis.name, complete });
+            value.zeros_of = Some(ZerosOf { parameter: range.axis.name, intervals, complete });
         }
         if let Some(largest) = question.subharmonics {
             value.subharmonics = Some(resonances::list(&subject, largest)?);

@@ -80,9 +80,9 @@ impl<'a> Measured<'a> {
         at: impl Fn(Balls) -> Option<Ball>,
     ) -> Result<Number, Error> {
         if self.estimated {
-            let ball =
-                at(self.balls).ok_or(MelnikovError::Undecided { bits: self.balls.bits() })?;
-            return Ok(Number::of_ball(&ball, digits).weaken(Status::Estimated));
+            let number = at(self.balls).and_then(|ball| Number::of_ball(&ball, digits));
+            let number = number.ok_or(MelnikovError::Undecided { bits: self.balls.bits() })?;
+            return Ok(number.weaken(Status::Estimated));
         }
         Ok(certified(exact, digits, at)?)
     }

@@ -125,7 +125,7 @@ impl Oscillator {
             remarks.push(Remark(format!("the period is not proved: {failure}")));
         }
         let mut value = bench.truth.begin(&setting, plan.repeats);
-        value.proved_period = bench.proved.as_ref().map(|period| bench.number(period));
+        value.proved_period = bench.proved.as_ref().and_then(|period| bench.number(period));
         value.finished = bench.run_all(&mut value);
         value.pareto = pareto(&value.rows);
         for &index in &value.pareto {
@@ -220,9 +220,9 @@ impl<'a> Bench<'a> {
     }
 
     /// A proved period as it is printed.
-    fn number(&self, period: &Ball) -> crate::Number {
+    fn number(&self, period: &Ball) -> Option<crate::Number> {
         let digits = self.plan.most_digits() as usize;
-        crate::Number::of_ball(period, digits).weaken(crate::Status::Proved)
+        Some(crate::Number::of_ball(period, digits)?.weaken(crate::Status::Proved))
     }
 
     /// All runs; whether they were all made.

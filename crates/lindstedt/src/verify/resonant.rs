@@ -7,9 +7,10 @@ use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::resonance::{Motion, slow_flow};
 use lindstedt_derivation::{DerivationError, all_values};
 use lindstedt_expand::ExpandError;
-use lindstedt_simulate::{Digits, Model, Parameters, Real};
+use lindstedt_simulate::{Digits, Model, Parameters, Quantity, Real};
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
+use std::ops::{Add, Mul};
 
 /// A slow flow and its judge.
 pub(super) struct Resonant {
@@ -59,30 +60,75 @@ impl Resonant {
         let motions = self.flow.motions(small, &value, &self.amplitude);
         let [slow, full] = motions.ok_or(Error::NoValue)?;
         let unknowns = self.flow.unknowns();
+        let model = |motion: &Motion| {
+            let names: Vec<&str> = motion.names.iter().map(String::as_str).collect();
+            Model::first_order(&names, &motion.rates)
+        };
         // x_j are the last states of the one, every second state of the other.
-        let slow_places: Vec<_> = (2 * unknowns..3 * unknowns).collect();
+        let places: Vec<_> = (2 * unknowns..3 * unknowns).collect();
+        let states = (&slow.start[..], &places[..]);
+        let expected =
+            self.run((&model(&slow)?, &Parameters::new()), states, digits + 16, goes_on)?;
+        let expected: Vec<_> = expected.iter().map(|modes| self.of_unknowns(modes)).collect();
+        let (full, parameters, start) = match self.flow.system.shapes {
+            None => (model(&full)?, Parameters::new(), full.start),
+            Some(_) => self.as_written(small, &full)?,
+        };
         let places: Vec<_> = (0..unknowns).map(|j| 2 * j).collect();
-        let expected = self.run(&slow, &slow_places, digits + 16, goes_on)?;
-        let coarse = self.run(&full, &places, digits, goes_on)?;
-        let fine = self.run(&full, &places, digits + 8, goes_on)?;
-        Ok(largest_gaps(small, &expected, &coarse, &fine))
+        let run = |digits| {
+            self.run((&full, &parameters), (&start, &places), digits, goes_on).map(|x| x.concat())
+        };
+        Ok(largest_gaps(small, &expected.concat(), &run(digits)?, &run(digits + 8)?))
     }
 
-    /// Some states at the times, one after the other.
+    /// The equations of the user, which know nothing of the modes, from the start of these.
+    fn as_written(
+        &self,
+        small: &Rational,
+        modes: &Motion,
+    ) -> Result<(Model, Parameters, Vec<Rational>), Error> {
+        let problem = &self.flow.problem;
+        let equations: Vec<_> = problem.equations().collect();
+        let model = Model::of_unknowns(&equations)?.with_small(&problem.small);
+        let name = problem.small.to_string();
+        let given = self.values.iter().chain([(&name, small)]);
+        let parameters = given.fold(Parameters::new(), |all, (name, value)| {
+            all.with(name, Quantity::from(value.clone()))
+        });
+        let every_second = |k: usize| -> Vec<Rational> {
+            self.of_unknowns(&modes.start.iter().skip(k).step_by(2).cloned().collect::<Vec<_>>())
+        };
+        let pairs = every_second(0).into_iter().zip(every_second(1));
+        Ok((model, parameters, pairs.flat_map(<[_; 2]>::from).collect()))
+    }
+
+    /// The unknowns of the user from those of the modes.
+    fn of_unknowns<T>(&self, modes: &[T]) -> Vec<T>
+    where
+        for<'a> T: Clone + Mul<&'a Rational, Output = T> + Add<Output = T>,
+    {
+        let Some(shapes) = &self.flow.system.shapes else { return modes.to_vec() };
+        let row = |row: &Vec<Rational>| {
+            let parts = row.iter().zip(modes).map(|(p, q)| q.clone() * p);
+            parts.reduce(|a, b| a + b)
+        };
+        shapes.iter().filter_map(row).collect()
+    }
+
+    /// Some states at the times, a list for every time.
     fn run(
         &self,
-        motion: &Motion,
-        places: &[usize],
+        (model, parameters): (&Model, &Parameters),
+        (start, places): (&[Rational], &[usize]),
         digits: u32,
         goes_on: &dyn Fn() -> bool,
-    ) -> Result<Vec<Float>, Error> {
+    ) -> Result<Vec<Vec<Float>>, Error> {
         let real = Digits::for_digits(digits);
-        let names: Vec<&str> = motion.names.iter().map(String::as_str).collect();
-        let system =
-            Model::first_order(&names, &motion.rates)?.compile(real, &Parameters::new())?;
-        let start: Vec<_> = motion.start.iter().map(|q| Float::with_val(real.bits(), q)).collect();
+        let system = model.compile(real, parameters)?;
+        let start: Vec<_> = start.iter().map(|q| Float::with_val(real.bits(), q)).collect();
         let order = self.flow.order;
         let lists = states(&system, &start, places, (&self.times, order), digits, goes_on)?;
-        Ok(lists.concat())
+        let at = |k: usize| lists.iter().filter_map(|list| list.get(k).cloned()).collect();
+        Ok((0..self.times.len()).map(at).collect())
     }
 }

@@ -1,7 +1,7 @@
 //! Z1: what the inverse neglects, wave by wave up to the bandwidth of g_x and g_y.
 
 use super::{DROPPED, Frame, LESS, Measure, Weights};
-use crate::centre::Doubles;
+use crate::exact::ERROR;
 use crate::linear::{Linear, at};
 use crate::space::Wave;
 use crate::upward::{Up, raised};
@@ -20,8 +20,9 @@ impl Frame<'_> {
             }
         }
         // Beyond modes + band no finite row is met: the last columns stand for all further ones.
-        for k in modes + 1..=modes + band {
-            for h in self.linear.rows.parity.waves(k) {
+        let unknowns = self.linear.unknowns;
+        for (i, k) in (0..unknowns).flat_map(|i| (modes + 1..=modes + band).map(move |k| (i, k))) {
+            for h in self.linear.rows.parity.waves(i, k) {
                 let sum = self.finite_rows(h, alpha) + self.tail_rows(h, &tails);
                 largest = largest.max(sum.over(weights.below(k) * k as f64 * LESS));
             }
@@ -34,26 +35,22 @@ impl Frame<'_> {
         if self.extra() == 0 {
             return Up::ZERO;
         }
-        let list = &self.linear.by_frequency;
-        let mut sum = 0.0;
-        for (k, c) in list.iter().enumerate().skip(self.inverse.modes + 1) {
-            let size = 2.0 * (c.re.abs() + c.im.abs() + DROPPED);
-            sum += size * self.tail(measure, k, weights);
-        }
-        (raised(sum, list.len() + 8) * (Up::ONE + Doubles::ERROR)).over(self.scale)
+        self.tail_of(&self.linear.by_frequency, measure, weights).over(self.scale)
     }
 
     /// The tail rows of the column of a wave: sum_(k > N) |coupling| nu^k/(omega^2 k).
     fn tail_rows(&self, h: Wave, tails: &[f64]) -> Up {
         let (mut sum, mut sizes) = (0.0, 0.0);
         let from = (self.inverse.modes + 1).max(h.k.saturating_sub(self.band()));
-        let rows = tails.iter().enumerate().take(h.k + self.band() + 1).skip(from);
-        for (k, tail) in rows.filter(|(k, _)| self.linear.rows.parity.has(*k)) {
-            let c = self.linear.coupling(k, h);
-            sum += 2.0 * (c.re.abs() + c.im.abs()) * tail;
-            sizes += self.linear.coupling_size(k, h) * tail;
+        for i in 0..self.linear.unknowns {
+            let rows = tails.iter().enumerate().take(h.k + self.band() + 1).skip(from);
+            for (k, tail) in rows.filter(|(k, _)| self.linear.rows.parity.has(i, *k)) {
+                let c = self.linear.coupling(i, k, h);
+                sum += 2.0 * (c.re.abs() + c.im.abs()) * tail;
+                sizes += self.linear.coupling_size(i, k, h) * tail;
+            }
         }
-        let terms = 2 * self.band() + 8;
+        let terms = 2 * self.linear.unknowns * (self.band() + 1) + 8;
         raised(sum, terms) + Linear::coupling_error() * raised(sizes, terms)
     }
 
@@ -63,8 +60,8 @@ impl Frame<'_> {
         let extra = self.extra();
         for (w, a) in self.inverse.basis.iter().zip(alpha.iter().skip(extra)) {
             if w.k + self.band() >= h.k {
-                sum += w.of(self.linear.coupling(w.k, h)).abs() * a;
-                sizes += self.linear.coupling_size(w.k, h) * a;
+                sum += w.of(self.linear.coupling(w.unknown, w.k, h)).abs() * a;
+                sizes += self.linear.coupling_size(w.unknown, w.k, h) * a;
             }
         }
         if let Some(condition) = self.linear.rows.condition {
@@ -79,15 +76,22 @@ impl Frame<'_> {
     fn far(&self, measure: Measure, alpha: &[f64], weights: &Weights) -> Up {
         let j = self.inverse.modes + self.band() + 1;
         let square = (self.frequency_below * self.frequency_below).next_down();
-        let mut sum = 0.0;
-        for l in -(self.band() as i64)..=self.band() as i64 {
-            let (u, v) = (at(&self.linear.by_x, l), at(&self.linear.by_slope, l));
-            let size = (u.re.abs() + u.im.abs()) / j as f64 + v.re.abs() + v.im.abs();
-            let k = (j as i64 + l) as f64;
-            sum += size * weights.above(l.max(0) as usize) / (square * k);
-        }
+        let n = self.linear.unknowns;
+        let column = |h: usize| {
+            let mut sum = 0.0;
+            for (i, l) in (0..n)
+                .flat_map(|i| (-(self.band() as i64)..=self.band() as i64).map(move |l| (i, l)))
+            {
+                let entry = i * n + h;
+                let (u, v) = (at(&self.linear.by_x[entry], l), at(&self.linear.by_slope[entry], l));
+                let size = (u.re.abs() + u.im.abs()) / j as f64 + v.re.abs() + v.im.abs();
+                let k = (j as i64 + l) as f64;
+                sum += size * weights.above(l.max(0) as usize) / (square * k);
+            }
+            raised(sum, n * (2 * self.band() + 16)) * (Up::ONE + ERROR)
+        };
         let rows = match measure {
-            Measure::Norm => raised(sum, 2 * self.band() + 16) * (Up::ONE + Doubles::ERROR),
+            Measure::Norm => (0..n).map(column).fold(Up::ZERO, Up::max),
             Measure::Frequency => Up::ZERO,
         };
         let condition = self.linear.rows.condition.map_or(Up::ZERO, |_| Up(alpha[0]));
@@ -97,16 +101,23 @@ impl Frame<'_> {
     /// |A| times the norms of what was cut from g_x and omega g_y; a function and its slope are
     /// bounded by the norm.
     pub(super) fn outside_band(&self, weights: &Weights) -> Up {
-        let kept = [self.linear.by_x.len(), self.linear.by_slope.len()];
-        let mut sum = 0.0;
-        let mut terms = 8;
-        for (list, kept) in self.whole.iter().zip(kept) {
-            for (k, c) in list.values.iter().enumerate() {
-                let size = if k < kept { 0.0 } else { c.re.abs() + c.im.abs() };
-                sum += 2.0 * (size + DROPPED) * weights.above(k);
+        let n = self.linear.unknowns;
+        let kept = [&self.linear.by_x, &self.linear.by_slope];
+        let column = |h: usize| {
+            let (mut sum, mut terms) = (0.0, 8);
+            let entries = || (0..n).map(|i| i * n + h);
+            for (lists, kept) in self.whole.iter().zip(kept) {
+                for entry in entries() {
+                    for (k, c) in lists[entry].iter().enumerate() {
+                        let size =
+                            if k < kept[entry].len() { 0.0 } else { c.re.abs() + c.im.abs() };
+                        sum += 2.0 * (size + DROPPED) * weights.above(k);
+                    }
+                    terms += lists[entry].len();
+                }
             }
-            terms += list.values.len();
-        }
-        raised(sum, terms) * (Up::ONE + Doubles::ERROR)
+            raised(sum, terms) * (Up::ONE + ERROR)
+        };
+        (0..n).map(column).fold(Up::ZERO, Up::max)
     }
 }

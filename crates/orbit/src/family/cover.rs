@@ -67,7 +67,7 @@ pub fn cover(
     request: &Request,
 ) -> Cover {
     let [left, right] = proofs;
-    let ends_in_doubles = [(ends[0].clone(), left.start()), (ends[1].clone(), right.start())];
+    let ends_in_doubles = [(ends[0].clone(), left.starts()), (ends[1].clone(), right.starts())];
     let modes = left.modes.max(right.modes);
     let part = |part: &[Rational; 2], before: &Proof| {
         if request.stop.asked() {
@@ -76,7 +76,10 @@ pub fn cover(
         let (field, kind) = problem(part)?;
         let start = extrapolated(&ends_in_doubles, &middle(part));
         let proof = uniform(&field, &kind, &start, modes, request)?;
-        let meets = proof.is_same_as(before) && (part[1] != ends[1] || proof.is_same_as(right));
+        // A coefficient that vanishes in the middle alone would show a symmetry that the others lack.
+        let alike = [left, right].iter().all(|end| end.parity == proof.parity);
+        let last = part[1] == ends[1];
+        let meets = alike && proof.is_same_as(before) && (!last || proof.is_same_as(right));
         if meets { Ok(proof) } else { Err(Failure::Apart { radius: proof.radius.to_f64() }) }
     };
     let whole = Rational::from(&ends[1] - &ends[0]);
@@ -97,7 +100,7 @@ pub fn cover(
         let to = Rational::from(&cover.until + &width);
         match part(&[cover.until.clone(), to.clone()], last.as_ref().unwrap_or(left)) {
             Ok(proof) => {
-                cover.add(&proof, to);
+                cover.add(&proof, to, proofs);
                 last = Some(proof);
                 width *= Rational::from(LONGER);
             }
@@ -122,18 +125,22 @@ fn is_local(failure: &Failure) -> bool {
             | Failure::Residual { .. }
             | Failure::Apart { .. }
             | Failure::NoPeriod { .. }
+            | Failure::NoFunction { .. }
             | Failure::NotConverged { .. }
     )
 }
 
 impl Cover {
-    fn add(&mut self, proof: &Proof, to: Rational) {
+    fn add(&mut self, proof: &Proof, to: Rational, [left, right]: [&Proof; 2]) {
         self.parts += 1;
         self.until = to;
         if proof.radius > self.radius {
             self.radius.clone_from(&proof.radius);
         }
-        let hull = |other: &Ball| proof.balls().hull(other, &proof.frequency);
-        self.frequency = Some(self.frequency.as_ref().map_or(proof.frequency.clone(), hull));
+        let hull = |one: &Ball, other: &Ball| proof.balls().hull(one, other);
+        // That of a force which varies is, of a part, the one in its middle: those of the ends are its limits.
+        let known = self.frequency.take();
+        let known = known.unwrap_or_else(|| hull(&left.frequency, &right.frequency));
+        self.frequency = Some(hull(&known, &proof.frequency));
     }
 }

@@ -6,7 +6,8 @@ mod cover;
 pub(crate) use between::interval;
 pub use cover::{Cover, cover};
 
-use crate::{Failure, Field, Kind, Proof, Request, Start, prove};
+use crate::start::distance;
+use crate::{Failure, Field, Kind, Proof, Request, Start, prove_all};
 use rug::Rational;
 
 /// One point of a family.
@@ -18,6 +19,11 @@ pub struct Member {
     pub proof: Result<Proof, Failure>,
 }
 
+/// A point passed: the parameter, the orbit in doubles by unknowns.
+type Passed = (Rational, Vec<Start>);
+
+/// Modes of an inverse beyond those of the numerical orbit before.
+const MORE_MODES: usize = 60;
 /// Halvings of a step over which Newton's method does not go.
 const MOST_HALVINGS: u32 = 6;
 
@@ -54,18 +60,30 @@ pub fn family(
     start: &Start,
     request: &Request,
 ) -> Result<Vec<Member>, Failure> {
-    let at = |value: &Rational, start: &Start, request: &Request| {
+    family_all(values, problem, std::slice::from_ref(start), request)
+}
+
+/// The same for several unknowns, with a guess for each ([`prove_all`]).
+///
+/// # Errors
+/// As [`family`].
+pub fn family_all(
+    values: &[Rational],
+    problem: impl Fn(&Rational) -> Result<(Field, Kind), Failure>,
+    starts: &[Start],
+    request: &Request,
+) -> Result<Vec<Member>, Failure> {
+    let at = |value: &Rational, starts: &[Start], request: &Request| {
         let (field, kind) = problem(value)?;
-        prove(&field, &kind, start, request)
+        prove_all(&field, &kind, starts, request)
     };
     let mut members: Vec<Member> = Vec::new();
-    // The points passed so far: (parameter, orbit in doubles).
-    let mut passed: Vec<(Rational, Start)> = Vec::new();
+    let mut passed: Vec<Passed> = Vec::new();
     for value in values {
         let Some((from, _)) = passed.last().cloned() else {
             problem(value)?;
-            let proof = at(value, start, request);
-            passed.extend(proof.iter().map(|p| (value.clone(), p.start())));
+            let proof = at(value, starts, request);
+            passed.extend(proof.iter().map(|p| (value.clone(), p.starts())));
             let failed = proof.is_err();
             members.push(Member { value: value.clone(), proof });
             if failed {
@@ -87,11 +105,14 @@ pub fn family(
 fn approach(
     from: &Rational,
     value: &Rational,
-    passed: &mut Vec<(Rational, Start)>,
+    passed: &mut Vec<Passed>,
     request: &Request,
-    at: &dyn Fn(&Rational, &Start, &Request) -> Result<Proof, Failure>,
+    at: &dyn Fn(&Rational, &[Start], &Request) -> Result<Proof, Failure>,
 ) -> Result<Proof, Failure> {
     // A failing step shall fail soon: few digits, and few more modes than before.
+    let modes = |orbit: &[Start]| orbit.iter().map(|x| x.cosines.len()).max().unwrap_or(0);
+    let most = passed.last().map_or(0, |(_, orbit)| modes(orbit)) + MORE_MODES;
+    let request = &Request { modes_limit: request.modes_limit.min(most), ..request.clone() };
     let rough = Request { digits: 10, ..request.clone() };
     let whole = Rational::from(value - from);
     let (mut done, mut part) = (Rational::new(), Rational::from(1));
@@ -101,13 +122,13 @@ fn approach(
         let start = extrapolated(passed, &target);
         let last = next == 1;
         let found = at(&target, &start, if last { request } else { &rough });
-        let found = found.and_then(|proof| match is_predicted(passed, &start, &proof.start()) {
+        let found = found.and_then(|proof| match is_predicted(passed, &start, &proof.starts()) {
             true => Ok(proof),
             false => Err(Failure::Jump),
         });
         match found {
             Ok(proof) => {
-                passed.push((target, proof.start()));
+                passed.push((target, proof.starts()));
                 if last {
                     return Ok(proof);
                 }
@@ -128,17 +149,17 @@ fn approach(
 const SMALL: f64 = 1e-2;
 
 /// Whether an orbit is nearer to its prediction than to the orbit before.
-fn is_predicted(passed: &[(Rational, Start)], predicted: &Start, found: &Start) -> bool {
+fn is_predicted(passed: &[Passed], predicted: &[Start], found: &[Start]) -> bool {
     let Some((_, last)) = passed.last() else { return true };
-    let (missed, moved) = (found.distance(predicted), found.distance(last));
+    let (missed, moved) = (distance(found, predicted), distance(found, last));
     // With one orbit before there is no direction: the step itself must be small.
     let allowed = if passed.len() > 1 { 0.5 * moved } else { 0.5 };
     missed <= allowed.max(SMALL)
 }
 
 /// The straight line through the last two orbits.
-fn extrapolated(passed: &[(Rational, Start)], value: &Rational) -> Start {
-    let Some((last, new)) = passed.last() else { return Start::default() };
+fn extrapolated(passed: &[Passed], value: &Rational) -> Vec<Start> {
+    let Some((last, new)) = passed.last() else { return Vec::new() };
     let Some((before, old)) = passed.len().checked_sub(2).and_then(|i| passed.get(i)) else {
         return new.clone();
     };
@@ -151,9 +172,10 @@ fn extrapolated(passed: &[(Rational, Start)], value: &Rational) -> Start {
         let pairs = new.iter().enumerate();
         pairs.map(|(k, c)| c + t * (c - old.get(k).copied().unwrap_or(0.0))).collect()
     };
-    Start {
+    let one = |(new, old): (&Start, &Start)| Start {
         frequency: new.frequency + t * (new.frequency - old.frequency),
         cosines: line(&new.cosines, &old.cosines),
         sines: line(&new.sines, &old.sines),
-    }
+    };
+    new.iter().zip(old).map(one).collect()
 }

@@ -21,7 +21,7 @@ pub struct Course {
     pub second: Option<(usize, [f64; 2])>,
     /// The first so many rows and variables are a vector field: its eigenvalues are the exponents.
     pub unknowns: usize,
-    /// The branch ends where |x_i| exceeds this, for the unknowns; their unit, too.
+    /// The branch ends where the modulus of a pair of unknowns (x_0, x_1), (x_2, x_3), ... exceeds this; their unit, too.
     pub reach: f64,
     /// The longest step, as a fraction of the range and of the reach.
     pub step: f64,
@@ -239,7 +239,13 @@ impl Tracer<'_> {
                 return (points, End::Closed);
             }
             if let Some(edge) = self.edge(&to) {
-                let last = self.at_edge(&from, &to, edge);
+                let last = match edge {
+                    Some(edge) => self.at_edge(&from, &to, edge),
+                    None if self.beyond(&from) >= 0.0 => from.clone(),
+                    None => self
+                        .locate(&from, length, &|state| self.beyond(state))
+                        .map_or_else(|| from.clone(), |(_, state)| state),
+                };
                 // A start at the edge is its own end.
                 let moved =
                     last.scaled.iter().zip(&from.scaled).any(|(a, b)| (a - b).abs() > 1e-12);
@@ -269,21 +275,27 @@ impl Tracer<'_> {
         along > 0.0 && along <= length && across.sqrt() < 0.3 * length && same > 0.9
     }
 
-    /// The variable that has left its range with the value at which it did.
-    fn edge(&self, state: &State) -> Option<(usize, f64)> {
+    /// What has left its range: a variable with the value at which it did, or nothing for the modulus of a pair.
+    fn edge(&self, state: &State) -> Option<Option<(usize, f64)>> {
         let course = self.course;
         let parameter = state.point.at[course.parameter];
         let [low, high] = course.range;
         if !(low..=high).contains(&parameter) {
-            return Some((course.parameter, parameter.clamp(low, high)));
+            return Some(Some((course.parameter, parameter.clamp(low, high))));
         }
         if let Some((other, [low, high])) = course.second
             && !(low..=high).contains(&state.point.at[other])
         {
-            return Some((other, state.point.at[other].clamp(low, high)));
+            return Some(Some((other, state.point.at[other].clamp(low, high))));
         }
-        let far = (0..course.unknowns).find(|i| state.point.at[*i].abs() > course.reach)?;
-        Some((far, course.reach.copysign(state.point.at[far])))
+        (self.beyond(state) > 0.0).then_some(None)
+    }
+
+    /// By how much the largest modulus of a pair of unknowns exceeds the reach.
+    fn beyond(&self, state: &State) -> f64 {
+        let square = |pair: &[f64]| pair.iter().map(|x| x * x).sum::<f64>();
+        let pairs = state.point.at[..self.course.unknowns].chunks(2);
+        pairs.map(square).fold(0.0, f64::max).sqrt() - self.course.reach
     }
 
     /// The point of the branch at the edge.

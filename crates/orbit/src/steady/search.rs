@@ -19,13 +19,15 @@ pub struct Limits {
     pub boxes: usize,
     /// Boxes are not cut below this fraction of the box searched.
     pub smallest: f64,
+    /// Only zeros are wanted of which every pair of unknowns (x_0, x_1), (x_2, x_3), ... has at most this modulus.
+    pub modulus: Option<f64>,
     /// Asked between boxes.
     pub stop: Stop,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { boxes: 2_000_000, smallest: 1e-6, stop: Stop::default() }
+        Self { boxes: 2_000_000, smallest: 1e-6, modulus: None, stop: Stop::default() }
     }
 }
 
@@ -37,6 +39,8 @@ pub struct Found {
     /// Boxes that could not be decided, hulls of neighbours; all other points of the box searched that are no zero
     /// of the list are none.
     pub undecided: Vec<Region>,
+    /// Zeros, each proved, of which is not decided whether they keep to [`Limits::modulus`].
+    pub at_edge: Vec<Zero>,
     /// The boxes looked at.
     pub boxes: usize,
     /// Whether the search was stopped; what was left then counts as undecided.
@@ -47,7 +51,7 @@ impl Found {
     /// Whether the number of zeros is proved.
     #[must_use]
     pub fn is_proved(&self) -> bool {
-        self.undecided.is_empty()
+        self.undecided.is_empty() && self.at_edge.is_empty()
     }
 }
 
@@ -80,7 +84,26 @@ pub fn all_zeros(system: &System, region: &[Interval], limits: &Limits) -> Optio
     let meets = |zero: &Zero| meet(&zero.enclosure, region).is_some();
     search.zeros.retain(meets);
     let undecided = joined(search.open);
-    Some(Found { zeros: search.zeros, undecided, boxes: search.boxes, stopped })
+    let limit = Interval::point(limits.modulus.unwrap_or(f64::INFINITY));
+    let (mut zeros, mut at_edge) = (Vec::new(), Vec::new());
+    for zero in search.zeros {
+        let modulus = modulus(&zero.enclosure);
+        if modulus.high() <= limit.low() {
+            zeros.push(zero);
+        } else if modulus.low() <= limit.low() {
+            at_edge.push(zero);
+        }
+    }
+    Some(Found { zeros, undecided, at_edge, boxes: search.boxes, stopped })
+}
+
+/// An enclosure of the largest modulus of (x_0, x_1), (x_2, x_3), ...; an odd last one stands alone.
+fn modulus(region: &[Interval]) -> Interval {
+    let square = |pair: &[Interval]| pair.iter().fold(Interval::ZERO, |sum, x| sum + x.powi(2));
+    let squares = region.chunks(2).map(square);
+    let (low, high) =
+        squares.fold((0.0f64, 0.0f64), |(low, high), x| (low.max(x.low()), high.max(x.high())));
+    Interval::new(low.sqrt().next_down().max(0.0), high.sqrt().next_up())
 }
 
 struct Search<'a> {
@@ -98,6 +121,9 @@ impl Search<'_> {
         let mut stack = vec![region.to_vec()];
         while let Some(part) = stack.pop() {
             if self.zeros.iter().any(|zero| is_in(&part, &zero.unique_within)) {
+                continue;
+            }
+            if self.limits.modulus.is_some_and(|most| modulus(&part).low() > most) {
                 continue;
             }
             self.boxes += 1;
@@ -206,9 +232,9 @@ fn joined(open: Vec<Region>) -> Vec<Region> {
 /// Boxes of the sphere looked at for a bound.
 const MOST_PARTS: usize = 100_000;
 
-/// Some R such that all zeros have |x_i| < R for every i, from the terms of highest degree of every polynomial:
-/// where they have no common zero on the cube's surface max |x_i| = 1, one of them outgrows the rest of its polynomial.
-/// Nothing where they have one, or where that could not be decided.
+/// Some R such that every pair (x_0, x_1), (x_2, x_3), ... of every zero has a modulus below R, from the terms of highest
+/// degree of every polynomial: where they have no common zero on the cube's surface max |x_i| = 1, one of them outgrows
+/// the rest of its polynomial. Nothing where they have one, or where that could not be decided.
 #[must_use]
 pub fn bound(system: &System) -> Option<f64> {
     let n = system.variables();
@@ -235,7 +261,8 @@ pub fn bound(system: &System) -> Option<f64> {
         });
         // A much finer cut gives a smaller bound; a few parts are worth it.
         let width = part.iter().map(|x| x.width()).fold(0.0, f64::max);
-        match outgrown.reduce(f64::min) {
+        let size = modulus(&part).high();
+        match outgrown.reduce(f64::min).map(|r| Interval::point(r * size).above()) {
             Some(r) if r <= radius || width < 0.2 => radius = radius.max(r),
             _ if width < 1e-3 => return None,
             _ => {

@@ -332,3 +332,18 @@ fn lock_in_diagram() {
     let of = |change| diagram.curves.iter().filter(|curve| curve.change == change).count();
     assert!(of(Change::Fold) >= 1 && of(Change::Hopf) >= 2, "{}", of(Change::Hopf));
 }
+
+/// w' = conj(w)^2 - w: w = 0 and the three roots of one, on a circle that the search may or may not reach.
+#[test]
+fn zeros_beside_the_largest_modulus() {
+    let equation = vec![term(&[0, 2], &[], (1, 1), (0, 1)), term(&[1, 0], &[], (-1, 1), (0, 1))];
+    let system = Flow::of_complex(&[equation], &[]).system(&[]);
+    for (modulus, inside, at_edge) in [(0.999, 1, 0), (1.0, 1, 3), (1.001, 4, 0)] {
+        let limits = Limits { modulus: Some(modulus), ..Limits::default() };
+        let found = all_zeros(&system, &square(modulus), &limits).unwrap();
+        assert_eq!((found.zeros.len(), found.at_edge.len()), (inside, at_edge), "{modulus}");
+        assert_eq!((found.is_proved(), found.undecided.len()), (at_edge == 0, 0));
+    }
+    // All zeros lie within the bound in modulus, not in both parts alone.
+    assert!((1.0..3.0).contains(&bound(&system).unwrap()));
+}

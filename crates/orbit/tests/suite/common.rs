@@ -1,6 +1,6 @@
 //! Equations, guesses and truths that several tests share.
 
-use lindstedt_equation::Expression;
+use lindstedt_equation::{Expression, Function};
 use lindstedt_number::ball::Ball;
 use lindstedt_orbit::{Failure, Field, Kind, Proof, Request, Start, prove};
 use lindstedt_simulate::{Digits, Integrator, Model, Parameters, Real, Settings, go_on};
@@ -16,6 +16,10 @@ pub fn y() -> Expression {
 
 pub fn q(numerator: i64, denominator: i64) -> Expression {
     Expression::Number(Rational::from((numerator, denominator)))
+}
+
+pub fn cosine(angle: Expression) -> Expression {
+    angle.apply(Function::Cos)
 }
 
 /// x'' + rest = 0.
@@ -46,8 +50,9 @@ pub fn value(e: &Expression, at: [f64; 3]) -> f64 {
         Expression::Sum(list) => list.iter().map(|e| value(e, at)).sum(),
         Expression::Product(list) => list.iter().map(|e| value(e, at)).product(),
         Expression::Power(base, n) => value(base, at).powf(value(n, at)),
-        Expression::Function(lindstedt_equation::Function::Cos, z) => value(z, at).cos(),
-        Expression::Function(lindstedt_equation::Function::Sin, z) => value(z, at).sin(),
+        Expression::Function(Function::Cos, z) => value(z, at).cos(),
+        Expression::Function(Function::Sin, z) => value(z, at).sin(),
+        Expression::Function(Function::Exp, z) => value(z, at).exp(),
         other => panic!("{other:?}"),
     }
 }

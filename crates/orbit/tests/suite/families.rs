@@ -2,8 +2,11 @@
 
 use crate::common::{duffing, field, guess, proved, q, x, y};
 use lindstedt_equation::{Expression, Function, Problem};
-use lindstedt_number::ball::Ball;
-use lindstedt_orbit::{Cover, Failure, Field, Kind, Proof, Request, Start, cover, guesses, prove};
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_orbit::{
+    Cover, Failure, Field, Kind, Proof, Request, Start, cover, family_all, guesses, guesses_all,
+    prove,
+};
 use rug::Rational;
 use std::collections::BTreeMap;
 
@@ -122,4 +125,107 @@ fn the_ball_of_a_neighbour_excludes_an_orbit_and_its_own_holds_it() {
     assert!(fine.distance_from(&far) > fine.unique_within);
     // Another amplitude is another question, however near it is.
     assert!(!neighbour.is_same_as(&one) && neighbour.distance_from(&one.start()) < 0.01);
+}
+
+/// The orbits of several unknowns at both ends and what is proved between; the first guess.
+fn between_all(problem: &Problem, kind: &Kind, name: &str, ends: &[Rational; 2]) -> Cover {
+    let of = |value: &Rational| Field::of_problem(problem, &at(name, value));
+    let guesses = guesses_all(&of(&ends[0]).unwrap(), kind, &Default::default()).unwrap();
+    let members =
+        family_all(ends, |value| Ok((of(value)?, kind.clone())), &guesses[0], &Request::default());
+    let proofs: Vec<Proof> = members.unwrap().into_iter().map(|m| m.proof.unwrap()).collect();
+    let part = |part: &[Rational; 2]| {
+        Ok((Field::between(problem, &Values::new(), name, part)?, kind.clone()))
+    };
+    let found = cover(ends, [&proofs[0], &proofs[1]], part, &Request::default());
+    if let Some(frequencies) = &found.frequency {
+        assert!(proofs.iter().all(|proof| inside(frequencies, &proof.frequency)));
+    }
+    found
+}
+
+/// x'' + sin(k x) = 0: the parameter in the argument of a function; and a damped pendulum with a force, the
+/// unit of time varying with its frequency.
+#[test]
+fn functions_between_two_values_are_proved() {
+    let k = Expression::parameter("k");
+    let swinging = Expression::ACCELERATION + (k * x()).apply(Function::Sin);
+    let swinging = Problem::new("swinging", swinging);
+    let kind = Kind::InitialAmplitude(1.into());
+    let found = between_all(&swinging, &kind, "k", &[q2(1, 1), q2(1001, 1000)]);
+    assert!(found.failure.is_none(), "{:?}", found.failure);
+    let force = q(3, 10) * (Expression::parameter("w") * Expression::Time).apply(Function::Cos);
+    let rest = q(1, 5) * y().apply(Function::Sin) + x().apply(Function::Sin) - force;
+    let driven = Problem::new("driven", Expression::ACCELERATION + rest);
+    let ends = [q2(13, 10), q2(13_001, 10_000)];
+    let found = between_all(&driven, &Kind::Forced(1), "w", &ends);
+    assert!(found.failure.is_none(), "{:?}", found.failure);
+}
+
+/// Two Duffing oscillators with a spring c between them, one of them driven with the frequency w.
+#[test]
+fn several_unknowns_between_two_values_are_proved() {
+    let (c, u) = (Expression::parameter("c"), Expression::unknown(1, 0));
+    let spring = |a: Expression, b: Expression| a.clone() + a.clone().pow(3) + c.clone() * (a - b);
+    let other = Expression::unknown(1, 2) + spring(u.clone(), x());
+    let mut free =
+        Problem::new("free", Expression::ACCELERATION + spring(x(), u.clone()) + q(1, 9) * x());
+    free.others = vec![other];
+    let kind = Kind::InitialAmplitude(1.into());
+    let found = between_all(&free, &kind, "c", &[q2(1, 2), q2(501, 1000)]);
+    assert!(found.failure.is_none(), "{:?}", found.failure);
+    let force = (Expression::parameter("w") * Expression::Time).apply(Function::Cos);
+    let damped = |a: Expression, k: usize| q(1, 2) * Expression::unknown(k, 1) + a;
+    let mut driven = Problem::new(
+        "driven",
+        Expression::ACCELERATION + damped(2 * x() - u.clone(), 0) - q(1, 5) * force,
+    );
+    driven.others = vec![2 * Expression::unknown(1, 2) + damped(2 * u.clone() + u.pow(3) - x(), 1)];
+    let ends = [q2(2, 1), q2(2001, 1000)];
+    let found = between_all(&driven, &Kind::Forced(1), "w", &ends);
+    assert!(found.failure.is_none(), "{:?}", found.failure);
+}
+
+#[test]
+fn frequencies_that_are_not_proportional_are_refused() {
+    let wave = |angle: Expression| angle.apply(Function::Cos);
+    let w = || Expression::parameter("w");
+    let part = [q2(1, 1), q2(2, 1)];
+    let of = |force: Expression| {
+        let problem = Problem::new("p", Expression::ACCELERATION + x() - force);
+        Field::between(&problem, &Values::new(), "w", &part)
+    };
+    let t = || Expression::Time;
+    assert!(of(wave(w() * t()) + wave(2 * w() * t() + x() + w())).is_ok());
+    for refused in [
+        wave(w() * t()) + wave(t()),
+        wave((w() + 1) * t()),
+        wave(w() * w() * t()),
+        wave(w() * t().pow(2)),
+        wave(x() * wave(w() * t()) + t()),
+    ] {
+        assert!(matches!(of(refused), Err(Failure::NotPolynomial(_))));
+    }
+}
+
+/// A coefficient around 0 has no symmetry that its middle alone has.
+#[test]
+fn what_is_uncertain_about_zero_breaks_symmetries() {
+    let balls = Balls::new(128);
+    let about_zero = balls.add_error(&balls.zero(), &rug::Float::with_val(53, 1e-6));
+    let values = BTreeMap::from([("k".to_owned(), about_zero)]);
+    let start = Start { frequency: 1.0, cosines: vec![0.0, 0.2], sines: vec![] };
+    let k = Expression::parameter("k");
+    let symmetric = |by: Expression| {
+        let rest = 2 * x() + x().pow(3) - q(1, 5) * Expression::Time.apply(Function::Cos) + by;
+        let equation = Expression::ACCELERATION + rest;
+        let field = Field::within(&equation, "eps", &values, 128).unwrap();
+        let proof =
+            prove(&field, &Kind::Forced(1), &start, &Request { digits: 5, ..Request::default() });
+        let parity = proof.unwrap().parity;
+        (parity.odd, parity.even)
+    };
+    assert_eq!(symmetric(k.clone() * x()), (true, true));
+    assert_eq!(symmetric(k.clone() * x().pow(2)), (false, true));
+    assert_eq!(symmetric(k * Expression::Time.apply(Function::Sin)), (true, false));
 }

@@ -4,5 +4,7 @@
 mod classics;
 mod common;
 mod families;
+mod functions;
 mod random;
+mod several;
 mod sharpness;

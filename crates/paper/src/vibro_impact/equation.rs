@@ -149,7 +149,7 @@ const PRINTED: [Printed; 5] = [
     Printed::new("(3)", "x = ", "z + P0/(alpha^2 - omega^2)*cos(omega*t)").with(
         "$z + P0/((alpha - omega)*(alpha + omega)) cos(omega t)$, the response at $eps = 0$",
         "order zero of the averaged expansion: the same",
-        "damping leaves it to order $eps$; the exact response is $F$, see there",
+        "the response without damping, which is of order $eps$; in (8), beside $F$, the same amplitude is wrong",
     ),
     Printed::new(
         "$f$, (4)",

@@ -189,7 +189,7 @@ impl PrimeField {
     }
 
     /// 1/a for every a, with one inversion; nothing if one of them vanishes.
-    pub(super) fn reciprocals(&self, list: &[u64]) -> Option<Vec<u64>> {
+    pub fn reciprocals(&self, list: &[u64]) -> Option<Vec<u64>> {
         let mut before = Vec::with_capacity(list.len());
         let mut product = self.one();
         for a in list {
@@ -206,16 +206,39 @@ impl PrimeField {
 
     /// The image of an integer.
     pub fn integer(&self, n: &Integer) -> u64 {
-        // A remainder by a modulus of 61 bits fits.
-        let residue = match n.to_i64() {
+        match n.to_i64() {
             Some(n) if n.unsigned_abs() < self.prime => {
-                if n < 0 { n + self.prime as i64 } else { n }.unsigned_abs()
+                let image = self.small(n.unsigned_abs());
+                if n < 0 { self.neg(&image) } else { image }
             }
-            _ => {
-                Integer::from(n.modulo_ref(&Integer::from(self.prime))).to_u64().unwrap_or_default()
-            }
-        };
-        self.small(residue)
+            _ => self.limbs(n, &self.limb_images(n.as_limbs().len())),
+        }
+    }
+
+    /// The images of integers, which share what belongs to the prime.
+    pub fn integers<'a>(&self, list: impl Iterator<Item = &'a Integer> + Clone) -> Vec<u64> {
+        let longest = list.clone().map(|n| n.as_limbs().len()).max().unwrap_or(0);
+        let images = self.limb_images(longest);
+        list.map(|n| self.limbs(n, &images)).collect()
+    }
+
+    /// The images of 2^(64 i), brought forward by another 2^64 against the reduction of the sum.
+    fn limb_images(&self, length: usize) -> Vec<u64> {
+        let next = |power: &u64| Some(self.product(*power, self.square));
+        std::iter::successors(Some(self.square), next).take(length).collect()
+    }
+
+    /// sum_i l_i 2^(64 i) with one reduction: the products fill 128 bits, what they carry is counted.
+    fn limbs(&self, n: &Integer, images: &[u64]) -> u64 {
+        let (mut sum, mut carries) = (0u128, 0u64);
+        for (&limb, &image) in n.as_limbs().iter().zip(images) {
+            let (next, carry) = sum.overflowing_add(wide(limb, image));
+            (sum, carries) = (next, carries + u64::from(carry));
+        }
+        // What stands above 2^126, over 2^64 as all of the sum.
+        let above = self.product((carries << 2) + (sum >> 126) as u64, self.small(1 << 62));
+        let residue = self.add(&self.reduce(sum & (u128::MAX >> 2)), &above);
+        if n.is_negative() { self.neg(&residue) } else { residue }
     }
 
     /// The representative of an element in 0..p.
@@ -344,6 +367,18 @@ mod tests {
             let expected = Integer::from(&x * &y).modulo(&p);
             assert_eq!(field.representative(product), expected);
             x = y.modulo(&p);
+        }
+        // Of every length, all bits set and others, of either sign.
+        let mut list = vec![Integer::new(), Integer::from(-1), p.clone(), Integer::from(i64::MIN)];
+        for bits in (61..9000).step_by(37) {
+            let ones = (Integer::from(1) << bits) - 1u32;
+            list.push(Integer::from(-&ones) / 3u32);
+            list.push(ones);
+        }
+        let images = field.integers(list.iter());
+        for (n, image) in list.iter().zip(images) {
+            assert_eq!(field.representative(image), Integer::from(n.modulo_ref(&p)), "{n}");
+            assert_eq!(field.integer(n), image);
         }
         let third = field.rational(&Rational::from((-2, 3)));
         assert_eq!(field.scale(&third, &Rational::from((-3, 2))), field.one());

@@ -56,26 +56,33 @@ impl Symmetry {
 }
 
 /// The part of a function that has one of the symmetries, by Fourier coefficients or by the values at the
-/// points, which determine each other; at least one of the two is there, and the function is not zero.
+/// points, which determine each other; at least one of the two is there, and the function is not zero. Copies share
+/// both: what is transformed in one is known to all.
 #[derive(Clone, Debug)]
 struct Part {
     symmetry: Symmetry,
+    forms: Arc<Forms>,
+    transform: Arc<Transform>,
+}
+
+#[derive(Debug, Default)]
+struct Forms {
     /// The last coefficient does not vanish.
     coefficients: OnceLock<Vec<u64>>,
     values: OnceLock<Vec<u64>>,
-    transform: Arc<Transform>,
 }
 
 impl Part {
     fn coefficients(&self) -> &[u64] {
-        self.coefficients.get_or_init(|| {
-            let values = self.values.get().map_or(&[][..], Vec::as_slice);
+        self.forms.coefficients.get_or_init(|| {
+            let values = self.forms.values.get().map_or(&[][..], Vec::as_slice);
             trimmed(self.transform.coefficients(self.symmetry, values))
         })
     }
 
     fn values(&self) -> &[u64] {
-        self.values.get_or_init(|| self.transform.values(self.symmetry, self.coefficients()))
+        let values = || self.transform.values(self.symmetry, self.coefficients());
+        self.forms.values.get_or_init(values)
     }
 
     /// Nothing if it vanishes.
@@ -86,27 +93,29 @@ impl Part {
             return None;
         }
         Some(Self {
-            symmetry: self.symmetry,
-            coefficients: coefficients.map_or_else(OnceLock::new, OnceLock::from),
-            values: values.map_or_else(OnceLock::new, OnceLock::from),
-            transform: Arc::clone(&self.transform),
+            forms: Arc::new(Forms {
+                coefficients: coefficients.map_or_else(OnceLock::new, OnceLock::from),
+                values: values.map_or_else(OnceLock::new, OnceLock::from),
+            }),
+            ..self.clone()
         })
     }
 
     /// A linear map that multiplies every number by the same.
     fn map(&self, g: impl Fn(&u64) -> u64) -> Option<Self> {
         let image = |list: &Vec<u64>| -> Vec<u64> { list.iter().map(&g).collect() };
-        self.with_forms(self.coefficients.get().map(image), self.values.get().map(image))
+        let Forms { coefficients, values } = &*self.forms;
+        self.with_forms(coefficients.get().map(image), values.get().map(image))
     }
 
     /// sum_i c_i f_i over parts of one symmetry, in the form that needs the fewest transforms.
     fn combination(field: &PrimeField, terms: &[(&Self, u64)]) -> Option<Self> {
         let (first, _) = terms.first()?;
-        let lacking = |form: fn(&Self) -> &OnceLock<Vec<u64>>| {
-            terms.iter().filter(|(part, _)| form(part).get().is_none()).count()
+        let lacking = |form: fn(&Forms) -> &OnceLock<Vec<u64>>| {
+            terms.iter().filter(|(part, _)| form(&part.forms).get().is_none()).count()
         };
         let (no_coefficients, no_values) =
-            (lacking(|part| &part.coefficients), lacking(|part| &part.values));
+            (lacking(|forms| &forms.coefficients), lacking(|forms| &forms.values));
         let by_values = no_values == 0 && terms.len() <= SHORT || no_coefficients > no_values;
         let by_coefficients = no_coefficients == 0 || !by_values;
         let combine = |form: fn(&Self) -> &[u64]| {
@@ -120,7 +129,7 @@ impl Part {
 
 impl PartialEq for Part {
     fn eq(&self, other: &Self) -> bool {
-        match (self.values.get(), other.values.get()) {
+        match (self.forms.values.get(), other.forms.values.get()) {
             (Some(a), Some(b)) => a == b,
             _ => self.coefficients() == other.coefficients(),
         }
@@ -190,12 +199,8 @@ impl Modular {
 
     /// Nothing if it vanishes.
     fn part(&self, symmetry: Symmetry, coefficients: Vec<u64>) -> Option<Part> {
-        let empty = Part {
-            symmetry,
-            coefficients: OnceLock::new(),
-            values: OnceLock::new(),
-            transform: Arc::clone(&self.transform),
-        };
+        let transform = Arc::clone(&self.transform);
+        let empty = Part { symmetry, forms: Arc::default(), transform };
         empty.with_forms(Some(coefficients), None)
     }
 
@@ -402,14 +407,16 @@ impl FunctionAlgebra for Modular {
     fn as_constant(&self, f: &ModularElement) -> Option<u64> {
         match &f.parts {
             [None, None, None, None] => Some(0),
-            [Some(part), None, None, None] => match part.coefficients.get().map(Vec::as_slice) {
-                Some([constant]) => Some(*constant),
-                Some(_) => None,
-                None => {
-                    let (first, rest) = part.values().split_first()?;
-                    rest.iter().all(|value| value == first).then_some(*first)
+            [Some(part), None, None, None] => {
+                match part.forms.coefficients.get().map(Vec::as_slice) {
+                    Some([constant]) => Some(*constant),
+                    Some(_) => None,
+                    None => {
+                        let (first, rest) = part.values().split_first()?;
+                        rest.iter().all(|value| value == first).then_some(*first)
+                    }
                 }
-            },
+            }
             _ => None,
         }
     }

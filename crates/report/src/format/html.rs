@@ -1,6 +1,6 @@
 //! The body of an HTML page, and a page that needs nothing else.
 
-use super::{Format, Writer};
+use super::{Format, Writer, steers};
 use crate::{Block, Document, Formula, Part, mathml};
 
 /// HTML.
@@ -15,7 +15,7 @@ fn escaped(words: &str) -> String {
             '>' => text.push_str("&gt;"),
             '&' => text.push_str("&amp;"),
             '"' => text.push_str("&quot;"),
-            c if c.is_control() && c != '\n' => text.push('\u{fffd}'),
+            c if steers(c) && c != '\n' => text.push('\u{fffd}'),
             c => text.push(c),
         }
     }

@@ -1,6 +1,6 @@
 //! LaTeX for a document with `amsmath`.
 
-use super::Writer;
+use super::{Writer, harmless, steers};
 use crate::Formula;
 
 /// LaTeX.
@@ -19,7 +19,7 @@ fn escaped(words: &str) -> String {
             '>' => text.push_str(r"\textgreater{}"),
             '~' => text.push_str(r"\textasciitilde{}"),
             '^' => text.push_str(r"\textasciicircum{}"),
-            c if c.is_control() && c != '\n' => text.push('?'),
+            c if steers(c) && c != '\n' => text.push('?'),
             c => text.push(c),
         }
     }
@@ -69,7 +69,7 @@ impl Writer for Latex {
     }
     fn code(&self, code: &str) -> String {
         // The only text that ends a verbatim environment.
-        let code = code.replace("\\end{verbatim}", "\\end {verbatim}");
+        let code = harmless(code).replace("\\end{verbatim}", "\\end {verbatim}");
         format!("\\begin{{verbatim}}\n{}\n\\end{{verbatim}}\n", code.trim_end())
     }
     fn list(&self, items: &[String]) -> String {

@@ -1,6 +1,6 @@
 //! Markdown with formulas between dollar signs.
 
-use super::Writer;
+use super::{Writer, harmless, steers};
 use crate::Formula;
 
 /// Markdown.
@@ -15,7 +15,7 @@ fn escaped(words: &str) -> String {
             '>' => text.push_str("&gt;"),
             '&' => text.push_str("&amp;"),
             '\\' | '`' | '*' | '_' | '[' | ']' | '#' | '|' | '$' | '~' => text.extend(['\\', c]),
-            c if c.is_control() && c != '\n' => text.push('\u{fffd}'),
+            c if steers(c) && c != '\n' => text.push('\u{fffd}'),
             c => text.push(c),
         }
     }
@@ -36,7 +36,8 @@ impl Writer for Markdown {
         format!("${}$", formula.latex)
     }
     fn verbatim(&self, code: &str) -> String {
-        let fence = "`".repeat(fence(code).len() - 2);
+        let code = harmless(code);
+        let fence = "`".repeat(fence(&code).len() - 2);
         format!("{fence}{code}{fence}")
     }
     fn strong(&self, words: &str, _class: &str) -> String {
@@ -68,7 +69,7 @@ impl Writer for Markdown {
     }
     fn code(&self, code: &str) -> String {
         let fence = fence(code);
-        format!("{fence}text\n{}\n{fence}\n", code.trim_end())
+        format!("{fence}text\n{}\n{fence}\n", harmless(code).trim_end())
     }
     fn list(&self, items: &[String]) -> String {
         items.iter().map(|item| format!("- {}\n", item.replace('\n', "\n  "))).collect()

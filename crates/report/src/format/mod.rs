@@ -8,6 +8,8 @@ mod text;
 
 use crate::{Block, Document, Formula, Span, Table, Text};
 pub use html::standalone;
+pub use text::harmless;
+pub(crate) use text::steers;
 
 /// How a document is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,7 +109,7 @@ impl Format {
             }
             Block::Table(table) => self.table(table),
             Block::Words(line) => writer.paragraph(&self.line(line)),
-            Block::Source(file) if self == Self::Text => text::harmless(file),
+            Block::Source(file) if self == Self::Text => harmless(file),
             Block::Code(code) | Block::Source(code) => writer.code(code),
             Block::List(items) => {
                 let items: Vec<String> = items.iter().map(|item| self.line(item)).collect();

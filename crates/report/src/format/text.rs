@@ -35,9 +35,20 @@ impl Plain {
     }
 }
 
-/// Without the characters that steer a terminal.
-pub(super) fn harmless(words: &str) -> String {
-    words.chars().map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect()
+/// Words without the characters that steer a terminal or turn the direction of reading; lines stay.
+///
+/// ```
+/// assert_eq!(lindstedt_report::harmless("a\u{1b}[31m\nb"), "a\u{fffd}[31m\nb");
+/// ```
+#[must_use]
+pub fn harmless(words: &str) -> String {
+    words.chars().map(|c| if steers(c) && c != '\n' { '\u{fffd}' } else { c }).collect()
+}
+
+/// Whether a character steers a terminal or the direction of reading.
+pub(crate) fn steers(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// The width in characters.

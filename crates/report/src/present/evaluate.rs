@@ -112,10 +112,14 @@ fn plane(value: &Evaluation) -> Vec<Line> {
 }
 
 fn summed(found: &Displacements) -> String {
+    if found.is_by_newton() {
+        return "x(t) by Newton's method in Fourier space".to_owned();
+    }
     format!("x(t), order {}, summed by {}", found.order, found.summed_by())
 }
 
-fn time(time: &Exact) -> String {
+/// A time in tables.
+pub(super) fn time(time: &Exact) -> String {
     format!("{:?}", time.to_f64())
 }
 

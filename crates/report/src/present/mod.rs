@@ -6,6 +6,7 @@ mod classification;
 mod derive;
 mod estimate;
 mod evaluate;
+mod family;
 mod motion;
 mod prove;
 mod resonance;
@@ -16,6 +17,7 @@ mod threshold;
 mod trade;
 mod verify;
 
+use crate::format::steers;
 use crate::{Document, Figure, Formula, Table, Text};
 use classification::classification;
 use lindstedt::unstable::coeff::print::Style;
@@ -42,18 +44,42 @@ pub trait Present {
 /// # Errors
 /// Those of serde: never for the answers of this workspace, whose keys are strings.
 pub fn json<A: Serialize>(answer: &A) -> serde_json::Result<String> {
-    Ok(format!("{:#}\n", serde_json::to_value(answer)?))
+    Ok(safe(&format!("{:#}", serde_json::to_value(answer)?)))
+}
+
+/// The same on one line.
+///
+/// # Errors
+/// As [`json`].
+///
+/// ```
+/// assert_eq!(lindstedt_report::json_line("\u{9b}31m")?, "\"\\u009b31m\"\n");
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+pub fn json_line<A: Serialize + ?Sized>(answer: &A) -> serde_json::Result<String> {
+    Ok(safe(&serde_json::to_string(answer)?))
+}
+
+/// JSON in which every character that steers a terminal is an escape: serde leaves those above 0x1f.
+fn safe(json: &str) -> String {
+    let mut text = String::with_capacity(json.len() + 1);
+    for c in json.chars() {
+        match c {
+            '\n' => text.push(c),
+            c if steers(c) => text += &format!("\\u{:04x}", u32::from(c)),
+            c => text.push(c),
+        }
+    }
+    text.push('\n');
+    text
 }
 
 impl Text {
     /// A number: its decimal, and its error where that is more than a rounding.
     #[must_use]
     pub fn number(number: &Number) -> Self {
-        Self::words(match (&number.error, number.status) {
-            (Some(error), Status::Estimated) => {
-                format!("{} +- {error} (estimated)", number.decimal)
-            }
-            (None, Status::NoEstimate) => format!("{} (no estimate)", number.decimal),
+        Self::words(match number.status {
+            Status::Estimated | Status::NoEstimate => number.to_string(),
             _ => number.decimal.clone(),
         })
     }

@@ -6,6 +6,7 @@ use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::motion::{
     Begin, Column, Diagnosis, Diagram, Dot, Event, Motion, Section, State, View,
 };
+use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::{Answer, Header, Number};
 
 /// Rows of a list that are printed; tables have all.
@@ -21,6 +22,12 @@ fn velocity() -> Text {
     formula("x'", r"\dot{x}")
 }
 
+/// x_k and x_k'.
+fn both(name: &str) -> [Formula; 2] {
+    let latex = latex_name(name);
+    [Formula::new(name, &latex), Formula::new(format!("{name}'"), format!(r"\dot{{{latex}}}"))]
+}
+
 /// x before or after an event.
 fn jump(word: &str) -> Text {
     velocity().and(format!(" {word}"))
@@ -28,6 +35,7 @@ fn jump(word: &str) -> Text {
 
 /// The problem with its values, and where it starts.
 fn head(header: &Header, start: &Begin, history: Option<&str>) -> Document {
+    let unknowns = &start.unknowns;
     let at: Vec<String> =
         header.at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let title = match at.join(", ") {
@@ -35,9 +43,16 @@ fn head(header: &Header, start: &Begin, history: Option<&str>) -> Document {
         at => format!("{}: {at}", header.problem),
     };
     let chosen = start.chosen.map(|chosen| format!(" ({chosen})")).unwrap_or_default();
-    let place = Text::from(Formula::new("x", "x")).and(format!(" = {}, ", start.x));
-    let place =
-        place.formula(Formula::new("x'", r"\dot{x}")).and(format!(" = {}{chosen}", start.v));
+    let name = unknowns.first().map_or("x", String::as_str);
+    let [own, rate] = both(name);
+    let place = Text::from(own).and(format!(" = {}, ", start.x));
+    let place = place.formula(rate).and(format!(" = {}", start.v));
+    let others = unknowns.iter().skip(1).zip(&start.others);
+    let place = others.fold(place, |place, (name, [x, v])| {
+        let [own, rate] = both(name);
+        place.and(", ").formula(own).and(format!(" = {x}, ")).formula(rate).and(format!(" = {v}"))
+    });
+    let place = place.and(chosen);
     let history = history.map(|history| (Text::words("history"), Text::words(history)));
     Document::titled(title).lines([(Text::words("start"), place)].into_iter().chain(history))
 }
@@ -60,9 +75,15 @@ fn cell(number: &Number) -> Text {
     Text::words(number.decimal.as_str())
 }
 
-fn states(list: &[State]) -> Table {
-    let head = Table::new([formula("t", "t"), formula("x", "x"), velocity()]);
-    list.iter().fold(head, |table, s| table.row([&s.t, &s.x, &s.v].map(cell)))
+fn states(unknowns: &[String], list: &[State]) -> Table {
+    let names = unknowns.iter().map(String::as_str);
+    let names: Vec<&str> = if unknowns.is_empty() { vec!["x"] } else { names.collect() };
+    let pairs = names.iter().flat_map(|name| both(name)).map(Text::from);
+    let head = Table::new([formula("t", "t")].into_iter().chain(pairs));
+    list.iter().fold(head, |table, s| {
+        let cells = [&s.t, &s.x, &s.v].into_iter().chain(s.others.iter().flatten());
+        table.row(cells.map(cell).collect::<Vec<_>>())
+    })
 }
 
 fn events(list: &[Event]) -> Table {
@@ -78,13 +99,14 @@ fn events(list: &[Event]) -> Table {
 impl Present for Answer<Motion> {
     fn document(&self) -> Document {
         let value = &self.value;
+        let unknowns = &value.start.unknowns;
         let mut page = head(&self.header, &value.start, value.history);
         page = listed(page, "events", events(&value.events));
-        page = listed(page, "samples", states(&value.samples));
+        page = listed(page, "samples", states(unknowns, &value.samples));
         if let Some(section) = &value.section {
-            page = listed(page, "section", states(&section.points));
+            page = listed(page, "section", states(unknowns, &section.points));
         }
-        let mut last = states(std::slice::from_ref(&value.last));
+        let mut last = states(unknowns, std::slice::from_ref(&value.last));
         if value.last.sticking {
             last.columns.push(Text::default());
             last.rows.iter_mut().for_each(|row| row.push(Text::words("sticking")));
@@ -124,6 +146,17 @@ impl Present for Answer<Motion> {
         }
         for point in value.section.iter().flat_map(|section| &section.points) {
             table = table.row(row("section", point.place));
+        }
+        // Of several unknowns a line has the first alone, samples have all.
+        if let Some((_, others)) = value.start.unknowns.split_first() {
+            let names = others.iter().flat_map(|name| [name.clone(), format!("{name}'")]);
+            table.columns.extend(names.map(Text::from));
+            table.rows.iter_mut().for_each(|row| row.resize(4 + 2 * others.len(), "".into()));
+            for state in &value.samples {
+                let others = state.others.iter().flatten().map(|x| x.decimal.clone());
+                let cells: Vec<_> = row("sample", state.place).chain(others).collect();
+                table = table.row(cells);
+            }
         }
         Some(table)
     }
@@ -265,12 +298,20 @@ impl Present for Answer<Diagram> {
             "largest",
             "",
         ]);
-        let table =
-            value.sweep.columns.iter().fold(head, |table, column| {
+        let rows = |columns: &[Column]| {
+            columns.iter().fold(head.clone(), |table, column| {
                 table.row(spanned(column, coordinate, value.sweep.kept))
-            });
+            })
+        };
         let page = self::head(&self.header, &value.start, value.history);
-        listed(page, "sweep", table).words(value.verdict.as_str())
+        let page = match &value.sweep.back {
+            None => listed(page, "sweep", rows(&value.sweep.columns)),
+            Some(back) => {
+                let page = listed(page, "upwards", rows(&value.sweep.columns));
+                listed(page, "downwards", rows(back))
+            }
+        };
+        page.words(value.verdict.as_str())
     }
 
     fn figure(&self) -> Option<Figure> {
@@ -287,13 +328,20 @@ impl Present for Answer<Diagram> {
             sweep.skip
         );
         let figure = Figure::new(title, axis(&sweep.parameter), axis(up));
-        Some(figure.layer(None, Mark::Disc(1), colours::BLUE, points))
+        let Some(back) = &sweep.back else {
+            return Some(figure.layer(None, Mark::Disc(1), colours::BLUE, points));
+        };
+        let down = back.iter().flat_map(|column| {
+            column.points.iter().map(move |point| (column.value, point[coordinate]))
+        });
+        let figure = figure.layer(Some("upwards"), Mark::Triangle(4), colours::BLUE, points);
+        Some(figure.layer(Some("downwards"), Mark::Disc(2), colours::VERMILION, down))
     }
 
     fn table(&self) -> Option<Table> {
         let sweep = &self.value.sweep;
         let mut table = Table::new([sweep.parameter.as_str(), "x", "v"]);
-        for column in &sweep.columns {
+        for column in sweep.columns.iter().chain(sweep.back.iter().flatten()) {
             // What has no end as a decimal number is rounded: a column of numbers.
             let rounded = column.exact.contains(['/', 'p']);
             let value = if rounded { format!("{:?}", column.value) } else { column.exact.clone() };

@@ -71,7 +71,11 @@ fn proof(states: &States) -> String {
         0 => String::new(),
         n => format!("; {n} parts of the box are undecided"),
     };
-    format!("{} ({proof}{open})", states.count)
+    let edge = match states.at_edge {
+        0 => String::new(),
+        n => format!("; of {n} more is not decided whether they lie in the box"),
+    };
+    format!("{} ({proof}{open}{edge})", states.count)
 }
 
 fn changes(value: &Response) -> impl Iterator<Item = (&'static str, &Change)> {
@@ -103,6 +107,32 @@ fn sweep(value: &Response, name: &str) -> Document {
         let cells = [word.into(), Text::number(&change.value)].into_iter();
         table.row(cells.chain(amplitudes).collect::<Vec<_>>())
     }))
+}
+
+/// The equation itself, integrated upwards and downwards.
+const FOLLOWED: [(&str, Mark); 2] = [("upwards", Mark::Triangle(4)), ("downwards", Mark::Disc(2))];
+
+/// The largest step from one value to the next, upwards and downwards: where the motion jumps.
+fn jumps(value: &Response, name: &str) -> Option<Document> {
+    let followed = value.followed.as_ref()?;
+    let formula = Text::from(Formula::new(name, latex_name(name)));
+    let head: [Text; 4] = ["".into(), formula, "amplitudes".into(), "then".into()];
+    let table = followed.iter().zip(FOLLOWED).fold(Table::new(head), |table, (list, (word, _))| {
+        let of = |k: usize| list[k].amplitudes.iter().flatten().map(|a| a.value);
+        let step =
+            |k: &usize| of(k - 1).zip(of(*k)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let Some(k) = (1..list.len()).max_by(|a, b| step(a).total_cmp(&step(b))) else {
+            return table;
+        };
+        let shown = |k| of(k).map(|a| format!("{a:.6}")).collect::<Vec<_>>().join(", ");
+        let at = format!("{} .. {}", list[k - 1].value.value, list[k].value.value);
+        table.row([word.to_owned(), at, shown(k - 1), shown(k)])
+    });
+    Some(
+        Document::default()
+            .heading("the equation itself, integrated: its largest step")
+            .table(table),
+    )
 }
 
 fn corners(value: &Response) -> impl Iterator<Item = (&'static str, &Corner)> {
@@ -160,10 +190,10 @@ impl Present for Answer<Response> {
         } else {
             "the truncated slow flow may have states beyond"
         };
-        let limit = format!(
-            "a cos(phi) and a sin(phi) up to {:.4} in size: {whole}",
-            value.amplitude_limit.value
-        );
+        let limit = match value.amplitude_limit.value {
+            a if a < 1e6 => format!("amplitudes up to {a:.4}: {whole}"),
+            a => format!("amplitudes up to {a:.4e}: {whole}"),
+        };
         let mut lines: Vec<(Text, Text)> = vec![("box".into(), limit.into())];
         if !at.is_empty() {
             lines.insert(0, ("at".into(), at.join(", ").into()));
@@ -175,8 +205,10 @@ impl Present for Answer<Response> {
                 None => (format!("{turn} "), format!("{turn} ")),
                 Some((p, q)) => (format!("({turn}) "), format!(r"\frac{{{p}}}{{{q}}} ")),
             };
-            let text = format!("x{i} = a{i} cos({text}eta + phi{i}) + ...");
-            let latex = format!(r"x{i} = a{i} \cos({latex}\eta + \varphi{i}) + \ldots");
+            let name = value.coordinates.get(j).map_or("x", String::as_str);
+            let text = format!("{name} = a{i} cos({text}eta + phi{i}) + ...");
+            let x = latex_name(name);
+            let latex = format!(r"{x} = a{i} \cos({latex}\eta + \varphi{i}) + \ldots");
             ("motion".into(), Formula::new(text, latex).into())
         };
         lines.extend(value.turns.iter().enumerate().map(motion));
@@ -191,7 +223,8 @@ impl Present for Answer<Response> {
             let count = value.branches.len();
             let words = format!("{count}, of them {closed} closed; {points} points");
             lines.push(("branches".into(), words.into()));
-            return Document::titled(title(self)).lines(lines).append(sweep(value, name));
+            let page = Document::titled(title(self)).lines(lines).append(sweep(value, name));
+            return jumps(value, name).into_iter().fold(page, Document::append);
         }
         let found = value.states.first();
         lines.extend(found.map(|states| ("steady states".into(), proof(states).into())));
@@ -232,6 +265,14 @@ impl Present for Answer<Response> {
                 }
             }
         }
+        for (k, list) in value.followed.iter().flatten().enumerate() {
+            let (name, mark) = FOLLOWED[k.min(1)];
+            let points = list.iter().flat_map(|reading| {
+                let amplitudes = reading.amplitudes.iter().flatten();
+                amplitudes.map(|a| (reading.value.value, a.value))
+            });
+            figure = figure.layer(Some(name), mark, colours::BLACK, points);
+        }
         for (word, change) in changes(value) {
             let points = change.amplitudes.iter().map(|a| (decimal(&change.value), decimal(a)));
             let mark = if word == "fold" { Mark::Disc(4) } else { Mark::Triangle(5) };
@@ -262,13 +303,23 @@ impl Present for Answer<Response> {
         head.extend(exponents);
         let branches = value.branches.iter().enumerate();
         let rows = branches.flat_map(|(n, branch)| branch.points.iter().map(move |p| (n, p)));
-        Some(rows.fold(Table::new(head), |table, (n, point)| {
-            let digits = |x: &Estimate| format!("{:?}", x.value);
+        let digits = |x: &Estimate| format!("{:?}", x.value);
+        let width = head.len();
+        let table = rows.fold(Table::new(head), |table, (n, point)| {
             let mut cells = vec![n.to_string(), digits(&point.value)];
             let pairs = point.amplitudes.iter().zip(&point.phases);
             cells.extend(pairs.flat_map(|(a, phase)| [digits(a), digits(phase)]));
             cells.push(word(point.stable).to_owned());
             cells.extend(point.exponents.iter().flatten().map(digits));
+            table.row(cells)
+        });
+        let followed = value.followed.iter().flatten().zip(FOLLOWED);
+        let readings = followed.flat_map(|(list, (name, _))| list.iter().map(move |r| (name, r)));
+        Some(readings.fold(table, |table, (name, reading)| {
+            let mut cells = vec![name.to_owned(), digits(&reading.value)];
+            let pairs = reading.amplitudes.iter().flatten().zip(reading.phases.iter().flatten());
+            cells.extend(pairs.flat_map(|(a, phase)| [digits(a), digits(phase)]));
+            cells.resize(width, String::new());
             table.row(cells)
         }))
     }

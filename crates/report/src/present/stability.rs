@@ -52,8 +52,8 @@ fn multipliers(list: &[[Number; 2]]) -> Vec<Option<Line>> {
 fn orbit(orbit: &Found<TrueOrbit>) -> Vec<Option<Line>> {
     let orbit = match orbit {
         Found::There(orbit) => orbit,
-        Found::Missing { reason, .. } => {
-            return vec![line("exists", "no"), line("reason", reason.as_str())];
+        Found::Missing { exists, reason } => {
+            return vec![line("exists", decided(*exists)), line("reason", reason.as_str())];
         }
     };
     vec![

@@ -84,6 +84,10 @@ fn orbits(value: &HomoclinicThreshold) -> Vec<Line> {
     if let Some(of) = &value.zeros_of {
         let name = format!("zero in {}", of.parameter);
         lines.extend(value.zeros.iter().map(|zero| (name.as_str().into(), Text::number(zero))));
+        for [low, high] in &of.intervals {
+            let interval = format!("[{}, {}]", low.decimal, high.decimal);
+            lines.push(line(format!("zeros in {}, all of", of.parameter), interval));
+        }
         let note = if of.complete { "complete" } else { "sign changes on a grid" };
         let count = format!("{} ({note})", value.zeros.len());
         lines.push(line(format!("zeros in {}, number", of.parameter), count));

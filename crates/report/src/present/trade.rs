@@ -228,7 +228,9 @@ impl Present for Answer<Trade> {
 
     fn table(&self) -> Option<Table> {
         let row = |row: &Row| {
-            let number = |x: f64| Text::words(format!("{x:e}"));
+            // An empty field is what nothing is known of.
+            let number =
+                |x: f64| Text::words(if x.is_finite() { format!("{x:e}") } else { String::new() });
             let proved = row.proved_error.map(number).unwrap_or_default();
             [
                 row.method.name().into(),

@@ -216,7 +216,7 @@ mod tests {
     #[test]
     fn roots_are_isolated_and_told_from_multiple_ones() {
         // (z^2 - 2)(z - 1)^2 (z + 3).
-        let all = polynomial(&[-6, 10, 1, -8, 2, 1]).to_vec();
+        let all = polynomial(&[-6, 10, 1, -7, 1, 1]);
         let [simple, multiple] = simple_and_multiple(&all);
         assert_eq!((multiple, &simple), (polynomial(&[-1, 1]), &polynomial(&[-6, -2, 3, 1])));
         let [root] = &positive_roots(&simple)[..] else { panic!("one positive root") };

@@ -106,6 +106,6 @@ fn warnings_name_the_radius_and_the_mismatch() {
     assert!(errors.contains("the mismatch is above 1") && !errors.contains("diverges"), "{errors}");
     // Without loop and damping the radius is infinite.
     let free = json(&["--set", "A=0", "--set", "c=0", "--order", "3"]);
-    assert_eq!(free["kbm"]["convergence"]["radius"], "inf");
+    assert_eq!(free["kbm"]["convergence"]["radius"], "infinite");
     assert_eq!(free["kbm"]["R"]["status"], "exact");
 }

@@ -286,7 +286,8 @@ fn amplitude_again() -> Result<Vec<Row>, Error> {
     let again = |found: Statement| Statement {
         label: "$a$".to_owned(),
         left: "a = ".to_owned(),
-        remark: "$a$ must be the $F$ of $cos phi$ and $sin phi$".to_owned(),
+        remark: "the amplitude of (8) again: $a$ must be the $F$ of $cos phi$ and $sin phi$"
+            .to_owned(),
         ..found
     };
     Ok(amplitude.map_or_else(Vec::new, |found| again(found).rows()))

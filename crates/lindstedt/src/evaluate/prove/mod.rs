@@ -1,17 +1,21 @@
 //! The orbit as a theorem: exactly one periodic orbit within a radius of the numbers, whether or not
 //! the series converges, which gives no more than the guess ([`lindstedt_orbit`]).
 
+mod expansion;
+mod family;
+mod orbit;
+
 use super::turn::TimeDomain;
 use super::wanted::Wanted;
 use super::{Evaluate, Evaluation, Question, Trajectory};
 use crate::refusal::Refused;
-use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Status, Work};
+use crate::{Answer, Error, Oscillator, Remark, Standing, Work};
+pub use family::{Between, EndOfBranch, ProvedBranch, ProvedFamily, ProvedMember};
 use lindstedt_algebra::Stop;
-use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_orbit::{Failure, Kind, Proof, Request, Stability, Start, guesses, prove};
-use rug::Float;
-use rug::float::Round;
-use serde::Serialize;
+use lindstedt_orbit::{
+    Failure, Kind, Proof, Request, Start, guesses, guesses_all, prove, prove_all,
+};
+pub use orbit::{Bounds, Expansion, ProvedOrbit, ProvedState, UnknownOrbit, UnknownState, Verdict};
 use std::time::Instant;
 
 /// Harmonics of the guess from the expansion; Newton's method finds the others.
@@ -26,91 +30,15 @@ type Outcome = Result<(Proof, Vec<Proof>), Failure>;
 /// Digits of the expansion's sum for it.
 const DIGITS_OF_A_GUESS: u32 = 16;
 
-/// A periodic orbit, proved or as it was estimated before.
-#[derive(Clone, Debug, Serialize)]
-#[non_exhaustive]
-pub struct ProvedOrbit {
-    /// The period.
-    pub period: Option<Number>,
-    /// 2 pi over it.
-    pub frequency: Option<Number>,
-    /// x at phase 0, where the first harmonic has no sine or x' = 0.
-    pub amplitude: Option<Number>,
-    /// x' there.
-    pub velocity: Option<Number>,
-    /// The largest x.
-    pub maximum: Option<Number>,
-    /// The least x.
-    pub minimum: Option<Number>,
-    /// The exponent of a limit cycle that is not zero (Liouville); empty for a member of a family.
-    pub floquet_exponent: Vec<Number>,
-    /// The sum of the two exponents of a response to a force (Liouville).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub exponent_sum: Option<Number>,
-    /// The product of its two Floquet multipliers: e to the sum times the period.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub multiplier_product: Option<Number>,
-    /// What the exponents prove.
-    pub stable: Option<bool>,
-    /// The proof, or what it failed on.
-    pub proof: Verdict,
-    /// Other orbits at the same values: a force may have several responses, an equation several limit
-    /// cycles (the first is the one that the motion from x = 2 approaches). The list need not be complete.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub further: Vec<ProvedOrbit>,
-}
-
-/// How the contraction test ended.
-#[derive(Clone, Debug, Serialize)]
-#[serde(untagged)]
-pub enum Verdict {
-    /// There is exactly one orbit within `radius`, and no second one within `unique_within`.
-    Proved {
-        /// The largest mode of the numerical inverse.
-        modes: usize,
-        /// nu of the norm.
-        weight: f64,
-        /// The distance of the orbit from the numerical one, in the norm of the proof.
-        radius: Box<Number>,
-        /// The distance within which there is no second orbit.
-        unique_within: Box<Number>,
-        /// The functions among which there is no second one; nothing where these are all.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        among: Option<&'static str>,
-        /// The bounds of the test.
-        bounds: Box<Bounds>,
-    },
-    /// Not proved; this says nothing against the orbit.
-    Failed {
-        /// The bound or the step.
-        failed: &'static str,
-        /// Its numbers.
-        why: String,
-    },
-}
-
-/// The bounds of the contraction test.
-#[derive(Clone, Debug, Serialize)]
-#[serde(rename_all = "UPPERCASE")]
-#[non_exhaustive]
-pub struct Bounds {
-    /// How far one Newton step goes.
-    pub y0: Number,
-    /// The defect of the inverse on its modes.
-    pub z0: f64,
-    /// What the inverse neglects.
-    pub z1: f64,
-    /// The Lipschitz constant of the derivative.
-    pub z2: f64,
-}
-
 impl Oscillator {
     /// Proves the periodic orbit at the values set: a limit cycle, the member of a family with the
     /// amplitude given, or the responses to a force with its period. Period, frequency, x at phase 0, extrema and the Floquet exponent are enclosed
-    /// to `work.digits` digits ([`Status::Proved`]); the guess is the motion in the time domain, else
-    /// the sum of the expansion, else harmonic balance (of responses the only one). For equations that are
-    /// polynomial in x and x' with rational coefficients, and x'' + c sin(q x) = 0; a small parameter is
-    /// not needed.
+    /// to `work.digits` digits ([`Status::Proved`](crate::Status::Proved)); the guess is the motion in the time domain, else
+    /// the sum of the expansion, else harmonic balance (of responses the only one). For one equation or
+    /// several, made of polynomials, rational powers, sines, cosines and exponentials of the unknowns and
+    /// their velocities with rational coefficients; a small parameter is not needed. Of several
+    /// unknowns the guesses are the normal modes continued in the amplitude of the first, or the motion
+    /// once it repeats itself.
     ///
     /// Where the proof fails the estimated period stands as before, and what failed is said
     /// ([`Standing::Undecided`]). Cost: third power of the modes (400: a second).
@@ -131,10 +59,10 @@ impl Oscillator {
     /// ```
     pub fn prove(&self, question: &Evaluate, work: &Work) -> Result<Answer<ProvedOrbit>, Error> {
         let start = Instant::now();
-        self.without_pi()?;
+        self.values_without_pi()?;
         let (case, mut remarks) = self.placed()?;
         let wanted = case.wanted(work.digits)?;
-        let (mut found, outcome) = case.attempt(&wanted, question, work)?;
+        let (mut found, outcome) = case.all_or_first(&wanted, question, work)?;
         if outcome.is_err() && case.has_expansion() {
             found = case.period(question, work).ok().or(found);
         }
@@ -145,10 +73,22 @@ impl Oscillator {
         let order = found.as_ref().map(|found| found.order);
         let (value, standing) = match outcome {
             Ok((first, others)) => {
+                let all: Vec<Proof> = std::iter::once(first).chain(others).collect();
+                let of_sum = case.of_the_sum(&all, &wanted, question, work);
                 let digits = work.printed_digits();
-                let orbit = |proof: &Proof| ProvedOrbit::new(proof, &wanted, digits);
-                let further = others.iter().map(orbit).collect();
-                (ProvedOrbit { further, ..orbit(&first) }, Standing::Complete)
+                let names = |k: usize| self.problem().unknown(k);
+                let orbit = |(i, proof): (usize, &Proof)| ProvedOrbit {
+                    expansion: of_sum.clone().filter(|(found, _)| *found == i).map(|(_, how)| how),
+                    solution: ProvedOrbit::states(proof, &wanted, question, digits, &names),
+                    ..ProvedOrbit::new(proof, &wanted, digits, &names)
+                };
+                let mut orbits: Vec<ProvedOrbit> = all.iter().enumerate().map(orbit).collect();
+                // That of the expansion, where it is known, is the one that was asked for.
+                if let Some((i, _)) = of_sum {
+                    orbits.swap(0, i);
+                }
+                let first = orbits.remove(0);
+                (ProvedOrbit { further: orbits, ..first }, Standing::Complete)
             }
             Err(failure) => {
                 remarks.push(Remark(format!("not proved: {failure}")));
@@ -161,6 +101,19 @@ impl Oscillator {
         Ok(Answer { header, value, standing, remarks })
     }
 
+    /// Of several unknowns all orbits, of one that of the first guess and its companions.
+    fn all_or_first(
+        &self,
+        wanted: &Wanted,
+        question: &Evaluate,
+        work: &Work,
+    ) -> Result<(Option<Evaluation>, Outcome), Error> {
+        match self.problem().others.is_empty() {
+            true => self.attempt(wanted, question, work),
+            false => Ok((None, all_of(wanted, &self.request(work)))),
+        }
+    }
+
     /// The proof from the first guess that leads to one: the motion in the time domain, then those of the
     /// expansion, which is made only then, then harmonic balance.
     fn attempt(
@@ -169,8 +122,7 @@ impl Oscillator {
         question: &Evaluate,
         work: &Work,
     ) -> Result<(Option<Evaluation>, Outcome), Error> {
-        let request =
-            Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() };
+        let request = self.request(work);
         // Some guesses belong to no orbit.
         let guessed = Request { modes_limit: MODES_OF_A_GUESS, ..request.clone() };
         let mut outcome = Err(Failure::NoStart);
@@ -197,6 +149,10 @@ impl Oscillator {
             return Err(Refused::stopped("stopped before the proof was finished", hint).into());
         }
         Ok((found, with_others(wanted, outcome, &guessed)))
+    }
+
+    fn request(&self, work: &Work) -> Request {
+        Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() }
     }
 
     /// A guess from the closed form or from the motion in the time domain.
@@ -286,91 +242,21 @@ fn with_others(wanted: &Wanted, first: Result<Proof, Failure>, request: &Request
     Ok((first, proofs.collect()))
 }
 
-impl ProvedOrbit {
-    fn new(proof: &Proof, wanted: &Wanted, digits: usize) -> Self {
-        let number = |ball: &Ball| Some(Number::of_ball(ball, digits).weaken(Status::Proved));
-        let (cycle, forced) = (wanted.kind == Kind::LimitCycle, wanted.is_forced());
-        let state = wanted.state((proof.displacement.clone(), proof.velocity.clone()));
-        let (amplitude, velocity) = state.unzip();
-        let zero = || Balls::new(proof.maximum.midpoint().prec()).zero();
-        let extremum = |u: &Ball| Some(wanted.state((u.clone(), zero()))?.0);
-        let product = Some(proof.multiplier_product()).filter(|_| forced);
-        let known = |ball: Option<Ball>| ball.as_ref().and_then(number);
-        Self {
-            period: number(&proof.period),
-            frequency: number(&proof.frequency),
-            amplitude: known(amplitude),
-            velocity: known(velocity),
-            maximum: known(extremum(&proof.maximum)),
-            minimum: known(extremum(&proof.minimum)),
-            floquet_exponent: number(&proof.exponent).filter(|_| cycle).into_iter().collect(),
-            exponent_sum: number(&proof.exponent).filter(|_| forced),
-            multiplier_product: known(product),
-            stable: match proof.stability {
-                Stability::Unstable if cycle || forced => Some(false),
-                Stability::Stable if cycle => Some(true),
-                _ => None,
-            },
-            proof: Verdict::Proved {
-                modes: proof.modes,
-                weight: proof.weight,
-                radius: Box::new(above(&proof.radius)),
-                unique_within: Box::new(below(&proof.unique_within)),
-                among: match (proof.parity.odd, proof.parity.even) {
-                    (true, true) => Some("even functions of the phase of odd harmonics"),
-                    (true, false) => Some("functions of odd harmonics, x(t + T/2) = -x(t)"),
-                    (false, true) => Some("even functions of the phase"),
-                    (false, false) => None,
-                },
-                bounds: Box::new(Bounds {
-                    y0: above(&proof.bounds.y0),
-                    z0: proof.bounds.z0,
-                    z1: proof.bounds.z1,
-                    z2: proof.bounds.z2,
-                }),
-            },
-            further: Vec::new(),
+/// Of several unknowns: the orbits that are proved from all guesses.
+fn all_of(wanted: &Wanted, request: &Request) -> Outcome {
+    let (field, kind) = (&wanted.field, &wanted.kind);
+    let mut proofs: Vec<Proof> = Vec::new();
+    let mut failure = Failure::NoStart;
+    for starts in guesses_all(field, kind, &request.stop)? {
+        match prove_all(field, kind, &starts, request) {
+            Ok(proof) if proofs.iter().all(|other| other.is_separate_from(&proof)) => {
+                proofs.push(proof);
+            }
+            Ok(_) => {}
+            Err(Failure::Stopped) => return Err(Failure::Stopped),
+            Err(other) => failure = other,
         }
     }
-
-    fn estimated(found: Option<Evaluation>, failure: &Failure) -> Self {
-        let (period, frequency) = found.map_or((None, None), |f| (f.period, f.frequency));
-        let failed = match failure {
-            Failure::NoContraction { .. } => "Z1",
-            Failure::Residual { .. } => "Y0",
-            Failure::Singular { .. } => "inverse",
-            Failure::NotConverged { .. } => "Newton",
-            Failure::NoPeriod { .. } => "radius",
-            _ => "guess",
-        };
-        Self {
-            period,
-            frequency,
-            amplitude: None,
-            velocity: None,
-            maximum: None,
-            minimum: None,
-            floquet_exponent: Vec::new(),
-            exponent_sum: None,
-            multiplier_product: None,
-            stable: None,
-            proof: Verdict::Failed { failed, why: failure.to_string() },
-            further: Vec::new(),
-        }
-    }
-}
-
-/// A bound, rounded up to four digits.
-fn above(x: &Float) -> Number {
-    rounded(x, Round::Up)
-}
-
-/// The same rounded down.
-fn below(x: &Float) -> Number {
-    rounded(x, Round::Down)
-}
-
-fn rounded(x: &Float, round: Round) -> Number {
-    let decimal = x.to_string_radix_round(10, Some(4), round);
-    Number { exact: None, decimal, error: None, status: Status::Proved }
+    let mut proofs = proofs.into_iter();
+    Ok((proofs.next().ok_or(failure)?, proofs.collect()))
 }

@@ -1,0 +1,48 @@
+//! Random command lines and mutated problem files: every one ends in an answer or in a refusal of the
+//! contract. Seeded; the nightly run is
+//! `cargo test --release -p lindstedt-cli --test suite fuzz -- --ignored`.
+
+mod files;
+mod lines;
+
+use serde_json::Value;
+
+/// splitmix64.
+pub struct Generator(pub u64);
+
+impl Generator {
+    pub fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) % n as u64) as usize
+    }
+
+    pub fn pick<'a>(&mut self, list: &[&'a str]) -> &'a str {
+        list[self.below(list.len())]
+    }
+
+    /// Yes, once in so many times.
+    pub fn once_in(&mut self, n: usize) -> bool {
+        self.below(n) == 0
+    }
+}
+
+/// Infinities and NaN as words of their own; those of the question are repeated in the answer.
+pub fn not_a_number(text: &str, question: &str) -> Option<String> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut words = text.split(|c: char| !is_word(c));
+    let named = |word: &&str| {
+        let word = word.to_ascii_lowercase();
+        matches!(&*word, "inf" | "nan") && !question.to_lowercase().contains(&word)
+    };
+    words.find(named).map(ToOwned::to_owned)
+}
+
+/// The hint of a refusal in JSON; nothing where it is no refusal.
+pub fn refusal(shown: &str) -> Option<(String, String, String)> {
+    let value: Value = serde_json::from_str(shown).ok()?;
+    let error = value.get("error").filter(|error| error.is_object())?;
+    let part = |name: &str| error[name].as_str().unwrap_or_default().to_owned();
+    Some((part("code"), part("message"), part("hint")))
+}

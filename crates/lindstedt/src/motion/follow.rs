@@ -1,0 +1,139 @@
+//! The response in the time domain along a parameter: every value starts from the end of the one before, and the harmonic
+//! of the response is read over its own period.
+//!
+//! x at n equidistant times of the period 2 pi q/Omega of a response with the harmonics k_j = p_j/q gives
+//! a_j e^(i phi_j) = (2/n) sum_m x_j(t_m) e^(-2 pi i p_j m/n), but for harmonics n - p_j and higher.
+
+use super::set_up;
+use super::{Start, precomputed};
+use crate::grid::Axis;
+use crate::refusal::Refused;
+use crate::{Error, Exact, Oscillator, Progress, Work};
+use lindstedt_simulate::{
+    DiagramSettings, Doubles, Point, Quantity, Section, Settings, Sweep, diagram,
+};
+use rug::{Integer, Rational};
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+/// Samples of the fastest harmonic per period of it.
+const SAMPLES: u32 = 32;
+/// Periods of the force at every value before the harmonic is read.
+const PERIODS: u32 = 100;
+
+/// The harmonics at one value.
+pub(crate) struct Reading {
+    pub value: Exact,
+    /// a_j e^(i phi_j); nothing where the motion ended.
+    pub harmonics: Option<Vec<[f64; 2]>>,
+}
+
+/// How the period of a response is sampled.
+struct Sampling {
+    /// p_j.
+    harmonics: Vec<f64>,
+    /// n.
+    count: u32,
+    /// q/n.
+    part: f64,
+    /// Periods of the response before.
+    periods: u32,
+}
+
+impl Sampling {
+    fn of(turns: &[Rational]) -> Self {
+        let q = turns.iter().fold(Integer::from(1), |lcm, k| lcm.lcm(k.denom()));
+        let harmonic = |k: &Rational| Rational::from(k * &q).to_f64();
+        let harmonics: Vec<f64> = turns.iter().map(harmonic).collect();
+        let most = harmonics.iter().fold(1.0f64, |most, p| most.max(p.abs()));
+        let count = SAMPLES * (most as u32).min(64);
+        let periods = PERIODS.div_ceil(q.to_u32().unwrap_or(1).max(1));
+        Self { harmonics, count, part: q.to_f64() / f64::from(count), periods }
+    }
+}
+
+impl Oscillator {
+    /// The harmonics k_j of the forced motion at the values of an axis, upwards and then downwards.
+    ///
+    /// # Errors
+    /// [`Refused`] for a parameter that cannot be varied, and without a force of one period; that of a stopped work.
+    pub(crate) fn followed(
+        &self,
+        axis: &Axis,
+        turns: &[Rational],
+        work: &Work,
+    ) -> Result<[Vec<Reading>; 2], Error> {
+        let setup = set_up(self, &Start::default(), true, precomputed(work))?;
+        let usage = |message: String| Refused::usage("follow", message, "lindstedt simulate");
+        if !setup.sweepable.contains(&axis.name) {
+            return Err(usage(format!("{} cannot be varied in time", axis.name)).into());
+        }
+        let forcing = setup.forcing_at(axis)?.map(|period| period.float(64).to_f64());
+        let forcing = forcing.ok_or_else(|| usage("no force with one period".to_owned()))?;
+        let Sampling { harmonics, count, part, periods } = Sampling::of(turns);
+        let mut found = [Vec::new(), Vec::new()];
+        let mut start: Vec<f64> = setup.flow.states().map(|x| x.float(64).to_f64()).collect();
+        for (k, list) in found.iter_mut().enumerate() {
+            let mut values = axis.values.clone();
+            if k == 1 {
+                values.reverse();
+            }
+            let quantities: Vec<Quantity> = values.iter().cloned().map(Quantity::from).collect();
+            let own = |value: &Quantity| setup.period_at(&axis.name, value);
+            let forces: Vec<f64> = quantities.iter().filter_map(own).collect::<Result<_, _>>()?;
+            let settings = DiagramSettings {
+                time: 0.0,
+                start: start.clone(),
+                section: Section::Period(part * forcing),
+                periods: forces.into_iter().map(|period| part * period).collect(),
+                transient: periods * count,
+                kept: count,
+                follow: true,
+                integration: Settings::for_digits(16),
+            };
+            let sweep = Sweep {
+                model: &setup.flow.model,
+                parameters: &setup.flow.parameters,
+                name: &axis.name,
+                values: &quantities,
+            };
+            let flow = |on| if on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+            let all = values.len();
+            diagram(
+                &sweep,
+                &Doubles,
+                &settings,
+                0..all,
+                &|| flow(!work.stop.asked()),
+                &mut |column| {
+                    let points = column.points.ok().filter(|points| points.len() == count as usize);
+                    if let Some(last) = points.as_ref().and_then(|points| points.last()) {
+                        start.clone_from(&last.state);
+                    }
+                    let harmonics = points.map(|points| read(&points, &harmonics));
+                    list.push(Reading { value: values[column.index].clone(), harmonics });
+                    flow(work.goes_on(Progress::Parts(k * all + list.len(), 2 * all)))
+                },
+            );
+            if work.stop.asked() {
+                return Err(Refused::stopped("stopped on the way", "fewer values").into());
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// The harmonics of the points of one period, the last of them at its end.
+fn read(points: &[Point<f64>], harmonics: &[f64]) -> Vec<[f64; 2]> {
+    let n = points.len() as f64;
+    let harmonic = |(j, p): (usize, &f64)| {
+        let mut sum = [0.0, 0.0];
+        for (m, point) in (1..).zip(points) {
+            let angle = TAU * p * f64::from(m) / n;
+            let x = point.state.get(2 * j).copied().unwrap_or(f64::NAN);
+            sum = [sum[0] + x * angle.cos(), sum[1] - x * angle.sin()];
+        }
+        sum.map(|s| 2.0 * s / n)
+    };
+    harmonics.iter().enumerate().map(harmonic).collect()
+}
