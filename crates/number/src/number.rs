@@ -78,7 +78,7 @@ impl fmt::Display for Status {
 pub struct Number {
     /// The closed form, if there is one.
     pub exact: Option<String>,
-    /// Its decimal value; [`UNDEFINED`] where the computation gave none (null as data).
+    /// Its decimal value; "undefined" where the computation gave none (null as data).
     #[serde(serialize_with = "defined")]
     pub decimal: String,
     /// A bound on |decimal - true value|, or its estimate; nothing when they are equal, and without

@@ -66,11 +66,11 @@ fn a_sine_is_recognised_in_the_equation() {
     assert!((squares - Rational::from((3, 2))).abs() < decimal("1e-27"));
     let sum = proved("x'' + x + eps*(sin(x) - x) = 0", &[("eps", "1")]).unwrap();
     assert_eq!(sum.period.unwrap().decimal, plain.period.unwrap().decimal);
+    // No multiple of x stands alone: by functions in the algebra. 4 int dx/x' by 400 midpoints in doubles.
+    let mixed = proved("x'' + sin(x) + x = 0", &[("amplitude", "1")]).unwrap();
+    assert!((middle(&mixed.period) - decimal("4.5827295537238")).abs() < decimal("1e-12"));
     for (equation, values) in [
-        ("x'' + sin(x) + x = 0", [("amplitude", "1")]),
-        ("x'' + x*sin(x) = 0", [("amplitude", "1")]),
         ("x'' + abs(x)*sin(x) = 0", [("amplitude", "1")]),
-        ("x'' - sin(x) = 0", [("amplitude", "1")]),
         ("x'' + sin(x) = 0", [("amplitude", "4")]),
         ("pendulum", [("delta", "1/2")]),
     ] {

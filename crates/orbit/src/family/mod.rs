@@ -22,6 +22,9 @@ pub struct Member {
 /// A point passed: the parameter, the orbit in doubles by unknowns.
 type Passed = (Rational, Vec<Start>);
 
+/// The proof at a value from guesses.
+type At<'a> = dyn Fn(&Rational, &[Start], &Request) -> Result<Proof, Failure> + 'a;
+
 /// Modes of an inverse beyond those of the numerical orbit before.
 const MORE_MODES: usize = 60;
 /// Halvings of a step over which Newton's method does not go.
@@ -107,7 +110,7 @@ fn approach(
     value: &Rational,
     passed: &mut Vec<Passed>,
     request: &Request,
-    at: &dyn Fn(&Rational, &[Start], &Request) -> Result<Proof, Failure>,
+    at: &At<'_>,
 ) -> Result<Proof, Failure> {
     // A failing step shall fail soon: few digits, and few more modes than before.
     let modes = |orbit: &[Start]| orbit.iter().map(|x| x.cosines.len()).max().unwrap_or(0);

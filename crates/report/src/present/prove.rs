@@ -97,6 +97,24 @@ fn states(page: Document, value: &ProvedOrbit) -> Document {
     }))
 }
 
+/// What ties the expansion to an orbit.
+fn of_the_expansion(page: Document, value: &ProvedOrbit) -> Document {
+    match &value.expansion {
+        None => page,
+        Some(found) => page.words(match found.alone {
+            true => format!(
+                "The orbit of the expansion: its sum lies within {} of these Fourier coefficients, where no \
+                 other orbit is.",
+                found.distance.decimal
+            ),
+            false => format!(
+                "The orbit of the expansion: Newton's method leads here from its sum, which is {} away.",
+                found.distance.decimal
+            ),
+        }),
+    }
+}
+
 /// One orbit.
 fn orbit(page: Document, value: &ProvedOrbit) -> Document {
     let named = [
@@ -124,20 +142,7 @@ fn orbit(page: Document, value: &ProvedOrbit) -> Document {
     let exponents =
         value.floquet_exponent.iter().map(|e| ("Floquet exponent".to_owned(), shown(e)));
     let page = states(page.lines(known.chain(exponents)), value);
-    let page = match &value.expansion {
-        None => page,
-        Some(found) => page.words(match found.alone {
-            true => format!(
-                "The orbit of the expansion: its sum lies within {} of these Fourier coefficients, where no \
-                 other orbit is.",
-                found.distance.decimal
-            ),
-            false => format!(
-                "The orbit of the expansion: Newton's method leads here from its sum, which is {} away.",
-                found.distance.decimal
-            ),
-        }),
-    };
+    let page = of_the_expansion(page, value);
     match &value.proof {
         ProofVerdict::Failed { failed, why } => page
             .words(format!("Not proved ({failed}): {why}. This says nothing against the orbit.")),

@@ -1,5 +1,5 @@
 //! Polynomials in one variable over Q, as lists of coefficients from the constant on: their real roots by
-//! Sturm's theorem, and the ring Q[r]/m of numbers that are polynomials in a root of m.
+//! Sturm's theorem, and the ring `Q[r]/m` of numbers that are polynomials in a root of m.
 //!
 //! No root is ever taken for rational, simple or positive because a floating-point number says so.
 

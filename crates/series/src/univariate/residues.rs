@@ -4,7 +4,7 @@ use super::{common_divisor, divided, trim};
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::Rational;
 
-/// The ring Q[r]/m of a polynomial m without multiple roots: what holds here holds at every root of m. A
+/// The ring `Q[r]/m` of a polynomial m without multiple roots: what holds here holds at every root of m. A
 /// field where m is irreducible; otherwise an element that vanishes at some roots alone has no reciprocal.
 ///
 /// An element is the list of its coefficients from the constant on, shorter than m, without leading zeros.
