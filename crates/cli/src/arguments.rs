@@ -87,6 +87,12 @@ pub struct DeriveOptions {
     /// What the amplitude is: x(0), the first harmonic, or free to drift (averaging).
     #[arg(long, value_enum)]
     pub normalisation: Option<Normalisation>,
+    /// A parameter that is sought: the series for which a forced motion stays periodic (edges of tongues).
+    #[arg(long, value_name = "NAME")]
+    pub unknown: Option<String>,
+    /// A nonlinear normal mode by its number (1, 2, ...): backbone and shape.
+    #[arg(long, value_name = "K", conflicts_with = "unknown")]
+    pub mode: Option<u32>,
     /// By the clock where the equation allows it and else by the driver; one of them; or the energy
     /// integral (frequency alone; power-law and pendulum).
     #[arg(long, value_enum, default_value_t = Route::Auto)]

@@ -13,7 +13,10 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     let work = session.precise_work(&options.precision)?;
     session.check_writable(&options.problem, &[], None)?;
     let order = options.order as usize;
-    if let Some(name) = oscillator.unknown() {
+    if let Some(mode) = options.mode {
+        return session.show(oscillator.normal_mode(mode as usize, order, &work), &[]);
+    }
+    if let Some(name) = options.unknown.as_deref().or(oscillator.unknown()) {
         return session.show(oscillator.parameter_series(name, order, &work), &[]);
     }
     if oscillator.condition() == Some(Condition::FreeAmplitude) {

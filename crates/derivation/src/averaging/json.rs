@@ -86,6 +86,9 @@ impl Serialize for Averaging {
         map.serialize_entry("residual", &residual)?;
         let name = "averaging (Krylov, Bogoliubov, Mitropolsky)";
         map.serialize_entry("method", &Object(vec![("name", name)]))?;
+        if let Some(found) = &self.cycles {
+            map.serialize_entry("limit_cycles", found)?;
+        }
         if let Some(found) = &self.convergence {
             map.serialize_entry("convergence", &Radius::new(found))?;
         }

@@ -3,7 +3,7 @@
 use super::{Present, both, classification, condition_text, equation};
 use crate::{Document, Formula};
 use lindstedt::Answer;
-use lindstedt::averaging::{Averaging, Coefficient, RateTerm};
+use lindstedt::averaging::{Averaging, Coefficient, Cycles, RateTerm, print_series};
 use lindstedt::unstable::coeff::print::{Style, latex_name, power};
 use lindstedt::unstable::equation::Condition;
 
@@ -34,8 +34,66 @@ impl Present for Answer<Averaging> {
                 }
             }
         }
+        if let Some(found) = &result.cycles {
+            page = cycles(page, found, &problem.small);
+        }
         page.words(residual(result))
     }
+}
+
+/// The limit cycles, one after the other.
+fn cycles(mut page: Document, found: &Cycles, small: &str) -> Document {
+    let k = found.leading_order;
+    page = page.words(match found.cycles.len() {
+        0 => format!("No limit cycle whose amplitude does not vanish with {small}: A_{k}(a) has no simple zero a > 0."),
+        count => format!(
+            "Limit cycles: {count}, at the simple zeros a_0 of A_{k}(a); r = a_0^2, lambda the Floquet exponent per unit of t:"
+        ),
+    });
+    for cycle in &found.cycles {
+        let root = |style| match cycle.is_rational() {
+            true => String::new(),
+            false if style == Style::Text => format!("   {} = 0", cycle.print_polynomial(style)),
+            false => format!(",\\quad {} = 0", cycle.print_polynomial(style)),
+        };
+        let amplitude = cycle.amplitude.exact.as_ref().unwrap_or(&cycle.amplitude.decimal);
+        page = page.formula(both(|style| {
+            format!("{} = {amplitude}{}", indexed("a", 0, style), root(style))
+        }));
+        let square = |style| power("a", 2, style);
+        let series: [(&dyn Fn(Style) -> String, _); 3] = [
+            (&square, &cycle.squared_amplitude),
+            (&|style| plain("omega", style), &cycle.frequency),
+            (&|style| plain("lambda", style), &cycle.exponent),
+        ];
+        for (name, series) in series {
+            let line = |style| {
+                let small = plain(small, style);
+                format!(
+                    "{} = {}",
+                    name(style),
+                    shortened(print_series(series, &small, style), style)
+                )
+            };
+            page = page.formula(both(line));
+        }
+        let leading = &cycle.exponent[k].number.decimal;
+        let stable = if cycle.stable { "stable" } else { "unstable" };
+        page = page.words(format!(
+            "lambda = {leading}*{small}^{k} + ...: {stable} for small {small} > 0."
+        ));
+    }
+    for amplitude in &found.degenerate {
+        let a = amplitude.exact.as_ref().unwrap_or(&amplitude.decimal);
+        page = page.words(format!(
+            "At a_0 = {a} A_{k} has a multiple zero: whether cycles are there, and how many, its order does not decide."
+        ));
+    }
+    page
+}
+
+fn plain(name: &str, style: Style) -> String {
+    if style == Style::Text { name.to_owned() } else { latex_name(name) }
 }
 
 fn indexed(name: &str, n: usize, style: Style) -> String {
