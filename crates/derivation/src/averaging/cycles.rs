@@ -57,9 +57,6 @@ pub struct Cycle {
     pub frequency: Vec<Algebraic>,
     /// Whether the exponent is negative for small positive values of the small parameter.
     pub stable: bool,
-    /// An interval with r alone.
-    #[serde(skip)]
-    root: [Rational; 2],
 }
 
 /// c_0 + c_1 r + ... and its value.
@@ -114,23 +111,6 @@ impl Cycle {
     #[must_use]
     pub fn print_polynomial(&self, style: Style) -> String {
         print(&self.polynomial, style)
-    }
-
-    /// A series of this cycle summed at one value of the small parameter, and its last term that does not
-    /// vanish.
-    #[must_use]
-    pub fn sum(&self, series: &[Algebraic], small: &Ball, balls: Balls) -> [Ball; 2] {
-        let r = enclosed(&self.polynomial, &self.root, balls);
-        let mut power = balls.one();
-        let mut found = [balls.zero(), balls.zero()];
-        for c in series.iter().map(|c| &c.element) {
-            if !c.is_empty() {
-                let term = balls.mul(&value(c, &r, balls), &power);
-                found = [balls.add(&found[0], &term), balls.abs(&term)];
-            }
-            power = balls.mul(&power, small);
-        }
-        found
     }
 
     /// Whether a_0^2 is rational: then all coefficients are.
@@ -262,7 +242,6 @@ impl Rates {
                 stable: leading.starts_with('-'),
                 frequency: numbers(&frequency)?,
                 exponent,
-                root: root.clone(),
             };
             list.push((root, cycle));
         }

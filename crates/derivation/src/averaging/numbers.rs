@@ -1,9 +1,8 @@
 //! The averaged expansion with a value for every parameter, as floats.
 
-use super::cycles::cycles;
+use super::AveragingSettings;
 use super::task::{Over, Task};
 use super::values::constant;
-use super::{AveragingSettings, Cycles};
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
 use lindstedt_algebra::RationalAlgebra;
@@ -43,8 +42,6 @@ pub struct Numbers {
     pub solution: Vec<Vec<Harmonic>>,
     /// The delays.
     pub delays: Vec<Float>,
-    /// The limit cycles, where all values are rational.
-    pub cycles: Option<Cycles>,
 }
 
 /// Coefficients with `bits` bits relative, or as far as their enclosures allow; those that may
@@ -64,9 +61,7 @@ pub fn numbers(
         return Err(Error::Unset { problem: problem.name.to_string(), name: name.clone() });
     }
     if let Some(over) = task.over_rationals(observer)? {
-        let found = collect(&task, &over, bits, &|q| Some(Float::with_val(bits, q)))?;
-        let cycles = cycles(&over.frequency, &over.expansion, settings.digits)?;
-        return Ok(Numbers { cycles, ..found });
+        return collect(&task, &over, bits, &|q| Some(Float::with_val(bits, q)));
     }
     let order = u32::try_from(settings.order).unwrap_or(u32::MAX / 32);
     let balls = Balls::new(bits.saturating_add(64).saturating_add(order.saturating_mul(8)));
@@ -119,6 +114,5 @@ fn collect<K: RationalAlgebra>(
         phase_rate: list(&over.expansion.phase_rate).ok_or_else(failed)?,
         solution: solution.collect::<Option<_>>().ok_or_else(failed)?,
         delays,
-        cycles: None,
     })
 }

@@ -47,9 +47,6 @@ impl Serialize for Motion {
         map.serialize_entry("exact_period", &None::<Number>)?;
         map.serialize_entry("start", &At { a, psi })?;
         map.serialize_entry("rates", &rates)?;
-        if !self.cycles.is_empty() {
-            map.serialize_entry("limit_cycles", &self.cycles)?;
-        }
         map.serialize_entry("term_ratio", &self.ratio)?;
         map.serialize_entry("integration_error", &self.integration_error)?;
         map.serialize_entry("verdict", &self.verdict())?;

@@ -9,7 +9,6 @@
 //! series is asymptotic: the estimate means something only while its terms decrease, and is
 //! withheld otherwise.
 
-mod cycles;
 mod flow;
 mod json;
 mod rest;
@@ -20,7 +19,6 @@ use crate::digits::bits_for;
 use crate::error::EvaluationError as Error;
 use crate::few::plain;
 use crate::setting::{check_names, small_value};
-pub use cycles::CycleAt;
 use flow::Flow;
 use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::averaging::numbers::{Numbers, numbers};
@@ -74,8 +72,6 @@ pub struct Motion {
     /// a' and psi' at the start with their errors, estimated; nothing where not one digit is
     /// supported.
     pub rate_numbers: [Option<Number>; 2],
-    /// The limit cycles whose amplitude does not vanish with the small parameter.
-    pub cycles: Vec<CycleAt>,
     /// By how much the terms of x, a' and psi' fall per order, at the start and then at the largest
     /// amplitude evaluated; nothing where none is known.
     pub ratio: Option<f64>,
@@ -214,7 +210,6 @@ impl Motion {
             start: start.map(|x| x.to_f64()),
             linear,
             rate_numbers,
-            cycles: cycles::at(found.cycles.as_ref(), small, digits),
             ratio,
             integration_error: full.linear().map(|_| 0.0),
             ended: None,

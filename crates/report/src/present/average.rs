@@ -77,11 +77,8 @@ fn cycles(mut page: Document, found: &Cycles, small: &str) -> Document {
             };
             page = page.formula(both(line));
         }
-        let leading = &cycle.exponent[k].number.decimal;
         let stable = if cycle.stable { "stable" } else { "unstable" };
-        page = page.words(format!(
-            "lambda = {leading}*{small}^{k} + ...: {stable} for small {small} > 0."
-        ));
+        page = page.words(format!("It is {stable} for small {small} > 0."));
     }
     for amplitude in &found.degenerate {
         let a = amplitude.exact.as_ref().unwrap_or(&amplitude.decimal);

@@ -141,11 +141,10 @@ fn shown(found: &Displacements) -> Table {
 impl Present for Answer<Motion> {
     fn document(&self) -> Document {
         let motion = &self.value;
-        let words = |number: &Option<Number>| {
+        let number = |number: &Option<Number>| {
             let none = "not one digit: the last orders differ by more than its size";
-            with_error(number.as_ref(), "estimated", "no estimate", none)
+            Text::words(with_error(number.as_ref(), "estimated", "no estimate", none))
         };
-        let number = |number: &Option<Number>| Text::words(words(number));
         let name = |words: &str, text: &str, latex: &str, rest: &str| {
             Text::words(words).formula(Formula::new(text, latex)).and(rest)
         };
@@ -164,19 +163,6 @@ impl Present for Answer<Motion> {
         if let Some([growth, frequency]) = &motion.linear {
             lines.push((name("growth rate ", "a'/a", "a'/a", ""), number(growth)));
             lines.push((name("frequency ", "psi'", "\\psi'", ""), number(frequency)));
-        }
-        for cycle in &motion.cycles {
-            let stable = match cycle.stable {
-                Some(true) => "stable",
-                Some(false) => "unstable",
-                None => "stability open",
-            };
-            let line = name("", "a", "a", &format!(" = {}, ", words(&cycle.amplitude)))
-                .formula(Formula::new("psi'", "\\dot\\psi"))
-                .and(format!(" = {}, ", words(&cycle.frequency)))
-                .formula(Formula::new("lambda", "\\lambda"))
-                .and(format!(" = {} ({stable})", words(&cycle.exponent)));
-            lines.push(("limit cycle".into(), line));
         }
         lines.push(("verdict".into(), motion.verdict().into()));
         let page = Document::titled(title(&self.header)).lines(lines);

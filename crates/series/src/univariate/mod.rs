@@ -139,9 +139,14 @@ pub fn positive_roots(polynomial: &[Rational]) -> Vec<[Rational; 2]> {
     found
 }
 
-/// The interval of a simple root, halved until it is narrower than 2^-bits times the root.
+/// The interval of a simple root, halved until it is narrower than 2^-bits times the root; that of a linear
+/// polynomial itself.
 #[must_use]
 pub fn refined(polynomial: &[Rational], [low, high]: &[Rational; 2], bits: u32) -> [Rational; 2] {
+    if let [constant, slope] = polynomial {
+        let root = -Rational::from(constant / slope);
+        return [root.clone(), root];
+    }
     let (mut low, mut high) = (low.clone(), high.clone());
     let above = value(polynomial, &high);
     if above.is_zero() {
