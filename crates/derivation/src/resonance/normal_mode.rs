@@ -10,13 +10,14 @@
 //! alone.
 
 use super::modes::{Matrix, Spectrum, spectrum};
+use super::print::print_powers;
 use super::system::{Prepared, separated, symbols};
 use super::{Element, Names, ResonanceError, Symbols, Terms, refuse_near_miss};
 use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
 use crate::values::value;
 use crate::work::Progress;
-use lindstedt_coeff::print::{Style, Term, parenthesize, power, print_sum};
+use lindstedt_coeff::print::{Style, Term, power, print_sum};
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::{Expression, Problem, Unknown};
 use lindstedt_expand::resonance::{SlowFlow as Found, check_flow, resonant};
@@ -277,18 +278,7 @@ impl NormalMode {
     #[must_use]
     pub fn print_in_amplitude(&self, orders: &[Terms], style: Style) -> String {
         let small = super::print_name(&self.problem.small, style);
-        let mut sum = Vec::new();
-        for (n, terms) in (0i64..).zip(orders).filter(|(_, terms)| !terms.is_empty()) {
-            let factor = (n > 0).then(|| power(&small, n, style));
-            sum.push(match <[Term; 1]>::try_from(self.order_terms(terms, style)) {
-                Ok([single]) => single.times(factor),
-                Err(list) => {
-                    let line = parenthesize(&print_sum(&list, style), style);
-                    Term { coefficient: Rational::from(1), factors: vec![line] }.times(factor)
-                }
-            });
-        }
-        print_sum(&sum, style)
+        print_powers(orders, &small, style, &|terms| self.order_terms(terms, style))
     }
 
     /// One order of an unknown as a sum of cosines and sines of psi, psi' = Omega, z = a/2 e^{i psi}.

@@ -1,6 +1,6 @@
 //! Slow flows as text and as LaTeX: `-1/4*i*F*E + (1/2*i*s - mu)*z + 3/2*i*al*z^2*zbar`.
 
-use super::{PolarTerm, SlowFlow};
+use super::{PolarTerm, SlowFlow, Terms};
 use lindstedt_coeff::print::{Style, Term, latex_name, parenthesize, power, print_sum};
 use lindstedt_phase::amplitudes::AmplitudeTerm;
 use rug::Rational;
@@ -14,6 +14,27 @@ pub fn print_name(name: &str, style: Style) -> String {
         (Style::Latex, Some(index)) => format!(r"\bar z{index}"),
         (Style::Latex, None) => latex_name(name),
     }
+}
+
+/// sum small^n c_n, every c_n a sum of terms.
+pub(super) fn print_powers(
+    orders: &[Terms],
+    small: &str,
+    style: Style,
+    terms_of: &dyn Fn(&Terms) -> Vec<Term>,
+) -> String {
+    let mut sum = Vec::new();
+    for (n, terms) in (0i64..).zip(orders).filter(|(_, terms)| !terms.is_empty()) {
+        let factor = (n > 0).then(|| power(small, n, style));
+        sum.push(match <[Term; 1]>::try_from(terms_of(terms)) {
+            Ok([single]) => single.times(factor),
+            Err(list) => {
+                let line = parenthesize(&print_sum(&list, style), style);
+                Term { coefficient: Rational::from(1), factors: vec![line] }.times(factor)
+            }
+        });
+    }
+    print_sum(&sum, style)
 }
 
 /// Powers of named factors.

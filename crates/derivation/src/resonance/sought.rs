@@ -8,13 +8,14 @@
 //! even and odd ones of Mathieu's equation they are a_m(q) and b_m(q) (DLMF 28.6).
 
 use super::forces::divisor;
+use super::print::print_powers;
 use super::{Element, Names, ResonanceError, System, Terms};
 use crate::averaging::{AveragingSettings, constant};
 use crate::error::DerivationError as Error;
 use crate::values::value;
 use crate::work::Progress;
 use lindstedt_algebra::RationalAlgebra;
-use lindstedt_coeff::print::{Style, Term, parenthesize, power, print_sum};
+use lindstedt_coeff::print::{Style, Term, print_sum};
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_expand::resonance::{check_flow, periodic};
 use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
@@ -264,18 +265,7 @@ impl Sought {
     #[must_use]
     pub fn print_series(&self, branch: &SoughtBranch, style: Style) -> String {
         let small = super::print_name(&self.problem.small, style);
-        let mut sum = Vec::new();
-        for (n, terms) in (0i64..).zip(&branch.series).filter(|(_, terms)| !terms.is_empty()) {
-            let factor = (n > 0).then(|| power(&small, n, style));
-            sum.push(match <[Term; 1]>::try_from(self.terms(terms, style)) {
-                Ok([single]) => single.times(factor),
-                Err(list) => {
-                    let line = parenthesize(&print_sum(&list, style), style);
-                    Term { coefficient: Rational::from(1), factors: vec![line] }.times(factor)
-                }
-            });
-        }
-        print_sum(&sum, style)
+        print_powers(&branch.series, &small, style, &|terms| self.terms(terms, style))
     }
 
     /// x_n as a sum of cosines and sines of t.

@@ -218,7 +218,7 @@ fn with_others(wanted: &Wanted, first: Result<Proof, Failure>, request: &Request
         true => guesses(&wanted.field, &wanted.kind, &request.stop)?,
         false => Vec::new(),
     };
-    let mut failure = match first {
+    let failure = match first {
         Ok(proof) if starts.len() < 2 => return Ok((proof, proofs)),
         Ok(proof) => {
             proofs.push(proof);
@@ -227,8 +227,19 @@ fn with_others(wanted: &Wanted, first: Result<Proof, Failure>, request: &Request
         Err(failure) if wanted.is_forced() => failure,
         Err(failure) => return Err(failure),
     };
-    for start in starts {
-        match prove(&wanted.field, &wanted.kind, &start, request) {
+    let tried = starts.iter().map(|start| prove(&wanted.field, &wanted.kind, start, request));
+    kept_apart(proofs, failure, tried)
+}
+
+/// The proofs there are and those of the tries that speak of other orbits; the last failure where none is
+/// there.
+fn kept_apart(
+    mut proofs: Vec<Proof>,
+    mut failure: Failure,
+    tried: impl Iterator<Item = Result<Proof, Failure>>,
+) -> Outcome {
+    for outcome in tried {
+        match outcome {
             Ok(proof) if proofs.iter().all(|other| other.is_separate_from(&proof)) => {
                 proofs.push(proof);
             }
@@ -245,18 +256,7 @@ fn with_others(wanted: &Wanted, first: Result<Proof, Failure>, request: &Request
 /// Of several unknowns: the orbits that are proved from all guesses.
 fn all_of(wanted: &Wanted, request: &Request) -> Outcome {
     let (field, kind) = (&wanted.field, &wanted.kind);
-    let mut proofs: Vec<Proof> = Vec::new();
-    let mut failure = Failure::NoStart;
-    for starts in guesses_all(field, kind, &request.stop)? {
-        match prove_all(field, kind, &starts, request) {
-            Ok(proof) if proofs.iter().all(|other| other.is_separate_from(&proof)) => {
-                proofs.push(proof);
-            }
-            Ok(_) => {}
-            Err(Failure::Stopped) => return Err(Failure::Stopped),
-            Err(other) => failure = other,
-        }
-    }
-    let mut proofs = proofs.into_iter();
-    Ok((proofs.next().ok_or(failure)?, proofs.collect()))
+    let all = guesses_all(field, kind, &request.stop)?;
+    let tried = all.iter().map(|starts| prove_all(field, kind, starts, request));
+    kept_apart(Vec::new(), Failure::NoStart, tried)
 }
