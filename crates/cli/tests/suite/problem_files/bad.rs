@@ -234,8 +234,9 @@ fn with_parameters(equation: &str) -> String {
     )
 }
 
-/// KiB of address space for a refusal.
-const LEAST_MEMORY: u32 = 100_000;
+/// KiB of address space for a refusal. The C library reserves 64 MiB of it, and for a moment 128 MiB, for
+/// the heap of the thread that watches the limits.
+const LEAST_MEMORY: u32 = 200_000;
 
 /// A run with a limit of its address space, which includes code, libraries and stacks.
 #[cfg(unix)]
