@@ -269,7 +269,7 @@ fn check_printed(label: &str, period: Option<&Number>, exact: &str) {
 #[test]
 fn estimates_hold() {
     let mut count = Count::default();
-    closed_forms(11, 30, 17, &mut count);
+    closed_forms(11, 30, 13, &mut count);
     van_der_pol(12, 40, 20, &mut count);
     proved(13, 4, 10, &mut count);
     count.print();

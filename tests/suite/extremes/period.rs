@@ -248,7 +248,7 @@ fn every_method() -> Vec<Option<Method>> {
 
 #[test]
 fn power_law_periods() {
-    let axes = Axes { orders: &[0, 1, 2, 7, 20], digits: &[1, 30], methods: &AUTO };
+    let axes = Axes { orders: &[0, 1, 20], digits: &[30], methods: &AUTO };
     power_law_grid(&axes).finish("power-law periods");
 }
 
@@ -260,7 +260,7 @@ fn pendulum_periods() {
 
 #[test]
 fn duffing_periods() {
-    let axes = Axes { orders: &[0, 1, 2, 7, 20], digits: &[1, 30], methods: &AUTO };
+    let axes = Axes { orders: &[0, 2, 20], digits: &[1, 30], methods: &AUTO };
     duffing_grid(&axes).finish("Duffing periods");
 }
 

@@ -43,6 +43,19 @@ fn page() -> Result<String, Box<dyn Error>> {
     Ok(std::fs::read_to_string(folder()?.join("report.html"))?)
 }
 
+/// The text of the page is what the net holds of `lindstedt paper --quick`.
+#[test]
+fn the_report_as_text() -> Outcome {
+    let text = std::fs::read_to_string(folder()?.join("report.txt"))?;
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/net/snapshots"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.set_description("lindstedt paper --quick");
+    settings.bind(|| insta::assert_snapshot!("paper-quick", format!("==== text (exit 0)\n{text}")));
+    Ok(())
+}
+
 /// The values of an attribute.
 fn attributes<'a>(html: &'a str, name: &str) -> Vec<&'a str> {
     let start = format!(" {name}=\"");
