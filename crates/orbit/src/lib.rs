@@ -36,6 +36,7 @@
 mod bounds;
 mod centre;
 mod doubles;
+mod drift;
 mod exact;
 mod failure;
 mod family;
@@ -48,7 +49,9 @@ mod modes;
 mod newton;
 mod operation;
 mod orbit;
+mod place;
 mod polynomial;
+mod product;
 mod proof;
 mod prove;
 mod radii;

@@ -3,6 +3,7 @@
 use crate::bounds::{Frame, Measure, Weights};
 use crate::centre::Centre;
 use crate::orbit::Orbit;
+use crate::place::Place;
 use crate::radii::{Bounds, Radii};
 use crate::start::{Start, in_phase};
 use crate::task::Task;
@@ -191,17 +192,17 @@ pub(crate) fn conclude(
         radius: radii.radius,
         orbits,
         centre,
-        condition: task.rows.condition.map(|c| (c, task.value.clone(), task.error)),
+        condition: task.asked(),
     })
 }
 
 /// |delta omega| <= |A F|_omega + |1 - A DF|_omega r + |A|_omega Z2 r^2/2: the row of the frequency
 /// alone, which is much smaller than the norm.
-fn frequency_error(frame: &Frame<'_>, weights: &Weights, radius: &Float) -> Float {
+pub(crate) fn frequency_error(frame: &Frame<'_>, weights: &Weights, radius: &Float) -> Float {
     let row = frame.contraction(Measure::Frequency, weights);
     let up = |x: &Float, y: &Float| Float::with_val_round(53, x * y, Round::Up).0;
     let linear = up(radius, &Float::with_val(53, (row.z0 + row.z1).0));
-    let curvature = Float::with_val(53, frame.z2(&row, weights, radius).0);
+    let curvature = Float::with_val(53, frame.z2(&row, weights, &frame.around(weights, radius)).0);
     let square = up(&up(radius, radius), &curvature) / 2u32;
     let sum = Float::with_val_round(53, &row.y0 + &linear, Round::Up).0;
     let sum = Float::with_val_round(53, &sum + &square, Round::Up).0;
@@ -300,31 +301,20 @@ impl Proof {
     /// `false` says nothing; that they are different orbits is [`Self::is_separate_from`].
     #[must_use]
     pub fn is_same_as(&self, other: &Self) -> bool {
-        self.surrounds(other) || other.surrounds(self)
+        self.place().is_same_as(&other.place())
     }
 
-    /// Whether the ball with the other's orbit lies in the one in which this orbit is alone. The norms must be
-    /// comparable: that of the other at least this one, but for the weights of the frequency.
-    fn surrounds(&self, other: &Self) -> bool {
-        let (mine, others) = (self.parity, other.parity);
-        let is_odd = others.odd && others.keeping == mine.keeping;
-        let is_even = others.even && others.turning == mine.turning;
-        let is_among = (!mine.odd || is_odd) && (!mine.even || is_even);
-        let one_question = match (&self.condition, &other.condition) {
-            (None, None) => true,
-            (Some((mine, a, near)), Some((others, b, by))) => {
-                mine == others && Up::of(&Rational::from(a - b)) <= *near + *by
-            }
-            _ => false,
-        };
-        if !one_question || self.weight > other.weight || !is_among {
-            return false;
+    pub(crate) fn place(&self) -> Place {
+        Place {
+            parity: self.parity,
+            weight: self.weight,
+            scale: self.frequency_weight,
+            centre: self.centre.clone(),
+            slack: Up::ZERO,
+            radius: self.radius.clone(),
+            unique_within: self.unique_within.clone(),
+            condition: self.condition.clone(),
         }
-        let scale = self.condition.as_ref().map(|_| self.frequency_weight);
-        let apart = self.centre.distance(&other.centre, Up(self.weight), scale);
-        let times = Up(self.frequency_weight).over(other.frequency_weight).max(Up::ONE);
-        let reach = apart + Up::of_float(&other.radius) * times;
-        reach.0 <= self.unique_within.to_f64_round(Round::Down)
     }
 
     /// The precision of the numbers.

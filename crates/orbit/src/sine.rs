@@ -2,7 +2,7 @@
 //! z'' + c q sin z = 0, and u = sin(z/2) obeys u'' = -c q ((1 + k^2) u - 2 u^3), k = sin(z(0)/2)
 //! ([`Field::pendulum`]).
 
-use crate::family::interval;
+use crate::read::half_sine;
 use crate::{Failure, Field, Kind, Start};
 use lindstedt_equation::{Expression, Function, Operations};
 use lindstedt_number::ball::{Ball, Balls};
@@ -88,9 +88,12 @@ impl Sine {
         if stiffness != Rational::from(&other.force * &other.rate) {
             return Err(Failure::NoStart);
         }
-        let ends = [Rational::from(amplitude * &self.rate), Rational::from(end * &other.rate)];
         let balls = Balls::new(128);
-        Field::swinging(&stiffness, &interval(balls, &ends), balls)
+        let sine = |a: &Rational, rate: &Rational| half_sine(&Rational::from(a * rate), balls);
+        let ends = [sine(amplitude, &self.rate)?, sine(end, &other.rate)?];
+        let within = balls.hull(&ends[0], &ends[1]);
+        let (field, kind) = Field::swinging(&stiffness, &within, balls)?;
+        Ok((field.with_ends(ends, &within), kind))
     }
 
     /// u in doubles: k cd(t') with t' = sqrt(c q) t, by its Fourier series in the nome.

@@ -13,7 +13,7 @@ use rug::{Float, Rational};
 pub(crate) struct Outer {
     pub(crate) frequency: Up,
     /// |dx_i/dtau|.
-    slopes: Vec<Up>,
+    pub(super) slopes: Vec<Up>,
     /// The variables.
     pub(crate) at: Vec<Up>,
     /// Their Lipschitz constants.
@@ -123,6 +123,7 @@ impl Frame<'_> {
         let frequency = Up(self.centre.frequency.to_f64().next_up());
         weights.at = x.into_iter().chain(z.into_iter().map(|z| z * frequency)).collect();
         weights.errors = vec![Up::ZERO; weights.at.len()];
+        weights.in_middle = weights.errors.clone();
         let first = weights.at.len();
         for tied in &self.ties {
             let argument = &self.field.functions[weights.at.len() - first].argument;
@@ -131,25 +132,31 @@ impl Frame<'_> {
                 true => uncertain,
                 false => uncertain * Up(2f64.powi(bits as i32)),
             };
-            let uncertain = uncertain + argument.change(&weights.at, &weights.errors, nu);
             let refused = || Failure::NoFunction { argument: tied.size(nu).0 };
-            let error = tied.error(nu, uncertain).ok_or_else(refused)?;
+            let error = |errors: &[Up], more: Up| {
+                let uncertain = more + argument.change(&weights.at, errors, nu);
+                tied.error(nu, uncertain).ok_or_else(refused)
+            };
+            let in_middle = error(&weights.in_middle, Up::ZERO)?;
+            let error = error(&weights.errors, uncertain)?;
             for function in &tied.functions {
                 weights.at.push(function.norm(nu, 0) + from_units(error, bits));
                 weights.errors.push(error);
+                weights.in_middle.push(in_middle);
             }
         }
-        weights.uncertain = self.of_functions(&weights);
         Ok(weights)
     }
 
-    fn of_functions(&self, weights: &Weights) -> [Up; 3] {
+    /// What errors of the functions make uncertain of F (in units of 2^-bits), of DF on one unknown, and of
+    /// dF/domega.
+    pub(super) fn of_functions(&self, weights: &Weights, errors: &[Up]) -> [Up; 3] {
         if self.ties.is_empty() {
             return [Up::ZERO; 3];
         }
         let (n, bits) = (self.field.unknowns(), self.centre.bits);
         let frequency = Up(self.centre.frequency.to_f64().next_up());
-        let of = |p: &Polynomial| p.change(&weights.at, &weights.errors, weights.nu());
+        let of = |p: &Polynomial| p.change(&weights.at, errors, weights.nu());
         let column = |k: usize| -> Up {
             self.field.first.iter().map(|row| of(&row[k]) + of(&row[n + k]) * frequency).sum()
         };

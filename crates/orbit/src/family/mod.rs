@@ -2,8 +2,8 @@
 
 mod between;
 mod cover;
+mod part;
 
-pub(crate) use between::interval;
 pub use cover::{Cover, cover};
 
 use crate::start::distance;
