@@ -10,6 +10,8 @@
 mod moving;
 mod outer;
 mod tail;
+#[cfg(test)]
+mod tests;
 
 use crate::centre::{Centre, Values, Variables};
 use crate::drift::Drift;

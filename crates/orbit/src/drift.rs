@@ -31,27 +31,25 @@ impl Drift {
         if task.field.varying.is_none() && task.error.is_zero() {
             return Ok(None);
         }
-        let by_parameter: Vec<Vec<Part>> = match &task.field.varying {
-            None => vec![Vec::new(); task.field.unknowns()],
-            Some(varying) => {
-                let mut variables = Variables::known(centre, &values.functions);
-                let minus = Rational::from(-1);
-                varying.forces.iter().map(|p| variables.parts(p, 0, &minus)).collect()
-            }
-        };
         let modes = centre.modes().max(inverse.modes);
+        let by_parameter = by_parameter(task, centre, values);
         let mut rows: Vec<Vec<_>> =
-            by_parameter.iter().map(|parts| combine(parts.clone()).doubles(0)).collect();
+            by_parameter.into_iter().map(|parts| combine(parts).doubles(0)).collect();
         rows.iter_mut().for_each(|row| row.resize(modes + 1, Default::default()));
         let mut model = linear.clone();
         model.cut(1e-14);
         let tangent = solve(&model, inverse, -task.error.to_f64(), &rows, stop);
         let mut step = Centre::from_doubles(centre.bits, tangent.frequency, &tangent.unknowns);
         step.unknowns.iter_mut().for_each(|f| f.trim());
-        let rows: Vec<Exact> = along(centre, values, &step, by_parameter);
+        Ok(Some(Self::along(task, (centre, values), step)))
+    }
+
+    /// Any step.
+    pub(crate) fn along(task: &Task, (centre, values): (&Centre, &Values), step: Centre) -> Self {
+        let rows = along(centre, values, &step, by_parameter(task, centre, values));
         let condition = Float::with_val(64, task.form(&step) - &task.error);
         let slope = Right::new(&rows, condition, centre.bits);
-        Ok(Some(Self { step, slope }))
+        Self { step, slope }
     }
 
     /// c + s d.
@@ -66,6 +64,14 @@ impl Drift {
         moved.frequency += Rational::from(&self.step.frequency * sign);
         moved
     }
+}
+
+/// dF/ds at a centre (but for the errors of the functions).
+fn by_parameter(task: &Task, centre: &Centre, values: &Values) -> Vec<Vec<Part>> {
+    let Some(varying) = &task.field.varying else { return vec![Vec::new(); task.field.unknowns()] };
+    let mut variables = Variables::known(centre, &values.functions);
+    let minus = Rational::from(-1);
+    varying.forces.iter().map(|p| variables.parts(p, 0, &minus)).collect()
 }
 
 /// DF d + dF/ds, exactly (but for the errors of the functions).

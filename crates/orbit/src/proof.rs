@@ -212,7 +212,7 @@ pub(crate) fn frequency_error(frame: &Frame<'_>, weights: &Weights, radius: &Flo
 }
 
 /// The mean of dg/dx' at the centre, exactly, and how far it can be from that of the orbit.
-fn divergence(
+pub(crate) fn divergence(
     task: &Task,
     frame: &Frame<'_>,
     weights: &Weights,

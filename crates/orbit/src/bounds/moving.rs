@@ -42,7 +42,12 @@ impl Frame<'_> {
     }
 
     /// |A G''|/2 for all s, and what the errors of the functions in the middle add to G(0) + s G'(0).
-    fn rest(&self, still: &Contraction, drift: &Drift, weights: &Weights) -> (Up, Float) {
+    pub(super) fn rest(
+        &self,
+        still: &Contraction,
+        drift: &Drift,
+        weights: &Weights,
+    ) -> (Up, Float) {
         let (n, nu) = (self.field.unknowns(), weights.nu());
         let (h, slopes, size) = drift.step.norms(nu);
         let outer = self.outer(weights, &self.length(drift, weights));
