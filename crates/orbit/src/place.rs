@@ -52,3 +52,41 @@ impl Place {
         reach.0 <= self.unique_within.to_f64_round(Round::Down)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Complex;
+
+    fn place(amplitude: f64, [radius, unique, slack]: [f64; 3]) -> Place {
+        let modes = vec![Complex::default(), Complex::new(amplitude / 2.0, 0.0)];
+        Place {
+            parity: Parity::default(),
+            weight: 1.0,
+            scale: 1.0,
+            centre: Centre::from_doubles(72, 1.0, &[modes]),
+            slack: Up(slack),
+            radius: Float::with_val(53, radius),
+            unique_within: Float::with_val(53, unique),
+            condition: None,
+        }
+    }
+
+    /// Distance, radius and slack of the one must fit into the ball in which the other is alone.
+    #[test]
+    fn one_ball_must_lie_in_the_other() {
+        let wide = place(1.0, [1e-3, 0.1, 0.0]);
+        for (amplitude, numbers, same) in [
+            (1.05, [0.04, 0.0, 0.0], true),
+            (1.2, [0.04, 0.0, 0.0], false),
+            (1.05, [0.06, 0.0, 0.0], false),
+            (1.05, [0.04, 0.0, 0.02], false),
+        ] {
+            let other = place(amplitude, numbers);
+            assert_eq!(wide.is_same_as(&other), same, "{amplitude} {numbers:?}");
+            assert_eq!(other.is_same_as(&wide), same);
+        }
+        let moved = Place { slack: Up(0.07), ..place(1.0, [1e-3, 0.1, 0.0]) };
+        assert!(!moved.is_same_as(&place(1.05, [0.04, 0.0, 0.0])));
+    }
+}

@@ -49,9 +49,14 @@ impl Frame<'_> {
         Outer { frequency, slopes, at, lipschitz }
     }
 
-    /// Z2(r) >= |A (DF(c) - DF(d))|/|c - d| for c, d in the ball of radius r: the second
-    /// derivatives of the majorant polynomial, and 2 omega d^2/dtau^2, 2 d^2x/dtau^2 of the inertia.
+    /// Z2(r) >= |A (DF(c) - DF(d))|/|c - d| for c, d in the ball of radius r.
     pub(crate) fn z2(&self, bounds: &Contraction, weights: &Weights, r: &Float) -> Up {
+        self.curvatures(bounds, weights, r).into_iter().fold(Up::ZERO, Up::max)
+    }
+
+    /// Its parts, for two functions, for a function and the frequency, for the frequency twice: the second
+    /// derivatives of the majorant polynomial, and 2 omega d^2/dtau^2, 2 d^2x/dtau^2 of the inertia.
+    pub(super) fn curvatures(&self, bounds: &Contraction, weights: &Weights, r: &Float) -> [Up; 3] {
         let (n, nu, free) = (self.field.unknowns(), weights.nu(), self.extra() == 1);
         let outer = self.outer(weights, r);
         let frequency = outer.frequency;
@@ -76,7 +81,7 @@ impl Frame<'_> {
         }
         let both = bounds.inverse * both.into_iter().fold(Up::ZERO, Up::max);
         if !free {
-            return both;
+            return [both, Up::ZERO, Up::ZERO];
         }
         let by_velocity = |k: usize| -> Up {
             self.field.first.iter().map(|row| row[n + k].majorant(&outer.at, nu)).sum()
@@ -87,7 +92,7 @@ impl Frame<'_> {
             bounds.inverse * mixed.fold(Up::ZERO, Up::max) + twice * frequency * bounds.bend;
         let (.., size) = self.centre.norms(nu);
         let square = bounds.inverse * square + twice * bounds.bend * (size + Up::of_float(r));
-        both.max(mixed.over(self.scale)).max(square.over(self.scale).over(self.scale))
+        [both, mixed.over(self.scale), square.over(self.scale).over(self.scale)]
     }
 
     /// A Lipschitz constant of a polynomial in the variables on the ball of radius r.

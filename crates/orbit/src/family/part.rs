@@ -155,3 +155,41 @@ fn frequencies(
     let error = frequency_error(frame, weights, radius);
     balls.add_error(&balls.add_error(&middle, &error), &Float::with_val(53, moved.0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prove_all;
+    use lindstedt_equation::{Expression, Problem};
+
+    /// Duffing over a part: at both ends the frequency is in the ball, the orbit is in its place.
+    #[test]
+    fn both_ends_of_a_part_are_in_it() {
+        let x = Expression::DISPLACEMENT;
+        let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3);
+        let duffing = Problem::new("duffing", equation);
+        let kind = Kind::InitialAmplitude(1.into());
+        let start = [Start { frequency: 1.17, cosines: vec![0.0, 1.0], sines: vec![] }];
+        let request = Request { digits: 20, ..Request::default() };
+        for ends in [[(1, 2), (13, 25)], [(13, 25), (1, 2)]] {
+            let ends = ends.map(Rational::from);
+            let field = Field::between(&duffing, &Default::default(), "eps", &ends).unwrap();
+            let size = Size { modes: 12, weight: 1.0 };
+            let upward = ends[0] < ends[1];
+            let part = Part::new(&(field, kind.clone()), &start, size, upward, &request);
+            let Ok(part) = part else { panic!("not proved") };
+            for (last, end) in ends.iter().enumerate() {
+                let values = [("eps".to_owned(), end.clone())].into();
+                let field = Field::of_problem(&duffing, &values).unwrap();
+                let proof = prove_all(&field, &kind, &start, &request).unwrap();
+                let frequency = proof.frequency.midpoint().to_rational().unwrap();
+                assert!(part.frequency.contains(&frequency), "{:?}", part.frequency);
+                let (place, there) = (part.at(last == 1), proof.place());
+                let apart = place.centre.distance(&there.centre, Up::ONE, Some(part.scale));
+                assert!(apart.0 <= part.radius.to_f64() && apart.0 > 1e-3 * part.radius.to_f64());
+                let other = part.at(last == 0).centre.distance(&there.centre, Up::ONE, None);
+                assert!(other.0 > 1e-3 && place.is_same_as(&there));
+            }
+        }
+    }
+}

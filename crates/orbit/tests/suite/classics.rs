@@ -120,6 +120,16 @@ fn uncertain_coefficients_are_covered() {
         assert!(contains(&proof.period, &period));
     }
     assert!(digits(&proof.period) > 1.5 && digits(&proof.period) < 4.0);
+    // An uncertain damping: the sum of the exponents is its negative.
+    let force = Expression::Time.apply(Function::Cos);
+    let damped = crate::common::equation(2 * x() + Expression::parameter("e") * y() - force);
+    let field = Field::within(&damped, "eps", &values, 64).unwrap();
+    let start = Start { frequency: 1.0, cosines: vec![0.0, 1.0], sines: vec![] };
+    let proof = prove(&field, &Kind::Forced(1), &start, &Request::default()).unwrap();
+    for sign in [-1, 1] {
+        let end = Rational::from((-1, 2)) + error.clone() * sign;
+        assert!(proof.exponent.contains(&end));
+    }
 }
 
 /// Integrates over the proved period: the end must be the start as far as the digits go.
