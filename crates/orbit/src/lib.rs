@@ -70,7 +70,7 @@ mod upward;
 mod write;
 
 pub use failure::Failure;
-pub use family::{Cover, Member, cover, family, family_all};
+pub use family::{Branch, Cover, Member, branches, cover, family, family_all, prove_each};
 pub use field::Field;
 pub use guesses::guesses;
 pub use modes::guesses_all;

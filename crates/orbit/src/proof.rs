@@ -69,19 +69,10 @@ pub struct Proof {
     pub period: Ball,
     /// Whether the period is proved to be the least one: the first harmonic is not 0.
     pub least_period: bool,
-    /// x at tau = 0.
-    #[serde(serialize_with = "crate::write::ball")]
-    pub displacement: Ball,
-    /// x' at tau = 0.
-    #[serde(serialize_with = "crate::write::ball")]
-    pub velocity: Ball,
-    /// The largest x.
-    #[serde(serialize_with = "crate::write::ball")]
-    pub maximum: Ball,
-    /// The least x.
-    #[serde(serialize_with = "crate::write::ball")]
-    pub minimum: Ball,
-    /// The same of the second unknown and of further ones.
+    /// x.
+    #[serde(flatten)]
+    pub motion: Motion,
+    /// The second unknown and further ones.
     pub further: Vec<Motion>,
     /// The sum of the Floquet exponents, two for each unknown, the mean of sum dg_i/dx_i' over a period
     /// (Liouville). One exponent of an autonomous equation is 0: of one unknown, then, this is the other one.
@@ -157,9 +148,7 @@ pub(crate) fn conclude(
     let single = orbits.len() == 1;
     let planar = single && task.is_free() && task.rows.parity.even;
     let mut motions = orbits.iter().map(|orbit| Motion::of(orbit, planar));
-    let Some(Motion { displacement, velocity, maximum, minimum }) = motions.next() else {
-        return Err(Failure::NoStart);
-    };
+    let motion = motions.next().ok_or(Failure::NoStart)?;
     let further = motions.collect();
     // Where any unknown has a first harmonic.
     let waves = |orbit: &Orbit| {
@@ -178,10 +167,7 @@ pub(crate) fn conclude(
         frequency,
         period,
         least_period: orbits.iter().any(waves),
-        displacement,
-        velocity,
-        maximum,
-        minimum,
+        motion,
         further,
         stability: match () {
             () if exponent.is_positive() => Stability::Unstable,

@@ -132,7 +132,7 @@ impl Field {
     /// 10^-(digits + 15). Returns the field and the question.
     ///
     /// # Errors
-    /// [`Failure::NoStart`] for an amplitude that is not between 0 and pi.
+    /// [`Failure::NotSwinging`] for an amplitude that is not between 0 and pi.
     pub fn pendulum(
         kappa: &Rational,
         amplitude: &Rational,
@@ -165,7 +165,7 @@ impl Field {
 pub(crate) fn half_sine(angle: &Rational, balls: Balls) -> Result<Ball, Failure> {
     let angle = balls.from_rational(angle);
     if !angle.is_positive() || !balls.sub(&balls.pi(), &angle).is_positive() {
-        return Err(Failure::NoStart);
+        return Err(Failure::NotSwinging);
     }
     Ok(balls.sin(&balls.mul_power_of_two(&angle, -1)))
 }

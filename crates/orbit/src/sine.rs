@@ -67,7 +67,7 @@ impl Sine {
     /// The field of u and the question for x(0) = `amplitude` at rest, known to so many digits.
     ///
     /// # Errors
-    /// [`Failure::NoStart`] where q x(0) is not between 0 and pi.
+    /// [`Failure::NotSwinging`] where q x(0) is not between 0 and pi.
     pub fn field(&self, amplitude: &Rational, digits: u32) -> Result<(Field, Kind), Failure> {
         let stiffness = Rational::from(&self.force * &self.rate);
         Field::pendulum(&stiffness, &Rational::from(amplitude * &self.rate), digits)
@@ -77,7 +77,8 @@ impl Sine {
     /// same stiffness c q.
     ///
     /// # Errors
-    /// [`Failure::NoStart`] for another stiffness, and where q x(0) is not between 0 and pi.
+    /// [`Failure::NotOneNumber`] for another stiffness, [`Failure::NotSwinging`] where q x(0) is not between 0
+    /// and pi.
     pub fn between(
         &self,
         amplitude: &Rational,
@@ -86,7 +87,7 @@ impl Sine {
         let (other, end) = to;
         let stiffness = Rational::from(&self.force * &self.rate);
         if stiffness != Rational::from(&other.force * &other.rate) {
-            return Err(Failure::NoStart);
+            return Err(Failure::NotOneNumber);
         }
         let balls = Balls::new(128);
         let sine = |a: &Rational, rate: &Rational| half_sine(&Rational::from(a * rate), balls);

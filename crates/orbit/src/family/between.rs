@@ -56,7 +56,7 @@ impl Field {
         let clock = Clock { name, middle: &middle(ends) };
         let equations = match equations.iter().any(|e| clock.varies_in(e)) {
             false => equations,
-            true if *clock.middle == 0 => return Err(Failure::NoStart),
+            true if *clock.middle == 0 => return Err(Failure::NotOneNumber),
             true => clock.scaled(&equations)?.iter().map(|e| clock.in_parameter(e)).collect(),
         };
         let within = interval(balls, ends);

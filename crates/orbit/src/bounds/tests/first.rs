@@ -190,7 +190,7 @@ fn frequencies_and_exponents_of_forged_centres_reach_the_truth() {
         let proof = conclude(&case.task, frame, case.centre.clone(), weights, radii).unwrap();
         // By Taylor integration with 34 digits: the mean of 1 - x^2, and the largest x.
         for (ball, exact) in
-            [(&proof.exponent, -1.059_376_999_7), (&proof.maximum, 2.008_619_860_875)]
+            [(&proof.exponent, -1.059_376_999_7), (&proof.motion.maximum, 2.008_619_860_875)]
         {
             let middle = ball.midpoint().to_f64();
             assert!(ball.contains(&exactly(exact)) && ball.radius() < &0.1, "{ball:?}");
