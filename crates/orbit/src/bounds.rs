@@ -7,11 +7,15 @@
 //! A = the inverse in doubles on the modes <= N, -1/(omega^2 k^2) beyond. T(c) = c - A F(c) has
 //! |T(c) - T(d)| <= (Z0 + Z1 + Z2 r) |c - d| on the ball of radius r, and |T(cbar) - cbar| <= Y0.
 
+mod moving;
 mod outer;
 mod tail;
+#[cfg(test)]
+mod tests;
 
 use crate::centre::{Centre, Values, Variables};
-use crate::exact::{Doubles, ERROR, power_of_two};
+use crate::drift::Drift;
+use crate::exact::{Doubles, ERROR, Exact, power_of_two};
 use crate::field::Field;
 use crate::function::Tied;
 use crate::laurent::Laurent;
@@ -45,14 +49,30 @@ pub(crate) struct Frame<'a> {
     matrix: DMatrix<f64>,
     /// 1 - A D.
     defect: DMatrix<f64>,
-    /// F and the condition, times 2^-exponent.
-    residual: Vec<Doubles>,
-    exponent: i32,
-    condition: f64,
+    /// F and the condition.
+    residual: Right,
+    /// Where the centre moves with a parameter.
+    pub(crate) drift: Option<&'a Drift>,
     /// A lower bound of omega.
     frequency_below: f64,
     /// s.
     scale: f64,
+}
+
+/// A right side and a value for the condition, times 2^-exponent.
+#[derive(Clone, Debug)]
+pub(crate) struct Right {
+    rows: Vec<Doubles>,
+    exponent: i32,
+    condition: f64,
+}
+
+impl Right {
+    pub(crate) fn new(rows: &[Exact], condition: Float, bits: u32) -> Self {
+        let (rows, exponent) = residuals(rows, bits);
+        let condition = Float::with_val(53, condition >> exponent).to_f64();
+        Self { rows, exponent, condition }
+    }
 }
 
 /// nu and what follows.
@@ -63,9 +83,8 @@ pub(crate) struct Weights {
     /// Upper bounds of the variables at the centre, and their errors in units of 2^-bits.
     at: Vec<Up>,
     errors: Vec<Up>,
-    /// What the errors of the functions make uncertain of F (in units of 2^-bits), of DF on one unknown, and
-    /// of dF/domega.
-    uncertain: [Up; 3],
+    /// The errors with uncertain coefficients in their middle.
+    in_middle: Vec<Up>,
 }
 
 /// What a bound measures: all unknowns with their weights, or the frequency alone.
@@ -86,6 +105,8 @@ pub(crate) struct Contraction {
     pub(crate) z0: Up,
     /// Everything else of |1 - A DF(cbar)|.
     pub(crate) z1: Up,
+    /// What of Z1 comes from a centre that moves.
+    pub(crate) change: Up,
     /// |A| from right sides to unknowns, and |A d^2/dtau^2| on unknowns.
     pub(crate) inverse: Up,
     pub(crate) bend: Up,
@@ -102,7 +123,7 @@ impl Weights {
             let last = |x: f64| if exact { x } else { x.next_down() };
             powers.push((next(above * nu), last(below * nu)));
         }
-        Self { nu, powers, at: Vec::new(), errors: Vec::new(), uncertain: [Up::ZERO; 3] }
+        Self { nu, powers, at: Vec::new(), errors: Vec::new(), in_middle: Vec::new() }
     }
 
     pub(crate) fn nu(&self) -> Up {
@@ -136,14 +157,13 @@ impl<'a> Frame<'a> {
         for i in 0..defect.nrows() {
             defect[(i, i)] += 1.0;
         }
-        let (residual, exponent) = residuals(&values.residual, centre.bits);
-        let condition = Float::with_val(53, task.condition(centre) >> exponent).to_f64();
+        let residual = Right::new(&values.residual, task.condition(centre), centre.bits);
         let (.., size) = centre.norms(Up::ONE);
         let scale = power_of_two((size.0 / linear.frequency).log2().round() as i32);
         let frequency_below = centre.frequency.to_f64().next_down();
         Self {
             field: &task.field,
-            error: task.error,
+            error: Up::of(&task.error),
             centre,
             inverse,
             linear,
@@ -153,8 +173,7 @@ impl<'a> Frame<'a> {
             matrix,
             defect,
             residual,
-            exponent,
-            condition,
+            drift: None,
             frequency_below,
             scale,
         }
@@ -162,7 +181,8 @@ impl<'a> Frame<'a> {
 
     /// The largest mode that any bound meets.
     pub(crate) fn reach(&self) -> usize {
-        let lists = self.whole.iter().flatten().chain(&self.residual);
+        let moves = self.drift.into_iter().flat_map(|drift| &drift.slope.rows);
+        let lists = self.whole.iter().flatten().chain(&self.residual.rows).chain(moves);
         let longest = lists.chain(&self.linear.by_frequency).map(Vec::len).max().unwrap_or(0);
         longest + self.inverse.modes + 2 * self.band() + 2
     }
@@ -170,6 +190,11 @@ impl<'a> Frame<'a> {
     /// s.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
+    }
+
+    /// Whether the frequency is an unknown.
+    pub(crate) fn is_free(&self) -> bool {
+        self.extra() == 1
     }
 
     fn extra(&self) -> usize {
@@ -229,49 +254,67 @@ impl<'a> Frame<'a> {
         (0..n).map(of).collect()
     }
 
-    /// All bounds but Z2 for one measure. The cost is some n (n + band) operations.
+    /// All bounds but Z2 for one measure; of an orbit that moves for all its places. The cost is some
+    /// n (n + band) operations.
     pub(crate) fn contraction(&self, measure: Measure, weights: &Weights) -> Contraction {
         let numerators = self.numerators(measure, weights);
         let alpha = self.columns(&numerators);
         let inverse = self.inverse_norm(measure, &alpha, weights, 0);
         let bend = self.inverse_norm(measure, &alpha, weights, 1);
-        let (y, z) = self.uncertain(inverse, &alpha, weights);
-        let y0 = self.y0(measure, &numerators, &alpha, weights);
-        let y0 = Float::with_val_round(53, &y0 + &y, Round::Up).0;
-        let z1 = self.z1(measure, &alpha, weights) + inverse * self.outside_band(weights) + z;
+        let y0 = self.y0(&self.residual, measure, &numerators, &alpha, weights);
+        let z1 = self.z1(measure, &alpha, weights) + inverse * self.outside_band(weights);
+        let z1 = z1 + inverse * self.uncertain_slope(weights);
         let z0 = self.z0(&numerators, &alpha, weights);
-        Contraction { y0, z0, z1, inverse, bend }
+        let still = Contraction { y0, z0, z1, change: Up::ZERO, inverse, bend };
+        if let Some(drift) = self.drift {
+            let moves = self.y0(&drift.slope, measure, &numerators, &alpha, weights);
+            return self.moving(still, drift, &moves, weights);
+        }
+        let y = self.uncertain_value(inverse, &alpha, weights);
+        let y0 = Float::with_val_round(53, &still.y0 + &y, Round::Up).0;
+        Contraction { y0, ..still }
     }
 
-    /// What uncertain coefficients, an uncertain condition and the errors of the functions add to Y0 and to
-    /// Z1.
-    fn uncertain(&self, inverse: Up, alpha: &[f64], weights: &Weights) -> (Float, Up) {
+    /// What uncertain coefficients, an uncertain condition and the errors of the functions add to Y0.
+    fn uncertain_value(&self, inverse: Up, alpha: &[f64], weights: &Weights) -> Float {
+        let at = &self.outer(weights, &Float::new(53)).at;
+        let condition = if self.extra() == 1 { Up(alpha[0]) * self.error } else { Up::ZERO };
+        let part = |p: &Polynomial| p.uncertainty(at, weights.nu());
+        let residual: Up = self.field.forces.iter().map(part).sum();
+        let [of_functions, ..] = self.of_functions(weights, &weights.errors);
+        let of_functions = Float::with_val(53, (inverse * of_functions).0) >> self.centre.bits;
+        let residual = Float::with_val(53, (inverse * residual + condition).0);
+        Float::with_val_round(53, &residual + &of_functions, Round::Up).0
+    }
+
+    /// What they make uncertain of DF, in the norm of right sides.
+    fn uncertain_slope(&self, weights: &Weights) -> Up {
         let (nu, n) = (weights.nu(), self.field.unknowns());
         let outer = self.outer(weights, &Float::new(53));
         let part = |p: &Polynomial| p.uncertainty(&outer.at, nu);
-        let condition = if self.extra() == 1 { Up(alpha[0]) * self.error } else { Up::ZERO };
-        let below = self.frequency_below;
-        let by_frequency = self.field.flow.iter().map(part).sum::<Up>().over(below);
+        let [_, functions, flow_of_functions] = self.of_functions(weights, &weights.errors);
+        let by_frequency = self.field.flow.iter().map(part).sum::<Up>().over(self.frequency_below);
         let column = |k: usize| {
             let row = |row: &Vec<Polynomial>| part(&row[k]) + outer.frequency * part(&row[n + k]);
             self.field.first.iter().map(row).sum()
         };
-        let column = (0..n).map(column).fold(Up::ZERO, Up::max) + weights.uncertain[1];
-        let frequency = (by_frequency + weights.uncertain[2]).over(self.scale);
-        let slope = if self.extra() == 1 { column.max(frequency) } else { column };
-        let residual: Up = self.field.forces.iter().map(part).sum();
-        let of_functions =
-            Float::with_val(53, (inverse * weights.uncertain[0]).0) >> self.centre.bits;
-        let residual = Float::with_val(53, (inverse * residual + condition).0);
-        let residual = Float::with_val_round(53, &residual + &of_functions, Round::Up).0;
-        (residual, inverse * slope)
+        let column = (0..n).map(column).fold(Up::ZERO, Up::max) + functions;
+        let frequency = (by_frequency + flow_of_functions).over(self.scale);
+        if self.extra() == 1 { column.max(frequency) } else { column }
     }
 
-    /// Y0 >= |A F(cbar)|: the finite part is a product in doubles with its a-priori error, the tail
+    /// |A F| of a right side: the finite part is a product in doubles with its a-priori error, the tail
     /// sum_(k > N) |F_k| nu^k/(omega^2 k).
-    fn y0(&self, measure: Measure, numerators: &[f64], alpha: &[f64], weights: &Weights) -> Float {
-        let at_wave = |w: &Wave| w.of(at(&self.residual[w.unknown], w.k as i64));
-        let condition = (self.extra() == 1).then_some(self.condition);
+    fn y0(
+        &self,
+        right: &Right,
+        measure: Measure,
+        numerators: &[f64],
+        alpha: &[f64],
+        weights: &Weights,
+    ) -> Float {
+        let at_wave = |w: &Wave| w.of(at(&right.rows[w.unknown], w.k as i64));
+        let condition = (self.extra() == 1).then_some(right.condition);
         let all = condition.into_iter().chain(self.inverse.basis.iter().map(at_wave));
         let vector = DVector::from_iterator(numerators.len(), all);
         let product = &self.inverse.matrix * &vector;
@@ -279,10 +322,10 @@ impl<'a> Frame<'a> {
         let sum = product.iter().zip(numerators).map(|(x, w)| x.abs() * w).sum();
         let sizes = alpha.iter().zip(vector.iter()).map(|(a, x)| a * (x.abs() + DROPPED)).sum();
         let finite = raised(sum, n) + (gamma(n + 4) + ERROR) * raised(sizes, n);
-        let tail = self.tail_of(&self.residual, measure, weights);
+        let tail = self.tail_of(&right.rows, measure, weights);
         let total = Float::with_val(53, (finite + tail).0);
         // Doubling by the exponent is exact.
-        total << self.exponent
+        total << right.exponent
     }
 
     /// The tail rows of A on functions: sum_(k > N) |f_k| nu^k/(omega^2 k).

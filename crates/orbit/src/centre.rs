@@ -275,7 +275,12 @@ impl<'a> Variables<'a> {
     }
 
     /// The terms times `factor` and omega^-less, of a polynomial.
-    fn parts(&mut self, polynomial: &Polynomial, less: i32, factor: &Rational) -> Vec<Part> {
+    pub(crate) fn parts(
+        &mut self,
+        polynomial: &Polynomial,
+        less: i32,
+        factor: &Rational,
+    ) -> Vec<Part> {
         let (n, bits) = (self.centre.unknowns.len(), self.centre.bits);
         let part = |term: &Term| {
             let rate: u32 = term.powers.iter().skip(n).take(n).sum();

@@ -18,6 +18,7 @@ pub(crate) struct Exact {
 pub(crate) type Doubles = Vec<Complex<f64>>;
 
 /// factor times modes times a wave.
+#[derive(Clone)]
 pub(crate) struct Part {
     pub(crate) factor: Rational,
     pub(crate) modes: Laurent,

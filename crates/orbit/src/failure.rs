@@ -50,6 +50,14 @@ pub enum Failure {
     /// The guess has no harmonic, no positive frequency or values that are not finite.
     #[error("the guess is no oscillation")]
     NoStart,
+    /// No such value: a pendulum with q x(0) at 0, or at pi and beyond, where it does not swing but stands or
+    /// turns over.
+    #[error("a pendulum does not swing at this amplitude: its angle must lie between 0 and pi")]
+    NotSwinging,
+    /// Could not decide: of all values between two a field is known only where one number of the equation varies
+    /// and is the parameter itself (of a pendulum, the amplitude).
+    #[error("more than one number of the equation varies between the two values, or another one")]
+    NotOneNumber,
     /// DF has no inverse in doubles.
     #[error("the linearised equation has no inverse on {modes} modes")]
     Singular {

@@ -10,6 +10,7 @@
 use crate::operation::Operation;
 use crate::polynomial::{Polynomial, Term};
 use crate::space::Signs;
+use crate::upward::Up;
 use rug::{Complete, Integer, Rational};
 
 /// A function of a polynomial in the variables before it.
@@ -35,6 +36,22 @@ pub struct Field {
     pub(crate) functions: Vec<Function>,
     /// The largest frequency of which all the frequencies of the force are multiples.
     pub(crate) force: Option<Rational>,
+    pub(crate) varying: Option<Varying>,
+}
+
+/// How a field depends on the one parameter that it is known within: p = p_0 + s times a half width,
+/// -1 <= s <= 1; derivatives by s.
+#[derive(Clone, Debug)]
+pub(crate) struct Varying {
+    /// dg_i/ds.
+    pub(crate) forces: Vec<Polynomial>,
+    /// d^2g_i/ds dx_k, then d^2g_i/ds dx_k', by i and k.
+    pub(crate) first: Vec<Vec<Polynomial>>,
+    /// d^2g_i/ds^2.
+    pub(crate) second: Vec<Polynomial>,
+    /// s at the first end of the interval, -1 or 1, but for the slack, as at the other one.
+    pub(crate) from: f64,
+    pub(crate) slack: Up,
 }
 
 impl Field {
@@ -74,7 +91,12 @@ impl Field {
         let first = self.first.iter_mut().flatten();
         let second = self.second.iter_mut().map(|(.., p)| p);
         let arguments = self.functions.iter_mut().map(|f| &mut f.argument);
-        self.forces.iter_mut().chain(first).chain(second).chain(&mut self.flow).chain(arguments)
+        let varying = self.varying.iter_mut().flat_map(|varying| {
+            let mixed = varying.first.iter_mut().flatten();
+            varying.forces.iter_mut().chain(mixed).chain(&mut varying.second)
+        });
+        let own = self.forces.iter_mut().chain(first).chain(second).chain(&mut self.flow);
+        own.chain(arguments).chain(varying)
     }
 
     /// Whether x_k(tau + pi) = s_k x_k(tau) is kept, s_k = -1 where the bit is set.

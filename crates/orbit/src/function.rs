@@ -148,6 +148,12 @@ mod tests {
                 |list: &[Laurent]| Tied::new(kind, p.clone(), list, BITS).error(nu, Up::ZERO);
             let right = error(&list).unwrap();
             assert!(right.0 < 1e7, "{kind:?}: {right:?}");
+            // A multiple of an exponential, or of sine and cosine, has no defect but its start.
+            let mut forged = list.clone();
+            for c in forged.iter_mut().flat_map(|f| f.re.iter_mut().chain(&mut f.im)) {
+                *c += c.clone() >> 80u32;
+            }
+            assert!(error(&forged).unwrap().0 > 2f64.powi(39), "{kind:?}");
             for k in [0, 2] {
                 let mut forged = list.clone();
                 forged[0].re[k] += &shift;

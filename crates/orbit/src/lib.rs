@@ -36,6 +36,7 @@
 mod bounds;
 mod centre;
 mod doubles;
+mod drift;
 mod exact;
 mod failure;
 mod family;
@@ -48,7 +49,9 @@ mod modes;
 mod newton;
 mod operation;
 mod orbit;
+mod place;
 mod polynomial;
+mod product;
 mod proof;
 mod prove;
 mod radii;
@@ -67,7 +70,7 @@ mod upward;
 mod write;
 
 pub use failure::Failure;
-pub use family::{Cover, Member, cover, family, family_all};
+pub use family::{Branch, Cover, Member, branches, cover, family, family_all, prove_each};
 pub use field::Field;
 pub use guesses::guesses;
 pub use modes::guesses_all;

@@ -1,11 +1,11 @@
 //! DF at the centre, in doubles: h -> omega^2 h_i'' - sum_k (dg_i/dx_k h_k + omega dg_i/dx_k' h_k')
 //! (' = d/dtau), and the column of the frequency.
 
+use crate::Rows;
 use crate::centre::Values;
 use crate::exact::{ERROR, Exact};
 use crate::space::Wave;
 use crate::upward::{UNIT, Up};
-use crate::{Condition, Rows};
 use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
@@ -148,36 +148,6 @@ impl Linear {
         matrix
     }
 
-    /// DF applied to a step, up to its own modes: (condition, coefficients).
-    pub(crate) fn apply(&self, step: &Step) -> (f64, Vec<Vec<C>>) {
-        let n = self.unknowns;
-        let modes = step.unknowns[0].len() - 1;
-        let slope = |h: &Vec<C>| -> Vec<C> {
-            let each = h.iter().enumerate();
-            each.map(|(k, c)| c * C::new(0.0, k as f64)).collect()
-        };
-        let x: Vec<_> = step.unknowns.iter().map(|h| full(h)).collect();
-        let slopes: Vec<_> = step.unknowns.iter().map(|h| full(&slope(h))).collect();
-        let by_x: Vec<_> = self.by_x.iter().map(|f| full(f)).collect();
-        let by_slope: Vec<_> = self.by_slope.iter().map(|f| full(f)).collect();
-        let square = self.frequency * self.frequency;
-        let row = |i: usize, k: usize| {
-            let inertia = step.unknowns[i][k] * -(square * (k * k) as f64);
-            let product = |j: usize| {
-                let entry = i * n + j;
-                convolution(&by_x[entry], &x[j], k) + convolution(&by_slope[entry], &slopes[j], k)
-            };
-            let product: C = (0..n).map(product).sum();
-            inertia - product + at(&self.by_frequency[i], k as i64) * step.frequency
-        };
-        let of = |condition: Condition| {
-            let waves = self.basis(modes);
-            waves.iter().map(|w| condition.of(*w) * w.of(step.unknowns[w.unknown][w.k])).sum()
-        };
-        let rows = (0..n).map(|i| (0..=modes).map(|k| row(i, k)).collect()).collect();
-        (self.rows.condition.map_or(0.0, of), rows)
-    }
-
     /// A applied to (condition, coefficients): the inverse on its modes, the inverse of omega^2
     /// d^2/dtau^2 beyond.
     pub(crate) fn precondition(&self, inverse: &Inverse, condition: f64, rows: &[Vec<C>]) -> Step {
@@ -218,28 +188,4 @@ pub(crate) fn at(half: &[C], k: i64) -> C {
         Some(c) => *c,
         None => C::default(),
     }
-}
-
-/// c_k, k = -M..=M.
-fn full(half: &[C]) -> Vec<C> {
-    let negative = half.iter().skip(1).rev().map(C::conj);
-    negative.chain(half.iter().copied()).collect()
-}
-
-/// sum_l f_l g_(k-l) of two full lists.
-fn convolution(f: &[C], g: &[C], k: usize) -> C {
-    let (m, n) = ((f.len() / 2) as i64, (g.len() / 2) as i64);
-    let k = k as i64;
-    let (from, to) = ((k - n).max(-m), (k + n).min(m));
-    if from > to {
-        return C::default();
-    }
-    let part = &f[(from + m) as usize..=(to + m) as usize];
-    let other = &g[(k - to + n) as usize..=(k - from + n) as usize];
-    let (mut re, mut im) = (0.0, 0.0);
-    for (a, b) in part.iter().zip(other.iter().rev()) {
-        re += a.re * b.re - a.im * b.im;
-        im += a.re * b.im + a.im * b.re;
-    }
-    C::new(re, im)
 }

@@ -28,8 +28,10 @@ const SAMPLES: usize = 256;
 
 /// Guesses for any number of unknowns, a function for each: of one unknown those of [`guesses`]; of several,
 /// for a family the normal modes of the linear equations about 0, continued to the amplitude asked for; for
-/// a limit cycle or a response the motion from two states near 0 and from rest once it repeats itself, so
-/// that unstable ones are not found. Cost: up to 2 * 10^5 steps in time.
+/// a limit cycle or a response the motion from two states near 0 and from rest once it repeats itself; for
+/// a response, then, the balance of twelve harmonics from each shape of the linear equations with three
+/// amplitudes and four phases, so that of limit cycles alone unstable ones are not found. Cost: up to 2 * 10^5 steps
+/// in time.
 ///
 /// # Errors
 /// As [`guesses`].
@@ -59,6 +61,7 @@ pub fn guesses_all(field: &Field, kind: &Kind, stop: &Stop) -> Result<Vec<Vec<St
     let amplitude = match kind {
         Kind::InitialAmplitude(a) | Kind::FundamentalAmplitude(a) => a.clone(),
         Kind::InitialWithin { value, .. } => value.clone(),
+        Kind::Forced(_) => return responses(field, kind, settled(field, kind, stop), stop),
         _ => return Ok(settled(field, kind, stop)),
     };
     let fundamental = matches!(kind, Kind::FundamentalAmplitude(_));
@@ -166,15 +169,60 @@ fn settled(field: &Field, kind: &Kind, stop: &Stop) -> Vec<Vec<Start>> {
             Start::from_samples(period, &list)
         };
         let starts: Vec<Start> = (0..n).map(of).collect();
-        let same = |other: &Vec<Start>| {
-            let pairs = other.iter().zip(&starts);
-            pairs.clone().all(|(a, b)| a.is_near(b, 1e-3)) && pairs.len() == n
-        };
-        if !found.iter().any(same) {
+        if !found.iter().any(|other| are_near(other, &starts)) {
             found.push(starts);
         }
     }
     found
+}
+
+/// Amplitudes and phases of the single harmonics from which responses are balanced.
+const AMPLITUDES: [f64; 3] = [0.5, 1.0, 2.0];
+const PHASES: u32 = 4;
+
+/// The responses known and those that the balance of harmonics finds from the shapes of the linear equations,
+/// unstable ones, too.
+fn responses(
+    field: &Field,
+    kind: &Kind,
+    mut found: Vec<Vec<Start>>,
+    stop: &Stop,
+) -> Result<Vec<Vec<Start>>, Failure> {
+    let shapes = linear_modes(field).into_iter().map(|(_, shape)| {
+        let size = shape.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        shape.into_iter().map(|x| x / size).collect::<Vec<f64>>()
+    });
+    let single = |shape: &[f64], amplitude: f64, phase: u32| -> Vec<Start> {
+        let (sin, cos) = (TAU * f64::from(phase) / f64::from(PHASES)).sin_cos();
+        let one = |x: &f64| Start {
+            frequency: 1.0,
+            cosines: vec![0.0, x * amplitude * cos],
+            sines: vec![0.0, x * amplitude * sin],
+        };
+        shape.iter().map(one).collect()
+    };
+    for shape in shapes {
+        for (amplitude, phase) in AMPLITUDES.iter().flat_map(|a| (0..PHASES).map(move |p| (a, p))) {
+            let (task, guess) = Task::new(field, kind, &single(&shape, *amplitude, phase))?;
+            match balance(&task, guess, MODES, stop) {
+                Ok(centre) => {
+                    let one = |i: usize| Start::of(&centre.frequency, &centre.component(i));
+                    let starts: Vec<Start> = (0..field.unknowns()).map(one).collect();
+                    if !found.iter().any(|other| are_near(other, &starts)) {
+                        found.push(starts);
+                    }
+                }
+                Err(Failure::Stopped) => return Err(Failure::Stopped),
+                Err(_) => {}
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Whether two guesses are of one orbit.
+fn are_near(one: &[Start], other: &[Start]) -> bool {
+    one.len() == other.len() && one.iter().zip(other).all(|(a, b)| a.is_near(b, 1e-3))
 }
 
 /// A period and the states over it.

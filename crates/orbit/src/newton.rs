@@ -4,6 +4,7 @@ use crate::Failure;
 use crate::centre::{Centre, Values};
 use crate::exact::Exact;
 use crate::linear::{Inverse, Linear, Step, at};
+use crate::product::Products;
 use crate::task::Task;
 use lindstedt_algebra::Stop;
 use nalgebra::{Complex, DVector};
@@ -166,7 +167,7 @@ fn needed(rows: &[Vec<Complex<f64>>], model: &Linear, inverse: &Inverse, allowed
 }
 
 /// c with DF c = -F: c := c - A (DF c + F).
-fn solve(
+pub(crate) fn solve(
     model: &Linear,
     inverse: &Inverse,
     condition: f64,
@@ -176,9 +177,10 @@ fn solve(
     let minus: Vec<Vec<_>> = rows.iter().map(|row| row.iter().map(|c| -c).collect()).collect();
     let mut step = model.precondition(inverse, -condition, &minus);
     let first = size(&step.unknowns);
+    let products = Products::new(model, step.unknowns[0].len() - 1);
     let mut last = f64::INFINITY;
     for _ in 0..MOST_SWEEPS {
-        let (of_condition, mut of_rows) = model.apply(&step);
+        let (of_condition, mut of_rows) = products.apply(&step);
         for (out, row) in of_rows.iter_mut().zip(rows) {
             out.iter_mut().for_each(|c| *c = -*c);
             out.iter_mut().zip(row).for_each(|(out, c)| *out -= c);

@@ -83,3 +83,76 @@ impl Operation {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::Exact;
+    use crate::laurent::Laurent;
+    use crate::transform::samples_to_modes;
+    use rug::{Integer, Rational};
+
+    const BITS: u32 = 80;
+
+    /// size times the mean of cosines with these frequencies, about a middle.
+    fn cosines(middle: f64, size: f64, waves: &[usize]) -> Exact {
+        let whole =
+            |x: f64| Float::with_val(64, x * 2f64.powi(60)).to_integer().unwrap_or_default();
+        let mut f = Laurent::zero(waves.iter().max().copied().unwrap_or(0));
+        f.re[0] = whole(middle);
+        waves.iter().for_each(|k| f.re[*k] += whole(size / waves.len() as f64 / 2.0));
+        Exact { modes: f, scale: Rational::from((1, Integer::from(1) << 60u32)) }
+    }
+
+    /// The norms of the functions (of an even root with its derivative -root^(q + 1)/q).
+    fn norms(kind: Operation, p: &Exact) -> Vec<f64> {
+        let list = samples_to_modes(p, BITS, kind).unwrap();
+        list.into_iter().map(|f| Exact::over_power(f, BITS).norm(Up::ONE, 0).0).collect()
+    }
+
+    /// p + h for h = -size, size and a mean of cosines that have hardly a common wave: the norms are nearly those of
+    /// the bound.
+    #[test]
+    fn functions_and_slopes_stay_below_their_bounds() {
+        for (kind, middle, size) in [
+            (Operation::Exponential, 0.3, 1.0),
+            (Operation::Sine, 0.0, 1.5),
+            (Operation::Sine, 0.4, 0.8),
+            (Operation::Root(1), 2.0, 1.0),
+            (Operation::Root(2), 2.0, 1.0),
+        ] {
+            let still = norms(kind, &cosines(middle, 0.0, &[]));
+            let steps = [
+                cosines(middle - size, 0.0, &[]),
+                cosines(middle + size, 0.0, &[]),
+                cosines(middle, size, &[1, 4, 16, 64]),
+            ];
+            let list = steps.map(|p| norms(kind, &p));
+            let most = |i: usize| list.iter().map(|n| n[i]).fold(0.0, f64::max);
+            let by = Up(size);
+            match kind {
+                Operation::Sine => {
+                    let [s, c] = [Up(still[0]), Up(still[1])];
+                    let [sine, slope] = Operation::Sine.outer(s, c, by);
+                    let [cosine, fall] = Operation::Cosine.outer(c, s, by);
+                    for (truth, bound) in
+                        [(most(0), sine), (most(1), slope), (most(1), cosine), (most(0), fall)]
+                    {
+                        assert!(truth <= bound.0 && bound.0 < 8.0 * truth, "{truth} {bound:?}");
+                    }
+                    // The mean of cosines alone has a cosine of more than its value at 0.
+                    assert!(middle > 0.0 || most(1) > 1.0);
+                }
+                _ => {
+                    let [function, slope] = kind.outer(Up(still[0]), Up(still[0]), by);
+                    let derivative = match kind {
+                        Operation::Root(q) => most(0).powi(q as i32 + 1) / f64::from(q),
+                        _ => most(0),
+                    };
+                    assert!(most(0) <= function.0 * (1.0 + 1e-12) && function.0 < 2.0 * most(0));
+                    assert!(derivative <= slope.0 * (1.0 + 1e-12) && slope.0 < 6.0 * derivative);
+                }
+            }
+        }
+    }
+}

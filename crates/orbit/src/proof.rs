@@ -3,6 +3,7 @@
 use crate::bounds::{Frame, Measure, Weights};
 use crate::centre::Centre;
 use crate::orbit::Orbit;
+use crate::place::Place;
 use crate::radii::{Bounds, Radii};
 use crate::start::{Start, in_phase};
 use crate::task::Task;
@@ -68,19 +69,10 @@ pub struct Proof {
     pub period: Ball,
     /// Whether the period is proved to be the least one: the first harmonic is not 0.
     pub least_period: bool,
-    /// x at tau = 0.
-    #[serde(serialize_with = "crate::write::ball")]
-    pub displacement: Ball,
-    /// x' at tau = 0.
-    #[serde(serialize_with = "crate::write::ball")]
-    pub velocity: Ball,
-    /// The largest x.
-    #[serde(serialize_with = "crate::write::ball")]
-    pub maximum: Ball,
-    /// The least x.
-    #[serde(serialize_with = "crate::write::ball")]
-    pub minimum: Ball,
-    /// The same of the second unknown and of further ones.
+    /// x.
+    #[serde(flatten)]
+    pub motion: Motion,
+    /// The second unknown and further ones.
     pub further: Vec<Motion>,
     /// The sum of the Floquet exponents, two for each unknown, the mean of sum dg_i/dx_i' over a period
     /// (Liouville). One exponent of an autonomous equation is 0: of one unknown, then, this is the other one.
@@ -156,9 +148,7 @@ pub(crate) fn conclude(
     let single = orbits.len() == 1;
     let planar = single && task.is_free() && task.rows.parity.even;
     let mut motions = orbits.iter().map(|orbit| Motion::of(orbit, planar));
-    let Some(Motion { displacement, velocity, maximum, minimum }) = motions.next() else {
-        return Err(Failure::NoStart);
-    };
+    let motion = motions.next().ok_or(Failure::NoStart)?;
     let further = motions.collect();
     // Where any unknown has a first harmonic.
     let waves = |orbit: &Orbit| {
@@ -177,10 +167,7 @@ pub(crate) fn conclude(
         frequency,
         period,
         least_period: orbits.iter().any(waves),
-        displacement,
-        velocity,
-        maximum,
-        minimum,
+        motion,
         further,
         stability: match () {
             () if exponent.is_positive() => Stability::Unstable,
@@ -191,17 +178,17 @@ pub(crate) fn conclude(
         radius: radii.radius,
         orbits,
         centre,
-        condition: task.rows.condition.map(|c| (c, task.value.clone(), task.error)),
+        condition: task.asked(),
     })
 }
 
 /// |delta omega| <= |A F|_omega + |1 - A DF|_omega r + |A|_omega Z2 r^2/2: the row of the frequency
 /// alone, which is much smaller than the norm.
-fn frequency_error(frame: &Frame<'_>, weights: &Weights, radius: &Float) -> Float {
+pub(crate) fn frequency_error(frame: &Frame<'_>, weights: &Weights, radius: &Float) -> Float {
     let row = frame.contraction(Measure::Frequency, weights);
     let up = |x: &Float, y: &Float| Float::with_val_round(53, x * y, Round::Up).0;
     let linear = up(radius, &Float::with_val(53, (row.z0 + row.z1).0));
-    let curvature = Float::with_val(53, frame.z2(&row, weights, radius).0);
+    let curvature = Float::with_val(53, frame.z2(&row, weights, &frame.around(weights, radius)).0);
     let square = up(&up(radius, radius), &curvature) / 2u32;
     let sum = Float::with_val_round(53, &row.y0 + &linear, Round::Up).0;
     let sum = Float::with_val_round(53, &sum + &square, Round::Up).0;
@@ -211,7 +198,7 @@ fn frequency_error(frame: &Frame<'_>, weights: &Weights, radius: &Float) -> Floa
 }
 
 /// The mean of dg/dx' at the centre, exactly, and how far it can be from that of the orbit.
-fn divergence(
+pub(crate) fn divergence(
     task: &Task,
     frame: &Frame<'_>,
     weights: &Weights,
@@ -300,31 +287,20 @@ impl Proof {
     /// `false` says nothing; that they are different orbits is [`Self::is_separate_from`].
     #[must_use]
     pub fn is_same_as(&self, other: &Self) -> bool {
-        self.surrounds(other) || other.surrounds(self)
+        self.place().is_same_as(&other.place())
     }
 
-    /// Whether the ball with the other's orbit lies in the one in which this orbit is alone. The norms must be
-    /// comparable: that of the other at least this one, but for the weights of the frequency.
-    fn surrounds(&self, other: &Self) -> bool {
-        let (mine, others) = (self.parity, other.parity);
-        let is_odd = others.odd && others.keeping == mine.keeping;
-        let is_even = others.even && others.turning == mine.turning;
-        let is_among = (!mine.odd || is_odd) && (!mine.even || is_even);
-        let one_question = match (&self.condition, &other.condition) {
-            (None, None) => true,
-            (Some((mine, a, near)), Some((others, b, by))) => {
-                mine == others && Up::of(&Rational::from(a - b)) <= *near + *by
-            }
-            _ => false,
-        };
-        if !one_question || self.weight > other.weight || !is_among {
-            return false;
+    pub(crate) fn place(&self) -> Place {
+        Place {
+            parity: self.parity,
+            weight: self.weight,
+            scale: self.frequency_weight,
+            centre: self.centre.clone(),
+            slack: Up::ZERO,
+            radius: self.radius.clone(),
+            unique_within: self.unique_within.clone(),
+            condition: self.condition.clone(),
         }
-        let scale = self.condition.as_ref().map(|_| self.frequency_weight);
-        let apart = self.centre.distance(&other.centre, Up(self.weight), scale);
-        let times = Up(self.frequency_weight).over(other.frequency_weight).max(Up::ONE);
-        let reach = apart + Up::of_float(&other.radius) * times;
-        reach.0 <= self.unique_within.to_f64_round(Round::Down)
     }
 
     /// The precision of the numbers.

@@ -32,8 +32,6 @@ const MOST_TIMES: usize = 40;
 const WEIGHTS: [f64; 5] = [0.0, 0.5, 2.0, 6.0, 15.0];
 /// Refinements until the radius confirms the digits.
 const MOST_REFINEMENTS: u32 = 4;
-/// Digits of the numerical solution where the coefficients are known to fewer.
-const FEW_DIGITS: u32 = 10;
 /// A sum Z0 + Z1 with which no other weight is tried.
 const GOOD: f64 = 0.5;
 
@@ -113,20 +111,6 @@ pub fn prove_all(
         }
         modes = ((modes as f64 * more) as usize + 1).min(request.modes_limit);
     }
-}
-
-/// The proof for coefficients that are known within balls, whatever its radius: the modes are those of a neighbour.
-pub(crate) fn uniform(
-    field: &Field,
-    kind: &Kind,
-    starts: &[Start],
-    modes: usize,
-    request: &Request,
-) -> Result<Proof, Failure> {
-    let (task, guess) = Task::new(field, kind, starts)?;
-    let mut centre = balance(&task, guess, modes, &request.stop)?;
-    let few = Request { digits: FEW_DIGITS, ..request.clone() };
-    attempt(&task, &mut centre, modes, &few, 1)
 }
 
 /// An orbit that Newton's method found; nothing proves it.
@@ -338,7 +322,8 @@ fn weighed(
             Err(_) => break,
         };
         let contraction = frame.contraction(Measure::Norm, &weights);
-        let found = decide(&contraction, modes, |r| frame.z2(&contraction, &weights, r));
+        let curvature = |r: &Float| frame.z2(&contraction, &weights, r);
+        let found = decide(&contraction, modes, curvature);
         let good = contraction.z0.0 + contraction.z1.0 < GOOD;
         let better = match (&best, &found) {
             (Ok((_, old)), Ok(new)) => new.radius < old.radius,

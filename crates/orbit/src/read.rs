@@ -2,14 +2,15 @@
 //! gathered.
 
 use crate::Failure;
-use crate::field::{Field, Function as Named, common_measure};
+use crate::field::{Field, Function as Named, Varying, common_measure};
 use crate::operation::Operation;
 use crate::polynomial::{Polynomial, Spread, Term};
 use crate::reader::Reader;
-use crate::sum::{Key, Sum};
+use crate::sum::{By, Key, Sum};
 use crate::upward::Up;
 use lindstedt_equation::{AccelerationFault, Expression, Problem};
 use lindstedt_number::ball::{Ball, Balls};
+use rug::ops::Pow;
 use rug::{Complete, Rational};
 use std::collections::BTreeMap;
 
@@ -71,7 +72,7 @@ impl Field {
             _ => None,
         };
         let equations: Vec<_> = equations.iter().map(|e| e.substitute(&value)).collect();
-        read(&equations, small, &BTreeMap::new(), Balls::new(64))
+        read(&equations, small, &BTreeMap::new(), Balls::new(64), None)
     }
 
     /// The field of an equation with parameters that are known within balls: what is proved holds for
@@ -99,17 +100,19 @@ impl Field {
     ) -> Result<Self, Failure> {
         let named =
             |e: &Expression| (*e == Expression::Small).then(|| Expression::parameter(small));
-        read(&[equation.substitute(&named)], small, values, Balls::new(bits))
+        read(&[equation.substitute(&named)], small, values, Balls::new(bits), None)
     }
 
-    /// The same of several equations, the small parameter a parameter.
-    pub(crate) fn of_equations_within(
+    /// The same of several equations, the small parameter a parameter, and with how the field depends on the one
+    /// named.
+    pub(crate) fn varying(
         equations: &[Expression],
         small: &str,
-        values: &BTreeMap<String, Ball>,
-        bits: u32,
+        (name, within): (&str, &Ball),
+        balls: Balls,
     ) -> Result<Self, Failure> {
-        read(equations, small, values, Balls::new(bits))
+        let values = BTreeMap::from([(name.to_owned(), within.clone())]);
+        read(equations, small, &values, balls, Some(name))
     }
 
     /// The field of a problem, its time-domain form where it has one.
@@ -129,7 +132,7 @@ impl Field {
     /// 10^-(digits + 15). Returns the field and the question.
     ///
     /// # Errors
-    /// [`Failure::NoStart`] for an amplitude that is not between 0 and pi.
+    /// [`Failure::NotSwinging`] for an amplitude that is not between 0 and pi.
     pub fn pendulum(
         kappa: &Rational,
         amplitude: &Rational,
@@ -137,31 +140,34 @@ impl Field {
     ) -> Result<(Self, crate::Kind), Failure> {
         let bits = (f64::from(digits + 15) * std::f64::consts::LOG2_10) as u32 + 8;
         let balls = Balls::new(bits);
-        Self::swinging(kappa, &balls.from_rational(amplitude), balls)
+        Self::swinging(kappa, &half_sine(amplitude, balls)?, balls)
     }
 
-    /// The same for all amplitudes within a ball.
+    /// The same for all k within a ball.
     pub(crate) fn swinging(
         kappa: &Rational,
-        angle: &Ball,
+        k: &Ball,
         balls: Balls,
     ) -> Result<(Self, crate::Kind), Failure> {
-        if !angle.is_positive() || !balls.sub(&balls.pi(), angle).is_positive() {
-            return Err(Failure::NoStart);
-        }
-        let half = balls.mul_power_of_two(angle, -1);
-        let k = balls.sin(&half);
         let u = Expression::DISPLACEMENT;
         let number = |q: Rational| Expression::Number(q);
         let linear = Expression::parameter("k").pow(2) * u.clone() + u.clone();
         let cubic = number(-2 * kappa.clone()) * u.pow(3);
         let equation = Expression::ACCELERATION + number(kappa.clone()) * linear + cubic;
-        let values = BTreeMap::from([("k".to_owned(), k.clone())]);
-        let field = Self::within(&equation, "eps", &values, balls.bits())?;
-        let (value, error) = parts(&k).ok_or(Failure::NoStart)?;
+        let field = Self::varying(&[equation], "eps", ("k", k), balls)?;
+        let (value, error) = parts(k).ok_or(Failure::NoStart)?;
         let error = Rational::from_f64(error.0).unwrap_or_default();
         Ok((field, crate::Kind::InitialWithin { value, error }))
     }
+}
+
+/// sin(a/2) for 0 < a < pi.
+pub(crate) fn half_sine(angle: &Rational, balls: Balls) -> Result<Ball, Failure> {
+    let angle = balls.from_rational(angle);
+    if !angle.is_positive() || !balls.sub(&balls.pi(), &angle).is_positive() {
+        return Err(Failure::NotSwinging);
+    }
+    Ok(balls.sin(&balls.mul_power_of_two(&angle, -1)))
 }
 
 /// The equations of a problem, the one in time where there is one.
@@ -178,6 +184,7 @@ fn read(
     small: &str,
     values: &BTreeMap<String, Ball>,
     balls: Balls,
+    varies: Option<&str>,
 ) -> Result<Field, Failure> {
     let unknown = |e: &Expression| match e {
         Expression::Parameter(name) => !values.contains_key(name),
@@ -198,7 +205,8 @@ fn read(
         }
         several => accelerations(several, &mut reader)?,
     };
-    let collector = Collector { force: measure(&forces, &reader.functions), values, balls };
+    let force = measure(&forces, &reader.functions);
+    let collector = Collector { force, values, balls, varies };
     collector.field(&forces, &reader.functions)
 }
 
@@ -258,13 +266,16 @@ struct Collector<'a> {
     force: Option<Rational>,
     values: &'a BTreeMap<String, Ball>,
     balls: Balls,
+    varies: Option<&'a str>,
 }
 
 impl Collector<'_> {
     fn field(self, forces: &[Sum], functions: &[(Operation, Sum)]) -> Result<Field, Failure> {
         let n = forces.len();
         let too_large = || Failure::TooLarge { degree: MOST_DEGREE, harmonic: 0 };
-        let by = |sum: &Sum, v: usize| sum.by(v, 2 * n, functions).ok_or_else(too_large);
+        let by =
+            |sum: &Sum, v: usize| sum.by(By::Variable(v), 2 * n, functions).ok_or_else(too_large);
+        let varying = self.varying(forces, functions)?;
         let (mut first, mut second, mut flow) = (Vec::new(), Vec::new(), Vec::new());
         for (i, g) in forces.iter().enumerate() {
             let row = (0..2 * n).map(|v| by(g, v)).collect::<Result<Vec<_>, _>>()?;
@@ -289,7 +300,7 @@ impl Collector<'_> {
         };
         let functions = functions.iter().map(named).collect::<Result<_, _>>()?;
         let forces = forces.iter().map(|g| self.polynomial(g)).collect::<Result<_, _>>()?;
-        let field = Field { forces, first, second, flow, functions, force: self.force };
+        let field = Field { forces, first, second, flow, functions, force: self.force, varying };
         let terms = field.forces.iter().flat_map(|g| &g.terms);
         let harmonic = terms.filter_map(|t| t.factor.keys().max()).max().copied().unwrap_or(0);
         let degree = field.degree();
@@ -297,6 +308,39 @@ impl Collector<'_> {
             return Err(Failure::TooLarge { degree, harmonic });
         }
         Ok(field)
+    }
+
+    /// The derivatives by s, p = p_0 + s r with the radius r of the ball of the parameter that varies.
+    fn varying(
+        &self,
+        forces: &[Sum],
+        functions: &[(Operation, Sum)],
+    ) -> Result<Option<Varying>, Failure> {
+        let ball = self.varies.and_then(|name| Some((name, self.values.get(name)?)));
+        let Some((name, half)) = ball.and_then(|(name, b)| Some((name, parts(b)?.1))) else {
+            return Ok(None);
+        };
+        let (n, half) = (forces.len(), Rational::from_f64(half.0).unwrap_or_default());
+        let too_large = || Failure::TooLarge { degree: MOST_DEGREE, harmonic: 0 };
+        let by = |sum: &Sum, by: By<'_>| sum.by(by, 2 * n, functions).ok_or_else(too_large);
+        let along = |sum: &Sum| Ok(by(sum, By::Parameter(name))?.scaled(&half));
+        let slopes = forces.iter().map(along).collect::<Result<Vec<_>, Failure>>()?;
+        let polynomials = |list: &[Sum]| -> Result<Vec<_>, Failure> {
+            list.iter().map(|sum| self.polynomial(sum)).collect()
+        };
+        let mixed = |slope: &Sum| {
+            let row = (0..2 * n).map(|v| by(slope, By::Variable(v)));
+            polynomials(&row.collect::<Result<Vec<_>, _>>()?)
+        };
+        let bends = slopes.iter().map(along).collect::<Result<Vec<_>, Failure>>()?;
+        Ok(Some(Varying {
+            forces: polynomials(&slopes)?,
+            first: slopes.iter().map(mixed).collect::<Result<_, _>>()?,
+            second: polynomials(&bends)?,
+            from: -1.0,
+            // Nothing is known of the ends.
+            slack: Up(2.0),
+        }))
     }
 
     fn polynomial(&self, sum: &Sum) -> Result<Polynomial, Failure> {
@@ -321,7 +365,8 @@ impl Collector<'_> {
         Ok(polynomial)
     }
 
-    /// The product of the powers of the parameters.
+    /// The product of the powers of the parameters and what is uncertain of it; of the one that varies at the
+    /// middle of its ball.
     fn parameters(&self, key: &Key) -> Result<(Rational, Up), Failure> {
         if key.parameters.is_empty() {
             return Ok((Rational::from(1), Up::ZERO));
@@ -333,12 +378,24 @@ impl Collector<'_> {
             product = self.balls.mul(&product, &value);
         }
         let name = || key.parameters.keys().next().cloned().unwrap_or_default();
-        parts(&product).ok_or_else(|| Failure::NoValue(name()))
+        let (middle, radius) = parts(&product).ok_or_else(|| Failure::NoValue(name()))?;
+        let varies = self.varies.and_then(|v| Some((self.values.get(v)?, key.parameters.get(v)?)));
+        let of_middle = varies.filter(|_| key.parameters.len() == 1).and_then(|(ball, n)| {
+            let (p, _) = parts(ball)?;
+            (!p.is_zero() || *n > 0).then(|| p.pow(*n))
+        });
+        Ok(match of_middle {
+            None => (middle, radius),
+            Some(exact) => {
+                let off = Up::of(&Rational::from(&exact - &middle));
+                (exact, radius + off)
+            }
+        })
     }
 }
 
 /// The midpoint and the radius of a ball.
-fn parts(ball: &Ball) -> Option<(Rational, Up)> {
+pub(crate) fn parts(ball: &Ball) -> Option<(Rational, Up)> {
     let radius = ball.is_finite().then(|| Up::of_float(ball.radius()))?;
     Some((ball.midpoint().to_rational()?, radius))
 }

@@ -2,7 +2,7 @@
 //! z'' + c q sin z = 0, and u = sin(z/2) obeys u'' = -c q ((1 + k^2) u - 2 u^3), k = sin(z(0)/2)
 //! ([`Field::pendulum`]).
 
-use crate::family::interval;
+use crate::read::half_sine;
 use crate::{Failure, Field, Kind, Start};
 use lindstedt_equation::{Expression, Function, Operations};
 use lindstedt_number::ball::{Ball, Balls};
@@ -67,7 +67,7 @@ impl Sine {
     /// The field of u and the question for x(0) = `amplitude` at rest, known to so many digits.
     ///
     /// # Errors
-    /// [`Failure::NoStart`] where q x(0) is not between 0 and pi.
+    /// [`Failure::NotSwinging`] where q x(0) is not between 0 and pi.
     pub fn field(&self, amplitude: &Rational, digits: u32) -> Result<(Field, Kind), Failure> {
         let stiffness = Rational::from(&self.force * &self.rate);
         Field::pendulum(&stiffness, &Rational::from(amplitude * &self.rate), digits)
@@ -77,7 +77,8 @@ impl Sine {
     /// same stiffness c q.
     ///
     /// # Errors
-    /// [`Failure::NoStart`] for another stiffness, and where q x(0) is not between 0 and pi.
+    /// [`Failure::NotOneNumber`] for another stiffness, [`Failure::NotSwinging`] where q x(0) is not between 0
+    /// and pi.
     pub fn between(
         &self,
         amplitude: &Rational,
@@ -86,11 +87,14 @@ impl Sine {
         let (other, end) = to;
         let stiffness = Rational::from(&self.force * &self.rate);
         if stiffness != Rational::from(&other.force * &other.rate) {
-            return Err(Failure::NoStart);
+            return Err(Failure::NotOneNumber);
         }
-        let ends = [Rational::from(amplitude * &self.rate), Rational::from(end * &other.rate)];
         let balls = Balls::new(128);
-        Field::swinging(&stiffness, &interval(balls, &ends), balls)
+        let sine = |a: &Rational, rate: &Rational| half_sine(&Rational::from(a * rate), balls);
+        let ends = [sine(amplitude, &self.rate)?, sine(end, &other.rate)?];
+        let within = balls.hull(&ends[0], &ends[1]);
+        let (field, kind) = Field::swinging(&stiffness, &within, balls)?;
+        Ok((field.with_ends(ends, &within), kind))
     }
 
     /// u in doubles: k cd(t') with t' = sqrt(c q) t, by its Fourier series in the nome.

@@ -8,6 +8,13 @@ use std::collections::BTreeMap;
 /// a cos q t + b sin q t by q.
 pub(crate) type Waves = BTreeMap<Rational, (Rational, Rational)>;
 
+/// By what a derivative is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum By<'a> {
+    Variable(usize),
+    Parameter(&'a str),
+}
+
 /// A product of powers.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Key {
@@ -131,30 +138,37 @@ impl Sum {
         }
     }
 
-    /// The total derivative by a variable, the functions being those of `functions` from the variable
-    /// `first` on.
+    /// The total derivative, the functions being those of `functions` from the variable `first` on.
     pub(crate) fn by(
         &self,
-        v: usize,
+        by: By<'_>,
         first: usize,
         functions: &[(Operation, Self)],
     ) -> Option<Self> {
         let mut sum = Self::default();
         for (key, waves) in &self.0 {
+            let term = |lower: Key| Self(BTreeMap::from([(lower, waves.clone())]));
+            if let By::Parameter(name) = by
+                && let Some(n) = key.parameters.get(name)
+            {
+                let mut lower = key.clone();
+                lower.parameters.insert(name.to_owned(), n - 1);
+                lower.parameters.retain(|_, n| *n != 0);
+                sum = sum.plus(&term(lower).scaled(&Rational::from(*n)));
+            }
             for (w, n) in key.powers.iter().enumerate().filter(|(_, n)| **n > 0) {
                 let inner = match w.checked_sub(first) {
-                    None if w == v => Self::number(Rational::from(1)),
+                    None if by == By::Variable(w) => Self::number(Rational::from(1)),
                     None => continue,
                     Some(i) => derivative(i, first, functions)?
-                        .times(&functions[i].1.by(v, first, functions)?)?,
+                        .times(&functions[i].1.by(by, first, functions)?)?,
                 };
                 let mut lower = key.clone();
                 lower.powers[w] -= 1;
                 while lower.powers.last() == Some(&0) {
                     lower.powers.pop();
                 }
-                let term = Self(BTreeMap::from([(lower, waves.clone())]));
-                sum = sum.plus(&term.scaled(&Rational::from(*n)).times(&inner)?);
+                sum = sum.plus(&term(lower).scaled(&Rational::from(*n)).times(&inner)?);
             }
         }
         Some(sum)

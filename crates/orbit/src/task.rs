@@ -112,7 +112,7 @@ pub(crate) struct Task {
     pub(crate) rows: Rows,
     pub(crate) value: Rational,
     /// How far the value can be from it.
-    pub(crate) error: Up,
+    pub(crate) error: Rational,
 }
 
 impl Task {
@@ -163,9 +163,9 @@ impl Task {
         }
         let error = match kind {
             Kind::InitialWithin { error, .. } | Kind::FundamentalWithin { error, .. } => {
-                Up::of(error)
+                error.clone()
             }
-            _ => Up::ZERO,
+            _ => Rational::new(),
         };
         Ok((Self { field, rows: Rows { parity, condition }, value, error }, centre))
     }
@@ -175,6 +175,11 @@ impl Task {
         self.rows.condition.is_some()
     }
 
+    /// The condition, its value and the error of that.
+    pub(crate) fn asked(&self) -> Option<(Condition, Rational, Up)> {
+        Some((self.rows.condition?, self.value.clone(), Up::of(&self.error)))
+    }
+
     /// The same with the frequency as it is, and nothing else fixed.
     pub(crate) fn with_frequency_fixed(&self) -> Self {
         Self { rows: Rows { condition: None, ..self.rows }, ..self.clone() }
@@ -182,16 +187,20 @@ impl Task {
 
     /// What the condition misses its value by, exactly rounded.
     pub(crate) fn condition(&self, centre: &Centre) -> Float {
+        Float::with_val(64, self.form(centre) - &self.value)
+    }
+
+    /// The linear form of the condition.
+    pub(crate) fn form(&self, centre: &Centre) -> Rational {
         let unit = Integer::from(1) << centre.bits;
         let mode = |list: &[Integer]| list.get(1).map_or(Integer::new(), |c| Integer::from(c * 2));
         let first = &centre.unknowns[0];
-        let form = match self.rows.condition {
-            None => return Float::new(64),
+        match self.rows.condition {
+            None => Rational::new(),
             Some(Condition::AtZero) => Exact::over_power(first.clone(), centre.bits).at_zero(),
             Some(Condition::Cosine) => Rational::from((mode(&first.re), unit)),
             Some(Condition::Sine) => Rational::from((-mode(&first.im), unit)),
-        };
-        Float::with_val(64, form - &self.value)
+        }
     }
 }
 

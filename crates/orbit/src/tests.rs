@@ -149,7 +149,7 @@ fn a_small_inverse_is_seen_by_z0_alone() {
 fn at_rate_one(rest: Expression, modes: &[f64]) -> (Task, Centre) {
     let rows = Rows { parity: Parity { even: true, ..Parity::default() }, condition: None };
     let modes: Vec<_> = modes.iter().map(|re| Complex::new(*re, 0.0)).collect();
-    let task = Task { field: field(rest), rows, value: Rational::new(), error: Up::ZERO };
+    let task = Task { field: field(rest), rows, value: Rational::new(), error: Rational::new() };
     (task, Centre::from_doubles(72, 1.0, &[modes]))
 }
 

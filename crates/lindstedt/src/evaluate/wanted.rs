@@ -160,14 +160,14 @@ impl Between<'_> {
     /// both may vary, and only one name of the equation.
     pub fn question(&self) -> Result<(Field, Kind), Failure> {
         let wanted = [self.low, self.high].map(|case| case.wanted(FEW_DIGITS).ok());
-        let [Some(low), Some(high)] = wanted else { return Err(Failure::NoStart) };
+        let [Some(low), Some(high)] = wanted else { return Err(Failure::NotOneNumber) };
         if let (Some((sine, _)), Some((other, _))) = (&low.sine, &high.sine) {
             let starts = [&low.angle, &high.angle];
-            let [Some(start), Some(end)] = starts else { return Err(Failure::NoStart) };
+            let [Some(start), Some(end)] = starts else { return Err(Failure::NotOneNumber) };
             return sine.between(start, (other, end));
         }
         let values = [self.low, self.high].map(|case| case.coefficients_of_proof().ok());
-        let [Some(first), Some(last)] = values else { return Err(Failure::NoStart) };
+        let [Some(first), Some(last)] = values else { return Err(Failure::NotOneNumber) };
         let problem = self.low.problem();
         let first_one = problem.time_domain.as_ref().unwrap_or(&problem.equation);
         let holds = |part: &Expression| {
@@ -185,18 +185,18 @@ impl Between<'_> {
         } else {
             low.kind.between(self.ends)
         };
-        let kind = kind.ok_or(Failure::NoStart)?;
+        let kind = kind.ok_or(Failure::NotOneNumber)?;
         match varying[..] {
             [] if low.kind == high.kind || self.name == "amplitude" => Ok((low.field, kind)),
             [name] if low.kind == high.kind => {
                 let same = [&first, &last].map(|values| values.get(name))
                     == [&self.ends[0], &self.ends[1]].map(Some);
                 if !same {
-                    return Err(Failure::NoStart);
+                    return Err(Failure::NotOneNumber);
                 }
                 Ok((Field::between(problem, &first, name, self.ends)?, kind))
             }
-            _ => Err(Failure::NoStart),
+            _ => Err(Failure::NotOneNumber),
         }
     }
 }

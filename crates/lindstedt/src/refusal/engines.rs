@@ -222,7 +222,10 @@ impl Refusal for ImpactError {
 impl Refusal for lindstedt_orbit::Failure {
     fn parts(&self) -> (Kind, &'static str, String) {
         use lindstedt_orbit::Failure;
-        let estimates = "`evaluate` without --prove estimates it; a closed form is certified there";
+        let estimates = "`evaluate` without --prove estimates it";
+        let closed = "`evaluate` without --prove estimates it; a closed form is certified there";
+        let swings =
+            "0 < amplitude < pi over the factor of x in the sine; `simulate` takes any state";
         let (kind, code, hint) = match self {
             Failure::Stopped => (Stopped, "interrupted", ""),
             Failure::NoValue(_) => (Usage, "no-value-set", "--set NAME=VALUE, for example 1/10"),
@@ -233,7 +236,10 @@ impl Refusal for lindstedt_orbit::Failure {
             | Failure::Residual { .. }
             | Failure::NoPeriod { .. }
             | Failure::Jump
-            | Failure::Apart { .. } => (Undecided, "could-not-decide", ""),
+            | Failure::Apart { .. }
+            | Failure::NotOneNumber => (Undecided, "could-not-decide", ""),
+            Failure::NotSmooth(_) => (NoAnswer, "no-proof", closed),
+            Failure::NotSwinging => (NoAnswer, "no-proof", swings),
             _ => (NoAnswer, "no-proof", estimates),
         };
         (kind, code, hint.to_owned())

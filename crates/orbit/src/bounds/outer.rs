@@ -13,7 +13,7 @@ use rug::{Float, Rational};
 pub(crate) struct Outer {
     pub(crate) frequency: Up,
     /// |dx_i/dtau|.
-    slopes: Vec<Up>,
+    pub(super) slopes: Vec<Up>,
     /// The variables.
     pub(crate) at: Vec<Up>,
     /// Their Lipschitz constants.
@@ -49,9 +49,14 @@ impl Frame<'_> {
         Outer { frequency, slopes, at, lipschitz }
     }
 
-    /// Z2(r) >= |A (DF(c) - DF(d))|/|c - d| for c, d in the ball of radius r: the second
-    /// derivatives of the majorant polynomial, and 2 omega d^2/dtau^2, 2 d^2x/dtau^2 of the inertia.
+    /// Z2(r) >= |A (DF(c) - DF(d))|/|c - d| for c, d in the ball of radius r.
     pub(crate) fn z2(&self, bounds: &Contraction, weights: &Weights, r: &Float) -> Up {
+        self.curvatures(bounds, weights, r).into_iter().fold(Up::ZERO, Up::max)
+    }
+
+    /// Its parts, for two functions, for a function and the frequency, for the frequency twice: the second
+    /// derivatives of the majorant polynomial, and 2 omega d^2/dtau^2, 2 d^2x/dtau^2 of the inertia.
+    pub(super) fn curvatures(&self, bounds: &Contraction, weights: &Weights, r: &Float) -> [Up; 3] {
         let (n, nu, free) = (self.field.unknowns(), weights.nu(), self.extra() == 1);
         let outer = self.outer(weights, r);
         let frequency = outer.frequency;
@@ -76,7 +81,7 @@ impl Frame<'_> {
         }
         let both = bounds.inverse * both.into_iter().fold(Up::ZERO, Up::max);
         if !free {
-            return both;
+            return [both, Up::ZERO, Up::ZERO];
         }
         let by_velocity = |k: usize| -> Up {
             self.field.first.iter().map(|row| row[n + k].majorant(&outer.at, nu)).sum()
@@ -87,7 +92,7 @@ impl Frame<'_> {
             bounds.inverse * mixed.fold(Up::ZERO, Up::max) + twice * frequency * bounds.bend;
         let (.., size) = self.centre.norms(nu);
         let square = bounds.inverse * square + twice * bounds.bend * (size + Up::of_float(r));
-        both.max(mixed.over(self.scale)).max(square.over(self.scale).over(self.scale))
+        [both, mixed.over(self.scale), square.over(self.scale).over(self.scale)]
     }
 
     /// A Lipschitz constant of a polynomial in the variables on the ball of radius r.
@@ -123,6 +128,7 @@ impl Frame<'_> {
         let frequency = Up(self.centre.frequency.to_f64().next_up());
         weights.at = x.into_iter().chain(z.into_iter().map(|z| z * frequency)).collect();
         weights.errors = vec![Up::ZERO; weights.at.len()];
+        weights.in_middle = weights.errors.clone();
         let first = weights.at.len();
         for tied in &self.ties {
             let argument = &self.field.functions[weights.at.len() - first].argument;
@@ -131,25 +137,31 @@ impl Frame<'_> {
                 true => uncertain,
                 false => uncertain * Up(2f64.powi(bits as i32)),
             };
-            let uncertain = uncertain + argument.change(&weights.at, &weights.errors, nu);
             let refused = || Failure::NoFunction { argument: tied.size(nu).0 };
-            let error = tied.error(nu, uncertain).ok_or_else(refused)?;
+            let error = |errors: &[Up], more: Up| {
+                let uncertain = more + argument.change(&weights.at, errors, nu);
+                tied.error(nu, uncertain).ok_or_else(refused)
+            };
+            let in_middle = error(&weights.in_middle, Up::ZERO)?;
+            let error = error(&weights.errors, uncertain)?;
             for function in &tied.functions {
                 weights.at.push(function.norm(nu, 0) + from_units(error, bits));
                 weights.errors.push(error);
+                weights.in_middle.push(in_middle);
             }
         }
-        weights.uncertain = self.of_functions(&weights);
         Ok(weights)
     }
 
-    fn of_functions(&self, weights: &Weights) -> [Up; 3] {
+    /// What errors of the functions make uncertain of F (in units of 2^-bits), of DF on one unknown, and of
+    /// dF/domega.
+    pub(super) fn of_functions(&self, weights: &Weights, errors: &[Up]) -> [Up; 3] {
         if self.ties.is_empty() {
             return [Up::ZERO; 3];
         }
         let (n, bits) = (self.field.unknowns(), self.centre.bits);
         let frequency = Up(self.centre.frequency.to_f64().next_up());
-        let of = |p: &Polynomial| p.change(&weights.at, &weights.errors, weights.nu());
+        let of = |p: &Polynomial| p.change(&weights.at, errors, weights.nu());
         let column = |k: usize| -> Up {
             self.field.first.iter().map(|row| of(&row[k]) + of(&row[n + k]) * frequency).sum()
         };

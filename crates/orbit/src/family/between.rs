@@ -1,6 +1,7 @@
 //! A field for all values of one parameter between two numbers.
 
-use crate::read::in_time;
+use crate::read::{in_time, parts};
+use crate::upward::Up;
 use crate::{Failure, Field};
 use lindstedt_equation::{Expression, Problem, Unknown};
 use lindstedt_number::ball::{Ball, Balls};
@@ -52,21 +53,36 @@ impl Field {
         let equations = in_time(problem).into_iter();
         let equations: Vec<Expression> = equations.map(|e| e.substitute(&value)).collect();
         let balls = Balls::new(BITS);
-        let parameter = interval(balls, ends);
-        let middle = middle(ends);
-        let mut known = BTreeMap::from([(name.to_owned(), parameter.clone())]);
-        let clock = Clock { name, middle: &middle };
+        let clock = Clock { name, middle: &middle(ends) };
         let equations = match equations.iter().any(|e| clock.varies_in(e)) {
             false => equations,
-            true => {
-                let ratio = balls.mul_rational(&parameter, &Rational::from(middle.recip_ref()));
-                let inverse = balls.powi(&ratio, -2).filter(|_| !middle.is_zero());
-                let rates = [ratio, inverse.ok_or(Failure::NoStart)?];
-                known.extend(RATES.map(str::to_owned).into_iter().zip(rates));
-                clock.scaled(&equations)?
-            }
+            true if *clock.middle == 0 => return Err(Failure::NotOneNumber),
+            true => clock.scaled(&equations)?.iter().map(|e| clock.in_parameter(e)).collect(),
         };
-        Self::of_equations_within(&equations, &problem.small, &known, BITS)
+        let within = interval(balls, ends);
+        let field = Self::varying(&equations, &problem.small, (name, &within), balls)?;
+        Ok(field.with_ends(ends.each_ref().map(|end| balls.from_rational(end)), &within))
+    }
+
+    /// With where the ends of an interval are in the ball of the parameter.
+    pub(crate) fn with_ends(mut self, ends: [Ball; 2], within: &Ball) -> Self {
+        let Some(varying) = &mut self.varying else { return self };
+        let [Some((middle, half)), Some((first, a)), Some((last, b))] =
+            [within, &ends[0], &ends[1]].map(parts)
+        else {
+            return self;
+        };
+        let half = Rational::from_f64(half.0).unwrap_or_default();
+        let missed = |(end, error): (Rational, Up)| {
+            let error = Rational::from_f64(error.0).unwrap_or_default();
+            let near = Rational::from(&end - &middle).abs() - error;
+            Up::of(&(Rational::from(1) - near / &half))
+        };
+        varying.from = if first <= last { -1.0 } else { 1.0 };
+        if !half.is_zero() {
+            varying.slack = missed((first, a)).max(missed((last, b)));
+        }
+        self
     }
 }
 
@@ -93,6 +109,20 @@ struct Clock<'a> {
 impl Clock<'_> {
     fn parameter(&self) -> Expression {
         Expression::parameter(self.name)
+    }
+
+    /// The rates as powers of the parameter.
+    fn in_parameter(&self, equation: &Expression) -> Expression {
+        let number = |q: Rational| Expression::Number(q);
+        equation.map(&|e| match e {
+            Expression::Parameter(name) if *name == RATES[0] => {
+                Some(number(Rational::from(self.middle.recip_ref())) * self.parameter())
+            }
+            Expression::Parameter(name) if *name == RATES[1] => {
+                Some(number(Rational::from(self.middle.square_ref())) * self.parameter().pow(-2))
+            }
+            _ => None,
+        })
     }
 
     /// Whether the parameter stands in a function of time, outside of what does not turn.

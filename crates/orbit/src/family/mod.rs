@@ -1,9 +1,11 @@
 //! A proved orbit followed in a parameter or in the amplitude, each point proved.
 
 mod between;
+mod branches;
 mod cover;
+mod part;
 
-pub(crate) use between::interval;
+pub use branches::{Branch, branches, prove_each};
 pub use cover::{Cover, cover};
 
 use crate::start::distance;

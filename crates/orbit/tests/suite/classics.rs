@@ -27,10 +27,10 @@ fn show(name: &str, proof: &Proof, seconds: f64) {
         proof.bounds.z2,
         proof.period.midpoint(),
         digits(&proof.period),
-        proof.maximum.midpoint().to_f64(),
-        digits(&proof.maximum),
-        proof.minimum.midpoint().to_f64(),
-        digits(&proof.minimum),
+        proof.motion.maximum.midpoint().to_f64(),
+        digits(&proof.motion.maximum),
+        proof.motion.minimum.midpoint().to_f64(),
+        digits(&proof.motion.minimum),
         proof.exponent.midpoint().to_f64(),
     );
 }
@@ -45,7 +45,7 @@ fn thirty_of(name: &str, field: &Field, kind: &Kind, start: &Start) -> Proof {
     let request = Request { digits: 30, ..Request::default() };
     let proof = prove(field, kind, start, &request).unwrap_or_else(|e| panic!("{name}: {e}"));
     show(name, &proof, clock.elapsed().as_secs_f64());
-    assert!(digits(&proof.period) >= 30.0 && digits(&proof.maximum) >= 30.0, "{name}");
+    assert!(digits(&proof.period) >= 30.0 && digits(&proof.motion.maximum) >= 30.0, "{name}");
     assert!(proof.bounds.z0 + proof.bounds.z1 < 1.0 && proof.unique_within > proof.radius);
     assert!(proof.least_period, "{name}");
     proof
@@ -76,8 +76,13 @@ fn duffing_periods_lie_in_their_balls() {
         let proof = thirty(&format!("Duffing {eps}"), &equation, &kind, &start);
         let period = cubic_period(&1.into(), &eps, &1.into());
         assert!(contains(&proof.period, &period), "{eps}");
-        assert!(proof.maximum.contains(&1.into()) && proof.minimum.contains(&(-1).into()));
-        assert!(proof.displacement.contains(&1.into()) && proof.velocity.contains(&0.into()));
+        assert!(
+            proof.motion.maximum.contains(&1.into()) && proof.motion.minimum.contains(&(-1).into())
+        );
+        assert!(
+            proof.motion.displacement.contains(&1.into())
+                && proof.motion.velocity.contains(&0.into())
+        );
     }
 }
 
@@ -97,7 +102,7 @@ fn swinging_pendulums_lie_in_their_balls() {
         let mean = Float::with_val(BITS, 1).agm(&Float::with_val(BITS, half.cos_ref()));
         let turn = Float::with_val(BITS, Constant::Pi) * 2u32;
         assert!(contains(&proof.period, &(turn / mean)), "{a}");
-        assert!(contains(&proof.maximum, &half.sin()), "{a}");
+        assert!(contains(&proof.motion.maximum, &half.sin()), "{a}");
     }
 }
 
@@ -120,11 +125,21 @@ fn uncertain_coefficients_are_covered() {
         assert!(contains(&proof.period, &period));
     }
     assert!(digits(&proof.period) > 1.5 && digits(&proof.period) < 4.0);
+    // An uncertain damping: the sum of the exponents is its negative.
+    let force = Expression::Time.apply(Function::Cos);
+    let damped = crate::common::equation(2 * x() + Expression::parameter("e") * y() - force);
+    let field = Field::within(&damped, "eps", &values, 64).unwrap();
+    let start = Start { frequency: 1.0, cosines: vec![0.0, 1.0], sines: vec![] };
+    let proof = prove(&field, &Kind::Forced(1), &start, &Request::default()).unwrap();
+    for sign in [-1, 1] {
+        let end = Rational::from((-1, 2)) + error.clone() * sign;
+        assert!(proof.exponent.contains(&end));
+    }
 }
 
 /// Integrates over the proved period: the end must be the start as far as the digits go.
 fn closes(equation: &Expression, proof: &Proof, slack: f64) {
-    let state = [proof.displacement.midpoint(), proof.velocity.midpoint()];
+    let state = [proof.motion.displacement.midpoint(), proof.motion.velocity.midpoint()];
     let state = state.map(|v| Float::with_val(BITS, v));
     let end = integrate(equation, &state, proof.period.midpoint(), 45);
     for (a, b) in end.iter().zip(&state) {

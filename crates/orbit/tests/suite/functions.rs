@@ -41,7 +41,7 @@ fn from_rest(equation: &Expression, a: (i64, i64)) -> Proof {
 
 /// Integrates over the proved period: the end must be the start as far as the digits go.
 fn closes(equation: &Expression, proof: &Proof) {
-    let state = [proof.displacement.midpoint(), proof.velocity.midpoint()];
+    let state = [proof.motion.displacement.midpoint(), proof.motion.velocity.midpoint()];
     let state = state.map(|v| Float::with_val(BITS, v));
     let end = integrate(equation, &state, proof.period.midpoint(), 40);
     for (a, b) in end.iter().zip(&state) {
@@ -105,7 +105,7 @@ fn responses_of_the_driven_pendulum_close() {
     for (cosine, sine) in [(0.36, 0.0), (1.8, 1.6), (-1.5, 1.6)] {
         let start = Start { frequency: 0.0, cosines: vec![0.0, cosine], sines: vec![0.0, sine] };
         let proof = prove(&field(&driven), &Kind::Forced(1), &start, &request()).unwrap();
-        println!("N = {}, max {:.12}", proof.modes, proof.maximum.midpoint().to_f64());
+        println!("N = {}, max {:.12}", proof.modes, proof.motion.maximum.midpoint().to_f64());
         assert!(proofs.iter().all(|other| other.is_separate_from(&proof)));
         closes(&driven, &proof);
         assert!(proof.exponent.contains(&Rational::from((-1, 10))));

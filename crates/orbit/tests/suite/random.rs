@@ -76,7 +76,7 @@ fn check_family(equation: &Expression, a: &Rational, proof: &Proof) {
     // Half a period is the other extremum.
     let half = Float::with_val(BITS, &period / 2u32);
     let [other, _] = integrate(equation, &state, &half, JUDGE);
-    let ends = [&proof.minimum, &proof.maximum];
+    let ends = [&proof.motion.minimum, &proof.motion.maximum];
     assert!(ends.iter().any(|end| holds(end, &other, 1e-26)), "{equation:?} {a}: {other}");
     let (x, v) = proof.at(&Rational::from((7, 3)));
     let end = integrate(equation, &state, &Float::with_val(BITS, Rational::from((7, 3))), JUDGE);
@@ -85,7 +85,7 @@ fn check_family(equation: &Expression, a: &Rational, proof: &Proof) {
 
 fn check_cycle(equation: &Expression, proof: &Proof) {
     // From the proved maximum the flow itself converges to the cycle.
-    let mut state = [Float::with_val(BITS, proof.maximum.midpoint()), Float::new(BITS)];
+    let mut state = [Float::with_val(BITS, proof.motion.maximum.midpoint()), Float::new(BITS)];
     let mut period = Float::with_val(BITS, proof.period.midpoint());
     for _ in 0..3 {
         let (time, top) = turn(equation, &state, &period);
@@ -96,7 +96,7 @@ fn check_cycle(equation: &Expression, proof: &Proof) {
     let multiplier = (proof.exponent.midpoint().to_f64() * period.to_f64()).exp();
     let slack = 1e-26 + 1e-16 * multiplier.powi(2);
     assert!(holds(&proof.period, &period, slack), "{equation:?}: {period}");
-    assert!(holds(&proof.maximum, &state[0], slack), "{equation:?}: {}", state[0]);
+    assert!(holds(&proof.motion.maximum, &state[0], slack), "{equation:?}: {}", state[0]);
 }
 
 /// (proved, tried).

@@ -2,7 +2,9 @@
 
 use crate::common::{cosine, digits, q};
 use lindstedt_equation::Expression;
-use lindstedt_orbit::{Failure, Field, Kind, Proof, Request, Stability, guesses_all, prove_all};
+use lindstedt_orbit::{
+    Failure, Field, Kind, Proof, Request, Stability, guesses_all, prove_all, prove_each,
+};
 use lindstedt_simulate::{Digits, Integrator, Model, Parameters, Real, Settings, go_on};
 use rug::float::Constant;
 use rug::{Float, Rational};
@@ -149,9 +151,28 @@ fn forced_pendulum_on_a_spring_closes() {
         4 * x(1) + q(1, 20) * v(1) - q(3, 2) * q(1, 10) * x(0).pow(2) - force,
     ];
     let proofs = orbits("pendulum on a spring", &rests, &Kind::Forced(2));
-    let swinging = proofs.iter().find(|p| p.maximum.is_positive()).unwrap();
+    let swinging = proofs.iter().find(|p| p.motion.maximum.is_positive()).unwrap();
     assert!(swinging.parity.odd);
     assert!(swinging.exponent.contains(&Rational::from((-1, 10))));
+}
+
+/// Two equal Duffing oscillators with a spring between and one force on both: in phase they are one, with its
+/// three responses, of which one is unstable.
+#[test]
+fn unstable_responses_of_two_unknowns_are_found() {
+    let one = |i: usize| {
+        let force = q(3, 10) * cosine(q(13, 10) * Expression::Time);
+        let own = q(1, 10) * v(i) + x(i) + q(1, 2) * x(i).pow(3);
+        own + 2 * (x(i) - x(1 - i)) - force
+    };
+    let (field, kind) = (system(&[one(0), one(1)]), Kind::Forced(1));
+    let guesses = guesses_all(&field, &kind, &Default::default()).unwrap();
+    let proofs = prove_each(&field, &kind, Vec::new(), &guesses, &Request::default()).unwrap();
+    let maxima: Vec<f64> = proofs.iter().map(|p| p.motion.maximum.midpoint().to_f64()).collect();
+    // Those of one oscillator.
+    for known in [0.489_414, 1.096_356, 1.516_913] {
+        assert!(maxima.iter().any(|m| (m - known).abs() < 1e-6), "{maxima:?}");
+    }
 }
 
 #[test]

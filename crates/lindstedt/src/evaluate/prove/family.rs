@@ -3,16 +3,13 @@
 //! Every point is proved by itself, from a guess extrapolated from its neighbours. All values between two
 //! neighbours are proved where a test with the whole interval for a coefficient succeeds ([`cover`]).
 
-use super::MODES_OF_A_GUESS;
 use super::orbit::ProvedOrbit;
 use crate::evaluate::Evaluate;
 use crate::evaluate::wanted::{Between as Uniform, Wanted};
 use crate::grid::Axis;
 use crate::refusal::Refused;
 use crate::{Answer, Error, Exact, Number, Oscillator, Progress, Remark, Standing, Status, Work};
-use lindstedt_orbit::{
-    Cover, Failure, Kind, Proof, Request, Start, cover, family_all, guesses_all, prove_all,
-};
+use lindstedt_orbit::{Branch, Cover, Failure, Proof, Request, branches, cover};
 use rayon::prelude::*;
 use rug::Rational;
 use serde::Serialize;
@@ -80,20 +77,12 @@ pub struct EndOfBranch {
     pub why: String,
 }
 
-/// A branch by the indices of its values.
-struct Found {
-    first: usize,
-    proofs: Vec<Proof>,
-    ends: Vec<(usize, Failure)>,
-}
-
 /// The cases at all values.
 struct Family<'a> {
     oscillator: &'a Oscillator,
     axis: &'a Axis,
     values: Vec<Rational>,
     request: Request,
-    found: Vec<Found>,
 }
 
 impl Oscillator {
@@ -132,17 +121,13 @@ impl Oscillator {
         })?;
         let request =
             Request { digits: work.digits, stop: work.stop.clone(), ..Request::default() };
-        let (oscillator, found) = (self, Vec::new());
-        let mut family = Family { oscillator, axis: &axis, values, request, found };
+        let family = Family { oscillator: self, axis: &axis, values, request };
         let mut remarks = self.remarks().to_vec();
-        family.search(question, work)?;
-        let branches: Vec<ProvedBranch> = family
-            .found
-            .iter()
-            .map(|found| family.branch(found, work))
-            .collect::<Result<_, _>>()?;
+        let found = family.search(question, work)?;
+        let branches = found.iter().map(|branch| family.branch(branch, work));
+        let branches: Vec<ProvedBranch> = branches.collect::<Result<_, _>>()?;
         let proved: BTreeSet<usize> =
-            family.found.iter().flat_map(|f| f.first..f.first + f.proofs.len()).collect();
+            found.iter().flat_map(|f| f.first..f.first + f.proofs.len()).collect();
         let without = family.values.len() - proved.len();
         let standing = match () {
             () if work.stop.asked() => Standing::Stopped { done: proved.len() },
@@ -173,94 +158,25 @@ impl Family<'_> {
         self.case(&self.values[i])?.wanted(self.request.digits)
     }
 
-    /// All branches: from the first value with an orbit, then from where others can begin.
-    fn search(&mut self, question: &Evaluate, work: &Work) -> Result<(), Error> {
-        let last = self.values.len() - 1;
-        let mut refused = None;
-        for i in 0..=last {
+    fn search(&self, question: &Evaluate, work: &Work) -> Result<Vec<Branch>, Error> {
+        let orbits = |i: usize| -> Result<Vec<Proof>, Error> {
             let case = self.case(&self.values[i])?;
             let wanted = case.wanted(self.request.digits)?;
-            match case.all_or_first(&wanted, question, work)?.1 {
-                Ok((first, others)) => {
-                    for proof in std::iter::once(first).chain(others) {
-                        self.follow(i, &proof.starts())?;
-                    }
-                    break;
-                }
-                Err(failure) => refused = refused.or(Some(failure)),
-            }
-        }
-        if let (true, Some(failure)) = (self.found.is_empty(), refused) {
-            return Err(failure.into());
-        }
-        let mut seen = BTreeSet::new();
-        let mut waiting = vec![last];
-        while let Some(i) = waiting.pop() {
-            // Each end of a branch is a place where another one may end.
-            waiting
-                .extend(self.found.iter().flat_map(Found::ends_at).filter(|i| !seen.contains(i)));
-            if seen.insert(i) && !work.stop.asked() {
-                self.others(i)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Branches through orbits at a value that are on none.
-    fn others(&mut self, i: usize) -> Result<(), Error> {
-        let wanted = self.wanted(i)?;
-        if !(wanted.is_forced() || wanted.kind == Kind::LimitCycle) {
-            return Ok(());
-        }
-        let few = Request { modes_limit: MODES_OF_A_GUESS, ..self.request.clone() };
-        for starts in guesses_all(&wanted.field, &wanted.kind, &few.stop).unwrap_or_default() {
-            let Ok(proof) = prove_all(&wanted.field, &wanted.kind, &starts, &few) else { continue };
-            let known = self.found.iter().filter_map(|found| found.at(i));
-            if known.into_iter().all(|other| other.is_separate_from(&proof)) {
-                self.follow(i, &proof.starts())?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The branch through an orbit at a value, to both sides.
-    fn follow(&mut self, i: usize, starts: &[Start]) -> Result<(), Error> {
-        let up: Vec<usize> = (i..self.values.len()).collect();
-        let down: Vec<usize> = (0..=i).rev().collect();
-        let (mut ends, mut sides) = (Vec::new(), Vec::new());
-        for side in [down, up] {
-            let values: Vec<Rational> = side.iter().map(|i| self.values[*i].clone()).collect();
-            let problem = |value: &Rational| {
-                let wanted = self.case(value).and_then(|case| case.wanted(self.request.digits));
-                let wanted = wanted.map_err(|error| match error {
-                    Error::Orbit(failure) => failure,
-                    _ => Failure::NoStart,
-                })?;
-                Ok((wanted.field, wanted.kind))
-            };
-            let members = family_all(&values, problem, starts, &self.request)?;
-            let mut proofs = Vec::new();
-            for (i, member) in side.into_iter().zip(members) {
-                match member.proof {
-                    Ok(proof) => proofs.push(proof),
-                    Err(failure) => ends.push((i, failure)),
-                }
-            }
-            sides.push(proofs);
-        }
-        let up = sides.pop().unwrap_or_default();
-        let mut proofs = sides.pop().unwrap_or_default();
-        let Some(first) = (i + 1).checked_sub(proofs.len().max(1)) else { return Ok(()) };
-        proofs.reverse();
-        proofs.extend(up.into_iter().skip(usize::from(!proofs.is_empty())));
-        if !proofs.is_empty() {
-            self.found.push(Found { first, proofs, ends });
-        }
-        Ok(())
+            Ok(case.all_or_first(&wanted, question, work)?.1?)
+        };
+        let problem = |value: &Rational| {
+            let wanted = self.case(value).and_then(|case| case.wanted(self.request.digits));
+            let wanted = wanted.map_err(|error| match error {
+                Error::Orbit(failure) => failure,
+                _ => Failure::NoStart,
+            })?;
+            Ok((wanted.field, wanted.kind))
+        };
+        branches(&self.values, problem, orbits, &self.request)
     }
 
     /// A branch as data.
-    fn branch(&self, found: &Found, work: &Work) -> Result<ProvedBranch, Error> {
+    fn branch(&self, found: &Branch, work: &Work) -> Result<ProvedBranch, Error> {
         let last = found.proofs.len() - 1;
         let names = |k: usize| self.oscillator.problem().unknown(k);
         let point = |k: usize| {
@@ -288,7 +204,7 @@ impl Family<'_> {
         let ends = [self.values[i].clone(), self.values[i + 1].clone()];
         let problem = |part: &[Rational; 2]| {
             let cases = [self.case(&part[0]), self.case(&part[1])];
-            let [Ok(low), Ok(high)] = cases else { return Err(Failure::NoStart) };
+            let [Ok(low), Ok(high)] = cases else { return Err(Failure::NotOneNumber) };
             Uniform { name: &self.axis.name, ends: part, low: &low, high: &high }.question()
         };
         let Cover { parts, frequency, failure, .. } = cover(&ends, proofs, problem, &self.request);
@@ -300,17 +216,5 @@ impl Family<'_> {
             frequency: frequency.and_then(number),
             why: failure.map(|failure| failure.to_string()),
         }
-    }
-}
-
-impl Found {
-    fn at(&self, i: usize) -> Option<&Proof> {
-        self.proofs.get(i.checked_sub(self.first)?)
-    }
-
-    /// The values at which it ends within those asked for.
-    fn ends_at(&self) -> Vec<usize> {
-        let last = self.first + self.proofs.len() - 1;
-        self.ends.iter().map(|(i, _)| if *i > last { last } else { self.first }).collect()
     }
 }

@@ -13,7 +13,7 @@ use crate::{Answer, Error, Oscillator, Remark, Standing, Work};
 pub use family::{Between, EndOfBranch, ProvedBranch, ProvedFamily, ProvedMember};
 use lindstedt_algebra::Stop;
 use lindstedt_orbit::{
-    Failure, Kind, Proof, Request, Start, guesses, guesses_all, prove, prove_all,
+    Failure, Kind, Proof, Request, Start, guesses, guesses_all, prove, prove_each,
 };
 pub use orbit::{Bounds, Expansion, ProvedOrbit, ProvedState, UnknownOrbit, UnknownState, Verdict};
 use std::time::Instant;
@@ -24,8 +24,8 @@ const GUESSED: usize = 11;
 /// The largest mode of the inverse from a guess of the second rank.
 const MODES_OF_A_GUESS: usize = 120;
 
-/// An orbit and what else was found, or why there is none.
-type Outcome = Result<(Proof, Vec<Proof>), Failure>;
+/// The orbits, the first one asked for, or why there is none.
+type Outcome = Result<Vec<Proof>, Failure>;
 
 /// Digits of the expansion's sum for it.
 const DIGITS_OF_A_GUESS: u32 = 16;
@@ -72,8 +72,7 @@ impl Oscillator {
         }
         let order = found.as_ref().map(|found| found.order);
         let (value, standing) = match outcome {
-            Ok((first, others)) => {
-                let all: Vec<Proof> = std::iter::once(first).chain(others).collect();
+            Ok(all) => {
                 let of_sum = case.of_the_sum(&all, &wanted, question, work);
                 let digits = work.printed_digits();
                 let names = |k: usize| self.problem().unknown(k);
@@ -110,7 +109,12 @@ impl Oscillator {
     ) -> Result<(Option<Evaluation>, Outcome), Error> {
         match self.problem().others.is_empty() {
             true => self.attempt(wanted, question, work),
-            false => Ok((None, all_of(wanted, &self.request(work)))),
+            false => {
+                let request = self.request(work);
+                let (field, kind) = (&wanted.field, &wanted.kind);
+                let guesses = guesses_all(field, kind, &request.stop)?;
+                Ok((None, prove_each(field, kind, Vec::new(), &guesses, &request)))
+            }
         }
     }
 
@@ -212,51 +216,18 @@ impl Oscillator {
 /// A response, or a limit cycle where more than one is likely, with the others that are proved from the guesses
 /// of harmonic balance, the smallest first; there may be more.
 fn with_others(wanted: &Wanted, first: Result<Proof, Failure>, request: &Request) -> Outcome {
-    let mut proofs: Vec<Proof> = Vec::new();
-    let several = wanted.is_forced() || wanted.kind == Kind::LimitCycle;
-    let starts = match several {
-        true => guesses(&wanted.field, &wanted.kind, &request.stop)?,
-        false => Vec::new(),
-    };
-    let failure = match first {
-        Ok(proof) if starts.len() < 2 => return Ok((proof, proofs)),
-        Ok(proof) => {
-            proofs.push(proof);
-            Failure::NoStart
-        }
-        Err(failure) if wanted.is_forced() => failure,
+    let (field, kind) = (&wanted.field, &wanted.kind);
+    let known = match first {
+        Ok(proof) => vec![proof],
+        Err(_) if wanted.is_forced() => Vec::new(),
         Err(failure) => return Err(failure),
     };
-    let tried = starts.iter().map(|start| prove(&wanted.field, &wanted.kind, start, request));
-    kept_apart(proofs, failure, tried)
-}
-
-/// The proofs there are and those of the tries that speak of other orbits; the last failure where none is
-/// there.
-fn kept_apart(
-    mut proofs: Vec<Proof>,
-    mut failure: Failure,
-    tried: impl Iterator<Item = Result<Proof, Failure>>,
-) -> Outcome {
-    for outcome in tried {
-        match outcome {
-            Ok(proof) if proofs.iter().all(|other| other.is_separate_from(&proof)) => {
-                proofs.push(proof);
-            }
-            Ok(_) => {}
-            Err(Failure::Stopped) => return Err(Failure::Stopped),
-            Err(other) => failure = other,
-        }
+    if !(wanted.is_forced() || wanted.kind == Kind::LimitCycle) {
+        return Ok(known);
     }
-    let mut proofs = proofs.into_iter();
-    let first = proofs.next().ok_or(failure)?;
-    Ok((first, proofs.collect()))
-}
-
-/// Of several unknowns: the orbits that are proved from all guesses.
-fn all_of(wanted: &Wanted, request: &Request) -> Outcome {
-    let (field, kind) = (&wanted.field, &wanted.kind);
-    let all = guesses_all(field, kind, &request.stop)?;
-    let tried = all.iter().map(|starts| prove_all(field, kind, starts, request));
-    kept_apart(Vec::new(), Failure::NoStart, tried)
+    let starts = guesses_all(field, kind, &request.stop)?;
+    match known.len() == 1 && starts.len() < 2 {
+        true => Ok(known),
+        false => prove_each(field, kind, known, &starts, request),
+    }
 }

@@ -216,9 +216,10 @@ impl ProvedOrbit {
         let planar = proof.further.is_empty();
         let exponent = || number(&proof.exponent);
         let sum = forced || cycle && !planar;
-        let state = wanted.state((proof.displacement.clone(), proof.velocity.clone()));
+        let state =
+            wanted.state((proof.motion.displacement.clone(), proof.motion.velocity.clone()));
         let (amplitude, velocity) = state.unzip();
-        let zero = || Balls::new(proof.maximum.midpoint().prec()).zero();
+        let zero = || Balls::new(proof.motion.maximum.midpoint().prec()).zero();
         let extremum = |u: &Ball| Some(wanted.state((u.clone(), zero()))?.0);
         let product = Some(proof.multiplier_product()).filter(|_| sum);
         let known = |ball: Option<Ball>| ball.as_ref().and_then(number);
@@ -227,8 +228,8 @@ impl ProvedOrbit {
             frequency: number(&proof.frequency),
             amplitude: known(amplitude),
             velocity: known(velocity),
-            maximum: known(extremum(&proof.maximum)),
-            minimum: known(extremum(&proof.minimum)),
+            maximum: known(extremum(&proof.motion.maximum)),
+            minimum: known(extremum(&proof.motion.minimum)),
             unknowns: unknowns.collect(),
             floquet_exponent: exponent().filter(|_| cycle && planar).into_iter().collect(),
             exponent_sum: exponent().filter(|_| sum),
