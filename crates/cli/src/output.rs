@@ -3,7 +3,7 @@
 use crate::failure::{FILE, Failure};
 use same_file::is_same_file;
 use std::fs::{File, OpenOptions, Permissions, metadata};
-use std::io::{Error, ErrorKind, Result, Write};
+use std::io::{BufWriter, Error, ErrorKind, IntoInnerError, Result, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -28,16 +28,29 @@ pub fn write(out: Option<&Path>, text: &str) -> std::result::Result<(), Failure>
 
 /// Writes a file beside the one that a name leads to, and gives it the name when its last byte is on the disk.
 pub fn write_file(path: &Path, text: &str) -> std::result::Result<(), Failure> {
-    let written = || -> Result<()> {
+    write_with(path, |to| to.write_all(text.as_bytes()).map(|()| true)).map(drop)
+}
+
+/// The same for what is written piece by piece. What was there stays, too, where `write` says that there is nothing
+/// to be kept; whether there was.
+pub fn write_with(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> Result<bool>,
+) -> std::result::Result<bool, Failure> {
+    let written = || -> Result<bool> {
         let target = target(path)?;
         // A device or a pipe has no name to take over.
         if metadata(&target).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
-            return OpenOptions::new().write(true).open(&target)?.write_all(text.as_bytes());
+            let mut to = BufWriter::new(OpenOptions::new().write(true).open(&target)?);
+            return write(&mut to).and_then(|kept| to.flush().map(|()| kept));
         }
-        let mut file = beside(&target)?;
-        file.write_all(text.as_bytes())?;
+        let mut to = BufWriter::new(beside(&target)?);
+        if !write(&mut to)? {
+            return Ok(false);
+        }
+        let file = to.into_inner().map_err(IntoInnerError::into_error)?;
         file.as_file().sync_all()?;
-        file.persist(&target).map(drop).map_err(|error| error.error)
+        file.persist(&target).map(|_| true).map_err(|error| error.error)
     };
     written().map_err(|error| trouble(&path.display().to_string(), &error))
 }

@@ -15,6 +15,10 @@ use lindstedt_number::complex::Complex;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// So many points are shared out at a time, and as many rows at least.
+const BLOCK: usize = 1 << 16;
+const FEWEST_ROWS: usize = 64;
+
 /// Equidistant values of one parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
@@ -98,23 +102,24 @@ impl Point {
     };
 }
 
-/// A chart: the points row by row.
+/// A chart: the points row by row; of one that was stopped the first rows.
 #[derive(Clone, Debug)]
 pub struct Chart {
     /// What was computed.
     pub plan: Plan,
-    /// `rows.count` rows of `columns.count` points.
+    /// `rows.count` rows of `columns.count` points, fewer where the work was stopped.
     pub points: Vec<Point>,
 }
 
 /// Computes a chart on rayon's threads. `observer` receives the number of finished rows, after each
-/// and now and then within a long one, and stops the work by returning false.
+/// and now and then within a long one, and stops the work by returning false: then the rows up to the first that is
+/// not finished are kept.
 ///
 /// Cost per point: a prediction of order n some n^2 products, and for variant E the orbit of the predicted flow; an
 /// exact verdict some 50 evaluations of G. Estimated: doubles without error bounds.
 ///
 /// # Errors
-/// [`ImpactError::BadAxes`], [`ImpactError::OrderZero`], [`ImpactError::Cancelled`].
+/// [`ImpactError::BadAxes`], [`ImpactError::OrderZero`].
 pub fn chart(
     base: &Parameters<f64>,
     plan: &Plan,
@@ -129,10 +134,13 @@ pub fn chart(
         return Err(ImpactError::OrderZero);
     }
     let mut points = vec![Point::EMPTY; width.checked_mul(height).ok_or(ImpactError::BadAxes)?];
-    let done = AtomicUsize::new(0);
-    points.par_chunks_mut(width).enumerate().try_for_each_init(
+    let (done, mut whole) = (AtomicUsize::new(0), vec![false; height]);
+    // Blocks of rows one after the other: what is finished when the work is stopped begins with the first row.
+    let block = (BLOCK / width).max(FEWEST_ROWS);
+    let rows = points.par_chunks_mut(width).zip(&mut whole).enumerate().by_uniform_blocks(block);
+    let stopped = rows.try_for_each_init(
         || Scratch::new(order),
-        |scratch, (row, line)| {
+        |scratch, (row, (line, whole))| {
             let mut parameters = base.clone();
             plan.rows.set(row, &mut parameters);
             let mut seeds = Vec::new();
@@ -145,13 +153,16 @@ pub fn chart(
                 *point = evaluate(&parameters, &fixed, plan, scratch, &mut seeds);
                 // A long row is not waited for.
                 if column % 256 == 255 && !observer(done.load(Ordering::Relaxed)) {
-                    return Err(ImpactError::Cancelled);
+                    return None;
                 }
             }
-            let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if observer(finished) { Ok(()) } else { Err(ImpactError::Cancelled) }
+            *whole = true;
+            observer(done.fetch_add(1, Ordering::Relaxed) + 1).then_some(())
         },
-    )?;
+    );
+    if stopped.is_none() {
+        points.truncate(width * whole.iter().take_while(|row| **row).count());
+    }
     Ok(Chart { plan: *plan, points })
 }
 
@@ -280,12 +291,20 @@ impl Chart {
         }
         self.points.get(row.checked_mul(self.plan.columns.count)? + column)
     }
-    /// Why the points that [`Self::agreement`] does not count are left out, where both prediction
-    /// and truth were asked for.
+    /// Counts of agreement between prediction and exact verdict.
     #[must_use]
-    pub fn left_out(&self) -> LeftOut {
-        let mut left_out = LeftOut::default();
-        for point in &self.points {
+    pub fn agreement(&self) -> Agreement {
+        Agreement::of(&self.points)
+    }
+}
+
+impl LeftOut {
+    /// Why the points that an [`Agreement`] does not count are left out, where both prediction and truth were asked
+    /// for.
+    #[must_use]
+    pub fn of<'p>(points: impl IntoIterator<Item = &'p Point>) -> Self {
+        let mut left_out = Self::default();
+        for point in points {
             match (point.predicted, point.exact) {
                 (_, None) if point.penetrates => left_out.penetrating += 1,
                 (_, None) => left_out.no_orbit += 1,
@@ -298,11 +317,14 @@ impl Chart {
         }
         left_out
     }
-    /// Counts of agreement between prediction and exact verdict.
+}
+
+impl Agreement {
+    /// Of some points.
     #[must_use]
-    pub fn agreement(&self) -> Agreement {
-        let mut agreement = Agreement::default();
-        for point in &self.points {
+    pub fn of<'p>(points: impl IntoIterator<Item = &'p Point>) -> Self {
+        let mut agreement = Self::default();
+        for point in points {
             match (point.predicted, point.exact) {
                 (Some(Verdict::Neutral), _) | (_, Some(Verdict::Neutral)) => continue,
                 (Some(predicted), Some(exact)) => {

@@ -5,7 +5,7 @@ use crate::characteristic::{Characteristic, Kick, check};
 use crate::convergence::{Convergence, convergence};
 use crate::equivalent::{Drive, equivalent_orbit};
 use crate::error::ImpactError;
-use crate::flight::{Clearance, clearance};
+use crate::flight::{Clearance, clearance_watched};
 use crate::flow::{Flow, rates};
 use crate::kick::{Growth, watched_growth};
 use crate::map::Verdict;
@@ -188,7 +188,7 @@ pub fn stability_watched<S: Real>(
         convergence: convergence(&midpoint, &doubles),
         residual: flow.as_ref().ok().map(|flow| flow.residual(parameters)),
         flow: flow.ok(),
-        orbit: found.and_then(|orbit| orbit_report(parameters, orbit)),
+        orbit: found.and_then(|orbit| orbit_report(parameters, orbit, stop)),
     };
     // What was stopped on the way looks undecided.
     check(stop)?;
@@ -198,12 +198,13 @@ pub fn stability_watched<S: Real>(
 fn orbit_report<S: Real>(
     parameters: &Parameters<S>,
     orbit: Orbit<S>,
+    stop: &Stop,
 ) -> Result<OrbitReport<S>, ImpactError> {
     let form = Flow::uncontrolled(parameters)
         .and_then(|flow| equivalent_orbit(&flow, &Drive::new(parameters)?))
         .ok()
         .map(|form| FormReport { phase: form.phase_angle(), cosine: form.cosine, sine: form.sine });
-    let clearance = clearance(parameters, &orbit);
+    let clearance = clearance_watched(parameters, &orbit, stop);
     let penetrates = match &clearance {
         Ok(None) => Some(false),
         Ok(Some(found)) => found.margin.sign().and_then(|sign| match sign {

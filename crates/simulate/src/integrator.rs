@@ -259,7 +259,12 @@ impl<'s, R: Real> Integrator<'s, R> {
         target: &Clock<R::Element>,
         observer: &mut Observer<'_, R>,
     ) -> Result<ControlFlow<()>, SimulateError> {
-        let limit = self.expand()?;
+        let order = self.series.order;
+        let limit = match self.expand_while(order, &mut || observer(&Report::Busy)) {
+            // The state is that at the end of the step before.
+            Err(SimulateError::Stopped) => return Ok(ControlFlow::Break(())),
+            found => found?,
+        };
         if let Some(hit) = self.hit_at_start() {
             // Events without a step between them: a sequence that does not end is no motion.
             self.stalled += 1;
@@ -421,6 +426,14 @@ impl<'s, R: Real> Integrator<'s, R> {
     }
 
     pub(crate) fn expand_to(&mut self, levels: usize) -> Result<Option<R::Element>, SimulateError> {
+        self.expand_while(levels, &mut go_on)
+    }
+
+    fn expand_while(
+        &mut self,
+        levels: usize,
+        tick: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Option<R::Element>, SimulateError> {
         let system = self.system;
         for (state, value) in self.state.iter().enumerate() {
             system.real.set(self.series.rows.at_mut(state, 0), value);
@@ -433,7 +446,7 @@ impl<'s, R: Real> Integrator<'s, R> {
                 return Err(SimulateError::StepTooSmall { time: self.seconds() });
             }
         }
-        self.series.expand(system, &self.clock.high, &self.phase, levels)?;
+        self.series.expand(system, &self.clock.high, &self.phase, levels, tick)?;
         Ok(limit)
     }
 

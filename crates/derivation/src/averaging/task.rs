@@ -131,7 +131,8 @@ impl<'a> Task<'a> {
             ring.one(),
             forcing.clone(),
             times.iter().map(waiting).collect(),
-        );
+        )
+        .with_stop(self.settings.stop.clone());
         let graph = self.compiled(&provisional, values)?;
         let linear = linear_part(&provisional, &graph)?;
         let constants = provisional.constants();

@@ -462,7 +462,13 @@ fn a_chart_equals_its_points() {
         }
     }
     let stopped = chart(&base, &plan, &|_| false);
-    assert_eq!(stopped.unwrap_err(), ImpactError::Cancelled);
+    assert!(stopped.unwrap().points.is_empty());
+    // Stopped behind so many rows, whole rows from the first on are there, and are the same.
+    let rows = AtomicUsize::new(0);
+    let some = chart(&base, &plan, &|_| rows.fetch_add(1, Ordering::Relaxed) < 3).unwrap();
+    assert!(some.points.len() < 63 && some.points.len().is_multiple_of(9));
+    let same = |(a, b): (&Point, &Point)| (a.predicted, a.exact) == (b.predicted, b.exact);
+    assert!(some.points.iter().zip(&found.points).all(same));
     let twice = Plan { rows: plan.columns, ..plan };
     assert_eq!(chart(&base, &twice, &|_| true).unwrap_err(), ImpactError::BadAxes);
 }

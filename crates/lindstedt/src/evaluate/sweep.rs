@@ -1,7 +1,7 @@
 //! Period and frequency over one or two swept parameters.
 
 use super::Evaluate;
-use crate::grid::{Axis, Grid};
+use crate::grid::{Axis, Grid, check_room};
 use crate::{Answer, Error, Exact, Number, Oscillator, Remark, Work};
 use serde::{Serialize, Serializer};
 use std::time::Instant;
@@ -57,6 +57,8 @@ impl Oscillator {
         work: &Work,
     ) -> Result<Answer<EvaluationSweep>, Error> {
         let start = Instant::now();
+        let points = rows.as_ref().map_or(1, |rows| rows.values.len()) * columns.values.len();
+        check_room(points, size_of::<Option<Result<SweptPeriod, Error>>>(), work)?;
         let grid: Grid<Result<_, Error>> =
             Grid::of_cases(self, columns, rows, work, |case, work| {
                 let found = case.settled()?.0.period(question, work)?;
