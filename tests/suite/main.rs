@@ -9,6 +9,7 @@ mod evaluate;
 mod extremes;
 mod facade;
 mod interruption;
+mod lateness;
 mod laws;
 mod melnikov;
 mod module_circles;

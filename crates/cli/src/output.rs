@@ -5,8 +5,11 @@ use same_file::is_same_file;
 use std::fs::{File, OpenOptions, Permissions, metadata};
 use std::io::{BufWriter, Error, ErrorKind, IntoInnerError, Result, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 use tempfile::NamedTempFile;
 
+/// A younger file may be one that is about to be locked.
+const STALE: Duration = Duration::from_secs(60);
 /// Links that are followed at most.
 const MOST_LINKS: usize = 40;
 
@@ -70,8 +73,11 @@ pub fn check_file(path: &Path) -> std::result::Result<(), Failure> {
 
 /// An empty file in the folder of another one, with its permissions, if that one may be written.
 fn beside(target: &Path) -> Result<NamedTempFile> {
+    let folder = folder(target);
+    let prefix = prefix(target);
+    remove_stale(folder, &prefix);
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".lindstedt-");
+    builder.prefix(&prefix);
     #[cfg(unix)]
     let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let there: Option<Permissions> = match OpenOptions::new().append(true).open(target) {
@@ -79,11 +85,37 @@ fn beside(target: &Path) -> Result<NamedTempFile> {
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(error),
     };
-    let file = builder.tempfile_in(folder(target))?;
+    let file = builder.tempfile_in(folder)?;
+    // Whoever looks for stale files sees that this one is not.
+    let _ = file.as_file().try_lock();
     if let Some(permissions) = there {
         file.as_file().set_permissions(permissions)?;
     }
     Ok(file)
+}
+
+/// What the name of a file begins with while it is written.
+fn prefix(target: &Path) -> String {
+    let name = target.file_name().unwrap_or_default();
+    format!(".lindstedt-{:08x}-", crc32fast::hash(name.as_encoded_bytes()))
+}
+
+/// Removes what a run left that was killed while it wrote the same file: nobody holds it.
+fn remove_stale(folder: &Path, prefix: &str) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let named = |name: &std::ffi::OsStr| name.to_string_lossy().starts_with(prefix);
+        let old = |file: &File| {
+            let modified = file.metadata().and_then(|found| found.modified());
+            modified.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > STALE))
+        };
+        if named(&entry.file_name())
+            && File::open(entry.path()).is_ok_and(|file| old(&file) && file.try_lock().is_ok())
+        {
+            // What cannot be removed does no harm.
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
 }
 
 fn folder(path: &Path) -> &Path {

@@ -170,11 +170,13 @@ pub fn stability_watched<S: Real>(
     let midpoint = parameters.to_f64();
     let flow = predicted_flow(parameters, &rates, request.order);
     let found = orbit(parameters);
+    check(stop)?;
     let map = found.as_ref().ok().map(|orbit| uncontrolled_map(parameters, orbit));
     let kbm = flow.clone().and_then(|flow| {
         let prediction = predict(request.variant, parameters, &flow, found.as_ref().ok())?;
         Ok(PredictionReport { verdict: prediction.map.verdict(), prediction })
     });
+    check(stop)?;
     let aware =
         |orbit: &Orbit<S>| watched_prediction(parameters, orbit, request.kick, request.order, stop);
     let report = StabilityReport {

@@ -127,11 +127,11 @@ fn grid_of(digits: &[u32]) -> Grid {
 
 #[test]
 fn orbits() {
-    grid_of(&[1, 16]).finish("orbits");
+    grid_of(&[1, 16]).finish("orbits", 62);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn orbits_at_many_digits() {
-    grid_of(&[3, 100, 300]).finish("orbits");
+    grid_of(&[3, 100, 300]).finish("orbits", 70);
 }

@@ -258,7 +258,10 @@ impl<'a> Task<'a> {
     ) -> Result<Option<Averaging>, Error> {
         let Some(over) = self.over_rationals(observer)? else { return Ok(None) };
         let number = |q: &Rational| Ok(Coefficient::Number(rational(q, self.settings.digits)?));
-        let cycles = cycles(&over.frequency, &over.expansion, self.settings.digits)?;
+        let cycles = match self.settings.stop.asked() {
+            true => None,
+            false => cycles(&over.frequency, &over.expansion, self.settings.digits)?,
+        };
         Ok(Some(Averaging { cycles, ..self.finish(&over, true, &number)? }))
     }
 

@@ -4,7 +4,7 @@ use crate::binding::FORMAL;
 use crate::constants::sine_sum;
 use crate::settings::Settings;
 use crate::values::value;
-use lindstedt_algebra::{Rationals, Stop};
+use lindstedt_algebra::Rationals;
 use lindstedt_coeff::floats::Reals;
 use lindstedt_equation::{Expression, Function, Problem};
 use lindstedt_expand::Binding;
@@ -56,8 +56,7 @@ impl<R: Reals> Binding<R> for Given<'_, R> {
         // S_n with small n cancels: the Taylor series of sin at the amplitude.
         let balls = Balls::new(self.reals.bits() + 64);
         let amplitude = self.ball("amplitude", 64)?;
-        let n = u16::try_from(n).ok()?;
-        Some(real(self.reals, &sine_sum(n, &amplitude, balls, &Stop::default())?))
+        Some(real(self.reals, &sine_sum(u16::try_from(n).ok()?, &amplitude, balls)))
     }
 }
 

@@ -253,7 +253,6 @@ impl Room {
         }
         self.checked.is_ok()
     }
-
 }
 
 /// A divisor below this says that a resonance was missed by a little.

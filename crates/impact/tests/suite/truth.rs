@@ -5,7 +5,7 @@ use crate::support::{Random, data, exact, parameters};
 use lindstedt_impact::ImpactError;
 use lindstedt_impact::aware::impact_aware;
 use lindstedt_impact::characteristic::{Characteristic, Kick};
-use lindstedt_impact::chart::{Axis, Plan, Predictor, Swept, chart};
+use lindstedt_impact::chart::{Axis, Plan, Point, Predictor, Swept, chart};
 use lindstedt_impact::flight::clearance;
 use lindstedt_impact::flip::flip_boundary;
 use lindstedt_impact::flow::{Flow, characteristic_root, rates};
