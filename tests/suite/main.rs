@@ -20,4 +20,5 @@ mod paper_section_2;
 mod problem_files;
 mod respond;
 mod small_delta;
+mod threads;
 mod vibro_impact;

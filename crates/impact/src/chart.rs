@@ -133,37 +133,57 @@ pub fn chart(
     if order == 0 {
         return Err(ImpactError::OrderZero);
     }
-    let mut points = vec![Point::EMPTY; width.checked_mul(height).ok_or(ImpactError::BadAxes)?];
-    let (done, mut whole) = (AtomicUsize::new(0), vec![false; height]);
+    width.checked_mul(height).ok_or(ImpactError::BadAxes)?;
     // Blocks of rows one after the other: what is finished when the work is stopped begins with the first row.
+    let (done, mut points) = (AtomicUsize::new(0), Vec::new());
     let block = (BLOCK / width).max(FEWEST_ROWS);
-    let rows = points.par_chunks_mut(width).zip(&mut whole).enumerate().by_uniform_blocks(block);
-    let stopped = rows.try_for_each_init(
-        || Scratch::new(order),
-        |scratch, (row, (line, whole))| {
-            let mut parameters = base.clone();
-            plan.rows.set(row, &mut parameters);
-            let mut seeds = Vec::new();
-            let mut fixed = Fixed::new(&parameters, plan);
-            for (column, point) in line.iter_mut().enumerate() {
-                plan.columns.set(column, &mut parameters);
-                if !plan.columns.is_gain() {
-                    fixed = Fixed::new(&parameters, plan);
-                }
-                *point = evaluate(&parameters, &fixed, plan, scratch, &mut seeds);
-                // A long row is not waited for.
-                if column % 256 == 255 && !observer(done.load(Ordering::Relaxed)) {
-                    return None;
-                }
-            }
-            *whole = true;
-            observer(done.fetch_add(1, Ordering::Relaxed) + 1).then_some(())
-        },
-    );
-    if stopped.is_none() {
-        points.truncate(width * whole.iter().take_while(|row| **row).count());
+    for first in (0..height).step_by(block) {
+        let before = points.len();
+        let mut whole = vec![false; block.min(height - first)];
+        points.resize(before + width * whole.len(), Point::EMPTY);
+        let lines = points[before..].par_chunks_mut(width).zip(&mut whole).enumerate();
+        let finished = lines.try_for_each_init(
+            || Scratch::new(order),
+            |scratch, (row, (line, whole))| {
+                fill(base, plan, first + row, (line, scratch), &|| {
+                    observer(done.load(Ordering::Relaxed))
+                })?;
+                *whole = true;
+                observer(done.fetch_add(1, Ordering::Relaxed) + 1).then_some(())
+            },
+        );
+        if finished.is_none() {
+            let rows = whole.iter().take_while(|row| **row).count();
+            points.truncate(before + width * rows);
+            break;
+        }
     }
     Ok(Chart { plan: *plan, points })
+}
+
+/// One row, unless `goes_on` says no: a long one is not waited for.
+fn fill(
+    base: &Parameters<f64>,
+    plan: &Plan,
+    row: usize,
+    (line, scratch): (&mut [Point], &mut Scratch<f64>),
+    goes_on: &dyn Fn() -> bool,
+) -> Option<()> {
+    let mut parameters = base.clone();
+    plan.rows.set(row, &mut parameters);
+    let mut seeds = Vec::new();
+    let mut fixed = Fixed::new(&parameters, plan);
+    for (column, point) in line.iter_mut().enumerate() {
+        plan.columns.set(column, &mut parameters);
+        if !plan.columns.is_gain() {
+            fixed = Fixed::new(&parameters, plan);
+        }
+        *point = evaluate(&parameters, &fixed, plan, scratch, &mut seeds);
+        if column % 256 == 255 && !goes_on() {
+            return None;
+        }
+    }
+    Some(())
 }
 
 /// What does not depend on the gains A, B.

@@ -94,7 +94,7 @@ fn what_is_finished_of_many_points_is_kept() {
     let folder = Folder::new("many-points");
     let chart = ["stability", "vibro-impact", "--sweep", "A=-1/3..1/3:3001", "--sweep"];
     let chart = [&chart[..], &["B=-1/3..1/3:3001", "--plot", "a.svg", "--plot", "a.csv"]].concat();
-    let sweep = ["evaluate", "duffing", "--sweep", "eps=0..1:3000", "--sweep"];
+    let sweep = ["evaluate", "duffing", "--order", "2", "--sweep", "eps=0..1:3000", "--sweep"];
     let sweep = [&sweep[..], &["amplitude=1..2:3000", "--plot", "a.csv"]].concat();
     for (command, names) in [(&chart, &["a.csv", "a.svg"][..]), (&sweep, &["a.csv"])] {
         let limited = [&command[..], &["--limit-seconds", "0.2"]].concat();

@@ -462,8 +462,9 @@ fn a_chart_equals_its_points() {
         }
     }
     let stopped = chart(&base, &plan, &|_| false);
-    assert!(stopped.unwrap().points.is_empty());
-    // Stopped behind so many rows, whole rows from the first on are there, and are the same.
+    // Rows in progress are finished; whole rows from the first on are there, and are the same.
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    assert!(stopped.unwrap().points.len() <= 9 * threads);
     let rows = AtomicUsize::new(0);
     let some = chart(&base, &plan, &|_| rows.fetch_add(1, Ordering::Relaxed) < 3).unwrap();
     assert!(some.points.len() < 63 && some.points.len().is_multiple_of(9));

@@ -2,7 +2,7 @@
 
 use super::Evaluate;
 use crate::grid::{Axis, Grid, check_room};
-use crate::{Answer, Error, Exact, Number, Oscillator, Remark, Work};
+use crate::{Answer, Error, Exact, Kind, Number, Oscillator, Refusal, Remark, Work};
 use serde::{Serialize, Serializer};
 use std::time::Instant;
 
@@ -59,13 +59,17 @@ impl Oscillator {
         let start = Instant::now();
         let points = rows.as_ref().map_or(1, |rows| rows.values.len()) * columns.values.len();
         check_room(points, size_of::<Option<Result<SweptPeriod, Error>>>(), work)?;
-        let grid: Grid<Result<_, Error>> =
+        let mut grid: Grid<Result<_, Error>> =
             Grid::of_cases(self, columns, rows, work, |case, work| {
                 let found = case.settled()?.0.period(question, work)?;
                 let (period, frequency) = (found.period, found.frequency);
                 let (exact_period, order, at) = (found.exact_period, found.order, found.at);
                 Ok(SweptPeriod { period, frequency, exact_period, order, at })
             });
+        let stopped = |error: &Error| error.kind() == Kind::Stopped;
+        for point in &mut grid.points {
+            point.take_if(|point| point.as_ref().is_err_and(stopped));
+        }
         let found = || grid.points.iter().flatten();
         let first = found().find_map(|point| point.as_ref().ok());
         if let (None, Some(Err(error))) = (first, found().next()) {
