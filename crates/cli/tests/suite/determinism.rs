@@ -9,7 +9,7 @@ fn threads_and_language_change_nothing() {
     let chart = ["A=-1/3..1/3:21", "B=-1/3..1/3:15"];
     let lines: [&[&str]; 5] = [
         &["derive", "van-der-pol", "--order", "6"],
-        &["evaluate", "pendulum", "--set", "amplitude=2", "--order", "6", "--times", "0..3:4"],
+        &["evaluate", "duffing", "--set", "eps=1/10", "--order", "6", "--times", "0..3:4"],
         &[
             "stability",
             "vibro-impact",

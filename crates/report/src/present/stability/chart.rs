@@ -217,10 +217,10 @@ pub(super) fn csv(chart: &Chart, take: &mut dyn FnMut(&str) -> bool) -> bool {
 /// The cells of a chart, with a legend of what occurs.
 fn raster(chart: &Chart) -> Option<Raster> {
     let [(_, columns), (_, rows)] = chart.values();
-    let own: Vec<Stands> =
-        chart.grid.points.iter().map(|point| stands(point.as_ref(), chart)).collect();
-    let colour = |own: &Stands| STANDS.iter().find(|(known, ..)| known == own)?.2;
-    let present = STANDS.iter().filter(|(known, ..)| own.contains(known));
+    let at = |index: usize| Some(stands(chart.grid.points.get(index)?.as_ref(), chart));
+    let own: Vec<Option<Stands>> = Raster::cells((columns.len(), rows.len()), at);
+    let colour = |own: &Option<Stands>| STANDS.iter().find(|(known, ..)| Some(*known) == *own)?.2;
+    let present = STANDS.iter().filter(|(known, ..)| own.contains(&Some(*known)));
     let mut legend: Vec<(String, Option<Colour>)> =
         present.map(|(known, _, colour)| (label(*known, chart).to_owned(), *colour)).collect();
     legend.sort();
