@@ -214,7 +214,8 @@ impl<'s, R: Real> Integrator<'s, R> {
     }
 
     /// Integrates up to `target` (which is met exactly; nothing happens if it is past) or until
-    /// the observer breaks it off, after which the state is that at the end of the step. May be
+    /// the observer breaks it off, after which the state is that at the end of the step (of one that takes long and
+    /// is broken off within, told [`Report::Busy`], that at its start). May be
     /// called again with a later target: stroboscopic sections are a loop over targets. Cost: per step O(operations order^2).
     pub fn advance(
         &mut self,

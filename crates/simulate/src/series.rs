@@ -6,6 +6,9 @@ use crate::system::System;
 use crate::tape::{Moment, Op, Rows, horner};
 use std::ops::ControlFlow;
 
+/// From so many levels on a step is long (220 digits): it is asked whether to go on with it.
+const LONG: usize = 256;
+
 /// What the right side is at this moment.
 #[derive(Clone, Debug)]
 pub(crate) struct Phase {
@@ -38,8 +41,8 @@ impl<R: Real> Series<R> {
     }
 
     /// Levels 1..=levels of the states and 0..=levels of all other rows, from level 0 of the
-    /// states and the delayed rows. Above the precision of doubles `tick` is asked before every level whether to
-    /// go on ([`SimulateError::Stopped`]): one of order n takes n products per operation.
+    /// states and the delayed rows. Where there are many, `tick` is asked before every one whether to go on
+    /// ([`SimulateError::Stopped`]): a level n takes n products per operation.
     pub(crate) fn expand(
         &mut self,
         system: &System<R>,
@@ -48,7 +51,7 @@ impl<R: Real> Series<R> {
         levels: usize,
         tick: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<(), SimulateError> {
-        let asks = system.real.bits() > 64;
+        let asks = levels >= LONG;
         let sliding = phase.modes.iter().position(|mode| *mode == 0);
         let mut sensitivity = None;
         for n in 0..=levels {
