@@ -13,13 +13,18 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
     let work = session.precise_work(&options.precision)?;
     session.check_writable(&options.problem, &[], None)?;
     let order = options.order as usize;
+    let unknown = options.unknown.as_deref().or(oscillator.unknown());
+    let averaged = oscillator.condition() == Some(Condition::FreeAmplitude);
+    if options.mode.is_some() || unknown.is_some() || averaged {
+        check_plain(options)?;
+    }
     if let Some(mode) = options.mode {
         return session.show(oscillator.normal_mode(mode as usize, order, &work), &[]);
     }
-    if let Some(name) = options.unknown.as_deref().or(oscillator.unknown()) {
+    if let Some(name) = unknown {
         return session.show(oscillator.parameter_series(name, order, &work), &[]);
     }
-    if oscillator.condition() == Some(Condition::FreeAmplitude) {
+    if averaged {
         return session.show(oscillator.averaged(order, &work), &[]);
     }
     let tier = match options.tier {
@@ -41,4 +46,13 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         return Err(Failure::usage("route-and-tier", message, "drop --route or --tier"));
     }
     session.show(oscillator.estimate(order, tier, &work), &[])
+}
+
+/// Refuses tiers and routes where there is one way alone.
+fn check_plain(options: &DeriveOptions) -> Result<(), Failure> {
+    if options.tier == TierName::Exact && options.route == arguments::Route::Auto {
+        return Ok(());
+    }
+    let message = "--tier and --route belong to expansions with a fixed amplitude".to_owned();
+    Err(Failure::usage("route-and-tier", message, "drop --route or --tier"))
 }

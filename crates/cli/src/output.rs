@@ -3,10 +3,13 @@
 use crate::failure::{FILE, Failure};
 use same_file::is_same_file;
 use std::fs::{File, OpenOptions, Permissions, metadata};
-use std::io::{Error, ErrorKind, Result, Write};
+use std::io::{BufWriter, Error, ErrorKind, IntoInnerError, Result, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 use tempfile::NamedTempFile;
 
+/// A younger file may be one that is about to be locked.
+const STALE: Duration = Duration::from_secs(60);
 /// Links that are followed at most.
 const MOST_LINKS: usize = 40;
 
@@ -28,16 +31,29 @@ pub fn write(out: Option<&Path>, text: &str) -> std::result::Result<(), Failure>
 
 /// Writes a file beside the one that a name leads to, and gives it the name when its last byte is on the disk.
 pub fn write_file(path: &Path, text: &str) -> std::result::Result<(), Failure> {
-    let written = || -> Result<()> {
+    write_with(path, |to| to.write_all(text.as_bytes()).map(|()| true)).map(drop)
+}
+
+/// The same for what is written piece by piece. What was there stays, too, where `write` says that there is nothing
+/// to be kept; whether there was.
+pub fn write_with(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> Result<bool>,
+) -> std::result::Result<bool, Failure> {
+    let written = || -> Result<bool> {
         let target = target(path)?;
         // A device or a pipe has no name to take over.
         if metadata(&target).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
-            return OpenOptions::new().write(true).open(&target)?.write_all(text.as_bytes());
+            let mut to = BufWriter::new(OpenOptions::new().write(true).open(&target)?);
+            return write(&mut to).and_then(|kept| to.flush().map(|()| kept));
         }
-        let mut file = beside(&target)?;
-        file.write_all(text.as_bytes())?;
+        let mut to = BufWriter::new(beside(&target)?);
+        if !write(&mut to)? {
+            return Ok(false);
+        }
+        let file = to.into_inner().map_err(IntoInnerError::into_error)?;
         file.as_file().sync_all()?;
-        file.persist(&target).map(drop).map_err(|error| error.error)
+        file.persist(&target).map(|_| true).map_err(|error| error.error)
     };
     written().map_err(|error| trouble(&path.display().to_string(), &error))
 }
@@ -57,8 +73,11 @@ pub fn check_file(path: &Path) -> std::result::Result<(), Failure> {
 
 /// An empty file in the folder of another one, with its permissions, if that one may be written.
 fn beside(target: &Path) -> Result<NamedTempFile> {
+    let folder = folder(target);
+    let prefix = prefix(target);
+    remove_stale(folder, &prefix);
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".lindstedt-");
+    builder.prefix(&prefix);
     #[cfg(unix)]
     let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let there: Option<Permissions> = match OpenOptions::new().append(true).open(target) {
@@ -66,11 +85,37 @@ fn beside(target: &Path) -> Result<NamedTempFile> {
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(error),
     };
-    let file = builder.tempfile_in(folder(target))?;
+    let file = builder.tempfile_in(folder)?;
+    // Whoever looks for stale files sees that this one is not.
+    let _ = file.as_file().try_lock();
     if let Some(permissions) = there {
         file.as_file().set_permissions(permissions)?;
     }
     Ok(file)
+}
+
+/// What the name of a file begins with while it is written.
+fn prefix(target: &Path) -> String {
+    let name = target.file_name().unwrap_or_default();
+    format!(".lindstedt-{:08x}-", crc32fast::hash(name.as_encoded_bytes()))
+}
+
+/// Removes what a run left that was killed while it wrote the same file: nobody holds it.
+fn remove_stale(folder: &Path, prefix: &str) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let named = |name: &std::ffi::OsStr| name.to_string_lossy().starts_with(prefix);
+        let old = |file: &File| {
+            let modified = file.metadata().and_then(|found| found.modified());
+            modified.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > STALE))
+        };
+        if named(&entry.file_name())
+            && File::open(entry.path()).is_ok_and(|file| old(&file) && file.try_lock().is_ok())
+        {
+            // What cannot be removed does no harm.
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
 }
 
 fn folder(path: &Path) -> &Path {

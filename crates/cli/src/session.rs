@@ -18,6 +18,8 @@ use std::sync::Arc;
 
 /// No result is printed with more digits than this: the contract of exact evaluation.
 const MOST_DIGITS: u64 = 10_000;
+/// So many lines of a table are written between two looks at the clock.
+const LINES: u64 = 1 << 10;
 
 /// One run of the program.
 pub struct Session<'a> {
@@ -148,18 +150,19 @@ impl<'a> Session<'a> {
         self.done();
         let answer = answer?;
         let text = self.written(&answer)?;
-        let drawn = plots.iter().map(|path| Ok((path, plotted(&answer, path)?)));
-        let drawn: Result<Vec<(&PathBuf, Option<String>)>, Failure> = drawn.collect();
+        let (tables, figures): (Vec<&PathBuf>, Vec<_>) =
+            plots.iter().partition(|path| output::is(path, "csv"));
+        let drawn = if figures.is_empty() { Ok(None) } else { drawn(&answer) };
         // What was found is printed, whatever becomes of its figures.
         self.watch.writing();
-        let files = drawn.and_then(|drawn| {
-            drawn.into_iter().try_fold(0, |code, (path, text)| match text {
-                Some(text) => output::write_file(path, &text).map(|()| code),
-                None => {
-                    warn(&format!("there is nothing to draw: {} is not written", path.display()));
-                    Ok(NO_ANSWER)
-                }
-            })
+        let tables = tables.into_iter().map(|path| self.write_table(&answer, path));
+        let files = drawn.and_then(|text| {
+            let write = |path: &PathBuf| match &text {
+                Some(text) => output::write_file(path, text).map(|()| 0),
+                None => Ok(nothing(path)),
+            };
+            let codes = figures.into_iter().map(write).chain(tables);
+            codes.reduce(|before, code| Ok(before?.max(code?))).unwrap_or(Ok(0))
         });
         output::write(self.out(), &text)?;
         self.say_remarks(&answer.remarks);
@@ -173,6 +176,31 @@ impl<'a> Session<'a> {
             }
             (Standing::Undecided | Standing::Stopped { .. }, _) => UNDECIDED,
         })
+    }
+
+    /// Writes the table of an answer, as many of its rows as there is time for.
+    fn write_table<T>(&self, answer: &Answer<T>, path: &Path) -> Outcome
+    where
+        Answer<T>: Present,
+    {
+        let (mut lines, mut whole) = (0u64, true);
+        let written = output::write_with(path, |to| {
+            let mut written = Ok(());
+            let taken = answer.csv(&mut |line| {
+                written = to.write_all(line.as_bytes());
+                lines += 1;
+                written.is_ok() && (lines % LINES != 0 || !self.watch.is_over())
+            });
+            whole = taken != Some(false);
+            written.map(|()| taken.is_some())
+        })?;
+        if whole {
+            return Ok(if written { 0 } else { nothing(path) });
+        }
+        let rows = lines - 1;
+        let path = path.display();
+        warn(&format!("{path} has the first {rows} rows: the time limit was reached"));
+        Ok(UNDECIDED)
     }
 
     /// Says what is to be said beside an answer.
@@ -246,14 +274,17 @@ fn words(progress: &Progress) -> Option<String> {
     })
 }
 
-/// The contents of a figure or a table, as the name of the file says; nothing where there is nothing to draw.
-fn plotted<T>(answer: &Answer<T>, path: &Path) -> Result<Option<String>, Failure>
+/// Says that a file is not written; the exit code.
+fn nothing(path: &Path) -> u8 {
+    warn(&format!("there is nothing to draw: {} is not written", path.display()));
+    NO_ANSWER
+}
+
+/// The figure; nothing where there is nothing to draw.
+fn drawn<T>(answer: &Answer<T>) -> Result<Option<String>, Failure>
 where
     Answer<T>: Present,
 {
-    if output::is(path, "csv") {
-        return Ok(answer.table().map(|table| table.csv()));
-    }
     let undrawn =
         |message: String| Failure { exit: NO_ANSWER, code: "figure", message, hint: String::new() };
     let figure = answer.figure().map(|figure| figure.svg());

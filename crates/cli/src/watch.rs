@@ -283,6 +283,12 @@ impl Watch {
         self.0.phase.store(Phase::Writing as usize, Ordering::SeqCst);
     }
 
+    /// Whether the time is over, with what an end may take.
+    pub fn is_over(&self) -> bool {
+        let State { limits, start, .. } = &*self.0;
+        limits.late(*start, limits.grace())
+    }
+
     /// The time since the start.
     pub fn elapsed(&self) -> Duration {
         self.0.start.elapsed()

@@ -1,5 +1,6 @@
 //! The evaluation of exact constants: polynomials in named symbols as balls.
 
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::{Polynomial, Symbol};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
@@ -82,10 +83,19 @@ impl Constants {
 /// S_n(a) = sum_k (-1)^k a^(2k) k^n/(2k+1)!, 0^0 = 1: S_0 = sin(a)/a. The terms are summed until
 /// they decrease by more than a half each; then the rest is below the last term.
 pub fn sine_sum(n: u16, amplitude: &Ball, balls: Balls) -> Ball {
+    let sum = sine_sum_until(n, amplitude, balls, &Stop::default());
+    sum.unwrap_or_else(|| balls.indeterminate())
+}
+
+/// [`sine_sum`]; nothing when stopped, which is asked once per term.
+pub fn sine_sum_until(n: u16, amplitude: &Ball, balls: Balls, stop: &Stop) -> Option<Ball> {
     let square = balls.square(amplitude);
     let mut weight = balls.one();
     let mut sum = if n == 0 { balls.one() } else { balls.zero() };
     for k in 1i64.. {
+        if stop.asked() {
+            return None;
+        }
         weight = balls.mul(&weight, &square);
         // (2k)(2k + 1) is never zero.
         weight =
@@ -102,7 +112,7 @@ pub fn sine_sum(n: u16, amplitude: &Ball, balls: Balls) -> Ball {
             && balls.mul_i64(&square, 6).abs_upper() < (2 * k + 2).saturating_mul(2 * k + 2);
         let size = term.abs_upper();
         if !size.is_finite() {
-            return balls.indeterminate();
+            return Some(balls.indeterminate());
         }
         let negligible = size.is_zero()
             || sum.midpoint().get_exp().unwrap_or(0) - size.get_exp().unwrap_or(0)
@@ -110,9 +120,9 @@ pub fn sine_sum(n: u16, amplitude: &Ball, balls: Balls) -> Ball {
         if decreasing && negligible {
             // term + rest <= 2 size.
             let rest = balls.from_parts(&size, &rug::Float::new(53));
-            return balls.add_error(&sum, &balls.mul_i64(&rest, 2).abs_upper());
+            return Some(balls.add_error(&sum, &balls.mul_i64(&rest, 2).abs_upper()));
         }
         sum = balls.add(&sum, &term);
     }
-    sum
+    Some(sum)
 }

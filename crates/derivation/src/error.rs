@@ -100,15 +100,17 @@ pub enum DerivationError {
     },
     /// The work would need more memory than allowed.
     #[error(
-        "order {order} is predicted to need 10^{exponent} bytes, above the limit of {limit} MiB"
+        "order {order} is predicted to need {}, the limit is {}",
+        mebibytes(*needed),
+        mebibytes(*limit)
     )]
     TooLarge {
         /// The order.
         order: usize,
-        /// The prediction: the exponent of ten of the bytes, rounded.
-        exponent: u64,
-        /// The limit in MiB.
-        limit: u64,
+        /// log2 of the bytes that are predicted.
+        needed: f64,
+        /// log2 of the limit in bytes.
+        limit: f64,
     },
     /// The digits were not reached.
     #[error("the digits asked for were not reached with {bits} bits")]
@@ -163,4 +165,14 @@ fn without(missing: &[String]) -> String {
 /// Whose value it is; the number pi is its own.
 fn for_parameter(name: &str, value: &str) -> String {
     if name == value { String::new() } else { format!(" ({name})") }
+}
+
+/// 2^`log2` bytes in MiB: a number of which a few digits mean something, a power of ten where it is large.
+fn mebibytes(log2: f64) -> String {
+    let mebibytes = (log2 - 20.0).exp2();
+    match mebibytes {
+        few if few < 10.0 => format!("{few:.1} MiB"),
+        some if some < 1e6 => format!("{some:.0} MiB"),
+        _ => format!("10^{:.0} MiB", (log2 - 20.0) * 2f64.log10()),
+    }
 }

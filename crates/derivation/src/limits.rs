@@ -140,7 +140,10 @@ fn over_q(order: usize, bytes: &dyn Fn(usize) -> Option<f64>) -> f64 {
 /// the order, like exp(2.9 N^(1/2)), and their coefficients do again where they are polynomials in the sums.
 fn by_clock(order: f64, sums: bool) -> f64 {
     let (bytes, at, rate) = if sums { (0.9e9, 16.0f64, 4.65) } else { (0.7e9, 30.0f64, 2.9) };
-    f64::log2(10e6 + bytes * (rate * (order.sqrt() - at.sqrt())).exp())
+    let growing = f64::log2(bytes) + rate * (order.sqrt() - at.sqrt()) / std::f64::consts::LN_2;
+    let base = f64::log2(10e6);
+    let (less, more) = (base.min(growing), base.max(growing));
+    more + (less - more).exp2().ln_1p() / std::f64::consts::LN_2
 }
 
 /// Refuses before allocating. Measured: the Lobachevsky ring takes 0.7 GiB at order 20 and 1.5
@@ -170,7 +173,7 @@ pub(crate) fn limit_memory(
     } else {
         // No expansion is known that takes as much as this: nothing need be derived to allow it.
         let most = 31.0 + 4.0 * (order / 164.0).log2();
-        if most.max(24.0) <= (settings.memory.max(1) as f64).log2() {
+        if refuse_above(settings.memory, settings.order, most.max(24.0)).is_ok() {
             return Ok(());
         }
         over_q(settings.order, bytes)
@@ -178,14 +181,19 @@ pub(crate) fn limit_memory(
     refuse_above(settings.memory, settings.order, bits)
 }
 
-/// Refuses an order that needs 2^`bits` bytes, if that is more than `memory`.
+/// Predictions are within a factor of two of the truth: what is predicted to need four times the limit needs more
+/// than twice the limit.
+const MARGIN: f64 = 4.0;
+
+/// Refuses an order that is predicted to need 2^`bits` bytes, if that is certain to be more than twice `memory`. What
+/// needs less begins; whoever counts memory while it grows stops it.
 ///
 /// # Errors
 /// [`Error::TooLarge`].
 pub fn refuse_above(memory: u64, order: usize, bits: f64) -> Result<(), Error> {
-    if bits <= (memory.max(1) as f64).log2() {
+    let limit = (memory.max(1) as f64).log2();
+    if bits <= limit + MARGIN.log2() {
         return Ok(());
     }
-    let exponent = (bits * 2f64.log10()).round() as u64;
-    Err(Error::TooLarge { order, exponent, limit: memory >> 20 })
+    Err(Error::TooLarge { order, needed: bits, limit })
 }

@@ -5,7 +5,7 @@
 //! forces x F(delta ln x^2).
 
 use lindstedt_algebra::Stop;
-use lindstedt_derivation::constants::sine_sum;
+use lindstedt_derivation::constants::sine_sum_until;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::lobachevsky_function::means_until;
 use rug::{Float, Integer, Rational};
@@ -59,8 +59,9 @@ pub fn pendulum(
     // The sums cancel near amplitude pi, where S_0 = sin(a)/a vanishes.
     let sums = loop {
         let at = amplitude(balls);
+        let orders = 0..=u16::try_from(order).ok()?;
         let list: Vec<Ball> =
-            (0..=u16::try_from(order).ok()?).map(|n| sine_sum(n, &at, balls)).collect();
+            orders.map(|n| sine_sum_until(n, &at, balls, stop)).collect::<Option<_>>()?;
         if list.iter().all(|s| s.relative_accuracy_bits() >= i64::from(work)) {
             break list;
         }

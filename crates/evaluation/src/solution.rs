@@ -9,6 +9,7 @@ use crate::fourier::{Fourier, harmonic};
 use crate::period::Evaluation;
 use crate::setting::{Form, Setting};
 use crate::source::remembered;
+use lindstedt_algebra::Stop;
 use lindstedt_derivation::{Derivation, DerivationError, Progress, Work};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{Exact, Number};
@@ -37,6 +38,8 @@ pub struct Trajectory {
     digits: usize,
     /// The x_n with balls as coefficients, by their bits.
     functions: RwLock<BTreeMap<u32, Arc<PhaseFunctions>>>,
+    /// Asked at every phase.
+    stop: Stop,
     /// The period.
     pub period: f64,
 }
@@ -157,6 +160,7 @@ impl Trajectory {
             methods,
             digits,
             functions: RwLock::default(),
+            stop: work.stop.clone(),
             period: period.midpoint().to_f64(),
         })
     }
@@ -169,7 +173,11 @@ impl Trajectory {
             if !work.goes_on(Progress::Parts(points.len(), times.len())) {
                 break;
             }
+            let whole = points.len();
             points.par_extend(block.par_iter().map(|time| self.at(time)));
+            if work.stop.asked() {
+                points.truncate(whole);
+            }
         }
         let complete = points.len() == times.len();
         Displacements { order: self.order(), methods: self.methods.clone(), points, complete }
@@ -259,8 +267,11 @@ impl Trajectory {
         Some(scaled.midpoint().to_f64())
     }
 
-    /// The coefficients of X at a phase and the small parameter.
+    /// The coefficients of X at a phase and the small parameter; nothing when stopped.
     fn sample(&self, point: &Point, bits: u32) -> Option<Sample> {
+        if self.stop.asked() {
+            return None;
+        }
         let balls = Balls::new(bits).with_guard(64);
         let scale = Float::with_val(bits, 1);
         let map = UniformMap { scale, prefactor: Float::new(bits), radius: None };

@@ -15,6 +15,10 @@ use lindstedt_number::complex::Complex;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// So many points are shared out at a time, and as many rows at least.
+const BLOCK: usize = 1 << 16;
+const FEWEST_ROWS: usize = 64;
+
 /// Equidistant values of one parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
@@ -98,23 +102,24 @@ impl Point {
     };
 }
 
-/// A chart: the points row by row.
+/// A chart: the points row by row; of one that was stopped the first rows.
 #[derive(Clone, Debug)]
 pub struct Chart {
     /// What was computed.
     pub plan: Plan,
-    /// `rows.count` rows of `columns.count` points.
+    /// `rows.count` rows of `columns.count` points, fewer where the work was stopped.
     pub points: Vec<Point>,
 }
 
 /// Computes a chart on rayon's threads. `observer` receives the number of finished rows, after each
-/// and now and then within a long one, and stops the work by returning false.
+/// and now and then within a long one, and stops the work by returning false: then the rows up to the first that is
+/// not finished are kept.
 ///
 /// Cost per point: a prediction of order n some n^2 products, and for variant E the orbit of the predicted flow; an
 /// exact verdict some 50 evaluations of G. Estimated: doubles without error bounds.
 ///
 /// # Errors
-/// [`ImpactError::BadAxes`], [`ImpactError::OrderZero`], [`ImpactError::Cancelled`].
+/// [`ImpactError::BadAxes`], [`ImpactError::OrderZero`].
 pub fn chart(
     base: &Parameters<f64>,
     plan: &Plan,
@@ -128,31 +133,57 @@ pub fn chart(
     if order == 0 {
         return Err(ImpactError::OrderZero);
     }
-    let mut points = vec![Point::EMPTY; width.checked_mul(height).ok_or(ImpactError::BadAxes)?];
-    let done = AtomicUsize::new(0);
-    points.par_chunks_mut(width).enumerate().try_for_each_init(
-        || Scratch::new(order),
-        |scratch, (row, line)| {
-            let mut parameters = base.clone();
-            plan.rows.set(row, &mut parameters);
-            let mut seeds = Vec::new();
-            let mut fixed = Fixed::new(&parameters, plan);
-            for (column, point) in line.iter_mut().enumerate() {
-                plan.columns.set(column, &mut parameters);
-                if !plan.columns.is_gain() {
-                    fixed = Fixed::new(&parameters, plan);
-                }
-                *point = evaluate(&parameters, &fixed, plan, scratch, &mut seeds);
-                // A long row is not waited for.
-                if column % 256 == 255 && !observer(done.load(Ordering::Relaxed)) {
-                    return Err(ImpactError::Cancelled);
-                }
-            }
-            let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if observer(finished) { Ok(()) } else { Err(ImpactError::Cancelled) }
-        },
-    )?;
+    width.checked_mul(height).ok_or(ImpactError::BadAxes)?;
+    // Blocks of rows one after the other: what is finished when the work is stopped begins with the first row.
+    let (done, mut points) = (AtomicUsize::new(0), Vec::new());
+    let block = (BLOCK / width).max(FEWEST_ROWS);
+    for first in (0..height).step_by(block) {
+        let before = points.len();
+        let mut whole = vec![false; block.min(height - first)];
+        points.resize(before + width * whole.len(), Point::EMPTY);
+        let lines = points[before..].par_chunks_mut(width).zip(&mut whole).enumerate();
+        let finished = lines.try_for_each_init(
+            || Scratch::new(order),
+            |scratch, (row, (line, whole))| {
+                fill(base, plan, first + row, (line, scratch), &|| {
+                    observer(done.load(Ordering::Relaxed))
+                })?;
+                *whole = true;
+                observer(done.fetch_add(1, Ordering::Relaxed) + 1).then_some(())
+            },
+        );
+        if finished.is_none() {
+            let rows = whole.iter().take_while(|row| **row).count();
+            points.truncate(before + width * rows);
+            break;
+        }
+    }
     Ok(Chart { plan: *plan, points })
+}
+
+/// One row, unless `goes_on` says no: a long one is not waited for.
+fn fill(
+    base: &Parameters<f64>,
+    plan: &Plan,
+    row: usize,
+    (line, scratch): (&mut [Point], &mut Scratch<f64>),
+    goes_on: &dyn Fn() -> bool,
+) -> Option<()> {
+    let mut parameters = base.clone();
+    plan.rows.set(row, &mut parameters);
+    let mut seeds = Vec::new();
+    let mut fixed = Fixed::new(&parameters, plan);
+    for (column, point) in line.iter_mut().enumerate() {
+        plan.columns.set(column, &mut parameters);
+        if !plan.columns.is_gain() {
+            fixed = Fixed::new(&parameters, plan);
+        }
+        *point = evaluate(&parameters, &fixed, plan, scratch, &mut seeds);
+        if column % 256 == 255 && !goes_on() {
+            return None;
+        }
+    }
+    Some(())
 }
 
 /// What does not depend on the gains A, B.
@@ -280,12 +311,20 @@ impl Chart {
         }
         self.points.get(row.checked_mul(self.plan.columns.count)? + column)
     }
-    /// Why the points that [`Self::agreement`] does not count are left out, where both prediction
-    /// and truth were asked for.
+    /// Counts of agreement between prediction and exact verdict.
     #[must_use]
-    pub fn left_out(&self) -> LeftOut {
-        let mut left_out = LeftOut::default();
-        for point in &self.points {
+    pub fn agreement(&self) -> Agreement {
+        Agreement::of(&self.points)
+    }
+}
+
+impl LeftOut {
+    /// Why the points that an [`Agreement`] does not count are left out, where both prediction and truth were asked
+    /// for.
+    #[must_use]
+    pub fn of<'p>(points: impl IntoIterator<Item = &'p Point>) -> Self {
+        let mut left_out = Self::default();
+        for point in points {
             match (point.predicted, point.exact) {
                 (_, None) if point.penetrates => left_out.penetrating += 1,
                 (_, None) => left_out.no_orbit += 1,
@@ -298,11 +337,14 @@ impl Chart {
         }
         left_out
     }
-    /// Counts of agreement between prediction and exact verdict.
+}
+
+impl Agreement {
+    /// Of some points.
     #[must_use]
-    pub fn agreement(&self) -> Agreement {
-        let mut agreement = Agreement::default();
-        for point in &self.points {
+    pub fn of<'p>(points: impl IntoIterator<Item = &'p Point>) -> Self {
+        let mut agreement = Self::default();
+        for point in points {
             match (point.predicted, point.exact) {
                 (Some(Verdict::Neutral), _) | (_, Some(Verdict::Neutral)) => continue,
                 (Some(predicted), Some(exact)) => {

@@ -1,10 +1,12 @@
 //! Does the flight between two impacts stay on its side of the wall?
 
+use crate::characteristic::check;
 use crate::equivalent::{Drive, EquivalentOrbit};
 use crate::error::ImpactError;
 use crate::flow::Flow;
 use crate::orbit::Orbit;
 use crate::parameters::Parameters;
+use lindstedt_algebra::Stop;
 use lindstedt_number::real::Real;
 
 /// Smallest interval of the bisection, as a power of two of the period.
@@ -88,7 +90,16 @@ pub fn clearance<S: Real>(
     parameters: &Parameters<S>,
     orbit: &Orbit<S>,
 ) -> Result<Option<Clearance<S>>, ImpactError> {
-    largest_maximum(&TrueFlight(parameters, orbit), &orbit.period)
+    clearance_watched(parameters, orbit, &Stop::default())
+}
+
+/// [`clearance`] that can be stopped.
+pub(crate) fn clearance_watched<S: Real>(
+    parameters: &Parameters<S>,
+    orbit: &Orbit<S>,
+    stop: &Stop,
+) -> Result<Option<Clearance<S>>, ImpactError> {
+    largest_maximum(&TrueFlight(parameters, orbit), &orbit.period, stop)
 }
 
 /// The clearance of an orbit of an equivalent flow; as [`clearance`].
@@ -100,7 +111,7 @@ pub fn equivalent_clearance<S: Real>(
     drive: &Drive<S>,
     orbit: &EquivalentOrbit<S>,
 ) -> Result<Option<Clearance<S>>, ImpactError> {
-    largest_maximum(&EquivalentFlight(flow, drive, orbit), &orbit.period)
+    largest_maximum(&EquivalentFlight(flow, drive, orbit), &orbit.period, &Stop::default())
 }
 
 /// One interval of the bisection in units of T.
@@ -113,6 +124,7 @@ struct Interval {
 fn largest_maximum<S: Real>(
     flight: &impl Flight<S>,
     period: &S,
+    stop: &Stop,
 ) -> Result<Option<Clearance<S>>, ImpactError> {
     let (second, third) = flight.bounds();
     let length = period.magnitude_above();
@@ -125,6 +137,7 @@ fn largest_maximum<S: Real>(
     let mut best: Option<Clearance<S>> = None;
     let mut open = vec![Interval { low: 0.0, high: 1.0, depth: 0 }];
     while let Some(Interval { low, high, depth }) = open.pop() {
+        check(stop)?;
         // Not the middle: a symmetric flight has its maximum there.
         let cut = low + 0.482 * (high - low);
         let reach = (high - cut).max(cut - low) * length * (1.0 + 1e-12);

@@ -5,7 +5,7 @@ use crate::characteristic::{Characteristic, Kick, check};
 use crate::convergence::{Convergence, convergence};
 use crate::equivalent::{Drive, equivalent_orbit};
 use crate::error::ImpactError;
-use crate::flight::{Clearance, clearance};
+use crate::flight::{Clearance, clearance_watched};
 use crate::flow::{Flow, rates};
 use crate::kick::{Growth, watched_growth};
 use crate::map::Verdict;
@@ -170,11 +170,13 @@ pub fn stability_watched<S: Real>(
     let midpoint = parameters.to_f64();
     let flow = predicted_flow(parameters, &rates, request.order);
     let found = orbit(parameters);
+    check(stop)?;
     let map = found.as_ref().ok().map(|orbit| uncontrolled_map(parameters, orbit));
     let kbm = flow.clone().and_then(|flow| {
         let prediction = predict(request.variant, parameters, &flow, found.as_ref().ok())?;
         Ok(PredictionReport { verdict: prediction.map.verdict(), prediction })
     });
+    check(stop)?;
     let aware =
         |orbit: &Orbit<S>| watched_prediction(parameters, orbit, request.kick, request.order, stop);
     let report = StabilityReport {
@@ -188,7 +190,7 @@ pub fn stability_watched<S: Real>(
         convergence: convergence(&midpoint, &doubles),
         residual: flow.as_ref().ok().map(|flow| flow.residual(parameters)),
         flow: flow.ok(),
-        orbit: found.and_then(|orbit| orbit_report(parameters, orbit)),
+        orbit: found.and_then(|orbit| orbit_report(parameters, orbit, stop)),
     };
     // What was stopped on the way looks undecided.
     check(stop)?;
@@ -198,12 +200,13 @@ pub fn stability_watched<S: Real>(
 fn orbit_report<S: Real>(
     parameters: &Parameters<S>,
     orbit: Orbit<S>,
+    stop: &Stop,
 ) -> Result<OrbitReport<S>, ImpactError> {
     let form = Flow::uncontrolled(parameters)
         .and_then(|flow| equivalent_orbit(&flow, &Drive::new(parameters)?))
         .ok()
         .map(|form| FormReport { phase: form.phase_angle(), cosine: form.cosine, sine: form.sine });
-    let clearance = clearance(parameters, &orbit);
+    let clearance = clearance_watched(parameters, &orbit, stop);
     let penetrates = match &clearance {
         Ok(None) => Some(false),
         Ok(Some(found)) => found.margin.sign().and_then(|sign| match sign {

@@ -71,6 +71,9 @@ fn walk<S: Real>(g: &Characteristic<S>, radius: f64) -> Walk {
         if !g.value_and_slope(&far).0.to_f64().is_finite() {
             return Walk::OutOfRange;
         }
+        if !g.goes_on() {
+            return Walk::Undecided;
+        }
     }
     let (mut value, mut slope) = g.value_and_slope(&Complex::real(size.clone()));
     let mut centre = Complex::new(radius, 0.0);

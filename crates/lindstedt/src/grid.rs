@@ -9,6 +9,8 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::str::FromStr;
 
+/// So many points are shared out to the cores at a time.
+const BLOCK: usize = 1 << 10;
 /// The most values of an axis.
 const MOST_VALUES: usize = 1_000_000;
 
@@ -117,6 +119,18 @@ impl FromStr for Axis {
     }
 }
 
+/// Refuses points of so many bytes that need more than twice the memory there is.
+pub(crate) fn check_room(points: usize, bytes: usize, work: &Work) -> Result<(), Error> {
+    let needed = points.saturating_mul(bytes) as u64;
+    if needed / 2 <= work.memory {
+        return Ok(());
+    }
+    let (needed, limit) = (needed >> 20, work.memory >> 20);
+    let message = format!("{points} points need {needed} MiB, the limit is {limit} MiB");
+    let hint = "fewer values, or raise --limit-memory";
+    Err(Refused::undecided("too-large", message, hint).into())
+}
+
 /// `count` values from `low` to `high` in equal steps; nothing where only one end is a multiple of
 /// pi other than zero.
 fn steps(low: &Exact, high: &Exact, count: usize) -> Option<Vec<Exact>> {
@@ -149,12 +163,13 @@ pub struct Grid<T> {
     pub columns: Axis,
     /// The second, if there is one.
     pub rows: Option<Axis>,
-    /// The points; nothing where the work was stopped before.
+    /// The points; nothing where there is none. Where the work was stopped those that come later are missing.
     pub points: Vec<Option<T>>,
 }
 
 impl<T: Send> Grid<T> {
-    /// Computes every point, on all cores; stopped work leaves the points that are missing empty.
+    /// Computes every point, on all cores and in order but for what the cores share out: of stopped work the first
+    /// points are there.
     /// `point` is given the value of the first parameter, then that of the second.
     pub fn compute(
         columns: Axis,
@@ -175,7 +190,13 @@ impl<T: Send> Grid<T> {
             work.tell(Progress::Parts(done, width * height));
             Some(found)
         };
-        let points = (0..width * height).into_par_iter().map(at).collect();
+        let (all, mut points) = (width * height, Vec::new());
+        for first in (0..all).step_by(BLOCK) {
+            if work.stop.asked() {
+                break;
+            }
+            points.par_extend((first..all.min(first + BLOCK)).into_par_iter().map(at));
+        }
         Self { columns, rows, points }
     }
 }
@@ -247,7 +268,8 @@ impl<T> Grid<T> {
     /// Whether all points were reached.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.done() == self.points.len()
+        let height = self.rows.as_ref().map_or(1, |rows| rows.values.len());
+        self.done() == self.columns.values.len() * height
     }
 
     /// The value of the first parameter, that of the second, and the point; in order.

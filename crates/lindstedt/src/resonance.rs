@@ -169,7 +169,8 @@ impl Oscillator {
     ) -> Result<Answer<Sought>, Error> {
         let start = Instant::now();
         self.values_without_pi()?;
-        let settings = self.averaging(order, work);
+        // Order zero is the linear equation: nothing is sought in it.
+        let settings = self.averaging(order.max(1), work);
         let mut goes_on = |progress| work.goes_on(progress);
         let found = resonance::sought(self.problem(), name, &settings, &mut goes_on);
         let value = found.map_err(|error| self.refusal(error.into()))?;

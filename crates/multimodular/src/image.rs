@@ -104,6 +104,7 @@ impl Job<'_> {
     /// The algebra and the equation modulo p.
     pub(crate) fn over(&self, field: PrimeField) -> Result<(Modular, Equation<Modular>), Error> {
         let algebra = Modular::new(field, self.points).ok_or(Error::OutOfPrimes)?;
+        let algebra = algebra.with_stop(self.stop.clone());
         let binding = Over(self.binding, &field);
         let equation = compile(&algebra, self.equation, &binding, self.request.order)?;
         Ok((algebra, equation))

@@ -132,6 +132,21 @@ impl Course {
         self.events.iter().filter(is).count()
     }
 
+    /// The latest moment of so many events, samples and points, if it is after the start.
+    fn latest(&self, [events, samples, points]: [usize; 3]) -> Option<Moment> {
+        let after = |event: &Happening| {
+            let (time, state) = (event.time.clone(), event.after.clone());
+            Moment { time, state, others: Vec::new(), stuck: false }
+        };
+        // Of an event the states of further unknowns are not kept.
+        let alone = self.last.others.is_empty();
+        let event = self.events.get(..events).and_then(<[_]>::last).filter(|_| alone).map(after);
+        let last = |list: &[Moment], count: usize| list.get(..count)?.last().cloned();
+        let kept = [last(&self.samples, samples), last(&self.points, points), event];
+        let latest = kept.into_iter().flatten().max_by(|a, b| a.time.total_cmp(&b.time));
+        latest.filter(|moment| moment.time > 0)
+    }
+
     /// Impacts in sequence before each accumulation.
     fn runs(&self) -> Vec<usize> {
         let mut run = 0;
@@ -188,4 +203,29 @@ pub fn align(a: &mut Course, b: &mut Course) {
     let common: Vec<usize> = a.runs().iter().zip(b.runs()).map(|(m, n)| (*m).min(n)).collect();
     a.shorten(&common);
     b.shorten(&common);
+}
+
+/// Cuts two integrations of one motion that were broken off to what both came to: the same events, samples and points,
+/// up to the last of them. Whether there is any; not where the body stuck, for how long up to there is not known.
+pub fn cut(a: &mut Course, b: &mut Course) -> bool {
+    let stuck = |course: &Course| !course.stuck_time.is_zero();
+    if stuck(a) || stuck(b) {
+        return false;
+    }
+    let same = a.events.iter().zip(&b.events).take_while(|(x, y)| x.kind == y.kind).count();
+    let (samples, points) =
+        (a.samples.len().min(b.samples.len()), a.points.len().min(b.points.len()));
+    let latest = |course: &Course| course.latest([same, samples, points]);
+    let [Some(first), Some(second)] = [latest(a), latest(b)] else { return false };
+    for course in [&mut *a, &mut *b] {
+        course.events.truncate(same);
+        course.samples.truncate(samples);
+        course.points.truncate(points);
+        course.complete = false;
+    }
+    let (one, other) = (first.time.to_f64(), second.time.to_f64());
+    (a.last, b.last) = (first, second);
+    a.line.retain(|dot| dot.time <= one);
+    b.line.retain(|dot| dot.time <= other);
+    true
 }

@@ -214,7 +214,8 @@ impl<'s, R: Real> Integrator<'s, R> {
     }
 
     /// Integrates up to `target` (which is met exactly; nothing happens if it is past) or until
-    /// the observer breaks it off, after which the state is that at the end of the step. May be
+    /// the observer breaks it off, after which the state is that at the end of the step (of one that takes long and
+    /// is broken off within, told [`Report::Busy`], that at its start). May be
     /// called again with a later target: stroboscopic sections are a loop over targets. Cost: per step O(operations order^2).
     pub fn advance(
         &mut self,
@@ -259,7 +260,12 @@ impl<'s, R: Real> Integrator<'s, R> {
         target: &Clock<R::Element>,
         observer: &mut Observer<'_, R>,
     ) -> Result<ControlFlow<()>, SimulateError> {
-        let limit = self.expand()?;
+        let order = self.series.order;
+        let limit = match self.expand_while(order, &mut || observer(&Report::Busy)) {
+            // The state is that at the end of the step before.
+            Err(SimulateError::Stopped) => return Ok(ControlFlow::Break(())),
+            found => found?,
+        };
         if let Some(hit) = self.hit_at_start() {
             // Events without a step between them: a sequence that does not end is no motion.
             self.stalled += 1;
@@ -421,6 +427,14 @@ impl<'s, R: Real> Integrator<'s, R> {
     }
 
     pub(crate) fn expand_to(&mut self, levels: usize) -> Result<Option<R::Element>, SimulateError> {
+        self.expand_while(levels, &mut go_on)
+    }
+
+    fn expand_while(
+        &mut self,
+        levels: usize,
+        tick: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Option<R::Element>, SimulateError> {
         let system = self.system;
         for (state, value) in self.state.iter().enumerate() {
             system.real.set(self.series.rows.at_mut(state, 0), value);
@@ -433,7 +447,7 @@ impl<'s, R: Real> Integrator<'s, R> {
                 return Err(SimulateError::StepTooSmall { time: self.seconds() });
             }
         }
-        self.series.expand(system, &self.clock.high, &self.phase, levels)?;
+        self.series.expand(system, &self.clock.high, &self.phase, levels, tick)?;
         Ok(limit)
     }
 

@@ -75,7 +75,7 @@ mod zero_one;
 
 pub use bifurcation::{Column, DiagramSettings, Sweep, diagram};
 pub use continuation::continue_tangency;
-pub use course::{Course, Dot, End, Happening, Moment, align};
+pub use course::{Course, Dot, End, Happening, Moment, align, cut};
 pub use digits::Digits;
 pub use error::{SimulateError, Surface};
 pub use estimate::{Computation, Estimated, estimate};

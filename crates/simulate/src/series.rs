@@ -4,6 +4,10 @@ use crate::error::SimulateError;
 use crate::integrator::real::Real;
 use crate::system::System;
 use crate::tape::{Moment, Op, Rows, horner};
+use std::ops::ControlFlow;
+
+/// From so many levels on a step is long (220 digits): it is asked whether to go on with it.
+const LONG: usize = 256;
 
 /// What the right side is at this moment.
 #[derive(Clone, Debug)]
@@ -37,17 +41,23 @@ impl<R: Real> Series<R> {
     }
 
     /// Levels 1..=levels of the states and 0..=levels of all other rows, from level 0 of the
-    /// states and the delayed rows.
+    /// states and the delayed rows. Where there are many, `tick` is asked before every one whether to go on
+    /// ([`SimulateError::Stopped`]): a level n takes n products per operation.
     pub(crate) fn expand(
         &mut self,
         system: &System<R>,
         time: &R::Element,
         phase: &Phase,
         levels: usize,
+        tick: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<(), SimulateError> {
+        let asks = levels >= LONG;
         let sliding = phase.modes.iter().position(|mode| *mode == 0);
         let mut sensitivity = None;
         for n in 0..=levels {
+            if asks && tick().is_break() {
+                return Err(SimulateError::Stopped);
+            }
             self.level(system, time, phase, n);
             if n == levels {
                 break;

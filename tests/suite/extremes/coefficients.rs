@@ -138,7 +138,7 @@ fn exact_coefficients() {
         (100, Driver),
         (200, EnergyIntegral),
     ];
-    exact_grid(&orders, &[1, 16, 300]).finish("exact coefficients");
+    exact_grid(&orders, &[1, 16, 300]).finish("exact coefficients", 2);
 }
 
 #[test]
@@ -150,9 +150,9 @@ fn numeric_coefficients() {
         Tier::Collocation { digits: 0 },
         Tier::Collocation { digits: 30 },
     ];
-    numeric_grid(&[0, 1, 2, 20], &tiers).finish("numeric coefficients");
+    numeric_grid(&[0, 1, 2, 20], &tiers).finish("numeric coefficients", 18);
     // Both grids round a coefficient to the same double: 1e10 for 1e-14 at order 138.
-    numeric_grid(&[150], &[Tier::Doubles]).finish("numeric coefficients without a digit");
+    numeric_grid(&[150], &[Tier::Doubles]).finish("numeric coefficients without a digit", 51);
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn numeric_coefficients() {
 fn every_coefficient() {
     use Route::{Driver, EnergyIntegral};
     let orders = [(10, Driver), (20, EnergyIntegral), (30, EnergyIntegral), (100, EnergyIntegral)];
-    exact_grid(&orders, &[1, 3, 16, 20, 30, 300, 3_000]).finish("exact coefficients");
+    exact_grid(&orders, &[1, 3, 16, 20, 30, 300, 3_000]).finish("exact coefficients", 70);
     let tiers = [
         Tier::Doubles,
         Tier::Fourier { harmonics: 300 },
@@ -168,7 +168,7 @@ fn every_coefficient() {
         Tier::Collocation { digits: 20 },
         Tier::Collocation { digits: 100 },
     ];
-    numeric_grid(&[5, 50, 100, 200], &tiers).finish("numeric coefficients");
+    numeric_grid(&[5, 50, 100, 200], &tiers).finish("numeric coefficients", 70);
     numeric_grid(&[0, 1, 2, 10], &[Tier::Collocation { digits: 300 }])
-        .finish("numeric coefficients, 300 digits");
+        .finish("numeric coefficients, 300 digits", 70);
 }

@@ -104,13 +104,13 @@ fn lobachevsky_grid(precisions: &[u32]) -> Grid {
 
 #[test]
 fn lobachevsky_function() {
-    lobachevsky_grid(&[2, 3, 10, 53, 64, 100, 500]).finish("Lobachevsky function");
+    lobachevsky_grid(&[2, 3, 10, 53, 64, 100, 500]).finish("Lobachevsky function", 1);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn lobachevsky_function_at_many_bits() {
-    lobachevsky_grid(&[1000, 2000]).finish("Lobachevsky function");
+    lobachevsky_grid(&[1000, 2000]).finish("Lobachevsky function", 70);
     // L(pi/2 - 2y)/2 = L(pi/2 - y) - L(y) + y ln 2 - pi ln 2/4 (see `quarter`), y = q pi.
     let mut grid = Grid::default();
     for bits in [10_000, 100_000] {
@@ -133,7 +133,7 @@ fn lobachevsky_function_at_many_bits() {
             });
         }
     }
-    grid.finish("Lobachevsky function at many bits");
+    grid.finish("Lobachevsky function at many bits", 70);
 }
 
 type Elementary = (&'static str, fn(Balls, &Ball) -> Option<Ball>, fn(Float) -> Float);
@@ -211,11 +211,11 @@ fn elementary_grid(precisions: &[u32], widths: &[Option<i32>]) -> Grid {
 #[test]
 fn elementary_functions() {
     let widths = [None, Some(-1100), Some(-40), Some(-3)];
-    elementary_grid(&[2, 3, 10, 53, 64, 100, 1000], &widths).finish("elementary functions");
+    elementary_grid(&[2, 3, 10, 53, 64, 100, 1000], &widths).finish("elementary functions", 5);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn elementary_functions_at_many_bits() {
-    elementary_grid(&[10_000, 100_000], &[None]).finish("elementary functions");
+    elementary_grid(&[10_000, 100_000], &[None]).finish("elementary functions", 70);
 }

@@ -249,25 +249,25 @@ fn every_method() -> Vec<Option<Method>> {
 #[test]
 fn power_law_periods() {
     let axes = Axes { orders: &[0, 1, 20], digits: &[30], methods: &AUTO };
-    power_law_grid(&axes).finish("power-law periods");
+    power_law_grid(&axes).finish("power-law periods", 18);
 }
 
 #[test]
 fn pendulum_periods() {
     let axes = Axes { orders: &[0, 1, 2, 7, 12], digits: &[1, 30], methods: &AUTO };
-    pendulum_grid(&axes).finish("pendulum periods");
+    pendulum_grid(&axes).finish("pendulum periods", 36);
 }
 
 #[test]
 fn duffing_periods() {
     let axes = Axes { orders: &[0, 2, 20], digits: &[1, 30], methods: &AUTO };
-    duffing_grid(&axes).finish("Duffing periods");
+    duffing_grid(&axes).finish("Duffing periods", 15);
 }
 
 #[test]
 fn van_der_pol_periods() {
     let axes = Axes { orders: &[0, 1, 2, 7, 20], digits: &[1, 30], methods: &AUTO };
-    van_der_pol_grid(&axes).finish("van der Pol periods");
+    van_der_pol_grid(&axes).finish("van der Pol periods", 64);
 }
 
 /// High orders, where resummation is most tempted to believe itself.
@@ -297,22 +297,22 @@ fn high_orders(orders: &[usize], methods: &[Option<Method>]) -> Grid {
 
 #[test]
 fn periods_at_order_40() {
-    high_orders(&[40], &AUTO).finish("periods at order 40");
+    high_orders(&[40], &AUTO).finish("periods at order 40", 3);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn periods_at_high_orders() {
-    high_orders(&[50, 100], &AUTO).finish("periods at orders 50 and 100");
+    high_orders(&[50, 100], &AUTO).finish("periods at orders 50 and 100", 70);
     let methods = [Some(Method::PartialSum), Some(Method::Pade)];
-    high_orders(&[100], &methods).finish("periods at order 100, two methods");
+    high_orders(&[100], &methods).finish("periods at order 100, two methods", 70);
 }
 
 fn every_problem(axes: &Axes<'_>) {
-    power_law_grid(axes).finish("power-law periods");
-    duffing_grid(axes).finish("Duffing periods");
-    van_der_pol_grid(axes).finish("van der Pol periods");
-    pendulum_grid(axes).finish("pendulum periods");
+    power_law_grid(axes).finish("power-law periods", 70);
+    duffing_grid(axes).finish("Duffing periods", 70);
+    van_der_pol_grid(axes).finish("van der Pol periods", 70);
+    pendulum_grid(axes).finish("pendulum periods", 70);
 }
 
 #[test]
@@ -352,5 +352,5 @@ fn periods_at_100_000_bits() {
     sweep(&mut grid, &axes, "duffing", &[("eps", "1/3")], &|bits| {
         Some((duffing(&rational("1/3"), &rational("1"), bits)?, bits - 16))
     });
-    grid.finish("periods at 100 000 bits");
+    grid.finish("periods at 100 000 bits", 70);
 }

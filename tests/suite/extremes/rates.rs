@@ -101,11 +101,11 @@ fn grid_of(orders: &[usize], digits: &[usize]) -> Grid {
 
 #[test]
 fn averaged_rates() {
-    grid_of(&[0, 1, 4], &[1, 16]).finish("averaged rates");
+    grid_of(&[0, 1, 4], &[1, 16]).finish("averaged rates", 1);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn every_averaged_rate() {
-    grid_of(&[2, 10, 20], &[1, 3, 30, 300]).finish("averaged rates");
+    grid_of(&[2, 10, 20], &[1, 3, 30, 300]).finish("averaged rates", 70);
 }

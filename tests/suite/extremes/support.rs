@@ -103,8 +103,8 @@ impl Grid {
         self.estimated += 1;
     }
 
-    /// Prints the counts; every defect fails the test.
-    pub fn finish(self, name: &str) {
+    /// Prints the counts; every defect fails the test, and more than so many refusals in a hundred cells.
+    pub fn finish(self, name: &str, most_refused: usize) {
         let refused: usize = self.refused.values().sum();
         println!(
             "{name}: {} cells: {} certified, {} estimated, {refused} refused {:?}, {} defects; slowest {:.2?} {}",
@@ -120,7 +120,11 @@ impl Grid {
             println!("  {line}");
         }
         assert!(self.defects.is_empty(), "{name}: {} defects", self.defects.len());
-        assert!(self.certified + self.estimated > 0);
+        let cells = self.certified + self.estimated + refused;
+        assert!(
+            100 * refused <= most_refused * cells && refused < cells,
+            "{name}: {refused} of {cells} refused"
+        );
     }
 }
 

@@ -80,11 +80,11 @@ fn grid_of(precisions: &[u32]) -> Grid {
 
 #[test]
 fn thresholds() {
-    grid_of(&[2, 3, 10, 53, 64, 100, 1_000]).finish("thresholds");
+    grid_of(&[2, 3, 10, 53, 64, 100, 1_000]).finish("thresholds", 8);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn thresholds_at_many_bits() {
-    grid_of(&[10_000, 100_000]).finish("thresholds");
+    grid_of(&[10_000, 100_000]).finish("thresholds", 70);
 }

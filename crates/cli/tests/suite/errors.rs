@@ -31,7 +31,7 @@ fn run(line: &str) -> Output {
 }
 
 /// Exit code, code, line; what the hint says of the way on; the line it leads to.
-const TABLE: [(i32, &str, &str, &str, &str); 61] = [
+const TABLE: [(i32, &str, &str, &str, &str); 62] = [
     (2, "usage", "derive duffing --order x", "--help", "--help"),
     (2, "set", "derive duffing --set a", "--set", "derive duffing --order 1 --set amplitude=1/2"),
     (
@@ -182,6 +182,13 @@ const TABLE: [(i32, &str, &str, &str, &str); 61] = [
         "derive duffing --route energy --tier collocation",
         "drop",
         "derive duffing --order 1 --route energy",
+    ),
+    (
+        2,
+        "route-and-tier",
+        "derive \"x'' + x = eps*(1 - x^2)*x'\" --normalisation free --tier collocation",
+        "drop",
+        "derive \"x'' + x = eps*(1 - x^2)*x'\" --order 1 --normalisation free",
     ),
     (2, "plot", "evaluate duffing --plot x.png", ".svg", ""),
     (

@@ -28,6 +28,16 @@ impl Generator {
     }
 }
 
+/// A number of the environment.
+pub fn number(name: &str) -> Option<u64> {
+    std::env::var(name).ok()?.parse().ok()
+}
+
+/// How many, unless the environment says how many.
+pub fn count(usual: usize) -> usize {
+    number("LINDSTEDT_FUZZ").map_or(usual, |count| count as usize)
+}
+
 /// Infinities and NaN as words of their own; those of the question are repeated in the answer.
 pub fn not_a_number(text: &str, question: &str) -> Option<String> {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';

@@ -5,6 +5,7 @@ mod averaging;
 mod book;
 mod browser;
 mod derive;
+mod determinism;
 mod errors;
 mod evaluate;
 mod faults;

@@ -7,6 +7,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::time::{Duration, SystemTime};
 
 /// A folder for one test.
 pub struct Folder(pub PathBuf);
@@ -128,6 +129,27 @@ fn what_was_there_stays_when_the_disk_is_full() {
     // A device has no other file beside it.
     assert_eq!(folder.run(&["derive", "duffing", "--order", "1", "--out", "/dev/null"]).0, Some(0));
     assert_eq!(folder.run(&["derive", "duffing", "--order", "1", "--out", "/dev/full"]).0, Some(5));
+}
+
+/// What a killed run left beside a file goes with the next one that writes it; what is young, held or another's stays.
+#[test]
+fn what_was_left_of_a_file_is_removed() {
+    let folder = Folder::new("left");
+    let left = |name: &str, mark: &str, age: u64| {
+        let path =
+            folder.0.join(format!(".lindstedt-{:08x}-{mark}", crc32fast::hash(name.as_bytes())));
+        let file = fs::File::create(&path).unwrap();
+        file.set_modified(SystemTime::now() - Duration::from_secs(age)).unwrap();
+        (file, path)
+    };
+    let (_, old) = left("a.txt", "old", 3600);
+    let (held, locked) = left("a.txt", "held", 3600);
+    held.lock().unwrap();
+    let (_, young) = left("a.txt", "young", 0);
+    let (_, other) = left("b.txt", "old", 3600);
+    assert_eq!(folder.run(&["derive", "duffing", "--order", "1", "--out", "a.txt"]).0, Some(0));
+    assert_eq!([&old, &locked, &young, &other].map(|p| p.exists()), [false, true, true, true]);
+    assert_eq!(folder.names().len(), 4);
 }
 
 #[test]

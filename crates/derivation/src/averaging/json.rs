@@ -53,6 +53,16 @@ impl<'a> Term<'a> {
     }
 }
 
+/// The rates, with the same keys at every order.
+#[derive(Serialize)]
+struct Series<'a> {
+    amplitude_rate: Vec<Vec<Term<'a>>>,
+    phase_rate: Vec<Vec<Term<'a>>>,
+    /// Of rates that are linear in a.
+    growth_rate: Option<Vec<Printed<'a>>>,
+    frequency: Option<Vec<Printed<'a>>>,
+}
+
 /// Which orders were substituted into the equation.
 #[derive(Serialize)]
 struct Residual {
@@ -68,13 +78,14 @@ impl Serialize for Averaging {
         map.serialize_entry("parameter", &*self.problem.small)?;
         map.serialize_entry("normalisation", &Condition::FreeAmplitude)?;
         map.serialize_entry("symbols", &self.symbols)?;
-        if self.is_linear() {
-            let series = Object(vec![("growth_rate", numbers(a)), ("frequency", numbers(b))]);
-            map.serialize_entry("series", &series)?;
-        } else {
-            let rates = vec![("amplitude_rate", polynomials(a)), ("phase_rate", polynomials(b))];
-            map.serialize_entry("series", &Object(rates))?;
-        }
+        let linear = self.is_linear();
+        let series = Series {
+            amplitude_rate: polynomials(a),
+            phase_rate: polynomials(b),
+            growth_rate: linear.then(|| numbers(a)),
+            frequency: linear.then(|| numbers(b)),
+        };
+        map.serialize_entry("series", &series)?;
         let solution: Vec<&String> = self.solution.iter().map(|[text, _]| text).collect();
         map.serialize_entry("solution", &solution)?;
         map.serialize_entry("terms", &self.terms)?;
@@ -86,12 +97,8 @@ impl Serialize for Averaging {
         map.serialize_entry("residual", &residual)?;
         let name = "averaging (Krylov, Bogoliubov, Mitropolsky)";
         map.serialize_entry("method", &Object(vec![("name", name)]))?;
-        if let Some(found) = &self.cycles {
-            map.serialize_entry("limit_cycles", found)?;
-        }
-        if let Some(found) = &self.convergence {
-            map.serialize_entry("convergence", &Radius::new(found))?;
-        }
+        map.serialize_entry("limit_cycles", &self.cycles)?;
+        map.serialize_entry("convergence", &self.convergence.as_ref().map(Radius::new))?;
         map.serialize_entry("classification", &self.description)?;
         map.end()
     }

@@ -10,6 +10,7 @@ mod values;
 pub use cycles::{Algebraic, Cycle, Cycles, print_series};
 
 use crate::error::DerivationError as Error;
+use crate::limits::refuse_above;
 use crate::work::Progress;
 use lindstedt_algebra::Stop;
 use lindstedt_coeff::parameters::ParameterField;
@@ -196,12 +197,5 @@ pub fn formulas(
 /// order 8 and 1.6 times more per order; numbers take 14 MiB at order 60.
 fn limit_memory(settings: &AveragingSettings) -> Result<(), Error> {
     let bits = 58f64.log2() + 20.0 + (settings.order as f64 - 8.0) * 1.6f64.log2();
-    if bits > (settings.memory.max(1) as f64).log2() {
-        return Err(Error::TooLarge {
-            order: settings.order,
-            exponent: (bits * 2f64.log10()).round() as u64,
-            limit: settings.memory >> 20,
-        });
-    }
-    Ok(())
+    refuse_above(settings.memory, settings.order, bits)
 }

@@ -131,7 +131,8 @@ impl<'a> Task<'a> {
             ring.one(),
             forcing.clone(),
             times.iter().map(waiting).collect(),
-        );
+        )
+        .with_stop(self.settings.stop.clone());
         let graph = self.compiled(&provisional, values)?;
         let linear = linear_part(&provisional, &graph)?;
         let constants = provisional.constants();
@@ -257,7 +258,10 @@ impl<'a> Task<'a> {
     ) -> Result<Option<Averaging>, Error> {
         let Some(over) = self.over_rationals(observer)? else { return Ok(None) };
         let number = |q: &Rational| Ok(Coefficient::Number(rational(q, self.settings.digits)?));
-        let cycles = cycles(&over.frequency, &over.expansion, self.settings.digits)?;
+        let cycles = match self.settings.stop.asked() {
+            true => None,
+            false => cycles(&over.frequency, &over.expansion, self.settings.digits)?,
+        };
         Ok(Some(Averaging { cycles, ..self.finish(&over, true, &number)? }))
     }
 

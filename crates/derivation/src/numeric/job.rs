@@ -4,6 +4,7 @@ use super::amplitude::scaled_to_amplitude;
 use super::binding::{ExactValues, Given, as_powers};
 use super::estimate::{Estimate, EstimatedSeries, Tier, rounding};
 use crate::error::DerivationError as Error;
+use crate::limits::refuse_above;
 use crate::settings::Settings;
 use lindstedt_algebra::{PhaseAlgebra, Rationals};
 use lindstedt_coeff::floats::{Doubles, Floats, Reals};
@@ -25,14 +26,7 @@ const MOST_NODES: usize = 1 << 14;
 pub(super) fn limit_memory(settings: &Settings, nodes: usize, bits: u32) -> Result<(), Error> {
     let value = f64::from(bits) / 8.0 + 48.0;
     let bytes = (settings.order as f64 + 1.0) * nodes as f64 * value * 12.0;
-    if bytes > settings.memory as f64 {
-        return Err(Error::TooLarge {
-            order: settings.order,
-            exponent: bytes.log10().round() as u64,
-            limit: settings.memory >> 20,
-        });
-    }
-    Ok(())
+    refuse_above(settings.memory, settings.order, bytes.log2())
 }
 
 /// One run on one grid.
@@ -55,8 +49,8 @@ impl Job<'_> {
             Tier::Collocation { digits } => self.refine(tier, digits),
             Tier::Doubles => {
                 let run = |job: &mut Job<'_>, (accuracy, end)| {
-                    let algebra = Collocation::new(Doubles, Grid::new(accuracy, end));
-                    let algebra = algebra.with_stop(job.settings.stop.clone());
+                    let (grid, stop) = (Grid::new(accuracy, end), job.settings.stop.clone());
+                    let algebra = Collocation::until(Doubles, grid, stop);
                     job.run(&algebra, algebra.nodes())
                 };
                 // A solution is known to about 1e-16: where cos psi is smaller than that, x_n/x_0 is
@@ -95,8 +89,8 @@ impl Job<'_> {
             }
             bits = needed;
             limit_memory(self.settings, grid.nodes, bits)?;
-            let algebra = Collocation::new(Floats::new(bits), grid);
-            let algebra = algebra.with_stop(self.settings.stop.clone());
+            let stop = self.settings.stop.clone();
+            let algebra = Collocation::until(Floats::new(bits), grid, stop);
             let run = self.run(&algebra, grid.nodes)?;
             let Some(before) = coarse.replace(run) else {
                 guard = 6;
@@ -177,6 +171,9 @@ impl Job<'_> {
     where
         A::Constants: Reals,
     {
+        if algebra.interrupted() {
+            return Err(ExpandError::Interrupted { order: 0 }.into());
+        }
         let reals = algebra.constants();
         let given = Given { settings: self.settings, problem: self.problem, reals };
         let order = self.settings.order;

@@ -30,7 +30,7 @@ pub use system::{Beside, System};
 
 use crate::averaging::{AveragingSettings, constant};
 use crate::error::DerivationError as Error;
-use crate::limits::unknown_parameter;
+use crate::limits::{refuse_above, unknown_parameter};
 use crate::values::value;
 use crate::work::Progress;
 use lindstedt_algebra::AmplitudeAlgebra;
@@ -183,7 +183,7 @@ pub fn slow_flow(
     let mut on_order =
         |work: &OrderWork| observer(Progress::Order(work.order, work.terms)) && room.has_next(work);
     let found = resonant(&algebra, &graph, settings.order, &detuning, &mut on_order);
-    room.checked()?;
+    room.checked?;
     let too_high = || Error::from(ResonanceError::TooHigh { order: settings.order });
     let found = found.map_err(|error| match error {
         ExpandError::Interrupted { .. } if algebra.overflowed() => too_high(),
@@ -229,7 +229,7 @@ struct Room {
     last: f64,
     order: usize,
     limit: u64,
-    too_large: Option<(usize, f64)>,
+    checked: Result<(), Error>,
 }
 
 /// Bytes held for one term of the motion, a rule of thumb: a word, two integers of some limbs, and those again
@@ -239,7 +239,7 @@ const BYTES: f64 = 7000.0;
 impl Room {
     fn new(settings: &AveragingSettings) -> Self {
         let (limit, order) = (settings.memory, settings.order);
-        Self { bytes: 0.0, last: 0.0, order, limit, too_large: None }
+        Self { bytes: 0.0, last: 0.0, order, limit, checked: Ok(()) }
     }
 
     fn has_next(&mut self, work: &OrderWork) -> bool {
@@ -248,16 +248,10 @@ impl Room {
         self.bytes += now;
         self.last = now;
         let next = self.bytes + now * growth;
-        if work.order < self.order && next > self.limit as f64 {
-            self.too_large = Some((work.order + 1, next));
+        if work.order < self.order {
+            self.checked = refuse_above(self.limit, work.order + 1, next.log2());
         }
-        self.too_large.is_none()
-    }
-
-    fn checked(&self) -> Result<(), Error> {
-        let Some((order, bytes)) = self.too_large else { return Ok(()) };
-        let exponent = bytes.log10().round() as u64;
-        Err(Error::TooLarge { order, exponent, limit: self.limit >> 20 })
+        self.checked.is_ok()
     }
 }
 

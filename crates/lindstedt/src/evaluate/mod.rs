@@ -163,7 +163,12 @@ impl Oscillator {
             Some(series) => (SolutionCode::by_newton(name, series, language), found.order),
             None => {
                 let path = case.trajectory(&found, question, work)?;
-                (SolutionCode::new(name, &path, language, harmonics)?, path.order())
+                let code = SolutionCode::new(name, &path, language, harmonics);
+                let code = code.map_err(|error| match work.stop.asked() {
+                    true => Refused::stopped("stopped before the phases were sampled", "").into(),
+                    false => error,
+                });
+                (code?, path.order())
             }
         };
         let at = found.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();

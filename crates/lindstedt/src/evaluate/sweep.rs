@@ -1,8 +1,8 @@
 //! Period and frequency over one or two swept parameters.
 
 use super::Evaluate;
-use crate::grid::{Axis, Grid};
-use crate::{Answer, Error, Exact, Number, Oscillator, Remark, Work};
+use crate::grid::{Axis, Grid, check_room};
+use crate::{Answer, Error, Exact, Kind, Number, Oscillator, Refusal, Remark, Work};
 use serde::{Serialize, Serializer};
 use std::time::Instant;
 
@@ -57,13 +57,19 @@ impl Oscillator {
         work: &Work,
     ) -> Result<Answer<EvaluationSweep>, Error> {
         let start = Instant::now();
-        let grid: Grid<Result<_, Error>> =
+        let points = rows.as_ref().map_or(1, |rows| rows.values.len()) * columns.values.len();
+        check_room(points, size_of::<Option<Result<SweptPeriod, Error>>>(), work)?;
+        let mut grid: Grid<Result<_, Error>> =
             Grid::of_cases(self, columns, rows, work, |case, work| {
                 let found = case.settled()?.0.period(question, work)?;
                 let (period, frequency) = (found.period, found.frequency);
                 let (exact_period, order, at) = (found.exact_period, found.order, found.at);
                 Ok(SweptPeriod { period, frequency, exact_period, order, at })
             });
+        let stopped = |error: &Error| error.kind() == Kind::Stopped;
+        for point in &mut grid.points {
+            point.take_if(|point| point.as_ref().is_err_and(stopped));
+        }
         let found = || grid.points.iter().flatten();
         let first = found().find_map(|point| point.as_ref().ok());
         if let (None, Some(Err(error))) = (first, found().next()) {

@@ -146,7 +146,8 @@ impl<'a> TimeDomain<'a> {
             found.is_some() || turns >= MOST_TURNS
         };
         flow.advance(&real.double(1e6), &mut |report| {
-            segments.set(segments.get() + 1);
+            let busy = matches!(report, Report::Busy);
+            segments.set(segments.get() + u32::from(!busy));
             let ends = stop.asked()
                 || segments.get() > MOST_SEGMENTS
                 || matches!(report, Report::Event(event)

@@ -16,6 +16,8 @@ use std::fmt::Write;
 pub(super) struct Pair {
     pub course: Course,
     pub finer: Option<Course>,
+    /// The work was stopped before more was known.
+    pub stopped: bool,
 }
 
 /// A state at a time.
@@ -246,7 +248,7 @@ impl Motion {
     /// The answer out of what was integrated; `half` are the deviations of the impact times with
     /// half the perturbation: what is linear is half as large.
     pub(super) fn new(plan: Plan, pair: Pair, half: Option<Vec<Float>>, work: &Work) -> Self {
-        let Pair { course, finer } = &pair;
+        let Pair { course, finer, .. } = &pair;
         let numbers = Numbers { digits: work.printed_digits(), known: finer.is_some() };
         let finer = finer.as_ref().unwrap_or(course);
         let perturbed = plan.perturbed();
@@ -299,7 +301,9 @@ fn verdict(plan: &Plan, pair: &Pair, shifts: Option<(&Vec<Float>, usize)>) -> St
     let course = &pair.course;
     let time = course.last.time.to_f64();
     let mut text = String::new();
-    if pair.finer.is_none() {
+    if pair.finer.is_none() && pair.stopped {
+        text += "without a second integration nothing is known of the errors; ";
+    } else if pair.finer.is_none() {
         text += "no digit is left in doubles, a motion with more digits goes elsewhere (chaos, or an \
                  unstable motion); a picture; ";
     }
@@ -335,7 +339,7 @@ fn verdict(plan: &Plan, pair: &Pair, shifts: Option<(&Vec<Float>, usize)>) -> St
     if let Some((shifts, linear)) = shifts {
         let _ = write!(text, "; {}", growth::verdict(shifts, linear));
     }
-    if pair.finer.is_none() {
+    if pair.finer.is_none() && !pair.stopped {
         text += "; for digits: without --f64, a shorter time; for a picture enough, for numbers \
                  --lyapunov or --zero-one";
     }

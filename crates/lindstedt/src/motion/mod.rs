@@ -14,6 +14,7 @@ mod equation;
 mod follow;
 pub(crate) mod growth;
 mod history;
+mod integrate;
 mod orbit;
 mod plan;
 mod setup;
@@ -28,20 +29,14 @@ pub use lindstedt_simulate::{Cut as Section, Dot};
 
 use crate::grid::Axis;
 use crate::refusal::Refused;
-use crate::{Answer, Error, Exact, Oscillator, Progress, Remark, Standing, Work};
-use answer::Pair;
-use lindstedt_simulate::{self as simulate, Course, Quantity, SimulateError, align};
+use crate::{Answer, Error, Exact, Oscillator, Remark, Standing, Work};
+use integrate::integrate;
+use lindstedt_simulate::{self as simulate, Quantity};
 use plan::Plan;
 use rug::{Float, Rational};
 use setup::Setup;
 use std::time::Instant;
 
-/// Digits more, in which the second integration is made.
-const MORE: u32 = 8;
-/// Integrations with more and more digits, until those asked for are there.
-const TRIES: u32 = 4;
-/// The logarithm of an error that leaves not one digit.
-const NOT_ONE_DIGIT: f64 = -1.0;
 /// Where nothing is said: so many impacts, periods, or units of time.
 const USUAL: u32 = 20;
 
@@ -182,6 +177,8 @@ impl Oscillator {
     /// The motion from a start to an end: its events, samples and section, integrated until the
     /// digits of `work` are there.
     ///
+    /// Of stopped work what both integrations came to is kept; where there is but one, without errors.
+    ///
     /// Estimated: every number has the difference to an integration with eight digits more as its
     /// error. In doubles there is one try; where it has not one digit the answer is undecided, a
     /// picture. A motion that escapes in a finite time is given up to shortly before, and is no
@@ -189,7 +186,7 @@ impl Oscillator {
     ///
     /// # Errors
     /// [`Refused`] for a question that does not fit, where the digits cannot be reached, where there
-    /// is no such start or history, and for stopped work; [`Error::Simulate`], [`Error::Impact`].
+    /// is no such start or history, and for work stopped at the start; [`Error::Simulate`], [`Error::Impact`].
     ///
     /// ```
     /// use lindstedt::{Exact, Oscillator, Work, motion::{End, Simulate}};
@@ -204,7 +201,7 @@ impl Oscillator {
         let setup = set_up(self, &question.start, false, precomputed(work))?;
         let mut plan = plan(question, setup)?;
         let (pair, working) = integrate(&mut plan, work)?;
-        let half = if plan.perturbed() && pair.finer.is_some() {
+        let half = if plan.perturbed() && pair.finer.is_some() && !pair.stopped {
             plan.run_half(working, work).map(|half| growth::shifts(&plan, &half))
         } else {
             None
@@ -215,13 +212,15 @@ impl Oscillator {
             let text = format!("--skip {} leaves out every point of the section", plan.skip);
             remarks.push(Remark(text));
         }
-        if pair.finer.is_none() {
+        if pair.finer.is_none() && !pair.stopped {
             let text = "no digit is left in doubles (without --f64 there are some, over a shorter \
                         time; --lyapunov and --zero-one tell how chaotic)";
             remarks.push(Remark(text.to_owned()));
         }
         remarks.extend(plan.cut.iter().map(|why| Remark(format!("{why}: the motion up to there"))));
+        let done = pair.course.events.len() + pair.course.samples.len() + pair.course.points.len();
         let standing = match (pair.course.complete, &pair.finer) {
+            _ if pair.stopped => Standing::Stopped { done },
             (false, _) => Standing::NoAnswer,
             (true, None) => Standing::Undecided,
             (true, Some(_)) => Standing::Complete,
@@ -329,83 +328,6 @@ fn plan(question: &Simulate, setup: Setup) -> Result<Plan, Error> {
     let skip = question.skip.unwrap_or(0) as usize;
     let drawn = question.drawn;
     Ok(Plan { setup, end, times, section, skip, drawn, view, cut: None })
-}
-
-/// Two integrations, the second with more digits, both with so many that their difference leaves the
-/// digits asked for; with them the working digits of the first.
-///
-/// In doubles there is one try; no second motion where it has not one digit or met other events.
-/// Where the motion ends in a singularity, the plan is cut shortly before it.
-fn integrate(plan: &mut Plan, work: &Work) -> Result<(Pair, u32), Error> {
-    let digits = u32::try_from(work.printed_digits()).unwrap_or(u32::MAX);
-    let doubles = work.doubles;
-    let mut working = if doubles { 16 } else { digits.saturating_add(4) };
-    let (mut lost, mut same) = (0.0, false);
-    for left in (0..TRIES).rev() {
-        work.tell(Progress::Digits(working));
-        let (mut course, mut finer) = match both(plan, working, work) {
-            Err(error) if plan.cut.is_none() && singular(&error).is_some() => {
-                plan.cut_before(singular(&error).unwrap_or_default(), error.to_string());
-                continue;
-            }
-            // Near a branch point, or a double root to working precision: more digits may tell.
-            Err(error) if !doubles && degenerate(&error) && left > 0 => {
-                working = working.saturating_mul(2);
-                continue;
-            }
-            found => found?,
-        };
-        if work.stop.asked() {
-            let message = "stopped before the end of the motion";
-            return Err(Refused::stopped(message, "a shorter time, or fewer --digits").into());
-        }
-        align(&mut course, &mut finer);
-        for course in [&mut course, &mut finer] {
-            course.points.drain(..plan.skip.min(course.points.len()));
-        }
-        same = course.comparable(&finer);
-        let error = course.log10_error(&finer);
-        lost = error + f64::from(digits);
-        if same && if doubles { error < NOT_ONE_DIGIT } else { lost <= 0.0 } {
-            return Ok((Pair { course, finer: Some(finer) }, working));
-        }
-        if doubles {
-            return Ok((Pair { course, finer: None }, working));
-        }
-        let more = if same { lost.ceil().clamp(1.0, 1e4) as u32 + 2 } else { digits };
-        working = working.saturating_add(more);
-    }
-    let message = if same {
-        format!("{digits} digits were not reached, {:.0} are missing", lost.clamp(1.0, 1e6))
-    } else {
-        format!("{digits} digits were not reached: with {MORE} more the events are others")
-    };
-    let hint = "a shorter time, or more --digits; --f64 for a picture";
-    Err(Refused::undecided("not-enough-digits", message, hint).into())
-}
-
-fn both(plan: &Plan, working: u32, work: &Work) -> Result<(Course, Course), SimulateError> {
-    let course = plan.run(working, work.doubles, work)?;
-    Ok((course, plan.run(working.saturating_add(MORE), false, work)?))
-}
-
-/// The time of a singularity that ends the motion.
-fn singular(error: &SimulateError) -> Option<f64> {
-    match error {
-        SimulateError::Escape { time, .. } | SimulateError::UnboundedVelocity { time, .. } => {
-            Some(*time)
-        }
-        _ => None,
-    }
-}
-
-fn degenerate(error: &SimulateError) -> bool {
-    matches!(
-        error,
-        SimulateError::BranchPoint { .. }
-            | SimulateError::StepTooSmall { .. }
-            | SimulateError::Grazing { .. }
-    )
 }
 
 /// |a - b|.

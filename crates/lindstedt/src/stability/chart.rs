@@ -2,8 +2,7 @@
 
 use super::reading::stable;
 use super::subject::{Range, Subject};
-use crate::grid::{Axis, Grid};
-use crate::refusal::Refused;
+use crate::grid::{Axis, Grid, check_room};
 use crate::{Error, Exact, Progress, Status, Work};
 use lindstedt_impact::ImpactError;
 use lindstedt_impact::chart::{
@@ -73,12 +72,8 @@ pub(super) fn compute(
     let second = sweep.get(1);
     let height = second.map_or(1, |second| second.axis.values.len());
     let points = first.axis.values.len().saturating_mul(height);
-    let bytes = points.saturating_mul(size_of::<Option<Point>>()) as u64;
-    if bytes > work.memory {
-        let message = format!("{points} points need {bytes} bytes");
-        let hint = "fewer values, or raise --limit-memory";
-        return Err(Refused::undecided("too-large", message, hint).into());
-    }
+    let bytes = size_of::<Option<Point>>();
+    check_room(points, bytes, work)?;
     let plan = plan(subject, sweep);
     let fast = sweep.iter().all(|range| range.known.is_some() && range.axis.is_equidistant());
     let grid = if fast {
@@ -87,16 +82,17 @@ pub(super) fn compute(
         general(subject, sweep, &plan, work)?
     };
     let finished = grid.is_complete();
-    let compared = kernel::Chart { plan, points: grid.points.iter().flatten().copied().collect() };
     let both = plan.predictor.is_some() && plan.exact.is_some();
-    let left_out = if both { compared.left_out() } else { LeftOut::default() };
+    let compared = || grid.points.iter().flatten();
+    let agreement = Agreement::of(compared());
+    let left_out = if both { LeftOut::of(compared()) } else { LeftOut::default() };
     Ok(Some(Chart {
         grid,
         held: (if plan.rows.parameter == Swept::VelocityGain { "B" } else { "A" }, plan.rows.low),
         point: sweep.iter().map(|range| range.base).collect(),
         asked: [plan.predictor.is_some(), plan.exact.is_some()],
-        agreement: LeftOutAndAgreement { agreement: compared.agreement(), left_out },
-        flip: if fast && finished { flip(subject, &plan) } else { Vec::new() },
+        agreement: LeftOutAndAgreement { agreement, left_out },
+        flip: if fast && finished { flip(subject, &plan, work) } else { Vec::new() },
         finished,
     }))
 }
@@ -145,12 +141,8 @@ fn kernel(
 ) -> Result<Grid<Point>, Error> {
     let rows = plan.rows.count;
     let observer = |done: usize| work.goes_on(Progress::Parts(done, rows));
-    let points = match chart(&subject.found.parameters.nearest(), plan, &observer) {
-        Ok(found) => found.points.into_iter().map(Some).collect(),
-        // Rows are finished in any order: nothing of a stopped chart is shown.
-        Err(ImpactError::Cancelled) => vec![None; plan.columns.count * rows],
-        Err(error) => return Err(error.into()),
-    };
+    let found = chart(&subject.found.parameters.nearest(), plan, &observer)?;
+    let points = found.points.into_iter().map(Some).collect();
     let axis = |n: usize| sweep.get(n).map(|range| range.axis.clone());
     let columns = axis(0).unwrap_or(Axis { name: String::new(), values: Vec::new() });
     Ok(Grid { columns, rows: axis(1), points })
@@ -172,7 +164,7 @@ fn general(
         let rows = single(Swept::VelocityGain, parameters.velocity_gain);
         let one = Plan { columns, rows, ..*plan };
         let found = chart(&parameters, &one, &|_| !work.stop.asked())?;
-        Ok(found.points.first().copied().unwrap_or(Point::EMPTY))
+        found.points.first().copied().ok_or(ImpactError::Cancelled)
     };
     let axis = |n: usize| sweep.get(n).map(|range| range.axis.clone());
     let columns = axis(0).unwrap_or(Axis { name: String::new(), values: Vec::new() });
@@ -187,8 +179,8 @@ fn general(
     }
 }
 
-/// The flip curve, where A is one of the axes: A as a function of the other axis.
-fn flip(subject: &Subject<'_>, plan: &Plan) -> Vec<(f64, f64)> {
+/// The flip curve, where A is one of the axes: A as a function of the other axis, as far as there is time.
+fn flip(subject: &Subject<'_>, plan: &Plan, work: &Work) -> Vec<(f64, f64)> {
     if plan.exact.is_none() {
         return Vec::new();
     }
@@ -201,6 +193,9 @@ fn flip(subject: &Subject<'_>, plan: &Plan) -> Vec<(f64, f64)> {
     let stride = across.count.div_ceil(FLIP_POINTS).max(1);
     let steps: Vec<usize> = (0..across.count).step_by(stride).collect();
     let values = |n: usize| -> Vec<(f64, f64)> {
+        if work.stop.asked() {
+            return Vec::new();
+        }
         let value = across.value(n);
         let Some(exact) = Exact::from_f64(value) else { return Vec::new() };
         let mut parameters = subject.found.parameters.clone();

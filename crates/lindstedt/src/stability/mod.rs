@@ -234,7 +234,7 @@ impl Oscillator {
 fn stopped(error: ImpactError) -> Error {
     match error {
         ImpactError::Cancelled => Refused::stopped(
-            "the time limit was reached before the point was finished",
+            "stopped before the point was finished",
             "raise --limit-seconds, or fewer --digits, or --f64",
         )
         .into(),

@@ -262,7 +262,7 @@ impl Oscillator {
             && work.stop.asked()
         {
             standing = Standing::Stopped { done: grid.done() };
-            remarks.push(Remark("stopped; the rows not reached are empty".to_owned()));
+            remarks.push(Remark("stopped; the rows not reached are missing".to_owned()));
         }
         if !remarks.is_empty() {
             remarks.extend(value.remarks.iter().cloned());

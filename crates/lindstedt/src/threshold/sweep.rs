@@ -1,8 +1,7 @@
 //! Curves and surfaces of the signed threshold.
 
 use super::subject::{Changes, Range, Subject};
-use crate::grid::{Axis, Grid};
-use crate::refusal::Refused;
+use crate::grid::{Axis, Grid, check_room};
 use crate::{Error, Exact};
 use lindstedt_melnikov::{self as melnikov, Class, FastPoint, StickSlip, surface};
 use lindstedt_number::ball::Balls;
@@ -61,12 +60,7 @@ pub(super) fn compute(subject: &Subject<'_>, swept: Vec<Range>) -> Result<Option
     let Some(first) = swept.first() else { return Ok(None) };
     let height = swept.get(1).map_or(1, |second| second.axis.values.len());
     let points = first.axis.values.len().saturating_mul(height);
-    let bytes = points.saturating_mul(size_of::<Result<f64, String>>()) as u64;
-    if bytes > subject.work.memory {
-        let message = format!("{points} points need {bytes} bytes");
-        let hint = "fewer values, or raise --limit-memory";
-        return Err(Refused::undecided("too-large", message, hint).into());
-    }
+    check_room(points, size_of::<Result<f64, String>>(), subject.work)?;
     let fast = (subject.work.doubles || points > CERTIFIED_POINTS)
         && subject.point.is_some()
         && swept.iter().all(stays);
@@ -150,7 +144,6 @@ fn doubles(subject: &Subject<'_>, swept: &[Range]) -> Result<Found, Error> {
             Some(finite(subject, &changes, *value))
         }));
     }
-    points.resize(width.saturating_mul(second.map_or(1, |s| s.axis.values.len())), None);
     let rows = second.map(|range| range.axis.clone());
     Ok(Grid { columns: first.axis.clone(), rows, points })
 }

@@ -34,9 +34,8 @@ pub(super) fn cycle(
         let mut acceleration = real.zero();
         let mut one = Integrator::new(system, &zero, &start, precision)?;
         one.advance(&period, &mut |report| {
-            if let Report::Segment(segment) = report
-                && let Some(rate) = segment.coefficients(1).and_then(|c| c.get(1))
-            {
+            let Report::Segment(segment) = report else { return ControlFlow::Continue(()) };
+            if let Some(rate) = segment.coefficients(1).and_then(|c| c.get(1)) {
                 acceleration = rate.clone();
             }
             ControlFlow::Break(())

@@ -125,10 +125,9 @@ impl Drifting {
         let mut polynomials = None;
         let end = real.float(longest);
         flow.advance(&end, &mut |report| {
-            if let Report::Segment(segment) = report {
-                let list = |state| segment.coefficients(state).map(<[Float]>::to_vec);
-                polynomials = list(0).zip(list(1));
-            }
+            let Report::Segment(segment) = report else { return ControlFlow::Continue(()) };
+            let list = |state| segment.coefficients(state).map(<[Float]>::to_vec);
+            polynomials = list(0).zip(list(1));
             ControlFlow::Break(())
         })?;
         let (Some((a, psi)), true) = (polynomials, *flow.time() >= end) else {

@@ -91,14 +91,19 @@ pub struct Collocation<R: Reals> {
 impl<R: Reals> Collocation<R> {
     /// The algebra on a grid. Cost: a Si value per node, about 10 ms at 100 digits.
     pub fn new(reals: R, grid: Grid) -> Self {
-        let (sinc, [cos, sin]) = Sinc::new(&reals, grid);
+        Self::until(reals, grid, Stop::default())
+    }
+
+    /// The same, whose tables and expansions end when `stop` says so.
+    pub fn until(reals: R, grid: Grid, stop: Stop) -> Self {
+        let (sinc, [cos, sin]) = Sinc::new(&reals, grid, &stop);
         Self {
             reals,
             nodes: grid.nodes,
             cos: Arc::new(cos),
             sin: Arc::new(sin),
             rule: Rule::Sinc(sinc),
-            stop: Stop::default(),
+            stop,
         }
     }
 

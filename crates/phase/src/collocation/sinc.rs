@@ -3,6 +3,7 @@
 use super::grid::{Grid, node, sine_integrals};
 use super::packed::Packed;
 use super::{COS_EVEN, COS_ODD, Particular, SIN_EVEN};
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::floats::Reals;
 use rug::{Float, Rational};
 
@@ -25,17 +26,23 @@ pub(super) struct Sinc<E> {
 }
 
 impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Sinc<E> {
-    /// The rule, and cos psi and sin psi at its nodes.
-    pub(super) fn new<R: Reals<Element = E>>(reals: &R, grid: Grid) -> (Self, [Vec<E>; 2]) {
+    /// The rule, and cos psi and sin psi at its nodes. Once `stop` says so, which is asked for every node, what is
+    /// left of the tables is zero.
+    pub(super) fn new<R: Reals<Element = E>>(
+        reals: &R,
+        grid: Grid,
+        stop: &Stop,
+    ) -> (Self, [Vec<E>; 2]) {
         let bits = reals.bits();
         let (mut cos, mut sin, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..grid.nodes {
-            let [c, s, slope] = node(k as f64 * grid.step, bits);
+            let node = (!stop.asked()).then(|| node(k as f64 * grid.step, bits));
+            let [c, s, slope] = node.unwrap_or_else(|| [(); 3].map(|()| Float::new(2)));
             cos.push(reals.nearest(&c));
             sin.push(reals.nearest(&s));
             weights.push(reals.nearest(&(slope * grid.step)));
         }
-        let table = sine_integrals(2 * grid.nodes, bits);
+        let table = sine_integrals(2 * grid.nodes, bits, stop);
         let positive: Vec<_> = table.iter().map(|x| reals.nearest(x)).collect();
         let negative = positive.iter().take(grid.nodes).skip(1).rev().map(|x| reals.neg(x));
         let forward: Vec<_> = negative.chain(positive.iter().cloned()).collect();

@@ -17,7 +17,7 @@ mod transform;
 pub use field::PrimeField;
 
 use lindstedt_algebra::{
-    FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring,
+    FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring, Stop,
 };
 use rug::{Integer, Rational};
 use std::sync::{Arc, OnceLock};
@@ -163,6 +163,7 @@ pub struct Modular {
     /// k and 1/(1 - k^2) for every harmonic k (zero for k = 1).
     multiples: Vec<u64>,
     inverse_divisors: Vec<u64>,
+    stop: Stop,
 }
 
 impl Modular {
@@ -189,7 +190,14 @@ impl Modular {
             transform: Arc::new(Transform::new(field, points, root)?),
             multiples: harmonics.map(integer).collect(),
             inverse_divisors,
+            stop: Stop::default(),
         })
+    }
+
+    /// The algebra whose products are zero once `stop` says so.
+    #[must_use]
+    pub fn with_stop(self, stop: Stop) -> Self {
+        Self { stop, ..self }
     }
 
     /// The field.
@@ -248,6 +256,9 @@ impl Modular {
         pairs: &[(&ModularElement, &ModularElement)],
         doubled: &[(&ModularElement, &ModularElement)],
     ) -> ModularElement {
+        if self.stop.asked() {
+            return self.zero();
+        }
         let [once, twice] = [pairs, doubled].map(|pairs| self.pointwise(pairs));
         let mut sum = self.zero();
         for (symmetry, (once, twice)) in SYMMETRIES.into_iter().zip(once.into_iter().zip(twice)) {
@@ -385,6 +396,9 @@ impl FunctionAlgebra for Modular {
     type Constants = PrimeField;
     fn constants(&self) -> &PrimeField {
         &self.field
+    }
+    fn interrupted(&self) -> bool {
+        self.stop.asked()
     }
     fn embed(&self, c: &u64) -> ModularElement {
         self.single(Symmetry { sine: false, odd: false }, 0, *c)

@@ -167,10 +167,15 @@ fn points(chart: &mut Chart<'_, '_>, layer: &Layer, places: &[(f64, f64)]) -> Dr
     Ok(())
 }
 
+/// Of so many cells along an axis one in so many is drawn.
+pub(super) fn stride(cells: usize) -> usize {
+    cells.div_ceil(CELLS).max(1)
+}
+
 /// Runs of equal cells become one rectangle.
 fn cells(chart: &mut Chart<'_, '_>, raster: &Raster) -> Drawn {
     let (width, height) = (raster.columns.2, raster.rows.2);
-    let (dx, dy) = (width.div_ceil(CELLS).max(1), height.div_ceil(CELLS).max(1));
+    let (dx, dy) = (stride(width), stride(height));
     let edge = |(low, high, count): (f64, f64, usize), n: usize| {
         low + (n as f64 - 0.5) * (high - low) / (count.max(2) - 1) as f64
     };

@@ -81,6 +81,26 @@ pub struct Raster {
     pub legend: Vec<(String, Option<Colour>)>,
 }
 
+impl Raster {
+    /// The cells of a grid of so many columns and rows; of one that is finer than what is drawn, every so many.
+    pub(crate) fn cells<C>(
+        (width, height): (usize, usize),
+        mut colour: impl FnMut(usize) -> Option<C>,
+    ) -> Vec<Option<C>>
+    where
+        C: Copy,
+    {
+        let mut cells = vec![None; width * height];
+        for row in (0..height).step_by(draw::stride(height)) {
+            for column in (0..width).step_by(draw::stride(width)) {
+                let index = row * width + column;
+                cells[index] = colour(index);
+            }
+        }
+        cells
+    }
+}
+
 /// An axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {

@@ -7,6 +7,7 @@ mod markdown;
 mod text;
 
 use crate::{Block, Document, Formula, Span, Table, Text};
+pub(crate) use csv::line;
 pub use html::standalone;
 pub use text::harmless;
 pub(crate) use text::steers;

@@ -37,6 +37,11 @@ pub trait Present {
     fn table(&self) -> Option<Table> {
         self.figure().map(|figure| figure.table())
     }
+    /// The lines of that table as comma-separated values, the names first, one by one as long as `take` says so;
+    /// whether it took all, nothing where there is no table.
+    fn csv(&self, take: &mut dyn FnMut(&str) -> bool) -> Option<bool> {
+        Some(self.table()?.csv_lines(take))
+    }
 }
 
 /// An answer as JSON: the keys of its header, of its value, and its remarks.

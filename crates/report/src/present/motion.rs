@@ -2,6 +2,7 @@
 
 use super::Present;
 use crate::figure::{Axis, Colour, Layer, Mark, colours};
+use crate::format::line as csv_line;
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::motion::{
     Begin, Column, Diagnosis, Diagram, Dot, Event, Motion, Section, State, View,
@@ -130,36 +131,44 @@ impl Present for Answer<Motion> {
 
     /// All points of the line, with the events and the section.
     fn table(&self) -> Option<Table> {
-        let value = &self.value;
-        let row = |what: &str, place: [f64; 3]| {
-            let place = place.map(|x| format!("{x:?}"));
-            [what.to_owned()].into_iter().chain(place)
-        };
-        let mut table = Table::new(["what", "t", "x", "v"]);
-        for dot in &value.line {
-            let what = if dot.stuck { "sticking" } else { "moving" };
-            table = table.row(row(what, [dot.time, dot.x, dot.v]));
-        }
-        for event in &value.events {
-            let [t, x, _, v] = event.place;
-            table = table.row(row(event.kind, [t, x, v]));
-        }
-        for point in value.section.iter().flat_map(|section| &section.points) {
-            table = table.row(row("section", point.place));
-        }
-        // Of several unknowns a line has the first alone, samples have all.
-        if let Some((_, others)) = value.start.unknowns.split_first() {
-            let names = others.iter().flat_map(|name| [name.clone(), format!("{name}'")]);
-            table.columns.extend(names.map(Text::from));
-            table.rows.iter_mut().for_each(|row| row.resize(4 + 2 * others.len(), "".into()));
-            for state in &value.samples {
-                let others = state.others.iter().flatten().map(|x| x.decimal.clone());
-                let cells: Vec<_> = row("sample", state.place).chain(others).collect();
-                table = table.row(cells);
-            }
-        }
-        Some(table)
+        let mut lines = rows(&self.value);
+        let head = Table::new(lines.next()?);
+        Some(lines.fold(head, Table::row))
     }
+
+    fn csv(&self, take: &mut dyn FnMut(&str) -> bool) -> Option<bool> {
+        Some(rows(&self.value).all(|cells| take(&csv_line(&cells))))
+    }
+}
+
+/// The names of the columns, then all points of the line, the events, the section; of several unknowns, of which a
+/// line has the first alone, the samples.
+fn rows(value: &Motion) -> impl Iterator<Item = Vec<String>> {
+    let others = value.start.unknowns.get(1..).unwrap_or_default();
+    let names = others.iter().flat_map(|name| [name.clone(), format!("{name}'")]);
+    let head = ["what", "t", "x", "v"].map(str::to_owned).into_iter().chain(names).collect();
+    let row = |what: &str, place: [f64; 3]| {
+        let place = place.map(|x| format!("{x:?}"));
+        [what.to_owned()].into_iter().chain(place)
+    };
+    let one = move |what: &str, place: [f64; 3]| -> Vec<String> {
+        row(what, place).chain(vec![String::new(); 2 * others.len()]).collect()
+    };
+    let dots = value.line.iter().map(move |dot| {
+        one(if dot.stuck { "sticking" } else { "moving" }, [dot.time, dot.x, dot.v])
+    });
+    let events = value.events.iter().map(move |event| {
+        let [t, x, _, v] = event.place;
+        one(event.kind, [t, x, v])
+    });
+    let points = value.section.iter().flat_map(|section| &section.points);
+    let points = points.map(move |point| one("section", point.place));
+    let samples = value.samples.iter().filter(move |_| !others.is_empty());
+    let samples = samples.map(move |state| {
+        let others = state.others.iter().flatten().map(|x| x.decimal.clone());
+        row("sample", state.place).chain(others).collect()
+    });
+    std::iter::once(head).chain(dots).chain(events).chain(points).chain(samples)
 }
 
 fn axis(words: &str) -> Axis {

@@ -211,4 +211,8 @@ impl Present for Answer<OrbitStability> {
     fn table(&self) -> Option<Table> {
         chart::table(self.value.grid.as_ref()?)
     }
+
+    fn csv(&self, take: &mut dyn FnMut(&str) -> bool) -> Option<bool> {
+        Some(chart::csv(self.value.grid.as_ref()?, take))
+    }
 }

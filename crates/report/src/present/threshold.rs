@@ -2,6 +2,7 @@
 
 use super::Present;
 use crate::figure::{Axis, Colour, Mark, Raster, colours};
+use crate::format::line as csv_line;
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::grid::{self, Grid};
 use lindstedt::threshold::{Harmonic, HomoclinicThreshold, Sweep};
@@ -134,15 +135,26 @@ impl Present for Answer<HomoclinicThreshold> {
 
     /// Every point; numbers with all their digits.
     fn table(&self) -> Option<Table> {
-        let sweep = self.value.sweep.as_ref()?;
-        let head = names(&sweep.grid).into_iter().chain(["gamma_c".into(), "signed".into()]);
-        let digits = |x: Option<f64>| x.map(|x| format!("{x:?}")).unwrap_or_default();
-        let rows = doubles(&sweep.grid).map(|(mut place, signed)| {
-            let cells = [digits(signed.map(f64::abs)), digits(signed)];
-            place.drain(..).map(|x| format!("{x:?}")).chain(cells).collect::<Vec<_>>()
-        });
-        Some(rows.fold(Table::new(head), Table::row))
+        let mut lines = rows(&self.value.sweep.as_ref()?.grid);
+        let head = Table::new(lines.next()?);
+        Some(lines.fold(head, Table::row))
     }
+
+    fn csv(&self, take: &mut dyn FnMut(&str) -> bool) -> Option<bool> {
+        let mut lines = rows(&self.value.sweep.as_ref()?.grid);
+        Some(lines.all(|cells| take(&csv_line(&cells))))
+    }
+}
+
+/// The names of the columns, then every point.
+fn rows(grid: &Grid<f64>) -> impl Iterator<Item = Vec<String>> {
+    let head = names(grid).into_iter().chain(["gamma_c".into(), "signed".into()]).collect();
+    let digits = |x: Option<f64>| x.map(|x| format!("{x:?}")).unwrap_or_default();
+    let points = doubles(grid).map(move |(place, signed)| {
+        let cells = [digits(signed.map(f64::abs)), digits(signed)];
+        place.into_iter().map(|x| format!("{x:?}")).chain(cells).collect()
+    });
+    std::iter::once(head).chain(points)
 }
 
 /// The swept parameters, the slower one first.
@@ -236,8 +248,9 @@ fn map(sweep: &Sweep, rows: &grid::Axis) -> Figure {
         let end = |x: Option<&f64>| x.copied().unwrap_or(f64::NAN);
         (end(values.first()), end(values.last()), values.len())
     };
-    let cells = grid.points.iter().map(|point| point.as_ref().map(shade)).collect();
     let (columns, rows) = (range(&grid.columns), range(rows));
+    let at = |index: usize| grid.points.get(index)?.as_ref().map(shade);
+    let cells = Raster::cells((columns.2, rows.2), at);
     let raster = Some(Raster { columns, rows, cells, legend: Vec::new() });
     Figure { raster, ..Figure::new(title, across, up) }
 }

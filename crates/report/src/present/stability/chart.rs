@@ -1,7 +1,8 @@
 //! The chart of an impact orbit: in characters, as a figure, as a table.
 
 use crate::figure::{Axis, Colour, Mark, Raster, colours};
-use crate::{Figure, Table};
+use crate::format::line;
+use crate::{Figure, Table, Text};
 use lindstedt::Answer;
 use lindstedt::stability::{Chart, OrbitStability};
 use lindstedt::unstable::impact::chart::{Agreement, LeftOut, Point};
@@ -86,7 +87,11 @@ pub(super) fn summary(chart: &Chart) -> String {
         [] => String::new(),
         list => format!("; the rest: {}", list.join(", ")),
     };
-    let points = chart.grid.points.len();
+    let [(_, columns), (_, rows)] = chart.values();
+    let points = match (chart.grid.points.len(), columns.len() * rows.len()) {
+        (some, all) if some < all => format!("{some} of {all}"),
+        (all, _) => all.to_string(),
+    };
     if compared == 0 {
         return format!("chart: {points} points; prediction and truth were not compared{rest}");
     }
@@ -169,8 +174,8 @@ pub(super) fn figure(answer: &Answer<OrbitStability>) -> Option<Figure> {
     Some(figure.layer(Some(&cross), Mark::Cross(7), colours::BLACK, point))
 }
 
-/// Every point with both verdicts.
-pub(super) fn table(chart: &Chart) -> Option<Table> {
+/// The names of the columns, then every point with both verdicts; whether `take` took all.
+fn rows(chart: &Chart, take: &mut dyn FnMut(&[&str]) -> bool) -> bool {
     let [(first, columns), (second, rows)] = chart.values();
     let two = chart.grid.rows.is_some();
     let word = |verdict: Option<Verdict>| match verdict {
@@ -179,25 +184,43 @@ pub(super) fn table(chart: &Chart) -> Option<Table> {
         Some(Verdict::Neutral) => "undecided",
         None => "",
     };
-    let head = [first, second].into_iter().take(if two { 2 } else { 1 });
-    let mut table = Table::new(head.chain(["kbm", "exact"]));
-    for (index, point) in chart.grid.points.iter().enumerate() {
-        let place = [columns.get(index % columns.len())?, rows.get(index / columns.len())?];
-        let place = place.into_iter().take(if two { 2 } else { 1 }).map(|x| x.to_string());
-        let verdicts = [point.and_then(|p| p.predicted), point.and_then(|p| p.exact)];
-        let verdicts = verdicts.map(|verdict| word(verdict).to_owned());
-        table = table.row(place.chain(verdicts).collect::<Vec<_>>());
-    }
-    Some(table)
+    let [columns, rows] =
+        [columns, rows].map(|axis| axis.iter().map(f64::to_string).collect::<Vec<_>>());
+    let mut line = |[x, y, kbm, exact]: [&str; 4]| match two {
+        true => take(&[x, y, kbm, exact]),
+        false => take(&[x, kbm, exact]),
+    };
+    let places = rows.iter().flat_map(|y| columns.iter().map(move |x| (x, y)));
+    let points = chart.grid.points.iter().map(|point| point.unwrap_or(Point::EMPTY));
+    line([first, second, "kbm", "exact"])
+        && places
+            .zip(points)
+            .all(|((x, y), point)| line([x, y, word(point.predicted), word(point.exact)]))
+}
+
+/// Every point with both verdicts.
+pub(super) fn table(chart: &Chart) -> Option<Table> {
+    let mut lines: Vec<Vec<Text>> = Vec::new();
+    rows(chart, &mut |cells| {
+        lines.push(cells.iter().copied().map(Text::from).collect());
+        true
+    });
+    let columns = lines.drain(..1).next()?;
+    Some(Table { columns, rows: lines })
+}
+
+/// The same as comma-separated values: a chart may have millions of points.
+pub(super) fn csv(chart: &Chart, take: &mut dyn FnMut(&str) -> bool) -> bool {
+    rows(chart, &mut |cells| take(&line(cells)))
 }
 
 /// The cells of a chart, with a legend of what occurs.
 fn raster(chart: &Chart) -> Option<Raster> {
     let [(_, columns), (_, rows)] = chart.values();
-    let own: Vec<Stands> =
-        chart.grid.points.iter().map(|point| stands(point.as_ref(), chart)).collect();
-    let colour = |own: &Stands| STANDS.iter().find(|(known, ..)| known == own)?.2;
-    let present = STANDS.iter().filter(|(known, ..)| own.contains(known));
+    let at = |index: usize| Some(stands(chart.grid.points.get(index)?.as_ref(), chart));
+    let own: Vec<Option<Stands>> = Raster::cells((columns.len(), rows.len()), at);
+    let colour = |own: &Option<Stands>| STANDS.iter().find(|(known, ..)| Some(*known) == *own)?.2;
+    let present = STANDS.iter().filter(|(known, ..)| own.contains(&Some(*known)));
     let mut legend: Vec<(String, Option<Colour>)> =
         present.map(|(known, _, colour)| (label(*known, chart).to_owned(), *colour)).collect();
     legend.sort();
