@@ -102,14 +102,18 @@ impl FrequencyFunction {
         self.sum.methods()
     }
 
-    /// omega with its estimated error. The amplitude does not count where it does not vary.
+    /// omega with its estimated error. The amplitude does not count where it does not vary; where it does, it is
+    /// positive: with another sign x is -x, which is a motion of another equation.
     /// Nothing is allocated; some 100 ns.
     #[must_use]
     pub fn at(&self, small: f64, amplitude: f64) -> Estimated {
+        if self.has_amplitude && !(amplitude > 0.0) {
+            return Estimated { value: f64::NAN, error: f64::INFINITY };
+        }
         let (x, scale) = match self.carried {
             Carried::Not => (small, 1.0),
             Carried::BySmall(weight) => (small * amplitude.powi(weight), 1.0),
-            Carried::ByScale => (small, amplitude.abs().powf(-small)),
+            Carried::ByScale => (small, amplitude.powf(-small)),
         };
         let Estimated { value, error } = self.sum.at((self.ratio * x).powi(self.step));
         let omega = 1.0 / (self.factor * scale * value);

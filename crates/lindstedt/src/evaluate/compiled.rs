@@ -32,7 +32,7 @@ impl Oscillator {
     /// let omega = duffing.frequency_function(&Evaluate::default(), &Work::default())?.value;
     /// let list = omega.list(&[0.1, 0.5, 2.0], &[1.0], &Default::default());
     /// // 2 pi/T, T = 4 K(k)/sqrt(1 + rho), k^2 = rho/(2 + 2 rho), rho = eps a^2: mpmath 1.3.0.
-    /// assert!((list[1].value - 1.170_780_049_931_269_4).abs() <= list[1].error);
+    /// assert!((list[1].value - 1.170_781_465_960_041_2).abs() <= list[1].error);
     /// assert_eq!(omega.at(2.0, 0.5), omega.at(0.5, 1.0));
     /// # Ok::<(), lindstedt::Error>(())
     /// ```
