@@ -58,7 +58,9 @@ impl PeriodicSolution {
     pub fn error(&self, time: f64) -> f64 {
         let sizes = self.harmonics.iter().map(|(c, s)| c.abs() + s.abs());
         let turned: f64 = sizes.zip(1u32..).map(|(size, k)| 3.0 * f64::from(k) * size).sum();
-        let phase = time.abs() * (self.frequency_error + f64::EPSILON * self.frequency);
+        let unknown = self.frequency_error + f64::EPSILON * self.frequency;
+        // At 0 the phase is known whatever omega is.
+        let phase = if time == 0.0 { 0.0 } else { time.abs() * unknown };
         self.deviation + self.slope * phase + f64::EPSILON * turned
     }
 
