@@ -5,5 +5,6 @@
 
 mod averaged;
 mod closed_forms;
+mod compiled;
 mod files;
 mod support;

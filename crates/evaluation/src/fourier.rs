@@ -12,6 +12,8 @@ pub struct Fourier {
     pub deviation: f64,
     /// What the estimated errors of x allow a coefficient to be wrong by; nothing without estimates.
     pub error: Option<f64>,
+    /// The largest estimated error of x where the coefficients were taken; infinite without estimates.
+    pub largest_error: f64,
 }
 
 impl Fourier {
@@ -25,7 +27,7 @@ impl Fourier {
     /// use lindstedt_evaluation::Fourier;
     /// // 2 cos(omega t) + sin(2 omega t)/2.
     /// let coefficients = vec![(0.0, 0.0), (2.0, 0.0), (0.0, 0.5)];
-    /// let x = Fourier { coefficients, deviation: 0.0, error: None };
+    /// let x = Fourier { coefficients, deviation: 0.0, error: None, largest_error: 0.0 };
     /// assert!((x.at(1.0f64) - (2.0 * 1f64.cos() + 2f64.sin() / 2.0)).abs() < 1e-15);
     /// assert!((x.at(1.0f32) - 1.535_253_3).abs() < 1e-6);
     /// ```

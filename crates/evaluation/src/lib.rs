@@ -7,6 +7,8 @@
 //! | [`source`] | the series of T/2pi at a point: coefficients, variable, closed form |
 //! | [`period()`] | the sum of that series |
 //! | [`Trajectory`] | x(t), summed phase by phase |
+//! | [`compiled`] | the frequency as a function of the small parameter and the amplitude |
+//! | [`PeriodicSolution`] | x(t) by its harmonics, for many times |
 //! | [`averaged`] | a(t), psi(t), x(t) of an averaged oscillator |
 //! | [`rotating`] | a slow flow at resonance in the frame in which it is autonomous |
 //!
@@ -17,6 +19,7 @@
 pub mod averaged;
 pub mod closed;
 pub mod coefficients;
+pub mod compiled;
 mod digits;
 mod displacements;
 mod error;
@@ -25,6 +28,7 @@ mod fourier;
 mod json;
 mod names;
 mod period;
+mod periodic;
 pub mod rotating;
 pub mod setting;
 mod solution;
@@ -36,5 +40,6 @@ pub use error::EvaluationError;
 pub use fourier::Fourier;
 pub use json::Place;
 pub use names::{kind_name, method_name, rounded, with_error};
-pub use period::{Evaluation, Improved, period};
+pub use period::{Evaluation, Improved, default_order, period};
+pub use periodic::PeriodicSolution;
 pub use solution::{Question, Trajectory};

@@ -95,7 +95,8 @@ impl Evaluation {
 }
 
 /// The order that takes well below a second.
-fn default_order(form: &Form) -> usize {
+#[must_use]
+pub fn default_order(form: &Form) -> usize {
     match form {
         Form::PowerLaw { .. } => 20,
         Form::Sums => 24,

@@ -375,6 +375,26 @@ impl Setting {
         &self.parameters
     }
 
+    /// w, where x -> a x, small -> a^-w small leaves the equation that is expanded as it is: the
+    /// amplitude then varies with the small parameter alone.
+    ///
+    /// # Errors
+    /// As [`Setting::new`].
+    pub fn weight(&self) -> Result<Option<u32>, Error> {
+        let settings = Settings {
+            condition: Some(self.condition),
+            parameters: self.parameters.clone(),
+            ..Settings::default()
+        };
+        Ok(weight(&prepare(&self.problem, &settings)?.problem.equation))
+    }
+
+    /// The power of the amplitude in the small parameter, and the parameter beside it, where it has both.
+    pub fn factors(&self) -> Option<(&str, u32)> {
+        let (_, product) = self.small.name.split_once(" = ")?;
+        Some((product.split_once('*')?.0, self.small.power))
+    }
+
     /// The value of the small parameter, where it is rational.
     pub fn rational_small(&self) -> Option<Rational> {
         let (coefficient, amplitude) =

@@ -15,7 +15,9 @@ use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{Exact, Number};
 use lindstedt_phase::evaluate::PhaseFunctions;
 use lindstedt_phase::lobachevsky_function::Point;
-use lindstedt_series::resummation::{Estimate, Method, Sample, UniformMap, partial_sums};
+use lindstedt_series::resummation::{
+    Estimate, Estimated, Method, Sample, UniformMap, partial_sums,
+};
 use rayon::prelude::*;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
@@ -344,7 +346,9 @@ impl Trajectory {
         let values: Vec<f64> = nodes.iter().map(|x| x.double).collect();
         let list: Vec<(f64, f64)> = (0..=harmonics).map(|k| harmonic(&values, k)).collect();
         let error = error.is_finite().then_some(error);
-        let mut found = Fourier { coefficients: list, deviation: f64::INFINITY, error };
+        let largest_error = nodes.iter().map(|x| x.error).fold(0.0, f64::max);
+        let deviation = f64::INFINITY;
+        let mut found = Fourier { coefficients: list, deviation, error, largest_error };
         let deviation = |places: Vec<f64>| -> Option<(f64, f64)> {
             let one =
                 |place: f64| Some(((found.at(place * turn) - at(place)?.double).abs(), place));
@@ -376,6 +380,16 @@ impl Trajectory {
     #[must_use]
     pub fn frequency(&self) -> f64 {
         self.frequency.midpoint().to_f64()
+    }
+
+    /// The same with its estimated error; infinite where nothing is known of it.
+    #[must_use]
+    pub fn estimated_frequency(&self) -> Estimated {
+        let error = self.frequency.radius().to_f64() + self.frequency().abs() * f64::EPSILON;
+        Estimated {
+            value: self.frequency(),
+            error: if self.is_estimated { error } else { f64::INFINITY },
+        }
     }
 
     /// 10^-digits (15 at most), below which a harmonic is not worth a line.

@@ -4,6 +4,7 @@
 //! it serves the residual check, which must share no code with the driver, and the series of
 //! the results: the frequency from its square, the period from the frequency.
 
+pub mod harmonics;
 pub mod resummation;
 pub mod univariate;
 

@@ -47,14 +47,8 @@ impl SolutionCode {
         language: Language,
         harmonics: usize,
     ) -> Result<Self, Error> {
-        let Fourier { coefficients: list, deviation, error } =
-            trajectory.fourier(harmonics).ok_or_else(|| {
-                Refused::undecided(
-                    "no-value",
-                    "the expansion has no value at some phase",
-                    "lower or raise --order, or --resum none",
-                )
-            })?;
+        let Fourier { coefficients: list, deviation, error, .. } =
+            trajectory.fourier(harmonics).ok_or_else(no_value)?;
         let size = list.iter().fold(0.0f64, |m, (c, s)| m.max(c.abs()).max(s.abs()));
         // Below the error of the expansion a coefficient is noise; where some phase has no estimate,
         // the measured deviation stands for it.
@@ -113,6 +107,15 @@ impl SolutionCode {
         };
         Self { language, frequency, terms, deviation, left_out_below: small, code }
     }
+}
+
+/// That there are no harmonics.
+pub(super) fn no_value() -> Refused {
+    Refused::undecided(
+        "no-value",
+        "the expansion has no value at some phase",
+        "lower or raise --order, or --resum none",
+    )
 }
 
 fn rust(note: &str, omega: f64, terms: &[Term]) -> String {

@@ -1,7 +1,7 @@
 //! More digits than the sum has: Newton's method in Fourier space, from the sum.
 
 use super::wanted::Wanted;
-use super::{Displacement, Displacements, Evaluate, Evaluation, Fourier};
+use super::{Displacement, Displacements, Estimated, Evaluate, Evaluation, Fourier};
 use crate::{Exact, Number, Oscillator, Work};
 use lindstedt_equation::Condition;
 use lindstedt_number::ball::{Ball, Balls};
@@ -112,12 +112,15 @@ impl Improvement {
         let deviation = list.split_off(harmonics + 1).iter().map(|(a, b)| a.hypot(*b)).sum::<f64>();
         let size = list.iter().fold(0.0f64, |m, (a, b)| m.max(a.abs()).max(b.abs()));
         let error = Some(NEGLIGIBLE * size);
-        Some(Fourier { coefficients: list, deviation: deviation + NEGLIGIBLE * size, error })
+        let deviation = deviation + NEGLIGIBLE * size;
+        Some(Fourier { coefficients: list, deviation, error, largest_error: NEGLIGIBLE * size })
     }
 
-    /// omega.
-    pub fn frequency(&self) -> f64 {
-        self.found.frequency.to_f64()
+    /// omega with its estimated error.
+    pub fn frequency(&self) -> Estimated {
+        let value = self.found.frequency.to_f64();
+        let error = self.found.error.to_f64() + value.abs() * f64::EPSILON;
+        Estimated { value, error }
     }
 }
 

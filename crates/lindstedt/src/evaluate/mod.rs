@@ -3,6 +3,7 @@
 
 pub mod averaged;
 mod code;
+mod compiled;
 mod improve;
 mod prove;
 mod sweep;
@@ -14,14 +15,16 @@ use crate::refusal::Refused;
 use crate::start::Taken;
 use crate::{Answer, Error, Exact, Kind, Oscillator, Refusal, Remark, Standing, Work};
 pub use code::{Language, SolutionCode};
+use compiled::Way;
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_evaluation::setting::Setting;
 pub use lindstedt_evaluation::{
-    Displacement, Displacements, Evaluation, Fourier, Improved, Place, Question, Trajectory,
-    kind_name, method_name, rounded, with_error,
+    Displacement, Displacements, Evaluation, Fourier, Improved, PeriodicSolution, Place, Question,
+    Trajectory, compiled::FrequencyFunction, kind_name, method_name, rounded, with_error,
 };
 pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;
+pub use lindstedt_series::resummation::Estimated;
 use lindstedt_series::resummation::Method;
 pub use prove::{
     Between, Bounds, EndOfBranch, Expansion, ProvedBranch, ProvedFamily, ProvedMember, ProvedOrbit,
@@ -154,26 +157,21 @@ impl Oscillator {
         work: &Work,
     ) -> Result<Answer<SolutionCode>, Error> {
         let start = Instant::now();
-        let (case, remarks) = self.settled()?;
-        let mut found = case.period(question, work)?;
-        let improved = case.improve(&mut found, question, work);
-        let by_newton = improved.and_then(|it| Some((it.fourier(harmonics)?, it.frequency())));
-        let name = &self.problem().name;
-        let (value, order) = match by_newton {
-            Some(series) => (SolutionCode::by_newton(name, series, language), found.order),
-            None => {
-                let path = case.trajectory(&found, question, work)?;
-                let code = SolutionCode::new(name, &path, language, harmonics);
-                let code = code.map_err(|error| match work.stop.asked() {
+        let solved = self.solved(question, harmonics, work)?;
+        let (order, at, name) = (solved.order, solved.at(), &self.problem().name);
+        let value = match solved.way {
+            Way::Newton(series, omega) => {
+                SolutionCode::by_newton(name, (series, omega.value), language)
+            }
+            Way::Sum(path) => SolutionCode::new(name, &path, language, harmonics).map_err(
+                |error| match work.stop.asked() {
                     true => Refused::stopped("stopped before the phases were sampled", "").into(),
                     false => error,
-                });
-                (code?, path.order())
-            }
+                },
+            )?,
         };
-        let at = found.at.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
         let header = self.header(at, Some(order), "resummation", start);
-        Ok(Answer { header, value, standing: Standing::Complete, remarks })
+        Ok(Answer { header, value, standing: Standing::Complete, remarks: solved.remarks })
     }
 
     /// x(t) of a period that [`Oscillator::evaluate`] found for the same question; a period without a

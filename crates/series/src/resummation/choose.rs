@@ -103,64 +103,84 @@ fn chosen(
     let singularity = high.singularity_until(stop);
     let methods = method.map_or_else(|| Method::ALL.to_vec(), |method| vec![method]);
     let mut tried = Vec::new();
-    let mut best: Option<(Method, Outcome, u32)> = None;
     let mut values: Vec<(Method, Outcome)> = Vec::new();
+    let mut bits = Vec::new();
     for method in methods {
         if stop.asked() {
             return Err(ResummationError::Stopped);
         }
         let limits = (accuracy, stop);
         let found = settled(&sample, [&low, &high], method, singularity.as_ref(), limits);
-        if let Ok((outcome, bits)) = &found {
+        if let Ok((outcome, at)) = &found {
             values.push((method, outcome.clone()));
+            bits.push(*at);
+        }
+        tried.push((method, found.map(|(outcome, _)| outcome.estimate.error)));
+    }
+    match low.selected(&values, accuracy, tried.len() > 1) {
+        Some((index, outcome)) => {
+            let (method, bits) = (values[index].0, bits[index]);
+            Ok(Resummed { method, outcome, growth, singularity, tried, bits })
+        }
+        None => Err(tried.pop().and_then(|(_, r)| r.err()).unwrap_or(ResummationError::Undefined)),
+    }
+}
+
+impl Sample {
+    /// The best of the values of several methods: its index, and its outcome with the error that the
+    /// others allow; `several` tells whether there was a choice.
+    pub(super) fn selected(
+        &self,
+        values: &[(Method, Outcome)],
+        accuracy: u32,
+        several: bool,
+    ) -> Option<(usize, Outcome)> {
+        let mut best: Option<usize> = None;
+        for (index, (_, outcome)) in values.iter().enumerate() {
             let error = &outcome.estimate.error;
-            let better = best.as_ref().is_none_or(|(_, best, _)| {
+            let better = best.is_none_or(|best| {
                 // Below the accuracy asked for there is no better.
-                let size = Float::with_val(53, best.estimate.value.abs_ref());
-                let least = best.estimate.error.clone();
+                let best = &values[best].1.estimate;
+                let size = Float::with_val(53, best.value.abs_ref());
+                let least = best.error.clone();
                 let has_digits = Float::with_val(53, &least * (100 * SELECTION)) < size;
                 let factor = if has_digits { 10u32 } else { 1u32 };
                 least > size >> accuracy && Float::with_val(53, error * factor) < least
                     || error.is_finite() && !least.is_finite()
             });
             if better {
-                best = Some((method, outcome.clone(), *bits));
+                best = Some(index);
             }
         }
-        tried.push((method, found.map(|(outcome, _)| outcome.estimate.error)));
-    }
-    match best {
-        Some((method, mut outcome, bits)) => {
-            // The least of several estimates is more often too small than each. Where another
-            // method with a comparable estimate disagrees by more than that estimate allows, the
-            // excess is added.
-            let own = outcome.estimate.clone();
-            if tried.len() > 1 && !low.has_known_tail(method) {
-                outcome.estimate.error *= SELECTION;
-            }
-            // Two sequences that share no approximants agree to the error of the worse one: where
-            // they do, the less cautious estimate of the better one counts.
-            let others = values.iter().filter(|(m, _)| Sample::are_independent(*m, method));
-            let gaps = others.map(|(_, o)| distance(&o.estimate.value, &own.value));
-            if let Some(tentative) = &outcome.tentative
-                && let Some(gap) = gaps.reduce(|a, b| a.min(&b))
-            {
-                let agreed = gap.max(tentative) * AGREEMENT;
-                outcome.estimate.error = outcome.estimate.error.min(&agreed);
-            }
-            for (_, other) in &values {
-                if other.estimate.error <= Float::with_val(53, &own.error * 100u32) {
-                    let gap = distance(&other.estimate.value, &own.value);
-                    let excess = gap - &other.estimate.error;
-                    if excess > own.error {
-                        let sum = Float::with_val(53, &own.error + excess);
-                        outcome.estimate.error = outcome.estimate.error.max(&sum);
-                    }
+        let (method, mut outcome) = values.get(best?).cloned()?;
+        // The least of several estimates is more often too small than each. Where another
+        // method with a comparable estimate disagrees by more than that estimate allows, the
+        // excess is added.
+        let own = outcome.estimate.clone();
+        if several && !self.has_known_tail(method) {
+            outcome.estimate.error *= SELECTION;
+        }
+        // Two sequences that share no approximants agree to the error of the worse one: where
+        // they do, the less cautious estimate of the better one counts.
+        let others = values.iter().filter(|(m, _)| Self::are_independent(*m, method));
+        let gaps = others.map(|(_, o)| distance(&o.estimate.value, &own.value));
+        if let Some(tentative) = &outcome.tentative
+            && let Some(gap) = gaps.reduce(|a, b| a.min(&b))
+        {
+            let agreed = gap.max(tentative) * AGREEMENT;
+            outcome.estimate.error = outcome.estimate.error.min(&agreed);
+        }
+        for (_, other) in values {
+            if other.estimate.error <= Float::with_val(53, &own.error * 100u32) {
+                let gap = distance(&other.estimate.value, &own.value);
+                let excess = gap - &other.estimate.error;
+                if excess > own.error {
+                    let sum = Float::with_val(53, &own.error + excess);
+                    outcome.estimate.error = outcome.estimate.error.max(&sum);
                 }
             }
-            Ok(Resummed { method, outcome, growth, singularity, tried, bits })
         }
-        None => Err(tried.pop().and_then(|(_, r)| r.err()).unwrap_or(ResummationError::Undefined)),
+        Some((best?, outcome))
     }
 }
 

@@ -37,6 +37,12 @@ pub enum ResummationError {
     /// The Borel integral did not settle.
     #[error("the Laplace integral did not settle")]
     NotSettled,
+    /// A method whose values have no formula in the point was to be compiled.
+    #[error("the values of {method:?} have no formula in the point, another one at each")]
+    NoFormula {
+        /// The method.
+        method: &'static str,
+    },
     /// The approximants have a pole at the point or do not exist.
     #[error("the approximants are not defined at the point")]
     Undefined,

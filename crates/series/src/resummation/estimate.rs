@@ -18,6 +18,22 @@ pub struct Estimate {
     pub error: Float,
 }
 
+/// A value by one method.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The value with its error estimate.
+    pub estimate: Estimate,
+    /// The highest order of the series that is used.
+    pub order: usize,
+    /// Degrees of the numerator and the denominator, for the methods with Pade approximants.
+    pub degrees: Option<(usize, usize)>,
+    /// A less cautious estimate of the error, which means something only where a method that shares
+    /// no approximants with this one agrees; nothing where there is none.
+    pub tentative: Option<Float>,
+    /// The order of the smallest term, where the series was cut there because it diverges.
+    pub smallest_term: Option<usize>,
+}
+
 /// |a - b| in 53 bits.
 pub(super) fn distance(a: &Float, b: &Float) -> Float {
     Float::with_val(53, a - b).abs()

@@ -53,19 +53,19 @@ pub(super) fn multiply(a: &[Float], b: &[Float], bits: u32) -> Vec<Float> {
     (0..a.len()).map(coefficient).collect()
 }
 
-impl Map {
-    /// C of the wedge.
-    fn constant(modulus: &Float, fraction: &Float, bits: u32) -> Float {
-        let rest = Float::with_val(bits, 1 - fraction);
-        let power = |x: &Float| Float::with_val(bits, x.pow(x));
-        Float::with_val(bits, modulus * 4u32) * power(fraction) * power(&rest)
-    }
+/// C of the wedge.
+pub(super) fn wedge_constant(modulus: &Float, fraction: &Float, bits: u32) -> Float {
+    let rest = Float::with_val(bits, 1 - fraction);
+    let power = |x: &Float| Float::with_val(bits, x.pow(x));
+    Float::with_val(bits, modulus * 4u32) * power(fraction) * power(&rest)
+}
 
+impl Map {
     /// (x/(x'(0) w))^p at x = x(w): what [`Self::expand`] divides by.
     pub(super) fn factor(&self, x: &Float, w: &Float, p: &Float, bits: u32) -> Float {
         let slope = match self {
             Self::Rational { scale } => scale.clone(),
-            Self::Wedge { modulus, fraction } => Self::constant(modulus, fraction, bits),
+            Self::Wedge { modulus, fraction } => wedge_constant(modulus, fraction, bits),
         };
         if w.is_zero() {
             return Float::with_val(bits, 1);
@@ -82,7 +82,7 @@ impl Map {
                 let twice = Float::with_val(bits, fraction * 2u32);
                 let upper = binomial_series(&Float::with_val(bits, -&twice), -1, order, bits);
                 let lower = binomial_series(&(twice - 2u32), 1, order, bits);
-                let constant = Self::constant(modulus, fraction, bits);
+                let constant = wedge_constant(modulus, fraction, bits);
                 let product = multiply(&upper, &lower, bits);
                 product.into_iter().take(order).map(|c| c * &constant).collect()
             }
@@ -124,7 +124,7 @@ impl Map {
         if x.is_zero() {
             return Ok(Float::new(bits));
         }
-        let quotient = Float::with_val(bits, x / Self::constant(modulus, fraction, bits));
+        let quotient = Float::with_val(bits, x / wedge_constant(modulus, fraction, bits));
         let goal = Float::with_val(bits, quotient.abs_ref()).ln();
         let negative = x.is_sign_negative();
         let twice = Float::with_val(bits, fraction * 2u32);

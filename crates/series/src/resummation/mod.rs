@@ -6,23 +6,29 @@
 
 mod borel;
 mod choose;
+mod compiled;
 pub mod complex;
 mod error;
 mod estimate;
+mod formula;
 mod growth;
 mod linear;
 mod maps;
 mod method;
 mod pade;
+mod partial;
+mod prepared;
 mod singularity;
+mod staircase;
 
 pub use borel::borel_transform;
 pub use choose::{Resummed, resum, resum_until};
+pub use compiled::{Compiled, Estimated};
 pub use complex::Complex;
 pub use error::ResummationError;
-pub use estimate::Estimate;
+pub use estimate::{Estimate, Outcome};
 pub use growth::{Growth, growth};
 pub use maps::Map;
-pub use method::{Method, Outcome, Sample, UniformMap};
+pub use method::{Method, Sample, UniformMap};
 pub use pade::{Pade, Picture, Pole, partial_sums};
 pub use singularity::{Kind, Singularity, nearest_singularity};

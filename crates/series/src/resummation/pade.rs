@@ -203,6 +203,21 @@ impl Pade {
         value.is_finite().then_some(value)
     }
 
+    /// The same to fewer bits.
+    pub(super) fn rounded(mut self, bits: u32) -> Self {
+        let all = self.numerator.iter_mut().chain(&mut self.denominator);
+        all.for_each(|c| c.set_prec(bits));
+        self.bits = bits;
+        self
+    }
+
+    /// The coefficients of p and q in doubles, in y = x 2^-exponent, and 2^-exponent.
+    pub(super) fn in_doubles(&self) -> (Vec<f64>, Vec<f64>, f64) {
+        let doubles = |list: &[Float]| list.iter().map(Float::to_f64).collect();
+        let scale = f64::from(-self.exponent).exp2();
+        (doubles(&self.numerator), doubles(&self.denominator), scale)
+    }
+
     /// p(x) and q(x).
     pub(super) fn parts(&self, x: &Float) -> (Float, Float) {
         let y = Float::with_val(self.bits, x) >> self.exponent;

@@ -1,0 +1,132 @@
+"""Functions of arrays, charts, surfaces and diagrams."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy
+from numpy.typing import ArrayLike, NDArray
+
+from ._native import Frequency, Motion
+
+Doubles = NDArray[numpy.float64]
+
+
+def _flat(values: ArrayLike) -> Doubles:
+    return numpy.ascontiguousarray(values, dtype=numpy.float64).ravel()
+
+
+class FrequencyFunction:
+    """omega over the small parameter and, where a scaling carries it, the amplitude: derived once, then some
+    0.2 microseconds per point and core. Doubles, each with its estimated error."""
+
+    def __init__(self, native: Frequency) -> None:
+        self._native = native
+        self.data: dict[str, Any] = json.loads(native.json())
+
+    @property
+    def parameters(self) -> list[str]:
+        """The names of what varies."""
+        return list(self.data["parameters"])
+
+    def with_error(self, small: ArrayLike, amplitude: ArrayLike = 1.0) -> tuple[Doubles, Doubles]:
+        """omega and its estimated errors, infinite where the sum has not one digit."""
+        small, amplitude = numpy.broadcast_arrays(small, amplitude) if numpy.ndim(amplitude) else (
+            numpy.asarray(small, dtype=numpy.float64),
+            numpy.asarray(amplitude, dtype=numpy.float64),
+        )
+        values, errors = self._native.at(_flat(small), _flat(amplitude))
+        return values.reshape(small.shape), errors.reshape(small.shape)
+
+    def __call__(self, small: ArrayLike, amplitude: ArrayLike = 1.0) -> Doubles:
+        values, errors = self.with_error(small, amplitude)
+        return numpy.where(numpy.isfinite(errors), values, numpy.nan)
+
+
+class Solution:
+    """x(t) by its harmonics: call it with an array of times."""
+
+    def __init__(self, native: Motion) -> None:
+        self._native = native
+        self.data: dict[str, Any] = json.loads(native.json())
+
+    @property
+    def frequency(self) -> float:
+        """omega."""
+        return float(self.data["frequency"])
+
+    @property
+    def period(self) -> float:
+        """2 pi/omega."""
+        return 2 * numpy.pi / self.frequency
+
+    @property
+    def harmonics(self) -> Doubles:
+        """(c_k, s_k), k = 0, 1, ..., of c_k cos(k omega t) + s_k sin(k omega t)."""
+        return numpy.array(self.data["harmonics"])
+
+    def __call__(self, times: ArrayLike) -> Doubles:
+        return self._native.at(_flat(times)).reshape(numpy.shape(times))
+
+    def error(self, times: ArrayLike) -> Doubles:
+        """The estimated error at times: it grows with t by what omega is wrong by."""
+        return self._native.errors(_flat(times)).reshape(numpy.shape(times))
+
+    def to_callable(self) -> Callable[[float], float]:
+        """x as a function of one time, for comparisons with `scipy.integrate.solve_ivp`."""
+        return lambda t: float(self(t))
+
+    def plot(self, ax: Any = None, periods: float = 2.0, **style: Any) -> Any:
+        """Draws x over so many periods with matplotlib."""
+        import matplotlib.pyplot as plt
+
+        ax = ax if ax is not None else plt.gca()
+        t = numpy.linspace(0, periods * self.period, 512)
+        ax.plot(t, self(t), **style)
+        ax.set_xlabel("t")
+        ax.set_ylabel("x")
+        return ax
+
+
+@dataclass(frozen=True)
+class StabilityChart:
+    """Verdicts over two parameters, row y, column x: 1 stable, -1 unstable, 0 neutral or undecided, 2 without
+    an orbit; `radius` the largest multiplier of the true system."""
+
+    names: tuple[str, str]
+    x: Doubles
+    y: Doubles
+    predicted: NDArray[numpy.int8]
+    exact: NDArray[numpy.int8]
+    radius: Doubles
+    complete: bool
+
+
+@dataclass(frozen=True)
+class ThresholdSurface:
+    """The signed threshold gamma_c over one or two parameters, row y, column x; no number where there is none,
+    and `blanks` says why."""
+
+    names: list[str]
+    x: Doubles
+    y: Doubles | None
+    signed: Doubles
+    certified: bool
+    blanks: list[str]
+
+
+@dataclass(frozen=True)
+class BifurcationDiagram:
+    """The points (value, x, velocity) of a section, one after the other; `values` are those of the parameter, and
+    `ended` those whose motion ended, with the reason."""
+
+    name: str
+    values: Doubles
+    value: Doubles
+    x: Doubles
+    velocity: Doubles
+    ended: list[tuple[float, str]]
+    complete: bool

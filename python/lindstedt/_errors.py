@@ -1,0 +1,48 @@
+"""Refusals: why there is no answer, with a code for programs and a hint for people."""
+
+from __future__ import annotations
+
+
+class LindstedtError(Exception):
+    """A refusal: `code` does not change between versions, `hint` says what to do about it."""
+
+    def __init__(self, message: str, code: str = "", hint: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+        self.code = code
+        self.hint = hint
+
+    def __str__(self) -> str:
+        return f"{self.message} [{self.code}]\nhint: {self.hint}" if self.hint else self.message
+
+    def __reduce__(self) -> tuple[type[LindstedtError], tuple[str, str, str]]:
+        return type(self), (self.message, self.code, self.hint)
+
+
+class UsageError(LindstedtError, ValueError):
+    """The question makes no sense as it is put."""
+
+
+class NoAnswerError(LindstedtError):
+    """There is no such value, and the message says why."""
+
+
+class UndecidedError(LindstedtError):
+    """It could not be decided, or not with the digits, the memory or the time given."""
+
+
+class StoppedError(LindstedtError):
+    """The work was stopped before anything was finished."""
+
+
+_KINDS: dict[str, type[LindstedtError]] = {
+    "usage": UsageError,
+    "no answer": NoAnswerError,
+    "undecided": UndecidedError,
+    "interrupted": StoppedError,
+}
+
+
+def refusal(kind: str, code: str, message: str, hint: str) -> LindstedtError:
+    """The exception for a refusal of that kind."""
+    return _KINDS.get(kind, LindstedtError)(message, code, hint)

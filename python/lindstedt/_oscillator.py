@@ -1,0 +1,333 @@
+"""The case: an equation with its values, and a method per question."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import os
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, Union
+
+from ._answers import Answer, Derivation
+from ._arrays import BifurcationDiagram, FrequencyFunction, Solution, StabilityChart, ThresholdSurface
+from ._errors import LindstedtError, UsageError
+from ._native import Case, Means
+from ._numbers import Value, exact
+
+Sweep = Union[str, Mapping[str, Any], Sequence[str]]
+"""`"eps=0..1:11"`, `{"eps": (0, 1, 11)}` (ends and number), `{"eps": [0, "1/3", 1]}` (a list of values)."""
+
+
+def _sweep(sweep: Sweep) -> str:
+    if isinstance(sweep, str):
+        return sweep
+    if not isinstance(sweep, Mapping):
+        return ";".join(sweep)
+    axes = []
+    for name, values in sweep.items():
+        if isinstance(values, tuple) and len(values) == 3:
+            low, high, count = values
+            axes.append(f"{name}={exact(low)}..{exact(high)}:{int(count)}")
+        else:
+            axes.append(f"{name}={','.join(exact(value) for value in values)}")
+    return ";".join(axes)
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (list, tuple)):
+        return ",".join(exact(item) for item in value)
+    return exact(value)
+
+
+@contextmanager
+def _bar(show: bool | Callable[[str, int, int], None]) -> Iterator[Callable[[str, int, int], None] | None]:
+    """What is told of the work: a function, or a bar of tqdm where that is installed."""
+    if not show or callable(show):
+        yield show or None
+        return
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        yield None
+        return
+    with tqdm(leave=False) as bar:
+
+        def told(words: str, done: int, parts: int) -> None:
+            bar.total = parts or None
+            bar.set_description_str(words, refresh=False)
+            bar.n = done
+            bar.refresh()
+
+        yield told
+
+
+class Oscillator:
+    """An oscillator: an equation, a problem file or a built-in name, with exact values for parameters.
+
+    >>> Oscillator("x'' + x + eps*x**3 = 0").derive(2).frequency.fractions
+    [Fraction(1, 1), Fraction(3, 8), Fraction(-21, 256)]
+
+    Immutable: `set` and `under` return another one. It pickles as its text and its values.
+    """
+
+    def __init__(self, equation: str, **values: Value) -> None:
+        self._init("equation", equation.replace("**", "^"), {}, None)
+        self.__dict__.update(self.set(**values).__dict__)
+
+    def _init(self, kind: str, text: str, values: dict[str, str], condition: str | None) -> None:
+        self._state = (kind, text, dict(values), condition)
+        self._case = Case(kind, text, list(values.items()), condition)
+
+    @classmethod
+    def _made(cls, kind: str, text: str, values: dict[str, str], condition: str | None) -> Oscillator:
+        made = cls.__new__(cls)
+        made._init(kind, text, values, condition)
+        return made
+
+    @classmethod
+    def builtin(cls, name: str, **values: Value) -> Oscillator:
+        """The built-in oscillator of that name, see `problems()`."""
+        return cls._made("builtin", name, {}, None).set(**values)
+
+    @classmethod
+    def file(cls, path: str | os.PathLike[str], **values: Value) -> Oscillator:
+        """An oscillator from a problem file (TOML)."""
+        with open(path, encoding="utf-8") as file:
+            return cls.toml(file.read(), **values)
+
+    @classmethod
+    def toml(cls, text: str, **values: Value) -> Oscillator:
+        """An oscillator from the text of a problem file."""
+        return cls._made("file", text, {}, None).set(**values)
+
+    def set(self, **values: Value) -> Oscillator:
+        """The same oscillator with values for parameters."""
+        kind, text, known, condition = self._state
+        known = {**known, **{name: exact(value) for name, value in values.items()}}
+        return self._made(kind, text, known, condition)
+
+    def under(self, normalisation: str) -> Oscillator:
+        """The same with another meaning of the amplitude: `initial`, `fundamental`, or `free` (averaging)."""
+        kind, text, known, _ = self._state
+        return self._made(kind, text, known, normalisation)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"state": self._state}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._init(*state["state"])
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Oscillator) and self._state == other._state
+
+    def __hash__(self) -> int:
+        kind, text, values, condition = self._state
+        return hash((kind, text, tuple(sorted(values.items())), condition))
+
+    def __repr__(self) -> str:
+        values = "".join(f", {name}={value}" for name, value in self._state[2].items())
+        return f"<Oscillator {self.equation}{values}>"
+
+    def __str__(self) -> str:
+        return self.equation
+
+    @property
+    def name(self) -> str:
+        """The name of the problem."""
+        return self._case.name
+
+    @property
+    def equation(self) -> str:
+        """Its equation, `... = 0`."""
+        return self._case.equation
+
+    @property
+    def values(self) -> dict[str, str]:
+        """The exact values that are set, and those that the problem has."""
+        return self._case.values()
+
+    @property
+    def parameters(self) -> list[str]:
+        """The names of the parameters."""
+        return self._case.parameters()
+
+    def describe(self) -> dict[str, Any]:
+        """The problem, its file, what its equation is made of, and which methods take it."""
+        described: dict[str, Any] = json.loads(self._case.entry())["problems"][0]
+        return described
+
+    # Questions.
+
+    def _ask(self, verb: str, options: dict[str, Any], means: dict[str, Any]) -> Answer:
+        kind = Derivation if verb == "derive" else Answer
+        with _work(means) as work:
+            answer = kind(self._case.ask(verb, _options(options), work))
+        for remark in answer.remarks if not answer.is_complete else []:
+            warnings.warn(remark, stacklevel=3)
+        return answer
+
+    def derive(self, order: int = 4, **options: Any) -> Derivation:
+        """The expansion to an order, substituted back: exact, or `tier="collocation"`, `"fourier"`.
+
+        Averaged with a free amplitude (`under("free")`) and at resonance. `mode=k` is a normal mode,
+        `unknown="a"` a parameter that solvability fixes; `route` is auto, clock, driver or energy.
+        """
+        means = _means(options)
+        answer = self._ask("derive", {"order": order, **options}, means)
+        assert isinstance(answer, Derivation)
+        return answer
+
+    def average(self, order: int = 2, **options: Any) -> Derivation:
+        """The averaged equations of Krylov, Bogoliubov and Mitropolsky to an order."""
+        return self.under("free").derive(order, **options)
+
+    def evaluate(self, sweep: Sweep | None = None, **options: Any) -> Answer:
+        """Period and frequency at the values set, by resummation; `times="0..10:101"`, `order`, `resum`,
+        `phase`, `code="python"`, `harmonics`; with a sweep at every point of it."""
+        means = _means(options)
+        return self._ask("evaluate", {"sweep": sweep, **options}, means)
+
+    def prove(self, sweep: Sweep | None = None, **options: Any) -> Answer:
+        """The periodic orbit as a theorem: existence, uniqueness, a bound of every number; a family with a sweep."""
+        means = _means(options)
+        return self._ask("evaluate", {"sweep": sweep, "prove": True, **options}, means)
+
+    def respond(self, sweep: Sweep | None = None, **options: Any) -> Answer:
+        """The steady states at resonance: all in a box (`box`), or branches over a sweep; `order`, `start`, `follow`."""
+        means = _means(options)
+        return self._ask("respond", {"sweep": sweep, **options}, means)
+
+    def verify(self, order: int = 4, **options: Any) -> Answer:
+        """The expansion against an integration in time: the observed order of accuracy; `small`, `periods`,
+        `samples`, and `digits` of the integration."""
+        means = _means({name: options.pop(name) for name in list(options) if name in _MEANS - {"digits"}})
+        return self._ask("verify", {"order": order, **options}, means)
+
+    def trade(self, **options: Any) -> Answer:
+        """Speed against accuracy, every method and order; `orders`, `digits`, `harmonics`, `error`, `within`."""
+        means = _means({name: options.pop(name) for name in list(options) if name in _MEANS - {"digits"}})
+        return self._ask("trade", options, means)
+
+    def simulate(self, **options: Any) -> Answer:
+        """The motion in time: `until`, `periods` or `impacts`; `times`, `state`, `history`, `section`, `skip`,
+        `lyapunov=True`, `zero_one=True`, `perturb`, `branch`, `figure`."""
+        means = _means(options)
+        return self._ask("simulate", options, means)
+
+    def threshold(self, sweep: Sweep | None = None, **options: Any) -> Answer:
+        """Melnikov's threshold of homoclinic chaos; `zeros="vstar=0..1"`, `subharmonics`."""
+        means = _means(options)
+        return self._ask("threshold", {"sweep": sweep, **options}, means)
+
+    def stability(self, sweep: Sweep | None = None, **options: Any) -> Answer:
+        """The impact orbit, its predicted and its true stability; `order`, `variant`, `kick`, `predictor`."""
+        means = _means(options)
+        return self._ask("stability", {"sweep": sweep, **options}, means)
+
+    # Functions and arrays.
+
+    def frequency_function(self, **options: Any) -> FrequencyFunction:
+        """omega over the small parameter and the amplitude, for arrays; `order`, `resum`."""
+        means = _means(options)
+        with _work(means) as work:
+            return FrequencyFunction(self._case.frequency_function(_options(options), work))
+
+    def solution(self, harmonics: int = 15, **options: Any) -> Solution:
+        """x(t) at the values set, for arrays; `order`, `resum`."""
+        means = _means(options)
+        with _work(means) as work:
+            options = {"harmonics": harmonics, **options}
+            return Solution(self._case.periodic_solution(_options(options), work))
+
+    def _arrays(self, verb: str, options: dict[str, Any]) -> dict[str, Any]:
+        means = _means(options)
+        with _work({"doubles": True, **means}) as work:
+            return self._case.arrays(verb, _options(options), work)
+
+    def stability_chart(self, sweep: Sweep, **options: Any) -> StabilityChart:
+        """Prediction and truth over one or two parameters, as arrays."""
+        return StabilityChart(**self._arrays("stability", {"sweep": sweep, **options}))
+
+    def threshold_surface(self, sweep: Sweep, **options: Any) -> ThresholdSurface:
+        """The signed threshold over one or two parameters, as arrays."""
+        return ThresholdSurface(**self._arrays("threshold", {"sweep": sweep, **options}))
+
+    def bifurcation_diagram(self, sweep: Sweep, **options: Any) -> BifurcationDiagram:
+        """The points of a section over a parameter, as arrays; `skip`, `keep`, `section`, `state`."""
+        return BifurcationDiagram(**self._arrays("simulate", {"sweep": sweep, **options}))
+
+
+_MEANS = {"digits", "doubles", "memory", "seconds", "progress"}
+
+
+def _means(options: dict[str, Any]) -> dict[str, Any]:
+    """Takes digits, doubles, memory, seconds and progress out of the options."""
+    return {name: options.pop(name) for name in _MEANS if name in options}
+
+
+_process: list[int] = []
+
+
+def _check_process() -> None:
+    """Refuses work in a process that was forked off one that worked: its threads are not there, and it would wait for
+    them for ever."""
+    if not _process:
+        _process.append(os.getpid())
+    if _process[0] != os.getpid():
+        raise UsageError(
+            "this process was forked off one in which lindstedt had worked", "fork", 'multiprocessing with "spawn"'
+        )
+
+
+@contextmanager
+def _work(means: dict[str, Any]) -> Iterator[Means]:
+    _check_process()
+    progress = means.pop("progress", False)
+    with _bar(progress) as told:
+        yield Means(progress=told, **means)
+
+
+def _options(options: dict[str, Any]) -> dict[str, str]:
+    made = {name: value for name, value in options.items() if value is not None}
+    return {name: _sweep(value) if name == "sweep" else _text(value) for name, value in made.items()}
+
+
+def grid(
+    oscillator: Oscillator,
+    verb: str,
+    values: Mapping[str, Iterable[Value]],
+    executor: Any = None,
+    block: int = 16,
+    **options: Any,
+) -> list[Any]:
+    """The answers to a question at every point of a grid, the first parameter slowest.
+
+    `executor` is any `concurrent.futures.Executor` or a Dask client; points go to it in blocks of `block`,
+    and the answers are those of a local run but for the seconds. A point that is refused stands as its exception.
+    Processes are started with "spawn", not forked.
+    """
+    names, axes = list(values), [list(axis) for axis in values.values()]
+    points = list(itertools.product(*axes))
+    blocks = [points[i : i + block] for i in range(0, len(points), max(block, 1))]
+    if executor is None:
+        return [found for part in blocks for found in _block(oscillator, verb, names, part, options)]
+    pool = executor.get_executor() if hasattr(executor, "get_executor") else executor
+    futures = [pool.submit(_block, oscillator, verb, names, part, options) for part in blocks]
+    return [found for future in futures for found in future.result()]
+
+
+def _block(
+    oscillator: Oscillator, verb: str, names: list[str], points: list[tuple[Value, ...]], options: dict[str, Any]
+) -> list[Any]:
+    found: list[Any] = []
+    for point in points:
+        try:
+            case = oscillator.set(**dict(zip(names, point)))
+            found.append(getattr(case, verb)(**options))
+        except LindstedtError as error:
+            found.append(error)
+    return found

@@ -1,0 +1,187 @@
+//! What crosses as arrays: functions of many points, charts, surfaces, diagrams.
+
+use crate::options::Options;
+use crate::verbs;
+use crate::work::Means;
+use lindstedt::evaluate::{Estimated, FrequencyFunction, PeriodicSolution};
+use lindstedt::unstable::impact::map::Verdict;
+use lindstedt::{Answer, Error, Oscillator, Stop};
+use lindstedt_report::json;
+use numpy::ndarray::Array2;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// One array after the other.
+type Pair<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
+fn pair(py: Python<'_>, list: Vec<Estimated>) -> Pair<'_> {
+    let values: Vec<f64> = list.iter().map(|found| found.value).collect();
+    let errors: Vec<f64> = list.into_iter().map(|found| found.error).collect();
+    (values.into_pyarray(py), errors.into_pyarray(py))
+}
+
+/// omega(small, amplitude).
+#[pyclass(frozen, module = "lindstedt._native")]
+pub struct Frequency(pub Answer<FrequencyFunction>);
+
+#[pymethods]
+impl Frequency {
+    /// Header, parameters and methods as JSON.
+    fn json(&self) -> PyResult<String> {
+        json(&self.0).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    /// omega and its estimated errors; an array of length one is that value everywhere.
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        small: PyReadonlyArray1<'py, f64>,
+        amplitude: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Pair<'py>> {
+        let (small, amplitude) = (small.as_slice()?, amplitude.as_slice()?);
+        let found = py.detach(|| self.0.value.list(small, amplitude, &Stop::default()));
+        Ok(pair(py, found))
+    }
+}
+
+/// x(t).
+#[pyclass(frozen, module = "lindstedt._native")]
+pub struct Motion(pub Answer<PeriodicSolution>);
+
+#[pymethods]
+impl Motion {
+    /// Header, frequency and harmonics as JSON.
+    fn json(&self) -> PyResult<String> {
+        json(&self.0).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    /// x at times.
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        times: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let times = times.as_slice()?;
+        let values = py.detach(|| self.0.value.list(times, &Stop::default()));
+        Ok(values.into_pyarray(py))
+    }
+
+    /// Its estimated errors.
+    fn errors<'py>(
+        &self,
+        py: Python<'py>,
+        times: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let errors: Vec<f64> = times.as_slice()?.iter().map(|t| self.0.value.error(*t)).collect();
+        Ok(errors.into_pyarray(py))
+    }
+}
+
+fn missing() -> Error {
+    crate::failure::usage("an array needs a sweep", "sweep = \"A=-1..1:201\"")
+}
+
+/// Stable, unstable, neutral as 1, -1, 0; 2 where there is none.
+fn code(verdict: Option<Verdict>) -> i8 {
+    match verdict {
+        Some(Verdict::Stable) => 1,
+        Some(Verdict::Unstable) => -1,
+        Some(Verdict::Neutral) => 0,
+        None => 2,
+    }
+}
+
+/// Row by row, as an array of two dimensions.
+fn table<T: Clone>(width: usize, list: Vec<T>) -> PyResult<Array2<T>> {
+    let height = list.len() / width.max(1);
+    let made = Array2::from_shape_vec((height, width), list);
+    made.map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+/// The prediction and the truth over one or two parameters.
+pub fn chart<'py>(
+    py: Python<'py>,
+    case: &Oscillator,
+    options: Options,
+    means: &Means,
+) -> PyResult<Bound<'py, PyDict>> {
+    let chart = means.ask(py, move |work| {
+        let question = verbs::stability(case, &options)?;
+        case.stability(&question, work)?.value.grid.ok_or_else(missing)
+    })?;
+    let [(columns, x), (rows, y)] = chart.values();
+    let (width, dict) = (chart.grid.width(), PyDict::new(py));
+    let points = || chart.grid.points.iter();
+    let predicted = points().map(|p| code(p.as_ref().and_then(|p| p.predicted))).collect();
+    let exact = points().map(|p| code(p.as_ref().and_then(|p| p.exact))).collect();
+    let radius = points().map(|p| p.as_ref().map_or(f64::NAN, |p| p.exact_radius)).collect();
+    dict.set_item("names", (columns, rows))?;
+    dict.set_item("x", x.into_pyarray(py))?;
+    dict.set_item("y", y.into_pyarray(py))?;
+    dict.set_item("predicted", table(width, predicted)?.into_pyarray(py))?;
+    dict.set_item("exact", table(width, exact)?.into_pyarray(py))?;
+    dict.set_item("radius", table(width, radius)?.into_pyarray(py))?;
+    dict.set_item("complete", chart.finished)?;
+    Ok(dict)
+}
+
+/// The signed threshold over one or two parameters.
+pub fn surface<'py>(
+    py: Python<'py>,
+    case: &Oscillator,
+    options: Options,
+    means: &Means,
+) -> PyResult<Bound<'py, PyDict>> {
+    let sweep = means.ask(py, move |work| {
+        let question = verbs::threshold(case, &options)?;
+        case.threshold(&question, work)?.value.sweep.ok_or_else(missing)
+    })?;
+    let (grid, dict) = (&sweep.grid, PyDict::new(py));
+    let names: Vec<&str> = grid.axes().map(|axis| &*axis.name).collect();
+    let signed = grid.points.iter().map(|point| point.unwrap_or(f64::NAN)).collect();
+    dict.set_item("names", names)?;
+    dict.set_item("x", grid.columns.doubles().into_pyarray(py))?;
+    dict.set_item("y", grid.rows.as_ref().map(|axis| axis.doubles().into_pyarray(py)))?;
+    dict.set_item("signed", table(grid.width(), signed)?.into_pyarray(py))?;
+    dict.set_item("certified", sweep.certified)?;
+    dict.set_item(
+        "blanks",
+        sweep.blanks.iter().map(|blank| blank.reason.clone()).collect::<Vec<_>>(),
+    )?;
+    Ok(dict)
+}
+
+/// The points of a section over a parameter: one row (value, x, x') per point.
+pub fn diagram<'py>(
+    py: Python<'py>,
+    case: &Oscillator,
+    options: Options,
+    means: &Means,
+) -> PyResult<Bound<'py, PyDict>> {
+    let found = means.ask(py, move |work| {
+        let sweep = options.text("sweep").ok_or_else(missing)?;
+        case.bifurcation(&verbs::diagram(&sweep, &options)?, work)
+    })?;
+    let (swept, dict) = (&found.value.sweep, PyDict::new(py));
+    let columns = || swept.columns.iter();
+    let [mut value, mut x, mut velocity] = [const { Vec::new() }; 3];
+    for column in columns() {
+        for [at, rate] in &column.points {
+            value.push(column.value);
+            x.push(*at);
+            velocity.push(*rate);
+        }
+    }
+    dict.set_item("name", &swept.parameter)?;
+    dict.set_item("values", columns().map(|c| c.value).collect::<Vec<f64>>().into_pyarray(py))?;
+    dict.set_item("value", value.into_pyarray(py))?;
+    dict.set_item("x", x.into_pyarray(py))?;
+    dict.set_item("velocity", velocity.into_pyarray(py))?;
+    let ended: Vec<(f64, &String)> =
+        columns().filter_map(|c| Some((c.value, c.failure.as_ref()?))).collect();
+    dict.set_item("ended", ended)?;
+    dict.set_item("complete", found.value.complete)?;
+    Ok(dict)
+}

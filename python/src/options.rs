@@ -1,0 +1,87 @@
+//! The options of a question: text, each read once; what is left over is refused.
+
+use crate::failure::usage;
+use lindstedt::grid::Axis;
+use lindstedt::{Error, Exact, Oscillator};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::str::FromStr;
+
+/// Names and values.
+pub struct Options(RefCell<BTreeMap<String, String>>);
+
+impl Options {
+    pub fn new(list: BTreeMap<String, String>) -> Self {
+        Self(RefCell::new(list))
+    }
+
+    /// The text of an option.
+    pub fn text(&self, name: &str) -> Option<String> {
+        self.0.borrow_mut().remove(name)
+    }
+
+    /// A value with its own notation, a number among them.
+    pub fn parsed<T: FromStr>(&self, name: &str) -> Result<Option<T>, Error> {
+        let Some(text) = self.text(name) else { return Ok(None) };
+        let value = text.parse().map(Some);
+        value.map_err(|_| usage(format!("{name} = {text:?} is not understood"), ""))
+    }
+
+    /// A value read by a function of the engine.
+    pub fn read<T>(
+        &self,
+        name: &str,
+        read: impl FnOnce(&str) -> Result<T, Error>,
+    ) -> Result<Option<T>, Error> {
+        self.text(name).map(|text| read(&text)).transpose()
+    }
+
+    /// An exact number.
+    pub fn exact(&self, name: &str) -> Result<Option<Exact>, Error> {
+        self.read(name, |text| Ok(Exact::parse(text)?))
+    }
+
+    /// Whether a flag is set.
+    pub fn flag(&self, name: &str) -> bool {
+        self.text(name).is_some_and(|text| text == "true")
+    }
+
+    /// One of a list of words.
+    pub fn choice<T: Copy>(&self, name: &str, list: &[(&str, T)]) -> Result<Option<T>, Error> {
+        self.read(name, |text| {
+            let found = list.iter().find(|(word, _)| *word == text);
+            let words: Vec<&str> = list.iter().map(|(word, _)| *word).collect();
+            let wrong =
+                || usage(format!("{name} is none of {words:?}: {text:?}"), &words.join(", "));
+            found.map(|(_, value)| *value).ok_or_else(wrong)
+        })
+    }
+
+    /// Numbers separated by commas.
+    pub fn list<T: FromStr>(&self, name: &str) -> Result<Option<Vec<T>>, Error> {
+        self.read(name, |text| {
+            let parts = text.split(',').filter(|part| !part.trim().is_empty());
+            let list: Result<Vec<T>, _> = parts.map(|part| part.trim().parse()).collect();
+            list.map_err(|_| usage(format!("{name} = {text:?} is no list of numbers"), ""))
+        })
+    }
+
+    /// The axes of a sweep, separated by semicolons: none, one or two.
+    pub fn axes(&self, oscillator: &Oscillator) -> Result<Vec<Axis>, Error> {
+        let Some(text) = self.text("sweep") else { return Ok(Vec::new()) };
+        let axes: Vec<Axis> =
+            text.split(';').map(|axis| oscillator.axis(axis)).collect::<Result<_, _>>()?;
+        if axes.len() > 2 {
+            return Err(usage("at most two parameters are swept", "one axis or two"));
+        }
+        Ok(axes)
+    }
+
+    /// Refuses what no question read.
+    pub fn finish(&self) -> Result<(), Error> {
+        match self.0.borrow().keys().next() {
+            None => Ok(()),
+            Some(name) => Err(usage(format!("this question has no option {name}"), "")),
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! How a question is worked on: on a thread of its own, with Ctrl-C, a limit in time, and progress.
+
+use crate::failure::exception;
+use lindstedt::{Error, Progress, Stop, Work};
+use pyo3::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// Between two looks at the signals.
+const TICK: Duration = Duration::from_millis(20);
+/// The stack of the thread that works: that of a program's first one.
+const STACK: usize = 8 << 20;
+
+/// Digits, memory, time, and whom to tell.
+#[pyclass(frozen, module = "lindstedt._native")]
+pub struct Means {
+    digits: u32,
+    doubles: bool,
+    memory: u64,
+    seconds: Option<f64>,
+    progress: Option<Py<PyAny>>,
+}
+
+#[pymethods]
+impl Means {
+    #[new]
+    #[pyo3(signature = (digits=30, doubles=false, memory=8 << 30, seconds=None, progress=None))]
+    fn new(
+        digits: u32,
+        doubles: bool,
+        memory: u64,
+        seconds: Option<f64>,
+        progress: Option<Py<PyAny>>,
+    ) -> Self {
+        Self { digits, doubles, memory, seconds, progress }
+    }
+}
+
+/// What was last told: words, parts done, all parts.
+type Told = (String, usize, usize);
+
+fn told(progress: &Progress) -> Option<Told> {
+    Some(match progress {
+        Progress::Order(order, _) => (format!("order {order}"), 0, 0),
+        Progress::Primes(primes) => (format!("{primes} primes"), 0, 0),
+        Progress::Integrating(done) => (format!("{done} values compared"), 0, 0),
+        Progress::Checking => ("substituting".to_owned(), 0, 0),
+        Progress::Parts(done, all) => (String::new(), *done, *all),
+        Progress::Digits(digits) => (format!("{digits} digits"), 0, 0),
+        _ => return None,
+    })
+}
+
+impl Means {
+    /// Asks a question without the interpreter's lock.
+    pub fn ask<T: Send>(
+        &self,
+        py: Python<'_>,
+        question: impl FnOnce(&Work) -> Result<T, Error> + Send,
+    ) -> PyResult<T> {
+        let stopped = Arc::new(AtomicBool::new(false));
+        let end = self.seconds.and_then(|s| Duration::try_from_secs_f64(s).ok());
+        let end = end.and_then(|duration| Instant::now().checked_add(duration));
+        let last: Arc<Mutex<Option<Told>>> = Arc::default();
+        let (asked, tell) = (stopped.clone(), last.clone());
+        let stop =
+            move || asked.load(Ordering::Relaxed) || end.is_some_and(|end| Instant::now() > end);
+        let tell = move |progress: Progress| {
+            if let (Some(words), Ok(mut last)) = (told(&progress), tell.lock()) {
+                *last = Some(words);
+            }
+        };
+        let work = Work {
+            digits: self.digits,
+            doubles: self.doubles,
+            memory: self.memory,
+            stop: Stop::new(stop),
+            progress: self.progress.is_some().then(|| Arc::new(tell) as _),
+        };
+        let interrupted = |failure: &mut Option<PyErr>| {
+            let told = last.lock().ok().and_then(|mut last| last.take());
+            let tell = || match (&self.progress, told) {
+                (Some(progress), Some(told)) => progress.call1(py, told).map(drop),
+                _ => Ok(()),
+            };
+            if let Err(error) = py.check_signals().and_then(|()| tell()) {
+                stopped.store(true, Ordering::Relaxed);
+                failure.get_or_insert(error);
+            }
+        };
+        std::thread::scope(|scope| {
+            let (sender, mut receiver) = channel();
+            let worker = std::thread::Builder::new().stack_size(STACK);
+            worker.spawn_scoped(scope, move || sender.send(question(&work)).ok())?;
+            let mut failure = None;
+            loop {
+                let found;
+                (receiver, found) = py.detach(move || {
+                    let found = receiver.recv_timeout(TICK);
+                    (receiver, found)
+                });
+                match found {
+                    Ok(found) => {
+                        interrupted(&mut failure);
+                        return match failure {
+                            Some(error) => Err(error),
+                            None => found.map_err(|error| exception(py, &error)),
+                        };
+                    }
+                    Err(RecvTimeoutError::Timeout) => interrupted(&mut failure),
+                    Err(RecvTimeoutError::Disconnected) => {
+                        let message =
+                            "the work ended without an answer: a defect, please report it";
+                        return Err(pyo3::exceptions::PyRuntimeError::new_err(message));
+                    }
+                }
+            }
+        })
+    }
+}

@@ -1,0 +1,208 @@
+"""The package as its users meet it; reference numbers are closed forms."""
+
+from __future__ import annotations
+
+import math
+import multiprocessing
+import pickle
+import signal
+import threading
+import time
+from concurrent.futures import ProcessPoolExecutor
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import lindstedt
+from lindstedt import Number, Oscillator, Series
+
+DUFFING = "x'' + x + eps*x**3 = 0"
+
+
+@pytest.fixture(scope="module")
+def duffing() -> Oscillator:
+    return Oscillator(DUFFING)
+
+
+def test_a_derivation(duffing: Oscillator) -> None:
+    answer = duffing.derive(6)
+    # Nayfeh and Mook (1979), to order 2.
+    assert answer.frequency.fractions[:3] == [1, Fraction(3, 8), Fraction(-21, 256)]
+    assert answer.is_complete and answer.order == 6 and answer.residual["zero"]
+    assert answer["solution"][0] == "cos(tau)"
+    assert answer.to_dict()["series"]["frequency"][1]["exact"] == "3/8"
+    assert "\\frac" in answer._repr_latex_() and "omega" in str(answer)
+    assert duffing == Oscillator("x'' + x + eps*x^3 = 0")
+
+
+def test_values_are_what_was_typed(duffing: Oscillator) -> None:
+    for value in (0.1, "0.1", "1/10", Fraction(1, 10), Decimal("0.1"), np.float64(0.1)):
+        assert duffing.set(eps=value).values["eps"] == "1/10"
+    sympy = pytest.importorskip("sympy")
+    assert duffing.set(eps=sympy.Rational(1, 10)).values["eps"] == "1/10"
+    assert Oscillator.builtin("pendulum", amplitude=sympy.pi / 4).values["amplitude"] == "1/4*pi"
+    for value in (True, math.nan, object()):
+        with pytest.raises(lindstedt.UsageError):
+            duffing.set(eps=value)
+
+
+def test_refusals_are_exceptions() -> None:
+    with pytest.raises(lindstedt.UsageError) as usage:
+        Oscillator.builtin("pendulun")
+    assert usage.value.code == "unknown-problem" and "pendulum" in usage.value.hint
+    with pytest.raises(lindstedt.NoAnswerError) as refused:
+        Oscillator("x'' + k*x + eps*x' = 0").derive(2)
+    assert refused.value.code == "no-method"
+    again = pickle.loads(pickle.dumps(refused.value))
+    assert (again.code, again.hint) == (refused.value.code, refused.value.hint)
+    with pytest.raises(lindstedt.UsageError):
+        Oscillator(DUFFING).derive(2, rder=3)
+
+
+def test_numbers() -> None:
+    number = Number("1 - 2*ln(2)", "-0.386294361119890618834464242916", None, "exact")
+    assert number.fraction is None and float(number) == pytest.approx(1 - 2 * math.log(2))
+    assert str(number) == "1 - 2*ln(2)"
+    mpmath = pytest.importorskip("mpmath")
+    with mpmath.workdps(30):
+        assert abs(number.to_mpmath() - (1 - 2 * mpmath.log(2))) < mpmath.mpf(10) ** -29
+    sympy = pytest.importorskip("sympy")
+    assert number.to_sympy() == 1 - 2 * sympy.log(2)
+    half = Series("eps", [Number("1", "1", None, "exact"), Number("1/2", "0.5", None, "exact")])
+    assert half.to_sympy() == 1 + sympy.Symbol("eps") / 2
+    assert half.to_numpy().tolist() == [1, 0.5]
+
+
+def test_frequencies_of_arrays(duffing: Oscillator) -> None:
+    omega = duffing.frequency_function()
+    rho = np.linspace(0, 3, 1000).reshape(10, 100)
+    values, errors = omega.with_error(rho)
+    # T = 4 K(k)/sqrt(1 + rho), k^2 = rho/(2 + 2 rho), by the arithmetic-geometric mean.
+    a, b = np.ones_like(rho), np.sqrt(1 - rho / (2 + 2 * rho))
+    for _ in range(6):
+        a, b = (a + b) / 2, np.sqrt(a * b)
+    assert values.shape == rho.shape
+    assert np.all(np.abs(values - np.sqrt(1 + rho) * a) <= errors + 1e-15)
+    assert errors[rho < 1].max() < 1e-9
+    assert omega(0.5, 2.0) == omega(2.0)
+    assert np.isnan(omega([-2.0])).all()
+
+
+def test_solutions_of_arrays(duffing: Oscillator) -> None:
+    x = duffing.set(eps=Fraction(1, 2)).solution()
+    t = np.linspace(0, 20, 1001)
+    direct = sum(c * np.cos(k * x.frequency * t) for k, (c, _) in enumerate(x.harmonics))
+    assert np.abs(x(t) - direct).max() < 1e-13
+    assert x.to_callable()(0.0) == pytest.approx(1, abs=1e-9) and x(t).shape == t.shape
+    # The energy x'^2/2 + x^2/2 + x^4/8 is constant: x' by differences.
+    v = (x(t + 1e-4) - x(t - 1e-4)) / 2e-4
+    energy = v**2 / 2 + x(t) ** 2 / 2 + x(t) ** 4 / 8
+    assert np.ptp(energy) < 1e-6 and np.all(x.error(t) < 1e-9)
+
+
+def test_every_question() -> None:
+    cycle = Oscillator("x'' + x = eps*(1 - x**2)*x'")
+    assert cycle.average(2).tier == "exact"
+    assert cycle.verify(1, small="1/100,1/200").observed_order == pytest.approx(2, abs=0.1)
+    cycle = cycle.set(eps="1/10")
+    assert float(cycle.evaluate(digits=12).period) == pytest.approx(2 * math.pi * (1 + 0.01 / 16), rel=1e-6)
+    assert cycle.prove(digits=10)["period"].status == "proved"
+    assert len(cycle.evaluate({"eps": (0, 1, 3)}, order=6)["points"]) == 3
+    assert cycle.simulate(until=1, digits=8).is_complete
+    assert cycle.describe()["name"]
+    forced = Oscillator("x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t)/2", eps=0.1, sigma=1)
+    assert forced.respond()["states"][0]["count"] == 3
+    belt = Oscillator.builtin("stick-slip", b=5)
+    assert float(belt.threshold(digits=12).gamma_c) == pytest.approx(0.105347876877)
+    plan = {"orders": [2, 4], "digits": [16], "harmonics": [], "repeats": 1}
+    assert Oscillator.builtin("duffing", eps="1/10").trade(**plan)["rows"]
+    assert {"duffing", "stick-slip"} <= {problem["name"] for problem in lindstedt.problems()}
+
+
+def test_charts_are_arrays() -> None:
+    impact = Oscillator.builtin("vibro-impact")
+    chart = impact.stability_chart({"A": (-0.3, 0.3, 5), "B": (-0.3, 0.3, 4)})
+    assert chart.names == ("A", "B") and chart.exact.shape == (4, 5) and chart.x[0] == -0.3
+    assert set(np.unique(chart.exact)) <= {-1, 0, 1, 2} and chart.complete
+    surface = Oscillator.builtin("stick-slip").threshold_surface({"vstar": (0, 1, 5), "omega": [1, 2]})
+    assert surface.signed.shape == (2, 5) and surface.names == ["vstar", "omega"]
+    one = Oscillator.builtin("stick-slip", vstar=0.5, omega=2).threshold(doubles=True)
+    assert surface.signed[1, 2] == pytest.approx(float(one.signed), rel=1e-12)
+    diagram = Oscillator.builtin("stick-slip").bifurcation_diagram("gamma=0.5..0.6:2", skip=20, keep=4)
+    assert diagram.values.tolist() == [0.5, 0.6] and len(diagram.x) == len(diagram.value) == 8
+
+
+def test_figures_and_tables(duffing: Oscillator, tmp_path: Path) -> None:
+    answer = duffing.set(eps=1).evaluate(order=8, times="0..6:7", digits=8)
+    assert answer.figure is not None and answer._repr_svg_() == answer.figure.svg
+    assert answer.figure.svg.lstrip().startswith("<svg")
+    answer.figure.save(str(tmp_path / "figure.svg"))
+    table = answer.table()
+    assert len(next(iter(table.values()))) == 7
+    pandas = pytest.importorskip("pandas")
+    assert isinstance(answer.to_pandas(), pandas.DataFrame)
+    again = pickle.loads(pickle.dumps(answer))
+    assert again.to_dict() == answer.to_dict() and str(again) == str(answer)
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    assert answer.plot().get_xlabel() == next(iter(table))
+
+
+def test_ctrl_c_stops_long_work() -> None:
+    law = Oscillator.builtin("power-law")
+    start = time.monotonic()
+    threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
+    with pytest.raises(KeyboardInterrupt):
+        law.derive(30)
+    assert time.monotonic() - start < 5
+
+
+def test_other_threads_run_meanwhile_and_limits_hold() -> None:
+    law = Oscillator.builtin("power-law")
+    told: list[tuple[str, int, int]] = []
+    ticks: list[float] = []
+    done = threading.Event()
+
+    def tick() -> None:
+        while not done.wait(0.01):
+            ticks.append(time.monotonic())
+
+    other = threading.Thread(target=tick)
+    other.start()
+    try:
+        answer = law.derive(30, seconds=0.5, progress=lambda *words: told.append(words))
+        assert not answer.is_complete
+    except lindstedt.StoppedError:
+        pass
+    finally:
+        done.set()
+        other.join()
+    assert told and len(ticks) > 10
+
+
+def test_a_grid_is_the_same_on_other_processes(duffing: Oscillator) -> None:
+    values = {"eps": ["1/10", "1/5"], "amplitude": [1, 2]}
+    local = lindstedt.grid(duffing, "evaluate", values, order=4)
+    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
+        there = lindstedt.grid(duffing, "evaluate", values, executor=pool, block=2, order=4)
+    assert [a["period"] for a in local] == [a["period"] for a in there]
+    assert [a.at["amplitude"] for a in there] == ["1", "2", "1", "2"]
+    refused = lindstedt.grid(duffing, "evaluate", {"eps": [-2]}, order=4)
+    assert isinstance(refused[0], lindstedt.LindstedtError)
+    assert pickle.loads(pickle.dumps(duffing.set(eps=2))) == duffing.set(eps=2)
+
+
+def test_the_readme_is_true() -> None:
+    import doctest
+
+    found = doctest.testfile(
+        str(Path(__file__).parent.parent / "README.md"),
+        module_relative=False,
+        optionflags=doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS,
+    )
+    assert found.attempted >= 7 and found.failed == 0
+    for module in (lindstedt, lindstedt._numbers, lindstedt._oscillator):
+        assert doctest.testmod(module).failed == 0

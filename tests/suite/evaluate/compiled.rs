@@ -1,0 +1,86 @@
+//! Functions of many points against the values of single ones, which are summed with many digits by
+//! other code.
+
+use lindstedt::unstable::series::resummation::Method;
+use lindstedt::{Evaluate, Oscillator, Work};
+
+/// omega at one point, and its error.
+fn single(oscillator: &Oscillator, order: usize, values: &[(&str, &str)]) -> Option<(f64, f64)> {
+    let set = |case: Oscillator, (name, value): &(&str, &str)| case.set(name, value).unwrap();
+    let case = values.iter().fold(oscillator.clone(), set);
+    let question = Evaluate { order: Some(order), ..Evaluate::default() };
+    let found = case.evaluate(&question, &Work::default()).ok()?.value.frequency?;
+    Some((found.decimal.parse().ok()?, found.error?.parse().ok()?))
+}
+
+/// omega by the function lies within its error, and where one point alone has eight digits it has six.
+#[test]
+fn frequencies_of_many_points_are_those_of_single_ones() {
+    let builtin = |name| Oscillator::builtin(name).unwrap();
+    let parse = |equation| Oscillator::parse(equation).unwrap();
+    // The small parameter is the first value.
+    let cases: [(Oscillator, usize, &[[&str; 2]]); 4] = [
+        (builtin("duffing"), 8, &[["-3/10", "1"], ["1", "3/2"]]),
+        (parse("x'' + 4*x + eps*x^5/3 = 0"), 8, &[["1/50", "2"]]),
+        (builtin("van-der-pol"), 14, &[["-1/2", "1"], ["1/10", "1"]]),
+        (builtin("power-law"), 8, &[["1", "2"], ["-1/4", "3"]]),
+    ];
+    for (oscillator, order, points) in cases {
+        let question = Evaluate { order: Some(order), ..Evaluate::default() };
+        let function = oscillator.frequency_function(&question, &Work::default()).unwrap().value;
+        for [small, amplitude] in points {
+            let mut set = vec![(&*function.small, *small)];
+            set.extend(function.has_amplitude.then_some(("amplitude", *amplitude)));
+            let double = |text: &str| lindstedt::Exact::parse(text).unwrap().to_f64();
+            let (omega, error) = single(&oscillator, order, &set).unwrap();
+            let found = function.at(double(small), double(amplitude));
+            let gap = (found.value - omega).abs();
+            assert!(
+                gap <= found.error + error,
+                "{oscillator} {set:?}: {gap:e} {found:?} {error:e}"
+            );
+            if error < 1e-8 * omega {
+                assert!(found.error < 1e-6 * omega, "{oscillator} {set:?}: {found:?} {error:e}");
+            }
+        }
+        let list = function.list(&[0.01, 0.02], &[1.0], &Default::default());
+        assert_eq!(list, [function.at(0.01, 1.0), function.at(0.02, 1.0)]);
+    }
+}
+
+/// Where nothing is known the error is infinite: beyond the separatrix, at no number.
+#[test]
+fn points_without_a_digit_say_so() {
+    let duffing = Oscillator::builtin("duffing").unwrap();
+    let question = Evaluate { order: Some(6), ..Evaluate::default() };
+    let function = duffing.frequency_function(&question, &Work::default()).unwrap();
+    for (eps, amplitude) in
+        [(-1.5, 1.0), (-0.5, 2.0), (0.1, -1.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)]
+    {
+        let found = function.value.at(eps, amplitude);
+        assert!(found.error.is_infinite(), "{eps} {amplitude}: {found:?}");
+    }
+    let question = Evaluate { method: Some(Method::BorelPade), ..Evaluate::default() };
+    assert!(duffing.frequency_function(&question, &Work::default()).is_err());
+}
+
+/// x(t) by its harmonics against the table that is summed phase by phase, early and late.
+#[test]
+fn a_solution_at_many_times_is_that_at_single_ones() {
+    for (name, eps, order) in [("duffing", "1/2", 8), ("van-der-pol", "1/4", 14)] {
+        let case = Oscillator::builtin(name).unwrap().set("eps", eps).unwrap();
+        let question = Evaluate { order: Some(order), ..Evaluate::default() };
+        let x = case.periodic_solution(&question, 15, &Work::default()).unwrap().value;
+        for times in ["0..7:8", "1000..1003:2"] {
+            let times = Some(times.parse().unwrap());
+            let table = case.evaluate(&Evaluate { times, ..question.clone() }, &Work::default());
+            for point in table.unwrap().value.solution.unwrap().points {
+                let (t, found) = (point.time.to_f64(), x.at(point.time.to_f64()));
+                let gap = (found.value - point.double).abs();
+                let allowed = found.error + point.error;
+                assert!(gap <= allowed && found.error < 1e-3, "{name} {t}: {gap:e} {found:?}");
+                assert_eq!(x.list(&[t], &Default::default()), [found.value]);
+            }
+        }
+    }
+}
