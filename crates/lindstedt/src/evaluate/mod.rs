@@ -159,17 +159,20 @@ impl Oscillator {
         let start = Instant::now();
         let solved = self.solved(question, harmonics, work)?;
         let (order, at, name) = (solved.order, solved.at(), &self.problem().name);
-        let value = match solved.way {
-            Way::Newton(series, omega) => {
-                SolutionCode::by_newton(name, (series, omega.value), language)
-            }
-            Way::Sum(path) => SolutionCode::new(name, &path, language, harmonics).map_err(
-                |error| match work.stop.asked() {
-                    true => Refused::stopped("stopped before the phases were sampled", "").into(),
-                    false => error,
-                },
-            )?,
-        };
+        let value =
+            match solved.way {
+                Way::Newton(series, omega) => {
+                    SolutionCode::by_newton(name, (series, omega.value), language)
+                }
+                Way::Sum(path) => SolutionCode::new(name, &path, language, harmonics).map_err(
+                    |error| match work.stop.asked() {
+                        true => {
+                            Refused::stopped("stopped before the phases were sampled", "").into()
+                        }
+                        false => error,
+                    },
+                )?,
+            };
         let header = self.header(at, Some(order), "resummation", start);
         Ok(Answer { header, value, standing: Standing::Complete, remarks: solved.remarks })
     }
