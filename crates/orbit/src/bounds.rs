@@ -30,7 +30,7 @@ use rug::Float;
 use rug::float::Round;
 
 /// What the couplings beyond the band are cut to, relative to their sum.
-const BAND: f64 = 1e-10;
+const BAND: f64 = 1e-14;
 /// What doubles drop, relative to their exponent.
 const DROPPED: f64 = 1e-260;
 

@@ -28,7 +28,9 @@ impl Drift {
         inverse: &Inverse,
         stop: &Stop,
     ) -> Result<Option<Self>, Failure> {
-        if task.field.varying.is_none() && task.error.is_zero() {
+        // Coefficients that are uncertain by themselves need not move with the value of the condition.
+        let alone = task.error.is_zero() || task.field.is_uncertain();
+        if task.field.varying.is_none() && alone {
             return Ok(None);
         }
         let modes = centre.modes().max(inverse.modes);

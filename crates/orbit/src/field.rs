@@ -87,6 +87,12 @@ impl Field {
         field
     }
 
+    /// Whether a coefficient is known within a ball.
+    pub(crate) fn is_uncertain(&self) -> bool {
+        let arguments = self.functions.iter().map(|f| &f.argument);
+        self.forces.iter().chain(arguments).any(|p| !p.spread.is_empty())
+    }
+
     fn polynomials(&mut self) -> impl Iterator<Item = &mut Polynomial> {
         let first = self.first.iter_mut().flatten();
         let second = self.second.iter_mut().map(|(.., p)| p);

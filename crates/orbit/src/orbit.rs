@@ -117,8 +117,9 @@ impl Orbit {
 
     /// (min x, max x). An orbit of an autonomous equation of second order meets x' = 0 twice in its
     /// least period (between, x is monotone; more often a closed curve in the plane cannot without crossing
-    /// itself): where it is even in time, at tau = 0 and tau = pi, unless these are the same state.
-    pub(crate) fn extrema(&self, even_and_autonomous: bool) -> (Ball, Ball) {
+    /// itself): where it is even in time, at tau = 0 and tau = pi, unless these are the same state. Where the
+    /// unknown is odd under the shift by pi the least value is minus the largest.
+    pub(crate) fn extrema(&self, even_and_autonomous: bool, odd: bool) -> (Ball, Ball) {
         if even_and_autonomous {
             let ends = [self.balls.zero(), self.balls.pi()].map(|phase| self.at_phase(&phase).0);
             let [a, b] = ends;
@@ -126,7 +127,9 @@ impl Orbit {
                 return if a.midpoint() < b.midpoint() { (a, b) } else { (b, a) };
             }
         }
-        (self.largest(-1.0), self.largest(1.0))
+        let largest = self.largest(1.0);
+        let least = if odd { self.balls.neg(&largest) } else { self.largest(-1.0) };
+        (least, largest)
     }
 
     /// The largest value of x on the orbit, or of -x.

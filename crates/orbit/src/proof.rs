@@ -110,9 +110,9 @@ pub struct Motion {
 }
 
 impl Motion {
-    fn of(orbit: &Orbit, even_and_autonomous: bool) -> Self {
+    fn of(orbit: &Orbit, even_and_autonomous: bool, odd: bool) -> Self {
         let (displacement, velocity) = orbit.at_phase(&orbit.balls.zero());
-        let (minimum, maximum) = orbit.extrema(even_and_autonomous);
+        let (minimum, maximum) = orbit.extrema(even_and_autonomous, odd);
         Self { displacement, velocity, maximum, minimum }
     }
 }
@@ -147,7 +147,11 @@ pub(crate) fn conclude(
     let orbits: Vec<Orbit> = (0..centre.unknowns.len()).map(one).collect();
     let single = orbits.len() == 1;
     let planar = single && task.is_free() && task.rows.parity.even;
-    let mut motions = orbits.iter().map(|orbit| Motion::of(orbit, planar));
+    let Parity { odd, keeping, .. } = task.rows.parity;
+    let mut motions = orbits.iter().enumerate().map(|(i, orbit)| {
+        let mirrored = odd && keeping.checked_shr(i as u32).unwrap_or(1) & 1 == 0;
+        Motion::of(orbit, planar, mirrored)
+    });
     let motion = motions.next().ok_or(Failure::NoStart)?;
     let further = motions.collect();
     // Where any unknown has a first harmonic.

@@ -303,7 +303,15 @@ fn attempt(
     }
 }
 
-/// The weight with the least radius.
+/// Z0 + Z1 of a failure; 1 where that was not what failed.
+fn defect(failure: &Failure) -> f64 {
+    match failure {
+        Failure::NoContraction { z0, z1, .. } => z0 + z1,
+        _ => 1.0,
+    }
+}
+
+/// The weight with the least radius, else with the least defect.
 fn weighed(
     frame: &Frame<'_>,
     inverse: &Inverse,
@@ -328,7 +336,8 @@ fn weighed(
         let better = match (&best, &found) {
             (Ok((_, old)), Ok(new)) => new.radius < old.radius,
             (Err(_), Ok(_)) | (Err(Failure::Stopped), _) => true,
-            _ => false,
+            (Err(old), Err(new)) => defect(new) < defect(old),
+            (Ok(_), Err(_)) => false,
         };
         if better {
             best = found.map(|radii| (weights, radii));

@@ -162,6 +162,10 @@ impl Between<'_> {
         let wanted = [self.low, self.high].map(|case| case.wanted(FEW_DIGITS).ok());
         let [Some(low), Some(high)] = wanted else { return Err(Failure::NotOneNumber) };
         if let (Some((sine, _)), Some((other, _))) = (&low.sine, &high.sine) {
+            // Between the ends of another parameter the sine may be any other.
+            if self.name != "amplitude" {
+                return Err(Failure::NotOneNumber);
+            }
             let starts = [&low.angle, &high.angle];
             let [Some(start), Some(end)] = starts else { return Err(Failure::NotOneNumber) };
             return sine.between(start, (other, end));

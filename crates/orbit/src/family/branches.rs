@@ -77,9 +77,12 @@ pub fn branches<E: From<Failure>>(
 /// The largest mode of the inverse from a guess.
 const MODES_OF_A_GUESS: usize = 120;
 
+/// The field and the question at a value.
+type Problem<'a> = dyn Fn(&Rational) -> Result<(Field, Kind), Failure> + 'a;
+
 struct Search<'a> {
     values: &'a [Rational],
-    problem: &'a dyn Fn(&Rational) -> Result<(Field, Kind), Failure>,
+    problem: &'a Problem<'a>,
     request: &'a Request,
     found: Vec<Branch>,
 }

@@ -40,8 +40,9 @@ pub struct Cover {
 }
 
 /// Proves the orbits for all values between two proved ones; `problem` is the field and the question for
-/// all values between two numbers ([`Field::between`]). Ends at the first part that fails, halved
-/// seven times. The cost is a proof of few digits per part.
+/// all values between two numbers ([`Field::between`], [`Kind::between`]; where both vary, with the one
+/// parameter, both growing with it or both falling). A part is as long as its bounds allow; ends where one
+/// of a 128th of the interval fails. The cost is a proof of few digits per part.
 ///
 /// ```
 /// use lindstedt_equation::{Expression, Problem};

@@ -162,6 +162,33 @@ mod tests {
     use crate::prove_all;
     use lindstedt_equation::{Expression, Problem};
 
+    /// Coefficients within balls of their own and an interval of amplitudes: both ends of both are covered.
+    #[test]
+    fn uncertainties_that_do_not_move_together_are_covered() {
+        let x = Expression::DISPLACEMENT;
+        let of = |e: Expression| Expression::ACCELERATION + x.clone() + e * x.clone().pow(3);
+        let balls = Balls::new(128);
+        let ball = balls.add_error(&balls.one(), &Float::with_val(53, 1e-3));
+        let values = [("e".to_owned(), ball)].into();
+        let field = Field::within(&of(Expression::parameter("e")), "eps", &values, 128).unwrap();
+        let (value, error) = (Rational::from(1), Rational::from((1, 1000)));
+        let kind = Kind::InitialWithin { value, error };
+        let start = [Start { frequency: 1.3, cosines: vec![0.0, 1.0], sines: vec![] }];
+        let size = Size { modes: 12, weight: 1.0 };
+        let part = Part::new(&(field, kind), &start, size, true, &Request::default());
+        let Ok(part) = part else { panic!("not proved") };
+        for (e, a) in [(999, 1001), (1001, 999), (1001, 1001)] {
+            let end = Field::new(&of(Expression::Number((e, 1000).into())), "eps", &[].into());
+            let kind = Kind::InitialAmplitude(Rational::from((a, 1000)));
+            let proof = prove_all(&end.unwrap(), &kind, &start, &Request::default()).unwrap();
+            let frequency = proof.frequency.midpoint().to_rational().unwrap();
+            assert!(part.frequency.contains(&frequency), "{e} {a}: {:?}", part.frequency);
+            let apart =
+                part.at(false).centre.distance(&proof.place().centre, Up::ONE, Some(part.scale));
+            assert!(apart.0 <= part.radius.to_f64(), "{e} {a}: {apart:?}");
+        }
+    }
+
     /// Duffing over a part: at both ends the frequency is in the ball, the orbit is in its place.
     #[test]
     fn both_ends_of_a_part_are_in_it() {

@@ -1,12 +1,10 @@
 //! The classical oscillators: proved to thirty digits, against closed forms and against the
 //! integrator.
 
-use crate::common::{
-    digits, duffing, equation, field, guess, integrate, period, q, samples, van_der_pol, x, y,
-};
+use crate::common::{digits, duffing, equation, field, guess, integrate, q, van_der_pol, x, y};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_number::ball::Balls;
-use lindstedt_orbit::{Field, Kind, Proof, Request, Stability, Start, family, prove};
+use lindstedt_orbit::{Field, Kind, Proof, Request, Sine, Stability, Start, family, prove};
 use rug::float::Constant;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
@@ -90,14 +88,11 @@ fn duffing_periods_lie_in_their_balls() {
 #[test]
 fn swinging_pendulums_lie_in_their_balls() {
     let pendulum = equation(x().apply(Function::Sin));
-    for a in [(1, 1), (3, 1), (157, 50)] {
+    let sine = Sine::of(&pendulum, "eps", &Default::default()).unwrap();
+    for a in [(1, 1), (3, 1), (157, 50), (6283, 2000)] {
         let a = Rational::from(a);
-        let (time, _) = period(&pendulum, [a.to_f64(), 0.0], 0.0).unwrap();
-        let angles = samples(&pendulum, [a.to_f64(), 0.0], 0.0, time, 1024);
-        let halves: Vec<f64> = angles.iter().map(|x| (x / 2.0).sin()).collect();
-        let start = Start::from_samples(time, &halves);
-        let (field, kind) = Field::pendulum(&1.into(), &a, 30).unwrap();
-        let proof = thirty_of(&format!("pendulum, a = {a}"), &field, &kind, &start);
+        let (field, kind) = sine.field(&a, 30).unwrap();
+        let proof = thirty_of(&format!("pendulum, a = {a}"), &field, &kind, &sine.start(&a));
         let half = Float::with_val(BITS, &a) / 2u32;
         let mean = Float::with_val(BITS, 1).agm(&Float::with_val(BITS, half.cos_ref()));
         let turn = Float::with_val(BITS, Constant::Pi) * 2u32;

@@ -70,13 +70,7 @@ fn step(equation: &Expression, state: [f64; 2], t: f64, h: f64) -> [f64; 2] {
 }
 
 /// `n` samples of the motion over `period` after `settle`.
-pub fn samples(
-    equation: &Expression,
-    state: [f64; 2],
-    settle: f64,
-    period: f64,
-    n: usize,
-) -> Vec<f64> {
+fn samples(equation: &Expression, state: [f64; 2], settle: f64, period: f64, n: usize) -> Vec<f64> {
     let (mut state, mut t) = (state, 0.0);
     let steps = (settle / 0.01).ceil().max(1.0) as usize;
     for _ in 0..steps {
@@ -97,10 +91,6 @@ pub fn samples(
 }
 
 /// The time between two maxima of x after `settle`, and the second maximum.
-pub fn period(equation: &Expression, state: [f64; 2], settle: f64) -> Option<(f64, f64)> {
-    period_by(equation, state, settle, 0.004)
-}
-
 fn period_by(equation: &Expression, state: [f64; 2], settle: f64, h: f64) -> Option<(f64, f64)> {
     let (mut state, mut t) = (state, 0.0);
     let mut last: Option<f64> = (settle == 0.0).then_some(0.0);
