@@ -12,6 +12,9 @@ const MORE: u32 = 8;
 const TRIES: u32 = 4;
 /// The logarithm of an error that leaves not one digit.
 const NOT_ONE_DIGIT: f64 = -1.0;
+/// Of one integration that was broken off so many events, samples and points are kept, and ten times as many of the
+/// line of a figure: to print millions takes longer than to compute them.
+const KEPT: usize = 10_000;
 /// What is said of a motion that was broken off.
 const STOPPED: &str = "stopped before the end of the motion";
 
@@ -112,6 +115,10 @@ fn broken_off(mut course: Course, mut finer: Course, skip: usize) -> Option<Pair
     if both {
         return Some(Pair { course, finer: Some(finer), stopped: true });
     }
+    course.events.truncate(KEPT);
+    course.samples.truncate(KEPT);
+    course.points.truncate(KEPT);
+    course.line.truncate(10 * KEPT);
     (course.last.time > 0).then_some(Pair { course, finer: None, stopped: true })
 }
 
