@@ -46,8 +46,13 @@ pub(super) fn integrate(plan: &mut Plan, work: &Work) -> Result<(Pair, u32), Err
         };
         let stopped = work.stop.asked();
         if stopped && !(course.complete && finer.complete) {
-            plan.cut.get_or_insert_with(|| STOPPED.to_owned());
+            let all = course.events.len();
             let found = before.or_else(|| Some((broken_off(course, finer, plan.skip)?, working)));
+            let kept = found.as_ref().map_or(0, |(pair, _)| pair.course.events.len());
+            plan.cut.get_or_insert_with(|| match kept {
+                KEPT => format!("{STOPPED} (the first {KEPT} of {all} events)"),
+                _ => STOPPED.to_owned(),
+            });
             return found.ok_or_else(nothing);
         }
         align(&mut course, &mut finer);
