@@ -12,6 +12,9 @@ const MORE: u32 = 8;
 const TRIES: u32 = 4;
 /// The logarithm of an error that leaves not one digit.
 const NOT_ONE_DIGIT: f64 = -1.0;
+/// Of one integration that was broken off so many events, samples and points are kept, and ten times as many of the
+/// line of a figure: to print millions takes longer than to compute them.
+const KEPT: usize = 10_000;
 /// What is said of a motion that was broken off.
 const STOPPED: &str = "stopped before the end of the motion";
 
@@ -43,8 +46,13 @@ pub(super) fn integrate(plan: &mut Plan, work: &Work) -> Result<(Pair, u32), Err
         };
         let stopped = work.stop.asked();
         if stopped && !(course.complete && finer.complete) {
-            plan.cut.get_or_insert_with(|| STOPPED.to_owned());
+            let all = course.events.len();
             let found = before.or_else(|| Some((broken_off(course, finer, plan.skip)?, working)));
+            let kept = found.as_ref().map_or(0, |(pair, _)| pair.course.events.len());
+            plan.cut.get_or_insert_with(|| match kept {
+                KEPT => format!("{STOPPED} (the first {KEPT} of {all} events)"),
+                _ => STOPPED.to_owned(),
+            });
             return found.ok_or_else(nothing);
         }
         align(&mut course, &mut finer);
@@ -112,6 +120,10 @@ fn broken_off(mut course: Course, mut finer: Course, skip: usize) -> Option<Pair
     if both {
         return Some(Pair { course, finer: Some(finer), stopped: true });
     }
+    course.events.truncate(KEPT);
+    course.samples.truncate(KEPT);
+    course.points.truncate(KEPT);
+    course.line.truncate(10 * KEPT);
     (course.last.time > 0).then_some(Pair { course, finer: None, stopped: true })
 }
 
