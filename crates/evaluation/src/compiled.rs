@@ -107,7 +107,7 @@ impl FrequencyFunction {
     /// Nothing is allocated; some 100 ns.
     #[must_use]
     pub fn at(&self, small: f64, amplitude: f64) -> Estimated {
-        if self.has_amplitude && !(amplitude > 0.0) {
+        if self.has_amplitude && (amplitude.is_nan() || amplitude <= 0.0) {
             return Estimated { value: f64::NAN, error: f64::INFINITY };
         }
         let (x, scale) = match self.carried {

@@ -142,7 +142,7 @@ impl Oscillator {
             None => {
                 let path = case.trajectory(&found, question, work)?;
                 let order = path.order();
-                (Way::Sum(path), order)
+                (Way::Sum(Box::new(path)), order)
             }
         };
         Ok(Solved { at: found.at, order, way, remarks })
@@ -165,7 +165,7 @@ pub(super) enum Way {
     /// By Newton's method in Fourier space: harmonics and frequency.
     Newton(Fourier, Estimated),
     /// By the sum of its series at every phase.
-    Sum(Trajectory),
+    Sum(Box<Trajectory>),
 }
 
 impl Solved {
