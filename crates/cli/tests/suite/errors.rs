@@ -260,7 +260,7 @@ const TABLE: [(i32, &str, &str, &str, &str); 61] = [
     (
         3,
         "no-rational-modes",
-        "derive \"x'' + 2*x - y + eps*x^3/2; y'' + 2*y - x\" --order 1",
+        "derive \"x'' + 2*x - y + eps*x^3/2; y'' + y - x\" --order 1",
         "rational",
         "",
     ),
@@ -274,7 +274,7 @@ const TABLE: [(i32, &str, &str, &str, &str); 61] = [
     (
         3,
         "second-phase",
-        "derive \"x'' + x = eps*cos(t) + eps*cos((1 + eps*sigma)*t)\" --order 1",
+        "derive \"x'' + a*x = eps*x*cos(t) + eps*x*cos((1 + eps*s)*t)\" --unknown a --set a=1/4",
         "one omega",
         "",
     ),
