@@ -47,7 +47,6 @@ fn middle(_: &BallRing, e: &Enclosure) -> Option<Rational> {
 /// The slow flow of a system with irrational frequencies.
 pub(super) fn derived(
     job: &Job<'_>,
-    forces: Vec<Vec<Rational>>,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<SlowFlow, Error> {
     let digits = job.settings.digits.max(1);
@@ -57,7 +56,7 @@ pub(super) fn derived(
     let root = |square: &Rational| ring.balls.sqrt(&ring.balls.from_rational(square));
     let roots: Vec<Ball> = roots.iter().filter_map(root).collect();
     let generators = roots.into_iter().map(|ball| (Enclosure(ball), Integer::from(1))).collect();
-    let rates = Rates { amplitudes, forces, generators };
+    let rates = Rates { amplitudes, ..job.rates(generators) };
     let scalars = Over::enclosures(ring, middle);
     let run = job.run(scalars, rates, &|_| None, observer)?;
     let radius = Cell::new(0.0);

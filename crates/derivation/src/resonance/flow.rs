@@ -1,7 +1,5 @@
-//! The slow flow of a system over the coefficients it needs: rational numbers, or quotients of polynomials in
-//! independent frequencies.
+//! The slow flow of a system over any coefficients: derived, checked, with its energy; and over rational numbers.
 
-use super::enclosed;
 use super::potential::potential;
 use super::{
     Names, ResonanceError, Room, SlowFlow, System, Terms, refuse_near_miss, sum_of_harmonics,
@@ -10,16 +8,12 @@ use crate::averaging::{AveragingSettings, constant};
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
 use lindstedt_algebra::{AmplitudeAlgebra, PhaseError};
-use lindstedt_coeff::parameters::{LinearForm, ParameterField, ParameterFraction};
-use lindstedt_coeff::polynomial::{PolynomialRing, Symbol};
-use lindstedt_coeff::print::{Style, Term, print_sum};
 use lindstedt_equation::{Expression, Function, Problem};
 use lindstedt_expand::resonance::{checked_residual, energy, resonant};
 use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
-use lindstedt_phase::amplitudes::scalars::{Integers, Over, Scalars};
-use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes, Rates};
+use lindstedt_phase::amplitudes::scalars::{Integers, Scalars};
+use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Rates};
 use rug::{Integer, Rational};
-use std::collections::{BTreeMap, BTreeSet};
 
 /// Symbols of the algebra, waves of the forces, and what else is a constant of the coefficients.
 pub(super) struct Symbols<'a, S: Scalars> {
@@ -57,44 +51,6 @@ pub(super) fn compiled_form(system: &System) -> Vec<Expression> {
     })
 }
 
-/// The slow flow of a system.
-pub(super) fn derived(
-    problem: &Problem,
-    system: System,
-    settings: &AveragingSettings,
-    observer: &mut dyn FnMut(Progress) -> bool,
-) -> Result<SlowFlow, Error> {
-    let amplitudes = system.frequencies.iter().map(|nu| vec![nu.clone()]).collect();
-    let mut forces: Vec<_> = system.forces.iter().map(|phase| phase.rate.clone()).collect();
-    if forces.is_empty() {
-        forces.push(vec![Rational::new()]);
-    }
-    let job = Job { problem, system, settings };
-    if !job.system.is_exact() {
-        return enclosed::derived(&job, forces, observer);
-    }
-    if job.system.independent.is_empty() {
-        let rates = Rates { amplitudes, forces, generators: Vec::new() };
-        let run = job.run(Integers, rates, &|_| None, observer)?;
-        let terms = |f: &_| run.algebra.rational_terms(f).unwrap_or_default();
-        return Ok(job.finished(&run, &terms));
-    }
-    let names = job.system.independent.clone();
-    let field =
-        ParameterField { ring: PolynomialRing { parameters: names.clone() }, pairs: vec![] };
-    let parameter = |i: usize| Some(field.parameter(u16::try_from(i).ok()?));
-    let generators = (0..names.len()).filter_map(parameter).map(|e| (e, Integer::from(1)));
-    let rates = Rates { amplitudes, forces, generators: generators.collect() };
-    let known = |name: &str| parameter(names.iter().position(|known| known == name)?);
-    let run = job.run(Over::exact(field.clone()), rates, &known, observer)?;
-    let all = run.found.flow.iter().chain(&run.found.solution).flatten();
-    let quotients = Quotients::of(&run.algebra, all, &field);
-    let terms = |f: &_| quotients.terms(&run.algebra, f);
-    let mut flow = job.finished(&run, &terms);
-    flow.system.symbols.extend(names.into_iter().chain(quotients.names()));
-    Ok(flow)
-}
-
 pub(super) type Element<S> = AmplitudeElement<<S as Scalars>::Element>;
 pub(super) type Found<S> = lindstedt_expand::resonance::SlowFlow<Element<S>>;
 
@@ -117,6 +73,27 @@ pub(super) struct Job<'a> {
 }
 
 impl Job<'_> {
+    /// The multiples of 1 in the nu_j, where these are rational, and those in the Omega_l; one 0 without a force.
+    pub(super) fn rates<E>(&self, generators: Vec<(E, Integer)>) -> Rates<E> {
+        let amplitudes = self.system.frequencies.iter().map(|nu| vec![nu.clone()]).collect();
+        let mut forces: Vec<_> =
+            self.system.forces.iter().map(|phase| phase.rate.clone()).collect();
+        if forces.is_empty() {
+            forces.push(vec![Rational::new()]);
+        }
+        Rates { amplitudes, forces, generators }
+    }
+
+    /// Over rational numbers.
+    pub(super) fn rational(
+        &self,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<SlowFlow, Error> {
+        let run = self.run(Integers, self.rates(Vec::new()), &|_| None, observer)?;
+        let terms = |f: &_| run.algebra.rational_terms(f).unwrap_or_default();
+        Ok(self.finished(&run, &terms))
+    }
+
     /// Derives and checks, over some coefficients, with `other` for names that are none of the symbols.
     pub(super) fn run<S: Scalars>(
         &self,
@@ -208,78 +185,5 @@ impl Job<'_> {
             energy: energy.iter().map(terms).collect(),
             enclosed: None,
         }
-    }
-}
-
-/// The sums of rates by which the coefficients of a flow are divided.
-struct Quotients<'a> {
-    field: &'a ParameterField,
-    forms: Vec<LinearForm>,
-}
-
-/// Exponents with the real and the imaginary part.
-type Parts = BTreeMap<Vec<i32>, [Rational; 2]>;
-
-impl<'a> Quotients<'a> {
-    fn of<'b>(
-        algebra: &Amplitudes<Over<ParameterField>>,
-        all: impl Iterator<Item = &'b AmplitudeElement<ParameterFraction>>,
-        field: &'a ParameterField,
-    ) -> Self {
-        let mut forms = BTreeSet::new();
-        let read = |e: &ParameterFraction, _: &Integer| {
-            e.denominator().keys().cloned().collect::<Vec<_>>()
-        };
-        for f in all {
-            let lists = algebra.terms_as(f, &read).into_iter().flat_map(|(_, parts)| parts);
-            forms.extend(lists.flatten());
-        }
-        Self { field, forms: forms.into_iter().collect() }
-    }
-
-    /// `(1 - omega)`.
-    fn names(&self) -> Vec<String> {
-        let name = |index: &Option<u16>| {
-            let known = index.and_then(|i| self.field.ring.parameters.get(usize::from(i)));
-            known.cloned()
-        };
-        let term = |(index, n): &(Option<u16>, Integer)| Term {
-            coefficient: Rational::from(n),
-            factors: name(index).into_iter().collect(),
-        };
-        let form = |form: &LinearForm| {
-            let sum = print_sum(&form.iter().map(term).collect::<Vec<_>>(), Style::Text);
-            format!("({sum})")
-        };
-        self.forms.iter().map(form).collect()
-    }
-
-    /// The terms with the exponents of the independent parameters and of the sums behind those of the symbols.
-    fn terms(
-        &self,
-        algebra: &Amplitudes<Over<ParameterField>>,
-        f: &AmplitudeElement<ParameterFraction>,
-    ) -> Terms {
-        let mut sum = Parts::new();
-        let read = |e: &ParameterFraction, _: &Integer| e.clone();
-        for (exponents, parts) in algebra.terms_as(f, &read) {
-            for (k, part) in parts.iter().enumerate() {
-                let power = |form| part.denominator().get(form).copied().unwrap_or(0);
-                let below = self.forms.iter().map(|form| -power(form).cast_signed());
-                for (m, c) in part.numerator().terms() {
-                    let mut own = vec![0; self.field.ring.parameters.len()];
-                    for (symbol, n) in m.factors() {
-                        if let Symbol::Parameter(i) = symbol {
-                            own[usize::from(*i)] = i32::from(*n);
-                        }
-                    }
-                    let key: Vec<i32> =
-                        exponents.iter().copied().chain(own).chain(below.clone()).collect();
-                    sum.entry(key).or_default()[k] += c;
-                }
-            }
-        }
-        let kept = sum.into_iter().filter(|(_, c)| !c.iter().all(Rational::is_zero));
-        kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect()
     }
 }

@@ -23,6 +23,7 @@ mod normal_mode;
 mod polar;
 mod potential;
 mod print;
+mod quotients;
 mod sought;
 mod system;
 
@@ -183,7 +184,7 @@ pub fn is_beside(problem: &Problem, given: &BTreeMap<String, Exact>) -> bool {
 /// length grows like N^(symbols + 1).
 ///
 /// # Errors
-/// [`ResonanceError`] by name for what is no such system; [`ExpandError`] for terms that are no polynomial.
+/// [`ResonanceError`] by name for what is no such system; [`ExpandError`](lindstedt_expand::ExpandError) for terms that are no polynomial.
 ///
 /// ```
 /// use lindstedt_derivation::{averaging::AveragingSettings, resonance::slow_flow};
@@ -207,7 +208,14 @@ pub fn slow_flow(
     let equations: Vec<Expression> = problem.equations().cloned().collect();
     let cards = |name: &str| value(problem, &settings.parameters, name);
     let system = System::of(&equations, &settings.parameters, &cards, Names(problem), true)?;
-    flow::derived(problem, system, settings, observer)
+    let job = flow::Job { problem, system, settings };
+    if !job.system.is_exact() {
+        enclosed::derived(&job, observer)
+    } else if job.system.independent.is_empty() {
+        job.rational(observer)
+    } else {
+        quotients::derived(&job, observer)
+    }
 }
 
 /// What the next order is predicted to need, from the terms of those before it.
