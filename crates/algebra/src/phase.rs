@@ -117,7 +117,7 @@ pub struct Resolution<A: PhaseAlgebra + ?Sized> {
 }
 
 /// Why an algebra could not split or solve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PhaseError {
     /// The antiderivative needed is not an element of the algebra: could not decide.
@@ -138,6 +138,12 @@ pub enum PhaseError {
         free: i32,
         /// m.
         forced: i32,
+    },
+    /// What the harmonic sum_j k_j nu_j + sum_l m_l Omega_l must be divided by cannot be told from zero: more
+    /// digits decide, or it is a resonance.
+    Undecided {
+        /// k_1, ..., k_M, m_1, ..., m_L.
+        harmonic: Vec<i32>,
     },
 }
 
@@ -182,6 +188,9 @@ impl std::fmt::Display for PhaseError {
                 let phase = combination([*free, *forced], ["psi", "eta"], "*");
                 let why = "zero is not excluded, or the parameters must be numbers";
                 write!(f, "{harmonic} cos({phase}): {why}")
+            }
+            Self::Undecided { harmonic } => {
+                write!(f, "the divisor of the harmonic {harmonic:?} cannot be told from zero")
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Rational functions of named parameters with factored denominators.
 //!
 //! Elements are p/(f_1^e_1 f_2^e_2 ...) with a polynomial p over Q (Laurent exponents allowed) and
-//! primitive linear forms f_i = n_1 s_1 + n_2 s_2 + ... of two or more parameters, such as the
-//! alpha - omega and 2 alpha + omega of a forced oscillator. Some parameters may be the sine and
+//! primitive linear forms f_i = n_0 + n_1 s_1 + n_2 s_2 + ... of two or more terms, such as the
+//! alpha - omega and 2 alpha + omega of a forced oscillator, or 1 - omega. Some parameters may be the sine and
 //! the cosine of one angle; then sin^2 = 1 - cos^2 is used, so that sin occurs to the power 0 or 1.
 //!
 //! Canonical: distinct primitive forms are coprime, and none divides p. Divisibility is decided by
@@ -16,8 +16,8 @@ use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
 use rug::{Integer, Rational};
 use std::collections::BTreeMap;
 
-/// A primitive linear form: parameters increasing, coprime integers, the first one positive.
-pub type LinearForm = Vec<(u16, Integer)>;
+/// A primitive linear form: a constant first, parameters increasing, coprime integers, the first one positive.
+pub type LinearForm = Vec<(Option<u16>, Integer)>;
 
 /// p/(f_1^e_1 ...).
 #[derive(Clone, Debug, PartialEq)]
@@ -136,7 +136,7 @@ impl ParameterField {
     /// gives the quotient of p by w + r.
     fn divide(&self, p: &Polynomial, form: &LinearForm) -> Option<Polynomial> {
         let (last, q) = form.last()?;
-        let w = Symbol::Parameter(*last);
+        let w = Symbol::Parameter((*last)?);
         let inverse = Rational::from(q).recip();
         let rest = self.ring.scale(&expand(&form[..form.len() - 1]), &inverse);
         let mut by_power: BTreeMap<i16, Vec<(PowerProduct, Rational)>> = BTreeMap::new();
@@ -164,14 +164,15 @@ fn polynomial(numerator: Polynomial) -> ParameterFraction {
     ParameterFraction { numerator, denominator: BTreeMap::new() }
 }
 
-fn expand(form: &[(u16, Integer)]) -> Polynomial {
-    let term = |(index, n): &(u16, Integer)| {
-        (PowerProduct::power(Symbol::Parameter(*index), 1), Rational::from(n))
+fn expand(form: &[(Option<u16>, Integer)]) -> Polynomial {
+    let term = |(index, n): &(Option<u16>, Integer)| {
+        let power = |index| PowerProduct::power(Symbol::Parameter(index), 1);
+        (index.map_or_else(PowerProduct::unit, power), Rational::from(n))
     };
     Sparse::collect(&Rationals, form.iter().map(term))
 }
 
-/// p = factor * form with a single term and a primitive linear form of two or more parameters.
+/// p = factor * form with a single term and a primitive linear form of two or more terms.
 fn split_linear(p: &Polynomial) -> Option<((PowerProduct, Rational), LinearForm)> {
     let mut common: Option<BTreeMap<Symbol, i16>> = None;
     for (m, _) in p.terms() {
@@ -197,16 +198,20 @@ fn split_linear(p: &Polynomial) -> Option<((PowerProduct, Rational), LinearForm)
     let mut linear = BTreeMap::new();
     for (m, c) in p.terms() {
         let reduced = m.times(&inverse);
-        let [(Symbol::Parameter(index), 1)] = reduced.factors() else { return None };
+        let index = match reduced.factors() {
+            [] => None,
+            [(Symbol::Parameter(index), 1)] => Some(*index),
+            _ => return None,
+        };
         numerators.gcd_mut(c.numer());
         denominators.lcm_mut(c.denom());
-        linear.insert(*index, c.clone());
+        linear.insert(index, c.clone());
     }
     let mut content = Rational::from((numerators, denominators));
     if linear.values().next()?.is_negative() {
         content = -content;
     }
-    let integral = |(index, c): (u16, Rational)| (index, (c / &content).numer().clone());
+    let integral = |(index, c): (Option<u16>, Rational)| (index, (c / &content).numer().clone());
     let form: LinearForm = linear.into_iter().map(integral).collect();
     (form.len() > 1).then_some(((monomial, content), form))
 }
@@ -383,7 +388,16 @@ mod tests {
         // (alpha^2 - omega^2)/(alpha - omega) cancels.
         let squares = k.sub(&k.mul(&alpha, &alpha), &k.mul(&omega, &omega));
         assert_eq!(k.mul(&squares, &inverse(&minus)), plus);
-        // alpha^2 - omega^2 itself is no linear form: refused, not expanded.
+        // 1/(1 - omega) - 1/(2 - 2 omega) = 1/(2 (1 - omega)), and 1 - omega^2 contains it.
+        let [single, double] = [1, 2].map(|n| {
+            let n = Rational::from(n);
+            inverse(&k.sub(&k.rational(&n), &k.scale(&omega, &n)))
+        });
+        assert_eq!(k.sub(&single, &double), k.scale(&single, &Rational::from((1, 2))));
+        let squares = k.sub(&k.one(), &k.mul(&omega, &omega));
+        assert_eq!(k.mul(&squares, &single), k.add(&k.one(), &omega));
+        assert_eq!(k.print(&single, Style::Text), "(1 - omega)^(-1)");
+        // A product of two is no linear form: refused, not expanded.
         assert_eq!(k.reciprocal(&squares), None);
         let value = |i: u16| Rational::from(i + 2);
         assert_eq!(k.evaluate(&Rationals, &amplitude, value), Some(Rational::from((4, -5))));

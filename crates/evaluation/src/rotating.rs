@@ -1,14 +1,16 @@
-//! A slow flow in the rotating frame, where it is autonomous: z_j = w_j e^{i k_j eta} with k_j = nu_j/Omega.
+//! A slow flow in the rotating frame, where it is autonomous: z_j = w_j e^{i k_j eta}, k_j eta = sum_l k_{jl} eta_l, with
+//! k_j = nu_j/Omega for one phase.
 //!
-//! Every term of f_j has the eigenvalue nu_j (what is resonant stays in f), so that all of them turn with e^{i k_j eta}:
+//! Every term z^p zbar^q E^m of f_j asks that sum_i (p_i - q_i) k_i + m = k_j; one phase fulfils that, for what is
+//! resonant stays in f, and several do where their detunings do not pull at the same amplitude. Then
 //!
-//!   w_j' = sum_n eps^n (f_{j,n}(w, wbar, 1) - i k_j sigma_n w_j).
+//!   w_j' = sum_n eps^n (f_{j,n}(w, wbar, 1) - i sum_l k_{jl} sigma_{l,n} w_j).
 //!
-//! What is evaluated is w'/eps. Its steady states are the periodic responses; k_j = 1 at a primary resonance, 1/2 at the
-//! principal parametric one, 1/3 and 3 at the sub- and superharmonic ones.
+//! What is evaluated is w'/eps. Its steady states are the periodic (of several phases quasi-periodic) responses; k_j = 1 at
+//! a primary resonance, 1/2 at the principal parametric one, 1/3 and 3 at the sub- and superharmonic ones.
 
-use lindstedt_derivation::resonance::{SlowFlow, Terms};
-use lindstedt_orbit::steady::{ComplexTerm, Flow, Polynomial};
+use lindstedt_derivation::resonance::{Phase, SlowFlow, Terms};
+use lindstedt_orbit::steady::{ComplexTerm, Flow, FreePhase, Polynomial};
 use rug::Rational;
 use rug::ops::Pow;
 use std::collections::BTreeSet;
@@ -18,42 +20,69 @@ use std::collections::BTreeSet;
 pub struct Rotating {
     /// w'/eps; its parameters are the symbols of the slow flow, then the small parameter.
     pub flow: Flow,
-    /// k_j.
-    pub turns: Vec<Rational>,
+    /// k_{j,1}, k_{j,2}, ...
+    pub turns: Vec<Vec<Rational>>,
     /// How many of the k_j the resonances fix, the rank of their relations: where it is less than the number of
     /// unknowns, a motion may be steady in another frame than this.
     pub fixed: usize,
     /// Unknowns of which the force fixes a combination of the phases alone.
     pub combination: Option<Vec<usize>>,
+    /// The flow of two unknowns where one phase is free.
+    pub free: Option<FreePhase>,
     /// Im (w'/w)/eps of free motion as a polynomial in |w| and the parameters, of a single unknown: zero on the
     /// backbone.
     pub backbone: Option<Flow>,
 }
 
-/// The slow flow up to an order in the rotating frame; nothing without a force.
-#[must_use]
-pub fn rotating(slow: &SlowFlow, small: &str, order: usize) -> Option<Rotating> {
+/// Why a slow flow is autonomous in no rotating frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NoFrame {
+    /// There is no force.
+    NoForce,
+    /// The rate of a force is no number.
+    NoNumber,
+    /// Forces of different detunings act on the same amplitudes.
+    SeveralRates,
+}
+
+/// The slow flow up to an order in the rotating frame.
+///
+/// # Errors
+/// [`NoFrame`] where there is none.
+pub fn rotating(slow: &SlowFlow, small: &str, order: usize) -> Result<Rotating, NoFrame> {
     let system = &slow.system;
-    if system.force.is_zero() {
-        return None;
-    }
-    let turns: Vec<Rational> =
-        system.frequencies.iter().map(|nu| Rational::from(nu / &system.force)).collect();
+    let first = system.forces.first().ok_or(NoFrame::NoForce)?;
+    let rates = system.forces.iter().map(|phase| phase.number());
+    let first = first.number().filter(|_| rates.clone().all(|rate| rate.is_some()));
+    let first = first.ok_or(NoFrame::NoNumber)?;
+    let relations = Relations::of(slow, order);
+    let free = |nu: &Rational| {
+        let mut turn = vec![Rational::new(); slow.forces()];
+        turn[0] = Rational::from(nu / &first);
+        turn
+    };
+    let turns = relations.solved(system.frequencies.iter().map(free).collect());
+    let turns = turns.ok_or(NoFrame::SeveralRates)?;
     let names: Vec<&str> = system.symbols.iter().map(String::as_str).chain([small]).collect();
     let equations: Vec<Vec<ComplexTerm>> =
         (0..turns.len()).map(|j| equation(slow, j, &turns[j], order)).collect();
     let backbone = (turns.len() == 1).then(|| backbone(slow, &turns[0], &names, order));
-    let relations = Relations::of(slow, order);
     let (fixed, combination) = (relations.fixed(), relations.combination());
     let flow = Flow::of_complex(&equations, &names);
-    Some(Rotating { flow, turns, fixed, combination, backbone })
+    let free = relations.weights().zip(<[_; 2]>::try_from(equations).ok());
+    let parameters = flow.parameters.clone();
+    let free = free.map(|(weights, equations)| FreePhase { equations, weights, parameters });
+    Ok(Rotating { flow, turns, fixed, combination, free, backbone })
 }
 
 /// What fixes the k_j: every term z^p zbar^q E^m of f_j is a relation (p - q - e_j) k = -m.
 #[derive(Default)]
 struct Relations {
-    /// Independent ones.
-    rows: Vec<Vec<Rational>>,
+    /// Independent ones, each free of the first unknown of those before it, and -m.
+    rows: Vec<(Vec<Rational>, Vec<Rational>)>,
+    /// Whether they contradict each other.
+    contradictory: bool,
     /// Sets of unknowns that relations tie together, and whether one of these knows the force.
     groups: Vec<(BTreeSet<usize>, bool)>,
 }
@@ -63,20 +92,24 @@ impl Relations {
         let mut relations = Self::default();
         for j in 0..slow.unknowns() {
             for term in slow.flow[j].iter().take(order + 1).skip(1).flatten() {
-                relations.add(j, &term.exponents, slow.unknowns());
+                let (amplitudes, rest) = term.exponents.split_at(2 * slow.unknowns());
+                relations.add(j, amplitudes, &rest[..slow.forces()]);
             }
         }
         relations
     }
 
-    fn add(&mut self, j: usize, exponents: &[i32], unknowns: usize) {
-        let relation = |k: usize| exponents[2 * k] - exponents[2 * k + 1] - i32::from(k == j);
-        let mut row: Vec<Rational> = (0..unknowns).map(|k| relation(k).into()).collect();
-        let mut tied: BTreeSet<usize> = (0..unknowns).filter(|k| !row[*k].is_zero()).collect();
+    fn add(&mut self, j: usize, amplitudes: &[i32], phases: &[i32]) {
+        let relation = |(k, pair): (usize, &[i32])| pair[0] - pair[1] - i32::from(k == j);
+        let relations = amplitudes.chunks_exact(2).enumerate().map(relation);
+        let mut row: Vec<Rational> = relations.map(Rational::from).collect();
+        let mut right: Vec<Rational> = phases.iter().map(|m| Rational::from(-m)).collect();
+        let mut tied: BTreeSet<usize> = (0..row.len()).filter(|k| !row[*k].is_zero()).collect();
         if tied.is_empty() {
+            self.contradictory |= right.iter().any(|m| !m.is_zero());
             return;
         }
-        let mut forced = exponents[2 * unknowns] != 0;
+        let mut forced = phases.iter().any(|m| *m != 0);
         self.groups.retain(|(group, knows)| {
             let apart = group.is_disjoint(&tied);
             if !apart {
@@ -86,14 +119,31 @@ impl Relations {
             apart
         });
         self.groups.push((tied, forced));
-        for known in &self.rows {
+        for (known, own) in &self.rows {
             let Some(pivot) = known.iter().position(|x| !x.is_zero()) else { continue };
             let factor = Rational::from(&row[pivot] / &known[pivot]);
             row.iter_mut().zip(known).for_each(|(x, y)| *x -= Rational::from(&factor * y));
+            right.iter_mut().zip(own).for_each(|(x, y)| *x -= Rational::from(&factor * y));
         }
         if row.iter().any(|x| !x.is_zero()) {
-            self.rows.push(row);
+            self.rows.push((row, right));
+        } else {
+            self.contradictory |= right.iter().any(|m| !m.is_zero());
         }
+    }
+
+    /// The k_j, those given where they are free; nothing where no k_j fulfil the relations.
+    fn solved(&self, mut turns: Vec<Vec<Rational>>) -> Option<Vec<Vec<Rational>>> {
+        for (row, right) in self.rows.iter().rev() {
+            let pivot = row.iter().position(|x| !x.is_zero())?;
+            let value = |l: usize| {
+                let others = row.iter().zip(&turns).enumerate().filter(|(k, _)| *k != pivot);
+                let sum: Rational = others.map(|(_, (x, turn))| Rational::from(x * &turn[l])).sum();
+                (&right[l] - sum) / &row[pivot]
+            };
+            turns[pivot] = (0..right.len()).map(value).collect();
+        }
+        (!self.contradictory).then_some(turns)
     }
 
     /// How many of the k_j are fixed: none where no term knows the force.
@@ -101,10 +151,17 @@ impl Relations {
         if self.groups.iter().any(|(_, forced)| *forced) { self.rows.len() } else { 0 }
     }
 
+    /// d_1, d_2 of the phases that no relation of two unknowns sees, where a force fixes the others.
+    fn weights(&self) -> Option<[Rational; 2]> {
+        let ([(row, _)], Some(_)) = (&self.rows[..], self.combination()) else { return None };
+        let [a, b] = &row[..] else { return None };
+        (!a.is_zero() && !b.is_zero()).then(|| [Rational::from(1), -Rational::from(a / b)])
+    }
+
     /// Unknowns of which the force fixes a combination of the phases alone.
     fn combination(&self) -> Option<Vec<usize>> {
         let within = |group: &BTreeSet<usize>| {
-            let touches = |row: &&Vec<Rational>| group.iter().any(|k| !row[*k].is_zero());
+            let touches = |(row, _): &&(Vec<Rational>, _)| group.iter().any(|k| !row[*k].is_zero());
             self.rows.iter().filter(touches).count()
         };
         let found =
@@ -118,56 +175,65 @@ fn power(e: i32) -> u32 {
 }
 
 /// The exponents of the symbols and of eps in a term of order n.
-fn parameters(exponents: &[i32], unknowns: usize, n: usize) -> Vec<u32> {
-    let symbols = exponents.iter().skip(2 * unknowns + 1).map(|e| power(*e));
+fn parameters(slow: &SlowFlow, exponents: &[i32], n: usize) -> Vec<u32> {
+    let symbols = exponents.iter().skip(slow.first_symbol()).map(|e| power(*e));
     symbols.chain([n as u32 - 1]).collect()
 }
 
-fn equation(slow: &SlowFlow, j: usize, turn: &Rational, order: usize) -> Vec<ComplexTerm> {
+/// The terms of -sum_l k_l sigma_{l,n}.
+fn detuning<'a>(
+    slow: &'a SlowFlow,
+    turn: &'a [Rational],
+    n: usize,
+) -> impl Iterator<Item = (&'a [i32], Rational)> {
+    turn.iter().zip(&slow.detuning).flat_map(move |(k, orders)| {
+        let terms = orders.get(n - 1).into_iter().flatten();
+        terms.map(move |term| (&term.exponents[..], -Rational::from(k * &term.re)))
+    })
+}
+
+fn equation(slow: &SlowFlow, j: usize, turn: &[Rational], order: usize) -> Vec<ComplexTerm> {
     let unknowns = slow.unknowns();
     let mut terms = Vec::new();
     for n in 1..=order {
         for term in slow.flow[j].get(n).into_iter().flatten() {
             terms.push(ComplexTerm {
                 amplitudes: term.exponents[..2 * unknowns].iter().map(|e| power(*e)).collect(),
-                parameters: parameters(&term.exponents, unknowns, n),
+                parameters: parameters(slow, &term.exponents, n),
                 re: term.re.clone(),
                 im: term.im.clone(),
             });
         }
-        for term in slow.detuning.get(n - 1).into_iter().flatten() {
+        for (exponents, im) in detuning(slow, turn, n) {
             let mut amplitudes = vec![0; 2 * unknowns];
             amplitudes[2 * j] = 1;
-            terms.push(ComplexTerm {
-                amplitudes,
-                parameters: parameters(&term.exponents, unknowns, n),
-                re: Rational::new(),
-                im: -Rational::from(turn * &term.re),
-            });
+            let parameters = parameters(slow, exponents, n);
+            terms.push(ComplexTerm { amplitudes, parameters, re: Rational::new(), im });
         }
     }
     terms
 }
 
 /// The terms z^(q + 1) zbar^q of f, which do not know the phase of the force, divided by z; their imaginary part.
-fn backbone(slow: &SlowFlow, turn: &Rational, names: &[&str], order: usize) -> Flow {
+fn backbone(slow: &SlowFlow, turn: &[Rational], names: &[&str], order: usize) -> Flow {
     let mut row = Polynomial::default();
     for n in 1..=order {
-        for term in slow.flow[0].get(n).into_iter().flatten().filter(|t| t.exponents[2] == 0) {
+        let free = |exponents: &[i32]| exponents[2..slow.first_symbol()].iter().all(|m| *m == 0);
+        let terms = slow.flow[0].get(n).into_iter().flatten();
+        for term in terms.filter(|t| free(&t.exponents)) {
             let radius = power(term.exponents[0] + term.exponents[1] - 1);
-            let exponents = [vec![radius], parameters(&term.exponents, 1, n)].concat();
+            let exponents = [vec![radius], parameters(slow, &term.exponents, n)].concat();
             row.add_term(&exponents, &term.im);
         }
-        for term in slow.detuning.get(n - 1).into_iter().flatten() {
-            let exponents = [vec![0], parameters(&term.exponents, 1, n)].concat();
-            row.add_term(&exponents, &-Rational::from(turn * &term.re));
+        for (exponents, im) in detuning(slow, turn, n) {
+            row.add_term(&[vec![0], parameters(slow, exponents, n)].concat(), &im);
         }
     }
     let parameters = names.iter().map(|name| (*name).to_owned()).collect();
     Flow { rows: vec![row], parameters }
 }
 
-/// The response to the force at order zero of a single unknown and its rate at eta = 0, where the symbols have these
+/// The response to the forces at order zero of a single unknown and its rate at eta_l = 0, where the symbols have these
 /// values.
 #[must_use]
 pub fn forced_part(slow: &SlowFlow, values: &[Rational]) -> [f64; 2] {
@@ -175,10 +241,12 @@ pub fn forced_part(slow: &SlowFlow, values: &[Rational]) -> [f64; 2] {
     let mut sums = [0.0, 0.0];
     let terms: &[_] = slow.solution.first().and_then(|x| x.first()).map_or(&[], Terms::as_slice);
     for term in terms.iter().filter(|t| t.exponents[..2 * unknowns].iter().all(|e| *e == 0)) {
-        let symbols = term.exponents.iter().skip(2 * unknowns + 1).zip(values);
+        let symbols = term.exponents.iter().skip(slow.first_symbol()).zip(values);
         let scale: Rational =
             symbols.fold(Rational::from(1), |product, (e, q)| product * q.clone().pow(*e));
-        let rate = slow.system.force.to_f64() * f64::from(term.exponents[2 * unknowns]);
+        let turns = slow.system.forces.iter().zip(&term.exponents[2 * unknowns..]);
+        let rate = |phase: &Phase| phase.number().unwrap_or_default().to_f64();
+        let rate: f64 = turns.map(|(phase, m)| rate(phase) * f64::from(*m)).sum();
         sums[0] += Rational::from(&scale * &term.re).to_f64();
         sums[1] -= rate * Rational::from(&scale * &term.im).to_f64();
     }

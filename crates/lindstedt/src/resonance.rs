@@ -6,6 +6,7 @@ use lindstedt_derivation::averaging::AveragingSettings;
 use lindstedt_derivation::check_parameters;
 use lindstedt_derivation::resonance::{self, NormalMode, Sought, SoughtBranch};
 use lindstedt_equation::Expression;
+use lindstedt_expand::Excitation;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -66,8 +67,8 @@ impl Oscillator {
         }
     }
 
-    /// Whether amplitude and phase are not all: several unknowns, or a force whose phase contains the small
-    /// parameter.
+    /// Whether amplitude and phase are not all: several unknowns, a force whose phase contains the small
+    /// parameter, or forces that are no harmonics of one phase.
     pub(crate) fn has_flow_alone(&self) -> bool {
         let detuned = |e: &Expression| match e {
             Expression::Function(_, angle) => {
@@ -76,7 +77,12 @@ impl Oscillator {
             _ => false,
         };
         let problem = self.problem();
-        !problem.others.is_empty() || problem.equation.nodes().any(detuned)
+        let late = |e: &Expression| matches!(e, Expression::Unknown(x) if x.delay.is_some());
+        let several = || {
+            let second = Excitation::of(&problem.equation).is_err();
+            second && !problem.equation.nodes().any(late)
+        };
+        !problem.others.is_empty() || problem.equation.nodes().any(detuned) || several()
     }
 
     /// The slow flow up to an order: with complex amplitudes z_j, E = e^{i eta} and the phase eta of the
@@ -88,7 +94,9 @@ impl Oscillator {
     /// whatever is resonant at whichever order. Parameters that are not set stay symbols; what a
     /// frequency depends on takes the value of the problem. A force beside a resonance is detuned: by
     /// `cos((1 + eps*sigma)*t)` as it is written, or by the symbol sigma = (omega - Omega)/eps where omega is
-    /// a number. Exact, and substituted into the equation. Cost: O(N^2) products of polynomials whose length
+    /// a number; forces that are no harmonics of one phase have phases eta_1, eta_2, ... of their own, and a
+    /// parameter without a value in their rates is independent of all others. Exact, and substituted into the
+    /// equation. Cost: O(N^2) products of polynomials whose length
     /// grows like N^(symbols + 1).
     ///
     /// # Errors
@@ -118,7 +126,8 @@ impl Oscillator {
         let stopped = value.order < order || !checked;
         let standing = self.standing(stopped, value.order, checked, &mut remarks);
         let at = value.system.bound.iter().map(|(name, q)| (name.clone(), q.to_string()));
-        let header = self.header(at.collect(), Some(value.order), "exact", start);
+        let tier = if value.enclosed.is_some() { "certified" } else { "exact" };
+        let header = self.header(at.collect(), Some(value.order), tier, start);
         Ok(Answer { header, value, standing, remarks })
     }
 

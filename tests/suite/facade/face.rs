@@ -84,7 +84,7 @@ fn lowest(error: &Error) -> &(dyn Source + 'static) {
 #[test]
 fn errors_lead_down_to_their_source() {
     let phase = PhaseError::Resonance { free: 1, forced: 0 };
-    let expand = ExpandError::Phase { order: 2, source: phase };
+    let expand = ExpandError::Phase { order: 2, source: phase.clone() };
     let evaluation = EvaluationError::Derivation(DerivationError::Expand(expand));
     let error = Error::from(evaluation);
     assert_eq!((error.code(), error.kind()), ("resonance", Kind::NoAnswer));

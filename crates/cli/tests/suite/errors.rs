@@ -267,7 +267,7 @@ const TABLE: [(i32, &str, &str, &str, &str); 62] = [
     (
         3,
         "no-rational-modes",
-        "derive \"x'' + 2*x - y + eps*x^3/2; y'' + 2*y - x\" --order 1",
+        "derive \"x'' + 2*x - y + eps*x^3/2; y'' + y - x\" --order 1",
         "rational",
         "",
     ),
@@ -281,7 +281,7 @@ const TABLE: [(i32, &str, &str, &str, &str); 62] = [
     (
         3,
         "second-phase",
-        "derive \"x'' + x = eps*cos(t) + eps*cos((1 + eps*sigma)*t)\" --order 1",
+        "derive \"x'' + a*x = eps*x*cos(t) + eps*x*cos((1 + eps*s)*t)\" --unknown a --set a=1/4",
         "one omega",
         "",
     ),

@@ -12,11 +12,20 @@ pub enum ResonanceError {
         /// The function.
         term: String,
     },
-    /// Forces that are no harmonics of one phase.
-    #[error(
-        "the forces are no harmonics of one phase: the ratio of two frequencies is not rational, or they are detuned otherwise"
-    )]
-    SecondPhase,
+    /// Forces that are no harmonics of one phase, where one is all that is taken.
+    #[error("the forces have {phases} phases: here they must be harmonics of one")]
+    SecondPhase {
+        /// How many there are.
+        phases: usize,
+    },
+    /// A divisor that cannot be told from zero.
+    #[error("order {order}: whether the harmonic {harmonic} is resonant is not decided")]
+    UndecidedDivisor {
+        /// The order.
+        order: usize,
+        /// k_1 nu_1 + ... + k_M nu_M + m_1 Omega_1 + ...
+        harmonic: String,
+    },
     /// A term at order zero that is none of a linear oscillator.
     #[error(
         "without the small parameter no oscillators x'' + nu^2*x with a force are left: there is {term}"

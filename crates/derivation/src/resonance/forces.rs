@@ -1,5 +1,6 @@
-//! The phases of the forces: cos and sin of (A + eps B_1 + eps^2 B_2 + ...) t + phi, all of them whole multiples
-//! of one phase eta with eta' = Omega + eps sigma_1 + eps^2 sigma_2 + ..., up to constants.
+//! The phases of the forces: cos and sin of (A + eps B_1 + eps^2 B_2 + ...) t + phi. Forces whose rates are
+//! rational multiples of one another at all orders are harmonics of one phase eta_l with
+//! eta_l' = Omega_l + eps sigma_{l,1} + eps^2 sigma_{l,2} + ..., up to constants; others have phases of their own.
 
 use super::{Names, ResonanceError};
 use lindstedt_equation::monomials::{Monomial, expand};
@@ -10,14 +11,24 @@ use rug::{Integer, Rational};
 /// The rate of an angle, order by order in the small parameter.
 type Rate = Vec<Expression>;
 
-/// The force's phase: eta' = rate + eps detuning_1 + ..., eta(0) = start.
-pub(super) struct Phase {
-    /// Omega > 0, or 0 where there is no force.
-    pub rate: Rational,
+/// The phase of a force: eta' = rate + eps detuning_1 + ..., eta(0) = start.
+#[derive(Clone, Debug)]
+pub struct Phase {
+    /// Omega: its multiples of 1 and of the independent parameters, in their order.
+    pub rate: Vec<Rational>,
     /// sigma_1, sigma_2, ...
     pub detuning: Vec<Expression>,
-    /// eta at t = 0: a number or a constant of parameters.
+    /// eta at t = 0: a number or a constant of parameters; 0 where no force has a phase.
     pub start: Expression,
+}
+
+impl Phase {
+    /// Omega, where it is a number.
+    #[must_use]
+    pub fn number(&self) -> Option<Rational> {
+        let [number, rest @ ..] = &self.rate[..] else { return None };
+        rest.iter().all(Rational::is_zero).then(|| number.clone())
+    }
 }
 
 /// rate * t + start.
@@ -26,10 +37,50 @@ struct Angle {
     start: Expression,
 }
 
-/// Whether this is a harmonic function of the time.
+/// The name of eta_l in the equations: none is written so.
+const PHASE: &str = "'eta";
+
+/// Whether this is a name that no user wrote.
+pub(super) fn is_internal(name: &str) -> bool {
+    name.starts_with('\'')
+}
+
+/// Whether this is a harmonic function of the time or of the phase of a force.
 pub(super) fn is_wave(e: &Expression) -> bool {
+    let in_time = |e: &Expression| match e {
+        Expression::Time => true,
+        Expression::Parameter(name) => name.starts_with(PHASE),
+        _ => false,
+    };
     matches!(e, Expression::Function(Function::Cos | Function::Sin, angle)
-        if angle.contains(&Expression::Time))
+        if angle.nodes().any(in_time))
+}
+
+/// l and m of cos(m eta_l) or sin(m eta_l).
+pub(super) fn harmonic(wave: &Expression) -> Option<(Function, usize, i32)> {
+    let Expression::Function(function, angle) = wave else { return None };
+    let (factors, one) = match &**angle {
+        Expression::Product(factors) => (&factors[..], Rational::from(1)),
+        single => (std::slice::from_ref(single), Rational::from(1)),
+    };
+    let number = |m, e: &Expression| m * e.as_number().unwrap_or_else(|| 1.into());
+    let m = factors.iter().fold(one, number);
+    let phase = factors.iter().find_map(|e| match e {
+        Expression::Parameter(name) => name.strip_prefix(PHASE)?.parse().ok(),
+        _ => None,
+    })?;
+    Some((*function, phase, m.is_integer().then(|| m.numer().to_i32())??))
+}
+
+/// e with `change(l)` in the place of eta_l.
+pub(super) fn with_phases(
+    e: &Expression,
+    change: &dyn Fn(usize) -> Option<Expression>,
+) -> Expression {
+    e.map(&|e| match e {
+        Expression::Parameter(name) => change(name.strip_prefix(PHASE)?.parse().ok()?),
+        _ => None,
+    })
 }
 
 /// The parts of an angle rate * t + start; nothing for an angle of another form.
@@ -74,49 +125,95 @@ fn gap(a: &Expression, ratio: &Rational, b: &Expression) -> Option<Expression> {
         .filter(|e| e.as_number().is_none_or(|q| !q.is_zero()))
 }
 
-/// The phase of all forces, and the equations with functions of m Omega t in the place of every force: with
-/// the detuning and the phase at t = 0 taken out. That of the first force is eta's; what another one is ahead of
-/// it stays, as constants cos(phi) and sin(phi).
-pub(super) fn phase(
-    equations: &[Expression],
-    names: Names<'_>,
-) -> Result<(Phase, Vec<Expression>), ResonanceError> {
-    let mut found: Vec<(Rational, Angle)> = Vec::new();
-    for wave in equations.iter().flat_map(Expression::nodes).filter(|e| is_wave(e)) {
-        let mut angle = angle_of(wave, names)?;
-        let slow = || ResonanceError::NotAForce { term: names.shown(wave) };
-        let leading = angle.rate.remove(0).as_number().filter(|q| !q.is_zero()).ok_or_else(slow)?;
-        found.push((leading, angle));
+/// The multiples of 1 and of independent parameters that add up to a rate; nothing for another rate.
+fn multiples(rate: &Expression, independent: &[String]) -> Option<Vec<Rational>> {
+    let mut list = vec![Rational::new(); 1 + independent.len()];
+    for (m, q) in &expand(rate)?.terms {
+        let mut named = m.parameters.iter();
+        let place = match (named.next(), named.next()) {
+            (None, _) => 0,
+            (Some((name, 1)), None) => 1 + independent.iter().position(|known| known == name)?,
+            _ => return None,
+        };
+        let plain = m.order == 0 && m.x == 0 && m.velocity == 0 && m.atoms.is_empty();
+        list[place] += plain.then_some(q)?;
     }
-    let Some((first, Angle { rate: detuning, start })) = found.first() else {
-        let phase = Phase { rate: Rational::new(), detuning: Vec::new(), start: 0.into() };
-        return Ok((phase, equations.to_vec()));
-    };
-    // A harmonic of the same phase is detuned in the same ratio.
-    for (rate, Angle { rate: own, .. }) in &found {
-        let ratio = Rational::from(rate / first);
+    Some(list)
+}
+
+/// q with a = q b.
+fn ratio(a: &[Rational], b: &[Rational]) -> Option<Rational> {
+    let place = b.iter().position(|q| !q.is_zero())?;
+    let q = Rational::from(&a[place] / &b[place]);
+    a.iter().zip(b).all(|(a, b)| *a == Rational::from(&q * b)).then_some(q)
+}
+
+/// Forces of one phase: the rate and the rest of the angle of the first, and what the rates of all are multiples of.
+struct Class {
+    first: Vec<Rational>,
+    angle: Angle,
+    common: Rational,
+}
+
+impl Class {
+    /// The ratio of an angle's rate to that of the first force, where it is rational at all orders.
+    fn ratio(&self, leading: &[Rational], angle: &Angle) -> Option<Rational> {
+        let ratio = ratio(leading, &self.first)?;
         let at = |list: &Rate, n: usize| list.get(n).cloned().unwrap_or_else(|| 0.into());
-        let differs = |n| gap(&at(own, n), &ratio, &at(detuning, n)).is_some();
-        if (0..own.len().max(detuning.len())).any(differs) {
-            return Err(ResonanceError::SecondPhase);
+        let (own, known) = (&angle.rate, &self.angle.rate);
+        let differs = |n| gap(&at(own, n), &ratio, &at(known, n)).is_some();
+        (!(0..own.len().max(known.len())).any(differs)).then_some(ratio)
+    }
+
+    fn phase(&self) -> Phase {
+        // Numbers are positive.
+        let negative = self.first[1..].iter().all(Rational::is_zero) && self.first[0] < 0;
+        let scale = if negative { Rational::from(-&self.common) } else { self.common.clone() };
+        let scaled = |e: &Expression| (Expression::Number(scale.clone()) * e.clone()).canonical();
+        Phase {
+            rate: self.first.iter().map(|q| Rational::from(q * &scale)).collect(),
+            detuning: self.angle.rate.iter().map(scaled).collect(),
+            start: scaled(&self.angle.start),
         }
     }
-    let omega = found.iter().fold(Rational::new(), |omega, (rate, _)| divisor(&omega, rate));
-    let scale = Expression::Number(Rational::from(&omega / first));
-    let scaled = |e: &Expression| (scale.clone() * e.clone()).canonical();
-    let phase = Phase {
-        rate: omega,
-        detuning: detuning.iter().map(scaled).collect(),
-        start: scaled(start),
+}
+
+/// The phases of the forces, and the equations with functions of m eta_l in the place of every force. What
+/// a force is ahead of its phase stays, as constants cos(phi) and sin(phi).
+pub(super) fn phases(
+    equations: &[Expression],
+    independent: &[String],
+    names: Names<'_>,
+) -> Result<(Vec<Phase>, Vec<Expression>), ResonanceError> {
+    let read = |wave: &Expression| {
+        let mut angle = angle_of(wave, names)?;
+        let slow = || ResonanceError::NotAForce { term: names.shown(wave) };
+        let leading = multiples(&angle.rate.remove(0), independent);
+        let leading = leading.filter(|list| list.iter().any(|q| !q.is_zero()));
+        Ok((leading.ok_or_else(slow)?, angle))
     };
+    let mut classes: Vec<Class> = Vec::new();
+    for wave in equations.iter().flat_map(Expression::nodes).filter(|e| is_wave(e)) {
+        let (first, angle) = read(wave)?;
+        let of = |(l, class): (usize, &Class)| Some((l, class.ratio(&first, &angle)?));
+        match classes.iter().enumerate().find_map(of) {
+            Some((l, ratio)) => classes[l].common = divisor(&classes[l].common, &ratio),
+            None => classes.push(Class { first, angle, common: 1.into() }),
+        }
+    }
+    let phases: Vec<Phase> = classes.iter().map(Class::phase).collect();
     let rewritten = |e: &Expression| {
         let (Expression::Function(function, _), true) = (e, is_wave(e)) else { return None };
-        let Angle { mut rate, start: own } = angle_of(e, names).ok()?;
-        let leading = rate.swap_remove(0).as_number()?;
-        let ahead = gap(&own, &Rational::from(&leading / first), start);
-        Some(ahead_of(*function, Expression::Number(leading) * Expression::Time, ahead))
+        let (leading, angle) = read(e).ok()?;
+        let l = classes.iter().position(|class| class.ratio(&leading, &angle).is_some())?;
+        let m = ratio(&leading, &phases[l].rate)?;
+        let ahead = gap(&angle.start, &m, &phases[l].start);
+        let eta = Expression::parameter(&format!("{PHASE}{l}"));
+        let angle = if m == 1 { eta } else { Expression::Number(m) * eta };
+        Some(ahead_of(*function, angle, ahead))
     };
-    Ok((phase, equations.iter().map(|e| e.map(&rewritten)).collect()))
+    let equations = equations.iter().map(|e| e.map(&rewritten)).collect();
+    Ok((phases, equations))
 }
 
 /// A function of angle + ahead: cos(angle) cos(ahead) - sin(angle) sin(ahead), or the sine.

@@ -42,16 +42,36 @@ struct Residual {
     zero: Option<bool>,
 }
 
+/// The phase of a force.
+#[derive(Serialize)]
+struct Force<'a> {
+    rate: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    start: Option<String>,
+    detuning: Vec<Vec<Monomial<'a>>>,
+}
+
+impl<'a> Force<'a> {
+    fn of(flow: &SlowFlow, names: &'a [String], l: usize) -> Self {
+        let orders = flow.detuning.get(l).into_iter().flatten();
+        Self {
+            rate: flow.print_leading_rate(l, Style::Text),
+            start: flow.print_start(l, Style::Text),
+            detuning: orders.map(|terms| monomials(flow, names, terms)).collect(),
+        }
+    }
+}
+
 fn powers<'a>(names: &'a [String], exponents: &[i32]) -> Object<&'a str, i32> {
     let all = names.iter().map(String::as_str).zip(exponents.iter().copied());
     Object(all.filter(|(_, n)| *n != 0).collect())
 }
 
-fn monomials<'a>(names: &'a [String], terms: &Terms) -> Vec<Monomial<'a>> {
+fn monomials<'a>(flow: &SlowFlow, names: &'a [String], terms: &Terms) -> Vec<Monomial<'a>> {
     let one = |t: &AmplitudeTerm| Monomial {
         powers: powers(names, &t.exponents),
-        re: t.re.to_string(),
-        im: t.im.to_string(),
+        re: flow.number(&t.re),
+        im: flow.number(&t.im),
     };
     terms.iter().map(one).collect()
 }
@@ -131,28 +151,51 @@ impl Serialize for SlowFlow {
         let (system, names) = (&self.system, self.factors());
         let texts = |list: &[Rational]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
         let lists = |orders: &[Vec<Terms>]| -> Vec<Vec<Vec<Monomial<'_>>>> {
-            let unknown = |list: &Vec<Terms>| list.iter().map(|t| monomials(&names, t)).collect();
+            let unknown =
+                |list: &Vec<Terms>| list.iter().map(|t| monomials(self, &names, t)).collect();
             orders.iter().map(unknown).collect()
         };
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("parameter", &*self.problem.small)?;
         map.serialize_entry("normalisation", &Condition::FreeAmplitude)?;
         map.serialize_entry("unknowns", &self.coordinates())?;
-        map.serialize_entry("frequencies", &texts(&system.frequencies))?;
+        let frequencies: Vec<_> = system.frequencies.iter().map(|nu| self.number(nu)).collect();
+        map.serialize_entry("frequencies", &frequencies)?;
+        if let Some(enclosed) = self.enclosed {
+            map.serialize_entry("squares", &texts(&system.squares))?;
+            map.serialize_entry("radius", &enclosed.radius)?;
+            map.serialize_entry("residual_radius", &enclosed.residual)?;
+        }
         let shapes = system.shapes.as_ref();
         let shapes = shapes.map(|rows| rows.iter().map(|row| texts(row)).collect::<Vec<_>>());
         map.serialize_entry("shapes", &shapes)?;
-        map.serialize_entry("force", &system.force.to_string())?;
-        if let Some(start) = self.print_start(Style::Text) {
-            map.serialize_entry("start", &start)?;
+        let forces: Vec<_> = (0..system.forces.len()).map(|l| Force::of(self, &names, l)).collect();
+        match &forces[..] {
+            [] => map.serialize_entry("force", "0")?,
+            [only] => {
+                map.serialize_entry("force", &only.rate)?;
+                if let Some(start) = &only.start {
+                    map.serialize_entry("start", start)?;
+                }
+            }
+            several => map.serialize_entry("forces", several)?,
         }
-        let detuning: Vec<_> = self.detuning.iter().map(|t| monomials(&names, t)).collect();
-        map.serialize_entry("detuning", &detuning)?;
+        if let [] | [_] = &forces[..] {
+            let detuning = forces.first().map(|force| &force.detuning[..]).unwrap_or_default();
+            map.serialize_entry("detuning", detuning)?;
+        }
+        if !system.independent.is_empty() {
+            map.serialize_entry("independent", &system.independent)?;
+        }
         let beside = system.beside.as_ref().map(|b| (b.symbol.as_str(), b.rate.to_string()));
         map.serialize_entry("beside", &beside.map(|pair| Object(vec![pair])))?;
         map.serialize_entry("symbols", &system.symbols)?;
         map.serialize_entry("flow", &lists(&self.flow))?;
         map.serialize_entry("solution", &lists(&self.solution))?;
+        if !self.energy.is_empty() {
+            let energy: Vec<_> = self.energy.iter().map(|t| monomials(self, &names, t)).collect();
+            map.serialize_entry("energy", &energy)?;
+        }
         if let Some(Polar { slow, amplitude, phase }) = self.polar() {
             map.serialize_entry("slow_phase", &slow)?;
             let [amplitude, phase] = [amplitude, phase].map(|list| waves(&system.symbols, &list));
@@ -164,7 +207,7 @@ impl Serialize for SlowFlow {
             order: near.order,
             unknown: &unknowns[near.unknown],
             harmonic: &near.harmonic,
-            size: near.size.to_string(),
+            size: self.size(&near.size),
         });
         let list: Vec<_> = near.collect();
         map.serialize_entry("nearest", &list)?;

@@ -3,24 +3,32 @@
 //!   x_j = z_j + zbar_j + the response to the force + sum eps^n u_{j,n}(z, zbar, E),   E = e^{i eta},
 //!   z_j' = i nu_j z_j + sum eps^n f_{j,n}(z, zbar, E),   eta' = Omega + sum eps^n sigma_n
 //!
-//! (see [`lindstedt_expand::resonance`]). What the frequencies nu_j and Omega depend on has a value; their
-//! ratios are rational numbers, so that what is resonant is decided exactly. A linear part that couples the
+//! (see [`lindstedt_expand::resonance`]), with E_1, E_2, ... for forces that are no harmonics of one phase. What the
+//! frequencies nu_j depend on has a value, and so has the frequency of a force where it is no independent symbol;
+//! ratios are rational, so that what is resonant is decided exactly. Frequencies that are square roots are
+//! independent of one another unless their ratio is rational: this is decided exactly, too, and coefficients are
+//! enclosed by balls. A linear part that couples the
 //! unknowns is taken apart into modes x = P q where those are rational. A force beside a resonance is
 //! detuned: with `cos((1 + eps*sigma)*t)` as it is written, and with a frequency that is a number by the
 //! symbol sigma = (omega - Omega)/eps.
 
+mod enclosed;
 mod error;
+mod flow;
 mod forces;
 mod json;
 mod modes;
 mod motion;
 mod normal_mode;
 mod polar;
+mod potential;
 mod print;
+mod quotients;
 mod sought;
 mod system;
 
 pub use error::ResonanceError;
+pub use forces::Phase;
 pub use motion::Motion;
 pub use normal_mode::{NormalMode, normal_mode};
 pub use polar::{Polar, PolarTerm};
@@ -28,26 +36,25 @@ pub use print::{print_name, print_turns};
 pub use sought::{Sought, SoughtBranch, sought};
 pub use system::{Beside, System};
 
-use crate::averaging::{AveragingSettings, constant};
+use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
 use crate::limits::{refuse_above, unknown_parameter};
 use crate::values::value;
 use crate::work::Progress;
-use lindstedt_algebra::AmplitudeAlgebra;
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Problem};
-use lindstedt_expand::resonance::{Nearest, check_flow, resonant};
-use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
+use lindstedt_expand::OrderWork;
+use lindstedt_expand::resonance::Nearest;
 use lindstedt_number::Exact;
-use lindstedt_phase::amplitudes::scalars::Integers;
-use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes};
+use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm};
 use rug::{Integer, Rational};
 use std::collections::BTreeMap;
 
 type Element = AmplitudeElement<Integer>;
 
-/// A polynomial in z_1, zbar_1, ..., z_M, zbar_M, E = e^{i eta} and the symbols, in this order of
-/// exponents; that of E may be negative.
+/// A polynomial in z_1, zbar_1, ..., z_M, zbar_M, E_1, ..., E_L (one E = e^{i eta} where there is no force, too)
+/// and the symbols, in this order of exponents; those of E_l may be negative, and those of the symbols that are
+/// sums of rates.
 pub type Terms = Vec<AmplitudeTerm>;
 
 /// A slow flow that was substituted into its equations, as plain data.
@@ -78,10 +85,27 @@ pub struct SlowFlow {
     /// x_{j,n} at `[j][n]`, of the modes where the system has shapes: z_j + zbar_j + the response to the
     /// force, u_{j,1}, ...
     pub solution: Vec<Vec<Terms>>,
-    /// sigma_1, sigma_2, ...
-    pub detuning: Vec<Terms>,
+    /// sigma_{l,1}, sigma_{l,2}, ... at `[l]`.
+    pub detuning: Vec<Vec<Terms>>,
     /// The smallest divisor of every order and unknown.
     pub nearest: Vec<Nearest>,
+    /// Where the equations derive from a potential: the energy sum_j mu_j x_j'^2/2 + V order by order, mu_1 = 1, which
+    /// was found to be conserved by the flow, identically. So it contains no fast phase. Else empty.
+    pub energy: Vec<Terms>,
+    /// Where frequencies are irrational: what the coefficients are known within. Those given are in the middle.
+    pub enclosed: Option<Enclosed>,
+}
+
+/// Enclosures of the coefficients of a slow flow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Enclosed {
+    /// The largest radius of a coefficient.
+    pub radius: f64,
+    /// The residual of every order contains zero, and all its coefficients lie within this of it.
+    pub residual: f64,
+    /// Digits that are printed.
+    pub digits: usize,
 }
 
 impl SlowFlow {
@@ -89,6 +113,18 @@ impl SlowFlow {
     #[must_use]
     pub fn unknowns(&self) -> usize {
         self.system.frequencies.len()
+    }
+
+    /// L, at least 1: the exponents of phases.
+    #[must_use]
+    pub fn forces(&self) -> usize {
+        self.system.forces.len().max(1)
+    }
+
+    /// The place of the first symbol among the exponents.
+    #[must_use]
+    pub fn first_symbol(&self) -> usize {
+        2 * self.unknowns() + self.forces()
     }
 
     /// The names of the x_j: those of the unknowns, or q_1, q_2, ... of the modes.
@@ -104,27 +140,26 @@ impl SlowFlow {
     /// The names of the factors of a monomial, in the order of its exponents.
     #[must_use]
     pub fn factors(&self) -> Vec<String> {
-        let index = |j| if self.unknowns() == 1 { String::new() } else { format!("_{}", j + 1) };
-        let pair = |j| ["z", "zbar"].map(|name| format!("{name}{}", index(j)));
+        let of = |name: &str, j: usize, count: usize| match count {
+            1 => name.to_owned(),
+            _ => format!("{name}_{}", j + 1),
+        };
+        let pair = |j| ["z", "zbar"].map(|name| of(name, j, self.unknowns()));
         let amplitudes = (0..self.unknowns()).flat_map(pair);
-        amplitudes.chain(["E".to_owned()]).chain(self.system.symbols.iter().cloned()).collect()
+        let phases = (0..self.forces()).map(|l| of("E", l, self.forces()));
+        amplitudes.chain(phases).chain(self.system.symbols.iter().cloned()).collect()
+    }
+
+    /// A divisor: of enclosures the middle of one, as a double.
+    #[must_use]
+    pub fn size(&self, q: &Rational) -> String {
+        if self.system.is_exact() { q.to_string() } else { format!("{:.6}", q.to_f64()) }
     }
 
     /// The smallest divisor of all orders.
     #[must_use]
     pub fn nearest(&self) -> Option<&Nearest> {
         self.nearest.iter().min_by(|a, b| a.size.cmp_abs(&b.size))
-    }
-}
-
-struct Symbols<'a>(&'a Amplitudes<Integers>);
-
-impl Binding<Amplitudes<Integers>> for Symbols<'_> {
-    fn parameter(&self, name: &str) -> Option<Element> {
-        self.0.symbol(name)
-    }
-    fn formal(&self, _: &str, _: usize) -> Option<Element> {
-        None
     }
 }
 
@@ -141,11 +176,15 @@ pub fn is_beside(problem: &Problem, given: &BTreeMap<String, Exact>) -> bool {
 /// The slow flow of a problem. Parameters of the equations that are not among those of the settings stay
 /// symbols, unless a frequency depends on them: then they have the values of their cards.
 ///
-/// Exact; the residual of every order vanishes identically. Cost: O(N^2) products of polynomials whose
+/// Parameters without a value in the frequencies of forces are taken to be independent: coefficients are then
+/// quotients by sums such as 1 - omega, which are factors of their own ([`System::symbols`]).
+///
+/// Exact; the residual of every order vanishes identically. Where a frequency is the root of a rational number the
+/// coefficients are enclosed with the digits of the settings ([`SlowFlow::enclosed`]). Cost: O(N^2) products of polynomials whose
 /// length grows like N^(symbols + 1).
 ///
 /// # Errors
-/// [`ResonanceError`] by name for what is no such system; [`ExpandError`] for terms that are no polynomial.
+/// [`ResonanceError`] by name for what is no such system; [`ExpandError`](lindstedt_expand::ExpandError) for terms that are no polynomial.
 ///
 /// ```
 /// use lindstedt_derivation::{averaging::AveragingSettings, resonance::slow_flow};
@@ -169,58 +208,14 @@ pub fn slow_flow(
     let equations: Vec<Expression> = problem.equations().cloned().collect();
     let cards = |name: &str| value(problem, &settings.parameters, name);
     let system = System::of(&equations, &settings.parameters, &cards, Names(problem), true)?;
-    let names: Vec<&str> = system.symbols.iter().map(String::as_str).collect();
-    let algebra = Amplitudes::new(Integers, &system.frequencies, &system.force, &names);
-    let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: names.len() })?;
-    let algebra = algebra.with_stop(settings.stop.clone());
-    let graph = compile_system(&algebra, &system.equations, &Symbols(&algebra), settings.order)?;
-    let sigma = |e: &Expression| {
-        let refused = || ResonanceError::NotAForce { term: Names(problem).shown(e) };
-        constant(&algebra, e, &|name| algebra.symbol(name)).ok_or_else(refused)
-    };
-    let detuning = system.detuning.iter().map(sigma).collect::<Result<Vec<_>, _>>()?;
-    let mut room = Room::new(settings);
-    let mut on_order =
-        |work: &OrderWork| observer(Progress::Order(work.order, work.terms)) && room.has_next(work);
-    let found = resonant(&algebra, &graph, settings.order, &detuning, &mut on_order);
-    room.checked?;
-    let too_high = || Error::from(ResonanceError::TooHigh { order: settings.order });
-    let found = found.map_err(|error| match error {
-        ExpandError::Interrupted { .. } if algebra.overflowed() => too_high(),
-        error => error.into(),
-    })?;
-    if algebra.overflowed() {
-        return Err(too_high());
+    let job = flow::Job { problem, system, settings };
+    if !job.system.is_exact() {
+        enclosed::derived(&job, observer)
+    } else if job.system.independent.is_empty() {
+        job.rational(observer)
+    } else {
+        quotients::derived(&job, observer)
     }
-    refuse_near_miss(&found.nearest)?;
-    observer(Progress::Checking);
-    let checked = check_flow(&algebra, &graph, &found);
-    let checked_orders = match checked {
-        // What was multiplied after the work was stopped means nothing, for better or worse.
-        _ if settings.stop.asked() => None,
-        Err(ExpandError::Interrupted { .. }) => None,
-        other => Some(other?),
-    };
-    let terms = |f: &Element| algebra.rational_terms(f).unwrap_or_default();
-    let mut flow: Vec<Vec<Terms>> =
-        found.flow.iter().map(|list| list.iter().map(terms).collect()).collect();
-    for (j, list) in flow.iter_mut().enumerate() {
-        list[0] = terms(&algebra.by_time(&algebra.amplitude(j)));
-    }
-    let solution = found.solution.iter().map(|list| list.iter().map(terms).collect()).collect();
-    let detuning = found.detuning.iter().map(terms).collect();
-    let order = found.order();
-    let problem = problem.clone();
-    Ok(SlowFlow {
-        problem,
-        system,
-        order,
-        checked_orders,
-        flow,
-        solution,
-        detuning,
-        nearest: found.nearest,
-    })
 }
 
 /// What the next order is predicted to need, from the terms of those before it.
@@ -258,24 +253,29 @@ impl Room {
 /// A divisor below this says that a resonance was missed by a little.
 const NEAR_MISS: (i32, i32) = (1, 1000);
 
-fn refuse_near_miss(nearest: &[Nearest]) -> Result<(), ResonanceError> {
+fn refuse_near_miss(nearest: &[Nearest], forces: usize) -> Result<(), ResonanceError> {
     let least = Rational::from(NEAR_MISS);
     match nearest.iter().find(|near| *near.size.as_abs() < least) {
         None => Ok(()),
         Some(near) => Err(ResonanceError::NearMiss {
             order: near.order,
-            harmonic: sum_of_harmonics(&near.harmonic),
+            harmonic: sum_of_harmonics(&near.harmonic, forces),
             size: near.size.to_f64(),
         }),
     }
 }
 
-/// k_1 nu_1 + ... + m Omega, in words.
-fn sum_of_harmonics(harmonic: &[i32]) -> String {
-    let last = harmonic.len() - 1;
+/// k_1 nu_1 + ... + m_1 Omega_1 + ..., in words.
+fn sum_of_harmonics(harmonic: &[i32], forces: usize) -> String {
+    let unknowns = harmonic.len().saturating_sub(forces);
+    let name = |j: usize| match j.checked_sub(unknowns) {
+        None => format!("nu_{}", j + 1),
+        Some(_) if forces == 1 => "Omega".to_owned(),
+        Some(l) => format!("Omega_{}", l + 1),
+    };
     let term = |(j, k): (usize, &i32)| lindstedt_coeff::print::Term {
         coefficient: Rational::from(*k),
-        factors: vec![if j == last { "Omega".to_owned() } else { format!("nu_{}", j + 1) }],
+        factors: vec![name(j)],
     };
     let terms = harmonic.iter().enumerate().filter(|(_, k)| **k != 0).map(term);
     lindstedt_coeff::print::print_sum(

@@ -3,8 +3,8 @@
 //! At one value of the small parameter, z_j = u_j + i v_j: u_j', v_j' from z_j' = i nu_j z_j + sum eps^n f_{j,n},
 //! and x_j by its rate D x_j along that flow, D as in [`lindstedt_expand::resonance`].
 
-use super::forces::{delayed, is_wave};
-use super::{SlowFlow, Terms};
+use super::forces::{delayed, is_wave, with_phases};
+use super::{Phase, SlowFlow, Terms};
 use lindstedt_equation::{Expression, Function, Unknown};
 use rug::{Rational, ops::Pow};
 use std::collections::BTreeMap;
@@ -53,7 +53,7 @@ fn product(f: &Polynomial, g: &Polynomial) -> Polynomial {
 impl At<'_> {
     /// sum eps^n of a list of orders.
     fn sum(&self, orders: &[Terms], first: u32) -> Polynomial {
-        let phases = 2 * self.flow.unknowns() + 1;
+        let phases = self.flow.first_symbol();
         let mut sum = Polynomial::new();
         for (n, term) in
             (first..).zip(orders).flat_map(|(n, terms)| terms.iter().map(move |t| (n, t)))
@@ -69,19 +69,21 @@ impl At<'_> {
         sum
     }
 
-    /// eta'.
-    fn force_rate(&self) -> Rational {
-        let detuning = self.sum(&self.flow.detuning, 1);
-        detuning.into_values().map(|[re, _]| re).sum::<Rational>() + &self.flow.system.force
+    /// eta_l'.
+    fn force_rate(&self, l: usize) -> Rational {
+        let detuning = self.flow.detuning.get(l).map_or_else(Polynomial::new, |d| self.sum(d, 1));
+        let leading = self.flow.system.forces.get(l).and_then(Phase::number);
+        detuning.into_values().map(|[re, _]| re).sum::<Rational>() + leading.unwrap_or_default()
     }
 
     /// D x, whose real part is the rate.
     fn rate(&self, x: &Polynomial, flows: &[Polynomial]) -> Polynomial {
-        let last = 2 * flows.len();
-        let turn = self.force_rate();
+        let first = 2 * flows.len();
+        let turns: Vec<_> = (0..self.flow.forces()).map(|l| self.force_rate(l)).collect();
         let mut sum = Polynomial::new();
         for (key, c) in x {
-            let m = Rational::from(key[last]) * &turn;
+            let turns = key[first..].iter().zip(&turns);
+            let m = turns.map(|(m, turn)| Rational::from(turn * *m)).sum();
             add(&mut sum, key.clone(), times(c, &[Rational::new(), m]));
         }
         for (j, flow) in flows.iter().enumerate() {
@@ -99,13 +101,13 @@ impl At<'_> {
     }
 }
 
-/// The polynomial in u and v.
-fn cartesian(f: &Polynomial) -> Polynomial {
+/// The polynomial in the u and v of so many unknowns.
+fn cartesian(f: &Polynomial, unknowns: usize) -> Polynomial {
     let mut sum = Polynomial::new();
     for (key, c) in f {
-        let last = key.len() - 1;
+        let last = 2 * unknowns;
         let mut constant = vec![0; key.len()];
-        constant[last] = key[last];
+        constant[last..].copy_from_slice(&key[last..]);
         let mut part = Polynomial::from([(constant, c.clone())]);
         for (i, n) in key[..last].iter().enumerate() {
             let unit = |i: usize| (0..key.len()).map(|k| i32::from(k == i)).collect::<Vec<_>>();
@@ -122,23 +124,24 @@ fn cartesian(f: &Polynomial) -> Polynomial {
     sum
 }
 
-/// The real (0) or imaginary (1) part as an expression, with E = e^{i eta}.
-fn tree(f: &Polynomial, part: usize, names: &[String], eta: &Expression) -> Expression {
+/// The real (0) or imaginary (1) part as an expression, with E_l = e^{i rate_l t}.
+fn tree(f: &Polynomial, part: usize, names: &[String], rates: &[Rational]) -> Expression {
     let mut sum = Vec::new();
     for (key, [re, im]) in f {
-        let (powers, m) = (&key[..key.len() - 1], key[key.len() - 1]);
-        let angle = || Expression::integer(m.into()) * eta.clone();
+        let (powers, turns) = key.split_at(key.len() - rates.len());
+        let m: Rational = turns.iter().zip(rates).map(|(m, q)| Rational::from(q * *m)).sum();
+        let angle = || Expression::Number(m.clone()) * Expression::Time;
         // (re + i im)(cos + i sin).
         let [cos, sin] =
             if part == 0 { [re.clone(), -im.clone()] } else { [im.clone(), re.clone()] };
         for (c, function) in [(cos, Function::Cos), (sin, Function::Sin)] {
-            if c.is_zero() || m == 0 && function == Function::Sin {
+            if c.is_zero() || m.is_zero() && function == Function::Sin {
                 continue;
             }
             let mut factors = vec![Expression::Number(c)];
             let powers = names.iter().zip(powers).filter(|(_, n)| **n != 0);
             factors.extend(powers.map(|(name, n)| Expression::parameter(name).pow(i64::from(*n))));
-            if m != 0 {
+            if !m.is_zero() {
                 factors.push(angle().apply(function));
             }
             sum.push(Expression::Product(factors).canonical());
@@ -150,7 +153,7 @@ fn tree(f: &Polynomial, part: usize, names: &[String], eta: &Expression) -> Expr
 impl SlowFlow {
     /// The truncated slow flow from z_j = amplitude/2 as a system in u_1, v_1, ..., x_1, ..., and the equations
     /// themselves from the same x_j(0) and x_j'(0) as one in x_1, w_1 = x_1', ...; of the modes where there are
-    /// shapes. Nothing where a symbol has no value.
+    /// shapes. Nothing where a symbol has no value, or several forces have phases at t = 0.
     #[must_use]
     pub fn motions(
         &self,
@@ -160,7 +163,7 @@ impl SlowFlow {
     ) -> Option<[Motion; 2]> {
         let beside = self.system.beside.as_ref();
         let symbol = |name: &String| match beside.filter(|beside| beside.symbol == *name) {
-            Some(beside) => Some(Rational::from(&beside.rate - &self.system.force) / small),
+            Some(beside) => Some((&beside.rate - self.system.force()) / small),
             None => values(name),
         };
         let symbols: Vec<_> = self.system.symbols.iter().map(symbol).collect::<Option<_>>()?;
@@ -169,10 +172,10 @@ impl SlowFlow {
         let mut names: Vec<String> =
             (1..=unknowns).flat_map(|j| [format!("u_{j}"), format!("v_{j}")]).collect();
         let flows: Vec<_> = self.flow.iter().map(|orders| at.sum(orders, 0)).collect();
-        let eta = Expression::Number(at.force_rate()) * Expression::Time;
+        let turns: Vec<_> = (0..self.forces()).map(|l| at.force_rate(l)).collect();
         let mut rates = Vec::new();
-        for flow in flows.iter().map(cartesian) {
-            rates.extend([0, 1].map(|part| tree(&flow, part, &names, &eta)));
+        for flow in flows.iter().map(|flow| cartesian(flow, unknowns)) {
+            rates.extend([0, 1].map(|part| tree(&flow, part, &names, &turns)));
         }
         let half = Rational::from(amplitude / 2);
         let mut start: Vec<_> = (0..2 * unknowns)
@@ -187,7 +190,7 @@ impl SlowFlow {
         for (j, orders) in self.solution.iter().enumerate() {
             let x = at.sum(orders, 0);
             let rate = at.rate(&x, &flows);
-            rates.push(tree(&cartesian(&rate), 0, &names[..2 * unknowns], &eta));
+            rates.push(tree(&cartesian(&rate, unknowns), 0, &names[..2 * unknowns], &turns));
             start.push(at_start(&x));
             velocities.push(at_start(&rate));
             names.push(format!("x_{}", j + 1));
@@ -213,10 +216,6 @@ impl SlowFlow {
         let single = self.unknowns() == 1;
         let written = [self.problem.equation.clone()];
         let equations = if single { &written[..] } else { &self.system.equations };
-        let pace = match self.system.force.is_zero() {
-            true => Rational::from(1),
-            false => at.force_rate() / &self.system.force,
-        };
         let change = |e: &Expression| match e {
             Expression::Small => Some(Expression::Number(at.small.clone())),
             Expression::Parameter(name) => values(name).map(Expression::Number),
@@ -224,17 +223,19 @@ impl SlowFlow {
                 let letter = if *derivative == 0 { "x" } else { "w" };
                 Some(Expression::parameter(&format!("{letter}_{}", index + 1)))
             }
-            Expression::Time if !single => {
-                Some(Expression::Number(pace.clone()) * Expression::Time)
-            }
             _ => None,
         };
+        let in_time = |l: usize| Some(Expression::Number(at.force_rate(l)) * Expression::Time);
+        let started = |phase: &Phase| phase.start.as_number().is_none_or(|q| !q.is_zero());
         // In the time from eta = 0 on.
-        let delay = match at.force_rate() {
-            rate if rate.is_zero() || !single => Expression::integer(0),
-            rate => self.system.start.map(&change) * Expression::Number(rate.recip()),
+        let delay = match &self.system.forces[..] {
+            [only] if single => {
+                only.start.map(&change) * Expression::Number(at.force_rate(0).recip())
+            }
+            [_, _, ..] if self.system.forces.iter().any(started) => return None,
+            _ => Expression::integer(0),
         };
-        let started = |e: &Expression| match e {
+        let later = |e: &Expression| match e {
             Expression::Function(function, angle) if is_wave(e) => {
                 Some(delayed(angle, &delay)?.apply(*function))
             }
@@ -245,7 +246,8 @@ impl SlowFlow {
             let acceleration = Expression::unknown(j, 2);
             let rest: Vec<_> =
                 equation.terms().iter().filter(|term| **term != acceleration).cloned().collect();
-            let right = (-Expression::Sum(rest)).map(&change).map(&started).canonical();
+            let right = (-Expression::Sum(rest)).map(&change);
+            let right = with_phases(&right, &in_time).map(&later).canonical();
             let unset = |name: &String| !name.starts_with("x_") && !name.starts_with("w_");
             if right.parameters().iter().any(unset) {
                 return None;

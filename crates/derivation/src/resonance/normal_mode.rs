@@ -9,10 +9,11 @@
 //! mode j with kappa_j = k^2, which the harmonic k drives, ends it: internal resonance, where no mode moves
 //! alone.
 
+use super::flow::Symbols;
 use super::modes::{Matrix, Spectrum, spectrum};
 use super::print::print_powers;
 use super::system::{Prepared, separated, symbols};
-use super::{Element, Names, ResonanceError, Symbols, Terms, refuse_near_miss};
+use super::{Element, Names, ResonanceError, Terms, refuse_near_miss};
 use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
 use crate::values::value;
@@ -86,7 +87,7 @@ pub fn normal_mode(
     let cards = |name: &str| value(problem, &settings.parameters, name);
     let names = Names(problem);
     let prepared = Prepared::of(&equations, &settings.parameters, &cards, names)?;
-    if !prepared.phase.rate.is_zero() {
+    if !prepared.forces.is_empty() {
         return Err(ResonanceError::ForcedMode.into());
     }
     let modes = spectrum(&prepared.mass, &prepared.stiffness)?;
@@ -105,8 +106,9 @@ pub fn normal_mode(
         modes.squares.iter().map(|other| Rational::from(other / &square)).collect();
     let algebra = Amplitudes::new(Integers, &[1.into()], &Rational::new(), &list);
     let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: list.len() })?;
-    let algebra = algebra.with_unknowns(ratios.clone()).with_stop(settings.stop.clone());
-    let graph = compile_system(&algebra, &equations, &Symbols(&algebra), settings.order)?;
+    let algebra = algebra.with_unknowns(&ratios).with_stop(settings.stop.clone());
+    let binding = Symbols { algebra: &algebra, step: 1, other: &|_| None };
+    let graph = compile_system(&algebra, &equations, &binding, settings.order)?;
     let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
     let found = resonant(&algebra, &graph, settings.order, &[], &mut on_order);
     let too_high = ResonanceError::TooHigh { order: settings.order };
@@ -115,7 +117,7 @@ pub fn normal_mode(
         found => found?,
     };
     refuse_internal(&algebra, &found)?;
-    refuse_near_miss(&found.nearest)?;
+    refuse_near_miss(&found.nearest, 1)?;
     observer(Progress::Checking);
     let checked_orders = match check_flow(&algebra, &graph, &found) {
         _ if settings.stop.asked() => None,

@@ -43,11 +43,14 @@ pub struct Polar {
 type Key = (u32, u32, bool, Vec<i32>);
 
 impl SlowFlow {
-    /// In polar coordinates; nothing for several unknowns.
+    /// In polar coordinates; nothing for several unknowns or phases, or an irrational frequency.
     #[must_use]
     pub fn polar(&self) -> Option<Polar> {
         let ([nu], [flow]) = (&self.system.frequencies[..], &self.flow[..]) else { return None };
-        let ratio = Rational::from(&self.system.force / nu);
+        if self.forces() > 1 || !self.system.is_exact() {
+            return None;
+        }
+        let ratio = self.system.force() / nu;
         let turned = |terms: &Terms| terms.iter().any(|t| t.exponents[2] != 0);
         let numbers = || Some([ratio.denom().to_u32()?, ratio.numer().to_u32()?]);
         let slow = if flow.iter().any(turned) { Some(numbers()?) } else { None };
@@ -56,7 +59,8 @@ impl SlowFlow {
             let (amplitude, mut phase) = rates(terms, slow.map_or(1, |[t, _]| t));
             if let Some([t, s]) = slow {
                 phase.values_mut().for_each(|c| *c *= -Rational::from(s));
-                for term in self.detuning.get(n - 1).into_iter().flatten() {
+                let sigma = self.detuning.first().and_then(|list| list.get(n - 1));
+                for term in sigma.into_iter().flatten() {
                     let key = (1, 0, false, term.exponents[3..].to_vec());
                     *phase.entry(key).or_default() += Rational::from(&term.re * t);
                 }

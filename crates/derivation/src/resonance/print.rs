@@ -1,9 +1,11 @@
 //! Slow flows as text and as LaTeX: `-1/4*i*F*E + (1/2*i*s - mu)*z + 3/2*i*al*z^2*zbar`.
 
-use super::{PolarTerm, SlowFlow, Terms};
+use super::{Enclosed, PolarTerm, SlowFlow, Terms};
 use lindstedt_coeff::print::{Style, Term, latex_name, parenthesize, power, print_sum};
+use lindstedt_number::ball::Balls;
+use lindstedt_number::digits::decimal;
 use lindstedt_phase::amplitudes::AmplitudeTerm;
-use rug::Rational;
+use rug::{Float, Rational};
 use std::collections::BTreeMap;
 
 /// A name of a factor or an unknown: in LaTeX z_1, \bar z_1, \mu.
@@ -11,6 +13,14 @@ use std::collections::BTreeMap;
 pub fn print_name(name: &str, style: Style) -> String {
     match (style, name.strip_prefix("zbar")) {
         (Style::Text, _) => name.to_owned(),
+        // (1 - 2*omega): a sum of rates.
+        (Style::Latex, None) if name.starts_with('(') => {
+            let inner = name.trim_matches(['(', ')']).split(' ');
+            let product = |word: &str| -> String {
+                word.split('*').map(latex_name).collect::<Vec<_>>().join(r"\,")
+            };
+            format!("({})", inner.map(product).collect::<Vec<_>>().join(" "))
+        }
         (Style::Latex, Some(index)) => format!(r"\bar z{index}"),
         (Style::Latex, None) => latex_name(name),
     }
@@ -60,23 +70,42 @@ impl SlowFlow {
         print_name(&self.problem.small, style)
     }
 
+    /// A coefficient and the factor beside it: of enclosures the sign and the decimal digits.
+    fn coefficient(&self, q: &Rational) -> (Rational, Option<String>) {
+        match self.enclosed {
+            None => (q.clone(), None),
+            Some(_) => (Rational::from(q.cmp0() as i32), Some(self.number(&q.clone().abs()))),
+        }
+    }
+
+    /// A coefficient: a rational number as it is, of enclosures the digits that are certain.
+    #[must_use]
+    pub fn number(&self, q: &Rational) -> String {
+        let Some(Enclosed { radius, digits, .. }) = self.enclosed else { return q.to_string() };
+        let balls = Balls::new(u32::try_from(4 * digits).unwrap_or(u32::MAX / 4) + 64);
+        let error = Float::with_val(64, radius);
+        decimal(&balls.add_error(&balls.from_rational(q), &error), digits)
+            .unwrap_or_else(|| q.to_f64().to_string())
+    }
+
     /// A polynomial in the amplitudes, its terms collected by amplitudes and phase.
     #[must_use]
     pub fn print(&self, terms: &[AmplitudeTerm], style: Style) -> String {
         let names = self.factors();
-        let phases = 2 * self.unknowns() + 1;
+        let phases = self.first_symbol();
         let mut collected: BTreeMap<(i32, Vec<i32>), Vec<Term>> = BTreeMap::new();
         for term in terms {
             let (phase, symbols) = term.exponents.split_at(phases);
-            let degree = phase[..phases - 1].iter().sum();
+            let degree = phase[..2 * self.unknowns()].iter().sum();
             // Words that begin with z come first within a degree.
             let key = (degree, phase.iter().map(|e| -e).collect());
             let symbols = factors(&names[phases..], symbols, style);
             let list = collected.entry(key).or_default();
             for (coefficient, i) in [(&term.re, None), (&term.im, Some("i".to_owned()))] {
                 if !coefficient.is_zero() {
-                    let factors = i.into_iter().chain(symbols.clone()).collect();
-                    list.push(Term { coefficient: coefficient.clone(), factors });
+                    let (coefficient, digits) = self.coefficient(coefficient);
+                    let factors = digits.into_iter().chain(i).chain(symbols.clone()).collect();
+                    list.push(Term { coefficient, factors });
                 }
             }
         }
@@ -93,13 +122,29 @@ impl SlowFlow {
         print_sum(&sum.collect::<Vec<_>>(), style)
     }
 
-    /// eta' = Omega + eps sigma_1 + ...
+    /// Omega_l.
     #[must_use]
-    pub fn print_force(&self, style: Style) -> String {
-        let count = 2 * self.unknowns() + 1;
+    pub fn print_leading_rate(&self, l: usize, style: Style) -> String {
+        print_sum(&self.leading_rate(l, style), style)
+    }
+
+    fn leading_rate(&self, l: usize, style: Style) -> Vec<Term> {
+        let rate = self.system.forces.get(l).map_or(&[][..], |phase| &phase.rate);
+        let names = std::iter::once(None).chain(self.system.independent.iter().map(Some));
+        let term = |(coefficient, name): (&Rational, Option<&String>)| Term {
+            coefficient: coefficient.clone(),
+            factors: name.map(|name| print_name(name, style)).into_iter().collect(),
+        };
+        rate.iter().zip(names).filter(|(q, _)| !q.is_zero()).map(term).collect()
+    }
+
+    /// eta_l' = Omega_l + eps sigma_{l,1} + ...
+    #[must_use]
+    pub fn print_force(&self, l: usize, style: Style) -> String {
+        let count = self.first_symbol();
         let names = &self.factors()[count..];
-        let mut sum = vec![Term { coefficient: self.system.force.clone(), factors: Vec::new() }];
-        for (n, sigma) in self.detuning.iter().enumerate() {
+        let mut sum = self.leading_rate(l, style);
+        for (n, sigma) in self.detuning.get(l).into_iter().flatten().enumerate() {
             for term in sigma {
                 let symbols = factors(names, &term.exponents[count..], style);
                 let small = power(&self.small(style), n as i64 + 1, style);
@@ -110,10 +155,10 @@ impl SlowFlow {
         print_sum(&sum, style)
     }
 
-    /// eta(0); nothing where it is 0.
+    /// eta_l(0); nothing where it is 0.
     #[must_use]
-    pub fn print_start(&self, style: Style) -> Option<String> {
-        let start = &self.system.start;
+    pub fn print_start(&self, l: usize, style: Style) -> Option<String> {
+        let start = &self.system.forces.get(l)?.start;
         let zero = start.as_number().is_some_and(|q| q.is_zero());
         let style = match style {
             Style::Text => lindstedt_equation::print::Style::Text,

@@ -7,7 +7,9 @@
 //! nu and the force's frequency being whole multiples of one frequency. Each of the two motions has its a; at
 //! even and odd ones of Mathieu's equation they are a_m(q) and b_m(q) (DLMF 28.6).
 
+use super::flow::{Symbols, compiled_form};
 use super::forces::divisor;
+use super::modes::modes_refused;
 use super::print::print_powers;
 use super::{Element, Names, ResonanceError, System, Terms};
 use crate::averaging::{AveragingSettings, constant};
@@ -79,14 +81,14 @@ impl SoughtBranch {
 }
 
 /// Parameters by name, one of which is sought.
-struct Symbols<'a>(&'a Amplitudes<Integers>, &'a str);
+struct Seeking<'a>(Symbols<'a, Integers>, &'a str);
 
-impl Binding<Amplitudes<Integers>> for Symbols<'_> {
+impl Binding<Amplitudes<Integers>> for Seeking<'_> {
     fn parameter(&self, name: &str) -> Option<Element> {
-        self.0.symbol(name)
+        self.0.parameter(name)
     }
-    fn formal(&self, _: &str, _: usize) -> Option<Element> {
-        None
+    fn formal(&self, name: &str, n: usize) -> Option<Element> {
+        self.0.formal(name, n)
     }
     fn is_sought(&self, name: &str) -> bool {
         name == self.1
@@ -115,19 +117,28 @@ pub fn sought(
     let amplitude = amplitude.and_then(|a| a.as_rational().cloned()).unwrap_or_else(|| 1.into());
     let cards = |known: &str| value(problem, &given, known).filter(|_| known != name);
     let system = System::of(&[equation], &given, &cards, Names(problem), false)?;
+    if let Some(name) = system.independent.first() {
+        return Err(ResonanceError::Unset { name: name.clone() }.into());
+    }
+    if !system.is_exact() {
+        return Err(modes_refused(&system.squares).into());
+    }
+    if system.forces.len() > 1 {
+        return Err(ResonanceError::SecondPhase { phases: system.forces.len() }.into());
+    }
     let frequency = system.frequencies.first().cloned().unwrap_or_default();
-    let base = divisor(&frequency, &system.force);
+    let base = divisor(&frequency, &system.force());
     let whole = |rate: &Rational| {
         let high = ResonanceError::TooHigh { order: settings.order };
         Rational::from(rate / &base).numer().to_i32().ok_or(high)
     };
-    let (harmonic, step) = (whole(&frequency)?, whole(&system.force)?);
+    let (harmonic, step) = (whole(&frequency)?, whole(&system.force())?);
     let symbols: Vec<String> =
         system.symbols.iter().filter(|known| *known != name).cloned().collect();
     let names: Vec<&str> = symbols.iter().map(String::as_str).collect();
     let algebra = Amplitudes::new(Integers, &system.frequencies, &base, &names);
     let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: names.len() })?;
-    let algebra = algebra.with_step(step.max(1)).with_stop(settings.stop.clone());
+    let algebra = algebra.with_stop(settings.stop.clone());
     let mut found = Sought {
         problem: problem.clone(),
         parameter: name.to_owned(),
@@ -149,7 +160,7 @@ pub fn sought(
     let mut refused = None;
     for sine in [false, true].into_iter().take(if step == 0 { 1 } else { 2 }) {
         let high = ResonanceError::TooHigh { order: settings.order };
-        let [cos, sin] = algebra.wave(harmonic).ok_or(high)?;
+        let [cos, sin] = algebra.wave(0, harmonic).ok_or(high)?;
         let generating = algebra.scale(if sine { &sin } else { &cos }, &amplitude);
         match task.branch(sine, generating, observer) {
             Ok(branch) => found.branches.push(branch),
@@ -208,8 +219,9 @@ impl Task<'_> {
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<SoughtBranch, Error> {
         let (algebra, order) = (self.algebra, self.settings.order);
-        let binding = Symbols(algebra, self.name);
-        let graph = compile_system(algebra, &self.system.equations, &binding, order)?;
+        let symbols = Symbols { algebra, step: self.step.max(1), other: &|_| None };
+        let binding = Seeking(symbols, self.name);
+        let graph = compile_system(algebra, &compiled_form(self.system), &binding, order)?;
         // The phase of the force turns `step` times as fast as that of the algebra.
         let scale = Rational::from((1, self.step.max(1)));
         let sigma = |e: &Expression| {
@@ -217,7 +229,9 @@ impl Task<'_> {
             let sigma = constant(algebra, e, &|name| algebra.symbol(name)).ok_or_else(refused)?;
             Ok::<_, ResonanceError>(algebra.scale(&sigma, &scale))
         };
-        let detuning = self.system.detuning.iter().map(sigma).collect::<Result<Vec<_>, _>>()?;
+        let forces = self.system.forces.iter();
+        let list = |phase: &super::Phase| phase.detuning.iter().map(sigma).collect();
+        let detuning = forces.map(list).collect::<Result<Vec<Vec<_>>, _>>()?;
         let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
         let found = periodic(algebra, &graph, order, &detuning, vec![generating], &mut on_order)?;
         if algebra.overflowed() {

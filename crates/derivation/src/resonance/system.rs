@@ -1,28 +1,29 @@
 //! From the equations of a problem to what is averaged: values put in, modes, the phase of the forces.
 
-use super::forces::{Phase, is_wave, leading_rates, near, phase};
-use super::modes::{Matrix, Spectrum, spectrum};
+use super::forces::{Phase, harmonic, is_internal, is_wave, leading_rates, near, phases};
+use super::modes::{Matrix, Spectrum, inverted, modes_refused, spectrum};
 use super::{Names, ResonanceError};
 use crate::error::DerivationError as Error;
 use lindstedt_equation::monomials::{MOST_TERMS, Monomial, Monomials, expand};
-use lindstedt_equation::{Expression, Unknown};
+use lindstedt_equation::{Expression, Function, Unknown};
 use lindstedt_number::Exact;
 use rug::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What is averaged: x_j'' + nu_j^2 x_j + ... = 0 with forces cos(m Omega t), eta = Omega t + the detuning.
+/// What is averaged: x_j'' + nu_j^2 x_j + ... = 0 with forces cos(m eta_l), eta_l = Omega_l t + the detuning.
 #[derive(Clone, Debug)]
 pub struct System {
     /// The left sides, x_j'' alone; where there are shapes, of the modes.
     pub equations: Vec<Expression>,
-    /// nu_j.
+    /// nu_j; of an irrational one a rational number beside it (within 2^-200).
     pub frequencies: Vec<Rational>,
-    /// Omega; 0 where there is no force.
-    pub force: Rational,
-    /// sigma_1, sigma_2, ... of eta' = Omega + sum eps^n sigma_n.
-    pub detuning: Vec<Expression>,
-    /// eta at t = 0; 0 where no force has a phase.
-    pub start: Expression,
+    /// nu_j^2.
+    pub squares: Vec<Rational>,
+    /// The phases of the forces.
+    pub forces: Vec<Phase>,
+    /// Parameters without a value that the rates of the forces depend on: taken to be independent of one another
+    /// and of all numbers, so that no sum of them is a resonance unless it is one identically.
+    pub independent: Vec<String>,
     /// Names without a value, in the order of printing.
     pub symbols: Vec<String>,
     /// P of x = P q, where the unknowns are no modes.
@@ -122,7 +123,8 @@ fn rational(name: &str, value: &Exact) -> Result<Rational, Error> {
 /// Equations with the values put in and the phases of the forces taken out, and their linear part.
 pub(super) struct Prepared {
     pub equations: Vec<Expression>,
-    pub phase: Phase,
+    pub forces: Vec<Phase>,
+    pub independent: Vec<String>,
     pub mass: Matrix,
     pub stiffness: Matrix,
     pub bound: BTreeMap<String, Rational>,
@@ -160,15 +162,21 @@ impl Prepared {
         // What the frequencies depend on has its value, too.
         let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
         let entries = parts.iter().flat_map(|p| p.mass.values().chain(p.stiffness.values()));
+        let needed: BTreeSet<String> = entries.flat_map(Expression::parameters).collect();
         let rates = leading_rates(&equations, names)?;
-        let needed: BTreeSet<String> =
-            entries.chain(&rates).flat_map(Expression::parameters).collect();
-        for name in needed {
-            let value = cards(&name).ok_or(ResonanceError::Unset { name: name.clone() })?;
-            bound.insert(name.clone(), rational(&name, &value)?);
+        let rates: BTreeSet<String> = rates.iter().flat_map(Expression::parameters).collect();
+        let mut independent = Vec::new();
+        for name in needed.union(&rates) {
+            match cards(name) {
+                Some(value) => drop(bound.insert(name.clone(), rational(name, &value)?)),
+                None if needed.contains(name) => {
+                    return Err(ResonanceError::Unset { name: name.clone() }.into());
+                }
+                None => independent.push(name.clone()),
+            }
         }
         let equations = put_in(&equations, &bound);
-        let (phase, equations) = phase(&equations, names)?;
+        let (forces, equations) = phases(&equations, &independent, names)?;
         let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
         let matrix = |of: &dyn Fn(&Linear) -> &BTreeMap<usize, Expression>| -> Matrix {
             let entry = |p: &Linear, j| of(p).get(&j).and_then(Expression::as_number);
@@ -176,7 +184,7 @@ impl Prepared {
             parts.iter().map(row).collect()
         };
         let (mass, stiffness) = (matrix(&|p| &p.mass), matrix(&|p| &p.stiffness));
-        Ok(Self { equations, phase, mass, stiffness, bound })
+        Ok(Self { equations, forces, independent, mass, stiffness, bound })
     }
 }
 
@@ -191,57 +199,77 @@ impl System {
     ) -> Result<Self, Error> {
         let prepared = Prepared::of(equations, given, cards, names)?;
         let modes = spectrum(&prepared.mass, &prepared.stiffness)?;
-        let frequencies = modes.frequencies()?;
+        let frequencies = modes.frequencies_nearby()?;
+        let squares = modes.squares.clone();
         let equations = separated(&prepared.equations, &modes, names)?;
+        let detunings = prepared.forces.iter().flat_map(|phase| &phase.detuning);
+        let mut symbols = symbols(equations.iter().chain(detunings), names);
+        symbols.retain(|name| !prepared.independent.contains(name));
         let system = Self {
+            equations,
             frequencies,
+            squares,
+            forces: prepared.forces,
+            independent: prepared.independent,
+            symbols,
             shapes: modes.shapes,
             bound: prepared.bound,
-            ..Self::with_phase(equations, prepared.phase, names)
+            beside: None,
         };
-        Ok(if detune { system.detuned() } else { system })
+        if !system.is_exact() && !system.independent.is_empty() {
+            // Nothing says that they are independent of square roots.
+            return Err(modes_refused(&system.squares).into());
+        }
+        Ok(if detune && system.is_exact() { system.detuned() } else { system })
     }
 
-    fn with_phase(equations: Vec<Expression>, phase: Phase, names: Names<'_>) -> Self {
-        let Phase { rate, detuning, start } = phase;
-        let symbols = symbols(equations.iter().chain(&detuning), names);
-        Self {
-            equations,
-            frequencies: Vec::new(),
-            force: rate,
-            detuning,
-            start,
-            symbols,
-            shapes: None,
-            bound: BTreeMap::new(),
-            beside: None,
+    /// Whether all frequencies are rational numbers.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        let square = |nu: &Rational| nu.clone().square();
+        self.frequencies.iter().zip(&self.squares).all(|(nu, known)| square(nu) == *known)
+    }
+
+    /// Omega of the only force, where it is a number; else 0.
+    #[must_use]
+    pub fn force(&self) -> Rational {
+        match &self.forces[..] {
+            [only] => only.number().unwrap_or_default(),
+            _ => Rational::new(),
         }
     }
 
-    /// With the symbol of the detuning where the force is beside a resonance.
+    /// P^-1 of q = P^-1 x, where the unknowns are no modes.
+    #[must_use]
+    pub fn modes(&self) -> Option<Matrix> {
+        self.shapes.as_ref().and_then(inverted)
+    }
+
+    /// The equations with cos m eta_l and sin m eta_l as parameters of the names `of` gives.
+    pub(super) fn with_waves(
+        &self,
+        of: &dyn Fn(Function, usize, i32) -> String,
+    ) -> Vec<Expression> {
+        let named = |e: &Expression| {
+            let (function, l, m) = harmonic(e).filter(|_| is_wave(e))?;
+            Some(Expression::parameter(&of(function, l, m)))
+        };
+        self.equations.iter().map(|e| e.map(&named)).collect()
+    }
+
+    /// With the symbol of the detuning where the only force is beside a resonance.
     fn detuned(mut self) -> Self {
-        let rate = self.force.clone();
+        let rate = self.force();
         let at = (rate > 0).then(|| near(&rate, &self.frequencies)).flatten();
-        let Some(at) = at else { return self };
+        let (Some(at), [phase]) = (at, &mut self.forces[..]) else { return self };
         let free = |name: &&str| !self.symbols.iter().any(|known| known == name);
         let symbol = ["sigma", "detuning", "sigma_0"].into_iter().find(free).unwrap_or("sigma_1");
         self.symbols.push(symbol.to_owned());
-        if self.detuning.is_empty() {
-            self.detuning.push(0.into());
+        if phase.detuning.is_empty() {
+            phase.detuning.push(0.into());
         }
-        self.detuning[0] = (self.detuning[0].clone() + Expression::parameter(symbol)).canonical();
-        // The harmonics m eta keep m.
-        let scale = Rational::from(&at / &rate);
-        let moved = |e: &Expression| {
-            let (Expression::Function(function, angle), true) = (e, is_wave(e)) else {
-                return None;
-            };
-            let angle = Expression::Number(scale.clone()) * (**angle).clone();
-            Some(angle.canonical().apply(*function))
-        };
-        self.equations = self.equations.iter().map(|e| e.map(&moved)).collect();
-        self.start = (Expression::Number(scale.clone()) * self.start).canonical();
-        self.force = at;
+        phase.detuning[0] = (phase.detuning[0].clone() + Expression::parameter(symbol)).canonical();
+        phase.rate[0] = at;
         self.beside = Some(Beside { rate, symbol: symbol.to_owned() });
         self
     }
@@ -252,7 +280,8 @@ pub(super) fn symbols<'a>(
     equations: impl Iterator<Item = &'a Expression>,
     names: Names<'_>,
 ) -> Vec<String> {
-    let used: BTreeSet<String> = equations.flat_map(Expression::parameters).collect();
+    let used = equations.flat_map(Expression::parameters).filter(|name| !is_internal(name));
+    let used: BTreeSet<String> = used.collect();
     let cards = names.0.parameters.iter().map(|card| card.name.to_string());
     let mut symbols: Vec<String> = cards.filter(|name| used.contains(name)).collect();
     let unlisted: Vec<_> = used.into_iter().filter(|name| !symbols.contains(name)).collect();

@@ -1,8 +1,8 @@
 //! The residual of a slow flow: the finished series go back into the equations.
 //!
-//! Nothing is taken from the derivation but f_{j,n}, u_{j,n} and sigma_n, and nothing is split: powers and
+//! Nothing is taken from the derivation but f_{j,n}, u_{j,n} and sigma_{l,n}, and nothing is split: powers and
 //! products are those of truncated series in full, and the time derivative is the vector field
-//! D = sum_j (z_j' d/dz_j + zbar_j' d/dzbar_j) + eta' d/deta with z_j' = i nu_j z_j + sum eps^n f_{j,n}
+//! D = sum_j (z_j' d/dz_j + zbar_j' d/dzbar_j) + sum_l eta_l' d/deta_l with z_j' = i nu_j z_j + sum eps^n f_{j,n}
 //! whole, where the derivation has D_0 as eigenvalues.
 
 use super::SlowFlow;
@@ -11,6 +11,7 @@ use crate::compile::{Equation, Node};
 use crate::residual::polynomial_value;
 use lindstedt_algebra::AmplitudeAlgebra;
 use lindstedt_series::Series;
+use rug::Rational;
 
 /// Substitutes a slow flow into its equations; every order must vanish identically (in a ring of
 /// enclosures: must enclose zero), and x_j - z_j - zbar_j must have no monomial with |lambda| = nu_j.
@@ -24,26 +25,23 @@ pub fn check_flow<A: AmplitudeAlgebra>(
     equation: &Equation<A>,
     found: &SlowFlow<A::Element>,
 ) -> Result<usize, ExpandError> {
+    checked_residual(algebra, equation, found).map(|_| found.order())
+}
+
+/// [`check_flow`], and what the residual is: zeros, or in a ring of enclosures what encloses them.
+///
+/// # Errors
+/// Those of [`check_flow`].
+pub fn checked_residual<A: AmplitudeAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    found: &SlowFlow<A::Element>,
+) -> Result<Vec<A::Element>, ExpandError> {
     let order = found.order();
+    let mut all = Vec::new();
     normalisation(algebra, found)?;
     let judge = Judge::new(algebra, found);
-    let x: Vec<_> = found.solution.iter().map(|x| Series::truncated(x.clone())).collect();
-    let velocity: Vec<_> = x.iter().map(|x| judge.rate(x)).collect();
-    let mut values: Vec<Series<A::Element>> = Vec::new();
-    let sought = Series::truncated(found.parameter.clone());
-    for node in &equation.nodes {
-        let value = match node {
-            Node::Displacement => x[0].clone(),
-            Node::Velocity => velocity[0].clone(),
-            Node::Unknown { index, velocity: false, delay: None } => {
-                x.get(*index).unwrap_or(&sought).clone()
-            }
-            Node::Unknown { index, velocity: true, delay: None } => velocity[*index].clone(),
-            &Node::Forcing(index) => Series::polynomial(vec![equation.forcing[index].clone()]),
-            node => polynomial_value(algebra, node, &values, order).ok_or_else(unsupported)?,
-        };
-        values.push(value);
-    }
+    let (velocity, values) = judge.values(equation, found)?;
     for (velocity, root) in velocity.iter().zip(&equation.roots) {
         let residual = judge.rate(velocity).add(algebra, &values[*root]);
         let broken = |c: &A::Element| !algebra.may_vanish(c);
@@ -53,11 +51,41 @@ pub fn check_flow<A: AmplitudeAlgebra>(
         if residual.known() <= order {
             return Err(ExpandError::Residual { order: residual.known() });
         }
+        all.extend(residual.coefficients);
     }
     if algebra.interrupted() {
         return Err(ExpandError::Interrupted { order });
     }
-    Ok(order)
+    Ok(all)
+}
+
+/// The energy sum_j weights_j x_j'^2/2 + V along a flow, order by order, V being what is left of the first equation of
+/// `potential` without its acceleration. Its rate of change along the flow must vanish identically.
+///
+/// # Errors
+/// [`ExpandError::Residual`] with the first order of the energy that changes; those of [`check_flow`].
+pub fn energy<A: AmplitudeAlgebra>(
+    algebra: &A,
+    potential: &Equation<A>,
+    weights: &[Rational],
+    found: &SlowFlow<A::Element>,
+) -> Result<Vec<A::Element>, ExpandError> {
+    let judge = Judge::new(algebra, found);
+    let (velocity, values) = judge.values(potential, found)?;
+    let mut sum = values[potential.root()].clone();
+    for (weight, velocity) in weights.iter().zip(&velocity) {
+        let square = velocity.mul(algebra, velocity, judge.order);
+        let half = Rational::from(weight / 2);
+        sum = sum.add(algebra, &square.map(|c| algebra.scale(c, &half)));
+    }
+    let rate = judge.rate(&sum);
+    if algebra.interrupted() {
+        return Err(ExpandError::Interrupted { order: judge.order });
+    }
+    match rate.coefficients.iter().position(|c| !algebra.may_vanish(c)) {
+        Some(order) => Err(ExpandError::Residual { order }),
+        None => Ok(sum.coefficients),
+    }
 }
 
 fn unsupported() -> ExpandError {
@@ -87,9 +115,9 @@ fn normalisation<A: AmplitudeAlgebra>(
 struct Judge<'a, A: AmplitudeAlgebra> {
     algebra: &'a A,
     order: usize,
-    /// z_j' and eta'.
+    /// z_j' and eta_l'.
     amplitudes: Vec<Series<A::Element>>,
-    force: Series<A::Element>,
+    forces: Vec<Series<A::Element>>,
 }
 
 impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
@@ -100,15 +128,48 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
             Series::truncated(flow)
         };
         let order = found.order();
-        let mut force = vec![algebra.force_rate()];
-        force.extend(found.detuning.iter().cloned());
-        force.resize(order + 1, algebra.zero());
+        let force = |l: usize| {
+            let mut rate = vec![algebra.force_rate(l)];
+            rate.extend(found.detuning.get(l).into_iter().flatten().cloned());
+            rate.resize(order + 1, algebra.zero());
+            Series::truncated(rate)
+        };
         Self {
             algebra,
             order,
             amplitudes: found.flow.iter().enumerate().map(amplitude).collect(),
-            force: Series::truncated(force),
+            forces: (0..algebra.forces()).map(force).collect(),
         }
+    }
+
+    /// x_j', and the values of the nodes of a graph.
+    #[allow(clippy::type_complexity, reason = "two lists of series")]
+    fn values(
+        &self,
+        equation: &Equation<A>,
+        found: &SlowFlow<A::Element>,
+    ) -> Result<(Vec<Series<A::Element>>, Vec<Series<A::Element>>), ExpandError> {
+        let algebra = self.algebra;
+        let x: Vec<_> = found.solution.iter().map(|x| Series::truncated(x.clone())).collect();
+        let velocity: Vec<_> = x.iter().map(|x| self.rate(x)).collect();
+        let mut values: Vec<Series<A::Element>> = Vec::new();
+        let sought = Series::truncated(found.parameter.clone());
+        for node in &equation.nodes {
+            let value = match node {
+                Node::Displacement => x[0].clone(),
+                Node::Velocity => velocity[0].clone(),
+                Node::Unknown { index, velocity: false, delay: None } => {
+                    x.get(*index).unwrap_or(&sought).clone()
+                }
+                Node::Unknown { index, velocity: true, delay: None } => velocity[*index].clone(),
+                &Node::Forcing(index) => Series::polynomial(vec![equation.forcing[index].clone()]),
+                node => {
+                    polynomial_value(algebra, node, &values, self.order).ok_or_else(unsupported)?
+                }
+            };
+            values.push(value);
+        }
+        Ok((velocity, values))
     }
 
     /// D f for a real series f.
@@ -119,9 +180,11 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
             let slope = f.map(|f| algebra.by_amplitude(f, j));
             along = along.add(algebra, &amplitude.mul(algebra, &slope, self.order));
         }
-        let along = along.map(|c| algebra.twice_real(c));
-        let turn = f.map(|f| algebra.by_force(f));
-        let turned = self.force.mul(algebra, &turn, self.order);
-        Series::truncated(along.add(algebra, &turned).coefficients)
+        let mut along = along.map(|c| algebra.twice_real(c));
+        for (l, force) in self.forces.iter().enumerate() {
+            let turn = f.map(|f| algebra.by_force(f, l));
+            along = along.add(algebra, &force.mul(algebra, &turn, self.order));
+        }
+        Series::truncated(along.coefficients)
     }
 }

@@ -3,10 +3,11 @@
 //!
 //!   x_j'' + nu_j^2 x_j + force_j(eta) + eps F_j(x, x', eta; eps) = 0,   j = 1, ..., M,
 //!   x_j = z_j + zbar_j + the response to force_j + sum eps^n u_{j,n}(z, zbar, e^{i eta}),
-//!   z_j' = i nu_j z_j + sum eps^n f_{j,n}(z, zbar, e^{i eta}),   eta' = Omega + sum eps^n sigma_n,
+//!   z_j' = i nu_j z_j + sum eps^n f_{j,n}(z, zbar, e^{i eta}),   eta_l' = Omega_l + sum eps^n sigma_{l,n},
 //!
-//! so that d/dt = D = sum eps^n D_n with D_0 diagonal on monomials (i lambda) and
-//! D_n f = sum_j (f_{j,n} df/dz_j + conj f_{j,n} df/dzbar_j) + sigma_n df/deta. Order n reads
+//! with the phases eta_1, ..., eta_L of the forces, so that d/dt = D = sum eps^n D_n with D_0 diagonal on
+//! monomials (i lambda) and
+//! D_n f = sum_j (f_{j,n} df/dz_j + conj f_{j,n} df/dzbar_j) + sum_l sigma_{l,n} df/deta_l. Order n reads
 //!
 //!   (D_0^2 + nu_j^2) u_{j,n} + 2 i nu_j f_{j,n} + conj(2 i nu_j f_{j,n}) = g_{j,n},
 //!
@@ -19,7 +20,7 @@
 mod balance;
 mod check;
 
-pub use check::check_flow;
+pub use check::{check_flow, checked_residual, energy};
 
 use balance::Balance;
 
@@ -37,8 +38,8 @@ pub struct SlowFlow<E> {
     pub flow: Vec<Vec<E>>,
     /// x_{j,n} at `[j][n]`: z_j + zbar_j + the response to the force, u_{j,1}, ...
     pub solution: Vec<Vec<E>>,
-    /// sigma_1, sigma_2, ... of eta' = Omega + sum eps^n sigma_n, as it was given.
-    pub detuning: Vec<E>,
+    /// sigma_{l,n} of eta_l' = Omega_l + sum eps^n sigma_{l,n} at `[l][n - 1]`, as it was given.
+    pub detuning: Vec<Vec<E>>,
     /// p_0, p_1, ... of the parameter that was sought, known to the order before the last; see [`periodic`].
     pub parameter: Vec<E>,
     /// The smallest divisor of every order and unknown.
@@ -54,9 +55,9 @@ pub struct Nearest {
     pub order: usize,
     /// The unknown, from 0.
     pub unknown: usize,
-    /// k_1, ..., k_M, m of the harmonic sum_j k_j nu_j + m Omega.
+    /// k_1, ..., k_M, m_1, ..., m_L of the harmonic sum_j k_j nu_j + sum_l m_l Omega_l.
     pub harmonic: Vec<i32>,
-    /// 1 - lambda^2/nu^2.
+    /// 1 - lambda^2/nu^2; over enclosures its middle.
     pub size: Rational,
 }
 
@@ -68,7 +69,7 @@ impl<E> SlowFlow<E> {
 }
 
 /// Derives the slow flow up to an order, for an equation of [`crate::compile_system`] over the same
-/// algebra; `detuning` is sigma_1, sigma_2, ... (real; empty where eta' = Omega); `observer` as in
+/// algebra; `detuning[l]` is sigma_{l,1}, sigma_{l,2}, ... (real; empty where eta_l' = Omega_l); `observer` as in
 /// [`crate::expand`], false ends the derivation with the orders found so far.
 ///
 /// Exact over exact coefficients; over balls every coefficient is an enclosure. Cost: O(N^2) products of
@@ -110,7 +111,7 @@ pub fn resonant<A: AmplitudeAlgebra>(
     algebra: &A,
     equation: &Equation<A>,
     order: usize,
-    detuning: &[A::Element],
+    detuning: &[Vec<A::Element>],
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<SlowFlow<A::Element>, ExpandError> {
     let generating = |j| algebra.twice_real(&algebra.amplitude(j));
@@ -132,7 +133,7 @@ pub fn periodic<A: AmplitudeAlgebra>(
     algebra: &A,
     equation: &Equation<A>,
     order: usize,
-    detuning: &[A::Element],
+    detuning: &[Vec<A::Element>],
     generating: Vec<A::Element>,
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<SlowFlow<A::Element>, ExpandError> {
@@ -144,7 +145,7 @@ pub fn periodic<A: AmplitudeAlgebra>(
 struct Resonant<'a, A: AmplitudeAlgebra> {
     algebra: &'a A,
     evaluator: Evaluator<'a, A>,
-    detuning: &'a [A::Element],
+    detuning: &'a [Vec<A::Element>],
     /// f_{j,n}, x_{j,n} and order n of x_j'.
     flow: Vec<Vec<A::Element>>,
     x: Vec<Vec<A::Element>>,
@@ -211,7 +212,7 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
     fn start(
         algebra: &'a A,
         equation: &'a Equation<A>,
-        detuning: &'a [A::Element],
+        detuning: &'a [Vec<A::Element>],
         generating: Vec<A::Element>,
     ) -> Result<Self, ExpandError> {
         let unknowns = equation.roots.len();
@@ -267,9 +268,9 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
             for (j, root) in roots.iter().enumerate() {
                 let expected = match j == index && !velocity {
                     true => algebra.frequency_squared(j),
-                    false => Rational::new(),
+                    false => algebra.zero(),
                 };
-                let gap = algebra.sub(&tangents[*root][0], &algebra.rational(&expected));
+                let gap = algebra.sub(&tangents[*root][0], &expected);
                 if !algebra.may_vanish(&gap) {
                     return Err(ExpandError::NotTheFrequency { unknown: j });
                 }
@@ -314,8 +315,10 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
                     slopes.push((flow, algebra.by_amplitude(f, j)));
                 }
             }
-            if let Some(sigma) = self.detuning.get(k - 1) {
-                turns.push((sigma, algebra.by_force(f)));
+            for (l, sigmas) in self.detuning.iter().enumerate() {
+                if let Some(sigma) = sigmas.get(k - 1) {
+                    turns.push((sigma, algebra.by_force(f, l)));
+                }
             }
         }
         let along = |list: &[(&A::Element, A::Element)]| {

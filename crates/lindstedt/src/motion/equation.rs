@@ -130,8 +130,8 @@ fn embedded(equation: &Expression) -> Expression {
 }
 
 /// The equation with cos(omega t) for cos(omega t + p) and the same for sin: the period of a force
-/// does not depend on its phase.
-pub(super) fn without_phases(e: &Expression) -> Expression {
+/// does not depend on its phase. With a name the small parameter stands by it, so that a rate may contain it.
+pub(super) fn without_phases(e: &Expression, small: Option<&str>) -> Expression {
     let out = |e: Expression| {
         let e = e.canonical();
         e.multiplied_out().unwrap_or(e).canonical()
@@ -144,7 +144,11 @@ pub(super) fn without_phases(e: &Expression) -> Expression {
         (driven && bend == Expression::integer(0))
             .then(|| (out(at(1) - at(0)) * Expression::Time).apply(*function))
     };
-    e.map(&plain)
+    let named = |e: &Expression| match e {
+        Expression::Small => small.map(Expression::parameter),
+        _ => None,
+    };
+    e.map(&named).map(&plain)
 }
 
 fn is_state(e: &Expression) -> bool {

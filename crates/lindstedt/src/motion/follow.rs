@@ -28,6 +28,14 @@ pub(crate) struct Reading {
     pub harmonics: Option<Vec<[f64; 2]>>,
 }
 
+/// What is read off a motion.
+pub(crate) struct Harmonics {
+    /// k_j.
+    pub turns: Vec<Rational>,
+    /// P^-1 of q = P^-1 x, of which the harmonics are; nothing where q is x.
+    pub modes: Option<Vec<Vec<f64>>>,
+}
+
 /// How the period of a response is sampled.
 struct Sampling {
     /// p_j.
@@ -60,17 +68,18 @@ impl Oscillator {
     pub(crate) fn followed(
         &self,
         axis: &Axis,
-        turns: &[Rational],
+        wanted: &Harmonics,
         work: &Work,
     ) -> Result<[Vec<Reading>; 2], Error> {
-        let setup = set_up(self, &Start::default(), true, precomputed(work))?;
+        let mut setup = set_up(self, &Start::default(), true, precomputed(work))?;
+        setup.take_detuned()?;
         let usage = |message: String| Refused::usage("follow", message, "lindstedt simulate");
         if !setup.sweepable.contains(&axis.name) {
             return Err(usage(format!("{} cannot be varied in time", axis.name)).into());
         }
         let forcing = setup.forcing_at(axis)?.map(|period| period.float(64).to_f64());
         let forcing = forcing.ok_or_else(|| usage("no force with one period".to_owned()))?;
-        let Sampling { harmonics, count, part, periods } = Sampling::of(turns);
+        let Sampling { harmonics, count, part, periods } = Sampling::of(&wanted.turns);
         let mut found = [Vec::new(), Vec::new()];
         let mut start: Vec<f64> = setup.flow.states().map(|x| x.float(64).to_f64()).collect();
         for (k, list) in found.iter_mut().enumerate() {
@@ -110,7 +119,8 @@ impl Oscillator {
                     if let Some(last) = points.as_ref().and_then(|points| points.last()) {
                         start.clone_from(&last.state);
                     }
-                    let harmonics = points.map(|points| read(&points, &harmonics));
+                    let modes = wanted.modes.as_deref();
+                    let harmonics = points.map(|points| read(&points, &harmonics, modes));
                     list.push(Reading { value: values[column.index].clone(), harmonics });
                     flow(work.goes_on(Progress::Parts(k * all + list.len(), 2 * all)))
                 },
@@ -124,13 +134,20 @@ impl Oscillator {
 }
 
 /// The harmonics of the points of one period, the last of them at its end.
-fn read(points: &[Point<f64>], harmonics: &[f64]) -> Vec<[f64; 2]> {
+fn read(points: &[Point<f64>], harmonics: &[f64], modes: Option<&[Vec<f64>]>) -> Vec<[f64; 2]> {
     let n = points.len() as f64;
+    let unknown = |point: &Point<f64>, i: usize| point.state.get(2 * i).copied();
+    let mode = |point: &Point<f64>, j: usize| match modes {
+        None => unknown(point, j),
+        Some(rows) => {
+            rows.get(j)?.iter().enumerate().map(|(i, p)| Some(p * unknown(point, i)?)).sum()
+        }
+    };
     let harmonic = |(j, p): (usize, &f64)| {
         let mut sum = [0.0, 0.0];
         for (m, point) in (1..).zip(points) {
             let angle = TAU * p * f64::from(m) / n;
-            let x = point.state.get(2 * j).copied().unwrap_or(f64::NAN);
+            let x = mode(point, j).unwrap_or(f64::NAN);
             sum = [sum[0] + x * angle.cos(), sum[1] - x * angle.sin()];
         }
         sum.map(|s| 2.0 * s / n)

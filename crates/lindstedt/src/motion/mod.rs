@@ -23,7 +23,7 @@ mod several;
 pub use answer::{Begin, Event, LinearRegime, Motion, Points, Rest, State, Steps};
 pub use chaos::{Chaos, Diagnosis, Exponent, Test, ZeroOneTest};
 pub use diagram::{Bifurcation, Column, Diagram, Journal, Swept};
-pub(crate) use follow::Reading;
+pub(crate) use follow::{Harmonics, Reading};
 pub use lindstedt_impact::parameters::Branch;
 pub use lindstedt_simulate::{Cut as Section, Dot};
 

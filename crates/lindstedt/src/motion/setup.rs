@@ -34,6 +34,8 @@ pub(super) struct Setup {
     pub history: Option<&'static str>,
     /// The frequency of the force in the parameters.
     pub frequency: Option<Expression>,
+    /// The same where it contains the small parameter, by its name.
+    pub detuned: Option<Expression>,
     /// The name of the small parameter.
     pub small: String,
     /// A wall bounds the motion.
@@ -80,6 +82,17 @@ impl Setup {
         };
         let begin = case.begin(start, swept)?;
         case.finished(begin, at)
+    }
+
+    /// Takes a force whose frequency contains the small parameter for one of that period.
+    pub fn take_detuned(&mut self) -> Result<(), Error> {
+        if let (None, Some(frequency)) = (&self.frequency, self.detuned.take()) {
+            let parameters = &self.flow.parameters;
+            let evaluator = Evaluator { parameters, small: &self.small, bits: 64 };
+            self.flow.forcing = evaluator.period(&frequency)?.map(Quantity::Float);
+            self.frequency = Some(frequency);
+        }
+        Ok(())
     }
 
     /// The period of the force; where what varies determines it, at the first value.
@@ -297,8 +310,10 @@ impl Case<'_> {
     }
 
     fn finished(mut self, begin: Begin, at: Vec<(String, String)>) -> Result<Setup, Error> {
-        let force = Excitation::of(&without_phases(&self.equation)).ok();
-        let frequency = force.and_then(|force| force.frequency);
+        let of = |small: Option<&str>| {
+            Excitation::of(&without_phases(&self.equation, small)).ok()?.frequency
+        };
+        let (frequency, detuned) = (of(None), of(Some(&self.small)));
         let forcing = match &frequency {
             Some(frequency) => self.evaluator().period(frequency)?.map(Quantity::Float),
             None => None,
@@ -336,6 +351,7 @@ impl Case<'_> {
             linear: !wall && is_linear(&self.equation),
             // The frequency of the force is held on the orbit.
             frequency: frequency.filter(|_| self.orbit.is_none()),
+            detuned,
             sweepable,
             small: self.small,
             orbit: self.orbit,

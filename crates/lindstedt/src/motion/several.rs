@@ -41,7 +41,7 @@ pub(super) fn several(oscillator: &Oscillator, start: &Start) -> Result<Setup, E
     });
     let others = state.split_off(2);
     let [x, v] = <[Quantity; 2]>::try_from(state).map_err(|_| Error::NoValue)?;
-    let frequency = frequency(&problem);
+    let [frequency, detuned] = [None, Some(&*small)].map(|small| frequency(&problem, small));
     let evaluator = Evaluator { parameters: &parameters, small: &small, bits: 256 };
     let period = frequency.as_ref().map(|frequency| evaluator.period(frequency)).transpose()?;
     let mut mentioned: Vec<String> = problem.equations().flat_map(|e| e.parameters()).collect();
@@ -53,6 +53,7 @@ pub(super) fn several(oscillator: &Oscillator, start: &Start) -> Result<Setup, E
         chosen,
         history: None,
         frequency,
+        detuned,
         wall: false,
         linear: false,
         orbit: None,
@@ -94,8 +95,8 @@ fn state(
 }
 
 /// The frequency of the forces, where all have the same.
-fn frequency(problem: &Problem) -> Option<Expression> {
-    let of = |e: &Expression| Excitation::of(&without_phases(e)).ok()?.frequency;
+fn frequency(problem: &Problem, small: Option<&str>) -> Option<Expression> {
+    let of = |e: &Expression| Excitation::of(&without_phases(e, small)).ok()?.frequency;
     let mut found = problem.equations().filter_map(of);
     let first = found.next()?;
     found.all(|other| other == first).then_some(first)

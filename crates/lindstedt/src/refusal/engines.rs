@@ -56,11 +56,14 @@ impl Refusal for ExpandError {
 impl Refusal for ResonanceError {
     fn parts(&self) -> (Kind, &'static str, String) {
         let (kind, code, hint) = match self {
-            Self::SecondPhase => (
+            Self::SecondPhase { .. } => (
                 NoAnswer,
                 "second-phase",
                 "forces are cos(m*omega*t) of one omega, detuned together: cos(m*(1 + eps*sigma)*t)",
             ),
+            Self::UndecidedDivisor { .. } => {
+                (Undecided, "undecided", "more digits (--digits), or a frequency as a fraction")
+            }
             Self::NotAForce { .. } | Self::Acceleration { .. } | Self::Delay { .. } => {
                 (NoAnswer, "no-method", "`lindstedt simulate` takes it")
             }

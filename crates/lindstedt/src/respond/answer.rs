@@ -134,6 +134,10 @@ pub struct State {
     pub stable: Option<bool>,
     /// The Floquet exponents per unit of t, to the order kept.
     pub exponents: Vec<[Estimate; 2]>,
+    /// Where the force leaves one phase free: the rates by which the frequencies of the unknowns differ from those of the
+    /// frame. The free phase is chosen so that one phi_j is 0; there is no exponent along it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub drift: Vec<Estimate>,
     /// Re w_1, Im w_1, ...
     #[serde(skip)]
     pub(crate) at: Vec<f64>,

@@ -21,7 +21,7 @@ pub(super) fn forcing_frequency(
     let beside = |value: &Rational| {
         let with = case.clone().with(&axis.name, Exact::Rational(value.clone()));
         let system = with.slow_flow(1, work).ok()?.value.system;
-        Some((system.force, system.beside?))
+        Some((system.force(), system.beside?))
     };
     let stride = axis.values.len().div_ceil(LOOKED_AT).max(1);
     let ends = axis.values.iter().step_by(stride).chain(axis.values.last());

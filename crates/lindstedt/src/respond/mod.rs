@@ -1,6 +1,7 @@
 //! The question `respond`: steady states at resonance, response curves, folds, stability.
 
 mod answer;
+mod free;
 mod frequency;
 mod shown;
 mod subject;
@@ -131,11 +132,21 @@ impl Oscillator {
             )));
         }
         let combination = subject.rotating.combination.as_ref();
+        let counted = subject.rotating.free.is_some() && question.sweep.is_none();
         if let Some(modes) = combination {
             let names: Vec<_> = modes.iter().map(|j| value.coordinates[*j].as_str()).collect();
+            let rest = match counted {
+                true => {
+                    "the other turns freely, in every state with rates of its own; their frequencies differ by these from \
+                     those of the frame"
+                }
+                false => {
+                    "their amplitudes may be steady in other frames than this one; such motions are not among the states \
+                     (`simulate` shows them)"
+                }
+            };
             remarks.push(Remark(format!(
-                "combination resonance of {}: the force fixes one combination of their phases, and their amplitudes may be \
-                 steady in other frames than this one; such motions are not among the states (`simulate` shows them)",
+                "combination resonance of {}: the force fixes one combination of their phases, and {rest}",
                 names.join(", ")
             )));
         } else if subject.rotating.fixed < subject.rotating.turns.len() {
@@ -149,7 +160,7 @@ impl Oscillator {
         }
         let standing = match question.sweep {
             _ if work.stop.asked() => Standing::Stopped { done: value.branches.len() },
-            None if undecided > 0 || combination.is_some() => Standing::Undecided,
+            None if undecided > 0 || (combination.is_some() && !counted) => Standing::Undecided,
             _ => Standing::Complete,
         };
         let header = self.header(subject.shown_values(), Some(subject.order), "exact", start);
@@ -166,8 +177,11 @@ impl Subject<'_> {
         let found = steady::all_zeros(&system, &self.region(reach), &self.limits(reach));
         let found = found.ok_or_else(not_determined)?;
         let mut response = self.empty(reach, complete);
-        let states = self.shown_states(None, &system, &found);
-        response.states.push(states.ok_or(Error::NoValue)?);
+        let mut states = self.shown_states(None, &system, &found).ok_or(Error::NoValue)?;
+        if let Some(free) = &self.rotating.free {
+            self.with_free_phase(free, reach, &system, &mut states)?;
+        }
+        response.states.push(states);
         Ok(response)
     }
 
@@ -257,7 +271,8 @@ impl Subject<'_> {
     /// The equation itself along the values.
     fn followed(&self, axis: &Axis) -> Result<[Vec<Reading>; 2], Error> {
         let values = axis.every(MOST_FOLLOWED);
-        let found = self.in_time()?.followed(&values, &self.rotating.turns, self.work)?;
+        let (oscillator, harmonics) = self.in_time()?;
+        let found = oscillator.followed(&values, &harmonics, self.work)?;
         let reading = |found: &crate::motion::Reading| {
             let number = |value| Estimate { value };
             let polar = |part: &dyn Fn(&[f64; 2]) -> f64| {

@@ -11,7 +11,7 @@ use lindstedt_orbit::steady::{self, Found, Located, System, Zero};
 use rug::Rational;
 
 /// Bits of enclosures of states, which doubles bound.
-const BITS: u32 = 80;
+pub(super) const BITS: u32 = 80;
 /// Digits of them at most.
 const DIGITS: usize = 15;
 
@@ -20,7 +20,7 @@ impl Subject<'_> {
     pub(super) fn shown_value(&self, value: f64) -> f64 {
         match (&self.factor, &self.small) {
             (Some(factor), Some(small)) => {
-                factor.to_f64() * (self.slow.system.force.to_f64() + small.to_f64() * value)
+                factor.to_f64() * (self.slow.system.force().to_f64() + small.to_f64() * value)
             }
             _ => value,
         }
@@ -62,7 +62,7 @@ impl Subject<'_> {
         let mut shown = real(value);
         if let (Some(factor), Some(small)) = (&self.factor, &self.small) {
             let number = |q: &Rational| Certified::from_rational(Balls::new(BITS), q);
-            shown = (shown * number(small) + number(&self.slow.system.force)) * number(factor);
+            shown = (shown * number(small) + number(&self.slow.system.force())) * number(factor);
         }
         proved(&shown)
     }
@@ -80,7 +80,8 @@ impl Subject<'_> {
             let (amplitudes, phases) = polar?.into_iter().unzip();
             let stable = self.is_stable(&point);
             let exponents = self.exponents(&point);
-            list.push(State { amplitudes, phases, stable, exponents, at: point.at });
+            let drift = Vec::new();
+            list.push(State { amplitudes, phases, stable, exponents, drift, at: point.at });
         }
         let size = |state: &State| state.at.iter().map(|x| x * x).sum::<f64>();
         list.sort_by(|a, b| size(b).total_cmp(&size(a)).then(b.at[0].total_cmp(&a.at[0])));
@@ -98,7 +99,7 @@ impl Subject<'_> {
     fn shown_sample(&self, value: &Exact) -> Option<Number> {
         let exact = match (value.as_rational(), &self.factor, &self.small) {
             (Some(q), Some(factor), Some(small)) => {
-                let rate = Rational::from(q * small) + &self.slow.system.force;
+                let rate = Rational::from(q * small) + self.slow.system.force();
                 Exact::Rational(rate * factor)
             }
             _ => value.clone(),
@@ -128,12 +129,12 @@ impl Subject<'_> {
     }
 }
 
-fn real(x: Interval) -> Certified {
+pub(super) fn real(x: Interval) -> Certified {
     Certified::new(Balls::new(BITS), x.ball())
 }
 
 /// Nothing of what is not bounded.
-fn proved(x: &Certified) -> Option<Number> {
+pub(super) fn proved(x: &Certified) -> Option<Number> {
     Some(Number::of_ball(x.ball(), DIGITS)?.weaken(Status::Proved))
 }
 
@@ -143,7 +144,7 @@ fn amplitude(w: &[Interval]) -> Option<Number> {
 }
 
 /// 2 |w| and the angle of an enclosed w.
-fn polar(w: &[Interval]) -> Option<(Number, Option<Number>)> {
+pub(super) fn polar(w: &[Interval]) -> Option<(Number, Option<Number>)> {
     let (re, im) = (real(w[0]), real(w[1]));
     let square = re.square() + im.square();
     // About the negative axis the principal value jumps: there it is taken from the opposite direction.

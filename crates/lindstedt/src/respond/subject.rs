@@ -4,9 +4,11 @@ use super::answer::{Estimate, Response};
 use super::frequency::forcing_frequency;
 use super::{ORDER, Respond, SEARCHES};
 use crate::grid::Axis;
+use crate::motion::Harmonics;
 use crate::refusal::Refused;
 use crate::{DerivationError, Error, Exact, Oscillator, SlowFlow, Work};
-use lindstedt_evaluation::rotating::{Rotating, forced_part, rotating};
+use lindstedt_equation::Expression;
+use lindstedt_evaluation::rotating::{NoFrame, Rotating, forced_part, rotating};
 use lindstedt_number::interval::Interval;
 use lindstedt_orbit::steady::{self, Course, Limits, System, all_zeros, bound, follow};
 use rug::Rational;
@@ -59,7 +61,10 @@ impl<'a> Subject<'a> {
         let asked = |case: &Oscillator| Ok::<_, Error>(case.slow_flow(order, work)?.value);
         let mut slow = asked(&case);
         let mut factor = None;
-        let open = |slow: &SlowFlow, name: &String| slow.system.symbols.contains(name);
+        let independent = |slow: &SlowFlow, name: &String| slow.system.independent.contains(name);
+        let open = |slow: &SlowFlow, name: &String| {
+            slow.system.symbols.contains(name) && !independent(slow, name)
+        };
         if let Some(axis) = &question.sweep
             && axis.name != small
             && !slow.as_ref().is_ok_and(|slow| open(slow, &axis.name))
@@ -70,12 +75,11 @@ impl<'a> Subject<'a> {
                 factor = Some(ratio);
                 swept[0] = Some(symbol);
                 slow = asked(&case.clone().with(name, value));
-            } else if slow.is_ok() {
-                return Err(no_part(name));
+            } else if let Ok(slow) = &slow {
+                let rate = independent(slow, name);
+                return Err(if rate { no_resonance(name) } else { no_part(name) });
             } else if slow.as_ref().is_err_and(|error| is_unset(error, name)) {
-                let message = format!("no value of {name} lies within a tenth of a resonance");
-                let hint = "a range about a resonance, or the detuning as a parameter of its own";
-                return Err(Refused::no_answer("no-response", message, hint).into());
+                return Err(no_resonance(name));
             }
         }
         let slow = slow.map_err(|error| not_weak(oscillator, error))?;
@@ -84,12 +88,10 @@ impl<'a> Subject<'a> {
         {
             return Err(no_part(name));
         }
-        let rotating = rotating(&slow, &small, order).ok_or_else(no_force)?;
+        has_numbers(oscillator, &slow)?;
+        let rotating = rotating(&slow, &small, order).map_err(no_frame)?;
         if rotating.fixed == 0 {
-            let message =
-                format!("up to order {order} no resonance couples the force to an amplitude");
-            let hint = "a frequency nearer to a resonance (or the detuning as a parameter), a higher --order";
-            return Err(Refused::no_answer("no-response", message, hint).into());
+            return Err(uncoupled(order));
         }
         let value = oscillator.value(&small).filter(|_| !swept.contains(&Some(small.clone())));
         let small = value.as_ref().and_then(Exact::as_rational).cloned();
@@ -133,7 +135,7 @@ impl<'a> Subject<'a> {
         let small = &self.oscillator.problem().small;
         let detuning = |name: &str| {
             let beside = self.slow.system.beside.as_ref().filter(|it| it.symbol == name)?;
-            let away = Rational::from(&beside.rate - &self.slow.system.force);
+            let away = &beside.rate - self.slow.system.force();
             Some(Exact::Rational(away / self.small.as_ref()?))
         };
         let place = |name: &String| self.swept.iter().position(|it| it.as_ref() == Some(name));
@@ -182,7 +184,7 @@ impl<'a> Subject<'a> {
         let small = self.small.as_ref().ok_or_else(unset)?;
         let detuning = |value: Exact| {
             let rate = Rational::from(value.as_rational()? / factor);
-            Some(Exact::Rational((rate - &self.slow.system.force) / small))
+            Some(Exact::Rational((rate - self.slow.system.force()) / small))
         };
         values.map(|value| detuning(value).ok_or(Error::NoValue)).collect()
     }
@@ -199,7 +201,7 @@ impl<'a> Subject<'a> {
             Some(amplitude) => whole.map_or(amplitude / 2.0, |r| (ROOM * r).min(amplitude / 2.0)),
             None => {
                 let small = self.oscillator.problem().small.to_string();
-                let first = rotating(&self.slow, &small, 1).ok_or_else(no_force)?;
+                let first = rotating(&self.slow, &small, 1).map_err(no_frame)?;
                 let bound = largest(&first.flow).ok_or_else(|| {
                     let message = "no bound of the steady states follows from the first order";
                     Refused::undecided("box", message, "--box AMPLITUDE says how far to look")
@@ -222,7 +224,7 @@ impl<'a> Subject<'a> {
         Response {
             parameter: None,
             coordinates: self.slow.coordinates(),
-            turns: self.rotating.turns.iter().map(ToString::to_string).collect(),
+            turns: self.rotating.turns.iter().map(|turn| listed(turn)).collect(),
             amplitude_limit: Estimate { value: 2.0 * reach },
             complete,
             branches: Vec::new(),
@@ -240,13 +242,16 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// The oscillator, where its unknowns are those of the slow flow.
-    pub(super) fn in_time(&self) -> Result<&Oscillator, Error> {
-        if self.slow.system.shapes.is_none() {
-            return Ok(self.oscillator);
+    /// The oscillator, and the harmonics of its motion that are those of the slow flow, of a single force.
+    pub(super) fn in_time(&self) -> Result<(&Oscillator, Harmonics), Error> {
+        if self.slow.forces() > 1 {
+            let message = "several phases of forces have no period in common";
+            return Err(Refused::usage("follow", message, "lindstedt simulate").into());
         }
-        let message = "the states are those of modes, the motion that of the unknowns";
-        Err(Refused::usage("follow", message, "lindstedt simulate --sweep ... --follow").into())
+        let turns = self.rotating.turns.iter().flatten().cloned().collect();
+        let row = |row: &Vec<Rational>| row.iter().map(Rational::to_f64).collect();
+        let modes = self.slow.system.modes().map(|rows| rows.iter().map(row).collect());
+        Ok((self.oscillator, Harmonics { turns, modes }))
     }
 
     /// w of a start state: z to leading order.
@@ -263,19 +268,25 @@ impl<'a> Subject<'a> {
         w.chunks_exact(2).map(|w| Estimate { value: 2.0 * w[0].hypot(w[1]) }).collect()
     }
 
-    /// Exponents per unit of t.
-    pub(super) fn exponents(&self, point: &steady::Point) -> Vec<[Estimate; 2]> {
-        let small = match &self.small {
+    /// The small parameter at a point: rates per unit of t.
+    pub(super) fn rate(&self, point: &steady::Point) -> f64 {
+        match &self.small {
             Some(small) => small.to_f64(),
             None => point.at.last().copied().unwrap_or(1.0),
-        };
+        }
+    }
+
+    /// Exponents per unit of t.
+    pub(super) fn exponents(&self, point: &steady::Point) -> Vec<[Estimate; 2]> {
+        let small = self.rate(point);
         let scaled = |x: f64| Estimate { value: small * x };
         point.exponents.iter().map(|x| [scaled(x.re), scaled(x.im)]).collect()
     }
 
     /// Whether eta is not 0 at t = 0.
     pub(super) fn has_phase(&self) -> bool {
-        self.slow.system.start.as_number().is_none_or(|start| !start.is_zero())
+        let moved = |start: &Expression| start.as_number().is_none_or(|start| !start.is_zero());
+        self.slow.system.forces.iter().any(|phase| moved(&phase.start))
     }
 
     pub(super) fn runs_backwards(&self) -> bool {
@@ -325,10 +336,49 @@ fn is_unset(error: &Error, name: &str) -> bool {
     error.code() == "no-value-set" && error.to_string().contains(name)
 }
 
-fn no_force() -> Error {
-    let message = "without a force there is no response: the phase of a steady state is free";
-    let hint = "`lindstedt evaluate` has the periodic motions, `derive --normalisation free` their slow flow";
+fn no_frame(why: NoFrame) -> Error {
+    let (message, hint) = match why {
+        NoFrame::NoForce => (
+            "without a force there is no response: the phase of a steady state is free",
+            "`lindstedt evaluate` has the periodic motions, `derive --normalisation free` their slow flow",
+        ),
+        _ => (
+            "forces of different detunings act on the same amplitudes: these are steady in no frame, they beat",
+            "`lindstedt simulate` shows the motion, `derive --normalisation free` the slow flow",
+        ),
+    };
     Refused::no_answer("no-response", message, hint).into()
+}
+
+/// Refuses a slow flow whose frequencies are no rational numbers.
+fn has_numbers(oscillator: &Oscillator, slow: &SlowFlow) -> Result<(), Error> {
+    if slow.enclosed.is_some() {
+        let message =
+            "a frequency is irrational: states are proved of slow flows with exact coefficients";
+        let hint = "`derive` has the flow, `lindstedt simulate` the motion";
+        return Err(Refused::no_answer("no-rational-modes", message, hint).into());
+    }
+    let Some(name) = slow.system.independent.first() else { return Ok(()) };
+    let problem = oscillator.problem().name.to_string();
+    Err(DerivationError::Unset { problem, name: name.clone() }.into())
+}
+
+fn uncoupled(order: usize) -> Error {
+    let message = format!("up to order {order} no resonance couples the force to an amplitude");
+    let hint =
+        "a frequency nearer to a resonance (or the detuning as a parameter), a higher --order";
+    Refused::no_answer("no-response", message, hint).into()
+}
+
+fn no_resonance(name: &str) -> Error {
+    let message = format!("no value of {name} lies within a tenth of a resonance");
+    let hint = "a range about a resonance, or the detuning as a parameter of its own";
+    Refused::no_answer("no-response", message, hint).into()
+}
+
+/// k_1, k_2, ...
+fn listed(turn: &[Rational]) -> String {
+    turn.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 fn no_part(name: &str) -> Error {

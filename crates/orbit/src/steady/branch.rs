@@ -71,7 +71,7 @@ pub fn state_at(system: &System, at: &[f64]) -> Point {
 }
 
 /// The eigenvalues of a row-major matrix.
-fn eigenvalues(n: usize, rows: &[f64]) -> Vec<Complex<f64>> {
+pub(super) fn eigenvalues(n: usize, rows: &[f64]) -> Vec<Complex<f64>> {
     if let ([a, b, c, d], 2) = (rows, n) {
         let (half, gap) = (0.5 * (a + d), 0.5 * (a - d));
         let square = gap * gap + b * c;

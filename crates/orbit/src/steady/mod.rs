@@ -7,6 +7,7 @@
 //!   too ([`Survey`]).
 //! * Folds, Hopf points, cusps, Bogdanov-Takens points: zeros of larger polynomial systems, proved by the same test
 //!   ([`Flow::change_near`]); their curves over two parameters ([`Plane`]).
+//! * Motions that are steady but for a phase that the flow leaves free ([`FreePhase`]).
 //! * Where a start state goes ([`settle`]).
 //!
 //! ```
@@ -35,6 +36,7 @@ mod flow;
 mod krawczyk;
 mod plane;
 mod polynomial;
+mod relative;
 mod search;
 mod settle;
 mod survey;
@@ -46,6 +48,7 @@ pub use flow::{Change, ComplexTerm, Flow};
 pub use krawczyk::{Region, Zero, zero_near};
 pub use plane::{Curve, Diagram, Plane};
 pub use polynomial::{Polynomial, System};
+pub use relative::FreePhase;
 pub use search::{Found, Limits, all_zeros, bound};
 pub use settle::{Fate, settle};
 pub use survey::{Located, Response, Survey};

@@ -106,6 +106,9 @@ fn modulus(region: &[Interval]) -> Interval {
     Interval::new(low.sqrt().next_down().max(0.0), high.sqrt().next_up())
 }
 
+/// What a zero found in doubles may be beside the box that has it.
+const ROUNDING: f64 = 1e-13;
+
 struct Search<'a> {
     system: &'a System,
     limits: &'a Limits,
@@ -180,12 +183,17 @@ impl Search<'_> {
     /// Looks for a zero from the middle of a box, for one on its boundary, which no subdivision isolates.
     fn centre(&mut self, part: &[Interval]) {
         let Some(at) = newton(self.system, &middle(part)) else { return };
-        let near = |(x, side): (&f64, &Interval)| (x - side.middle()).abs() <= 0.6 * side.width();
+        // A linear equation alone leaves a side of the width of rounding, within which nothing is proved.
+        let rounding = |x: &f64| ROUNDING * (1.0 + x.abs());
+        let near = |(x, side): (&f64, &Interval)| {
+            (x - side.middle()).abs() <= 0.6 * side.width() + rounding(x)
+        };
         let known = |zero: &Zero| zero.unique_within.iter().zip(&at).all(|(x, a)| x.contains(*a));
         if !at.iter().zip(part).all(near) || self.zeros.iter().any(known) {
             return;
         }
-        let widths: Vec<f64> = part.iter().map(|x| 1.2 * x.width()).collect();
+        let width = |(x, side): (&f64, &Interval)| 1.2 * side.width() + 4.0 * rounding(x);
+        let widths: Vec<f64> = at.iter().zip(part).map(width).collect();
         if let Some(zero) = zero_near(self.system, &at, &widths) {
             self.keep(zero);
         }

@@ -347,3 +347,52 @@ fn zeros_beside_the_largest_modulus() {
     // All zeros lie within the bound in modulus, not in both parts alone.
     assert!((1.0..3.0).contains(&bound(&system).unwrap()));
 }
+
+/// w_1' = -(mu + i s) w_1 + i h conj w_2 + i w_1^2 conj w_1, w_2' = -mu w_2 + i h conj w_1 is the same for w_1 e^{i theta},
+/// w_2 e^{-i theta}. By hand, with w_1 = a and w_2 = a y: Im y = mu/h, |y| = 1, a^2 = s - 2 h Re y.
+#[test]
+fn steady_but_for_a_phase() {
+    let [mu, s, h] = [(1, 10), (1, 1), (1, 4)].map(Rational::from);
+    let zero = Rational::new;
+    let term = |amplitudes: [u32; 4], re: Rational, im: Rational| ComplexTerm {
+        amplitudes: amplitudes.to_vec(),
+        parameters: vec![],
+        re,
+        im,
+    };
+    let first = vec![
+        term([1, 0, 0, 0], -mu.clone(), -s.clone()),
+        term([0, 0, 0, 1], zero(), h.clone()),
+        term([2, 1, 0, 0], zero(), 1.into()),
+    ];
+    let second =
+        vec![term([0, 0, 1, 0], -mu.clone(), zero()), term([0, 1, 0, 0], zero(), h.clone())];
+    let equations = [first, second];
+    let flow = Flow::of_complex(&equations, &[]).system(&[]);
+    let free = FreePhase { equations, weights: [1, -1].map(Rational::from), parameters: vec![] };
+    let region = [Interval::new(-1.0, 1.0), Interval::new(-1.0, 1.0), Interval::new(0.0, 1.0)];
+    let limits = Limits { modulus: Some(1.0), ..Limits::default() };
+    let divide = Rational::from((137, 100));
+    let search = |c: usize, most: Rational| {
+        let reduced = free.reduced(c, &[2.into(), most]).unwrap();
+        let found = all_zeros(&reduced.system(&[]), &region, &limits).unwrap();
+        assert!(found.is_proved(), "{c}: {:?} {:?}", found.undecided, found.at_edge);
+        found.zeros
+    };
+    let zeros = search(0, divide.clone());
+    assert_eq!((zeros.len(), search(1, divide.recip()).len()), (2, 0));
+    for zero in zeros {
+        let y = zero.middle();
+        let [re, im, a] = [1.37 * y[0], 1.37 * y[1], 2.0 * y[2]];
+        assert!((im - 0.4).abs() < 1e-9 && (re.hypot(im) - 1.0).abs() < 1e-9);
+        assert!((a * a - (1.0 - 0.5 * re)).abs() < 1e-9);
+        // w_2' = -i delta w_2.
+        let (delta, exponents) = free.drift(&flow, &[a, 0.0, a * re, a * im]);
+        assert!((delta + 0.25 * re).abs() < 1e-9, "{delta}");
+        // Liouville: the sum is the trace, and there are three.
+        let sum: f64 = exponents.iter().map(|x| x.re).sum();
+        assert!((sum + 0.4).abs() < 1e-9 && exponents.len() == 3);
+        // The larger amplitude (Re y < 0) is the stable one.
+        assert_eq!(exponents.iter().all(|x| x.re < 0.0), re < 0.0);
+    }
+}

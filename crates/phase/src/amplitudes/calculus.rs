@@ -1,9 +1,9 @@
 //! Derivatives, conjugation, and the split at resonance.
 
 use super::words::{Word, exponents, unit};
-use super::{AmplitudeElement, Amplitudes, Scalars};
-use lindstedt_algebra::{AmplitudeAlgebra, PhaseError, RationalAlgebra, Ring, Split};
-use rug::Rational;
+use super::{AmplitudeElement, Amplitudes, Multiples, Scalars};
+use lindstedt_algebra::{AmplitudeAlgebra, PhaseError, Ring, Split};
+use rug::{Integer, Rational};
 
 impl<S: Scalars> Amplitudes<S> {
     fn conjugated(&self, f: &AmplitudeElement<S::Element>) -> AmplitudeElement<S::Element> {
@@ -33,17 +33,22 @@ impl<S: Scalars> Amplitudes<S> {
 
 impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
     fn unknowns(&self) -> usize {
-        self.squares.len()
+        self.unknowns.len()
     }
-    fn frequency_squared(&self, j: usize) -> Rational {
-        self.squares[j].clone()
+    fn forces(&self) -> usize {
+        self.rates.len() - self.amplitudes
     }
-    fn force_rate(&self) -> Self::Element {
-        let omega = self.rates.last().copied().unwrap_or(0);
-        self.rational(&Rational::from((omega, self.common)))
+    fn frequency_squared(&self, j: usize) -> Self::Element {
+        let (e, denominator) = self.unknowns[j].square.clone();
+        self.single(0, [e, self.scalars.zero()], denominator, true)
+    }
+    fn force_rate(&self, l: usize) -> Self::Element {
+        let Some(rate) = self.rates.get(self.amplitudes + l) else { return self.zero() };
+        let (e, denominator) = self.value(rate);
+        self.single(0, [e, self.scalars.zero()], denominator, true)
     }
     fn amplitude(&self, j: usize) -> Self::Element {
-        if j + 1 < self.rates.len() { self.monomial(unit(2 * j), false) } else { self.zero() }
+        if j < self.amplitudes { self.monomial(unit(2 * j), false) } else { self.zero() }
     }
     fn conjugate(&self, f: &Self::Element) -> Self::Element {
         self.conjugated(f)
@@ -52,7 +57,7 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         self.with_conjugate(f)
     }
     fn by_amplitude(&self, f: &Self::Element, j: usize) -> Self::Element {
-        if j + 1 >= self.rates.len() {
+        if j >= self.amplitudes {
             return self.zero();
         }
         let exponent = |word: Word| exponents(word, 2 * j + 1).0[2 * j];
@@ -62,40 +67,99 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         slope.real &= slope.terms.is_empty();
         slope
     }
-    fn by_force(&self, f: &Self::Element) -> Self::Element {
-        let place = self.phases() - 1;
+    fn by_force(&self, f: &Self::Element, l: usize) -> Self::Element {
+        let place = 2 * self.amplitudes + l;
         self.weighted(f, true, |word| Rational::from(exponents(word, place + 1).0[place]))
     }
     fn by_time(&self, f: &Self::Element) -> Self::Element {
-        self.weighted(f, true, |word| Rational::from((self.eigenvalue(word), self.common)))
+        let rates = f.terms.iter().map(|(word, _)| self.value(&self.eigenvalue(*word)));
+        self.times_each(f, true, rates.collect())
     }
     fn split(&self, j: usize, g: &Self::Element) -> Result<Split<Self>, PhaseError> {
-        let resonance = self.square(j);
-        let square = |n: i64| i128::from(n) * i128::from(n);
-        let is_resonant = |word: Word| resonance == Some(square(self.eigenvalue(word)));
-        // nu_j^2 - lambda^2.
-        let divisor = |word: Word| {
-            let lambda = Rational::from((square(self.eigenvalue(word)), square(self.common)));
-            &self.squares[j] - lambda
-        };
-        let resonant = self.filtered(g, |word| self.eigenvalue(word) > 0 && is_resonant(word));
+        let resonant = self.filtered(g, |word| self.resonance(j, word) == Some(true));
         // 1/(2 i nu) = -i/(2 nu).
-        let half = |word| Rational::from((-self.common, 2 * self.eigenvalue(word)));
-        let flow = self.weighted(&resonant, true, half);
-        let mut rest = self.filtered(g, |word| !is_resonant(word));
+        let half = Rational::from((-1, 2));
+        let mut inverse = self.scalars.fraction(&half);
+        if let Some((word, _)) = resonant.terms.first() {
+            let nu = self.value(&self.eigenvalue(*word));
+            let one_over = self.scalars.inverse(&nu.0, &nu.1);
+            let one_over = one_over.ok_or_else(|| self.undecided(*word))?;
+            inverse = self.product_of(&one_over, &inverse);
+        }
+        let flow = self.times_each(&resonant, true, vec![inverse; resonant.terms.len()]);
+        let mut rest = self.filtered(g, |word| self.resonance(j, word).is_none());
         rest.real = g.real;
-        let response = self.weighted(&rest, false, |word| divisor(word).recip());
-        let gap = |(word, _): &(Word, _)| (divisor(*word).abs(), *word);
-        let nearest = rest.terms.iter().map(gap).min_by(|(a, _), (b, _)| a.cmp(b));
-        let nearest = nearest.map(|(_, word)| {
-            let size = divisor(word) / &self.squares[j];
-            (self.harmonic(&exponents(word, self.phases()).0), size)
+        let divisors: Vec<_> =
+            rest.terms.iter().map(|(word, _)| self.divisor(j, *word)).collect::<Result<_, _>>()?;
+        let nearest = divisors.iter().zip(&rest.terms).filter_map(|(d, (word, _))| {
+            let size = d.size.clone()?;
+            Some((size.clone().abs(), *word, size))
         });
+        let nearest = nearest
+            .min_by(|(a, ..), (b, ..)| a.cmp(b))
+            .map(|(_, word, size)| (self.harmonic(&exponents(word, self.phases()).0), size));
+        let inverses = divisors.into_iter().map(|d| d.inverse).collect();
+        let response = self.times_each(&rest, false, inverses);
         Ok(Split { flow, response, nearest })
     }
     fn is_off_resonance(&self, j: usize, f: &Self::Element) -> bool {
-        let resonance = self.square(j);
-        let square = |word| i128::from(self.eigenvalue(word)).pow(2);
-        f.terms.iter().all(|(word, _)| resonance != Some(square(*word)))
+        f.terms.iter().all(|(word, _)| self.resonance(j, *word).is_none())
+    }
+}
+
+/// 1/(nu^2 - lambda^2), and (nu^2 - lambda^2)/nu^2 where it is a number.
+struct Divisor<E> {
+    inverse: (E, Integer),
+    size: Option<Rational>,
+}
+
+impl<S: Scalars> Amplitudes<S> {
+    /// Whether lambda = nu_j (true) or -nu_j (false); nothing where it is neither.
+    fn resonance(&self, j: usize, word: Word) -> Option<bool> {
+        let (lambda, nu) = (self.eigenvalue(word), self.unknowns[j].rate.as_ref()?);
+        if lambda == *nu {
+            return Some(true);
+        }
+        lambda.iter().zip(nu).all(|(a, b)| *a == -b).then_some(false)
+    }
+
+    fn undecided(&self, word: Word) -> PhaseError {
+        let harmonic = self.harmonic(&exponents(word, self.phases()).0);
+        PhaseError::Undecided { harmonic }
+    }
+
+    fn divisor(&self, j: usize, word: Word) -> Result<Divisor<S::Element>, PhaseError> {
+        let (lambda, unknown) = (self.eigenvalue(word), &self.unknowns[j]);
+        let rational = self.rational_rate(&lambda).zip(unknown.rational.as_ref());
+        if let Some((lambda, square)) = rational {
+            let divisor = square - lambda.square();
+            let size = Some(Rational::from(&divisor / square));
+            return Ok(Divisor { inverse: self.scalars.fraction(&divisor.recip()), size });
+        }
+        let undecided = || self.undecided(word);
+        let inverse = |(e, d): &(S::Element, Integer)| self.scalars.inverse(e, d);
+        let divisor = match &unknown.rate {
+            // (nu - lambda)(nu + lambda), whose factors are linear in the generators.
+            Some(nu) => {
+                let sum = |sign: i64| -> Multiples {
+                    nu.iter().zip(&lambda).map(|(a, b)| a + sign * b).collect()
+                };
+                [sum(-1), sum(1)].map(|factor| self.value(&factor))
+            }
+            None => {
+                let value = self.value(&lambda);
+                let (square, below) = self.product_of(&value, &value);
+                let (own, d) = &unknown.square;
+                let mut gap = self.scalars.times(&self.scalars.neg(&square), d);
+                self.scalars.add(&mut gap, &self.scalars.times(own, &below));
+                [(gap, below * d), self.scalars.fraction(&Rational::from(1))]
+            }
+        };
+        let [a, b] = divisor.each_ref().map(inverse);
+        let whole = self.product_of(&divisor[0], &divisor[1]);
+        let size = self.scalars.middle(&whole.0, &whole.1);
+        let own = self.scalars.middle(&unknown.square.0, &unknown.square.1);
+        let inverse = a.zip(b).map(|(a, b)| self.product_of(&a, &b)).ok_or_else(undecided)?;
+        Ok(Divisor { inverse, size: size.zip(own).map(|(size, own)| size / own) })
     }
 }

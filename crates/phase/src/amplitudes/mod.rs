@@ -1,10 +1,11 @@
-//! Polynomials in complex amplitudes z_1, zbar_1, ..., z_M, zbar_M, in E = e^{i eta} and 1/E, and in named
-//! symbols, with complex coefficients: what averaging with resonance computes with
+//! Polynomials in complex amplitudes z_1, zbar_1, ..., z_M, zbar_M, in E_l = e^{i eta_l} and 1/E_l, and in
+//! named symbols, with complex coefficients: what averaging with resonance computes with
 //! ([`AmplitudeAlgebra`](lindstedt_algebra::AmplitudeAlgebra)).
 //!
 //! A monomial is one word ([`words`]), an element a list sorted by words with numerators over one common
-//! denominator ([`scalars`]), reduced: canonical. The ratios of the frequencies are rational numbers, so
-//! that the eigenvalue of every monomial under D_0, and with it every resonance, is decided exactly.
+//! denominator ([`scalars`]), reduced: canonical. The eigenvalue of every monomial under D_0, and with it
+//! every resonance, is decided exactly where the numbers of [`Rates`] are independent over Q; where they are
+//! only taken to be, no divisor that may be zero passes.
 //!
 //! A product costs one product of coefficients per pair of terms; of two real elements (which are equal to
 //! their conjugates) half of that: the upper half of one of them times the other, and the conjugate.
@@ -43,7 +44,7 @@ impl<E: PartialEq> PartialEq for AmplitudeElement<E> {
 /// A term with a rational coefficient re + i im.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AmplitudeTerm {
-    /// The exponents of z_1, zbar_1, ..., z_M, zbar_M, E and the symbols.
+    /// The exponents of z_1, zbar_1, ..., z_M, zbar_M, E_1, ..., E_L and the symbols.
     pub exponents: Vec<i32>,
     /// The real part.
     pub re: Rational,
@@ -51,52 +52,107 @@ pub struct AmplitudeTerm {
     pub im: Rational,
 }
 
-/// The algebra over numerators S, with the frequencies nu_j > 0 of the z_j, the frequency Omega of the force
-/// (0 where there is none), and named symbols, for parameters.
+/// nu_1, ..., nu_M > 0 and Omega_1, ..., Omega_L as sums of rational multiples of 1, g_1, g_2, ..., numbers of
+/// which no such sum is zero, or symbols.
+#[derive(Clone, Debug)]
+pub struct Rates<E> {
+    /// The multiples of 1, g_1, ... in nu_j, zeros at the end left out.
+    pub amplitudes: Vec<Vec<Rational>>,
+    /// Those in Omega_l.
+    pub forces: Vec<Vec<Rational>>,
+    /// g_1, g_2, ... with denominators.
+    pub generators: Vec<(E, Integer)>,
+}
+
+/// The multiples of 1, g_1, ... in a rate, times the common denominator.
+type Multiples = Vec<i64>;
+
+/// What an unknown is compared with.
+#[derive(Clone, Debug)]
+struct Unknown<E> {
+    /// nu^2 where it is a rational number, and as a number in any case.
+    rational: Option<Rational>,
+    square: (E, Integer),
+    /// nu, if it is among the sums of the generators: otherwise no eigenvalue is resonant.
+    rate: Option<Multiples>,
+}
+
+/// The algebra over numerators S, with the frequencies nu_j > 0 of the z_j, the frequencies Omega_l of the
+/// forces, and named symbols, for parameters.
 ///
-/// At most sixteen exponents (2 M + 1 + symbols) of at most 127 each; beyond, products are not formed and
+/// At most sixteen exponents (2 M + L + symbols) of at most 127 each; beyond, products are not formed and
 /// [`Self::overflowed`] says so.
 #[derive(Debug)]
-pub struct Amplitudes<S> {
+pub struct Amplitudes<S: Scalars> {
     scalars: S,
     symbols: Vec<String>,
-    /// q nu_j of the amplitudes and q Omega with the common denominator q.
-    rates: Vec<i64>,
+    /// M.
+    amplitudes: usize,
+    /// q nu_j of the amplitudes and q Omega_l with the common denominator q.
+    rates: Vec<Multiples>,
     common: i64,
-    /// nu_j^2 of the unknowns.
-    squares: Vec<Rational>,
-    /// The force is e^{i step eta}.
-    step: i32,
+    generators: Vec<(S::Element, Integer)>,
+    unknowns: Vec<Unknown<S::Element>>,
     stop: Stop,
     overflow: AtomicBool,
 }
 
 impl<S: Scalars> Amplitudes<S> {
-    /// The algebra; nothing without an unknown, for frequencies that are not positive or too long, or for
-    /// too many symbols.
+    /// The algebra of rational frequencies and one force (of the frequency 0 where there is none); nothing
+    /// without an unknown, for frequencies that are not positive or too long, or for too many symbols.
     pub fn new(
         scalars: S,
         frequencies: &[Rational],
         force: &Rational,
         symbols: &[&str],
     ) -> Option<Self> {
-        let positive = frequencies.iter().all(|nu| *nu > 0) && !frequencies.is_empty();
-        if !positive || 2 * frequencies.len() + 1 + symbols.len() > DIGITS {
+        if frequencies.iter().any(|nu| *nu <= 0) {
             return None;
         }
-        let all = || frequencies.iter().chain([force]);
-        let common = all().fold(Integer::from(1), |q, nu| q.lcm(nu.denom()));
-        let rate = |nu: &Rational| Rational::from(nu * &common).numer().to_i32().map(i64::from);
-        Some(Self {
-            squares: frequencies.iter().map(|nu| nu.clone().square()).collect(),
-            rates: all().map(rate).collect::<Option<_>>()?,
+        let amplitudes = frequencies.iter().map(|nu| vec![nu.clone()]).collect();
+        let forces = vec![vec![force.clone()]];
+        Self::of_rates(scalars, Rates { amplitudes, forces, generators: Vec::new() }, symbols)
+    }
+
+    /// The algebra of any frequencies; nothing without an unknown or the rate of a force (0 where there is none),
+    /// for rates that are too long or too many symbols.
+    pub fn of_rates(scalars: S, rates: Rates<S::Element>, symbols: &[&str]) -> Option<Self> {
+        let Rates { amplitudes, forces, generators } = rates;
+        let count = amplitudes.len();
+        if count == 0 || forces.is_empty() || 2 * count + forces.len() + symbols.len() > DIGITS {
+            return None;
+        }
+        let all = || amplitudes.iter().chain(&forces);
+        let common = all().flatten().fold(Integer::from(1), |q, nu| q.lcm(nu.denom()));
+        let whole = |q: &Rational| Rational::from(q * &common).numer().to_i32().map(i64::from);
+        let multiples = |rate: &Vec<Rational>| -> Option<Multiples> {
+            let mut list: Multiples = rate.iter().map(whole).collect::<Option<_>>()?;
+            list.resize(1 + generators.len(), 0);
+            Some(list)
+        };
+        let mut algebra = Self {
+            rates: all().map(multiples).collect::<Option<_>>()?,
             common: i64::from(common.to_i32()?),
-            step: 1,
+            amplitudes: count,
+            generators,
+            unknowns: Vec::new(),
             scalars,
             symbols: symbols.iter().map(|name| (*name).to_owned()).collect(),
             stop: Stop::default(),
             overflow: AtomicBool::new(false),
-        })
+        };
+        let unknown = |rate: &Multiples| {
+            let rational = algebra.rational_rate(rate).map(|nu| nu.square());
+            let nu = algebra.value(rate);
+            let square = match &rational {
+                Some(square) => algebra.scalars.fraction(square),
+                None => algebra.product_of(&nu, &nu),
+            };
+            Unknown { rational, square, rate: Some(rate.clone()) }
+        };
+        let unknowns = algebra.rates[..count].iter().map(unknown).collect();
+        algebra.unknowns = unknowns;
+        Some(algebra)
     }
 
     /// The algebra whose products are broken off when `stop` says so.
@@ -108,20 +164,28 @@ impl<S: Scalars> Amplitudes<S> {
     /// The algebra for more unknowns than there are amplitudes, with nu_j^2 of all of them: those behind have no
     /// amplitude of their own, and nu_j need not be rational.
     #[must_use]
-    pub fn with_unknowns(self, squares: Vec<Rational>) -> Self {
-        Self { squares, ..self }
+    pub fn with_unknowns(mut self, squares: &[Rational]) -> Self {
+        let behind = squares.iter().skip(self.amplitudes).map(|square| {
+            let scaled = Rational::from(square * Integer::from(self.common).square());
+            let root = scaled.numer().clone().sqrt();
+            let is_square = scaled.is_integer() && root.clone().square() == *scaled.numer();
+            let rate = root.to_i64().filter(|_| is_square).map(|nu| {
+                let mut rate = vec![0; 1 + self.generators.len()];
+                rate[0] = nu;
+                rate
+            });
+            let fraction = self.scalars.fraction(square);
+            Unknown { rational: Some(square.clone()), square: fraction, rate }
+        });
+        let behind: Vec<_> = behind.collect();
+        self.unknowns.truncate(self.amplitudes);
+        self.unknowns.extend(behind);
+        self
     }
 
-    /// The algebra in which eta has a whole part of the force's frequency: cos m eta of the equation is the
-    /// harmonic m times `step` here.
-    #[must_use]
-    pub fn with_step(self, step: i32) -> Self {
-        Self { step, ..self }
-    }
-
-    /// (cos m eta, sin m eta); nothing for exponents that words do not hold.
-    pub fn wave(&self, m: i32) -> Option<[AmplitudeElement<S::Element>; 2]> {
-        let place = words::unit(self.phases() - 1);
+    /// (cos m eta_l, sin m eta_l); nothing for exponents that words do not hold.
+    pub fn wave(&self, l: usize, m: i32) -> Option<[AmplitudeElement<S::Element>; 2]> {
+        let place = words::unit(2 * self.amplitudes + l);
         let fits = m.checked_abs().is_some_and(|m| m <= words::LARGEST);
         let power = self.monomial(place * Word::from(fits.then_some(m)?), false);
         let half = self.weighted(&power, false, |_| Rational::from((1, 2)));
@@ -153,48 +217,89 @@ impl<S: Scalars> Amplitudes<S> {
 
     /// The terms with their coefficients, where those are rational.
     pub fn rational_terms(&self, f: &AmplitudeElement<S::Element>) -> Option<Vec<AmplitudeTerm>> {
+        let term = |exponents, [re, im]: [Option<Rational>; 2]| {
+            Some(AmplitudeTerm { exponents, re: re?, im: im? })
+        };
+        let read = |e: &S::Element, d: &Integer| self.scalars.quotient(e, d);
+        self.terms_as(f, &read).into_iter().map(|(exponents, c)| term(exponents, c)).collect()
+    }
+
+    /// The exponents of the terms with what `read` makes of the real and the imaginary part e/d of their
+    /// coefficients.
+    pub fn terms_as<C>(
+        &self,
+        f: &AmplitudeElement<S::Element>,
+        read: &dyn Fn(&S::Element, &Integer) -> C,
+    ) -> Vec<(Vec<i32>, [C; 2])> {
         let n = self.phases() + self.symbols.len();
-        let term = |(word, [re, im]): &Term<S::Element>| {
-            Some(AmplitudeTerm {
-                exponents: words::exponents(*word, n).0[..n].to_vec(),
-                re: self.scalars.quotient(re, &f.denominator)?,
-                im: self.scalars.quotient(im, &f.denominator)?,
-            })
+        let term = |(word, c): &Term<S::Element>| {
+            let exponents = words::exponents(*word, n).0[..n].to_vec();
+            (exponents, c.each_ref().map(|part| read(part, &f.denominator)))
         };
         f.terms.iter().map(term).collect()
     }
 
-    /// 2 M + 1: the exponents that D_0 and conjugation know.
+    /// 2 M + L: the exponents that D_0 and conjugation know.
     fn phases(&self) -> usize {
-        2 * self.rates.len() - 1
+        self.amplitudes + self.rates.len()
     }
 
     /// q lambda.
-    fn eigenvalue(&self, word: Word) -> i64 {
+    fn eigenvalue(&self, word: Word) -> Multiples {
         let (digits, _) = words::exponents(word, self.phases());
-        self.harmonic(&digits).iter().zip(&self.rates).map(|(k, rate)| i64::from(*k) * rate).sum()
+        let mut sum = vec![0; 1 + self.generators.len()];
+        for (k, rate) in self.harmonic(&digits).iter().zip(&self.rates) {
+            sum.iter_mut().zip(rate).for_each(|(sum, rate)| *sum += i64::from(*k) * rate);
+        }
+        sum
     }
 
-    /// q^2 nu_j^2, where it is whole: otherwise no eigenvalue is resonant.
-    fn square(&self, j: usize) -> Option<i128> {
-        let square = Rational::from(&self.squares[j] * Integer::from(self.common).square());
-        square.is_integer().then(|| square.numer().to_i128()).flatten()
+    /// A rate that has no part in the generators.
+    fn rational_rate(&self, rate: &[i64]) -> Option<Rational> {
+        let alone = rate[1..].iter().all(|n| *n == 0);
+        alone.then(|| Rational::from((rate[0], self.common)))
     }
 
-    /// p_1 - q_1, ..., p_M - q_M, m.
+    /// A rate as a number of the coefficients.
+    fn value(&self, rate: &[i64]) -> (S::Element, Integer) {
+        let start = self.scalars.fraction(&Rational::from((rate[0], self.common)));
+        let parts = rate[1..].iter().zip(&self.generators).filter(|(n, _)| **n != 0);
+        parts.fold(start, |(mut sum, d), (n, (e, own))| {
+            let part = self.scalars.times(e, &Integer::from(*n));
+            // n e/(q own).
+            let below = Integer::from(own * self.common);
+            let (scale, more) = self.scalars.fraction(&Rational::from((1, below)));
+            let part = self.scalars.product(&part, &scale);
+            let common = d.clone().lcm(&more);
+            sum = self.scalars.times(&sum, &Integer::from(&common / &d));
+            let part = self.scalars.times(&part, &Integer::from(&common / &more));
+            self.scalars.add(&mut sum, &part);
+            (sum, common)
+        })
+    }
+
+    fn product_of(
+        &self,
+        (a, c): &(S::Element, Integer),
+        (b, d): &(S::Element, Integer),
+    ) -> (S::Element, Integer) {
+        (self.scalars.product(a, b), Integer::from(c * d))
+    }
+
+    /// p_1 - q_1, ..., p_M - q_M, m_1, ..., m_L.
     fn harmonic(&self, digits: &[i32; DIGITS]) -> Vec<i32> {
-        let m = self.rates.len() - 1;
-        (0..m).map(|j| digits[2 * j] - digits[2 * j + 1]).chain([digits[2 * m]]).collect()
+        let m = self.amplitudes;
+        let turns = (0..m).map(|j| digits[2 * j] - digits[2 * j + 1]);
+        turns.chain(digits[2 * m..self.phases()].iter().copied()).collect()
     }
 
     /// The word of the conjugate.
     fn mirrored(&self, word: Word) -> Word {
         let n = self.phases();
         let (mut digits, rest) = words::exponents(word, n);
-        for pair in digits[..n - 1].chunks_exact_mut(2) {
-            pair.swap(0, 1);
-        }
-        digits[n - 1] = -digits[n - 1];
+        let (amplitudes, forces) = digits[..n].split_at_mut(2 * self.amplitudes);
+        amplitudes.chunks_exact_mut(2).for_each(|pair| pair.swap(0, 1));
+        forces.iter_mut().for_each(|m| *m = -*m);
         words::pack(&digits[..n], rest)
     }
 
@@ -249,8 +354,17 @@ impl<S: Scalars> Amplitudes<S> {
         turn: bool,
         factor: impl Fn(Word) -> Rational,
     ) -> AmplitudeElement<S::Element> {
-        let factors: Vec<_> =
-            f.terms.iter().map(|(word, _)| self.scalars.fraction(&factor(*word))).collect();
+        let factors = f.terms.iter().map(|(word, _)| self.scalars.fraction(&factor(*word)));
+        self.times_each(f, turn, factors.collect())
+    }
+
+    /// Every term with its coefficient times its own number e/d, d > 0.
+    fn times_each(
+        &self,
+        f: &AmplitudeElement<S::Element>,
+        turn: bool,
+        factors: Vec<(S::Element, Integer)>,
+    ) -> AmplitudeElement<S::Element> {
         let common = factors.iter().fold(Integer::from(1), |d, (_, own)| d.lcm(own));
         let term = |((word, [re, im]), (e, own)): (&Term<_>, (S::Element, _))| {
             let e = match Integer::from(&common / &own) {

@@ -254,7 +254,7 @@ impl<S: Scalars> FunctionAlgebra for Amplitudes<S> {
 
 impl<S: Scalars> ForcedAlgebra for Amplitudes<S> {
     fn forcing(&self, multiple: u32) -> Option<(Self::Element, Self::Element)> {
-        let [cos, sin] = self.wave(i32::try_from(multiple).ok()?.checked_mul(self.step)?)?;
+        let [cos, sin] = self.wave(0, i32::try_from(multiple).ok()?)?;
         Some((cos, sin))
     }
 }

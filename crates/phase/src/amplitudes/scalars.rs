@@ -12,6 +12,12 @@ pub trait Scalars: Sync {
     fn fraction(&self, q: &Rational) -> (Self::Element, Integer);
     /// e/d as a rational number, if it is one.
     fn quotient(&self, e: &Self::Element, d: &Integer) -> Option<Rational>;
+    /// A rational number within the enclosure e/d, if it is a number.
+    fn middle(&self, e: &Self::Element, d: &Integer) -> Option<Rational> {
+        self.quotient(e, d)
+    }
+    /// n and m > 0 with n/m = d/e; nothing where e cannot be told from zero.
+    fn inverse(&self, e: &Self::Element, d: &Integer) -> Option<(Self::Element, Integer)>;
     /// 0.
     fn zero(&self) -> Self::Element;
     /// Whether e = 0.
@@ -51,6 +57,9 @@ impl Scalars for Integers {
     fn quotient(&self, e: &Integer, d: &Integer) -> Option<Rational> {
         Some(Rational::from((e, d)))
     }
+    fn inverse(&self, e: &Integer, d: &Integer) -> Option<(Integer, Integer)> {
+        (!e.is_zero()).then(|| self.fraction(&Rational::from((d, e))))
+    }
     fn zero(&self) -> Integer {
         Integer::new()
     }
@@ -80,39 +89,64 @@ impl Scalars for Integers {
     }
 }
 
-/// Any algebra over Q: balls, doubles, fractions of parameters.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Over<K>(pub K);
+/// Any algebra over Q: balls, doubles, fractions of parameters; with what a number of it is about.
+#[derive(Clone, Copy, Debug)]
+pub struct Over<K: RationalAlgebra> {
+    ring: K,
+    middle: fn(&K, &K::Element) -> Option<Rational>,
+}
+
+impl<K: RationalAlgebra> Over<K> {
+    /// An exact ring.
+    pub fn exact(ring: K) -> Self {
+        Self { ring, middle: K::as_rational }
+    }
+
+    /// A ring of enclosures and the middle of one.
+    pub fn enclosures(ring: K, middle: fn(&K, &K::Element) -> Option<Rational>) -> Self {
+        Self { ring, middle }
+    }
+}
 
 impl<K: RationalAlgebra> Scalars for Over<K> {
     type Element = K::Element;
 
     fn fraction(&self, q: &Rational) -> (K::Element, Integer) {
-        (self.0.rational(q), Integer::from(1))
+        (self.ring.rational(q), Integer::from(1))
     }
     fn quotient(&self, e: &K::Element, _: &Integer) -> Option<Rational> {
-        self.0.as_rational(e)
+        self.ring.as_rational(e)
+    }
+    fn middle(&self, e: &K::Element, _: &Integer) -> Option<Rational> {
+        (self.middle)(&self.ring, e)
+    }
+    fn inverse(&self, e: &K::Element, d: &Integer) -> Option<(K::Element, Integer)> {
+        if self.ring.may_vanish(e) {
+            return None;
+        }
+        let inverse = self.ring.reciprocal(e)?;
+        Some((self.ring.scale(&inverse, &Rational::from(d)), Integer::from(1)))
     }
     fn zero(&self) -> K::Element {
-        self.0.zero()
+        self.ring.zero()
     }
     fn is_zero(&self, e: &K::Element) -> bool {
-        self.0.is_zero(e)
+        self.ring.is_zero(e)
     }
     fn may_vanish(&self, e: &K::Element) -> bool {
-        self.0.may_vanish(e)
+        self.ring.may_vanish(e)
     }
     fn add(&self, sum: &mut K::Element, e: &K::Element) {
-        self.0.add_assign(sum, e);
+        self.ring.add_assign(sum, e);
     }
     fn neg(&self, e: &K::Element) -> K::Element {
-        self.0.neg(e)
+        self.ring.neg(e)
     }
     fn product(&self, a: &K::Element, b: &K::Element) -> K::Element {
-        self.0.mul(a, b)
+        self.ring.mul(a, b)
     }
     fn times(&self, e: &K::Element, n: &Integer) -> K::Element {
-        self.0.scale(e, &Rational::from(n))
+        self.ring.scale(e, &Rational::from(n))
     }
     fn content(&self, g: &mut Integer, _: &K::Element) {
         *g = Integer::from(1);

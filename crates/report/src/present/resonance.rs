@@ -137,6 +137,20 @@ impl Board<'_> {
         for i in 0..flow.system.shapes.as_ref().map_or(0, Vec::len) {
             page = page.formula(both(|style| flow.print_shapes(style).swap_remove(i)));
         }
+        if !flow.system.is_exact() {
+            for (j, square) in flow.system.squares.iter().enumerate() {
+                let stem = self.indexed("nu", j);
+                let nu = &flow.system.frequencies[j];
+                page = page.formula(both(|style| {
+                    format!(
+                        "{}^2 = {square}, {} = {}",
+                        print_name(&stem, style),
+                        print_name(&stem, style),
+                        flow.number(nu)
+                    )
+                }));
+            }
+        }
         for (j, coordinate) in flow.coordinates().iter().enumerate() {
             page = page.formula(both(|style| {
                 let z = ["z", "zbar"].map(|z| print_name(&self.indexed(z, j), style));
@@ -144,23 +158,37 @@ impl Board<'_> {
                 self.series(&format!("{x} = {} + {}", z[0], z[1]), "u", j, style)
             }));
         }
-        if flow.system.force > 0 {
-            page = page.formula(both(|style| match style {
-                Style::Text => format!("E = exp(i*eta)   eta' = {}", flow.print_force(style)),
-                Style::Latex => {
-                    format!(r"E = e^{{i\eta}},\quad \dot\eta = {}", flow.print_force(style))
+        for l in 0..flow.system.forces.len() {
+            let indexed = |stem: &str, style| match flow.forces() {
+                1 => print_name(stem, style),
+                _ => print_name(&format!("{stem}_{}", l + 1), style),
+            };
+            page = page.formula(both(|style| {
+                let (e, eta) = (indexed("E", style), indexed("eta", style));
+                let rate = flow.print_force(l, style);
+                match style {
+                    Style::Text => format!("{e} = exp(i*{eta})   {eta}' = {rate}"),
+                    Style::Latex => {
+                        format!(r"{e} = e^{{i{eta}}},\quad \dot{eta} = {rate}")
+                    }
                 }
             }));
-            if flow.print_start(Style::Text).is_some() {
-                let start = |style| flow.print_start(style).unwrap_or_default();
-                page = page.formula(both(|style| match style {
-                    Style::Text => format!("eta(0) = {}", start(style)),
-                    Style::Latex => format!(r"\eta(0) = {}", start(style)),
+            if flow.print_start(l, Style::Text).is_some() {
+                let start = |style| flow.print_start(l, style).unwrap_or_default();
+                page = page.formula(both(|style| {
+                    format!("{}(0) = {}", indexed("eta", style), start(style))
                 }));
             }
         }
+        if !flow.system.independent.is_empty() {
+            let names = flow.system.independent.join(", ");
+            page = page.words(format!(
+                "Without a value, and independent of each other and of all numbers: {names}. Where a denominator vanishes \
+                 there is a resonance, and the expansion does not hold."
+            ));
+        }
         let Some(beside) = &flow.system.beside else { return page };
-        let (rate, at, small) = (&beside.rate, &flow.system.force, &flow.problem.small);
+        let (rate, at, small) = (&beside.rate, flow.system.force(), &flow.problem.small);
         let symbol = &beside.symbol;
         page.words(format!("{symbol} = ({rate} - {at})/{small}: the force is detuned."))
     }
@@ -234,10 +262,34 @@ impl Board<'_> {
         page
     }
 
-    fn checks(&self, mut page: Document) -> Document {
+    /// The energy, where there is one.
+    fn energy(&self, mut page: Document) -> Document {
+        let orders = &self.0.energy;
+        for (n, terms) in orders.iter().enumerate() {
+            page = page.formula(both(|style| {
+                format!(
+                    "{} = {}",
+                    print_name(&format!("H_{n}"), style),
+                    self.polynomial(terms, style)
+                )
+            }));
+        }
+        if orders.is_empty() {
+            return page;
+        }
+        page.words(format!(
+            "Energy: the equations derive from a potential; H_0 + H_1*{} + ... is conserved by the flow, identically at orders 0 \
+             to {}.",
+            self.0.problem.small,
+            orders.len() - 1
+        ))
+    }
+
+    fn checks(&self, page: Document) -> Document {
+        let mut page = self.energy(page);
         if let Some(near) = self.0.nearest() {
             let unknown = &self.0.coordinates()[near.unknown];
-            let (size, order) = (&near.size, near.order);
+            let (size, order) = (self.0.size(&near.size), near.order);
             let harmonic: Vec<String> = near.harmonic.iter().map(ToString::to_string).collect();
             let harmonic = harmonic.join(", ");
             page = page.words(format!(
@@ -245,6 +297,13 @@ impl Board<'_> {
                  order {order}."
             ));
         }
-        page.words(residual(self.0.checked_orders))
+        match (self.0.enclosed, self.0.checked_orders) {
+            (Some(enclosed), Some(last)) => page.words(format!(
+                "Coefficients within {:.1e}. Residual: the expansion substituted into the equation encloses zero at orders 0 \
+                 to {last}, within {:.1e}.",
+                enclosed.radius, enclosed.residual
+            )),
+            (_, checked) => page.words(residual(checked)),
+        }
     }
 }

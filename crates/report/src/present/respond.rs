@@ -47,22 +47,34 @@ fn phase(value: &Response, j: usize) -> Text {
     Formula::new(format!("phi{index}"), format!(r"\varphi{index}")).into()
 }
 
+/// Whether states turn in frames of their own.
+fn drifts(states: &States) -> bool {
+    states.list.iter().any(|state| !state.drift.is_empty())
+}
+
 fn columns(value: &Response) -> impl Iterator<Item = Text> {
     (0..value.turns.len()).flat_map(|j| [amplitude(value, j), phase(value, j)])
 }
 
-fn state(state: &State) -> Vec<Text> {
+fn state(state: &State, drifts: bool) -> Vec<Text> {
     let pairs = state.amplitudes.iter().zip(&state.phases);
     let phase = |phase: &Option<Number>| phase.as_ref().map_or("-".into(), Text::number);
     let mut cells: Vec<Text> = pairs.flat_map(|(a, p)| [Text::number(a), phase(p)]).collect();
     let exponents: Vec<String> = state.exponents.iter().map(exponent).collect();
     cells.extend([word(state.stable).into(), exponents.join(", ").into()]);
+    if drifts {
+        let rates = state.drift.iter().map(|rate| format!("{:.6}", rate.value));
+        cells.push(rates.collect::<Vec<_>>().join(", ").into());
+    }
     cells
 }
 
 fn states(value: &Response, states: &States) -> Table {
     let head = columns(value).chain(["stability".into(), "exponents".into()]);
-    states.list.iter().map(state).fold(Table::new(head), Table::row)
+    let drifts = drifts(states);
+    let head = head.chain(drifts.then(|| "rates in the frame".into()));
+    let rows = states.list.iter().map(|it| state(it, drifts));
+    rows.fold(Table::new(head), Table::row)
 }
 
 fn proof(states: &States) -> String {
@@ -158,6 +170,22 @@ fn plane(value: &Response, names: [&String; 2]) -> Document {
     }))
 }
 
+/// k_1 eta_1 + k_2 eta_2 + ... from `k_1, k_2, ...`, of one phase k eta; as text and as LaTeX.
+fn angle(turns: &str) -> [String; 2] {
+    let list: Vec<&str> = turns.split(", ").collect();
+    let one = |(l, turn): (usize, &&str)| {
+        let i = if list.len() == 1 { String::new() } else { format!("_{}", l + 1) };
+        let (text, latex) = match turn.split_once('/') {
+            _ if *turn == "1" => Default::default(),
+            None => (format!("{turn} "), format!("{turn} ")),
+            Some((p, q)) => (format!("({turn}) "), format!(r"\frac{{{p}}}{{{q}}} ")),
+        };
+        [format!("{text}eta{i}"), format!(r"{latex}\eta{i}")]
+    };
+    let parts = list.iter().enumerate().filter(|(_, turn)| **turn != "0").map(one);
+    parts.reduce(|[a, b], [c, d]| [format!("{a} + {c}"), format!("{b} + {d}")]).unwrap_or_default()
+}
+
 fn decimal(number: &Number) -> f64 {
     number.decimal.parse().unwrap_or(f64::NAN)
 }
@@ -198,17 +226,13 @@ impl Present for Answer<Response> {
         if !at.is_empty() {
             lines.insert(0, ("at".into(), at.join(", ").into()));
         }
-        let motion = |(j, turn): (usize, &String)| {
+        let motion = |(j, turns): (usize, &String)| {
             let i = index(value, j);
-            let (text, latex) = match turn.split_once('/') {
-                _ if turn == "1" => Default::default(),
-                None => (format!("{turn} "), format!("{turn} ")),
-                Some((p, q)) => (format!("({turn}) "), format!(r"\frac{{{p}}}{{{q}}} ")),
-            };
+            let [text, latex] = angle(turns);
             let name = value.coordinates.get(j).map_or("x", String::as_str);
-            let text = format!("{name} = a{i} cos({text}eta + phi{i}) + ...");
+            let text = format!("{name} = a{i} cos({text} + phi{i}) + ...");
             let x = latex_name(name);
-            let latex = format!(r"{x} = a{i} \cos({latex}\eta + \varphi{i}) + \ldots");
+            let latex = format!(r"{x} = a{i} \cos({latex} + \varphi{i}) + \ldots");
             ("motion".into(), Formula::new(text, latex).into())
         };
         lines.extend(value.turns.iter().enumerate().map(motion));

@@ -1,0 +1,93 @@
+//! Slow flows with irrational frequencies: coefficients enclosed by balls.
+//!
+//! nu_j = sqrt(q_j) with rational q_j. Square roots of which no ratio is rational, and 1, are independent over Q
+//! (Besicovitch), so that nu_j is a rational multiple of 1 or of the first root of its class, and every resonance is
+//! decided exactly. What is divided by is enclosed; a divisor that cannot be told from zero ends the derivation.
+
+use super::flow::Job;
+use super::{Enclosed, SlowFlow, Terms};
+use crate::error::DerivationError as Error;
+use crate::work::Progress;
+use lindstedt_equation::classify::rational_root;
+use lindstedt_number::ball::ring::{BallRing, Enclosure};
+use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_phase::amplitudes::scalars::Over;
+use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes, Rates};
+use rug::float::Round;
+use rug::{Float, Integer, Rational};
+use std::cell::Cell;
+
+type Element = AmplitudeElement<Enclosure>;
+
+/// The square roots as multiples of 1 and of the roots of the second list.
+fn classes(squares: &[Rational]) -> (Vec<Vec<Rational>>, Vec<Rational>) {
+    let mut roots: Vec<Rational> = Vec::new();
+    let rate = |square: &Rational| {
+        if let Some(root) = rational_root(square) {
+            return vec![root];
+        }
+        let of = |known: &Rational| rational_root(&Rational::from(square / known));
+        let found = roots.iter().enumerate().find_map(|(k, known)| Some((k, of(known)?)));
+        let (k, multiple) = found.unwrap_or_else(|| {
+            roots.push(square.clone());
+            (roots.len() - 1, 1.into())
+        });
+        let mut rate = vec![Rational::new(); k + 1];
+        rate.push(multiple);
+        rate
+    };
+    let rates = squares.iter().map(rate).collect();
+    (rates, roots)
+}
+
+fn middle(_: &BallRing, e: &Enclosure) -> Option<Rational> {
+    e.0.midpoint().to_rational()
+}
+
+/// The slow flow of a system with irrational frequencies.
+pub(super) fn derived(
+    job: &Job<'_>,
+    observer: &mut dyn FnMut(Progress) -> bool,
+) -> Result<SlowFlow, Error> {
+    let digits = job.settings.digits.max(1);
+    let bits = u32::try_from(4 * digits).unwrap_or(u32::MAX / 4) + 64;
+    let ring = BallRing { balls: Balls::new(bits) };
+    let (amplitudes, roots) = classes(&job.system.squares);
+    let root = |square: &Rational| ring.balls.sqrt(&ring.balls.from_rational(square));
+    let roots: Vec<Ball> = roots.iter().filter_map(root).collect();
+    let generators = roots.into_iter().map(|ball| (Enclosure(ball), Integer::from(1))).collect();
+    let rates = Rates { amplitudes, ..job.rates(generators) };
+    let scalars = Over::enclosures(ring, middle);
+    let run = job.run(scalars, rates, &|_| None, observer)?;
+    let radius = Cell::new(0.0);
+    let terms = |f: &Element| read(&run.algebra, f, &radius);
+    let mut flow = job.finished(&run, &terms);
+    let largest = run.residual.iter().flat_map(|f| parts(&run.algebra, f));
+    let residual = largest.map(|ball| upward(&ball.abs_upper())).fold(0.0, f64::max);
+    flow.enclosed = Some(Enclosed { radius: radius.get(), residual, digits });
+    Ok(flow)
+}
+
+fn upward(x: &Float) -> f64 {
+    x.to_f64_round(Round::Up)
+}
+
+fn parts(algebra: &Amplitudes<Over<BallRing>>, f: &Element) -> Vec<Ball> {
+    let all = algebra.terms_as(f, &|e: &Enclosure, _: &Integer| e.0.clone());
+    all.into_iter().flat_map(|(_, parts)| parts).collect()
+}
+
+/// The middles of the coefficients; what may vanish is left out, and the radius says within what.
+fn read(algebra: &Amplitudes<Over<BallRing>>, f: &Element, radius: &Cell<f64>) -> Terms {
+    let part = |e: &Enclosure, _: &Integer| {
+        let (size, value) = match e.0.contains_zero() {
+            true => (e.0.abs_upper(), Rational::new()),
+            false => (e.0.radius().clone(), e.0.midpoint().to_rational().unwrap_or_default()),
+        };
+        radius.set(radius.get().max(upward(&size)));
+        value
+    };
+    let all = algebra.terms_as(f, &part).into_iter();
+    let kept = all.filter(|(_, c)| !c.iter().all(Rational::is_zero));
+    kept.map(|(exponents, [re, im])| AmplitudeTerm { exponents, re, im }).collect()
+}

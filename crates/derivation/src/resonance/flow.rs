@@ -1,0 +1,189 @@
+//! The slow flow of a system over any coefficients: derived, checked, with its energy; and over rational numbers.
+
+use super::potential::potential;
+use super::{
+    Names, ResonanceError, Room, SlowFlow, System, Terms, refuse_near_miss, sum_of_harmonics,
+};
+use crate::averaging::{AveragingSettings, constant};
+use crate::error::DerivationError as Error;
+use crate::work::Progress;
+use lindstedt_algebra::{AmplitudeAlgebra, PhaseError};
+use lindstedt_equation::{Expression, Function, Problem};
+use lindstedt_expand::resonance::{checked_residual, energy, resonant};
+use lindstedt_expand::{Binding, ExpandError, OrderWork, compile_system};
+use lindstedt_phase::amplitudes::scalars::{Integers, Scalars};
+use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Rates};
+use rug::{Integer, Rational};
+
+/// Symbols of the algebra, waves of the forces, and what else is a constant of the coefficients.
+pub(super) struct Symbols<'a, S: Scalars> {
+    pub algebra: &'a Amplitudes<S>,
+    /// cos m eta is the harmonic m times this of the algebra.
+    pub step: i32,
+    pub other: &'a dyn Fn(&str) -> Option<S::Element>,
+}
+
+impl<S: Scalars> Binding<Amplitudes<S>> for Symbols<'_, S> {
+    fn parameter(&self, name: &str) -> Option<AmplitudeElement<S::Element>> {
+        if let Some(wave) = name.strip_prefix(WAVE) {
+            let mut parts = wave.split(',').map(|part| part.parse::<i32>().ok());
+            let mut next = || parts.next().flatten();
+            let (l, m, sine) = (next()?, next()?, next()?);
+            let [cos, sin] =
+                self.algebra.wave(usize::try_from(l).ok()?, m.checked_mul(self.step)?)?;
+            return Some(if sine == 1 { sin } else { cos });
+        }
+        let other = || Some(self.algebra.constant((self.other)(name)?));
+        self.algebra.symbol(name).or_else(other)
+    }
+    fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<S::Element>> {
+        None
+    }
+}
+
+const WAVE: &str = "'wave";
+
+/// The equations of a system with the waves as [`Symbols`] reads them.
+pub(super) fn compiled_form(system: &System) -> Vec<Expression> {
+    system.with_waves(&|function, l, m| {
+        let sine = i32::from(function == Function::Sin);
+        format!("{WAVE}{l},{m},{sine}")
+    })
+}
+
+pub(super) type Element<S> = AmplitudeElement<<S as Scalars>::Element>;
+pub(super) type Found<S> = lindstedt_expand::resonance::SlowFlow<Element<S>>;
+
+/// A flow that was derived.
+pub(super) struct Run<S: Scalars> {
+    pub algebra: Amplitudes<S>,
+    pub found: Found<S>,
+    /// The orders that were checked.
+    pub checked: Option<usize>,
+    /// What the residual is.
+    pub residual: Vec<Element<S>>,
+    /// The energy, order by order; empty where there is none.
+    pub energy: Vec<Element<S>>,
+}
+
+pub(super) struct Job<'a> {
+    pub problem: &'a Problem,
+    pub system: System,
+    pub settings: &'a AveragingSettings,
+}
+
+impl Job<'_> {
+    /// The multiples of 1 in the nu_j, where these are rational, and those in the Omega_l; one 0 without a force.
+    pub(super) fn rates<E>(&self, generators: Vec<(E, Integer)>) -> Rates<E> {
+        let amplitudes = self.system.frequencies.iter().map(|nu| vec![nu.clone()]).collect();
+        let mut forces: Vec<_> =
+            self.system.forces.iter().map(|phase| phase.rate.clone()).collect();
+        if forces.is_empty() {
+            forces.push(vec![Rational::new()]);
+        }
+        Rates { amplitudes, forces, generators }
+    }
+
+    /// Over rational numbers.
+    pub(super) fn rational(
+        &self,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<SlowFlow, Error> {
+        let run = self.run(Integers, self.rates(Vec::new()), &|_| None, observer)?;
+        let terms = |f: &_| run.algebra.rational_terms(f).unwrap_or_default();
+        Ok(self.finished(&run, &terms))
+    }
+
+    /// Derives and checks, over some coefficients, with `other` for names that are none of the symbols.
+    pub(super) fn run<S: Scalars>(
+        &self,
+        scalars: S,
+        rates: Rates<S::Element>,
+        other: &dyn Fn(&str) -> Option<S::Element>,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Run<S>, Error> {
+        let (system, settings) = (&self.system, self.settings);
+        let names: Vec<&str> = system.symbols.iter().map(String::as_str).collect();
+        let algebra = Amplitudes::of_rates(scalars, rates, &names);
+        let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: names.len() })?;
+        let algebra = algebra.with_stop(settings.stop.clone());
+        let binding = Symbols { algebra: &algebra, step: 1, other };
+        let graph = compile_system(&algebra, &compiled_form(system), &binding, settings.order)?;
+        let sigma = |e: &Expression| {
+            let term = Names(self.problem).shown(e);
+            let refused = || ResonanceError::NotAForce { term };
+            constant(&algebra, e, &|name| binding.parameter(name)).ok_or_else(refused)
+        };
+        let list = |phase: &super::Phase| phase.detuning.iter().map(sigma).collect();
+        let detuning = system.forces.iter().map(list).collect::<Result<Vec<Vec<_>>, _>>()?;
+        let mut room = Room::new(settings);
+        let mut on_order = |work: &OrderWork| {
+            observer(Progress::Order(work.order, work.terms)) && room.has_next(work)
+        };
+        let found = resonant(&algebra, &graph, settings.order, &detuning, &mut on_order);
+        room.checked?;
+        let too_high = || Error::from(ResonanceError::TooHigh { order: settings.order });
+        let found = found.map_err(|error| match error {
+            ExpandError::Interrupted { .. } if algebra.overflowed() => too_high(),
+            ExpandError::Phase { order, source: PhaseError::Undecided { harmonic } } => {
+                let harmonic = sum_of_harmonics(&harmonic, algebra.forces());
+                ResonanceError::UndecidedDivisor { order, harmonic }.into()
+            }
+            error => error.into(),
+        })?;
+        if algebra.overflowed() {
+            return Err(too_high());
+        }
+        refuse_near_miss(&found.nearest, algebra.forces())?;
+        observer(Progress::Checking);
+        let (checked, residual) = match checked_residual(&algebra, &graph, &found) {
+            // What was multiplied after the work was stopped means nothing, for better or worse.
+            _ if settings.stop.asked() => (None, Vec::new()),
+            Err(ExpandError::Interrupted { .. }) => (None, Vec::new()),
+            other => (Some(found.order()), other?),
+        };
+        let conserved = checked.and_then(|_| potential(&system.equations));
+        let energy = match conserved.filter(|_| system.forces.is_empty()) {
+            None => Vec::new(),
+            Some((weights, potential)) => {
+                let alone = |(j, v)| Expression::unknown(j, 2) + v;
+                let others = std::iter::repeat_n(Expression::integer(0), weights.len() - 1);
+                let all = std::iter::once(potential).chain(others).enumerate().map(alone);
+                let all: Vec<_> = all.collect();
+                let graph = compile_system(&algebra, &all, &binding, settings.order)?;
+                match energy(&algebra, &graph, &weights, &found) {
+                    _ if settings.stop.asked() || algebra.overflowed() => Vec::new(),
+                    other => other?,
+                }
+            }
+        };
+        Ok(Run { algebra, found, checked, residual, energy })
+    }
+
+    pub(super) fn finished<S: Scalars>(
+        &self,
+        run: &Run<S>,
+        terms: &dyn Fn(&Element<S>) -> Terms,
+    ) -> SlowFlow {
+        let Run { algebra, found, checked, energy, .. } = run;
+        let lists = |lists: &[Vec<Element<S>>]| -> Vec<Vec<Terms>> {
+            lists.iter().map(|list| list.iter().map(terms).collect()).collect()
+        };
+        let mut flow = lists(&found.flow);
+        for (j, list) in flow.iter_mut().enumerate() {
+            list[0] = terms(&algebra.by_time(&algebra.amplitude(j)));
+        }
+        SlowFlow {
+            problem: self.problem.clone(),
+            system: self.system.clone(),
+            order: found.order(),
+            checked_orders: *checked,
+            flow,
+            solution: lists(&found.solution),
+            detuning: lists(&found.detuning),
+            nearest: found.nearest.clone(),
+            energy: energy.iter().map(terms).collect(),
+            enclosed: None,
+        }
+    }
+}
