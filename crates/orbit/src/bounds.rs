@@ -15,12 +15,12 @@ mod tests;
 
 use crate::centre::{Centre, Values, Variables};
 use crate::drift::Drift;
-use crate::exact::{Doubles, ERROR, Exact, power_of_two};
+use crate::exact::{Doubles, ERROR, power_of_two};
 use crate::field::Field;
 use crate::function::Tied;
 use crate::laurent::Laurent;
 use crate::linear::{Inverse, Linear, at};
-use crate::newton::residuals;
+use crate::newton::Right;
 use crate::polynomial::Polynomial;
 use crate::space::Wave;
 use crate::task::Task;
@@ -57,22 +57,6 @@ pub(crate) struct Frame<'a> {
     frequency_below: f64,
     /// s.
     scale: f64,
-}
-
-/// A right side and a value for the condition, times 2^-exponent.
-#[derive(Clone, Debug)]
-pub(crate) struct Right {
-    rows: Vec<Doubles>,
-    exponent: i32,
-    condition: f64,
-}
-
-impl Right {
-    pub(crate) fn new(rows: &[Exact], condition: Float, bits: u32) -> Self {
-        let (rows, exponent) = residuals(rows, bits);
-        let condition = Float::with_val(53, condition >> exponent).to_f64();
-        Self { rows, exponent, condition }
-    }
 }
 
 /// nu and what follows.

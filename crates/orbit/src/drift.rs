@@ -4,11 +4,10 @@
 //! G(s) = G(0) + s G'(0) + a rest of at most |G''|/2, G(0) and G'(0) formed exactly.
 
 use crate::Failure;
-use crate::bounds::Right;
 use crate::centre::{Centre, Values, Variables};
 use crate::exact::{Exact, Part, combine, unit};
 use crate::linear::{Inverse, Linear};
-use crate::newton::solve;
+use crate::newton::{Right, solve};
 use crate::task::Task;
 use lindstedt_algebra::Stop;
 use rug::{Complete, Float, Integer, Rational};

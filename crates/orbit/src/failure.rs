@@ -56,7 +56,9 @@ pub enum Failure {
     NotSwinging,
     /// Could not decide: of all values between two a field is known only where one number of the equation varies
     /// and is the parameter itself (of a pendulum, the amplitude).
-    #[error("more than one number of the equation varies between the two values, or another one")]
+    #[error(
+        "no one number of the equation alone varies with the parameter (of a pendulum, the amplitude)"
+    )]
     NotOneNumber,
     /// DF has no inverse in doubles.
     #[error("the linearised equation has no inverse on {modes} modes")]

@@ -49,15 +49,16 @@ pub fn guesses(field: &Field, kind: &Kind, stop: &Stop) -> Result<Vec<Start>, Fa
     let forced = matches!(kind, Kind::Forced(_));
     let phases = if forced { PHASES } else { 1 };
     let mut found: Vec<Start> = Vec::new();
-    let middles = field.equilibria();
+    let plane = Plane { field, doubles: InDoubles::new(field) };
+    let middles = plane.equilibria();
     let singles = middles.iter().flat_map(|middle| {
-        let radii = field.radii(kind, *middle).into_iter();
+        let radii = plane.radii(kind, *middle).into_iter();
         radii.flat_map(move |radius| (0..phases).map(move |p| (radius, *middle, p)))
     });
     for (radius, middle, phase) in singles {
         let angle = TAU * f64::from(phase) / f64::from(phases);
         let single = Start {
-            frequency: field.frequency(middle, radius),
+            frequency: plane.frequency(middle, radius),
             cosines: vec![middle, radius * angle.cos()],
             sines: vec![0.0, radius * angle.sin()],
         };
@@ -78,7 +79,13 @@ pub fn guesses(field: &Field, kind: &Kind, stop: &Stop) -> Result<Vec<Start>, Fa
     Ok(found)
 }
 
-impl Field {
+/// A field of one unknown with its numbers in doubles.
+struct Plane<'a> {
+    field: &'a Field,
+    doubles: InDoubles,
+}
+
+impl Plane<'_> {
     /// The amplitudes of the single harmonics about a middle.
     fn radii(&self, kind: &Kind, middle: f64) -> Vec<f64> {
         let list = match kind {
@@ -124,7 +131,7 @@ impl Field {
         let change = |a: f64, b: f64| a * b < 0.0 || (a == 0.0 && b != 0.0);
         let changes = (-CELLS..CELLS).filter(|j| change(force(*j), force(j + 1)));
         // Where x is an angle, those of one turn.
-        let most = self.angle().map_or(f64::INFINITY, |rate| std::f64::consts::PI / rate);
+        let most = self.field.angle().map_or(f64::INFINITY, |rate| std::f64::consts::PI / rate);
         let places = changes
             .map(|j| (at(j) + at(j + 1)) / 2.0)
             .filter(|x| *x > STEP - most && *x <= most + STEP);
@@ -134,6 +141,6 @@ impl Field {
 
     /// g without its force.
     fn value(&self, x: f64, velocity: f64) -> f64 {
-        InDoubles::new(self).accelerations(&[x, velocity], None)[0]
+        self.doubles.accelerations(&[x, velocity], None)[0]
     }
 }

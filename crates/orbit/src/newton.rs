@@ -2,7 +2,7 @@
 
 use crate::Failure;
 use crate::centre::{Centre, Values};
-use crate::exact::Exact;
+use crate::exact::{Doubles, Exact};
 use crate::linear::{Inverse, Linear, Step, at};
 use crate::product::Products;
 use crate::task::Task;
@@ -95,9 +95,25 @@ pub(crate) fn invert(linear: &Linear, modes: usize) -> Result<Inverse, Failure> 
 }
 
 /// The residuals in doubles with one exponent.
-pub(crate) fn residuals(list: &[Exact], bits: u32) -> (Vec<Vec<Complex<f64>>>, i32) {
+fn residuals(list: &[Exact], bits: u32) -> (Vec<Vec<Complex<f64>>>, i32) {
     let largest = list.iter().filter_map(Exact::exponent).max().unwrap_or(-(bits as i32));
     (list.iter().map(|e| e.doubles(largest)).collect(), largest)
+}
+
+/// A right side and a value for the condition, times 2^-exponent.
+#[derive(Clone, Debug)]
+pub(crate) struct Right {
+    pub(crate) rows: Vec<Doubles>,
+    pub(crate) exponent: i32,
+    pub(crate) condition: f64,
+}
+
+impl Right {
+    pub(crate) fn new(rows: &[Exact], condition: Float, bits: u32) -> Self {
+        let (rows, exponent) = residuals(rows, bits);
+        let condition = Float::with_val(53, condition >> exponent).to_f64();
+        Self { rows, exponent, condition }
+    }
 }
 
 /// Newton's method with every residual formed exactly; the linear equations are solved in doubles

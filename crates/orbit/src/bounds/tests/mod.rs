@@ -6,6 +6,7 @@ mod second;
 mod uncertain;
 
 use super::*;
+use crate::exact::Exact;
 use crate::function::from_units;
 use crate::linear::Step;
 use crate::newton::{balance, invert, linearised};
