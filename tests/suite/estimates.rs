@@ -212,7 +212,8 @@ const PROVED: [(&str, i64, i64); 10] = [
     ("x'' + x + eps*x^5 = 0", -900, 9_000),
     ("x'' + x + eps*(2*x^3 - x^5/2) = 0", -300, 600),
     ("x'' + x + eps*(x^3 + 3*x^5) = 0", -200, 5_000),
-    ("x'' + x = eps*((1 - x^2)*x' + x^3/2)", 50, 900),
+    // From 0.45 on the cycle comes so near to the saddles that its proof takes half a minute.
+    ("x'' + x = eps*((1 - x^2)*x' + x^3/2)", 50, 400),
     ("x'' + x = eps*((1 - x^2)*x' - x^3)", 50, 2_000),
     ("x'' + x = eps*(1 - x^2 + x'^2/10)*x'", 50, 1_500),
     ("x'' + x + eps*(x^3 - x*x'^2/3) = 0", 50, 2_000),
@@ -269,7 +270,7 @@ fn check_printed(label: &str, period: Option<&Number>, exact: &str) {
 #[test]
 fn estimates_hold() {
     let mut count = Count::default();
-    closed_forms(11, 30, 17, &mut count);
+    closed_forms(11, 30, 13, &mut count);
     van_der_pol(12, 40, 20, &mut count);
     proved(13, 4, 10, &mut count);
     count.print();

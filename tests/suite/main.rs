@@ -3,6 +3,7 @@
 mod averaging;
 mod classics;
 mod clock;
+mod clock_expansion;
 mod closed_forms;
 mod estimates;
 mod evaluate;
@@ -19,6 +20,7 @@ mod paper;
 mod paper_section_2;
 mod problem_files;
 mod respond;
+mod slow_flows;
 mod small_delta;
 mod threads;
 mod vibro_impact;

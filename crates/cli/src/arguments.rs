@@ -94,7 +94,7 @@ pub struct DeriveOptions {
     #[arg(long, value_name = "K", conflicts_with = "unknown")]
     pub mode: Option<u32>,
     /// By the clock where the equation allows it and else by the driver; one of them; or the energy
-    /// integral (frequency alone; power-law and pendulum).
+    /// integral (frequency alone: conservative forces that are polynomial, the power law, the pendulum).
     #[arg(long, value_enum, default_value_t = Route::Auto)]
     pub route: Route,
     /// Exact, or numbers with an estimated error: collocation (--digits or --f64) or a truncated

@@ -338,30 +338,3 @@ fn print_few<A: PrintPhase + FunctionAlgebra>(
     let print = |style| if terms > most { String::new() } else { algebra.print(f, "tau", style) };
     (styles.map(print), terms)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::Solution;
-    use crate::{DerivationError, Settings, derive};
-    use lindstedt_coeff::print::Style;
-
-    #[test]
-    fn long_right_sides_are_not_formed() -> Result<(), DerivationError> {
-        let Some(problem) = lindstedt_problems::find("power-law") else { return Ok(()) };
-        let settings = Settings { order: 5, ..Settings::default() };
-        let derivation = derive(&problem, &settings, &mut |_| true)?;
-        assert!(matches!(derivation.solution, Solution::Lobachevsky(_)));
-        let styles = [Style::Text, Style::Latex];
-        for n in 0..=5 {
-            let [short, long] = [5, 100].map(|most| derivation.print_right_side(n, styles, most));
-            // Formed where x_n is not much longer than what is printed, and then it is that of the expansion.
-            assert_eq!(short.is_some(), derivation.terms(n) <= 10, "order {n}");
-            assert!(long.is_some(), "order {n}");
-            let Some(([text, latex], terms)) = long else { continue };
-            assert!(n == 0 || terms > 0 && !text.is_empty() && !latex.is_empty(), "order {n}");
-            assert!(short.is_none_or(|(_, same)| same == terms));
-        }
-        assert!(derivation.terms(5) > 10);
-        Ok(())
-    }
-}

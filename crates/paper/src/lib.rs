@@ -124,7 +124,7 @@ impl Reader<'_> {
 /// [`Error`] when the engine cannot derive what the paper claims, or cannot reach the digits.
 ///
 /// # Example
-/// ```
+/// ```no_run
 /// use lindstedt::Stop;
 /// use lindstedt_paper::{Options, Verdict, read};
 /// let paper = read(Options::QUICK, &Stop::default(), &mut |_| true)?;

@@ -248,8 +248,8 @@ fn every_method() -> Vec<Option<Method>> {
 
 #[test]
 fn power_law_periods() {
-    let axes = Axes { orders: &[0, 1, 2, 7, 20], digits: &[1, 30], methods: &AUTO };
-    power_law_grid(&axes).finish("power-law periods", 15);
+    let axes = Axes { orders: &[0, 1, 20], digits: &[30], methods: &AUTO };
+    power_law_grid(&axes).finish("power-law periods", 18);
 }
 
 #[test]
@@ -260,8 +260,8 @@ fn pendulum_periods() {
 
 #[test]
 fn duffing_periods() {
-    let axes = Axes { orders: &[0, 1, 2, 7, 20], digits: &[1, 30], methods: &AUTO };
-    duffing_grid(&axes).finish("Duffing periods", 18);
+    let axes = Axes { orders: &[0, 2, 20], digits: &[1, 30], methods: &AUTO };
+    duffing_grid(&axes).finish("Duffing periods", 15);
 }
 
 #[test]

@@ -57,7 +57,7 @@ fn velocities(values: [&str; 6], periods: u32, bits: u32) -> Option<[Float; 2]> 
     Some([f(&large) / &a, rest / large])
 }
 
-fn grid_of(digits: &[u32]) -> Grid {
+fn grid_of(gains: &[&str], digits: &[u32]) -> Grid {
     let mut grid = Grid::default();
     let base = ["1", "13/5", "4/5", "0", "1/20", "1"];
     let mut sets = vec![base];
@@ -71,7 +71,7 @@ fn grid_of(digits: &[u32]) -> Grid {
     for values in sets {
         // The orbit is the same with every gain.
         let truth = velocities(values, 1, 16_000);
-        for gain in ["0", "2/25", "1e-300", "1e300"] {
+        for gain in gains {
             let [alpha, omega, restitution, wall, damping, force] =
                 values.map(|v| Exact::Rational(rational(v)));
             let p = ExactParameters {
@@ -127,11 +127,11 @@ fn grid_of(digits: &[u32]) -> Grid {
 
 #[test]
 fn orbits() {
-    grid_of(&[1, 16]).finish("orbits", 62);
+    grid_of(&["2/25", "1e300"], &[16]).finish("orbits", 62);
 }
 
 #[test]
 #[ignore = "minutes"]
-fn orbits_at_many_digits() {
-    grid_of(&[3, 100, 300]).finish("orbits", 70);
+fn every_orbit() {
+    grid_of(&["0", "2/25", "1e-300", "1e300"], &[1, 3, 16, 100, 300]).finish("orbits", 70);
 }

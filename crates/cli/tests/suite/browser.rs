@@ -43,6 +43,19 @@ fn page() -> Result<String, Box<dyn Error>> {
     Ok(std::fs::read_to_string(folder()?.join("report.html"))?)
 }
 
+/// The text of the page is what the net holds of `lindstedt paper --quick`.
+#[test]
+fn the_report_as_text() -> Outcome {
+    let text = std::fs::read_to_string(folder()?.join("report.txt"))?;
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/net/snapshots"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.set_description("lindstedt paper --quick");
+    settings.bind(|| insta::assert_snapshot!("paper-quick", format!("==== text (exit 0)\n{text}")));
+    Ok(())
+}
+
 /// The values of an attribute.
 fn attributes<'a>(html: &'a str, name: &str) -> Vec<&'a str> {
     let start = format!(" {name}=\"");
@@ -132,28 +145,27 @@ fn in_print() -> Outcome {
     Ok(())
 }
 
-/// All figures of the book and of the report: every word inside the picture, every glyph there.
+/// All figures of the book and of the report, on one page: every word inside its picture, every glyph there.
 #[test]
 fn figures() -> Outcome {
+    let mut html = "<!DOCTYPE html><meta charset=\"utf-8\"><body>".to_owned();
     let mut count = 0;
     for folder in [root().join("docs/src/figures"), folder()?.to_path_buf()] {
         for entry in std::fs::read_dir(folder)? {
             let path = entry?.path();
-            if path.extension().is_none_or(|extension| extension != "svg") {
-                continue;
+            if path.extension().is_some_and(|extension| extension == "svg") {
+                html += &std::fs::read_to_string(&path)?;
+                count += 1;
             }
-            let svg = std::fs::read_to_string(&path)?;
-            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let html = format!("<!DOCTYPE html><meta charset=\"utf-8\"><body>{svg}</body>");
-            let Some(found) = probe(&name, &html, 1200)? else { return Ok(()) };
-            assert!(list(&found, "missing").is_empty(), "{name}: {}", found["missing"]);
-            assert!(list(&found, "outside").is_empty(), "{name}: {}", found["outside"]);
-            assert!(list(&found, "requests").is_empty(), "{name}: {}", found["requests"]);
-            assert!(number(&found, "labels") > 3.0, "{name}: {found}");
-            count += 1;
         }
     }
+    html += "</body>";
     assert!(count >= 5, "{count} figures");
+    let Some(found) = probe("figures", &html, 1200)? else { return Ok(()) };
+    for key in ["missing", "outside", "requests", "bare"] {
+        assert!(list(&found, key).is_empty(), "{key}: {}", found[key]);
+    }
+    assert!(number(&found, "figures") >= f64::from(count), "{found}");
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 //! The files of the report: the page, everything as JSON, rows and tables as CSV, the figures.
 
-use super::{PageError, WIDTH, document, figures, json, standalone, table_of};
+use super::{PageError, WIDTH, document, figures, json, standalone, table_of, write};
 use crate::{Paper, Row, Section, Table, Trust};
 use lindstedt_report::{Format, Table as Sheet};
 
@@ -16,6 +16,7 @@ pub fn files(paper: &Paper, seconds: f64) -> Result<Vec<(String, String)>, PageE
     let page = document(paper, Some(&drawn), true);
     let mut files = vec![
         (PAGE.to_owned(), standalone(&page, include_str!("style.css"))),
+        ("report.txt".to_owned(), write(paper, Format::Text)),
         ("report.md".to_owned(), Format::Markdown.write_within(&page, WIDTH)),
         ("report.json".to_owned(), json(paper, seconds)?),
     ];

@@ -36,6 +36,9 @@ addEventListener("load", () => {
       inner.top < outer.top - 1 || inner.bottom > outer.bottom + 1;
     if (out) outside.push(label.textContent.trim());
   }
+  // Figures with hardly a word: the frame alone was drawn.
+  const figures = [...document.querySelectorAll("svg")];
+  const bare = figures.filter((f) => f.querySelectorAll("text").length <= 3).map((f) => f.outerHTML.slice(0, 200));
   const height = (element) => element.getBoundingClientRect().height;
   const fractions = [...document.querySelectorAll("mfrac")].filter((f) => height(f) > 0);
   const flat = fractions.filter((f) => height(f) < 1.2 * height(f.firstElementChild));
@@ -50,7 +53,8 @@ addEventListener("load", () => {
     characters: seen.size,
     missing: [...missing],
     outside,
-    labels: labels.length,
+    figures: figures.length,
+    bare,
     fractions: fractions.length,
     flat: flat.length,
     folded: folded.length,

@@ -130,7 +130,7 @@ fn forced_van_der_pol() -> Expression {
 /// Orders 1 to 3 of four oscillators; `tests/data/resonance` says where the numbers come from.
 #[test]
 fn reference_flows() {
-    let text = include_str!("../../../../tests/data/resonance/slow-flows.json");
+    let text = include_str!("../data/resonance/slow-flows.json");
     let data: serde_json::Value = serde_json::from_str(text).unwrap();
     let internal = [
         oscillator(0, 1, eps(2 * x(0) * x(1))),

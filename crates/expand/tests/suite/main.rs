@@ -1,4 +1,0 @@
-//! The engine's methods on whole equations.
-
-mod clock;
-mod resonance;
