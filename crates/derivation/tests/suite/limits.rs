@@ -23,7 +23,8 @@ fn memory_is_predicted_within_a_factor_of_two() {
                 let outcome = derive(&problem, &settings, &mut |_| false);
                 matches!(outcome, Err(DerivationError::TooLarge { .. }))
             };
-            assert!(refused(0.5) && !refused(2.0), "{name} {order}: {measured} MB");
+            // Refused is only what needs more than twice the limit, and all that needs eight times as much.
+            assert!(refused(0.125) && !refused(0.5), "{name} {order}: {measured} MB");
         }
     }
 }

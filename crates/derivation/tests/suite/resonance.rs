@@ -411,7 +411,10 @@ fn names_and_memory_of_the_user() {
     let forced = ProblemFile::parse(text).unwrap().problem;
     let settings = AveragingSettings { order: 9, memory: 1 << 20, ..AveragingSettings::default() };
     let error = refused(&settings, &forced);
-    assert!(error.starts_with("order 6 is predicted to need "), "{error}");
+    assert!(
+        error.starts_with("order 8 is predicted to need 6.6 MiB, the limit is 1.0 MiB"),
+        "{error}"
+    );
 }
 
 /// Coupled springs 5/2 and 3/2 have the modes 1:2; the energy of the slow flow is kept: a detuning in the
