@@ -39,14 +39,15 @@ def test_a_derivation(duffing: Oscillator) -> None:
 
 
 def test_values_are_what_was_typed(duffing: Oscillator) -> None:
-    for value in (0.1, "0.1", "1/10", Fraction(1, 10), Decimal("0.1"), np.float64(0.1)):
+    values: list[lindstedt.Value] = [0.1, "0.1", "1/10", Fraction(1, 10), Decimal("0.1"), np.float64(0.1)]
+    for value in values:
         assert duffing.set(eps=value).values["eps"] == "1/10"
     sympy = pytest.importorskip("sympy")
     assert duffing.set(eps=sympy.Rational(1, 10)).values["eps"] == "1/10"
     assert Oscillator.builtin("pendulum", amplitude=sympy.pi / 4).values["amplitude"] == "1/4*pi"
-    for value in (True, math.nan, object()):
+    for wrong in (True, math.nan, object()):
         with pytest.raises(lindstedt.UsageError):
-            duffing.set(eps=value)
+            duffing.set(eps=wrong)
 
 
 def test_refusals_are_exceptions() -> None:
@@ -184,7 +185,7 @@ def test_other_threads_run_meanwhile_and_limits_hold() -> None:
 
 
 def test_a_grid_is_the_same_on_other_processes(duffing: Oscillator) -> None:
-    values = {"eps": ["1/10", "1/5"], "amplitude": [1, 2]}
+    values: dict[str, list[lindstedt.Value]] = {"eps": ["1/10", "1/5"], "amplitude": [1, 2]}
     local = lindstedt.grid(duffing, "evaluate", values, order=4)
     with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
         there = lindstedt.grid(duffing, "evaluate", values, executor=pool, block=2, order=4)
