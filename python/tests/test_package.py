@@ -34,7 +34,9 @@ def test_a_derivation(duffing: Oscillator) -> None:
     assert answer.is_complete and answer.order == 6 and answer.residual["zero"]
     assert answer["solution"][0] == "cos(tau)"
     assert answer.to_dict()["series"]["frequency"][1]["exact"] == "3/8"
-    assert "\\frac" in answer._repr_latex_() and "omega" in str(answer)
+    latex = answer._repr_latex_()
+    assert latex is not None and r"\omega &= 1 + \frac{3}{8}\varepsilon-\frac{21}{256}\varepsilon^{2}" in latex
+    assert "<math" in answer._repr_html_() and "omega" in str(answer)
     assert duffing == Oscillator("x'' + x + eps*x^3 = 0")
 
 
