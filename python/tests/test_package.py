@@ -34,19 +34,22 @@ def test_a_derivation(duffing: Oscillator) -> None:
     assert answer.is_complete and answer.order == 6 and answer.residual["zero"]
     assert answer["solution"][0] == "cos(tau)"
     assert answer.to_dict()["series"]["frequency"][1]["exact"] == "3/8"
-    assert "\\frac" in answer._repr_latex_() and "omega" in str(answer)
+    latex = answer._repr_latex_()
+    assert latex is not None and r"\omega &= 1 + \frac{3}{8}\varepsilon-\frac{21}{256}\varepsilon^{2}" in latex
+    assert "<math" in answer._repr_html_() and "omega" in str(answer)
     assert duffing == Oscillator("x'' + x + eps*x^3 = 0")
 
 
 def test_values_are_what_was_typed(duffing: Oscillator) -> None:
-    for value in (0.1, "0.1", "1/10", Fraction(1, 10), Decimal("0.1"), np.float64(0.1)):
+    values: list[lindstedt.Value] = [0.1, "0.1", "1/10", Fraction(1, 10), Decimal("0.1"), np.float64(0.1)]
+    for value in values:
         assert duffing.set(eps=value).values["eps"] == "1/10"
     sympy = pytest.importorskip("sympy")
     assert duffing.set(eps=sympy.Rational(1, 10)).values["eps"] == "1/10"
     assert Oscillator.builtin("pendulum", amplitude=sympy.pi / 4).values["amplitude"] == "1/4*pi"
-    for value in (True, math.nan, object()):
+    for wrong in (True, math.nan, object()):
         with pytest.raises(lindstedt.UsageError):
-            duffing.set(eps=value)
+            duffing.set(eps=wrong)
 
 
 def test_refusals_are_exceptions() -> None:
@@ -184,7 +187,7 @@ def test_other_threads_run_meanwhile_and_limits_hold() -> None:
 
 
 def test_a_grid_is_the_same_on_other_processes(duffing: Oscillator) -> None:
-    values = {"eps": ["1/10", "1/5"], "amplitude": [1, 2]}
+    values: dict[str, list[lindstedt.Value]] = {"eps": ["1/10", "1/5"], "amplitude": [1, 2]}
     local = lindstedt.grid(duffing, "evaluate", values, order=4)
     with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
         there = lindstedt.grid(duffing, "evaluate", values, executor=pool, block=2, order=4)

@@ -108,8 +108,8 @@ class Answer:
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.problem}: {self.standing}>"
 
-    def _repr_latex_(self) -> str:
-        return self.page("latex")
+    def _repr_html_(self) -> str:
+        return self.page("html") + (self._form("svg") or "")
 
     def _repr_markdown_(self) -> str:
         return self.page("markdown")
@@ -179,6 +179,11 @@ class Derivation(Answer):
     def frequency(self) -> Series:
         """The series of omega."""
         return self.series["frequency"]
+
+    def _repr_latex_(self) -> str | None:
+        names = {"frequency": r"\omega", "frequency_squared": r"\omega^2", "period_over_2pi": r"T/2\pi"}
+        lines = [f"{names.get(name, name)} &= {series.latex()}" for name, series in self.series.items()]
+        return r"$\displaystyle\begin{aligned}" + r"\\ ".join(lines) + r"\end{aligned}$" if lines else None
 
     def to_sympy(self) -> dict[str, Any]:
         """All series as expressions."""

@@ -17,7 +17,7 @@ from ._answers import Answer, Derivation, Figure
 from ._arrays import BifurcationDiagram, FrequencyFunction, Solution, StabilityChart, ThresholdSurface
 from ._errors import LindstedtError, NoAnswerError, StoppedError, UndecidedError, UsageError
 from ._native import __version__
-from ._numbers import Number, Series
+from ._numbers import Number, Series, Value
 from ._oscillator import Oscillator, grid
 
 __all__ = [
@@ -37,6 +37,7 @@ __all__ = [
     "ThresholdSurface",
     "UndecidedError",
     "UsageError",
+    "Value",
     "__version__",
     "grid",
     "problems",

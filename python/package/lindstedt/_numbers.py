@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
 import numbers
 from collections.abc import Sequence
@@ -86,14 +87,23 @@ class Number:
             return sympy.Float(self.decimal, max(len(self.decimal), 15))
         return sympy.sympify(self.exact.replace("^", "**"), locals={"ln": sympy.log})
 
-    def _repr_latex_(self) -> str:
-        import importlib.util
-
-        if importlib.util.find_spec("sympy") is None:
-            return f"${self}$"
+    def latex(self) -> str:
+        """In LaTeX: a fraction, else what SymPy makes of the closed form, else the decimal."""
+        fraction = self.fraction
+        if fraction is not None:
+            sign, size = "-" if fraction < 0 else "", abs(fraction)
+            whole = size.denominator == 1
+            return sign + (str(size) if whole else rf"\frac{{{size.numerator}}}{{{size.denominator}}}")
+        if self.exact is None or importlib.util.find_spec("sympy") is None:
+            mantissa, _, exponent = self.decimal.partition("e")
+            return rf"{mantissa}\cdot 10^{{{exponent}}}" if exponent else mantissa
         import sympy
 
-        return f"${sympy.latex(self.to_sympy())}$"
+        text: str = sympy.latex(self.to_sympy())
+        return rf"\left({text}\right)"
+
+    def _repr_latex_(self) -> str:
+        return f"${self.latex()}$"
 
 
 class Series(Sequence[Number]):
@@ -140,10 +150,24 @@ class Series(Sequence[Number]):
         x = sympy.Symbol(self.parameter)
         return sum((c.to_sympy() * x**n for n, c in enumerate(self.coefficients)), sympy.Integer(0))
 
-    def _repr_latex_(self) -> str:
-        import sympy
+    def latex(self) -> str:
+        """In LaTeX, terms that vanish left out."""
+        greek = {"eps": r"\varepsilon"}
+        letters = {"rho", "delta", "mu", "epsilon", "lambda"}
+        x = greek.get(self.parameter, f"\\{self.parameter}" if self.parameter in letters else self.parameter)
+        text = ""
+        for n, number in enumerate(self.coefficients):
+            if number.fraction == 0:
+                continue
+            power = "" if n == 0 else x if n == 1 else f"{x}^{{{n}}}"
+            term = number.latex()
+            if power and term in ("1", "-1"):
+                term = term[:-1]
+            text += term + power if not text or term.startswith("-") else f" + {term}{power}"
+        return text or "0"
 
-        return f"${sympy.latex(self.to_sympy())}$"
+    def _repr_latex_(self) -> str:
+        return f"${self.latex()}$"
 
 
 def read(value: Any) -> Any:
