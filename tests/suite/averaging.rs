@@ -184,7 +184,11 @@ impl<R: RationalAlgebra> Over<'_, R> {
 #[test]
 fn symbolic_rates_of_the_delay_loop() {
     let names = ["alpha", "A", "B", "c", "T", "cos", "sin"].map(str::to_owned).to_vec();
-    let k = ParameterField { ring: PolynomialRing { parameters: names }, pairs: vec![(5, 6)] };
+    let k = ParameterField {
+        ring: PolynomialRing { parameters: names },
+        pairs: vec![(5, 6)],
+        affine: false,
+    };
     let [alpha, a, b, c, t, cos, sin] = [0, 1, 2, 3, 4, 5, 6].map(|i| k.parameter(i));
     let delay =
         Delay { time: t.clone(), free: [cos.clone(), sin.clone()], forced: [k.one(), k.zero()] };

@@ -44,6 +44,9 @@ pub struct ParameterField {
     pub ring: PolynomialRing,
     /// (cosine, sine) positions of parameters with sin^2 + cos^2 = 1.
     pub pairs: Vec<(u16, u16)>,
+    /// Whether sums with a constant, such as 1 - omega, can be divided by. It takes omega to be no number, in particular
+    /// not 1.
+    pub affine: bool,
 }
 
 impl ParameterField {
@@ -308,7 +311,8 @@ impl RationalAlgebra for ParameterField {
             return None;
         }
         let mut denominator = BTreeMap::new();
-        let inverse = match split_linear(&a.numerator) {
+        let plain = |form: &LinearForm| self.affine || form.iter().all(|(i, _)| i.is_some());
+        let inverse = match split_linear(&a.numerator).filter(|(_, form)| plain(form)) {
             Some(((monomial, content), form)) => {
                 denominator.insert(form, 1);
                 self.ring.reciprocal(&Sparse::term(&Rationals, monomial, content))?
@@ -350,7 +354,8 @@ mod tests {
     /// Parameters alpha, omega, P, cos, sin.
     fn field() -> ParameterField {
         let names = ["alpha", "omega", "P0", "cos(phi)", "sin(phi)"].map(str::to_owned);
-        ParameterField { ring: PolynomialRing { parameters: names.to_vec() }, pairs: vec![(3, 4)] }
+        let ring = PolynomialRing { parameters: names.to_vec() };
+        ParameterField { ring, pairs: vec![(3, 4)], affine: true }
     }
 
     #[test]
@@ -397,6 +402,8 @@ mod tests {
         let squares = k.sub(&k.one(), &k.mul(&omega, &omega));
         assert_eq!(k.mul(&squares, &single), k.add(&k.one(), &omega));
         assert_eq!(k.print(&single, Style::Text), "(1 - omega)^(-1)");
+        let homogeneous = ParameterField { affine: false, ..field() };
+        assert_eq!(homogeneous.reciprocal(&k.sub(&k.one(), &omega)), None);
         // A product of two is no linear form: refused, not expanded.
         assert_eq!(k.reciprocal(&squares), None);
         let value = |i: u16| Rational::from(i + 2);

@@ -33,7 +33,7 @@ impl Quotients {
     pub fn new(names: &[&str], pairs: &[(&str, &str)]) -> Self {
         let ring =
             PolynomialRing { parameters: names.iter().map(|name| (*name).to_owned()).collect() };
-        let plain = ParameterField { ring, pairs: Vec::new() };
+        let plain = ParameterField { ring, ..ParameterField::default() };
         let position =
             |&(cos, sin): &(&str, &str)| Some((plain.position(cos)?, plain.position(sin)?));
         let pairs = pairs.iter().filter_map(position).collect();

@@ -92,5 +92,5 @@ pub(super) fn with_angles(field: &ParameterField, angles: &[ParameterFraction]) 
         parameters.extend(names);
         pairs.push((position, position.saturating_add(1)));
     }
-    ParameterField { ring: PolynomialRing { parameters }, pairs }
+    ParameterField { ring: PolynomialRing { parameters }, pairs, affine: field.affine }
 }

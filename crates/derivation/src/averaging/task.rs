@@ -6,6 +6,7 @@ use super::values::{Given, constant, enclosed};
 use super::{Averaging, AveragingSettings, Coefficient, RateTerm};
 use crate::error::DerivationError as Error;
 use crate::limits::{check_delays, unknown_parameter};
+use crate::values::value;
 use crate::work::Progress;
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::PolynomialRing;
@@ -301,7 +302,12 @@ impl<'a> Task<'a> {
         let unlisted = self.names.iter().filter(|name| !listed.contains(name)).cloned();
         let ordered: Vec<String> = listed.iter().cloned().chain(unlisted).collect();
         let parameters = ordered.into_iter().filter(|name| given(name).is_none()).collect();
-        let plain = ParameterField { ring: PolynomialRing { parameters }, pairs: Vec::new() };
+        // A frequency with a value on its card may be at a resonance, which a formula would not see.
+        let known = |name: &String| value(self.problem, &self.settings.parameters, name).is_some();
+        let rates = self.excitation.frequency.iter().flat_map(Expression::parameters);
+        let affine = rates.into_iter().any(|name| !known(&name));
+        let plain =
+            ParameterField { ring: PolynomialRing { parameters }, pairs: Vec::new(), affine };
         let values = |name: &str| match given(name) {
             Some(q) => Some(plain.rational(&q)),
             None => Some(plain.parameter(plain.position(name)?)),

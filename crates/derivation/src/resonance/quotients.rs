@@ -18,8 +18,11 @@ pub(super) fn derived(
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<SlowFlow, Error> {
     let names = job.system.independent.clone();
-    let field =
-        ParameterField { ring: PolynomialRing { parameters: names.clone() }, pairs: vec![] };
+    let field = ParameterField {
+        ring: PolynomialRing { parameters: names.clone() },
+        pairs: vec![],
+        affine: true,
+    };
     let parameter = |i: usize| Some(field.parameter(u16::try_from(i).ok()?));
     let generators = (0..names.len()).filter_map(parameter).map(|e| (e, Integer::from(1)));
     let rates = job.rates(generators.collect());

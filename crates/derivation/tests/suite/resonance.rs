@@ -91,6 +91,9 @@ fn detunings() {
     // The second harmonic of the same phase is detuned twice as much.
     let both = "x'' + x = eps*x^2*cos((1 + eps*sigma)*t) + eps*cos(2*(1 + eps*sigma)*t)";
     assert_eq!(flow(both, 2, &[]).system.force(), 1);
+    // A force that is detuned otherwise has a phase of its own.
+    let two = flow("x'' + x = eps*cos(t) + eps*cos((1 + eps*sigma)*t)", 1, &[]);
+    assert_eq!(named(&two, &two.flow[0][1]), by_hand(&["-1/4 i E_1", "-1/4 i E_2"]));
     // The resonance 2/3 is none of order zero: nothing is detuned.
     let off = flow("x'' + x + eps*x^3 = F*cos(omega*t)", 2, &[("omega", "2/3")]);
     assert_eq!((off.system.force(), off.system.beside), (Rational::from((2, 3)), None));

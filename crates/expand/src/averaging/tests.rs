@@ -41,7 +41,8 @@ fn delay_loop(more: Expression) -> Expression {
 
 fn torus() -> Torus<ParameterField> {
     let parameters = NAMES.map(str::to_owned).to_vec();
-    let field = ParameterField { ring: PolynomialRing { parameters }, pairs: vec![(7, 8)] };
+    let field =
+        ParameterField { ring: PolynomialRing { parameters }, pairs: vec![(7, 8)], affine: false };
     let [alpha, omega, time, cos, sin] = [0, 1, 2, 7, 8].map(|index| field.parameter(index));
     let forced = [field.one(), field.zero()];
     let delays = vec![Delay { time, free: [cos, sin], forced }];
