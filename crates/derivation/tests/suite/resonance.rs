@@ -310,10 +310,11 @@ fn edges_of_the_first_tongues() {
 /// What was refused by name of several unknowns; a near miss is one beyond 1/1000.
 #[test]
 fn refusals_of_several_unknowns() {
-    use ResonanceError::{NearMiss, NoRationalForm, NotDiagonalisable};
+    use ResonanceError::{NearMiss, NoOscillation, NoRationalForm, NotDiagonalisable};
     let golden = refused("x'' + 2*x - y + eps*x^3/2; y'' + y - x");
     assert_eq!(golden, NoRationalForm);
     assert_eq!(refused("x'' + x + y; y'' + y + eps*x^3"), NotDiagonalisable);
+    assert!(matches!(refused("x'' + y + eps*x^3; y'' + x"), NoOscillation { .. }));
     let near = refused("x'' + x + eps*x*y; y'' + 4.000004000001*y + eps*x^2");
     let NearMiss { order, harmonic, size } = near else { panic!("{near}") };
     assert_eq!((order, &*harmonic), (1, "-nu_1 + nu_2"));
