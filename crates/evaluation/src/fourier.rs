@@ -21,7 +21,7 @@ impl Fourier {
     /// type: doubles, singles, dual numbers whose derivative part is dx/d(omega t).
     ///
     /// One sine and one cosine; the harmonics follow by the addition formulas, with a rounding
-    /// error of at most about k units in the last place in the k-th. Nothing is allocated.
+    /// error of at most about two units in the last place per harmonic. Nothing is allocated.
     ///
     /// ```
     /// use lindstedt_evaluation::Fourier;

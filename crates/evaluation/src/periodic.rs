@@ -43,7 +43,7 @@ impl PeriodicSolution {
 
     /// x at a time, with its estimated error,
     ///
-    ///   deviation + slope |t| (omega's error + rounding omega) + rounding (|h_0| + 3 sum_k (k + 1) |h_k|),
+    ///   deviation + slope |t| (omega's error + rounding omega) + 3 rounding sum_k (k + 1) |h_k|,
     ///
     /// as the phase is rounded once and every harmonic turns the one before.
     #[must_use]

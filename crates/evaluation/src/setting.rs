@@ -47,6 +47,8 @@ pub enum Form {
 pub struct Small {
     coefficient: Exact,
     power: u32,
+    /// The parameter whose value the coefficient is, where the amplitude stands beside it.
+    factor: Option<String>,
     /// As it is printed: `eps`, `rho = eps*amplitude^2`.
     pub name: String,
 }
@@ -248,7 +250,8 @@ impl Values<'_> {
 
     fn small(&self, equation: &Expression) -> Result<Small, Error> {
         let name = &*self.problem.small;
-        let plain = |coefficient| Small { coefficient, power: 0, name: name.to_owned() };
+        let plain =
+            |coefficient| Small { coefficient, power: 0, factor: None, name: name.to_owned() };
         if let Some(n) = self.exponent() {
             return Ok(plain(Exact::Rational((n? - 1u32) / 2u32)));
         }
@@ -259,9 +262,9 @@ impl Values<'_> {
             && let Some(power) = weight(equation)
             && let Some((of, coefficient)) = self.coefficient()
         {
-            let factor = if power == 1 { String::new() } else { format!("^{power}") };
-            let name = format!("{name} = {of}*amplitude{factor}");
-            return Ok(Small { coefficient, power, name });
+            let exponent = if power == 1 { String::new() } else { format!("^{power}") };
+            let name = format!("{name} = {of}*amplitude{exponent}");
+            return Ok(Small { coefficient, power, factor: Some(of), name });
         }
         Err(unset(self.problem, name))
     }
@@ -391,8 +394,7 @@ impl Setting {
 
     /// The power of the amplitude in the small parameter, and the parameter beside it, where it has both.
     pub fn factors(&self) -> Option<(&str, u32)> {
-        let (_, product) = self.small.name.split_once(" = ")?;
-        Some((product.split_once('*')?.0, self.small.power))
+        Some((self.small.factor.as_deref()?, self.small.power))
     }
 
     /// The value of the small parameter, where it is rational.

@@ -79,12 +79,15 @@ impl Oscillator {
                     None => Ok((case.setting()?, small, None)),
                 }
             }
-            AmplitudeRole::InSmallParameter | AmplitudeRole::ScalesFrequency { .. } => {
-                let setting = one(case, AMPLITUDE).setting()?;
-                let factors = setting.factors().map(|(name, power)| (name.to_owned(), power));
-                let (small, weight) =
-                    factors.map_or((small, None), |(name, power)| (name, Some(power)));
-                Ok((setting, small, weight))
+            AmplitudeRole::InSmallParameter => {
+                let setting = one(case.clone(), AMPLITUDE).setting()?;
+                match setting.factors().map(|(name, power)| (name.to_owned(), power)) {
+                    Some((factor, power)) => Ok((setting, factor, Some(power))),
+                    None => Ok((case.setting()?, small, None)),
+                }
+            }
+            AmplitudeRole::ScalesFrequency { .. } => {
+                Ok((one(case, AMPLITUDE).setting()?, small, None))
             }
             _ => Ok((case.setting()?, small, None)),
         }

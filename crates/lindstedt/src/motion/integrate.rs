@@ -17,6 +17,7 @@ const NOT_ONE_DIGIT: f64 = -1.0;
 const KEPT: usize = 10_000;
 /// What is said of a motion that was broken off.
 const STOPPED: &str = "stopped before the end of the motion";
+const DIGITS_MISSING: &str = "stopped before the digits were reached";
 
 /// Two integrations, the second with more digits, both with so many that their difference leaves the
 /// digits asked for; with them the working digits of the first.
@@ -46,14 +47,18 @@ pub(super) fn integrate(plan: &mut Plan, work: &Work) -> Result<(Pair, u32), Err
         };
         let stopped = work.stop.asked();
         if stopped && !(course.complete && finer.complete) {
+            if before.is_some() {
+                plan.cut.get_or_insert_with(|| DIGITS_MISSING.to_owned());
+                return before.ok_or_else(nothing);
+            }
             let all = course.events.len();
-            let found = before.or_else(|| Some((broken_off(course, finer, plan.skip)?, working)));
-            let kept = found.as_ref().map_or(0, |(pair, _)| pair.course.events.len());
+            let found = broken_off(course, finer, plan.skip);
+            let kept = found.as_ref().map_or(0, |pair| pair.course.events.len());
             plan.cut.get_or_insert_with(|| match kept {
-                KEPT => format!("{STOPPED} (the first {KEPT} of {all} events)"),
+                KEPT if KEPT < all => format!("{STOPPED} (the first {KEPT} of {all} events)"),
                 _ => STOPPED.to_owned(),
             });
-            return found.ok_or_else(nothing);
+            return found.map(|pair| (pair, working)).ok_or_else(nothing);
         }
         align(&mut course, &mut finer);
         for course in [&mut course, &mut finer] {
@@ -72,7 +77,7 @@ pub(super) fn integrate(plan: &mut Plan, work: &Work) -> Result<(Pair, u32), Err
             before = Some((Pair { course, finer: Some(finer), stopped: true }, working));
         }
         if stopped {
-            plan.cut.get_or_insert_with(|| "stopped before the digits were reached".to_owned());
+            plan.cut.get_or_insert_with(|| DIGITS_MISSING.to_owned());
             return before.ok_or_else(nothing);
         }
         let more = if same { lost.ceil().clamp(1.0, 1e4) as u32 + 2 } else { digits };

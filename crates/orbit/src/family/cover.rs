@@ -114,6 +114,9 @@ pub fn cover(
             Ok(found) => {
                 cover.add(&found, to, proofs);
                 width *= times(found.room, MOST_LONGER);
+                if *width.as_abs() < smallest {
+                    width = Rational::from(&whole >> MOST_HALVINGS);
+                }
                 last = Some(found.at(true));
             }
             Err(Refused { failure, room }) => {

@@ -118,8 +118,8 @@ impl Present for Answer<Motion> {
             let rows = growth.iter().fold(head, |table, ratio| table.row([cell(ratio)]));
             page = listed(page, "growth per impact", rows);
         }
-        let steps = value.work.steps;
-        page.words(format!("{} ({steps} steps; digits estimated by 8 more)", value.verdict))
+        let digits = if value.last.x.error.is_some() { "; digits estimated by 8 more" } else { "" };
+        page.words(format!("{} ({} steps{digits})", value.verdict, value.work.steps))
     }
 
     fn figure(&self) -> Option<Figure> {
