@@ -115,7 +115,14 @@ impl FrequencyFunction {
             Carried::BySmall(weight) => (small * amplitude.powi(weight), 1.0),
             Carried::ByScale => (small, amplitude.powf(-small)),
         };
-        let Estimated { value, error } = self.sum.at((self.ratio * x).powi(self.step));
+        // Every factor of the point is rounded.
+        let factors = match self.carried {
+            Carried::BySmall(weight) => 3.0 + f64::from(weight),
+            _ => 2.0,
+        };
+        let rounded = factors * f64::from(self.step) * f64::EPSILON;
+        let point = (self.ratio * x).powi(self.step);
+        let Estimated { value, error } = self.sum.at_within(point, rounded);
         let omega = 1.0 / (self.factor * scale * value);
         // |1/(v + d) - 1/v| <= (1/v) r/(1 - r), r = |d/v|; rounding is some units in the last place, the
         // power's of small ln a more.

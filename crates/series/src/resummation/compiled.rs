@@ -80,6 +80,10 @@ struct Node {
     order: usize,
     /// Relative to the value.
     error: f64,
+    /// The value at the node.
+    value: f64,
+    /// |x f'/f|, twice the mean from the node before.
+    slope: f64,
     /// The variable of the formula that is implicit.
     variable: f64,
 }
@@ -148,6 +152,13 @@ impl Compiled {
     /// The value at x. Nothing is allocated.
     #[must_use]
     pub fn at(&self, x: f64) -> Estimated {
+        self.at_within(x, 0.0)
+    }
+
+    /// The value at a point that is known within a relative error of so much, which adds |x f'/f| times that to
+    /// the relative error of the value.
+    #[must_use]
+    pub fn at_within(&self, x: f64, relative: f64) -> Estimated {
         let nothing = |value| Estimated { value, error: f64::INFINITY };
         if x == 0.0 {
             return Estimated { value: self.first, error: self.first.abs() * 4.0 * f64::EPSILON };
@@ -175,6 +186,7 @@ impl Compiled {
         }
         let error = node.error * found.value.abs();
         let error = error.max((found.value - found.before).abs());
+        let error = error + relative * node.slope * found.value.abs();
         let resolved = error <= found.value.abs() / 2.0;
         Estimated { value: found.value, error: if resolved { error } else { f64::INFINITY } }
     }
@@ -221,6 +233,16 @@ impl Table<'_> {
         while nodes.last().is_some_and(|node| node.error.is_infinite()) {
             nodes.pop();
         }
+        let step = std::f64::consts::LN_2 / f64::from(DENSITY);
+        for index in 1..nodes.len() {
+            let [before, node] = [nodes[index - 1].value, nodes[index].value];
+            let slope = 2.0 * ((node - before) / (step * node)).abs();
+            // Nothing is known next to a node without a value.
+            nodes[index].slope = if slope.is_nan() { f64::INFINITY } else { slope };
+        }
+        if let [first, second, ..] = &mut nodes[..] {
+            first.slope = second.slope;
+        }
         let (mut largest, mut before) = (0.0f64, 0.0);
         for node in &mut nodes {
             let own = node.error;
@@ -263,16 +285,18 @@ impl Table<'_> {
         let several = self.methods.len() > 1;
         let found = sample.selected(&values, ACCURACY, several);
         let Some((index, outcome)) = found else {
-            return Node { formula: 0, order: 0, error: f64::INFINITY, variable };
+            let (error, value, slope) = (f64::INFINITY, f64::NAN, 0.0);
+            return Node { formula: 0, order: 0, error, value, slope, variable };
         };
         let (formula, order) = (indices[index], outcome.order);
         let value = &outcome.estimate.value;
         let double = self.formulas[formula].values(x, order, variable).value;
         let rounding = distance(value, &Float::with_val(sample.bits, double)).to_f64();
-        let size = value.to_f64().abs();
+        let (value, slope) = (value.to_f64(), 0.0);
+        let size = value.abs();
         let error = (outcome.estimate.error.to_f64() + ROUNDING * rounding) / size;
         let error = if error.is_nan() { f64::INFINITY } else { error + 4.0 * f64::EPSILON };
-        Node { formula, order, error, variable }
+        Node { formula, order, error, value, slope, variable }
     }
 
     /// The variable of the formula that is implicit.
@@ -331,6 +355,10 @@ mod tests {
                     let found = sum.at(x);
                     let distance = (found.value - truth(x)).abs();
                     assert!(distance <= found.error, "{method:?} {x}: {distance:e} {found:?}");
+                    // The truth a little further on, of a point known so far.
+                    let near = sum.at_within(x, 1e-6);
+                    let distance = (near.value - truth(x * (1.0 + 1e-6))).abs();
+                    assert!(distance <= near.error, "{method:?} {x}: {distance:e} {near:?}");
                     let at = |bits| Sample { point: Float::with_val(bits, x), ..sample.clone() };
                     let single =
                         resum(&|bits| Some(at(bits)), method, 53).unwrap().outcome.estimate;
