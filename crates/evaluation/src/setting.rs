@@ -104,7 +104,7 @@ pub fn small_value(
         _ => values.get(&problem.small),
     };
     let coefficient = small.ok_or_else(|| unset(problem, &problem.small))?;
-    let small = Small { coefficient, power: 0, name: problem.small.to_string() };
+    let small = Small { coefficient, power: 0, factor: None, name: problem.small.to_string() };
     let listed = matches!(problem.amplitude, AmplitudeRole::InSmallParameter)
         && values.get(&problem.small).is_none();
     let mut all = values.all(&small);
