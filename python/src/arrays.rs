@@ -4,8 +4,9 @@ use crate::options::Options;
 use crate::verbs;
 use crate::work::Means;
 use lindstedt::evaluate::{Estimated, FrequencyFunction, PeriodicSolution};
+use lindstedt::grid::Grid;
 use lindstedt::unstable::impact::map::Verdict;
-use lindstedt::{Answer, Error, Oscillator, Stop};
+use lindstedt::{Answer, Error, Oscillator, Standing, Stop};
 use lindstedt_report::json;
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
@@ -22,15 +23,21 @@ fn pair(py: Python<'_>, list: Vec<Estimated>) -> Pair<'_> {
     (values.into_pyarray(py), errors.into_pyarray(py))
 }
 
-/// omega(small, amplitude).
+/// omega(small, amplitude), and the amplitude of the case.
 #[pyclass(frozen, module = "lindstedt._native")]
-pub struct Frequency(pub Answer<FrequencyFunction>);
+pub struct Frequency(pub Answer<FrequencyFunction>, pub Option<f64>);
 
 #[pymethods]
 impl Frequency {
     /// Header, parameters and methods as JSON.
     fn json(&self) -> PyResult<String> {
         json(&self.0).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    /// The amplitude that the case has.
+    #[getter]
+    fn amplitude(&self) -> Option<f64> {
+        self.1
     }
 
     /// omega and its estimated errors; an array of length one is that value everywhere.
@@ -93,9 +100,10 @@ fn code(verdict: Option<Verdict>) -> i8 {
     }
 }
 
-/// Row by row, as an array of two dimensions.
-fn table<T: Clone>(width: usize, list: Vec<T>) -> PyResult<Array2<T>> {
-    let height = list.len() / width.max(1);
+/// Row by row, as an array of two dimensions; what stopped work did not reach is blank.
+fn table<U, T: Clone>(grid: &Grid<U>, mut list: Vec<T>, blank: T) -> PyResult<Array2<T>> {
+    let (width, height) = (grid.width(), grid.rows.as_ref().map_or(1, |axis| axis.values.len()));
+    list.resize(width.saturating_mul(height), blank);
     let made = Array2::from_shape_vec((height, width), list);
     made.map_err(|error| PyValueError::new_err(error.to_string()))
 }
@@ -112,17 +120,17 @@ pub fn chart<'py>(
         case.stability(&question, work)?.value.grid.ok_or_else(missing)
     })?;
     let [(columns, x), (rows, y)] = chart.values();
-    let (width, dict) = (chart.grid.width(), PyDict::new(py));
-    let points = || chart.grid.points.iter();
+    let (grid, dict) = (&chart.grid, PyDict::new(py));
+    let points = || grid.points.iter();
     let predicted = points().map(|p| code(p.as_ref().and_then(|p| p.predicted))).collect();
     let exact = points().map(|p| code(p.as_ref().and_then(|p| p.exact))).collect();
     let radius = points().map(|p| p.as_ref().map_or(f64::NAN, |p| p.exact_radius)).collect();
     dict.set_item("names", (columns, rows))?;
     dict.set_item("x", x.into_pyarray(py))?;
     dict.set_item("y", y.into_pyarray(py))?;
-    dict.set_item("predicted", table(width, predicted)?.into_pyarray(py))?;
-    dict.set_item("exact", table(width, exact)?.into_pyarray(py))?;
-    dict.set_item("radius", table(width, radius)?.into_pyarray(py))?;
+    dict.set_item("predicted", table(grid, predicted, code(None))?.into_pyarray(py))?;
+    dict.set_item("exact", table(grid, exact, code(None))?.into_pyarray(py))?;
+    dict.set_item("radius", table(grid, radius, f64::NAN)?.into_pyarray(py))?;
     dict.set_item("complete", chart.finished)?;
     Ok(dict)
 }
@@ -134,9 +142,10 @@ pub fn surface<'py>(
     options: Options,
     means: &Means,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let sweep = means.ask(py, move |work| {
+    let (sweep, standing) = means.ask(py, move |work| {
         let question = verbs::threshold(case, &options)?;
-        case.threshold(&question, work)?.value.sweep.ok_or_else(missing)
+        let found = case.threshold(&question, work)?;
+        Ok((found.value.sweep.ok_or_else(missing)?, found.standing))
     })?;
     let (grid, dict) = (&sweep.grid, PyDict::new(py));
     let names: Vec<&str> = grid.axes().map(|axis| &*axis.name).collect();
@@ -144,12 +153,13 @@ pub fn surface<'py>(
     dict.set_item("names", names)?;
     dict.set_item("x", grid.columns.doubles().into_pyarray(py))?;
     dict.set_item("y", grid.rows.as_ref().map(|axis| axis.doubles().into_pyarray(py)))?;
-    dict.set_item("signed", table(grid.width(), signed)?.into_pyarray(py))?;
+    dict.set_item("signed", table(grid, signed, f64::NAN)?.into_pyarray(py))?;
     dict.set_item("certified", sweep.certified)?;
     dict.set_item(
         "blanks",
         sweep.blanks.iter().map(|blank| blank.reason.clone()).collect::<Vec<_>>(),
     )?;
+    dict.set_item("complete", !matches!(standing, Standing::Stopped { .. }))?;
     Ok(dict)
 }
 

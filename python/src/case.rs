@@ -133,9 +133,11 @@ impl Case {
     ) -> PyResult<Frequency> {
         means.ask(py, |work| {
             let options = Options::new(options);
-            let question = verbs::evaluate(&options)?;
+            let question = verbs::resummed(&options)?;
             options.finish()?;
-            Ok(Frequency(self.0.frequency_function(&question, work)?))
+            let amplitude = self.0.all_values().into_iter().find(|(name, _)| name == "amplitude");
+            let amplitude = amplitude.map(|(_, value)| value.to_f64());
+            Ok(Frequency(self.0.frequency_function(&question, work)?, amplitude))
         })
     }
 
@@ -148,7 +150,7 @@ impl Case {
     ) -> PyResult<Motion> {
         means.ask(py, |work| {
             let options = Options::new(options);
-            let question = verbs::evaluate(&options)?;
+            let question = verbs::phased(&options)?;
             let harmonics = options.parsed("harmonics")?.unwrap_or(15);
             options.finish()?;
             Ok(Motion(self.0.periodic_solution(&question, harmonics, work)?))

@@ -42,8 +42,19 @@ impl Options {
     }
 
     /// Whether a flag is set.
-    pub fn flag(&self, name: &str) -> bool {
-        self.text(name).is_some_and(|text| text == "true")
+    pub fn flag(&self, name: &str) -> Result<bool, Error> {
+        Ok(self.choice(name, &[("true", true), ("false", false)])?.unwrap_or(false))
+    }
+
+    /// Refuses more than one of these.
+    pub fn only_one(&self, names: &[&str]) -> Result<(), Error> {
+        let list = self.0.borrow();
+        let given: Vec<&str> =
+            names.iter().copied().filter(|name| list.contains_key(*name)).collect();
+        match given.as_slice() {
+            [] | [_] => Ok(()),
+            given => Err(usage(format!("only one of {} at a time", given.join(", ")), "")),
+        }
     }
 
     /// One of a list of words.
@@ -81,7 +92,11 @@ impl Options {
     pub fn finish(&self) -> Result<(), Error> {
         match self.0.borrow().keys().next() {
             None => Ok(()),
-            Some(name) => Err(usage(format!("this question has no option {name}"), "")),
+            Some(name) => {
+                let message =
+                    format!("this question has no option {name}, or none beside the others");
+                Err(usage(message, "leave it out"))
+            }
         }
     }
 }

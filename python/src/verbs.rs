@@ -12,8 +12,8 @@ use lindstedt::trade::Plan;
 use lindstedt::unstable::impact::parameters::Branch;
 use lindstedt::unstable::impact::{characteristic::Kick, prediction::Variant};
 use lindstedt::{
-    Condition, Derive, Error, Evaluate, Exact, Oscillator, Respond, Route, Simulate, Stability,
-    Threshold, Verify, Work,
+    Condition, Derive, Error, Evaluate, Oscillator, Respond, Route, Simulate, Stability, Threshold,
+    Verify, Work,
 };
 
 /// An answer that can be read in every form.
@@ -55,30 +55,23 @@ pub fn ask(case: &Oscillator, verb: &str, options: &Options, work: &Work) -> Ask
 
 fn derive(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     let order = options.parsed("order")?.unwrap_or(4);
-    let mode: Option<usize> = options.parsed("mode")?;
-    let unknown = options.text("unknown");
-    let routes = [
-        ("auto", Route::Automatic),
-        ("clock", Route::Clock),
-        ("driver", Route::Driver),
-        ("energy", Route::EnergyIntegral),
-    ];
-    let route = options.choice("route", &routes)?.unwrap_or_default();
-    let tier = options.text("tier");
-    let harmonics = options.parsed("harmonics")?.unwrap_or(64);
-    options.finish()?;
-    if let Some(mode) = mode {
+    options.only_one(&["mode", "unknown"])?;
+    // What is not read before `finish` is refused: route, tier and harmonics belong to the last.
+    if let Some(mode) = options.parsed("mode")? {
+        options.finish()?;
         return boxed(case.normal_mode(mode, order, work));
     }
-    if let Some(name) = unknown.as_deref().or(case.unknown()) {
+    if let Some(name) = options.text("unknown").as_deref().or(case.unknown()) {
+        options.finish()?;
         return boxed(case.parameter_series(name, order, work));
     }
     if case.condition() == Some(Condition::FreeAmplitude) {
+        options.finish()?;
         return boxed(case.averaged(order, work));
     }
-    let tier = match tier.as_deref() {
-        None | Some("exact") => return boxed(case.derive(Derive { order, route }, work)),
-        Some("fourier") => Tier::Fourier { harmonics },
+    let tier = match options.text("tier").as_deref() {
+        None | Some("exact") => return exact(case, order, options, work),
+        Some("fourier") => Tier::Fourier { harmonics: options.parsed("harmonics")?.unwrap_or(64) },
         Some("collocation") if work.doubles => Tier::Doubles,
         Some("collocation") => Tier::Collocation { digits: work.digits },
         Some(other) => {
@@ -86,11 +79,24 @@ fn derive(case: &Oscillator, options: &Options, work: &Work) -> Asked {
             return Err(usage(message, "exact, collocation or fourier"));
         }
     };
+    options.finish()?;
     boxed(case.estimate(order, tier, work))
 }
 
-/// The order, the method, the times and the phase of `evaluate`.
-pub fn evaluate(options: &Options) -> Result<Evaluate, Error> {
+fn exact(case: &Oscillator, order: usize, options: &Options, work: &Work) -> Asked {
+    let routes = [
+        ("auto", Route::Automatic),
+        ("clock", Route::Clock),
+        ("driver", Route::Driver),
+        ("energy", Route::EnergyIntegral),
+    ];
+    let route = options.choice("route", &routes)?.unwrap_or_default();
+    options.finish()?;
+    boxed(case.derive(Derive { order, route }, work))
+}
+
+/// The order and the method of `evaluate`.
+pub fn resummed(options: &Options) -> Result<Evaluate, Error> {
     let method = match options.text("resum").as_deref() {
         None | Some("auto") => None,
         Some(name) => Some(name.parse().map_err(|_| {
@@ -98,16 +104,19 @@ pub fn evaluate(options: &Options) -> Result<Evaluate, Error> {
             usage(format!("there is no method {name:?}"), words)
         })?),
     };
-    Ok(Evaluate {
-        order: options.parsed("order")?,
-        method,
-        times: options.read("times", Times::parse)?,
-        phase: options.exact("phase")?.unwrap_or_else(|| Exact::Rational(0.into())),
-    })
+    Ok(Evaluate { order: options.parsed("order")?, method, ..Evaluate::default() })
+}
+
+/// The same with a phase.
+pub fn phased(options: &Options) -> Result<Evaluate, Error> {
+    let question = resummed(options)?;
+    Ok(Evaluate { phase: options.exact("phase")?.unwrap_or(question.phase), ..question })
 }
 
 fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
-    if case.condition() == Some(Condition::FreeAmplitude) {
+    let prove = options.flag("prove")?;
+    if !prove && case.condition() == Some(Condition::FreeAmplitude) {
+        options.only_one(&["start", "state"])?;
         let start = options.read("start", |text| Ok(AveragedStart::parse_amplitude(text)?))?;
         let state = options.read("state", |text| Ok(AveragedStart::parse_state(text)?))?;
         let order = options.parsed("order")?;
@@ -116,36 +125,48 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
         let question = AveragedMotion { order, start: start.or(state), times };
         return boxed(case.averaged_motion(&question, work));
     }
-    let question = evaluate(options)?;
-    let prove = options.flag("prove");
+    // What is not read before `finish` is refused: a sweep has no times, phase and code, a proof no code.
+    let mut axes = options.axes(case)?.into_iter();
+    if let Some(columns) = axes.next() {
+        let question = resummed(options)?;
+        options.finish()?;
+        return match (prove, axes.next()) {
+            (false, rows) => boxed(case.evaluate_sweep(&question, columns, rows, work)),
+            (true, None) => boxed(case.prove_sweep(&question, columns, work)),
+            (true, Some(_)) => Err(usage("a proved family is over one parameter", "one axis")),
+        };
+    }
+    let question = Evaluate { times: options.read("times", Times::parse)?, ..phased(options)? };
+    if prove {
+        options.finish()?;
+        return boxed(case.prove(&question, work));
+    }
     let languages =
         [("rust", Language::Rust), ("python", Language::Python), ("latex", Language::Latex)];
-    let code = options.choice("code", &languages)?;
+    let Some(language) = options.choice("code", &languages)? else {
+        options.finish()?;
+        return boxed(case.evaluate(&question, work));
+    };
     let harmonics = options.parsed("harmonics")?.unwrap_or(15);
-    let mut axes = options.axes(case)?.into_iter();
     options.finish()?;
-    match (axes.next(), axes.next(), code) {
-        (None, _, Some(language)) => {
-            boxed(case.solution_code(&question, language, harmonics, work))
-        }
-        (None, _, None) if prove => boxed(case.prove(&question, work)),
-        (None, _, None) => boxed(case.evaluate(&question, work)),
-        (Some(axis), None, _) if prove => boxed(case.prove_sweep(&question, axis, work)),
-        (Some(_), Some(_), _) if prove => Err(usage("a proved family is over one parameter", "")),
-        (Some(columns), rows, _) => boxed(case.evaluate_sweep(&question, columns, rows, work)),
-    }
+    boxed(case.solution_code(&question, language, harmonics, work))
 }
 
 fn respond(case: &Oscillator, options: &Options) -> Result<Respond, Error> {
     let sweeps = options.text("sweep").unwrap_or_default();
     let sweeps = sweeps.split(';').filter(|text| !text.is_empty());
-    let mut axes = sweeps.map(|text| Respond::read_sweep(case, text));
+    let axes: Vec<Axis> =
+        sweeps.map(|text| Respond::read_sweep(case, text)).collect::<Result<_, _>>()?;
+    if axes.len() > 2 {
+        return Err(usage("at most two parameters vary", "one axis or two"));
+    }
+    let mut axes = axes.into_iter();
     let question = Respond {
         order: options.parsed("order")?,
-        sweep: axes.next().transpose()?,
-        second: axes.next().transpose()?,
+        sweep: axes.next(),
+        second: axes.next(),
         amplitude: options.exact("box")?,
-        follow: options.flag("follow"),
+        follow: options.flag("follow")?,
         start: options.read("start", Respond::read_start)?,
     };
     options.finish()?;
@@ -211,7 +232,7 @@ pub fn diagram(sweep: &str, options: &Options) -> Result<Bifurcation, Error> {
         section: section(options)?,
         skipped: options.parsed("skip")?.unwrap_or(usual.skipped),
         kept: options.parsed("keep")?.unwrap_or(usual.kept),
-        follow: options.flag("follow"),
+        follow: options.flag("follow")?,
         ..usual
     };
     options.finish()?;
@@ -219,15 +240,11 @@ pub fn diagram(sweep: &str, options: &Options) -> Result<Bifurcation, Error> {
 }
 
 fn simulate(case: &Oscillator, options: &Options, work: &Work) -> Asked {
-    if let Some(sweep) = options.text("sweep") {
-        return boxed(case.bifurcation(&diagram(&sweep, options)?, work));
-    }
-    let (lyapunov, zero_one) = (options.flag("lyapunov"), options.flag("zero_one"));
-    let start = start(options)?;
+    let (lyapunov, zero_one) = (options.flag("lyapunov")?, options.flag("zero_one")?);
     if lyapunov || zero_one {
         let usual = Chaos::default();
         let question = Chaos {
-            start,
+            start: start(options)?,
             lyapunov,
             zero_one,
             kept: options.parsed("periods")?.unwrap_or(usual.kept),
@@ -236,12 +253,16 @@ fn simulate(case: &Oscillator, options: &Options, work: &Work) -> Asked {
         options.finish()?;
         return boxed(case.chaos(&question, work));
     }
+    if let Some(sweep) = options.text("sweep") {
+        return boxed(case.bifurcation(&diagram(&sweep, options)?, work));
+    }
+    options.only_one(&["until", "periods", "impacts"])?;
     let until = options.exact("until")?.map(End::Time);
     let periods = options.parsed("periods")?.map(End::Periods);
     let impacts = options.parsed("impacts")?.map(End::Impacts);
     let views = [("phase", View::Phase), ("time", View::Time), ("section", View::Section)];
     let question = Simulate {
-        start,
+        start: start(options)?,
         end: until.or(periods).or(impacts),
         times: options.read("times", Simulate::read_times)?,
         section: section(options)?,

@@ -1,6 +1,6 @@
 //! How a question is worked on: on a thread of its own, with Ctrl-C, a limit in time, and progress.
 
-use crate::failure::exception;
+use crate::failure::{exception, usage};
 use lindstedt::{Error, Progress, Stop, Work};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -28,13 +28,18 @@ impl Means {
     #[new]
     #[pyo3(signature = (digits=30, doubles=false, memory=8 << 30, seconds=None, progress=None))]
     fn new(
+        py: Python<'_>,
         digits: u32,
         doubles: bool,
         memory: u64,
         seconds: Option<f64>,
         progress: Option<Py<PyAny>>,
-    ) -> Self {
-        Self { digits, doubles, memory, seconds, progress }
+    ) -> PyResult<Self> {
+        if let Some(seconds) = seconds.filter(|seconds| seconds.is_nan() || *seconds < 0.0) {
+            let message = format!("seconds = {seconds} is no limit");
+            return Err(exception(py, &usage(message, "a number from 0 up, or nothing")));
+        }
+        Ok(Self { digits, doubles, memory, seconds, progress })
     }
 }
 
@@ -61,6 +66,7 @@ impl Means {
         question: impl FnOnce(&Work) -> Result<T, Error> + Send,
     ) -> PyResult<T> {
         let stopped = Arc::new(AtomicBool::new(false));
+        // A limit that no duration holds, as infinity, is none.
         let end = self.seconds.and_then(|s| Duration::try_from_secs_f64(s).ok());
         let end = end.and_then(|duration| Instant::now().checked_add(duration));
         let last: Arc<Mutex<Option<Told>>> = Arc::default();
@@ -93,7 +99,7 @@ impl Means {
         std::thread::scope(|scope| {
             let (sender, mut receiver) = channel();
             let worker = std::thread::Builder::new().stack_size(STACK);
-            worker.spawn_scoped(scope, move || sender.send(question(&work)).ok())?;
+            let worker = worker.spawn_scoped(scope, move || sender.send(question(&work)).ok())?;
             let mut failure = None;
             loop {
                 let found;
@@ -111,6 +117,8 @@ impl Means {
                     }
                     Err(RecvTimeoutError::Timeout) => interrupted(&mut failure),
                     Err(RecvTimeoutError::Disconnected) => {
+                        // Joined here, or the scope panics in its turn.
+                        let _ = worker.join();
                         let message =
                             "the work ended without an answer: a defect, please report it";
                         return Err(pyo3::exceptions::PyRuntimeError::new_err(message));

@@ -12,6 +12,7 @@ from concurrent.futures import ProcessPoolExecutor
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -92,6 +93,107 @@ def test_frequencies_of_arrays(duffing: Oscillator) -> None:
     assert errors[rho < 1].max() < 1e-9
     assert omega(0.5, 2.0) == omega(2.0)
     assert np.isnan(omega([-2.0])).all()
+
+
+def test_the_amplitude_is_that_of_the_case(duffing: Oscillator) -> None:
+    omega = duffing.set(amplitude=2).frequency_function(order=8)
+    # 0.1*2^2 in small and 0.4*1^2 are the same motion.
+    assert omega(0.1) == omega(0.1, 2.0) == omega(0.4, 1.0) != omega(0.1, 1.0)
+    assert float(omega(0.1)) == pytest.approx(1.1389, abs=1e-4) and omega.amplitude == 2
+    quintic = Oscillator("x'' + x + eps*(x^3 + x^5) = 0").set(amplitude=2).frequency_function(order=8)
+    assert float(quintic(0.01)) == pytest.approx(1.06239, abs=1e-5)
+    for fixed in (quintic, Oscillator.builtin("van-der-pol").frequency_function(order=4)):
+        assert fixed.parameters == ["eps"]
+        with pytest.raises(lindstedt.UsageError):
+            fixed(0.01, amplitude=2)
+
+
+def test_an_averaged_motion_has_no_series_of_numbers() -> None:
+    answer = Oscillator("x'' + x = eps*(1 - x**2)*x'").average(2)
+    assert answer.series == {} and answer._repr_latex_() is None and answer.to_sympy() == {}
+    with pytest.raises(lindstedt.NoAnswerError) as refused:
+        answer.frequency
+    assert "phase_rate" in refused.value.hint and answer["series"]["phase_rate"]
+    assert "<math" in answer._repr_html_()
+
+
+@pytest.mark.parametrize("seconds", [-1, -1e-300, math.nan, -math.inf])
+def test_limits_that_are_none_are_refused(duffing: Oscillator, seconds: float) -> None:
+    with pytest.raises(lindstedt.UsageError):
+        duffing.derive(2, seconds=seconds)
+    assert duffing.derive(2, seconds=math.inf).is_complete
+
+
+SWEEP = "eps=1/10,1/5"
+CODE = {"code": "python"}
+
+
+@pytest.mark.parametrize(
+    ("verb", "options", "together"),
+    [
+        ("evaluate", {}, {"prove": 1}),
+        ("evaluate", {}, {"prove": "yes"}),
+        ("evaluate", {"prove": True}, CODE),
+        ("evaluate", {"sweep": SWEEP}, CODE),
+        ("evaluate", {"sweep": SWEEP}, {"times": "0..1:3"}),
+        ("evaluate", {"sweep": SWEEP}, {"phase": 1}),
+        ("evaluate", {}, {"harmonics": 5}),
+        ("derive", {"order": 1}, {"tier": "nonsense"}),
+        ("derive", {"order": 1}, {"harmonics": 16}),
+        ("derive", {"order": 1, "tier": "fourier"}, {"route": "energy"}),
+        ("average", {"order": 1}, {"tier": "nonsense"}),
+        ("average", {"order": 1}, {"route": "energy"}),
+        ("simulate", {"until": 1, "digits": 8}, {"periods": 1}),
+        ("simulate", {"periods": 1, "digits": 8}, {"impacts": 1}),
+        ("simulate", {"until": 1, "digits": 8}, {"sweep": SWEEP}),
+        ("simulate", {"until": 1, "digits": 8}, {"lyapunov": True}),
+        ("frequency_function", {"order": 4}, {"times": "0..1:3"}),
+        ("frequency_function", {"order": 4}, {"phase": 1}),
+        ("solution", {"order": 4}, {"times": "0..1:3"}),
+    ],
+)
+def test_options_that_do_not_go_together_are_refused(
+    duffing: Oscillator, verb: str, options: dict[str, Any], together: dict[str, Any]
+) -> None:
+    case = duffing if verb in ("derive", "average") else duffing.set(eps="1/10")
+    ask = getattr(case, verb)
+    assert ask(**options)
+    with pytest.raises(lindstedt.UsageError, match="beside the others|at a time|none of|no tier"):
+        ask(**options, **together)
+
+
+def test_modes_and_unknowns_stand_alone() -> None:
+    chain = Oscillator("x'' + 2*x - y + eps*x^3 = 0; y'' + 2*y - x = 0")
+    assert chain.derive(1, mode=1)
+    for besides in ({"tier": "nonsense"}, {"route": "clock"}, {"harmonics": 8}, {"unknown": "a"}):
+        with pytest.raises(lindstedt.UsageError, match="beside the others|at a time"):
+            chain.derive(1, mode=1, **besides)
+    tongue = Oscillator("x'' + (a + eps*cos(2*t))*x = 0")
+    with pytest.raises(lindstedt.UsageError, match="no option tier"):
+        tongue.derive(1, unknown="a", tier="nonsense")
+
+
+def test_starts_and_axes_are_counted() -> None:
+    cycle = Oscillator("x'' + x = eps*(1 - x**2)*x'", eps="1/10").under("free")
+    assert cycle.evaluate(start="1,0", times="0..1:3").is_complete
+    with pytest.raises(lindstedt.UsageError, match="start, state"):
+        cycle.evaluate(start="1,0", state="1,0", times="0..1:3")
+    forced = Oscillator("x'' + x + eps*(x'/5 + x^3) = eps*cos((1 + eps*sigma)*t)/2", eps=0.1, sigma=1)
+    with pytest.raises(lindstedt.UsageError, match="at most two"):
+        forced.respond("sigma=0..1:3;eps=0..1:3;sigma=0..1:3")
+
+
+def test_a_stopped_grid_has_its_shape() -> None:
+    # Of uneven steps: point by point, some seconds in all.
+    axes: dict[str, Any] = {"A": [-0.3, -0.2, *np.linspace(0, 0.3, 35).round(3)], "B": (-0.3, 0.3, 2000)}
+    chart = Oscillator.builtin("vibro-impact").stability_chart(axes, seconds=0.3)
+    assert not chart.complete and chart.exact.shape == chart.radius.shape == (2000, 37)
+    assert chart.exact[0, 0] != 2 and chart.exact[-1, -1] == chart.predicted[-1, -1] == 2
+    assert np.isnan(chart.radius[-1, -1])
+    belt = Oscillator.builtin("stick-slip")
+    surface = belt.threshold_surface({"vstar": (0, 1, 60), "omega": (1, 2, 50)}, seconds=0)
+    assert not surface.complete and surface.signed.shape == (50, 60) and np.isnan(surface.signed[-1, -1])
+    assert belt.threshold_surface({"vstar": (0, 1, 3)}).complete
 
 
 def test_solutions_of_arrays(duffing: Oscillator) -> None:

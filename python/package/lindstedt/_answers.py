@@ -8,6 +8,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
+from ._errors import NoAnswerError
 from ._native import Found
 from ._numbers import Number, Series, read
 
@@ -170,15 +171,22 @@ class Derivation(Answer):
 
     @property
     def series(self) -> dict[str, Series]:
-        """The series by name: frequency, frequency_squared, period_over_2pi, amplitude, ..."""
+        """The series by name whose coefficients are numbers: frequency, frequency_squared, period_over_2pi, ...
+        What depends on the amplitude, as the rates of averaging, is in `answer["series"]`."""
         parameter = str(self._data.get("parameter", "eps"))
-        found: dict[str, list[Number]] = self._read.get("series", {})
-        return {name: Series(parameter, coefficients) for name, coefficients in found.items()}
+        found: dict[str, Any] = self._read.get("series", {})
+        numbers = {name: item for name, item in found.items() if isinstance(item, list)}
+        numbers = {name: item for name, item in numbers.items() if all(isinstance(x, Number) for x in item)}
+        return {name: Series(parameter, coefficients) for name, coefficients in numbers.items()}
 
     @property
     def frequency(self) -> Series:
         """The series of omega."""
-        return self.series["frequency"]
+        found = self.series.get("frequency")
+        if found is None:
+            hint = f"its series: {', '.join(self._read.get('series', {})) or 'none'}"
+            raise NoAnswerError("this expansion has no series of a frequency in numbers", "no-series", hint)
+        return found
 
     def _repr_latex_(self) -> str | None:
         names = {"frequency": r"\omega", "frequency_squared": r"\omega^2", "period_over_2pi": r"T/2\pi"}

@@ -10,6 +10,7 @@ from typing import Any
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
+from ._errors import UsageError
 from ._native import Frequency, Motion
 
 Doubles = NDArray[numpy.float64]
@@ -21,7 +22,8 @@ def _flat(values: ArrayLike) -> Doubles:
 
 class FrequencyFunction:
     """omega over the small parameter and, where a scaling carries it, the amplitude: derived once, then some
-    0.2 microseconds per point and core. Doubles, each with its estimated error."""
+    0.2 microseconds per point and core. Doubles, each with its estimated error. An amplitude that is not given is
+    the oscillator's; where it does not vary, none is taken."""
 
     def __init__(self, native: Frequency) -> None:
         self._native = native
@@ -32,8 +34,26 @@ class FrequencyFunction:
         """The names of what varies."""
         return list(self.data["parameters"])
 
-    def with_error(self, small: ArrayLike, amplitude: ArrayLike = 1.0) -> tuple[Doubles, Doubles]:
+    @property
+    def amplitude(self) -> float | None:
+        """The amplitude where none is given: that of the oscillator."""
+        return self._native.amplitude
+
+    def _amplitude(self, amplitude: ArrayLike | None) -> ArrayLike:
+        varies = "amplitude" in self.parameters
+        if amplitude is not None and not varies:
+            raise UsageError(
+                f"no amplitude varies here, only {', '.join(self.parameters)}", "usage", "set(amplitude=...) before"
+            )
+        if amplitude is None and varies:
+            amplitude = self.amplitude
+            if amplitude is None:
+                raise UsageError("the amplitude has no value", "usage", "omega(small, amplitude=...)")
+        return 1.0 if amplitude is None else amplitude
+
+    def with_error(self, small: ArrayLike, amplitude: ArrayLike | None = None) -> tuple[Doubles, Doubles]:
         """omega and its estimated errors, infinite where the sum has not one digit."""
+        amplitude = self._amplitude(amplitude)
         small, amplitude = numpy.broadcast_arrays(small, amplitude) if numpy.ndim(amplitude) else (
             numpy.asarray(small, dtype=numpy.float64),
             numpy.asarray(amplitude, dtype=numpy.float64),
@@ -41,7 +61,7 @@ class FrequencyFunction:
         values, errors = self._native.at(_flat(small), _flat(amplitude))
         return values.reshape(small.shape), errors.reshape(small.shape)
 
-    def __call__(self, small: ArrayLike, amplitude: ArrayLike = 1.0) -> Doubles:
+    def __call__(self, small: ArrayLike, amplitude: ArrayLike | None = None) -> Doubles:
         values, errors = self.with_error(small, amplitude)
         return numpy.where(numpy.isfinite(errors), values, numpy.nan)
 
@@ -94,7 +114,7 @@ class Solution:
 @dataclass(frozen=True)
 class StabilityChart:
     """Verdicts over two parameters, row y, column x: 1 stable, -1 unstable, 0 neutral or undecided, 2 without
-    an orbit; `radius` the largest multiplier of the true system."""
+    an orbit or not computed (stopped: not `complete`); `radius` the largest multiplier of the true system."""
 
     names: tuple[str, str]
     x: Doubles
@@ -108,7 +128,7 @@ class StabilityChart:
 @dataclass(frozen=True)
 class ThresholdSurface:
     """The signed threshold gamma_c over one or two parameters, row y, column x; no number where there is none,
-    and `blanks` says why."""
+    and `blanks` says why, or where it was stopped before (not `complete`)."""
 
     names: list[str]
     x: Doubles
@@ -116,6 +136,7 @@ class ThresholdSurface:
     signed: Doubles
     certified: bool
     blanks: list[str]
+    complete: bool
 
 
 @dataclass(frozen=True)

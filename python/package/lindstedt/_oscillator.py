@@ -187,7 +187,7 @@ class Oscillator:
 
     def evaluate(self, sweep: Sweep | None = None, **options: Any) -> Answer:
         """Period and frequency at the values set, by resummation; `times="0..10:101"`, `order`, `resum`,
-        `phase`, `code="python"`, `harmonics`; with a sweep at every point of it."""
+        `phase`, `code="python"` with `harmonics`; with a sweep at every point of it, without times, phase and code."""
         means = _means(options)
         return self._ask("evaluate", {"sweep": sweep, **options}, means)
 
@@ -231,13 +231,14 @@ class Oscillator:
     # Functions and arrays.
 
     def frequency_function(self, **options: Any) -> FrequencyFunction:
-        """omega over the small parameter and the amplitude, for arrays; `order`, `resum`."""
+        """omega over the small parameter and the amplitude, for arrays; `order`, `resum`. Where no amplitude is
+        given it is this oscillator's."""
         means = _means(options)
         with _work(means) as work:
             return FrequencyFunction(self._case.frequency_function(_options(options), work))
 
     def solution(self, harmonics: int = 15, **options: Any) -> Solution:
-        """x(t) at the values set, for arrays; `order`, `resum`."""
+        """x(t) at the values set, for arrays; `order`, `resum`, `phase`."""
         means = _means(options)
         with _work(means) as work:
             options = {"harmonics": harmonics, **options}
