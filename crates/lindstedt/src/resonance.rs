@@ -100,7 +100,7 @@ impl Oscillator {
     /// grows like N^(symbols + 1).
     ///
     /// # Errors
-    /// [`Error`] with the reason: frequencies whose ratio is not rational, a linear part without modes, a
+    /// [`Error`] with the reason: frequencies whose squares are not rational, a linear part without modes, a
     /// divisor that is almost zero, each by name.
     ///
     /// ```

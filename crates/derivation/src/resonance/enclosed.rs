@@ -64,6 +64,13 @@ pub(super) fn derived(
     let mut flow = job.finished(&run, &terms);
     let largest = run.residual.iter().flat_map(|f| parts(&run.algebra, f));
     let residual = largest.map(|ball| upward(&ball.abs_upper())).fold(0.0, f64::max);
+    // With the digits of the other coefficients, and within their radius.
+    for (j, list) in flow.flow.iter().enumerate() {
+        if rational_root(&flow.system.squares[j]).is_none() {
+            flow.system.frequencies[j] =
+                list[0].first().map(|term| term.im.clone()).unwrap_or_default();
+        }
+    }
     flow.enclosed = Some(Enclosed { radius: radius.get(), residual, digits });
     Ok(flow)
 }

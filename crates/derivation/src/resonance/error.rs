@@ -72,8 +72,8 @@ pub enum ResonanceError {
         /// The parameter.
         name: String,
     },
-    /// The squares of the frequencies are not those of rational numbers.
-    #[error("the ratio of the frequencies is not rational: their squares are {squares}")]
+    /// A frequency that must be rational is the root of a rational number.
+    #[error("a frequency is irrational: the squares are {squares}")]
     NoRationalModes {
         /// The squares, where they are rational.
         squares: String,

@@ -255,10 +255,16 @@ pub(super) fn divisor(p: &Rational, q: &Rational) -> Rational {
 /// The resonance sum_j k_j nu_j = m Omega that a rate is near without being at it, as the rate at it;
 /// nothing where the rate is at a resonance itself or near none.
 ///
-/// At: sum |k_j| + m at most [`EXACT`]; near: at most [`NEAR`], and the rates differ by a tenth at most.
+/// At: one is a whole multiple of the other, or sum |k_j| + m is at most [`EXACT`] (of many frequencies sum |k_j|
+/// is smaller); near: at most [`NEAR`], and the rates differ by a tenth at most. The order of the frequencies
+/// changes nothing.
 pub(super) fn near(rate: &Rational, frequencies: &[Rational]) -> Option<Rational> {
+    let multiple = |a: &Rational, b: &Rational| Rational::from(a / b).is_integer();
+    if frequencies.iter().any(|nu| multiple(rate, nu) || multiple(nu, rate)) {
+        return None;
+    }
     let mut best: Option<(u32, Rational, Rational)> = None;
-    for k in combinations(frequencies.len(), EXACT) {
+    for k in combinations(frequencies.len()) {
         let sum: Rational = k.iter().zip(frequencies).map(|(k, nu)| Rational::from(nu * *k)).sum();
         let size: u32 = k.iter().map(|k| k.unsigned_abs()).sum();
         for m in 1..=EXACT.saturating_sub(size) {
@@ -268,8 +274,9 @@ pub(super) fn near(rate: &Rational, frequencies: &[Rational]) -> Option<Rational
             }
             let gap = Rational::from(&at - rate).abs() / rate;
             let close = !at.is_zero() && size + m <= NEAR && gap <= Rational::from((1, 10));
-            let better =
-                |(order, other, _): &(u32, Rational, _)| (size + m, &gap) < (*order, other);
+            let better = |(order, other, known): &(u32, Rational, Rational)| {
+                (size + m, &gap, &at) < (*order, other, known)
+            };
             if close && best.as_ref().is_none_or(better) {
                 best = Some((size + m, gap, at));
             }
@@ -283,11 +290,17 @@ const EXACT: u32 = 10;
 /// Of one that is looked for beside a rate.
 const NEAR: u32 = 4;
 
-/// Whole numbers k_1, ..., k_M, not all zero, with sum |k_j| below `most`.
-fn combinations(unknowns: usize, most: u32) -> Vec<Vec<i32>> {
-    let most = i32::try_from(most).unwrap_or(0);
+/// Whole numbers k_1, ..., k_M, not all zero, with sum |k_j| below [`EXACT`] or, of many unknowns, below what
+/// leaves some thousands; never below [`NEAR`].
+fn combinations(unknowns: usize) -> Vec<Vec<i32>> {
+    let most = match unknowns {
+        0..=4 => EXACT,
+        5 | 6 => 7,
+        _ => NEAR,
+    };
+    let most = most.cast_signed();
     let mut list = vec![Vec::new()];
-    for _ in 0..unknowns.min(3) {
+    for _ in 0..unknowns {
         let longer = list.iter().flat_map(|k: &Vec<i32>| {
             let rest = most - 1 - k.iter().map(|k| k.abs()).sum::<i32>();
             (-rest..=rest).map(|next| k.iter().copied().chain([next]).collect())

@@ -40,6 +40,16 @@ struct Nearest<'a> {
 struct Residual {
     checked_orders: Option<usize>,
     zero: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    encloses_zero: Option<bool>,
+}
+
+impl Residual {
+    /// Of exact orders; of enclosed ones nothing says that it is zero.
+    fn of(checked_orders: Option<usize>, enclosed: bool) -> Self {
+        let is = |kind: bool| checked_orders.filter(|_| kind).map(|_| true);
+        Self { checked_orders, zero: is(!enclosed), encloses_zero: is(enclosed) }
+    }
 }
 
 /// The phase of a force.
@@ -107,9 +117,7 @@ impl Serialize for NormalMode {
         map.serialize_entry("frequency_squared", &orders(&self.frequency_squared))?;
         map.serialize_entry("growth_rate", &orders(&self.growth))?;
         map.serialize_entry("solution", &self.solution.iter().map(shape).collect::<Vec<_>>())?;
-        let checked_orders = self.checked_orders;
-        let residual = Residual { checked_orders, zero: checked_orders.map(|_| true) };
-        map.serialize_entry("residual", &residual)?;
+        map.serialize_entry("residual", &Residual::of(self.checked_orders, false))?;
         map.serialize_entry("method", &Object(vec![("name", "averaging at resonance")]))?;
         map.end()
     }
@@ -130,10 +138,7 @@ impl Serialize for Sought {
             starts_with: if branch.sine { "sin" } else { "cos" },
             series: branch.series.iter().map(|t| self.print_coefficient(t, Style::Text)).collect(),
             solution: branch.solution.iter().map(|t| self.print_motion(t, Style::Text)).collect(),
-            residual: Residual {
-                checked_orders: branch.checked_orders,
-                zero: branch.checked_orders.map(|_| true),
-            },
+            residual: Residual::of(branch.checked_orders, false),
         };
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("parameter", &*self.problem.small)?;
@@ -211,8 +216,7 @@ impl Serialize for SlowFlow {
         });
         let list: Vec<_> = near.collect();
         map.serialize_entry("nearest", &list)?;
-        let checked_orders = self.checked_orders;
-        let residual = Residual { checked_orders, zero: checked_orders.map(|_| true) };
+        let residual = Residual::of(self.checked_orders, self.enclosed.is_some());
         map.serialize_entry("residual", &residual)?;
         map.serialize_entry("method", &Object(vec![("name", "averaging at resonance")]))?;
         map.end()

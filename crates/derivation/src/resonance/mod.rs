@@ -5,8 +5,8 @@
 //!
 //! (see [`lindstedt_expand::resonance`]), with E_1, E_2, ... for forces that are no harmonics of one phase. What the
 //! frequencies nu_j depend on has a value, and so has the frequency of a force where it is no independent symbol;
-//! ratios are rational, so that what is resonant is decided exactly. Frequencies that are square roots are
-//! independent of one another unless their ratio is rational: this is decided exactly, too, and coefficients are
+//! squares of frequencies are rational, so that what is resonant is decided exactly: square roots are
+//! independent of one another unless their ratio is rational. With irrational ones coefficients are
 //! enclosed by balls. A linear part that couples the
 //! unknowns is taken apart into modes x = P q where those are rational. A force beside a resonance is
 //! detuned: with `cos((1 + eps*sigma)*t)` as it is written, and with a frequency that is a number by the

@@ -3,10 +3,13 @@
 use super::{Enclosed, PolarTerm, SlowFlow, Terms};
 use lindstedt_coeff::print::{Style, Term, latex_name, parenthesize, power, print_sum};
 use lindstedt_number::ball::Balls;
-use lindstedt_number::digits::decimal;
+use lindstedt_number::digits::{decimal, error_string};
 use lindstedt_phase::amplitudes::AmplitudeTerm;
 use rug::{Float, Rational};
 use std::collections::BTreeMap;
+
+/// What a number of which no digit is known begins with: its bound follows.
+const UNKNOWN: &str = "0 +- ";
 
 /// A name of a factor or an unknown: in LaTeX z_1, \bar z_1, \mu.
 #[must_use]
@@ -71,21 +74,39 @@ impl SlowFlow {
     }
 
     /// A coefficient and the factor beside it: of enclosures the sign and the decimal digits.
-    fn coefficient(&self, q: &Rational) -> (Rational, Option<String>) {
-        match self.enclosed {
-            None => (q.clone(), None),
-            Some(_) => (Rational::from(q.cmp0() as i32), Some(self.number(&q.clone().abs()))),
+    fn coefficient(&self, q: &Rational, style: Style) -> (Rational, Option<String>) {
+        if self.enclosed.is_none() {
+            return (q.clone(), None);
+        }
+        let digits = self.number(&q.clone().abs());
+        match digits.strip_prefix(UNKNOWN) {
+            None => (Rational::from(q.cmp0() as i32), Some(digits)),
+            // No sign is known.
+            Some(radius) => {
+                let text = match (style, radius.split_once('e')) {
+                    (Style::Latex, Some((m, n))) => format!(r"(0 \pm {m}\cdot 10^{{{n}}})"),
+                    _ => format!("({digits})"),
+                };
+                (Rational::from(1), Some(text))
+            }
         }
     }
 
-    /// A coefficient: a rational number as it is, of enclosures the digits that are certain.
+    /// A coefficient: a rational number as it is, of enclosures the digits that are certain, at most those asked
+    /// for, or `0 +- 2.2e-55` where none is.
     #[must_use]
     pub fn number(&self, q: &Rational) -> String {
         let Some(Enclosed { radius, digits, .. }) = self.enclosed else { return q.to_string() };
         let balls = Balls::new(u32::try_from(4 * digits).unwrap_or(u32::MAX / 4) + 64);
         let error = Float::with_val(64, radius);
-        decimal(&balls.add_error(&balls.from_rational(q), &error), digits)
-            .unwrap_or_else(|| q.to_f64().to_string())
+        if q.is_zero() {
+            return "0".to_owned();
+        }
+        let ball = balls.add_error(&balls.from_rational(q), &error);
+        // log10(2) > 0.301.
+        let known = usize::try_from(ball.relative_accuracy_bits().max(0)).unwrap_or(0) * 301 / 1000;
+        let certain = [digits, known.min(digits), 1].into_iter().find_map(|n| decimal(&ball, n));
+        certain.unwrap_or_else(|| format!("{UNKNOWN}{}", error_string(&ball, "0")))
     }
 
     /// A polynomial in the amplitudes, its terms collected by amplitudes and phase.
@@ -103,7 +124,7 @@ impl SlowFlow {
             let list = collected.entry(key).or_default();
             for (coefficient, i) in [(&term.re, None), (&term.im, Some("i".to_owned()))] {
                 if !coefficient.is_zero() {
-                    let (coefficient, digits) = self.coefficient(coefficient);
+                    let (coefficient, digits) = self.coefficient(coefficient, style);
                     let factors = digits.into_iter().chain(i).chain(symbols.clone()).collect();
                     list.push(Term { coefficient, factors });
                 }

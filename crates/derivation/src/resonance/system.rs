@@ -15,7 +15,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct System {
     /// The left sides, x_j'' alone; where there are shapes, of the modes.
     pub equations: Vec<Expression>,
-    /// nu_j; of an irrational one a rational number beside it (within 2^-200).
+    /// nu_j; of an irrational one a rational number beside it: within 2^-200, in a flow within its radius
+    /// ([`Enclosed`](super::Enclosed)).
     pub frequencies: Vec<Rational>,
     /// nu_j^2.
     pub squares: Vec<Rational>,

@@ -10,6 +10,7 @@ use lindstedt_number::Exact;
 use lindstedt_phase::amplitudes::AmplitudeTerm;
 use lindstedt_problem_file::ProblemFile;
 use rug::Rational;
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 type Powers = BTreeMap<String, i32>;
@@ -97,6 +98,28 @@ fn detunings() {
     // The resonance 2/3 is none of order zero: nothing is detuned.
     let off = flow("x'' + x + eps*x^3 = F*cos(omega*t)", 2, &[("omega", "2/3")]);
     assert_eq!((off.system.force(), off.system.beside), (Rational::from((2, 3)), None));
+}
+
+/// A force at the frequency of any unknown is at resonance, beside which it may be near another: in any order of the equations.
+#[test]
+fn a_force_at_the_resonance_of_the_last() {
+    let mut equations = [
+        "x'' + x + eps*x^3",
+        "y'' + 9*y + eps*x*y",
+        "u'' + 49*u + eps*y*u",
+        "v'' + 441/400*v + eps*v^3 = eps*F*cos(21/20*t)",
+    ];
+    for place in [3, 0] {
+        let found = flow(&equations.join(";"), 1, &[]);
+        assert_eq!((found.system.force(), &found.system.beside), (Rational::from((21, 20)), &None));
+        let force = found.flow[place][1].iter().find(|t| t.exponents[8] == 1).unwrap();
+        // i F E/(-4 nu), nu = 21/20.
+        assert_eq!((force.re.cmp0(), &force.im), (Ordering::Equal, &Rational::from((-5, 21))));
+        equations.rotate_right(1);
+    }
+    // Far from whole: sums of five frequencies count, too.
+    let sum = "x'' + x; y'' + 9*y; u'' + 49*u; v'' + 441/400*v; w'' + 121*w = eps*x*y*u*v*w*cos(461/20*t)";
+    assert_eq!(flow(sum, 1, &[]).system.beside, None);
 }
 
 /// What has no slow flow says why, by name.
@@ -345,6 +368,8 @@ fn irrational_modes() {
     assert!(0.0 < enclosed.radius && enclosed.radius < 1e-30, "{enclosed:?}");
     assert!(0.0 < enclosed.residual && enclosed.residual < 1e-25, "{enclosed:?}");
     assert_eq!(found.system.squares, [1, 3]);
+    let residual = serde_json::json!({"checked_orders": 3, "zero": null, "encloses_zero": true});
+    assert_eq!(serde_json::to_value(&found).unwrap()["residual"], residual);
     // Order 1 by hand: x = q_1 + q_2, q_j'' + nu_j^2 q_j + eps x^3/4, so that
     // f_2 = i/(8 sqrt 3) (3 z_2^2 zbar_2 + 6 z_1 zbar_1 z_2).
     let second = named(&found, &found.flow[1][1]);
@@ -379,6 +404,35 @@ fn irrational_modes() {
     );
     let gap = exchange.values().next().unwrap()[1].to_f64() - 1.0 / 2f64.sqrt();
     assert!(gap.abs() < 1e-15, "{gap}");
+}
+
+/// Digits that are printed are certain: those of a root to as many as asked for (by Python's decimal), and none of a coefficient
+/// that the radius covers.
+#[test]
+fn digits_of_enclosures() {
+    let text = "equations = [\"x'' + 2*x - y + eps*x^3/2\", \"y'' + 2*y - x\"]";
+    let problem = ProblemFile::parse(text).unwrap().problem;
+    let settings = AveragingSettings { order: 1, digits: 100, ..AveragingSettings::default() };
+    let found = slow_flow(&problem, &settings, &mut |_| true).unwrap();
+    let root = "1.73205080756887729352744634150587236694280525381038\
+                0628055806979451933016908800037081146186757248576";
+    assert_eq!(found.number(&found.system.frequencies[1]), root);
+    assert_eq!(found.system.frequencies[0], 1);
+    let small = flow("x'' + 2*x + eps*(x^3/10^60 - x^5/10^40)", 1, &[]);
+    let [first, rest] =
+        [Style::Text, Style::Latex].map(|style| small.print(&small.flow[0][1], style));
+    // -10/(2 sqrt 2) = -3.5355339059327376...
+    assert!(
+        first.starts_with("(0 +- ") && first.contains("e-55)*i*z^2*zbar - 3.53553390593"),
+        "{first}"
+    );
+    assert!(rest.starts_with(r"(0 \pm ") && rest.contains(r"\cdot 10^{-55})\,i\,z^{2}"), "{rest}");
+    let digits = first.split("- ").last().unwrap().split("e-40").next().unwrap();
+    assert!(
+        (13..18).contains(&digits.len())
+            && "3.53553390593273762".contains(&digits[..digits.len() - 1]),
+        "{first}"
+    );
 }
 
 /// The energy along a flow is a slow quantity. Of masses 1 and 3 the second equation is divided by 3; its weight is found. By

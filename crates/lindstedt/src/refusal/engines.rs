@@ -82,11 +82,15 @@ impl Refusal for ResonanceError {
             Self::InternalResonance { .. } => {
                 (NoAnswer, "internal-resonance", "the slow flow has all modes (`derive`)")
             }
-            Self::NoRationalModes { .. } | Self::NoRationalForm | Self::IrrationalMode { .. } => (
+            Self::NoRationalForm => (
                 NoAnswer,
                 "no-rational-modes",
-                "exact orders need frequencies with rational ratios; a small difference is a detuning \
-                 eps*sigma*x",
+                "needs frequencies with rational squares; a small difference is a detuning eps*sigma*x",
+            ),
+            Self::NoRationalModes { .. } | Self::IrrationalMode { .. } => (
+                NoAnswer,
+                "no-rational-modes",
+                "needs rational frequencies; a small difference is a detuning eps*sigma*x",
             ),
             Self::NoOscillation { .. } => (NoAnswer, "no-expansion", ""),
             Self::NotDiagonalisable => (NoAnswer, "not-diagonalisable", ""),

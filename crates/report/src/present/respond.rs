@@ -173,17 +173,25 @@ fn plane(value: &Response, names: [&String; 2]) -> Document {
 /// k_1 eta_1 + k_2 eta_2 + ... from `k_1, k_2, ...`, of one phase k eta; as text and as LaTeX.
 fn angle(turns: &str) -> [String; 2] {
     let list: Vec<&str> = turns.split(", ").collect();
-    let one = |(l, turn): (usize, &&str)| {
+    let mut lines = [String::new(), String::new()];
+    for (l, turn) in list.iter().enumerate().filter(|(_, turn)| **turn != "0") {
         let i = if list.len() == 1 { String::new() } else { format!("_{}", l + 1) };
-        let (text, latex) = match turn.split_once('/') {
-            _ if *turn == "1" => Default::default(),
-            None => (format!("{turn} "), format!("{turn} ")),
-            Some((p, q)) => (format!("({turn}) "), format!(r"\frac{{{p}}}{{{q}}} ")),
+        let size = turn.trim_start_matches('-');
+        let sign = match (lines[0].is_empty(), size == *turn) {
+            (true, true) => "",
+            (true, false) => "-",
+            (false, true) => " + ",
+            (false, false) => " - ",
         };
-        [format!("{text}eta{i}"), format!(r"{latex}\eta{i}")]
-    };
-    let parts = list.iter().enumerate().filter(|(_, turn)| **turn != "0").map(one);
-    parts.reduce(|[a, b], [c, d]| [format!("{a} + {c}"), format!("{b} + {d}")]).unwrap_or_default()
+        let [text, latex] = match size.split_once('/') {
+            _ if size == "1" => Default::default(),
+            None => [format!("{size} "), format!("{size} ")],
+            Some((p, q)) => [format!("({size}) "), format!(r"\frac{{{p}}}{{{q}}} ")],
+        };
+        lines[0] += &format!("{sign}{text}eta{i}");
+        lines[1] += &format!(r"{sign}{latex}\eta{i}");
+    }
+    lines
 }
 
 fn decimal(number: &Number) -> f64 {
@@ -364,4 +372,17 @@ fn parts(points: &[Point]) -> Vec<(Option<bool>, &[Point])> {
     }
     parts.push((own, &points[first..]));
     parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::angle;
+
+    #[test]
+    fn signs_of_turns() {
+        let known = ["2 eta_1 - eta_2", r"2 \eta_1 - \eta_2"];
+        assert_eq!(angle("2, -1"), known);
+        let known = ["-(1/2) eta_2 + eta_3", r"-\frac{1}{2} \eta_2 + \eta_3"];
+        assert_eq!(angle("0, -1/2, 1"), known);
+    }
 }
