@@ -44,6 +44,16 @@ pub enum DerivationError {
         /// The text, shortened.
         text: String,
     },
+    /// A parameter without a value, named like what the answer is written with.
+    #[error(
+        "the answer is written with {name}, {meaning}: no parameter of that name can stay a symbol"
+    )]
+    SymbolTaken {
+        /// The name.
+        name: String,
+        /// What it means there.
+        meaning: &'static str,
+    },
     /// A parameter the problem does not have.
     #[error("{problem} has no parameter {name:?}; it has {known}")]
     UnknownParameter {

@@ -27,6 +27,28 @@ pub(crate) fn unknown_parameter(problem: &Problem, name: &str) -> Error {
     Error::UnknownParameter { problem: problem.name.to_string(), name: name.to_owned(), known }
 }
 
+/// Refuses symbols named like something that the answer is written with: `meaning` of a name, without the number
+/// behind `_`, and whether it has one.
+///
+/// # Errors
+/// [`Error::SymbolTaken`].
+pub(crate) fn refuse_taken<'a>(
+    symbols: impl IntoIterator<Item = &'a String>,
+    meaning: impl Fn(&str, bool) -> Option<&'static str>,
+) -> Result<(), Error> {
+    for name in symbols {
+        let number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+        let (base, numbered) = match name.split_once('_') {
+            Some((base, text)) if number(text) => (base, true),
+            _ => (&**name, false),
+        };
+        if let Some(meaning) = meaning(base, numbered) {
+            return Err(Error::SymbolTaken { name: name.clone(), meaning });
+        }
+    }
+    Ok(())
+}
+
 /// Names and domains of the parameters given.
 ///
 /// # Errors

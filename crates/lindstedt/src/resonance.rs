@@ -101,7 +101,7 @@ impl Oscillator {
     ///
     /// # Errors
     /// [`Error`] with the reason: frequencies whose squares are not rational, a linear part without modes, a
-    /// divisor that is almost zero, each by name.
+    /// divisor that is almost zero, each by name; a symbol named like z, E, eta, a, psi, gamma, nu_j or f_j.
     ///
     /// ```
     /// use lindstedt::{Oscillator, Work};
@@ -115,6 +115,14 @@ impl Oscillator {
     /// # Ok::<(), lindstedt::Error>(())
     /// ```
     pub fn slow_flow(&self, order: usize, work: &Work) -> Result<Answer<SlowFlow>, Error> {
+        // Order zero has the symbols of all.
+        let names = self.flow(0, work)?.value.check_names();
+        names.map_err(|error| self.refusal(error.into()))?;
+        self.flow(order, work)
+    }
+
+    /// The slow flow for those who do not print it: its symbols may have any names.
+    pub(crate) fn flow(&self, order: usize, work: &Work) -> Result<Answer<SlowFlow>, Error> {
         let start = Instant::now();
         self.values_without_pi()?;
         let settings = self.averaging(order, work);

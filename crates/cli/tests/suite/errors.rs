@@ -31,7 +31,7 @@ fn run(line: &str) -> Output {
 }
 
 /// Exit code, code, line; what the hint says of the way on; the line it leads to.
-const TABLE: [(i32, &str, &str, &str, &str); 62] = [
+const TABLE: [(i32, &str, &str, &str, &str); 64] = [
     (2, "usage", "derive duffing --order x", "--help", "--help"),
     (2, "set", "derive duffing --set a", "--set", "derive duffing --order 1 --set amplitude=1/2"),
     (
@@ -257,6 +257,20 @@ const TABLE: [(i32, &str, &str, &str, &str); 62] = [
         "derive van-der-pol --order 1 --route driver",
     ),
     (3, "resonance", "evaluate \"x'' + x = eps*x*cos(2*t)\" --set eps=1/10", "off resonance", ""),
+    (
+        2,
+        "symbol-taken",
+        "derive \"x'' + x + eps*(x'/5 + E*x^3) = eps*E*cos(t)\" --order 1",
+        "--set",
+        "derive \"x'' + x + eps*(x'/5 + F*x^3) = eps*F*cos(t)\" --order 1",
+    ),
+    (
+        2,
+        "symbol-taken",
+        "derive \"x'' + x + eps*a*x^2*x' - eps*b*x'\" --order 1 --normalisation free",
+        "another name",
+        "derive \"x'' + x + eps*c*x^2*x' - eps*b*x'\" --order 1 --normalisation free",
+    ),
     (
         3,
         "near-miss",

@@ -87,6 +87,19 @@ fn a_limit_is_no_interruption() {
     }
 }
 
+/// Of what was not looked for to the end nothing is said to be absent.
+#[test]
+fn stopped_responses_lack_nothing() {
+    let folder = Folder::new("stopped-response");
+    let equation = "x'' + x + eps*(x'/5 + x^3) = eps*F*cos((1 + eps*sigma)*t)";
+    let sweep = ["--set", "eps=1/10", "--set", "F=1/2", "--sweep", "sigma=-1..3:20000"];
+    let asked = [&["respond", equation], &sweep[..], &["--limit-seconds", "0.1"]].concat();
+    let output = folder.program(&asked).output().unwrap();
+    let page = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(4), "{page}");
+    assert!(page.contains("there may be more") && !page.contains("no folds"), "{page}");
+}
+
 /// A chart and a sweep of nine million points, stopped: the rows that are finished are there, whole, and nothing is
 /// written for those that are not.
 #[test]

@@ -1,7 +1,7 @@
 //! Proved orbits of whole problems: against closed forms, and all that are expected.
 #![allow(clippy::unwrap_used)]
 
-use lindstedt::evaluate::{Language, ProofVerdict, ProvedFamily, ProvedOrbit, Times};
+use lindstedt::evaluate::{Language, ProofVerdict, ProvedFamily, ProvedMember, ProvedOrbit, Times};
 use lindstedt::grid::Axis;
 use lindstedt::motion::{Simulate, Start};
 use lindstedt::{Error, Evaluate, Exact, Number, Oscillator, Refusal, Work};
@@ -148,6 +148,26 @@ fn a_backbone_is_proved_without_gaps() {
     let hull = points[0].between.as_ref().unwrap().frequency.clone();
     let distance = (middle(&hull) - middle(&between.frequency)).abs();
     assert!(distance <= error(&hull), "{hull:?}");
+}
+
+/// Beyond an equilibrium and beyond a separatrix the families begin anew; two cycles far apart are two branches.
+#[test]
+fn families_begin_again_and_keep_apart() {
+    let last = |equation: &str, axis: &str| {
+        let found = family(equation, &[], axis);
+        let ends = found.branches.iter().filter_map(|branch| branch.points.last().cloned());
+        let of = |p: ProvedMember| (p.value.to_string(), middle(&p.orbit.period).to_f64());
+        ends.map(of).collect::<Vec<_>>()
+    };
+    let within = last("x'' - x + x^3 = 0", "amplitude=3/4..3/2:4");
+    // By quadrature.
+    for (value, period) in [("3/4", 4.621598), ("5/4", 4.765217), ("3/2", 9.223663)] {
+        let same = |(at, found): &&(String, f64)| at == value && (found - period).abs() < 1e-5;
+        assert!(within.iter().any(|found| same(&found)), "{value}: {within:?}");
+    }
+    let cycles = last("x'' + x + (x^2-1)*(x^2-mu)*x'/10 = 0", "mu=6..9:2");
+    let periods: Vec<String> = cycles.iter().map(|(_, period)| format!("{period:.5}")).collect();
+    assert_eq!(periods, ["6.51221", "6.65702"], "{cycles:?}");
 }
 
 /// x(t) is enclosed: at phase 0 it is what the orbit says, later what the integrator says.

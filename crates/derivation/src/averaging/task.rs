@@ -5,7 +5,7 @@ use super::cycles::cycles;
 use super::values::{Given, constant, enclosed};
 use super::{Averaging, AveragingSettings, Coefficient, RateTerm};
 use crate::error::DerivationError as Error;
-use crate::limits::{check_delays, unknown_parameter};
+use crate::limits::{check_delays, refuse_taken, unknown_parameter};
 use crate::values::value;
 use crate::work::Progress;
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
@@ -77,7 +77,16 @@ impl<'a> Task<'a> {
         let mut names = BTreeSet::new();
         names.extend(problem.equation.parameters());
         let excitation = Excitation::of(&problem.equation)?;
-        Ok(Self { problem, settings, excitation, names })
+        let task = Self { problem, settings, excitation, names };
+        let symbols = task.names.iter().filter(|name| task.value(name).is_none());
+        refuse_taken(symbols, |base, numbered| match base {
+            "a" if !numbered => Some("the amplitude"),
+            "psi" if !numbered => Some("the phase"),
+            "eta" if !numbered => Some("the phase of the force"),
+            "A" | "B" | "u" if numbered => Some("a coefficient"),
+            _ => None,
+        })?;
+        Ok(task)
     }
 
     /// The value of a parameter; of a synchronous delay 2 pi k/omega when that is a multiple of pi.

@@ -38,7 +38,7 @@ pub use system::{Beside, System};
 
 use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
-use crate::limits::{refuse_above, unknown_parameter};
+use crate::limits::{refuse_above, refuse_taken, unknown_parameter};
 use crate::values::value;
 use crate::work::Progress;
 use lindstedt_equation::print::Style;
@@ -148,6 +148,25 @@ impl SlowFlow {
         let amplitudes = (0..self.unknowns()).flat_map(pair);
         let phases = (0..self.forces()).map(|l| of("E", l, self.forces()));
         amplitudes.chain(phases).chain(self.system.symbols.iter().cloned()).collect()
+    }
+
+    /// Whether what it is written with can be told from its symbols.
+    ///
+    /// # Errors
+    /// [`Error::SymbolTaken`].
+    pub fn check_names(&self) -> Result<(), Error> {
+        let System { symbols, independent, .. } = &self.system;
+        refuse_taken(symbols.iter().chain(independent), |base, numbered| match base {
+            "z" | "zbar" => Some("a complex amplitude"),
+            "a" => Some("an amplitude"),
+            "psi" => Some("a phase"),
+            "E" => Some("exp(i*eta) of a force"),
+            "eta" => Some("the phase of a force"),
+            "gamma" => Some("the phase against a force"),
+            "nu" => Some("a frequency of the linear oscillators"),
+            "f" | "u" if numbered => Some("a coefficient"),
+            _ => None,
+        })
     }
 
     /// A divisor: of enclosures the middle of one, as a double.

@@ -51,14 +51,7 @@ pub(super) fn integrate(plan: &mut Plan, work: &Work) -> Result<(Pair, u32), Err
                 plan.cut.get_or_insert_with(|| DIGITS_MISSING.to_owned());
                 return before.ok_or_else(nothing);
             }
-            let all = course.events.len();
-            let found = broken_off(course, finer, plan.skip);
-            let kept = found.as_ref().map_or(0, |pair| pair.course.events.len());
-            plan.cut.get_or_insert_with(|| match kept {
-                KEPT if KEPT < all => format!("{STOPPED} (the first {KEPT} of {all} events)"),
-                _ => STOPPED.to_owned(),
-            });
-            return found.map(|pair| (pair, working)).ok_or_else(nothing);
+            return Ok((finished(plan, course, finer)?, working));
         }
         align(&mut course, &mut finer);
         for course in [&mut course, &mut finer] {
@@ -90,6 +83,18 @@ pub(super) fn integrate(plan: &mut Plan, work: &Work) -> Result<(Pair, u32), Err
     };
     let hint = "a shorter time, or more --digits; --f64 for a picture";
     Err(Refused::undecided("not-enough-digits", message, hint).into())
+}
+
+/// What stopped integrations came to.
+fn finished(plan: &mut Plan, course: Course, finer: Course) -> Result<Pair, Error> {
+    let all = course.events.len();
+    let found = broken_off(course, finer, plan.skip);
+    let kept = found.as_ref().map_or(0, |pair| pair.course.events.len());
+    plan.cut.get_or_insert_with(|| match kept {
+        KEPT if KEPT < all => format!("{STOPPED} (the first {KEPT} of {all} events)"),
+        _ => STOPPED.to_owned(),
+    });
+    found.ok_or_else(nothing)
 }
 
 fn both(plan: &Plan, working: u32, work: &Work) -> Result<(Course, Course), SimulateError> {

@@ -114,6 +114,9 @@ impl Refusal for DerivationError {
         let (kind, code, hint) = match self {
             Self::Expand(error) => return error.parts(),
             Self::Resonance(error) => return error.parts(),
+            Self::SymbolTaken { .. } => {
+                (Usage, "symbol-taken", "another name, or a value: --set NAME=VALUE")
+            }
             Self::BadValue { .. } => {
                 (Usage, "bad-value", "values are exact: 3, -1/3, 0.1, 2.5e-3, pi/4, 2*pi/3")
             }

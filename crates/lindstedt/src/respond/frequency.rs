@@ -20,7 +20,7 @@ pub(super) fn forcing_frequency(
 ) -> Result<Option<(Exact, Rational, String)>, Error> {
     let beside = |value: &Rational| {
         let with = case.clone().with(&axis.name, Exact::Rational(value.clone()));
-        let system = with.slow_flow(1, work).ok()?.value.system;
+        let system = with.flow(1, work).ok()?.value.system;
         Some((system.force(), system.beside?))
     };
     let stride = axis.values.len().div_ceil(LOOKED_AT).max(1);

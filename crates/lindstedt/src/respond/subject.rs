@@ -58,7 +58,7 @@ impl<'a> Subject<'a> {
                 case = case.with(&known, value);
             }
         }
-        let asked = |case: &Oscillator| Ok::<_, Error>(case.slow_flow(order, work)?.value);
+        let asked = |case: &Oscillator| Ok::<_, Error>(case.flow(order, work)?.value);
         let mut slow = asked(&case);
         let mut factor = None;
         let independent = |slow: &SlowFlow, name: &String| slow.system.independent.contains(name);

@@ -18,7 +18,8 @@ pub struct Branch {
 
 /// The branches that are found: those through the orbits that `orbits(index)` has at the first value with
 /// one; then, of a forced equation and of a limit cycle, those through orbits proved from
-/// [`guesses_all`] at the last value and where a branch ends (a fold). There may be more.
+/// [`guesses_all`] at the last value and where a branch ends (a fold), of a family those at every value that no
+/// branch reaches (beyond an equilibrium or a separatrix). There may be more.
 ///
 /// # Errors
 /// The first error of `orbits` where no value has an orbit; those of [`family_all`].
@@ -50,14 +51,19 @@ pub fn branches<E: From<Failure>>(
     let mut search = Search { values, problem: &problem, request, found: Vec::new() };
     let mut refused = None;
     for i in 0..=last {
+        if !search.found.is_empty() && (search.reaches(i) || !search.is_of_families(i)) {
+            continue;
+        }
         match orbits(i) {
             Ok(proofs) => {
                 for proof in proofs {
                     search.follow(i, &proof.starts())?;
                 }
-                break;
             }
             Err(error) => refused = refused.or(Some(error)),
+        }
+        if request.stop.asked() {
+            break;
         }
     }
     if let (true, Some(error)) = (search.found.is_empty(), refused) {
@@ -88,10 +94,21 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// Whether a branch has an orbit at a value.
+    fn reaches(&self, i: usize) -> bool {
+        self.found.iter().any(|branch| branch.at(i).is_some())
+    }
+
+    /// Whether the orbits at a value are those of a family.
+    fn is_of_families(&self, i: usize) -> bool {
+        let kind = (self.problem)(&self.values[i]).map(|(_, kind)| kind);
+        kind.is_ok_and(|kind| !matches!(kind, Kind::Forced(_) | Kind::LimitCycle))
+    }
+
     /// Branches through orbits at a value that are on none.
     fn others(&mut self, i: usize) -> Result<(), Failure> {
         let Ok((field, kind)) = (self.problem)(&self.values[i]) else { return Ok(()) };
-        if !matches!(kind, Kind::Forced(_) | Kind::LimitCycle) {
+        if self.is_of_families(i) {
             return Ok(());
         }
         let few = Request { modes_limit: MODES_OF_A_GUESS, ..self.request.clone() };

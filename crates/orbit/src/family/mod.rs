@@ -29,6 +29,8 @@ type At<'a> = dyn Fn(&Rational, &[Start], &Request) -> Result<Proof, Failure> + 
 
 /// Modes of an inverse beyond those of the numerical orbit before.
 const MORE_MODES: usize = 60;
+/// The part of the first step after which there is a direction.
+const FIRST_STEP: (i32, i32) = (1, 8);
 /// Halvings of a step over which Newton's method does not go.
 const MOST_HALVINGS: u32 = 6;
 
@@ -120,7 +122,9 @@ fn approach(
     let request = &Request { modes_limit: request.modes_limit.min(most), ..request.clone() };
     let rough = Request { digits: 10, ..request.clone() };
     let whole = Rational::from(value - from);
-    let (mut done, mut part) = (Rational::new(), Rational::from(1));
+    // With one orbit before nothing is predicted: a short step gives the direction.
+    let first = if passed.len() > 1 { Rational::from(1) } else { FIRST_STEP.into() };
+    let (mut done, mut part) = (Rational::new(), first);
     loop {
         let next = Rational::from(&done + &part);
         let target = Rational::from(&whole * &next) + from;

@@ -5,7 +5,7 @@ use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::respond::{Change, Corner, Estimate, Point, Response, State, States};
 use lindstedt::unstable::coeff::print::latex_name;
-use lindstedt::{Answer, Number};
+use lindstedt::{Answer, Number, Standing};
 
 /// The number of an unknown in names, where there are several.
 fn index(value: &Response, j: usize) -> String {
@@ -98,7 +98,7 @@ fn changes(value: &Response) -> impl Iterator<Item = (&'static str, &Change)> {
 }
 
 /// The searches and the points of change of a sweep.
-fn sweep(value: &Response, name: &str) -> Document {
+fn sweep(value: &Response, name: &str, absence: bool) -> Document {
     let formula = || Text::from(Formula::new(name, latex_name(name)));
     let searches = value.states.iter().map(|states| {
         let value = states.value.as_ref();
@@ -112,7 +112,7 @@ fn sweep(value: &Response, name: &str) -> Document {
     let table = Table::new(head.chain((0..value.turns.len()).map(|j| amplitude(value, j))));
     let mut rows = changes(value).peekable();
     if rows.peek().is_none() {
-        return page.words("no folds, no Hopf points");
+        return if absence { page.words("no folds, no Hopf points") } else { page };
     }
     page.table(rows.fold(table, |table, (word, change)| {
         let amplitudes = change.amplitudes.iter().map(Text::number);
@@ -153,7 +153,7 @@ fn corners(value: &Response) -> impl Iterator<Item = (&'static str, &Corner)> {
 }
 
 /// The points in the plane of two parameters.
-fn plane(value: &Response, names: [&String; 2]) -> Document {
+fn plane(value: &Response, names: [&String; 2], absence: bool) -> Document {
     let count = |kind| value.curves.iter().filter(|curve| curve.kind == kind).count();
     let words = format!("curves: {} of folds, {} of Hopf points", count("fold"), count("hopf"));
     let formula = |name: &String| Text::from(Formula::new(name, latex_name(name)));
@@ -162,7 +162,7 @@ fn plane(value: &Response, names: [&String; 2]) -> Document {
     let rows: Vec<_> = corners(value).collect();
     let page = Document::default().words(words);
     if rows.is_empty() {
-        return page.words("no cusps, no Bogdanov-Takens points");
+        return if absence { page.words("no cusps, no Bogdanov-Takens points") } else { page };
     }
     page.table(rows.into_iter().fold(table, |table, (word, corner)| {
         let numbers = corner.values.iter().chain(&corner.amplitudes).map(Text::number);
@@ -244,10 +244,18 @@ impl Present for Answer<Response> {
             ("motion".into(), Formula::new(text, latex).into())
         };
         lines.extend(value.turns.iter().enumerate().map(motion));
+        // Of what was not looked for to the end nothing is said to be absent.
+        let stopped = matches!(self.standing, Standing::Stopped { .. });
+        if stopped {
+            let words = "before the end: there may be more of everything below";
+            lines.push(("stopped".into(), words.into()));
+        }
         if let (Some(first), Some(second)) = (&value.parameter, &value.second) {
-            return Document::titled(title(self))
-                .lines(lines)
-                .append(plane(value, [first, second]));
+            return Document::titled(title(self)).lines(lines).append(plane(
+                value,
+                [first, second],
+                !stopped,
+            ));
         }
         if let Some(name) = &value.parameter {
             let closed = value.branches.iter().filter(|branch| branch.closed).count();
@@ -255,7 +263,8 @@ impl Present for Answer<Response> {
             let count = value.branches.len();
             let words = format!("{count}, of them {closed} closed; {points} points");
             lines.push(("branches".into(), words.into()));
-            let page = Document::titled(title(self)).lines(lines).append(sweep(value, name));
+            let page =
+                Document::titled(title(self)).lines(lines).append(sweep(value, name, !stopped));
             return jumps(value, name).into_iter().fold(page, Document::append);
         }
         let found = value.states.first();
