@@ -48,6 +48,32 @@ fn frequencies_of_many_points_are_those_of_single_ones() {
     }
 }
 
+/// Few orders far out: the error is that of the sum, not of its rounding. Duffing's omega is
+/// sqrt(1 + eps) agm(1, sqrt(1 - k^2)), k^2 = eps/(2 + 2 eps).
+#[test]
+fn the_truth_lies_within_the_error_of_few_orders() {
+    let duffing = Oscillator::builtin("duffing").unwrap();
+    let mut largest = 0.0f64;
+    for order in [4, 6, 9] {
+        let question = Evaluate { order: Some(order), ..Evaluate::default() };
+        let function = duffing.frequency_function(&question, &Work::default()).unwrap().value;
+        for eps in [-0.6f64, -0.2, 0.3, 1.0, 3.0, 8.0] {
+            let (mut a, mut b) = (1.0f64, (1.0 - eps / (2.0 + 2.0 * eps)).sqrt());
+            for _ in 0..6 {
+                (a, b) = (0.5 * (a + b), (a * b).sqrt());
+            }
+            let truth = (1.0 + eps).sqrt() * a;
+            let found = function.at(eps, 1.0);
+            let gap = (found.value - truth).abs();
+            assert!(gap <= found.error, "{order} {eps}: {gap:e} {found:?}");
+            if found.error.is_finite() {
+                largest = largest.max(gap);
+            }
+        }
+    }
+    assert!(largest > 1e-9, "nothing to see: {largest:e}");
+}
+
 /// Where nothing is known the error is infinite: beyond the separatrix, at no number.
 #[test]
 fn points_without_a_digit_say_so() {
