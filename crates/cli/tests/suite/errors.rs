@@ -31,7 +31,7 @@ fn run(line: &str) -> Output {
 }
 
 /// Exit code, code, line; what the hint says of the way on; the line it leads to.
-const TABLE: [(i32, &str, &str, &str, &str); 64] = [
+const TABLE: [(i32, &str, &str, &str, &str); 66] = [
     (2, "usage", "derive duffing --order x", "--help", "--help"),
     (2, "set", "derive duffing --set a", "--set", "derive duffing --order 1 --set amplitude=1/2"),
     (
@@ -270,6 +270,20 @@ const TABLE: [(i32, &str, &str, &str, &str); 64] = [
         "derive \"x'' + x + eps*a*x^2*x' - eps*b*x'\" --order 1 --normalisation free",
         "another name",
         "derive \"x'' + x + eps*c*x^2*x' - eps*b*x'\" --order 1 --normalisation free",
+    ),
+    (
+        2,
+        "symbol-taken",
+        "derive \"x'' + 2*x - y + eps*rho*x^3; y'' + 2*y - x\" --mode 1 --order 1",
+        "another name",
+        "derive \"x'' + 2*x - y + eps*c*x^3; y'' + 2*y - x\" --mode 1 --order 1",
+    ),
+    (
+        2,
+        "symbol-taken",
+        "derive \"x'' + 5*x - 4*y + eps*q_1*x^2; y'' + 5*y - 4*x\" --order 1",
+        "another name",
+        "derive \"x'' + 5*x - 4*y + eps*c*x^2; y'' + 5*y - 4*x\" --order 1",
     ),
     (
         3,

@@ -155,7 +155,7 @@ impl SlowFlow {
     /// # Errors
     /// [`Error::SymbolTaken`].
     pub fn check_names(&self) -> Result<(), Error> {
-        let System { symbols, independent, .. } = &self.system;
+        let System { symbols, independent, shapes, .. } = &self.system;
         refuse_taken(symbols.iter().chain(independent), |base, numbered| match base {
             "z" | "zbar" => Some("a complex amplitude"),
             "a" => Some("an amplitude"),
@@ -165,6 +165,8 @@ impl SlowFlow {
             "gamma" => Some("the phase against a force"),
             "nu" => Some("a frequency of the linear oscillators"),
             "f" | "u" if numbered => Some("a coefficient"),
+            "H" if numbered => Some("a coefficient of the energy"),
+            "q" if numbered && shapes.is_some() => Some("a mode"),
             _ => None,
         })
     }
@@ -308,6 +310,10 @@ fn sum_of_harmonics(harmonic: &[i32], forces: usize) -> String {
 struct Names<'a>(&'a Problem);
 
 impl Names<'_> {
+    fn is_unknown(self, name: &str) -> bool {
+        (0..=self.0.others.len()).any(|j| self.0.unknown(j) == name)
+    }
+
     fn shown(self, e: &Expression) -> String {
         e.print_named(&self.0.small, &self.0.unknowns, Style::Text)
     }

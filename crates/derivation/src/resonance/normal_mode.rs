@@ -16,6 +16,7 @@ use super::system::{Prepared, separated, symbols};
 use super::{Element, Names, ResonanceError, Terms, refuse_near_miss};
 use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
+use crate::limits::refuse_taken;
 use crate::values::value;
 use crate::work::Progress;
 use lindstedt_coeff::print::{Style, Term, power, print_sum};
@@ -76,7 +77,7 @@ pub struct NormalMode {
 ///
 /// # Errors
 /// [`ResonanceError`] by name: a force, internal resonance, squares of frequencies that are not rational, a
-/// velocity where the frequency is a root.
+/// velocity where the frequency is a root. [`Error::SymbolTaken`] for a symbol named like what the mode is written with.
 pub fn normal_mode(
     problem: &Problem,
     mode: usize,
@@ -101,6 +102,15 @@ pub fn normal_mode(
     let equations = separated(&prepared.equations, &modes, names)?;
     let equations = in_own_time(&equations, &square)?;
     let symbols = symbols(equations.iter(), names);
+    refuse_taken(&symbols, |base, numbered| match base {
+        "rho" if !numbered => Some("the square of the amplitude"),
+        "a" if !numbered => Some("the amplitude"),
+        "psi" if !numbered => Some("the phase"),
+        "Omega" if !numbered => Some("the frequency"),
+        "nu" if !numbered => Some("the frequency of the linear mode"),
+        _ if numbered && names.is_unknown(base) => Some("a coefficient"),
+        _ => None,
+    })?;
     let list: Vec<&str> = symbols.iter().map(String::as_str).collect();
     let ratios: Vec<_> =
         modes.squares.iter().map(|other| Rational::from(other / &square)).collect();

@@ -14,6 +14,7 @@ use super::print::print_powers;
 use super::{Element, Names, ResonanceError, System, Terms};
 use crate::averaging::{AveragingSettings, constant};
 use crate::error::DerivationError as Error;
+use crate::limits::refuse_taken;
 use crate::values::value;
 use crate::work::Progress;
 use lindstedt_algebra::RationalAlgebra;
@@ -103,7 +104,7 @@ impl Binding<Amplitudes<Integers>> for Seeking<'_> {
 ///
 /// # Errors
 /// [`ResonanceError`] for what is no such system; [`ExpandError::NotBalanced`] where no value keeps one of
-/// the motions periodic.
+/// the motions periodic; [`Error::SymbolTaken`] for a symbol named like one of the orders, x_1.
 pub fn sought(
     problem: &Problem,
     name: &str,
@@ -135,6 +136,7 @@ pub fn sought(
     let (harmonic, step) = (whole(&frequency)?, whole(&system.force())?);
     let symbols: Vec<String> =
         system.symbols.iter().filter(|known| *known != name).cloned().collect();
+    refuse_taken(&symbols, |base, numbered| (numbered && base == "x").then_some("a coefficient"))?;
     let names: Vec<&str> = symbols.iter().map(String::as_str).collect();
     let algebra = Amplitudes::new(Integers, &system.frequencies, &base, &names);
     let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: names.len() })?;

@@ -66,6 +66,16 @@ fn refusals_of_normal_modes() {
     assert_eq!(refused("x'' + x = eps*cos(t)", 1), ResonanceError::ForcedMode);
     let golden = "x'' + 2*x - y + eps*x^3; y'' + y - x";
     assert_eq!(refused(golden, 1), ResonanceError::NoRationalForm);
+    // Symbols that the answer is written with; y_1 is an order of y, h_1 is nothing.
+    for (name, meaning) in [("rho", "the square of the amplitude"), ("y_1", "a coefficient")] {
+        let taken = found(&format!("x'' + 2*x - y + eps*{name}*x^3; y'' + 2*y - x"), 1, 1);
+        let error = taken.err().unwrap().to_string();
+        assert!(
+            error.starts_with(&format!("the answer is written with {name}, {meaning}:")),
+            "{error}"
+        );
+    }
+    assert!(found("x'' + 2*x - y + eps*h_1*x^3; y'' + 2*y - x", 1, 1).is_ok());
     let damped = "x'' + 2*x - y + eps*x'; y'' + 2*y - x";
     assert_eq!(refused(damped, 2), ResonanceError::IrrationalMode { square: "3".to_owned() });
 }

@@ -115,6 +115,21 @@ fn tongue_edges_as_printed() {
     );
 }
 
+/// x_1 is an order of the motion.
+#[test]
+fn a_symbol_named_like_an_order_is_refused() {
+    let of = |name: &str| {
+        let text = format!(
+            "equation = \"x'' + (a - eps*{name}*cos(2*t))*x = 0\"\n[parameters]\na = {{ value = \"1\" }}\n{name} = {{}}"
+        );
+        let problem = ProblemFile::parse(&text).unwrap().problem;
+        sought(&problem, "a", &AveragingSettings::default(), &mut |_| true)
+    };
+    assert!(of("h_1").is_ok());
+    let refused = of("x_1").err().unwrap().to_string();
+    assert!(refused.starts_with("the answer is written with x_1, a coefficient:"), "{refused}");
+}
+
 /// omega^2 = 1 + 3/4 e + 3/128 e^2 of x'' + x + e x^3, with the first harmonic 1, read backwards; with a force the
 /// motion of the sine has another a.
 #[test]
