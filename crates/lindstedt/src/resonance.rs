@@ -100,7 +100,7 @@ impl Oscillator {
     /// grows like N^(symbols + 1).
     ///
     /// # Errors
-    /// [`Error`] with the reason: frequencies whose squares are not rational, a linear part without modes, a
+    /// [`Error`] with the reason: multiple modes with an irrational square, a linear part without modes, a
     /// divisor that is almost zero, each by name; a symbol named like z, E, eta, a, psi, gamma, nu_j or f_j.
     ///
     /// ```

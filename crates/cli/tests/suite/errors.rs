@@ -295,9 +295,9 @@ const TABLE: [(i32, &str, &str, &str, &str); 66] = [
     (
         3,
         "no-rational-modes",
+        "derive \"x'' + 2*x - y + eps*x^3/2; y'' + y - x\" --mode 1 --order 1",
+        "without --mode",
         "derive \"x'' + 2*x - y + eps*x^3/2; y'' + y - x\" --order 1",
-        "rational",
-        "",
     ),
     (
         3,

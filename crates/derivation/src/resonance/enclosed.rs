@@ -2,10 +2,11 @@
 //!
 //! nu_j = sqrt(q_j) with rational q_j. Square roots of which no ratio is rational, and 1, are independent over Q
 //! (Besicovitch), so that nu_j is a rational multiple of 1 or of the first root of its class, and every resonance is
-//! decided exactly. What is divided by is enclosed; a divisor that cannot be told from zero ends the derivation.
+//! decided exactly; those of [`super::algebraic`] are taken to be independent. What is divided by is enclosed; a divisor that cannot be told from zero ends the derivation.
 
+use super::algebraic::{Enclosed as Modes, middles};
 use super::flow::Job;
-use super::{Enclosed, SlowFlow, Terms};
+use super::{Enclosed, ResonanceError, SlowFlow, Terms};
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
 use lindstedt_equation::classify::rational_root;
@@ -52,13 +53,29 @@ pub(super) fn derived(
     let digits = job.settings.digits.max(1);
     let bits = u32::try_from(4 * digits).unwrap_or(u32::MAX / 4) + 64;
     let ring = BallRing { balls: Balls::new(bits) };
-    let (amplitudes, roots) = classes(&job.system.squares);
-    let root = |square: &Rational| ring.balls.sqrt(&ring.balls.from_rational(square));
-    let roots: Vec<Ball> = roots.iter().filter_map(root).collect();
+    let modes = job
+        .system
+        .algebraic
+        .as_ref()
+        .map(|modes| modes.enclosed(ring.balls).ok_or(ResonanceError::NoRationalForm));
+    let modes = modes.transpose()?;
+    let (amplitudes, squares) = match &modes {
+        Some(modes) => {
+            let unit = |j: usize| (0..=j + 1).map(|k| u32::from(k == j + 1).into()).collect();
+            ((0..modes.squares.len()).map(unit).collect(), modes.squares.clone())
+        }
+        None => {
+            let (amplitudes, roots) = classes(&job.system.squares);
+            (amplitudes, roots.iter().map(|square| ring.balls.from_rational(square)).collect())
+        }
+    };
+    let roots: Vec<Ball> = squares.iter().filter_map(|square| ring.balls.sqrt(square)).collect();
     let generators = roots.into_iter().map(|ball| (Enclosure(ball), Integer::from(1))).collect();
     let rates = Rates { amplitudes, ..job.rates(generators) };
     let scalars = Over::enclosures(ring, middle);
-    let run = job.run(scalars, rates, &|_| None, observer)?;
+    let named = modes.as_ref().map(Modes::named).unwrap_or_default();
+    let other = |name: &str| named.get(name).map(|ball| Enclosure((*ball).clone()));
+    let run = job.run(scalars, rates, &other, observer)?;
     let radius = Cell::new(0.0);
     let terms = |f: &Element| read(&run.algebra, f, &radius);
     let mut flow = job.finished(&run, &terms);
@@ -66,10 +83,17 @@ pub(super) fn derived(
     let residual = largest.map(|ball| upward(&ball.abs_upper())).fold(0.0, f64::max);
     // With the digits of the other coefficients, and within their radius.
     for (j, list) in flow.flow.iter().enumerate() {
-        if rational_root(&flow.system.squares[j]).is_none() {
+        if modes.is_some() || rational_root(&flow.system.squares[j]).is_none() {
             flow.system.frequencies[j] =
                 list[0].first().map(|term| term.im.clone()).unwrap_or_default();
         }
+    }
+    if let Some(modes) = &modes {
+        let rows = || modes.shapes.iter().chain([&modes.squares]);
+        let wide = rows().flatten().map(|ball| upward(ball.radius()));
+        radius.set(wide.fold(radius.get(), f64::max));
+        flow.system.squares = middles(&modes.squares);
+        flow.system.shapes = Some(modes.shapes.iter().map(|row| middles(row)).collect());
     }
     flow.enclosed = Some(Enclosed { radius: radius.get(), residual, digits });
     Ok(flow)

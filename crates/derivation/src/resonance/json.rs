@@ -154,7 +154,8 @@ impl Serialize for Sought {
 impl Serialize for SlowFlow {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let (system, names) = (&self.system, self.factors());
-        let texts = |list: &[Rational]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
+        let of_modes =
+            |list: &Vec<Rational>| list.iter().map(|q| self.number_of_modes(q)).collect::<Vec<_>>();
         let lists = |orders: &[Vec<Terms>]| -> Vec<Vec<Vec<Monomial<'_>>>> {
             let unknown =
                 |list: &Vec<Terms>| list.iter().map(|t| monomials(self, &names, t)).collect();
@@ -167,12 +168,12 @@ impl Serialize for SlowFlow {
         let frequencies: Vec<_> = system.frequencies.iter().map(|nu| self.number(nu)).collect();
         map.serialize_entry("frequencies", &frequencies)?;
         if let Some(enclosed) = self.enclosed {
-            map.serialize_entry("squares", &texts(&system.squares))?;
+            map.serialize_entry("squares", &of_modes(&system.squares))?;
             map.serialize_entry("radius", &enclosed.radius)?;
             map.serialize_entry("residual_radius", &enclosed.residual)?;
         }
         let shapes = system.shapes.as_ref();
-        let shapes = shapes.map(|rows| rows.iter().map(|row| texts(row)).collect::<Vec<_>>());
+        let shapes = shapes.map(|rows| rows.iter().map(of_modes).collect::<Vec<_>>());
         map.serialize_entry("shapes", &shapes)?;
         let forces: Vec<_> = (0..system.forces.len()).map(|l| Force::of(self, &names, l)).collect();
         match &forces[..] {

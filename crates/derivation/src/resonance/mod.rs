@@ -8,10 +8,11 @@
 //! squares of frequencies are rational, so that what is resonant is decided exactly: square roots are
 //! independent of one another unless their ratio is rational. With irrational ones coefficients are
 //! enclosed by balls. A linear part that couples the
-//! unknowns is taken apart into modes x = P q where those are rational. A force beside a resonance is
+//! unknowns is taken apart into modes x = P q, exactly where those are rational, else enclosed. A force beside a resonance is
 //! detuned: with `cos((1 + eps*sigma)*t)` as it is written, and with a frequency that is a number by the
 //! symbol sigma = (omega - Omega)/eps.
 
+mod algebraic;
 mod enclosed;
 mod error;
 mod flow;
@@ -27,6 +28,7 @@ mod quotients;
 mod sought;
 mod system;
 
+pub use algebraic::AlgebraicModes;
 pub use error::ResonanceError;
 pub use forces::Phase;
 pub use motion::Motion;

@@ -73,7 +73,8 @@ pub(super) fn spectrum(mass: &Matrix, stiffness: &Matrix) -> Result<Spectrum, Re
     let shapes: Matrix =
         (0..n).map(|i| columns.iter().map(|column| column[i].clone()).collect()).collect();
     let back = inverted(&shapes).ok_or(ResonanceError::NotDiagonalisable)?;
-    Ok(Spectrum { squares, inverse: product(&back, &inverse), shapes: Some(shapes) })
+    let inverse = product(&back, &inverse);
+    Ok(Spectrum { squares, inverse, shapes: Some(shapes) })
 }
 
 /// That frequencies are no rational numbers.
@@ -82,7 +83,7 @@ pub(super) fn modes_refused(squares: &[Rational]) -> ResonanceError {
     ResonanceError::NoRationalModes { squares: list.join(", ") }
 }
 
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
+pub(super) fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let entry = |row: &Vec<Rational>, j: usize| {
         row.iter().zip(b).map(|(x, other)| Rational::from(x * &other[j])).sum()
     };

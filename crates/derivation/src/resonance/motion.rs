@@ -4,7 +4,7 @@
 //! and x_j by its rate D x_j along that flow, D as in [`lindstedt_expand::resonance`].
 
 use super::forces::{delayed, is_wave, with_phases};
-use super::{Phase, SlowFlow, Terms};
+use super::{AlgebraicModes, Phase, SlowFlow, Terms};
 use lindstedt_equation::{Expression, Function, Unknown};
 use rug::{Rational, ops::Pow};
 use std::collections::BTreeMap;
@@ -216,9 +216,13 @@ impl SlowFlow {
         let single = self.unknowns() == 1;
         let written = [self.problem.equation.clone()];
         let equations = if single { &written[..] } else { &self.system.equations };
+        let modes = self.system.algebraic.as_ref().map(AlgebraicModes::nearby);
+        let of_modes = |name: &str| modes.as_ref()?.get(name).cloned();
         let change = |e: &Expression| match e {
             Expression::Small => Some(Expression::Number(at.small.clone())),
-            Expression::Parameter(name) => values(name).map(Expression::Number),
+            Expression::Parameter(name) => {
+                values(name).or_else(|| of_modes(name)).map(Expression::Number)
+            }
             Expression::Unknown(Unknown { index, derivative, delay: None }) => {
                 let letter = if *derivative == 0 { "x" } else { "w" };
                 Some(Expression::parameter(&format!("{letter}_{}", index + 1)))

@@ -99,7 +99,7 @@ pub fn normal_mode(
     if square <= 0 {
         return Err(ResonanceError::NoOscillation { square: square.to_string() }.into());
     }
-    let equations = separated(&prepared.equations, &modes, names)?;
+    let equations = separated(&prepared.equations, &modes, None, names)?;
     let equations = in_own_time(&equations, &square)?;
     let symbols = symbols(equations.iter(), names);
     refuse_taken(&symbols, |base, numbered| match base {

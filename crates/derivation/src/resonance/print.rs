@@ -109,6 +109,12 @@ impl SlowFlow {
         certain.unwrap_or_else(|| format!("{UNKNOWN}{}", error_string(&ball, "0")))
     }
 
+    /// nu_j^2 or an entry of the shapes: a rational number as it is, otherwise as [`Self::number`].
+    #[must_use]
+    pub fn number_of_modes(&self, q: &Rational) -> String {
+        if self.system.algebraic.is_none() || *q == 1 { q.to_string() } else { self.number(q) }
+    }
+
     /// A polynomial in the amplitudes, its terms collected by amplitudes and phase.
     #[must_use]
     pub fn print(&self, terms: &[AmplitudeTerm], style: Style) -> String {
@@ -194,9 +200,15 @@ impl SlowFlow {
         let modes = self.coordinates();
         let row = |(i, row): (usize, &Vec<Rational>)| {
             let terms = row.iter().zip(&modes).filter(|(q, _)| !q.is_zero());
-            let term = |(q, mode): (&Rational, &String)| Term {
-                coefficient: q.clone(),
-                factors: vec![print_name(mode, style)],
+            let rational = self.system.algebraic.is_none();
+            let term = |(q, mode): (&Rational, &String)| {
+                let whole = rational || *q == 1;
+                let (coefficient, digits) =
+                    if whole { (q.clone(), None) } else { self.coefficient(q, style) };
+                Term {
+                    coefficient,
+                    factors: digits.into_iter().chain([print_name(mode, style)]).collect(),
+                }
             };
             let sum = print_sum(&terms.map(term).collect::<Vec<_>>(), style);
             format!("{} = {sum}", print_name(&self.problem.unknown(i), style))

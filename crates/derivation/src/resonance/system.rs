@@ -1,5 +1,6 @@
 //! From the equations of a problem to what is averaged: values put in, modes, the phase of the forces.
 
+use super::algebraic::{AlgebraicModes, Entry};
 use super::forces::{Phase, harmonic, is_internal, is_wave, leading_rates, near, phases};
 use super::modes::{Matrix, Spectrum, inverted, modes_refused, spectrum};
 use super::{Names, ResonanceError};
@@ -29,6 +30,8 @@ pub struct System {
     pub symbols: Vec<String>,
     /// P of x = P q, where the unknowns are no modes.
     pub shapes: Option<Matrix>,
+    /// Where squares or shapes are irrational: what their numbers here are beside.
+    pub algebraic: Option<AlgebraicModes>,
     /// The values that were put in.
     pub bound: BTreeMap<String, Rational>,
     /// The frequency that was given where it lies beside a resonance, and the name of its detuning.
@@ -199,10 +202,18 @@ impl System {
         detune: bool,
     ) -> Result<Self, Error> {
         let prepared = Prepared::of(equations, given, cards, names)?;
-        let modes = spectrum(&prepared.mass, &prepared.stiffness)?;
+        let (mass, stiffness) = (&prepared.mass, &prepared.stiffness);
+        let irrational = || ResonanceError::NoRationalForm;
+        let (modes, algebraic) = match spectrum(mass, stiffness) {
+            Err(ResonanceError::NoRationalForm) => {
+                let found = AlgebraicModes::of(mass, stiffness).ok_or_else(irrational)?;
+                (found.spectrum().ok_or_else(irrational)?, Some(found))
+            }
+            other => (other?, None),
+        };
         let frequencies = modes.frequencies_nearby()?;
         let squares = modes.squares.clone();
-        let equations = separated(&prepared.equations, &modes, names)?;
+        let equations = separated(&prepared.equations, &modes, algebraic.as_ref(), names)?;
         let detunings = prepared.forces.iter().flat_map(|phase| &phase.detuning);
         let mut symbols = symbols(equations.iter().chain(detunings), names);
         symbols.retain(|name| !prepared.independent.contains(name));
@@ -214,6 +225,7 @@ impl System {
             independent: prepared.independent,
             symbols,
             shapes: modes.shapes,
+            algebraic,
             bound: prepared.bound,
             beside: None,
         };
@@ -228,7 +240,8 @@ impl System {
     #[must_use]
     pub fn is_exact(&self) -> bool {
         let square = |nu: &Rational| nu.clone().square();
-        self.frequencies.iter().zip(&self.squares).all(|(nu, known)| square(nu) == *known)
+        self.algebraic.is_none()
+            && self.frequencies.iter().zip(&self.squares).all(|(nu, known)| square(nu) == *known)
     }
 
     /// Omega of the only force, where it is a number; else 0.
@@ -298,29 +311,53 @@ fn put_in(equations: &[Expression], values: &BTreeMap<String, Rational>) -> Vec<
     equations.iter().map(|e| e.substitute(&change).canonical()).collect()
 }
 
-/// q_j'' + the rest of equation j, with x = P q in it.
+/// q_j'' + the rest of equation j, with x = P q in it; irrational numbers by their names.
 pub(super) fn separated(
     equations: &[Expression],
     modes: &Spectrum,
+    algebraic: Option<&AlgebraicModes>,
     names: Names<'_>,
 ) -> Result<Vec<Expression>, ResonanceError> {
     let without: Vec<Expression> =
         equations.iter().map(|e| without_acceleration(e, names)).collect::<Result<_, _>>()?;
+    let without = match algebraic {
+        None => without,
+        Some(known) => without.iter().zip(&known.stiffness).map(without_stiffness).collect(),
+    };
+    // Irrational numbers have names, in the place of which their enclosures are put.
+    let factor = |q: &Rational, entry: Entry| match algebraic {
+        None => Expression::Number(q.clone()),
+        Some(_) => Expression::parameter(&entry.name()),
+    };
     let shape = |e: &Expression| {
         let (Some(shapes), Expression::Unknown(unknown)) = (&modes.shapes, e) else { return None };
         let part = |(j, p): (usize, &Rational)| {
-            Expression::Number(p.clone()) * Expression::unknown(j, unknown.derivative)
+            factor(p, Entry::Shape(unknown.index, j)) * Expression::unknown(j, unknown.derivative)
         };
         Some(Expression::Sum(shapes[unknown.index].iter().enumerate().map(part).collect()))
     };
     let without: Vec<Expression> = without.iter().map(|e| e.map(&shape)).collect();
     let equation = |(j, row): (usize, &Vec<Rational>)| {
-        let parts = row.iter().zip(&without).filter(|(q, _)| !q.is_zero());
-        let terms = parts.map(|(q, e)| (Expression::Number(q.clone()) * e.clone()).canonical());
+        let parts = row.iter().enumerate().zip(&without).filter(|((_, q), _)| !q.is_zero());
+        let terms =
+            parts.map(|((i, q), e)| (factor(q, Entry::Inverse(j, i)) * e.clone()).canonical());
         let terms = terms.flat_map(|e| e.terms().to_vec());
-        Expression::Sum([Expression::unknown(j, 2)].into_iter().chain(terms).collect())
+        let square = algebraic.map(|_| Entry::Square(j).name());
+        let square = square.map(|name| Expression::parameter(&name) * Expression::unknown(j, 0));
+        let first = [Expression::unknown(j, 2)].into_iter().chain(square);
+        Expression::Sum(first.chain(terms).collect())
     };
     Ok(modes.inverse.iter().enumerate().map(equation).collect())
+}
+
+/// The equation without sum_j k_j x_j at order zero.
+fn without_stiffness((equation, row): (&Expression, &Vec<Rational>)) -> Expression {
+    let term = |(j, k): (usize, &Rational)| {
+        Expression::Number(Rational::from(-k)) * Expression::unknown(j, 0)
+    };
+    let terms = row.iter().enumerate().map(term);
+    let all = Expression::Sum(std::iter::once(equation.clone()).chain(terms).collect());
+    all.multiplied_out().unwrap_or(all).canonical()
 }
 
 /// The equation without the x_k'', which stand in terms of their own with constant factors.

@@ -333,9 +333,15 @@ fn edges_of_the_first_tongues() {
 /// What was refused by name of several unknowns; a near miss is one beyond 1/1000.
 #[test]
 fn refusals_of_several_unknowns() {
-    use ResonanceError::{NearMiss, NoOscillation, NoRationalForm, NotDiagonalisable};
-    let golden = refused("x'' + 2*x - y + eps*x^3/2; y'' + y - x");
-    assert_eq!(golden, NoRationalForm);
+    use ResonanceError::{
+        NearMiss, NoOscillation, NoRationalForm, NotDiagonalisable, UndecidedDivisor,
+    };
+    // Twice the square (3 - sqrt 5)/2: shapes are any of a plane.
+    let double = "x'' + 2*x - y + eps*x^3; y'' + y - x; z'' + 2*z - w; w'' + w - z";
+    assert_eq!(refused(double), NoRationalForm);
+    // nu_1 - nu_2 = 1 is met by the force: nothing decides whether the divisor is zero.
+    let met = refused("x'' + 2*x - y + eps*x*cos(t); y'' + y - x");
+    let UndecidedDivisor { order: 1, .. } = met else { panic!("{met}") };
     assert_eq!(refused("x'' + x + y; y'' + y + eps*x^3"), NotDiagonalisable);
     assert!(matches!(refused("x'' + y + eps*x^3; y'' + x"), NoOscillation { .. }));
     let near = refused("x'' + x + eps*x*y; y'' + 4.000004000001*y + eps*x^2");
@@ -404,6 +410,32 @@ fn irrational_modes() {
     );
     let gap = exchange.values().next().unwrap()[1].to_f64() - 1.0 / 2f64.sqrt();
     assert!(gap.abs() < 1e-15, "{gap}");
+}
+
+/// Two masses of which the frequencies are the golden ratio phi and 1/phi. Order 1 by hand: x = q_1 + q_2 with the shapes (1, phi)
+/// and (1, -1/phi), q_j'' + nu_j^2 q_j + eps x^3/(2 |shape|^2), so that
+/// f_j = i/(4 nu_j |shape_j|^2) (3 z_j^2 zbar_j + 6 z_k zbar_k z_j).
+#[test]
+fn golden_modes() {
+    let found = flow("x'' + 2*x - y + eps*x^3/2; y'' + y - x", 3, &[]);
+    let enclosed = found.enclosed.unwrap();
+    assert!(0.0 < enclosed.radius && enclosed.radius < 1e-30, "{enclosed:?}");
+    assert!(0.0 < enclosed.residual && enclosed.residual < 1e-25, "{enclosed:?}");
+    assert_eq!(found.checked_orders, Some(3));
+    let phi = (1.0 + 5f64.sqrt()) / 2.0;
+    let shapes = found.print_shapes(Style::Text);
+    assert!(shapes[0] == "x = q_1 + q_2" && shapes[1].starts_with("y = 1.61803398874989484820"));
+    let known = [["3 i z1^2 zbar1", "6 i z2 zbar2 z1"], ["3 i z2^2 zbar2", "6 i z1 zbar1 z2"]];
+    for (j, (nu, tip)) in [(1.0 / phi, phi), (phi, -1.0 / phi)].into_iter().enumerate() {
+        assert!((found.system.frequencies[j].to_f64() - nu).abs() < 1e-15);
+        let first = named(&found, &found.flow[j][1]);
+        assert_eq!(first.len(), 2);
+        for (powers, [_, im]) in by_hand(&known[j]) {
+            let [re, value] = &first[&powers];
+            let expected = im.to_f64() / (4.0 * nu * (1.0 + tip * tip));
+            assert!(re.is_zero() && (value.to_f64() - expected).abs() < 1e-15, "{powers:?}");
+        }
+    }
 }
 
 /// Digits that are printed are certain: those of a root to as many as asked for (by Python's decimal), and none of a coefficient

@@ -85,7 +85,7 @@ impl Refusal for ResonanceError {
             Self::NoRationalForm => (
                 NoAnswer,
                 "no-rational-modes",
-                "needs frequencies with rational squares; a small difference is a detuning eps*sigma*x",
+                "the slow flow (`derive` without --mode) encloses simple ones; a small difference is a detuning eps*sigma*x",
             ),
             Self::NoRationalModes { .. } | Self::IrrationalMode { .. } => (
                 NoAnswer,

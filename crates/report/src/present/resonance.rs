@@ -140,14 +140,11 @@ impl Board<'_> {
         if !flow.system.is_exact() {
             for (j, square) in flow.system.squares.iter().enumerate() {
                 let stem = self.indexed("nu", j);
-                let nu = &flow.system.frequencies[j];
+                let nu = flow.number(&flow.system.frequencies[j]);
+                let square = flow.number_of_modes(square);
                 page = page.formula(both(|style| {
-                    format!(
-                        "{}^2 = {square}, {} = {}",
-                        print_name(&stem, style),
-                        print_name(&stem, style),
-                        flow.number(nu)
-                    )
+                    let name = print_name(&stem, style);
+                    format!("{name}^2 = {square}, {name} = {nu}")
                 }));
             }
         }
