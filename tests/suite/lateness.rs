@@ -95,7 +95,12 @@ fn questions() -> Vec<(&'static str, Question)> {
         let [eps, a] = ["eps=0..1:3000", "amplitude=1..2:3000"].map(|a| Axis::parse(a).unwrap());
         Ok(case("duffing").evaluate_sweep(&Evaluate::default(), eps, Some(a), work)?.standing)
     };
+    let proof = move |work: &Work| {
+        let orbit = with("duffing", &[("eps", "10")]);
+        Ok(orbit.prove(&Evaluate::default(), &digits(work, 1000))?.standing)
+    };
     vec![
+        ("products of a thousand digits", Box::new(proof)),
         ("Taylor levels", Box::new(motion)),
         ("averaged powers", Box::new(averaged)),
         ("sums of sines", Box::new(sums)),

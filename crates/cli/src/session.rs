@@ -15,11 +15,15 @@ use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// No result is printed with more digits than this: the contract of exact evaluation.
 const MOST_DIGITS: u64 = 10_000;
 /// So many lines of a table are written between two looks at the clock.
 const LINES: u64 = 1 << 10;
+/// So many numbers show how long it takes to write them as JSON; of many each takes longer by such a factor.
+const SAMPLE: u32 = 1 << 14;
+const SLOWER: f64 = 2.5;
 
 /// One run of the program.
 pub struct Session<'a> {
@@ -148,7 +152,10 @@ impl<'a> Session<'a> {
         Answer<T>: Present,
     {
         self.done();
-        let answer = answer?;
+        let mut answer = answer?;
+        if self.format() == Format::Json {
+            answer.shorten(self.points_in_time());
+        }
         let text = self.written(&answer)?;
         let (tables, figures): (Vec<&PathBuf>, Vec<_>) =
             plots.iter().partition(|path| output::is(path, "csv"));
@@ -178,6 +185,16 @@ impl<'a> Session<'a> {
         })
     }
 
+    /// As many numbers as there is time to write as JSON, by what a few of them take.
+    fn points_in_time(&self) -> usize {
+        let Some(left) = self.watch.left() else { return usize::MAX };
+        let (begin, sample) =
+            (Instant::now(), Vec::from_iter((1..=SAMPLE).map(|n| 1.0 / f64::from(n))));
+        let _ = lindstedt_report::json(&sample);
+        let each = SLOWER * begin.elapsed().as_secs_f64() / f64::from(SAMPLE);
+        (left.max(0.0) / each) as usize
+    }
+
     /// Writes the table of an answer, as many of its rows as there is time for.
     fn write_table<T>(&self, answer: &Answer<T>, path: &Path) -> Outcome
     where
@@ -189,7 +206,8 @@ impl<'a> Session<'a> {
             let taken = answer.csv(&mut |line| {
                 written = to.write_all(line.as_bytes());
                 lines += 1;
-                written.is_ok() && (lines % LINES != 0 || !self.watch.is_over())
+                written.is_ok()
+                    && (lines % LINES != 0 || self.watch.left().is_none_or(|left| left > 0.0))
             });
             whole = taken != Some(false);
             written.map(|()| taken.is_some())

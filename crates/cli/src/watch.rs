@@ -283,10 +283,10 @@ impl Watch {
         self.0.phase.store(Phase::Writing as usize, Ordering::SeqCst);
     }
 
-    /// Whether the time is over, with what an end may take.
-    pub fn is_over(&self) -> bool {
+    /// The seconds until the time is over, with what an end may take; nothing without a limit.
+    pub fn left(&self) -> Option<f64> {
         let State { limits, start, .. } = &*self.0;
-        limits.late(*start, limits.grace())
+        Some(limits.seconds? + limits.grace() - start.elapsed().as_secs_f64())
     }
 
     /// The time since the start.

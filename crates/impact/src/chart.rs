@@ -102,7 +102,7 @@ impl Point {
     };
 }
 
-/// A chart: the points row by row; of one that was stopped the first rows.
+/// A chart: the points row by row; of one that was stopped the first points.
 #[derive(Clone, Debug)]
 pub struct Chart {
     /// What was computed.
@@ -112,8 +112,8 @@ pub struct Chart {
 }
 
 /// Computes a chart on rayon's threads. `observer` receives the number of finished rows, after each
-/// and now and then within a long one, and stops the work by returning false: then the rows up to the first that is
-/// not finished are kept.
+/// and now and then within a long one, and stops the work by returning false: then the points up to the first that is
+/// not computed are kept.
 ///
 /// Cost per point: a prediction of order n some n^2 products, and for variant E the orbit of the predicted flow; an
 /// exact verdict some 50 evaluations of G. Estimated: doubles without error bounds.
@@ -139,36 +139,38 @@ pub fn chart(
     let block = (BLOCK / width).max(FEWEST_ROWS);
     for first in (0..height).step_by(block) {
         let before = points.len();
-        let mut whole = vec![false; block.min(height - first)];
-        points.resize(before + width * whole.len(), Point::EMPTY);
-        let lines = points[before..].par_chunks_mut(width).zip(&mut whole).enumerate();
+        let mut filled = vec![0; block.min(height - first)];
+        points.resize(before + width * filled.len(), Point::EMPTY);
+        let lines = points[before..].par_chunks_mut(width).zip(&mut filled).enumerate();
         let finished = lines.try_for_each_init(
             || Scratch::new(order),
-            |scratch, (row, (line, whole))| {
-                fill(base, plan, first + row, (line, scratch), &|| {
+            |scratch, (row, (line, filled))| {
+                *filled = fill(base, plan, first + row, (line, scratch), &|| {
                     observer(done.load(Ordering::Relaxed))
-                })?;
-                *whole = true;
+                });
+                if *filled < width {
+                    return None;
+                }
                 observer(done.fetch_add(1, Ordering::Relaxed) + 1).then_some(())
             },
         );
         if finished.is_none() {
-            let rows = whole.iter().take_while(|row| **row).count();
-            points.truncate(before + width * rows);
+            let rows = filled.iter().take_while(|count| **count == width).count();
+            points.truncate(before + width * rows + filled.get(rows).unwrap_or(&0));
             break;
         }
     }
     Ok(Chart { plan: *plan, points })
 }
 
-/// One row, unless `goes_on` says no: a long one is not waited for.
+/// One row, unless `goes_on` says no: a long one is not waited for. How many of its points were computed.
 fn fill(
     base: &Parameters<f64>,
     plan: &Plan,
     row: usize,
     (line, scratch): (&mut [Point], &mut Scratch<f64>),
     goes_on: &dyn Fn() -> bool,
-) -> Option<()> {
+) -> usize {
     let mut parameters = base.clone();
     plan.rows.set(row, &mut parameters);
     let mut seeds = Vec::new();
@@ -180,10 +182,10 @@ fn fill(
         }
         *point = evaluate(&parameters, &fixed, plan, scratch, &mut seeds);
         if column % 256 == 255 && !goes_on() {
-            return None;
+            return column + 1;
         }
     }
-    Some(())
+    line.len()
 }
 
 /// What does not depend on the gains A, B.

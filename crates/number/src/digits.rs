@@ -115,8 +115,9 @@ pub fn certify(
         }
         let known = ball.map_or(0, |ball| ball.relative_accuracy_bits());
         // A quarter more at least, so that the number of attempts stays logarithmic.
-        let more = match i64::from(wanted) - known {
-            missing if known > 0 => missing.saturating_add(i64::from(GUARD_BITS)),
+        // Of a ball around 0 or without an end nothing is known: the least integer there is.
+        let more = match known {
+            1.. => i64::from(wanted) - known + i64::from(GUARD_BITS),
             _ => i64::from(bits),
         };
         let more = u32::try_from(more.max(0)).unwrap_or(u32::MAX).max(bits / 4 + 1);

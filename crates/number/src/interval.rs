@@ -235,4 +235,17 @@ mod tests {
         assert_eq!(Interval::LINE * Interval::ZERO, Interval::LINE);
         assert_eq!(Interval::new(f64::NAN, 1.0), Interval::LINE);
     }
+
+    #[test]
+    fn ends_middle_and_parts() {
+        let of = Interval::new;
+        let x = of(1.0, 3.0);
+        assert_eq!((x.low(), x.high(), x.middle()), (1.0, 3.0, 2.0));
+        assert_eq!(x.width(), 2.0_f64.next_up());
+        assert!(*x.ball().midpoint() == 2 && *x.ball().radius() == 1.0_f64.next_up());
+        assert!(x.is_in(x) && x.is_in(of(1.0, 4.0)) && !of(1.0, 4.0).is_in(x));
+        assert!(x.is_inside(of(0.5, 4.0)));
+        assert!(!x.is_inside(of(1.0, 4.0)) && !x.is_inside(of(0.5, 3.0)));
+        assert!(!of(f64::NEG_INFINITY, 1.0).is_finite() && !of(1.0, f64::INFINITY).is_finite());
+    }
 }

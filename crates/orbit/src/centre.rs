@@ -8,6 +8,7 @@ use crate::laurent::Laurent;
 use crate::polynomial::{Polynomial, Term};
 use crate::transform::{doubles_to_modes, samples_to_modes};
 use crate::upward::Up;
+use lindstedt_algebra::Stop;
 use nalgebra::Complex;
 use rug::{Complete, Float, Integer, Rational};
 use std::collections::BTreeMap;
@@ -36,6 +37,7 @@ pub(crate) struct Variables<'a> {
     centre: &'a Centre,
     list: Vec<Laurent>,
     known: BTreeMap<Vec<u32>, Laurent>,
+    stop: Stop,
 }
 
 /// The values at a centre that Newton's method and the proof need; matrices by rows.
@@ -188,9 +190,10 @@ impl Centre {
         Float::with_val(53, parts.max().unwrap_or_default()) >> (self.bits - 1)
     }
 
-    /// F at the centre.
-    pub(crate) fn residual(&self, field: &Field) -> Result<Vec<Exact>, Failure> {
-        Ok(self.residual_with(field, &mut Variables::new(self, field)?))
+    /// F at the centre; [`Failure::Stopped`].
+    pub(crate) fn residual(&self, field: &Field, stop: &Stop) -> Result<Vec<Exact>, Failure> {
+        let residual = self.residual_with(field, &mut Variables::new(self, field, stop)?);
+        if stop.asked() { Err(Failure::Stopped) } else { Ok(residual) }
     }
 
     fn residual_with(&self, field: &Field, variables: &mut Variables<'_>) -> Vec<Exact> {
@@ -208,9 +211,9 @@ impl Centre {
         combine(parts)
     }
 
-    /// F and its derivatives at the centre.
-    pub(crate) fn values(&self, field: &Field) -> Result<Values, Failure> {
-        let mut variables = Variables::new(self, field)?;
+    /// F and its derivatives at the centre; [`Failure::Stopped`].
+    pub(crate) fn values(&self, field: &Field, stop: &Stop) -> Result<Values, Failure> {
+        let mut variables = Variables::new(self, field, stop)?;
         let n = field.unknowns();
         let residual = self.residual_with(field, &mut variables);
         let (mut by_x, mut by_slope, mut by_frequency) = (Vec::new(), Vec::new(), Vec::new());
@@ -222,14 +225,19 @@ impl Centre {
             by_frequency.push(self.with_inertia(i, (&self.frequency * 2u32).complete(), parts));
         }
         let functions = variables.list.split_off(2 * n);
+        // Products that were left out made all of it meaningless.
+        if stop.asked() {
+            return Err(Failure::Stopped);
+        }
         Ok(Values { residual, by_x, by_slope, by_frequency, functions })
     }
 }
 
 impl<'a> Variables<'a> {
-    /// With approximations of the functions of a field.
-    pub(crate) fn new(centre: &'a Centre, field: &Field) -> Result<Self, Failure> {
-        let mut variables = Self::known(centre, &[]);
+    /// With approximations of the functions of a field. Once it is stopped, products mean nothing: whoever takes them
+    /// asks at the end.
+    fn new(centre: &'a Centre, field: &Field, stop: &Stop) -> Result<Self, Failure> {
+        let mut variables = Self { stop: stop.clone(), ..Self::known(centre, &[]) };
         let first = variables.list.len();
         while let Some(next) = field.functions.get(variables.list.len() - first) {
             let functions = variables.approximate(next)?;
@@ -243,7 +251,7 @@ impl<'a> Variables<'a> {
         let mut list = centre.unknowns.clone();
         list.extend(centre.unknowns.iter().map(Laurent::derivative));
         list.extend_from_slice(functions);
-        Self { centre, list, known: BTreeMap::new() }
+        Self { centre, list, known: BTreeMap::new(), stop: Stop::default() }
     }
 
     /// Approximations over 2^bits of a function, and of the cosine with a sine.
@@ -252,8 +260,11 @@ impl<'a> Variables<'a> {
         let (kind, bits) = (function.kind, self.bits());
         let found = match bits <= FAST_BITS {
             true => doubles_to_modes(&argument, bits, kind.list()),
-            false => samples_to_modes(&argument, bits, kind),
+            false => samples_to_modes(&argument, bits, kind, &self.stop),
         };
+        if self.stop.asked() {
+            return Err(Failure::Stopped);
+        }
         found.ok_or_else(|| Failure::NoFunction { argument: argument.norm(Up::ONE, 0).0 })
     }
 
@@ -266,6 +277,9 @@ impl<'a> Variables<'a> {
         let Some(first) = powers.iter().position(|n| *n > 0) else { return Laurent::one() };
         if let Some(product) = self.known.get(powers) {
             return product.clone();
+        }
+        if self.stop.asked() {
+            return Laurent::one();
         }
         let mut less = powers.to_vec();
         less[first] -= 1;

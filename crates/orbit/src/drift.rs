@@ -9,7 +9,6 @@ use crate::exact::{Exact, Part, combine, unit};
 use crate::linear::{Inverse, Linear};
 use crate::newton::{Right, solve};
 use crate::task::Task;
-use lindstedt_algebra::Stop;
 use rug::{Complete, Float, Integer, Rational};
 
 /// The step d, as numbers over 2^bits, and G'(0).
@@ -25,7 +24,6 @@ impl Drift {
         task: &Task,
         (centre, values, linear): (&Centre, &Values, &Linear),
         inverse: &Inverse,
-        stop: &Stop,
     ) -> Result<Option<Self>, Failure> {
         // Coefficients that are uncertain by themselves need not move with the value of the condition.
         let alone = task.error.is_zero() || task.field.is_uncertain();
@@ -39,7 +37,7 @@ impl Drift {
         rows.iter_mut().for_each(|row| row.resize(modes + 1, Default::default()));
         let mut model = linear.clone();
         model.cut(1e-14);
-        let tangent = solve(&model, inverse, -task.error.to_f64(), &rows, stop);
+        let tangent = solve(&model, inverse, -task.error.to_f64(), &rows, &task.stop);
         let mut step = Centre::from_doubles(centre.bits, tangent.frequency, &tangent.unknowns);
         step.unknowns.iter_mut().for_each(|f| f.trim());
         Ok(Some(Self::along(task, (centre, values), step)))

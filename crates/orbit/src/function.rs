@@ -143,7 +143,7 @@ mod tests {
                 Operation::Root(_) => Exact::over_power(Laurent::one(), 0).minus(&p.scaled(-1)),
                 _ => p.clone(),
             };
-            let list = samples_to_modes(&p, BITS, kind).unwrap();
+            let list = samples_to_modes(&p, BITS, kind, &Default::default()).unwrap();
             let error =
                 |list: &[Laurent]| Tied::new(kind, p.clone(), list, BITS).error(nu, Up::ZERO);
             let right = error(&list).unwrap();

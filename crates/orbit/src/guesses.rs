@@ -62,8 +62,8 @@ pub fn guesses(field: &Field, kind: &Kind, stop: &Stop) -> Result<Vec<Start>, Fa
             cosines: vec![middle, radius * angle.cos()],
             sines: vec![0.0, radius * angle.sin()],
         };
-        let (task, guess) = Task::new(field, kind, std::slice::from_ref(&single))?;
-        match balance(&task, guess, MODES, stop) {
+        let (task, guess) = Task::new(field, kind, std::slice::from_ref(&single), stop)?;
+        match balance(&task, guess, MODES) {
             Ok(centre) => {
                 let start = Start::of(&centre.frequency, &centre.component(0));
                 let new = found.iter().all(|other| !other.is_near(&start, SAME));

@@ -138,8 +138,8 @@ fn continued(
             let waves = starts.iter_mut().flat_map(|s| s.cosines.iter_mut().chain(&mut s.sines));
             waves.for_each(|c| *c *= factor);
         }
-        let (task, guess) = Task::new(field, &of(a), &starts)?;
-        let centre = balance(&task, guess, MODES, stop)?;
+        let (task, guess) = Task::new(field, &of(a), &starts, stop)?;
+        let centre = balance(&task, guess, MODES)?;
         let component = |i: usize| Start::of(&centre.frequency, &centre.component(i));
         starts = (0..field.unknowns()).map(component).collect();
     }
@@ -203,8 +203,8 @@ fn responses(
     };
     for shape in shapes {
         for (amplitude, phase) in AMPLITUDES.iter().flat_map(|a| (0..PHASES).map(move |p| (a, p))) {
-            let (task, guess) = Task::new(field, kind, &single(&shape, *amplitude, phase))?;
-            match balance(&task, guess, MODES, stop) {
+            let (task, guess) = Task::new(field, kind, &single(&shape, *amplitude, phase), stop)?;
+            match balance(&task, guess, MODES) {
                 Ok(centre) => {
                     let one = |i: usize| Start::of(&centre.frequency, &centre.component(i));
                     let starts: Vec<Start> = (0..field.unknowns()).map(one).collect();

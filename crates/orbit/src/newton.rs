@@ -27,17 +27,12 @@ fn size(unknowns: &[Vec<Complex<f64>>]) -> f64 {
 }
 
 /// Harmonic balance: Newton's method on the modes up to `modes`.
-pub(crate) fn balance(
-    task: &Task,
-    mut centre: Centre,
-    modes: usize,
-    stop: &Stop,
-) -> Result<Centre, Failure> {
+pub(crate) fn balance(task: &Task, mut centre: Centre, modes: usize) -> Result<Centre, Failure> {
     centre.resize(modes);
     let start = size(&centre.doubles());
     let mut before = f64::INFINITY;
     for _ in 0..MOST_STEPS {
-        if stop.asked() {
+        if task.stop.asked() {
             return Err(Failure::Stopped);
         }
         let (linear, residual, condition) = state(task, &centre)?;
@@ -83,7 +78,7 @@ fn state(task: &Task, centre: &Centre) -> Result<State, Failure> {
 
 /// F and DF at a centre.
 pub(crate) fn linearised(task: &Task, centre: &Centre) -> Result<(Values, Linear), Failure> {
-    let values = centre.values(&task.field)?;
+    let values = centre.values(&task.field, &task.stop)?;
     let linear = Linear::new(centre.frequency.to_f64(), &values, task.rows);
     Ok((values, linear))
 }
@@ -125,17 +120,16 @@ pub(crate) fn refine(
     inverse: &Inverse,
     target: &Float,
     most_modes: usize,
-    stop: &Stop,
 ) -> Result<Centre, Failure> {
     let mut linear: Option<Linear> = None;
     let mut before = Float::with_val(53, f64::INFINITY);
     let mut slow = 0;
     loop {
-        if stop.asked() {
+        if task.stop.asked() {
             return Err(Failure::Stopped);
         }
         let (residual, model) = match linear.take() {
-            Some(linear) => (centre.residual(&task.field)?, linear),
+            Some(linear) => (centre.residual(&task.field, &task.stop)?, linear),
             None => {
                 let (values, mut model) = linearised(task, &centre)?;
                 model.cut(1e-14);
@@ -147,7 +141,7 @@ pub(crate) fn refine(
         let modes = needed(&rows, &model, inverse, allowed).min(most_modes);
         let condition = task.condition(&centre) >> exponent;
         rows.iter_mut().for_each(|row| row.resize(modes + 1, Complex::default()));
-        let step = solve(&model, inverse, condition.to_f64(), &rows, stop);
+        let step = solve(&model, inverse, condition.to_f64(), &rows, &task.stop);
         let change = Float::with_val(53, size(&step.unknowns)) << exponent;
         centre.add(step.frequency, &step.unknowns, exponent);
         centre.unknowns.iter_mut().for_each(|f| f.trim());

@@ -106,7 +106,7 @@ mod tests {
 
     /// The norms of the functions (of an even root with its derivative -root^(q + 1)/q).
     fn norms(kind: Operation, p: &Exact) -> Vec<f64> {
-        let list = samples_to_modes(p, BITS, kind).unwrap();
+        let list = samples_to_modes(p, BITS, kind, &Default::default()).unwrap();
         list.into_iter().map(|f| Exact::over_power(f, BITS).norm(Up::ONE, 0).0).collect()
     }
 

@@ -94,7 +94,7 @@ pub fn prove_all(
     starts: &[Start],
     request: &Request,
 ) -> Result<Proof, Failure> {
-    let (task, guess) = Task::new(field, kind, starts)?;
+    let (task, guess) = Task::new(field, kind, starts, &request.stop)?;
     let (centre, mut modes) = resolved(&task, guess, request)?;
     let bits = (f64::from(request.digits) * std::f64::consts::LOG2_10) as u32 + GUARD_BITS;
     let mut centre = centre.with_bits(bits.max(FAST_BITS));
@@ -170,7 +170,7 @@ pub fn approximate(
     start: &Start,
     request: &Request,
 ) -> Result<Approximation, Failure> {
-    let (task, guess) = Task::new(field, kind, std::slice::from_ref(start))?;
+    let (task, guess) = Task::new(field, kind, std::slice::from_ref(start), &request.stop)?;
     let (centre, mut modes) = resolved(&task, guess, request)?;
     let bits = (f64::from(request.digits) * std::f64::consts::LOG2_10) as u32 + GUARD_BITS;
     let centre = centre.with_bits(bits.max(FAST_BITS));
@@ -178,9 +178,8 @@ pub fn approximate(
     loop {
         let inverse = invert(&linearised(&task, &centre)?.1, modes)?;
         let most = MOST_TIMES * modes;
-        let to = |centre: &Centre, target: &Float| {
-            refine(&task, centre.clone(), &inverse, target, most, &request.stop)
-        };
+        let to =
+            |centre: &Centre, target: &Float| refine(&task, centre.clone(), &inverse, target, most);
         let found = to(&centre, &goal).and_then(|rough| {
             let fine = to(&rough, &Float::with_val(53, &goal >> FURTHER_BITS))?;
             Ok((rough, fine))
@@ -225,7 +224,7 @@ fn resolved(task: &Task, guess: Centre, request: &Request) -> Result<(Centre, us
             if !near(&centre) {
                 break;
             }
-            if let Ok(found) = balance(task, centre.clone(), modes, &request.stop) {
+            if let Ok(found) = balance(task, centre.clone(), modes) {
                 return Ok((found, modes));
             }
             start = centre;
@@ -256,7 +255,7 @@ fn balanced(
     let mut modes = given.max(FIRST_MODES).min(request.modes_limit);
     let mut centre = guess;
     loop {
-        let found = balance(task, centre.clone(), modes, &request.stop);
+        let found = balance(task, centre.clone(), modes);
         if let Ok(found) = &found {
             let sizes = sizes(found);
             let highest: f64 = sizes.iter().skip(modes * 3 / 4).sum();
@@ -287,7 +286,7 @@ fn attempt(
     let mut target = Float::with_val(53, &goal / 16u32);
     loop {
         let most = MOST_TIMES * modes;
-        *centre = refine(task, centre.clone(), &inverse, &target, most, &request.stop)?;
+        *centre = refine(task, centre.clone(), &inverse, &target, most)?;
         let (values, linear) = linearised(task, centre)?;
         let frame = Frame::new(task, centre, &values, &linear, &inverse);
         let (weights, radii) = weighed(&frame, &inverse, request)?;

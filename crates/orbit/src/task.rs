@@ -113,6 +113,8 @@ pub(crate) struct Task {
     pub(crate) value: Rational,
     /// How far the value can be from it.
     pub(crate) error: Rational,
+    /// Asked between the steps of Newton's method and between the products of a residual.
+    pub(crate) stop: Stop,
 }
 
 impl Task {
@@ -121,6 +123,7 @@ impl Task {
         field: &Field,
         kind: &Kind,
         starts: &[Start],
+        stop: &Stop,
     ) -> Result<(Self, Centre), Failure> {
         let mut modes = aligned(starts, field.unknowns())?;
         let autonomous = !matches!(kind, Kind::Forced(_));
@@ -167,7 +170,8 @@ impl Task {
             }
             _ => Rational::new(),
         };
-        Ok((Self { field, rows: Rows { parity, condition }, value, error }, centre))
+        let stop = stop.clone();
+        Ok((Self { field, rows: Rows { parity, condition }, value, error, stop }, centre))
     }
 
     /// Whether the frequency is an unknown.

@@ -71,8 +71,9 @@ fn inverse_at(task: &Task, centre: &Centre, modes: usize) -> Inverse {
 
 /// A cycle balanced on 30 modes: the truth to 1e-9, and its inverse.
 fn cycle() -> (Task, Centre, Inverse) {
-    let (task, guess) = Task::new(&van_der_pol(), &Kind::LimitCycle, &[wave()]).unwrap();
-    let centre = balance(&task, guess, 40, &Stop::default()).unwrap();
+    let (task, guess) =
+        Task::new(&van_der_pol(), &Kind::LimitCycle, &[wave()], &Stop::default()).unwrap();
+    let centre = balance(&task, guess, 40).unwrap();
     let inverse = inverse_at(&task, &centre, 30);
     (task, centre, inverse)
 }
@@ -114,8 +115,8 @@ fn a_forged_amplitude_is_refused() {
     let duffing = field(x() + x().pow(3));
     let start = Start { frequency: 1.3, cosines: vec![0.0, 1.0], sines: vec![] };
     let (mut task, guess) =
-        Task::new(&duffing, &Kind::InitialAmplitude(1.into()), &[start]).unwrap();
-    let centre = balance(&task, guess, 20, &Stop::default()).unwrap();
+        Task::new(&duffing, &Kind::InitialAmplitude(1.into()), &[start], &Stop::default()).unwrap();
+    let centre = balance(&task, guess, 20).unwrap();
     let inverse = inverse_at(&task, &centre, 20);
     assert!(judge(&task, &centre, &inverse, Without::Nothing).unwrap().radius < 1e-8);
     task.value = Rational::from((13, 10));
@@ -149,7 +150,13 @@ fn a_small_inverse_is_seen_by_z0_alone() {
 fn at_rate_one(rest: Expression, modes: &[f64]) -> (Task, Centre) {
     let rows = Rows { parity: Parity { even: true, ..Parity::default() }, condition: None };
     let modes: Vec<_> = modes.iter().map(|re| Complex::new(*re, 0.0)).collect();
-    let task = Task { field: field(rest), rows, value: Rational::new(), error: Rational::new() };
+    let task = Task {
+        field: field(rest),
+        rows,
+        value: Rational::new(),
+        error: Rational::new(),
+        stop: Default::default(),
+    };
     (task, Centre::from_doubles(72, 1.0, &[modes]))
 }
 
@@ -183,7 +190,7 @@ fn the_condition_counts_in_the_tail() {
     let (task, centre) = at_rate_one(x() + x().pow(3), &[0.0, 0.5]);
     let rows = Rows { condition: Some(Condition::AtZero), ..task.rows };
     let task = Task { rows, value: 1.into(), ..task };
-    let centre = balance(&task, centre, 12, &Stop::default()).unwrap();
+    let centre = balance(&task, centre, 12).unwrap();
     let inverse = inverse_at(&task, &centre, 12);
     let column: f64 = inverse.matrix.column(0).iter().skip(1).map(|a| a.abs()).sum();
     let radii = judge(&task, &centre, &inverse, Without::Nothing).unwrap();
@@ -206,8 +213,8 @@ fn moved_centres_of_functions_and_of_systems_are_seen() {
     let kind = Kind::InitialAmplitude(Rational::from((1, 2)));
     for (field, unknown) in [(toda, 0), (system, 1)] {
         let starts = vec![start.clone(); field.unknowns()];
-        let (task, guess) = Task::new(&field, &kind, &starts).unwrap();
-        let centre = balance(&task, guess, 24, &Stop::default()).unwrap();
+        let (task, guess) = Task::new(&field, &kind, &starts, &Stop::default()).unwrap();
+        let centre = balance(&task, guess, 24).unwrap();
         let inverse = inverse_at(&task, &centre, 24);
         assert!(judge(&task, &centre, &inverse, Without::Nothing).unwrap().radius < 1e-8);
         let mut step = vec![vec![Complex::default(); 4]; field.unknowns()];

@@ -4,6 +4,7 @@
 use crate::exact::Exact;
 use crate::laurent::Laurent;
 use crate::operation::Operation;
+use lindstedt_algebra::Stop;
 use rug::Float;
 use rug::float::Constant;
 
@@ -16,23 +17,27 @@ const MOST: usize = 1 << 15;
 type Complex = [Float; 2];
 
 /// The coefficients, over 2^bits, of functions of a trigonometric polynomial, on as many points as resolve
-/// them; nothing where a value has none.
+/// them; nothing where a value has none, or once it is stopped.
 pub(crate) fn samples_to_modes(
     argument: &Exact,
     bits: u32,
     kind: Operation,
+    stop: &Stop,
 ) -> Option<Vec<Laurent>> {
     let mut points: usize = (4 * (argument.modes.modes() + 1)).next_power_of_two().max(LEAST);
     loop {
-        let samples = sampled(argument, bits + GUARD_BITS, points);
+        let samples = sampled(argument, bits + GUARD_BITS, points, stop);
         if !kind.takes(samples.iter().map(|p| *p <= 0)) {
             return None;
         }
-        let values = samples.iter().map(|p| kind.value(p));
+        let values = samples.iter().map(|p| if stop.asked() { None } else { kind.value(p) });
         let values: Vec<Vec<Float>> = values.collect::<Option<_>>()?;
         let count = values.first().map_or(0, Vec::len);
-        let one = |i: usize| modes(values.iter().map(|v| v[i].clone()).collect(), bits);
+        let one = |i: usize| modes(values.iter().map(|v| v[i].clone()).collect(), bits, stop);
         let lists: Vec<Laurent> = (0..count).map(one).collect();
+        if stop.asked() {
+            return None;
+        }
         // What was rounded to 0 in the last quarter says that nothing is beyond.
         let resolved = |f: &Laurent| f.modes() < 3 * points / 8;
         if lists.iter().all(resolved) || points >= MOST {
@@ -87,7 +92,7 @@ pub(crate) fn doubles_to_modes(
     functions.iter().map(one).collect()
 }
 
-fn sampled(argument: &Exact, bits: u32, points: usize) -> Vec<Float> {
+fn sampled(argument: &Exact, bits: u32, points: usize, stop: &Stop) -> Vec<Float> {
     let mut list: Vec<Complex> = vec![[Float::new(bits), Float::new(bits)]; points];
     let of = |n: &rug::Integer| Float::with_val(bits, n) * &argument.scale;
     let modes = &argument.modes;
@@ -98,18 +103,18 @@ fn sampled(argument: &Exact, bits: u32, points: usize) -> Vec<Float> {
         }
         list[k] = [re, im];
     }
-    transform(&mut list, 1, bits);
+    transform(&mut list, 1, bits, stop);
     list.into_iter().map(|[re, _]| re).collect()
 }
 
 /// c_k, rounded to integers over 2^bits.
-fn modes(values: Vec<Float>, bits: u32) -> Laurent {
+fn modes(values: Vec<Float>, bits: u32, stop: &Stop) -> Laurent {
     let (points, precision) = (values.len(), bits + GUARD_BITS);
     let mut list: Vec<Complex> = values
         .into_iter()
         .map(|x| [Float::with_val(precision, x), Float::new(precision)])
         .collect();
-    transform(&mut list, -1, precision);
+    transform(&mut list, -1, precision, stop);
     let mut f = Laurent::zero(points / 2 - 1);
     for (k, [re, im]) in list.into_iter().take(points / 2).enumerate() {
         let whole = |x: Float| ((x / points as u32) << bits).to_integer().unwrap_or_default();
@@ -120,8 +125,8 @@ fn modes(values: Vec<Float>, bits: u32) -> Laurent {
     f
 }
 
-/// sum_j f_j e^(sign 2 pi i j k/n) in place (Cooley, Tukey).
-fn transform(list: &mut [Complex], sign: i32, bits: u32) {
+/// sum_j f_j e^(sign 2 pi i j k/n) in place (Cooley, Tukey); broken off when it is stopped.
+fn transform(list: &mut [Complex], sign: i32, bits: u32, stop: &Stop) {
     let n = list.len();
     let log = n.trailing_zeros();
     for j in 0..n {
@@ -139,7 +144,7 @@ fn transform(list: &mut [Complex], sign: i32, bits: u32) {
         })
         .collect();
     let mut half = 1;
-    while half < n {
+    while half < n && !stop.asked() {
         let stride = n / (2 * half);
         for block in list.chunks_mut(2 * half) {
             let (low, high) = block.split_at_mut(half);

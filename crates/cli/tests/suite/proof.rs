@@ -4,7 +4,7 @@
 use lindstedt::evaluate::{Language, ProofVerdict, ProvedFamily, ProvedMember, ProvedOrbit, Times};
 use lindstedt::grid::Axis;
 use lindstedt::motion::{Simulate, Start};
-use lindstedt::{Error, Evaluate, Exact, Number, Oscillator, Refusal, Work};
+use lindstedt::{Error, Evaluate, Exact, Number, Oscillator, Refusal, Standing, Work};
 use rug::Rational;
 
 fn case(equation: &str, values: &[(&str, &str)]) -> Oscillator {
@@ -127,17 +127,18 @@ fn limit_cycles_are_proved_without_a_small_parameter() {
     assert!((largest(&two[0]) - 2.045).abs() < 0.01 && (largest(&two[1]) - 6.916).abs() < 0.1);
 }
 
-fn family(equation: &str, values: &[(&str, &str)], sweep: &str) -> ProvedFamily {
+fn family(equation: &str, values: &[(&str, &str)], sweep: &str) -> (ProvedFamily, Standing) {
     let axis = Axis::parse(sweep).unwrap();
     let work = Work { digits: 12, ..Work::default() };
-    case(equation, values).prove_sweep(&Evaluate::default(), axis, &work).unwrap().value
+    let found = case(equation, values).prove_sweep(&Evaluate::default(), axis, &work).unwrap();
+    (found.value, found.standing)
 }
 
 /// The backbone of a hardening spring: every amplitude between two of its points has an orbit.
 #[test]
 fn a_backbone_is_proved_without_gaps() {
-    let found = family("duffing", &[("eps", "1")], "amplitude=1..6/5:3");
-    assert_eq!(found.branches.len(), 1);
+    let (found, standing) = family("duffing", &[("eps", "1")], "amplitude=1..6/5:3");
+    assert_eq!((found.branches.len(), standing), (1, Standing::Complete));
     let points = &found.branches[0].points;
     let frequencies: Vec<f64> =
         points.iter().map(|p| middle(&p.orbit.frequency).to_f64()).collect();
@@ -150,22 +151,23 @@ fn a_backbone_is_proved_without_gaps() {
     assert!(distance <= error(&hull), "{hull:?}");
 }
 
-/// Beyond an equilibrium and beyond a separatrix the families begin anew; two cycles far apart are two branches.
+/// Beyond an equilibrium, of which nothing is proved, and beyond a separatrix the families begin anew; two cycles far apart are two branches.
 #[test]
 fn families_begin_again_and_keep_apart() {
-    let last = |equation: &str, axis: &str| {
-        let found = family(equation, &[], axis);
+    let last = |equation: &str, axis: &str, wanted: Standing| {
+        let (found, standing) = family(equation, &[], axis);
+        assert_eq!(standing, wanted, "{equation}");
         let ends = found.branches.iter().filter_map(|branch| branch.points.last().cloned());
         let of = |p: ProvedMember| (p.value.to_string(), middle(&p.orbit.period).to_f64());
         ends.map(of).collect::<Vec<_>>()
     };
-    let within = last("x'' - x + x^3 = 0", "amplitude=3/4..3/2:4");
+    let within = last("x'' - x + x^3 = 0", "amplitude=3/4..3/2:4", Standing::Undecided);
     // By quadrature.
     for (value, period) in [("3/4", 4.621598), ("5/4", 4.765217), ("3/2", 9.223663)] {
         let same = |(at, found): &&(String, f64)| at == value && (found - period).abs() < 1e-5;
         assert!(within.iter().any(|found| same(&found)), "{value}: {within:?}");
     }
-    let cycles = last("x'' + x + (x^2-1)*(x^2-mu)*x'/10 = 0", "mu=6..9:2");
+    let cycles = last("x'' + x + (x^2-1)*(x^2-mu)*x'/10 = 0", "mu=6..9:2", Standing::Complete);
     let periods: Vec<String> = cycles.iter().map(|(_, period)| format!("{period:.5}")).collect();
     assert_eq!(periods, ["6.51221", "6.65702"], "{cycles:?}");
 }

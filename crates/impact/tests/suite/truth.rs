@@ -462,7 +462,7 @@ fn a_chart_equals_its_points() {
         }
     }
     let stopped = chart(&base, &plan, &|_| false);
-    // Rows in progress are finished; whole rows from the first on are there, and are the same.
+    // Short rows in progress are finished; what there is begins with the first point, and is the same.
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     assert!(stopped.unwrap().points.len() <= 9 * threads);
     let rows = AtomicUsize::new(0);
@@ -472,6 +472,15 @@ fn a_chart_equals_its_points() {
     assert!(some.points.iter().zip(&found.points).all(same));
     let twice = Plan { rows: plan.columns, ..plan };
     assert_eq!(chart(&base, &twice, &|_| true).unwrap_err(), ImpactError::BadAxes);
+    // A long row is kept as far as it was computed.
+    let columns = Axis { count: 1000, ..plan.columns };
+    let rows = Axis { count: 1, ..plan.rows };
+    let long = Plan { columns, rows, exact: None, ..plan };
+    let asked = AtomicUsize::new(0);
+    let part = chart(&base, &long, &|_| asked.fetch_add(1, Ordering::Relaxed) < 1).unwrap();
+    let whole = chart(&base, &long, &|_| true).unwrap();
+    let verdicts = |points: &[Point]| points.iter().map(|p| p.predicted).collect::<Vec<_>>();
+    assert_eq!(verdicts(&part.points), verdicts(&whole.points[..512]));
 }
 
 #[test]

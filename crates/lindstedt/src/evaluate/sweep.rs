@@ -2,7 +2,7 @@
 
 use super::Evaluate;
 use crate::grid::{Axis, Grid, check_room};
-use crate::{Answer, Error, Exact, Kind, Number, Oscillator, Refusal, Remark, Work};
+use crate::{Answer, Error, Exact, Kind, Number, Oscillator, Refusal, Remark, Standing, Work};
 use serde::{Serialize, Serializer};
 use std::time::Instant;
 
@@ -34,7 +34,8 @@ pub struct EvaluationSweep {
 
 impl Oscillator {
     /// Period and frequency at every point of one or two axes, each as by [`Oscillator::evaluate`], on all
-    /// cores. A point that is refused keeps the reason; points that stopped work did not reach are empty.
+    /// cores. A point that is refused keeps the reason; points that stopped work did not reach are empty. Where a point
+    /// has not one digit the answer stands as [`Standing::Undecided`].
     ///
     /// # Errors
     /// Those of the first point, if no point has a value.
@@ -87,7 +88,14 @@ impl Oscillator {
         if without > 0 {
             remarks.push(Remark(format!("{without} of {done} points have no period with a digit")));
         }
-        let standing = grid.standing();
+        let undecided = found().any(|point| match point {
+            Ok(point) => point.period.is_none(),
+            Err(error) => error.kind() == Kind::Undecided,
+        });
+        let standing = match grid.standing() {
+            Standing::Complete if undecided => Standing::Undecided,
+            standing => standing,
+        };
         let header = self.header(at, first.map(|point| point.order), "resummation", start);
         Ok(Answer { header, value: EvaluationSweep { grid }, standing, remarks })
     }

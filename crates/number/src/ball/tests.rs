@@ -149,6 +149,22 @@ fn radii_are_small() {
     }
 }
 
+/// Bounds that are larger than they must be lose digits, not truths: no containment shows them.
+#[test]
+fn radii_are_no_larger_than_they_must_be() {
+    let balls = Balls::new(64);
+    let of = |p: i64, q: i64| balls.from_rational(&Rational::from((p, q)));
+    // 1/4 <= 1/3 < 1/2: half a unit in the last place is 2^-66.
+    assert_eq!(*of(1, 3).radius(), Float::with_val(53, Float::i_exp(1, -66)));
+    let hull = balls.hull(&of(1, 1), &of(3, 1));
+    assert!(*hull.midpoint() == 2 && *hull.radius() == 1);
+    let around_zero = balls.add_error(&balls.zero(), of(1, 1).midpoint());
+    assert_eq!(*balls.atan(&around_zero).radius(), 1);
+    for accurate in [balls.sin(&of(701, 7)), balls.ln_1p(&of(-5, 7)).unwrap()] {
+        assert!(accurate.relative_accuracy_bits() >= 55, "{accurate:?}");
+    }
+}
+
 #[test]
 fn partial_operations_refuse() {
     let balls = Balls::new(60);

@@ -66,15 +66,14 @@ impl Part {
         upward: bool,
         request: &Request,
     ) -> Result<Self, Refused> {
-        let (task, guess) = Task::new(field, kind, starts)?;
-        let stop = &request.stop;
-        let rough = balance(&task, guess, size.modes, stop)?;
+        let (task, guess) = Task::new(field, kind, starts, &request.stop)?;
+        let rough = balance(&task, guess, size.modes)?;
         let inverse = invert(&linearised(&task, &rough)?.1, size.modes)?;
         let target = rough.largest() / Float::with_val(53, Float::i_pow_u(10, DIGITS));
         let most = MOST_TIMES * size.modes;
-        let centre = refine(&task, rough, &inverse, &target, most, stop)?;
+        let centre = refine(&task, rough, &inverse, &target, most)?;
         let (values, linear) = linearised(&task, &centre)?;
-        let drift = Drift::new(&task, (&centre, &values, &linear), &inverse, stop)?;
+        let drift = Drift::new(&task, (&centre, &values, &linear), &inverse)?;
         let mut frame = Frame::new(&task, &centre, &values, &linear, &inverse);
         frame.drift = drift.as_ref();
         let weights = frame.weights(size.weight)?;

@@ -37,6 +37,10 @@ pub trait Present {
     fn table(&self) -> Option<Table> {
         self.figure().map(|figure| figure.table())
     }
+    /// Leaves out what a large grid has beyond its first so many points, and says so.
+    fn shorten(&mut self, points: usize) {
+        let _ = points;
+    }
     /// The lines of that table as comma-separated values, the names first, one by one as long as `take` says so;
     /// whether it took all, nothing where there is no table.
     fn csv(&self, take: &mut dyn FnMut(&str) -> bool) -> Option<bool> {
@@ -49,7 +53,8 @@ pub trait Present {
 /// # Errors
 /// Those of serde: never for the answers of this workspace, whose keys are strings.
 pub fn json<A: Serialize>(answer: &A) -> serde_json::Result<String> {
-    Ok(safe(&format!("{:#}", serde_json::to_value(answer)?)))
+    // By way of a value: its keys are sorted.
+    Ok(safe(serde_json::to_string_pretty(&serde_json::to_value(answer)?)?))
 }
 
 /// The same on one line.
@@ -62,21 +67,21 @@ pub fn json<A: Serialize>(answer: &A) -> serde_json::Result<String> {
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 pub fn json_line<A: Serialize + ?Sized>(answer: &A) -> serde_json::Result<String> {
-    Ok(safe(&serde_json::to_string(answer)?))
+    Ok(safe(serde_json::to_string(answer)?))
 }
 
 /// JSON in which every character that steers a terminal is an escape: serde leaves those above 0x1f.
-fn safe(json: &str) -> String {
-    let mut text = String::with_capacity(json.len() + 1);
-    for c in json.chars() {
-        match c {
-            '\n' => text.push(c),
-            c if steers(c) => text += &format!("\\u{:04x}", u32::from(c)),
-            c => text.push(c),
-        }
+fn safe(mut json: String) -> String {
+    // Of ASCII that is printed nothing does: a quarter of a gigabyte is looked through at the speed of memory.
+    if !json.bytes().all(|byte| byte == b'\n' || (b' '..=b'~').contains(&byte)) {
+        let escaped = |c: char| match c {
+            c if c != '\n' && steers(c) => format!("\\u{:04x}", u32::from(c)),
+            c => c.into(),
+        };
+        json = json.chars().map(escaped).collect();
     }
-    text.push('\n');
-    text
+    json.push('\n');
+    json
 }
 
 impl Text {

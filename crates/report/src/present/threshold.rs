@@ -6,7 +6,7 @@ use crate::format::line as csv_line;
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::grid::{self, Grid};
 use lindstedt::threshold::{Harmonic, HomoclinicThreshold, Sweep};
-use lindstedt::{Answer, Number};
+use lindstedt::{Answer, Number, Remark, Standing};
 use std::collections::BTreeMap;
 
 /// The longest table on a page.
@@ -138,6 +138,16 @@ impl Present for Answer<HomoclinicThreshold> {
         let mut lines = rows(&self.value.sweep.as_ref()?.grid);
         let head = Table::new(lines.next()?);
         Some(lines.fold(head, Table::row))
+    }
+
+    fn shorten(&mut self, points: usize) {
+        let Some(sweep) = self.value.sweep.as_mut().filter(|s| s.grid.points.len() > points) else {
+            return;
+        };
+        sweep.grid.points.truncate(points);
+        sweep.blanks.iter_mut().for_each(|blank| blank.points.retain(|index| *index < points));
+        self.standing = Standing::Stopped { done: sweep.grid.done() };
+        self.remarks.push(Remark(format!("stopped; the first {points} points are there")));
     }
 
     fn csv(&self, take: &mut dyn FnMut(&str) -> bool) -> Option<bool> {

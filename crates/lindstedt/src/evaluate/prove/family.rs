@@ -92,7 +92,8 @@ impl Oscillator {
     /// first and last value and where a branch ends (a fold).
     ///
     /// # Errors
-    /// Those of [`Oscillator::prove`]; [`Refused`] for values that are multiples of pi.
+    /// Those of [`Oscillator::prove`]; [`Refused`] for values that are multiples of pi. Values without a proved orbit are
+    /// no error: the answer stands as [`Standing::Undecided`].
     ///
     /// ```
     /// use lindstedt::grid::Axis;
@@ -134,7 +135,7 @@ impl Oscillator {
             () if without > 0 => {
                 let all = family.values.len();
                 remarks.push(Remark(format!("{without} of {all} values have no proved orbit")));
-                if proved.is_empty() { Standing::Undecided } else { Standing::Complete }
+                Standing::Undecided
             }
             () => Standing::Complete,
         };

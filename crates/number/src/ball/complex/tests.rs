@@ -207,6 +207,12 @@ fn partial_operations_refuse() {
     assert!(complex.sqrt(&complex.add_error(&complex.one(), &error)).is_some());
     assert!(complex.sqrt(&complex.zero()).is_some_and(|root| root.is_exact()));
     let nothing = complex.indeterminate();
+    assert!(!complex.one().contains_zero() && complex.zero().contains_zero());
+    let half_known = Complex { re: nothing.re.clone(), ..complex.one() };
+    assert!(!half_known.is_finite() && complex.one().is_finite());
+    let half = complex.div_i64(&complex.one(), 2).unwrap();
+    assert!(half.contains(&Rational::from((1, 2)), &Rational::new()));
+    assert!(complex.div_i64(&half, 0).is_none());
     for (name, operation, _) in UNARY {
         let result = operation(complex, &nothing);
         let known = result.is_some_and(|z| z.re.is_finite());

@@ -67,7 +67,13 @@ impl Case {
         let half = |(k, a): (usize, &f64)| C::new(if k == 0 { *a } else { a / 2.0 }, 0.0);
         let unknowns: Vec<Vec<C>> =
             cosines.iter().map(|list| list.iter().enumerate().map(half).collect()).collect();
-        let task = Task { field, rows, value: Rational::new(), error: Rational::new() };
+        let task = Task {
+            field,
+            rows,
+            value: Rational::new(),
+            error: Rational::new(),
+            stop: Default::default(),
+        };
         let centre = Centre::from_doubles(72, omega, &unknowns);
         let inverse = invert(&linearised(&task, &centre).unwrap().1, modes).unwrap();
         Self { task, centre, inverse }
@@ -76,8 +82,9 @@ impl Case {
     /// Van der Pol's cycle balanced on 40 modes.
     fn cycle(modes: usize) -> Self {
         let start = Start { frequency: 0.94, cosines: vec![0.0, 2.0], sines: vec![] };
-        let (task, guess) = Task::new(&van_der_pol(), &Kind::LimitCycle, &[start]).unwrap();
-        let centre = balance(&task, guess, 40, &Default::default()).unwrap();
+        let (task, guess) =
+            Task::new(&van_der_pol(), &Kind::LimitCycle, &[start], &Default::default()).unwrap();
+        let centre = balance(&task, guess, 40).unwrap();
         let inverse = invert(&linearised(&task, &centre).unwrap().1, modes).unwrap();
         Self { task, centre, inverse }
     }

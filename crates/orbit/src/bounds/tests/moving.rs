@@ -52,7 +52,7 @@ fn the_rest_of_a_moving_orbit_is_covered() {
         let found = frame.contraction(Measure::Norm, &weights);
         let (bound, _) = frame.rest(&found, &drift, &weights);
         // A (G(1) - G(0) - G'(0)).
-        let there = end.centre.values(&end.task.field).unwrap();
+        let there = end.centre.values(&end.task.field, &Default::default()).unwrap();
         let difference = there.residual[0].minus(&values.residual[0]).doubles(0);
         let slope = power_of_two(drift.slope.exponent);
         let length = difference.len().max(drift.slope.rows[0].len()).max(6);

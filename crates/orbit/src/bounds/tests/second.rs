@@ -93,9 +93,12 @@ fn forces_in_the_velocity_are_covered() {
             let found = frame.contraction(Measure::Norm, weights);
             let found = Contraction { inverse: Up::ONE, bend: Up::ZERO, ..found };
             let step = Centre::from_doubles(72, 0.01, &[vec![C::new(0.1, 0.0), C::new(0.1, 0.0)]]);
-            let values = case.centre.values(&case.task.field).unwrap();
+            let values = case.centre.values(&case.task.field, &Default::default()).unwrap();
             let drift = Drift::along(&case.task, (&case.centre, &values), step);
-            let end = drift.moved(&case.centre, 1.0).values(&case.task.field).unwrap();
+            let end = drift
+                .moved(&case.centre, 1.0)
+                .values(&case.task.field, &Default::default())
+                .unwrap();
             let apart = end.residual[0].minus(&values.residual[0]).doubles(0);
             let slope = power_of_two(drift.slope.exponent);
             let rest = |k: usize| at_mode(&apart, k) - at_mode(&drift.slope.rows[0], k) * slope;

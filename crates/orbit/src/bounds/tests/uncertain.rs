@@ -7,7 +7,7 @@ use super::*;
 fn errors_of_functions_are_covered() {
     let field = field(x().apply(Function::Exp) + 2 * v().apply(Function::Sin));
     let case = Case::at(field, Some(Condition::Cosine), 1.3, &[&[0.1, 0.9]], 3);
-    let right = case.centre.values(&case.task.field).unwrap();
+    let right = case.centre.values(&case.task.field, &Default::default()).unwrap();
     // Every function moved by 2^-20.
     let mut list = right.functions.clone();
     list.iter_mut().for_each(|f| f.re[0] += Integer::from(1) << 52u32);
@@ -101,8 +101,8 @@ fn errors_of_arguments_reach_the_functions() {
     let within = Field::within(&equation, "eps", &[("k".to_owned(), ball)].into(), 128).unwrap();
     let case = Case::at(within, None, 1.0, &[&[0.1, 0.7]], 3);
     let end = field(of(Expression::Number((5, 4).into())));
-    let [one, other] =
-        [&case.task.field, &end].map(|field| case.centre.values(field).unwrap().functions);
+    let [one, other] = [&case.task.field, &end]
+        .map(|field| case.centre.values(field, &Default::default()).unwrap().functions);
     let apart = |a: &Laurent, b: &Laurent| {
         let [a, b] = [a, b].map(|f| Exact::over_power(f.clone(), 72));
         a.minus(&b).norm(Up::ONE, 0).0
@@ -115,7 +115,9 @@ fn errors_of_arguments_reach_the_functions() {
     let mut list = values.functions.clone();
     list[0].re[0] += Integer::from(1) << 52u32;
     let argument = Exact::over_power(list[0].clone(), 72);
-    list[2] = samples_to_modes(&argument, 72, Operation::Exponential).unwrap().remove(0);
+    list[2] = samples_to_modes(&argument, 72, Operation::Exponential, &Default::default())
+        .unwrap()
+        .remove(0);
     let mut frame = Frame::new(&case.task, &case.centre, &values, &linear, &case.inverse);
     frame.functions = &list;
     frame.ties = ties(&case.task, &case.centre, &list);
@@ -140,8 +142,8 @@ fn uncertain_coefficients_are_covered_in_every_bound() {
         let mut case = Case::at(within, Some(Condition::Cosine), 1.2, &[&[0.0, amplitude]], 4);
         case.task.error = Rational::from((1, 4));
         let apart = |f: fn(&Values) -> &Exact| {
-            let [one, other] =
-                [&case.task.field, &end].map(|field| case.centre.values(field).unwrap());
+            let [one, other] = [&case.task.field, &end]
+                .map(|field| case.centre.values(field, &Default::default()).unwrap());
             f(&one).minus(f(&other)).norm(Up::ONE, 0).0
         };
         let column = apart(|values| &values.by_x[0]) + apart(|values| &values.by_slope[0]);
