@@ -31,6 +31,23 @@ pub enum MelnikovError {
         /// The power of x.
         power: usize,
     },
+    /// The frequency of the unperturbed orbit is irrational: another unit of time makes it rational.
+    #[error("{name} is not the square of a rational number")]
+    NotSquare {
+        /// The parameter.
+        name: &'static str,
+    },
+    /// A term of the perturbation is not rational in sech and tanh on the orbit.
+    #[error("y^{position} y'^{velocity} leaves the ring of sech and tanh on this orbit")]
+    LeavesRing {
+        /// The power of y.
+        position: u32,
+        /// The power of y'.
+        velocity: u32,
+    },
+    /// The unknown parameter does no work along the unperturbed orbit, so nothing fixes it.
+    #[error("the unknown parameter does no work along the orbit")]
+    UnknownWithoutWork,
     /// The potential is not symmetric: there is no mirror image of its orbit.
     #[error("this potential has one orbit only, no mirror image")]
     NoMirrorImage,
