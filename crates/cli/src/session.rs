@@ -24,6 +24,8 @@ const LINES: u64 = 1 << 10;
 /// So many numbers show how long it takes to write them as JSON; of many each takes longer by such a factor.
 const SAMPLE: u32 = 1 << 14;
 const SLOWER: f64 = 2.5;
+/// What takes some hundredths of a second at most is written, whatever the time is.
+const FEW: usize = 1 << 16;
 
 /// One run of the program.
 pub struct Session<'a> {
@@ -192,7 +194,7 @@ impl<'a> Session<'a> {
             (Instant::now(), Vec::from_iter((1..=SAMPLE).map(|n| 1.0 / f64::from(n))));
         let _ = lindstedt_report::json(&sample);
         let each = SLOWER * begin.elapsed().as_secs_f64() / f64::from(SAMPLE);
-        (left.max(0.0) / each) as usize
+        ((left / each) as usize).max(FEW)
     }
 
     /// Writes the table of an answer, as many of its rows as there is time for.

@@ -243,6 +243,7 @@ mod tests {
         assert_eq!((x.low(), x.high(), x.middle()), (1.0, 3.0, 2.0));
         assert_eq!(x.width(), 2.0_f64.next_up());
         assert!(*x.ball().midpoint() == 2 && *x.ball().radius() == 1.0_f64.next_up());
+        assert!(Interval::ONE.ball().is_exact());
         assert!(x.is_in(x) && x.is_in(of(1.0, 4.0)) && !of(1.0, 4.0).is_in(x));
         assert!(x.is_inside(of(0.5, 4.0)));
         assert!(!x.is_inside(of(1.0, 4.0)) && !x.is_inside(of(0.5, 3.0)));

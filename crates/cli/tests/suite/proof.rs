@@ -151,7 +151,8 @@ fn a_backbone_is_proved_without_gaps() {
     assert!(distance <= error(&hull), "{hull:?}");
 }
 
-/// Beyond an equilibrium, of which nothing is proved, and beyond a separatrix the families begin anew; two cycles far apart are two branches.
+/// Beyond an equilibrium, of which nothing is proved, and beyond a separatrix the families begin anew; two cycles far
+/// apart are two branches.
 #[test]
 fn families_begin_again_and_keep_apart() {
     let last = |equation: &str, axis: &str, wanted: Standing| {

@@ -1,6 +1,9 @@
 //! `lindstedt threshold`: the contract's keys, the numbers of the issue, sweeps, figures, refusals.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+use lindstedt::grid::Axis;
+use lindstedt::{Oscillator, Standing, Threshold, Work};
+use lindstedt_report::Present;
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::process::{Command, Output};
@@ -17,6 +20,22 @@ fn json(arguments: &[&str]) -> Value {
     let output = run(&[arguments, &["--format", "json"]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// What there is no time to write is left out, and that is said.
+#[test]
+fn a_map_is_cut_where_its_time_ends() {
+    let sweep = ["vstar=0..1:4", "b=1..2:3"].map(|axis| Axis::parse(axis).unwrap()).into();
+    let belt = Oscillator::builtin("stick-slip").unwrap();
+    let question = Threshold { sweep, ..Threshold::default() };
+    let mut answer = belt.threshold(&question, &Work::default()).unwrap();
+    answer.shorten(12);
+    assert_eq!(answer.standing, Standing::Complete);
+    answer.shorten(5);
+    let json: Value = serde_json::from_str(&lindstedt_report::json(&answer).unwrap()).unwrap();
+    assert_eq!(json["standing"], "stopped, 5 done");
+    let rows = json["grid"]["signed"].as_array().unwrap();
+    assert_eq!(rows.iter().map(|row| row.as_array().unwrap().len()).collect::<Vec<_>>(), [4, 1]);
 }
 
 #[test]

@@ -38,9 +38,7 @@ pub trait Present {
         self.figure().map(|figure| figure.table())
     }
     /// Leaves out what a large grid has beyond its first so many points, and says so.
-    fn shorten(&mut self, points: usize) {
-        let _ = points;
-    }
+    fn shorten(&mut self, _points: usize) {}
     /// The lines of that table as comma-separated values, the names first, one by one as long as `take` says so;
     /// whether it took all, nothing where there is no table.
     fn csv(&self, take: &mut dyn FnMut(&str) -> bool) -> Option<bool> {
