@@ -176,6 +176,7 @@ pub struct EvaluateOptions {
 pub enum Language {
     Rust,
     Python,
+    C,
     Latex,
 }
 
@@ -216,6 +217,7 @@ impl From<Language> for lindstedt::evaluate::Language {
         match language {
             Language::Rust => Self::Rust,
             Language::Python => Self::Python,
+            Language::C => Self::C,
             Language::Latex => Self::Latex,
         }
     }
