@@ -37,6 +37,10 @@ pub enum Command {
     Verify(VerifyOptions),
     /// Read the paper: derive it, compare it with the print, tabulate what is true.
     Paper(PaperOptions),
+    /// A script with which a shell completes commands and options.
+    Completions(CompletionsOptions),
+    /// The manual page of the program, or of one of its commands.
+    Man(ManOptions),
 }
 
 /// How results are written.
@@ -221,6 +225,18 @@ impl From<Language> for lindstedt::evaluate::Language {
             Language::Latex => Self::Latex,
         }
     }
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsOptions {
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub struct ManOptions {
+    /// A command; without it the program.
+    #[arg(value_name = "COMMAND")]
+    pub of: Option<String>,
 }
 
 #[derive(Debug, Args)]
