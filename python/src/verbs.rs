@@ -141,8 +141,12 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
         options.finish()?;
         return boxed(case.prove(&question, work));
     }
-    let languages =
-        [("rust", Language::Rust), ("python", Language::Python), ("latex", Language::Latex)];
+    let languages = [
+        ("rust", Language::Rust),
+        ("python", Language::Python),
+        ("c", Language::C),
+        ("latex", Language::Latex),
+    ];
     let Some(language) = options.choice("code", &languages)? else {
         options.finish()?;
         return boxed(case.evaluate(&question, work));

@@ -37,6 +37,10 @@ pub enum Command {
     Verify(VerifyOptions),
     /// Read the paper: derive it, compare it with the print, tabulate what is true.
     Paper(PaperOptions),
+    /// A script with which a shell completes commands and options.
+    Completions(CompletionsOptions),
+    /// The manual page of the program, or of one of its commands.
+    Man(ManOptions),
 }
 
 /// How results are written.
@@ -176,6 +180,7 @@ pub struct EvaluateOptions {
 pub enum Language {
     Rust,
     Python,
+    C,
     Latex,
 }
 
@@ -216,9 +221,22 @@ impl From<Language> for lindstedt::evaluate::Language {
         match language {
             Language::Rust => Self::Rust,
             Language::Python => Self::Python,
+            Language::C => Self::C,
             Language::Latex => Self::Latex,
         }
     }
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsOptions {
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub struct ManOptions {
+    /// A command; without it the program.
+    #[arg(value_name = "COMMAND")]
+    pub of: Option<String>,
 }
 
 #[derive(Debug, Args)]

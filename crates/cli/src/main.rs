@@ -6,6 +6,7 @@ mod arguments;
 mod derive;
 mod evaluate;
 mod failure;
+mod manual;
 mod output;
 mod paper;
 mod problems;
@@ -42,6 +43,8 @@ fn main() -> ExitCode {
         Command::Stability(options) => stability::run(options, &session),
         Command::Trade(options) => trade::run(options, &session),
         Command::Paper(options) => paper::run(options, &session),
+        Command::Completions(options) => manual::completions(options, &session),
+        Command::Man(options) => manual::page(options, &session),
     };
     match outcome {
         Ok(code) => ExitCode::from(code),

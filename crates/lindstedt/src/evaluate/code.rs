@@ -12,8 +12,10 @@ use std::fmt::Write;
 pub enum Language {
     /// A function of doubles.
     Rust,
-    /// A function of numbers.
+    /// A function of numbers, and of arrays where NumPy is installed.
     Python,
+    /// C99: a function of doubles, and one of arrays.
+    C,
     /// A displayed formula.
     Latex,
 }
@@ -103,6 +105,7 @@ impl SolutionCode {
         let code = match language {
             Language::Rust => rust(&note, frequency, &terms),
             Language::Python => python(&note, frequency, &terms),
+            Language::C => c(&note, frequency, &terms),
             Language::Latex => latex(&note, frequency, &terms),
         };
         Self { language, frequency, terms, deviation, left_out_below: small, code }
@@ -130,13 +133,36 @@ fn rust(note: &str, omega: f64, terms: &[Term]) -> String {
 }
 
 fn python(note: &str, omega: f64, terms: &[Term]) -> String {
-    let mut text = String::from("from math import cos, sin\n\n\ndef displacement(t):\n");
+    let mut text = String::from(
+        "try:\n    from numpy import cos, sin\nexcept ImportError:\n    from math import cos, sin\n\n\n\
+         def displacement(t):\n",
+    );
     let _ = writeln!(text, "    \"\"\"{note}.\"\"\"\n    phase = {omega:?} * t\n    terms = (");
     for (k, c, s) in terms {
         let _ = writeln!(text, "        ({k}, {c:?}, {s:?}),");
     }
     text.push_str(
         "    )\n    return sum(c * cos(k * phase) + s * sin(k * phase) for k, c, s in terms)\n",
+    );
+    text
+}
+
+fn c(note: &str, omega: f64, terms: &[Term]) -> String {
+    let mut text = format!(
+        "#include <math.h>\n#include <stddef.h>\n\n/* {note}. */\ndouble displacement(double t)\n{{\n    \
+         const double phase = {omega:?} * t;\n    double x = 0.0;\n"
+    );
+    for &(k, c, s) in terms {
+        for (x, name) in [(c, "cos"), (s, "sin")] {
+            if x != 0.0 {
+                let _ = writeln!(text, "    x += {x:?} * {name}({k}.0 * phase);");
+            }
+        }
+    }
+    text.push_str(
+        "    return x;\n}\n\n/* x[i] is the displacement at t[i], i < n. */\n\
+         void displacements(size_t n, const double *t, double *x)\n{\n    \
+         for (size_t i = 0; i < n; i++)\n        x[i] = displacement(t[i]);\n}\n",
     );
     text
 }

@@ -1,0 +1,105 @@
+//! What `evaluate --code` writes is compiled and run, and held against `evaluate`.
+
+use serde_json::Value;
+use std::io::ErrorKind;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Beside the program text: what prints the displacement at 0, 2, 4 and 6.
+const PYTHON: &str = "
+try:
+    from numpy import array
+    print(*displacement(array([0.0, 2.0, 4.0, 6.0])))
+except ImportError:
+    print(*map(displacement, (0.0, 2.0, 4.0, 6.0)))
+";
+const C: &str = r#"
+#include <stdio.h>
+int main(void)
+{
+    const double t[] = {0.0, 2.0, 4.0, 6.0};
+    double x[4];
+    displacements(4, t, x);
+    return printf("%.17g %.17g %.17g %.17g\n", x[0], x[1], x[2], x[3]) < 0;
+}
+"#;
+const RUST: &str = r#"
+fn main() {
+    for t in [0.0, 2.0, 4.0, 6.0] {
+        println!("{:?}", displacement(t));
+    }
+}
+"#;
+
+fn json(arguments: &[&str]) -> Value {
+    let program = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(["evaluate", "--quiet", "--format", "json", "--order", "12", "--digits", "15"])
+        .args(arguments)
+        .output()
+        .unwrap();
+    serde_json::from_slice(&program.stdout).unwrap()
+}
+
+/// The output of a tool; nothing where this machine has it not.
+fn output(folder: &Path, tool: &str, arguments: &[&str]) -> Option<Output> {
+    match Command::new(tool).args(arguments).current_dir(folder).output() {
+        Err(error) if error.kind() == ErrorKind::NotFound => None,
+        found => {
+            let found = found.unwrap();
+            let said = String::from_utf8_lossy(&found.stderr);
+            assert!(found.status.success(), "{tool} {arguments:?}: {said}");
+            Some(found)
+        }
+    }
+}
+
+/// What the program text of a language prints, run in a folder.
+fn printed(folder: &Path, language: &str, code: &str) -> Option<Vec<f64>> {
+    let (harness, file, compiler, options) = match language {
+        "python" => (PYTHON, "x.py", None, &[][..]),
+        "c" => (C, "x.c", Some("cc"), &["-std=c99", "-Wall", "-Werror", "x.c", "-lm"][..]),
+        _ => (RUST, "x.rs", Some("rustc"), &["--edition", "2024", "-D", "warnings", "x.rs"][..]),
+    };
+    std::fs::write(folder.join(file), [code, harness].concat()).unwrap();
+    let found = match compiler {
+        None => output(folder, "python3", &[file])?,
+        Some(compiler) => {
+            output(folder, compiler, &[options, &["-o", "x.out"]].concat())?;
+            output(folder, folder.join("x.out").to_str().unwrap(), &[])?
+        }
+    };
+    let text = String::from_utf8(found.stdout).unwrap();
+    Some(text.split_whitespace().map(|number| number.parse().unwrap()).collect())
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_str().unwrap().parse().unwrap()
+}
+
+/// Cosines and sines of a limit cycle: every language gives what `evaluate` gives, up to the deviation stated.
+#[test]
+fn every_language_gives_what_evaluate_gives() {
+    let folder = std::env::temp_dir().join(format!("lindstedt-code-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let cycle = ["van-der-pol", "--set", "eps=1/5", "--harmonics", "9"];
+    let found = json(&[&cycle[..], &["--times", "0..6:4"]].concat());
+    let expected = found["solution"]["values"].as_array().unwrap();
+    let mut run = 0;
+    for language in ["python", "c", "rust"] {
+        let written = json(&[&cycle[..], &["--code", language]].concat());
+        let Some(x) = printed(&folder, language, written["code"].as_str().unwrap()) else {
+            continue;
+        };
+        run += 1;
+        assert_eq!(x.len(), 4, "{language}");
+        for (x, point) in x.iter().zip(expected) {
+            let expected = &point["x"];
+            let allowed = written["deviation"].as_f64().unwrap() + number(&expected["error"]);
+            let distance = (x - number(&expected["decimal"])).abs();
+            assert!(distance <= allowed, "{language}: {distance:e} {allowed:e}");
+            assert!(allowed < 1e-6, "{language}: {allowed:e}");
+        }
+    }
+    assert!(run > 0, "no tool on this machine");
+    let _ = std::fs::remove_dir_all(folder);
+}
