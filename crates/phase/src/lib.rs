@@ -5,6 +5,7 @@ pub mod amplitudes;
 pub mod collocation;
 pub mod evaluate;
 pub mod fourier;
+pub mod half_turn;
 pub mod lobachevsky;
 pub mod lobachevsky_function;
 pub mod modular;
