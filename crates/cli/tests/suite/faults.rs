@@ -5,7 +5,7 @@
 use crate::outputs::Folder;
 use std::io::Read;
 use std::process::Stdio;
-use std::time::Duration;
+use std::time::Instant;
 
 const FEW: u64 = 4;
 const MANY: u64 = 200;
@@ -37,14 +37,17 @@ fn seen(folder: &Folder) -> Vec<String> {
 /// Killed at any moment a sweep goes on where it was; the table is there whole, or not at all.
 fn killed(times: u64) {
     let folder = Folder::new("killed");
+    let begin = Instant::now();
     assert_eq!(folder.run(&SWEEP).0, Some(0));
+    let alone = begin.elapsed();
     let whole = folder.text("a.csv");
     std::fs::remove_file(folder.0.join("a.csv")).unwrap();
     let kept = [&SWEEP[..], &["--resume", "r"]].concat();
     let (mut lines, mut finished) = (0, 0);
     for round in 0..times {
         let mut child = folder.program(&kept).stdout(Stdio::null()).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(random(round, 60)));
+        // However busy the machine is, some begin and some end.
+        std::thread::sleep(alone.mul_f64(random(round, 120) as f64 / 100.0));
         let _ = child.kill();
         child.wait().unwrap();
         assert!(seen(&folder).iter().all(|name| ["a.csv", "r"].contains(&name.as_str())));
