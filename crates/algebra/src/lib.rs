@@ -12,6 +12,7 @@ pub mod laws;
 mod phase;
 mod ring;
 mod stop;
+mod stopping;
 
 pub use amplitudes::{AmplitudeAlgebra, Split};
 pub use averaging::{Averaged, AveragingAlgebra, LinearPart};
@@ -21,3 +22,4 @@ pub use phase::{
 };
 pub use ring::{RationalAlgebra, Rationals, Ring};
 pub use stop::Stop;
+pub use stopping::Stopping;

@@ -8,7 +8,7 @@ use crate::found::Found;
 use crate::series::{Powers, closes};
 use crate::settings::Settings;
 use crate::work::Progress;
-use lindstedt_algebra::{RationalAlgebra, Rationals, Ring, Stop};
+use lindstedt_algebra::{RationalAlgebra, Rationals, Ring, Stop, Stopping};
 use lindstedt_coeff::closed_forms::ClosedForms;
 use lindstedt_coeff::packed::{PackedPolynomial, PackedSums};
 use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
@@ -148,14 +148,22 @@ fn frequency<C: RationalAlgebra>(
         None => clock.mean_pace(),
     };
     let pace: Vec<Polynomial> = pace.iter().map(clock.lift).collect();
-    let mean = ClockMean::new(ring, mean)?;
-    let found = mean.frequency(ring, &pace, variable.as_deref())?;
+    let whole = Stopping(ring, &clock.stop);
+    // A judge that had to do without products says nothing.
+    let interrupted = || ExpandError::Interrupted { order: pace.len() - 1 };
+    let mean = ClockMean::new(&whole, mean);
+    let mean = if clock.stop.asked() { Err(interrupted()) } else { mean }?;
+    let frequency = |mean: &ClockMean<Polynomial>| {
+        let found = mean.frequency(&whole, &pace, variable.as_deref());
+        if clock.stop.asked() { Err(interrupted()) } else { found }
+    };
+    let found = frequency(&mean)?;
     if !closes {
         let squared = found.squared.clone();
         return Ok((squared, Powers::new(found.squared, found.first, found.period, false)));
     }
     let closed = closed(ring, &mean, &clock.stop)?;
-    let closed = closed.frequency(ring, &pace, variable.as_deref())?;
+    let closed = frequency(&closed)?;
     Ok((found.squared, Powers::new(closed.squared, closed.first, closed.period, true)))
 }
 

@@ -11,7 +11,7 @@
 use super::super::{Factor, LobachevskyElement, Moments};
 use super::leaf::{Leaf, Leaves, factorial};
 use super::{Clock, Still};
-use lindstedt_algebra::RationalAlgebra;
+use lindstedt_algebra::{RationalAlgebra, Stopping};
 use rug::{Integer, Rational};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
@@ -134,13 +134,11 @@ impl<C: RationalAlgebra, T: Moments> Clock<'_, C, T> {
                 }
             }
         }
-        let leaves = Leaves(self.constants);
+        let constants = Stopping(self.constants, &self.stop);
+        let leaves = Leaves(&constants);
         let mut slopes = BTreeMap::new();
         let mut paced = BTreeMap::new();
         for (parent, m, child) in due.into_keys() {
-            if self.stop.asked() {
-                return None;
-            }
             let slope: &Vec<_> = slopes.entry(parent).or_insert_with(|| {
                 parts.classes[parent].iter().map(|leaf| leaves.derivative(leaf)).collect()
             });
@@ -154,6 +152,10 @@ impl<C: RationalAlgebra, T: Moments> Clock<'_, C, T> {
             let number = |of_order: &Vec<_>| of_order.get(m).unwrap_or(&zero).clone();
             let number: Vec<_> = self.numbers.iter().map(number).collect();
             let right = leaves.times(&number, slope, self.order());
+            // Products that were left out are no defect.
+            if self.stop.asked() {
+                return None;
+            }
             let differs = |(a, b)| !leaves.difference(leaves.negated(a), b).is_empty();
             if let Some(order) = left.iter().zip(&right).position(differs) {
                 return Some(Err(order));
