@@ -258,6 +258,8 @@ def test_figures_and_tables(duffing: Oscillator, tmp_path: Path) -> None:
 
 def test_ctrl_c_stops_long_work() -> None:
     law = Oscillator.builtin("power-law")
+    # A shell that starts the tests in the background has them ignore it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     start = time.monotonic()
     threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
     with pytest.raises(KeyboardInterrupt):
