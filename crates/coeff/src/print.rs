@@ -23,6 +23,7 @@ use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::digits::decimal;
 use rug::Rational;
 use std::cmp::{Ordering, Reverse};
+use std::collections::BTreeMap;
 
 /// How to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,39 +51,36 @@ impl Term {
         self
     }
 
-    /// The term without its sign.
-    fn magnitude(&self, style: Style) -> String {
+    /// Writes the term without its sign.
+    fn write_magnitude(&self, style: Style, line: &mut String) {
         let number = Rational::from(self.coefficient.abs_ref());
-        let mut parts = Vec::with_capacity(self.factors.len() + 1);
-        if self.factors.is_empty() || number != 1 {
-            parts.push(print_rational(&number, style));
-        }
-        parts.extend(self.factors.iter().cloned());
-        product(parts, style)
+        let shown = self.factors.is_empty() || number != 1;
+        let number = shown.then(|| print_rational(&number, style));
+        let factors = self.factors.iter().map(String::as_str);
+        write_product(number.as_deref().into_iter().chain(factors), style, line);
     }
 }
 
-/// Factors side by side. In LaTeX a named function brings its own space, and a logarithm that is
+/// Writes factors side by side. In LaTeX a named function brings its own space, and a logarithm that is
 /// not the last factor is put into parentheses, since \ln 2\cos t would read as ln(2 cos t).
-fn product(factors: Vec<String>, style: Style) -> String {
-    if style == Style::Text {
-        return factors.join("*");
-    }
-    let last = factors.len().saturating_sub(1);
-    let mut line = String::new();
-    for (index, factor) in factors.into_iter().enumerate() {
-        let is_log = factor.starts_with(r"\ln");
-        let is_function = [r"\cos", r"\sin", r"\sec"].iter().any(|f| factor.starts_with(f));
-        if is_log && index < last {
-            line.push_str(&parenthesize(&factor, style));
-            continue;
+fn write_product<'a>(factors: impl Iterator<Item = &'a str>, style: Style, line: &mut String) {
+    let mut factors = factors.peekable();
+    let mut first = true;
+    while let Some(factor) = factors.next() {
+        let latex = style == Style::Latex;
+        let is_log = latex && factor.starts_with(r"\ln");
+        let is_function =
+            latex && [r"\cos", r"\sin", r"\sec"].iter().any(|f| factor.starts_with(f));
+        if is_log && factors.peek().is_some() {
+            line.push_str(&parenthesize(factor, style));
+        } else {
+            if !first && !is_log && !is_function {
+                line.push_str(if latex { r"\," } else { "*" });
+            }
+            line.push_str(factor);
         }
-        if index > 0 && !is_log && !is_function {
-            line.push_str(r"\,");
-        }
-        line.push_str(&factor);
+        first = false;
     }
-    line
 }
 
 /// The terms as one line; the empty sum is `0`.
@@ -96,7 +94,7 @@ pub fn print_sum(terms: &[Term], style: Style) -> String {
             (_, Ordering::Less) => " - ",
             _ => " + ",
         });
-        line.push_str(&term.magnitude(style));
+        term.write_magnitude(style, &mut line);
     }
     if line.is_empty() { "0".to_owned() } else { line }
 }
@@ -161,35 +159,55 @@ impl Print for Rationals {
 
 impl Print for PolynomialRing {
     fn print_terms(&self, a: &Polynomial, style: Style) -> Vec<Term> {
-        let mut terms: Vec<&(PowerProduct, Rational)> = a.terms().iter().collect();
-        terms.sort_by_cached_key(|(monomial, _)| order_of_terms(monomial));
-        let print = |(monomial, coefficient): &&(PowerProduct, Rational)| Term {
+        let mut terms: Vec<_> = a.terms().iter().map(|t| (weight_and_degree(&t.0), t)).collect();
+        terms.sort_by(|(k, (m, _)), (l, (n, _))| k.cmp(l).then_with(|| by_powers(m, n)));
+        let mut written = BTreeMap::new();
+        let print = |(_, (monomial, coefficient)): (_, &(PowerProduct, Rational))| Term {
             coefficient: coefficient.clone(),
-            factors: self.factors(monomial, style),
+            factors: self.factors(monomial, style, &mut written),
         };
-        terms.iter().map(print).collect()
+        terms.into_iter().map(print).collect()
     }
 }
 
-/// Weight, degree in the parameters, then the higher power of the first differing symbol first
-/// (a symbol that does not occur sorts by the symbol that stands in its place).
-fn order_of_terms(monomial: &PowerProduct) -> (i64, i64, Vec<(Symbol, Reverse<i16>)>) {
+/// Weight and degree in the parameters.
+fn weight_and_degree(monomial: &PowerProduct) -> (i64, i64) {
     let in_parameters = |&&(s, _): &&(Symbol, i16)| matches!(s, Symbol::Parameter(_));
     let degrees = monomial.factors().iter().filter(in_parameters).map(|&(_, e)| i64::from(e));
-    let factors = monomial.factors().iter().map(|&(s, e)| (s, Reverse(e))).collect();
-    (monomial.weight(), degrees.sum(), factors)
+    (monomial.weight(), degrees.sum())
 }
 
-impl PolynomialRing {
-    /// The factors of a monomial: parameters, S_n, mu_m, pi, zeta(k), then the logarithms.
-    fn factors(&self, monomial: &PowerProduct, style: Style) -> Vec<String> {
-        let mut factors = monomial.factors().to_vec();
-        factors.sort_by_key(|&(symbol, _)| self.is_logarithm(symbol));
-        factors.iter().map(|&(symbol, exponent)| self.power_of(symbol, exponent, style)).collect()
-    }
+/// The higher power of the first differing symbol first (a symbol that does not occur sorts by the symbol that
+/// stands in its place).
+fn by_powers(left: &PowerProduct, right: &PowerProduct) -> Ordering {
+    let key = |&(symbol, exponent): &(Symbol, i16)| (symbol, Reverse(exponent));
+    left.factors().iter().map(key).cmp(right.factors().iter().map(key))
+}
 
-    fn is_logarithm(&self, symbol: Symbol) -> bool {
-        symbol == Symbol::LogTwo || self.name(symbol, Style::Text).starts_with("ln(")
+/// The powers of symbols that occurred, written, and whether each stands last.
+type Powers = BTreeMap<(Symbol, i16), (bool, String)>;
+
+impl PolynomialRing {
+    /// The factors of a monomial: parameters, S_n, mu_m, pi, zeta(k), then the logarithms; in text as one
+    /// factor, since coefficients have millions of terms, and every power once.
+    fn factors(&self, monomial: &PowerProduct, style: Style, written: &mut Powers) -> Vec<String> {
+        let mut factors: Vec<&(bool, String)> = Vec::new();
+        for &(symbol, exponent) in monomial.factors() {
+            written.entry((symbol, exponent)).or_insert_with(|| {
+                let last =
+                    symbol == Symbol::LogTwo || self.name(symbol, Style::Text).starts_with("ln(");
+                (last, self.power_of(symbol, exponent, style))
+            });
+        }
+        factors.extend(monomial.factors().iter().filter_map(|power| written.get(power)));
+        factors.sort_by_key(|(last, _)| *last);
+        let mut factors = factors.into_iter().map(|(_, power)| power.as_str());
+        if style == Style::Latex {
+            return factors.map(str::to_owned).collect();
+        }
+        let Some(first) = factors.next() else { return Vec::new() };
+        let join = |line: String, power| line + "*" + power;
+        vec![factors.fold(first.to_owned(), join)]
     }
 
     /// The name of a symbol; a parameter without a name is `parameter_n`.

@@ -65,16 +65,26 @@ impl Constants {
         }
         let mut powers: BTreeMap<(Symbol, i16), Ball> = BTreeMap::new();
         let mut sum = balls.zero();
+        // The products of the first factors of a monomial, most of which the next one shares.
+        let mut products: Vec<(&(Symbol, i16), Ball)> = Vec::new();
         for (monomial, coefficient) in p.terms() {
-            let mut product = balls.from_rational(coefficient);
-            for &(symbol, exponent) in monomial.factors() {
-                if let Entry::Vacant(entry) = powers.entry((symbol, exponent)) {
+            let factors = monomial.factors();
+            let known = products.iter().zip(factors).take_while(|((f, _), g)| f == g).count();
+            products.truncate(known);
+            for factor @ &(symbol, exponent) in &factors[known..] {
+                if let Entry::Vacant(entry) = powers.entry(*factor) {
                     let base = self.value(symbol, balls)?;
                     entry.insert(balls.powi(&base, exponent.into())?);
                 }
-                product = balls.mul(&product, &powers[&(symbol, exponent)]);
+                let power = &powers[factor];
+                let product = products.last().map(|(_, before)| balls.mul(before, power));
+                products.push((factor, product.unwrap_or_else(|| power.clone())));
             }
-            sum = balls.add(&sum, &product);
+            let term = match products.last() {
+                Some((_, product)) => balls.mul_rational(product, coefficient),
+                None => balls.from_rational(coefficient),
+            };
+            sum = balls.add(&sum, &term);
         }
         Some(sum)
     }

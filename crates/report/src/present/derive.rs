@@ -180,7 +180,10 @@ impl Board<'_> {
             let line = Text::words(format!("{name} in powers of ")).formula(small.clone()).and(":");
             page = page.words(line);
             for (n, number) in numbers.iter().enumerate() {
-                let exact = both(|style| result.print_coefficient(series, n, style));
+                let print = |style| result.print_coefficient(series, n, style);
+                // A long coefficient is not written once more.
+                let text = number.exact.clone().unwrap_or_else(|| print(Style::Text));
+                let exact = Formula::new(text, print(Style::Latex));
                 page = page.formula(coefficient(n, exact, number));
             }
         }
