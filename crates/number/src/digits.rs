@@ -320,4 +320,40 @@ mod tests {
         let negative = certify(10, 1000, |balls| balls.sqrt(&balls.from_i64(-2)));
         assert_eq!(negative, Err(NumberError::Undefined));
     }
+
+    /// The precisions that are tried for 100 digits of a number that loses so many bits by cancellation.
+    fn tried(lost: i32) -> Vec<u32> {
+        let tried = std::cell::RefCell::new(Vec::new());
+        let (text, _) = certify(100, 1 << 20, |balls| {
+            tried.borrow_mut().push(balls.bits());
+            let large = balls.mul_power_of_two(&balls.one(), lost);
+            Some(balls.sub(&balls.add(&balls.pi(), &large), &large))
+        })
+        .unwrap();
+        assert!(text.starts_with("3.14159") && text.ends_with("7068"));
+        tried.into_inner()
+    }
+
+    #[test]
+    fn missing_bits_are_added_at_once() {
+        // ceil(100 log2(10)) = 333 and 32 more.
+        assert_eq!(tried(0), [365]);
+        // What is missing, but a quarter at least.
+        assert_eq!(tried(60), [365, 365 + 92]);
+        // 2^340 < x < 2^341 with 365 bits: within 2^-25, of pi at least 2^1, and a bit for the bound.
+        assert_eq!(tried(340), [365, 365 + (333 - 25 + 32)]);
+        // Twice as many where nothing is known.
+        assert_eq!(tried(1000), [365, 730, 1460]);
+    }
+
+    #[test]
+    fn limits_of_digits() {
+        let bits = |digits| match certify(digits, 64, |balls| Some(balls.pi())) {
+            Err(NumberError::NotEnoughBits { bits, .. }) => Some(bits),
+            _ => None,
+        };
+        assert_eq!((bits(MAX_DIGITS), bits(MAX_DIGITS + 1)), (Some(64), Some(0)));
+        // The last digit is known where the radius is below half of its unit.
+        assert!(decimal(&ball("3", 0.499), 1).is_some() && decimal(&ball("3", 0.5), 1).is_none());
+    }
 }

@@ -184,6 +184,8 @@ fn partial_operations_refuse() {
     let half_pi = balls.mul_power_of_two(&balls.pi(), -1);
     assert!(balls.tan(&half_pi).is_none());
     assert!(balls.from_f64(f64::NAN).is_none() && balls.from_f64(f64::INFINITY).is_none());
+    let half = balls.from_f64(-1.5).unwrap();
+    assert!(half.is_exact() && half.contains(&Rational::from((-3, 2))));
     // A pole of the tangent lies in [1.3, 1.7].
     let middle = balls.from_rational(&Rational::from((3, 2)));
     assert!(balls.tan(&balls.add_error(&middle, &Float::with_val(53, 0.2))).is_none());
@@ -204,6 +206,11 @@ fn overflow_and_underflow_are_never_wrong() {
     for (name, operation, _) in UNARY {
         assert!(operation(balls, &nothing).is_none_or(|ball| !ball.is_finite()), "{name}");
     }
+    // Powers of two that are no numbers of the machine, and an exact product beyond the largest exponent.
+    let shifted = |k| balls.mul_power_of_two(&balls.one(), k);
+    assert!(!shifted(i32::MIN).is_finite() && !shifted(i32::MAX).is_finite());
+    let largest = shifted(rug::float::exp_max() - 1);
+    assert!(largest.is_exact() && !balls.add(&largest, &largest).is_finite());
     // The phase of 2^(10^8) is not reduced: that would take 10^8 bits of pi.
     let far = balls.mul_power_of_two(&balls.one(), 100_000_000);
     assert!(
