@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn operations_enclose() {
         let ends = [-3.1, -1.0, -0.1, 0.0, 1e-3, 0.3, 1.0, 7.7];
-        let exact = |x: f64| Rational::from_f64(x).unwrap();
+        let (of, exact) = (Interval::new, |x: f64| Rational::from_f64(x).unwrap());
         let holds = |i: Interval, q: Rational| exact(i.low) <= q && q <= exact(i.high);
         let pairs =
             || ends.iter().enumerate().flat_map(|(n, a)| ends[n..].iter().map(|b| (*a, *b)));
@@ -227,6 +227,20 @@ mod tests {
                     assert!(holds(x - y, exact(p) - exact(q)));
                     assert!(holds(x * y, exact(p) * exact(q)));
                 }
+                // No end is two steps beyond the values there.
+                let near = |end: f64, value: f64| {
+                    end == value || end.next_up() == value || end.next_down() == value
+                };
+                let products = [a * c, a * d, b * c, b * d];
+                let [low, high] = [f64::min, f64::max].map(|f| products.into_iter().fold(a * c, f));
+                assert!(near((x * y).low, low) && near((x * y).high, high));
+                assert!(near((x + y).low, a + c) && near((x + y).high, b + d));
+                assert_eq!(x.contains(c), a <= c && c <= b);
+                match x.meet(y) {
+                    Some(part) => assert!(part == of(a.max(c), b.min(d))),
+                    None => assert!(b < c || d < a),
+                }
+                assert_eq!(x.hull(y), of(a.min(c), b.max(d)));
             }
         }
         let third = Rational::from((1, 3));
@@ -239,10 +253,15 @@ mod tests {
     #[test]
     fn ends_middle_and_parts() {
         let of = Interval::new;
+        let x = of(2.0, 5.0);
+        assert_eq!((x.low(), x.high(), x.middle()), (2.0, 5.0, 3.5));
+        assert_eq!((x.below(), x.above(), x.width()), (2.0, 5.0, 3.0_f64.next_up()));
+        assert_eq!((-x).below(), 2.0);
+        assert_eq!((of(-2.0, 5.0).below(), of(-6.0, 5.0).above()), (0.0, 6.0));
+        assert_eq!(x.halves(), [of(2.0, 3.5), of(3.5, 5.0)]);
+        assert_eq!(of(-6.0, 5.0).powi(2), of(0.0, 36.0_f64.next_up()));
+        assert!(*x.ball().midpoint() == 3.5 && *x.ball().radius() == 1.5_f64.next_up());
         let x = of(1.0, 3.0);
-        assert_eq!((x.low(), x.high(), x.middle()), (1.0, 3.0, 2.0));
-        assert_eq!(x.width(), 2.0_f64.next_up());
-        assert!(*x.ball().midpoint() == 2 && *x.ball().radius() == 1.0_f64.next_up());
         assert!(Interval::ONE.ball().is_exact());
         assert!(x.is_in(x) && x.is_in(of(1.0, 4.0)) && !of(1.0, 4.0).is_in(x));
         assert!(x.is_inside(of(0.5, 4.0)));
