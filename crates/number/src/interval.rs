@@ -247,6 +247,10 @@ mod tests {
         assert!(holds(Interval::of(&third), third.clone()));
         assert!(Interval::of(&third).ball().contains(&third));
         assert_eq!(Interval::LINE * Interval::ZERO, Interval::LINE);
+        assert_eq!(of(1.0, 2.0) * Interval::ZERO, Interval::ZERO);
+        let half = |low: f64| of(low, f64::INFINITY);
+        assert_eq!(half(1.0) * of(1.5, 2.0), half(1.5_f64.next_down()));
+        assert_eq!(half(0.0) * of(1.5, 2.0), half(0.0_f64.next_down()));
         assert_eq!(Interval::new(f64::NAN, 1.0), Interval::LINE);
     }
 

@@ -318,3 +318,96 @@ impl Real for Certified {
         self.with(self.balls.mul_power_of_two(&self.value, -1))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ball(middle: f64, radius: f64) -> Certified {
+        let balls = Balls::new(100);
+        let ball = balls.from_parts(&Float::with_val(53, middle), &Float::with_val(53, radius));
+        Certified::new(balls, ball)
+    }
+
+    /// What every kind of number computes, at 1/2.
+    fn values<R: Real>(half: &R) -> Vec<(R, f64)> {
+        let (sine, cosine) = half.sin_cos();
+        vec![
+            (half.integer(-7), -7.0),
+            (half.number(0.375), 0.375),
+            (half.pi(), std::f64::consts::PI),
+            (half.square(), 0.25),
+            (half.sqrt(), std::f64::consts::FRAC_1_SQRT_2),
+            (half.exp(), 1.648_721_270_700_128),
+            (half.exp_m1(), 0.648_721_270_700_128_2),
+            (sine, 0.479_425_538_604_203),
+            (cosine, 0.877_582_561_890_372_8),
+            (half.doubled(), 1.0),
+            (half.halved(), 0.25),
+            (half.centre(), 0.5),
+            (half.widened(&half.integer(0)), 0.5),
+        ]
+    }
+
+    /// The sign, the magnitudes and whether anything is known.
+    fn properties<R: Real>(half: &R) {
+        let (minus, zero) = (-half.clone(), half.integer(0));
+        assert_eq!((half.to_f64(), minus.to_f64(), zero.to_f64()), (0.5, -0.5, 0.0));
+        assert_eq!((half.sign(), minus.sign()), (Some(Ordering::Greater), Some(Ordering::Less)));
+        assert_eq!(zero.sign(), Some(Ordering::Equal));
+        assert!(half.is_positive() && !half.is_negative() && !zero.is_positive());
+        assert!(minus.is_negative() && !minus.is_positive() && !zero.is_negative());
+        assert_eq!((minus.magnitude_above(), minus.magnitude_below()), (0.5, 0.5));
+        assert_eq!((zero.magnitude_above(), zero.magnitude_below()), (0.0, 0.0));
+        let nothing = half.number(f64::INFINITY) - half.number(f64::INFINITY);
+        assert!(half.is_finite() && !nothing.is_finite() && nothing.sign().is_none());
+        assert!(nothing.to_f64().is_nan() && !nothing.centre().is_finite());
+        assert!(!minus.sqrt().is_finite() && !(half.clone() / zero).is_finite());
+    }
+
+    /// The angles of points in all quadrants and on the axes, by the angles of their squares' halves.
+    fn angles<R: Real>(half: &R) {
+        for (y, x) in [(1, 2), (2, 1), (2, -1), (1, -2), (-1, -2), (-2, -1), (-2, 1), (-1, 2)] {
+            let angle = half.integer(y).atan2(&half.integer(x)).to_f64();
+            let expected = f64::atan2(y as f64, x as f64);
+            assert!((angle - expected).abs() < 1e-15, "{y} {x}: {angle}");
+        }
+        let of = |y, x| half.integer(y).atan2(&half.integer(x)).to_f64();
+        let pi = std::f64::consts::PI;
+        assert_eq!((of(0, 1), of(0, -1), of(1, 0), of(-1, 0)), (0.0, pi, pi / 2.0, -pi / 2.0));
+    }
+
+    #[test]
+    fn doubles_and_balls_agree() {
+        let half = ball(0.5, 0.0);
+        for ((double, value), (ball, _)) in values(&0.5).into_iter().zip(values(&half)) {
+            assert!((double - value).abs() <= f64::EPSILON * value.abs(), "{double} {value}");
+            assert!((ball.to_f64() - value).abs() <= f64::EPSILON * value.abs(), "{ball:?}");
+            assert!(*ball.ball().radius() < 1e-29);
+        }
+        properties(&0.5);
+        properties(&half);
+        angles(&0.5);
+        angles(&half);
+        assert_eq!((0.5.precision(), half.precision()), (53, 100));
+        assert_eq!((0.5.neutral_width(), half.neutral_width()), (1e-10, 0.0));
+    }
+
+    #[test]
+    fn balls_know_what_they_do_not_know() {
+        let around = ball(0.0, 1.0);
+        assert!(around.sign().is_none() && !around.is_positive() && !around.is_negative());
+        assert_eq!((around.magnitude_above(), around.magnitude_below()), (1.0, 0.0));
+        // Cut at zero: [0, sqrt 3].
+        let root = ball(1.0, 2.0).sqrt();
+        assert!(root.ball().contains(&Rational::from((173, 100))) && root.ball().contains_zero());
+        assert!(*root.ball().radius() < 0.8661);
+        assert!(ball(1.0, 0.5).centre().ball().is_exact());
+        let wide = ball(1.0, 0.5).widened(&ball(-2.0, 0.25));
+        assert!(wide.ball().upper() >= 3.75 && wide.ball().upper() < 3.751);
+        // Across the cut at -pi nothing is said, nor of a point that may be the origin.
+        assert!(!around.atan2(&ball(-2.0, 0.0)).is_finite() && !around.atan2(&around).is_finite());
+        let least = ball(0.0, 0.0).with(around.balls.mul_power_of_two(&around.balls.one(), -5000));
+        assert!(least.magnitude_above() > 0.0 && least.magnitude_below() == 0.0);
+    }
+}

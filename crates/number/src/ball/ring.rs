@@ -68,3 +68,31 @@ impl RationalAlgebra for BallRing {
         a.0.is_exact().then(|| a.0.midpoint().to_rational()).flatten()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+    use super::*;
+    use rug::Float;
+
+    #[test]
+    fn zero_is_known_or_possible() {
+        let ring = BallRing { balls: Balls::new(60) };
+        let of = |n: i64, error: f64| {
+            Enclosure(ring.balls.add_error(&ring.balls.from_i64(n), &Float::with_val(53, error)))
+        };
+        let (zero, around, three, wide) = (of(0, 0.0), of(0, 1.0), of(3, 0.0), of(3, 0.5));
+        assert!(ring.is_zero(&zero) && ring.may_vanish(&zero));
+        assert!(!ring.is_zero(&around) && ring.may_vanish(&around));
+        assert!(!ring.is_zero(&three) && !ring.may_vanish(&three) && !ring.may_vanish(&wide));
+        assert!(three == of(3, 0.0) && three != wide && three != of(4, 0.0) && zero != three);
+        let mut sum = of(1, 0.25);
+        ring.add_assign(&mut sum, &wide);
+        assert!(sum.0.lower() <= 3.25 && sum.0.upper() >= 4.75 && sum.0.lower() > 3.24);
+        let third = ring.reciprocal(&three).unwrap();
+        assert!(third.0.contains(&Rational::from((1, 3))) && ring.reciprocal(&around).is_none());
+        assert_eq!(ring.as_rational(&three), Some(Rational::from(3)));
+        assert_eq!(ring.as_rational(&wide), None);
+    }
+}

@@ -166,6 +166,18 @@ fn radii_are_no_larger_than_they_must_be() {
 }
 
 #[test]
+fn wide_balls_know_what_they_can() {
+    let balls = Balls::new(60);
+    let wide = |middle: i64, radius| {
+        balls.add_error(&balls.from_i64(middle), &Float::with_val(53, radius))
+    };
+    // Far out the arctangent is flat: 1/(1 + 999^2) at most.
+    assert!(*balls.atan(&wide(1000, 1.0)).radius() < 1.01e-6);
+    // More than a period: [-1, 1], not more.
+    assert!(*balls.sin(&wide(1, 3.0)).radius() <= 1 && *balls.cos(&wide(1, 7.0)).radius() <= 1);
+}
+
+#[test]
 fn partial_operations_refuse() {
     let balls = Balls::new(60);
     let around_zero = balls.add_error(&balls.zero(), &Float::with_val(53, 1e-30));
@@ -178,6 +190,7 @@ fn partial_operations_refuse() {
             && balls.ln(&balls.zero()).is_none()
             && balls.ln(&minus).is_none()
     );
+    assert!(balls.ln_1p(&minus).is_none());
     assert!(balls.sqrt(&around_zero).is_none() && balls.sqrt(&minus).is_none());
     assert!(balls.sqrt(&balls.zero()).is_some_and(|root| root.is_exact()));
     assert!(balls.powi(&around_zero, -1).is_none() && balls.zeta(1).is_none());

@@ -220,3 +220,12 @@ fn partial_operations_refuse() {
     }
     assert!(complex.div(&complex.one(), &nothing).is_none());
 }
+
+#[test]
+fn membership_needs_both_parts() {
+    let c = ComplexBalls::new(Balls::new(60));
+    let z = Complex { re: c.real().from_i64(2), im: c.real().from_i64(3) };
+    let q = |n: i64| Rational::from(n);
+    assert!(z.contains(&q(2), &q(3)));
+    assert!(!z.contains(&q(2), &q(2)) && !z.contains(&q(3), &q(3)) && !z.contains(&q(3), &q(2)));
+}
