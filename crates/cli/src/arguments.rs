@@ -255,6 +255,13 @@ pub struct ThresholdOptions {
     /// Thresholds of the resonances of period 2 pi m/omega, m = 1 ... M, in one well and around both.
     #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub subharmonics: Option<u32>,
+    /// The parameter for which the orbit of an autonomous problem stays homoclinic, as a series in the small parameter
+    /// (also `unknown` in the file).
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["sweep", "zeros", "subharmonics", "plot"])]
+    pub unknown: Option<String>,
+    /// The highest order of that series.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub order: Option<u32>,
     /// A figure (.svg) or a table (.csv) of the sweep; may be given twice.
     #[arg(long, value_name = "FILE")]
     pub plot: Vec<PathBuf>,

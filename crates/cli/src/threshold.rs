@@ -2,13 +2,26 @@
 
 use crate::Outcome;
 use crate::arguments::ThresholdOptions;
+use crate::failure::Failure;
 use crate::session::Session;
 use lindstedt::Threshold;
 use lindstedt::grid::Axis;
 
+/// The order of a series that is not asked for.
+const ORDER: u32 = 2;
+
 pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
     let work = session.precise_work(&options.precision)?;
     let oscillator = session.oscillator(&options.problem, &options.set, None)?;
+    if let Some(name) = options.unknown.as_deref().or(oscillator.unknown()) {
+        session.check_writable(&options.problem, &options.plot, None)?;
+        let order = options.order.unwrap_or(ORDER) as usize;
+        return session.show(oscillator.homoclinic(name, order, &work), &options.plot);
+    }
+    if options.order.is_some() {
+        let message = "--order belongs to --unknown".to_owned();
+        return Err(Failure::usage("order", message, "for example --unknown mu --order 4"));
+    }
     let question = Threshold {
         sweep: options.sweep.iter().map(|text| oscillator.axis(text)).collect::<Result<_, _>>()?,
         zeros: options.zeros.as_deref().map(Axis::ends).transpose()?,

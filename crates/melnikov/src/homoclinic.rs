@@ -47,7 +47,7 @@ pub struct PerturbationTerm {
 ///     leading: (-1).into(),
 ///     perturbation: vec![term(0, 0, 1), term(2, -1, 0)],
 /// };
-/// let orbit = saddle.homoclinic(3)?;
+/// let orbit = saddle.homoclinic(3, &mut |_| true)?;
 /// assert_eq!(orbit.unknown[0], Rational::from((4, 5)));
 /// assert!(saddle.residual_vanishes(&orbit));
 /// # Ok::<(), lindstedt_melnikov::MelnikovError>(())
@@ -77,7 +77,7 @@ pub struct HomoclinicOrbit {
 }
 
 impl Saddle {
-    /// The orbit to order N >= 1 in eps, and mu to order N - 1.
+    /// The orbit to order N >= 1 in eps, and mu to order N - 1; `observer` is told every order, `false` ends with it.
     ///
     /// O(N^2) products of polynomials of degree O(N) per power of y' and per term.
     ///
@@ -86,10 +86,17 @@ impl Saddle {
     /// [`MelnikovError::DegreeTooLarge`] for a power beyond [`crate::LARGEST_DEGREE`],
     /// [`MelnikovError::NotSquare`], [`MelnikovError::LeavesRing`] for a term of f that is not
     /// rational in sech and tanh on the orbit, or [`MelnikovError::UnknownWithoutWork`].
-    pub fn homoclinic(&self, order: usize) -> Result<HomoclinicOrbit, MelnikovError> {
+    pub fn homoclinic(
+        &self,
+        order: usize,
+        observer: &mut dyn FnMut(usize) -> bool,
+    ) -> Result<HomoclinicOrbit, MelnikovError> {
         let mut state = Expansion::new(self)?;
         for n in 1..=order {
             state.step(n)?;
+            if !observer(n) {
+                break;
+            }
         }
         let Expansion { unknown, amplitude, omega: frequency, .. } = state;
         Ok(HomoclinicOrbit { unknown, amplitude, frequency })

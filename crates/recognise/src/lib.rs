@@ -1,5 +1,6 @@
 //! From the equation of a problem to what a method needs: Melnikov's potential, friction, forcing
-//! and belt speed ([`MelnikovProblem`]), the impact oscillator of section 2 ([`ImpactProblem`]).
+//! and belt speed ([`MelnikovProblem`]), a saddle with a parameter that is sought ([`SaddleProblem`]), the impact
+//! oscillator of section 2 ([`ImpactProblem`]).
 //!
 //! Terms are matched by what they are, multiplied out with the values of the parameters, never by
 //! their names. A term that does not fit is named; nothing is dropped.
@@ -17,6 +18,7 @@ mod motion;
 mod numeric;
 mod potential;
 mod refusal;
+mod saddle;
 mod search;
 mod threshold;
 
@@ -25,4 +27,5 @@ pub use lowest::LowestHarmonic;
 pub use melnikov::{MelnikovProblem, Unperturbed};
 pub use numeric::{NumericOrbit, OrbitCheck};
 pub use refusal::{Refusal, Why};
+pub use saddle::SaddleProblem;
 pub use threshold::OrbitThreshold;

@@ -37,13 +37,19 @@ pub enum Why {
     OtherFrequency,
     /// A delay that is not the period of the orbit.
     OtherDelay,
+    /// It is no polynomial in x and x'.
+    NotPolynomial,
+    /// A coefficient that is not rational.
+    NotRational,
+    /// The parameter that is sought does not enter linearly.
+    NotLinearUnknown,
 }
 
 impl fmt::Display for Why {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::NotSmall => "has no factor of the small parameter; only a force f(x) may have none",
-            Self::HigherOrder => "is of higher order in the small parameter; Melnikov's method is of first order",
+            Self::HigherOrder => "is of higher order in the small parameter; the perturbation must be of first order",
             Self::SmallInside => "has the small parameter inside a function",
             Self::Delay => "is a delay; Melnikov's method has none",
             Self::Formal => "is a formal function",
@@ -56,6 +62,9 @@ impl fmt::Display for Why {
             Self::NotLinear => "is not linear in x, x', x(t - T), x'(t - T)",
             Self::OtherFrequency => "is a second force",
             Self::OtherDelay => "has a delay that is no period 2*pi*k/omega of the force, k = 1, 2, ...",
+            Self::NotPolynomial => "is no polynomial in x and x'; the orbit is known in closed form for those",
+            Self::NotRational => "has a coefficient that is not rational",
+            Self::NotLinearUnknown => "is not linear in the parameter that is sought",
         })
     }
 }
@@ -96,6 +105,18 @@ pub enum Refusal {
     /// The unperturbed equation has no saddle with an orbit that returns or leads to another.
     #[error("no homoclinic or heteroclinic orbit of the unperturbed equation was found")]
     NoOrbit,
+    /// The unperturbed orbit is no power of sech.
+    #[error(
+        "the unperturbed equation is not y'' = a*y + b*y^k with x = c + y, a > 0, and b < 0 where k is odd: \
+         no orbit that returns to its saddle is known in closed form"
+    )]
+    NoSaddleForm,
+    /// A constant term at the saddle.
+    #[error("the perturbation does not vanish at the saddle x = {position}: it moves it")]
+    MovesSaddle {
+        /// Where the saddle is.
+        position: String,
+    },
     /// The unperturbed equation has no stiffness.
     #[error("the free flight needs alpha^2 > 0 in x'' + alpha^2 x, not {value}")]
     NoStiffness {

@@ -265,6 +265,9 @@ impl Refusal for lindstedt_recognise::Refusal {
             }
             Refusal::Periods { .. } => (Usage, "parameter", "k = 1, 2, ..."),
             Refusal::TooManyTerms { .. } => (Undecided, "too-large", ""),
+            Refusal::NoSaddleForm | Refusal::MovesSaddle { .. } => {
+                (NoAnswer, "no-method", "`lindstedt simulate` follows it in time")
+            }
             Refusal::Melnikov(error) => return error.parts(),
             _ => (NoAnswer, "no-method", "`lindstedt problems --show FILE` lists the methods"),
         };
@@ -280,6 +283,12 @@ impl Refusal for MelnikovError {
             }
             Self::Undecided { .. } | Self::Digits(_) => {
                 (Undecided, "could-not-decide", "move off the degenerate point")
+            }
+            Self::NotSquare { .. } => {
+                (NoAnswer, "irrational", "another unit of time, t = s*c, makes it a square")
+            }
+            Self::LeavesRing { .. } => {
+                (NoAnswer, "no-method", "`lindstedt simulate` follows it in time")
             }
             _ => (NoAnswer, "no-answer", ""),
         };

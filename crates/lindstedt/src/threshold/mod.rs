@@ -9,6 +9,7 @@
 //!
 //! has everything in closed form ([`lindstedt_melnikov::StickSlip`]).
 
+mod homoclinic;
 mod orbits;
 mod resonances;
 mod subject;
@@ -24,6 +25,7 @@ use serde::Serialize;
 use std::time::Instant;
 use subject::Subject;
 
+pub use homoclinic::{HomoclinicResidual, HomoclinicSeries};
 pub use sweep::{Blank, Marks, Sweep};
 
 /// What to say of the threshold besides its value.

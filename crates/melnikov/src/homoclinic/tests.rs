@@ -26,7 +26,7 @@ fn sum(series: &[Rational], eps: f64) -> f64 {
 /// others: a computer algebra system, by a linear system per order.
 #[test]
 fn the_coefficients_of_bogdanov_and_takens() -> Result<(), MelnikovError> {
-    let orbit = bogdanov_takens().homoclinic(7)?;
+    let orbit = bogdanov_takens().homoclinic(7, &mut |_| true)?;
     let even = |c: &[Rational]| c.iter().step_by(2).map(ToString::to_string).collect::<Vec<_>>();
     let tau = ["10/7", "288/2401", "-240192/45294865", "-37647386496/11108339166925"];
     assert_eq!(even(&orbit.unknown), tau);
@@ -50,7 +50,7 @@ fn the_coefficients_of_bogdanov_and_takens() -> Result<(), MelnikovError> {
 #[test]
 fn tau_to_order_twenty_is_substituted_back() -> Result<(), MelnikovError> {
     let problem = bogdanov_takens();
-    let mut orbit = problem.homoclinic(21)?;
+    let mut orbit = problem.homoclinic(21, &mut |_| true)?;
     assert_eq!(orbit.unknown.len(), 21);
     assert!(problem.residual_vanishes(&orbit));
     orbit.unknown[20] += 1;
@@ -80,8 +80,8 @@ fn judged() -> [(Saddle, f64, [f64; 2]); 4] {
 #[test]
 fn the_manifolds_meet_at_the_sum() -> Result<(), MelnikovError> {
     for (problem, eps, judged) in judged() {
-        assert!(problem.residual_vanishes(&problem.homoclinic(4)?));
-        let orbit = problem.homoclinic(9)?;
+        assert!(problem.residual_vanishes(&problem.homoclinic(4, &mut |_| true)?));
+        let orbit = problem.homoclinic(9, &mut |_| true)?;
         let mut slopes = Vec::new();
         let size = |n: usize| orbit.unknown[n].to_f64().abs() * eps.powi(n as i32);
         for terms in 1..8 {
@@ -105,10 +105,12 @@ fn the_manifolds_meet_at_the_sum() -> Result<(), MelnikovError> {
 
 #[test]
 fn first_orders_of_the_literature() -> Result<(), MelnikovError> {
-    let carr = saddle(1, 3, -1, vec![term(0, 1, 0, 1), term(2, 1, -1, 0)]).homoclinic(1)?;
+    let carr =
+        saddle(1, 3, -1, vec![term(0, 1, 0, 1), term(2, 1, -1, 0)]).homoclinic(1, &mut |_| true)?;
     assert_eq!(carr.unknown, [Rational::from((4, 5))]);
     // The same in another unit of time: t = 2 s.
-    let carr = saddle(4, 3, -4, vec![term(0, 1, 0, 1), term(2, 1, -1, 0)]).homoclinic(1)?;
+    let carr =
+        saddle(4, 3, -4, vec![term(0, 1, 0, 1), term(2, 1, -1, 0)]).homoclinic(1, &mut |_| true)?;
     assert_eq!(carr.unknown, [Rational::from((4, 5))]);
     Ok(())
 }
@@ -118,19 +120,20 @@ fn what_has_no_such_orbit_is_refused() {
     let friction = || vec![term(0, 1, 0, 1)];
     let even = saddle(1, 3, -1, vec![term(0, 1, 0, 1), term(1, 1, 1, 0)]);
     let leaves = MelnikovError::LeavesRing { position: 1, velocity: 1 };
-    assert_eq!(even.homoclinic(1), Err(leaves));
+    assert_eq!(even.homoclinic(1, &mut |_| true), Err(leaves));
     let moved = saddle(1, 2, -1, vec![term(0, 0, 1, 1)]);
     let moves = MelnikovError::LeavesRing { position: 0, velocity: 0 };
-    assert_eq!(moved.homoclinic(1), Err(moves));
-    let root = saddle(2, 2, 1, friction()).homoclinic(1);
+    assert_eq!(moved.homoclinic(1, &mut |_| true), Err(moves));
+    let root = saddle(2, 2, 1, friction()).homoclinic(1, &mut |_| true);
     assert_eq!(root, Err(MelnikovError::NotSquare { name: "slope" }));
-    let centre = saddle(-1, 3, 1, friction()).homoclinic(1);
+    let centre = saddle(-1, 3, 1, friction()).homoclinic(1, &mut |_| true);
     assert_eq!(centre, Err(MelnikovError::NotPositive { name: "slope" }));
-    let open = saddle(1, 3, 1, friction()).homoclinic(1);
+    let open = saddle(1, 3, 1, friction()).homoclinic(1, &mut |_| true);
     assert_eq!(open, Err(MelnikovError::NotPositive { name: "-leading" }));
-    let linear = saddle(1, 1, 1, friction()).homoclinic(1);
+    let linear = saddle(1, 1, 1, friction()).homoclinic(1, &mut |_| true);
     assert_eq!(linear, Err(MelnikovError::NotPositive { name: "power - 1" }));
     // mu y'^2 does no work on a loop that returns.
-    let idle = saddle(4, 2, 1, vec![term(0, 2, 0, 1), term(0, 1, 1, 0)]).homoclinic(1);
+    let idle =
+        saddle(4, 2, 1, vec![term(0, 2, 0, 1), term(0, 1, 1, 0)]).homoclinic(1, &mut |_| true);
     assert_eq!(idle, Err(MelnikovError::UnknownWithoutWork));
 }

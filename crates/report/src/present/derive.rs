@@ -216,7 +216,7 @@ impl Board<'_> {
 }
 
 /// `n: exact` with its decimal below; zero and small integers need no second form.
-fn coefficient(n: usize, exact: Formula, number: &Number) -> Formula {
+pub(super) fn coefficient(n: usize, exact: Formula, number: &Number) -> Formula {
     let second = number.error.is_some() || number.decimal != exact.text;
     let shown =
         |sign: &str| if second { format!("{sign}{}", number.decimal) } else { String::new() };
@@ -226,7 +226,7 @@ fn coefficient(n: usize, exact: Formula, number: &Number) -> Formula {
     )
 }
 
-fn indexed(name: &str, n: usize, style: Style) -> String {
+pub(super) fn indexed(name: &str, n: usize, style: Style) -> String {
     if style == Style::Text { format!("{name}_{n}") } else { format!("{name}_{{{n}}}") }
 }
 

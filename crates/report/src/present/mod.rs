@@ -7,6 +7,7 @@ mod derive;
 mod estimate;
 mod evaluate;
 mod family;
+mod homoclinic;
 mod motion;
 mod prove;
 mod resonance;
