@@ -178,7 +178,17 @@ impl HalfTurn {
         }
     }
 
-    fn times(&self, other: &Self) -> Self {
+    /// The sum.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        let mut sum = self.clone();
+        sum.add_scaled(other, &Rational::from(1));
+        sum
+    }
+
+    /// The product.
+    #[must_use]
+    pub fn times(&self, other: &Self) -> Self {
         let mut sum = Self::default();
         sum.add_product(self, other);
         sum
