@@ -32,15 +32,15 @@ impl Expression {
     /// # Ok::<(), Reason>(())
     /// ```
     pub fn between_turning_points(&self) -> Result<Self, Reason> {
+        let law = self.map(&where_falling).canonical();
+        if let Some(jump) = law.jump() {
+            return Err(Reason::NonSmooth(jump.clone()));
+        }
         if let Some(time) = self.terms().iter().find(|term| term.contains(&Self::Time)) {
             return Err(Reason::Forced(time.clone()));
         }
         if let Some(delay) = self.find(&Self::is_delayed) {
             return Err(Reason::Delay(delay.clone()));
-        }
-        let law = self.map(&where_falling).canonical();
-        if let Some(jump) = law.jump() {
-            return Err(Reason::NonSmooth(jump.clone()));
         }
         if let Some(e) = law.find(&|e| is_not_polynomial(e) || is_logarithmic(e)) {
             return Err(Reason::NotPolynomial(e.clone()));

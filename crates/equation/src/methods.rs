@@ -174,8 +174,10 @@ fn averaging(
     }
     if !parts.non_smooth.is_empty() && problem.others.is_empty() && !parts.impact {
         // What jumps at turning points only is averaged between them.
-        against.retain(|reason| !matches!(reason, Reason::NonSmooth(_)));
-        against.extend(rest.between_turning_points().err());
+        let at = against.iter().position(|reason| matches!(reason, Reason::NonSmooth(_)));
+        if let Some(at) = at {
+            against.splice(at..=at, rest.between_turning_points().err());
+        }
     }
     for force in &parts.forcing {
         match (&force.frequency, force.resonance) {
