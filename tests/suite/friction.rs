@@ -18,7 +18,9 @@ fn averaged(equation: &str, order: usize) -> Averaging {
 /// The rate as exact text.
 fn shown(rate: &[RateTerm]) -> Vec<(i32, String)> {
     let exact = |term: &RateTerm| match &term.coefficient {
-        Coefficient::Number(number) => number.exact.clone().unwrap(),
+        Coefficient::Number(number) | Coefficient::ClosedForm { number, .. } => {
+            number.exact.clone().unwrap()
+        }
         Coefficient::Formula { text, .. } => text.clone(),
     };
     rate.iter().map(|term| (term.exponent, exact(term))).collect()
@@ -27,7 +29,7 @@ fn shown(rate: &[RateTerm]) -> Vec<(i32, String)> {
 /// sum eps^n rate_n(a).
 fn sum(rates: &[Vec<RateTerm>], eps: f64, a: f64) -> f64 {
     let value = |term: &RateTerm| {
-        let Coefficient::Number(number) = &term.coefficient else { panic!() };
+        let Coefficient::ClosedForm { number, .. } = &term.coefficient else { panic!() };
         number.decimal.parse::<f64>().unwrap() * a.powi(term.exponent)
     };
     let order = |rate: &Vec<RateTerm>| rate.iter().map(value).sum::<f64>();

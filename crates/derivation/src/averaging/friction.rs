@@ -56,7 +56,7 @@ pub(super) fn average(
     let found = average_half_turn(&scaled.law, settings.order, &settings.stop, &mut told);
     observer(Progress::Checking);
     let order = found.solution.len() - 1;
-    let checked_orders = found.checked_orders(&scaled.law, &settings.stop);
+    let checked_orders = found.checked_orders(&scaled.law);
     if checked_orders < order && !settings.stop.asked() {
         return Err(ExpandError::Residual { order: checked_orders + 1 }.into());
     }
@@ -158,7 +158,8 @@ impl HalfTurnProblem {
             let target = BallRing { balls };
             Some(ring.substitute(&target, c, |_| Enclosure(balls.pi()))?.0)
         };
-        Ok(Coefficient::Number(lindstedt_number::certified(Some(text), digits, value)?))
+        let number = lindstedt_number::certified(Some(text), digits, value)?;
+        Ok(Coefficient::ClosedForm { number, latex })
     }
 }
 

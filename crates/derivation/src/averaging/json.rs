@@ -11,7 +11,7 @@ impl Coefficient {
     /// As a number: a formula has no decimal.
     fn number(&self) -> Printed<'_> {
         match self {
-            Self::Number(number) => Printed::Number(number),
+            Self::Number(number) | Self::ClosedForm { number, .. } => Printed::Number(number),
             Self::Formula { text, .. } => {
                 Printed::Formula { exact: text, decimal: (), error: (), status: Status::Exact }
             }

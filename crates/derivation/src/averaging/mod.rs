@@ -68,6 +68,13 @@ pub struct RateTerm {
 pub enum Coefficient {
     /// A number.
     Number(Number),
+    /// A number in pi: its exact form is a formula, too.
+    ClosedForm {
+        /// The number.
+        number: Number,
+        /// Its exact form as LaTeX.
+        latex: String,
+    },
     /// A formula in the parameters that have no value, as text and as LaTeX.
     Formula {
         /// One line of text.

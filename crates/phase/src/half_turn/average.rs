@@ -33,7 +33,9 @@ pub struct HalfTurnExpansion {
     /// a cos psi, u_1, ... on 0 <= psi <= pi.
     pub solution: Vec<HalfTurn>,
     /// x', order by order.
-    pub(super) velocity: Vec<HalfTurn>,
+    velocity: Vec<HalfTurn>,
+    /// Asked within products, those of the check included.
+    pub(super) stop: Stop,
 }
 
 /// Derives the averaged expansion of x'' + x + eps h(x, x'; eps) = 0 to an order; h is given where x' < 0 and
@@ -66,17 +68,19 @@ pub fn average_half_turn(
         phase_rate: vec![HalfTurn::default()],
         velocity: vec![generating.by_phase()],
         solution: vec![generating],
+        stop: stop.clone(),
     };
     let mut products: Vec<Products> = law.iter().map(Products::new).collect();
     for n in 1..=order {
         let mut force = HalfTurn::default();
         for term in &mut products {
-            term.add_next(&found, n - 1, &mut force, stop);
-        }
-        if stop.asked() {
-            break;
+            term.add_next(&found, n - 1, &mut force);
         }
         found.step(n, &force);
+        if stop.asked() {
+            found.forget(n);
+            break;
+        }
         if !go_on(n, found.solution[n].terms().count()) {
             break;
         }
@@ -85,12 +89,22 @@ pub fn average_half_turn(
 }
 
 impl HalfTurnExpansion {
+    /// The series of both rates, of x and of x'.
+    fn series(&mut self) -> [&mut Vec<HalfTurn>; 4] {
+        [&mut self.amplitude_rate, &mut self.phase_rate, &mut self.solution, &mut self.velocity]
+    }
+
+    /// Throws order n away, in which the work was stopped.
+    fn forget(&mut self, n: usize) {
+        for series in self.series() {
+            series.truncate(n);
+        }
+    }
+
     fn step(&mut self, n: usize, force: &HalfTurn) {
         let plus = Rational::from(1);
         let minus = Rational::from(-1);
-        for series in
-            [&mut self.amplitude_rate, &mut self.phase_rate, &mut self.solution, &mut self.velocity]
-        {
+        for series in self.series() {
             series.push(HalfTurn::default());
         }
         // Provisionally u_n = A_n = B_n = 0.
@@ -126,8 +140,8 @@ impl HalfTurnExpansion {
     pub(super) fn rate_of_change(&self, f: &[HalfTurn], n: usize) -> HalfTurn {
         let mut sum = f[n].by_phase();
         for k in 1..=n {
-            sum.add_product(&self.amplitude_rate[k], &f[n - k].by_amplitude());
-            sum.add_product(&self.phase_rate[k], &f[n - k].by_phase());
+            sum.add_product(&self.amplitude_rate[k], &f[n - k].by_amplitude(), &self.stop);
+            sum.add_product(&self.phase_rate[k], &f[n - k].by_phase(), &self.stop);
         }
         sum
     }
@@ -153,7 +167,7 @@ impl<'a> Products<'a> {
     }
 
     /// Adds order n of the term to `sum`; the orders below n have been asked for before.
-    fn add_next(&mut self, found: &HalfTurnExpansion, n: usize, sum: &mut HalfTurn, stop: &Stop) {
+    fn add_next(&mut self, found: &HalfTurnExpansion, n: usize, sum: &mut HalfTurn) {
         let one = HalfTurn::monomial(HalfTurnMonomial::default(), Rational::from(1));
         let mut last = if n == 0 { one } else { HalfTurn::default() };
         for factors in 0..self.rows.len() {
@@ -161,8 +175,8 @@ impl<'a> Products<'a> {
                 let displacement = factors <= self.term.displacement;
                 let series = if displacement { &found.solution } else { &found.velocity };
                 last = HalfTurn::default();
-                for k in (0..=n).take_while(|_| !stop.asked()) {
-                    last.add_product(&self.rows[factors - 1][k], &series[n - k]);
+                for k in 0..=n {
+                    last.add_product(&self.rows[factors - 1][k], &series[n - k], &found.stop);
                 }
             }
             self.rows[factors].push(last.clone());
@@ -173,7 +187,7 @@ impl<'a> Products<'a> {
             .iter()
             .zip(self.rows.last().into_iter().flat_map(|row| row.iter().rev()))
         {
-            sum.add_product(product, factor);
+            sum.add_product(product, factor, &found.stop);
         }
     }
 }

@@ -18,6 +18,7 @@ mod tests;
 
 pub use average::{FrictionTerm, HalfTurnExpansion, average_half_turn};
 
+use lindstedt_algebra::Stop;
 use lindstedt_coeff::sparse::Monomial;
 use lindstedt_coeff::{PowerProduct, Symbol};
 use rug::{Complete, Rational};
@@ -168,8 +169,9 @@ impl HalfTurn {
         }
     }
 
-    fn add_product(&mut self, one: &Self, other: &Self) {
-        for (m, [a, b]) in one.terms() {
+    /// Broken off when it is asked to stop: whoever asks throws the sum away.
+    fn add_product(&mut self, one: &Self, other: &Self, stop: &Stop) {
+        for (m, [a, b]) in one.terms().take_while(|_| !stop.asked()) {
             for (n, [c, d]) in other.terms() {
                 let re = (a * c).complete() - (b * d).complete();
                 let im = (a * d).complete() + (b * c).complete();
@@ -190,7 +192,7 @@ impl HalfTurn {
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
         let mut sum = Self::default();
-        sum.add_product(self, other);
+        sum.add_product(self, other, &Stop::default());
         sum
     }
 

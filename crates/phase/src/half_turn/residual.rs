@@ -10,7 +10,7 @@ impl HalfTurnExpansion {
     /// reflection, and psi = 0 is a turning point at a; 0 where there was no time for the check.
     ///
     /// The powers of x and x' are formed anew from the finished series.
-    pub fn checked_orders(&self, law: &[FrictionTerm], stop: &Stop) -> usize {
+    pub fn checked_orders(&self, law: &[FrictionTerm]) -> usize {
         let order = self.solution.len() - 1;
         let each = |f: &[HalfTurn]| (0..=order).map(|n| self.rate_of_change(f, n)).collect();
         let velocity: Vec<HalfTurn> = each(&self.solution);
@@ -25,12 +25,12 @@ impl HalfTurnExpansion {
             force.resize(order + 1, HalfTurn::default());
             let factors = std::iter::repeat_n(&self.solution, term.displacement)
                 .chain(std::iter::repeat_n(&velocity, term.velocity));
-            let force = factors.fold(force, |force, factor| product(&force, factor, stop));
+            let force = factors.fold(force, |force, factor| product(&force, factor, &self.stop));
             for (sum, f) in residual.iter_mut().zip(&force) {
                 sum.add_scaled(f, &plus);
             }
         }
-        if stop.asked() {
+        if self.stop.asked() {
             return 0;
         }
         let holds = |n: &usize| {
@@ -47,8 +47,8 @@ impl HalfTurnExpansion {
 fn product(f: &[HalfTurn], g: &[HalfTurn], stop: &Stop) -> Vec<HalfTurn> {
     let order = |n: usize| {
         let mut sum = HalfTurn::default();
-        for k in (0..=n).take_while(|_| !stop.asked()) {
-            sum.add_product(&f[k], &g[n - k]);
+        for k in 0..=n {
+            sum.add_product(&f[k], &g[n - k], stop);
         }
         sum
     };

@@ -150,6 +150,8 @@ fn rate(terms: &[RateTerm], style: Style) -> String {
             Coefficient::Number(number) => {
                 number.exact.clone().unwrap_or_else(|| number.decimal.clone())
             }
+            Coefficient::ClosedForm { latex, .. } if style == Style::Latex => latex.clone(),
+            Coefficient::ClosedForm { number, .. } => number.exact.clone().unwrap_or_default(),
             Coefficient::Formula { text, latex } => match style {
                 Style::Text => text.clone(),
                 Style::Latex => latex.clone(),
