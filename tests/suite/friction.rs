@@ -122,3 +122,26 @@ fn what_is_not_covered_says_why() {
     let irrational = Oscillator::parse("x'' + 2*x + eps*sign(x') = 0").unwrap();
     assert_eq!(irrational.average(1, &Work::default()).unwrap_err().code(), "no-expansion");
 }
+
+/// A belt of speed v below x'' + x = -eps f(x' - v), f(w) = sign w - w + w^3/3: as long as x' < v sign is -1, a
+/// polynomial law with the cycle a^2 = 4 (1 - v^2), which touches the belt at v^2 = 4/5, v = 0.8944.
+#[test]
+fn a_cycle_on_a_belt_begins_to_stick_where_it_meets_its_speed() {
+    for (v, sticks) in [("89/100", true), ("9/10", false)] {
+        let below = format!("x'' + x + eps*((x' - {v})^3/3 - (x' - {v}) - 1) = 0");
+        let found = Oscillator::parse(&below).unwrap().average(1, &Work::default()).unwrap().value;
+        let cycles = found.cycles.unwrap().cycles;
+        let amplitude: f64 = cycles[0].amplitude.decimal.parse().unwrap();
+        assert!(cycles.len() == 1 && cycles[0].stable);
+        let speed = Exact::parse(v).unwrap().to_f64();
+        assert_eq!(amplitude > speed, sticks);
+        let belt = format!("x'' + x + 1/50*((x' - {v})^3/3 - (x' - {v}) + sign(x' - {v})) = 0");
+        let end = Some(End::Time(Exact::from(200)));
+        let mut question = Simulate { end, ..Simulate::default() };
+        question.start.state = Some(vec![Exact::from_f64(amplitude).unwrap(), Exact::from(0)]);
+        let work = Work { doubles: true, ..Work::default() };
+        let motion = Oscillator::parse(&belt).unwrap().motion(&question, &work).unwrap().value;
+        let sticking: f64 = motion.sticking_time.decimal.parse().unwrap();
+        assert_eq!(sticking > 0.0, sticks, "v = {v}: {sticking}");
+    }
+}

@@ -76,8 +76,7 @@ pub fn average_half_turn(
         for term in &mut products {
             term.add_next(&found, n - 1, &mut force);
         }
-        found.step(n, &force);
-        if stop.asked() {
+        if !found.step(n, &force) {
             found.forget(n);
             break;
         }
@@ -101,7 +100,8 @@ impl HalfTurnExpansion {
         }
     }
 
-    fn step(&mut self, n: usize, force: &HalfTurn) {
+    /// Order n, from the force of its order; `false` where the work was stopped in it.
+    fn step(&mut self, n: usize, force: &HalfTurn) -> bool {
         let plus = Rational::from(1);
         let minus = Rational::from(-1);
         for series in self.series() {
@@ -113,6 +113,9 @@ impl HalfTurnExpansion {
         f.add_scaled(&self.rate_of_change(&self.velocity, n), &minus);
         f.add_scaled(force, &minus);
 
+        if self.stop.asked() {
+            return false;
+        }
         let mut u = f.oscillator_response();
         let slope = u.by_phase();
         let over_pi_a = HalfTurnMonomial { amplitude: -1, ..pi(-1) };
@@ -134,12 +137,13 @@ impl HalfTurnExpansion {
         self.amplitude_rate[n] = amplitude_rate;
         self.phase_rate[n] = phase_rate;
         self.velocity[n] = self.rate_of_change(&self.solution, n);
+        !self.stop.asked()
     }
 
     /// Order n of d/dt f = sum_k D_k f_{n-k}, D_0 = d/dpsi, D_k = A_k d/da + B_k d/dpsi.
     pub(super) fn rate_of_change(&self, f: &[HalfTurn], n: usize) -> HalfTurn {
         let mut sum = f[n].by_phase();
-        for k in 1..=n {
+        for k in (1..=n).take_while(|_| !self.stop.asked()) {
             sum.add_product(&self.amplitude_rate[k], &f[n - k].by_amplitude(), &self.stop);
             sum.add_product(&self.phase_rate[k], &f[n - k].by_phase(), &self.stop);
         }

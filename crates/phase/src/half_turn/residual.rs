@@ -11,6 +11,9 @@ impl HalfTurnExpansion {
     ///
     /// The powers of x and x' are formed anew from the finished series.
     pub fn checked_orders(&self, law: &[FrictionTerm]) -> usize {
+        if self.stop.asked() {
+            return 0;
+        }
         let order = self.solution.len() - 1;
         let each = |f: &[HalfTurn]| (0..=order).map(|n| self.rate_of_change(f, n)).collect();
         let velocity: Vec<HalfTurn> = each(&self.solution);
