@@ -90,7 +90,7 @@ impl HalfTurnProblem {
             let constants = constants(m, &names).ok_or_else(|| unsupported(&all.tree(m, q)))?;
             let power = i32::try_from(m.velocity).unwrap_or(i32::MAX) - 2;
             let (factor, scale) = raised(&frequency, power);
-            let factor = HalfTurn::constant(Rational::from(q * factor), constants.times(&scale));
+            let factor = HalfTurn::constant(factor * q, constants.times(&scale));
             let factors = terms.entry((m.x as usize, m.velocity as usize)).or_default();
             let order = m.order as usize;
             factors.resize(factors.len().max(order), HalfTurn::default());

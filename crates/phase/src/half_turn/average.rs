@@ -11,11 +11,11 @@ use super::{HalfTurn, HalfTurnMonomial, amplitude, pi};
 use lindstedt_algebra::Stop;
 use rug::Rational;
 
-/// A term (factors[0] eps + factors[1] eps^2 + ...) x^`displacement` x'^`velocity` of the law where x' < 0.
+/// A term (c_1 eps + c_2 eps^2 + ...) x^`displacement` x'^`velocity` of the law where x' < 0.
 /// There sign x' = -1 and x'|x'| = -x'^2.
 #[derive(Clone, Debug)]
 pub struct FrictionTerm {
-    /// The factors, free of the phase and of the amplitude.
+    /// c_1, c_2, ..., free of the phase and of the amplitude.
     pub factors: Vec<HalfTurn>,
     /// The power of x.
     pub displacement: usize,

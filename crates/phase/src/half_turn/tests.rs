@@ -152,7 +152,7 @@ fn factors_stay_symbols_and_have_orders() {
     let factor = |index| HalfTurn::constant(1.into(), symbol(index));
     let law = |first: HalfTurn, second: HalfTurn| {
         let [velocity, displacement] =
-            [vec![first], vec![HalfTurn::default(), second]].map(|factors| term_of(factors));
+            [vec![first], vec![HalfTurn::default(), second]].map(term_of);
         let velocity = FrictionTerm { velocity: 1, ..velocity };
         [velocity, FrictionTerm { displacement: 3, ..displacement }, term(-1, 0, 2)]
     };
