@@ -119,6 +119,9 @@ fn what_is_not_covered_says_why() {
         assert_eq!(error.kind(), Kind::NoAnswer);
         assert!(error.hint().contains("simulate"), "{law}: {}", error.hint());
     }
+    let high = Oscillator::parse("x'' + x + eps*m^999*x'*abs(x') = 0").unwrap();
+    assert_eq!(high.average(20, &Work::default()).unwrap_err().code(), "no-expansion");
+    assert!(high.average(1, &Work::default()).is_ok());
     let irrational = Oscillator::parse("x'' + 2*x + eps*sign(x') = 0").unwrap();
     assert_eq!(irrational.average(1, &Work::default()).unwrap_err().code(), "no-expansion");
 }

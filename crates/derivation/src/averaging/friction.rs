@@ -33,6 +33,9 @@ pub(super) fn jumps(problem: &Problem) -> bool {
         && problem.equation.smooth_powers().jump().is_some()
 }
 
+/// Exponents of the answer stay below this, far from the ends of their type.
+const MOST_POWER: usize = 16_000;
+
 /// q times powers of pi and of parameters.
 type Scaled = (Rational, PowerProduct);
 
@@ -51,7 +54,7 @@ pub(super) fn average(
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Averaging, Error> {
     limit_memory(settings)?;
-    let scaled = HalfTurnProblem::new(problem, &settings.parameters)?;
+    let scaled = HalfTurnProblem::new(problem, &settings.parameters, settings.order)?;
     let mut told = |order, terms| observer(Progress::Order(order, terms));
     let found = average_half_turn(&scaled.law, settings.order, &settings.stop, &mut told);
     observer(Progress::Checking);
@@ -64,7 +67,11 @@ pub(super) fn average(
 }
 
 impl HalfTurnProblem {
-    fn new(problem: &Problem, values: &BTreeMap<String, Exact>) -> Result<Self, Error> {
+    fn new(
+        problem: &Problem,
+        values: &BTreeMap<String, Exact>,
+        order: usize,
+    ) -> Result<Self, Error> {
         let law = on_half_turn(problem, values)?;
         let unsupported = |e: &Expression| {
             let term = e.print(&problem.small, lindstedt_equation::print::Style::Text);
@@ -90,11 +97,15 @@ impl HalfTurnProblem {
             let constants = constants(m, &names).ok_or_else(|| unsupported(&all.tree(m, q)))?;
             let power = i32::try_from(m.velocity).unwrap_or(i32::MAX) - 2;
             let (factor, scale) = raised(&frequency, power);
-            let factor = HalfTurn::constant(factor * q, constants.times(&scale));
+            let constants = constants.times(&scale);
+            if highest_power(m, &constants).saturating_mul(order) > MOST_POWER {
+                return Err(unsupported(&all.tree(m, q)));
+            }
+            let factor = HalfTurn::constant(factor * q, constants);
             let factors = terms.entry((m.x as usize, m.velocity as usize)).or_default();
-            let order = m.order as usize;
-            factors.resize(factors.len().max(order), HalfTurn::default());
-            factors[order - 1] = factors[order - 1].plus(&factor);
+            let at = m.order as usize - 1;
+            factors.resize(factors.len().max(at + 1), HalfTurn::default());
+            factors[at] = factors[at].plus(&factor);
         }
         let law = terms.into_iter().map(|((displacement, velocity), factors)| FrictionTerm {
             factors,
@@ -231,6 +242,12 @@ fn constants(m: &Monomial, names: &[String]) -> Option<PowerProduct> {
         product = product.times(&PowerProduct::power(symbol, i16::try_from(*exponent).ok()?));
     }
     Some(product)
+}
+
+/// The highest power that a term brings into each order.
+fn highest_power(m: &Monomial, constants: &PowerProduct) -> usize {
+    let powers = constants.factors().iter().map(|(_, n)| usize::from(n.unsigned_abs()));
+    powers.max().unwrap_or(0).max(m.x as usize + m.velocity as usize)
 }
 
 /// A power of a number times powers of parameters.
