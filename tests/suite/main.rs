@@ -9,6 +9,7 @@ mod estimates;
 mod evaluate;
 mod extremes;
 mod facade;
+mod friction;
 mod interruption;
 mod lateness;
 mod laws;

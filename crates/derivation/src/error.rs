@@ -1,5 +1,7 @@
 //! Why there is no derivation.
 
+use lindstedt_equation::classify::Reason;
+use lindstedt_equation::description::reason_text;
 use lindstedt_expand::ExpandError;
 use lindstedt_number::NumberError;
 use thiserror::Error;
@@ -139,6 +141,14 @@ pub enum DerivationError {
     MovingSingularity {
         /// The function.
         term: String,
+    },
+    /// What is against averaging between turning points, which takes laws that jump with the velocity.
+    #[error("{}", reason_text(reason, small))]
+    BetweenTurningPoints {
+        /// What is against it.
+        reason: Box<Reason>,
+        /// The small parameter.
+        small: String,
     },
     /// The value does not exist.
     #[error("the value does not exist")]

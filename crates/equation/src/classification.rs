@@ -44,6 +44,8 @@ pub enum Algebra {
     TrigonometricOverRationals,
     /// Trigonometric polynomials over `Q[parameters]`.
     TrigonometricOverParameters,
+    /// Polynomials in the phase and its harmonics between turning points.
+    HalfTurns,
     /// The Lobachevsky ring.
     Lobachevsky,
     /// None: numbers only.
@@ -88,6 +90,8 @@ pub enum Reason {
     Delay(Expression),
     /// A function without a derivative at zero.
     NonSmooth(Expression),
+    /// A term that is not odd, f(-x, -x') = -f(x, x'), beside one that jumps with the velocity.
+    NotOdd(Expression),
     /// A function that is no polynomial in x, x' and ln x^2.
     NotPolynomial(Expression),
     /// A real power or logarithm of something that can be negative.
@@ -172,6 +176,7 @@ impl Reason {
             | Self::Resonant(e, _)
             | Self::Delay(e)
             | Self::NonSmooth(e)
+            | Self::NotOdd(e)
             | Self::NotPolynomial(e)
             | Self::NotReal(e)
             | Self::Formal(e)

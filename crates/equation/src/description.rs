@@ -136,6 +136,7 @@ fn algebra_name(algebra: Algebra) -> &'static str {
     match algebra {
         Algebra::TrigonometricOverRationals => "trigonometric polynomials over Q",
         Algebra::TrigonometricOverParameters => "trigonometric polynomials over Q[parameters]",
+        Algebra::HalfTurns => "half turns between turning points",
         Algebra::Lobachevsky => "Lobachevsky ring",
         _ => "numeric only",
     }
@@ -159,6 +160,10 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
         }
         Reason::Delay(e) => format!("{} is a delay", show(e)),
         Reason::NonSmooth(e) => format!("{} is not smooth", show(e)),
+        Reason::NotOdd(e) => format!(
+            "{} is not odd, f(-x, -x') = -f(x, x'): the two half turns between turning points differ",
+            show(e)
+        ),
         Reason::NotPolynomial(e) => format!(
             "{} is no polynomial in x, x' and ln x^2 (of f regular at 0, taylor(f(z), 9) asks for one)",
             show(e)

@@ -7,6 +7,7 @@ mod classification;
 pub mod classify;
 pub mod description;
 mod expression;
+mod half_turn;
 mod methods;
 pub mod monomials;
 pub mod print;

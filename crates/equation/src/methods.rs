@@ -25,6 +25,7 @@ pub(crate) fn decide(
     let unbound = rest.parameters().iter().any(|name| !values.contains_key(name));
     parts.algebra = match (lindstedt.is_empty(), averaging.is_empty()) {
         (false, false) => Algebra::Numeric,
+        (_, true) if !parts.non_smooth.is_empty() => Algebra::HalfTurns,
         _ if logarithms => Algebra::Lobachevsky,
         (true, _) if !unbound => Algebra::TrigonometricOverRationals,
         _ => Algebra::TrigonometricOverParameters,
@@ -171,6 +172,13 @@ fn averaging(
         against.retain(|reason| !matches!(reason, Reason::NotWeaklyNonlinear(_)));
         against.extend(strong.map(|term| Reason::NotWeaklyNonlinear(term.term.clone())));
     }
+    if !parts.non_smooth.is_empty() && problem.others.is_empty() && !parts.impact {
+        // What jumps at turning points only is averaged between them.
+        let at = against.iter().position(|reason| matches!(reason, Reason::NonSmooth(_)));
+        if let Some(at) = at {
+            against.splice(at..=at, rest.between_turning_points().err());
+        }
+    }
     for force in &parts.forcing {
         match (&force.frequency, force.resonance) {
             (None, _) => against.push(Reason::Forced(force.term.clone())),
@@ -229,7 +237,7 @@ fn is_energy_form(rest: &Expression) -> bool {
 }
 
 /// ln, exp, formal functions, powers with the small parameter in the exponent.
-fn is_logarithmic(e: &Expression) -> bool {
+pub(crate) fn is_logarithmic(e: &Expression) -> bool {
     match e {
         Expression::Function(Function::Ln | Function::Exp, z) => {
             !z.is_constant() && !z.contains(&Expression::Time)
@@ -243,7 +251,7 @@ fn is_logarithmic(e: &Expression) -> bool {
 }
 
 /// A function of x or x' that is in neither ring.
-fn is_not_polynomial(e: &Expression) -> bool {
+pub(crate) fn is_not_polynomial(e: &Expression) -> bool {
     let varies = |z: &Expression| z.nodes().any(|e| matches!(e, Expression::Unknown(_)));
     let in_time = |z: &Expression| z.contains(&Expression::Time) && !varies(z);
     match e {

@@ -16,7 +16,9 @@ pub(crate) fn of(averaging: &Averaging, values: &BTreeMap<String, Exact>) -> Opt
     let numbers = |rates: &[Vec<RateTerm>]| -> Option<Vec<f64>> {
         let value = |rate: &Vec<RateTerm>| match rate.first().map(|term| &term.coefficient) {
             None => Some(0.0),
-            Some(Coefficient::Number(number)) => number.decimal.parse().ok(),
+            Some(Coefficient::Number(number) | Coefficient::ClosedForm { number, .. }) => {
+                number.decimal.parse().ok()
+            }
             Some(Coefficient::Formula { .. }) => None,
         };
         rates.iter().map(value).collect()

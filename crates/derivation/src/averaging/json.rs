@@ -11,7 +11,7 @@ impl Coefficient {
     /// As a number: a formula has no decimal.
     fn number(&self) -> Printed<'_> {
         match self {
-            Self::Number(number) => Printed::Number(number),
+            Self::Number(number) | Self::ClosedForm { number, .. } => Printed::Number(number),
             Self::Formula { text, .. } => {
                 Printed::Formula { exact: text, decimal: (), error: (), status: Status::Exact }
             }
@@ -95,8 +95,13 @@ impl Serialize for Averaging {
             encloses_zero: !self.exact,
         };
         map.serialize_entry("residual", &residual)?;
-        let name = "averaging (Krylov, Bogoliubov, Mitropolsky)";
-        map.serialize_entry("method", &Object(vec![("name", name)]))?;
+        let method = match self.between_turning_points() {
+            true => {
+                vec![("name", "averaging between turning points"), ("amplitude", "turning-point")]
+            }
+            false => vec![("name", "averaging (Krylov, Bogoliubov, Mitropolsky)")],
+        };
+        map.serialize_entry("method", &Object(method))?;
         map.serialize_entry("limit_cycles", &self.cycles)?;
         map.serialize_entry("convergence", &self.convergence.as_ref().map(Radius::new))?;
         map.serialize_entry("classification", &self.description)?;

@@ -2,6 +2,7 @@
 
 mod coefficients;
 mod cycles;
+mod friction;
 mod json;
 pub mod numbers;
 mod task;
@@ -67,6 +68,13 @@ pub struct RateTerm {
 pub enum Coefficient {
     /// A number.
     Number(Number),
+    /// A number in pi: its exact form is a formula, too.
+    ClosedForm {
+        /// The number.
+        number: Number,
+        /// Its exact form as LaTeX.
+        latex: String,
+    },
     /// A formula in the parameters that have no value, as text and as LaTeX.
     Formula {
         /// One line of text.
@@ -80,7 +88,8 @@ pub enum Coefficient {
 ///
 ///   x = a cos psi + ..., da/dt = sum eps^n A_n(a), dpsi/dt = sum eps^n B_n(a) with B_0 = omega_0;
 ///
-/// no other term of x contains cos psi or sin psi.
+/// no other term of x contains cos psi or sin psi. Where the law jumps with the velocity
+/// ([`Averaging::between_turning_points`]) a is the amplitude of the turning points instead.
 ///
 /// ```
 /// use lindstedt_derivation::averaging::{AveragingSettings, average};
@@ -125,6 +134,14 @@ pub struct Averaging {
 }
 
 impl Averaging {
+    /// Whether the law jumps with the velocity. Then a is the amplitude of the turning points and psi is
+    /// counted between them: x = a at psi = 0, x = -a at psi = pi; u_n holds for 0 <= psi <= pi, and
+    /// x(a, psi + pi) = -x(a, psi).
+    #[must_use]
+    pub fn between_turning_points(&self) -> bool {
+        friction::jumps(&self.problem)
+    }
+
     /// Whether A_n = R_n a and B_n are free of a: then the amplitude grows exponentially, and
     /// `growth_rate` and `frequency` are numbers.
     pub fn is_linear(&self) -> bool {
@@ -139,7 +156,8 @@ impl Averaging {
 ///
 /// Coefficients are rational where all parameters of the equation have rational values and no
 /// delay occurs; formulas when a parameter has no value (the others must be rational); certified
-/// numbers otherwise, at a precision that is raised until all digits are certain.
+/// numbers otherwise, at a precision that is raised until all digits are certain. Laws with sign(x') and
+/// |x'| are averaged between turning points, over Q[pi, 1/pi] and the parameters without a value.
 ///
 /// # Errors
 /// [`Error`] with the reason; resonances are named.
@@ -159,6 +177,9 @@ pub fn average(
     settings: &AveragingSettings,
     observer: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Averaging, Error> {
+    if friction::jumps(problem) {
+        return friction::average(problem, settings, observer);
+    }
     let task = Task::new(problem, settings)?;
     if task.names.iter().any(|name| task.value(name).is_none()) {
         limit_memory(settings)?;

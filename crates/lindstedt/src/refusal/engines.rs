@@ -148,6 +148,9 @@ impl Refusal for DerivationError {
                 "`lindstedt simulate` takes it; here the equation would have to be odd in x, and \
                  the same backwards in time",
             ),
+            Self::BetweenTurningPoints { .. } => {
+                (NoAnswer, "no-expansion", "`lindstedt simulate` takes it")
+            }
             Self::NoValue => (NoAnswer, "no-value", ""),
             Self::OutOfPrimes => (Undecided, "out-of-primes", "lower --order"),
             _ => (Undecided, "undecided", ""),

@@ -10,6 +10,10 @@ use lindstedt::unstable::equation::Condition;
 /// Formulas longer than this are counted; JSON has them all.
 const PRINTED_CHARACTERS: usize = 6000;
 
+/// What a and psi are where the law jumps with the velocity.
+const BETWEEN_TURNING_POINTS: &str = "a is the amplitude of the turning points, psi is counted between them (x = a at psi = 0, x = -a \
+     at psi = pi); u_n holds for 0 <= psi <= pi, where x' < 0, and x(a, psi + pi) = -x(a, psi)";
+
 impl Present for Answer<Averaging> {
     fn document(&self) -> Document {
         let result = &self.value;
@@ -18,7 +22,11 @@ impl Present for Answer<Averaging> {
         let mut page = Document::titled(title.trim_end_matches([':', ' ']));
         page = classification(page, result.description.as_ref());
         page = page.formula(equation(problem)).formula(ansatz(&problem.small));
-        page = page.words(format!("Normalisation: {}.", condition_text(Condition::FreeAmplitude)));
+        let normalisation = match result.between_turning_points() {
+            true => BETWEEN_TURNING_POINTS,
+            false => condition_text(Condition::FreeAmplitude),
+        };
+        page = page.words(format!("Normalisation: {normalisation}."));
         if !result.symbols.is_empty() {
             page = page
                 .words(format!("Without a value, kept as symbols: {}.", result.symbols.join(", ")));
@@ -142,6 +150,8 @@ fn rate(terms: &[RateTerm], style: Style) -> String {
             Coefficient::Number(number) => {
                 number.exact.clone().unwrap_or_else(|| number.decimal.clone())
             }
+            Coefficient::ClosedForm { latex, .. } if style == Style::Latex => latex.clone(),
+            Coefficient::ClosedForm { number, .. } => number.exact.clone().unwrap_or_default(),
             Coefficient::Formula { text, latex } => match style {
                 Style::Text => text.clone(),
                 Style::Latex => latex.clone(),

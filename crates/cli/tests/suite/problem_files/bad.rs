@@ -379,7 +379,7 @@ fn averaging_takes_what_its_hint_is_given_for() {
             text(&["derive", &file(equation, "free-amplitude"), "--order", "1", "--quiet"]);
         }
     }
-    assert_eq!(hints, 3, "a drift, a delay, an irrational omega_0");
+    assert_eq!(hints, 4, "friction that jumps, a drift, a delay, an irrational omega_0");
     // A force in resonance is no case for averaging.
     let path = file("x'' + x + eps*x^3 = eps*F*cos(t)", "initial-amplitude");
     assert!(!refused(&path, "derive").contains("free-amplitude"));
