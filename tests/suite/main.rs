@@ -10,6 +10,7 @@ mod evaluate;
 mod extremes;
 mod facade;
 mod friction;
+mod homoclinic;
 mod interruption;
 mod lateness;
 mod laws;
