@@ -469,7 +469,7 @@ pub struct SimulateOptions {
     #[arg(long, value_name = "NAME=LO..HI:COUNT", allow_hyphen_values = true)]
     pub sweep: Option<String>,
     /// With --sweep: every value starts from the last point of the one before, upwards and then downwards.
-    #[arg(long, requires = "sweep", conflicts_with = "resume")]
+    #[arg(long, requires = "sweep")]
     pub follow: bool,
     /// Points of the section that are left out at the beginning [default: 200 with --sweep, 500
     /// periods with --lyapunov and --zero-one, else 0].

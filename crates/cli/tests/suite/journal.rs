@@ -90,3 +90,35 @@ fn what_was_changed_is_found_and_computed_again() {
         assert_eq!(folder.run(&SWEEP), (Some(0), String::new()));
     }
 }
+
+/// Values that follow each other go on from the state that was kept, on both ways and behind a lost line.
+#[test]
+fn what_follows_goes_on_from_the_kept_state() {
+    let (folder, alone) = begun("journal-follow");
+    let follow = [&SWEEP[..], &["--follow"]].concat();
+    let (code, error) = folder.run(&follow);
+    assert!(code == Some(5) && error.contains("belongs to another sweep"), "{error}");
+    fs::remove_file(folder.0.join("r")).unwrap();
+    assert_eq!(folder.run(&follow), (Some(0), String::new()));
+    let whole = folder.text("r");
+    let lines: Vec<&str> = whole.lines().collect();
+    assert_eq!(lines.len(), 15, "{whole}");
+    // The first has the start of all, the others have their own, and down it is another than up.
+    let points = |line: &str| line[line.find("[[").unwrap()..=line.find("]]").unwrap()].to_owned();
+    let other: Vec<&str> = alone.lines().collect();
+    assert_eq!(points(lines[2]), points(other[2]));
+    assert_ne!(points(lines[3]), points(other[3]));
+    assert_ne!(points(lines[3]), points(lines[12]));
+    let sorted = |text: &str| {
+        let mut lines: Vec<String> = text.lines().take(14).map(str::to_owned).collect();
+        lines.sort();
+        lines
+    };
+    for (end, lost) in [(5, &[][..]), (11, &[]), (15, &[4, 9])] {
+        let places = (0..end).filter(|place| !lost.contains(place));
+        let kept: Vec<&str> = places.map(|place| lines[place]).collect();
+        fs::write(folder.0.join("r"), kept.join("\n") + "\n").unwrap();
+        assert_eq!(folder.run(&follow).0, Some(0));
+        assert_eq!(sorted(&folder.text("r")), sorted(&whole), "{}", kept.len());
+    }
+}

@@ -62,6 +62,12 @@ pub struct Column {
     pub points: Vec<[f64; 2]>,
     /// Why the motion ended.
     pub failure: Option<String>,
+    /// Whether it is one of the way down, where values [follow](Bifurcation::follow) each other.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub downwards: bool,
+    /// The whole state at the last point, from which the next value starts where values follow each other; else empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub end: Vec<f64>,
 }
 
 /// Where finished columns are kept, so that a diagram that was stopped goes on.
@@ -183,18 +189,24 @@ impl Oscillator {
             return Err(Refused::usage("sweep", "no points to keep", "--periods 100").into());
         }
         let section = section(question.section, true, &setup)?.unwrap_or(Section::Velocity);
-        let values = axis.values.iter().map(|value| Quantity::from(value.clone())).collect();
-        let mut task = Task { question, setup, name: axis.name, section, values };
+        let mut values: Vec<Quantity> = axis.values.into_iter().map(Quantity::from).collect();
+        let count = values.len();
+        if question.follow {
+            values.extend_from_within(..);
+            values[count..].reverse();
+        }
+        let mut task = Task { question, setup, name: axis.name, section, values, count };
         let given_up = || Refused::stopped("the file of the sweep cannot be used", "");
         let kept = journal.begin(&task.identity()).ok_or_else(given_up)?;
         let (mut columns, lost) = task.known(kept);
-        let back = task.compute_all(&mut columns, work, journal)?;
+        task.compute(&mut columns, work, journal)?;
+        let complete = columns.iter().all(Option::is_some);
+        let back =
+            question.follow.then(|| columns.split_off(count).into_iter().flatten().collect());
         let columns: Vec<Column> = columns.into_iter().flatten().collect();
         let verdict = task.verdict(&columns, back.as_ref());
         let mut remarks = self.remarks().to_vec();
         remarks.extend(task.setup.remarks.drain(..).map(Remark));
-        let whole = |list: &Vec<Column>| list.len() == task.values.len();
-        let complete = whole(&columns) && back.as_ref().is_none_or(whole);
         let done = columns.len();
         let lost = (!lost.is_empty()).then(|| {
             format!("{} = {}: lost in the journal, computed again", task.name, lost.join(", "))
@@ -202,7 +214,7 @@ impl Oscillator {
         remarks.extend(lost.map(Remark));
         if complete {
             journal.complete();
-        } else if !question.follow {
+        } else {
             remarks.push(Remark("stopped; with --resume FILE it can be continued".to_owned()));
         }
         let value = Diagram {
@@ -267,7 +279,10 @@ struct Task<'a> {
     setup: Setup,
     name: String,
     section: Section,
+    /// All in the order in which they are gone through: upwards, and down again where they follow each other.
     values: Vec<Quantity>,
+    /// How many there are upwards.
+    count: usize,
 }
 
 impl Task<'_> {
@@ -275,15 +290,17 @@ impl Task<'_> {
     fn identity(&self) -> String {
         let others = self.setup.at.iter().filter(|(name, _)| *name != self.name);
         let others: Vec<String> = others.map(|(name, value)| format!("{name}={value}")).collect();
-        let ends = [self.values.first(), self.values.last()];
+        let upwards = &self.values[..self.count];
+        let ends = [upwards.first(), upwards.last()];
         let [low, high] = ends.map(|q| q.map(answer::shown).unwrap_or_default());
         let start: Vec<f64> = self.setup.flow.states().map(|q| q.float(64).to_f64()).collect();
         format!(
-            "{} {}; {} = {low}..{high}:{}; start {start:?}; {:?}; skip {}, keep {}; {}",
+            "{} {}; {} = {low}..{high}:{}{}; start {start:?}; {:?}; skip {}, keep {}; {}",
             self.setup.name,
             others.join(" "),
             self.name,
-            self.values.len(),
+            self.count,
+            if self.question.follow { " and back" } else { "" },
             self.section,
             self.question.skipped,
             self.question.kept,
@@ -293,35 +310,17 @@ impl Task<'_> {
 
     /// The columns that were kept, each in its place, and the values that are missing before the last of them.
     fn known(&self, kept: Vec<Column>) -> (Vec<Option<Column>>, Vec<String>) {
-        let mut kept: HashMap<String, Column> =
-            kept.into_iter().map(|column| (column.exact.clone(), column)).collect();
+        let key = |column: Column| ((column.exact.clone(), column.downwards), column);
+        let mut kept: HashMap<_, Column> = kept.into_iter().map(key).collect();
         let shown: Vec<String> = self.values.iter().map(answer::shown).collect();
-        let columns: Vec<Option<Column>> = shown.iter().map(|value| kept.remove(value)).collect();
+        let places = shown.iter().enumerate();
+        let columns: Vec<Option<Column>> =
+            places.map(|(i, value)| kept.remove(&(value.clone(), i >= self.count))).collect();
         let last = columns.iter().rposition(Option::is_some).unwrap_or(0);
         let places = columns.iter().zip(&shown).take(last);
         let lost = places.filter(|(column, _)| column.is_none()).map(|(_, value)| value.clone());
         let lost = lost.collect();
         (columns, lost)
-    }
-
-    /// The columns that are missing; where they follow each other all of them, and those downwards.
-    fn compute_all(
-        &mut self,
-        columns: &mut [Option<Column>],
-        work: &Work,
-        journal: &mut dyn Journal,
-    ) -> Result<Option<Vec<Column>>, Error> {
-        let start: Vec<f64> = self.setup.flow.states().map(|q| q.float(64).to_f64()).collect();
-        if !self.question.follow {
-            return self.compute(columns, start, work, journal).map(|_| None);
-        }
-        columns.fill(None);
-        let end = self.compute(columns, start, work, &mut ())?;
-        let mut back = vec![None; columns.len()];
-        self.values.reverse();
-        self.compute(&mut back, end, work, &mut ())?;
-        self.values.reverse();
-        Ok(Some(back.into_iter().flatten().collect()))
     }
 
     fn verdict(&self, columns: &[Column], back: Option<&Vec<Column>>) -> String {
@@ -332,21 +331,20 @@ impl Task<'_> {
             Some(_) => " upwards and downwards, each from the end of the one before",
             None => "",
         };
-        let (done, values) = (columns.len(), self.values.len());
+        let (done, values) = (columns.len(), self.count);
         format!(
             "{done} of {values} values of {}{ways}, {empty} without points, {count} points in all",
             self.name
         )
     }
 
-    /// The columns that are missing, from a start; the state at the end of the last one.
+    /// The columns that are missing.
     fn compute(
         &self,
         columns: &mut [Option<Column>],
-        start: Vec<f64>,
         work: &Work,
         journal: &mut dyn Journal,
-    ) -> Result<Vec<f64>, Error> {
+    ) -> Result<(), Error> {
         let mut model = self.setup.flow.model.clone();
         if self.section == Section::Velocity {
             model = model.with_section(Expression::VELOCITY);
@@ -357,7 +355,8 @@ impl Task<'_> {
             rising,
             patience: 100.0 * forcing,
         };
-        let settings = DiagramSettings {
+        let start: Vec<f64> = self.setup.flow.states().map(|q| q.float(64).to_f64()).collect();
+        let mut settings = DiagramSettings {
             time: 0.0,
             start: start.clone(),
             section: match self.section {
@@ -368,7 +367,8 @@ impl Task<'_> {
             periods: self.periods()?,
             transient: self.question.skipped,
             kept: self.question.kept,
-            follow: self.question.follow,
+            // What follows is computed one by one: only so a kept column can be followed, too.
+            follow: false,
             integration: Settings { most_impacts: 10_000_000, ..Settings::for_digits(16) },
         };
         let sweep = Sweep {
@@ -381,18 +381,15 @@ impl Task<'_> {
         let tick = || flow(!work.stop.asked());
         let (all, mut done) = (columns.len(), columns.iter().flatten().count());
         let mut goes_on = true;
-        let mut last = start;
-        for range in gaps(columns) {
-            if !goes_on {
-                break;
-            }
-            diagram(&sweep, &Doubles, &settings, range, &tick, &mut |found| {
+        for range in gaps(columns, self.question.follow) {
+            let before = range.start.checked_sub(1).and_then(|i| columns.get(i)?.as_ref());
+            let end = before.map(|column| &column.end).filter(|end| end.len() == start.len());
+            settings.start.clone_from(end.unwrap_or(&start));
+            let last = range.end;
+            let next = diagram(&sweep, &Doubles, &settings, range, &tick, &mut |found| {
                 let place = self.values.get(found.index).zip(columns.get_mut(found.index));
                 let Some((value, place)) = place else { return flow(false) };
-                let column = self.column(value, &found.points);
-                if let Some(point) = found.points.as_ref().ok().and_then(|points| points.last()) {
-                    last.clone_from(&point.state);
-                }
+                let column = self.column(found.index, value, &found.points);
                 goes_on = journal.keep(&column);
                 if goes_on {
                     *place = Some(column);
@@ -401,12 +398,16 @@ impl Task<'_> {
                 goes_on &= work.goes_on(Progress::Parts(done, all));
                 flow(goes_on)
             });
+            if next < last || !goes_on {
+                break;
+            }
         }
-        Ok(last)
+        Ok(())
     }
 
     fn column(
         &self,
+        place: usize,
         value: &Quantity,
         points: &Result<Vec<Point<f64>>, simulate::SimulateError>,
     ) -> Column {
@@ -417,11 +418,15 @@ impl Task<'_> {
                 _ => [f64::NAN; 2],
             }
         };
+        let end = points.as_ref().ok().and_then(|points| points.last());
+        let end = end.filter(|_| self.question.follow).map(|point| point.state.clone());
         Column {
             value: value.float(53).to_f64(),
             exact: answer::shown(value),
             points: points.iter().flatten().map(pair).collect(),
             failure: points.as_ref().err().map(ToString::to_string),
+            downwards: place >= self.count,
+            end: end.unwrap_or_default(),
         }
     }
 
@@ -446,11 +451,11 @@ impl Swept {
     }
 }
 
-/// The runs of what is missing.
-fn gaps(columns: &[Option<Column>]) -> Vec<Range<usize>> {
+/// The runs of what is missing, or each by itself.
+fn gaps(columns: &[Option<Column>], single: bool) -> Vec<Range<usize>> {
     let mut gaps: Vec<Range<usize>> = Vec::new();
     for (i, _) in columns.iter().enumerate().filter(|(_, column)| column.is_none()) {
-        match gaps.last_mut().filter(|gap| gap.end == i) {
+        match gaps.last_mut().filter(|gap| !single && gap.end == i) {
             Some(gap) => gap.end = i + 1,
             None => gaps.push(i..i + 1),
         }
