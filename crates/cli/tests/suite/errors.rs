@@ -31,7 +31,7 @@ fn run(line: &str) -> Output {
 }
 
 /// Exit code, code, line; what the hint says of the way on; the line it leads to.
-const TABLE: [(i32, &str, &str, &str, &str); 66] = [
+const TABLE: [(i32, &str, &str, &str, &str); 67] = [
     (2, "usage", "derive duffing --order x", "--help", "--help"),
     (2, "set", "derive duffing --set a", "--set", "derive duffing --order 1 --set amplitude=1/2"),
     (
@@ -100,6 +100,13 @@ const TABLE: [(i32, &str, &str, &str, &str); 66] = [
         "derive vibro-impact --order 1 --set A=pi --normalisation free",
         "leave this one open",
         "derive vibro-impact --order 1",
+    ),
+    (
+        2,
+        "order",
+        "threshold stick-slip --order 3",
+        "--unknown mu",
+        "threshold \"x'' - x + x^3 = eps*(mu - x^2)*x'\" --unknown mu --order 4",
     ),
     (
         2,

@@ -113,7 +113,8 @@ impl Oscillator {
 
     /// That a parameter that is sought occurs, and has no value.
     fn check_sought(&self, name: &str) -> Result<(), Error> {
-        let refused = |message, hint| Err(Refused::usage("unknown-parameter", message, hint).into());
+        let refused =
+            |message, hint| Err(Refused::usage("unknown-parameter", message, hint).into());
         if !self.problem().equation.parameters().iter().any(|known| known == name) {
             let names = self.problem().equation.parameters().join(", ");
             let message = format!("{name:?} is no parameter of the equation");
