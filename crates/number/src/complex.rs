@@ -155,3 +155,57 @@ impl<S: Real> Neg for Complex<S> {
         Self::new(-self.re, -self.im)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ball::Balls;
+    use crate::real::Certified;
+    use rug::Rational;
+
+    /// Every operation on z = 3 + 4 i and w = 1 - 2 i against what it is by hand.
+    fn values<S: Real>(one: &S) -> Vec<(Complex<S>, [f64; 2])> {
+        let of = |re: i64, im: i64| Complex::new(one.integer(re), one.integer(im));
+        let (z, w) = (of(3, 4), of(1, -2));
+        let (sine, cosine) = 4f64.sin_cos();
+        vec![
+            (Complex::real(one.integer(7)), [7.0, 0.0]),
+            (z.conjugate(), [3.0, -4.0]),
+            (z.scaled(&one.integer(5)), [15.0, 20.0]),
+            (Complex::real(z.norm_squared()), [25.0, 0.0]),
+            (Complex::real(z.modulus()), [5.0, 0.0]),
+            (z.inverse(), [0.12, -0.16]),
+            (z.over(&w), [-1.0, 2.0]),
+            (z.exp(), [3f64.exp() * cosine, 3f64.exp() * sine]),
+            (z.sqrt(), [2.0, 1.0]),
+            (of(-3, 4).sqrt(), [1.0, 2.0]),
+            (of(-3, -4).sqrt(), [-1.0, 2.0]),
+            (z.clone() + &w, [4.0, 2.0]),
+            (z.clone() + w.clone(), [4.0, 2.0]),
+            (z.clone() - &w, [2.0, 6.0]),
+            (z.clone() - w.clone(), [2.0, 6.0]),
+            (z.clone() * &w, [11.0, -2.0]),
+            (z.clone() * w, [11.0, -2.0]),
+            (-z.clone(), [-3.0, -4.0]),
+            (z.centre(), [3.0, 4.0]),
+        ]
+    }
+
+    #[test]
+    fn doubles_and_rectangles_agree() {
+        let certified = |n: i32| Certified::from_rational(Balls::new(100), &Rational::from(n));
+        let pairs = values(&1.0).into_iter().zip(values(&certified(1)));
+        for (n, ((double, [re, im]), (ball, _))) in pairs.enumerate() {
+            for z in [double, ball.to_f64()] {
+                let gap = (z.re - re).hypot(z.im - im);
+                assert!(gap <= 4.0 * f64::EPSILON * re.hypot(im), "{n}: {z:?}");
+            }
+            assert!(*ball.re.ball().radius() < 1e-27 && *ball.im.ball().radius() < 1e-27);
+        }
+        let z = Complex::new(3.0, -4.0);
+        assert!((5.0..5.0 + 1e-14).contains(&z.magnitude_above()));
+        assert!((5.0 - 1e-14..=5.0).contains(&z.magnitude_below()));
+        assert!(z.is_finite() && !Complex::new(f64::NAN, 0.0).is_finite());
+        assert!(!Complex::new(0.0, f64::NAN).is_finite());
+    }
+}

@@ -426,4 +426,44 @@ mod tests {
         assert_eq!(Exact::root(q(-4, 9)), Exact::from((-2, 3)));
         assert_eq!(all[8].ratio(&all[6]), Some(q(-3, 1)));
     }
+
+    #[test]
+    fn order_ratio_and_words() {
+        let of = |text: &str| Exact::parse(text).unwrap();
+        let root = |q: i32| Exact::root(Rational::from(q));
+        // 333/106 < pi < 355/113, both sides of zero; sqrt(2) beside its convergents.
+        let rising = [
+            of("-355/113"),
+            of("-pi"),
+            of("-333/106"),
+            root(-2),
+            of("0"),
+            of("pi/4"),
+            of("7/5"),
+            root(2),
+            of("17/12"),
+            of("333/106"),
+            of("pi"),
+            of("355/113"),
+            root(10),
+        ];
+        for (i, x) in rising.iter().enumerate() {
+            for (j, y) in rising.iter().enumerate() {
+                assert_eq!(x.cmp(y), i.cmp(&j), "{x} {y}");
+            }
+        }
+        assert_eq!((root(9), root(-4)), (of("3"), of("-2")));
+        let words = [of("1/2"), of("pi"), of("3/4*pi"), root(2), root(-2)].map(|x| x.to_string());
+        assert_eq!(words, ["1/2", "pi", "3/4*pi", "sqrt(2)", "-sqrt(2)"]);
+        assert_eq!(root(-2).to_f64(), -std::f64::consts::SQRT_2);
+        assert_eq!((of("pi").to_f64(), of("0.1").to_f64()), (std::f64::consts::PI, 0.1));
+        assert_eq!(Exact::from_f64(0.375), Some(of("3/8")));
+        assert_eq!(Exact::from_f64(f64::NAN), None);
+        let q = |n: i32, d: i32| Some(Rational::from((n, d)));
+        assert_eq!(of("3").ratio(&of("4")), q(3, 4));
+        assert_eq!(of("3*pi").ratio(&of("4*pi")), q(3, 4));
+        assert_eq!(root(-8).ratio(&root(2)), q(-2, 1));
+        assert_eq!((of("0").ratio(&of("pi")), of("1").ratio(&of("pi"))), (q(0, 1), None));
+        assert_eq!((of("1").ratio(&of("0")), root(2).ratio(&root(3))), (None, None));
+    }
 }

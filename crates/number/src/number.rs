@@ -311,4 +311,50 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn words_and_data() {
+        let names = [Status::Exact, Status::Certified, Status::Proved].map(|s| s.to_string());
+        assert_eq!(names, ["exact", "certified", "proved"]);
+        let rest = [Status::Estimated, Status::NoEstimate].map(Status::name);
+        assert_eq!(rest, ["estimated", "no-estimate"]);
+        let pi = Balls::new(100).pi();
+        let wide = Balls::new(100).add_error(&pi, &Float::with_val(53, 1e-3));
+        let shown = Number::estimated(&wide, 30).unwrap().to_string();
+        assert!(shown.starts_with("3.14 +- ") && shown.ends_with(" (estimated)"), "{shown}");
+        let unknown = Number::without_estimate(&pi, 4).unwrap().to_string();
+        assert_eq!(unknown, "3.142 (no estimate)");
+        assert_eq!(Number::of_ball(&pi, 4).unwrap().to_string(), "3.142");
+    }
+
+    #[test]
+    fn as_many_digits_as_are_known() {
+        let balls = Balls::new(200);
+        let of = |ball: &Ball, digits| {
+            let number = Number::of_ball(ball, digits).unwrap();
+            (number.exact, number.decimal, number.error.is_some(), number.status)
+        };
+        let half = balls.from_rational(&Rational::from((1, 2)));
+        assert_eq!(of(&half, 3), (Some("0.500".into()), "0.500".into(), false, Status::Exact));
+        // More digits than were asked for.
+        let eighth = balls.from_rational(&Rational::from((1, 8)));
+        assert_eq!(of(&eighth, 2), (None, "0.12".into(), true, Status::Certified));
+        // 67 bits are 20 digits and two bits, no fewer.
+        let bits = |bits| Balls::new(bits).pi();
+        assert!(Number::of_all_digits(&bits(70), 20).is_some());
+        assert!(Number::of_all_digits(&bits(66), 20).is_none());
+        // An enclosure of zero counts as zero where it is smaller than twice the digits.
+        let around = |exponent| {
+            balls.from_parts(&Float::new(60), &Float::with_val(53, Float::i_exp(1, exponent)))
+        };
+        assert!(Number::of_all_digits(&around(-80), 10).is_some());
+        assert!(Number::of_all_digits(&around(-70), 10).is_none());
+        assert!(Number::of_all_digits(&bits(200), 10).is_some_and(|n| n.decimal == "3.141592654"));
+        let zero = Number::of_all_digits(&balls.zero(), 10).unwrap();
+        assert_eq!((zero.decimal.as_str(), zero.error), ("0", None));
+        // 302/1000 of the bits and two more digits are tried.
+        let known = balls.add_error(&balls.pi(), &Float::with_val(53, 4e-11));
+        assert_eq!(Number::estimated(&known, 30).unwrap().decimal, "3.1415926536");
+        assert_eq!(Number::estimated(&known, 4).unwrap().decimal, "3.142");
+    }
 }
