@@ -42,6 +42,11 @@ pub fn ask(case: &Oscillator, verb: &str, options: &Options, work: &Work) -> Ask
         }
         "simulate" => simulate(case, options, work),
         "threshold" => {
+            if let Some(name) = options.text("unknown").as_deref().or(case.unknown()) {
+                let order = options.parsed("order")?.unwrap_or(2);
+                options.finish()?;
+                return boxed(case.homoclinic(name, order, work));
+            }
             let question = threshold(case, options)?;
             boxed(case.threshold(&question, work))
         }

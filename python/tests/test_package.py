@@ -222,6 +222,8 @@ def test_every_question() -> None:
     assert forced.respond()["states"][0]["count"] == 3
     belt = Oscillator.builtin("stick-slip", b=5)
     assert float(belt.threshold(digits=12).gamma_c) == pytest.approx(0.105347876877)
+    saddle = Oscillator("x'' = x**2 - 4 + eps*x'*(x + tau)").threshold(unknown="tau", order=2)
+    assert [number.fraction for number in saddle["series"]["tau"]] == [Fraction(10, 7), 0, Fraction(288, 2401)]
     plan = {"orders": [2, 4], "digits": [16], "harmonics": [], "repeats": 1}
     assert Oscillator.builtin("duffing", eps="1/10").trade(**plan)["rows"]
     assert {"duffing", "stick-slip"} <= {problem["name"] for problem in lindstedt.problems()}

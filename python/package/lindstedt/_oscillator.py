@@ -219,7 +219,10 @@ class Oscillator:
         return self._ask("simulate", options, means)
 
     def threshold(self, sweep: Sweep | None = None, **options: Any) -> Answer:
-        """Melnikov's threshold of homoclinic chaos; `zeros="vstar=0..1"`, `subharmonics`."""
+        """Melnikov's threshold of homoclinic chaos; `zeros="vstar=0..1"`, `subharmonics`.
+
+        With `unknown="mu"` and `order`: the parameter for which the orbit stays homoclinic, as a series.
+        """
         means = _means(options)
         return self._ask("threshold", {"sweep": sweep, **options}, means)
 
