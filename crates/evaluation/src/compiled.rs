@@ -107,20 +107,14 @@ impl FrequencyFunction {
     /// Nothing is allocated; some 100 ns.
     #[must_use]
     pub fn at(&self, small: f64, amplitude: f64) -> Estimated {
-        if self.has_amplitude && (amplitude.is_nan() || amplitude <= 0.0) {
+        let Some((x, rounded)) = self.variable(small, amplitude) else {
             return Estimated { value: f64::NAN, error: f64::INFINITY };
-        }
-        let (x, scale) = match self.carried {
-            Carried::Not => (small, 1.0),
-            Carried::BySmall(weight) => (small * amplitude.powi(weight), 1.0),
-            Carried::ByScale => (small, amplitude.powf(-small)),
         };
-        // Every factor of the point is rounded.
-        let factors = match self.carried {
-            Carried::BySmall(weight) => 3.0 + f64::from(weight),
-            _ => 2.0,
+        let scale = match self.carried {
+            Carried::ByScale => amplitude.powf(-small),
+            _ => 1.0,
         };
-        let rounded = factors * f64::from(self.step) * f64::EPSILON;
+        let rounded = rounded * f64::from(self.step);
         let point = (self.ratio * x).powi(self.step);
         let Estimated { value, error } = self.sum.at_within(point, rounded);
         let omega = 1.0 / (self.factor * scale * value);
@@ -132,6 +126,20 @@ impl FrequencyFunction {
         let resolved = relative < 0.5 && omega > 0.0 && omega.is_finite();
         let error = omega * (relative / (1.0 - relative) + rounding);
         Estimated { value: omega, error: if resolved { error } else { f64::INFINITY } }
+    }
+
+    /// small a^w, and the relative error by which it and its ratio are rounded; nothing where the amplitude varies and is
+    /// not positive.
+    pub(crate) fn variable(&self, small: f64, amplitude: f64) -> Option<(f64, f64)> {
+        if self.has_amplitude && (amplitude.is_nan() || amplitude <= 0.0) {
+            return None;
+        }
+        Some(match self.carried {
+            Carried::BySmall(weight) => {
+                (small * amplitude.powi(weight), (3.0 + f64::from(weight)) * f64::EPSILON)
+            }
+            Carried::Not | Carried::ByScale => (small, 2.0 * f64::EPSILON),
+        })
     }
 
     /// omega at many points, on all cores; a list of one value is that value everywhere. Points that
@@ -180,5 +188,5 @@ fn compiled(
     let sample = source.sample(bits);
     let mut sample = sample.ok_or(if stop.asked() { Stopped } else { NoCoefficients { bits } })?;
     sample.point = Float::new(bits);
-    Compiled::new(&sample, method, stop)
+    Compiled::new(&sample, method.as_slice(), stop)
 }

@@ -8,6 +8,7 @@
 //! | [`period()`] | the sum of that series |
 //! | [`Trajectory`] | x(t), summed phase by phase |
 //! | [`compiled`] | the frequency as a function of the small parameter and the amplitude |
+//! | [`SolutionFunction`] | x(t) as a function of them, too |
 //! | [`PeriodicSolution`] | x(t) by its harmonics, for many times |
 //! | [`averaged`] | a(t), psi(t), x(t) of an averaged oscillator |
 //! | [`rotating`] | a slow flow at resonance in the frame in which it is autonomous |
@@ -32,6 +33,7 @@ mod periodic;
 pub mod rotating;
 pub mod setting;
 mod solution;
+mod solution_function;
 pub mod source;
 mod words;
 
@@ -42,4 +44,5 @@ pub use json::Place;
 pub use names::{kind_name, method_name, rounded, with_error};
 pub use period::{Evaluation, Improved, default_order, period};
 pub use periodic::PeriodicSolution;
-pub use solution::{Question, Trajectory};
+pub use solution::{Question, Trajectory, default_solution_order};
+pub use solution_function::SolutionFunction;

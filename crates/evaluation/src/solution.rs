@@ -47,7 +47,8 @@ pub struct Trajectory {
 }
 
 /// The order of a solution that takes about a second.
-fn default_order(form: &Form) -> usize {
+#[must_use]
+pub fn default_solution_order(form: &Form) -> usize {
     match form {
         Form::PowerLaw { .. } => 10,
         Form::Sums | Form::Logarithmic => 8,
@@ -131,7 +132,7 @@ impl Trajectory {
     /// As [`Self::new`].
     pub fn without_error(question: Question<'_>, work: &Work) -> Result<Self, Error> {
         let Question { setting, order, phase, evaluation, in_doubles } = question;
-        let order = order.unwrap_or_else(|| default_order(&setting.form));
+        let order = order.unwrap_or_else(|| default_solution_order(&setting.form));
         let digits = if in_doubles { DOUBLE } else { work.printed_digits().min(30) };
         let phase = phase.clone();
         let balls = Balls::new(bits_for(digits).saturating_add(64));

@@ -47,7 +47,7 @@ pub struct Estimated {
 /// let coefficients: Vec<Float> = (0..25).map(c).collect();
 /// let point = Float::new(bits);
 /// let sample = Sample { coefficients, point, map: None, radius: None, bits };
-/// let sum = Compiled::new(&sample, Some(Method::Pade), &Default::default())?;
+/// let sum = Compiled::new(&sample, &[Method::Pade], &Default::default())?;
 /// for x in [-0.5f64, 1e-9, 0.3, 5.0] {
 ///     let found = sum.at(x);
 ///     assert!((found.value - x.ln_1p() / x).abs() <= found.error && found.error < 1e-6);
@@ -95,8 +95,8 @@ impl Compiled {
         u32::try_from(known).unwrap_or(u32::MAX).saturating_mul(8).saturating_add(192)
     }
 
-    /// The sum of the coefficients of a sample, whatever its point, by one method, or with `None` by
-    /// the best at every node, Borel's left out.
+    /// The sum of the coefficients of a sample, whatever its point, by the best of some methods at every node;
+    /// with no method by the best of all but Borel's.
     ///
     /// Cost: that of a single sum, and some 1000 values of its approximants.
     ///
@@ -105,7 +105,7 @@ impl Compiled {
     /// at every point; [`ResummationError::Stopped`].
     pub fn new(
         sample: &Sample,
-        method: Option<Method>,
+        methods: &[Method],
         stop: &Stop,
     ) -> Result<Self, ResummationError> {
         let known = sample.coefficients.len();
@@ -113,7 +113,7 @@ impl Compiled {
             return Err(ResummationError::TooFewCoefficients { known, needed: 3 });
         }
         let all = || Method::ALL.into_iter().filter(|method| *method != Method::BorelPade);
-        let asked = method.map_or_else(|| all().collect(), |method| vec![method]);
+        let asked = if methods.is_empty() { all().collect() } else { methods.to_vec() };
         let conformal = asked.contains(&Method::ConformalPade);
         let singularity = if conformal { sample.singularity_until(stop) } else { None };
         let mut failure = ResummationError::Undefined;
@@ -350,7 +350,7 @@ mod tests {
         let mut resolved = 0;
         for (sample, truth) in series(12, bits) {
             for method in [None, Some(Method::PartialSum)] {
-                let sum = Compiled::new(&sample, method, &Stop::default()).unwrap();
+                let sum = Compiled::new(&sample, method.as_slice(), &Stop::default()).unwrap();
                 for x in [-0.77, -0.1003, 1e-7, 0.0131, 0.333, 0.91, 2.7, 19.3] {
                     let found = sum.at(x);
                     let distance = (found.value - truth(x)).abs();
@@ -379,9 +379,9 @@ mod tests {
     #[test]
     fn what_has_no_formula_is_refused() {
         let (sample, _) = series(12, 300).remove(0);
-        let refused = Compiled::new(&sample, Some(Method::BorelPade), &Stop::default());
+        let refused = Compiled::new(&sample, &[Method::BorelPade], &Stop::default());
         assert_eq!(refused.err(), Some(ResummationError::NoFormula { method: "borel-pade" }));
-        let none = Compiled::new(&sample, None, &Stop::default()).unwrap().at(f64::NAN);
+        let none = Compiled::new(&sample, &[], &Stop::default()).unwrap().at(f64::NAN);
         assert!(none.value.is_nan() && none.error.is_infinite());
     }
 }
