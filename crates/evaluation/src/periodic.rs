@@ -61,7 +61,8 @@ impl PeriodicSolution {
         let unknown = self.frequency_error + f64::EPSILON * self.frequency;
         // At 0 the phase is known whatever omega is.
         let phase = if time == 0.0 { 0.0 } else { time.abs() * unknown };
-        self.deviation + self.slope * phase + f64::EPSILON * turned
+        let error = self.deviation + self.slope * phase + f64::EPSILON * turned;
+        if error.is_nan() { f64::INFINITY } else { error }
     }
 
     /// x at many times, on all cores; those that stopped work did not reach are no numbers.

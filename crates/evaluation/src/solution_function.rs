@@ -72,13 +72,11 @@ impl SolutionFunction {
         let phases = phases.ok_or(DerivationError::NoValue)?;
         let methods = match method {
             Some(
-                method @ (Method::PartialSum
-                | Method::Pade
-                | Method::Uniform
-                | Method::UniformPade),
+                method
+                @ (Method::PartialSum | Method::Pade | Method::Uniform | Method::UniformPade),
             ) => vec![method],
             _ if few::is_few(order + 1) => vec![Method::PartialSum],
-            _ => vec![Method::Pade, Method::UniformPade],
+            _ => vec![Method::PartialSum, Method::Pade, Method::Uniform, Method::UniformPade],
         };
         let offset = OFFSET * phases.size();
         let compile = |coefficients: &Vec<Ball>| {
@@ -215,7 +213,8 @@ impl Phases {
             for (i, (index, sign)) in self.images.iter().enumerate() {
                 // Reduced before it is rounded.
                 let turns = (k * (2 * i + 1)) % (2 * count);
-                row[*index] += sign * weight * of(turns as f64 * std::f64::consts::PI / count as f64);
+                row[*index] +=
+                    sign * weight * of(turns as f64 * std::f64::consts::PI / count as f64);
             }
             // Weights that cancel.
             row.iter_mut().filter(|w| w.abs() < ROUNDING).for_each(|w| *w = 0.0);

@@ -6,8 +6,8 @@ use crate::{Answer, DerivationError, Error, Exact, Oscillator, Remark, Standing,
 use lindstedt_equation::AmplitudeRole;
 use lindstedt_evaluation::EvaluationError;
 use lindstedt_evaluation::compiled::{FrequencyFunction, Varied};
-use lindstedt_evaluation::{default_order, default_solution_order};
 use lindstedt_evaluation::setting::Setting;
+use lindstedt_evaluation::{default_order, default_solution_order};
 use lindstedt_series::resummation::Estimated;
 use rug::Rational;
 use std::time::Instant;

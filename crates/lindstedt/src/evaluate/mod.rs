@@ -19,8 +19,9 @@ use compiled::Way;
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_evaluation::setting::Setting;
 pub use lindstedt_evaluation::{
-    Displacement, Displacements, Evaluation, Fourier, Improved, PeriodicSolution, Place, Question, SolutionFunction,
-    Trajectory, compiled::FrequencyFunction, kind_name, method_name, rounded, with_error,
+    Displacement, Displacements, Evaluation, Fourier, Improved, PeriodicSolution, Place, Question,
+    SolutionFunction, Trajectory, compiled::FrequencyFunction, kind_name, method_name, rounded,
+    with_error,
 };
 pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;

@@ -103,11 +103,7 @@ impl Compiled {
     /// # Errors
     /// [`ResummationError::NoFormula`] for Borel's method; what the method itself refuses
     /// at every point; [`ResummationError::Stopped`].
-    pub fn new(
-        sample: &Sample,
-        methods: &[Method],
-        stop: &Stop,
-    ) -> Result<Self, ResummationError> {
+    pub fn new(sample: &Sample, methods: &[Method], stop: &Stop) -> Result<Self, ResummationError> {
         let known = sample.coefficients.len();
         if known < 3 {
             return Err(ResummationError::TooFewCoefficients { known, needed: 3 });
