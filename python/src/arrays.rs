@@ -3,7 +3,7 @@
 use crate::options::Options;
 use crate::verbs;
 use crate::work::Means;
-use lindstedt::evaluate::{Estimated, FrequencyFunction, PeriodicSolution};
+use lindstedt::evaluate::{Estimated, FrequencyFunction, PeriodicSolution, SolutionFunction};
 use lindstedt::grid::Grid;
 use lindstedt::unstable::impact::map::Verdict;
 use lindstedt::{Answer, Error, Oscillator, Standing, Stop};
@@ -49,6 +49,46 @@ impl Frequency {
     ) -> PyResult<Pair<'py>> {
         let (small, amplitude) = (small.as_slice()?, amplitude.as_slice()?);
         let found = py.detach(|| self.0.value.list(small, amplitude, &Stop::default()));
+        Ok(pair(py, found))
+    }
+}
+
+/// x(t; small, amplitude), and the amplitude of the case.
+#[pyclass(frozen, module = "lindstedt._native")]
+pub struct Motions(pub Answer<SolutionFunction>, pub Option<f64>);
+
+#[pymethods]
+impl Motions {
+    /// Header, parameters and methods as JSON.
+    fn json(&self) -> PyResult<String> {
+        json(&self.0).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    /// The amplitude that the case has.
+    #[getter]
+    fn amplitude(&self) -> Option<f64> {
+        self.1
+    }
+
+    /// x and its estimated errors, point by point all times; an array of length one is that value everywhere.
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        times: PyReadonlyArray1<'py, f64>,
+        small: PyReadonlyArray1<'py, f64>,
+        amplitude: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Pair<'py>> {
+        let (times, small) = (times.as_slice()?, small.as_slice()?);
+        let amplitude = amplitude.as_slice()?;
+        let found = py.detach(|| {
+            let solutions = self.0.value.list(small, amplitude, &Stop::default());
+            let all = solutions.iter().flat_map(|x| {
+                let values = x.list(times, &Stop::default());
+                let error = |(value, time): (f64, &f64)| Estimated { value, error: x.error(*time) };
+                values.into_iter().zip(times).map(error).collect::<Vec<_>>()
+            });
+            all.collect()
+        });
         Ok(pair(py, found))
     }
 }

@@ -1,6 +1,6 @@
 //! A problem with its values.
 
-use crate::arrays::{self, Frequency, Motion};
+use crate::arrays::{self, Frequency, Motion, Motions};
 use crate::failure::exception;
 use crate::found::Found;
 use crate::options::Options;
@@ -48,6 +48,14 @@ fn made(
         }
     };
     case.under(condition)
+}
+
+impl Case {
+    /// The value of the amplitude, where there is one.
+    fn amplitude(&self) -> Option<f64> {
+        let all = self.0.all_values().into_iter();
+        all.filter(|(name, _)| name == "amplitude").map(|(_, value)| value.to_f64()).next()
+    }
 }
 
 #[pymethods]
@@ -135,9 +143,24 @@ impl Case {
             let options = Options::new(options);
             let question = verbs::resummed(&options)?;
             options.finish()?;
-            let amplitude = self.0.all_values().into_iter().find(|(name, _)| name == "amplitude");
-            let amplitude = amplitude.map(|(_, value)| value.to_f64());
-            Ok(Frequency(self.0.frequency_function(&question, work)?, amplitude))
+            Ok(Frequency(self.0.frequency_function(&question, work)?, self.amplitude()))
+        })
+    }
+
+    /// x(t) as a function of parameters.
+    fn solution_function(
+        &self,
+        py: Python<'_>,
+        options: BTreeMap<String, String>,
+        means: &Means,
+    ) -> PyResult<Motions> {
+        means.ask(py, |work| {
+            let options = Options::new(options);
+            let question = verbs::resummed(&options)?;
+            let harmonics = options.parsed("harmonics")?.unwrap_or(15);
+            options.finish()?;
+            let value = self.0.solution_function(&question, harmonics, work)?;
+            Ok(Motions(value, self.amplitude()))
         })
     }
 

@@ -95,6 +95,18 @@ def test_frequencies_of_arrays(duffing: Oscillator) -> None:
     assert np.isnan(omega([-2.0])).all()
 
 
+def test_solutions_of_arrays(duffing: Oscillator) -> None:
+    x = duffing.solution_function()
+    # sqrt(1 + rho) t = u, x = a cn(u, k), k^2 = rho/(2 + 2 rho), rho = eps a^2: mpmath 1.3.0.
+    truth = np.array([[-0.432051131044673, 1.11775885807684], [-0.370401170086857, -0.901811833612849]])
+    values, errors = x.with_error([0.7, 10], [2.0, 10.0], [2.0, 1.0])
+    assert values.shape == (2, 2)
+    assert np.all(np.abs(values - truth) <= errors + 1e-14) and errors.max() < 1e-10
+    # Where none is given the amplitude is that of the case.
+    assert x(0.7, 2.0) == x(0.7, 2.0, float(x.amplitude or 1)) and x(0.7, 2.0).shape == ()
+    assert np.isnan(x([0.7], -2.0)).all()
+
+
 def test_the_amplitude_is_that_of_the_case(duffing: Oscillator) -> None:
     omega = duffing.set(amplitude=2).frequency_function(order=8)
     # 0.1*2^2 in small and 0.4*1^2 are the same motion.

@@ -102,6 +102,15 @@ impl FrequencyFunction {
         self.sum.methods()
     }
 
+    /// What is known of it as data.
+    pub(crate) fn fields<S: SerializeStruct>(&self, object: &mut S) -> Result<(), S::Error> {
+        let amplitude = self.has_amplitude.then_some("amplitude");
+        let names: Vec<&str> = [&*self.small].into_iter().chain(amplitude).collect();
+        let methods: Vec<&str> = self.methods().iter().map(|method| method.name()).collect();
+        object.serialize_field("parameters", &names)?;
+        object.serialize_field("methods", &methods)
+    }
+
     /// omega with its estimated error. The amplitude does not count where it does not vary; where it does, it is
     /// positive: with another sign x is -x, which is a motion of another equation.
     /// Nothing is allocated; some 100 ns.
@@ -168,11 +177,7 @@ impl FrequencyFunction {
 impl Serialize for FrequencyFunction {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut object = serializer.serialize_struct("FrequencyFunction", 2)?;
-        let amplitude = self.has_amplitude.then_some("amplitude");
-        let names: Vec<&str> = [&*self.small].into_iter().chain(amplitude).collect();
-        let methods: Vec<&str> = self.methods().iter().map(|method| method.name()).collect();
-        object.serialize_field("parameters", &names)?;
-        object.serialize_field("methods", &methods)?;
+        self.fields(&mut object)?;
         object.end()
     }
 }

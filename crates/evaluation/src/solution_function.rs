@@ -141,11 +141,11 @@ impl SolutionFunction {
     }
 }
 
-/// As JSON the parameters that vary, the harmonics and the methods of the frequency.
+/// As JSON the parameters that vary, the methods of the frequency and the harmonics.
 impl Serialize for SolutionFunction {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("SolutionFunction", 2)?;
-        object.serialize_field("frequency", &self.frequency)?;
+        let mut object = serializer.serialize_struct("SolutionFunction", 3)?;
+        self.frequency.fields(&mut object)?;
         object.serialize_field("harmonics", &self.harmonics)?;
         object.end()
     }

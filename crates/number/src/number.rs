@@ -264,6 +264,17 @@ mod tests {
 
     use super::*;
 
+    /// What is exact has no error; a decimal that was cut has one.
+    #[test]
+    fn certified_numbers_say_what_they_are_wrong_by() {
+        let two = certified(Some("2".to_owned()), 5, |balls| Some(balls.mul_i64(&balls.one(), 2)));
+        let two = two.unwrap();
+        assert_eq!((&*two.decimal, two.error, two.status), ("2.0000", None, Status::Exact));
+        let pi = certified(None, 5, |balls| Some(balls.pi())).unwrap();
+        assert_eq!((&*pi.decimal, pi.status), ("3.1416", Status::Certified));
+        assert!(pi.error.unwrap().parse::<f64>().unwrap() >= 7.3e-6);
+    }
+
     /// pi with nothing known of its error, with one of 1e-3, and with that as an estimate.
     #[test]
     fn digits_shown() {

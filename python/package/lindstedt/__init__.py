@@ -14,7 +14,7 @@ from typing import Any
 
 from . import _native
 from ._answers import Answer, Derivation, Figure
-from ._arrays import BifurcationDiagram, FrequencyFunction, Solution, StabilityChart, ThresholdSurface
+from ._arrays import BifurcationDiagram, FrequencyFunction, Solution, SolutionFunction, StabilityChart, ThresholdSurface
 from ._errors import LindstedtError, NoAnswerError, StoppedError, UndecidedError, UsageError
 from ._native import __version__
 from ._numbers import Number, Series, Value
@@ -32,6 +32,7 @@ __all__ = [
     "Oscillator",
     "Series",
     "Solution",
+    "SolutionFunction",
     "StabilityChart",
     "StoppedError",
     "ThresholdSurface",

@@ -11,7 +11,7 @@ import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import UsageError
-from ._native import Frequency, Motion
+from ._native import Frequency, Motion, Motions
 
 Doubles = NDArray[numpy.float64]
 
@@ -20,12 +20,11 @@ def _flat(values: ArrayLike) -> Doubles:
     return numpy.ascontiguousarray(values, dtype=numpy.float64).ravel()
 
 
-class FrequencyFunction:
-    """omega over the small parameter and, where a scaling carries it, the amplitude: derived once, then some
-    0.2 microseconds per point and core. Doubles, each with its estimated error. An amplitude that is not given is
+class _OfParameters:
+    """A function of the small parameter and, where a scaling carries it, the amplitude. One that is not given is
     the oscillator's; where it does not vary, none is taken."""
 
-    def __init__(self, native: Frequency) -> None:
+    def __init__(self, native: Any) -> None:
         self._native = native
         self.data: dict[str, Any] = json.loads(native.json())
 
@@ -37,7 +36,8 @@ class FrequencyFunction:
     @property
     def amplitude(self) -> float | None:
         """The amplitude where none is given: that of the oscillator."""
-        return self._native.amplitude
+        amplitude: float | None = self._native.amplitude
+        return amplitude
 
     def _amplitude(self, amplitude: ArrayLike | None) -> ArrayLike:
         varies = "amplitude" in self.parameters
@@ -48,21 +48,54 @@ class FrequencyFunction:
         if amplitude is None and varies:
             amplitude = self.amplitude
             if amplitude is None:
-                raise UsageError("the amplitude has no value", "usage", "omega(small, amplitude=...)")
+                raise UsageError("the amplitude has no value", "usage", "amplitude=...")
         return 1.0 if amplitude is None else amplitude
+
+    def _points(self, small: ArrayLike, amplitude: ArrayLike | None) -> tuple[Doubles, Doubles]:
+        amplitude = self._amplitude(amplitude)
+        if numpy.ndim(amplitude):
+            small, amplitude = numpy.broadcast_arrays(small, amplitude)
+        return numpy.asarray(small, dtype=numpy.float64), numpy.asarray(amplitude, dtype=numpy.float64)
+
+
+class FrequencyFunction(_OfParameters):
+    """omega over the small parameter and, where a scaling carries it, the amplitude: derived once, then some
+    0.2 microseconds per point and core. Doubles, each with its estimated error. An amplitude that is not given is
+    the oscillator's; where it does not vary, none is taken."""
+
+    def __init__(self, native: Frequency) -> None:
+        super().__init__(native)
 
     def with_error(self, small: ArrayLike, amplitude: ArrayLike | None = None) -> tuple[Doubles, Doubles]:
         """omega and its estimated errors, infinite where the sum has not one digit."""
-        amplitude = self._amplitude(amplitude)
-        small, amplitude = numpy.broadcast_arrays(small, amplitude) if numpy.ndim(amplitude) else (
-            numpy.asarray(small, dtype=numpy.float64),
-            numpy.asarray(amplitude, dtype=numpy.float64),
-        )
+        small, amplitude = self._points(small, amplitude)
         values, errors = self._native.at(_flat(small), _flat(amplitude))
         return values.reshape(small.shape), errors.reshape(small.shape)
 
     def __call__(self, small: ArrayLike, amplitude: ArrayLike | None = None) -> Doubles:
         values, errors = self.with_error(small, amplitude)
+        return numpy.where(numpy.isfinite(errors), values, numpy.nan)
+
+
+class SolutionFunction(_OfParameters):
+    """x(t) over the small parameter and, where a scaling carries it, the amplitude: derived once, then some 5
+    microseconds per point and 20 to 50 nanoseconds per time and core. Doubles, each with its estimated error."""
+
+    def __init__(self, native: Motions) -> None:
+        super().__init__(native)
+
+    def with_error(
+        self, times: ArrayLike, small: ArrayLike, amplitude: ArrayLike | None = None
+    ) -> tuple[Doubles, Doubles]:
+        """x and its estimated errors, infinite where nothing is known: at every point of the parameters all times, in the
+        shape of the parameters followed by that of the times."""
+        small, amplitude = self._points(small, amplitude)
+        shape = small.shape + numpy.shape(times)
+        values, errors = self._native.at(_flat(times), _flat(small), _flat(amplitude))
+        return values.reshape(shape), errors.reshape(shape)
+
+    def __call__(self, times: ArrayLike, small: ArrayLike, amplitude: ArrayLike | None = None) -> Doubles:
+        values, errors = self.with_error(times, small, amplitude)
         return numpy.where(numpy.isfinite(errors), values, numpy.nan)
 
 

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import Any, Union
 
 from ._answers import Answer, Derivation
-from ._arrays import BifurcationDiagram, FrequencyFunction, Solution, StabilityChart, ThresholdSurface
+from ._arrays import BifurcationDiagram, FrequencyFunction, Solution, SolutionFunction, StabilityChart, ThresholdSurface
 from ._errors import LindstedtError, UsageError
 from ._native import Case, Means
 from ._numbers import Value, exact
@@ -239,6 +239,14 @@ class Oscillator:
         means = _means(options)
         with _work(means) as work:
             return FrequencyFunction(self._case.frequency_function(_options(options), work))
+
+    def solution_function(self, harmonics: int = 15, **options: Any) -> SolutionFunction:
+        """x(t) over the small parameter and the amplitude, for arrays, by so many harmonics; `order`, `resum`. Where
+        no amplitude is given it is this oscillator's."""
+        means = _means(options)
+        with _work(means) as work:
+            options = {"harmonics": harmonics, **options}
+            return SolutionFunction(self._case.solution_function(_options(options), work))
 
     def solution(self, harmonics: int = 15, **options: Any) -> Solution:
         """x(t) at the values set, for arrays; `order`, `resum`, `phase`."""
