@@ -95,7 +95,7 @@ def test_frequencies_of_arrays(duffing: Oscillator) -> None:
     assert np.isnan(omega([-2.0])).all()
 
 
-def test_solutions_of_arrays(duffing: Oscillator) -> None:
+def test_solutions_of_parameters(duffing: Oscillator) -> None:
     x = duffing.solution_function()
     # sqrt(1 + rho) t = u, x = a cn(u, k), k^2 = rho/(2 + 2 rho), rho = eps a^2: mpmath 1.3.0.
     truth = np.array([[-0.432051131044673, 1.11775885807684], [-0.370401170086857, -0.901811833612849]])

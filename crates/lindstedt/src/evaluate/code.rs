@@ -49,16 +49,23 @@ impl SolutionCode {
         language: Language,
         harmonics: usize,
     ) -> Result<Self, Error> {
-        let Fourier { coefficients: list, deviation, error, .. } =
+        let Fourier { coefficients: list, deviation, error, largest_error } =
             trajectory.fourier(harmonics).ok_or_else(no_value)?;
         let size = list.iter().fold(0.0f64, |m, (c, s)| m.max(c.abs()).max(s.abs()));
         // Below the error of the expansion a coefficient is noise; where some phase has no estimate,
         // the measured deviation stands for it.
         let small = (size * trajectory.negligible()).max(error.unwrap_or(deviation));
         let note = format!("expansion of order {}", trajectory.order());
+        // In doubles.
+        let own = largest_error.max(size * f64::EPSILON);
         let left_out = match error {
-            Some(_) => format!("terms below the error of the expansion, {small:.1e}, are left out"),
-            None => "no estimate at some phases: terms below the deviation are left out".to_owned(),
+            Some(_) => format!(
+                "the expansion's own error at small t {own:.1e} (estimated); terms below \
+                 {small:.1e} are left out"
+            ),
+            None => "the expansion's own error is not known: more orders may tell; terms below the \
+                     deviation are left out"
+                .to_owned(),
         };
         let words = [note, "the expansion".to_owned(), left_out];
         let series = (list, deviation, trajectory.frequency());
