@@ -140,7 +140,7 @@ fn search(
         }
         let positive = value.is_positive();
         if let Some((low, _)) = before.filter(|(_, sign)| *sign != positive) {
-            let root = enclose_root(balls, &low, &level, &work).ok_or_else(undecided)?;
+            let root = enclose_root(balls, &low, &level, work).ok_or_else(undecided)?;
             let (parts, elliptic, speed, belt) = orbit(balls, &root).ok_or_else(undecided)?;
             let cycle = parts.cycle(&elliptic, friction, speed, belt);
             found.push(cycle.ok_or_else(undecided)?);
