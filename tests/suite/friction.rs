@@ -122,6 +122,12 @@ fn what_is_not_covered_says_why() {
     let high = Oscillator::parse("x'' + x + eps*m^999*x'*abs(x') = 0").unwrap();
     assert_eq!(high.average(20, &Work::default()).unwrap_err().code(), "no-expansion");
     assert!(high.average(1, &Work::default()).is_ok());
+    // The same without a jump: m^40000 at order 2 has no place in the exponents.
+    let high = Oscillator::parse("x'' + x + eps*(m^1000)^20*x^2*x' = 0").unwrap();
+    assert_eq!(high.average(2, &Work::default()).unwrap_err().code(), "no-expansion");
+    let lower = Oscillator::parse("x'' + x + eps*m^1000*x^2*x' = 0").unwrap();
+    let found = lower.average(3, &Work::default()).unwrap().value;
+    assert_eq!(shown(&found.amplitude_rate[3]), [(7, "-37/8192*m^3000".to_owned())]);
     let irrational = Oscillator::parse("x'' + 2*x + eps*sign(x') = 0").unwrap();
     assert_eq!(irrational.average(1, &Work::default()).unwrap_err().code(), "no-expansion");
 }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 mod closed_forms;
+mod cycle;
 mod double;
 mod general;
 mod hyperbolic;

@@ -478,3 +478,59 @@ fn extremes_lie_within_steps() {
     let number = |column: usize| -> f64 { table.rows[0][column].parse().unwrap() };
     assert!((number(5) - 0.1123).abs() < 1.5e-4 && (number(6) - 1.4748).abs() < 1.5e-4);
 }
+
+/// The cycles on the belt, against zeros of the work of friction by the trapezoidal rule in doubles (Python).
+#[test]
+fn cycles_on_the_belt() {
+    let table = numbered(3).tables.iter().find(|t| t.name == "cycles");
+    let Some(table) = table else { panic!("no table") };
+    let expected = [
+        [
+            "1",
+            "in a well",
+            "0.51757874720",
+            "0.51771914790",
+            "1.3160421284",
+            "0.51757874720",
+            "-0.0527778471224",
+        ],
+        [
+            "1",
+            "in a well",
+            "0.55000000000",
+            "0.70791489337",
+            "1.2242779519",
+            "0.35274481663",
+            "-0.0267248286985",
+        ],
+        [
+            "5",
+            "around both",
+            "0.51312731764",
+            "-0.72424457932",
+            "0.72424457932",
+            "0.51312731764",
+            "-0.0979366238297",
+        ],
+        [
+            "5",
+            "around both",
+            "0.55000000000",
+            "-0.65602829581",
+            "0.65602829581",
+            "0.36425189320",
+            "-0.0362997432614",
+        ],
+    ];
+    assert_eq!(table.rows.len(), expected.len());
+    for (row, expected) in table.rows.iter().zip(expected) {
+        assert_eq!(row.len(), table.columns.len());
+        for (cell, expected) in row.iter().zip(expected) {
+            // The reference is good to ten digits or so.
+            assert!(
+                cell.starts_with(&expected[..expected.len().min(12)]),
+                "{cell} is not {expected}"
+            );
+        }
+    }
+}

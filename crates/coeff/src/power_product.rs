@@ -97,7 +97,7 @@ impl Monomial for PowerProduct {
                     j += 1;
                 }
                 Ordering::Equal => {
-                    // Exponents are bounded by the order of the expansion, far below i16.
+                    // Derivations refuse equations whose powers could get to the ends of i16.
                     let exponent = a[i].1.saturating_add(b[j].1);
                     if exponent != 0 {
                         product.push((a[i].0, exponent));

@@ -4,6 +4,7 @@ use crate::error::DerivationError as Error;
 use crate::settings::{Route, Settings};
 use crate::values::all_values;
 use lindstedt_equation::{AmplitudeRole, Expression, Function, Problem};
+use lindstedt_expand::ExpandError;
 use lindstedt_multimodular::Proved;
 use lindstedt_number::Exact;
 use rug::Rational;
@@ -47,6 +48,44 @@ pub(crate) fn refuse_taken<'a>(
         }
     }
     Ok(())
+}
+
+/// Refuses symbols whose powers could leave the type of exponents, where a product would stop at its end: an order
+/// holds at most one factor of the law and one division by the linear part more than the order below, each with
+/// powers up to those of the equation; as much again is left for what is formed on the way.
+///
+/// # Errors
+/// [`ExpandError::UnsupportedTerm`] with the power.
+pub(crate) fn refuse_high_powers<'a>(
+    equations: impl IntoIterator<Item = &'a Expression>,
+    order: usize,
+) -> Result<(), Error> {
+    for equation in equations {
+        let power = equation.fold(&mut highest_power);
+        let within = power.saturating_add(1).saturating_mul(4 * (order as u64 + 1));
+        if within > u64::from(i16::MAX.unsigned_abs()) {
+            let term = format!("a parameter to a power up to {power} at order {order}");
+            return Err(ExpandError::UnsupportedTerm { term }.into());
+        }
+    }
+    Ok(())
+}
+
+/// A bound of the powers of parameters in an expression, from those in its [`Expression::children`].
+fn highest_power(e: &Expression, below: &[u64]) -> u64 {
+    let sum = || below.iter().fold(0, |sum: u64, power| sum.saturating_add(*power));
+    match (e, below) {
+        (Expression::Parameter(_), _) => 1,
+        (Expression::Power(_, exponent), [base, _]) => match &**exponent {
+            Expression::Number(q) => {
+                let n = q.clone().abs().ceil().numer().to_u64().unwrap_or(u64::MAX);
+                base.saturating_mul(n)
+            }
+            _ => sum(),
+        },
+        (Expression::Product(_), _) => sum(),
+        _ => below.iter().copied().max().unwrap_or(0),
+    }
 }
 
 /// Names and domains of the parameters given.

@@ -8,6 +8,7 @@
 //! carries an estimated error. The mathematics is in `docs/src/melnikov.md`.
 
 mod crossing;
+mod cycle;
 mod dissipation;
 mod elliptic;
 mod error;
@@ -26,6 +27,7 @@ mod surface;
 mod system;
 mod zeros;
 
+pub use cycle::{BeltCycle, belt_cycles, sticking_begins};
 pub use dissipation::{polynomial_dissipation, quadrature_dissipation};
 pub use elliptic::Elliptic;
 pub use error::MelnikovError;

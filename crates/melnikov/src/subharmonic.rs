@@ -122,13 +122,14 @@ fn resonance(
     Ok(enclose_root(balls, &low, &high, period))
 }
 
-struct Parts {
-    balls: Balls,
-    a: Ball,
-    b: Ball,
-    omega: Ball,
-    region: Region,
-    complement: Ball,
+/// A periodic orbit of the double well.
+pub(crate) struct Parts {
+    pub(crate) balls: Balls,
+    pub(crate) a: Ball,
+    pub(crate) b: Ball,
+    pub(crate) omega: Ball,
+    pub(crate) region: Region,
+    pub(crate) complement: Ball,
 }
 
 impl Parts {
@@ -161,7 +162,7 @@ impl Parts {
     }
 
     /// (2-k^2 or 2k^2-1, lam).
-    fn scale(&self) -> Option<(Ball, Ball)> {
+    pub(crate) fn scale(&self) -> Option<(Ball, Ball)> {
         let balls = self.balls;
         let square = balls.square(&self.complement);
         let factor = match self.region {
@@ -181,10 +182,22 @@ impl Parts {
     ) -> Option<Ball> {
         let balls = self.balls;
         let dry = balls.mul(&friction.dry.ball(balls), &self.sign_integral(elliptic, belt)?);
-        let minus = balls.neg(&belt.ball(balls));
-        let mut sum = dry;
+        let moment = |n| self.moment(elliptic, n);
+        Some(balls.add(&dry, &self.sliding(friction, &belt.ball(balls), moment)?))
+    }
+
+    /// sum_k t_k sum_{j odd} C(k,j) (-v*)^(k-j) m((j+1)/2), for any m.
+    pub(crate) fn sliding(
+        &self,
+        friction: &PolynomialFriction,
+        belt: &Ball,
+        moment: impl Fn(usize) -> Option<Ball>,
+    ) -> Option<Ball> {
+        let balls = self.balls;
+        let minus = balls.neg(belt);
+        let mut sum = balls.zero();
         for j in (1..friction.coefficients.len()).step_by(2) {
-            let moment = self.moment(elliptic, j.div_ceil(2))?;
+            let moment = moment(j.div_ceil(2))?;
             for (k, t) in friction.coefficients.iter().enumerate().skip(j) {
                 let binomial = Integer::from(k).binomial(u32::try_from(j).ok()?);
                 let power = balls.powi(&minus, i64::try_from(k - j).ok()?)?;
@@ -197,7 +210,7 @@ impl Parts {
 
     /// int v^{2n} dt over a period: v = -2 v_m sn cn inside (v_m = V k^2/(2-k^2)),
     /// v = -X lam sn dn outside.
-    fn moment(&self, elliptic: &Elliptic, n: usize) -> Option<Ball> {
+    pub(crate) fn moment(&self, elliptic: &Elliptic, n: usize) -> Option<Ball> {
         let balls = self.balls;
         let (factor, rate) = self.scale()?;
         let exponent = i64::try_from(2 * n).ok()?;
@@ -222,7 +235,7 @@ impl Parts {
     }
 
     /// v_m: V k^2/(2-k^2) inside, V/(2k^2-1) outside, V = a/sqrt(2b).
-    fn largest_speed(&self, elliptic: &Elliptic, factor: &Ball) -> Option<Ball> {
+    pub(crate) fn largest_speed(&self, elliptic: &Elliptic, factor: &Ball) -> Option<Ball> {
         let balls = self.balls;
         let root = balls.sqrt(&balls.mul_power_of_two(&self.b, 1))?;
         let speed = balls.div(&self.a, &balls.mul(&root, factor))?;

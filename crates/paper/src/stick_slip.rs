@@ -5,7 +5,9 @@ use super::{Reader, Row, Section, Table, plain, show};
 use crate::text::texts;
 use lindstedt::Error;
 use lindstedt_equation::Expression;
-use lindstedt_melnikov::{Monomial, OrbitDescription, PolynomialFriction, StickSlip};
+use lindstedt_melnikov::{
+    Monomial, OrbitDescription, PolynomialFriction, Region, StickSlip, belt_cycles, sticking_begins,
+};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
 use lindstedt_problems::stick_slip as card;
@@ -16,6 +18,8 @@ use rug::{Complete, Rational};
 const POINTS: u32 = 40;
 /// Digits of the table.
 const DIGITS: usize = 20;
+/// Digits of the table of cycles.
+const CYCLE_DIGITS: usize = 12;
 
 /// Rational numbers that look random and are the same in every run.
 struct Points(u64);
@@ -234,6 +238,7 @@ fn flow_rows(flows: &[[bool; 2]], orbit: &OrbitDescription) -> [Row; 3] {
 /// Reads the table.
 pub(super) fn read_table(reader: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
     section.tables.push(table(reader.balls)?);
+    section.tables.push(cycles(reader.balls)?);
     Ok(true)
 }
 
@@ -271,6 +276,44 @@ fn table(balls: Balls) -> Result<Table, Error> {
                  one on each side of $V$"
             ),
             "at $v* = 0$ and $v* = V$ themselves the theory does not hold: these are limits".to_owned(),
+        ]),
+    })
+}
+
+/// The cycles of (20) without a force that do not reach the speed of the belt: what the paper does not say.
+fn cycles(balls: Balls) -> Result<Table, Error> {
+    let columns =
+        ["$b$", "orbit", "$v*$", "smallest $x$", "largest $x$", "largest $v$", "$lambda/eps$"];
+    let (a, paper) = (Exact::from(1), StickSlip::paper());
+    let law = PolynomialFriction::paper(paper.dry.clone(), &paper.alpha, paper.beta.clone());
+    let mut rows = Vec::new();
+    for b in [1, 5] {
+        for (region, name) in [(Region::Inside, "in a well"), (Region::Outside, "around both")] {
+            let b_exact = Exact::from(b);
+            let begins = sticking_begins(balls, &a, &b_exact, &law, region).map_err(failed)?;
+            let at = Exact::from((11, 20));
+            let free = belt_cycles(balls, &a, &b_exact, &law, &at, region).map_err(failed)?;
+            for cycle in begins.iter().chain(&free) {
+                let [low, high] = &cycle.turning_points;
+                let mut cells = vec![b.to_string(), name.to_owned()];
+                let numbers = [&cycle.belt_speed, low, high, &cycle.largest_speed, &cycle.exponent];
+                cells.extend(numbers.map(|ball| show(ball, CYCLE_DIGITS)));
+                rows.push(cells);
+            }
+        }
+    }
+    Ok(Table {
+        name: "cycles".to_owned(),
+        title: "Cycles of (20) without sticking: $a = 1$, $alpha = beta = T0 = 0.3$, $gamma = 0$".into(),
+        columns: texts(columns),
+        rows: rows.into_iter().map(texts).collect(),
+        notes: texts([
+            "not in the paper: to first order in $eps$, zeros of the work of friction along the orbits of (21)"
+                .to_owned(),
+            "where the largest $v$ is $v*$ sticking begins; a faster belt is never reached".to_owned(),
+            "the cycles in the wells are born at $v* = sqrt(alpha/(3 beta))$, where the centres lose \
+             their stability; $lambda < 0$: they attract"
+                .to_owned(),
         ]),
     })
 }

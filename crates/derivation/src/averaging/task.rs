@@ -5,7 +5,7 @@ use super::cycles::cycles;
 use super::values::{Given, constant, enclosed};
 use super::{Averaging, AveragingSettings, Coefficient, RateTerm};
 use crate::error::DerivationError as Error;
-use crate::limits::{check_delays, refuse_taken, unknown_parameter};
+use crate::limits::{check_delays, refuse_high_powers, refuse_taken, unknown_parameter};
 use crate::values::value;
 use crate::work::Progress;
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
@@ -78,8 +78,11 @@ impl<'a> Task<'a> {
         names.extend(problem.equation.parameters());
         let excitation = Excitation::of(&problem.equation)?;
         let task = Self { problem, settings, excitation, names };
-        let symbols = task.names.iter().filter(|name| task.value(name).is_none());
-        refuse_taken(symbols, |base, numbered| match base {
+        let symbols = || task.names.iter().filter(|name| task.value(name).is_none());
+        if symbols().next().is_some() {
+            refuse_high_powers([&problem.equation], settings.order)?;
+        }
+        refuse_taken(symbols(), |base, numbered| match base {
             "a" if !numbered => Some("the amplitude"),
             "psi" if !numbered => Some("the phase"),
             "eta" if !numbered => Some("the phase of the force"),
