@@ -63,9 +63,11 @@ impl SolutionCode {
                 "the expansion's own error at small t {own:.1e} (estimated); terms below \
                  {small:.1e} are left out"
             ),
-            None => "the expansion's own error is not known: more orders may tell; terms below the \
+            None => {
+                "the expansion's own error is not known: more orders may tell; terms below the \
                      deviation are left out"
-                .to_owned(),
+                    .to_owned()
+            }
         };
         let words = [note, "the expansion".to_owned(), left_out];
         let series = (list, deviation, trajectory.frequency());
