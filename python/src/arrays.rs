@@ -6,7 +6,7 @@ use crate::work::Means;
 use lindstedt::evaluate::{Estimated, FrequencyFunction, PeriodicSolution, SolutionFunction};
 use lindstedt::grid::Grid;
 use lindstedt::unstable::impact::map::Verdict;
-use lindstedt::{Answer, Error, Oscillator, Standing, Stop};
+use lindstedt::{Answer, Error, Oscillator, Stability, Standing, Stop};
 use lindstedt_report::json;
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
@@ -155,22 +155,25 @@ pub fn chart<'py>(
     options: Options,
     means: &Means,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let chart = means.ask(py, move |work| {
-        let question = verbs::stability(case, &options)?;
-        case.stability(&question, work)?.value.grid.ok_or_else(missing)
+    let (chart, radius) = means.ask(py, move |work| {
+        let radius = options.flag("radius")?;
+        let question = Stability { radius, ..verbs::stability(case, &options)? };
+        let grid = case.stability(&question, work)?.value.grid;
+        Ok((grid.ok_or_else(missing)?, radius))
     })?;
     let [(columns, x), (rows, y)] = chart.values();
     let (grid, dict) = (&chart.grid, PyDict::new(py));
     let points = || grid.points.iter();
     let predicted = points().map(|p| code(p.as_ref().and_then(|p| p.predicted))).collect();
     let exact = points().map(|p| code(p.as_ref().and_then(|p| p.exact))).collect();
-    let radius = points().map(|p| p.as_ref().map_or(f64::NAN, |p| p.exact_radius)).collect();
+    let radii = || points().map(|p| p.as_ref().map_or(f64::NAN, |p| p.exact_radius)).collect();
+    let radius = radius.then(|| table(grid, radii(), f64::NAN)).transpose()?;
     dict.set_item("names", (columns, rows))?;
     dict.set_item("x", x.into_pyarray(py))?;
     dict.set_item("y", y.into_pyarray(py))?;
     dict.set_item("predicted", table(grid, predicted, code(None))?.into_pyarray(py))?;
     dict.set_item("exact", table(grid, exact, code(None))?.into_pyarray(py))?;
-    dict.set_item("radius", table(grid, radius, f64::NAN)?.into_pyarray(py))?;
+    dict.set_item("radius", radius.map(|radius| radius.into_pyarray(py)))?;
     dict.set_item("complete", chart.finished)?;
     Ok(dict)
 }

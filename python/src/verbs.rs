@@ -321,6 +321,7 @@ pub fn stability(case: &Oscillator, options: &Options) -> Result<Stability, Erro
         exact,
         branch: branch(options)?,
         sweep: options.axes(case)?,
+        ..Stability::default()
     };
     options.finish()?;
     Ok(question)

@@ -198,8 +198,9 @@ def test_starts_and_axes_are_counted() -> None:
 def test_a_stopped_grid_has_its_shape() -> None:
     # Of uneven steps: point by point, some seconds in all.
     axes: dict[str, Any] = {"A": [-0.3, -0.2, *np.linspace(0, 0.3, 35).round(3)], "B": (-0.3, 0.3, 2000)}
-    chart = Oscillator.builtin("vibro-impact").stability_chart(axes, seconds=0.3)
-    assert not chart.complete and chart.exact.shape == chart.radius.shape == (2000, 37)
+    chart = Oscillator.builtin("vibro-impact").stability_chart(axes, seconds=0.3, radius=True)
+    assert chart.radius is not None and not chart.complete
+    assert chart.exact.shape == chart.radius.shape == (2000, 37)
     assert chart.exact[0, 0] != 2 and chart.exact[-1, -1] == chart.predicted[-1, -1] == 2
     assert np.isnan(chart.radius[-1, -1])
     belt = Oscillator.builtin("stick-slip")
@@ -245,7 +246,12 @@ def test_charts_are_arrays() -> None:
     impact = Oscillator.builtin("vibro-impact")
     chart = impact.stability_chart({"A": (-0.3, 0.3, 5), "B": (-0.3, 0.3, 4)})
     assert chart.names == ("A", "B") and chart.exact.shape == (4, 5) and chart.x[0] == -0.3
-    assert set(np.unique(chart.exact)) <= {-1, 0, 1, 2} and chart.complete
+    assert set(np.unique(chart.exact)) <= {-1, 0, 1, 2} and chart.complete and chart.radius is None
+    # The largest multiplier is inside the unit circle where the verdict, by the number of roots outside it, is stable.
+    radius = impact.stability_chart({"A": (-0.3, 0.3, 5), "B": (-0.3, 0.3, 4)}, radius=True).radius
+    assert radius is not None and {-1, 1} <= set(np.unique(chart.exact))
+    assert np.all(radius[chart.exact == 1] < 1) and np.all(radius[chart.exact == -1] > 1)
+    assert np.isnan(radius[chart.exact == 2]).all()
     surface = Oscillator.builtin("stick-slip").threshold_surface({"vstar": (0, 1, 5), "omega": [1, 2]})
     assert surface.signed.shape == (2, 5) and surface.names == ["vstar", "omega"]
     one = Oscillator.builtin("stick-slip", vstar=0.5, omega=2).threshold(doubles=True)

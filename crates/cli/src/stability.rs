@@ -28,6 +28,7 @@ pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
         exact: options.predictor != PredictorChoice::Kbm,
         branch,
         sweep: options.sweep.iter().map(|text| oscillator.axis(text)).collect::<Result<_, _>>()?,
+        radius: false,
     };
     session.check_sweep(&options.plot, question.sweep.len(), 2)?;
     session.check_writable(&options.problem, &options.plot, None)?;

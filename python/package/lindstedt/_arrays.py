@@ -147,14 +147,15 @@ class Solution:
 @dataclass(frozen=True)
 class StabilityChart:
     """Verdicts over two parameters, row y, column x: 1 stable, -1 unstable, 0 neutral or undecided, 2 without
-    an orbit or not computed (stopped: not `complete`); `radius` the largest multiplier of the true system."""
+    an orbit or not computed (stopped: not `complete`); `radius` the largest multiplier of the true system, where it
+    was asked for."""
 
     names: tuple[str, str]
     x: Doubles
     y: Doubles
     predicted: NDArray[numpy.int8]
     exact: NDArray[numpy.int8]
-    radius: Doubles
+    radius: Doubles | None
     complete: bool
 
 

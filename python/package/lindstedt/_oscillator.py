@@ -261,7 +261,8 @@ class Oscillator:
             return self._case.arrays(verb, _options(options), work)
 
     def stability_chart(self, sweep: Sweep, **options: Any) -> StabilityChart:
-        """Prediction and truth over one or two parameters, as arrays."""
+        """Prediction and truth over one or two parameters, as arrays; the options of `stability`, and `radius=True` for
+        the largest multipliers, which cost more than the verdicts."""
         return StabilityChart(**self._arrays("stability", {"sweep": sweep, **options}))
 
     def threshold_surface(self, sweep: Sweep, **options: Any) -> ThresholdSurface:

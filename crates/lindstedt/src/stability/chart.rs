@@ -124,7 +124,7 @@ fn plan(subject: &Subject<'_>, sweep: &[Range]) -> Plan {
         rows: sweep.get(1).map_or(held, axis),
         predictor: question.predict.then_some((predictor, question.order)),
         exact: question.exact.then_some(question.kick),
-        radius: false,
+        radius: question.radius,
     }
 }
 

@@ -57,6 +57,8 @@ pub struct Stability {
     pub branch: Option<Branch>,
     /// No, one or two swept parameters; the first runs along the columns.
     pub sweep: Vec<Axis>,
+    /// Whether the points of a sweep have the largest multipliers beside the verdicts, which cost more than these.
+    pub radius: bool,
 }
 
 impl Default for Stability {
@@ -71,6 +73,7 @@ impl Default for Stability {
             exact: true,
             branch: None,
             sweep: Vec::new(),
+            radius: false,
         }
     }
 }
