@@ -201,7 +201,7 @@ fn figure_and_table() {
 #[test]
 fn limits_keep_the_finished_rows() {
     let start = ["trade", "power-law", "--quiet", "--format", "json"];
-    let limits = ["--limit-seconds", "0.05", "--orders", "2,4,8,16,32,64", "--repeats", "1000"];
+    let limits = ["--limit-seconds", "0.5", "--orders", "2,4,8,16,32,64", "--repeats", "100000"];
     let output = lindstedt(&[&start[..], &limits].concat());
     assert_eq!(output.status.code(), Some(4));
     let value: Value = serde_json::from_slice(&output.stdout).unwrap();
