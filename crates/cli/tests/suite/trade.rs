@@ -201,12 +201,17 @@ fn figure_and_table() {
 #[test]
 fn limits_keep_the_finished_rows() {
     let start = ["trade", "power-law", "--quiet", "--format", "json"];
-    let limits = ["--limit-seconds", "0.5", "--orders", "2,4,8,16,32,64", "--repeats", "100000"];
+    let limits = ["--limit-seconds", "0.5", "--orders", "2,4,8,16,32,64", "--repeats", "1000"];
     let output = lindstedt(&[&start[..], &limits].concat());
     assert_eq!(output.status.code(), Some(4));
     let value: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(value["finished"], false);
     assert!(value["rows"].as_array().unwrap().len() < 40);
+    // Before there is a truth there are no rows, and that is no fault of the problem.
+    let limits = ["--limit-seconds", "0.000001"];
+    let output = lindstedt(&[&start[..], &limits].concat());
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((output.status.code(), &value["error"]["code"]), (Some(4), &"limit-seconds".into()));
 }
 
 #[test]

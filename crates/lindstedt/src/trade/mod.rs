@@ -118,7 +118,7 @@ impl Oscillator {
             self.check()?;
         }
         let (case, mut remarks) = self.placed()?;
-        let failed = |error| case.no_reference(error);
+        let failed = |error| case.no_reference(error, work);
         let setting = case.setting().map_err(failed)?;
         let bench = Bench::new(&case, &setting, plan, work).map_err(failed)?;
         if let Some(failure) = &bench.failure {
@@ -146,7 +146,11 @@ impl Oscillator {
     }
 
     /// A refusal in the words of this question.
-    fn no_reference(&self, error: Error) -> Error {
+    fn no_reference(&self, error: Error, work: &Work) -> Error {
+        if work.stop.asked() {
+            let hint = "raise --limit-seconds, or ask for fewer --digits";
+            return Refused::stopped("stopped before the true period was known", hint).into();
+        }
         if !matches!(
             error,
             Error::NoValue | Error::Evaluation(EvaluationError::NotEvaluated { .. })
