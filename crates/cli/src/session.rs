@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::unstable::equation::Condition;
 use lindstedt::unstable::problem_file::{FileError, LARGEST_FILE, canonical_name};
 use lindstedt::{Answer, Error, Exact, Oscillator, Progress, Remark, Standing, Work};
-use lindstedt_report::{Format as Written, Present};
+use lindstedt_report::{FigureError, Format as Written, Present};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -307,8 +307,14 @@ where
 {
     let undrawn =
         |message: String| Failure { exit: NO_ANSWER, code: "figure", message, hint: String::new() };
-    let figure = answer.figure().map(|figure| figure.svg());
-    figure.transpose().map_err(|error| undrawn(error.to_string()))
+    match answer.figure().map(|figure| figure.svg()) {
+        None => Ok(None),
+        // What there would be to draw was not reached.
+        Some(Err(FigureError::Empty)) if matches!(answer.standing, Standing::Stopped { .. }) => {
+            Ok(None)
+        }
+        Some(figure) => figure.map(Some).map_err(|error| undrawn(error.to_string())),
+    }
 }
 
 /// Whether a problem is named by its file.

@@ -207,6 +207,15 @@ fn limits_keep_the_finished_rows() {
     let value: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(value["finished"], false);
     assert!(value["rows"].as_array().unwrap().len() < 40);
+    // A figure of no rows is no error about drawing.
+    let svg = std::env::temp_dir().join(format!("lindstedt-no-rows-{}.svg", std::process::id()));
+    let limits =
+        ["trade", "duffing", "--limit-seconds", "0.2", "--orders", "64", "--digits", "1000"];
+    let limits = [&limits[..], &["--repeats", "1000", "--plot", svg.to_str().unwrap()]].concat();
+    let output = lindstedt(&limits);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(4), "{said}");
+    assert!(said.contains("is not written") && !svg.exists(), "{said}");
     // Before there is a truth there are no rows, and that is no fault of the problem.
     let limits = ["--limit-seconds", "0.000001"];
     let output = lindstedt(&[&start[..], &limits].concat());

@@ -27,11 +27,20 @@ pub(super) fn forcing_frequency(
     let ends = axis.values.iter().step_by(stride).chain(axis.values.last());
     let values = ends.filter_map(|value| value.as_rational().cloned());
     let found: Vec<_> = values.filter_map(|value| Some((beside(&value)?, value))).collect();
-    let Some(((force, first), value)) = found.first() else { return Ok(None) };
+    let moves = found.first().map(|((_, first), value)| {
+        let shifted = value * Rational::from((1001, 1000));
+        let next = beside(&shifted).map(|(_, it)| Rational::from(&shifted / &it.rate));
+        next == Some(Rational::from(value / &first.rate))
+    });
+    // Values that were not reached look as if they lay beside no resonance.
+    if work.stop.asked() {
+        let hint = "raise --limit-seconds, or lower --order";
+        return Err(Refused::stopped("stopped before the resonances were found", hint).into());
+    }
+    let (Some(((force, first), value)), Some(moves)) = (found.first(), moves) else {
+        return Ok(None);
+    };
     let factor = Rational::from(value / &first.rate);
-    let shifted = value * Rational::from((1001, 1000));
-    let moves =
-        beside(&shifted).is_some_and(|(_, it)| Rational::from(&shifted / &it.rate) == factor);
     if !moves {
         let message = format!("a frequency of the oscillator depends on {}", axis.name);
         let hint = "only the frequency of the force varies; set others value by value";
