@@ -17,6 +17,8 @@ mod coverage;
 mod defects;
 #[path = "net/latex.rs"]
 mod latex;
+#[path = "net/limits.rs"]
+mod limits;
 #[path = "net/mask.rs"]
 mod mask;
 #[path = "net/run.rs"]
@@ -75,7 +77,9 @@ fn every_command_prints_what_it_printed() {
     let changed = lines.iter().zip(&outputs).filter(|(line, outputs)| !agrees(line, outputs));
     let changed: Vec<&str> = changed.map(|(line, _)| line.command.as_str()).collect();
     let (orphans, defects) = (orphans(&lines, &elsewhere), defects::changes(&lines, &outputs));
+    let ends = limits::wrong_ends(&lines, &outputs);
     assert!(changed.is_empty(), "{} commands changed:\n{}", changed.len(), changed.join("\n"));
     assert!(orphans.is_empty(), "snapshots of no command: {orphans:#?}");
     assert!(defects.is_empty(), "LaTeX, against KNOWN_DEFECTS:\n{}", defects.join("\n"));
+    assert!(ends.is_empty(), "under a limit:\n{}", ends.join("\n"));
 }
