@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import json
 import os
@@ -328,9 +329,28 @@ def grid(
     blocks = [points[i : i + block] for i in range(0, len(points), max(block, 1))]
     if executor is None:
         return [found for part in blocks for found in _block(oscillator, verb, names, part, options)]
-    pool = executor.get_executor() if hasattr(executor, "get_executor") else executor
-    futures = [pool.submit(_block, oscillator, verb, names, part, options) for part in blocks]
+    if hasattr(executor, "get_executor"):
+        work = functools.partial(_block, oscillator, verb, names, options=options)
+        return [found for part in _on_dask(executor, work, blocks) for found in part]
+    futures = [executor.submit(_block, oscillator, verb, names, part, options) for part in blocks]
     return [found for future in futures for found in future.result()]
+
+
+def _on_dask(client: Any, work: Callable[[Any], Any], parts: list[Any]) -> list[Any]:
+    """The results of all parts. Each is fetched when it is finished and given up on the cluster: a worker that is killed
+    later takes nothing with it but what it is working on."""
+    from distributed import as_completed
+
+    futures = [client.submit(work, part, pure=False) for part in parts]
+    places = {future.key: place for place, future in enumerate(futures)}
+    found: list[Any] = [None] * len(parts)
+    try:
+        for future, result in as_completed(futures, with_results=True):  # type: ignore[no-untyped-call]
+            found[places[future.key]] = result
+            future.release()
+    finally:
+        client.cancel([future for future in futures if not future.done()])
+    return found
 
 
 def _block(
