@@ -156,20 +156,24 @@ impl FrequencyFunction {
     #[must_use]
     pub fn list(&self, small: &[f64], amplitude: &[f64], stop: &Stop) -> Vec<Estimated> {
         let count = small.len().max(amplitude.len());
-        let of = |list: &[f64], i: usize| match list {
-            [only] => *only,
-            list => list.get(i).copied().unwrap_or(f64::NAN),
-        };
         let mut values = vec![Estimated { value: f64::NAN, error: f64::INFINITY }; count];
         values.par_chunks_mut(BLOCK).enumerate().for_each(|(block, values)| {
             if stop.asked() {
                 return;
             }
             for (value, i) in values.iter_mut().zip(block * BLOCK..) {
-                *value = self.at(of(small, i), of(amplitude, i));
+                *value = self.at(entry(small, i), entry(amplitude, i));
             }
         });
         values
+    }
+}
+
+/// An entry of a list; of a list of one value that value.
+pub(crate) fn entry(list: &[f64], index: usize) -> f64 {
+    match list {
+        [only] => *only,
+        list => list.get(index).copied().unwrap_or(f64::NAN),
     }
 }
 
