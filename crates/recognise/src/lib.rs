@@ -8,6 +8,7 @@
 #![warn(clippy::too_many_lines)]
 
 mod bound;
+mod factors;
 mod forces;
 mod impact;
 mod in_pi;
@@ -17,6 +18,7 @@ mod melnikov;
 mod motion;
 mod numeric;
 mod potential;
+mod reading;
 mod refusal;
 mod saddle;
 mod search;
@@ -24,8 +26,9 @@ mod threshold;
 
 pub use impact::{ImpactProblem, linear_in_time};
 pub use lowest::LowestHarmonic;
-pub use melnikov::{MelnikovProblem, Unperturbed};
+pub use melnikov::MelnikovProblem;
 pub use numeric::{NumericOrbit, OrbitCheck};
+pub use reading::Unperturbed;
 pub use refusal::{Refusal, Why};
 pub use saddle::SaddleProblem;
-pub use threshold::OrbitThreshold;
+pub use threshold::{OrbitValue, Perturbation};

@@ -5,11 +5,11 @@ use super::{Crossing, Cusp, Harmonic, HomoclinicThreshold, Orbit, Validity};
 use crate::{Error, Exact, Number, Status};
 use lindstedt_equation::Expression;
 use lindstedt_equation::print::Style;
-use lindstedt_melnikov::{Class, MelnikovError, Potential, Verdict};
+use lindstedt_melnikov::{Class, MelnikovError, Potential, Threshold, Verdict};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::certified;
 use lindstedt_recognise::Unperturbed;
-use lindstedt_recognise::{OrbitCheck, OrbitThreshold};
+use lindstedt_recognise::{OrbitCheck, OrbitValue};
 
 /// Bits that order the thresholds of several orbits.
 const ORDERING_BITS: u32 = 200;
@@ -24,13 +24,13 @@ struct Measured<'a> {
     digits: usize,
     balls: Balls,
     estimated: bool,
-    orbits: Vec<OrbitThreshold>,
+    orbits: Vec<OrbitValue<Threshold>>,
     /// The orbit of the least threshold.
     first: usize,
 }
 
 /// A part of the threshold of an orbit.
-type Part = fn(&OrbitThreshold) -> &Ball;
+type Part = fn(&OrbitValue<Threshold>) -> &Ball;
 
 impl<'a> Measured<'a> {
     fn new(subject: &'a Subject<'a>) -> Result<Self, Error> {
@@ -44,7 +44,7 @@ impl<'a> Measured<'a> {
             }
             other => other?,
         };
-        let size = |orbit: &OrbitThreshold| orbit.threshold.gamma.midpoint().clone();
+        let size = |orbit: &OrbitValue<Threshold>| orbit.value.gamma.midpoint().clone();
         let least = orbits.iter().enumerate().min_by(|a, b| size(a.1).total_cmp(&size(b.1)));
         let first = least.ok_or(MelnikovError::NoClosedForm)?.0;
         Ok(Self { subject, digits, balls, estimated, orbits, first })
@@ -61,14 +61,14 @@ impl<'a> Measured<'a> {
     fn signed(&self, balls: Balls) -> Option<Ball> {
         match &self.subject.point {
             Some(point) => point.signed_threshold(balls),
-            None => self.orbit(balls, self.first, |o| &o.threshold.signed),
+            None => self.orbit(balls, self.first, |o| &o.value.signed),
         }
     }
 
     fn gamma(&self, balls: Balls) -> Option<Ball> {
         match &self.subject.point {
             Some(_) => Some(balls.abs(&self.signed(balls)?)),
-            None => self.orbit(balls, self.first, |o| &o.threshold.gamma),
+            None => self.orbit(balls, self.first, |o| &o.value.gamma),
         }
     }
 
@@ -124,15 +124,15 @@ impl<'a> Measured<'a> {
         };
         let saddle = self.orbits.first().and_then(|orbit| orbit.saddle);
         let several = self.orbits.iter().any(|orbit| orbit.saddle != saddle);
-        let one = |(n, orbit): (usize, &OrbitThreshold)| {
+        let one = |(n, orbit): (usize, &OrbitValue<Threshold>)| {
             let name = match orbit.saddle {
                 Some(x) if several => format!("{} at x = {}", orbit.name, few_digits(x)),
                 _ => orbit.name.to_owned(),
             };
             Ok(Orbit {
                 name,
-                gamma_c: self.part(n, |o| &o.threshold.gamma)?,
-                signed: self.part(n, |o| &o.threshold.signed)?,
+                gamma_c: self.part(n, |o| &o.value.gamma)?,
+                signed: self.part(n, |o| &o.value.signed)?,
                 check: check(&self.subject.found.unperturbed, checks.get(n)),
                 least: several.then_some(n == self.first),
             })
@@ -187,8 +187,8 @@ pub(super) fn measure(subject: &Subject<'_>) -> Result<HomoclinicThreshold, Erro
         measured.number(None, digits, |balls| subject.found.largest_speed(balls))?;
     Ok(HomoclinicThreshold {
         signed: measured.number(None, digits, |balls| measured.signed(balls))?,
-        dissipation: measured.part(first, |o| &o.threshold.dissipation)?,
-        forcing: measured.part(first, |o| &o.threshold.forcing)?,
+        dissipation: measured.part(first, |o| &o.value.dissipation)?,
+        forcing: measured.part(first, |o| &o.value.forcing)?,
         amplitude: subject.found.amplitude.clone(),
         harmonic: measured.harmonic(&gamma_c)?,
         remarks: Vec::new(),

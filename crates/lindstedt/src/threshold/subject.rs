@@ -109,7 +109,7 @@ impl<'a> Subject<'a> {
         let orbits = found.watched(&self.work.stop).thresholds(balls);
         let orbits = orbits.map_err(|error| error.to_string())?;
         let least = |a: &Ball, b: &Ball| a.midpoint().total_cmp(b.midpoint());
-        let least = orbits.iter().min_by(|a, b| least(&a.threshold.gamma, &b.threshold.gamma));
-        least.map(|orbit| orbit.threshold.signed.clone()).ok_or_else(undecided)
+        let least = orbits.iter().min_by(|a, b| least(&a.value.gamma, &b.value.gamma));
+        least.map(|orbit| orbit.value.signed.clone()).ok_or_else(undecided)
     }
 }
