@@ -1,5 +1,5 @@
 //! From the equation of a problem to what a method needs: Melnikov's potential, friction, forcing
-//! and belt speed ([`MelnikovProblem`]), a saddle with a parameter that is sought ([`SaddleProblem`]), the impact
+//! and belt speed ([`MelnikovProblem`]), a parameter that is sought to first order ([`PersistenceProblem`]) and to any ([`SaddleProblem`]), the impact
 //! oscillator of section 2 ([`ImpactProblem`]).
 //!
 //! Terms are matched by what they are, multiplied out with the values of the parameters, never by
@@ -17,6 +17,7 @@ mod lowest;
 mod melnikov;
 mod motion;
 mod numeric;
+mod persistence;
 mod potential;
 mod reading;
 mod refusal;
@@ -28,6 +29,7 @@ pub use impact::{ImpactProblem, linear_in_time};
 pub use lowest::LowestHarmonic;
 pub use melnikov::MelnikovProblem;
 pub use numeric::{NumericOrbit, OrbitCheck};
+pub use persistence::{PersistenceProblem, Persistent};
 pub use reading::Unperturbed;
 pub use refusal::{Refusal, Why};
 pub use saddle::SaddleProblem;

@@ -66,10 +66,10 @@ impl MelnikovProblem {
             let forces: Vec<Term> = terms.forces.iter().map(|(_, force)| force.clone()).collect();
             let refusal = |why| Refusal::Term { term: Box::new(term.clone()), why };
             let (forcing, amplitude) = forcing(&forces).map_err(refusal)?;
-            return Self::on_orbit(&terms, forcing, amplitude);
+            return Self::on_orbit(&terms, forcing, amplitude, true);
         }
         let amplitude = || Exact::from(0);
-        let found = Self::on_orbit(&terms, Forcing::none(), amplitude())?;
+        let found = Self::on_orbit(&terms, Forcing::none(), amplitude(), true)?;
         let all = multiply_out(&terms.rest)?;
         let silent = forces(&all, values).unwrap_or_default();
         if silent.is_empty() {
@@ -93,25 +93,28 @@ impl MelnikovProblem {
         }
     }
 
-    /// Reads the equation of a problem without a periodic force: D on its orbits.
-    ///
-    /// # Errors
-    /// [`Refusal`], naming the term that does not fit: [`Why::Periodic`] for a force.
-    pub fn autonomous(
+    /// Reads the equation of a problem without a periodic force; `closed`: on an orbit in closed form, if there is one.
+    pub(crate) fn autonomous(
         problem: &Problem,
         values: &BTreeMap<String, Exact>,
+        closed: bool,
     ) -> Result<Self, Refusal> {
         let terms = Terms::read(problem, values)?;
         match terms.forces.first() {
             Some((term, _)) => {
                 Err(Refusal::Term { term: Box::new(term.clone()), why: Why::Periodic })
             }
-            None => Self::on_orbit(&terms, Forcing::none(), Exact::from(0)),
+            None => Self::on_orbit(&terms, Forcing::none(), Exact::from(0), closed),
         }
     }
 
-    fn on_orbit(terms: &Terms, forcing: Forcing, amplitude: Exact) -> Result<Self, Refusal> {
-        let (unperturbed, perturbation, jumps) = terms.on_orbit(forcing)?;
+    fn on_orbit(
+        terms: &Terms,
+        forcing: Forcing,
+        amplitude: Exact,
+        closed: bool,
+    ) -> Result<Self, Refusal> {
+        let (unperturbed, perturbation, jumps) = terms.on_orbit(forcing, closed)?;
         let found = Self { unperturbed, perturbation, amplitude, jumps };
         found.system()?;
         Ok(found)
@@ -132,8 +135,12 @@ impl MelnikovProblem {
     /// # Errors
     /// Those of [`System::new`].
     pub fn system(&self) -> Result<Option<System>, MelnikovError> {
+        self.system_with(&self.perturbation)
+    }
+
+    fn system_with(&self, other: &Perturbation) -> Result<Option<System>, MelnikovError> {
         let Unperturbed::Closed { potential, .. } = &self.unperturbed else { return Ok(None) };
-        let Perturbation { friction, damping, forcing, belt_speed } = self.perturbation.clone();
+        let Perturbation { friction, damping, forcing, belt_speed } = other.clone();
         System::new(potential.clone(), friction, forcing, belt_speed)?.damped(damping).map(Some)
     }
 
@@ -244,20 +251,28 @@ impl MelnikovProblem {
         }
     }
 
-    /// D on the orbits, in x, in the same order.
+    /// D of this perturbation and of another one on the orbits, in x, in the same order.
     ///
     /// # Errors
     /// Those of [`System::dissipation`].
-    pub fn dissipations(&self, balls: Balls) -> Result<Vec<OrbitValue<Ball>>, MelnikovError> {
-        match &self.unperturbed {
-            Unperturbed::Closed { potential, .. } => {
-                self.on_branches(potential, &|system, branch| {
-                    let square = Rational::from(self.size().square_ref());
-                    Ok(balls.mul_rational(&system.dissipation(balls, branch)?.0, &square))
-                })
-            }
-            Unperturbed::Numeric(orbit) => orbit.dissipations(balls, &self.perturbation),
-        }
+    pub(crate) fn dissipations(
+        &self,
+        balls: Balls,
+        other: &Perturbation,
+    ) -> Result<Vec<OrbitValue<[Ball; 2]>>, MelnikovError> {
+        let both = [&self.perturbation, other];
+        let Unperturbed::Closed { potential, .. } = &self.unperturbed else {
+            let Unperturbed::Numeric(orbit) = &self.unperturbed else { return Ok(Vec::new()) };
+            return orbit.dissipations(balls, both);
+        };
+        let Some(beside) = self.system_with(other)? else { return Ok(Vec::new()) };
+        let square = Rational::from(self.size().square_ref());
+        self.on_branches(potential, &|system, branch| {
+            let of = |system: &System| -> Result<Ball, MelnikovError> {
+                Ok(balls.mul_rational(&system.dissipation(balls, branch)?.0, &square))
+            };
+            Ok([of(system)?, of(&beside)?])
+        })
     }
 
     /// x = s y: D_x = s^2 D_y, F_x = |s| F_y.

@@ -243,19 +243,21 @@ impl NumericOrbit {
         self.paths.iter().map(one).collect()
     }
 
-    /// D of a perturbation on all orbits, with its estimated error in the radius.
+    /// D of two perturbations on all orbits, with its estimated error in the radius.
     ///
     /// # Errors
     /// [`MelnikovError::Undecided`] where a quadrature does not settle.
     pub(crate) fn dissipations(
         &self,
         balls: Balls,
-        perturbation: &Perturbation,
-    ) -> Result<Vec<OrbitValue<Ball>>, MelnikovError> {
-        let one = |path: &Path| {
-            Ok(path.named(self.motion(path, balls.bits())?.dissipation(balls, perturbation)?))
+        [one, other]: [&Perturbation; 2],
+    ) -> Result<Vec<OrbitValue<[Ball; 2]>>, MelnikovError> {
+        let both = |path: &Path| {
+            let motion = self.motion(path, balls.bits())?;
+            let of = |perturbation| motion.dissipation(balls, perturbation);
+            Ok(path.named([of(one)?, of(other)?]))
         };
-        self.paths.iter().map(one).collect()
+        self.paths.iter().map(both).collect()
     }
 
     /// V on the first orbit.

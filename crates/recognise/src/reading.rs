@@ -83,12 +83,17 @@ impl Terms {
         Ok(Self { rest, bound, force, friction, damping, forces })
     }
 
-    /// The problem in y, and whether friction jumps: on an orbit in closed form that takes all factors of x, else on
-    /// numeric ones.
-    pub fn on_orbit(&self, forcing: Forcing) -> Result<(Unperturbed, Perturbation, bool), Refusal> {
+    /// The problem in y, and whether friction jumps: on an orbit in closed form, if one is wanted and takes all factors
+    /// of x, else on numeric ones.
+    pub fn on_orbit(
+        &self,
+        forcing: Forcing,
+        closed: bool,
+    ) -> Result<(Unperturbed, Perturbation, bool), Refusal> {
         let off = |e: &Expression| matches!(e, Expression::Time).then(|| Expression::integer(0));
         let law = FrictionLaw::new(&self.bound.substitute(&off), &self.friction)?;
-        let closed = potential::closed(&self.force).and_then(|(potential, frame)| {
+        let known = potential::closed(&self.force).filter(|_| closed);
+        let closed = known.and_then(|(potential, frame)| {
             potential.check().ok()?;
             let damping = self.damping_in(&frame, &|factor| potential.takes_damping(factor))?;
             let forcing = forcing_in(&forcing, &frame, &|factor| potential.takes_force(factor))?;

@@ -57,7 +57,7 @@ impl fmt::Display for Why {
             Self::Formal => "is a formal function",
             Self::DependsOnPosition => "depends on x and is no g(x)*x'^j with a power, or sines and cosines of k*x, for g",
             Self::NotHarmonic => "is no harmonic force cos(omega*t + phase), also times a power of x or sines and cosines of k*x",
-            Self::Periodic => "is a periodic force; a parameter for which the orbit persists is one of an equation without",
+            Self::Periodic => "is a periodic force; a parameter for which the orbit persists is sought without one",
             Self::PositionFactor => "has a factor of x that is neither a power nor a product of sin(k*x + phase), cos(k*x + phase) \
                                      with phases in quarter turns",
             Self::NegativeForce => "has a negative coefficient beside other harmonics; shift the time so that the lowest one is positive",

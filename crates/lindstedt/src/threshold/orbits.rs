@@ -12,7 +12,7 @@ use lindstedt_recognise::Unperturbed;
 use lindstedt_recognise::{OrbitCheck, OrbitValue};
 
 /// Bits that order the thresholds of several orbits.
-const ORDERING_BITS: u32 = 200;
+pub(super) const ORDERING_BITS: u32 = 200;
 /// What is undecided with so many bits is said to be: a threshold beyond all exponents.
 const FEW_OR_NEVER: u32 = 8000;
 /// Bits that decide whether gamma exceeds its threshold.
@@ -36,7 +36,7 @@ impl<'a> Measured<'a> {
     fn new(subject: &'a Subject<'a>) -> Result<Self, Error> {
         let digits = subject.work.printed_digits();
         let estimated = subject.found.class() == Class::Estimated;
-        let bits = if estimated { (digits as f64 * 3.33) as u32 + 48 } else { ORDERING_BITS };
+        let bits = if estimated { estimating_bits(digits) } else { ORDERING_BITS };
         let balls = Balls::new(bits);
         let orbits = match subject.found.thresholds(balls) {
             Err(MelnikovError::Undecided { .. }) if !estimated => {
@@ -118,17 +118,9 @@ impl<'a> Measured<'a> {
         if self.subject.point.is_some() {
             return Ok(Vec::new());
         }
-        let checks = match &self.subject.found.unperturbed {
-            Unperturbed::Numeric(orbit) => orbit.check((self.digits as f64 * 3.33) as u32 + 20),
-            Unperturbed::Closed { .. } => Vec::new(),
-        };
-        let saddle = self.orbits.first().and_then(|orbit| orbit.saddle);
-        let several = self.orbits.iter().any(|orbit| orbit.saddle != saddle);
-        let one = |(n, orbit): (usize, &OrbitValue<Threshold>)| {
-            let name = match orbit.saddle {
-                Some(x) if several => format!("{} at x = {}", orbit.name, few_digits(x)),
-                _ => orbit.name.to_owned(),
-            };
+        let checks = checks(&self.subject.found.unperturbed, self.digits);
+        let several = several(&self.orbits);
+        let one = |(n, name): (usize, String)| {
             Ok(Orbit {
                 name,
                 gamma_c: self.part(n, |o| &o.value.gamma)?,
@@ -137,7 +129,7 @@ impl<'a> Measured<'a> {
                 least: several.then_some(n == self.first),
             })
         };
-        self.orbits.iter().enumerate().map(one).collect()
+        names(&self.orbits).into_iter().enumerate().map(one).collect()
     }
 
     fn cusp(&self, speed: &Number) -> Result<Option<Cusp>, Error> {
@@ -212,8 +204,37 @@ fn few_digits(x: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
+/// Bits of a number that is estimated.
+pub(super) fn estimating_bits(digits: usize) -> u32 {
+    (digits as f64 * 3.33) as u32 + 48
+}
+
+/// The checks of numeric orbits.
+pub(super) fn checks(unperturbed: &Unperturbed, digits: usize) -> Vec<OrbitCheck> {
+    match unperturbed {
+        Unperturbed::Numeric(orbit) => orbit.check((digits as f64 * 3.33) as u32 + 20),
+        Unperturbed::Closed { .. } => Vec::new(),
+    }
+}
+
+/// Whether the orbits have several saddles.
+fn several<T>(orbits: &[OrbitValue<T>]) -> bool {
+    let saddle = orbits.first().and_then(|orbit| orbit.saddle);
+    orbits.iter().any(|orbit| orbit.saddle != saddle)
+}
+
+/// Which orbits; with their saddles where there are several.
+pub(super) fn names<T>(orbits: &[OrbitValue<T>]) -> Vec<String> {
+    let several = several(orbits);
+    let name = |orbit: &OrbitValue<T>| match orbit.saddle {
+        Some(x) if several => format!("{} at x = {}", orbit.name, few_digits(x)),
+        _ => orbit.name.to_owned(),
+    };
+    orbits.iter().map(name).collect()
+}
+
 /// How the orbit was checked.
-fn check(unperturbed: &Unperturbed, check: Option<&OrbitCheck>) -> Option<String> {
+pub(super) fn check(unperturbed: &Unperturbed, check: Option<&OrbitCheck>) -> Option<String> {
     let Unperturbed::Closed { potential, .. } = unperturbed else {
         return check.map(|c| {
             let (kind, end) = if c.homoclinic {
