@@ -12,8 +12,8 @@ use lindstedt::trade::Plan;
 use lindstedt::unstable::impact::parameters::Branch;
 use lindstedt::unstable::impact::{characteristic::Kick, prediction::Variant};
 use lindstedt::{
-    Condition, Derive, Error, Evaluate, Oscillator, Respond, Route, Simulate, Stability, Threshold,
-    Verify, Work,
+    Condition, Derive, Error, Evaluate, Kind, Oscillator, Refusal, Respond, Route, Simulate, Stability,
+    Threshold, Verify, Work,
 };
 
 /// An answer that can be read in every form.
@@ -43,9 +43,16 @@ pub fn ask(case: &Oscillator, verb: &str, options: &Options, work: &Work) -> Ask
         "simulate" => simulate(case, options, work),
         "threshold" => {
             if let Some(name) = options.text("unknown").as_deref().or(case.unknown()) {
-                let order = options.parsed("order")?.unwrap_or(2);
+                let order: Option<usize> = options.parsed("order")?;
                 options.finish()?;
-                return boxed(case.homoclinic(name, order, work));
+                let series = case.homoclinic(name, order.unwrap_or(2), work);
+                let first = order.unwrap_or(0) == 0;
+                return match series {
+                    Err(error) if first && error.kind() == Kind::NoAnswer => {
+                        boxed(case.persistence(name, work))
+                    }
+                    other => boxed(other),
+                };
             }
             let question = threshold(case, options)?;
             boxed(case.threshold(&question, work))

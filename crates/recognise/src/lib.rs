@@ -1,5 +1,5 @@
 //! From the equation of a problem to what a method needs: Melnikov's potential, friction, forcing
-//! and belt speed ([`MelnikovProblem`]), a saddle with a parameter that is sought ([`SaddleProblem`]), the impact
+//! and belt speed ([`MelnikovProblem`]), a parameter that is sought to first order ([`PersistenceProblem`]) and to any ([`SaddleProblem`]), the impact
 //! oscillator of section 2 ([`ImpactProblem`]).
 //!
 //! Terms are matched by what they are, multiplied out with the values of the parameters, never by
@@ -8,6 +8,7 @@
 #![warn(clippy::too_many_lines)]
 
 mod bound;
+mod factors;
 mod forces;
 mod impact;
 mod in_pi;
@@ -16,7 +17,9 @@ mod lowest;
 mod melnikov;
 mod motion;
 mod numeric;
+mod persistence;
 mod potential;
+mod reading;
 mod refusal;
 mod saddle;
 mod search;
@@ -24,8 +27,10 @@ mod threshold;
 
 pub use impact::{ImpactProblem, linear_in_time};
 pub use lowest::LowestHarmonic;
-pub use melnikov::{MelnikovProblem, Unperturbed};
+pub use melnikov::MelnikovProblem;
 pub use numeric::{NumericOrbit, OrbitCheck};
+pub use persistence::{PersistenceProblem, Persistent};
+pub use reading::Unperturbed;
 pub use refusal::{Refusal, Why};
 pub use saddle::SaddleProblem;
-pub use threshold::OrbitThreshold;
+pub use threshold::{OrbitValue, Perturbation};

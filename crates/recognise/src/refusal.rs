@@ -18,12 +18,14 @@ pub enum Why {
     Delay,
     /// A formal function.
     Formal,
-    /// A dissipative term that depends on x.
+    /// A dissipative term that depends on x otherwise than by g(x) x'^j.
     DependsOnPosition,
     /// A function of t other than a harmonic force.
     NotHarmonic,
-    /// A parametric force beside another force, or where the orbit does not take it.
-    Parametric,
+    /// A periodic force where none may be.
+    Periodic,
+    /// A factor of x other than x^n or sines and cosines of k x.
+    PositionFactor,
     /// The lowest of several harmonics has a negative coefficient: the thresholds of the two signs
     /// differ.
     NegativeForce,
@@ -53,9 +55,11 @@ impl fmt::Display for Why {
             Self::SmallInside => "has the small parameter inside a function",
             Self::Delay => "is a delay; Melnikov's method has none",
             Self::Formal => "is a formal function",
-            Self::DependsOnPosition => "depends on x; the perturbation is a function of x' or a force",
-            Self::NotHarmonic => "is no harmonic force cos(omega*t + phase)",
-            Self::Parametric => "is a parametric force; alone, on a polynomial potential about x = 0 it can be taken",
+            Self::DependsOnPosition => "depends on x and is no g(x)*x'^j with a power, or sines and cosines of k*x, for g",
+            Self::NotHarmonic => "is no harmonic force cos(omega*t + phase), also times a power of x or sines and cosines of k*x",
+            Self::Periodic => "is a periodic force; a parameter for which the orbit persists is sought without one",
+            Self::PositionFactor => "has a factor of x that is neither a power nor a product of sin(k*x + phase), cos(k*x + phase) \
+                                     with phases in quarter turns",
             Self::NegativeForce => "has a negative coefficient beside other harmonics; shift the time so that the lowest one is positive",
             Self::OtherSpeed => "jumps or bends elsewhere than at one speed x' = v*, the same for all terms",
             Self::Irrational => "has a coefficient that is neither rational nor a rational multiple of pi",

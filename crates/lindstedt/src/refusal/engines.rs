@@ -259,9 +259,12 @@ impl Refusal for lindstedt_orbit::Failure {
     }
 }
 
+/// What is left of a series of homoclinic orbits that is refused.
+const FIRST_ORDER: &str = "without --order the first order is found by Melnikov's integral; `lindstedt simulate` follows it in time";
+
 impl Refusal for lindstedt_recognise::Refusal {
     fn parts(&self) -> (Kind, &'static str, String) {
-        use lindstedt_recognise::Refusal;
+        use lindstedt_recognise::{Refusal, Why};
         let (kind, code, hint) = match self {
             Refusal::MissingValues { .. } => {
                 (Usage, "no-value-set", "give it under [parameters] or with --set NAME=VALUE")
@@ -269,8 +272,22 @@ impl Refusal for lindstedt_recognise::Refusal {
             Refusal::Periods { .. } => (Usage, "parameter", "k = 1, 2, ..."),
             Refusal::TooManyTerms { .. } => (Undecided, "too-large", ""),
             Refusal::NoSaddleForm | Refusal::MovesSaddle { .. } => {
-                (NoAnswer, "no-method", "`lindstedt simulate` follows it in time")
+                (NoAnswer, "no-method", FIRST_ORDER)
             }
+            Refusal::NoForce => (
+                NoAnswer,
+                "no-method",
+                "--unknown NAME finds the value of a parameter for which the orbit persists",
+            ),
+            Refusal::Term {
+                why: Why::DependsOnPosition | Why::NotHarmonic | Why::PositionFactor,
+                ..
+            } => (
+                NoAnswer,
+                "no-method",
+                "`lindstedt simulate --section stroboscopic` shows where chaos begins",
+            ),
+            Refusal::NoOrbit => (NoAnswer, "no-method", "`lindstedt simulate` takes it"),
             Refusal::Melnikov(error) => return error.parts(),
             _ => (NoAnswer, "no-method", "`lindstedt problems --show FILE` lists the methods"),
         };
@@ -290,9 +307,7 @@ impl Refusal for MelnikovError {
             Self::NotSquare { .. } => {
                 (NoAnswer, "irrational", "another unit of time, t = s*c, makes it a square")
             }
-            Self::LeavesRing { .. } => {
-                (NoAnswer, "no-method", "`lindstedt simulate` follows it in time")
-            }
+            Self::LeavesRing { .. } => (NoAnswer, "no-method", FIRST_ORDER),
             _ => (NoAnswer, "no-answer", ""),
         };
         (kind, code, hint.to_owned())

@@ -11,6 +11,7 @@
 
 mod homoclinic;
 mod orbits;
+mod persistence;
 mod resonances;
 mod subject;
 mod sweep;
@@ -26,6 +27,7 @@ use std::time::Instant;
 use subject::Subject;
 
 pub use homoclinic::{HomoclinicResidual, HomoclinicSeries};
+pub use persistence::{Persistence, PersistentOrbit};
 pub use sweep::{Blank, Marks, Sweep};
 
 /// What to say of the threshold besides its value.

@@ -9,6 +9,7 @@ mod evaluate;
 mod family;
 mod homoclinic;
 mod motion;
+mod persistence;
 mod prove;
 mod resonance;
 mod respond;
