@@ -20,6 +20,7 @@ mod potential;
 mod refusal;
 mod saddle;
 mod search;
+mod splitting;
 mod threshold;
 
 pub use impact::{ImpactProblem, linear_in_time};
@@ -28,4 +29,5 @@ pub use melnikov::{MelnikovProblem, Unperturbed};
 pub use numeric::{NumericOrbit, OrbitCheck};
 pub use refusal::{Refusal, Why};
 pub use saddle::SaddleProblem;
+pub use splitting::{GAMMA, OrbitSplitting, SplittingProblem};
 pub use threshold::OrbitThreshold;

@@ -268,7 +268,10 @@ impl Refusal for lindstedt_recognise::Refusal {
             }
             Refusal::Periods { .. } => (Usage, "parameter", "k = 1, 2, ..."),
             Refusal::TooManyTerms { .. } => (Undecided, "too-large", ""),
-            Refusal::NoSaddleForm | Refusal::MovesSaddle { .. } => {
+            Refusal::NoSaddleForm
+            | Refusal::MovesSaddle { .. }
+            | Refusal::NoPeriod
+            | Refusal::Tangent => {
                 (NoAnswer, "no-method", "`lindstedt simulate` follows it in time")
             }
             Refusal::Melnikov(error) => return error.parts(),
