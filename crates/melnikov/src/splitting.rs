@@ -14,6 +14,7 @@
 //!
 //!   gamma_c(eps) = gamma_0 + gamma_1 eps + O(eps^2),   gamma_1 = -M_2(t_0)/F(t_0) at gamma_0.
 
+use crate::{Branch, StickSlip};
 use std::f64::consts::PI;
 
 /// A function of (x, x') with its derivatives by x and by x'.
@@ -95,7 +96,8 @@ fn step(
         for (k, rate) in rates.iter_mut().enumerate() {
             *rate = [stages[k][1], acceleration(k, stages[k][0])?];
         }
-        let moved = |k: usize| (stages[k][0] - before[k][0]).abs() + (stages[k][1] - before[k][1]).abs();
+        let moved =
+            |k: usize| (stages[k][0] - before[k][0]).abs() + (stages[k][1] - before[k][1]).abs();
         let size = state[0].abs() + state[1].abs();
         if (0..3).all(|k| moved(k) <= 4.0 * f64::EPSILON * size) {
             break;
@@ -150,7 +152,12 @@ impl Splitting<'_> {
         let fine = self.with_steps(orbit, 2.0 * STEPS)?;
         // Of order 6 the finer one has a 63rd of the difference left, less regularly where it is cut at kinks.
         let error = (fine.1 - coarse.1).abs() / 8.0 + 1e-10 * fine.1.abs().max(fine.0.abs());
-        fine.1.is_finite().then_some(SecondOrder { signed: fine.0, slope: fine.1, error, strength: fine.2 })
+        fine.1.is_finite().then_some(SecondOrder {
+            signed: fine.0,
+            slope: fine.1,
+            error,
+            strength: fine.2,
+        })
     }
 
     /// gamma_0, gamma_1 and the strength with so many steps per unit of the fastest time.
@@ -159,9 +166,9 @@ impl Splitting<'_> {
         let dissipation = first_order(&sides, &|_, x, v| Some((self.friction)(x, v)?[0]))?;
         let count = 2 * self.harmonics as usize + 2;
         let times: Vec<f64> = (0..count).map(|j| self.period * j as f64 / count as f64).collect();
-        let works = times.iter().map(|shift| {
-            first_order(&sides, &|t, x, v| Some((self.drive)(t + shift, x, v)?[0]))
-        });
+        let works = times
+            .iter()
+            .map(|shift| first_order(&sides, &|t, x, v| Some((self.drive)(t + shift, x, v)?[0])));
         let work = Waves::new(self.period, &works.collect::<Option<Vec<f64>>>()?);
         let places = work.largest(dissipation.signum());
         let slopes = places.iter().map(|(time, size)| {
@@ -201,7 +208,11 @@ impl Splitting<'_> {
         while side.steps.len() < MOST_STEPS {
             let (mut stages, mut end) = step(state, h, &force)?;
             let arrived = |end: &State| {
-                if is_loop { end[1] * sense * away <= 0.0 } else { (end[0] - orbit.middle) * away >= 0.0 }
+                if is_loop {
+                    end[1] * sense * away <= 0.0
+                } else {
+                    (end[0] - orbit.middle) * away >= 0.0
+                }
             };
             let kink = self.kink.filter(|k| above.is_some_and(|above| (end[1] > *k) != above));
             let last = kink.is_none() && arrived(&end);
@@ -255,7 +266,8 @@ impl Splitting<'_> {
             let (stages, next) = self::step(first, step.h, &rate)?;
             for (k, ([f, _], [g, by_x, by_v])) in local.into_iter().enumerate() {
                 let v = step.stages[k][1];
-                let part = |[x, rate]: State| WEIGHTS[k] * step.h * (rate * (g + v * by_v) + v * by_x * x);
+                let part =
+                    |[x, rate]: State| WEIGHTS[k] * step.h * (rate * (g + v * by_v) + v * by_x * x);
                 energy += part(stages[k]);
                 along += part([v, f]);
             }
@@ -287,10 +299,42 @@ impl Splitting<'_> {
     fn bounded(&self, side: &Side, gamma: f64, time: f64) -> Option<State> {
         let count = 2 * self.harmonics as usize + 2;
         let at = |j: usize| self.period * j as f64 / count as f64;
-        let values = (0..count).map(|j| Some(self.perturbation(gamma, at(j), [side.saddle, 0.0])?[0]));
+        let values =
+            (0..count).map(|j| Some(self.perturbation(gamma, at(j), [side.saddle, 0.0])?[0]));
         let force = Waves::new(self.period, &values.collect::<Option<Vec<f64>>>()?);
         let response = |w: f64| -1.0 / (side.rate.powi(2) + w * w);
         Some([force.value(time, 0, &response), force.value(time, 1, &response)])
+    }
+}
+
+impl StickSlip {
+    /// gamma_0 and gamma_1 on the right (positive) or the left loop. Estimated.
+    ///
+    /// ```
+    /// use lindstedt_melnikov::{Branch, StickSlip};
+    /// let right = StickSlip::paper().second_order(Branch::Positive).expect("v* is neither 0 nor V");
+    /// assert!((right.slope - 0.199_320_25).abs() < 1e-8);
+    /// ```
+    #[must_use]
+    pub fn second_order(&self, branch: Branch) -> Option<SecondOrder> {
+        let [a, b, dry, alpha, beta, omega, belt] =
+            [&self.a, &self.b, &self.dry, &self.alpha, &self.beta, &self.omega, &self.belt_speed]
+                .map(|value| value.to_f64());
+        let friction = |_: f64, v: f64| {
+            let w = v - belt;
+            let law = dry * w.signum() - alpha * w + beta * w.powi(3);
+            Some([law, 0.0, 3.0 * beta * w * w - alpha])
+        };
+        let splitting = Splitting {
+            force: &|x| Some([x * (a - b * x * x), a - 3.0 * b * x * x]),
+            drive: &|t, _, _| Some([(omega * t).cos(), 0.0, 0.0]),
+            friction: &friction,
+            period: 2.0 * PI / omega,
+            harmonics: 1,
+            kink: (dry != 0.0).then_some(belt),
+        };
+        let middle = branch.sign() as f64 * (2.0 * a / b).sqrt();
+        splitting.second_order(&Connection { saddles: [0.0, 0.0], middle })
     }
 }
 

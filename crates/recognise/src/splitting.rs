@@ -125,8 +125,10 @@ impl SplittingProblem {
             harmonics: self.harmonics,
             kink: self.kink,
         };
-        let one = |(name, orbit): (&'static str, Connection)| {
-            OrbitSplitting { name, orbit, found: splitting.second_order(&orbit) }
+        let one = |(name, orbit): (&'static str, Connection)| OrbitSplitting {
+            name,
+            orbit,
+            found: splitting.second_order(&orbit),
         };
         self.orbits.connections().map(one).collect()
     }
@@ -186,7 +188,9 @@ impl Operations for At {
 
     fn power(&mut self, base: &Expression, exponent: &Expression) -> Option<Local> {
         let z = base.evaluate(self)?;
-        if let Some(n) = exponent.as_number().and_then(|n| n.is_integer().then(|| n.numer().to_i32())?) {
+        if let Some(n) =
+            exponent.as_number().and_then(|n| n.is_integer().then(|| n.numer().to_i32())?)
+        {
             return Some(chain(z, z[0].powi(n), f64::from(n) * z[0].powi(n - 1)));
         }
         // b^n = exp(n ln b), n a number or not.

@@ -62,7 +62,8 @@ fn at_zero(points: &[(f64, f64)]) -> [f64; 2] {
     let mut differences: Vec<f64> = points.iter().map(|point| point.1).collect();
     for n in 1..points.len() {
         for k in (n..points.len()).rev() {
-            differences[k] = (differences[k] - differences[k - 1]) / (points[k].0 - points[k - n].0);
+            differences[k] =
+                (differences[k] - differences[k - 1]) / (points[k].0 - points[k - n].0);
         }
     }
     let horner = |[value, slope]: [f64; 2], (point, c): (&(f64, f64), &f64)| {

@@ -256,8 +256,8 @@ impl Homoclinic<'_> {
         }
         // The same orbit, begun one period farther out, or nearer where that is far: how straight the manifold is.
         let saddle = self.saddle(value, tick)?;
-        let nearer = saddle.multipliers[0] > ORDINARY
-            && self.amount(&saddle, phase - 1.0).abs() > NEAREST;
+        let nearer =
+            saddle.multipliers[0] > ORDINARY && self.amount(&saddle, phase - 1.0).abs() > NEAREST;
         let begun = if nearer { (phase - 1.0, periods + 1) } else { (phase + 1.0, periods - 1) };
         let (other, _) = self.newton((value, begun.0), begun.1, tick)?;
         Ok(Tangency { value, error: error + (other - value).abs(), phase, periods })

@@ -88,7 +88,12 @@ pub(super) fn list(subject: &Subject<'_>) -> Result<Vec<SecondOrderThreshold>, E
                 "the second order on the {} was not found: there D = 0, or x' = v* is not passed with a speed",
                 orbit.name
             );
-            return Err(Refused::undecided("could-not-decide", message, "other values of the parameters").into());
+            return Err(Refused::undecided(
+                "could-not-decide",
+                message,
+                "other values of the parameters",
+            )
+            .into());
         };
         let followed = follow(subject, &problem, orbit, found)?;
         let (manifolds, not_followed) = match followed {
@@ -97,7 +102,11 @@ pub(super) fn list(subject: &Subject<'_>) -> Result<Vec<SecondOrderThreshold>, E
         };
         let gamma = found.signed.abs();
         list.push(SecondOrderThreshold {
-            name: if several { format!("{} at x = {}", orbit.name, saddle(orbit)) } else { orbit.name.to_owned() },
+            name: if several {
+                format!("{} at x = {}", orbit.name, saddle(orbit))
+            } else {
+                orbit.name.to_owned()
+            },
             parameter: subject.oscillator.problem().small.to_string(),
             gamma_c: number(gamma, 1e-10 * gamma)?,
             slope: number(found.slope, found.error)?,
@@ -148,9 +157,8 @@ fn follow(
         if subject.work.stop.asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let bracket = (gamma - width, gamma + width);
-    let [few, more] = ORBITS.map(|count| {
-        move || homoclinic.tangent_line(("eps", &values), bracket, count, &tick)
-    });
+    let [few, more] = ORBITS
+        .map(|count| move || homoclinic.tangent_line(("eps", &values), bracket, count, &tick));
     let line = few().or_else(|failure| match failure {
         SimulateError::NoTangency { .. } => more(),
         other => Err(other),
