@@ -296,6 +296,7 @@ pub fn threshold(case: &Oscillator, options: &Options) -> Result<Threshold, Erro
         sweep: options.axes(case)?,
         zeros: options.read("zeros", Axis::ends)?,
         subharmonics: options.parsed("subharmonics")?,
+        second_order: options.flag("second_order")?,
     };
     options.finish()?;
     Ok(question)

@@ -255,9 +255,13 @@ pub struct ThresholdOptions {
     /// Thresholds of the resonances of period 2 pi m/omega, m = 1 ... M, in one well and around both.
     #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub subharmonics: Option<u32>,
+    /// The threshold to second order in the small parameter on every orbit, by Melnikov's integral of second order; of
+    /// loops also from the tangencies of their manifolds (some seconds).
+    #[arg(long)]
+    pub second_order: bool,
     /// The parameter for which the orbit of an autonomous problem stays homoclinic, as a series in the small parameter
     /// (also `unknown` in the file).
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["sweep", "zeros", "subharmonics", "plot"])]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["sweep", "zeros", "subharmonics", "second_order", "plot"])]
     pub unknown: Option<String>,
     /// The highest order of that series.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]

@@ -23,6 +23,7 @@ mod orbit;
 mod potential;
 pub mod quadrature;
 mod root;
+pub mod splitting;
 mod stick_slip;
 mod subharmonic;
 mod surface;

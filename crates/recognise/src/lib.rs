@@ -23,6 +23,7 @@ mod reading;
 mod refusal;
 mod saddle;
 mod search;
+mod splitting;
 mod threshold;
 
 pub use impact::{ImpactProblem, linear_in_time};
@@ -33,4 +34,5 @@ pub use persistence::{PersistenceProblem, Persistent};
 pub use reading::Unperturbed;
 pub use refusal::{Refusal, Why};
 pub use saddle::SaddleProblem;
+pub use splitting::{GAMMA, OrbitSplitting, SplittingProblem};
 pub use threshold::{OrbitValue, Perturbation};

@@ -11,6 +11,7 @@ use lindstedt_algebra::Stop;
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::Monomials;
 use lindstedt_melnikov::quadrature::tanh_sinh;
+use lindstedt_melnikov::splitting::Connection;
 use lindstedt_melnikov::{Class, MelnikovError, Threshold};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
@@ -87,6 +88,18 @@ impl NumericOrbit {
     #[must_use]
     pub fn watched(self, stop: &Stop) -> Self {
         Self { stop: stop.clone(), ..self }
+    }
+
+    /// The orbits by name, each from the saddle that it leaves.
+    pub(crate) fn connections(&self) -> impl Iterator<Item = (&'static str, Connection)> {
+        self.paths.iter().map(|path| {
+            let other = path.other.as_ref().unwrap_or(&path.saddle).to_f64();
+            let mut saddles = [path.saddle.to_f64(), other];
+            if (other - saddles[0]) * f64::from(path.sign) < 0.0 {
+                saddles.reverse();
+            }
+            (path.name, Connection { saddles, middle: path.start.to_f64() })
+        })
     }
 
     /// Whether f has a positive derivative at a zero: its difference quotients agree. Near other

@@ -100,6 +100,12 @@ pub enum Refusal {
         /// Why.
         why: Why,
     },
+    /// The forces have no common period.
+    #[error("the forces have no common period, so there is no map whose manifolds could touch")]
+    NoPeriod,
+    /// The orbit touches the line where friction jumps.
+    #[error("friction jumps at v*, and v* = 0 or |v*| = V: the expansion in eps fails there")]
+    Tangent,
     /// No harmonic force.
     #[error("there is no harmonic force")]
     NoForce,

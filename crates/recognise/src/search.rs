@@ -5,6 +5,8 @@ use rug::Float;
 
 /// Points of the search for saddles and turning points.
 const POINTS: i32 = 4000;
+/// Rounding errors of W, as a share of its largest value.
+const ROUNDING: f64 = 1e-13;
 /// Points at which two orbits are compared.
 const SAMPLES: u32 = 7;
 
@@ -91,7 +93,6 @@ impl NumericOrbit {
         while (at(n).to_f64()).abs() <= 1.5 * reach {
             let (here, next) = (at(n), at(n + 1));
             let piece = self.cell(&here, &next)?;
-            let before = w.clone();
             w += piece;
             if w > top {
                 top = w.clone();
@@ -117,7 +118,8 @@ impl NumericOrbit {
                     return Some(vec![path("upper orbit", 1), path("lower orbit", -1)]);
                 }
             }
-            if n > 0 && before > 0 && w < 0 {
+            // On a step that ends at another saddle W is zero but for rounding errors.
+            if n > 0 && w < Float::with_val(53, &top * -ROUNDING) {
                 let name = if direction > 0 { "right loop" } else { "left loop" };
                 let start = self.turning_point(saddle, &next, COARSE)?;
                 return Some(vec![Path {

@@ -53,6 +53,7 @@ mod keeper;
 mod linear;
 mod local;
 mod lyapunov;
+mod onset;
 mod outcome;
 mod past;
 mod poincare;
@@ -87,6 +88,7 @@ pub use lyapunov::{LyapunovExponent, LyapunovSettings, largest_lyapunov_exponent
 pub use poincare::{PoincareMap, Point, Section};
 pub use quantity::{Parameters, Quantity};
 
+pub use onset::TangencyLine;
 pub use outcome::Outcome;
 pub use report::{Event, EventKind, Report, Segment, Work};
 pub use saddle::{Saddle, saddle, unstable_manifold};

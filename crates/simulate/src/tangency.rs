@@ -81,7 +81,7 @@ pub struct Tangency {
     /// The value of the free parameter.
     pub value: f64,
     /// Its estimated error: the change when the orbit is followed one period less, and when it
-    /// begins one period farther from the saddle.
+    /// begins one period farther from the saddle (nearer, where a period is long).
     pub error: f64,
     /// The phase sigma of the tangent orbit on the unstable manifold (not reduced to [0, 1)).
     pub phase: f64,
@@ -94,6 +94,10 @@ type Place = (System<Doubles>, Saddle);
 
 /// A: small, so that the manifold is straight, but far above rounding errors.
 const AMOUNT: f64 = 1e-6;
+/// A is that for multipliers up to this one and smaller beyond, so that A mu is as small.
+const ORDINARY: f64 = 25.0;
+/// Nearer to the saddle than this nothing begins.
+const NEAREST: f64 = 1e-13;
 /// Looks per period.
 const LOOKS: usize = 64;
 
@@ -111,7 +115,8 @@ impl Homoclinic<'_> {
     }
 
     fn amount(&self, saddle: &Saddle, phase: f64) -> f64 {
-        let amount = AMOUNT * saddle.multipliers[0].powf(phase);
+        let multiplier = saddle.multipliers[0];
+        let amount = AMOUNT * (ORDINARY / multiplier).min(1.0) * multiplier.powf(phase);
         if self.side == Loop::Right { amount } else { -amount }
     }
 
@@ -249,8 +254,12 @@ impl Homoclinic<'_> {
             (value, phase) = next;
             (error, periods) = (change, periods + 1);
         }
-        // The same orbit, begun one period farther out: how straight the manifold is there.
-        let (other, _) = self.newton((value, phase + 1.0), periods - 1, tick)?;
+        // The same orbit, begun one period farther out, or nearer where that is far: how straight the manifold is.
+        let saddle = self.saddle(value, tick)?;
+        let nearer =
+            saddle.multipliers[0] > ORDINARY && self.amount(&saddle, phase - 1.0).abs() > NEAREST;
+        let begun = if nearer { (phase - 1.0, periods + 1) } else { (phase + 1.0, periods - 1) };
+        let (other, _) = self.newton((value, begun.0), begun.1, tick)?;
         Ok(Tangency { value, error: error + (other - value).abs(), phase, periods })
     }
 

@@ -274,6 +274,9 @@ impl Refusal for lindstedt_recognise::Refusal {
             Refusal::NoSaddleForm | Refusal::MovesSaddle { .. } => {
                 (NoAnswer, "no-method", FIRST_ORDER)
             }
+            Refusal::NoPeriod | Refusal::Tangent => {
+                (NoAnswer, "no-method", "`lindstedt simulate` follows it in time")
+            }
             Refusal::NoForce => (
                 NoAnswer,
                 "no-method",

@@ -13,6 +13,7 @@ mod homoclinic;
 mod orbits;
 mod persistence;
 mod resonances;
+mod splitting;
 mod subject;
 mod sweep;
 mod zeros;
@@ -28,6 +29,7 @@ use subject::Subject;
 
 pub use homoclinic::{HomoclinicResidual, HomoclinicSeries};
 pub use persistence::{Persistence, PersistentOrbit};
+pub use splitting::{ManifoldPoint, Manifolds, SecondOrderThreshold};
 pub use sweep::{Blank, Marks, Sweep};
 
 /// What to say of the threshold besides its value.
@@ -49,6 +51,9 @@ pub struct Threshold {
     pub zeros: Option<Axis>,
     /// The thresholds of the resonances of period 2 pi m/omega, m = 1 ... M.
     pub subharmonics: Option<u32>,
+    /// The threshold to second order in the small parameter, gamma_c + slope eps, on every orbit, loops held against
+    /// their manifolds: some seconds.
+    pub second_order: bool,
 }
 
 /// The threshold of an oscillator. Closed forms are certified; orbits that are followed
@@ -90,6 +95,9 @@ pub struct HomoclinicThreshold {
     /// The resonances that exist, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub subharmonics: Option<Vec<Resonance>>,
+    /// To second order in the small parameter, if asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub second_order: Vec<SecondOrderThreshold>,
     /// Whether there are transversal homoclinic points at gamma.
     pub homoclinic_points: Crossing,
     /// Whether the theory can be believed there.
@@ -257,6 +265,9 @@ impl Oscillator {
         }
         if let Some(largest) = question.subharmonics {
             value.subharmonics = Some(resonances::list(&subject, largest)?);
+        }
+        if question.second_order {
+            value.second_order = splitting::list(&subject)?;
         }
         value.sweep = sweep::compute(&subject, swept)?;
         value.remarks = subject.remarks(&value);

@@ -189,6 +189,7 @@ pub(super) fn measure(subject: &Subject<'_>) -> Result<HomoclinicThreshold, Erro
         cusp: measured.cusp(&largest_speed)?,
         orbits: measured.all()?,
         subharmonics: None,
+        second_order: Vec::new(),
         homoclinic_points: measured.crossing(),
         validity: measured.validity()?,
         sweep: None,

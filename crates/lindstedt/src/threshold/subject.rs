@@ -6,7 +6,7 @@ use crate::{Error, Exact, Oscillator, Work};
 use lindstedt_equation::Expression;
 use lindstedt_melnikov::{self as melnikov, StickSlip};
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_recognise::{LowestHarmonic, MelnikovProblem, Refusal};
+use lindstedt_recognise::{LowestHarmonic, MelnikovProblem, Refusal, SplittingProblem};
 use std::collections::BTreeMap;
 
 /// The oscillator with what was found in its equation.
@@ -45,6 +45,12 @@ impl<'a> Subject<'a> {
     /// The small parameter; 1 where it has no value.
     pub fn eps(&self) -> Exact {
         self.values.get(&*self.oscillator.problem().small).cloned().unwrap_or(Exact::from(1))
+    }
+
+    /// The equation in the form of the second order.
+    pub fn splitting(&self) -> Result<SplittingProblem, Error> {
+        let found = SplittingProblem::new(self.oscillator.problem(), &self.values, &self.found);
+        found.map_err(|refusal| self.oscillator.unfit(refusal))
     }
 
     /// A range, if its parameter can be varied: the amplitude of the force cannot, gamma_c is a

@@ -5,7 +5,8 @@ use crate::figure::{Axis, Colour, Mark, Raster, colours};
 use crate::format::line as csv_line;
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::grid::{self, Grid};
-use lindstedt::threshold::{Harmonic, HomoclinicThreshold, Sweep};
+use lindstedt::threshold::{Harmonic, HomoclinicThreshold, SecondOrderThreshold, Sweep};
+use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::{Answer, Number, Remark, Standing};
 use std::collections::BTreeMap;
 
@@ -96,6 +97,34 @@ fn orbits(value: &HomoclinicThreshold) -> Vec<Line> {
     lines
 }
 
+/// gamma_c + slope eps, by both routes.
+fn second_order(found: &SecondOrderThreshold) -> Vec<Line> {
+    let small = &found.parameter;
+    let sum = |value: &Number, slope: &Number| {
+        let (sign, size) = match slope.decimal.strip_prefix('-') {
+            Some(size) => ("-", size),
+            None => ("+", &*slope.decimal),
+        };
+        let error = |number: &Number| number.error.clone().unwrap_or_default();
+        let text = format!("{} {sign} {size}*{small}", value.decimal);
+        let latex = format!(r"{} {sign} {size}\,{}", value.decimal, latex_name(small));
+        Text::default().formula(Formula::new(text, latex)).and(&format!(
+            " (estimated, errors {} and {})",
+            error(value),
+            error(slope)
+        ))
+    };
+    let name = |words: &str| gamma_c(&format!(" to second order{words}, {}", found.name));
+    let mut lines = vec![(name(""), sum(&found.gamma_c, &found.slope))];
+    if let Some(manifolds) = &found.manifolds {
+        lines.push((name(" from the manifolds"), sum(&manifolds.gamma_c, &manifolds.slope)));
+    }
+    if let Some(reason) = &found.not_followed {
+        lines.push((name(" from the manifolds"), reason.as_str().into()));
+    }
+    lines
+}
+
 /// The verdict with its distances as formulas.
 fn verdict(words: &str) -> Text {
     let marked = words.replace("||v*| - V|", "$D$").replace("|v*|", "$|v*|$");
@@ -108,6 +137,7 @@ impl Present for Answer<HomoclinicThreshold> {
         let at: Vec<String> = self.header.at.iter().map(|(n, v)| format!("{n} = {v}")).collect();
         let mut lines = numbers(value);
         lines.extend(orbits(value));
+        lines.extend(value.second_order.iter().flat_map(second_order));
         let crossing = value.homoclinic_points.word();
         lines.push(line("transversal homoclinic points at gamma", crossing));
         lines.push((Text::words("validity"), verdict(value.validity.verdict)));
