@@ -30,6 +30,7 @@ mod json;
 mod names;
 mod period;
 mod periodic;
+mod phases;
 pub mod rotating;
 pub mod setting;
 mod solution;

@@ -1,7 +1,7 @@
 //! Derived once, evaluated often: the frequency at a million parameters, x(t) at a million times.
 
 use super::code::no_value;
-use super::{Evaluate, Fourier, PeriodicSolution, SolutionFunction, Trajectory};
+use super::{Evaluate, Fourier, PeriodicSolution, Question, SolutionFunction, Trajectory};
 use crate::{Answer, DerivationError, Error, Exact, Oscillator, Remark, Standing, Work};
 use lindstedt_equation::AmplitudeRole;
 use lindstedt_evaluation::EvaluationError;
@@ -144,8 +144,8 @@ impl Oscillator {
     /// x(t) by its first harmonics in omega t, for any number of times, with its estimated error.
     ///
     /// Taken once from the solution that [`Oscillator::evaluate`] finds for the same question: its series summed
-    /// phase by phase, or Newton's orbit in Fourier space. Cost: as for a table of four times as many times as
-    /// harmonics; then some 2 ns per harmonic and time.
+    /// phase by phase, or Newton's orbit in Fourier space. Cost: as for a table of as many times as harmonics for a motion
+    /// with both symmetries, four times as many for one without; then some 2 ns per harmonic and time.
     ///
     /// # Errors
     /// As [`Oscillator::solution_code`].
@@ -191,7 +191,8 @@ impl Oscillator {
         let (way, order) = match by_newton {
             Some((series, frequency)) => (Way::Newton(series, frequency), found.order),
             None => {
-                let path = case.trajectory(&found, question, work)?;
+                let make = |asked: Question<'_>| Trajectory::without_error(asked, work);
+                let path = case.path(&found, question, make)?;
                 let order = path.order();
                 (Way::Sum(Box::new(path)), order)
             }

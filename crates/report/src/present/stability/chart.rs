@@ -25,12 +25,12 @@ enum Stands {
     Open,
 }
 
-/// All of them: sign, colour; colours differ in brightness and for colour-blind readers.
+/// All of them: sign, colour.
 const STANDS: [(Stands, char, Option<Colour>); 7] = [
-    (Stands::BothStable, '#', Some(colours::GREEN)),
-    (Stands::BothUnstable, '.', Some((226, 226, 226))),
-    (Stands::FalseStable, '!', Some(colours::VERMILION)),
-    (Stands::FalseUnstable, 'o', Some(colours::SKY)),
+    (Stands::BothStable, '#', Some(colours::VERDICTS[0])),
+    (Stands::BothUnstable, '.', Some(colours::VERDICTS[1])),
+    (Stands::FalseStable, '!', Some(colours::VERDICTS[2])),
+    (Stands::FalseUnstable, 'o', Some(colours::VERDICTS[3])),
     (Stands::OnlyStable, '#', Some((160, 214, 180))),
     (Stands::OnlyUnstable, '.', Some((240, 240, 240))),
     (Stands::Open, '?', None),
