@@ -4,9 +4,10 @@ use crate::options::Options;
 use crate::verbs;
 use crate::work::Means;
 use lindstedt::evaluate::{Estimated, FrequencyFunction, PeriodicSolution, SolutionFunction};
-use lindstedt::grid::Grid;
+use lindstedt::grid::{Grid, Part};
+use lindstedt::motion::Bifurcation;
 use lindstedt::unstable::impact::map::Verdict;
-use lindstedt::{Answer, Error, Oscillator, Stability, Standing, Stop};
+use lindstedt::{Answer, Error, Oscillator, Stability, Standing, Stop, Threshold};
 use lindstedt_report::json;
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
@@ -148,6 +149,15 @@ fn table<U, T: Clone>(grid: &Grid<U>, mut list: Vec<T>, blank: T) -> PyResult<Ar
     made.map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
+/// The part of a chart, a surface or a diagram: `FIRST,COUNT`.
+fn part(options: &Options) -> Result<Option<Part>, Error> {
+    match options.list("part")?.as_deref() {
+        None => Ok(None),
+        Some([first, count]) => Ok(Some((*first, *count))),
+        Some(_) => Err(crate::failure::usage("a part is its first row and their number", "0,16")),
+    }
+}
+
 /// The prediction and the truth over one or two parameters.
 pub fn chart<'py>(
     py: Python<'py>,
@@ -157,7 +167,8 @@ pub fn chart<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (chart, radius) = means.ask(py, move |work| {
         let radius = options.flag("radius")?;
-        let question = Stability { radius, ..verbs::stability(case, &options)? };
+        let part = part(&options)?;
+        let question = Stability { radius, part, ..verbs::stability(case, &options)? };
         let grid = case.stability(&question, work)?.value.grid;
         Ok((grid.ok_or_else(missing)?, radius))
     })?;
@@ -186,7 +197,8 @@ pub fn surface<'py>(
     means: &Means,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (sweep, standing) = means.ask(py, move |work| {
-        let question = verbs::threshold(case, &options)?;
+        let part = part(&options)?;
+        let question = Threshold { part, ..verbs::threshold(case, &options)? };
         let found = case.threshold(&question, work)?;
         Ok((found.value.sweep.ok_or_else(missing)?, found.standing))
     })?;
@@ -215,7 +227,9 @@ pub fn diagram<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let found = means.ask(py, move |work| {
         let sweep = options.text("sweep").ok_or_else(missing)?;
-        case.bifurcation(&verbs::diagram(&sweep, &options)?, work)
+        let part = part(&options)?;
+        let question = Bifurcation { part, ..verbs::diagram(&sweep, &options)? };
+        case.bifurcation(&question, work)
     })?;
     let (swept, dict) = (&found.value.sweep, PyDict::new(py));
     let columns = || swept.columns.iter();

@@ -180,6 +180,13 @@ impl Case {
         })
     }
 
+    /// The number of values of every axis of a sweep.
+    fn counts(&self, py: Python<'_>, sweep: &str) -> PyResult<Vec<usize>> {
+        let count = |text: &str| self.0.axis(text).map(|axis| axis.values.len());
+        let counts: Result<_, Error> = sweep.split(';').map(count).collect();
+        counts.map_err(|error| exception(py, &error))
+    }
+
     /// A chart, a surface or a diagram as arrays.
     fn arrays<'py>(
         &self,

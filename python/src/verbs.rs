@@ -157,6 +157,10 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
         return boxed(case.evaluate(&question, work));
     };
     let harmonics = options.parsed("harmonics")?.unwrap_or(15);
+    if options.flag("functions")? {
+        options.finish()?;
+        return boxed(case.expansion_code(&question, language, harmonics, work));
+    }
     options.finish()?;
     boxed(case.solution_code(&question, language, harmonics, work))
 }
@@ -289,6 +293,7 @@ pub fn threshold(case: &Oscillator, options: &Options) -> Result<Threshold, Erro
         sweep: options.axes(case)?,
         zeros: options.read("zeros", Axis::ends)?,
         subharmonics: options.parsed("subharmonics")?,
+        part: None,
     };
     options.finish()?;
     Ok(question)

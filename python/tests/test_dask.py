@@ -49,6 +49,37 @@ def test_finished_parts_survive_their_worker(tmp_path: Path) -> None:
     assert started >= 5 and sum(runs.values()) - 32 <= 3, runs
 
 
+def _bytes(found: Any) -> list[Any]:
+    return [value.tobytes() if hasattr(value, "tobytes") else value for value in vars(found).values()]
+
+
+def test_charts_are_the_same_bit_by_bit() -> None:
+    impact, belt = Oscillator.builtin("vibro-impact"), Oscillator.builtin("stick-slip")
+    plane: Any = {"A": (-0.3, 0.3, 40), "B": (-0.3, 0.3, 60)}
+    # In uneven steps it is computed point by point.
+    uneven: Any = {"A": (-0.3, 0.3, 5), "B": [-0.3, -0.1, 0, 0.3]}
+    questions: list[tuple[Any, Any, dict[str, Any]]] = [
+        (impact.stability_chart, plane, {"radius": True}),
+        (impact.stability_chart, uneven, {}),
+        (belt.threshold_surface, {"vstar": (0, 1, 30), "omega": (1, 3, 50)}, {}),
+        # A frequency that is not positive: no value, and no fast way for the others.
+        (belt.threshold_surface, {"vstar": (0, 1, 3), "omega": (-1, 1, 5)}, {}),
+        (belt.bifurcation_diagram, {"gamma": ("0.5", "0.8", 12)}, {"skip": 20, "keep": 4}),
+    ]
+    local = [_bytes(ask(sweep, **options)) for ask, sweep, options in questions]
+    with (
+        distributed.LocalCluster(n_workers=4, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        doomed = min(client.run(os.getpid).values())
+        for number, (ask, sweep, options) in enumerate(questions):
+            if number == 1:
+                os.kill(doomed, signal.SIGKILL)
+            assert _bytes(ask(sweep, executor=client, block=3, **options)) == local[number], number
+        with pytest.raises(lindstedt.UsageError, match="follow"):
+            belt.bifurcation_diagram("gamma=0.5..0.6:2", executor=client, follow=True)
+
+
 def test_a_killed_worker_loses_nothing() -> None:
     cycle = Oscillator("x'' + x = eps*(1 - x**2)*x'")
     values: dict[str, list[lindstedt.Value]] = {"eps": [f"{n}/20" for n in range(1, 17)]}

@@ -26,6 +26,7 @@ pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
         sweep: options.sweep.iter().map(|text| oscillator.axis(text)).collect::<Result<_, _>>()?,
         zeros: options.zeros.as_deref().map(Axis::ends).transpose()?,
         subharmonics: options.subharmonics,
+        part: None,
     };
     session.check_sweep(&options.plot, question.sweep.len(), 1)?;
     session.check_writable(&options.problem, &options.plot, None)?;

@@ -144,6 +144,12 @@ class Solution:
         return ax
 
 
+def _joined(parts: list[dict[str, Any]], names: list[str]) -> dict[str, Any]:
+    """What all parts have in common, and these arrays one after the other."""
+    joined = {name: numpy.concatenate([p[name] for p in parts]) for name in names if parts[0][name] is not None}
+    return {**parts[0], **joined, "complete": all(part["complete"] for part in parts)}
+
+
 @dataclass(frozen=True)
 class StabilityChart:
     """Verdicts over two parameters, row y, column x: 1 stable, -1 unstable, 0 neutral or undecided, 2 without
@@ -157,6 +163,11 @@ class StabilityChart:
     exact: NDArray[numpy.int8]
     radius: Doubles | None
     complete: bool
+
+    @classmethod
+    def joined(cls, parts: list[dict[str, Any]]) -> StabilityChart:
+        """The chart of its blocks of rows."""
+        return cls(**_joined(parts, ["y", "predicted", "exact", "radius"]))
 
 
 @dataclass(frozen=True)
@@ -172,6 +183,12 @@ class ThresholdSurface:
     blanks: list[str]
     complete: bool
 
+    @classmethod
+    def joined(cls, parts: list[dict[str, Any]]) -> ThresholdSurface:
+        """The surface of its blocks of rows."""
+        blanks = sorted({reason for part in parts for reason in part["blanks"]})
+        return cls(**{**_joined(parts, ["y", "signed"]), "blanks": blanks})
+
 
 @dataclass(frozen=True)
 class BifurcationDiagram:
@@ -185,3 +202,9 @@ class BifurcationDiagram:
     velocity: Doubles
     ended: list[tuple[float, str]]
     complete: bool
+
+    @classmethod
+    def joined(cls, parts: list[dict[str, Any]]) -> BifurcationDiagram:
+        """The diagram of its blocks of values."""
+        ended = [end for part in parts for end in part["ended"]]
+        return cls(**{**_joined(parts, ["values", "value", "x", "velocity"]), "ended": ended})

@@ -45,7 +45,7 @@ impl Oscillator {
             let order = question.order.unwrap_or_else(|| default_order(&varied.setting.form));
             FrequencyFunction::new(varied, order, question.method, work)
         };
-        self.function(make, |frequency| frequency)
+        self.function(make, varying)
     }
 
     /// x(t) as a function of the small parameter, and of the amplitude where a scaling of the equation carries it: the
@@ -81,14 +81,15 @@ impl Oscillator {
             let order = question.order.unwrap_or_else(|| default_solution_order(form));
             SolutionFunction::new(varied, (order, harmonics), question.method, work)
         };
-        self.function(make, |solution| &solution.frequency)
+        self.function(make, |solution| varying(&solution.frequency))
     }
 
-    /// A function of what varies, with the values of all that does not.
-    fn function<F>(
+    /// A function of what varies, with the values of all that does not; it tells the name of the small parameter, whether
+    /// the amplitude varies, and the order.
+    pub(super) fn function<F>(
         &self,
         make: impl FnOnce(&Varied<'_>) -> Result<F, EvaluationError>,
-        frequency: impl Fn(&F) -> &FrequencyFunction,
+        varying: impl Fn(&F) -> (String, bool, usize),
     ) -> Result<Answer<F>, Error> {
         let start = Instant::now();
         self.without_pi()?;
@@ -97,11 +98,11 @@ impl Oscillator {
         let (setting, small, weight) = case.varied()?;
         let varied = Varied { setting: &setting, small, weight };
         let value = make(&varied).map_err(|error| case.unevaluated(error.into()))?;
-        let FrequencyFunction { small, has_amplitude, order, .. } = frequency(&value);
-        let varies = |name: &str| name == small || *has_amplitude && name == AMPLITUDE;
+        let (small, has_amplitude, order) = varying(&value);
+        let varies = |name: &str| name == small || has_amplitude && name == AMPLITUDE;
         let at = setting.at.iter().filter(|(name, _)| !varies(name));
         let at = at.map(|(name, value)| (name.clone(), value.to_string())).collect();
-        let header = self.header(at, Some(*order), "resummation", start);
+        let header = self.header(at, Some(order), "resummation", start);
         let remarks = self.remarks().to_vec();
         Ok(Answer { header, value, standing: Standing::Complete, remarks })
     }
@@ -199,6 +200,11 @@ impl Oscillator {
         };
         Ok(Solved { at: found.at, order, way, remarks })
     }
+}
+
+/// What varies, and the order.
+fn varying(frequency: &FrequencyFunction) -> (String, bool, usize) {
+    (frequency.small.clone(), frequency.has_amplitude, frequency.order)
 }
 
 /// A solution that harmonics can be taken of.

@@ -4,6 +4,7 @@
 pub mod averaged;
 mod code;
 mod compiled;
+mod functions;
 mod improve;
 mod prove;
 mod sweep;
@@ -16,6 +17,7 @@ use crate::start::Taken;
 use crate::{Answer, Error, Exact, Kind, Oscillator, Refusal, Remark, Standing, Work};
 pub use code::{Language, SolutionCode};
 use compiled::Way;
+pub use functions::ExpansionCode;
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_evaluation::setting::Setting;
 pub use lindstedt_evaluation::{

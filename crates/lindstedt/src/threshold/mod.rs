@@ -16,7 +16,7 @@ mod subject;
 mod sweep;
 mod zeros;
 
-use crate::grid::Axis;
+use crate::grid::{Axis, Part};
 use crate::refusal::{Refusal, Refused};
 use crate::{Answer, Error, Exact, Kind, Number, Oscillator, Remark, Standing, Work};
 use lindstedt_equation::print::Style;
@@ -47,6 +47,8 @@ pub struct Threshold {
     pub zeros: Option<Axis>,
     /// The thresholds of the resonances of period 2 pi m/omega, m = 1 ... M.
     pub subharmonics: Option<u32>,
+    /// Of the rows of a surface only these.
+    pub part: Option<Part>,
 }
 
 /// The threshold of an oscillator. Closed forms are certified; orbits that are followed
@@ -256,7 +258,7 @@ impl Oscillator {
         if let Some(largest) = question.subharmonics {
             value.subharmonics = Some(resonances::list(&subject, largest)?);
         }
-        value.sweep = sweep::compute(&subject, swept)?;
+        value.sweep = sweep::compute(&subject, swept, question.part)?;
         value.remarks = subject.remarks(&value);
         let mut remarks = self.remarks().to_vec();
         let mut standing = Standing::Complete;
