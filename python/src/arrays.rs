@@ -3,14 +3,15 @@
 use crate::options::Options;
 use crate::verbs;
 use crate::work::Means;
+use lindstedt::evaluate::averaged;
 use lindstedt::evaluate::{Estimated, FrequencyFunction, PeriodicSolution, SolutionFunction};
 use lindstedt::grid::{Grid, Part};
 use lindstedt::motion::Bifurcation;
 use lindstedt::unstable::impact::map::Verdict;
-use lindstedt::{Answer, Error, Oscillator, Stability, Standing, Stop, Threshold};
+use lindstedt::{Answer, Error, Exact, Oscillator, Stability, Standing, Stop, Threshold};
 use lindstedt_report::json;
 use numpy::ndarray::Array2;
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -124,6 +125,47 @@ impl Motion {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let errors: Vec<f64> = times.as_slice()?.iter().map(|t| self.0.value.error(*t)).collect();
         Ok(errors.into_pyarray(py))
+    }
+}
+
+/// a(t), psi(t), x(t) of an averaged motion.
+#[pyclass(frozen, module = "lindstedt._native")]
+pub struct Averaged(pub Answer<averaged::Motion>);
+
+/// Times that are no numbers, or no averaged motion that reaches them.
+const NOTHING: [f64; 6] = [f64::NAN, f64::INFINITY, f64::NAN, f64::INFINITY, f64::NAN, f64::INFINITY];
+
+#[pymethods]
+impl Averaged {
+    /// Header, start and rates as JSON.
+    fn json(&self) -> PyResult<String> {
+        json(&self.0).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    /// Row by row the values and errors of a, psi, x; the times in increasing order. What is not reached is no number.
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        times: PyReadonlyArray1<'py, f64>,
+        means: &Means,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let times = times.as_slice()?;
+        let rows = means.ask(py, |work| {
+            let exact = |time: &f64| Exact::from_f64(*time);
+            let missing = || crate::failure::usage("a time is no number", "finite times");
+            let times: Vec<Exact> = times.iter().map(exact).collect::<Option<_>>().ok_or_else(missing)?;
+            let mut motion = self.0.value.clone();
+            let moments = motion.at(&times, work);
+            // Those that are not reached are left out.
+            let mut moments = moments.iter().peekable();
+            let row = |time: &Exact| {
+                let Some(found) = moments.next_if(|moment| moment.time == *time) else { return NOTHING };
+                let [a, psi, x] = [&found.amplitude, &found.phase, &found.displacement];
+                [a.double, a.error, psi.double, psi.error, x.double, x.error]
+            };
+            Ok(times.iter().map(row).collect::<Vec<_>>())
+        })?;
+        Ok(Array2::from(rows).reversed_axes().as_standard_layout().into_owned().into_pyarray(py))
     }
 }
 

@@ -1,6 +1,6 @@
 //! A problem with its values.
 
-use crate::arrays::{self, Frequency, Motion, Motions};
+use crate::arrays::{self, Averaged, Frequency, Motion, Motions};
 use crate::failure::exception;
 use crate::found::Found;
 use crate::options::Options;
@@ -177,6 +177,21 @@ impl Case {
             let harmonics = options.parsed("harmonics")?.unwrap_or(15);
             options.finish()?;
             Ok(Motion(self.0.periodic_solution(&question, harmonics, work)?))
+        })
+    }
+
+    /// a(t), psi(t), x(t) of the averaged motion.
+    fn averaged_motion(
+        &self,
+        py: Python<'_>,
+        options: BTreeMap<String, String>,
+        means: &Means,
+    ) -> PyResult<Averaged> {
+        means.ask(py, |work| {
+            let options = Options::new(options);
+            let question = verbs::averaged(&options)?;
+            options.finish()?;
+            Ok(Averaged(self.0.averaged_motion(&question, work)?))
         })
     }
 

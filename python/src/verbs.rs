@@ -118,16 +118,20 @@ pub fn phased(options: &Options) -> Result<Evaluate, Error> {
     Ok(Evaluate { phase: options.exact("phase")?.unwrap_or(question.phase), ..question })
 }
 
+/// The order and the start of an averaged motion.
+pub fn averaged(options: &Options) -> Result<AveragedMotion, Error> {
+    options.only_one(&["start", "state"])?;
+    let start = options.read("start", |text| Ok(AveragedStart::parse_amplitude(text)?))?;
+    let state = options.read("state", |text| Ok(AveragedStart::parse_state(text)?))?;
+    Ok(AveragedMotion { order: options.parsed("order")?, start: start.or(state), times: None })
+}
+
 fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     let prove = options.flag("prove")?;
     if !prove && case.condition() == Some(Condition::FreeAmplitude) {
-        options.only_one(&["start", "state"])?;
-        let start = options.read("start", |text| Ok(AveragedStart::parse_amplitude(text)?))?;
-        let state = options.read("state", |text| Ok(AveragedStart::parse_state(text)?))?;
-        let order = options.parsed("order")?;
         let times = options.read("times", Times::parse)?;
+        let question = AveragedMotion { times, ..averaged(options)? };
         options.finish()?;
-        let question = AveragedMotion { order, start: start.or(state), times };
         return boxed(case.averaged_motion(&question, work));
     }
     // What is not read before `finish` is refused: a sweep has no times, phase and code, a proof no code.

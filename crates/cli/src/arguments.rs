@@ -141,7 +141,7 @@ pub struct EvaluateOptions {
     pub resum: Resum,
     /// The solution x(t) at these times; x'(0) = 0, but for --phase, and x(0) or the first harmonic
     /// is the amplitude.
-    #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LO..HI:COUNT or T1,T2,...", allow_hyphen_values = true)]
     pub times: Option<String>,
     /// The orbit as a theorem: period, frequency, amplitude and Floquet exponent enclosed, with the
     /// radius of the contraction proof; of a forced equation its responses with the force's period. With

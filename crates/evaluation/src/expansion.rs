@@ -14,6 +14,8 @@ use lindstedt_derivation::{DerivationError, Work};
 use lindstedt_equation::AmplitudeRole;
 use lindstedt_number::ball::{Ball, Balls};
 
+/// Harmonics of which a fourth of the phases is one more, at least.
+const FEWEST: usize = 32;
 /// Bits of the coefficients before they are rounded to doubles.
 const BITS: u32 = 192;
 /// Coefficients below this share of the largest of their order are sums that cancel.
@@ -49,13 +51,15 @@ pub struct Expansion {
     pub harmonics: Vec<(usize, Vec<f64>, Vec<f64>)>,
     /// Of every order the sum of the sizes of its coefficients, harmonics that are left out included.
     pub sizes: Vec<f64>,
+    /// The same of what is left out.
+    pub left_out: Vec<f64>,
 }
 
 impl Expansion {
     /// Derives the expansion to an order, with so many harmonics.
     ///
-    /// The coefficients c_kn, s_kn are those of x_n at 4 (harmonics + 1) phases by the trapezoidal rule: exact to rounding where
-    /// x_n has no harmonics beyond half of these.
+    /// The coefficients c_kn, s_kn are those of x_n at 4 (harmonics + 1) phases, 128 at least, by the trapezoidal rule: exact
+    /// to rounding where x_n has no harmonics beyond half of these.
     ///
     /// # Errors
     /// Those of [`crate::compiled::FrequencyFunction::new`] and [`lindstedt_derivation::derive()`].
@@ -72,14 +76,16 @@ impl Expansion {
         let balls = Balls::new(BITS).with_guard(64);
         let no_value = || Error::from(DerivationError::NoValue);
         let functions = derivation.phase_functions(false, balls).ok_or_else(no_value)?;
-        let phases = Phases::new(4 * (harmonics + 1), balls, |point| functions.at(point));
+        let count = 4 * (harmonics + 1).max(FEWEST);
+        let phases = Phases::new(count, balls, |point| functions.at(point));
         let phases = phases.ok_or_else(no_value)?;
-        let [cosines, sines] = polynomials(&phases);
-        let size = |n: usize| -> f64 {
-            let of = |list: &[Vec<f64>]| list.iter().filter_map(|c| c.get(n)).map(|c| c.abs()).sum::<f64>();
-            of(&cosines) + of(&sines)
+        let [cosines, sines] = polynomials(&phases, balls);
+        let size = |n: usize, from: usize| -> f64 {
+            let all = cosines.iter().skip(from).chain(sines.iter().skip(from));
+            all.filter_map(|c| c.get(n)).map(|c| c.abs()).sum()
         };
-        let sizes: Vec<f64> = (0..=order).map(size).collect();
+        let sizes: Vec<f64> = (0..=order).map(|n| size(n, 0)).collect();
+        let left_out = (0..=order).map(|n| size(n, harmonics + 1)).collect();
         let cleared = |list: Vec<f64>| -> Vec<f64> {
             let clear = |(c, size): (f64, &f64)| if c.abs() < ROUNDING * size { 0.0 } else { c };
             trimmed(list.into_iter().zip(&sizes).map(clear).collect())
@@ -96,7 +102,7 @@ impl Expansion {
         let small = varied.small.clone();
         let period = period(&source).ok_or_else(no_value)?;
         let amplitude = setting.amplitude.ball(balls).midpoint().to_f64();
-        Ok(Self { order, small, carried, factor, period, amplitude, harmonics, sizes })
+        Ok(Self { order, small, carried, factor, period, amplitude, harmonics, sizes, left_out })
     }
 
     /// |z| up to which the last term is below a share of the first; nothing where there is none.
@@ -118,14 +124,20 @@ fn period(source: &Source) -> Option<Vec<f64>> {
     Some(trimmed(period))
 }
 
-/// c_kn and s_kn, k < M/2.
-fn polynomials(phases: &Phases) -> [Vec<Vec<f64>>; 2] {
-    let (cosines, sines) = phases.weights();
-    let values: Vec<Vec<f64>> =
-        phases.distinct.iter().map(|(_, list)| list.iter().map(|x: &Ball| x.midpoint().to_f64()).collect()).collect();
-    let orders = values.first().map_or(0, Vec::len);
-    [cosines, sines].map(|rows| {
-        let at = |row: &Vec<f64>, n: usize| row.iter().zip(&values).filter_map(|(w, x)| Some(w * x.get(n)?)).sum();
+/// c_kn and s_kn, k < M/2, as balls before they are rounded: 1/32 is 1/32.
+fn polynomials(phases: &Phases, balls: Balls) -> [Vec<Vec<f64>>; 2] {
+    let orders = phases.distinct.first().map_or(0, |(_, list)| list.len());
+    phases.exact_weights(balls).map(|rows| {
+        let at = |row: &Vec<Ball>, n: usize| {
+            let products = row
+                .iter()
+                .zip(&phases.distinct)
+                .filter_map(|(w, (_, x))| Some(balls.mul(w, x.get(n)?)));
+            products
+                .fold(balls.zero(), |sum, product| balls.add(&sum, &product))
+                .midpoint()
+                .to_f64()
+        };
         rows.iter().map(|row| (0..orders).map(|n| at(row, n)).collect()).collect()
     })
 }

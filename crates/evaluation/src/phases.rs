@@ -44,8 +44,13 @@ pub(crate) struct Phases {
 }
 
 impl Phases {
-    pub fn new(count: usize, balls: Balls, at: impl Fn(&Point) -> Option<Vec<Ball>>) -> Option<Self> {
-        let (mut distinct, mut images): (Vec<(Point, Vec<Ball>)>, Vec<_>) = (Vec::new(), Vec::new());
+    pub fn new(
+        count: usize,
+        balls: Balls,
+        at: impl Fn(&Point) -> Option<Vec<Ball>>,
+    ) -> Option<Self> {
+        let (mut distinct, mut images): (Vec<(Point, Vec<Ball>)>, Vec<_>) =
+            (Vec::new(), Vec::new());
         for i in 0..count {
             let point = Point::PiTimes(Rational::from((2 * i as u64 + 1, count as u64)));
             let list = at(&point)?;
@@ -76,6 +81,32 @@ impl Phases {
         let list: Vec<f64> = list.collect();
         let all = self.images.iter().filter_map(|(index, _)| list.get(*index));
         all.sum::<f64>() / self.images.len() as f64
+    }
+
+    /// The weights of [`Self::weights`] as balls, of c_k, then of s_k.
+    pub fn exact_weights(&self, balls: Balls) -> [Vec<Vec<Ball>>; 2] {
+        let count = self.images.len();
+        let turn =
+            |j: usize| balls.mul_rational(&balls.pi(), &Rational::from((j as u64, count as u64)));
+        let angles: Vec<Ball> = (0..2 * count).map(turn).collect();
+        let rows = |table: Vec<Ball>| {
+            let row = |k: usize| {
+                let weight = Rational::from((if k == 0 { 1 } else { 2 }, count as u64));
+                let mut row = vec![balls.zero(); self.distinct.len()];
+                for (i, (index, sign)) in self.images.iter().enumerate() {
+                    let at = &table[(k * (2 * i + 1)) % (2 * count)];
+                    let sum = &row[*index];
+                    row[*index] = if *sign > 0.0 { balls.add(sum, at) } else { balls.sub(sum, at) };
+                }
+                row.iter().map(|sum| balls.mul_rational(sum, &weight)).collect()
+            };
+            (0..count / 2).map(row).collect()
+        };
+        [
+            angles.iter().map(|a| balls.cos(a)).collect(),
+            angles.iter().map(|a| balls.sin(a)).collect(),
+        ]
+        .map(rows)
     }
 
     /// The weights of the distinct phases in c_k and s_k, k < M/2.

@@ -345,7 +345,8 @@ impl Trajectory {
         let errors = || sums.iter().map(|(_, error)| error_of(*error));
         let largest_error = errors().fold(0.0, f64::max);
         let (cosines, sines) = phases.weights();
-        let of = |weights: &[f64]| weights.iter().zip(&sums).map(|(weight, (x, _))| weight * x).sum();
+        let of =
+            |weights: &[f64]| weights.iter().zip(&sums).map(|(weight, (x, _))| weight * x).sum();
         let mut list: Vec<(f64, f64)> =
             cosines.iter().zip(&sines).map(|(c, s)| (of(c), of(s))).collect();
         let rounding = ROUNDING * list.iter().map(|(c, s)| c.hypot(*s)).sum::<f64>();
@@ -390,7 +391,8 @@ impl Trajectory {
         let phase = self.phase.ball(balls);
         let turned = |(k, (c, s)): (i64, (f64, f64))| {
             let angle = balls.mul_i64(&phase, k);
-            let [cosine, sine] = [balls.cos(&angle), balls.sin(&angle)].map(|x| x.midpoint().to_f64());
+            let [cosine, sine] =
+                [balls.cos(&angle), balls.sin(&angle)].map(|x| x.midpoint().to_f64());
             (c * cosine + s * sine, s * cosine - c * sine)
         };
         (0..).zip(list).map(turned).collect()

@@ -83,7 +83,8 @@ impl SolutionFunction {
             let sample = Sample { coefficients, point: Float::new(bits), map, radius: None, bits };
             Compiled::new(&sample, &methods, &work.stop)
         };
-        let sums = phases.distinct.par_iter().map(|(_, list)| compile(list)).collect::<Result<_, _>>();
+        let sums =
+            phases.distinct.par_iter().map(|(_, list)| compile(list)).collect::<Result<_, _>>();
         let sums = sums.map_err(|reason| Error::Resummation {
             problem: setting.problem.name.to_string(),
             reason,

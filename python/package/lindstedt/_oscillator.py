@@ -12,7 +12,15 @@ from contextlib import contextmanager
 from typing import Any, Union
 
 from ._answers import Answer, Derivation
-from ._arrays import BifurcationDiagram, FrequencyFunction, Solution, SolutionFunction, StabilityChart, ThresholdSurface
+from ._arrays import (
+    AveragedSolution,
+    BifurcationDiagram,
+    FrequencyFunction,
+    Solution,
+    SolutionFunction,
+    StabilityChart,
+    ThresholdSurface,
+)
 from ._errors import LindstedtError, UsageError
 from ._native import Case, Means
 from ._numbers import Value, exact
@@ -239,7 +247,8 @@ class Oscillator:
         given it is this oscillator's."""
         means = _means(options)
         with _work(means) as work:
-            return FrequencyFunction(self._case.frequency_function(_options(options), work))
+            made = self._case.frequency_function(_options(options), work)
+            return FrequencyFunction(made, self, "frequency_function", options)
 
     def solution_function(self, harmonics: int = 15, **options: Any) -> SolutionFunction:
         """x(t) over the small parameter and the amplitude, for arrays, by so many harmonics; `order`, `resum`. Where
@@ -247,14 +256,24 @@ class Oscillator:
         means = _means(options)
         with _work(means) as work:
             options = {"harmonics": harmonics, **options}
-            return SolutionFunction(self._case.solution_function(_options(options), work))
+            made = self._case.solution_function(_options(options), work)
+            return SolutionFunction(made, self, "solution_function", options)
 
     def solution(self, harmonics: int = 15, **options: Any) -> Solution:
         """x(t) at the values set, for arrays; `order`, `resum`, `phase`."""
         means = _means(options)
         with _work(means) as work:
             options = {"harmonics": harmonics, **options}
-            return Solution(self._case.periodic_solution(_options(options), work))
+            made = self._case.periodic_solution(_options(options), work)
+            return Solution(made, self, "solution", options)
+
+    def averaged_solution(self, **options: Any) -> AveragedSolution:
+        """a(t), psi(t), x(t) of the averaged motion at the values set, for arrays; `order`, and `start="A,PSI"` or
+        `state="X,V"`."""
+        means = _means(options)
+        with _work({"digits": 16, **means}) as work:
+            made = self.under("free")._case.averaged_motion(_options(options), work)
+            return AveragedSolution(made, self.under("free"), "averaged_solution", options)
 
     def _arrays(self, verb: str, sweep: Sweep, options: dict[str, Any], executor: Any, block: int | None) -> Any:
         """As arrays, on an executor by blocks of rows, or of the values of a diagram."""

@@ -17,11 +17,68 @@ const AMPLITUDE: &str = "amplitude";
 const ORDER: usize = 8;
 /// Names that a language has for something else.
 const TAKEN: [&str; 62] = [
-    "alignas", "alignof", "and", "as", "async", "auto", "await", "bool", "break", "case", "char", "class", "const",
-    "continue", "cos", "crate", "def", "default", "del", "displacement", "displacements", "do", "double", "else",
-    "enum", "except", "extern", "float", "fn", "for", "frequency", "from", "global", "goto", "if", "impl", "import",
-    "in", "int", "is", "lambda", "let", "long", "loop", "match", "mod", "n", "not", "or", "pass", "phase",
-    "polynomial", "pub", "ref", "register", "return", "sin", "static", "t", "type", "while", "x",
+    "alignas",
+    "alignof",
+    "and",
+    "as",
+    "async",
+    "auto",
+    "await",
+    "bool",
+    "break",
+    "case",
+    "char",
+    "class",
+    "const",
+    "continue",
+    "cos",
+    "crate",
+    "def",
+    "default",
+    "del",
+    "displacement",
+    "displacements",
+    "do",
+    "double",
+    "else",
+    "enum",
+    "except",
+    "extern",
+    "float",
+    "fn",
+    "for",
+    "frequency",
+    "from",
+    "global",
+    "goto",
+    "if",
+    "impl",
+    "import",
+    "in",
+    "int",
+    "is",
+    "lambda",
+    "let",
+    "long",
+    "loop",
+    "match",
+    "mod",
+    "n",
+    "not",
+    "or",
+    "pass",
+    "phase",
+    "polynomial",
+    "pub",
+    "ref",
+    "register",
+    "return",
+    "sin",
+    "static",
+    "t",
+    "type",
+    "while",
+    "x",
 ];
 
 /// A program of functions of time and the parameters.
@@ -97,16 +154,21 @@ impl<'a> Program<'a> {
         };
         let last = match reach {
             Some([coarse, fine]) => format!(
-                "the last term of x is below 1e-6 of the first up to |z| = {coarse:.2}, below 1e-12 up to {fine:.3}, \
+                "the last term of x is below 1e-6 of the first for z up to {coarse:.1e} in size, below 1e-12 up to {fine:.1e}, \
                  which is no bound of the error"
             ),
             None => "the last term of x is zero".to_owned(),
         };
         let (order, harmonics) =
             (expansion.order, expansion.harmonics.last().map_or(0, |(k, ..)| *k));
+        let left: f64 = expansion.left_out.iter().sum();
+        let beyond = match left > 1e-12 * expansion.sizes.iter().sum::<f64>() {
+            true => format!(" (the others, {left:.1e} in all at z = 1, are left out)"),
+            false => String::new(),
+        };
         let note = format!(
             "{problem}: the expansion of order {order} in z = {z}, cut off, not resummed, x(t) by harmonics up to \
-             {harmonics}; {last}; the phase is wrong by t times the error of the frequency"
+             {harmonics}{beyond}; {last}; the phase is wrong by t times the error of the frequency"
         );
         Self { expansion, note, names, reach }
     }
@@ -175,7 +237,8 @@ impl<'a> Program<'a> {
         );
         for (k, list, sine) in self.terms() {
             let name = if sine { "sin" } else { "cos" };
-            let _ = writeln!(text, "    x = x + polynomial(z, {}) * {name}({k} * phase)", listed(list));
+            let _ =
+                writeln!(text, "    x = x + polynomial(z, {}) * {name}({k} * phase)", listed(list));
         }
         let _ = writeln!(text, "    return {b} * x");
         text
@@ -196,7 +259,11 @@ impl<'a> Program<'a> {
         );
         for (k, list, sine) in self.terms() {
             let name = if sine { "sin" } else { "cos" };
-            let _ = writeln!(text, "    x += polynomial(z, &[{}]) * ({k}.0 * phase).{name}();", listed(list));
+            let _ = writeln!(
+                text,
+                "    x += polynomial(z, &[{}]) * ({k}.0 * phase).{name}();",
+                listed(list)
+            );
         }
         let _ = write!(
             text,
@@ -208,7 +275,8 @@ impl<'a> Program<'a> {
 
     fn c(&self) -> String {
         let (names, typed) = (self.arguments(""), self.arguments("double "));
-        let (arrays, at) = (self.arguments("const double *"), format!("{}[i]", self.names.join("[i], ")));
+        let (arrays, at) =
+            (self.arguments("const double *"), format!("{}[i]", self.names.join("[i], ")));
         let z = self.variable(|name, n| format!("pow({name}, {n}.0)"));
         let [f, b] = self.factors(|a, n| format!("pow({a}, {n})"));
         let mut text = format!(

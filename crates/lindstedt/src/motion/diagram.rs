@@ -195,7 +195,8 @@ impl Oscillator {
             return Err(Refused::usage("sweep", message, "without --follow").into());
         }
         let section = section(question.section, true, &setup)?.unwrap_or(Section::Velocity);
-        let mut values: Vec<Quantity> = axis.part(question.part).values.into_iter().map(Quantity::from).collect();
+        let mut values: Vec<Quantity> =
+            axis.part(question.part).values.into_iter().map(Quantity::from).collect();
         let count = values.len();
         if question.follow {
             values.extend_from_within(..);

@@ -93,7 +93,11 @@ pub(super) fn compute(
         point: sweep.iter().map(|range| range.base).collect(),
         asked: [plan.predictor.is_some(), plan.exact.is_some()],
         agreement: LeftOutAndAgreement { agreement, left_out },
-        flip: if fast && finished && part.is_none() { flip(subject, &plan, work) } else { Vec::new() },
+        flip: if fast && finished && part.is_none() {
+            flip(subject, &plan, work)
+        } else {
+            Vec::new()
+        },
         finished,
     }))
 }

@@ -83,7 +83,8 @@ pub(super) fn compute(
     }
     let blanks = reasons.into_iter().map(|(reason, points)| Blank { reason, points }).collect();
     let certified = !fast && subject.found.class() == Class::Certified;
-    let marks = if height <= MOST_CURVES && part.is_none() { marks(subject, &swept) } else { Vec::new() };
+    let marks =
+        if height <= MOST_CURVES && part.is_none() { marks(subject, &swept) } else { Vec::new() };
     Ok(Some(Sweep { grid: found.map(Result::ok), blanks, certified, marks }))
 }
 

@@ -96,9 +96,12 @@ fn document(paper: &Paper, figures: Option<&[Drawing]>, linked: bool) -> Documen
         );
     }
     page = page.words(Line::default().strong(format!("{}.", tally(paper)), "tally"));
-    let failing = paper.trust.findings.iter().filter_map(|found| Some((found, found.not_trusted.first()?)));
+    let failing =
+        paper.trust.findings.iter().filter_map(|found| Some((found, found.not_trusted.first()?)));
     let failing: Vec<Line> = failing
-        .map(|(found, first)| Line::words(format!("Section {}: ", found.section)).then(first.line()))
+        .map(|(found, first)| {
+            Line::words(format!("Section {}: ", found.section)).then(first.line())
+        })
         .collect();
     if !failing.is_empty() {
         page = page.part(("fails", ""), "What fails", Document::default().list(failing));

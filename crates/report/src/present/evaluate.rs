@@ -4,7 +4,9 @@ use super::Present;
 use crate::figure::{Axis, Mark, colours};
 use crate::{Block, Document, Figure, Formula, Table, Text};
 use lindstedt::evaluate::averaged::{Moment, Motion, Quantity};
-use lindstedt::evaluate::{Displacement, Displacements, Evaluation, ExpansionCode, SolutionCode, method_name};
+use lindstedt::evaluate::{
+    Displacement, Displacements, Evaluation, ExpansionCode, SolutionCode, method_name,
+};
 use lindstedt::{Answer, Exact, Header, Number};
 
 /// `problem: name = value, ...`.

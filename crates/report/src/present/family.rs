@@ -48,8 +48,11 @@ impl Present for Answer<ProvedFamily> {
             true => ("frequency", |point| point.orbit.frequency.as_ref()),
             false => ("largest x", |point| point.orbit.maximum.as_ref()),
         };
-        let frame =
-            Figure::new(title(self), parameter(&self.header, &self.value.parameter), Axis::linear(name));
+        let frame = Figure::new(
+            title(self),
+            parameter(&self.header, &self.value.parameter),
+            Axis::linear(name),
+        );
         let branches = self.value.branches.iter().enumerate();
         Some(branches.fold(frame, |frame, (index, branch)| {
             let colour = colours::CYCLE[index % colours::CYCLE.len()];

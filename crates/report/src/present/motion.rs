@@ -197,7 +197,12 @@ fn section_figure(answer: &Answer<Motion>) -> Figure {
     let title = format!("{name}: Poincare section {kind}, {} points", places.len());
     let mark = Mark::Disc(if places.len() > 500 { 1 } else { 3 });
     let points = places.iter().map(|place| (place[pick[0]], place[pick[1]]));
-    Figure::new(title, axis(&answer.header, across), axis(&answer.header, up)).layer(None, mark, colours::BLUE, points)
+    Figure::new(title, axis(&answer.header, across), axis(&answer.header, up)).layer(
+        None,
+        mark,
+        colours::BLUE,
+        points,
+    )
 }
 
 /// Moving and sticking apart; in the phase plane broken where the velocity jumps.
@@ -340,7 +345,8 @@ impl Present for Answer<Diagram> {
             sweep.kept,
             sweep.skip
         );
-        let figure = Figure::new(title, axis(&self.header, &sweep.parameter), axis(&self.header, up));
+        let figure =
+            Figure::new(title, axis(&self.header, &sweep.parameter), axis(&self.header, up));
         let Some(back) = &sweep.back else {
             return Some(figure.layer(None, Mark::Disc(1), colours::BLUE, points));
         };

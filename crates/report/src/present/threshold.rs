@@ -126,9 +126,9 @@ impl Present for Answer<HomoclinicThreshold> {
         let sweep = self.value.sweep.as_ref()?;
         let Grid { columns, rows, .. } = &sweep.grid;
         match rows {
-            Some(rows) if rows.values.len() > MOST_CURVES => {
-                (columns.is_equidistant() && rows.is_equidistant()).then(|| map(sweep, rows, &self.header))
-            }
+            Some(rows) if rows.values.len() > MOST_CURVES => (columns.is_equidistant()
+                && rows.is_equidistant())
+            .then(|| map(sweep, rows, &self.header)),
             _ => Some(curves(sweep, &self.header)),
         }
     }
