@@ -125,16 +125,20 @@ pub fn phased(options: &Options) -> Result<Evaluate, Error> {
     Ok(Evaluate { phase: options.exact("phase")?.unwrap_or(question.phase), ..question })
 }
 
+/// The order and the start of an averaged motion.
+pub fn averaged(options: &Options) -> Result<AveragedMotion, Error> {
+    options.only_one(&["start", "state"])?;
+    let start = options.read("start", |text| Ok(AveragedStart::parse_amplitude(text)?))?;
+    let state = options.read("state", |text| Ok(AveragedStart::parse_state(text)?))?;
+    Ok(AveragedMotion { order: options.parsed("order")?, start: start.or(state), times: None })
+}
+
 fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     let prove = options.flag("prove")?;
     if !prove && case.condition() == Some(Condition::FreeAmplitude) {
-        options.only_one(&["start", "state"])?;
-        let start = options.read("start", |text| Ok(AveragedStart::parse_amplitude(text)?))?;
-        let state = options.read("state", |text| Ok(AveragedStart::parse_state(text)?))?;
-        let order = options.parsed("order")?;
         let times = options.read("times", Times::parse)?;
+        let question = AveragedMotion { times, ..averaged(options)? };
         options.finish()?;
-        let question = AveragedMotion { order, start: start.or(state), times };
         return boxed(case.averaged_motion(&question, work));
     }
     // What is not read before `finish` is refused: a sweep has no times, phase and code, a proof no code.
@@ -164,6 +168,10 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
         return boxed(case.evaluate(&question, work));
     };
     let harmonics = options.parsed("harmonics")?.unwrap_or(15);
+    if options.flag("functions")? {
+        options.finish()?;
+        return boxed(case.expansion_code(&question, language, harmonics, work));
+    }
     options.finish()?;
     boxed(case.solution_code(&question, language, harmonics, work))
 }
@@ -297,6 +305,7 @@ pub fn threshold(case: &Oscillator, options: &Options) -> Result<Threshold, Erro
         zeros: options.read("zeros", Axis::ends)?,
         subharmonics: options.parsed("subharmonics")?,
         second_order: options.flag("second_order")?,
+        part: None,
     };
     options.finish()?;
     Ok(question)

@@ -141,7 +141,7 @@ pub struct EvaluateOptions {
     pub resum: Resum,
     /// The solution x(t) at these times; x'(0) = 0, but for --phase, and x(0) or the first harmonic
     /// is the amplitude.
-    #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LO..HI:COUNT or T1,T2,...", allow_hyphen_values = true)]
     pub times: Option<String>,
     /// The orbit as a theorem: period, frequency, amplitude and Floquet exponent enclosed, with the
     /// radius of the contraction proof; of a forced equation its responses with the force's period. With
@@ -169,6 +169,10 @@ pub struct EvaluateOptions {
     /// The solution as a function in this language instead of the report.
     #[arg(long, value_enum, conflicts_with = "plot")]
     pub code: Option<Language>,
+    /// With --code: functions of the small parameter and, where a scaling carries it, the amplitude, too. The
+    /// expansion of --order (8 without), cut off, not resummed.
+    #[arg(long, requires = "code", conflicts_with_all = ["resum", "phase"])]
+    pub functions: bool,
     /// Harmonics in the code.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=512))]
     pub harmonics: u32,

@@ -32,6 +32,7 @@ pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
         zeros: options.zeros.as_deref().map(Axis::ends).transpose()?,
         subharmonics: options.subharmonics,
         second_order: options.second_order,
+        part: None,
     };
     session.check_sweep(&options.plot, question.sweep.len(), 1)?;
     session.check_writable(&options.problem, &options.plot, None)?;

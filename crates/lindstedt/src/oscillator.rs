@@ -405,6 +405,7 @@ impl Oscillator {
             problem: self.problem.name.to_string(),
             equation: self.to_string(),
             at,
+            units: self.problem_file().units.clone(),
             order,
             tier,
             seconds: start.elapsed().as_secs_f64(),

@@ -18,7 +18,7 @@ mod subject;
 mod sweep;
 mod zeros;
 
-use crate::grid::Axis;
+use crate::grid::{Axis, Part};
 use crate::refusal::{Refusal, Refused};
 use crate::{Answer, Error, Exact, Kind, Number, Oscillator, Remark, Standing, Work};
 use lindstedt_equation::print::Style;
@@ -54,6 +54,8 @@ pub struct Threshold {
     /// The threshold to second order in the small parameter, gamma_c + slope eps, on every orbit, loops held against
     /// their manifolds: some seconds.
     pub second_order: bool,
+    /// Of the rows of a surface only these.
+    pub part: Option<Part>,
 }
 
 /// The threshold of an oscillator. Closed forms are certified; orbits that are followed
@@ -269,7 +271,7 @@ impl Oscillator {
         if question.second_order {
             value.second_order = splitting::list(&subject)?;
         }
-        value.sweep = sweep::compute(&subject, swept)?;
+        value.sweep = sweep::compute(&subject, swept, question.part)?;
         value.remarks = subject.remarks(&value);
         let mut remarks = self.remarks().to_vec();
         let mut standing = Standing::Complete;

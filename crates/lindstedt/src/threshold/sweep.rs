@@ -1,7 +1,7 @@
 //! Curves and surfaces of the signed threshold.
 
 use super::subject::{Changes, Range, Subject};
-use crate::grid::{Axis, Grid, check_room};
+use crate::grid::{Axis, Grid, Part, check_room};
 use crate::{Error, Exact};
 use lindstedt_melnikov::{self as melnikov, Class, FastPoint, StickSlip, surface};
 use lindstedt_number::ball::Balls;
@@ -56,7 +56,11 @@ pub struct Marks {
 /// A point, or why it has no value; nothing where it was not reached.
 type Found = Grid<Result<f64, String>>;
 
-pub(super) fn compute(subject: &Subject<'_>, swept: Vec<Range>) -> Result<Option<Sweep>, Error> {
+pub(super) fn compute(
+    subject: &Subject<'_>,
+    mut swept: Vec<Range>,
+    part: Option<Part>,
+) -> Result<Option<Sweep>, Error> {
     let Some(first) = swept.first() else { return Ok(None) };
     let height = swept.get(1).map_or(1, |second| second.axis.values.len());
     let points = first.axis.values.len().saturating_mul(height);
@@ -64,6 +68,10 @@ pub(super) fn compute(subject: &Subject<'_>, swept: Vec<Range>) -> Result<Option
     let fast = (subject.work.doubles || points > CERTIFIED_POINTS)
         && subject.point.is_some()
         && swept.iter().all(stays);
+    // How a point is computed is asked of the whole.
+    if let (Some(_), Some(rows)) = (part, swept.get_mut(1)) {
+        rows.axis = rows.axis.part(part);
+    }
     let found = if fast { doubles(subject, &swept)? } else { certify(subject, &swept) };
     let mut reasons: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (index, point) in found.points.iter().enumerate() {
@@ -75,7 +83,8 @@ pub(super) fn compute(subject: &Subject<'_>, swept: Vec<Range>) -> Result<Option
     }
     let blanks = reasons.into_iter().map(|(reason, points)| Blank { reason, points }).collect();
     let certified = !fast && subject.found.class() == Class::Certified;
-    let marks = if height <= MOST_CURVES { marks(subject, &swept) } else { Vec::new() };
+    let marks =
+        if height <= MOST_CURVES && part.is_none() { marks(subject, &swept) } else { Vec::new() };
     Ok(Some(Sweep { grid: found.map(Result::ok), blanks, certified, marks }))
 }
 

@@ -19,12 +19,13 @@ mod threshold;
 mod trade;
 mod verify;
 
+use crate::figure::Axis;
 use crate::format::steers;
 use crate::{Document, Figure, Formula, Table, Text};
 use classification::classification;
 use lindstedt::unstable::coeff::print::Style;
 use lindstedt::unstable::equation::{Condition, Problem, print};
-use lindstedt::{Number, Status};
+use lindstedt::{Header, Number, Status};
 use serde::Serialize;
 
 /// An answer that can be shown.
@@ -93,6 +94,14 @@ impl Text {
             _ => number.decimal.clone(),
         })
     }
+}
+
+/// The axis of a parameter, with its unit where the file of the problem names one.
+fn parameter(header: &Header, name: &str) -> Axis {
+    Axis::linear(match header.units.get(name) {
+        Some(unit) => format!("{name} ({unit})"),
+        None => name.to_owned(),
+    })
 }
 
 /// A formula from what prints it in either notation.
