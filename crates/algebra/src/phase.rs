@@ -73,6 +73,11 @@ pub trait PhaseAlgebra: FunctionAlgebra {
     fn sine(&self) -> Self::Element;
     /// df/dpsi.
     fn derivative(&self, f: &Self::Element) -> Self::Element;
+    /// The force f = u'' + u that has the response u, see [`resolve`](Self::resolve); algebras override it where it
+    /// costs less than its parts.
+    fn force(&self, u: &Self::Element) -> Self::Element {
+        self.add(&self.derivative(&self.derivative(u)), u)
+    }
     /// The value f(0), where the algebra can give it.
     fn at_zero(&self, f: &Self::Element) -> Option<Constant<Self>>;
     /// The first harmonic `(2<f cos>, 2<f sin>)` of f.

@@ -65,7 +65,7 @@ impl<A: PhaseAlgebra> Expansion<A> {
         let (Some(x), Some(w)) = (self.solution.get(n), self.frequency_squared.get(n)) else {
             return algebra.zero();
         };
-        let sum = algebra.add(&algebra.derivative(&algebra.derivative(x)), x);
+        let sum = algebra.force(x);
         let Some(leading) = self.solution.first().filter(|_| n > 0) else { return sum };
         let inertia = algebra.derivative(&algebra.derivative(leading));
         algebra.add(&sum, &algebra.scale_by(&inertia, w))

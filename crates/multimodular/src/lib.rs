@@ -139,7 +139,7 @@ pub fn derive(
     let primes = PrimeField::with_roots_of_unity(roots, 1 << 61);
     let primes = primes.filter(|field| field.integer(&numbers) != 0);
     let (images, found, needs) = (Vec::new(), Vec::new(), Vec::new());
-    Ladder { job: &job, primes, images, bound, found, needs }.climb(observer)
+    Ladder { job: &job, primes, images, bound, found, needs, largest }.climb(observer)
 }
 
 /// The loop over the orders.
@@ -153,6 +153,8 @@ struct Ladder<'a, P> {
     found: Vec<Lifted>,
     /// The primes that every order needed.
     needs: Vec<usize>,
+    /// The highest harmonic.
+    largest: usize,
 }
 
 impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
@@ -182,7 +184,7 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
             let lifting = u64::from(lift::MARGIN + lift::longest(&numbers) + 4);
             excess = bits.max(lifting) as i64 - i64::from(numbers.denominator.significant_bits());
             self.needs.push(remaindering.primes());
-            self.found.push(Lifted::new(&numbers, &self.images[0], n));
+            self.found.push(Lifted::new(numbers, self.images[0].places(n)));
             self.images.iter_mut().for_each(|image| image.forget(n));
         }
         let primes = self.images.len() - 1;
@@ -202,7 +204,9 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
             certificates: Vec::new(),
         };
         let mut series = [Vec::new(), Vec::new()];
+        let largest = u32::try_from(self.largest + 1).unwrap_or(u32::MAX);
         for order in self.found {
+            let order = order.order(largest);
             let [squared, frequency, period] = order.series;
             expansion.frequency_squared.push(squared);
             expansion.amplitude.push(order.amplitude);

@@ -1,11 +1,8 @@
 //! From images modulo primes to numbers over Q.
 
 use crate::image::{Image, Place};
-use crate::lifted::Lifted;
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_expand::OrderNumbers;
-use lindstedt_phase::modular::PrimeField;
-use lindstedt_phase::trigonometric::TrigonometricPolynomial;
 use rayon::prelude::*;
 use rug::{Integer, Rational};
 
@@ -184,43 +181,4 @@ pub(crate) fn longest(numbers: &OrderNumbers) -> u32 {
         q.numer().significant_bits() + more
     });
     own.chain(series).max().unwrap_or(1)
-}
-
-impl Lifted {
-    /// From numerators over their common denominator; what they belong to is written in an image.
-    pub(crate) fn new(numbers: &OrderNumbers, image: &Image, n: usize) -> Self {
-        let denominator = &numbers.denominator;
-        let places = image.places(n).iter().filter(|place| place.harmonic().is_some());
-        let reduce = |(_, c): &(usize, Integer)| Rational::from((c.clone(), denominator.clone()));
-        let values: Vec<Rational> = numbers.numerators.par_iter().map(reduce).collect();
-        let mut solution = TrigonometricPolynomial { cos: Vec::new(), sin: Vec::new() };
-        let mut amplitude = Integer::new();
-        for ((place, value), (_, numerator)) in places.zip(values).zip(&numbers.numerators) {
-            let (list, k) = match *place {
-                Place::Sine(k) => (&mut solution.sin, k),
-                Place::Cosine(k) => {
-                    amplitude += numerator;
-                    (&mut solution.cos, k)
-                }
-                Place::Squared | Place::Frequency | Place::Period => continue,
-            };
-            list.resize_with(k, Rational::new);
-            list.push(value);
-        }
-        let amplitude = Rational::from((amplitude, denominator.clone()));
-        let series = [&numbers.squared, &numbers.frequency, &numbers.period].map(Clone::clone);
-        Self { series, amplitude, solution }
-    }
-
-    /// W_n and the amplitudes of cosines and sines modulo p; nothing where p divides a denominator.
-    pub(crate) fn modulo(&self, field: &PrimeField) -> Option<(u64, [Vec<u64>; 2])> {
-        let TrigonometricPolynomial { cos, sin } = &self.solution;
-        let all = self.series[..1].iter().chain(cos).chain(sin);
-        let inverses = field.reciprocals(&field.integers(all.clone().map(Rational::denom)))?;
-        let numerators = field.integers(all.map(Rational::numer)).into_iter();
-        let mut residues = numerators.zip(inverses).map(|(c, inverse)| field.mul(&c, &inverse));
-        let squared = residues.next()?;
-        let cosines = residues.by_ref().take(cos.len()).collect();
-        Some((squared, [cosines, residues.collect()]))
-    }
 }

@@ -172,14 +172,15 @@ fn a_broken_image_is_refused() {
 fn a_late_prime_gives_the_same_image() {
     with_images(7, |job, mut images| {
         let late = images.pop().unwrap();
-        let numbers = (0..=ORDER).map(|n| Lifted::new(&lifted(&images, n).unwrap(), &images[0], n));
+        let numbers =
+            (0..=ORDER).map(|n| Lifted::new(lifted(&images, n).unwrap(), images[0].places(n)));
         let mut proved: Vec<Lifted> = numbers.collect();
         for m in 1..=ORDER {
             let found = job.image(late.field, &proved[..m]).unwrap().unwrap();
             assert!((0..m).all(|n| found.values(n).is_empty()));
             assert!((m..=ORDER).all(|n| found.values(n) == late.values(n)), "{m}");
         }
-        proved[2].solution.cos[1] += 1;
+        proved[2].numbers.numerators[0].1 += 1;
         let found = job.image(late.field, &proved[..4]);
         assert!(
             !found.is_ok_and(|image| image.is_ok_and(|found| found.values(4) == late.values(4)))
