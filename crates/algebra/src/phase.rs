@@ -144,6 +144,15 @@ pub enum PhaseError {
         /// m.
         forced: i32,
     },
+    /// The harmonic cos(k psi + m eta) is almost resonant: its divisor is below [`NEAR_MISS`].
+    NearMiss {
+        /// k.
+        free: i32,
+        /// m.
+        forced: i32,
+        /// 1 - lambda^2/omega_0^2, lambda the rate of the harmonic.
+        size: Rational,
+    },
     /// What the harmonic sum_j k_j nu_j + sum_l m_l Omega_l must be divided by cannot be told from zero: more
     /// digits decide, or it is a resonance.
     Undecided {
@@ -151,6 +160,9 @@ pub enum PhaseError {
         harmonic: Vec<i32>,
     },
 }
+
+/// Of the square of a frequency: a smaller divisor says that a resonance was missed by a little.
+pub const NEAR_MISS: (i32, i32) = (1, 1000);
 
 /// The phase k psi + m eta as text: `2*psi - eta` from \[2, -1\]; `times` stands between number and name.
 ///
@@ -193,6 +205,14 @@ impl std::fmt::Display for PhaseError {
                 let phase = combination([*free, *forced], ["psi", "eta"], "*");
                 let why = "zero is not excluded, or the parameters must be numbers";
                 write!(f, "{harmonic} cos({phase}): {why}")
+            }
+            Self::NearMiss { free, forced, size } => {
+                let phase = combination([*free, *forced], ["psi", "eta"], "*");
+                let size = size.to_f64();
+                write!(
+                    f,
+                    "the harmonic cos({phase}) misses a resonance by {size:e} of the square of the frequency"
+                )
             }
             Self::Undecided { harmonic } => {
                 write!(f, "the divisor of the harmonic {harmonic:?} cannot be told from zero")

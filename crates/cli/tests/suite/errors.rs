@@ -295,6 +295,13 @@ const TABLE: [(i32, &str, &str, &str, &str); 67] = [
     (
         3,
         "near-miss",
+        "derive \"x'' + x + eps*x^3 = F*cos(1000001/1000000*t)\" --order 1",
+        "eps*sigma*x",
+        "derive \"x'' + x + eps*(sigma*x + x^3) = eps*F*cos(t)\" --order 1",
+    ),
+    (
+        3,
+        "near-miss",
         "derive \"x'' + x + eps*x*y; y'' + 4.000004000001*y + eps*x^2\" --order 1",
         "eps*sigma*x",
         "derive \"x'' + x + eps*x*y; y'' + 4*y + eps*sigma*y + eps*x^2\" --order 1",

@@ -11,12 +11,19 @@ use lindstedt_impact::ImpactError;
 use lindstedt_melnikov::MelnikovError;
 use lindstedt_simulate::SimulateError;
 
+/// What to do where a divisor is almost zero.
+const AT_RESONANCE: &str =
+    "write the frequency at the resonance and the difference as a detuning: eps*sigma*x";
+
 impl Refusal for ExpandError {
     fn parts(&self) -> (Kind, &'static str, String) {
         let (kind, code, hint) = match self {
             Self::Interrupted { .. } => (Stopped, "interrupted", ""),
             Self::Phase { source: PhaseError::Resonance { .. }, .. } => {
                 (NoAnswer, "resonance", "averaging needs a force off resonance")
+            }
+            Self::Phase { source: PhaseError::NearMiss { .. }, .. } => {
+                (NoAnswer, "near-miss", AT_RESONANCE)
             }
             Self::NotOneClock { .. } => (NoAnswer, "no-such-route", "use --route driver"),
             Self::Phase { .. } => {
@@ -94,11 +101,7 @@ impl Refusal for ResonanceError {
             ),
             Self::NoOscillation { .. } => (NoAnswer, "no-expansion", ""),
             Self::NotDiagonalisable => (NoAnswer, "not-diagonalisable", ""),
-            Self::NearMiss { .. } => (
-                NoAnswer,
-                "near-miss",
-                "write the frequency at the resonance and the difference as a detuning: eps*sigma*x",
-            ),
+            Self::NearMiss { .. } => (NoAnswer, "near-miss", AT_RESONANCE),
             Self::TooManySymbols { .. } => (NoAnswer, "too-many-symbols", "--set some of them"),
             Self::TooHigh { .. } | Self::TooManyTerms { .. } => {
                 (Undecided, "too-large", "lower --order")
