@@ -1,5 +1,6 @@
 //! From the equation of a problem to what a method needs: Melnikov's potential, friction, forcing
-//! and belt speed ([`MelnikovProblem`]), a saddle with a parameter that is sought ([`SaddleProblem`]), the impact
+//! and belt speed ([`MelnikovProblem`]), a saddle with a parameter that is sought ([`SaddleProblem`]), an equation with delays about its equilibrium
+//! ([`delay_equation`]), the impact
 //! oscillator of section 2 ([`ImpactProblem`]).
 //!
 //! Terms are matched by what they are, multiplied out with the values of the parameters, never by
@@ -9,6 +10,7 @@
 
 mod bound;
 mod forces;
+mod hopf;
 mod impact;
 mod in_pi;
 mod law;
@@ -22,6 +24,7 @@ mod saddle;
 mod search;
 mod threshold;
 
+pub use hopf::delay_equation;
 pub use impact::{ImpactProblem, linear_in_time};
 pub use lowest::LowestHarmonic;
 pub use melnikov::{MelnikovProblem, Unperturbed};
