@@ -75,7 +75,7 @@ fn derive(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     }
     if let Some(name) = options.text("unknown").as_deref().or(case.unknown()) {
         options.finish()?;
-        return boxed(case.parameter_series(name, order, work));
+        return boxed(case.sought(name, order, work));
     }
     if case.condition() == Some(Condition::FreeAmplitude) {
         options.finish()?;

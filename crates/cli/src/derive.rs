@@ -22,7 +22,7 @@ pub fn run(options: &DeriveOptions, session: &Session<'_>) -> Outcome {
         return session.show(oscillator.normal_mode(mode as usize, order, &work), &[]);
     }
     if let Some(name) = unknown {
-        return session.show(oscillator.parameter_series(name, order, &work), &[]);
+        return session.show(oscillator.sought(name, order, &work), &[]);
     }
     if averaged {
         return session.show(oscillator.averaged(order, &work), &[]);

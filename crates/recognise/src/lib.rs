@@ -1,5 +1,6 @@
 //! From the equation of a problem to what a method needs: Melnikov's potential, friction, forcing
-//! and belt speed ([`MelnikovProblem`]), a parameter that is sought to first order ([`PersistenceProblem`]) and to any ([`SaddleProblem`]), the impact
+//! and belt speed ([`MelnikovProblem`]), a parameter that is sought to first order ([`PersistenceProblem`]) and to any
+//! ([`SaddleProblem`]), an equation with delays about its equilibrium ([`delay_equation`]), the impact
 //! oscillator of section 2 ([`ImpactProblem`]).
 //!
 //! Terms are matched by what they are, multiplied out with the values of the parameters, never by
@@ -10,6 +11,7 @@
 mod bound;
 mod factors;
 mod forces;
+mod hopf;
 mod impact;
 mod in_pi;
 mod law;
@@ -26,6 +28,7 @@ mod search;
 mod splitting;
 mod threshold;
 
+pub use hopf::delay_equation;
 pub use impact::{ImpactProblem, linear_in_time};
 pub use lowest::LowestHarmonic;
 pub use melnikov::MelnikovProblem;

@@ -45,6 +45,16 @@ pub enum Why {
     NotRational,
     /// The parameter that is sought does not enter linearly.
     NotLinearUnknown,
+    /// It depends on t.
+    DependsOnTime,
+    /// It is no polynomial in x, x' and their values at earlier times.
+    NotPolynomialDelayed,
+    /// It does not vanish at x = 0.
+    NotAtRest,
+    /// The parameter that is sought stands in a denominator, a power or a function.
+    UnknownInside,
+    /// Its delay is not positive, or depends on more than parameters.
+    BadDelay,
 }
 
 impl fmt::Display for Why {
@@ -69,6 +79,11 @@ impl fmt::Display for Why {
             Self::NotPolynomial => "is no polynomial in x and x'; the orbit is known in closed form for those",
             Self::NotRational => "has a coefficient that is not rational",
             Self::NotLinearUnknown => "is not linear in the parameter that is sought",
+            Self::DependsOnTime => "depends on t; Hopf points are those of an equilibrium",
+            Self::NotPolynomialDelayed => "is no polynomial in x, x' and their values at earlier times; of f regular at 0, taylor(f(z), 9) asks for one",
+            Self::NotAtRest => "does not vanish at x = 0, the equilibrium that is looked at: put x = c + y",
+            Self::UnknownInside => "is no polynomial in the parameter that is sought",
+            Self::BadDelay => "has a delay that is not positive",
         })
     }
 }
@@ -136,6 +151,9 @@ pub enum Refusal {
     /// There is a wall.
     #[error("there is a wall; Melnikov's method has none")]
     Wall,
+    /// There is a wall, and a Hopf point is asked for.
+    #[error("there is a wall; Hopf points are those of the equation alone")]
+    WallAtHopf,
     /// There is no wall.
     #[error("there is no wall: the file has no [impact]")]
     NoWall,

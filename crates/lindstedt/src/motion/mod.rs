@@ -10,7 +10,7 @@
 pub(crate) mod answer;
 mod chaos;
 mod diagram;
-mod equation;
+pub(crate) mod equation;
 mod follow;
 pub(crate) mod growth;
 mod history;

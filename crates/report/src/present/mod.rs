@@ -8,6 +8,7 @@ mod estimate;
 mod evaluate;
 mod family;
 mod homoclinic;
+mod hopf;
 mod motion;
 mod persistence;
 mod prove;

@@ -1,0 +1,147 @@
+//! Hopf points: the parameter and the frequency in powers of the amplitude, the cycle, what they say.
+
+use super::derive::{coefficient, indexed};
+use super::{Present, both, equation};
+use crate::{Document, Formula, Text};
+use lindstedt::unstable::coeff::print::{Style, latex_name};
+use lindstedt::unstable::hopf::{Coefficient, Law};
+use lindstedt::{Answer, HopfSeries, SoughtSeries};
+
+/// The page of either form.
+impl Present for Answer<SoughtSeries> {
+    fn document(&self) -> Document {
+        match &self.value {
+            SoughtSeries::Edges(value) => self.clone().map(|_| value.clone()).document(),
+            SoughtSeries::Cycle(value) => self.clone().map(|_| value.clone()).document(),
+        }
+    }
+}
+
+impl Present for Answer<HopfSeries> {
+    fn document(&self) -> Document {
+        let found = &self.value;
+        let problem = &found.problem;
+        let title = format!("{}: {}", problem.name, problem.title);
+        let page = Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
+        let page = series(found, motion(found, points(found, page)));
+        let page = laws(found, page);
+        let (last, how) = match (found.cycle.checked_orders, found.cycle.exact) {
+            (last, true) => (last, "vanishes identically"),
+            (last, false) => (last, "encloses zero"),
+        };
+        page.words(format!(
+            "Residual: the series put into the equation and multiplied out {how} at orders 1 to {last}."
+        ))
+    }
+}
+
+/// Where it was looked, and what was found.
+fn points(found: &HopfSeries, page: Document) -> Document {
+    let (name, points) = (&found.unknown, &found.cycle.points);
+    let [low, high] = points.interval;
+    let list = points.points.iter().map(|point| {
+        let [alpha, omega] = HopfSeries::listed(point);
+        format!("({}, {})", alpha.decimal, omega.decimal)
+    });
+    let page = page.words(format!(
+        "Sought: {name}, where a pair of roots i*omega, -i*omega of the characteristic function crosses the axis and a cycle is \
+         born at x = 0."
+    ));
+    page.words(format!(
+        "All with {low} <= {name} <= {high}, as ({name}, omega): {}. Taken: the nearest to {name} = {}.",
+        list.collect::<Vec<_>>().join(", "),
+        found.near
+    ))
+}
+
+/// x in powers of eps.
+fn motion(found: &HopfSeries, page: Document) -> Document {
+    let small = &found.problem.small;
+    let mut page = page.formula(both(|style| match style {
+        Style::Text => format!(
+            "x = {small}*x_1 + {small}^2*x_2 + ...,   s = omega*t,   x_2, x_3, ... without cos(s), sin(s)"
+        ),
+        Style::Latex => {
+            let small = latex_name(small);
+            format!(
+                r"x = {small}\,x_1 + {small}^2\,x_2 + \dots,\quad s = \omega t,\quad x_2, x_3, \dots \text{{ without }} \cos s, \sin s"
+            )
+        }
+    }));
+    for (n, x) in found.cycle.solution.iter().enumerate() {
+        page = page.formula(both(|style| {
+            let shown = &x[usize::from(style == Style::Latex)];
+            format!("{} = {shown}", indexed("x", n + 1, style))
+        }));
+    }
+    page
+}
+
+fn series(found: &HopfSeries, mut page: Document) -> Document {
+    let small = Formula::new(&*found.problem.small, latex_name(&found.problem.small));
+    let name = Text::from(Formula::new(&*found.unknown, latex_name(&found.unknown)));
+    let lists = [(name, &found.cycle.parameter), ("omega".into(), &found.cycle.frequency)];
+    for (name, list) in lists {
+        page = page.words(name.and(" in powers of ").formula(small.clone()).and(":"));
+        for (n, c) in list.iter().enumerate() {
+            page = page.formula(coefficient(n, printed(c), &c.number));
+        }
+    }
+    page
+}
+
+fn printed(c: &Coefficient) -> Formula {
+    Formula::new(&*c.printed[0], &*c.printed[1])
+}
+
+/// What is the same in every normalisation.
+fn laws(found: &HopfSeries, page: Document) -> Document {
+    let (name, cycle) = (&found.unknown, &found.cycle);
+    let [re, im] = cycle.crossing.each_ref().map(printed);
+    let page = page.words(
+        Text::words(format!("The root moves with dlambda/d{name} = "))
+            .formula(re)
+            .and(" + i*")
+            .formula(im)
+            .and("."),
+    );
+    let Some(law) = &cycle.law else {
+        return page.words(format!(
+            "No coefficient of {name} after the first differs from zero: up to this order the size of the cycle does not \
+             depend on {name}."
+        ));
+    };
+    let page = page.words(law_of(found, law));
+    let others = match cycle.unstable_roots {
+        Some(0) => "no other root has a positive real part".to_owned(),
+        Some(1) => "one other root has a positive real part".to_owned(),
+        Some(count) => format!("{count} other roots have a positive real part"),
+        None => "how many other roots have a positive real part is not decided".to_owned(),
+    };
+    let side = if law.above { ">" } else { "<" };
+    let kind = if law.supercritical { "Supercritical" } else { "Subcritical" };
+    let verdict = match cycle.is_stable() {
+        Some(true) => "stable",
+        Some(false) => "unstable",
+        None => "of undecided stability",
+    };
+    page.words(format!(
+        "{kind}: the cycle lives at {name} {side} {name}_0; {others}: the cycle is {verdict}."
+    ))
+}
+
+/// The leading terms of amplitude, frequency and exponent.
+fn law_of(found: &HopfSeries, law: &Law) -> Text {
+    let (name, m) = (&found.unknown, law.order);
+    let small = &found.problem.small;
+    let distance = format!("({name} - {name}_0)");
+    Text::words(format!("Near it {small}^{m} = {distance}*"))
+        .formula(printed(&law.amplitude))
+        .and(format!(
+            ", 2*{small} the amplitude of the first harmonic; omega = omega_0 + {distance}*"
+        ))
+        .formula(printed(&law.frequency_slope))
+        .and(format!("; the Floquet exponent is {small}^{m}*"))
+        .formula(printed(&law.floquet_exponent))
+        .and(".")
+}
