@@ -1,7 +1,7 @@
 //! The value of a parameter for which an orbit of an autonomous problem persists, to first order: the zero of
 //! D = D_0 + mu D_1, the work of the perturbation along the unperturbed orbit.
 
-use crate::bound::{bind, multiply_out, rest};
+use crate::bound::{bind, missing, multiply_out, rest};
 use crate::melnikov::MelnikovProblem;
 use crate::reading::Unperturbed;
 use crate::refusal::{Refusal, Why};
@@ -30,10 +30,10 @@ use std::collections::BTreeMap;
 /// ```
 #[derive(Clone, Debug)]
 pub struct PersistenceProblem {
-    /// At mu = 1.
-    with: MelnikovProblem,
-    /// At mu = 0, on the same orbit.
-    without: MelnikovProblem,
+    /// With g_0 alone.
+    known: MelnikovProblem,
+    /// With g_1 alone, on the same orbit.
+    factor: MelnikovProblem,
 }
 
 /// On one orbit, in x.
@@ -56,39 +56,48 @@ impl PersistenceProblem {
         unknown: &str,
     ) -> Result<Self, Refusal> {
         let mut values = values.clone();
+        values.insert(unknown.to_owned(), Exact::from(1));
+        let rest = rest(problem)?;
+        missing(&rest.parameters(), &values)?;
         values.remove(unknown);
-        let all = multiply_out(&bind(&rest(problem)?, &values))?;
+        let all = multiply_out(&bind(&rest, &values))?;
         let bad = all.terms.iter().find(|(m, _)| !is_linear(&all, m, unknown));
         if let Some((m, q)) = bad {
             let term = Box::new(all.tree(m, q));
             return Err(Refusal::Term { term, why: Why::NotLinearUnknown });
         }
-        let mut at = |value: i32, closed: bool| {
-            values.insert(unknown.to_owned(), Exact::from(value));
-            MelnikovProblem::autonomous(problem, &values, closed)
+        values.insert(unknown.to_owned(), Exact::from(1));
+        let read = |sought: bool, closed: bool| {
+            let part = part(problem, &all, |m| m.parameters.contains_key(unknown) == sought);
+            MelnikovProblem::autonomous(&part, &values, closed)
         };
-        let with = at(1, true)?;
-        let without = at(0, matches!(with.unperturbed, Unperturbed::Closed { .. }))?;
-        Ok(Self { with, without })
+        let mut found = Self { known: read(false, true)?, factor: read(true, true)? };
+        let is_closed = |p: &MelnikovProblem| matches!(p.unperturbed, Unperturbed::Closed { .. });
+        match (is_closed(&found.known), is_closed(&found.factor)) {
+            (true, false) => found.known = read(false, false)?,
+            (false, true) => found.factor = read(true, false)?,
+            _ => {}
+        }
+        Ok(found)
     }
 
     /// The same problem, whose numeric orbits end undecided when asked to stop.
     #[must_use]
     pub fn watched(self, stop: &Stop) -> Self {
-        Self { with: self.with.watched(stop), ..self }
+        Self { known: self.known.watched(stop), ..self }
     }
 
     /// The unperturbed oscillator.
     #[must_use]
     pub fn unperturbed(&self) -> &Unperturbed {
-        &self.with.unperturbed
+        &self.known.unperturbed
     }
 
     /// How the numbers are known.
     #[must_use]
     pub fn class(&self) -> Class {
         let is_estimated = |problem: &MelnikovProblem| problem.class() == Class::Estimated;
-        if is_estimated(&self.with) || is_estimated(&self.without) {
+        if is_estimated(&self.known) || is_estimated(&self.factor) {
             Class::Estimated
         } else {
             Class::Certified
@@ -100,22 +109,31 @@ impl PersistenceProblem {
     /// # Errors
     /// [`MelnikovError::UnknownWithoutWork`], [`MelnikovError::Undecided`], or those of a quadrature.
     pub fn orbits(&self, balls: Balls) -> Result<Vec<OrbitValue<Persistent>>, MelnikovError> {
-        let list = self.with.dissipations(balls, &self.without.perturbation)?;
+        let list = self.known.dissipations(balls, &self.factor.perturbation)?;
         let one = |orbit: OrbitValue<[Ball; 2]>| {
-            let [with, without] = orbit.value;
-            let by_unknown = balls.sub(&with, &without);
+            let [known, factor] = orbit.value;
             // An estimate that is not told from zero is one.
             let estimated = self.class() == Class::Estimated;
-            if by_unknown.contains_zero() && (estimated || by_unknown.is_exact()) {
+            if factor.contains_zero() && (estimated || factor.is_exact()) {
                 return Err(MelnikovError::UnknownWithoutWork);
             }
-            let quotient = balls.div(&balls.neg(&without), &by_unknown);
+            let quotient = balls.div(&balls.neg(&known), &factor);
             let parameter = quotient.ok_or(MelnikovError::Undecided { bits: balls.bits() })?;
-            let value = Persistent { parameter, work: [without, by_unknown] };
+            let value = Persistent { parameter, work: [known, factor] };
             Ok(OrbitValue { name: orbit.name, saddle: orbit.saddle, value })
         };
         list.into_iter().map(one).collect()
     }
+}
+
+/// The problem with the terms of order zero and those of the perturbation that are `wanted`.
+fn part(problem: &Problem, all: &Monomials, wanted: impl Fn(&Monomial) -> bool) -> Problem {
+    let terms = all.terms.iter().filter(|(m, _)| m.order == 0 || wanted(m));
+    let terms = terms.map(|(m, q)| all.tree(m, q));
+    let mut part = problem.clone();
+    part.equation = Expression::Sum(terms.chain([Expression::ACCELERATION]).collect()).canonical();
+    part.time_domain = None;
+    part
 }
 
 /// Whether a term has the unknown as a factor of a first-order term, or not at all.
