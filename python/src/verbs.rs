@@ -119,6 +119,10 @@ pub fn phased(options: &Options) -> Result<Evaluate, Error> {
 }
 
 fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
+    if let Some(largest) = options.exact("cycles")? {
+        options.finish()?;
+        return boxed(case.first_order(&largest, work));
+    }
     let prove = options.flag("prove")?;
     if !prove && case.condition() == Some(Condition::FreeAmplitude) {
         options.only_one(&["start", "state"])?;

@@ -5,6 +5,7 @@ pub mod averaged;
 mod code;
 mod compiled;
 mod improve;
+mod one_phase;
 mod prove;
 mod sweep;
 mod times;
@@ -25,6 +26,7 @@ pub use lindstedt_evaluation::{
 };
 pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;
+pub use one_phase::{Belt, FirstOrder, FirstOrderCycle, StickingBegins};
 pub use lindstedt_series::resummation::Estimated;
 use lindstedt_series::resummation::Method;
 pub use prove::{

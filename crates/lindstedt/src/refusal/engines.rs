@@ -271,7 +271,8 @@ impl Refusal for lindstedt_recognise::Refusal {
             Refusal::NoSaddleForm
             | Refusal::MovesSaddle { .. }
             | Refusal::NoPeriod
-            | Refusal::Tangent => {
+            | Refusal::Tangent
+            | Refusal::NoSpring => {
                 (NoAnswer, "no-method", "`lindstedt simulate` follows it in time")
             }
             Refusal::Melnikov(error) => return error.parts(),

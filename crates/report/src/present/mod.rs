@@ -9,6 +9,7 @@ mod evaluate;
 mod family;
 mod homoclinic;
 mod motion;
+mod one_phase;
 mod prove;
 mod resonance;
 mod respond;
