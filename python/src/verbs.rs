@@ -134,6 +134,10 @@ pub fn averaged(options: &Options) -> Result<AveragedMotion, Error> {
 }
 
 fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
+    if let Some(largest) = options.exact("cycles")? {
+        options.finish()?;
+        return boxed(case.first_order(&largest, work));
+    }
     let prove = options.flag("prove")?;
     if !prove && case.condition() == Some(Condition::FreeAmplitude) {
         let times = options.read("times", Times::parse)?;

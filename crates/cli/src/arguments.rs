@@ -149,6 +149,10 @@ pub struct EvaluateOptions {
     /// uniform bound covers them.
     #[arg(long, conflicts_with_all = ["code", "start", "state"])]
     pub prove: bool,
+    /// First-order averaging of any law g(x, x') of a linear spring, as numbers: the rates at this amplitude, the cycles
+    /// up to it, the speed of a belt at which they begin to stick.
+    #[arg(long, value_name = "AMPLITUDE", conflicts_with_all = ["prove", "sweep", "times", "code", "start", "state", "order", "plot"])]
+    pub cycles: Option<String>,
     /// Period and frequency over NAME=LO..HI:COUNT or NAME=V1,V2,...; at most two, the first along
     /// the horizontal axis.
     #[arg(long, value_name = "NAME=LO..HI:COUNT", conflicts_with_all = ["times", "code", "phase", "start", "state"])]

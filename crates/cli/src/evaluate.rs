@@ -14,6 +14,9 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     let oscillator = session.oscillator(&options.problem, &options.set, options.normalisation)?;
     let work = session.precise_work(&options.precision)?;
     session.check_writable(&options.problem, &options.plot, None)?;
+    if let Some(largest) = &options.cycles {
+        return session.show(oscillator.first_order(&Exact::parse(largest)?, &work), &[]);
+    }
     let shown = !options.plot.is_empty() || options.code.is_some();
     let times = options.times.as_deref().map(Times::parse).transpose()?;
     let times = times.or_else(|| shown.then(Times::default));

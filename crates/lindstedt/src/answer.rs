@@ -1,12 +1,30 @@
 //! What every verb answers with.
 
-use lindstedt_number::as_map;
+use crate::Error;
+use lindstedt_number::ball::Balls;
+use lindstedt_number::{Number, Status, as_map};
+use rug::Float;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt;
 
 /// The version of the JSON form; it grows when a key changes its meaning.
 pub const SCHEMA: u32 = 1;
+
+/// Digits of numbers in doubles.
+const DOUBLE_DIGITS: usize = 12;
+
+/// A number in doubles with an estimated error, or zero within it.
+pub(crate) fn estimated(value: f64, error: f64) -> Result<Number, Error> {
+    let (value, error) = (Float::with_val(64, value), Float::with_val(53, error));
+    let ball = Balls::new(64).from_parts(&value, &error);
+    let number = if ball.contains_zero() {
+        Number::of_ball(&ball, DOUBLE_DIGITS)
+    } else {
+        Number::with_error(&value, &error, DOUBLE_DIGITS)
+    };
+    Ok(number.ok_or(Error::NoValue)?.weaken(Status::Estimated))
+}
 
 impl fmt::Display for Standing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -12,6 +12,12 @@ pub enum Why {
     NotSmall,
     /// It is of higher order than the first.
     HigherOrder,
+    /// It is a force.
+    Forced,
+    /// An earlier time, in a law of one phase.
+    Late,
+    /// It is no linear spring.
+    NotSpring,
     /// The small parameter stands inside a function.
     SmallInside,
     /// An earlier time.
@@ -62,6 +68,9 @@ impl fmt::Display for Why {
         f.write_str(match self {
             Self::NotSmall => "has no factor of the small parameter; only a force f(x) may have none",
             Self::HigherOrder => "is of higher order in the small parameter; the perturbation must be of first order",
+            Self::Forced => "depends on t; averaging over one phase takes no force",
+            Self::Late => "is a delay; `lindstedt derive --normalisation free` averages delays in polynomial laws",
+            Self::NotSpring => "has no factor of the small parameter; only a linear spring may have none",
             Self::SmallInside => "has the small parameter inside a function",
             Self::Delay => "is a delay; Melnikov's method has none",
             Self::Formal => "is a formal function",
@@ -148,6 +157,9 @@ pub enum Refusal {
         /// alpha^2.
         value: String,
     },
+    /// No linear spring.
+    #[error("there is no spring: averaging over one phase needs x'' + omega^2*x with omega^2 > 0")]
+    NoSpring,
     /// There is a wall.
     #[error("there is a wall; Melnikov's method has none")]
     Wall,

@@ -1,16 +1,17 @@
 //! x'' = f(x) + eps (gamma d - h) at the values of its parameters: the threshold to second order on every orbit,
 //! and the equation with gamma free for whoever follows its manifolds.
 
-use crate::bound::{PI, bind, multiply_out, of_value, rest};
+use crate::bound::{bind, multiply_out, of_value, rest};
 use crate::forces::{Kind, kind};
+use crate::local::Point;
 use crate::lowest::LowestHarmonic;
 use crate::melnikov::MelnikovProblem;
 use crate::numeric::NumericOrbit;
 use crate::reading::Unperturbed;
 use crate::refusal::{Refusal, Why};
 use lindstedt_equation::monomials::Monomials;
-use lindstedt_equation::{Expression, Function, Operations, Problem, Unknown};
-use lindstedt_melnikov::splitting::{Connection, Local, SecondOrder, Splitting};
+use lindstedt_equation::{Expression, Problem};
+use lindstedt_melnikov::splitting::{Connection, SecondOrder, Splitting};
 use lindstedt_melnikov::{Forcing, Verdict};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
@@ -118,9 +119,9 @@ impl SplittingProblem {
     #[must_use]
     pub fn orbits(&self) -> Vec<OrbitSplitting> {
         let splitting = Splitting {
-            force: &|x| local(&self.force, [0.0, x, 0.0]).map(|[f, slope, _]| [f, slope]),
-            drive: &|t, x, v| local(&self.drive, [t, x, v]),
-            friction: &|x, v| local(&self.friction, [0.0, x, v]),
+            force: &|x| Point::at(0.0, x, 0.0).local(&self.force).map(|[f, slope, _]| [f, slope]),
+            drive: &|t, x, v| Point::at(t, x, v).local(&self.drive),
+            friction: &|x, v| Point::at(0.0, x, v).local(&self.friction),
             period: self.period(),
             harmonics: self.harmonics,
             kink: self.kink,
@@ -144,74 +145,5 @@ fn kink(found: &MelnikovProblem) -> Result<Option<f64>, Refusal> {
         Some(Verdict::Fails) | None if found.jumps() => Err(Refusal::Tangent),
         _ if found.perturbation.belt_speed.sign().is_eq() => Ok(None),
         _ => Ok(Some(found.perturbation.belt_speed.to_f64() * scale)),
-    }
-}
-
-/// The value at (t, x, x') with the derivatives by x and by x'; nothing where it is not finite.
-fn local(e: &Expression, at: [f64; 3]) -> Option<Local> {
-    e.evaluate(&mut At(at)).filter(|local| local.iter().all(|part| part.is_finite()))
-}
-
-/// A point (t, x, x').
-struct At([f64; 3]);
-
-/// F(z) from F and F' at the value of z.
-fn chain(z: Local, value: f64, slope: f64) -> Local {
-    [value, slope * z[1], slope * z[2]]
-}
-
-impl Operations for At {
-    type Value = Local;
-
-    fn number(&mut self, q: &Rational) -> Option<Local> {
-        Some([q.to_f64(), 0.0, 0.0])
-    }
-
-    fn leaf(&mut self, leaf: &Expression) -> Option<Local> {
-        let Self([t, x, v]) = *self;
-        match leaf {
-            Expression::Time => Some([t, 0.0, 0.0]),
-            Expression::Parameter(name) if **name == *PI => Some([std::f64::consts::PI, 0.0, 0.0]),
-            Expression::Unknown(Unknown { derivative: 0, delay: None, .. }) => Some([x, 1.0, 0.0]),
-            Expression::Unknown(Unknown { derivative: 1, delay: None, .. }) => Some([v, 0.0, 1.0]),
-            _ => None,
-        }
-    }
-
-    fn add(&mut self, a: Local, b: Local) -> Option<Local> {
-        Some([0, 1, 2].map(|k| a[k] + b[k]))
-    }
-
-    fn multiply(&mut self, a: Local, b: Local) -> Option<Local> {
-        Some([a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[2] * b[0]])
-    }
-
-    fn power(&mut self, base: &Expression, exponent: &Expression) -> Option<Local> {
-        let z = base.evaluate(self)?;
-        if let Some(n) =
-            exponent.as_number().and_then(|n| n.is_integer().then(|| n.numer().to_i32())?)
-        {
-            return Some(chain(z, z[0].powi(n), f64::from(n) * z[0].powi(n - 1)));
-        }
-        // b^n = exp(n ln b), n a number or not.
-        let [n, by_x, by_v] = exponent.evaluate(self)?;
-        let value = z[0].powf(n);
-        let slope = n * z[0].powf(n - 1.0);
-        let growth = if by_x == 0.0 && by_v == 0.0 { 0.0 } else { value * z[0].ln() };
-        Some([value, slope * z[1] + growth * by_x, slope * z[2] + growth * by_v])
-    }
-
-    fn function(&mut self, function: Function, argument: &Expression) -> Option<Local> {
-        let z = argument.evaluate(self)?;
-        let (value, slope) = match function {
-            Function::Ln => (z[0].ln(), z[0].recip()),
-            Function::Exp => (z[0].exp(), z[0].exp()),
-            Function::Sin => (z[0].sin(), z[0].cos()),
-            Function::Cos => (z[0].cos(), -z[0].sin()),
-            Function::Abs => (z[0].abs(), z[0].signum()),
-            Function::Sign if z[0] == 0.0 => (0.0, 0.0),
-            Function::Sign => (z[0].signum(), 0.0),
-        };
-        Some(chain(z, value, slope))
     }
 }

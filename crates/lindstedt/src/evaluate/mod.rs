@@ -6,6 +6,7 @@ mod code;
 mod compiled;
 mod functions;
 mod improve;
+mod one_phase;
 mod prove;
 mod sweep;
 mod times;
@@ -29,6 +30,7 @@ pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;
 pub use lindstedt_series::resummation::Estimated;
 use lindstedt_series::resummation::Method;
+pub use one_phase::{Belt, FirstOrder, FirstOrderCycle, StickingBegins};
 pub use prove::{
     Between, Bounds, EndOfBranch, Expansion, ProvedBranch, ProvedFamily, ProvedMember, ProvedOrbit,
     ProvedState, UnknownOrbit, UnknownState, Verdict as ProofVerdict,

@@ -277,7 +277,7 @@ impl Refusal for lindstedt_recognise::Refusal {
             Refusal::NoSaddleForm | Refusal::MovesSaddle { .. } => {
                 (NoAnswer, "no-method", FIRST_ORDER)
             }
-            Refusal::NoPeriod | Refusal::Tangent => {
+            Refusal::NoPeriod | Refusal::Tangent | Refusal::NoSpring => {
                 (NoAnswer, "no-method", "`lindstedt simulate` follows it in time")
             }
             Refusal::NoForce => (

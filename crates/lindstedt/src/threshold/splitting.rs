@@ -1,14 +1,14 @@
 //! The threshold to second order in the small parameter, orbit by orbit, and the manifolds that judge it.
 
 use super::subject::Subject;
+use crate::answer::estimated;
 use crate::refusal::Refused;
-use crate::{Error, Number, Status};
+use crate::{Error, Number};
 use lindstedt_melnikov::splitting::SecondOrder;
 use lindstedt_number::Exact;
-use lindstedt_number::ball::Balls;
 use lindstedt_recognise::{GAMMA, OrbitSplitting, SplittingProblem};
 use lindstedt_simulate::{Homoclinic, Loop, Model, Parameters, SimulateError, TangencyLine};
-use rug::{Float, Rational};
+use rug::Rational;
 use serde::Serialize;
 use std::ops::ControlFlow;
 
@@ -54,26 +54,12 @@ pub struct ManifoldPoint {
     pub gamma: Number,
 }
 
-/// Digits of numbers in doubles.
-const DIGITS: usize = 12;
 /// Orbits followed round the loop for the first tangency, then more of them.
 const ORBITS: [u32; 2] = [24, 61];
 /// The perturbation against the force of eps = 0 at the smallest eps; the largest is eight times as large.
 const SMALL: f64 = 1.0 / 1024.0;
 /// How far from gamma_c the tangency at the smallest eps is looked for, as a share of it and in slopes.
 const AROUND: (f64, f64) = (0.02, 3.0);
-
-/// The number with an estimated error, or zero within it.
-fn number(value: f64, error: f64) -> Result<Number, Error> {
-    let (value, error) = (Float::with_val(64, value), Float::with_val(53, error));
-    let ball = Balls::new(64).from_parts(&value, &error);
-    let number = if ball.contains_zero() {
-        Number::of_ball(&ball, DIGITS)
-    } else {
-        Number::with_error(&value, &error, DIGITS)
-    };
-    Ok(number.ok_or(Error::NoValue)?.weaken(Status::Estimated))
-}
 
 /// The threshold to second order on every orbit.
 pub(super) fn list(subject: &Subject<'_>) -> Result<Vec<SecondOrderThreshold>, Error> {
@@ -108,8 +94,8 @@ pub(super) fn list(subject: &Subject<'_>) -> Result<Vec<SecondOrderThreshold>, E
                 orbit.name.to_owned()
             },
             parameter: subject.oscillator.problem().small.to_string(),
-            gamma_c: number(gamma, 1e-10 * gamma)?,
-            slope: number(found.slope, found.error)?,
+            gamma_c: estimated(gamma, 1e-10 * gamma)?,
+            slope: estimated(found.slope, found.error)?,
             manifolds,
             not_followed,
         });
@@ -123,11 +109,11 @@ fn is_loop(orbit: &OrbitSplitting) -> bool {
 
 fn manifolds(line: &TangencyLine) -> Result<Manifolds, Error> {
     let point = |[small, gamma, error]: &[f64; 3]| {
-        Ok(ManifoldPoint { small: *small, gamma: number(*gamma, *error)? })
+        Ok(ManifoldPoint { small: *small, gamma: estimated(*gamma, *error)? })
     };
     Ok(Manifolds {
-        gamma_c: number(line.intercept, line.errors[0])?,
-        slope: number(line.slope, line.errors[1])?,
+        gamma_c: estimated(line.intercept, line.errors[0])?,
+        slope: estimated(line.slope, line.errors[1])?,
         points: line.points.iter().map(point).collect::<Result<_, Error>>()?,
     })
 }

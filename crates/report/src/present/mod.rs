@@ -10,6 +10,7 @@ mod family;
 mod homoclinic;
 mod hopf;
 mod motion;
+mod one_phase;
 mod persistence;
 mod prove;
 mod resonance;

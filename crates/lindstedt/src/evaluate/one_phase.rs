@@ -1,0 +1,175 @@
+//! The question `evaluate --cycles`: first-order averaging of any law as numbers.
+
+use crate::answer::estimated;
+use crate::refusal::Refused;
+use crate::{Answer, Error, Exact, Number, Oscillator, Remark, Standing, Work};
+use lindstedt_recognise::OnePhase;
+use serde::Serialize;
+use std::time::Instant;
+
+/// First-order averaging of x'' + omega^2 x + eps g(x, x') = 0 for any law g, x = a cos psi. Estimated: integrals
+/// over the phase, cut where the law jumps or bends.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct FirstOrder {
+    /// The small parameter.
+    pub parameter: String,
+    /// omega.
+    pub frequency: f64,
+    /// The amplitude up to which cycles are sought.
+    pub amplitude: Exact,
+    /// a' over the small parameter there.
+    pub amplitude_rate: Number,
+    /// psi' - omega over the small parameter there.
+    pub phase_rate: Number,
+    /// v*, the one x' other than 0 at which the law jumps or bends.
+    pub belt_speed: Option<f64>,
+    /// By rising amplitude.
+    pub cycles: Vec<FirstOrderCycle>,
+    /// The parameter that v* is a multiple of.
+    pub belt: Option<String>,
+    /// Where cycles are as fast as the belt, by rising speed.
+    pub sticking: Vec<StickingBegins>,
+}
+
+/// A simple zero of a'.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct FirstOrderCycle {
+    /// a.
+    pub amplitude: Number,
+    /// The Floquet exponent over the small parameter.
+    pub exponent: Number,
+    /// psi' - omega over the small parameter.
+    pub phase_rate: Number,
+    /// Whether the exponent is negative where the small parameter is positive.
+    pub stable: bool,
+    /// Its way past the belt.
+    pub belt: Option<Belt>,
+}
+
+/// How a cycle meets the belt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Belt {
+    /// It is slower than the belt at all times.
+    Slower,
+    /// It overtakes the belt and passes it where the spring is stronger than friction, or no eps says how strong that is.
+    Overtakes,
+    /// It meets the belt where the spring is weaker than friction: it sticks, and averaging does not hold.
+    Sticks,
+}
+
+impl Belt {
+    /// In words.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Slower => "slower than the belt",
+            Self::Overtakes => {
+                "overtakes the belt without sticking as the small parameter goes to 0"
+            }
+            Self::Sticks => "sticks to the belt: averaging does not hold",
+        }
+    }
+}
+
+/// A cycle as fast as the belt.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct StickingBegins {
+    /// The value of the parameter of the belt.
+    pub value: Number,
+    /// a = |v*|/omega.
+    pub amplitude: Number,
+}
+
+impl Oscillator {
+    /// The rates of first order at an amplitude, the cycles up to it, and the speeds of the belt at which one of them
+    /// is as fast as the belt, where the speed is a parameter.
+    ///
+    /// Cost: some hundred integrals over the phase.
+    ///
+    /// # Errors
+    /// [`Refused`] with the term that does not fit: forces, delays, walls, springs that are not linear.
+    ///
+    /// ```
+    /// use lindstedt::{Exact, Oscillator, Work};
+    /// // Van der Pol's law: a = 2, exponent -eps.
+    /// let cycle = Oscillator::parse("x'' + x = eps*(1 - x^2)*x'")?;
+    /// let found = cycle.first_order(&Exact::from(3), &Work::default())?.value;
+    /// assert!(found.cycles.len() == 1 && found.cycles[0].amplitude.decimal.starts_with("2.00000000"));
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn first_order(&self, largest: &Exact, work: &Work) -> Result<Answer<FirstOrder>, Error> {
+        let start = Instant::now();
+        self.single()?;
+        if self.problem().impact.is_some() {
+            let message = "there is a wall; averaging over one phase takes none";
+            return Err(Refused::no_answer("no-method", message, "").into());
+        }
+        let top = largest.to_f64();
+        if !(top > 0.0 && top.is_finite()) {
+            return Err(Refused::usage(
+                "amplitude",
+                "the amplitude must be positive",
+                "--cycles 2",
+            )
+            .into());
+        }
+        let values = self.form_values(&[])?;
+        let law = OnePhase::new(self.problem(), &values).map_err(|refusal| self.unfit(refusal))?;
+        let number = |[value, error]: [f64; 2]| estimated(value, error);
+        let undefined =
+            || Refused::no_answer("no-value", "the law has no finite value at this amplitude", "");
+        let rates = law.rates(top).ok_or_else(undefined)?;
+        let eps = values.get(&*self.problem().small).map(Exact::to_f64);
+        let cycles = law.cycles(top, &work.stop).into_iter().map(|cycle| {
+            let a = cycle.amplitude[0];
+            let fast = |speed: f64| a * law.frequency >= speed.abs();
+            let belt = law.belt_speed.map(|speed| match eps {
+                _ if !fast(speed) => Belt::Slower,
+                Some(eps) if law.sticks(a, eps) => Belt::Sticks,
+                _ => Belt::Overtakes,
+            });
+            Ok(FirstOrderCycle {
+                amplitude: number(cycle.amplitude)?,
+                exponent: number(cycle.exponent)?,
+                phase_rate: number(cycle.phase)?,
+                stable: cycle.exponent[0] < 0.0,
+                belt,
+            })
+        });
+        let sticking = law.sticking(top, &work.stop).into_iter().map(|found| {
+            Ok(StickingBegins {
+                value: number(found.parameter)?,
+                amplitude: number(found.amplitude)?,
+            })
+        });
+        let value = FirstOrder {
+            parameter: self.problem().small.to_string(),
+            frequency: law.frequency,
+            amplitude: largest.clone(),
+            amplitude_rate: number(rates.amplitude)?,
+            phase_rate: number(rates.phase)?,
+            belt_speed: law.belt_speed,
+            cycles: cycles.collect::<Result<_, Error>>()?,
+            belt: law.belt.clone(),
+            sticking: sticking.collect::<Result<_, Error>>()?,
+        };
+        let mut remarks = self.remarks().to_vec();
+        let standing = if work.stop.asked() {
+            remarks.push(Remark("stopped; cycles not reached are missing".to_owned()));
+            Standing::Stopped { done: value.cycles.len() }
+        } else {
+            Standing::Complete
+        };
+        let at = values.into_iter().map(|(name, value)| (name, value.to_string())).collect();
+        Ok(Answer {
+            header: self.header(at, Some(1), "estimated", start),
+            value,
+            standing,
+            remarks,
+        })
+    }
+}
