@@ -101,6 +101,7 @@ fn exact(case: &Oscillator, order: usize, options: &Options, work: &Work) -> Ask
         ("clock", Route::Clock),
         ("driver", Route::Driver),
         ("energy", Route::EnergyIntegral),
+        ("frequency", Route::Frequency),
     ];
     let route = options.choice("route", &routes)?.unwrap_or_default();
     options.finish()?;

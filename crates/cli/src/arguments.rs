@@ -101,6 +101,10 @@ pub struct DeriveOptions {
     /// integral (frequency alone: conservative forces that are polynomial, the power law, the pendulum).
     #[arg(long, value_enum, default_value_t = Route::Auto)]
     pub route: Route,
+    /// The frequency and the period alone, to higher order: by the energy integral where it applies, and else modulo
+    /// primes (limit cycles, forces with velocities).
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub only: Option<Only>,
     /// Exact, or numbers with an estimated error: collocation (--digits or --f64) or a truncated
     /// Fourier series in doubles (--harmonics).
     #[arg(long, value_enum, default_value_t = TierName::Exact)]
@@ -423,6 +427,12 @@ pub enum Route {
     Clock,
     /// The frequency alone, exact and to much higher order.
     Energy,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Only {
+    /// The series of omega^2, omega and T.
+    Frequency,
 }
 
 /// With --out DIR the report and its data are written into that directory.

@@ -178,6 +178,24 @@ pub fn extend<A: PhaseAlgebra>(
     driver.finish(work)
 }
 
+/// 1/S for a limit cycle, where 2<f_n sin> changes by S when the amplitude of order n - 1 does by one: a_(n-1) is
+/// -2<f_n sin>/S. Nothing where the condition fixes the amplitude.
+///
+/// # Errors
+/// [`ExpandError::DegenerateLimitCycle`] where S is zero; those of [`expand`] to order 1.
+pub fn amplitude_reaction<A: PhaseAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    request: &Request,
+) -> Result<Option<Constant<A>>, ExpandError> {
+    if request.condition != Condition::LimitCycle {
+        return Ok(None);
+    }
+    let mut driver = Driver::start(algebra, equation, request)?;
+    driver.step(1)?;
+    Ok(driver.limit_cycle.map(|reaction| reaction.inverse_sin))
+}
+
 /// How the amplitude is treated: fixed or a limit cycle's (`Driver` below), or free and drifting
 /// ([`crate::average`]). The loop over the orders is the same.
 pub(crate) trait Scheme {

@@ -53,12 +53,9 @@ impl Remaindering {
         stop: &Stop,
     ) -> Option<OrderNumbers> {
         let places = images.first()?.places(n);
-        let pairs = images.iter().zip(&self.cofactors);
-        let factors: Vec<u64> = pairs
-            .map(|(image, (_, inverse))| image.field.mul(inverse, &image.field.integer(guess)))
-            .collect();
+        let factors = self.factors(images, guess);
         let numerator =
-            |index: usize| (!stop.asked()).then(|| self.numerator(images, n, index, &factors));
+            |index: usize| (!stop.asked()).then(|| self.combined(images, n, index, &factors));
         // One number decides whether the others are worth their while.
         let probe = places.len().saturating_sub(1).min(3);
         let mut growing = Growing { modulus: &self.modulus, factor: Integer::from(1) };
@@ -84,8 +81,27 @@ impl Remaindering {
         Some(lowest_terms(places.iter().copied().zip(rescaled).collect(), denominator))
     }
 
-    /// The representative of the smallest absolute value of a number times the guess.
-    fn numerator(&self, images: &[Image], n: usize, index: usize, factors: &[u64]) -> Integer {
+    /// The inverses of the cofactors times a number.
+    fn factors(&self, images: &[Image], number: &Integer) -> Vec<u64> {
+        let pairs = images.iter().zip(&self.cofactors);
+        let factor = |(image, (_, inverse)): (&Image, &(Integer, u64))| {
+            image.field.mul(inverse, &image.field.integer(number))
+        };
+        pairs.map(factor).collect()
+    }
+
+    /// The representative of the smallest absolute value of a number times its denominator.
+    pub(crate) fn numerator(
+        &self,
+        images: &[Image],
+        n: usize,
+        index: usize,
+        denominator: &Integer,
+    ) -> Integer {
+        self.combined(images, n, index, &self.factors(images, denominator))
+    }
+
+    fn combined(&self, images: &[Image], n: usize, index: usize, factors: &[u64]) -> Integer {
         let mut sum = Integer::with_capacity(self.modulus.significant_bits() as usize + 128);
         for ((image, (cofactor, _)), factor) in images.iter().zip(&self.cofactors).zip(factors) {
             let field = &image.field;

@@ -15,7 +15,7 @@ use lindstedt_phase::modular::PrimeField;
 use lindstedt_phase::{Modular, Trigonometric};
 use rug::{Integer, Rational};
 
-struct NoNames;
+pub(crate) struct NoNames;
 
 impl RationalBinding for NoNames {
     fn parameter(&self, _: &str) -> Option<Rational> {
@@ -64,7 +64,7 @@ fn directly(
 
 /// Odd and even forces, forces of several orders in eps, damping that makes a limit cycle, stiffness and
 /// coefficients with large primes, a leading amplitude that is a fraction.
-fn equations() -> Vec<(Expression, Vec<Condition>)> {
+pub(crate) fn equations() -> Vec<(Expression, Vec<Condition>)> {
     let conservative = vec![Condition::InitialAmplitude, Condition::FundamentalAmplitude];
     let cycle = vec![Condition::LimitCycle];
     let start = || Expression::ACCELERATION + x(1);
@@ -118,13 +118,13 @@ fn agrees_with_rational_arithmetic() {
 
 const ORDER: usize = 6;
 
-fn van_der_pol() -> Expression {
+pub(crate) fn van_der_pol() -> Expression {
     let damping = small(1) * (x(2) + q(-1, 1)) * v(1);
     (Expression::ACCELERATION + x(1) + damping).canonical()
 }
 
 /// Some images of van der Pol's equation.
-fn with_images(count: usize, test: impl Fn(&Job<'_>, Vec<Image>)) {
+pub(crate) fn with_images(count: usize, test: impl Fn(&Job<'_>, Vec<Image>)) {
     let (equation, stop) = (van_der_pol(), Stop::default());
     let request = Request {
         condition: Condition::LimitCycle,
@@ -140,7 +140,7 @@ fn with_images(count: usize, test: impl Fn(&Job<'_>, Vec<Image>)) {
     test(&job, images);
 }
 
-fn places(image: &Image) -> Vec<(usize, Place)> {
+pub(crate) fn places(image: &Image) -> Vec<(usize, Place)> {
     (0..=ORDER).flat_map(|n| image.places(n).iter().map(move |place| (n, *place))).collect()
 }
 

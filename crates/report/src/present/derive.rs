@@ -235,7 +235,11 @@ impl Board<'_> {
                 vanishes(last)
             ),
             (_, Some(last)) => vanishes(last) + ".",
-            (Solution::FrequencyOnly, None) => {
+            (Solution::FrequencyOnly { primes: Some(primes) }, None) => format!(
+                "Proved modulo {primes} primes of 61 bits, more than its numbers can hold by bounds known in advance;\n\
+                 no solution. One image was substituted into the equation, the others at one phase each."
+            ),
+            (Solution::FrequencyOnly { primes: None }, None) => {
                 "By the energy integral; no solution, so nothing to substitute.".to_owned()
             }
             (_, None) => "Not substituted into the equation: not checked.".to_owned(),

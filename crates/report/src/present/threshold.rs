@@ -9,6 +9,7 @@ use lindstedt::threshold::{Harmonic, HomoclinicThreshold, SecondOrderThreshold, 
 use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::{Answer, Header, Number, Remark, Standing};
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 /// The longest table on a page.
 const PRINTED_POINTS: usize = 1000;
@@ -181,9 +182,32 @@ impl Present for Answer<HomoclinicThreshold> {
     }
 
     fn csv(&self, take: &mut dyn FnMut(&str) -> bool) -> Option<bool> {
-        let mut lines = rows(&self.value.sweep.as_ref()?.grid);
-        Some(lines.all(|cells| take(&csv_line(&cells))))
+        let grid = &self.value.sweep.as_ref()?.grid;
+        let head: Vec<String> = rows(grid).next()?;
+        Some(take(&csv_line(&head)) && csv_points(grid, take))
     }
+}
+
+/// Every point as a line. Of millions each value is printed once, and into the same line.
+fn csv_points(grid: &Grid<f64>, take: &mut dyn FnMut(&str) -> bool) -> bool {
+    let texts = |axis: &grid::Axis| -> Vec<String> {
+        axis.doubles().iter().map(|x| format!("{x:?},")).collect()
+    };
+    let (columns, rows) = (texts(&grid.columns), grid.rows.as_ref().map(texts));
+    let (mut line, mut digits) = (String::new(), String::new());
+    grid.points.chunks(grid.width()).enumerate().all(|(row, points)| {
+        let row = rows.as_ref().and_then(|rows| rows.get(row));
+        points.iter().zip(&columns).all(|(signed, column)| {
+            digits.clear();
+            // Writing into a string cannot fail.
+            let _ = signed.map(|x| write!(digits, "{x:?}"));
+            line.clear();
+            let size = digits.strip_prefix('-').unwrap_or(&digits);
+            let parts = [row.map_or("", String::as_str), column, size, ",", &digits, "\n"];
+            line.extend(parts);
+            take(&line)
+        })
+    })
 }
 
 /// The names of the columns, then every point.
