@@ -84,7 +84,8 @@ pub struct HopfCycle {
     pub harmonics: Vec<Vec<HarmonicNumber>>,
     /// dlambda/dalpha of the root i omega_0: real and imaginary part.
     pub crossing: [Coefficient; 2],
-    /// What holds near the point; nothing where no alpha_n up to the order differs from zero.
+    /// What holds near the point; nothing where no alpha_n up to the order differs from zero, or the first that may is
+    /// enclosed with zero.
     pub law: Option<Law>,
     /// Other roots with a positive real part at alpha_0; nothing where it is not decided.
     pub unstable_roots: Option<usize>,
@@ -258,14 +259,16 @@ impl Shape<'_> {
         all.collect()
     }
 
-    /// Nothing inside where no alpha_n differs from zero; nothing at all where that is open.
+    /// Nothing inside where no alpha_n is known to differ from zero; nothing at all for too few bits.
     fn law<F: Field>(&self, field: &F, cycle: &Cycle<F::Element>) -> Option<Option<Law>> {
         let later = cycle.parameter.iter().enumerate().skip(1);
         let Some((m, alpha)) = later.into_iter().find(|(_, a)| !field.is_zero(a)) else {
             return Some(None);
         };
         let speed = &cycle.crossing[0];
-        let signs = [field.sign(alpha)?, field.sign(speed)?];
+        // An enclosed coefficient that may be zero leaves the leading order open.
+        let Some(sign) = field.sign(alpha) else { return Some(None) };
+        let signs = [sign, field.sign(speed)?];
         let inverse = field.reciprocal(alpha)?;
         let exponent = field.scale(&field.mul(alpha, speed), &-Rational::from(m));
         Some(Some(Law {
@@ -304,7 +307,13 @@ fn printed<F: Field>(field: &F, x: &[[F::Element; 2]], style: Style) -> String {
                 Style::Text => format!("{function}({angle})"),
                 Style::Latex => format!(r"\{function} {angle}"),
             };
-            sum.push(field.factor(e, style).times((k > 0).then_some(wave)));
+            // The 2 of x_1 in enclosures.
+            let whole = field.as_rational(e).filter(Rational::is_integer);
+            let own = match whole {
+                Some(coefficient) => Term { coefficient, factors: Vec::new() },
+                None => field.factor(e, style),
+            };
+            sum.push(own.times((k > 0).then_some(wave)));
         }
     }
     print_sum(&sum, style)

@@ -85,15 +85,16 @@ impl Oscillator {
     fn has_hopf_form(&self) -> bool {
         let problem = self.problem();
         let equation = &problem.equation;
-        if !problem.others.is_empty() || equation.contains(&Expression::Time) {
-            return false;
+        if !problem.others.is_empty() || equation.is_first_order() {
+            return problem.others.is_empty();
         }
         let delayed = || {
             let parts = self.classify().ok();
             let reasons = parts.into_iter().flat_map(|parts| parts.methods).flat_map(|(_, r)| r);
             reasons.into_iter().any(|reason| matches!(reason, Reason::DelayedLinearPart(_)))
         };
-        !equation.contains(&Expression::Small) || equation.is_first_order() || delayed()
+        let forced = equation.contains(&Expression::Time);
+        !forced && !equation.contains(&Expression::Small) || delayed()
     }
 
     /// The cycle that is born at x = 0 where the parameter `name` passes a Hopf point, up to an order: scalar equations of

@@ -64,6 +64,14 @@ const TABLE: [(i32, &str, &str, &str, &str); 67] = [
         "evaluate docs/examples/sign-power.toml --set delta=1/10 --order 8",
     ),
     (
+        3,
+        "first-order",
+        "simulate \"x' + alpha*x(t-1)*(1+x) = 0\"",
+        "--unknown",
+        "derive \"x' + alpha*x(t-1)*(1+x) = 0\" --unknown alpha",
+    ),
+    (3, "no-hopf-point", "derive \"x' + a*x^2 + x = 0\" --unknown a", "--set NAME=VALUE", ""),
+    (
         2,
         "second-unknown",
         "derive \"x'' + x + eps*x*y\" --order 1",
