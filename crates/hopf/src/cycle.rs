@@ -89,8 +89,8 @@ pub struct HopfCycle {
     pub law: Option<Law>,
     /// Other roots with a positive real part at alpha_0; nothing where it is not decided.
     pub unstable_roots: Option<usize>,
-    /// The orders of the equation, from 1, at which the series leaves nothing.
-    pub checked_orders: usize,
+    /// The orders of the equation, from 1, at which the series leaves nothing; nothing where there was no time to look.
+    pub checked_orders: Option<usize>,
 }
 
 impl HopfCycle {
@@ -176,14 +176,9 @@ pub fn cycle(
     if let Some(over) = equation.over(&PiField)
         && let Some(start) = exact(&over, &sharp)
     {
-        let mut shown = None;
-        let mut watch = |n| observer(Step::Order(n));
-        let found = expand(&PiField, &over, start, settings.order, &mut watch)?;
-        if observer(Step::Checking) {
-            let checked = vanishes(&PiField, &over, &found).ok_or(HopfError::Residual)?;
-            shown = shape.finish(&PiField, &found, checked);
-        }
-        return shown.map(|cycle| HopfCycle { exact: true, ..cycle }).ok_or(HopfError::Stopped);
+        let found = shape.run(&PiField, &over, start, observer)?;
+        let found = found.ok_or(HopfError::NotEnoughBits { bits: MOST_BITS })?;
+        return Ok(HopfCycle { exact: true, ..found });
     }
     let digits = u32::try_from(settings.digits).unwrap_or(MOST_BITS);
     let mut bits = digits.saturating_mul(10) / 3 + GUARD;
@@ -192,13 +187,7 @@ pub fn cycle(
         let ring = BallRing { balls: Balls::new(bits) };
         let over = equation.over(&ring).ok_or(HopfError::Field)?;
         let start = (Enclosure(parameter), Enclosure(frequency));
-        let mut watch = |n| observer(Step::Order(n));
-        let found = expand(&ring, &over, start, settings.order, &mut watch)?;
-        if !observer(Step::Checking) {
-            return Err(HopfError::Stopped);
-        }
-        let checked = vanishes(&ring, &over, &found).ok_or(HopfError::Residual)?;
-        if let Some(cycle) = shape.finish(&ring, &found, checked) {
+        if let Some(cycle) = shape.run(&ring, &over, start, observer)? {
             return Ok(cycle);
         }
         bits = bits.saturating_mul(2);
@@ -213,12 +202,29 @@ struct Shape<'a> {
 }
 
 impl Shape<'_> {
+    /// The series over a field, checked; nothing where the digits are not known.
+    fn run<F: Field>(
+        &self,
+        field: &F,
+        equation: &DelayEquation<F::Element>,
+        start: (F::Element, F::Element),
+        observer: &mut dyn FnMut(Step) -> bool,
+    ) -> Result<Option<HopfCycle>, HopfError> {
+        let mut watch = |n| observer(Step::Order(n));
+        let found = expand(field, equation, start, self.settings.order, &mut watch)?;
+        let checked = vanishes(field, equation, &found, &mut || observer(Step::Checking));
+        if checked == Some(false) {
+            return Err(HopfError::Residual);
+        }
+        Ok(self.finish(field, &found, checked.map(|_| found.solution.len())))
+    }
+
     /// The numbers; nothing where the digits are not known.
     fn finish<F: Field>(
         &self,
         field: &F,
         cycle: &Cycle<F::Element>,
-        checked_orders: usize,
+        checked_orders: Option<usize>,
     ) -> Option<HopfCycle> {
         let list = |list: &[F::Element]| {
             list.iter().map(|e| self.coefficient(field, e)).collect::<Option<Vec<_>>>()

@@ -128,7 +128,7 @@ fn enclosures_hold_the_exact_numbers() {
         term.coefficient = [0, 0, 1].map(Expression::integer).to_vec();
     }
     let enclosed = found(&squared, 1.2, 4);
-    assert!(!enclosed.exact && enclosed.checked_orders == 5);
+    assert!(!enclosed.exact && enclosed.checked_orders == Some(5));
     assert!(enclosed.parameter.iter().all(|c| c.number.exact.is_none() || c.number.decimal == "0"));
     // alpha^2 = beta: 2 alpha_0 alpha_2 = beta_2, 2 alpha_0 alpha_4 + alpha_2^2 = beta_4.
     let (a, b) = (values(&enclosed.parameter), values(&exact.parameter));

@@ -31,7 +31,7 @@ fn run(line: &str) -> Output {
 }
 
 /// Exit code, code, line; what the hint says of the way on; the line it leads to.
-const TABLE: [(i32, &str, &str, &str, &str); 67] = [
+const TABLE: [(i32, &str, &str, &str, &str); 69] = [
     (2, "usage", "derive duffing --order x", "--help", "--help"),
     (2, "set", "derive duffing --set a", "--set", "derive duffing --order 1 --set amplitude=1/2"),
     (
@@ -223,7 +223,7 @@ const TABLE: [(i32, &str, &str, &str, &str); 67] = [
     ),
     (
         3,
-        "no-expansion",
+        "no-method",
         "derive \"x'' + x + x(t - 1) + eps*x^3\"",
         "eps*x(t - T)",
         "derive \"x'' + x + eps*x(t - 1) + eps*x^3\" --order 1",

@@ -25,13 +25,13 @@ impl Present for Answer<HopfSeries> {
         let page = Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
         let page = series(found, motion(found, points(found, page)));
         let page = laws(found, page);
-        let (last, how) = match (found.cycle.checked_orders, found.cycle.exact) {
-            (last, true) => (last, "vanishes identically"),
-            (last, false) => (last, "encloses zero"),
-        };
-        page.words(format!(
-            "Residual: the series put into the equation and multiplied out {how} at orders 1 to {last}."
-        ))
+        page.words(match (found.cycle.checked_orders, found.cycle.exact) {
+            (None, _) => "Not put into the equation: not checked.".to_owned(),
+            (Some(last), exact) => {
+                let how = if exact { "vanishes identically" } else { "encloses zero" };
+                format!("Residual: the series put into the equation and multiplied out {how} at orders 1 to {last}.")
+            }
+        })
     }
 }
 
