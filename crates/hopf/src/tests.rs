@@ -211,3 +211,20 @@ fn what_has_no_answer() {
     neutral.terms.push(term(constant((1, 1)), &[(1, 1)]));
     assert_eq!(cycle_of(&neutral).err(), Some(HopfError::Unbounded));
 }
+
+/// x' +- alpha x(t - 1) +- x^3: the cubic term decides whether the cycle attracts, the sign of alpha on which side it
+/// lives.
+#[test]
+fn sides_and_criticality() {
+    for (alpha, cubic) in [(1, 1), (1, -1), (-1, 1), (-1, -1)] {
+        let mut equation = wright();
+        equation.terms[1].coefficient = [0, alpha].map(Expression::integer).to_vec();
+        equation.terms[2] = term(vec![Expression::integer(cubic)], &[(0, 0); 3]);
+        let found = found(&equation, 1.2 * alpha as f64, 2);
+        let law = found.law.clone().unwrap();
+        assert_eq!((law.above, law.supercritical), (alpha == cubic, cubic == 1));
+        assert_eq!(found.is_stable(), Some(cubic == 1));
+        let beta: f64 = law.floquet_exponent.number.decimal.parse().unwrap();
+        assert_eq!(beta < 0.0, cubic == 1);
+    }
+}
