@@ -91,7 +91,8 @@ pub struct DeriveOptions {
     /// What the amplitude is: x(0), the first harmonic, or free to drift (averaging).
     #[arg(long, value_enum)]
     pub normalisation: Option<Normalisation>,
-    /// A parameter that is sought: the series for which a forced motion stays periodic (edges of tongues).
+    /// A parameter that is sought as a series: for which a forced motion stays periodic (edges of tongues), or at a Hopf point,
+    /// in the size of the cycle born there.
     #[arg(long, value_name = "NAME")]
     pub unknown: Option<String>,
     /// A nonlinear normal mode by its number (1, 2, ...): backbone and shape.

@@ -84,12 +84,13 @@ pub struct HopfCycle {
     pub harmonics: Vec<Vec<HarmonicNumber>>,
     /// dlambda/dalpha of the root i omega_0: real and imaginary part.
     pub crossing: [Coefficient; 2],
-    /// What holds near the point; nothing where no alpha_n up to the order differs from zero.
+    /// What holds near the point; nothing where no alpha_n up to the order differs from zero, or the first that may is
+    /// enclosed with zero.
     pub law: Option<Law>,
     /// Other roots with a positive real part at alpha_0; nothing where it is not decided.
     pub unstable_roots: Option<usize>,
-    /// The orders of the equation, from 1, at which the series leaves nothing.
-    pub checked_orders: usize,
+    /// The orders of the equation, from 1, at which the series leaves nothing; nothing where there was no time to look.
+    pub checked_orders: Option<usize>,
 }
 
 impl HopfCycle {
@@ -175,14 +176,9 @@ pub fn cycle(
     if let Some(over) = equation.over(&PiField)
         && let Some(start) = exact(&over, &sharp)
     {
-        let mut shown = None;
-        let mut watch = |n| observer(Step::Order(n));
-        let found = expand(&PiField, &over, start, settings.order, &mut watch)?;
-        if observer(Step::Checking) {
-            let checked = vanishes(&PiField, &over, &found).ok_or(HopfError::Residual)?;
-            shown = shape.finish(&PiField, &found, checked);
-        }
-        return shown.map(|cycle| HopfCycle { exact: true, ..cycle }).ok_or(HopfError::Stopped);
+        let found = shape.run(&PiField, &over, start, observer)?;
+        let found = found.ok_or(HopfError::NotEnoughBits { bits: MOST_BITS })?;
+        return Ok(HopfCycle { exact: true, ..found });
     }
     let digits = u32::try_from(settings.digits).unwrap_or(MOST_BITS);
     let mut bits = digits.saturating_mul(10) / 3 + GUARD;
@@ -191,13 +187,7 @@ pub fn cycle(
         let ring = BallRing { balls: Balls::new(bits) };
         let over = equation.over(&ring).ok_or(HopfError::Field)?;
         let start = (Enclosure(parameter), Enclosure(frequency));
-        let mut watch = |n| observer(Step::Order(n));
-        let found = expand(&ring, &over, start, settings.order, &mut watch)?;
-        if !observer(Step::Checking) {
-            return Err(HopfError::Stopped);
-        }
-        let checked = vanishes(&ring, &over, &found).ok_or(HopfError::Residual)?;
-        if let Some(cycle) = shape.finish(&ring, &found, checked) {
+        if let Some(cycle) = shape.run(&ring, &over, start, observer)? {
             return Ok(cycle);
         }
         bits = bits.saturating_mul(2);
@@ -212,12 +202,29 @@ struct Shape<'a> {
 }
 
 impl Shape<'_> {
+    /// The series over a field, checked; nothing where the digits are not known.
+    fn run<F: Field>(
+        &self,
+        field: &F,
+        equation: &DelayEquation<F::Element>,
+        start: (F::Element, F::Element),
+        observer: &mut dyn FnMut(Step) -> bool,
+    ) -> Result<Option<HopfCycle>, HopfError> {
+        let mut watch = |n| observer(Step::Order(n));
+        let found = expand(field, equation, start, self.settings.order, &mut watch)?;
+        let checked = vanishes(field, equation, &found, &mut || observer(Step::Checking));
+        if checked == Some(false) {
+            return Err(HopfError::Residual);
+        }
+        Ok(self.finish(field, &found, checked.map(|_| found.solution.len())))
+    }
+
     /// The numbers; nothing where the digits are not known.
     fn finish<F: Field>(
         &self,
         field: &F,
         cycle: &Cycle<F::Element>,
-        checked_orders: usize,
+        checked_orders: Option<usize>,
     ) -> Option<HopfCycle> {
         let list = |list: &[F::Element]| {
             list.iter().map(|e| self.coefficient(field, e)).collect::<Option<Vec<_>>>()
@@ -258,14 +265,16 @@ impl Shape<'_> {
         all.collect()
     }
 
-    /// Nothing inside where no alpha_n differs from zero; nothing at all where that is open.
+    /// Nothing inside where no alpha_n is known to differ from zero; nothing at all for too few bits.
     fn law<F: Field>(&self, field: &F, cycle: &Cycle<F::Element>) -> Option<Option<Law>> {
         let later = cycle.parameter.iter().enumerate().skip(1);
         let Some((m, alpha)) = later.into_iter().find(|(_, a)| !field.is_zero(a)) else {
             return Some(None);
         };
         let speed = &cycle.crossing[0];
-        let signs = [field.sign(alpha)?, field.sign(speed)?];
+        // An enclosed coefficient that may be zero leaves the leading order open.
+        let Some(sign) = field.sign(alpha) else { return Some(None) };
+        let signs = [sign, field.sign(speed)?];
         let inverse = field.reciprocal(alpha)?;
         let exponent = field.scale(&field.mul(alpha, speed), &-Rational::from(m));
         Some(Some(Law {
@@ -304,7 +313,13 @@ fn printed<F: Field>(field: &F, x: &[[F::Element; 2]], style: Style) -> String {
                 Style::Text => format!("{function}({angle})"),
                 Style::Latex => format!(r"\{function} {angle}"),
             };
-            sum.push(field.factor(e, style).times((k > 0).then_some(wave)));
+            // The 2 of x_1 in enclosures.
+            let whole = field.as_rational(e).filter(Rational::is_integer);
+            let own = match whole {
+                Some(coefficient) => Term { coefficient, factors: Vec::new() },
+                None => field.factor(e, style),
+            };
+            sum.push(own.times((k > 0).then_some(wave)));
         }
     }
     print_sum(&sum, style)

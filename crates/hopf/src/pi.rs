@@ -252,19 +252,42 @@ fn terms(p: &Polynomial, shift: usize, style: Style) -> Vec<Term> {
     p.iter().enumerate().rev().filter(|(_, c)| !c.is_zero()).map(term).collect()
 }
 
+/// The factor that makes the coefficients of both integers without a common divisor.
+fn primitive(p: &Polynomial, q: &Polynomial) -> Rational {
+    let all = || p.iter().chain(q).filter(|c| !c.is_zero());
+    let low = all().fold(Integer::from(1), |low, c| low.lcm(c.denom()));
+    let common = all().fold(Integer::new(), |common, c| {
+        common.gcd(&(Integer::from(&low / c.denom()) * c.numer()))
+    });
+    Rational::from((low, common))
+}
+
 impl Print for PiField {
     fn print_terms(&self, a: &InPi, style: Style) -> Vec<Term> {
         let degree = a.denominator.len() - 1;
         if a.denominator[..degree].iter().all(Rational::is_zero) {
             return terms(&a.numerator, degree, style);
         }
+        // Over integers without a common factor; the sign stands in front of a single term.
+        let scale = primitive(&a.numerator, &a.denominator);
         let [over, under] =
-            [&a.numerator, &a.denominator].map(|p| print_sum(&terms(p, 0, style), style));
+            [&a.numerator, &a.denominator].map(|p| terms(&scaled(p, &scale), 0, style));
+        let negative = matches!(&over[..], [only] if only.coefficient < 0);
+        let over: Vec<Term> = if negative {
+            let minus = |t: Term| Term { coefficient: -t.coefficient, ..t };
+            over.into_iter().map(minus).collect()
+        } else {
+            over
+        };
+        let (single, under) = (over.len() == 1, print_sum(&under, style));
+        let over = print_sum(&over, style);
         let whole = match style {
+            Style::Text if single => format!("{over}/({under})"),
             Style::Text => format!("({over})/({under})"),
             Style::Latex => format!(r"\frac{{{over}}}{{{under}}}"),
         };
-        vec![Term { coefficient: 1.into(), factors: vec![whole] }]
+        let coefficient = Rational::from(if negative { -1 } else { 1 });
+        vec![Term { coefficient, factors: vec![whole] }]
     }
 }
 
@@ -291,7 +314,7 @@ mod tests {
         let pi = std::f64::consts::PI;
         let value = field.ball(&wide, balls).unwrap().midpoint().to_f64();
         assert!((value - 2.0 / 7.0 / pi / pi / (pi - 3.0)).abs() < 1e-13);
-        assert_eq!(field.print(&wide, Style::Text), "(2/7)/(pi^3 - 3*pi^2)");
+        assert_eq!(field.print(&wide, Style::Text), "2/(7*pi^3 - 21*pi^2)");
     }
 
     #[test]

@@ -6,15 +6,18 @@ use crate::series::Cycle;
 use rug::Rational;
 use std::collections::BTreeMap;
 
-/// The orders at which the series, put into the equation, vanish: all of 1 to this one. The judge of [`expand`].
+/// Whether the series, put into the equation, leave nothing at all their orders, 1 to the length of the solution.
 ///
 /// Another route: every function is a polynomial in eps and e^(+-is) multiplied out in full, no order is split off,
 /// conjugates are not used, and e^(-i k theta) = e^(-i k theta_0) sum_p (-i k (theta - theta_0))^p/p!.
+///
+/// Nothing where `goes_on`, asked before every product of two harmonics, says no.
 pub(crate) fn vanishes<F: Field>(
     field: &F,
     equation: &DelayEquation<F::Element>,
     cycle: &Cycle<F::Element>,
-) -> Option<usize> {
+    goes_on: &mut dyn FnMut() -> bool,
+) -> Option<bool> {
     let judge = Judge { field, length: cycle.solution.len() };
     let mut total: Whole<F::Element> = BTreeMap::new();
     for term in &equation.terms {
@@ -22,15 +25,14 @@ pub(crate) fn vanishes<F: Field>(
         let mut product: Whole<F::Element> = BTreeMap::from([(0, c)]);
         for factor in &term.factors {
             let function = judge.factor(equation, cycle, *factor)?;
-            product = judge.product(&product, &function);
+            product = judge.product(&product, &function, goes_on)?;
         }
         for (k, series) in product {
             let sum = total.entry(k).or_insert_with(|| judge.zeros());
             sum.iter_mut().zip(&series).for_each(|(a, b)| Plane(field).add_assign(a, b));
         }
     }
-    let gone = total.values().flatten().all(|z| Plane(field).may_vanish(z));
-    gone.then_some(cycle.solution.len())
+    Some(total.values().flatten().all(|z| Plane(field).may_vanish(z)))
 }
 
 /// By harmonic, from -k to k: the coefficients of 1, eps, ..., eps^N.
@@ -59,16 +61,24 @@ impl<F: Field> Judge<'_, F> {
         sum
     }
 
-    fn product(&self, f: &Whole<F::Element>, g: &Whole<F::Element>) -> Whole<F::Element> {
+    fn product(
+        &self,
+        f: &Whole<F::Element>,
+        g: &Whole<F::Element>,
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Option<Whole<F::Element>> {
         let mut all: Whole<F::Element> = BTreeMap::new();
         for (k, a) in f {
             for (l, b) in g {
+                if !goes_on() {
+                    return None;
+                }
                 let sum = all.entry(k + l).or_insert_with(|| self.zeros());
                 let own = self.times(a, b);
                 sum.iter_mut().zip(&own).for_each(|(a, b)| Plane(self.field).add_assign(a, b));
             }
         }
-        all
+        Some(all)
     }
 
     /// A real series as a complex one.

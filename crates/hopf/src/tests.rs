@@ -128,7 +128,7 @@ fn enclosures_hold_the_exact_numbers() {
         term.coefficient = [0, 0, 1].map(Expression::integer).to_vec();
     }
     let enclosed = found(&squared, 1.2, 4);
-    assert!(!enclosed.exact && enclosed.checked_orders == 5);
+    assert!(!enclosed.exact && enclosed.checked_orders == Some(5));
     assert!(enclosed.parameter.iter().all(|c| c.number.exact.is_none() || c.number.decimal == "0"));
     // alpha^2 = beta: 2 alpha_0 alpha_2 = beta_2, 2 alpha_0 alpha_4 + alpha_2^2 = beta_4.
     let (a, b) = (values(&enclosed.parameter), values(&exact.parameter));
@@ -210,4 +210,21 @@ fn what_has_no_answer() {
     let mut neutral = wright();
     neutral.terms.push(term(constant((1, 1)), &[(1, 1)]));
     assert_eq!(cycle_of(&neutral).err(), Some(HopfError::Unbounded));
+}
+
+/// x' +- alpha x(t - 1) +- x^3: the cubic term decides whether the cycle attracts, the sign of alpha on which side it
+/// lives.
+#[test]
+fn sides_and_criticality() {
+    for (alpha, cubic) in [(1, 1), (1, -1), (-1, 1), (-1, -1)] {
+        let mut equation = wright();
+        equation.terms[1].coefficient = [0, alpha].map(Expression::integer).to_vec();
+        equation.terms[2] = term(vec![Expression::integer(cubic)], &[(0, 0); 3]);
+        let found = found(&equation, 1.2 * alpha as f64, 2);
+        let law = found.law.clone().unwrap();
+        assert_eq!((law.above, law.supercritical), (alpha == cubic, cubic == 1));
+        assert_eq!(found.is_stable(), Some(cubic == 1));
+        let beta: f64 = law.floquet_exponent.number.decimal.parse().unwrap();
+        assert_eq!(beta < 0.0, cubic == 1);
+    }
 }

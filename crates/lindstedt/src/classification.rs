@@ -47,8 +47,8 @@ const SADDLE: &str = "x = 0 is a saddle: put x = c + y with a centre c, or `lind
 const SMALL_TERMS: &str =
     "a factor of the small parameter marks the small terms; `lindstedt simulate` takes it as it is";
 /// and with a linear part that has a delay.
-const HOPF: &str = "`lindstedt derive --unknown NAME` finds the Hopf points of a parameter and the cycles born there; \
-     `lindstedt simulate` takes it as it is";
+const HOPF: &str = "with a factor eps, eps*x(t - T), it is averaged; `lindstedt derive --unknown NAME` finds the Hopf points of a \
+     parameter and the cycles born there; `lindstedt simulate` takes it as it is";
 /// What a file says for the amplitude to be averaged.
 const AVERAGES: &str =
     "averaging takes it: condition = \"free-amplitude\" in the file, or --normalisation free";

@@ -85,15 +85,16 @@ impl Oscillator {
     fn has_hopf_form(&self) -> bool {
         let problem = self.problem();
         let equation = &problem.equation;
-        if !problem.others.is_empty() || equation.contains(&Expression::Time) {
-            return false;
+        if !problem.others.is_empty() || equation.is_first_order() {
+            return problem.others.is_empty();
         }
         let delayed = || {
             let parts = self.classify().ok();
             let reasons = parts.into_iter().flat_map(|parts| parts.methods).flat_map(|(_, r)| r);
             reasons.into_iter().any(|reason| matches!(reason, Reason::DelayedLinearPart(_)))
         };
-        !equation.contains(&Expression::Small) || equation.is_first_order() || delayed()
+        let forced = equation.contains(&Expression::Time);
+        !forced && !equation.contains(&Expression::Small) || delayed()
     }
 
     /// The cycle that is born at x = 0 where the parameter `name` passes a Hopf point, up to an order: scalar equations of
@@ -114,7 +115,7 @@ impl Oscillator {
     /// let found = wright.hopf("alpha", 2, &Work::default())?.value.cycle;
     /// let exact: Vec<_> = found.parameter.iter().map(|c| c.number.exact.as_deref()).collect();
     /// assert_eq!(exact, [Some("1/2*pi"), Some("0"), Some("3/10*pi - 1/5")]);
-    /// assert_eq!((found.is_stable(), found.checked_orders), (Some(true), 3));
+    /// assert_eq!((found.is_stable(), found.checked_orders), (Some(true), Some(3)));
     /// # Ok::<(), lindstedt::Error>(())
     /// ```
     pub fn hopf(&self, name: &str, order: usize, work: &Work) -> Result<Answer<HopfSeries>, Error> {
@@ -133,15 +134,20 @@ impl Oscillator {
             order,
             digits: work.printed_digits(),
         };
+        let mut told = false;
         let mut goes_on = |step| match step {
             Step::Order(n) => work.goes_on(Progress::Order(n - 1, n)),
-            Step::Checking => work.goes_on(Progress::Checking),
+            Step::Checking if !told => {
+                told = true;
+                work.goes_on(Progress::Checking)
+            }
             _ => !work.stop.asked(),
         };
         let cycle = lindstedt_hopf::cycle(&equation, &settings, &mut goes_on)?;
         let done = cycle.parameter.len() - 1;
         let mut remarks = self.remarks().to_vec();
-        let standing = self.standing(done < order, done, true, &mut remarks);
+        let checked = cycle.checked_orders.is_some();
+        let standing = self.standing(done < order || !checked, done, checked, &mut remarks);
         let at = values.into_iter().filter(|(other, _)| other != name);
         let at = at.map(|(name, value)| (name, value.to_string())).collect();
         let tier = if cycle.exact { "exact" } else { "certified" };
@@ -237,7 +243,7 @@ struct Wave {
 /// The orders from 1 at which the equation was satisfied: exactly, or within the enclosures.
 #[derive(Serialize)]
 struct Residual {
-    checked_orders: usize,
+    checked_orders: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     zero: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -294,8 +300,8 @@ impl Serialize for HopfSeries {
         map.serialize_entry("stable", &cycle.is_stable())?;
         let residual = Residual {
             checked_orders: cycle.checked_orders,
-            zero: cycle.exact.then_some(true),
-            encloses_zero: (!cycle.exact).then_some(true),
+            zero: cycle.checked_orders.filter(|_| cycle.exact).map(|_| true),
+            encloses_zero: cycle.checked_orders.filter(|_| !cycle.exact).map(|_| true),
         };
         map.serialize_entry("residual", &residual)?;
         map.end()

@@ -31,7 +31,7 @@ fn run(line: &str) -> Output {
 }
 
 /// Exit code, code, line; what the hint says of the way on; the line it leads to.
-const TABLE: [(i32, &str, &str, &str, &str); 68] = [
+const TABLE: &[(i32, &str, &str, &str, &str)] = &[
     (2, "usage", "derive duffing --order x", "--help", "--help"),
     (2, "set", "derive duffing --set a", "--set", "derive duffing --order 1 --set amplitude=1/2"),
     (
@@ -63,6 +63,14 @@ const TABLE: [(i32, &str, &str, &str, &str); 68] = [
         "without --prove",
         "evaluate docs/examples/sign-power.toml --set delta=1/10 --order 8",
     ),
+    (
+        3,
+        "first-order",
+        "simulate \"x' + alpha*x(t-1)*(1+x) = 0\"",
+        "--unknown",
+        "derive \"x' + alpha*x(t-1)*(1+x) = 0\" --unknown alpha",
+    ),
+    (3, "no-hopf-point", "derive \"x' + a*x^2 + x = 0\" --unknown a", "--set NAME=VALUE", ""),
     (
         2,
         "second-unknown",
@@ -215,7 +223,7 @@ const TABLE: [(i32, &str, &str, &str, &str); 68] = [
     ),
     (
         3,
-        "no-expansion",
+        "no-method",
         "derive \"x'' + x + x(t - 1) + eps*x^3\"",
         "eps*x(t - T)",
         "derive \"x'' + x + eps*x(t - 1) + eps*x^3\" --order 1",

@@ -3,7 +3,7 @@
 use super::derive::{coefficient, indexed};
 use super::{Present, both, equation};
 use crate::{Document, Formula, Text};
-use lindstedt::unstable::coeff::print::{Style, latex_name};
+use lindstedt::unstable::coeff::print::{Style, latex_name, power};
 use lindstedt::unstable::hopf::{Coefficient, Law};
 use lindstedt::{Answer, HopfSeries, SoughtSeries};
 
@@ -25,13 +25,13 @@ impl Present for Answer<HopfSeries> {
         let page = Document::titled(title.trim_end_matches([':', ' '])).formula(equation(problem));
         let page = series(found, motion(found, points(found, page)));
         let page = laws(found, page);
-        let (last, how) = match (found.cycle.checked_orders, found.cycle.exact) {
-            (last, true) => (last, "vanishes identically"),
-            (last, false) => (last, "encloses zero"),
-        };
-        page.words(format!(
-            "Residual: the series put into the equation and multiplied out {how} at orders 1 to {last}."
-        ))
+        page.words(match (found.cycle.checked_orders, found.cycle.exact) {
+            (None, _) => "Not put into the equation: not checked.".to_owned(),
+            (Some(last), exact) => {
+                let how = if exact { "vanishes identically" } else { "encloses zero" };
+                format!("Residual: the series put into the equation and multiplied out {how} at orders 1 to {last}.")
+            }
+        })
     }
 }
 
@@ -84,7 +84,13 @@ fn series(found: &HopfSeries, mut page: Document) -> Document {
     for (name, list) in lists {
         page = page.words(name.and(" in powers of ").formula(small.clone()).and(":"));
         for (n, c) in list.iter().enumerate() {
-            page = page.formula(coefficient(n, printed(c), &c.number));
+            let own = printed(c);
+            page = page.formula(match c.number.exact {
+                Some(_) => coefficient(n, own, &c.number),
+                None => {
+                    Formula::new(format!("{n}: {}", own.text), format!(r"{n}:\quad {}", own.latex))
+                }
+            });
         }
     }
     page
@@ -97,21 +103,24 @@ fn printed(c: &Coefficient) -> Formula {
 /// What is the same in every normalisation.
 fn laws(found: &HopfSeries, page: Document) -> Document {
     let (name, cycle) = (&found.unknown, &found.cycle);
-    let [re, im] = cycle.crossing.each_ref().map(printed);
-    let page = page.words(
-        Text::words(format!("The root moves with dlambda/d{name} = "))
-            .formula(re)
-            .and(" + i*")
-            .formula(im)
-            .and("."),
-    );
+    let [re, im] = &cycle.crossing;
+    let page =
+        page.words(format!("The roots at {name}_0, and what holds near it in leading order:"));
+    let slope = |part: &str| {
+        both(|style| match style {
+            Style::Text => format!("{part} dlambda/d{name}"),
+            Style::Latex => format!(r"\operatorname{{{part}}}\, d\lambda/d{}", latex_name(name)),
+        })
+    };
+    let page = page.formula(quotient(slope("Re"), re)).formula(quotient(slope("Im"), im));
     let Some(law) = &cycle.law else {
+        let how = if cycle.exact { "is zero" } else { "is zero, or cannot be told from it" };
         return page.words(format!(
-            "No coefficient of {name} after the first differs from zero: up to this order the size of the cycle does not \
-             depend on {name}."
+            "Every coefficient of {name} after the first {how}: up to this order the size of the cycle does not follow from \
+             {name}."
         ));
     };
-    let page = page.words(law_of(found, law));
+    let page = law_of(found, law, page);
     let others = match cycle.unstable_roots {
         Some(0) => "no other root has a positive real part".to_owned(),
         Some(1) => "one other root has a positive real part".to_owned(),
@@ -130,18 +139,46 @@ fn laws(found: &HopfSeries, page: Document) -> Document {
     ))
 }
 
-/// The leading terms of amplitude, frequency and exponent.
-fn law_of(found: &HopfSeries, law: &Law) -> Text {
-    let (name, m) = (&found.unknown, law.order);
-    let small = &found.problem.small;
-    let distance = format!("({name} - {name}_0)");
-    Text::words(format!("Near it {small}^{m} = {distance}*"))
-        .formula(printed(&law.amplitude))
-        .and(format!(
-            ", 2*{small} the amplitude of the first harmonic; omega = omega_0 + {distance}*"
-        ))
-        .formula(printed(&law.frequency_slope))
-        .and(format!("; the Floquet exponent is {small}^{m}*"))
-        .formula(printed(&law.floquet_exponent))
-        .and(".")
+/// The leading terms of amplitude, frequency and Floquet exponent beta.
+fn law_of(found: &HopfSeries, law: &Law, page: Document) -> Document {
+    let names = |style| {
+        let [small, name] = [&*found.problem.small, &*found.unknown].map(|name| match style {
+            Style::Text => name.to_owned(),
+            Style::Latex => latex_name(name),
+        });
+        let start =
+            if style == Style::Text { format!("{name}_0") } else { format!("{{{name}}}_0") };
+        (power(&small, law.order as i64, style), format!("({name} - {start})"))
+    };
+    let greek = |name: &str, style| match style {
+        Style::Text => name.to_owned(),
+        Style::Latex => format!(r"\{name}"),
+    };
+    let size = both(|style| {
+        let (small, distance) = names(style);
+        format!("{small}/{distance}")
+    });
+    let frequency = both(|style| {
+        let omega = greek("omega", style);
+        format!("({omega} - {omega}_0)/{}", names(style).1)
+    });
+    let exponent = both(|style| format!("{}/{}", greek("beta", style), names(style).0));
+    let page = page.formula(quotient(size, &law.amplitude));
+    let page = page.formula(quotient(frequency, &law.frequency_slope));
+    let page = page.formula(quotient(exponent, &law.floquet_exponent));
+    page.words(format!(
+        "(2*{} is the amplitude of the first harmonic, beta the Floquet exponent of the cycle.)",
+        found.problem.small
+    ))
+}
+
+/// name = exact, its decimal below.
+fn quotient(name: Formula, c: &Coefficient) -> Formula {
+    let (own, second) = (printed(c), c.number.exact.is_some() && c.number.error.is_some());
+    let decimal =
+        |sign: &str| if second { format!("{sign}{}", c.number.decimal) } else { String::new() };
+    Formula::new(
+        format!("{} = {}{}", name.text, own.text, decimal("\n   =  ")),
+        format!("{} = {}{}", name.latex, own.latex, decimal(" = ")),
+    )
 }
