@@ -255,8 +255,8 @@ pub struct ThresholdOptions {
     /// Thresholds of the resonances of period 2 pi m/omega, m = 1 ... M, in one well and around both.
     #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub subharmonics: Option<u32>,
-    /// The parameter for which the orbit of an autonomous problem stays homoclinic, as a series in the small parameter
-    /// (also `unknown` in the file).
+    /// The parameter for which an autonomous problem keeps its orbit between saddles, as a series in the small parameter
+    /// (also `unknown` in the file); without --order, where no series is known, to first order.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["sweep", "zeros", "subharmonics", "plot"])]
     pub unknown: Option<String>,
     /// The highest order of that series.

@@ -69,11 +69,14 @@ impl MelnikovProblem {
             return Self::on_orbit(&terms, forcing, amplitude, true);
         }
         let amplitude = || Exact::from(0);
-        let found = Self::on_orbit(&terms, Forcing::none(), amplitude(), true)?;
+        let found = Self::on_orbit(&terms, Forcing::none(), amplitude(), true);
         let all = multiply_out(&terms.rest)?;
         let silent = forces(&all, values).unwrap_or_default();
         if silent.is_empty() {
-            return Err(Refusal::NoForce);
+            return Err(match found {
+                Err(Refusal::NoOrbit) => Refusal::NoOrbit,
+                _ => Refusal::NoForce,
+            });
         }
         // In the proportions that they have with another value of a parameter of which all are multiples.
         let is_zero = |name: &String| values.get(name).is_some_and(|value| value.sign().is_eq());
@@ -86,7 +89,7 @@ impl MelnikovProblem {
             }
             (None, [only]) if only.is_plain() => {
                 let omega = silent_frequency(&terms.bound).ok_or(Refusal::NoForce)?;
-                let forcing = Forcing::single(omega);
+                let (found, forcing) = (found?, Forcing::single(omega));
                 Ok(Self { perturbation: Perturbation { forcing, ..found.perturbation }, ..found })
             }
             _ => Err(Refusal::SilentForces),

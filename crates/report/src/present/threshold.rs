@@ -97,7 +97,7 @@ fn orbits(value: &HomoclinicThreshold) -> Vec<Line> {
 }
 
 /// The verdict with its distances as formulas.
-fn verdict(words: &str) -> Text {
+pub(super) fn verdict(words: &str) -> Text {
     let marked = words.replace("||v*| - V|", "$D$").replace("|v*|", "$|v*|$");
     Text::marked(&marked.replace("$|v*|$ = V", "$|v*| = V$").replace("$D$", "$||v*| - V|$"))
 }
