@@ -272,8 +272,8 @@ pub struct ThresholdOptions {
     /// loops also from the tangencies of their manifolds (some seconds).
     #[arg(long)]
     pub second_order: bool,
-    /// The parameter for which the orbit of an autonomous problem stays homoclinic, as a series in the small parameter
-    /// (also `unknown` in the file).
+    /// The parameter for which an autonomous problem keeps its orbit between saddles, as a series in the small parameter
+    /// (also `unknown` in the file); without --order, where no series is known, to first order.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["sweep", "zeros", "subharmonics", "second_order", "plot"])]
     pub unknown: Option<String>,
     /// The highest order of that series.

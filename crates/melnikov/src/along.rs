@@ -105,7 +105,7 @@ impl Potential {
 /// e^{i k x} = (sech z + i tanh z)^(2k).
 fn half_turns(k: &Rational) -> Option<(Hyperbolic, Hyperbolic)> {
     /// Harmonics beyond are not formed.
-    const MOST: u32 = 1000;
+    const MOST: u32 = 100;
     let twice = Rational::from(k * 2u32);
     let n = twice.is_integer().then(|| twice.numer().clone().abs().to_u32())??;
     if n > MOST {

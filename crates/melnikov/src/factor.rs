@@ -5,6 +5,9 @@ use lindstedt_number::Exact;
 use rug::ops::Pow;
 use rug::{Float, Rational};
 
+/// The largest power of x in a factor.
+pub const LARGEST_POWER: usize = 100;
+
 /// A factor g(x) of a force or of friction.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
@@ -42,20 +45,20 @@ impl Factor {
         }
     }
 
-    /// No power beyond [`LARGEST_DEGREE`].
+    /// No power beyond [`LARGEST_POWER`].
     ///
     /// # Errors
     /// [`MelnikovError::DegreeTooLarge`].
     pub fn check(&self) -> Result<(), MelnikovError> {
         match self {
-            Self::Power(n) => within(*n),
+            Self::Power(n) => within(*n, LARGEST_POWER),
             Self::Sine(_) | Self::Cosine(_) => Ok(()),
         }
     }
 }
 
-fn within(degree: u32) -> Result<(), MelnikovError> {
-    let (degree, limit) = (degree as usize, LARGEST_DEGREE);
+fn within(degree: u32, limit: usize) -> Result<(), MelnikovError> {
+    let degree = degree as usize;
     if degree > limit { Err(MelnikovError::DegreeTooLarge { degree, limit }) } else { Ok(()) }
 }
 
@@ -85,12 +88,12 @@ pub struct Damping {
 }
 
 impl Damping {
-    /// No power beyond [`LARGEST_DEGREE`].
+    /// No power of x beyond [`LARGEST_POWER`], of x' beyond [`LARGEST_DEGREE`].
     ///
     /// # Errors
     /// [`MelnikovError::DegreeTooLarge`].
     pub fn check(&self) -> Result<(), MelnikovError> {
-        within(self.velocity)?;
+        within(self.velocity, LARGEST_DEGREE)?;
         self.factor.check()
     }
 }

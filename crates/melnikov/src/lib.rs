@@ -34,7 +34,7 @@ pub use cycle::{BeltCycle, belt_cycles, sticking_begins};
 pub use dissipation::{damping_work, polynomial_dissipation, quadrature_dissipation};
 pub use elliptic::Elliptic;
 pub use error::MelnikovError;
-pub use factor::{Damping, Factor};
+pub use factor::{Damping, Factor, LARGEST_POWER};
 pub use fast::{Axis, FastPoint, FastThreshold};
 pub use forcing::{Forcing, ForcingWork, Harmonic};
 pub use friction::{Friction, LARGEST_DEGREE, Law, PolynomialFriction};

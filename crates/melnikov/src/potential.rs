@@ -34,7 +34,7 @@ impl Branch {
 /// A conservative oscillator x'' = f(x) with its orbit x0(t); t = 0 is the time of symmetry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Potential {
-    /// x'' = a x - b x^3, x0 = sqrt(2a/b) sech(sqrt(a) t): the paper's (20), corrected (23).
+    /// x'' = a x - b x^3, x0 = sqrt(2a/b) sech(sqrt(a) t): the paper's (20).
     DoubleWell {
         /// a > 0.
         a: Exact,

@@ -23,9 +23,9 @@ pub enum Class {
 /// use lindstedt_number::Exact;
 /// use lindstedt_number::{ball::Balls, digits::decimal};
 ///
-/// // The paper's point: a = b = 1, alpha = beta = T0 = 0.3, omega = 2, v* = 0.4.
+/// // a = b = 1, alpha = beta = T0 = 0.3, omega = 2, v* = 0.4.
 /// let coefficient = || Exact::from((3, 10));
-/// let law = PolynomialFriction::paper(coefficient(), &coefficient(), coefficient());
+/// let law = PolynomialFriction::cubic(coefficient(), &coefficient(), coefficient());
 /// let system = System::new(
 ///     Potential::DoubleWell { a: Exact::from(1), b: Exact::from(1) },
 ///     Friction::Polynomial(law),
@@ -136,6 +136,26 @@ impl System {
     #[must_use]
     pub fn potential(&self) -> &Potential {
         &self.potential
+    }
+    /// T.
+    #[must_use]
+    pub fn friction(&self) -> &Friction {
+        &self.friction
+    }
+    /// The terms c g(x) x'^j.
+    #[must_use]
+    pub fn damping(&self) -> &[Damping] {
+        &self.damping
+    }
+    /// The forcing.
+    #[must_use]
+    pub fn forcing(&self) -> &Forcing {
+        &self.forcing
+    }
+    /// v*.
+    #[must_use]
+    pub fn belt_speed(&self) -> &Exact {
+        &self.belt_speed
     }
 
     /// D on a branch. Certified for polynomial friction, estimated by quadrature otherwise.

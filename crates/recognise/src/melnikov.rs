@@ -9,8 +9,8 @@ use crate::threshold::{OrbitValue, Perturbation};
 use lindstedt_algebra::Stop;
 use lindstedt_equation::Problem;
 use lindstedt_melnikov::{
-    Axis, Branch, Class, Factor, Forcing, Friction, MelnikovError, Potential, StickSlip, System,
-    Threshold, Verdict,
+    Axis, Branch, Class, Forcing, Friction, MelnikovError, Potential, StickSlip, System, Threshold,
+    Verdict,
 };
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
@@ -69,11 +69,14 @@ impl MelnikovProblem {
             return Self::on_orbit(&terms, forcing, amplitude, true);
         }
         let amplitude = || Exact::from(0);
-        let found = Self::on_orbit(&terms, Forcing::none(), amplitude(), true)?;
+        let found = Self::on_orbit(&terms, Forcing::none(), amplitude(), true);
         let all = multiply_out(&terms.rest)?;
         let silent = forces(&all, values).unwrap_or_default();
         if silent.is_empty() {
-            return Err(Refusal::NoForce);
+            return Err(match found {
+                Err(Refusal::NoOrbit) => Refusal::NoOrbit,
+                _ => Refusal::NoForce,
+            });
         }
         // In the proportions that they have with another value of a parameter of which all are multiples.
         let is_zero = |name: &String| values.get(name).is_some_and(|value| value.sign().is_eq());
@@ -86,7 +89,7 @@ impl MelnikovProblem {
             }
             (None, [only]) if only.is_plain() => {
                 let omega = silent_frequency(&terms.bound).ok_or(Refusal::NoForce)?;
-                let forcing = Forcing::single(omega);
+                let (found, forcing) = (found?, Forcing::single(omega));
                 Ok(Self { perturbation: Perturbation { forcing, ..found.perturbation }, ..found })
             }
             _ => Err(Refusal::SilentForces),
@@ -147,32 +150,7 @@ impl MelnikovProblem {
     /// The oscillator of section 3, where the problem is one: everything about it in closed form.
     #[must_use]
     pub fn stick_slip(&self) -> Option<StickSlip> {
-        let Unperturbed::Closed { potential: Potential::DoubleWell { a, b }, .. } =
-            &self.unperturbed
-        else {
-            return None;
-        };
-        let Perturbation { friction, damping, forcing, belt_speed } = &self.perturbation;
-        let Friction::Polynomial(law) = friction else { return None };
-        let Forcing::Harmonics { omega, harmonics } = forcing else { return None };
-        let [only] = harmonics.as_slice() else { return None };
-        if !damping.is_empty() || only.factor != Factor::ONE {
-            return None;
-        }
-        let t = |k: usize| law.coefficients.get(k).cloned().unwrap_or_else(|| Exact::from(0));
-        let rest = (0..law.coefficients.len()).filter(|k| *k != 1 && *k != 3);
-        if only.order != 1 || rest.into_iter().any(|k| t(k).sign().is_ne()) {
-            return None;
-        }
-        Some(StickSlip {
-            a: a.clone(),
-            b: b.clone(),
-            dry: law.dry.clone(),
-            alpha: -&t(1),
-            beta: t(3),
-            omega: omega.clone(),
-            belt_speed: belt_speed.clone(),
-        })
+        StickSlip::of(&self.system().ok()??)
     }
 
     /// Which parameter of section 3 the parameter `name` of the problem is: changed, at three more

@@ -9,7 +9,7 @@ use crate::threshold::OrbitValue;
 use lindstedt_algebra::Stop;
 use lindstedt_equation::monomials::{Monomial, Monomials};
 use lindstedt_equation::{Expression, Problem};
-use lindstedt_melnikov::{Class, MelnikovError};
+use lindstedt_melnikov::{Class, MelnikovError, Verdict};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use std::collections::BTreeMap;
@@ -85,6 +85,19 @@ impl PersistenceProblem {
     #[must_use]
     pub fn watched(self, stop: &Stop) -> Self {
         Self { known: self.known.watched(stop), ..self }
+    }
+
+    /// Of g_0 and g_1 the one whose theory ends first: at jumps of friction that are met at the saddle, or tangentially.
+    #[must_use]
+    pub fn roughest(&self, balls: Balls, eps: f64) -> &MelnikovProblem {
+        let roughness = |problem: &MelnikovProblem| match problem.verdict(balls, eps) {
+            _ if !problem.jumps() => i32::from(problem.bends()),
+            Some(Verdict::Holds) => 2,
+            Some(Verdict::Doubtful) => 3,
+            _ => 4,
+        };
+        let [known, factor] = [&self.known, &self.factor];
+        if roughness(factor) > roughness(known) { factor } else { known }
     }
 
     /// The unperturbed oscillator.

@@ -72,8 +72,13 @@ impl Terms {
                 Kind::Friction => {
                     friction.terms.insert(m.clone(), q.clone());
                 }
-                Kind::Damping => damping.push(part(&all, m, q).map_err(refuse)?),
+                Kind::Damping => {
+                    let (factor, coefficient) = (Factor::Power(m.x), Exact::from(0));
+                    Damping { factor, velocity: m.velocity, coefficient }.check()?;
+                    damping.push(part(&all, m, q).map_err(refuse)?);
+                }
                 Kind::Harmonic => {
+                    Factor::Power(m.x).check()?;
                     let found = Term::new(&all, m, &Rational::from(-q)).map_err(refuse)?;
                     forces.push((all.tree(m, q), found));
                 }

@@ -243,6 +243,9 @@ fn orbits_that_persist() {
             assert!((a - b).abs() < 2e-9, "{found:?} {expected:?}");
         }
     };
+    // Dry friction at rest: the saddle is on the switching line.
+    let case = Oscillator::parse("x'' - x + x^3 = eps*(mu*x' - sign(x'))").unwrap();
+    assert!(case.persistence("mu", &work()).unwrap().value.validity.starts_with("fails"));
     // A torque against friction: 4 delta/pi.
     let torque = 0.8 / PI;
     near(ask("x'' + sin(x) = eps*(torque - x'/5)", "torque").1, &[torque, -torque]);

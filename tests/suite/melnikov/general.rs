@@ -77,7 +77,7 @@ fn several_harmonics() {
             factor: Factor::ONE,
         });
         let friction =
-            PolynomialFriction::paper(real(row, "T0"), &real(row, "alpha"), real(row, "beta"));
+            PolynomialFriction::cubic(real(row, "T0"), &real(row, "alpha"), real(row, "beta"));
         let forcing =
             Forcing::Harmonics { omega: real(row, "omega"), harmonics: harmonics.collect() };
         let system = System::new(

@@ -447,7 +447,7 @@ const ELSEWHERE: [(&str, &str); 24] = [
 #[test]
 fn every_error_leads_on() {
     let mut wrong = Vec::new();
-    for (exit, code, line, way, next) in TABLE {
+    for &(exit, code, line, way, next) in TABLE {
         let output = run(line);
         let shown = String::from_utf8_lossy(&output.stdout).into_owned();
         let found = refusal(&shown);

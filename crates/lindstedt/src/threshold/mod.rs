@@ -250,16 +250,7 @@ impl Oscillator {
         let subject = Subject::new(self, work)?;
         let swept = subject.swept(&question.sweep)?;
         let zeros = question.zeros.as_ref().map(|ends| subject.range(ends)).transpose()?;
-        let mut value = orbits::measure(&subject).map_err(|error| {
-            // An orbit that was not followed to its end looks undecided.
-            let stopped = error.kind() == Kind::Undecided && work.stop.asked();
-            if stopped {
-                let message = "stopped before the threshold was found";
-                Refused::stopped(message, "fewer --digits take less time").into()
-            } else {
-                error
-            }
-        })?;
+        let mut value = orbits::measure(&subject).map_err(|error| stopped(error, work))?;
         if let Some(range) = zeros {
             let zeros::Zeros { list, intervals, complete } = zeros::list(&subject, &range)?;
             value.zeros = list;
@@ -292,6 +283,15 @@ impl Oscillator {
         let header = self.header(at.collect(), None, tier, start);
         Ok(Answer { header, value, standing, remarks })
     }
+}
+
+/// An orbit that was not followed to its end looks undecided.
+fn stopped(error: Error, work: &Work) -> Error {
+    if error.kind() == Kind::Undecided && work.stop.asked() {
+        let message = "stopped before the threshold was found";
+        return Refused::stopped(message, "fewer --digits take less time").into();
+    }
+    error
 }
 
 impl Subject<'_> {

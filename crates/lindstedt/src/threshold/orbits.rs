@@ -9,7 +9,7 @@ use lindstedt_melnikov::{Class, MelnikovError, Potential, Threshold, Verdict};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::certified;
 use lindstedt_recognise::Unperturbed;
-use lindstedt_recognise::{OrbitCheck, OrbitValue};
+use lindstedt_recognise::{MelnikovProblem, OrbitCheck, OrbitValue};
 
 /// Bits that order the thresholds of several orbits.
 pub(super) const ORDERING_BITS: u32 = 200;
@@ -162,7 +162,7 @@ impl<'a> Measured<'a> {
             self.number(None, few, |balls| found.distances(balls).map(pick))
         };
         Ok(Validity {
-            verdict: verdict(self.subject),
+            verdict: verdict(&self.subject.found, &self.subject.eps()),
             distance_to_saddle: distance(|(belt, _, _)| belt)?,
             distance_to_tangency: distance(|(_, tangency, _)| tangency)?,
         })
@@ -269,8 +269,7 @@ pub(super) fn check(unperturbed: &Unperturbed, check: Option<&OrbitCheck>) -> Op
 /// What first order in eps is worth: without a jump there is nothing to be far from, and where the
 /// slope of friction is bounded, what it does on the perturbed orbit differs by O(eps) from what it
 /// does on the unperturbed one.
-fn verdict(subject: &Subject<'_>) -> &'static str {
-    let (found, eps) = (&subject.found, subject.eps());
+pub(super) fn verdict(found: &MelnikovProblem, eps: &Exact) -> &'static str {
     if eps.sign().is_eq() {
         return "no statement: at eps = 0 nothing is perturbed, the stable and unstable manifolds \
                 coincide";

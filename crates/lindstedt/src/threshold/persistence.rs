@@ -1,7 +1,7 @@
 //! The question `threshold --unknown` to first order: the zero of Melnikov's integral in a parameter.
 
 use super::orbits::{self, ORDERING_BITS};
-use crate::{Answer, Error, Number, Oscillator, Status, Work};
+use crate::{Answer, Error, Exact, Number, Oscillator, Status, Work};
 use lindstedt_equation::Problem;
 use lindstedt_melnikov::{Class, MelnikovError};
 use lindstedt_number::ball::{Ball, Balls};
@@ -24,6 +24,8 @@ pub struct Persistence {
     pub unknown: String,
     /// Right loop before left, upper orbit before lower.
     pub orbits: Vec<PersistentOrbit>,
+    /// What first order is worth, as of a threshold.
+    pub validity: &'static str,
 }
 
 /// One orbit.
@@ -71,11 +73,15 @@ impl Oscillator {
         let values = self.form_values(&[])?;
         let found = PersistenceProblem::new(self.problem(), &values, name);
         let found = found.map_err(|why| self.unfit(why))?.watched(&work.stop);
+        let eps = values.get(&*self.problem().small).cloned().unwrap_or(Exact::from(1));
+        let roughest = found.roughest(Balls::new(ORDERING_BITS), eps.to_f64());
+        let validity = orbits::verdict(roughest, &eps);
         let value = Persistence {
             problem: self.problem().clone(),
             parameter: self.problem().small.to_string(),
             unknown: name.to_owned(),
-            orbits: numbers(&found, work.printed_digits())?,
+            orbits: numbers(&found, work.printed_digits()).map_err(|e| super::stopped(e, work))?,
+            validity,
         };
         let at = values.into_iter().filter(|(other, _)| other != name);
         let at = at.map(|(name, value)| (name, value.to_string())).collect();

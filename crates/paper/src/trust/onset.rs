@@ -2,10 +2,10 @@
 
 use super::super::{Findings, Reader, Row, Section, Table};
 use super::{ESTIMATED, Finding};
+use crate::oscillator::section_three;
 use crate::stick_slip::{model, parameters};
 use crate::text::texts;
 use lindstedt::Error;
-use lindstedt_melnikov::StickSlip;
 use lindstedt_simulate::{Homoclinic, Loop, Quantity, SimulateError, Tangency, continue_tangency};
 use serde::{Serialize, Serializer};
 use std::f64::consts::PI;
@@ -69,7 +69,7 @@ pub(in super::super) fn read(
     section: &mut Section,
 ) -> Result<bool, Error> {
     let balls = reader.balls;
-    let threshold = StickSlip::paper().signed_threshold(balls).ok_or(Error::NoValue)?;
+    let threshold = section_three().signed_threshold(balls).ok_or(Error::NoValue)?;
     let threshold = threshold.midpoint().to_f64().abs();
     let values = if reader.options.quick { QUICK } else { FULL };
     let mut points: Vec<OnsetPoint> =

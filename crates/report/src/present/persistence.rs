@@ -1,5 +1,6 @@
 //! The parameter for which an orbit persists, to first order.
 
+use super::threshold::verdict;
 use super::{Present, equation};
 use crate::{Document, Formula, Text};
 use lindstedt::threshold::Persistence;
@@ -29,6 +30,7 @@ impl Present for Answer<Persistence> {
             let check = orbit.check.as_deref().unwrap_or("-");
             lines.push((format!("orbit, {}", orbit.name).into(), check.into()));
         }
+        lines.push(("validity".into(), verdict(found.validity)));
         Document::titled(title.trim_end_matches([':', ' ']))
             .formula(equation(&found.problem))
             .words(sought)

@@ -127,7 +127,7 @@ fn second_order(found: &SecondOrderThreshold) -> Vec<Line> {
 }
 
 /// The verdict with its distances as formulas.
-fn verdict(words: &str) -> Text {
+pub(super) fn verdict(words: &str) -> Text {
     let marked = words.replace("||v*| - V|", "$D$").replace("|v*|", "$|v*|$");
     Text::marked(&marked.replace("$|v*|$ = V", "$|v*| = V$").replace("$D$", "$||v*| - V|$"))
 }
