@@ -13,6 +13,7 @@ use crate::source::Source;
 use lindstedt_derivation::{DerivationError, Work};
 use lindstedt_equation::AmplitudeRole;
 use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_series::resummation::ResummationError;
 
 /// Harmonics of which a fourth of the phases is one more, at least.
 const FEWEST: usize = 32;
@@ -74,10 +75,18 @@ impl Expansion {
         let source = Source::new(setting, order, (work.memory, &work.stop), &mut observer)?;
         let derivation = setting.derive(order, (work.memory, &work.stop), &mut observer)?;
         let balls = Balls::new(BITS).with_guard(64);
-        let no_value = || Error::from(DerivationError::NoValue);
+        // What is stopped has no coefficients.
+        let no_value = || match work.stop.asked() {
+            true => Error::Resummation {
+                problem: setting.problem.name.to_string(),
+                reason: ResummationError::Stopped,
+            },
+            false => DerivationError::NoValue.into(),
+        };
         let functions = derivation.phase_functions(false, balls).ok_or_else(no_value)?;
         let count = 4 * (harmonics + 1).max(FEWEST);
-        let phases = Phases::new(count, balls, |point| functions.at(point));
+        let at = |point: &_| if work.stop.asked() { None } else { functions.at(point) };
+        let phases = Phases::new(count, balls, at);
         let phases = phases.ok_or_else(no_value)?;
         let [cosines, sines] = polynomials(&phases, balls);
         let size = |n: usize, from: usize| -> f64 {

@@ -229,7 +229,7 @@ fn the_printed_file_and_the_example_are_the_built_in_problem() {
     // its file does not list the small parameter.
     let mut other = without(example("stick-slip", &arguments), &["seconds"]);
     other["at"]["eps"] = "1".into();
-    let own = ["problem", "equation"];
+    let own = ["problem", "equation", "units"];
     assert_eq!(without(other, &own), without(built_in, &own));
 }
 
