@@ -137,3 +137,80 @@ impl FrequencyBound {
         bound.evaluate(n);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+    use super::*;
+    use crate::{Binding, Request, amplitude_reaction, compile, expand};
+    use lindstedt_algebra::Rationals;
+    use lindstedt_equation::{Condition, Expression};
+    use lindstedt_phase::Trigonometric;
+
+    struct NoNames;
+
+    impl Binding<Rationals> for NoNames {
+        fn parameter(&self, _: &str) -> Option<Rational> {
+            None
+        }
+        fn formal(&self, _: &str, _: usize) -> Option<Rational> {
+            None
+        }
+    }
+
+    /// Two cycles: denominators and norms of x_n, x_n' and x_n'', with the amplitude that the order
+    /// after gives, hold what the driver over Q finds; and they are no larger than some bits per order.
+    #[test]
+    fn sizes_hold_what_the_driver_finds() {
+        let (x, v) = (|| Expression::DISPLACEMENT, || Expression::VELOCITY);
+        let small = || Expression::Small;
+        holds(small() * (x().pow(2) - 1) * v());
+        // a_1 alone has the factor 1/5.
+        let stronger = small() * 5 * (x().pow(2) - 1) * v();
+        holds(stronger + small().pow(2) * v());
+    }
+
+    fn holds(damping: Expression) {
+        const ORDER: usize = 9;
+        let (algebra, x) = (Trigonometric::new(Rationals), || Expression::DISPLACEMENT);
+        let equation = (Expression::ACCELERATION + x() + damping).canonical();
+        let equation = compile(&algebra, &equation, &NoNames, ORDER).unwrap();
+        let amplitude = Rational::from(2);
+        let condition = Condition::LimitCycle;
+        let request = Request { condition, order: ORDER, leading_amplitude: amplitude.clone() };
+        let found = expand(&algebra, &equation, &request, &mut |_| true).unwrap();
+        let reaction = amplitude_reaction(&algebra, &equation, &request).unwrap();
+        let one = Rational::from(1);
+        let bound = ResidualBound::new(&equation, &one, 2 * ORDER + 1, true).unwrap();
+        let mut ahead = FrequencyBound::new(bound, &amplitude, reaction.as_ref()).unwrap();
+        for n in 1..=ORDER {
+            let expected = ahead.next();
+            // Complete with the amplitude.
+            let last = &found.solution[n - 1];
+            let own = last.cos.iter().enumerate().chain(last.sin.iter().enumerate());
+            let own: Vec<(usize, &Rational)> = own.filter(|(_, c)| !c.is_zero()).collect();
+            for (power, list) in ahead.bound.sizes.functions.iter().enumerate() {
+                let size = list[n - 1].as_ref().unwrap();
+                let denominator = ahead.bound.generators.product(&size.exponents);
+                let mut norm = Rational::new();
+                for (k, c) in &own {
+                    // Of z^k, k > 0, it is half of that of cos or sin.
+                    let parts: u32 = if *k > 0 { 2 } else { 1 };
+                    let half = Rational::from(*c * &denominator) / parts;
+                    assert!(half.is_integer(), "{n} {power} {k}");
+                    norm += Rational::from(c.abs_ref()) * k.pow(power as u32);
+                }
+                let (norm, most) = (norm.to_f64(), size.norm.to_f64());
+                assert!(norm <= most, "{n} {power} {norm} {most}");
+                assert!(most < 16384f64.powi(n as i32) * norm, "{n} {power} {norm} {most}");
+            }
+            let x = &found.solution[n];
+            let all = x.cos.iter().enumerate().chain(x.sin.iter().enumerate());
+            let harmonics: Vec<usize> = all.filter(|(_, c)| !c.is_zero()).map(|(k, _)| k).collect();
+            let squared = &found.frequency_squared[n];
+            assert!(Rational::from(squared * &expected.denominators[0]).is_integer());
+            ahead.suppose(expected, [squared.is_zero(); 3], &harmonics);
+        }
+    }
+}
