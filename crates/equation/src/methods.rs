@@ -184,10 +184,13 @@ fn averaging(
     let coupling = |e: &Expression| !problem.others.is_empty() && is_coupling(e);
     let strong = parts.strong.iter().map(|t| &t.term);
     let strong = strong.filter(|e| !e.is_constant() && !coupling(e));
-    against.retain(|reason| {
-        !matches!(reason, Reason::NotWeaklyNonlinear(_) | Reason::DelayedLinearPart(_))
-    });
-    against.extend(not_weak(strong));
+    let strong = not_weak(strong);
+    if strong != not_weak(parts.strong.iter().map(|term| &term.term)) {
+        against.retain(|reason| {
+            !matches!(reason, Reason::NotWeaklyNonlinear(_) | Reason::DelayedLinearPart(_))
+        });
+        against.extend(strong);
+    }
     if !parts.non_smooth.is_empty() && problem.others.is_empty() && !parts.impact {
         // What jumps at turning points only is averaged between them.
         let at = against.iter().position(|reason| matches!(reason, Reason::NonSmooth(_)));

@@ -23,6 +23,15 @@ const LISTED: usize = 12;
 ///   s = omega t,   x = eps (e^(is) + e^(-is)) + eps^2 x_2(s) + ...,   x_n without the harmonic 1,
 ///
 /// so that 2 eps is the amplitude of the first harmonic.
+///
+/// ```
+/// use lindstedt::{HopfSeries, Oscillator, Work};
+/// let rayleigh = Oscillator::parse("x'' + a*x' + x + x'^3 = 0")?;
+/// let HopfSeries { cycle, .. } = rayleigh.hopf("a", 2, &Work::default())?.value;
+/// // (e^(is) + e^(-is))'^3 has 3 i in its first harmonic.
+/// assert_eq!(cycle.parameter[2].number.exact.as_deref(), Some("-3"));
+/// # Ok::<(), lindstedt::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct HopfSeries {

@@ -40,7 +40,6 @@ impl<'a> Subject<'a> {
         question: &Respond,
         work: &'a Work,
     ) -> Result<Self, Error> {
-        oscillator.second_order()?;
         let problem = oscillator.problem();
         if problem.impact.is_some() {
             let message = "a wall: the flow between two impacts is no slow flow";
