@@ -47,6 +47,7 @@ fn answers_are_data_and_closed_sets_are_words() {
     answer(|o, q: &Bifurcation, w| o.bifurcation(q, w));
     answer(|o, q: &lindstedt::Threshold, w| o.threshold(q, w));
     answer(|o, n: usize, w| o.homoclinic("mu", n, w));
+    answer(|o, name: &str, w| o.persistence(name, w));
     answer(|o, q: &lindstedt::Stability, w| o.stability(q, w));
     answer(|o, q: &lindstedt::Respond, w| o.respond(q, w));
     data::<lindstedt::catalogue::Catalogue>();

@@ -169,20 +169,20 @@ fn two_frequencies_on_both_sides_of_a_saddle() {
 fn numeric_orbits_agree_with_closed_ones() {
     let ask = |equation: &str| {
         let found = Oscillator::parse(equation).unwrap();
-        let found = found.threshold(&Threshold::default(), &Work { digits: 8, ..work() }).unwrap();
+        let found = found.threshold(&Threshold::default(), &Work { digits: 7, ..work() }).unwrap();
         (found.header.tier, value(&found.value.gamma_c))
     };
     // sin(x/3) leaves the ring; with a factor so small it changes nothing.
     let closed = ask("x'' + sin(x) = eps*(sin(x)*cos(t) - (1 + cos(x))*x')");
     let numeric = ask("x'' + sin(x) = eps*(sin(x)*cos(t) - (1 + cos(x) + 1/10^30*sin(x/3))*x')");
     assert_eq!((closed.0, numeric.0), ("certified", "estimated"));
-    assert!((closed.1 - numeric.1).abs() < 1e-8, "{closed:?} {numeric:?}");
+    assert!((closed.1 - numeric.1).abs() < 1e-6, "{closed:?} {numeric:?}");
     // int (2 gd)^2 (2 sech) cos/sin(z) dz, by the trapezoidal rule.
     let squared = ask("x'' + sin(x) = eps*(x*cos(t) - x^2*x')").1;
     let orbit = |t: f64| [4.0 * (t / 2.0).tanh().atan(), 2.0 / t.cosh()];
     let d = quadrature(&orbit, &|_, x, v| x * x * v * v);
     let f = quadrature(&orbit, &|t, x, v| x * v * t.sin());
-    assert!((squared - d / f).abs() < 1e-8, "{squared}");
+    assert!((squared - d / f).abs() < 1e-6, "{squared}");
 }
 
 /// x'' + sin x = eps (gamma sin x cos(omega t) - delta x'): 4 delta sinh(pi omega/2)/(pi omega^2); a force that is
