@@ -113,12 +113,14 @@ impl OnePhase {
                 _ => return Err(refused(Why::HigherOrder)),
             }
         }
-        if !(square > 0.0) {
+        if square.is_nan() || square <= 0.0 {
             return Err(Refusal::NoSpring);
         }
         let law = Expression::Sum(law).canonical();
         let bends = law.nodes().filter_map(|e| match e {
-            Expression::Function(Function::Abs | Function::Sign, z) if !z.is_constant() => Some((**z).clone()),
+            Expression::Function(Function::Abs | Function::Sign, z) if !z.is_constant() => {
+                Some((**z).clone())
+            }
             _ => None,
         });
         let mut bends: Vec<Expression> = bends.collect();
@@ -149,7 +151,8 @@ impl OnePhase {
             (linear && slope != 0.0).then(|| -at / slope)
         });
         let first = speeds.next()??;
-        let same = |speed: Option<f64>| speed.is_some_and(|v| (v - first).abs() <= 1e-12 * first.abs());
+        let same =
+            |speed: Option<f64>| speed.is_some_and(|v| (v - first).abs() <= 1e-12 * first.abs());
         (first != 0.0 && speeds.all(same)).then_some(first)
     }
 
@@ -207,7 +210,13 @@ impl OnePhase {
     #[must_use]
     pub fn cycles(&self, largest: f64, stop: &Stop) -> Vec<PhaseCycle> {
         let rate = |a: f64| Some(self.rates(a)?.amplitude);
-        let roots = roots(largest, &rate, stop).into_iter();
+        let mut points = grid(largest);
+        // Two cycles about the speed of the belt may be close.
+        points.extend(
+            self.belt_speed.map(|speed| speed.abs() / self.frequency).filter(|a| *a < largest),
+        );
+        points.sort_by(f64::total_cmp);
+        let roots = roots(&points, &rate, stop).into_iter();
         roots.filter_map(|(a, error)| self.cycle(a, error)).collect()
     }
 
@@ -242,7 +251,7 @@ impl OnePhase {
         let sign = if self.value < 0.0 { -1.0 } else { 1.0 };
         let parameter = |a: f64| sign * a * self.frequency / self.factor.abs();
         let rate = |a: f64| Some(self.rates_with(a, parameter(a))?.amplitude);
-        let roots = roots(largest, &rate, stop).into_iter();
+        let roots = roots(&grid(largest), &rate, stop).into_iter();
         let found = |(a, error): (f64, f64)| Sticking {
             parameter: [parameter(a), parameter(error).abs()],
             amplitude: [a, error],
@@ -253,7 +262,9 @@ impl OnePhase {
     /// Whether a cycle of this amplitude sticks at this eps: it meets the belt where the spring is weaker than friction.
     #[must_use]
     pub fn sticks(&self, a: f64, eps: f64) -> bool {
-        let Some(speed) = self.belt_speed.filter(|speed| speed.abs() < a * self.frequency) else { return false };
+        let Some(speed) = self.belt_speed.filter(|speed| speed.abs() < a * self.frequency) else {
+            return false;
+        };
         let x = (a * a - (speed / self.frequency).powi(2)).sqrt();
         let near = 1e-9 * speed.abs();
         let parameter = self.belt.as_deref().map(|name| (name, self.value));
@@ -279,7 +290,9 @@ fn belt(rest: &Expression) -> Option<(String, f64)> {
             let single = m.x == 0 && m.velocity == 0 && m.order == 0 && m.atoms.is_empty();
             match m.parameters.iter().collect::<Vec<_>>()[..] {
                 [] if m.is_power(0, 1) && m.order == 0 => slope += q,
-                [(name, 1)] if single && name != "pi" && constant.is_none() => constant = Some((name.clone(), q.clone())),
+                [(name, 1)] if single && name != "pi" && constant.is_none() => {
+                    constant = Some((name.clone(), q.clone()))
+                }
                 _ => return None,
             }
         }
@@ -296,22 +309,23 @@ fn belt(rest: &Expression) -> Option<(String, f64)> {
     found.map(|(name, factor)| (name, factor.to_f64()))
 }
 
-/// The changes of sign of a function on a grid up to `largest`, with an error from that of the function.
-fn roots(
-    largest: f64,
-    rate: &dyn Fn(f64) -> Option<[f64; 2]>,
-    stop: &Stop,
-) -> Vec<(f64, f64)> {
+/// Amplitudes up to a largest one.
+fn grid(largest: f64) -> Vec<f64> {
     let at = |n: u32| largest * (f64::from(n) + 0.618) / (f64::from(CELLS) + 0.618);
+    (0..=CELLS).map(at).collect()
+}
+
+/// The changes of sign of a function between neighbouring points, with an error from that of the function.
+fn roots(points: &[f64], rate: &dyn Fn(f64) -> Option<[f64; 2]>, stop: &Stop) -> Vec<(f64, f64)> {
     let mut found = Vec::new();
     let mut before = None;
-    for n in 0..=CELLS {
+    for a in points {
         if stop.asked() {
             break;
         }
-        let here = rate(at(n));
+        let here = rate(*a).map(|rate| (*a, rate));
         if let (Some(left), Some(right)) = (before, here) {
-            found.extend(root((at(n - 1), left), (at(n), right), rate));
+            found.extend(root(left, right, rate));
         }
         before = here;
     }

@@ -44,6 +44,20 @@ impl Homoclinic<'_> {
             points.push([eps, tangency.value, tangency.error]);
             ControlFlow::Continue(())
         })?;
+        Ok(TangencyLine::through(points))
+    }
+}
+
+impl TangencyLine {
+    /// The curve through tangencies (eps, the value, its error) by rising eps.
+    ///
+    /// ```
+    /// use lindstedt_simulate::TangencyLine;
+    /// let line = TangencyLine::through([0.1, 0.2, 0.4].map(|eps| [eps, 1.0 + 2.0 * eps - eps * eps, 0.0]).to_vec());
+    /// assert!((line.intercept - 1.0).abs() < 1e-15 && (line.slope - 2.0).abs() < 1e-14);
+    /// ```
+    #[must_use]
+    pub fn through(points: Vec<[f64; 3]>) -> Self {
         let all: Vec<(f64, f64)> = points.iter().map(|[eps, value, _]| (*eps, *value)).collect();
         let [intercept, slope] = at_zero(&all);
         let before = at_zero(all.split_last().map_or(&all[..], |(_, rest)| rest));
@@ -53,7 +67,7 @@ impl Homoclinic<'_> {
             let weight = at_zero(&all.iter().enumerate().map(unit).collect::<Vec<_>>());
             errors = [0, 1].map(|n| errors[n] + (weight[n] * error).abs());
         }
-        Ok(TangencyLine { intercept, slope, errors, points })
+        Self { intercept, slope, errors, points }
     }
 }
 

@@ -26,9 +26,9 @@ pub use lindstedt_evaluation::{
 };
 pub(crate) use lindstedt_evaluation::{period, setting, source};
 use lindstedt_problem_file::parse_equation;
-pub use one_phase::{Belt, FirstOrder, FirstOrderCycle, StickingBegins};
 pub use lindstedt_series::resummation::Estimated;
 use lindstedt_series::resummation::Method;
+pub use one_phase::{Belt, FirstOrder, FirstOrderCycle, StickingBegins};
 pub use prove::{
     Between, Bounds, EndOfBranch, Expansion, ProvedBranch, ProvedFamily, ProvedMember, ProvedOrbit,
     ProvedState, UnknownOrbit, UnknownState, Verdict as ProofVerdict,

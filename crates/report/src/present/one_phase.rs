@@ -2,8 +2,8 @@
 
 use super::Present;
 use crate::{Document, Formula, Table, Text};
-use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::evaluate::FirstOrder;
+use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::{Answer, Number};
 
 impl Present for Answer<FirstOrder> {
@@ -28,16 +28,22 @@ impl Present for Answer<FirstOrder> {
                 None => format!("cycle, {stable}, a"),
             };
             lines.push(line(words.as_str().into(), &cycle.amplitude));
-            lines.push(line(Text::words(format!("its exponent over {}", found.parameter)), &cycle.exponent));
+            lines.push(line(
+                Text::words(format!("its exponent over {}", found.parameter)),
+                &cycle.exponent,
+            ));
             let shift = format!("its frequency less omega, over {}", found.parameter);
             lines.push(line(Text::words(shift), &cycle.phase_rate));
         }
         if found.cycles.is_empty() {
             lines.push(("cycles".into(), format!("none up to a = {}", found.amplitude).into()));
         }
-        for (found, belt) in found.sticking.iter().zip(std::iter::repeat(&found.belt)) {
-            let belt = belt.as_deref().unwrap_or_default();
-            lines.push(line(Text::words(format!("a cycle is as fast as the belt at {belt} =")), &found.value));
+        if let Some(belt) = &found.belt {
+            let name = Text::words(format!("a cycle is as fast as the belt at {belt}"));
+            lines.extend(found.sticking.iter().map(|begins| line(name.clone(), &begins.value)));
+            if found.sticking.is_empty() {
+                lines.push((name, format!("nowhere up to a = {}", found.amplitude).into()));
+            }
         }
         Document::titled(format!("{}{between}{}", self.header.problem, at.join(", ")))
             .words(format!(
