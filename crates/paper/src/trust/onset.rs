@@ -87,7 +87,7 @@ fn slopes(points: &[OnsetPoint]) -> Result<Vec<OnsetSlope>, Error> {
         let near = near.filter_map(|p| side(p).map(|(gamma, error)| [p.eps, gamma, error]));
         let line = TangencyLine::through(near.collect());
         let (tangencies, tangencies_error) = (line.slope, line.errors[1]);
-        Ok(OnsetSlope {
+        Ok::<_, Error>(OnsetSlope {
             name,
             slope: found.slope,
             error: found.error,
