@@ -7,5 +7,6 @@ mod double;
 mod general;
 mod hyperbolic;
 mod paper;
+mod second_order;
 mod subharmonic;
 mod support;

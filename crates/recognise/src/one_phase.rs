@@ -250,7 +250,9 @@ impl OnePhase {
         }
         let sign = if self.value < 0.0 { -1.0 } else { 1.0 };
         let parameter = |a: f64| sign * a * self.frequency / self.factor.abs();
-        let rate = |a: f64| Some(self.rates_with(a, parameter(a))?.amplitude);
+        // Rounded so that the cycle is not faster: where it touches the speed of the belt a sign would count.
+        let slower = 1.0 + 8.0 * f64::EPSILON;
+        let rate = |a: f64| Some(self.rates_with(a, parameter(a) * slower)?.amplitude);
         let roots = roots(&grid(largest), &rate, stop).into_iter();
         let found = |(a, error): (f64, f64)| Sticking {
             parameter: [parameter(a), parameter(error).abs()],

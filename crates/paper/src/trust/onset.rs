@@ -70,14 +70,14 @@ pub struct OnsetSlope {
     pub slope: f64,
     /// Its estimated error.
     pub error: f64,
-    /// From the tangencies up to eps = 0.1, extrapolated.
+    /// From the tangencies up to eps = 0.2, extrapolated.
     pub tangencies: f64,
     /// Its estimated error.
     pub tangencies_error: f64,
 }
 
 /// Tangencies up to this eps are extrapolated.
-const NEAR_ZERO: f64 = 0.1;
+const NEAR_ZERO: f64 = 0.2;
 
 /// Both loops by both routes.
 fn slopes(points: &[OnsetPoint]) -> Result<Vec<OnsetSlope>, Error> {
