@@ -14,7 +14,10 @@ impl Present for Answer<FirstOrder> {
         let small = latex_name(&found.parameter);
         let rate = |name: &str, latex: &str| {
             let text = format!("{name}/{} at a = {}", found.parameter, found.amplitude);
-            Text::from(Formula::new(text, format!(r"{latex}/{small},\ a = {}", found.amplitude)))
+            Text::from(Formula::new(
+                text,
+                format!(r"{latex}/{small},\quad a = {}", found.amplitude),
+            ))
         };
         let line = |name: Text, number: &Number| (name, Text::number(number));
         let mut lines = vec![
