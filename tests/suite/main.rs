@@ -19,6 +19,7 @@ mod melnikov;
 mod module_circles;
 mod multimodular;
 mod numeric;
+mod one_phase;
 mod paper;
 mod paper_section_2;
 mod problem_files;

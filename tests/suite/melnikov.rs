@@ -8,5 +8,6 @@ mod equations;
 mod general;
 mod hyperbolic;
 mod paper;
+mod second_order;
 mod subharmonic;
 mod support;

@@ -113,7 +113,7 @@ impl OnePhase {
                 _ => return Err(refused(Why::HigherOrder)),
             }
         }
-        if !(square > 0.0) {
+        if square.is_nan() || square <= 0.0 {
             return Err(Refusal::NoSpring);
         }
         let law = Expression::Sum(law).canonical();
@@ -210,7 +210,13 @@ impl OnePhase {
     #[must_use]
     pub fn cycles(&self, largest: f64, stop: &Stop) -> Vec<PhaseCycle> {
         let rate = |a: f64| Some(self.rates(a)?.amplitude);
-        let roots = roots(largest, &rate, stop).into_iter();
+        let mut points = grid(largest);
+        // Two cycles about the speed of the belt may be close.
+        points.extend(
+            self.belt_speed.map(|speed| speed.abs() / self.frequency).filter(|a| *a < largest),
+        );
+        points.sort_by(f64::total_cmp);
+        let roots = roots(&points, &rate, stop).into_iter();
         roots.filter_map(|(a, error)| self.cycle(a, error)).collect()
     }
 
@@ -244,8 +250,10 @@ impl OnePhase {
         }
         let sign = if self.value < 0.0 { -1.0 } else { 1.0 };
         let parameter = |a: f64| sign * a * self.frequency / self.factor.abs();
-        let rate = |a: f64| Some(self.rates_with(a, parameter(a))?.amplitude);
-        let roots = roots(largest, &rate, stop).into_iter();
+        // Rounded so that the cycle is not faster: where it touches the speed of the belt a sign would count.
+        let slower = 1.0 + 8.0 * f64::EPSILON;
+        let rate = |a: f64| Some(self.rates_with(a, parameter(a) * slower)?.amplitude);
+        let roots = roots(&grid(largest), &rate, stop).into_iter();
         let found = |(a, error): (f64, f64)| Sticking {
             parameter: [parameter(a), parameter(error).abs()],
             amplitude: [a, error],
@@ -303,18 +311,23 @@ fn belt(rest: &Expression) -> Option<(String, f64)> {
     found.map(|(name, factor)| (name, factor.to_f64()))
 }
 
-/// The changes of sign of a function on a grid up to `largest`, with an error from that of the function.
-fn roots(largest: f64, rate: &dyn Fn(f64) -> Option<[f64; 2]>, stop: &Stop) -> Vec<(f64, f64)> {
+/// Amplitudes up to a largest one.
+fn grid(largest: f64) -> Vec<f64> {
     let at = |n: u32| largest * (f64::from(n) + 0.618) / (f64::from(CELLS) + 0.618);
+    (0..=CELLS).map(at).collect()
+}
+
+/// The changes of sign of a function between neighbouring points, with an error from that of the function.
+fn roots(points: &[f64], rate: &dyn Fn(f64) -> Option<[f64; 2]>, stop: &Stop) -> Vec<(f64, f64)> {
     let mut found = Vec::new();
     let mut before = None;
-    for n in 0..=CELLS {
+    for a in points {
         if stop.asked() {
             break;
         }
-        let here = rate(at(n));
+        let here = rate(*a).map(|rate| (*a, rate));
         if let (Some(left), Some(right)) = (before, here) {
-            found.extend(root((at(n - 1), left), (at(n), right), rate));
+            found.extend(root(left, right, rate));
         }
         before = here;
     }

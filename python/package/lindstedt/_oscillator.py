@@ -196,7 +196,10 @@ class Oscillator:
 
     def evaluate(self, sweep: Sweep | None = None, **options: Any) -> Answer:
         """Period and frequency at the values set, by resummation; `times="0..10:101"`, `order`, `resum`,
-        `phase`, `code="python"` with `harmonics`; with a sweep at every point of it, without times, phase and code."""
+        `phase`, `code="python"` with `harmonics`; with a sweep at every point of it, without times, phase and code.
+
+        With `cycles=2` alone: first-order averaging of any law, the cycles up to that amplitude.
+        """
         means = _means(options)
         return self._ask("evaluate", {"sweep": sweep, **options}, means)
 
@@ -228,7 +231,7 @@ class Oscillator:
         return self._ask("simulate", options, means)
 
     def threshold(self, sweep: Sweep | None = None, **options: Any) -> Answer:
-        """Melnikov's threshold of homoclinic chaos; `zeros="vstar=0..1"`, `subharmonics`.
+        """Melnikov's threshold of homoclinic chaos; `zeros="vstar=0..1"`, `subharmonics`, `second_order=True`.
 
         With `unknown="mu"` and `order`: the parameter for which the orbit stays homoclinic, as a series.
         """

@@ -3,7 +3,8 @@
 use crate::answer::estimated;
 use crate::refusal::Refused;
 use crate::{Answer, Error, Exact, Number, Oscillator, Remark, Standing, Work};
-use lindstedt_recognise::OnePhase;
+use lindstedt_algebra::Stop;
+use lindstedt_recognise::{OnePhase, PhaseCycle};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -84,6 +85,60 @@ pub struct StickingBegins {
     pub amplitude: Number,
 }
 
+fn number([value, error]: [f64; 2]) -> Result<Number, Error> {
+    estimated(value, error)
+}
+
+impl FirstOrder {
+    fn new(
+        (small, eps): (&str, Option<f64>),
+        law: &OnePhase,
+        largest: &Exact,
+        stop: &Stop,
+    ) -> Result<Self, Error> {
+        let top = largest.to_f64();
+        let message = "the law has no finite value at this amplitude";
+        let undefined = || Refused::no_answer("no-value", message, "");
+        let rates = law.rates(top).ok_or_else(undefined)?;
+        let cycle = |cycle| FirstOrderCycle::new(law, &cycle, eps);
+        let sticking = law.sticking(top, stop).into_iter().map(|found| {
+            Ok(StickingBegins {
+                value: number(found.parameter)?,
+                amplitude: number(found.amplitude)?,
+            })
+        });
+        Ok(Self {
+            parameter: small.to_owned(),
+            frequency: law.frequency,
+            amplitude: largest.clone(),
+            amplitude_rate: number(rates.amplitude)?,
+            phase_rate: number(rates.phase)?,
+            belt_speed: law.belt_speed,
+            cycles: law.cycles(top, stop).into_iter().map(cycle).collect::<Result<_, Error>>()?,
+            belt: law.belt.clone(),
+            sticking: sticking.collect::<Result<_, Error>>()?,
+        })
+    }
+}
+
+impl FirstOrderCycle {
+    fn new(law: &OnePhase, cycle: &PhaseCycle, eps: Option<f64>) -> Result<Self, Error> {
+        let a = cycle.amplitude[0];
+        let belt = law.belt_speed.map(|speed| match eps {
+            _ if a * law.frequency < speed.abs() => Belt::Slower,
+            Some(eps) if law.sticks(a, eps) => Belt::Sticks,
+            _ => Belt::Overtakes,
+        });
+        Ok(Self {
+            amplitude: number(cycle.amplitude)?,
+            exponent: number(cycle.exponent)?,
+            phase_rate: number(cycle.phase)?,
+            stable: cycle.exponent[0] < 0.0,
+            belt,
+        })
+    }
+}
+
 impl Oscillator {
     /// The rates of first order at an amplitude, the cycles up to it, and the speeds of the belt at which one of them
     /// is as fast as the belt, where the speed is a parameter.
@@ -111,7 +166,7 @@ impl Oscillator {
         let top = largest.to_f64();
         if !(top > 0.0 && top.is_finite()) {
             return Err(Refused::usage(
-                "amplitude",
+                "bad-value",
                 "the amplitude must be positive",
                 "--cycles 2",
             )
@@ -119,44 +174,8 @@ impl Oscillator {
         }
         let values = self.form_values(&[])?;
         let law = OnePhase::new(self.problem(), &values).map_err(|refusal| self.unfit(refusal))?;
-        let number = |[value, error]: [f64; 2]| estimated(value, error);
-        let undefined =
-            || Refused::no_answer("no-value", "the law has no finite value at this amplitude", "");
-        let rates = law.rates(top).ok_or_else(undefined)?;
         let eps = values.get(&*self.problem().small).map(Exact::to_f64);
-        let cycles = law.cycles(top, &work.stop).into_iter().map(|cycle| {
-            let a = cycle.amplitude[0];
-            let fast = |speed: f64| a * law.frequency >= speed.abs();
-            let belt = law.belt_speed.map(|speed| match eps {
-                _ if !fast(speed) => Belt::Slower,
-                Some(eps) if law.sticks(a, eps) => Belt::Sticks,
-                _ => Belt::Overtakes,
-            });
-            Ok(FirstOrderCycle {
-                amplitude: number(cycle.amplitude)?,
-                exponent: number(cycle.exponent)?,
-                phase_rate: number(cycle.phase)?,
-                stable: cycle.exponent[0] < 0.0,
-                belt,
-            })
-        });
-        let sticking = law.sticking(top, &work.stop).into_iter().map(|found| {
-            Ok(StickingBegins {
-                value: number(found.parameter)?,
-                amplitude: number(found.amplitude)?,
-            })
-        });
-        let value = FirstOrder {
-            parameter: self.problem().small.to_string(),
-            frequency: law.frequency,
-            amplitude: largest.clone(),
-            amplitude_rate: number(rates.amplitude)?,
-            phase_rate: number(rates.phase)?,
-            belt_speed: law.belt_speed,
-            cycles: cycles.collect::<Result<_, Error>>()?,
-            belt: law.belt.clone(),
-            sticking: sticking.collect::<Result<_, Error>>()?,
-        };
+        let value = FirstOrder::new((&self.problem().small, eps), &law, largest, &work.stop)?;
         let mut remarks = self.remarks().to_vec();
         let standing = if work.stop.asked() {
             remarks.push(Remark("stopped; cycles not reached are missing".to_owned()));

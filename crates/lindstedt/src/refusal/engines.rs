@@ -5,6 +5,7 @@ use super::Refusal;
 use lindstedt_algebra::PhaseError;
 use lindstedt_derivation::DerivationError;
 use lindstedt_derivation::resonance::ResonanceError;
+use lindstedt_equation::classify::Reason;
 use lindstedt_evaluation::EvaluationError;
 use lindstedt_expand::ExpandError;
 use lindstedt_impact::ImpactError;
@@ -151,8 +152,15 @@ impl Refusal for DerivationError {
                 "`lindstedt simulate` takes it; here the equation would have to be odd in x, and \
                  the same backwards in time",
             ),
-            Self::BetweenTurningPoints { .. } => {
-                (NoAnswer, "no-expansion", "`lindstedt simulate` takes it")
+            Self::BetweenTurningPoints { reason, .. } => {
+                let hint = match **reason {
+                    Reason::NonSmooth(_) | Reason::NotPolynomial(_) | Reason::NotOdd(_) => {
+                        "`lindstedt evaluate --cycles AMPLITUDE` averages any law to first order, \
+                         `lindstedt simulate` takes it"
+                    }
+                    _ => "`lindstedt simulate` takes it",
+                };
+                (NoAnswer, "no-expansion", hint)
             }
             Self::NoValue => (NoAnswer, "no-value", ""),
             Self::OutOfPrimes => (Undecided, "out-of-primes", "lower --order"),

@@ -272,6 +272,14 @@ impl Oscillator {
             standing = Standing::Stopped { done: grid.done() };
             remarks.push(Remark("stopped; the rows not reached are missing".to_owned()));
         }
+        let followed = value.second_order.iter().filter(|orbit| orbit.manifolds.is_some()).count();
+        if standing == Standing::Complete
+            && followed < value.second_order.len()
+            && work.stop.asked()
+        {
+            standing = Standing::Stopped { done: followed };
+            remarks.push(Remark("stopped; manifolds not followed are missing".to_owned()));
+        }
         if !remarks.is_empty() {
             remarks.extend(value.remarks.iter().cloned());
         }

@@ -6,7 +6,10 @@ use crate::oscillator::section_three;
 use crate::stick_slip::{model, parameters};
 use crate::text::texts;
 use lindstedt::Error;
-use lindstedt_simulate::{Homoclinic, Loop, Quantity, SimulateError, Tangency, continue_tangency};
+use lindstedt_melnikov::Branch;
+use lindstedt_simulate::{
+    Homoclinic, Loop, Quantity, SimulateError, Tangency, TangencyLine, continue_tangency,
+};
 use serde::{Serialize, Serializer};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -37,10 +40,12 @@ fn tangency<S: Serializer>(side: &Option<(f64, f64)>, serializer: S) -> Result<S
 }
 
 impl OnsetPoint {
-    /// max |gamma/gamma_c - 1| over the loops.
-    fn deviation(&self, threshold: f64) -> f64 {
-        let part = |side: Option<(f64, f64)>| side.map_or(0.0, |s| (s.0 / threshold - 1.0).abs());
-        part(self.right).max(part(self.left))
+    /// max |gamma/gamma_c - 1| over the loops, gamma_c with a slope of each.
+    fn deviation(&self, threshold: f64, slopes: [f64; 2]) -> f64 {
+        let part = |side: Option<(f64, f64)>, slope: f64| {
+            side.map_or(0.0, |s| (s.0 / (threshold + slope * self.eps) - 1.0).abs())
+        };
+        part(self.right, slopes[0]).max(part(self.left, slopes[1]))
     }
 }
 
@@ -49,10 +54,52 @@ impl OnsetPoint {
 pub struct Onset {
     /// gamma_c of (27), corrected; it does not depend on eps.
     pub threshold: f64,
+    /// The slopes of both loops at eps = 0.
+    pub slopes: Vec<OnsetSlope>,
     /// The tangencies, by rising eps.
     pub points: Vec<OnsetPoint>,
     /// The class of the numbers.
     pub status: &'static str,
+}
+
+/// d gamma/d eps of a loop at eps = 0.
+#[derive(Clone, Debug, Serialize)]
+pub struct OnsetSlope {
+    /// `right` or `left`.
+    pub name: &'static str,
+    /// By Melnikov's integral of second order.
+    pub slope: f64,
+    /// Its estimated error.
+    pub error: f64,
+    /// From the tangencies up to eps = 0.2, extrapolated.
+    pub tangencies: f64,
+    /// Its estimated error.
+    pub tangencies_error: f64,
+}
+
+/// Tangencies up to this eps are extrapolated.
+const NEAR_ZERO: f64 = 0.2;
+
+/// Both loops by both routes.
+fn slopes(points: &[OnsetPoint]) -> Result<Vec<OnsetSlope>, Error> {
+    let one = |name, branch, side: fn(&OnsetPoint) -> Option<(f64, f64)>| {
+        let found = section_three().second_order(branch).ok_or(Error::NoValue)?;
+        let near = points.iter().filter(|point| point.eps <= NEAR_ZERO);
+        let near = near.filter_map(|p| side(p).map(|(gamma, error)| [p.eps, gamma, error]));
+        let line = TangencyLine::through(near.collect());
+        let (tangencies, tangencies_error) = (line.slope, line.errors[1]);
+        Ok::<_, Error>(OnsetSlope {
+            name,
+            slope: found.slope,
+            error: found.error,
+            tangencies,
+            tangencies_error,
+        })
+    };
+    Ok(vec![
+        one("right", Branch::Positive, |p| p.right)?,
+        one("left", Branch::Negative, |p| p.left)?,
+    ])
 }
 
 /// From how small an eps the branches are followed, and where they are shown.
@@ -77,7 +124,7 @@ pub(in super::super) fn read(
     if !follow(reader, threshold, &mut points)? {
         return Ok(false);
     }
-    let onset = Onset { threshold, points, status: ESTIMATED };
+    let onset = Onset { threshold, slopes: slopes(&points)?, points, status: ESTIMATED };
     section.rows.push(agreement(&onset)?);
     section.tables.push(onset.table());
     reader.trust.onset = Some(onset);
@@ -170,9 +217,14 @@ impl Onset {
     /// points computed; nothing when all of them do.
     #[must_use]
     pub fn reach(&self, share: f64) -> Option<f64> {
+        self.reach_with(share, [0.0; 2])
+    }
+
+    /// The same of the threshold with a slope for each loop.
+    fn reach_with(&self, share: f64, slopes: [f64; 2]) -> Option<f64> {
         let mut before = (0.0, 0.0);
         for point in &self.points {
-            let now = (point.eps, point.deviation(self.threshold));
+            let now = (point.eps, point.deviation(self.threshold, slopes));
             if now.1 > share {
                 let part = (share - before.1) / (now.1 - before.1);
                 return Some(before.0 + part * (now.0 - before.0));
@@ -189,12 +241,14 @@ impl Onset {
     }
 
     pub(super) fn finding(&self) -> Finding {
-        let reach = |share: f64| {
-            let eps = self.reach(share).map_or("every $eps$ computed".to_owned(), |eps| {
+        let reach_with = |share: f64, slopes: [f64; 2]| {
+            let eps = self.reach_with(share, slopes);
+            let eps = eps.map_or("every $eps$ computed".to_owned(), |eps| {
                 format!("$eps = {}$", cut_off(eps))
             });
             format!("to {:.0} % up to {eps}", 100.0 * share)
         };
+        let reach = |share: f64| reach_with(share, [0.0; 2]);
         let limit = self.limit().map_or_else(String::new, |(eps, mean)| {
             format!(
                 "as $eps$ goes to 0: at $eps = {eps}$ the mean of the two loops is {mean:.7}, the \
@@ -225,6 +279,7 @@ impl Onset {
                     reach(0.05),
                     reach(0.1)
                 ),
+                self.second_order(&reach_with),
             ]),
             not_trusted: texts([
                 end,
@@ -237,6 +292,24 @@ impl Onset {
             class: "estimated: tangencies by following the unstable manifold, event by event, in \
                     doubles; the $eps$ of a deviation by linear interpolation between the points".into(),
         }
+    }
+
+    /// The slopes, and what they are good for.
+    fn second_order(&self, reach: &dyn Fn(f64, [f64; 2]) -> String) -> String {
+        let [right, left] = self.slopes.as_slice() else { return String::new() };
+        let both = [right.slope, left.slope];
+        format!(
+            "to second order it is ${:.5} {:+.7} eps$ on the right loop, ${:.5} {:+.7} eps$ on the left one, by Melnikov's \
+             integral of second order; the tangencies extrapolate to the slopes {:+.5} and {:+.5}; with them it is {} and {}",
+            self.threshold,
+            right.slope,
+            self.threshold,
+            left.slope,
+            right.tangencies,
+            left.tangencies,
+            reach(0.01, both),
+            reach(0.1, both)
+        )
     }
 
     fn table(&self) -> Table {

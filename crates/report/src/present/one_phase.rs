@@ -14,7 +14,10 @@ impl Present for Answer<FirstOrder> {
         let small = latex_name(&found.parameter);
         let rate = |name: &str, latex: &str| {
             let text = format!("{name}/{} at a = {}", found.parameter, found.amplitude);
-            Text::from(Formula::new(text, format!(r"{latex}/{small},\ a = {}", found.amplitude)))
+            Text::from(Formula::new(
+                text,
+                format!(r"{latex}/{small},\quad a = {}", found.amplitude),
+            ))
         };
         let line = |name: Text, number: &Number| (name, Text::number(number));
         let mut lines = vec![
@@ -38,12 +41,12 @@ impl Present for Answer<FirstOrder> {
         if found.cycles.is_empty() {
             lines.push(("cycles".into(), format!("none up to a = {}", found.amplitude).into()));
         }
-        for (found, belt) in found.sticking.iter().zip(std::iter::repeat(&found.belt)) {
-            let belt = belt.as_deref().unwrap_or_default();
-            lines.push(line(
-                Text::words(format!("a cycle is as fast as the belt at {belt} =")),
-                &found.value,
-            ));
+        if let Some(belt) = &found.belt {
+            let name = Text::words(format!("a cycle is as fast as the belt at {belt}"));
+            lines.extend(found.sticking.iter().map(|begins| line(name.clone(), &begins.value)));
+            if found.sticking.is_empty() {
+                lines.push((name, format!("nowhere up to a = {}", found.amplitude).into()));
+            }
         }
         Document::titled(format!("{}{between}{}", self.header.problem, at.join(", ")))
             .words(format!(

@@ -109,7 +109,7 @@ fn second_order(found: &SecondOrderThreshold) -> Vec<Line> {
         let error = |number: &Number| number.error.clone().unwrap_or_default();
         let text = format!("{} {sign} {size}*{small}", value.decimal);
         let latex = format!(r"{} {sign} {size}\,{}", value.decimal, latex_name(small));
-        Text::default().formula(Formula::new(text, latex)).and(&format!(
+        Text::default().formula(Formula::new(text, latex)).and(format!(
             " (estimated, errors {} and {})",
             error(value),
             error(slope)

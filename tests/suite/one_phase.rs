@@ -1,0 +1,179 @@
+//! First-order averaging of any law as numbers: exact rates, Bessel functions, the equation in time.
+
+#![allow(clippy::unwrap_used, clippy::panic)] // a test fails by panicking
+
+use lindstedt::averaging::{Coefficient, RateTerm};
+use lindstedt::evaluate::{Belt, FirstOrder};
+use lindstedt::motion::End;
+use lindstedt::{Exact, Kind, Number, Oscillator, Refusal, Simulate, Work};
+use lindstedt_simulate::{Doubles, Integrator, Model, Parameters, Settings};
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+
+fn first_order(equation: &str, largest: &str) -> FirstOrder {
+    let case = Oscillator::parse(equation).unwrap();
+    case.first_order(&Exact::parse(largest).unwrap(), &Work::default()).unwrap().value
+}
+
+fn value(number: &Number) -> f64 {
+    number.decimal.parse().unwrap()
+}
+
+/// Within its own error, with a digit of rounding.
+fn assert_is(number: &Number, exact: f64) {
+    let error: f64 = number.error.as_ref().unwrap().parse().unwrap();
+    assert!((value(number) - exact).abs() <= error && error < 1e-9, "{number:?} {exact}");
+}
+
+/// Of odd laws, polynomial on each half turn, the exact rates of first order.
+#[test]
+fn odd_laws_have_their_exact_rates() {
+    for law in [
+        "sign(x')",
+        "x'*abs(x') + x^3",
+        "x^2*sign(x') - x'/3 + x'^2*x",
+        "x*abs(x') + abs(x'^3)*sign(x')",
+    ] {
+        let equation = format!("x'' + 4*x + eps*({law}) = 0");
+        let found = first_order(&equation, "13/10");
+        let exact =
+            Oscillator::parse(&equation).unwrap().average(1, &Work::default()).unwrap().value;
+        assert!(exact.between_turning_points());
+        let sum = |rate: &[RateTerm]| {
+            let term = |term: &RateTerm| match &term.coefficient {
+                Coefficient::ClosedForm { number, .. } | Coefficient::Number(number) => {
+                    value(number) * 1.3f64.powi(term.exponent)
+                }
+                Coefficient::Formula { text, .. } => panic!("{text}"),
+            };
+            rate.iter().map(term).sum::<f64>()
+        };
+        assert_is(&found.amplitude_rate, sum(&exact.amplitude_rate[1]));
+        assert_is(&found.phase_rate, sum(&exact.phase_rate[1]));
+    }
+}
+
+/// f(w) = sgn w - w + w^3/3: a^2 = 4 (1 - v^2), lambda = -(1 - v^2) eps while a < v, and a = v at v^2 = 4/5.
+#[test]
+fn a_polynomial_law_on_a_belt() {
+    let law = |v: &str| format!("x'' + x + eps*(sign(x' - {v}) - (x' - {v}) + (x' - {v})^3/3) = 0");
+    let found = first_order(&law("9/10"), "2");
+    assert_eq!(found.cycles.len(), 1, "{found:?}");
+    let cycle = &found.cycles[0];
+    assert_is(&cycle.amplitude, 0.76f64.sqrt());
+    assert_is(&cycle.exponent, -0.19);
+    assert!(cycle.stable && cycle.belt == Some(Belt::Slower));
+    assert!(found.belt.is_none() && found.sticking.is_empty());
+    let case = Oscillator::parse(&law("vstar")).unwrap().set("vstar", "1/2").unwrap();
+    let found = case.first_order(&Exact::from(2), &Work::default()).unwrap().value;
+    assert_eq!((found.belt.as_deref(), found.sticking.len()), (Some("vstar"), 1));
+    assert_is(&found.sticking[0].value, 0.8f64.sqrt());
+    // Faster than the belt, which it overtakes: how far is a matter of the jump.
+    assert_eq!(found.cycles.len(), 1);
+    assert!(
+        value(&found.cycles[0].amplitude) > 0.5 && found.cycles[0].belt == Some(Belt::Overtakes)
+    );
+    // It meets the belt at x = 0.14, where friction is up to eps.
+    let stuck = case.set("eps", "1/5").unwrap().first_order(&Exact::from(2), &Work::default());
+    assert_eq!(stuck.unwrap().value.cycles[0].belt, Some(Belt::Sticks));
+}
+
+/// I_1(z).
+fn bessel(z: f64) -> f64 {
+    let terms = (0..40).scan(z / 2.0, |term, k| {
+        let here = *term;
+        *term *= z * z / 4.0 / (f64::from(k + 1) * f64::from(k + 2));
+        Some(here)
+    });
+    terms.sum()
+}
+
+/// Stribeck's law with a cubic damper; slower than the belt A_1 = e^(-2 v) I_1(2 a) - 3 a^3/16.
+fn stribeck(v: &str) -> String {
+    format!("x'' + x + eps*(sign(x' - {v})*(1 + exp(-2*abs(x' - {v}))) + x'^3/2) = 0")
+}
+
+#[test]
+fn stribecks_law_has_bessel_functions() {
+    let rate = |v: f64, a: f64| (-2.0 * v).exp() * bessel(2.0 * a) - 3.0 * a.powi(3) / 16.0;
+    assert_is(&first_order(&stribeck("6/5"), "1").amplitude_rate, rate(1.2, 1.0));
+    let found = first_order(&stribeck("6/5"), "2");
+    let (mut low, mut high) = (0.1, 1.2);
+    for _ in 0..60 {
+        let middle = f64::midpoint(low, high);
+        if rate(1.2, middle) > 0.0 { low = middle } else { high = middle }
+    }
+    assert_eq!(found.cycles.len(), 1);
+    assert_is(&found.cycles[0].amplitude, low);
+    let slope = (rate(1.2, low + 1e-4) - rate(1.2, low - 1e-4)) / 2e-4;
+    assert!((value(&found.cycles[0].exponent) - slope).abs() < 1e-8);
+}
+
+/// The amplitude after one turn, by the equation in time.
+fn turn(equation: &str, eps: f64, a: f64) -> f64 {
+    let case = Oscillator::parse(equation).unwrap();
+    let model = Model::second_order(&case.problem().equation).unwrap().with_small("eps");
+    let parameters = Parameters::new().with("eps", Exact::from_f64(eps).unwrap());
+    let system = model.compile(Doubles, &parameters).unwrap();
+    let mut flow = Integrator::new(&system, &0.0, &[0.0, a], Settings::for_digits(14)).unwrap();
+    flow.advance(&(2.0 * PI), &mut |_| ControlFlow::Continue(())).unwrap();
+    let state = flow.state();
+    state[0].hypot(state[1])
+}
+
+/// Slower than the belt and overtaking it: a turn changes the amplitude by 2 pi eps A_1 + O(eps^2). (From x = 0: the
+/// shift of the centre by friction's mean is felt only later.)
+#[test]
+fn rates_are_those_of_the_equation() {
+    for a in ["7/10", "8/5"] {
+        let law = stribeck("6/5");
+        let rate = value(&first_order(&law, a).amplitude_rate);
+        let a = Exact::parse(a).unwrap().to_f64();
+        let miss = |eps: f64| (turn(&law, eps, a) - a) / (2.0 * PI * eps) - rate;
+        let (coarse, fine) = (miss(0.01), miss(0.005));
+        assert!(fine.abs() < 0.05 && (coarse / fine - 2.0).abs() < 0.4, "{a}: {coarse} {fine}");
+    }
+}
+
+/// Where Stribeck's cycle is as fast as the belt: 1 % below it sticks in time, 1 % above it does not.
+#[test]
+fn sticking_begins_there_in_time() {
+    let case = Oscillator::parse(&stribeck("vstar")).unwrap().set("vstar", "1").unwrap();
+    let found = case.first_order(&Exact::from(2), &Work::default()).unwrap().value;
+    assert_eq!(found.sticking.len(), 1);
+    let v = value(&found.sticking[0].value);
+    let gap = |v: f64| (-2.0 * v).exp() * bessel(2.0 * v) - 3.0 * v.powi(3) / 16.0;
+    assert!(gap(v - 1e-6) > 0.0 && gap(v + 1e-6) < 0.0, "{v}");
+    for (factor, sticks) in [(0.99, true), (1.01, false)] {
+        let law = stribeck(&format!("{:.6}", factor * v)).replace("eps", "0.01");
+        let mut question =
+            Simulate { end: Some(End::Time(Exact::from(1000))), ..Simulate::default() };
+        question.start.state = Some(vec![Exact::from_f64(0.97 * v).unwrap(), Exact::from(0)]);
+        let work = Work { doubles: true, ..Work::default() };
+        let motion = Oscillator::parse(&law).unwrap().motion(&question, &work).unwrap().value;
+        let sticking: f64 = motion.sticking_time.decimal.parse().unwrap();
+        assert_eq!(sticking > 0.0, sticks, "{factor}: {sticking}");
+    }
+}
+
+#[test]
+fn what_it_does_not_take_is_named() {
+    for (equation, word) in [
+        ("x'' + x + eps*cos(t) = 0", "depends on t"),
+        ("x'' + x^3 + eps*x' = 0", "only a linear spring"),
+        ("x'' - x + eps*x' = 0", "there is no spring"),
+        ("x'' + x + eps*x'(t - 1) = 0", "is a delay"),
+        ("x'' + x + eps*x' + eps^2*x^3 = 0", "of higher order"),
+    ] {
+        let refused =
+            Oscillator::parse(equation).unwrap().first_order(&Exact::from(2), &Work::default());
+        let refused = refused.unwrap_err();
+        assert_eq!(refused.kind(), Kind::NoAnswer, "{equation}");
+        assert!(refused.to_string().contains(word), "{refused}");
+    }
+    let case = Oscillator::parse("x'' + x + eps*x' = 0").unwrap();
+    assert_eq!(
+        case.first_order(&Exact::from(0), &Work::default()).unwrap_err().kind(),
+        Kind::Usage
+    );
+}
