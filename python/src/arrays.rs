@@ -133,7 +133,8 @@ impl Motion {
 pub struct Averaged(pub Answer<averaged::Motion>);
 
 /// Times that are no numbers, or no averaged motion that reaches them.
-const NOTHING: [f64; 6] = [f64::NAN, f64::INFINITY, f64::NAN, f64::INFINITY, f64::NAN, f64::INFINITY];
+const NOTHING: [f64; 6] =
+    [f64::NAN, f64::INFINITY, f64::NAN, f64::INFINITY, f64::NAN, f64::INFINITY];
 
 #[pymethods]
 impl Averaged {
@@ -153,13 +154,16 @@ impl Averaged {
         let rows = means.ask(py, |work| {
             let exact = |time: &f64| Exact::from_f64(*time);
             let missing = || crate::failure::usage("a time is no number", "finite times");
-            let times: Vec<Exact> = times.iter().map(exact).collect::<Option<_>>().ok_or_else(missing)?;
+            let times: Vec<Exact> =
+                times.iter().map(exact).collect::<Option<_>>().ok_or_else(missing)?;
             let mut motion = self.0.value.clone();
             let moments = motion.at(&times, work);
             // Those that are not reached are left out.
             let mut moments = moments.iter().peekable();
             let row = |time: &Exact| {
-                let Some(found) = moments.next_if(|moment| moment.time == *time) else { return NOTHING };
+                let Some(found) = moments.next_if(|moment| moment.time == *time) else {
+                    return NOTHING;
+                };
                 let [a, psi, x] = [&found.amplitude, &found.phase, &found.displacement];
                 [a.double, a.error, psi.double, psi.error, x.double, x.error]
             };

@@ -50,6 +50,21 @@ impl Bifurcation {
         let (start, sweep) = (Start::default(), sweep.to_owned());
         Self { start, sweep, section: None, skipped: 200, kept: 100, follow: false, part: None }
     }
+
+    /// Refuses what does not go together.
+    fn check(&self, setup: &Setup) -> Result<(), Error> {
+        let usage = |message: &str, hint: &str| Err(Refused::usage("sweep", message, hint).into());
+        match self {
+            Self { follow: true, .. } if setup.orbit.is_some() => {
+                usage("the orbit of the start is that of every value", "--state X,V")
+            }
+            Self { follow: true, part: Some(_), .. } => {
+                usage("values that follow each other have no parts", "without --follow")
+            }
+            Self { kept: 0, .. } => usage("no points to keep", "--periods 100"),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// The points over one value, or why there are none.
@@ -183,17 +198,7 @@ impl Oscillator {
         setup.flow.forcing = setup.forcing_at(&axis)?;
         // What varies has no value of its own.
         setup.at.retain(|(name, value)| *name != axis.name || !value.is_empty());
-        if question.follow && setup.orbit.is_some() {
-            let message = "the orbit of the start is that of every value";
-            return Err(Refused::usage("sweep", message, "--state X,V").into());
-        }
-        if question.kept == 0 {
-            return Err(Refused::usage("sweep", "no points to keep", "--periods 100").into());
-        }
-        if question.follow && question.part.is_some() {
-            let message = "values that follow each other have no parts";
-            return Err(Refused::usage("sweep", message, "without --follow").into());
-        }
+        question.check(&setup)?;
         let section = section(question.section, true, &setup)?.unwrap_or(Section::Velocity);
         let mut values: Vec<Quantity> =
             axis.part(question.part).values.into_iter().map(Quantity::from).collect();

@@ -10,6 +10,7 @@ use lindstedt_evaluation::EvaluationError;
 use lindstedt_expand::ExpandError;
 use lindstedt_impact::ImpactError;
 use lindstedt_melnikov::MelnikovError;
+use lindstedt_series::resummation::ResummationError;
 use lindstedt_simulate::SimulateError;
 
 /// What to do where a divisor is almost zero.
@@ -175,6 +176,9 @@ impl Refusal for EvaluationError {
         let (kind, code, hint) = match self {
             Self::Derivation(error) => return error.parts(),
             Self::NotEvaluated { .. } => (NoAnswer, "not-evaluated", ""),
+            Self::Resummation { reason: ResummationError::Stopped, .. } => {
+                (Stopped, "interrupted", "")
+            }
             Self::Resummation { .. } => {
                 (NoAnswer, "no-such-resummation", "try --resum auto, or another order")
             }
