@@ -100,7 +100,7 @@ fn foresee<P: Iterator<Item = PrimeField>>(
     let Some(judge) = images.list.first() else { return 0 };
     let mut most = 0;
     for n in 1..=images.job.request.order {
-        let expected = bound.next();
+        let expected = bound.next_order();
         most = most.max(expected.bits);
         let value = |index: usize| judge.values(n).get(index).is_none_or(|c| *c == 0);
         bound.suppose(expected, [0, 1, 2].map(value), &judge.harmonics(n));
@@ -122,7 +122,7 @@ impl<P: Iterator<Item = PrimeField>> Lifting<'_, P> {
         let mut primes = 0;
         for n in 1..=self.job.request.order {
             self.job.go_on()?;
-            let expected = self.bound.next();
+            let expected = self.bound.next_order();
             self.prepare(&mut remaindering, expected.bits, observer)?;
             primes = primes.max(remaindering.primes());
             let numbers = self.numbers(&remaindering, n, &expected)?;
@@ -225,7 +225,7 @@ mod tests {
         let mut bound = FrequencyBound::new(setting.bound.clone(), &amplitude, reaction).unwrap();
         let mut longest = 0;
         for n in 1..=order {
-            let expected = bound.next();
+            let expected = bound.next_order();
             let numbers = [&whole.expansion.frequency_squared, &whole.frequency, &whole.period]
                 .map(|s| &s[n]);
             for (number, denominator) in numbers.iter().zip(&expected.denominators) {

@@ -63,7 +63,7 @@ impl FrequencyBound {
     }
 
     /// What the numbers of the next order can be.
-    pub fn next(&mut self) -> Expected {
+    pub fn next_order(&mut self) -> Expected {
         let n = self.bound.sizes.series[0].len();
         let mut force = self.bound.right_side(n);
         if let (Some(reaction), Some(f)) = (self.reaction.as_ref().filter(|_| n > 1), &force) {
@@ -185,7 +185,7 @@ mod tests {
         let bound = ResidualBound::new(&equation, &one, 2 * ORDER + 1, true).unwrap();
         let mut ahead = FrequencyBound::new(bound, &amplitude, reaction.as_ref()).unwrap();
         for n in 1..=ORDER {
-            let expected = ahead.next();
+            let expected = ahead.next_order();
             // Complete with the amplitude.
             let last = &found.solution[n - 1];
             let own = last.cos.iter().enumerate().chain(last.sin.iter().enumerate());
