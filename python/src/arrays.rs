@@ -3,13 +3,15 @@
 use crate::options::Options;
 use crate::verbs;
 use crate::work::Means;
+use lindstedt::evaluate::averaged;
 use lindstedt::evaluate::{Estimated, FrequencyFunction, PeriodicSolution, SolutionFunction};
-use lindstedt::grid::Grid;
+use lindstedt::grid::{Grid, Part};
+use lindstedt::motion::Bifurcation;
 use lindstedt::unstable::impact::map::Verdict;
-use lindstedt::{Answer, Error, Oscillator, Stability, Standing, Stop};
+use lindstedt::{Answer, Error, Exact, Oscillator, Stability, Standing, Stop, Threshold};
 use lindstedt_report::json;
 use numpy::ndarray::Array2;
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -126,6 +128,47 @@ impl Motion {
     }
 }
 
+/// a(t), psi(t), x(t) of an averaged motion.
+#[pyclass(frozen, module = "lindstedt._native")]
+pub struct Averaged(pub Answer<averaged::Motion>);
+
+/// Times that are no numbers, or no averaged motion that reaches them.
+const NOTHING: [f64; 6] = [f64::NAN, f64::INFINITY, f64::NAN, f64::INFINITY, f64::NAN, f64::INFINITY];
+
+#[pymethods]
+impl Averaged {
+    /// Header, start and rates as JSON.
+    fn json(&self) -> PyResult<String> {
+        json(&self.0).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    /// Row by row the values and errors of a, psi, x; the times in increasing order. What is not reached is no number.
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        times: PyReadonlyArray1<'py, f64>,
+        means: &Means,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let times = times.as_slice()?;
+        let rows = means.ask(py, |work| {
+            let exact = |time: &f64| Exact::from_f64(*time);
+            let missing = || crate::failure::usage("a time is no number", "finite times");
+            let times: Vec<Exact> = times.iter().map(exact).collect::<Option<_>>().ok_or_else(missing)?;
+            let mut motion = self.0.value.clone();
+            let moments = motion.at(&times, work);
+            // Those that are not reached are left out.
+            let mut moments = moments.iter().peekable();
+            let row = |time: &Exact| {
+                let Some(found) = moments.next_if(|moment| moment.time == *time) else { return NOTHING };
+                let [a, psi, x] = [&found.amplitude, &found.phase, &found.displacement];
+                [a.double, a.error, psi.double, psi.error, x.double, x.error]
+            };
+            Ok(times.iter().map(row).collect::<Vec<_>>())
+        })?;
+        Ok(Array2::from(rows).reversed_axes().as_standard_layout().into_owned().into_pyarray(py))
+    }
+}
+
 fn missing() -> Error {
     crate::failure::usage("an array needs a sweep", "sweep = \"A=-1..1:201\"")
 }
@@ -148,6 +191,15 @@ fn table<U, T: Clone>(grid: &Grid<U>, mut list: Vec<T>, blank: T) -> PyResult<Ar
     made.map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
+/// The part of a chart, a surface or a diagram: `FIRST,COUNT`.
+fn part(options: &Options) -> Result<Option<Part>, Error> {
+    match options.list("part")?.as_deref() {
+        None => Ok(None),
+        Some([first, count]) => Ok(Some((*first, *count))),
+        Some(_) => Err(crate::failure::usage("a part is its first row and their number", "0,16")),
+    }
+}
+
 /// The prediction and the truth over one or two parameters.
 pub fn chart<'py>(
     py: Python<'py>,
@@ -157,7 +209,8 @@ pub fn chart<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (chart, radius) = means.ask(py, move |work| {
         let radius = options.flag("radius")?;
-        let question = Stability { radius, ..verbs::stability(case, &options)? };
+        let part = part(&options)?;
+        let question = Stability { radius, part, ..verbs::stability(case, &options)? };
         let grid = case.stability(&question, work)?.value.grid;
         Ok((grid.ok_or_else(missing)?, radius))
     })?;
@@ -186,7 +239,8 @@ pub fn surface<'py>(
     means: &Means,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (sweep, standing) = means.ask(py, move |work| {
-        let question = verbs::threshold(case, &options)?;
+        let part = part(&options)?;
+        let question = Threshold { part, ..verbs::threshold(case, &options)? };
         let found = case.threshold(&question, work)?;
         Ok((found.value.sweep.ok_or_else(missing)?, found.standing))
     })?;
@@ -215,7 +269,9 @@ pub fn diagram<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let found = means.ask(py, move |work| {
         let sweep = options.text("sweep").ok_or_else(missing)?;
-        case.bifurcation(&verbs::diagram(&sweep, &options)?, work)
+        let part = part(&options)?;
+        let question = Bifurcation { part, ..verbs::diagram(&sweep, &options)? };
+        case.bifurcation(&question, work)
     })?;
     let (swept, dict) = (&found.value.sweep, PyDict::new(py));
     let columns = || swept.columns.iter();

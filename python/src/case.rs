@@ -1,6 +1,6 @@
 //! A problem with its values.
 
-use crate::arrays::{self, Frequency, Motion, Motions};
+use crate::arrays::{self, Averaged, Frequency, Motion, Motions};
 use crate::failure::exception;
 use crate::found::Found;
 use crate::options::Options;
@@ -178,6 +178,28 @@ impl Case {
             options.finish()?;
             Ok(Motion(self.0.periodic_solution(&question, harmonics, work)?))
         })
+    }
+
+    /// a(t), psi(t), x(t) of the averaged motion.
+    fn averaged_motion(
+        &self,
+        py: Python<'_>,
+        options: BTreeMap<String, String>,
+        means: &Means,
+    ) -> PyResult<Averaged> {
+        means.ask(py, |work| {
+            let options = Options::new(options);
+            let question = verbs::averaged(&options)?;
+            options.finish()?;
+            Ok(Averaged(self.0.averaged_motion(&question, work)?))
+        })
+    }
+
+    /// The number of values of every axis of a sweep.
+    fn counts(&self, py: Python<'_>, sweep: &str) -> PyResult<Vec<usize>> {
+        let count = |text: &str| self.0.axis(text).map(|axis| axis.values.len());
+        let counts: Result<_, Error> = sweep.split(';').map(count).collect();
+        counts.map_err(|error| exception(py, &error))
     }
 
     /// A chart, a surface or a diagram as arrays.

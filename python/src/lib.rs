@@ -23,6 +23,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<arrays::Frequency>()?;
     module.add_class::<arrays::Motions>()?;
     module.add_class::<arrays::Motion>()?;
+    module.add_class::<arrays::Averaged>()?;
     module.add_class::<work::Means>()?;
     module.add_function(wrap_pyfunction!(case::problems, module)?)
 }

@@ -12,8 +12,8 @@ use lindstedt::trade::Plan;
 use lindstedt::unstable::impact::parameters::Branch;
 use lindstedt::unstable::impact::{characteristic::Kick, prediction::Variant};
 use lindstedt::{
-    Condition, Derive, Error, Evaluate, Oscillator, Respond, Route, Simulate, Stability, Threshold,
-    Verify, Work,
+    Condition, Derive, Error, Evaluate, Kind, Oscillator, Refusal, Respond, Route, Simulate, Stability,
+    Threshold, Verify, Work,
 };
 
 /// An answer that can be read in every form.
@@ -43,9 +43,16 @@ pub fn ask(case: &Oscillator, verb: &str, options: &Options, work: &Work) -> Ask
         "simulate" => simulate(case, options, work),
         "threshold" => {
             if let Some(name) = options.text("unknown").as_deref().or(case.unknown()) {
-                let order = options.parsed("order")?.unwrap_or(2);
+                let order: Option<usize> = options.parsed("order")?;
                 options.finish()?;
-                return boxed(case.homoclinic(name, order, work));
+                let series = case.homoclinic(name, order.unwrap_or(2), work);
+                let first = order.unwrap_or(0) == 0;
+                return match series {
+                    Err(error) if first && error.kind() == Kind::NoAnswer => {
+                        boxed(case.persistence(name, work))
+                    }
+                    other => boxed(other),
+                };
             }
             let question = threshold(case, options)?;
             boxed(case.threshold(&question, work))
@@ -68,7 +75,7 @@ fn derive(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     }
     if let Some(name) = options.text("unknown").as_deref().or(case.unknown()) {
         options.finish()?;
-        return boxed(case.parameter_series(name, order, work));
+        return boxed(case.sought(name, order, work));
     }
     if case.condition() == Some(Condition::FreeAmplitude) {
         options.finish()?;
@@ -94,6 +101,7 @@ fn exact(case: &Oscillator, order: usize, options: &Options, work: &Work) -> Ask
         ("clock", Route::Clock),
         ("driver", Route::Driver),
         ("energy", Route::EnergyIntegral),
+        ("frequency", Route::Frequency),
     ];
     let route = options.choice("route", &routes)?.unwrap_or_default();
     options.finish()?;
@@ -118,6 +126,14 @@ pub fn phased(options: &Options) -> Result<Evaluate, Error> {
     Ok(Evaluate { phase: options.exact("phase")?.unwrap_or(question.phase), ..question })
 }
 
+/// The order and the start of an averaged motion.
+pub fn averaged(options: &Options) -> Result<AveragedMotion, Error> {
+    options.only_one(&["start", "state"])?;
+    let start = options.read("start", |text| Ok(AveragedStart::parse_amplitude(text)?))?;
+    let state = options.read("state", |text| Ok(AveragedStart::parse_state(text)?))?;
+    Ok(AveragedMotion { order: options.parsed("order")?, start: start.or(state), times: None })
+}
+
 fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     if let Some(largest) = options.exact("cycles")? {
         options.finish()?;
@@ -125,13 +141,9 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     }
     let prove = options.flag("prove")?;
     if !prove && case.condition() == Some(Condition::FreeAmplitude) {
-        options.only_one(&["start", "state"])?;
-        let start = options.read("start", |text| Ok(AveragedStart::parse_amplitude(text)?))?;
-        let state = options.read("state", |text| Ok(AveragedStart::parse_state(text)?))?;
-        let order = options.parsed("order")?;
         let times = options.read("times", Times::parse)?;
+        let question = AveragedMotion { times, ..averaged(options)? };
         options.finish()?;
-        let question = AveragedMotion { order, start: start.or(state), times };
         return boxed(case.averaged_motion(&question, work));
     }
     // What is not read before `finish` is refused: a sweep has no times, phase and code, a proof no code.
@@ -161,6 +173,10 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
         return boxed(case.evaluate(&question, work));
     };
     let harmonics = options.parsed("harmonics")?.unwrap_or(15);
+    if options.flag("functions")? {
+        options.finish()?;
+        return boxed(case.expansion_code(&question, language, harmonics, work));
+    }
     options.finish()?;
     boxed(case.solution_code(&question, language, harmonics, work))
 }
@@ -294,6 +310,7 @@ pub fn threshold(case: &Oscillator, options: &Options) -> Result<Threshold, Erro
         zeros: options.read("zeros", Axis::ends)?,
         subharmonics: options.parsed("subharmonics")?,
         second_order: options.flag("second_order")?,
+        part: None,
     };
     options.finish()?;
     Ok(question)

@@ -221,6 +221,52 @@ def test_solutions_of_arrays(duffing: Oscillator) -> None:
     assert np.ptp(energy) < 1e-6 and np.all(x.error(t) < 1e-9)
 
 
+def test_an_averaged_motion_in_arrays() -> None:
+    cycle = Oscillator("x'' + x = eps*(1 - x**2)*x'", eps="1/10")
+    motion = cycle.averaged_solution(start="1,0", order=3)
+    times = np.array([[60.0, 0.0], [5.0, 25.0]])
+    found = motion.with_error(times)
+    assert all(value.shape == times.shape for pair in found.values() for value in pair)
+    # Another route: the equation itself in time, from x(0) and x'(0) of the motion by differences.
+    scipy = pytest.importorskip("scipy.integrate")
+    a, psi, x = motion(times)
+    assert (a[0, 1], psi[0, 1]) == (1, 0)
+    step = 1e-3
+    near = motion(np.array([-step, 0, step]))[2]
+    start = [near[1], (near[2] - near[0]) / (2 * step)]
+    truth = scipy.solve_ivp(
+        lambda t, y: [y[1], -y[0] + 0.1 * (1 - y[0] ** 2) * y[1]], (0, 60), start, rtol=1e-10, atol=1e-12,
+        t_eval=[0, 5, 25, 60],
+    ).y[0]
+    assert np.abs(np.array([x[0, 1], x[1, 0], x[1, 1], x[0, 0]]) - truth).max() < 1e-3
+    for place, moment in zip(((1, 0), (1, 1)), motion.at([5.0, 25.0], digits=25)):
+        for name, values in (("a", a), ("psi", psi), ("x", x)):
+            assert abs(float(moment[name]) - values[place]) <= float(moment[name].error or 0) < 1e-2
+    again = pickle.loads(pickle.dumps(motion))
+    assert np.array_equal(again(times)[0], a)
+    assert np.isfinite(found["a"][1]).all() and found["a"][1].max() < 1e-2
+
+
+def test_functions_to_many_digits(duffing: Oscillator) -> None:
+    omega, x = duffing.frequency_function(order=16), duffing.solution_function(order=16)
+    with pytest.raises(lindstedt.UsageError):
+        Oscillator.builtin("van-der-pol").frequency_function(order=4).at("1/10", amplitude=2)
+    number = omega.at("1/2", 1, digits=40)
+    assert abs(float(number) - float(omega(0.5, 1.0))) <= float(number.error or 0) + omega.with_error(0.5, 1.0)[1] < 1e-6
+    (far,) = x.at([10.0], "1/4", 2)
+    # a cn(u, k) with sqrt(1 + rho) t = u, k^2 = rho/(2 + 2 rho), rho = eps a^2 = 1: mpmath 1.3.0.
+    assert abs(float(far) - 1.5977495379948287) <= float(far.error or 0) < 1e-6
+    solution = duffing.set(eps="1/4", amplitude=2).solution(order=16)
+    assert solution.at(10.0) == [far] and abs(float(solution(10.0)) - float(far)) <= float(solution.error(10.0))
+    again = pickle.loads(pickle.dumps(omega))
+    assert again(0.3) == omega(0.3) and again.parameters == omega.parameters
+    code = duffing.evaluate(code="python", functions=True, order=12)
+    space: dict[str, Any] = {}
+    exec(code.code, space)
+    t = np.linspace(0, 6, 50)
+    assert np.abs(space["displacement"](t, 0.02, 1.5) - x(t, 0.02, 1.5)).max() < 1e-12
+
+
 def test_every_question() -> None:
     cycle = Oscillator("x'' + x = eps*(1 - x**2)*x'")
     assert cycle.average(2).tier == "exact"

@@ -11,6 +11,7 @@ mod extremes;
 mod facade;
 mod friction;
 mod homoclinic;
+mod hopf;
 mod interruption;
 mod lateness;
 mod laws;

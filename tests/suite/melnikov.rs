@@ -4,6 +4,7 @@
 mod closed_forms;
 mod cycle;
 mod double;
+mod equations;
 mod general;
 mod hyperbolic;
 mod paper;

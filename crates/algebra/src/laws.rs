@@ -105,6 +105,7 @@ pub fn derivation_and_solution<A: PhaseAlgebra>(
         let Ok(split) = a.resolve(f) else { continue };
         let u = &split.response;
         let mut rebuilt = a.add(&a.derivative(&a.derivative(u)), u);
+        law(a.force(u) == rebuilt, "the force of a response")?;
         a.add_assign(&mut rebuilt, &a.scale_by(&cos, &split.cos_amplitude));
         a.add_assign(&mut rebuilt, &a.scale_by(&sin, &split.sin_amplitude));
         law(rebuilt == *f, "the split rebuilds")?;

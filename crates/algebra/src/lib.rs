@@ -18,7 +18,8 @@ pub use amplitudes::{AmplitudeAlgebra, Split};
 pub use averaging::{Averaged, AveragingAlgebra, LinearPart};
 pub use clock::{ClockAlgebra, StillAndClock};
 pub use phase::{
-    Elementary, ForcedAlgebra, FunctionAlgebra, PhaseAlgebra, PhaseError, Resolution, combination,
+    Elementary, ForcedAlgebra, FunctionAlgebra, NEAR_MISS, PhaseAlgebra, PhaseError, Resolution,
+    combination,
 };
 pub use ring::{RationalAlgebra, Rationals, Ring};
 pub use stop::Stop;

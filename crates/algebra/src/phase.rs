@@ -73,6 +73,11 @@ pub trait PhaseAlgebra: FunctionAlgebra {
     fn sine(&self) -> Self::Element;
     /// df/dpsi.
     fn derivative(&self, f: &Self::Element) -> Self::Element;
+    /// The force f = u'' + u that has the response u, see [`resolve`](Self::resolve); algebras override it where it
+    /// costs less than its parts.
+    fn force(&self, u: &Self::Element) -> Self::Element {
+        self.add(&self.derivative(&self.derivative(u)), u)
+    }
     /// The value f(0), where the algebra can give it.
     fn at_zero(&self, f: &Self::Element) -> Option<Constant<Self>>;
     /// The first harmonic `(2<f cos>, 2<f sin>)` of f.
@@ -139,6 +144,15 @@ pub enum PhaseError {
         /// m.
         forced: i32,
     },
+    /// The harmonic cos(k psi + m eta) is almost resonant: its divisor is below [`NEAR_MISS`].
+    NearMiss {
+        /// k.
+        free: i32,
+        /// m.
+        forced: i32,
+        /// 1 - lambda^2/omega_0^2, lambda the rate of the harmonic.
+        size: Rational,
+    },
     /// What the harmonic sum_j k_j nu_j + sum_l m_l Omega_l must be divided by cannot be told from zero: more
     /// digits decide, or it is a resonance.
     Undecided {
@@ -146,6 +160,9 @@ pub enum PhaseError {
         harmonic: Vec<i32>,
     },
 }
+
+/// Of the square of a frequency: a smaller divisor says that a resonance was missed by a little.
+pub const NEAR_MISS: (i32, i32) = (1, 1000);
 
 /// The phase k psi + m eta as text: `2*psi - eta` from \[2, -1\]; `times` stands between number and name.
 ///
@@ -188,6 +205,14 @@ impl std::fmt::Display for PhaseError {
                 let phase = combination([*free, *forced], ["psi", "eta"], "*");
                 let why = "zero is not excluded, or the parameters must be numbers";
                 write!(f, "{harmonic} cos({phase}): {why}")
+            }
+            Self::NearMiss { free, forced, size } => {
+                let phase = combination([*free, *forced], ["psi", "eta"], "*");
+                let size = size.to_f64();
+                write!(
+                    f,
+                    "the harmonic cos({phase}) misses a resonance by {size:e} of the square of the frequency"
+                )
             }
             Self::Undecided { harmonic } => {
                 write!(f, "the divisor of the harmonic {harmonic:?} cannot be told from zero")

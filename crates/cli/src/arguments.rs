@@ -91,7 +91,8 @@ pub struct DeriveOptions {
     /// What the amplitude is: x(0), the first harmonic, or free to drift (averaging).
     #[arg(long, value_enum)]
     pub normalisation: Option<Normalisation>,
-    /// A parameter that is sought: the series for which a forced motion stays periodic (edges of tongues).
+    /// A parameter that is sought as a series: for which a forced motion stays periodic (edges of tongues), or at a Hopf point,
+    /// in the size of the cycle born there.
     #[arg(long, value_name = "NAME")]
     pub unknown: Option<String>,
     /// A nonlinear normal mode by its number (1, 2, ...): backbone and shape.
@@ -101,6 +102,10 @@ pub struct DeriveOptions {
     /// integral (frequency alone: conservative forces that are polynomial, the power law, the pendulum).
     #[arg(long, value_enum, default_value_t = Route::Auto)]
     pub route: Route,
+    /// The frequency and the period alone, to higher order: by the energy integral where it applies, and else modulo
+    /// primes (limit cycles, forces with velocities).
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub only: Option<Only>,
     /// Exact, or numbers with an estimated error: collocation (--digits or --f64) or a truncated
     /// Fourier series in doubles (--harmonics).
     #[arg(long, value_enum, default_value_t = TierName::Exact)]
@@ -141,7 +146,7 @@ pub struct EvaluateOptions {
     pub resum: Resum,
     /// The solution x(t) at these times; x'(0) = 0, but for --phase, and x(0) or the first harmonic
     /// is the amplitude.
-    #[arg(long, value_name = "LO..HI:COUNT", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LO..HI:COUNT or T1,T2,...", allow_hyphen_values = true)]
     pub times: Option<String>,
     /// The orbit as a theorem: period, frequency, amplitude and Floquet exponent enclosed, with the
     /// radius of the contraction proof; of a forced equation its responses with the force's period. With
@@ -173,6 +178,10 @@ pub struct EvaluateOptions {
     /// The solution as a function in this language instead of the report.
     #[arg(long, value_enum, conflicts_with = "plot")]
     pub code: Option<Language>,
+    /// With --code: functions of the small parameter and, where a scaling carries it, the amplitude, too. The
+    /// expansion of --order (8 without), cut off, not resummed.
+    #[arg(long, requires = "code", conflicts_with_all = ["resum", "phase"])]
+    pub functions: bool,
     /// Harmonics in the code.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=512))]
     pub harmonics: u32,
@@ -263,8 +272,8 @@ pub struct ThresholdOptions {
     /// loops also from the tangencies of their manifolds (some seconds).
     #[arg(long)]
     pub second_order: bool,
-    /// The parameter for which the orbit of an autonomous problem stays homoclinic, as a series in the small parameter
-    /// (also `unknown` in the file).
+    /// The parameter for which an autonomous problem keeps its orbit between saddles, as a series in the small parameter
+    /// (also `unknown` in the file); without --order, where no series is known, to first order.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["sweep", "zeros", "subharmonics", "second_order", "plot"])]
     pub unknown: Option<String>,
     /// The highest order of that series.
@@ -419,6 +428,12 @@ pub enum Route {
     Clock,
     /// The frequency alone, exact and to much higher order.
     Energy,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Only {
+    /// The series of omega^2, omega and T.
+    Frequency,
 }
 
 /// With --out DIR the report and its data are written into that directory.

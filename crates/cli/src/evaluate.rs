@@ -48,6 +48,10 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     }
     if let Some(language) = options.code {
         let harmonics = options.harmonics as usize;
+        if options.functions {
+            let code = oscillator.expansion_code(&question, language.into(), harmonics, &work);
+            return session.show(code, &[]);
+        }
         let code = oscillator.solution_code(&question, language.into(), harmonics, &work);
         return session.show(code, &[]);
     }

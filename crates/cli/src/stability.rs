@@ -29,6 +29,7 @@ pub fn run(options: &StabilityOptions, session: &Session<'_>) -> Outcome {
         branch,
         sweep: options.sweep.iter().map(|text| oscillator.axis(text)).collect::<Result<_, _>>()?,
         radius: false,
+        part: None,
     };
     session.check_sweep(&options.plot, question.sweep.len(), 2)?;
     session.check_writable(&options.problem, &options.plot, None)?;

@@ -144,15 +144,18 @@ impl Limits {
     }
 }
 
-/// The resident memory and the address space of the process, in bytes; zero where nobody knows.
+/// The resident memory and the address space of the process, in bytes; zero where nobody knows. Asked every few
+/// milliseconds, of the file that costs the kernel least.
 fn used() -> (u64, u64) {
-    let status = status();
-    let bytes = |name: &str| {
-        let size =
-            field(&status, name).and_then(|text| text.trim_end_matches("kB").trim().parse().ok());
-        size.map_or(0, |kibibytes: u64| kibibytes << 10)
-    };
-    (bytes("VmRSS:"), bytes("VmSize:"))
+    let pages = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    #[cfg(unix)]
+    let page = rustix::param::page_size() as u64;
+    #[cfg(not(unix))]
+    let page = 0;
+    let mut words = pages.split_whitespace().map_while(|word| word.parse::<u64>().ok());
+    let mut next = || words.next().unwrap_or(0).saturating_mul(page);
+    let space = next();
+    (next(), space)
 }
 
 /// The processor's seconds that the process took; nothing but on Linux. The kernel counts them in hundredths.

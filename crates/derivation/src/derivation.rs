@@ -36,8 +36,11 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Solution {
-    /// None: the energy integral gives the frequency alone.
-    FrequencyOnly,
+    /// None: the frequency alone was derived.
+    FrequencyOnly {
+        /// The number of primes that prove it; nothing by the energy integral.
+        primes: Option<usize>,
+    },
     /// In the Lobachevsky ring.
     Lobachevsky(Box<Expansion<Lobachevsky<PolynomialRing>>>),
     /// Trigonometric polynomials over Q.
@@ -45,7 +48,8 @@ pub enum Solution {
 }
 
 /// A checked expansion: nothing leaves [`crate::derive()`] that was not substituted back
-/// (`checked_orders`), but for [`crate::Route::EnergyIntegral`], which has no solution to substitute.
+/// (`checked_orders`), but for [`crate::Route::EnergyIntegral`] and [`crate::Route::Frequency`], which have no
+/// solution to substitute.
 ///
 /// ```
 /// use lindstedt_equation::Quantity;
@@ -109,7 +113,7 @@ impl Derivation {
     #[must_use]
     pub fn solved(&self) -> usize {
         match self.solution {
-            Solution::FrequencyOnly => 0,
+            Solution::FrequencyOnly { .. } => 0,
             _ => self.order + 1,
         }
     }
@@ -196,7 +200,7 @@ impl Derivation {
             return String::new();
         }
         match &self.solution {
-            Solution::FrequencyOnly => String::new(),
+            Solution::FrequencyOnly { .. } => String::new(),
             Solution::Lobachevsky(expansion) => {
                 self.ring.print(&expansion.frequency_squared[n], style)
             }
@@ -212,7 +216,7 @@ impl Derivation {
             return String::new();
         }
         match &self.solution {
-            Solution::FrequencyOnly => String::new(),
+            Solution::FrequencyOnly { .. } => String::new(),
             Solution::Lobachevsky(expansion) => self.ring.print(&expansion.amplitude[n], style),
             Solution::Rational(proved) => Rationals.print(&proved.expansion.amplitude[n], style),
         }
@@ -274,7 +278,7 @@ impl Derivation {
             return String::new();
         }
         match &self.solution {
-            Solution::FrequencyOnly => String::new(),
+            Solution::FrequencyOnly { .. } => String::new(),
             Solution::Lobachevsky(expansion) => {
                 Lobachevsky::new(self.ring.clone()).print(&expansion.solution[n], "tau", style)
             }
@@ -303,7 +307,7 @@ impl Derivation {
                 formed
                     .then(|| print_few(&algebra, &expansion.right_side(&algebra, n), styles, most))
             }
-            Solution::FrequencyOnly => Some(Default::default()),
+            Solution::FrequencyOnly { .. } => Some(Default::default()),
             Solution::Rational(proved) => {
                 let algebra = Trigonometric::new(Rationals);
                 let f = proved.expansion.right_side(&algebra, n);
@@ -318,7 +322,7 @@ impl Derivation {
             return 0;
         }
         match &self.solution {
-            Solution::FrequencyOnly => 0,
+            Solution::FrequencyOnly { .. } => 0,
             Solution::Lobachevsky(expansion) => expansion.solution[n].len(),
             Solution::Rational(proved) => {
                 Trigonometric::new(Rationals).terms(&proved.expansion.solution[n])

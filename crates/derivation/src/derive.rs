@@ -78,6 +78,7 @@ pub fn derive(
     let logarithms = has_logarithms(&problem.equation);
     let (route, found) = match settings.route {
         Route::EnergyIntegral => (Route::EnergyIntegral, task.by_energy(observer)?),
+        Route::Frequency => task.frequency_alone(logarithms, observer)?,
         Route::Automatic | Route::Clock if logarithms => task.by_clock(&bytes, observer)?,
         Route::Clock => return Err(ExpandError::NotOneClock { order: 0 }.into()),
         _ if logarithms => (Route::Driver, task.over_moments(observer)?),
@@ -89,7 +90,7 @@ pub fn derive(
     }
     // The driver's orders are few enough to be printed whenever it was stopped.
     let stop = match solution {
-        Solution::FrequencyOnly => settings.stop.clone(),
+        Solution::FrequencyOnly { .. } => settings.stop.clone(),
         _ => Stop::default(),
     };
     let how = (condition, &stop);
@@ -138,8 +139,35 @@ impl Task<'_> {
         if !observer(Progress::Checking) || settings.stop.asked() {
             return Err(ExpandError::Interrupted { order: settings.order }.into());
         }
-        let solution = Solution::FrequencyOnly;
+        let solution = Solution::FrequencyOnly { primes: None };
         Ok(Found { solution, powers, amplitudes: Vec::new(), stiffness, checked_orders: None })
+    }
+
+    /// By the energy integral where it applies, or modulo primes.
+    fn frequency_alone(
+        &self,
+        logarithms: bool,
+        observer: &mut Observer<'_>,
+    ) -> Result<(Route, Found), DerivationError> {
+        match self.by_energy(observer) {
+            Err(DerivationError::NoSuchRoute { .. }) if !logarithms => {}
+            found => return Ok((Route::EnergyIntegral, found?)),
+        }
+        let Self { problem, settings, ring, .. } = self;
+        let mut on_primes = |primes| observer(Progress::Primes(primes));
+        let (equation, order, stop) = (&problem.equation, settings.order, &settings.stop);
+        let condition = self.condition;
+        let found =
+            multimodular::frequency(equation, &self.given, condition, order, stop, &mut on_primes)?;
+        let lists = [&found.squared, &found.frequency, &found.period].map(Vec::as_slice);
+        let found = Found {
+            powers: Powers::rational(ring, lists),
+            amplitudes: Vec::new(),
+            stiffness: ring.rational(&found.stiffness),
+            checked_orders: None,
+            solution: Solution::FrequencyOnly { primes: Some(found.primes) },
+        };
+        Ok((Route::Frequency, found))
     }
 
     /// By the clock, or by the driver where that is not asked for and does not apply.

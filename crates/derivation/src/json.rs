@@ -33,15 +33,21 @@ impl Serialize for Derivation {
             orders.clone().map(|n| self.print_solution(n, Style::Text)).collect();
         let terms: Vec<usize> = orders.map(|n| self.terms(n)).collect();
         let (name, proved) = match &self.solution {
-            Solution::Rational(proved) => ("multi-modular, proved", Some(proved)),
-            Solution::FrequencyOnly => ("energy integral", None),
+            Solution::Rational(proved) => {
+                ("multi-modular, proved", Some((proved.primes, proved.proof_primes)))
+            }
+            // One more is substituted in full.
+            Solution::FrequencyOnly { primes: Some(primes) } => {
+                ("multi-modular frequency, proved", Some((*primes, primes + 1)))
+            }
+            Solution::FrequencyOnly { primes: None } => ("energy integral", None),
             Solution::Lobachevsky(_) => ("Lobachevsky ring over Q[mu_m]", None),
         };
         let method = Method {
             name,
             route: self.route.name(),
-            primes: proved.map(|proved| proved.primes),
-            proof_primes: proved.map(|proved| proved.proof_primes),
+            primes: proved.map(|(primes, _)| primes),
+            proof_primes: proved.map(|(_, all)| all),
         };
         let checked = self.checked_orders;
         let mut map = serializer.serialize_map(None)?;

@@ -3,7 +3,7 @@
 use crate::error::DerivationError as Error;
 use crate::settings::{Route, Settings};
 use crate::values::all_values;
-use lindstedt_equation::{AmplitudeRole, Expression, Function, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, Function, Problem};
 use lindstedt_expand::ExpandError;
 use lindstedt_multimodular::Proved;
 use lindstedt_number::Exact;
@@ -207,6 +207,15 @@ fn by_clock(order: f64, sums: bool) -> f64 {
     more + (less - more).exp2().ln_1p() / std::f64::consts::LN_2
 }
 
+/// Whether the frequency alone goes by primes: the energy integral is of forces without velocity, from x(0).
+fn by_primes(problem: &Problem, settings: &Settings) -> bool {
+    let asked = settings.condition.or(problem.conditions.first().copied());
+    let moves = problem.equation.contains(&Expression::VELOCITY);
+    settings.route == Route::Frequency
+        && !has_logarithms(&problem.equation)
+        && (moves || asked != Some(Condition::InitialAmplitude))
+}
+
 /// Refuses before allocating. Measured: the Lobachevsky ring takes 0.7 GiB at order 20 and 1.5
 /// times more per order; with formal sums 0.1 GiB at order 10 and twice as much per order; over Q
 /// `bytes` tells the size of the numbers up to an order ([`bytes_of`]).
@@ -218,10 +227,15 @@ pub(crate) fn limit_memory(
     let order = settings.order as f64;
     let sums = matches!(problem.amplitude, AmplitudeRole::InSums);
     let logarithms = has_logarithms(&problem.equation);
-    let bits = if settings.route == Route::EnergyIntegral && !logarithms {
+    let alone = matches!(settings.route, Route::EnergyIntegral | Route::Frequency);
+    let bits = if alone && by_primes(problem, settings) {
+        // On every core some images and the functions of one; of every prime three numbers per order.
+        let cores = rayon::current_num_threads() as f64;
+        f64::log2(6e6 + cores * 400.0 * order * order + 1.1 * order.powi(3))
+    } else if alone && !logarithms {
         // Three series of N numbers of O(N) bits.
         f64::log2(6e6 + 16.0 * order * order)
-    } else if settings.route == Route::EnergyIntegral {
+    } else if alone {
         // 28 629 terms in 0.1 GiB at order 30; the number of partitions grows by 1.2 per order,
         // with formal sums by 1.5.
         30.0 + 0.1f64.log2() + if sums { (order - 14.0) * 0.6 } else { (order - 30.0) * 0.27 }

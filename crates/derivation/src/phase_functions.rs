@@ -32,7 +32,7 @@ impl Derivation {
                 };
                 PhaseFunctions::trigonometric(&functions, balls, of_rational(balls))
             }
-            Solution::FrequencyOnly => None,
+            Solution::FrequencyOnly { .. } => None,
         }
     }
 }

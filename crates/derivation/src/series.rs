@@ -140,7 +140,7 @@ pub(crate) fn series(
         named(Quantity::Frequency, powers.first)?,
         named(Quantity::Period, powers.inverse)?,
     ];
-    if let Some(quantity) = Quantity::start(condition) {
+    if let Some(quantity) = Quantity::start(condition).filter(|_| !amplitudes.is_empty()) {
         list.push(NamedSeries { quantity, half_power: 0, coefficients: amplitudes });
     }
     Ok(list)

@@ -62,13 +62,17 @@ pub enum Route {
     /// By the energy integral: the frequency alone, to much higher order; for forces
     /// x F(small ln x^2), and for polynomial ones where x(0) is the amplitude.
     EnergyIntegral,
+    /// The frequency alone, and to higher order than with the solution: by the energy integral where that
+    /// applies, and else modulo primes, as many as bounds of its numbers ask for that are known in advance.
+    Frequency,
 }
 
 impl Route {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Automatic, Self::Driver, Self::Clock, Self::EnergyIntegral];
+    pub const ALL: [Self; 5] =
+        [Self::Automatic, Self::Driver, Self::Clock, Self::EnergyIntegral, Self::Frequency];
 
-    /// `auto`, `driver`, `clock`, `energy`.
+    /// `auto`, `driver`, `clock`, `energy`, `frequency`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -76,6 +80,7 @@ impl Route {
             Self::Driver => "driver",
             Self::Clock => "clock",
             Self::EnergyIntegral => "energy",
+            Self::Frequency => "frequency",
         }
     }
 }

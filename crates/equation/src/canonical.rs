@@ -105,14 +105,46 @@ impl Expression {
     /// assert_eq!(doubled.acceleration_alone(), Ok(Expression::ACCELERATION + x));
     /// ```
     pub fn acceleration_alone(&self) -> Result<Self, AccelerationFault> {
-        let holds = |e: &Self| e.contains(&Self::ACCELERATION);
+        self.alone(&Self::ACCELERATION)
+    }
+
+    /// The same for x' where x'' does not occur: an equation of first order.
+    ///
+    /// # Errors
+    /// As [`Self::acceleration_alone`], for the derivative that was to stand alone.
+    ///
+    /// ```
+    /// use lindstedt_equation::Expression;
+    /// let x = Expression::DISPLACEMENT;
+    /// let decay = 2 * Expression::VELOCITY + 2 * x.clone();
+    /// assert_eq!(decay.highest_alone(), Ok(Expression::VELOCITY + x));
+    /// ```
+    pub fn highest_alone(&self) -> Result<Self, AccelerationFault> {
+        let first = self.is_first_order();
+        self.alone(&Self::unknown(0, if first { 1 } else { 2 }))
+    }
+
+    /// Whether x' occurs and x'' does not.
+    ///
+    /// ```
+    /// use lindstedt_equation::Expression;
+    /// let decay = Expression::VELOCITY + Expression::DISPLACEMENT;
+    /// assert!(decay.is_first_order() && !(Expression::ACCELERATION + decay).is_first_order());
+    /// ```
+    #[must_use]
+    pub fn is_first_order(&self) -> bool {
+        self.contains(&Self::VELOCITY) && !self.contains(&Self::ACCELERATION)
+    }
+
+    fn alone(&self, wanted: &Self) -> Result<Self, AccelerationFault> {
+        let holds = |e: &Self| e.contains(wanted);
         let with: Vec<&Self> = self.terms().iter().filter(|term| holds(term)).collect();
-        if with == [&Self::ACCELERATION] {
+        if with == [wanted] {
             return Ok(self.clone());
         }
-        let (factor, rest) = split_acceleration(self)?;
+        let (factor, rest) = split(self, wanted)?;
         let factor = Self::Sum(factor).canonical();
-        let mut terms = vec![Self::ACCELERATION];
+        let mut terms = vec![wanted.clone()];
         let scale = match &factor {
             Self::Number(c) if c.is_zero() => return Err(AccelerationFault::Missing),
             Self::Number(c) => Self::Number(Rational::from(c.recip_ref())),
@@ -128,18 +160,19 @@ impl Expression {
     }
 }
 
-/// c and r with e = c x'' + r, as lists of terms.
-fn split_acceleration(
+/// c and r with e = c x'' + r, or with another derivative, as lists of terms.
+fn split(
     e: &Expression,
+    wanted: &Expression,
 ) -> Result<(Vec<Expression>, Vec<Expression>), AccelerationFault> {
-    let holds = |e: &Expression| e.contains(&Expression::ACCELERATION);
+    let holds = |e: &Expression| e.contains(wanted);
     match e {
-        e if *e == Expression::ACCELERATION => Ok((vec![Expression::integer(1)], Vec::new())),
+        e if e == wanted => Ok((vec![Expression::integer(1)], Vec::new())),
         e if !holds(e) => Ok((Vec::new(), vec![e.clone()])),
         Expression::Sum(terms) => {
             let (mut factor, mut rest) = (Vec::new(), Vec::new());
             for term in terms {
-                let (c, r) = split_acceleration(term)?;
+                let (c, r) = split(term, wanted)?;
                 factor.extend(c);
                 rest.extend(r);
             }
@@ -156,7 +189,7 @@ fn split_acceleration(
                 let one = |t| Expression::Product(others.iter().cloned().chain([t]).collect());
                 list.into_iter().map(one).collect()
             };
-            let (factor, rest) = split_acceleration(with)?;
+            let (factor, rest) = split(with, wanted)?;
             Ok((times(factor), times(rest)))
         }
         other => Err(AccelerationFault::Inside(other.clone())),

@@ -74,6 +74,8 @@ pub enum Method {
 pub enum Reason {
     /// A term of order zero other than x'' and x.
     NotWeaklyNonlinear(Expression),
+    /// x or x' at an earlier time among the linear terms of order zero.
+    DelayedLinearPart(Expression),
     /// No term in x at order zero.
     NoLinearPart,
     /// x'' - k x: no oscillation about x = 0.
@@ -172,6 +174,7 @@ impl Reason {
     pub fn term(&self) -> Option<&Expression> {
         match self {
             Self::NotWeaklyNonlinear(e)
+            | Self::DelayedLinearPart(e)
             | Self::Forced(e)
             | Self::Resonant(e, _)
             | Self::Delay(e)

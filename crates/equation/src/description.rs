@@ -150,6 +150,9 @@ pub fn reason_text(reason: &Reason, small: &str) -> String {
         Reason::NotWeaklyNonlinear(e) => {
             format!("{} has no factor {small}, so the equation is not weakly nonlinear", show(e))
         }
+        Reason::DelayedLinearPart(e) => {
+            format!("{} is linear and has no factor {small}: the linear part has a delay", show(e))
+        }
         Reason::NoLinearPart => format!("no term k*x stands in the equation without {small}"),
         Reason::NegativeStiffness => "the linear stiffness is negative".into(),
         Reason::IrrationalFrequency => "x' occurs and omega_0 is irrational".into(),

@@ -62,6 +62,24 @@ fn terms_in_time(problem: &Problem, rest: &Expression) -> Vec<Reason> {
     formal.into_iter().chain(not_real.map(|e| Reason::NotReal(e.clone()))).collect()
 }
 
+/// What is against terms of order zero: a delayed linear one is named first, for such equations have a method.
+fn not_weak<'a>(mut terms: impl Iterator<Item = &'a Expression> + Clone) -> Option<Reason> {
+    let delayed = terms.clone().find(|term| is_delayed_linear(term));
+    let delayed = delayed.map(|term| Reason::DelayedLinearPart(term.clone()));
+    delayed.or_else(|| terms.next().map(|term| Reason::NotWeaklyNonlinear(term.clone())))
+}
+
+/// An unknown at an earlier time times a constant.
+fn is_delayed_linear(e: &Expression) -> bool {
+    match e {
+        Expression::Product(factors) => {
+            let mut varying = factors.iter().filter(|factor| !factor.is_constant());
+            varying.next().is_some_and(Expression::is_delayed) && varying.next().is_none()
+        }
+        other => other.is_delayed(),
+    }
+}
+
 /// What both expansions need: an oscillator at order zero, and functions that a ring contains.
 fn weakly_nonlinear(
     parts: &Classification,
@@ -79,9 +97,7 @@ fn weakly_nonlinear(
     if parts.stiffness == Expression::integer(0) {
         against.push(Reason::NoLinearPart);
     }
-    if let Some(term) = parts.strong.first() {
-        against.push(Reason::NotWeaklyNonlinear(term.term.clone()));
-    }
+    against.extend(not_weak(parts.strong.iter().map(|term| &term.term)));
     if stiffness.is_some_and(|kappa| kappa.cmp0() == Ordering::Less) {
         against.push(Reason::NegativeStiffness);
     }
@@ -166,12 +182,12 @@ fn averaging(
     // A constant force of order zero moves the centre: the response to it is no expansion's first term, but
     // part of u_0. What couples several unknowns linearly belongs to their normal modes.
     let coupling = |e: &Expression| !problem.others.is_empty() && is_coupling(e);
-    let strong = parts.strong.iter().find(|t| !t.term.is_constant() && !coupling(&t.term));
-    let first = parts.strong.first().map(|term| &term.term);
-    if strong.map(|term| &term.term) != first {
-        against.retain(|reason| !matches!(reason, Reason::NotWeaklyNonlinear(_)));
-        against.extend(strong.map(|term| Reason::NotWeaklyNonlinear(term.term.clone())));
-    }
+    let strong = parts.strong.iter().map(|t| &t.term);
+    let strong = strong.filter(|e| !e.is_constant() && !coupling(e));
+    against.retain(|reason| {
+        !matches!(reason, Reason::NotWeaklyNonlinear(_) | Reason::DelayedLinearPart(_))
+    });
+    against.extend(not_weak(strong));
     if !parts.non_smooth.is_empty() && problem.others.is_empty() && !parts.impact {
         // What jumps at turning points only is averaged between them.
         let at = against.iter().position(|reason| matches!(reason, Reason::NonSmooth(_)));

@@ -7,8 +7,7 @@ use num_traits::Float;
 pub struct Fourier {
     /// (c_k, s_k) of c_k cos(k omega t) + s_k sin(k omega t).
     pub coefficients: Vec<(f64, f64)>,
-    /// The largest deviation of the sum from x at four times as many points as were used, and near the
-    /// largest of these at 16 more.
+    /// What the harmonics that are left out add at most, as far as it was seen.
     pub deviation: f64,
     /// What the estimated errors of x allow a coefficient to be wrong by; nothing without estimates.
     pub error: Option<f64>,

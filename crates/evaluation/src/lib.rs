@@ -9,6 +9,7 @@
 //! | [`Trajectory`] | x(t), summed phase by phase |
 //! | [`compiled`] | the frequency as a function of the small parameter and the amplitude |
 //! | [`SolutionFunction`] | x(t) as a function of them, too |
+//! | [`Expansion`] | x(t) and omega as polynomials in them, cut off |
 //! | [`PeriodicSolution`] | x(t) by its harmonics, for many times |
 //! | [`averaged`] | a(t), psi(t), x(t) of an averaged oscillator |
 //! | [`rotating`] | a slow flow at resonance in the frame in which it is autonomous |
@@ -24,12 +25,14 @@ pub mod compiled;
 mod digits;
 mod displacements;
 mod error;
+mod expansion;
 pub mod few;
 mod fourier;
 mod json;
 mod names;
 mod period;
 mod periodic;
+mod phases;
 pub mod rotating;
 pub mod setting;
 mod solution;
@@ -39,6 +42,7 @@ mod words;
 
 pub use displacements::{Displacement, Displacements};
 pub use error::EvaluationError;
+pub use expansion::{Carried, Expansion};
 pub use fourier::Fourier;
 pub use json::Place;
 pub use names::{kind_name, method_name, rounded, with_error};

@@ -7,6 +7,7 @@ use crate::error::EvaluationError as Error;
 use crate::few;
 use crate::fourier::{Fourier, harmonic};
 use crate::period::Evaluation;
+use crate::phases::{Phases, left_out};
 use crate::setting::{Form, Setting};
 use crate::source::remembered;
 use lindstedt_algebra::Stop;
@@ -64,6 +65,9 @@ const FEWEST_NODES: usize = 64;
 /// Phases at which the speed is looked at, and its safety factor.
 const PHASES: u32 = 64;
 const SAFETY: f64 = 2.0;
+
+/// Below this share of the size of a sum its harmonics in doubles are noise.
+const ROUNDING: f64 = 1e-15;
 
 /// Digits of a double.
 const DOUBLE: usize = 16;
@@ -324,44 +328,74 @@ impl Trajectory {
     }
 
     /// The Fourier coefficients (c_k, s_k), k = 0 .. `harmonics`, of x as a function of
-    /// omega t, by the trapezoidal rule on 4 (harmonics + 1) points, 64 at least, and the largest
-    /// deviation of their sum from x that was found.
-    ///
-    /// The points lie half a step off the phase 0 and their number is a multiple of 4, so the harmonics
-    /// that fold onto lower ones keep their parity: no sine appears in an even motion, no even harmonic
-    /// in an odd one.
+    /// omega t, by the trapezoidal rule on 4 (harmonics + 1) phases, 64 at least, each sum once that a symmetry
+    /// takes to another phase; and what the harmonics beyond them add at most, as far as these phases show it.
     #[must_use]
     pub fn fourier(&self, harmonics: usize) -> Option<Fourier> {
         let count = (4 * (harmonics + 1)).max(FEWEST_NODES);
-        let turn = std::f64::consts::TAU / count as f64;
-        let at = |place: f64| {
-            let time = place / count as f64 * self.period;
-            let time = Exact::Rational(Rational::from_f64(time)?);
-            let x = self.at(&time);
-            x.double.is_finite().then_some(x)
+        let balls = Balls::new(bits_for(self.digits)).with_guard(64);
+        let phases = Phases::new(count, balls, |point| self.coefficients(point, balls))?;
+        let sum = |(point, _): &(Point, _)| {
+            let (value, error) = self.sum(point)?;
+            let value = value.midpoint().to_f64();
+            value.is_finite().then_some((value, error.to_f64()))
         };
-        let nodes: Vec<Displacement> =
-            (0..count).into_par_iter().map(|i| at(i as f64 + 0.5)).collect::<Option<_>>()?;
+        let sums: Vec<(f64, f64)> = phases.distinct.par_iter().map(sum).collect::<Option<_>>()?;
+        let error_of = |error: f64| if self.is_estimated { error } else { f64::INFINITY };
+        let errors = || sums.iter().map(|(_, error)| error_of(*error));
+        let largest_error = errors().fold(0.0, f64::max);
+        let (cosines, sines) = phases.weights();
+        let of =
+            |weights: &[f64]| weights.iter().zip(&sums).map(|(weight, (x, _))| weight * x).sum();
+        let mut list: Vec<(f64, f64)> =
+            cosines.iter().zip(&sines).map(|(c, s)| (of(c), of(s))).collect();
+        let rounding = ROUNDING * list.iter().map(|(c, s)| c.hypot(*s)).sum::<f64>();
+        let noise = if largest_error.is_finite() { largest_error.max(rounding) } else { rounding };
+        let deviation = left_out(&list, harmonics, noise);
+        list.truncate(harmonics + 1);
         // |c_k| changes by less than the mean of |2 error cos|.
-        let error = nodes.iter().map(|x| x.error).sum::<f64>() * 2.0 / count as f64;
-        let values: Vec<f64> = nodes.iter().map(|x| x.double).collect();
-        let list: Vec<(f64, f64)> = (0..=harmonics).map(|k| harmonic(&values, k)).collect();
+        let error = 2.0 * phases.mean(errors());
         let error = error.is_finite().then_some(error);
-        let largest_error = nodes.iter().map(|x| x.error).fold(0.0, f64::max);
-        let deviation = f64::INFINITY;
         let mut found = Fourier { coefficients: list, deviation, error, largest_error };
-        let deviation = |places: Vec<f64>| -> Option<(f64, f64)> {
-            let one =
-                |place: f64| Some(((found.at(place * turn) - at(place)?.double).abs(), place));
-            let all: Vec<(f64, f64)> = places.into_par_iter().map(one).collect::<Option<_>>()?;
-            all.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))
-        };
-        // The nodes, half a step off, are known.
-        let quarters = (0..4 * count).filter(|i| i % 4 != 2).map(|i| i as f64 / 4.0).collect();
-        let (coarse, place) = deviation(quarters)?;
-        let (fine, _) = deviation((-8..=8).map(|i| place + f64::from(i) / 32.0).collect())?;
-        found.deviation = coarse.max(fine);
+        if deviation.is_infinite() {
+            found.deviation = self.measured(&found, count)?;
+        }
+        found.coefficients = self.started(found.coefficients);
         Some(found)
+    }
+
+    /// The largest deviation of a sum from X at phases between those that its harmonics are of, and near the largest of these:
+    /// where the harmonics fall so slowly that they do not tell what lies beyond them.
+    fn measured(&self, found: &Fourier, count: usize) -> Option<f64> {
+        let deviation = |places: Vec<(u64, u64)>| -> Option<(f64, (u64, u64))> {
+            let one = |place: (u64, u64)| {
+                // Beside pi/2, where functions of ln |cos| have no value.
+                let phase = place.0 as f64 / place.1 as f64 * std::f64::consts::TAU;
+                let (value, _) = self.sum(&Point::Rational(Rational::from_f64(phase)?))?;
+                Some(((found.at(phase) - value.midpoint().to_f64()).abs(), place))
+            };
+            let all: Vec<_> = places.into_par_iter().map(one).collect::<Option<_>>()?;
+            all.into_iter().max_by(|a: &(f64, _), b| a.0.total_cmp(&b.0))
+        };
+        let fourth = 4 * count as u64;
+        // The phases half a step off are known.
+        let quarters = (0..fourth).filter(|i| i % 4 != 2).map(|i| (i, fourth)).collect();
+        let (coarse, (place, _)) = deviation(quarters)?;
+        let near = (0..=16).map(|i| ((8 * (place + fourth) + i - 8) % (8 * fourth), 8 * fourth));
+        Some(coarse.max(deviation(near.collect())?.0))
+    }
+
+    /// The harmonics of X(s + phase) of those of X(s).
+    fn started(&self, list: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+        let balls = Balls::new(128);
+        let phase = self.phase.ball(balls);
+        let turned = |(k, (c, s)): (i64, (f64, f64))| {
+            let angle = balls.mul_i64(&phase, k);
+            let [cosine, sine] =
+                [balls.cos(&angle), balls.sin(&angle)].map(|x| x.midpoint().to_f64());
+            (c * cosine + s * sine, s * cosine - c * sine)
+        };
+        (0..).zip(list).map(turned).collect()
     }
 
     /// The Fourier coefficients c_k, s_k, k = 0 .. `harmonics`, of one approximant at

@@ -11,25 +11,18 @@ use crate::error::EvaluationError as Error;
 use crate::few;
 use crate::fourier::Fourier;
 use crate::periodic::PeriodicSolution;
+use crate::phases::{Phases, left_out};
 use lindstedt_algebra::Stop;
 use lindstedt_derivation::{DerivationError, Work};
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_phase::lobachevsky_function::Point;
 use lindstedt_series::resummation::{Compiled, Estimated, Method, Sample, UniformMap};
 use rayon::prelude::*;
-use rug::{Float, Rational};
+use rug::Float;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
 /// S over the largest |x_0|.
 const OFFSET: f64 = 4.0;
-/// Times the geometric series of what lies beyond the harmonics that are seen: it covers
-/// harmonics that fall like k^-4, too.
-const SAFETY: f64 = 4.0;
-
-/// Below this a weight is zero.
-const ROUNDING: f64 = 1e-14;
-
 /// x(t; small, amplitude) in doubles.
 #[derive(Clone, Debug)]
 pub struct SolutionFunction {
@@ -90,7 +83,8 @@ impl SolutionFunction {
             let sample = Sample { coefficients, point: Float::new(bits), map, radius: None, bits };
             Compiled::new(&sample, &methods, &work.stop)
         };
-        let sums = phases.distinct.par_iter().map(compile).collect::<Result<_, _>>();
+        let sums =
+            phases.distinct.par_iter().map(|(_, list)| compile(list)).collect::<Result<_, _>>();
         let sums = sums.map_err(|reason| Error::Resummation {
             problem: setting.problem.name.to_string(),
             reason,
@@ -144,79 +138,5 @@ impl Serialize for SolutionFunction {
         self.frequency.fields(&mut object)?;
         object.serialize_field("harmonics", &self.harmonics)?;
         object.end()
-    }
-}
-
-/// What the harmonics beyond `kept` add at most: those that are seen, and what they let expect of those that are not
-/// seen, which are left out and fold onto the ones that are. Sizes below the errors of the values show
-/// nothing.
-fn left_out(harmonics: &[(f64, f64)], kept: usize, error: f64) -> f64 {
-    let size = |from: usize, to: usize| -> f64 {
-        harmonics.iter().take(to).skip(from).map(|(c, s)| c.hypot(*s)).sum()
-    };
-    let count = harmonics.len();
-    let middle = count.div_ceil(4) * 3;
-    let (inner, outer) = (size(count / 2, middle), size(middle, count));
-    let beyond = match outer / inner {
-        _ if outer <= error => 0.0,
-        ratio if ratio < 0.5 => SAFETY * outer * ratio / (1.0 - ratio),
-        _ => f64::INFINITY,
-    };
-    size(kept + 1, count) + 2.0 * beyond
-}
-
-/// The coefficients x_n at the phases 2 pi (i + 1/2)/M, each sequence once: x(-s) = x(s) of a motion that starts at rest,
-/// x(s + pi) = -x(s) under an odd force.
-struct Phases {
-    distinct: Vec<Vec<Ball>>,
-    /// The index in `distinct` and the sign of every phase.
-    images: Vec<(usize, f64)>,
-}
-
-impl Phases {
-    fn new(count: usize, balls: Balls, at: impl Fn(&Point) -> Option<Vec<Ball>>) -> Option<Self> {
-        let (mut distinct, mut images): (Vec<Vec<Ball>>, Vec<_>) = (Vec::new(), Vec::new());
-        for i in 0..count {
-            let list = at(&Point::PiTimes(Rational::from((2 * i as u64 + 1, count as u64))))?;
-            let negative: Vec<Ball> = list.iter().map(|c| balls.neg(c)).collect();
-            let is = |other: &[Ball], list: &[Ball]| {
-                list.iter().zip(other).all(|(one, other)| one.overlaps(other))
-            };
-            let known = distinct.iter().enumerate().find_map(|(index, known)| {
-                let sign = if is(known, &list) { 1.0 } else { -1.0 };
-                (sign > 0.0 || is(known, &negative)).then_some((index, sign))
-            });
-            images.push(known.unwrap_or((distinct.len(), 1.0)));
-            if known.is_none() {
-                distinct.push(list);
-            }
-        }
-        Some(Self { distinct, images })
-    }
-
-    /// The largest |x_0|.
-    fn size(&self) -> f64 {
-        let first = self.distinct.iter().filter_map(|list| list.first());
-        first.map(|x| x.midpoint().to_f64().abs()).fold(0.0, f64::max)
-    }
-
-    /// The weights of the distinct phases in c_k and s_k, k < M/2.
-    fn weights(&self) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
-        let count = self.images.len();
-        let row = |k: usize, of: fn(f64) -> f64| {
-            let mut row = vec![0.0; self.distinct.len()];
-            let weight = if k == 0 { 1.0 } else { 2.0 } / count as f64;
-            for (i, (index, sign)) in self.images.iter().enumerate() {
-                // Reduced before it is rounded.
-                let turns = (k * (2 * i + 1)) % (2 * count);
-                row[*index] +=
-                    sign * weight * of(turns as f64 * std::f64::consts::PI / count as f64);
-            }
-            // Weights that cancel.
-            row.iter_mut().filter(|w| w.abs() < ROUNDING).for_each(|w| *w = 0.0);
-            row
-        };
-        let rows = |of| (0..count / 2).map(|k| row(k, of)).collect();
-        (rows(f64::cos), rows(f64::sin))
     }
 }

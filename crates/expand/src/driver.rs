@@ -65,7 +65,7 @@ impl<A: PhaseAlgebra> Expansion<A> {
         let (Some(x), Some(w)) = (self.solution.get(n), self.frequency_squared.get(n)) else {
             return algebra.zero();
         };
-        let sum = algebra.add(&algebra.derivative(&algebra.derivative(x)), x);
+        let sum = algebra.force(x);
         let Some(leading) = self.solution.first().filter(|_| n > 0) else { return sum };
         let inertia = algebra.derivative(&algebra.derivative(leading));
         algebra.add(&sum, &algebra.scale_by(&inertia, w))
@@ -176,6 +176,24 @@ pub fn extend<A: PhaseAlgebra>(
     }
     let work = run(&mut driver, first..=request.order, observer)?;
     driver.finish(work)
+}
+
+/// 1/S for a limit cycle, where 2<f_n sin> changes by S when the amplitude of order n - 1 does by one: a_(n-1) is
+/// -2<f_n sin>/S. Nothing where the condition fixes the amplitude.
+///
+/// # Errors
+/// [`ExpandError::DegenerateLimitCycle`] where S is zero; those of [`expand`] to order 1.
+pub fn amplitude_reaction<A: PhaseAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    request: &Request,
+) -> Result<Option<Constant<A>>, ExpandError> {
+    if request.condition != Condition::LimitCycle {
+        return Ok(None);
+    }
+    let mut driver = Driver::start(algebra, equation, request)?;
+    driver.step(1)?;
+    Ok(driver.limit_cycle.map(|reaction| reaction.inverse_sin))
 }
 
 /// How the amplitude is treated: fixed or a limit cycle's (`Driver` below), or free and drifting

@@ -13,6 +13,7 @@ mod limit_cycle;
 mod period;
 mod residual;
 mod residual_bound;
+mod residual_point;
 pub mod resonance;
 mod size;
 
@@ -22,9 +23,12 @@ pub use clock::{
     ClockExpansion, ClockFrequency, ClockMean, check_clock, clock_variable, expand_clock,
 };
 pub use compile::{Binding, Equation, compile, compile_system};
-pub use driver::{Expansion, Known, OrderWork, Request, expand, extend, leading_amplitude};
+pub use driver::{
+    Expansion, Known, OrderWork, Request, amplitude_reaction, expand, extend, leading_amplitude,
+};
 pub use error::ExpandError;
 pub use excitation::Excitation;
 pub use period::{Period, conservative_period};
 pub use residual::{check, check_from, check_normalisation};
-pub use residual_bound::{OrderNumbers, ResidualBound};
+pub use residual_bound::{Expected, FrequencyBound, OrderNumbers, ResidualBound};
+pub use residual_point::{AtPhase, fails_at_phase};

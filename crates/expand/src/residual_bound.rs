@@ -8,6 +8,10 @@
 //! f_n, times the divisors 1 - k^2 of its harmonics. That is a guess only to the one who lifts:
 //! nothing that is proved depends on it.
 
+mod ahead;
+
+pub use ahead::{Expected, FrequencyBound};
+
 use crate::ExpandError;
 use crate::bound::equation_numbers;
 use crate::compile::{Equation, Node};
@@ -35,6 +39,7 @@ pub struct OrderNumbers {
 }
 
 /// The bound of the proof, order by order.
+#[derive(Clone)]
 pub struct ResidualBound {
     nodes: Vec<Node<Rational>>,
     root: usize,
@@ -50,6 +55,7 @@ pub struct ResidualBound {
     surplus: VecDeque<Vec<i64>>,
 }
 
+#[derive(Clone)]
 struct Taken {
     denominator: Integer,
     /// sum |c|, sum k |c|, sum k^2 |c| over the denominator.
@@ -58,7 +64,7 @@ struct Taken {
     series: [Rational; 3],
 }
 
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Sizes {
     /// x, x' and x'' with respect to the phase.
     functions: [List; 3],

@@ -33,6 +33,7 @@ fn sweep(count: usize, predictor: Option<(Predictor, usize)>, exact: Option<Kick
         predictor,
         exact,
         radius: true,
+        part: None,
     };
     #[allow(clippy::unwrap_used)]
     chart(&base, &plan, &|_| true).unwrap()

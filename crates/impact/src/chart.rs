@@ -13,6 +13,7 @@ use crate::prediction::{Ground, Variant};
 use crate::zeros::{exact_verdict, leading_modulus};
 use lindstedt_number::complex::Complex;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// So many points are shared out at a time, and as many rows at least.
@@ -72,6 +73,17 @@ pub struct Plan {
     pub exact: Option<Kick>,
     /// Whether the spectral radii are wanted besides the verdicts.
     pub radius: bool,
+    /// The first of the rows that are computed, and how many; all if nothing. Their values are those of the whole.
+    pub part: Option<(usize, usize)>,
+}
+
+impl Plan {
+    /// The rows that are computed.
+    #[must_use]
+    pub fn computed(&self) -> Range<usize> {
+        let Some((first, count)) = self.part else { return 0..self.rows.count };
+        first.min(self.rows.count)..first.saturating_add(count).min(self.rows.count)
+    }
 }
 
 /// One point.
@@ -107,7 +119,7 @@ impl Point {
 pub struct Chart {
     /// What was computed.
     pub plan: Plan,
-    /// `rows.count` rows of `columns.count` points, fewer where the work was stopped.
+    /// The computed rows of `columns.count` points, fewer where the work was stopped.
     pub points: Vec<Point>,
 }
 
@@ -125,7 +137,8 @@ pub fn chart(
     plan: &Plan,
     observer: &(dyn Fn(usize) -> bool + Sync),
 ) -> Result<Chart, ImpactError> {
-    let (width, height) = (plan.columns.count, plan.rows.count);
+    let (width, rows) = (plan.columns.count, plan.computed());
+    let height = rows.len();
     if width == 0 || height == 0 || plan.columns.parameter == plan.rows.parameter {
         return Err(ImpactError::BadAxes);
     }
@@ -145,7 +158,7 @@ pub fn chart(
         let finished = lines.try_for_each_init(
             || Scratch::new(order),
             |scratch, (row, (line, filled))| {
-                *filled = fill(base, plan, first + row, (line, scratch), &|| {
+                *filled = fill(base, plan, rows.start + first + row, (line, scratch), &|| {
                     observer(done.load(Ordering::Relaxed))
                 });
                 if *filled < width {
@@ -311,6 +324,7 @@ impl Chart {
         if column >= self.plan.columns.count {
             return None;
         }
+        let row = row.checked_sub(self.plan.computed().start)?;
         self.points.get(row.checked_mul(self.plan.columns.count)? + column)
     }
     /// Counts of agreement between prediction and exact verdict.

@@ -41,6 +41,7 @@ fn main() -> Result<(), ImpactError> {
         predictor: Some((Predictor::Kbm(Variant::E), 1)),
         exact: Some(Kick::Mean),
         radius: false,
+        part: None,
     };
     let chart = chart(&orbit.nearest(), &plan, &|_| true)?;
 

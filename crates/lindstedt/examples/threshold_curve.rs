@@ -18,9 +18,18 @@ fn main() -> Result<(), MelnikovError> {
     // Balls for what is to be quoted: every digit printed is proved.
     let balls = Balls::new(160);
     let undecided = MelnikovError::Undecided { bits: 160 };
-    let proved = StickSlip::paper().signed_threshold(balls).and_then(|g| decimal(&g, 30));
+    let point = StickSlip {
+        a: Exact::from(1),
+        b: Exact::from(1),
+        dry: Exact::from((3, 10)),
+        alpha: Exact::from((3, 10)),
+        beta: Exact::from((3, 10)),
+        omega: Exact::from(2),
+        belt_speed: Exact::from((2, 5)),
+    };
+    let proved = point.signed_threshold(balls).and_then(|g| decimal(&g, 30));
     println!("vstar = 2/5 with 30 digits: {}", proved.ok_or(undecided.clone())?);
-    let soft = StickSlip { b: Exact::from(5), ..StickSlip::paper() };
+    let soft = StickSlip { b: Exact::from(5), ..point };
     let found = soft.zeros_in(balls, Axis::BeltSpeed, &Exact::from(0), &Exact::from(1))?;
     for zero in &found.zeros {
         println!("b = 5: zero at vstar = {}", decimal(zero, 30).ok_or(undecided.clone())?);

@@ -5,6 +5,7 @@ use lindstedt_number::ball::Balls;
 use lindstedt_number::{Number, Status, as_map};
 use rug::Float;
 use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// The version of the JSON form; it grows when a key changes its meaning.
@@ -64,6 +65,9 @@ pub struct Header {
     /// The values that enter, exact, in the order of the problem.
     #[serde(serialize_with = "as_map")]
     pub at: Vec<(String, String)>,
+    /// The units of parameters, where the file of the problem names them.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub units: BTreeMap<String, String>,
     /// The order of the expansion; nothing where none is made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<usize>,

@@ -46,6 +46,9 @@ const SADDLE: &str = "x = 0 is a saddle: put x = c + y with a centre c, or `lind
 /// and with terms that are not small.
 const SMALL_TERMS: &str =
     "a factor of the small parameter marks the small terms; `lindstedt simulate` takes it as it is";
+/// and with a linear part that has a delay.
+const HOPF: &str = "with a factor eps, eps*x(t - T), it is averaged; `lindstedt derive --unknown NAME` finds the Hopf points of a \
+     parameter and the cycles born there; `lindstedt simulate` takes it as it is";
 /// What a file says for the amplitude to be averaged.
 const AVERAGES: &str =
     "averaging takes it: condition = \"free-amplitude\" in the file, or --normalisation free";
@@ -103,12 +106,13 @@ pub fn check(
     if condition == Some(Condition::FreeAmplitude) {
         let plain = |r: &&Reason| match r {
             Reason::NoLinearPart | Reason::NotWeaklyNonlinear(_) => nothing_small,
-            Reason::Frequency(_) => true,
+            Reason::Frequency(_) | Reason::DelayedLinearPart(_) => true,
             _ => false,
         };
         let Some(reason) = against(Method::Averaging).find(plain) else { return Ok(()) };
         let at = place(file, path, reason.term());
         let hint = match reason {
+            Reason::DelayedLinearPart(_) => HOPF.to_owned(),
             _ if nothing_small => marks,
             Reason::Frequency(_) => FORCES.to_owned(),
             _ => String::new(),
@@ -139,6 +143,8 @@ fn next_best(
         && parts.takes(Method::TimeDomain);
     if nothing_small && *reason == Reason::NoSmallParameter {
         None
+    } else if matches!(reason, Reason::DelayedLinearPart(_)) {
+        Some(HOPF)
     } else if parts.takes(Method::Melnikov) {
         Some("Melnikov's method takes equations of this kind: lindstedt threshold FILE")
     } else if *reason == Reason::UnknownFrequency {

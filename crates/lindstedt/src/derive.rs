@@ -94,7 +94,7 @@ impl Oscillator {
         if value.condition == Condition::InitialAmplitude {
             remarks.extend(self.start_remark(Taken::Amplitude));
         }
-        let solved = !matches!(value.solution, Solution::FrequencyOnly);
+        let solved = !matches!(value.solution, Solution::FrequencyOnly { .. });
         remarks.extend(self.missing(&|asked| {
             value.named(asked).is_some() || asked == Quantity::Solution && solved
         }));

@@ -47,6 +47,9 @@ pub enum Error {
     /// Melnikov's method has no value here.
     #[error(transparent)]
     Melnikov(#[from] lindstedt_melnikov::MelnikovError),
+    /// There is no Hopf point, or no cycle there.
+    #[error(transparent)]
+    Hopf(#[from] lindstedt_hopf::HopfError),
     /// There is no impact orbit or prediction for these values.
     #[error(transparent)]
     Impact(#[from] lindstedt_impact::ImpactError),
@@ -133,6 +136,7 @@ impl Refusal for Error {
             Self::Simulate(error) => return error.parts(),
             Self::Melnikov(error) => return error.parts(),
             Self::Impact(error) => return error.parts(),
+            Self::Hopf(error) => return error.parts(),
             Self::Recognise(error) => return error.parts(),
             Self::Orbit(error) => return error.parts(),
             Self::Classify(ClassifyError::TooManyTerms { .. }) => (Undecided, "too-large", ""),

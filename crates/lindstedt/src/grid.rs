@@ -30,7 +30,18 @@ pub struct Axis {
     pub values: Vec<Exact>,
 }
 
+/// A part of the work over an axis: so many of its values from one on. What is computed there is what the whole has
+/// there, bit by bit.
+pub type Part = (usize, usize);
+
 impl Axis {
+    /// The values of a part.
+    pub(crate) fn part(&self, part: Option<Part>) -> Self {
+        let (first, count) = part.unwrap_or((0, self.values.len()));
+        let values = self.values.iter().skip(first).take(count).cloned().collect();
+        Self { name: self.name.clone(), values }
+    }
+
     /// At most so many of the values at equal distances, both ends among them.
     pub(crate) fn every(&self, most: usize) -> Self {
         let last = self.values.len().max(1) - 1;

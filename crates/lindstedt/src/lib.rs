@@ -37,6 +37,7 @@ mod error;
 pub mod evaluate;
 mod form;
 pub mod grid;
+mod hopf;
 pub mod motion;
 /// What [`Oscillator::estimate`] is asked and answers with.
 pub mod numeric {
@@ -65,6 +66,7 @@ pub use answer::{Answer, Header, Remark, SCHEMA, Standing};
 pub use derive::Derive;
 pub use error::Error;
 pub use evaluate::Evaluate;
+pub use hopf::{HopfSeries, SoughtSeries};
 pub use lindstedt_algebra::Stop;
 pub use lindstedt_derivation::{
     Derivation, DerivationError, NamedSeries, Progress, Route, Solution, Work, resonance::SlowFlow,
@@ -92,6 +94,7 @@ pub mod unstable {
     pub use lindstedt_equation as equation;
     pub use lindstedt_evaluation as evaluation;
     pub use lindstedt_expand as expand;
+    pub use lindstedt_hopf as hopf;
     pub use lindstedt_impact as impact;
     pub use lindstedt_melnikov as melnikov;
     pub use lindstedt_multimodular as multimodular;

@@ -370,6 +370,12 @@ impl Oscillator {
 
     /// Refuses several unknowns: averaging alone takes them.
     pub(crate) fn single(&self) -> Result<(), Error> {
+        self.second_order()?;
+        self.one_unknown()
+    }
+
+    /// The same, also for x' = ...
+    pub(crate) fn one_unknown(&self) -> Result<(), Error> {
         if self.problem.others.is_empty() {
             return Ok(());
         }
@@ -378,8 +384,20 @@ impl Oscillator {
         Err(Refused::no_answer("several-unknowns", message, hint).into())
     }
 
+    /// Refuses x' = ...: all questions but one are about x'' = ...
+    pub(crate) fn second_order(&self) -> Result<(), Error> {
+        if !self.problem.equation.is_first_order() {
+            return Ok(());
+        }
+        let message =
+            "the equation is x' = ..., of first order, and this question is for x'' = ...";
+        let hint = "`lindstedt derive --unknown NAME` finds the Hopf points of a parameter and the cycles born there";
+        Err(Refused::no_answer("first-order", message, hint).into())
+    }
+
     /// The same for any number of unknowns.
     pub(crate) fn values_without_pi(&self) -> Result<(), Error> {
+        self.second_order()?;
         let tied = self.problem.synchronous.as_ref().map(|tie| &*tie.delay);
         let determined = self.file.determined();
         let Some(name) = determined.keys().find(|name| Some(name.as_str()) != tied) else {
@@ -405,6 +423,7 @@ impl Oscillator {
             problem: self.problem.name.to_string(),
             equation: self.to_string(),
             at,
+            units: self.problem_file().units.clone(),
             order,
             tier,
             seconds: start.elapsed().as_secs_f64(),

@@ -26,20 +26,32 @@ fn surface_four_million(bencher: Bencher<'_, '_>) {
     });
 }
 
+fn stick_slip() -> StickSlip {
+    StickSlip {
+        a: Exact::from(1),
+        b: Exact::from(1),
+        dry: Exact::from((3, 10)),
+        alpha: Exact::from((3, 10)),
+        beta: Exact::from((3, 10)),
+        omega: Exact::from(2),
+        belt_speed: Exact::from((2, 5)),
+    }
+}
+
 fn balls(digits: u32) -> Balls {
     Balls::new(digits * 10 / 3 + 40)
 }
 
 #[divan::bench(args = [40, 1000, 10_000], sample_count = 10)]
 fn certified(bencher: Bencher<'_, '_>, digits: u32) {
-    let paper = StickSlip::paper();
+    let paper = stick_slip();
     bencher.bench(|| paper.signed_threshold(balls(digits)).expect("a threshold"));
 }
 
 /// The complete list of zeros in 0 <= v* <= 1.
 #[divan::bench(args = [40, 1000], sample_count = 5)]
 fn zeros(bencher: Bencher<'_, '_>, digits: u32) {
-    let soft = StickSlip { b: Exact::from(5), ..StickSlip::paper() };
+    let soft = StickSlip { b: Exact::from(5), ..stick_slip() };
     let (low, high) = (Exact::from(0), Exact::from(1));
     bencher.bench(|| {
         soft.zeros_in(balls(digits), Axis::BeltSpeed, &low, &high).expect("the zeros").zeros.len()
@@ -49,8 +61,8 @@ fn zeros(bencher: Bencher<'_, '_>, digits: u32) {
 /// Period 2 inside one well: the orbit by bisection, then elliptic functions.
 #[divan::bench(args = [40, 200], sample_count = 5)]
 fn resonance(bencher: Bencher<'_, '_>, digits: u32) {
-    let p = StickSlip::paper();
-    let friction = PolynomialFriction::paper(p.dry.clone(), &p.alpha, p.beta.clone());
+    let p = stick_slip();
+    let friction = PolynomialFriction::cubic(p.dry.clone(), &p.alpha, p.beta.clone());
     bencher.bench(|| period_two(balls(digits), &p, &friction));
 }
 

@@ -54,7 +54,7 @@ const PER_UNIT: u32 = 64;
 /// use lindstedt_melnikov::{PolynomialFriction, Region, belt_cycles};
 /// use lindstedt_number::{Exact, ball::Balls};
 /// let (one, t) = (Exact::from(1), || Exact::from((3, 10)));
-/// let law = PolynomialFriction::paper(t(), &t(), t());
+/// let law = PolynomialFriction::cubic(t(), &t(), t());
 /// let cycles = belt_cycles(Balls::new(128), &one, &one, &law, &Exact::from((11, 20)), Region::Inside)?;
 /// assert!(cycles.len() == 1 && cycles[0].exponent.is_negative());
 /// # Ok::<(), lindstedt_melnikov::MelnikovError>(())

@@ -3,7 +3,10 @@
 use crate::crossing::level_crossings;
 use crate::hyperbolic::HyperbolicRing;
 use crate::quadrature::{Estimate, tanh_sinh};
-use crate::{Branch, Friction, MelnikovError, OrbitDescription, PolynomialFriction, Potential};
+use crate::{
+    Branch, Damping, Factor, Friction, MelnikovError, OrbitDescription, PolynomialFriction,
+    Potential,
+};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::float::Constant;
@@ -37,7 +40,7 @@ pub fn polynomial_dissipation(
     let mut moments = Vec::new();
     for n in 1..=degree {
         let zero = potential.is_homoclinic() && n % 2 == 1;
-        moments.push(if zero { balls.zero() } else { potential.velocity_moment(balls, n)? });
+        moments.push(if zero { balls.zero() } else { potential.moment(balls, &Factor::ONE, n)? });
     }
     let minus = balls.neg(&belt_speed.ball(balls));
     for (k, t) in friction.coefficients.iter().enumerate() {
@@ -59,6 +62,29 @@ pub fn polynomial_dissipation(
             inner = balls.add(&inner, &term);
         }
         sum = balls.add(&sum, &balls.mul(&t.ball(balls), &inner));
+    }
+    Some(sum)
+}
+
+/// The work of the terms c g(x) x'^j: sum c p int g(x0) v0^(j+1) dt, p = 1 on the positive branch, on the
+/// other the sign that g(x) v^(j+1) takes when x and v change theirs.
+///
+/// `None` where a moment is not known ([`Potential::takes_damping`]).
+#[must_use]
+pub fn damping_work(
+    balls: Balls,
+    potential: &Potential,
+    terms: &[Damping],
+    branch: Branch,
+) -> Option<Ball> {
+    let mut sum = balls.zero();
+    for term in terms {
+        let n = term.velocity.checked_add(1)?;
+        let moment = potential.moment(balls, &term.factor, n)?;
+        let work = balls.mul(&term.coefficient.ball(balls), &moment);
+        let even = (term.factor.parity() > 0) == n.is_multiple_of(2);
+        let turned = branch.sign() < 0 && !even;
+        sum = if turned { balls.sub(&sum, &work) } else { balls.add(&sum, &work) };
     }
     Some(sum)
 }

@@ -54,9 +54,9 @@ pub enum MelnikovError {
     /// The forcing vanishes on the orbit, so no amplitude reaches the threshold.
     #[error("the forcing vanishes on the orbit")]
     NoForcing,
-    /// The forcing has no work function of one phase here: incommensurate frequencies, or a
-    /// parametric forcing whose orbit leaves the hyperbolic algebra.
-    #[error("this forcing has no closed form on this orbit")]
+    /// No closed form here: the work of incommensurate frequencies as a function of one phase, or a
+    /// factor g(x) of a force or of friction that leaves the hyperbolic algebra.
+    #[error("this perturbation has no closed form on this orbit")]
     NoClosedForm,
     /// The friction does no work at any belt speed: every v* is a zero.
     #[error("the friction does no work at any belt speed")]

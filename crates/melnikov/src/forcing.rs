@@ -2,68 +2,106 @@
 
 use crate::error::positive;
 use crate::root::enclose_root;
-use crate::{Branch, MelnikovError, Potential};
+use crate::{Branch, Factor, MelnikovError, Potential};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Rational};
+use std::collections::BTreeMap;
 
-/// One harmonic g cos(k omega t + phase).
+/// One harmonic g(x) h cos(k omega t + phase).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Harmonic {
     /// k >= 1.
     pub order: u32,
-    /// g.
+    /// h.
     pub weight: Exact,
     /// The phase in radians.
     pub phase: Exact,
+    /// g, 1 for a force that does not depend on x.
+    pub factor: Factor,
 }
 
-/// The forcing eps gamma f(t).
+/// The forcing eps gamma f(t, x).
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Forcing {
-    /// sum_k g_k cos(k omega t + psi_k).
+    /// sum_k g_k(x) h_k cos(k omega t + psi_k); several terms may have the same k.
     Harmonics {
         /// omega > 0.
         omega: Exact,
-        /// The harmonics.
+        /// The harmonics; none is no force.
         harmonics: Vec<Harmonic>,
     },
-    /// sum_i g_i cos(omega_i t + psi_i) with omega_i independent over Q: the phases sweep the
-    /// torus, so only the sum of the amplitudes matters.
-    Incommensurate(Vec<(Exact, Exact)>),
-    /// x cos(omega t).
-    Parametric {
-        /// omega > 0.
-        omega: Exact,
-    },
+    /// Sums as in `Harmonics` with frequencies independent over Q: the phases sweep the torus, so
+    /// that the extremes of the parts add.
+    Incommensurate(Vec<(Exact, Vec<Harmonic>)>),
 }
+
+/// F of the harmonics of one omega.
+type WorkOfPart<'a> = dyn Fn((&Exact, &[Harmonic])) -> Result<ForcingWork, MelnikovError> + 'a;
 
 impl Forcing {
     /// cos(omega t).
     #[must_use]
     pub fn single(omega: Exact) -> Self {
-        let one = Harmonic { order: 1, weight: Exact::from(1), phase: Exact::from(0) };
-        Self::Harmonics { omega, harmonics: vec![one] }
+        Self::multiplied(omega, Factor::ONE)
+    }
+    /// g(x) cos(omega t).
+    #[must_use]
+    pub fn multiplied(omega: Exact, factor: Factor) -> Self {
+        let (weight, phase) = (Exact::from(1), Exact::from(0));
+        Self::Harmonics { omega, harmonics: vec![Harmonic { order: 1, weight, phase, factor }] }
+    }
+    /// No force.
+    #[must_use]
+    pub fn none() -> Self {
+        Self::Harmonics { omega: Exact::from(1), harmonics: Vec::new() }
+    }
+    /// The parts whose frequencies are independent over Q: (omega, harmonics of it).
+    pub fn parts(&self) -> impl Iterator<Item = (&Exact, &[Harmonic])> {
+        let (one, several) = match self {
+            Self::Harmonics { omega, harmonics } => (Some((omega, harmonics.as_slice())), &[][..]),
+            Self::Incommensurate(list) => (None, list.as_slice()),
+        };
+        one.into_iter().chain(several.iter().map(|(omega, list)| (omega, list.as_slice())))
+    }
+    /// (max F, -min F) over the phases, from the work of the parts: their extremes add.
+    ///
+    /// # Errors
+    /// [`MelnikovError::NoForcing`] without a force, [`MelnikovError::Undecided`], and those of `work`.
+    pub fn reach(
+        &self,
+        balls: Balls,
+        work: &WorkOfPart<'_>,
+    ) -> Result<(Ball, Ball), MelnikovError> {
+        let (mut up, mut down) = (balls.zero(), balls.zero());
+        for part in self.parts() {
+            if part.1.is_empty() {
+                return Err(MelnikovError::NoForcing);
+            }
+            let undecided = || MelnikovError::Undecided { bits: balls.bits() };
+            let found = work(part)?;
+            let largest = found.extreme(balls, false).ok_or_else(undecided)?;
+            let smallest = found.extreme(balls, true).ok_or_else(undecided)?;
+            (up, down) = (balls.add(&up, &largest), balls.sub(&down, &smallest));
+        }
+        Ok((up, down))
     }
     /// Positive frequencies and orders.
     ///
     /// # Errors
     /// [`MelnikovError::NotPositive`].
     pub fn check(&self) -> Result<(), MelnikovError> {
-        match self {
-            Self::Harmonics { omega, harmonics } => {
-                positive(omega, "omega")?;
-                if harmonics.iter().any(|h| h.order == 0) {
+        for (omega, harmonics) in self.parts() {
+            positive(omega, "omega")?;
+            for harmonic in harmonics {
+                harmonic.factor.check()?;
+                if harmonic.order == 0 {
                     return Err(MelnikovError::NotPositive { name: "harmonic" });
                 }
-                Ok(())
             }
-            Self::Incommensurate(terms) => {
-                terms.iter().try_for_each(|(omega, _)| positive(omega, "omega"))
-            }
-            Self::Parametric { omega } => positive(omega, "omega"),
         }
+        Ok(())
     }
 }
 
@@ -74,56 +112,55 @@ pub struct ForcingWork {
     terms: Vec<(u32, Ball, Ball)>,
 }
 
+/// C + iS = int g(x0) v0 e^{i k omega t} dt of a harmonic.
+type TransformOf<'a, E> = dyn Fn(&Harmonic) -> Result<(Ball, Ball), E> + 'a;
+
 impl ForcingWork {
-    /// From int v0 f(t + t0) dt: a harmonic g cos(k theta + psi + k omega t) contributes
-    /// g (C cos(k theta + psi) - S sin(k theta + psi)), with C + iS the transform of v0.
+    /// From int v0 f(t + t0) dt: a harmonic g(x) h cos(k theta + psi + k omega t) contributes
+    /// h (C cos(k theta + psi) - S sin(k theta + psi)), with C + iS the transform of g(x0) v0.
     ///
-    /// `None` for a forcing without this form (incommensurate, or parametric off the algebra).
+    /// `None` where a transform is not known ([`Potential::takes_force`]).
     #[must_use]
     pub fn new(
         balls: Balls,
         potential: &Potential,
         branch: Branch,
-        forcing: &Forcing,
+        (omega, harmonics): (&Exact, &[Harmonic]),
     ) -> Option<Self> {
-        let oriented = |ball: &Ball| if branch.sign() < 0 { balls.neg(ball) } else { ball.clone() };
-        match forcing {
-            Forcing::Harmonics { omega, harmonics } => {
-                let transform = |k: u32| {
-                    let frequency = balls.mul_i64(&omega.ball(balls), i64::from(k));
-                    let (c, s) = potential.velocity_transform(balls, &frequency).ok_or(())?;
-                    Ok((oriented(&c), oriented(&s)))
-                };
-                Self::from_transforms::<()>(balls, harmonics, &transform).ok()
-            }
-            Forcing::Parametric { omega } => {
-                // x0 v0 is even under the mirror image: the same on both branches.
-                let (c, s) = potential.parametric_transform(balls, &omega.ball(balls))?;
-                Some(Self { terms: vec![(1, c, balls.neg(&s))] })
-            }
-            Forcing::Incommensurate(_) => None,
-        }
+        let transform = |harmonic: &Harmonic| {
+            let frequency = balls.mul_i64(&omega.ball(balls), i64::from(harmonic.order));
+            let (c, s) = potential.transform(balls, &harmonic.factor, &frequency).ok_or(())?;
+            // x and v change their signs on the mirror image.
+            let turned = branch.sign() < 0 && harmonic.factor.parity() > 0;
+            Ok(if turned { (balls.neg(&c), balls.neg(&s)) } else { (c, s) })
+        };
+        Self::from_transforms::<()>(balls, harmonics, &transform).ok()
     }
 
-    /// The same from C + iS = int v0 e^{i k omega t} dt, which `transform` returns for k.
+    /// The same from C + iS = int g(x0) v0 e^{i k omega t} dt, which `transform` returns.
+    ///
+    /// Terms of one k are one term: an even and an odd factor have their extremes at different phases.
     ///
     /// # Errors
     /// Those of `transform`.
     pub fn from_transforms<E>(
         balls: Balls,
         harmonics: &[Harmonic],
-        transform: &dyn Fn(u32) -> Result<(Ball, Ball), E>,
+        transform: &TransformOf<'_, E>,
     ) -> Result<Self, E> {
-        let mut terms = Vec::new();
+        let mut terms: BTreeMap<u32, (Ball, Ball)> = BTreeMap::new();
         for harmonic in harmonics {
-            let (c, s) = transform(harmonic.order)?;
+            let (c, s) = transform(harmonic)?;
             let (weight, phase) = (harmonic.weight.ball(balls), harmonic.phase.ball(balls));
             let (cos, sin) = (balls.cos(&phase), balls.sin(&phase));
             let even = balls.sub(&balls.mul(&c, &cos), &balls.mul(&s, &sin));
             let odd = balls.neg(&balls.add(&balls.mul(&c, &sin), &balls.mul(&s, &cos)));
-            terms.push((harmonic.order, balls.mul(&weight, &even), balls.mul(&weight, &odd)));
+            let (even, odd) = (balls.mul(&weight, &even), balls.mul(&weight, &odd));
+            let (along, across) =
+                terms.entry(harmonic.order).or_insert_with(|| (balls.zero(), balls.zero()));
+            (*along, *across) = (balls.add(along, &even), balls.add(across, &odd));
         }
-        Ok(Self { terms })
+        Ok(Self { terms: terms.into_iter().map(|(k, (c, s))| (k, c, s)).collect() })
     }
 
     /// The n-th derivative of F at theta.

@@ -21,9 +21,9 @@ pub struct PolynomialFriction {
 }
 
 impl PolynomialFriction {
-    /// The paper's (19): T(w) = T0 sgn w - alpha w + beta w^3.
+    /// T(w) = T0 sgn w - alpha w + beta w^3.
     #[must_use]
-    pub fn paper(dry: Exact, alpha: &Exact, beta: Exact) -> Self {
+    pub fn cubic(dry: Exact, alpha: &Exact, beta: Exact) -> Self {
         Self { dry, coefficients: vec![Exact::from(0), -alpha, Exact::from(0), beta] }
     }
     pub(crate) fn check(&self) -> Result<(), MelnikovError> {

@@ -2,9 +2,8 @@
 
 use crate::crossing::{self, largest_value};
 use crate::error::positive;
-use crate::hyperbolic::{Hyperbolic, HyperbolicRing, beta};
+use crate::hyperbolic::{Hyperbolic, HyperbolicRing};
 use crate::orbit::{check_pendulum, check_phi_six};
-use crate::quadrature::{Strip, trapezoid};
 use crate::root::sqrt_positive_part;
 use crate::{MelnikovError, Monomial, OrbitDescription};
 use lindstedt_algebra::{RationalAlgebra, Ring};
@@ -35,7 +34,7 @@ impl Branch {
 /// A conservative oscillator x'' = f(x) with its orbit x0(t); t = 0 is the time of symmetry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Potential {
-    /// x'' = a x - b x^3, x0 = sqrt(2a/b) sech(sqrt(a) t): the paper's (20), corrected (23).
+    /// x'' = a x - b x^3, x0 = sqrt(2a/b) sech(sqrt(a) t): the paper's (20).
     DoubleWell {
         /// a > 0.
         a: Exact,
@@ -242,62 +241,6 @@ impl Potential {
         }
     }
 
-    /// m_n = int v0^n dt on the positive branch, n >= 1.
-    ///
-    /// From the algebra: (X kappa)^n/kappa int (dxi/dz)^n dz, exact up to the scale. phi^6:
-    /// kappa^(n-1) B(n/2, n)/2. Cost O(n^2) rational operations.
-    #[must_use]
-    pub fn velocity_moment(&self, balls: Balls, n: u32) -> Option<Ball> {
-        if n == 0 {
-            return None;
-        }
-        let rate = self.rate(balls)?;
-        let Some(shape) = self.velocity_shape() else {
-            let b = beta(balls, &Rational::from((n, 2)), &Rational::from(n))?;
-            let power = balls.powi(&rate, i64::from(n) - 1)?;
-            return Some(balls.mul_power_of_two(&balls.mul(&power, &b), -1));
-        };
-        let integral = HyperbolicRing.power(&shape, n).integrate()?.ball(balls);
-        let power = balls.powi(&self.velocity_scale(balls)?, i64::from(n))?;
-        balls.div(&balls.mul(&power, &integral), &rate)
-    }
-
-    /// (C, S) with C + iS = int v0(t) e^{i omega t} dt on the positive branch.
-    ///
-    /// In the algebra by exact J_{p,q}; for phi^6, where C + iS =
-    /// Gamma(1 - i nu) Gamma(1/2 + i nu)/sqrt(pi), nu = omega/(2 kappa), by a certified
-    /// trapezoidal rule.
-    #[must_use]
-    pub fn velocity_transform(&self, balls: Balls, omega: &Ball) -> Option<(Ball, Ball)> {
-        let rate = self.rate(balls)?;
-        let w = balls.div(omega, &rate)?;
-        let Some(shape) = self.velocity_shape() else {
-            return phi_six_transform(balls, &w);
-        };
-        let transform = shape.fourier()?;
-        let amplitude = self.amplitude(balls)?;
-        let scaled = |form: &crate::hyperbolic::FourierForm| {
-            Some(balls.mul(&amplitude, &form.ball(balls, &w)?))
-        };
-        Some((scaled(&transform.cosine)?, scaled(&transform.sine)?))
-    }
-
-    /// (C, S) of int x0(t) v0(t) e^{i omega t} dt, for parametric forcing gamma x cos(omega t);
-    /// `None` for the pendulum, phi^6 and where x0 v0 does not decay.
-    #[must_use]
-    pub fn parametric_transform(&self, balls: Balls, omega: &Ball) -> Option<(Ball, Ball)> {
-        let description = self.description()?;
-        let ring = HyperbolicRing;
-        let product = ring.mul(&description.shape, &ring.derivative(&description.shape));
-        let transform = product.fourier()?;
-        let w = balls.div(omega, &self.rate(balls)?)?;
-        let square = balls.square(&self.amplitude(balls)?);
-        let scaled = |form: &crate::hyperbolic::FourierForm| {
-            Some(balls.mul(&square, &form.ball(balls, &w)?))
-        };
-        Some((scaled(&transform.cosine)?, scaled(&transform.sine)?))
-    }
-
     /// 1 - |v|/V. Without cancellation for the double well, with V = a/sqrt(2b),
     /// (a^2 - 2 b v^2)/(a (a + sqrt(2b) |v|)), and for the pendulum, with V = 2 sqrt(a),
     /// (4 a - v^2)/(V (V + |v|)).
@@ -404,29 +347,4 @@ fn phi_six_distance(balls: Balls, gap: &Ball) -> Option<Ball> {
 fn helmholtz_distance(balls: Balls, gap: &Ball) -> Option<Ball> {
     let angle = balls.mul_rational(&arc_cosine_of_gap(balls, gap)?, &Rational::from((2, 3)));
     over_sqrt_three(balls, &balls.sin(&angle), (2, 1))
-}
-
-/// int e^{-2s} (1 + e^{-2s})^{-3/2} e^{iws} ds: on |Im s| <= c, |1 + e^{-2s}| >= cos c (1 + u)
-/// with u = e^{-2 Re s}, and the integrand is at most e^{-|s|} on the line, with integral 1.
-fn phi_six_transform(balls: Balls, w: &Ball) -> Option<(Ball, Ball)> {
-    let half_width = Rational::from(1);
-    let edge = balls.cos(&balls.from_rational(&half_width));
-    let power = balls.mul(&edge, &balls.sqrt(&edge)?);
-    let strip = Strip {
-        edge_integral: balls.div(&balls.cosh(&balls.mul_rational(w, &half_width)), &power)?,
-        half_width,
-        decay: Rational::from(1),
-        amplitude: balls.one(),
-    };
-    let speed = |balls: Balls, s: &Ball| {
-        let u = balls.exp(&balls.mul_i64(s, -2));
-        let sum = balls.add(&balls.one(), &u);
-        balls.div(&u, &balls.mul(&sum, &balls.sqrt(&sum)?))
-    };
-    let part = |trig: fn(Balls, &Ball) -> Ball| {
-        trapezoid(balls, &strip, |balls, s| {
-            Some(balls.mul(&speed(balls, s)?, &trig(balls, &balls.mul(w, s))))
-        })
-    };
-    Some((part(Balls::cos)?, part(Balls::sin)?))
 }

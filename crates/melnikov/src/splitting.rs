@@ -312,7 +312,11 @@ impl StickSlip {
     ///
     /// ```
     /// use lindstedt_melnikov::{Branch, StickSlip};
-    /// let right = StickSlip::paper().second_order(Branch::Positive).expect("v* is neither 0 nor V");
+    /// use lindstedt_number::Exact;
+    /// let (a, b, omega, belt_speed) = (1.into(), 1.into(), 2.into(), Exact::from((2, 5)));
+    /// let [dry, alpha, beta] = [(); 3].map(|()| Exact::from((3, 10)));
+    /// let point = StickSlip { a, b, dry, alpha, beta, omega, belt_speed };
+    /// let right = point.second_order(Branch::Positive).expect("v* is neither 0 nor V");
     /// assert!((right.slope - 0.199_320_25).abs() < 1e-8);
     /// ```
     #[must_use]

@@ -1,14 +1,29 @@
-//! The paper's oscillator in closed form: G, the threshold, the cusp, the zeros.
+//! The stick-slip oscillator: the [`System`] of the double well, one harmonic, dry and cubic friction, whose threshold, cusp and
+//! zeros have closed forms.
 
 use crate::error::positive;
 use crate::root::{enclose_root, sqrt_positive_part};
-use crate::{Forcing, Friction, MelnikovError, PolynomialFriction, Potential, System};
+use crate::{Factor, Forcing, Friction, MelnikovError, PolynomialFriction, Potential, System};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::{Float, Rational};
 
 /// x'' = a x - b x^3 + eps (gamma cos(omega t) - T(x' - v*)),
-/// T(w) = T0 sgn w - alpha w + beta w^3: (19), (20) of the paper. All dimensionless.
+/// T(w) = T0 sgn w - alpha w + beta w^3. All dimensionless. The closed form of a [`System`], where it has one:
+/// [`StickSlip::of`]; the system of a closed form: [`StickSlip::system`].
+///
+/// ```
+/// use lindstedt_melnikov::{Forcing, Friction, PolynomialFriction, Potential, StickSlip, System};
+/// use lindstedt_number::{Exact, ball::Balls};
+///
+/// let friction = PolynomialFriction::cubic(Exact::from((3, 10)), &Exact::from((3, 10)), Exact::from((3, 10)));
+/// let well = Potential::DoubleWell { a: Exact::from(1), b: Exact::from(1) };
+/// let forcing = Forcing::single(Exact::from(2));
+/// let system = System::new(well, Friction::Polynomial(friction), forcing, Exact::from((2, 5)))?;
+/// let closed = StickSlip::of(&system).and_then(|form| form.signed_threshold(Balls::new(60)));
+/// assert!(closed.is_some_and(|gamma| (gamma.midpoint().to_f64() - 0.6370713428481636).abs() < 1e-15));
+/// # Ok::<(), lindstedt_melnikov::MelnikovError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StickSlip {
     /// a > 0.
@@ -28,19 +43,28 @@ pub struct StickSlip {
 }
 
 impl StickSlip {
-    /// a = b = 1, alpha = beta = T0 = 0.3, omega = 2, v* = 0.4: the point of section 3.
+    /// The closed form of a system; nothing where it is another one.
     #[must_use]
-    pub fn paper() -> Self {
-        let three_tenths = || Exact::from((3, 10));
-        Self {
-            a: Exact::from(1),
-            b: Exact::from(1),
-            dry: three_tenths(),
-            alpha: three_tenths(),
-            beta: three_tenths(),
-            omega: Exact::from(2),
-            belt_speed: Exact::from((2, 5)),
+    pub fn of(system: &System) -> Option<Self> {
+        let Potential::DoubleWell { a, b } = system.potential() else { return None };
+        let Friction::Polynomial(law) = system.friction() else { return None };
+        let Forcing::Harmonics { omega, harmonics } = system.forcing() else { return None };
+        let [only] = harmonics.as_slice() else { return None };
+        let plain = only.order == 1 && only.weight == Exact::from(1) && only.factor == Factor::ONE;
+        if !(plain && system.damping().is_empty()) {
+            return None;
         }
+        let t = |k: usize| law.coefficients.get(k).cloned().unwrap_or_else(|| Exact::from(0));
+        let mut rest = (0..law.coefficients.len()).filter(|k| *k != 1 && *k != 3);
+        rest.all(|k| t(k).sign().is_eq()).then(|| Self {
+            a: a.clone(),
+            b: b.clone(),
+            dry: law.dry.clone(),
+            alpha: -&t(1),
+            beta: t(3),
+            omega: omega.clone(),
+            belt_speed: system.belt_speed().clone(),
+        })
     }
 
     /// Domain: a, b, omega > 0.
@@ -53,12 +77,12 @@ impl StickSlip {
         positive(&self.omega, "omega")
     }
 
-    /// The same oscillator as a description for the general driver.
+    /// The system.
     ///
     /// # Errors
     /// Those of [`System::new`].
     pub fn system(&self) -> Result<System, MelnikovError> {
-        let law = PolynomialFriction::paper(self.dry.clone(), &self.alpha, self.beta.clone());
+        let law = PolynomialFriction::cubic(self.dry.clone(), &self.alpha, self.beta.clone());
         System::new(
             self.potential(),
             Friction::Polynomial(law),
@@ -76,8 +100,7 @@ impl StickSlip {
     /// V = a/sqrt(2b): the largest speed on the loop and the place of the cusp.
     #[must_use]
     pub fn loop_speed(&self, balls: Balls) -> Option<Ball> {
-        let root = balls.sqrt(&balls.mul_power_of_two(&self.b.ball(balls), 1))?;
-        balls.div(&self.a.ball(balls), &root)
+        self.potential().largest_speed(balls)
     }
 
     /// G = 2 T0 sqrt(1 - |v*|/V)_+ - (4/3) V (alpha - 3 beta v*^2) + (32/35) beta V^3; the work of
@@ -127,8 +150,7 @@ impl StickSlip {
         self.smooth(balls, v, &(balls.square(v), self.loop_speed_squared()))
     }
 
-    /// The right side of (27), corrected, divided by the factor of gamma:
-    /// G cosh(z)/(2z) with z = pi omega/(2 sqrt a). gamma_c is its absolute value.
+    /// D/F = G cosh(z)/(2z) with z = pi omega/(2 sqrt a). gamma_c is its absolute value.
     #[must_use]
     pub fn signed_threshold(&self, balls: Balls) -> Option<Ball> {
         self.forced(balls, &self.g(balls)?)

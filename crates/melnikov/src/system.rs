@@ -1,10 +1,8 @@
 //! The Melnikov driver: potential, friction, forcing, belt speed -> M(t0), D, F, gamma_c.
 
-use crate::dissipation::{polynomial_dissipation, quadrature_dissipation};
+use crate::dissipation::{damping_work, polynomial_dissipation, quadrature_dissipation};
 use crate::forcing::ForcingWork;
-use crate::hyperbolic::HyperbolicRing;
-use crate::{Branch, Forcing, Friction, MelnikovError, Potential};
-use lindstedt_algebra::Ring;
+use crate::{Branch, Damping, Forcing, Friction, Harmonic, MelnikovError, Potential};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Float;
@@ -18,16 +16,16 @@ pub enum Class {
     Estimated,
 }
 
-/// x'' = f(x) + eps (gamma * forcing - T(x' - v*)), with the orbit of the potential.
+/// x'' = f(x) + eps (gamma * forcing - T(x' - v*) - sum c g(x) x'^j), with the orbit of the potential.
 ///
 /// ```
 /// use lindstedt_melnikov::{Branch, Forcing, Friction, PolynomialFriction, Potential, System};
 /// use lindstedt_number::Exact;
 /// use lindstedt_number::{ball::Balls, digits::decimal};
 ///
-/// // The paper's point: a = b = 1, alpha = beta = T0 = 0.3, omega = 2, v* = 0.4.
+/// // a = b = 1, alpha = beta = T0 = 0.3, omega = 2, v* = 0.4.
 /// let coefficient = || Exact::from((3, 10));
-/// let law = PolynomialFriction::paper(coefficient(), &coefficient(), coefficient());
+/// let law = PolynomialFriction::cubic(coefficient(), &coefficient(), coefficient());
 /// let system = System::new(
 ///     Potential::DoubleWell { a: Exact::from(1), b: Exact::from(1) },
 ///     Friction::Polynomial(law),
@@ -42,6 +40,7 @@ pub enum Class {
 pub struct System {
     potential: Potential,
     friction: Friction,
+    damping: Vec<Damping>,
     forcing: Forcing,
     belt_speed: Exact,
 }
@@ -121,38 +120,70 @@ impl System {
         potential.check()?;
         friction.check()?;
         forcing.check()?;
-        Ok(Self { potential, friction, forcing, belt_speed })
+        Ok(Self { potential, friction, damping: Vec::new(), forcing, belt_speed })
     }
+
+    /// The same with more friction, that depends on x.
+    ///
+    /// # Errors
+    /// [`MelnikovError::DegreeTooLarge`].
+    pub fn damped(self, damping: Vec<Damping>) -> Result<Self, MelnikovError> {
+        damping.iter().try_for_each(Damping::check)?;
+        Ok(Self { damping, ..self })
+    }
+
     /// The potential.
     #[must_use]
     pub fn potential(&self) -> &Potential {
         &self.potential
     }
+    /// T.
+    #[must_use]
+    pub fn friction(&self) -> &Friction {
+        &self.friction
+    }
+    /// The terms c g(x) x'^j.
+    #[must_use]
+    pub fn damping(&self) -> &[Damping] {
+        &self.damping
+    }
+    /// The forcing.
+    #[must_use]
+    pub fn forcing(&self) -> &Forcing {
+        &self.forcing
+    }
+    /// v*.
+    #[must_use]
+    pub fn belt_speed(&self) -> &Exact {
+        &self.belt_speed
+    }
 
     /// D on a branch. Certified for polynomial friction, estimated by quadrature otherwise.
     ///
     /// # Errors
-    /// [`MelnikovError::NoMirrorImage`], [`MelnikovError::Undecided`], or those of the quadrature.
+    /// [`MelnikovError::NoMirrorImage`], [`MelnikovError::NoClosedForm`] for friction that depends on x in a
+    /// way that the orbit does not take, [`MelnikovError::Undecided`], or those of the quadrature.
     pub fn dissipation(
         &self,
         balls: Balls,
         branch: Branch,
     ) -> Result<(Ball, Class), MelnikovError> {
         self.check_branch(branch)?;
-        let undecided = MelnikovError::Undecided { bits: balls.bits() };
-        if let Friction::Polynomial(law) = &self.friction {
-            let d = polynomial_dissipation(balls, &self.potential, law, branch, &self.belt_speed);
-            return Ok((d.ok_or(undecided)?, Class::Certified));
-        }
         let bits = balls.bits();
-        let d = quadrature_dissipation(
-            bits,
-            &self.potential,
-            &self.friction,
-            branch,
-            &self.belt_speed,
-        )?;
-        Ok((balls.from_parts(&d.value, &d.error), Class::Estimated))
+        let undecided = || MelnikovError::Undecided { bits };
+        let (potential, belt) = (&self.potential, &self.belt_speed);
+        if !self.damping.iter().all(|term| potential.takes_damping(&term.factor)) {
+            return Err(MelnikovError::NoClosedForm);
+        }
+        let along = damping_work(balls, potential, &self.damping, branch).ok_or_else(undecided)?;
+        let (law, class) = if let Friction::Polynomial(law) = &self.friction {
+            let d = polynomial_dissipation(balls, potential, law, branch, belt);
+            (d.ok_or_else(undecided)?, Class::Certified)
+        } else {
+            let d = quadrature_dissipation(bits, potential, &self.friction, branch, belt)?;
+            (balls.from_parts(&d.value, &d.error), Class::Estimated)
+        };
+        Ok((balls.add(&law, &along), class))
     }
 
     /// M(t0) = gamma F(omega t0) - D at one t0 (not for incommensurate forcing).
@@ -168,9 +199,8 @@ impl System {
         t0: &Exact,
     ) -> Result<(Ball, Class), MelnikovError> {
         let (d, class) = self.dissipation(balls, branch)?;
-        let omega = match &self.forcing {
-            Forcing::Harmonics { omega, .. } | Forcing::Parametric { omega } => omega,
-            Forcing::Incommensurate(_) => return Err(MelnikovError::NoClosedForm),
+        let Forcing::Harmonics { omega, .. } = &self.forcing else {
+            return Err(MelnikovError::NoClosedForm);
         };
         let work = self.work(balls, branch)?;
         let theta = balls.mul(&omega.ball(balls), &t0.ball(balls));
@@ -181,43 +211,35 @@ impl System {
     /// F(theta), the work of the forcing at unit gamma.
     ///
     /// # Errors
-    /// [`MelnikovError::NoClosedForm`] where the forcing has no such form,
-    /// [`MelnikovError::Undecided`] where its size leaves the range of the exponents.
+    /// [`MelnikovError::NoClosedForm`] for incommensurate frequencies and for a factor that the
+    /// orbit does not take ([`Potential::takes_force`]), [`MelnikovError::Undecided`] where its size
+    /// leaves the range of the exponents.
     pub fn work(&self, balls: Balls, branch: Branch) -> Result<ForcingWork, MelnikovError> {
+        match &self.forcing {
+            Forcing::Harmonics { omega, harmonics } => {
+                self.work_of(balls, branch, (omega, harmonics))
+            }
+            Forcing::Incommensurate(_) => Err(MelnikovError::NoClosedForm),
+        }
+    }
+
+    fn work_of(
+        &self,
+        balls: Balls,
+        branch: Branch,
+        part: (&Exact, &[Harmonic]),
+    ) -> Result<ForcingWork, MelnikovError> {
         self.check_branch(branch)?;
-        let closed = match &self.forcing {
-            Forcing::Harmonics { .. } => true,
-            Forcing::Parametric { .. } => self.potential.description().is_some_and(|orbit| {
-                let ring = HyperbolicRing;
-                ring.mul(&orbit.shape, &ring.derivative(&orbit.shape)).decays()
-            }),
-            Forcing::Incommensurate(_) => false,
-        };
-        if !closed {
+        if !part.1.iter().all(|harmonic| self.potential.takes_force(&harmonic.factor)) {
             return Err(MelnikovError::NoClosedForm);
         }
-        ForcingWork::new(balls, &self.potential, branch, &self.forcing)
+        ForcingWork::new(balls, &self.potential, branch, part)
             .ok_or(MelnikovError::Undecided { bits: balls.bits() })
     }
 
     /// (max F, -min F).
     fn reach(&self, balls: Balls, branch: Branch) -> Result<(Ball, Ball), MelnikovError> {
-        let undecided = MelnikovError::Undecided { bits: balls.bits() };
-        if let Forcing::Incommensurate(terms) = &self.forcing {
-            let mut sum = balls.zero();
-            for (omega, weight) in terms {
-                let transform = self.potential.velocity_transform(balls, &omega.ball(balls));
-                let (c, s) = transform.ok_or(undecided.clone())?;
-                let square = balls.add(&balls.square(&c), &balls.square(&s));
-                let size = balls.sqrt(&square).ok_or(undecided.clone())?;
-                sum = balls.add(&sum, &balls.mul(&size, &weight.abs().ball(balls)));
-            }
-            return Ok((sum.clone(), sum));
-        }
-        let work = self.work(balls, branch)?;
-        let largest = work.extreme(balls, false).ok_or(undecided.clone())?;
-        let smallest = work.extreme(balls, true).ok_or(undecided)?;
-        Ok((largest, balls.neg(&smallest)))
+        self.forcing.reach(balls, &|part| self.work_of(balls, branch, part))
     }
 
     /// The threshold of simple zeros of M on a branch.

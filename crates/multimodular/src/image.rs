@@ -1,12 +1,14 @@
 //! The image of an expansion modulo one prime: derived, and substituted into the equation.
 
+use crate::images::Attempt;
 use crate::lifted::Lifted;
+use crate::phase::Phase;
 use crate::{Error, Over, RationalBinding};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_equation::Expression;
 use lindstedt_expand::{
-    Equation, ExpandError, Expansion, Known, OrderNumbers, OrderWork, Request, check_from, compile,
-    extend,
+    AtPhase, Equation, ExpandError, Expansion, Known, OrderNumbers, OrderWork, Request, check_from,
+    check_normalisation, compile, extend, fails_at_phase,
 };
 use lindstedt_phase::Modular;
 use lindstedt_phase::modular::PrimeField;
@@ -112,11 +114,7 @@ impl Job<'_> {
 
     /// The image of the expansion modulo p, checked from the orders on that are not proved yet; nothing is kept of
     /// those. Inside: why there is none modulo this prime.
-    pub(crate) fn image(
-        &self,
-        field: PrimeField,
-        proved: &[Lifted],
-    ) -> Result<Result<Image, ExpandError>, Error> {
+    pub(crate) fn image(&self, field: PrimeField, proved: &[Lifted]) -> Attempt {
         let (algebra, equation) = self.over(field)?;
         let mut known = (Vec::new(), Vec::new());
         for (order, lifted) in proved.iter().enumerate() {
@@ -127,8 +125,41 @@ impl Job<'_> {
             known.1.push(squared);
         }
         let known = Known { solution: &known.0, squared: &known.1 };
+        let mut image = match self.derived(&algebra, &equation, known)? {
+            Ok(image) => image,
+            Err(unlucky) => return Ok(Err(unlucky)),
+        };
+        self.check(&algebra, &equation, &image, proved.len())?;
+        (0..proved.len()).for_each(|n| image.forget(n));
+        Ok(Ok(image))
+    }
+
+    /// W_n, omega_n and T_n modulo p, from an image that is substituted at one phase alone.
+    pub(crate) fn brief_image(&self, field: PrimeField) -> Attempt {
+        let (algebra, equation) = self.over(field)?;
+        let known = Known { solution: &[], squared: &[] };
+        let mut image = match self.derived(&algebra, &equation, known)? {
+            Ok(image) => image,
+            Err(unlucky) => return Ok(Err(unlucky)),
+        };
+        self.check_at_phase(&algebra, &equation, &image)?;
+        for (places, values) in image.places.iter().zip(&mut image.values) {
+            values.truncate(places.iter().filter(|place| place.harmonic().is_none()).count());
+            values.shrink_to_fit();
+        }
+        Ok(Ok(image))
+    }
+
+    /// What the driver gives modulo p.
+    fn derived(
+        &self,
+        algebra: &Modular,
+        equation: &Equation<Modular>,
+        known: Known<'_, Modular>,
+    ) -> Attempt {
+        let field = *algebra.field();
         let go_on = &mut |_: &OrderWork| !self.stop.asked();
-        let found = extend(&algebra, &equation, &self.request, known, go_on);
+        let found = extend(algebra, equation, &self.request, known, go_on);
         self.go_on()?;
         let expansion = match found {
             Ok(expansion) => expansion,
@@ -152,10 +183,7 @@ impl Job<'_> {
             places.push(place);
             values.push(value);
         }
-        let mut image = Image { field, places: Arc::new(places), values };
-        self.check(&algebra, &equation, &image, proved.len())?;
-        (0..proved.len()).for_each(|n| image.forget(n));
-        Ok(Ok(image))
+        Ok(Ok(Image { field, places: Arc::new(places), values }))
     }
 
     /// Substitutes an image into the equation modulo its prime; the orders below `first` are proved. What is checked is
@@ -167,6 +195,43 @@ impl Job<'_> {
         image: &Image,
         first: usize,
     ) -> Result<(), Error> {
+        let (expansion, _) = self.stated(algebra, image)?;
+        let checked = check_from(algebra, equation, &expansion, first)?;
+        let broken = Error::from(ExpandError::Residual { order: checked });
+        if checked == self.request.order { Ok(()) } else { Err(broken) }
+    }
+
+    /// Substitutes an image at one phase, which the prime decides: what does not vanish there, does not; what does,
+    /// does not with a chance of twice its degree over p.
+    pub(crate) fn check_at_phase(
+        &self,
+        algebra: &Modular,
+        equation: &Equation<Modular>,
+        image: &Image,
+    ) -> Result<(), Error> {
+        let field = algebra.field();
+        let (expansion, frequency) = self.stated(algebra, image)?;
+        check_normalisation(algebra, &expansion)?;
+        let phase = Phase::new(field, 2 * self.points).ok_or(Error::OutOfPrimes)?;
+        let mut functions = [const { Vec::new() }; 3];
+        for x in &expansion.solution {
+            let values = phase.values(field, algebra.harmonics(x));
+            functions.iter_mut().zip(values).for_each(|(list, value)| list.push(value));
+        }
+        let (squared, stiffness) = (expansion.frequency_squared, expansion.stiffness);
+        let at = AtPhase { functions, squared, frequency, stiffness };
+        match fails_at_phase(field, equation, at) {
+            Some(order) => Err(ExpandError::Residual { order }.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// The expansion that the numbers of an image state, and omega: its square is W, its product with T is 1.
+    fn stated(
+        &self,
+        algebra: &Modular,
+        image: &Image,
+    ) -> Result<(Expansion<Modular>, Vec<u64>), Error> {
         let field = algebra.field();
         let size = 2 * self.points + 1;
         let mut solution = Vec::new();
@@ -205,9 +270,7 @@ impl Job<'_> {
             work: Vec::new(),
             certificates: Vec::new(),
         };
-        let checked = check_from(algebra, equation, &expansion, first)?;
-        let broken = Error::from(ExpandError::Residual { order: checked });
-        if checked == self.request.order { Ok(()) } else { Err(broken) }
+        Ok((expansion, frequency.coefficients))
     }
 
     /// Compares numbers over Q with an image that had no part in them.

@@ -12,25 +12,29 @@
 //! order n is divisible by all the primes and smaller than their product: zero.
 //! A prime that is first needed at order m begins there, from the orders below as they are modulo p.
 
+mod frequency;
 mod image;
+mod images;
 mod lift;
 mod lifted;
+mod phase;
 #[cfg(test)]
 mod tests;
 
-use image::{Image, Job};
+pub use frequency::{ProvedFrequency, frequency};
+use image::Job;
+use images::Images;
 use lift::Remaindering;
 use lifted::Lifted;
 use lindstedt_algebra::{RationalAlgebra, Rationals, Stop};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_expand::{
-    Binding, ExpandError, Expansion, Request, ResidualBound, compile, degrees,
+    Binding, ExpandError, Expansion, Request, ResidualBound, amplitude_reaction, compile, degrees,
     equation_denominator, expand, leading_amplitude,
 };
 use lindstedt_phase::modular::PrimeField;
 use lindstedt_phase::{Modular, Trigonometric};
-use rayon::prelude::*;
-use rug::Rational;
+use rug::{Integer, Rational};
 
 /// The plain algebra over Q, in which results are stated.
 pub type RationalAlgebraOfPhase = Trigonometric<Rationals>;
@@ -116,59 +120,91 @@ pub fn derive(
     stop: &Stop,
     observer: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Proved, Error> {
-    let plain = Trigonometric::new(Rationals);
-    let over_q = Over(binding, &Rationals);
-    let compiled = compile(&plain, equation, &over_q, order)?;
-    let leading_amplitude = leading_amplitude(&plain, &compiled, condition)?;
-    let request = Request { condition, order, leading_amplitude };
-    let (degrees, degree) = degrees(&compiled, order).ok_or_else(|| {
-        ExpandError::UnsupportedTerm { term: "a term that is not polynomial".into() }
-    })?;
-    let (points, roots) = Modular::points_for_degree(degree);
-    let initial = Condition::InitialAmplitude;
-    let zero = Request { order: 0, condition: initial, ..request.clone() };
-    let stiffness = expand(&plain, &compiled, &zero, &mut |_| true)?.stiffness;
-    let largest = degrees.last().copied().unwrap_or(1);
-    let is_cycle = condition == Condition::LimitCycle;
-    let bound = ResidualBound::new(&compiled, &stiffness, largest, is_cycle)?;
-    let job = Job { equation, binding, request, stiffness: stiffness.clone(), points, stop };
-    // Reduction is a homomorphism only where no denominator vanishes, and what is divided by must not.
-    let mut numbers = equation_denominator(&compiled) * stiffness.numer() * stiffness.denom();
-    numbers *= job.request.leading_amplitude.numer();
-    numbers *= job.request.leading_amplitude.denom();
-    let primes = PrimeField::with_roots_of_unity(roots, 1 << 61);
-    let primes = primes.filter(|field| field.integer(&numbers) != 0);
-    let (images, found, needs) = (Vec::new(), Vec::new(), Vec::new());
-    Ladder { job: &job, primes, images, bound, found, needs }.climb(observer)
+    let setting = Setting::new(equation, binding, condition, order, stop)?;
+    let images = Images::new(&setting.job, setting.primes());
+    let (bound, largest) = (setting.bound.clone(), setting.largest);
+    let (found, needs) = (Vec::new(), Vec::new());
+    Ladder { job: &setting.job, images, bound, found, needs, largest }.climb(observer)
+}
+
+/// What belongs to the equation and is known before any order is.
+struct Setting<'a> {
+    job: Job<'a>,
+    bound: ResidualBound,
+    /// The highest harmonic.
+    largest: usize,
+    /// 1/S of a limit cycle.
+    reaction: Option<Rational>,
+    /// The order of the root of unity that a prime must have, and what it must not divide.
+    roots: u64,
+    numbers: Integer,
+}
+
+impl<'a> Setting<'a> {
+    fn new(
+        equation: &'a Expression,
+        binding: &'a dyn RationalBinding,
+        condition: Condition,
+        order: usize,
+        stop: &'a Stop,
+    ) -> Result<Self, Error> {
+        let plain = Trigonometric::new(Rationals);
+        let over_q = Over(binding, &Rationals);
+        let compiled = compile(&plain, equation, &over_q, order)?;
+        let leading_amplitude = leading_amplitude(&plain, &compiled, condition)?;
+        let request = Request { condition, order, leading_amplitude };
+        let (degrees, degree) = degrees(&compiled, order).ok_or_else(|| {
+            ExpandError::UnsupportedTerm { term: "a term that is not polynomial".into() }
+        })?;
+        let (points, roots) = Modular::points_for_degree(degree);
+        let initial = Condition::InitialAmplitude;
+        let zero = Request { order: 0, condition: initial, ..request.clone() };
+        let stiffness = expand(&plain, &compiled, &zero, &mut |_| true)?.stiffness;
+        let largest = degrees.last().copied().unwrap_or(1);
+        let is_cycle = condition == Condition::LimitCycle;
+        let bound = ResidualBound::new(&compiled, &stiffness, largest, is_cycle)?;
+        let reaction = amplitude_reaction(&plain, &compiled, &request)?;
+        // Reduction is a homomorphism only where no denominator vanishes, and what is divided by must not.
+        let mut numbers = equation_denominator(&compiled) * stiffness.numer() * stiffness.denom();
+        numbers *= request.leading_amplitude.numer();
+        numbers *= request.leading_amplitude.denom();
+        let job = Job { equation, binding, request, stiffness, points, stop };
+        Ok(Self { job, bound, largest, reaction, roots, numbers })
+    }
+
+    fn primes(&self) -> impl Iterator<Item = PrimeField> {
+        let primes = PrimeField::with_roots_of_unity(self.roots, 1 << 61);
+        primes.filter(|field| field.integer(&self.numbers) != 0)
+    }
 }
 
 /// The loop over the orders.
 struct Ladder<'a, P> {
     job: &'a Job<'a>,
-    primes: P,
-    /// The first one judges what the others give.
-    images: Vec<Image>,
+    images: Images<'a, P>,
     bound: ResidualBound,
     /// The orders that are proved.
     found: Vec<Lifted>,
     /// The primes that every order needed.
     needs: Vec<usize>,
+    /// The highest harmonic.
+    largest: usize,
 }
 
 impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
     fn climb(mut self, observer: &mut dyn FnMut(usize) -> bool) -> Result<Proved, Error> {
         self.more(3, observer)?;
-        let mut remaindering = Remaindering::new(&self.images[1..]);
+        let mut remaindering = Remaindering::new(&self.images.list[1..]);
         // Bits of a residual, and of the numerators, above those of the denominator.
         let mut excess = 0;
         for n in 0..=self.job.request.order {
-            let harmonics = self.images[0].harmonics(n);
+            let harmonics = self.images.list[0].harmonics(n);
             let guess = self.bound.expected(&harmonics);
             let mut needed = (i64::from(guess.significant_bits()) + excess).unsigned_abs();
             let (numbers, bits) = loop {
                 self.prepare(&mut remaindering, n, needed, observer)?;
                 self.job.go_on()?;
-                let lifted = remaindering.lift(&self.images[1..], n, &guess, self.job.stop);
+                let lifted = remaindering.lift(&self.images.list[1..], n, &guess, self.job.stop);
                 needed = remaindering.bits() + 1;
                 let Some(numbers) = lifted else { continue };
                 let bits = self.bound.take(&numbers);
@@ -178,14 +214,14 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
                 self.bound.give_back();
                 needed = bits.max(needed);
             };
-            self.job.judge(&self.images[0], n, &numbers)?;
+            self.job.judge(&self.images.list[0], n, &numbers)?;
             let lifting = u64::from(lift::MARGIN + lift::longest(&numbers) + 4);
             excess = bits.max(lifting) as i64 - i64::from(numbers.denominator.significant_bits());
             self.needs.push(remaindering.primes());
-            self.found.push(Lifted::new(&numbers, &self.images[0], n));
-            self.images.iter_mut().for_each(|image| image.forget(n));
+            self.found.push(Lifted::new(numbers, self.images.list[0].places(n)));
+            self.images.list.iter_mut().for_each(|image| image.forget(n));
         }
-        let primes = self.images.len() - 1;
+        let primes = self.images.list.len() - 1;
         let (expansion, [frequency, period]) = self.assemble();
         Ok(Proved { expansion, frequency, period, primes, proof_primes: primes + 1 })
     }
@@ -202,7 +238,9 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
             certificates: Vec::new(),
         };
         let mut series = [Vec::new(), Vec::new()];
+        let largest = u32::try_from(self.largest + 1).unwrap_or(u32::MAX);
         for order in self.found {
+            let order = order.order(largest);
             let [squared, frequency, period] = order.series;
             expansion.frequency_squared.push(squared);
             expansion.amplitude.push(order.amplitude);
@@ -225,13 +263,13 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
             return Ok(());
         }
         let own = Self::primes_for(needed);
-        let have = self.images.len() - 1;
+        let have = self.images.list.len() - 1;
         if have < own {
             self.more(self.batch(n, own), observer)?;
         }
         // Some more serve the next orders, too.
-        let last = (1 + own + own / 16).min(self.images.len());
-        *remaindering = Remaindering::new(&self.images[1..last]);
+        let last = (1 + own + own / 16).min(self.images.list.len());
+        *remaindering = Remaindering::new(&self.images.list[1..last]);
         Ok(())
     }
 
@@ -243,7 +281,7 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
     /// How many more primes to take at once: those that are needed, and where the growth so far continues,
     /// nearly those of the last order; few, because the later a prime comes the fewer orders are left to it.
     fn batch(&self, n: usize, own: usize) -> usize {
-        let have = self.images.len() - 1;
+        let have = self.images.list.len() - 1;
         let half = self.needs.get(n / 2).copied().unwrap_or(own);
         let slope = (own.saturating_sub(half), n - n / 2);
         let rest = self.job.request.order - n;
@@ -254,39 +292,7 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
 
     /// Images modulo more primes, each of them checked.
     fn more(&mut self, count: usize, observer: &mut dyn FnMut(usize) -> bool) -> Result<(), Error> {
-        let wanted = self.images.len() + count;
-        while self.images.len() < wanted {
-            let missing = wanted - self.images.len();
-            let fields: Vec<PrimeField> = self.primes.by_ref().take(missing).collect();
-            if fields.is_empty() {
-                return Err(Error::OutOfPrimes);
-            }
-            let (job, proved) = (self.job, &self.found);
-            let new: Vec<_> =
-                fields.into_par_iter().map(|field| job.image(field, proved)).collect();
-            // A prime can be unlucky (a denominator or a pivot vanishes modulo it): it is skipped. What
-            // fails modulo all of them fails over Q.
-            let mut failure = None;
-            for image in new {
-                match image {
-                    Ok(Ok(image)) => {
-                        let image = match self.images.first() {
-                            // A coefficient vanishes modulo one of two primes and not over Q.
-                            Some(judge) => image.like(judge).ok_or(Error::OutOfPrimes)?,
-                            None => image,
-                        };
-                        self.images.push(image);
-                    }
-                    Ok(Err(unlucky)) => failure = Some(unlucky),
-                    Err(broken) => return Err(broken),
-                }
-            }
-            if let (true, Some(error)) = (self.images.is_empty(), failure) {
-                return Err(error.into());
-            }
-            let stopped = ExpandError::Interrupted { order: self.job.request.order };
-            observer(self.images.len()).then_some(()).ok_or(stopped)?;
-        }
-        Ok(())
+        let (job, proved) = (self.job, &self.found);
+        self.images.more(count, &|field| job.image(field, proved), observer)
     }
 }

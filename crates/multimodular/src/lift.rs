@@ -1,11 +1,8 @@
 //! From images modulo primes to numbers over Q.
 
 use crate::image::{Image, Place};
-use crate::lifted::Lifted;
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_expand::OrderNumbers;
-use lindstedt_phase::modular::PrimeField;
-use lindstedt_phase::trigonometric::TrigonometricPolynomial;
 use rayon::prelude::*;
 use rug::{Integer, Rational};
 
@@ -56,12 +53,9 @@ impl Remaindering {
         stop: &Stop,
     ) -> Option<OrderNumbers> {
         let places = images.first()?.places(n);
-        let pairs = images.iter().zip(&self.cofactors);
-        let factors: Vec<u64> = pairs
-            .map(|(image, (_, inverse))| image.field.mul(inverse, &image.field.integer(guess)))
-            .collect();
+        let factors = self.factors(images, guess);
         let numerator =
-            |index: usize| (!stop.asked()).then(|| self.numerator(images, n, index, &factors));
+            |index: usize| (!stop.asked()).then(|| self.combined(images, n, index, &factors));
         // One number decides whether the others are worth their while.
         let probe = places.len().saturating_sub(1).min(3);
         let mut growing = Growing { modulus: &self.modulus, factor: Integer::from(1) };
@@ -87,8 +81,27 @@ impl Remaindering {
         Some(lowest_terms(places.iter().copied().zip(rescaled).collect(), denominator))
     }
 
-    /// The representative of the smallest absolute value of a number times the guess.
-    fn numerator(&self, images: &[Image], n: usize, index: usize, factors: &[u64]) -> Integer {
+    /// The inverses of the cofactors times a number.
+    fn factors(&self, images: &[Image], number: &Integer) -> Vec<u64> {
+        let pairs = images.iter().zip(&self.cofactors);
+        let factor = |(image, (_, inverse)): (&Image, &(Integer, u64))| {
+            image.field.mul(inverse, &image.field.integer(number))
+        };
+        pairs.map(factor).collect()
+    }
+
+    /// The representative of the smallest absolute value of a number times its denominator.
+    pub(crate) fn numerator(
+        &self,
+        images: &[Image],
+        n: usize,
+        index: usize,
+        denominator: &Integer,
+    ) -> Integer {
+        self.combined(images, n, index, &self.factors(images, denominator))
+    }
+
+    fn combined(&self, images: &[Image], n: usize, index: usize, factors: &[u64]) -> Integer {
         let mut sum = Integer::with_capacity(self.modulus.significant_bits() as usize + 128);
         for ((image, (cofactor, _)), factor) in images.iter().zip(&self.cofactors).zip(factors) {
             let field = &image.field;
@@ -184,43 +197,4 @@ pub(crate) fn longest(numbers: &OrderNumbers) -> u32 {
         q.numer().significant_bits() + more
     });
     own.chain(series).max().unwrap_or(1)
-}
-
-impl Lifted {
-    /// From numerators over their common denominator; what they belong to is written in an image.
-    pub(crate) fn new(numbers: &OrderNumbers, image: &Image, n: usize) -> Self {
-        let denominator = &numbers.denominator;
-        let places = image.places(n).iter().filter(|place| place.harmonic().is_some());
-        let reduce = |(_, c): &(usize, Integer)| Rational::from((c.clone(), denominator.clone()));
-        let values: Vec<Rational> = numbers.numerators.par_iter().map(reduce).collect();
-        let mut solution = TrigonometricPolynomial { cos: Vec::new(), sin: Vec::new() };
-        let mut amplitude = Integer::new();
-        for ((place, value), (_, numerator)) in places.zip(values).zip(&numbers.numerators) {
-            let (list, k) = match *place {
-                Place::Sine(k) => (&mut solution.sin, k),
-                Place::Cosine(k) => {
-                    amplitude += numerator;
-                    (&mut solution.cos, k)
-                }
-                Place::Squared | Place::Frequency | Place::Period => continue,
-            };
-            list.resize_with(k, Rational::new);
-            list.push(value);
-        }
-        let amplitude = Rational::from((amplitude, denominator.clone()));
-        let series = [&numbers.squared, &numbers.frequency, &numbers.period].map(Clone::clone);
-        Self { series, amplitude, solution }
-    }
-
-    /// W_n and the amplitudes of cosines and sines modulo p; nothing where p divides a denominator.
-    pub(crate) fn modulo(&self, field: &PrimeField) -> Option<(u64, [Vec<u64>; 2])> {
-        let TrigonometricPolynomial { cos, sin } = &self.solution;
-        let all = self.series[..1].iter().chain(cos).chain(sin);
-        let inverses = field.reciprocals(&field.integers(all.clone().map(Rational::denom)))?;
-        let numerators = field.integers(all.map(Rational::numer)).into_iter();
-        let mut residues = numerators.zip(inverses).map(|(c, inverse)| field.mul(&c, &inverse));
-        let squared = residues.next()?;
-        let cosines = residues.by_ref().take(cos.len()).collect();
-        Some((squared, [cosines, residues.collect()]))
-    }
 }

@@ -138,14 +138,23 @@ impl Interval {
     /// x^n; of even powers no negative values.
     #[must_use]
     pub fn powi(self, n: u32) -> Self {
-        let size = |x: f64| (0..n).fold(Self::ONE, |power, _| power * Self::point(x));
-        if n % 2 == 1 || self.low >= 0.0 {
-            return Self::new(size(self.low).low, size(self.high).high);
-        }
-        if n == 0 {
-            return Self::ONE;
-        }
-        Self::new(size(self.below()).low.max(0.0), size(self.above()).high)
+        self.powers(n).last().unwrap_or(Self::ONE)
+    }
+    /// x^0, x^1, ..., x^largest, the ends of each from those of the one before.
+    pub fn powers(self, largest: u32) -> impl Iterator<Item = Self> {
+        let [low, high] = [self.low, self.high].map(Self::point);
+        let mut ends = [Self::ONE; 2];
+        (0..=largest).map(move |n| {
+            if n > 0 {
+                ends = [ends[0] * low, ends[1] * high];
+            }
+            match ends {
+                _ if n == 0 => Self::ONE,
+                [a, b] if n % 2 == 1 || self.low >= 0.0 => Self::new(a.low, b.high),
+                [a, b] if self.high <= 0.0 => Self::new(b.low.max(0.0), a.high),
+                [a, b] => Self::new(0.0, a.high.max(b.high)),
+            }
+        })
     }
 }
 

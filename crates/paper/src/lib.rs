@@ -13,6 +13,7 @@ mod lobachevsky;
 mod melnikov;
 mod numbers;
 mod orders;
+mod oscillator;
 pub mod page;
 mod pendulum;
 mod pendulum_numbers;
@@ -31,6 +32,7 @@ mod verdict;
 mod vibro_impact;
 
 pub use compare::Decimal;
+pub use oscillator::section_three;
 pub use printed::{PrintedForm, printed_forms};
 pub use reading::Paper;
 pub use text::{Part, Text};

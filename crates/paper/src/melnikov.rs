@@ -2,6 +2,7 @@
 
 use super::printed::{COMPARED_AT, PrintedForm, printed_forms};
 use super::{Decimal, Reader, Row, Section, plain, show};
+use crate::oscillator::{oscillator, section_three};
 use lindstedt::{DerivationError, Error};
 use lindstedt_melnikov::{
     Branch, Friction, MelnikovError, PolynomialFriction, StickSlip, quadrature_dissipation,
@@ -75,14 +76,9 @@ fn row(label: String, comparison: &PrintedForm, quadrature: Option<f64>) -> Row 
     )
 }
 
-/// The paper's oscillator with another b and v*.
-pub(super) fn oscillator(b: i32, belt_speed: Exact) -> StickSlip {
-    StickSlip { b: Exact::from(b), belt_speed, ..StickSlip::paper() }
-}
-
 /// D by quadrature, as an estimate.
 fn work(oscillator: &StickSlip) -> Result<rug::Float, Error> {
-    let law = PolynomialFriction::paper(
+    let law = PolynomialFriction::cubic(
         oscillator.dry.clone(),
         &oscillator.alpha,
         oscillator.beta.clone(),
@@ -113,7 +109,7 @@ pub(super) fn read_numbers(reader: &mut Reader<'_>, section: &mut Section) -> Re
 
 /// gamma_c = 0.65.
 fn threshold(balls: Balls) -> Result<Row, Error> {
-    let paper = StickSlip::paper();
+    let paper = section_three();
     let value = balls.abs(&paper.signed_threshold(balls).ok_or(Error::NoValue)?);
     let printed = Decimal::new("0.65").ok_or(Error::NoValue)?;
     let system = paper.system().map_err(failed)?;
@@ -191,7 +187,7 @@ fn extremes(paper: &StickSlip, balls: Balls) -> Result<Vec<String>, Error> {
 /// out. The derived value is linear in the dry, alpha and beta terms; at v* = 0 beta has this part
 /// alone.
 fn without_quartic(balls: Balls) -> Option<Ball> {
-    let paper = StickSlip::paper();
+    let paper = section_three();
     let none = || Exact::from(0);
     let quartic = StickSlip { dry: none(), alpha: none(), belt_speed: none(), ..paper.clone() };
     Some(balls.sub(&paper.signed_threshold(balls)?, &quartic.signed_threshold(balls)?))
@@ -275,7 +271,7 @@ fn cusps(printed: &[&'static str; 2], balls: Balls) -> Result<Row, Error> {
 
 /// The cusp can be brought to gamma = 0 by b.
 fn touching(balls: Balls) -> Option<Row> {
-    let paper = StickSlip::paper();
+    let paper = section_three();
     let b = paper.touching_b()?;
     let at =
         |b: Rational| StickSlip { b: Exact::from(b), ..paper.clone() }.threshold_at_cusp(balls);

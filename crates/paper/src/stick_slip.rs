@@ -1,12 +1,13 @@
 //! Section 3, the equation (18)-(21) exactly, and the table of thresholds.
 
-use super::melnikov::{failed, oscillator};
+use super::melnikov::failed;
 use super::{Reader, Row, Section, Table, plain, show};
+use crate::oscillator::{oscillator, section_three};
 use crate::text::texts;
 use lindstedt::Error;
 use lindstedt_equation::Expression;
 use lindstedt_melnikov::{
-    Monomial, OrbitDescription, PolynomialFriction, Region, StickSlip, belt_cycles, sticking_begins,
+    Monomial, OrbitDescription, PolynomialFriction, Region, belt_cycles, sticking_begins,
 };
 use lindstedt_number::Exact;
 use lindstedt_number::ball::Balls;
@@ -96,7 +97,7 @@ fn reduction(points: &mut Points, orbit: &OrbitDescription) -> Option<Reduction>
     // The parameters as (20) prints them.
     let per_mass = |q: &Rational| Rational::from(q / &m);
     let (a, b, gamma) = (per_mass(&k1), per_mass(&k2), per_mass(&forcing));
-    let friction = PolynomialFriction::paper(
+    let friction = PolynomialFriction::cubic(
         Exact::from(per_mass(&dry)),
         &Exact::from(per_mass(&linear)),
         Exact::from(per_mass(&cubic)),
@@ -160,7 +161,7 @@ fn flow(points: &mut Points, orbit: &OrbitDescription) -> Option<[bool; 2]> {
 
 /// Reads the equation.
 pub(super) fn read_equation(_: &mut Reader<'_>, section: &mut Section) -> Result<bool, Error> {
-    let orbit = StickSlip::paper().potential().description().ok_or(Error::NoValue)?;
+    let orbit = section_three().potential().description().ok_or(Error::NoValue)?;
     let mut points = Points(20);
     let mut reductions = Vec::new();
     let mut flows = Vec::new();
@@ -260,7 +261,7 @@ fn table(balls: Balls) -> Result<Table, Error> {
         cells.resize(columns.len(), "none".to_owned());
         rows.push(cells);
     }
-    let touching = StickSlip::paper().touching_b().ok_or(Error::NoValue)?;
+    let touching = section_three().touching_b().ok_or(Error::NoValue)?;
     Ok(Table {
         name: "thresholds".to_owned(),
         title: "$gamma(v*)$: $a = 1$, $alpha = beta = T0 = 0.3$, $omega = 2$".into(),
@@ -284,8 +285,8 @@ fn table(balls: Balls) -> Result<Table, Error> {
 fn cycles(balls: Balls) -> Result<Table, Error> {
     let columns =
         ["$b$", "orbit", "$v*$", "smallest $x$", "largest $x$", "largest $v$", "$lambda/eps$"];
-    let (a, paper) = (Exact::from(1), StickSlip::paper());
-    let law = PolynomialFriction::paper(paper.dry.clone(), &paper.alpha, paper.beta.clone());
+    let (a, paper) = (Exact::from(1), section_three());
+    let law = PolynomialFriction::cubic(paper.dry.clone(), &paper.alpha, paper.beta.clone());
     let mut rows = Vec::new();
     for b in [1, 5] {
         for (region, name) in [(Region::Inside, "in a well"), (Region::Outside, "around both")] {

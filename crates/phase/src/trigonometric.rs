@@ -239,6 +239,14 @@ impl<C: RationalAlgebra> PhaseAlgebra for Trigonometric<C> {
         };
         self.trim(TrigonometricPolynomial { cos: times(&f.sin, 1), sin: times(&f.cos, -1) })
     }
+    /// (1 - k^2) c_k: no sum of two long numbers.
+    fn force(&self, f: &Self::Element) -> Self::Element {
+        let times = |list: &[C::Element]| -> Vec<C::Element> {
+            let factors = (0i64..).map(|k| Rational::from(1 - k * k));
+            list.iter().zip(factors).map(|(c, k)| self.constants.scale(c, &k)).collect()
+        };
+        self.trim(TrigonometricPolynomial { cos: times(&f.cos), sin: times(&f.sin) })
+    }
     fn at_zero(&self, f: &Self::Element) -> Option<C::Element> {
         let mut sum = self.constants.zero();
         for c in &f.cos {

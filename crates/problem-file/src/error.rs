@@ -140,9 +140,15 @@ pub enum ParseErrorKind {
     /// x stands in a history.
     #[error("a history is an expression in t, without x")]
     StateInHistory,
-    /// x'' does not occur.
-    #[error("x'' does not occur, so the equation is no oscillator of second order")]
-    NoAcceleration,
+    /// Neither x'' nor x' occurs.
+    #[error("neither x'' nor x' occurs, so the equation is no differential equation")]
+    NoDerivative,
+    /// x' does not occur linearly with a constant factor in an equation without x''.
+    #[error("x' inside {term}: without x'' it must stand alone or with a constant factor")]
+    VelocityInside {
+        /// The term.
+        term: String,
+    },
     /// x'' does not occur linearly with a constant factor.
     #[error("x'' inside {term}: it must stand alone or with a constant factor")]
     AccelerationInside {
@@ -221,7 +227,10 @@ impl ParseError {
             }
             K::TooLarge { .. } => String::new(),
             K::StateInHistory => "for example cos(2*t); or constant, or free-flight".into(),
-            K::NoAcceleration => "for example x'' + x + eps*x^3 = 0".into(),
+            K::NoDerivative => {
+                "for example x'' + x + eps*x^3 = 0, or x' + alpha*x(t - 1)*(1 + x) = 0".into()
+            }
+            K::VelocityInside { .. } => "divide the equation by the factor of x'".into(),
             K::AccelerationInside { .. } => "divide the equation by the factor of x''".into(),
             K::NoTaylor { .. } => {
                 "known: sin, cos, tan, exp, sinh, cosh, tanh, atan, ln(1 + z), (1 + z)^q".into()

@@ -287,7 +287,7 @@ fn asked(reader: &Reader<'_>, schema: &Schema) -> Result<Vec<Quantity>, FileErro
     schema.asked.iter().map(one).collect()
 }
 
-/// An equation with x'' alone and what stands for its parameters.
+/// An equation with x'' alone, or x' where there is no x'', and what stands for its parameters.
 fn read_equation(
     reader: &Reader<'_>,
     text: &Spanned<String>,
@@ -299,14 +299,18 @@ fn read_equation(
         // Masses may couple.
         return Ok(meanings.put_in(&equation));
     }
-    let alone = equation.acceleration_alone().map_err(|fault| {
+    let alone = equation.highest_alone().map_err(|fault| {
         let whole = 0..text.get_ref().len();
         let (kind, at) = match fault {
-            AccelerationFault::Missing => (ParseErrorKind::NoAcceleration, whole),
+            AccelerationFault::Missing => (ParseErrorKind::NoDerivative, whole),
             AccelerationFault::Inside(term) => {
                 let at = locate(text.get_ref(), names, &term).unwrap_or(whole);
                 let term = excerpt(&term.print(&names.small, Style::Text));
-                (ParseErrorKind::AccelerationInside { term }, at)
+                let kind = match equation.is_first_order() {
+                    true => ParseErrorKind::VelocityInside { term },
+                    false => ParseErrorKind::AccelerationInside { term },
+                };
+                (kind, at)
             }
         };
         reader.inside(text, ParseError::new(kind, at))

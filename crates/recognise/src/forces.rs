@@ -1,6 +1,7 @@
 //! The terms of Melnikov's form, and the harmonic forces among them.
 
 use crate::bound::PI;
+use crate::factors::{Factors, factors, is_wave};
 use crate::in_pi::InPi;
 use crate::refusal::Why;
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
@@ -8,6 +9,7 @@ use lindstedt_equation::{Expression, Function};
 use lindstedt_melnikov::{Forcing, Harmonic};
 use lindstedt_number::Exact;
 use rug::{Integer, Rational};
+use std::cmp::Ordering;
 
 /// Harmonics k omega up to this k.
 const LARGEST_HARMONIC: u32 = 10_000;
@@ -15,7 +17,11 @@ const LARGEST_HARMONIC: u32 = 10_000;
 /// What a term can be.
 pub(crate) enum Kind {
     Force,
+    /// Of x' alone.
     Friction,
+    /// g(x) x'^j.
+    Damping,
+    /// g(x) cos(omega t + phase).
     Harmonic,
 }
 
@@ -39,17 +45,31 @@ pub(crate) fn kind(all: &Monomials, m: &Monomial) -> Result<Kind, Why> {
         0 if time || velocity => Err(Why::NotSmall),
         0 => Ok(Kind::Force),
         1 if time => {
-            let harmonic = m.atoms.values().eq(&[1]) && atoms().all(|e| angle(e).is_some());
-            if !harmonic || velocity || m.x > 1 {
-                Err(Why::NotHarmonic)
-            } else {
-                Ok(Kind::Harmonic)
-            }
+            let waves = || m.atoms.iter().filter_map(|(key, n)| Some((all.atoms.get(key)?, *n)));
+            let moving = || waves().filter(|(e, _)| e.contains(&Expression::Time));
+            let harmonic = moving().count() == 1 && moving().all(|(e, n)| n == 1 && is_harmonic(e));
+            let still = waves().all(|(e, _)| e.contains(&Expression::Time) || is_wave(e));
+            if harmonic && still && !velocity { Ok(Kind::Harmonic) } else { Err(Why::NotHarmonic) }
         }
+        1 if position && atoms().all(is_wave) => Ok(Kind::Damping),
         1 if position => Err(Why::DependsOnPosition),
         1 => Ok(Kind::Friction),
         _ => Err(Why::HigherOrder),
     }
+}
+
+/// Whether it is a sine or cosine of omega t + phase.
+fn is_harmonic(e: &Expression) -> bool {
+    angle(e).is_some()
+}
+
+/// The harmonic function among the atoms of a force, with its key.
+pub(crate) fn harmonic_atom<'a>(
+    all: &'a Monomials,
+    m: &'a Monomial,
+) -> Option<(&'a String, &'a Expression)> {
+    let mut atoms = m.atoms.keys().filter_map(|key| Some((key, all.atoms.get(key)?)));
+    atoms.find(|(_, e)| is_harmonic(e))
 }
 
 /// (terms in t, terms without) of the argument of a sine or cosine of omega t + phase.
@@ -86,84 +106,108 @@ pub(crate) fn silent_frequency(bound: &Expression) -> Option<Exact> {
     Some(frequency(term)?.abs())
 }
 
-/// One harmonic force g x^p cos(omega t + phase).
+/// What orders forces of one frequency: the power of x, the sines and cosines of x, the harmonic function.
+pub(crate) type Place = (u32, Vec<(String, u32)>, String);
+
+/// One harmonic force h g(x) cos(omega t + phase).
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
     pub omega: Exact,
+    pub place: Place,
     /// In radians; nothing where it is a sum of a rational number and a multiple of pi.
     phase: Option<Exact>,
     size: Exact,
-    parametric: bool,
+    factors: Factors,
 }
 
 impl Term {
-    pub fn new(all: &Monomials, m: &Monomial, q: &Rational) -> Option<Self> {
-        let atom = all.atoms.get(m.atoms.keys().next()?)?;
-        let (frequency, phase) = angle(atom)?;
-        let omega = sum(&frequency)?.value()?;
-        let mut phase = sum(&phase)?;
-        // cos(-z) = cos z.
-        if omega.sign().is_lt() {
-            phase = phase.neg();
-        }
-        if matches!(atom, Expression::Function(Function::Sin, _)) {
-            let quarter = if omega.sign().is_lt() { 1 } else { -1 };
-            let mut turn = InPi::of(&Expression::parameter(PI))?;
-            turn = turn.scaled(&Rational::from((quarter, 2)));
-            phase = phase.plus(&turn);
-        }
-        let mut size = InPi::default();
-        size.add(m, q)?;
-        Some(Self {
-            omega: omega.abs(),
-            phase: phase.value(),
-            size: size.value()?,
-            parametric: m.x == 1,
-        })
+    pub fn new(all: &Monomials, m: &Monomial, q: &Rational) -> Result<Self, Why> {
+        let (key, atom) = harmonic_atom(all, m).ok_or(Why::NotHarmonic)?;
+        let factors = factors(all, m, Some(key)).ok_or(Why::PositionFactor)?;
+        let others = m.atoms.iter().filter(|(other, _)| *other != key);
+        let others = others.map(|(key, n)| (key.clone(), *n)).collect();
+        let place = (m.x, others, key.clone());
+        let known = || {
+            let (frequency, phase) = angle(atom)?;
+            let omega = sum(&frequency)?.value()?;
+            let mut phase = sum(&phase)?;
+            // cos(-z) = cos z.
+            if omega.sign().is_lt() {
+                phase = phase.neg();
+            }
+            if matches!(atom, Expression::Function(Function::Sin, _)) {
+                let quarter = if omega.sign().is_lt() { 1 } else { -1 };
+                let turn = InPi::of(&Expression::parameter(PI))?;
+                phase = phase.plus(&turn.scaled(&Rational::from((quarter, 2))));
+            }
+            let mut size = InPi::default();
+            size.add(m, q)?;
+            Some((omega.abs(), phase.value(), size.value()?))
+        };
+        let (omega, phase, size) = known().ok_or(Why::Irrational)?;
+        Ok(Self { omega, place, phase, size, factors })
+    }
+
+    /// By frequency, then by place.
+    pub fn before(&self, other: &Self) -> Ordering {
+        let (a, b) = (self.omega.to_f64(), other.omega.to_f64());
+        a.total_cmp(&b).then_with(|| self.place.cmp(&other.place))
     }
 }
 
 /// The force of unit lowest amplitude, and that amplitude; terms by rising frequency.
 pub(crate) fn forcing(terms: &[Term]) -> Result<(Forcing, Exact), Why> {
     let first = terms.first().ok_or(Why::NotHarmonic)?;
-    if terms.iter().any(|t| t.parametric) {
-        return match terms {
-            [only] => Ok((Forcing::Parametric { omega: only.omega.clone() }, only.size.clone())),
-            _ => Err(Why::Parametric),
-        };
-    }
-    if let [only] = terms {
-        return Ok((Forcing::single(only.omega.clone()), only.size.clone()));
-    }
-    let weights: Option<Vec<Rational>> = terms.iter().map(|t| t.size.ratio(&first.size)).collect();
-    let weights = weights.ok_or(Why::Irrational)?;
-    let ratios: Option<Vec<Rational>> = terms.iter().map(|t| t.omega.ratio(&first.omega)).collect();
-    let Some(ratios) = ratios else {
-        // A rational number and a rational multiple of pi have no common period.
-        if terms.len() > 2 {
-            return Err(Why::NotHarmonic);
+    // Frequencies with a common period.
+    let mut groups: Vec<Vec<&Term>> = Vec::new();
+    for term in terms {
+        let known = groups.iter_mut().find(|group| term.omega.ratio(&group[0].omega).is_some());
+        match known {
+            Some(group) => group.push(term),
+            None => groups.push(vec![term]),
         }
-        let list = terms.iter().zip(weights).map(|(t, w)| (t.omega.clone(), Exact::Rational(w)));
-        return Ok((Forcing::Incommensurate(list.collect()), first.size.clone()));
+    }
+    let harmonics = |group: &Vec<&Term>| in_harmonics(group, &first.size);
+    let mut parts = groups.iter().map(harmonics).collect::<Result<Vec<_>, _>>()?;
+    let forcing = match parts.pop() {
+        Some((omega, harmonics)) if parts.is_empty() => Forcing::Harmonics { omega, harmonics },
+        last => {
+            parts.extend(last);
+            Forcing::Incommensurate(parts)
+        }
     };
-    // The work of several harmonics has other extrema below than above.
-    if first.size.sign().is_lt() {
+    // The work of several frequencies has other extrema below than above.
+    let several = |group: &Vec<&Term>| group.iter().any(|term| term.omega != group[0].omega);
+    if first.size.sign().is_lt() && groups.iter().any(several) {
         return Err(Why::NegativeForce);
     }
-    // omega_i = ratio_i omega_1 = k_i omega with the largest omega.
+    Ok((forcing, first.size.clone()))
+}
+
+/// omega_i = ratio_i omega_1 = k_i omega with the largest omega, sizes in units of `unit`.
+fn in_harmonics(group: &[&Term], unit: &Exact) -> Result<(Exact, Vec<Harmonic>), Why> {
+    let first = group.first().ok_or(Why::NotHarmonic)?;
+    let ratios: Option<Vec<Rational>> = group.iter().map(|t| t.omega.ratio(&first.omega)).collect();
+    let ratios = ratios.ok_or(Why::NotHarmonic)?;
     let common = ratios.iter().fold(Integer::from(1), |c, r| c.lcm(r.denom()));
     let whole: Vec<Integer> =
         ratios.iter().map(|r| Integer::from(&common / r.denom()) * r.numer()).collect();
     let divisor = whole.iter().fold(Integer::new(), |d, k| d.gcd(k));
     let omega = first.omega.times(&Rational::from((divisor.clone(), common)));
     let mut harmonics = Vec::new();
-    for ((term, k), weight) in terms.iter().zip(whole).zip(weights) {
+    for (term, k) in group.iter().zip(whole) {
         let order = (k / &divisor).to_u32().filter(|k| *k <= LARGEST_HARMONIC);
-        harmonics.push(Harmonic {
-            order: order.ok_or(Why::NotHarmonic)?,
-            weight: Exact::Rational(weight),
-            phase: term.phase.clone().ok_or(Why::Irrational)?,
-        });
+        let order = order.ok_or(Why::NotHarmonic)?;
+        let size = term.size.ratio(unit).ok_or(Why::Irrational)?;
+        // The phase of a force alone is the origin of time.
+        let phase = if group.len() == 1 { Some(Exact::from(0)) } else { term.phase.clone() };
+        let phase = phase.ok_or(Why::Irrational)?;
+        harmonics.extend(term.factors.iter().map(|(factor, q)| Harmonic {
+            order,
+            weight: Exact::Rational(Rational::from(q * &size)),
+            phase: phase.clone(),
+            factor: factor.clone(),
+        }));
     }
-    Ok((Forcing::Harmonics { omega, harmonics }, first.size.clone()))
+    Ok((omega, harmonics))
 }

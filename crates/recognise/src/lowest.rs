@@ -2,7 +2,7 @@
 //! as it is written.
 
 use crate::bound::{bind, rest};
-use crate::forces::{Kind, frequency, kind};
+use crate::forces::{Kind, Place, frequency, harmonic_atom, kind};
 use crate::in_pi::InPi;
 use lindstedt_equation::monomials::{Monomial, Monomials, expand};
 use lindstedt_equation::{Expression, Problem};
@@ -39,7 +39,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// ```
 #[derive(Clone, Debug)]
 pub struct LowestHarmonic {
-    /// cos(omega t + phase), or with a factor x.
+    /// g(x) cos(omega t + phase).
     pub term: Expression,
     /// Its whole coefficient on the right of x'' = ..., without the small parameter.
     pub coefficient: Expression,
@@ -53,11 +53,11 @@ pub struct LowestHarmonic {
 /// The terms with one harmonic function.
 #[derive(Debug)]
 pub(crate) struct Force {
-    atom: Expression,
-    x: u32,
+    /// g(x) cos(omega t + phase).
+    term: Expression,
     /// |omega|, and what orders forces of one frequency.
     frequency: f64,
-    key: String,
+    place: Place,
     terms: Vec<(Monomial, Rational)>,
 }
 
@@ -68,23 +68,29 @@ pub(crate) fn forces(all: &Monomials, values: &BTreeMap<String, Exact>) -> Optio
         if !matches!(kind(all, m), Ok(Kind::Harmonic)) {
             continue;
         }
-        let atom = bind(all.atoms.get(m.atoms.keys().next()?)?, values);
-        let key = expand(&atom)?.atoms.keys().next()?.clone();
-        let x = m.x;
-        let place = list.iter().position(|force| force.key == key && force.x == x);
-        let place = match place {
-            Some(place) => place,
+        let (name, atom) = harmonic_atom(all, m)?;
+        let key_of =
+            |atom: &Expression| Some(expand(&bind(atom, values))?.atoms.keys().next()?.clone());
+        let mut others = Vec::new();
+        for (other, n) in m.atoms.iter().filter(|(other, _)| *other != name) {
+            others.push((key_of(all.atoms.get(other)?)?, *n));
+        }
+        let place = (m.x, others, key_of(atom)?);
+        let known = list.iter().position(|force| force.place == place);
+        let index = match known {
+            Some(index) => index,
             None => {
-                let frequency = frequency(&atom)?.to_f64().abs();
-                let atom = all.atoms.get(m.atoms.keys().next()?)?.clone();
-                list.push(Force { atom, x, frequency, key, terms: Vec::new() });
+                let frequency = frequency(&bind(atom, values))?.to_f64().abs();
+                let bare = Monomial { order: 0, parameters: BTreeMap::new(), ..m.clone() };
+                let term = all.tree(&bare, &Rational::from(1)).canonical();
+                list.push(Force { term, frequency, place, terms: Vec::new() });
                 list.len() - 1
             }
         };
-        list.get_mut(place)?.terms.push((m.clone(), Rational::from(-q)));
+        list.get_mut(index)?.terms.push((m.clone(), Rational::from(-q)));
     }
     // The order of the bound equation.
-    list.sort_by(|a, b| a.frequency.total_cmp(&b.frequency).then_with(|| a.key.cmp(&b.key)));
+    list.sort_by(|a, b| a.frequency.total_cmp(&b.frequency).then_with(|| a.place.cmp(&b.place)));
     Some(list)
 }
 
@@ -97,11 +103,9 @@ impl Force {
         Expression::Sum(self.terms.iter().map(constant).collect()).canonical()
     }
 
-    fn term(&self) -> Expression {
-        match self.x {
-            0 => self.atom.clone(),
-            x => (Expression::DISPLACEMENT.pow(i64::from(x)) * self.atom.clone()).canonical(),
-        }
+    /// Whether it does not depend on x.
+    pub fn is_plain(&self) -> bool {
+        self.place.0 == 0 && self.place.1.is_empty()
     }
 
     fn is_silent(&self, all: &Monomials, values: &BTreeMap<String, Exact>) -> bool {
@@ -137,7 +141,7 @@ impl LowestHarmonic {
         let all = expand(&rest(problem).ok()?)?;
         let (silent, sounding): (Vec<Force>, Vec<Force>) =
             forces(&all, values)?.into_iter().partition(|force| force.is_silent(&all, values));
-        let whole = |force: &Force| (force.coefficient(&all) * force.term()).canonical();
+        let whole = |force: &Force| (force.coefficient(&all) * force.term.clone()).canonical();
         let mut unheard: Vec<Expression> = silent.iter().map(whole).collect();
         let heard = if sounding.is_empty() {
             unheard.clear();
@@ -163,6 +167,6 @@ impl LowestHarmonic {
             }
             _ => None,
         };
-        Some(Self { term: lowest.term(), coefficient, parameter, silent: unheard })
+        Some(Self { term: lowest.term.clone(), coefficient, parameter, silent: unheard })
     }
 }

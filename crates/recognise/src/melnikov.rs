@@ -1,17 +1,13 @@
-//! x'' = f(x) + eps (gamma cos(omega t) - T(x' - v*)) in the form of its terms.
+//! x'' = f(x) + eps (gamma g(x) cos(omega t) - T(x' - v*) - sum c g(x) x'^j) in the form of its terms.
 
-use crate::bound::{bind, missing, multiply_out, named, rest};
-use crate::forces::{Kind, Term, forcing, kind, silent_frequency};
-use crate::in_pi::InPi;
-use crate::law::FrictionLaw;
+use crate::bound::multiply_out;
+use crate::forces::{Term, forcing, silent_frequency};
 use crate::lowest::{common, forces};
-use crate::numeric::NumericOrbit;
-use crate::potential;
+use crate::reading::{Terms, Unperturbed};
 use crate::refusal::{Refusal, Why};
-use crate::threshold::OrbitThreshold;
+use crate::threshold::{OrbitValue, Perturbation};
 use lindstedt_algebra::Stop;
-use lindstedt_equation::monomials::{Monomial, Monomials};
-use lindstedt_equation::{Expression, Problem};
+use lindstedt_equation::Problem;
 use lindstedt_melnikov::{
     Axis, Branch, Class, Forcing, Friction, MelnikovError, Potential, StickSlip, System, Threshold,
     Verdict,
@@ -20,30 +16,6 @@ use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 use std::collections::BTreeMap;
-
-/// The unperturbed oscillator.
-#[derive(Clone, Debug)]
-pub enum Unperturbed {
-    /// One with a closed orbit, in y with x = s y + constant.
-    Closed {
-        /// y'' = ...
-        potential: Potential,
-        /// s, not 0.
-        scale: Rational,
-    },
-    /// Any other smooth force, followed numerically.
-    Numeric(Box<NumericOrbit>),
-}
-
-impl Unperturbed {
-    /// With s of x = s y + constant.
-    fn of(force: &Monomials) -> Result<(Self, Rational), Refusal> {
-        if let Some((potential, scale)) = potential::closed(force) {
-            return Ok((Self::Closed { potential, scale: scale.clone() }, scale));
-        }
-        Ok((Self::Numeric(Box::new(NumericOrbit::find(force)?)), Rational::from(1)))
-    }
-}
 
 /// A problem in the form that Melnikov's method takes.
 ///
@@ -74,12 +46,8 @@ impl Unperturbed {
 pub struct MelnikovProblem {
     /// x'' = f(x).
     pub unperturbed: Unperturbed,
-    /// T in y.
-    pub friction: Friction,
-    /// The force at unit amplitude of its lowest harmonic.
-    pub forcing: Forcing,
-    /// v* in y.
-    pub belt_speed: Exact,
+    /// The rest, in y.
+    pub perturbation: Perturbation,
     /// gamma as it stands in the equation for x: the whole coefficient of the lowest harmonic, the
     /// others being in proportion to it.
     pub amplitude: Exact,
@@ -93,80 +61,66 @@ impl MelnikovProblem {
     /// # Errors
     /// [`Refusal`], naming the term that does not fit.
     pub fn new(problem: &Problem, values: &BTreeMap<String, Exact>) -> Result<Self, Refusal> {
-        if problem.impact.is_some() {
-            return Err(Refusal::Wall);
+        let terms = Terms::read(problem, values)?;
+        if let Some((term, _)) = terms.forces.first() {
+            let forces: Vec<Term> = terms.forces.iter().map(|(_, force)| force.clone()).collect();
+            let refusal = |why| Refusal::Term { term: Box::new(term.clone()), why };
+            let (forcing, amplitude) = forcing(&forces).map_err(refusal)?;
+            return Self::on_orbit(&terms, forcing, amplitude, true);
         }
-        let rest = rest(problem)?;
-        missing(&rest.parameters(), values)?;
-        let bound = bind(&rest, values);
-        let all = multiply_out(&bound)?;
-        let refuse = |m: &Monomial, q: &Rational, why| {
-            named(&rest, values, (all.tree(m, q), why), &|all, m| kind(all, m).err())
-        };
-        let (mut force, mut friction) = (Monomials::default(), Monomials::default());
-        (force.atoms, friction.atoms) = (all.atoms.clone(), all.atoms.clone());
-        let mut harmonics = Vec::new();
-        for (m, q) in &all.terms {
-            match kind(&all, m).map_err(|why| refuse(m, q, why))? {
-                Kind::Force => {
-                    force.terms.insert(m.clone(), Rational::from(-q));
-                }
-                Kind::Friction => {
-                    friction.terms.insert(m.clone(), q.clone());
-                }
-                Kind::Harmonic => {
-                    let found = Term::new(&all, m, &Rational::from(-q));
-                    harmonics.push((m, q, found.ok_or_else(|| refuse(m, q, Why::Irrational))?));
-                }
+        let amplitude = || Exact::from(0);
+        let found = Self::on_orbit(&terms, Forcing::none(), amplitude(), true);
+        let all = multiply_out(&terms.rest)?;
+        let silent = forces(&all, values).unwrap_or_default();
+        if silent.is_empty() {
+            return Err(match found {
+                Err(Refusal::NoOrbit) => Refusal::NoOrbit,
+                _ => Refusal::NoForce,
+            });
+        }
+        // In the proportions that they have with another value of a parameter of which all are multiples.
+        let is_zero = |name: &String| values.get(name).is_some_and(|value| value.sign().is_eq());
+        let name = common(&all, &silent).into_iter().find(is_zero);
+        match (name, silent.as_slice()) {
+            (Some(name), _) => {
+                let mut values = values.clone();
+                values.insert(name, Exact::Rational(Rational::from(1)));
+                Ok(Self { amplitude: amplitude(), ..Self::new(problem, &values)? })
             }
-        }
-        let mut terms: Vec<Term> = harmonics.iter().map(|(.., term)| term.clone()).collect();
-        terms.sort_by(|a, b| a.omega.to_f64().total_cmp(&b.omega.to_f64()));
-        let force_refusal = |why| match harmonics.first() {
-            Some((m, q, _)) => Refusal::Term { term: Box::new(all.tree(m, q)), why },
-            None => Refusal::NoForce,
-        };
-        let (forcing, amplitude) = match terms.as_slice() {
-            [] => {
-                if let Some(several) = Self::silent(problem, &rest, values)? {
-                    return Ok(several);
-                }
-                (Forcing::single(silent_frequency(&bound).ok_or(Refusal::NoForce)?), Exact::from(0))
+            (None, [only]) if only.is_plain() => {
+                let omega = silent_frequency(&terms.bound).ok_or(Refusal::NoForce)?;
+                let (found, forcing) = (found?, Forcing::single(omega));
+                Ok(Self { perturbation: Perturbation { forcing, ..found.perturbation }, ..found })
             }
-            list => forcing(list).map_err(force_refusal)?,
-        };
-        let off = |e: &Expression| matches!(e, Expression::Time).then(|| Expression::integer(0));
-        let law = FrictionLaw::new(&bound.substitute(&off), &friction)?;
-        let (unperturbed, scale) = Unperturbed::of(&force)?;
-        let jumps = law.jumps();
-        let (friction, belt_speed) = law.scaled(&scale);
-        let found = Self { unperturbed, friction, forcing, belt_speed, amplitude, jumps };
-        if matches!(found.forcing, Forcing::Parametric { .. }) && !found.takes_parametric(&force) {
-            return Err(force_refusal(Why::Parametric));
+            _ => Err(Refusal::SilentForces),
         }
-        if let Some(system) = found.system()? {
-            system.potential().check()?;
-        }
-        Ok(found)
     }
 
-    /// Several forces that all vanish: in the proportions that they have with another value of a
-    /// parameter of which all are multiples.
-    fn silent(
+    /// Reads the equation of a problem without a periodic force; `closed`: on an orbit in closed form, if there is one.
+    pub(crate) fn autonomous(
         problem: &Problem,
-        rest: &Expression,
         values: &BTreeMap<String, Exact>,
-    ) -> Result<Option<Self>, Refusal> {
-        let all = multiply_out(rest)?;
-        let forces = forces(&all, values).unwrap_or_default();
-        if forces.len() < 2 {
-            return Ok(None);
+        closed: bool,
+    ) -> Result<Self, Refusal> {
+        let terms = Terms::read(problem, values)?;
+        match terms.forces.first() {
+            Some((term, _)) => {
+                Err(Refusal::Term { term: Box::new(term.clone()), why: Why::Periodic })
+            }
+            None => Self::on_orbit(&terms, Forcing::none(), Exact::from(0), closed),
         }
-        let is_zero = |name: &String| values.get(name).is_some_and(|value| value.sign().is_eq());
-        let name = common(&all, &forces).into_iter().find(is_zero);
-        let mut values = values.clone();
-        values.insert(name.ok_or(Refusal::SilentForces)?, Exact::Rational(Rational::from(1)));
-        Ok(Some(Self { amplitude: Exact::from(0), ..Self::new(problem, &values)? }))
+    }
+
+    fn on_orbit(
+        terms: &Terms,
+        forcing: Forcing,
+        amplitude: Exact,
+        closed: bool,
+    ) -> Result<Self, Refusal> {
+        let (unperturbed, perturbation, jumps) = terms.on_orbit(forcing, closed)?;
+        let found = Self { unperturbed, perturbation, amplitude, jumps };
+        found.system()?;
+        Ok(found)
     }
 
     /// The same problem, whose numeric orbits end undecided when asked to stop.
@@ -179,59 +133,24 @@ impl MelnikovProblem {
         Self { unperturbed, ..self }
     }
 
-    /// x cos(omega t) is y cos(omega t) only without a shift, and known on polynomial orbits.
-    fn takes_parametric(&self, force: &Monomials) -> bool {
-        let Some(f) = potential::polynomial(force) else { return false };
-        let zero = |k: usize| f.get(k).is_none_or(InPi::is_zero);
-        let still = zero(0)
-            && match &self.unperturbed {
-                // The saddle at x = 0.
-                Unperturbed::Closed { potential: Potential::Helmholtz { .. }, .. } => {
-                    let slope = f.get(1).and_then(InPi::value);
-                    slope.is_some_and(|f1| f1.sign().is_gt())
-                }
-                _ => zero(2),
-            };
-        let closed = matches!(&self.unperturbed,
-            Unperturbed::Closed { potential, .. } if potential.description().is_some());
-        closed && still
-    }
-
     /// The system of y; nothing for a numeric orbit.
     ///
     /// # Errors
     /// Those of [`System::new`].
     pub fn system(&self) -> Result<Option<System>, MelnikovError> {
+        self.system_with(&self.perturbation)
+    }
+
+    fn system_with(&self, other: &Perturbation) -> Result<Option<System>, MelnikovError> {
         let Unperturbed::Closed { potential, .. } = &self.unperturbed else { return Ok(None) };
-        let (friction, forcing) = (self.friction.clone(), self.forcing.clone());
-        System::new(potential.clone(), friction, forcing, self.belt_speed.clone()).map(Some)
+        let Perturbation { friction, damping, forcing, belt_speed } = other.clone();
+        System::new(potential.clone(), friction, forcing, belt_speed)?.damped(damping).map(Some)
     }
 
     /// The oscillator of section 3, where the problem is one: everything about it in closed form.
     #[must_use]
     pub fn stick_slip(&self) -> Option<StickSlip> {
-        let Unperturbed::Closed { potential: Potential::DoubleWell { a, b }, .. } =
-            &self.unperturbed
-        else {
-            return None;
-        };
-        let Friction::Polynomial(law) = &self.friction else { return None };
-        let Forcing::Harmonics { omega, harmonics } = &self.forcing else { return None };
-        let [only] = harmonics.as_slice() else { return None };
-        let t = |k: usize| law.coefficients.get(k).cloned().unwrap_or_else(|| Exact::from(0));
-        let rest = (0..law.coefficients.len()).filter(|k| *k != 1 && *k != 3);
-        if only.order != 1 || rest.into_iter().any(|k| t(k).sign().is_ne()) {
-            return None;
-        }
-        Some(StickSlip {
-            a: a.clone(),
-            b: b.clone(),
-            dry: law.dry.clone(),
-            alpha: -&t(1),
-            beta: t(3),
-            omega: omega.clone(),
-            belt_speed: self.belt_speed.clone(),
-        })
+        StickSlip::of(&self.system().ok()??)
     }
 
     /// Which parameter of section 3 the parameter `name` of the problem is: changed, at three more
@@ -268,40 +187,70 @@ impl MelnikovProblem {
         }
     }
 
-    /// The thresholds on the orbits, in x: right loop before left, upper before lower.
-    ///
-    /// # Errors
-    /// Those of [`System::threshold`].
-    pub fn thresholds(&self, balls: Balls) -> Result<Vec<OrbitThreshold>, MelnikovError> {
-        let Unperturbed::Closed { potential, scale } = &self.unperturbed else {
-            return self.numeric_thresholds(balls);
-        };
+    /// Something of the orbits in closed form: right loop before left, upper before lower.
+    fn on_branches<T>(
+        &self,
+        potential: &Potential,
+        value: &dyn Fn(&System, Branch) -> Result<T, MelnikovError>,
+    ) -> Result<Vec<OrbitValue<T>>, MelnikovError> {
         let Some(system) = self.system()? else { return Ok(Vec::new()) };
         let mut names = if potential.is_homoclinic() {
             ["right loop", "left loop"]
         } else {
             ["upper orbit", "lower orbit"]
         };
-        if *scale < 0 {
+        let turned = matches!(&self.unperturbed, Unperturbed::Closed { scale, .. } if *scale < 0);
+        if turned {
             names.reverse();
         }
         let mut found = Vec::new();
         for (branch, name) in [Branch::Positive, Branch::Negative].into_iter().zip(names) {
-            if branch == Branch::Negative && !potential.has_mirror_image() {
-                continue;
+            if branch == Branch::Positive || potential.has_mirror_image() {
+                found.push(OrbitValue { name, saddle: None, value: value(&system, branch)? });
             }
-            let threshold = self.in_x(balls, system.threshold(balls, branch)?);
-            found.push(OrbitThreshold { name, saddle: None, threshold });
         }
-        if *scale < 0 {
+        if turned {
             found.reverse();
         }
         Ok(found)
     }
 
-    fn numeric_thresholds(&self, balls: Balls) -> Result<Vec<OrbitThreshold>, MelnikovError> {
-        let Unperturbed::Numeric(orbit) = &self.unperturbed else { return Ok(Vec::new()) };
-        orbit.thresholds(balls, &self.friction, &self.forcing, &self.belt_speed)
+    /// The thresholds on the orbits, in x: right loop before left, upper before lower.
+    ///
+    /// # Errors
+    /// Those of [`System::threshold`].
+    pub fn thresholds(&self, balls: Balls) -> Result<Vec<OrbitValue<Threshold>>, MelnikovError> {
+        match &self.unperturbed {
+            Unperturbed::Closed { potential, .. } => self
+                .on_branches(potential, &|system, branch| {
+                    Ok(self.in_x(balls, system.threshold(balls, branch)?))
+                }),
+            Unperturbed::Numeric(orbit) => orbit.thresholds(balls, &self.perturbation),
+        }
+    }
+
+    /// D of this perturbation and of another one on the orbits, in x, in the same order.
+    ///
+    /// # Errors
+    /// Those of [`System::dissipation`].
+    pub(crate) fn dissipations(
+        &self,
+        balls: Balls,
+        other: &Perturbation,
+    ) -> Result<Vec<OrbitValue<[Ball; 2]>>, MelnikovError> {
+        let both = [&self.perturbation, other];
+        let Unperturbed::Closed { potential, .. } = &self.unperturbed else {
+            let Unperturbed::Numeric(orbit) = &self.unperturbed else { return Ok(Vec::new()) };
+            return orbit.dissipations(balls, both);
+        };
+        let Some(beside) = self.system_with(other)? else { return Ok(Vec::new()) };
+        let square = Rational::from(self.size().square_ref());
+        self.on_branches(potential, &|system, branch| {
+            let of = |system: &System| -> Result<Ball, MelnikovError> {
+                Ok(balls.mul_rational(&system.dissipation(balls, branch)?.0, &square))
+            };
+            Ok([of(system)?, of(&beside)?])
+        })
     }
 
     /// x = s y: D_x = s^2 D_y, F_x = |s| F_y.
@@ -336,7 +285,7 @@ impl MelnikovProblem {
             let validity = system.validity(balls)?;
             return Some((by(&validity.belt_speed), by(&validity.tangency_distance), self.jumps));
         }
-        let speed = self.belt_speed.abs().ball(balls);
+        let speed = self.perturbation.belt_speed.abs().ball(balls);
         let distance = balls.abs(&balls.sub(&self.largest_speed(balls)?, &speed));
         Some((speed, distance, self.jumps))
     }
@@ -350,7 +299,7 @@ impl MelnikovProblem {
     /// Whether the slope of friction jumps at v*, but friction does not.
     #[must_use]
     pub fn bends(&self) -> bool {
-        let is_smooth = match &self.friction {
+        let is_smooth = match &self.perturbation.friction {
             Friction::Polynomial(_) => true,
             other => other.kinks().is_empty(),
         };
@@ -368,7 +317,7 @@ impl MelnikovProblem {
     /// How the numbers are known.
     #[must_use]
     pub fn class(&self) -> Class {
-        match (&self.unperturbed, &self.friction) {
+        match (&self.unperturbed, &self.perturbation.friction) {
             (Unperturbed::Closed { .. }, Friction::Polynomial(_)) => Class::Certified,
             _ => Class::Estimated,
         }

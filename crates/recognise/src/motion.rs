@@ -1,15 +1,19 @@
 //! A motion on an orbit, and the integrals of Melnikov's function along it.
 
+use crate::threshold::Perturbation;
 use lindstedt_algebra::Stop;
 use lindstedt_melnikov::quadrature::tanh_sinh;
-use lindstedt_melnikov::{Forcing, ForcingWork, Friction, MelnikovError};
+use lindstedt_melnikov::{Forcing, ForcingWork, Friction, Harmonic, MelnikovError};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_simulate::{Digits, Trajectory};
-use rug::{Float, Rational};
+use rug::{Float, Rational, ops::Pow};
 
 /// Halvings of the step of the trapezoidal rule.
 const LEVELS: u32 = 9;
+
+/// A function of t, x and x'.
+type Integrand<'a> = dyn Fn(&Float, &Float, &Float) -> Float + 'a;
 
 /// x(t), x'(t) for |t| <= end.
 pub(crate) struct Motion {
@@ -39,10 +43,13 @@ impl Motion {
         Some((x, if flip { -v } else { v }))
     }
 
-    /// The integral of g(t, v) over the line by the trapezoidal rule, halved until it settles; the
+    /// The integral of g(t, x, x') over the line by the trapezoidal rule, halved until it settles; the
     /// error is the last change.
-    fn trapezoid(&self, g: &dyn Fn(&Float, &Float) -> Float) -> Option<(Float, Float)> {
-        let term = |t: &Float| Some(g(t, &self.state(t)?.1));
+    fn trapezoid(&self, g: &Integrand<'_>) -> Option<(Float, Float)> {
+        let term = |t: &Float| {
+            let (x, v) = self.state(t)?;
+            Some(g(t, &x, &v))
+        };
         let mut h = Float::with_val(self.work, 0.5 / self.rate);
         let (mut sum, mut last) = (term(&Float::new(self.work))?, None::<Float>);
         let mut size = Float::new(53);
@@ -79,7 +86,27 @@ impl Motion {
         Ok(balls.from_parts(&value, &error))
     }
 
+    /// D of a perturbation.
     pub fn dissipation(
+        &self,
+        balls: Balls,
+        perturbation: &Perturbation,
+    ) -> Result<Ball, MelnikovError> {
+        let law = self.law_work(balls, &perturbation.friction, &perturbation.belt_speed)?;
+        let mut sum = law;
+        for term in &perturbation.damping {
+            let work = self.trapezoid(&|_, x, v| {
+                let speed = Float::with_val(self.work, v.pow(term.velocity + 1));
+                speed * term.factor.value(x)
+            });
+            let work = balls.mul(&term.coefficient.ball(balls), &self.ball(balls, work)?);
+            sum = balls.add(&sum, &work);
+        }
+        Ok(sum)
+    }
+
+    /// The work of T(x' - v*).
+    fn law_work(
         &self,
         balls: Balls,
         friction: &Friction,
@@ -92,7 +119,7 @@ impl Motion {
             smooth.dry = Exact::from(0);
             let smooth = Friction::Polynomial(smooth).law(self.work);
             let slide = |v: &Float| Float::with_val(self.work, v - &belt);
-            let smooth = self.trapezoid(&|_, v| smooth(&slide(v)) * v);
+            let smooth = self.trapezoid(&|_, _, v| smooth(&slide(v)) * v);
             let smooth = self.ball(balls, smooth)?;
             let sign = self.sign_integral(&belt).ok_or_else(undecided)?;
             let error = Float::with_val(53, sign.abs_ref()) >> self.bits.saturating_sub(16);
@@ -157,39 +184,19 @@ impl Motion {
         forcing: &Forcing,
         down: bool,
     ) -> Result<Ball, MelnikovError> {
-        let transform = |omega: &Exact| -> Result<(Ball, Ball), MelnikovError> {
-            let omega = omega.ball(Balls::new(self.work)).midpoint().clone();
-            let angle = |t: &Float| Float::with_val(self.work, t * &omega);
-            let c = self.ball(balls, self.trapezoid(&|t, v| angle(t).cos() * v))?;
-            let s = self.ball(balls, self.trapezoid(&|t, v| angle(t).sin() * v))?;
-            Ok((c, s))
+        let work = |(omega, harmonics): (&Exact, &[Harmonic])| {
+            ForcingWork::from_transforms(balls, harmonics, &|harmonic| {
+                let omega = omega.times(&Rational::from(harmonic.order));
+                let omega = omega.ball(Balls::new(self.work)).midpoint().clone();
+                let angle = |t: &Float| Float::with_val(self.work, t * &omega);
+                let value = |x: &Float, v: &Float| harmonic.factor.value(x) * v;
+                let c = self.trapezoid(&|t, x, v| angle(t).cos() * value(x, v));
+                let s = self.trapezoid(&|t, x, v| angle(t).sin() * value(x, v));
+                Ok((self.ball(balls, c)?, self.ball(balls, s)?))
+            })
         };
-        let size = |omega: &Exact, weight: &Exact| -> Result<Ball, MelnikovError> {
-            let (c, s) = transform(omega)?;
-            let square = balls.add(&balls.square(&c), &balls.square(&s));
-            let root = balls.sqrt(&square).ok_or(MelnikovError::Undecided { bits: self.bits })?;
-            Ok(balls.mul(&root, &weight.abs().ball(balls)))
-        };
-        let found = match forcing {
-            Forcing::Harmonics { omega, harmonics } => match harmonics.as_slice() {
-                [only] => size(&omega.times(&Rational::from(only.order)), &only.weight)?,
-                _ => {
-                    let of = |k: u32| transform(&omega.times(&Rational::from(k)));
-                    ForcingWork::from_transforms(balls, harmonics, &of)?
-                        .extreme(balls, down)
-                        .map(|value| if down { balls.neg(&value) } else { value })
-                        .ok_or(MelnikovError::Undecided { bits: self.bits })?
-                }
-            },
-            Forcing::Incommensurate(terms) => {
-                let mut sum = balls.zero();
-                for (omega, weight) in terms {
-                    sum = balls.add(&sum, &size(omega, weight)?);
-                }
-                sum
-            }
-            _ => return Err(MelnikovError::NoClosedForm),
-        };
+        let (up, low) = forcing.reach(balls, &work)?;
+        let found = if down { low } else { up };
         if found.contains_zero() {
             return Err(MelnikovError::NoForcing);
         }

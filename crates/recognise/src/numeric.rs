@@ -6,13 +6,13 @@ use crate::law::evaluate;
 use crate::motion::Motion;
 use crate::potential;
 use crate::refusal::Refusal;
-use crate::threshold::OrbitThreshold;
+use crate::threshold::{OrbitValue, Perturbation};
 use lindstedt_algebra::Stop;
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::Monomials;
 use lindstedt_melnikov::quadrature::tanh_sinh;
 use lindstedt_melnikov::splitting::Connection;
-use lindstedt_melnikov::{Class, Forcing, Friction, MelnikovError, Threshold};
+use lindstedt_melnikov::{Class, MelnikovError, Threshold};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_simulate::{Digits, Integrator, Model, Parameters, Report, Settings, Trajectory};
@@ -35,6 +35,12 @@ pub(crate) struct Path {
     pub other: Option<Float>,
     /// +1: x' >= 0 on a heteroclinic orbit.
     pub sign: i32,
+}
+
+impl Path {
+    fn named<T>(&self, value: T) -> OrbitValue<T> {
+        OrbitValue { name: self.name, saddle: Some(self.saddle.to_f64()), value }
+    }
 }
 
 /// The orbits of x'' = f(x) from its saddles: those of the saddle nearest to x = 0 first, of several
@@ -227,33 +233,44 @@ impl NumericOrbit {
         Some(Motion { forward, backward, end, rate, saddle, bits, work, stop: self.stop.clone() })
     }
 
-    /// The thresholds on all orbits, each number with an estimated error in its radius.
+    /// The thresholds of a perturbation on all orbits, each number with an estimated error in its radius.
     ///
     /// # Errors
-    /// [`MelnikovError::Undecided`] where a quadrature does not settle,
-    /// [`MelnikovError::NoForcing`], [`MelnikovError::NoClosedForm`] for parametric forces.
-    pub fn thresholds(
+    /// [`MelnikovError::Undecided`] where a quadrature does not settle, [`MelnikovError::NoForcing`].
+    pub(crate) fn thresholds(
         &self,
         balls: Balls,
-        friction: &Friction,
-        forcing: &Forcing,
-        belt_speed: &Exact,
-    ) -> Result<Vec<OrbitThreshold>, MelnikovError> {
+        perturbation: &Perturbation,
+    ) -> Result<Vec<OrbitValue<Threshold>>, MelnikovError> {
         let one = |path: &Path| {
             let motion = self.motion(path, balls.bits())?;
-            let dissipation = motion.dissipation(balls, friction, belt_speed)?;
-            let forcing = motion.reach(balls, forcing, dissipation.is_negative())?;
+            let dissipation = motion.dissipation(balls, perturbation)?;
+            let forcing = motion.reach(balls, &perturbation.forcing, dissipation.is_negative())?;
             let undecided = MelnikovError::Undecided { bits: balls.bits() };
             let signed = balls.div(&dissipation, &forcing).ok_or(undecided)?;
             let gamma = balls.abs(&signed);
             let class = Class::Estimated;
-            Ok(OrbitThreshold {
-                name: path.name,
-                saddle: Some(path.saddle.to_f64()),
-                threshold: Threshold { gamma, signed, dissipation, forcing, class },
-            })
+            let threshold = Threshold { gamma, signed, dissipation, forcing, class };
+            Ok(path.named(threshold))
         };
         self.paths.iter().map(one).collect()
+    }
+
+    /// D of two perturbations on all orbits, with its estimated error in the radius.
+    ///
+    /// # Errors
+    /// [`MelnikovError::Undecided`] where a quadrature does not settle.
+    pub(crate) fn dissipations(
+        &self,
+        balls: Balls,
+        [one, other]: [&Perturbation; 2],
+    ) -> Result<Vec<OrbitValue<[Ball; 2]>>, MelnikovError> {
+        let both = |path: &Path| {
+            let motion = self.motion(path, balls.bits())?;
+            let of = |perturbation| motion.dissipation(balls, perturbation);
+            Ok(path.named([of(one)?, of(other)?]))
+        };
+        self.paths.iter().map(both).collect()
     }
 
     /// V on the first orbit.

@@ -1,5 +1,7 @@
 //! The unperturbed force f(x): which of the potentials with a closed orbit it is.
 
+use crate::bound::PI;
+use crate::factors::Frame;
 use crate::in_pi::InPi;
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::monomials::{Monomials, expand};
@@ -29,8 +31,8 @@ pub(crate) fn polynomial(force: &Monomials) -> Option<Vec<InPi>> {
     Some(coefficients)
 }
 
-/// The potential of y and s, where x = s y + constant turns x'' = f(x) into one with a closed orbit.
-pub(crate) fn closed(force: &Monomials) -> Option<(Potential, Rational)> {
+/// The potential of y, where x = s y + constant turns x'' = f(x) into one with a closed orbit.
+pub(crate) fn closed(force: &Monomials) -> Option<(Potential, Frame)> {
     if let Some(coefficients) = polynomial(force) {
         let list: Option<Vec<Exact>> = coefficients.iter().map(|c| c.value()).collect();
         return match list?.as_slice() {
@@ -47,7 +49,7 @@ pub(crate) fn closed(force: &Monomials) -> Option<(Potential, Rational)> {
 
 /// x'' = f0 + f1 x + f2 x^2 about its saddle x_s: with y = -sgn(f2) (x - x_s),
 /// y'' = a y - |f2| y^2, a = sqrt(f1^2 - 4 f0 f2).
-fn quadratic(f0: &Exact, f1: &Exact, f2: &Exact) -> Option<(Potential, Rational)> {
+fn quadratic(f0: &Exact, f1: &Exact, f2: &Exact) -> Option<(Potential, Frame)> {
     let a = if f0.sign().is_eq() {
         f1.abs()
     } else {
@@ -55,12 +57,16 @@ fn quadratic(f0: &Exact, f1: &Exact, f2: &Exact) -> Option<(Potential, Rational)
         let square = Rational::from(f1.square_ref()) - Rational::from(f0 * f2) * 4u32;
         Exact::Rational(rational_root(&square)?)
     };
-    let s = if f2.sign().is_gt() { -1 } else { 1 };
-    a.sign().is_gt().then(|| (Potential::Helmholtz { a, b: f2.abs() }, Rational::from(s)))
+    a.sign().is_gt().then_some(())?;
+    // x_s = (a - f1)/(2 f2).
+    let saddle = a.ratio(f2).zip(f1.ratio(f2)).map(|(a, f1)| Exact::Rational((a - f1) / 2u32));
+    let scale = Rational::from(if f2.sign().is_gt() { -1 } else { 1 });
+    Some((Potential::Helmholtz { a, b: f2.abs() }, Frame { scale, shift: saddle }))
 }
 
 /// x'' = f0 + f1 x + f2 x^2 + f3 x^3, odd about x = -f2/(3 f3).
-fn cubic(f0: &Exact, f1: &Exact, f2: &Exact, f3: &Exact) -> Option<(Potential, Rational)> {
+fn cubic(f0: &Exact, f1: &Exact, f2: &Exact, f3: &Exact) -> Option<(Potential, Frame)> {
+    let mut shift = Rational::new();
     let slope = if f0.sign().is_eq() && f2.sign().is_eq() {
         f1.clone()
     } else {
@@ -72,7 +78,9 @@ fn cubic(f0: &Exact, f1: &Exact, f2: &Exact, f3: &Exact) -> Option<(Potential, R
         };
         at([f0, f1, f2, f3]).is_zero().then_some(())?;
         let (twice, thrice) = (Rational::from(f2 * 2u32), Rational::from(f3 * 3u32));
-        Exact::Rational(at([f1, &twice, &thrice, &Rational::new()]))
+        let slope = at([f1, &twice, &thrice, &Rational::new()]);
+        shift = centre;
+        Exact::Rational(slope)
     };
     let (a, b) = (slope.abs(), f3.abs());
     let potential = match (slope.sign(), f3.sign()) {
@@ -80,39 +88,52 @@ fn cubic(f0: &Exact, f1: &Exact, f2: &Exact, f3: &Exact) -> Option<(Potential, R
         (Ordering::Less, Ordering::Greater) => Potential::SoftDuffing { a, b },
         _ => return None,
     };
-    Some((potential, Rational::from(1)))
+    let shift = Some(Exact::Rational(shift));
+    Some((potential, Frame { scale: Rational::from(1), shift }))
 }
 
 /// x'' = f1 x + f3 x^3 + f5 x^5 is f1 y (1 - y^2)(1 - 3 y^2) with x = s y where 16 f1 f5 = 3 f3^2:
 /// s^2 = -4 f1/f3.
-fn quintic(f1: &Exact, f3: &Exact, f5: &Exact) -> Option<(Potential, Rational)> {
+fn quintic(f1: &Exact, f3: &Exact, f5: &Exact) -> Option<(Potential, Frame)> {
     let (f1, f3, f5) = (f1.as_rational()?, f3.as_rational()?, f5.as_rational()?);
     let tied = Rational::from(f1 * f5) * 16u32 == Rational::from(f3.square_ref()) * 3u32;
     (tied && !f3.is_zero()).then_some(())?;
-    let s = rational_root(&(Rational::from(f1 * -4i32) / f3))?;
-    f1.is_positive().then(|| (Potential::PhiSix { a: Exact::Rational(f1.clone()) }, s))
+    let scale = rational_root(&(Rational::from(f1 * -4i32) / f3))?;
+    let frame = Frame { scale, shift: Some(Exact::from(0)) };
+    f1.is_positive().then(|| (Potential::PhiSix { a: Exact::Rational(f1.clone()) }, frame))
 }
 
-/// x'' = A sin(k x + phase), or with a cosine: y = k x + constant has y'' = -|A k| sin y.
-fn sine(force: &Monomials) -> Option<(Potential, Rational)> {
+/// x'' = A sin(k x + phase), or with a cosine: y = k x + phase, and half a turn more where A k > 0 and a
+/// quarter more for a cosine, has y'' = -|A k| sin y.
+fn sine(force: &Monomials) -> Option<(Potential, Frame)> {
     let [(m, q)] = force.terms.iter().collect::<Vec<_>>()[..] else { return None };
     let [(key, 1)] = m.atoms.iter().collect::<Vec<_>>()[..] else { return None };
-    let Expression::Function(Function::Sin | Function::Cos, argument) = force.atoms.get(key)?
+    let Expression::Function(function @ (Function::Sin | Function::Cos), argument) =
+        force.atoms.get(key)?
     else {
         return None;
     };
     (m.x == 0 && m.velocity == 0).then_some(())?;
-    let mut k = Rational::new();
+    let (mut k, mut phase) = (Rational::new(), Some(InPi::default()));
     for (m, q) in &expand(argument)?.terms {
         if m.is_power(1, 0) && m.order == 0 && m.parameters.is_empty() {
             k += q;
-        } else if !(m.is_power(0, 0) && m.order == 0) {
+        } else if m.is_power(0, 0) && m.order == 0 {
+            phase = phase.and_then(|mut phase| phase.add(m, q).map(|()| phase));
+        } else {
             return None;
         }
     }
     (!k.is_zero()).then_some(())?;
     let mut size = InPi::default();
     size.add(m, q)?;
-    let a = size.value()?.times(&k).abs();
-    a.sign().is_gt().then(|| (Potential::Pendulum { a }, k.recip()))
+    let slope = size.value()?.times(&k);
+    let quarters = 2 * i32::from(slope.sign().is_gt()) + i32::from(*function == Function::Cos);
+    let turn = InPi::of(&Expression::parameter(PI))?.scaled(&Rational::from((quarters, 2)));
+    let scale = Rational::from(k.recip_ref());
+    // x = (y - phase)/k.
+    let shift = phase.and_then(|phase| phase.plus(&turn).value());
+    let shift = shift.map(|shift| shift.times(&Rational::from(-&scale)));
+    let a = slope.abs();
+    a.sign().is_gt().then(|| (Potential::Pendulum { a }, Frame { scale, shift }))
 }

@@ -24,12 +24,14 @@ pub enum Why {
     Delay,
     /// A formal function.
     Formal,
-    /// A dissipative term that depends on x.
+    /// A dissipative term that depends on x otherwise than by g(x) x'^j.
     DependsOnPosition,
     /// A function of t other than a harmonic force.
     NotHarmonic,
-    /// A parametric force beside another force, or where the orbit does not take it.
-    Parametric,
+    /// A periodic force where none may be.
+    Periodic,
+    /// A factor of x other than x^n or sines and cosines of k x.
+    PositionFactor,
     /// The lowest of several harmonics has a negative coefficient: the thresholds of the two signs
     /// differ.
     NegativeForce,
@@ -49,6 +51,16 @@ pub enum Why {
     NotRational,
     /// The parameter that is sought does not enter linearly.
     NotLinearUnknown,
+    /// It depends on t.
+    DependsOnTime,
+    /// It is no polynomial in x, x' and their values at earlier times.
+    NotPolynomialDelayed,
+    /// It does not vanish at x = 0.
+    NotAtRest,
+    /// The parameter that is sought stands in a denominator, a power or a function.
+    UnknownInside,
+    /// Its delay is not positive, or depends on more than parameters.
+    BadDelay,
 }
 
 impl fmt::Display for Why {
@@ -62,9 +74,11 @@ impl fmt::Display for Why {
             Self::SmallInside => "has the small parameter inside a function",
             Self::Delay => "is a delay; Melnikov's method has none",
             Self::Formal => "is a formal function",
-            Self::DependsOnPosition => "depends on x; the perturbation is a function of x' or a force",
-            Self::NotHarmonic => "is no harmonic force cos(omega*t + phase)",
-            Self::Parametric => "is a parametric force; alone, on a polynomial potential about x = 0 it can be taken",
+            Self::DependsOnPosition => "depends on x and is no g(x)*x'^j with a power, or sines and cosines of k*x, for g",
+            Self::NotHarmonic => "is no harmonic force cos(omega*t + phase), also times a power of x or sines and cosines of k*x",
+            Self::Periodic => "is a periodic force; a parameter for which the orbit persists is sought without one",
+            Self::PositionFactor => "has a factor of x that is neither a power nor a product of sin(k*x + phase), cos(k*x + phase) \
+                                     with phases in quarter turns",
             Self::NegativeForce => "has a negative coefficient beside other harmonics; shift the time so that the lowest one is positive",
             Self::OtherSpeed => "jumps or bends elsewhere than at one speed x' = v*, the same for all terms",
             Self::Irrational => "has a coefficient that is neither rational nor a rational multiple of pi",
@@ -74,6 +88,11 @@ impl fmt::Display for Why {
             Self::NotPolynomial => "is no polynomial in x and x'; the orbit is known in closed form for those",
             Self::NotRational => "has a coefficient that is not rational",
             Self::NotLinearUnknown => "is not linear in the parameter that is sought",
+            Self::DependsOnTime => "depends on t; Hopf points are those of an equilibrium",
+            Self::NotPolynomialDelayed => "is no polynomial in x, x' and their values at earlier times; of f regular at 0, taylor(f(z), 9) asks for one",
+            Self::NotAtRest => "does not vanish at x = 0, the equilibrium that is looked at: put x = c + y",
+            Self::UnknownInside => "is no polynomial in the parameter that is sought",
+            Self::BadDelay => "has a delay that is not positive",
         })
     }
 }
@@ -144,6 +163,9 @@ pub enum Refusal {
     /// There is a wall.
     #[error("there is a wall; Melnikov's method has none")]
     Wall,
+    /// There is a wall, and a Hopf point is asked for.
+    #[error("there is a wall; Hopf points are those of the equation alone")]
+    WallAtHopf,
     /// There is no wall.
     #[error("there is no wall: the file has no [impact]")]
     NoWall,

@@ -5,8 +5,9 @@ use crate::bound::{bind, multiply_out, of_value, rest};
 use crate::forces::{Kind, kind};
 use crate::local::Point;
 use crate::lowest::LowestHarmonic;
-use crate::melnikov::{MelnikovProblem, Unperturbed};
+use crate::melnikov::MelnikovProblem;
 use crate::numeric::NumericOrbit;
+use crate::reading::Unperturbed;
 use crate::refusal::{Refusal, Why};
 use lindstedt_equation::monomials::Monomials;
 use lindstedt_equation::{Expression, Problem};
@@ -57,11 +58,10 @@ impl SplittingProblem {
         if found.amplitude.sign().is_eq() {
             return Self::silent(problem, values);
         }
-        let (omega, harmonics) = match &found.forcing {
+        let (omega, harmonics) = match &found.perturbation.forcing {
             Forcing::Harmonics { omega, harmonics } => {
                 (omega.to_f64(), harmonics.iter().map(|h| h.order).max().unwrap_or(1))
             }
-            Forcing::Parametric { omega } => (omega.to_f64(), 1),
             _ => return Err(Refusal::NoPeriod),
         };
         let kink = if found.jumps() || found.bends() { kink(found)? } else { None };
@@ -78,7 +78,7 @@ impl SplittingProblem {
                     force.push(all.tree(&bare, &Rational::from(-q)));
                 }
                 Kind::Harmonic => drive.push(all.tree(&bare, &Rational::from(-q))),
-                Kind::Friction => friction.push(all.tree(&bare, q)),
+                Kind::Friction | Kind::Damping => friction.push(all.tree(&bare, q)),
             }
         }
         let orbits = NumericOrbit::find(&of_x)?;
@@ -143,7 +143,7 @@ fn kink(found: &MelnikovProblem) -> Result<Option<f64>, Refusal> {
     };
     match found.verdict(Balls::new(200), 0.0) {
         Some(Verdict::Fails) | None if found.jumps() => Err(Refusal::Tangent),
-        _ if found.belt_speed.sign().is_eq() => Ok(None),
-        _ => Ok(Some(found.belt_speed.to_f64() * scale)),
+        _ if found.perturbation.belt_speed.sign().is_eq() => Ok(None),
+        _ => Ok(Some(found.perturbation.belt_speed.to_f64() * scale)),
     }
 }

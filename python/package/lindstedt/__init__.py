@@ -14,7 +14,15 @@ from typing import Any
 
 from . import _native
 from ._answers import Answer, Derivation, Figure
-from ._arrays import BifurcationDiagram, FrequencyFunction, Solution, SolutionFunction, StabilityChart, ThresholdSurface
+from ._arrays import (
+    AveragedSolution,
+    BifurcationDiagram,
+    FrequencyFunction,
+    Solution,
+    SolutionFunction,
+    StabilityChart,
+    ThresholdSurface,
+)
 from ._errors import LindstedtError, NoAnswerError, StoppedError, UndecidedError, UsageError
 from ._native import __version__
 from ._numbers import Number, Series, Value
@@ -22,6 +30,7 @@ from ._oscillator import Oscillator, grid
 
 __all__ = [
     "Answer",
+    "AveragedSolution",
     "BifurcationDiagram",
     "Derivation",
     "Figure",

@@ -5,13 +5,19 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import UsageError
-from ._native import Frequency, Motion, Motions
+from ._native import Means
+from ._numbers import Number, Value, exact
+
+if TYPE_CHECKING:
+    from ._answers import Answer
+    from ._oscillator import Oscillator
 
 Doubles = NDArray[numpy.float64]
 
@@ -20,13 +26,36 @@ def _flat(values: ArrayLike) -> Doubles:
     return numpy.ascontiguousarray(values, dtype=numpy.float64).ravel()
 
 
-class _OfParameters:
+class _Made:
+    """What an oscillator made of options. It pickles as these: it is derived anew where it is read."""
+
+    def __init__(self, native: Any, oscillator: Oscillator, name: str, options: dict[str, Any]) -> None:
+        self._native = native
+        self._from = (oscillator, name, options)
+        self.data: dict[str, Any] = json.loads(native.json())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_again, self._from)
+
+    def _evaluated(self, digits: int, options: dict[str, Any], **values: Any) -> Answer:
+        """The answer of `evaluate` to so many digits with the same options."""
+        oscillator, _, made = self._from
+        asked = {name: made[name] for name in ("order", "resum", "phase", "start", "state") if name in made}
+        return oscillator.set(**values).evaluate(digits=digits, **asked, **options)
+
+
+def _again(oscillator: Oscillator, name: str, options: dict[str, Any]) -> Any:
+    return getattr(oscillator, name)(**options)
+
+
+def _listed(times: ArrayLike) -> str:
+    """Times as `evaluate` takes them."""
+    return "".join(exact(float(t)) + "," for t in numpy.ravel(times))
+
+
+class _OfParameters(_Made):
     """A function of the small parameter and, where a scaling carries it, the amplitude. One that is not given is
     the oscillator's; where it does not vary, none is taken."""
-
-    def __init__(self, native: Any) -> None:
-        self._native = native
-        self.data: dict[str, Any] = json.loads(native.json())
 
     @property
     def parameters(self) -> list[str]:
@@ -51,6 +80,13 @@ class _OfParameters:
                 raise UsageError("the amplitude has no value", "usage", "amplitude=...")
         return 1.0 if amplitude is None else amplitude
 
+    def _values(self, small: Value, amplitude: Value | None) -> dict[str, Value]:
+        """The values of one point as they are set."""
+        if amplitude is not None:
+            self._amplitude(float(Fraction(exact(amplitude))))
+        values: dict[str, Value] = {self.parameters[0]: small}
+        return values if amplitude is None else {**values, "amplitude": amplitude}
+
     def _points(self, small: ArrayLike, amplitude: ArrayLike | None) -> tuple[Doubles, Doubles]:
         amplitude = self._amplitude(amplitude)
         if numpy.ndim(amplitude):
@@ -63,8 +99,10 @@ class FrequencyFunction(_OfParameters):
     0.2 microseconds per point and core. Doubles, each with its estimated error. An amplitude that is not given is
     the oscillator's; where it does not vary, none is taken."""
 
-    def __init__(self, native: Frequency) -> None:
-        super().__init__(native)
+    def at(self, small: Value, amplitude: Value | None = None, digits: int = 30) -> Number:
+        """omega at one point to so many digits, with its error: by `evaluate`."""
+        found: Number = self._evaluated(digits, {}, **self._values(small, amplitude))["frequency"]
+        return found
 
     def with_error(self, small: ArrayLike, amplitude: ArrayLike | None = None) -> tuple[Doubles, Doubles]:
         """omega and its estimated errors, infinite where the sum has not one digit."""
@@ -81,8 +119,10 @@ class SolutionFunction(_OfParameters):
     """x(t) over the small parameter and, where a scaling carries it, the amplitude: derived once, then some 5
     microseconds per point and 20 to 50 nanoseconds per time and core. Doubles, each with its estimated error."""
 
-    def __init__(self, native: Motions) -> None:
-        super().__init__(native)
+    def at(self, times: ArrayLike, small: Value, amplitude: Value | None = None, digits: int = 30) -> list[Number]:
+        """x at times and one point to so many digits, each with its error: by `evaluate`."""
+        found = self._evaluated(digits, {"times": _listed(times)}, **self._values(small, amplitude))
+        return [point["x"] for point in found["solution"]["values"]]
 
     def with_error(
         self, times: ArrayLike, small: ArrayLike, amplitude: ArrayLike | None = None
@@ -99,12 +139,13 @@ class SolutionFunction(_OfParameters):
         return numpy.where(numpy.isfinite(errors), values, numpy.nan)
 
 
-class Solution:
+class Solution(_Made):
     """x(t) by its harmonics: call it with an array of times."""
 
-    def __init__(self, native: Motion) -> None:
-        self._native = native
-        self.data: dict[str, Any] = json.loads(native.json())
+    def at(self, times: ArrayLike, digits: int = 30) -> list[Number]:
+        """x at times to so many digits, each with its error: by `evaluate`."""
+        found = self._evaluated(digits, {"times": _listed(times)})
+        return [point["x"] for point in found["solution"]["values"]]
 
     @property
     def frequency(self) -> float:
@@ -122,11 +163,13 @@ class Solution:
         return numpy.array(self.data["harmonics"])
 
     def __call__(self, times: ArrayLike) -> Doubles:
-        return self._native.at(_flat(times)).reshape(numpy.shape(times))
+        values: Doubles = self._native.at(_flat(times))
+        return values.reshape(numpy.shape(times))
 
     def error(self, times: ArrayLike) -> Doubles:
         """The estimated error at times: it grows with t by what omega is wrong by."""
-        return self._native.errors(_flat(times)).reshape(numpy.shape(times))
+        errors: Doubles = self._native.errors(_flat(times))
+        return errors.reshape(numpy.shape(times))
 
     def to_callable(self) -> Callable[[float], float]:
         """x as a function of one time, for comparisons with `scipy.integrate.solve_ivp`."""
@@ -144,6 +187,34 @@ class Solution:
         return ax
 
 
+class AveragedSolution(_Made):
+    """a(t), psi(t) and x(t) of an averaged motion: derived once, integrated at every call from its start."""
+
+    def with_error(self, times: ArrayLike) -> dict[str, tuple[Doubles, Doubles]]:
+        """`a`, `psi`, `x` with their estimated errors at times in any order; no numbers where the motion is not reached."""
+        times = numpy.asarray(times, dtype=numpy.float64)
+        order, back = numpy.unique(times.ravel(), return_inverse=True)
+        found = self._native.at(order, Means(digits=16))[:, back]
+        rows = [row.reshape(times.shape) for row in found]
+        return {"a": (rows[0], rows[1]), "psi": (rows[2], rows[3]), "x": (rows[4], rows[5])}
+
+    def __call__(self, times: ArrayLike) -> tuple[Doubles, Doubles, Doubles]:
+        """a, psi and x at times."""
+        found = self.with_error(times)
+        return found["a"][0], found["psi"][0], found["x"][0]
+
+    def at(self, times: ArrayLike, digits: int = 30) -> list[dict[str, Number]]:
+        """a, psi, x at increasing times to so many digits, each with its error: by `evaluate`."""
+        values = self._evaluated(digits, {"times": _listed(times)})["solution"]["values"]
+        return [{name: point[name] for name in ("a", "psi", "x")} for point in values]
+
+
+def _joined(parts: list[dict[str, Any]], names: list[str]) -> dict[str, Any]:
+    """What all parts have in common, and these arrays one after the other."""
+    joined = {name: numpy.concatenate([p[name] for p in parts]) for name in names if parts[0][name] is not None}
+    return {**parts[0], **joined, "complete": all(part["complete"] for part in parts)}
+
+
 @dataclass(frozen=True)
 class StabilityChart:
     """Verdicts over two parameters, row y, column x: 1 stable, -1 unstable, 0 neutral or undecided, 2 without
@@ -157,6 +228,11 @@ class StabilityChart:
     exact: NDArray[numpy.int8]
     radius: Doubles | None
     complete: bool
+
+    @classmethod
+    def joined(cls, parts: list[dict[str, Any]]) -> StabilityChart:
+        """The chart of its blocks of rows."""
+        return cls(**_joined(parts, ["y", "predicted", "exact", "radius"]))
 
 
 @dataclass(frozen=True)
@@ -172,6 +248,12 @@ class ThresholdSurface:
     blanks: list[str]
     complete: bool
 
+    @classmethod
+    def joined(cls, parts: list[dict[str, Any]]) -> ThresholdSurface:
+        """The surface of its blocks of rows."""
+        blanks = sorted({reason for part in parts for reason in part["blanks"]})
+        return cls(**{**_joined(parts, ["y", "signed"]), "blanks": blanks})
+
 
 @dataclass(frozen=True)
 class BifurcationDiagram:
@@ -185,3 +267,9 @@ class BifurcationDiagram:
     velocity: Doubles
     ended: list[tuple[float, str]]
     complete: bool
+
+    @classmethod
+    def joined(cls, parts: list[dict[str, Any]]) -> BifurcationDiagram:
+        """The diagram of its blocks of values."""
+        ended = [end for part in parts for end in part["ended"]]
+        return cls(**{**_joined(parts, ["values", "value", "x", "velocity"]), "ended": ended})

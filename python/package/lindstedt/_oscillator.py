@@ -12,7 +12,15 @@ from contextlib import contextmanager
 from typing import Any, Union
 
 from ._answers import Answer, Derivation
-from ._arrays import BifurcationDiagram, FrequencyFunction, Solution, SolutionFunction, StabilityChart, ThresholdSurface
+from ._arrays import (
+    AveragedSolution,
+    BifurcationDiagram,
+    FrequencyFunction,
+    Solution,
+    SolutionFunction,
+    StabilityChart,
+    ThresholdSurface,
+)
 from ._errors import LindstedtError, UsageError
 from ._native import Case, Means
 from ._numbers import Value, exact
@@ -242,7 +250,8 @@ class Oscillator:
         given it is this oscillator's."""
         means = _means(options)
         with _work(means) as work:
-            return FrequencyFunction(self._case.frequency_function(_options(options), work))
+            made = self._case.frequency_function(_options(options), work)
+            return FrequencyFunction(made, self, "frequency_function", options)
 
     def solution_function(self, harmonics: int = 15, **options: Any) -> SolutionFunction:
         """x(t) over the small parameter and the amplitude, for arrays, by so many harmonics; `order`, `resum`. Where
@@ -250,32 +259,63 @@ class Oscillator:
         means = _means(options)
         with _work(means) as work:
             options = {"harmonics": harmonics, **options}
-            return SolutionFunction(self._case.solution_function(_options(options), work))
+            made = self._case.solution_function(_options(options), work)
+            return SolutionFunction(made, self, "solution_function", options)
 
     def solution(self, harmonics: int = 15, **options: Any) -> Solution:
         """x(t) at the values set, for arrays; `order`, `resum`, `phase`."""
         means = _means(options)
         with _work(means) as work:
             options = {"harmonics": harmonics, **options}
-            return Solution(self._case.periodic_solution(_options(options), work))
+            made = self._case.periodic_solution(_options(options), work)
+            return Solution(made, self, "solution", options)
 
-    def _arrays(self, verb: str, options: dict[str, Any]) -> dict[str, Any]:
+    def averaged_solution(self, **options: Any) -> AveragedSolution:
+        """a(t), psi(t), x(t) of the averaged motion at the values set, for arrays; `order`, and `start="A,PSI"` or
+        `state="X,V"`."""
         means = _means(options)
-        with _work({"doubles": True, **means}) as work:
-            return self._case.arrays(verb, _options(options), work)
+        with _work({"digits": 16, **means}) as work:
+            made = self.under("free")._case.averaged_motion(_options(options), work)
+            return AveragedSolution(made, self.under("free"), "averaged_solution", options)
 
-    def stability_chart(self, sweep: Sweep, **options: Any) -> StabilityChart:
+    def _arrays(self, verb: str, sweep: Sweep, options: dict[str, Any], executor: Any, block: int | None) -> Any:
+        """As arrays, on an executor by blocks of rows, or of the values of a diagram."""
+        options = {"sweep": _sweep(sweep), **options}
+        kind: Any = {"stability": StabilityChart, "threshold": ThresholdSurface}.get(verb, BifurcationDiagram)
+        counts = self._case.counts(options["sweep"])
+        if options.get("follow") and executor is not None:
+            raise UsageError("values that follow each other are not split", "usage", "without executor")
+        if executor is None or kind is not BifurcationDiagram and len(counts) < 2:
+            return kind(**_part(self, verb, options, None))
+        count = counts[-1]
+        block = max(1, -(-count // _BLOCKS) if block is None else block)
+        parts = [(first, min(block, count - first)) for first in range(0, count, block)]
+        return kind.joined(_split(executor, functools.partial(_part, self, verb, options), parts))
+
+    def stability_chart(
+        self, sweep: Sweep, executor: Any = None, block: int | None = None, **options: Any
+    ) -> StabilityChart:
         """Prediction and truth over one or two parameters, as arrays; the options of `stability`, and `radius=True` for
-        the largest multipliers, which cost more than the verdicts."""
-        return StabilityChart(**self._arrays("stability", {"sweep": sweep, **options}))
+        the largest multipliers, which cost more than the verdicts.
 
-    def threshold_surface(self, sweep: Sweep, **options: Any) -> ThresholdSurface:
-        """The signed threshold over one or two parameters, as arrays."""
-        return ThresholdSurface(**self._arrays("threshold", {"sweep": sweep, **options}))
+        With an executor or Dask client (see `grid`) by blocks of rows; bit by bit the same."""
+        chart: StabilityChart = self._arrays("stability", sweep, options, executor, block)
+        return chart
 
-    def bifurcation_diagram(self, sweep: Sweep, **options: Any) -> BifurcationDiagram:
-        """The points of a section over a parameter, as arrays; `skip`, `keep`, `section`, `state`."""
-        return BifurcationDiagram(**self._arrays("simulate", {"sweep": sweep, **options}))
+    def threshold_surface(
+        self, sweep: Sweep, executor: Any = None, block: int | None = None, **options: Any
+    ) -> ThresholdSurface:
+        """The signed threshold over one or two parameters, as arrays; `executor` and `block` as for `stability_chart`."""
+        surface: ThresholdSurface = self._arrays("threshold", sweep, options, executor, block)
+        return surface
+
+    def bifurcation_diagram(
+        self, sweep: Sweep, executor: Any = None, block: int | None = None, **options: Any
+    ) -> BifurcationDiagram:
+        """The points of a section over a parameter, as arrays; `skip`, `keep`, `section`, `state`. `executor` and `block`
+        as for `stability_chart`, by blocks of values; with `follow` it is not split."""
+        diagram: BifurcationDiagram = self._arrays("simulate", sweep, options, executor, block)
+        return diagram
 
 
 _MEANS = {"digits", "doubles", "memory", "seconds", "progress"}
@@ -330,13 +370,29 @@ def grid(
     names, axes = list(values), [list(axis) for axis in values.values()]
     points = list(itertools.product(*axes))
     blocks = [points[i : i + block] for i in range(0, len(points), max(block, 1))]
+    work = functools.partial(_block, oscillator, verb, names, options=options)
+    return [found for part in _split(executor, work, blocks) for found in part]
+
+
+# Of a chart without `block`: enough for some tens of workers, few enough for what a block costs beside its work.
+_BLOCKS = 64
+
+
+def _part(oscillator: Oscillator, verb: str, options: dict[str, Any], part: tuple[int, int] | None) -> dict[str, Any]:
+    options = {**options, "part": part}
+    means = _means(options)
+    with _work({"doubles": True, **means}) as work:
+        return oscillator._case.arrays(verb, _options(options), work)
+
+
+def _split(executor: Any, work: Callable[[Any], Any], parts: list[Any]) -> list[Any]:
+    """The results of all parts, here, on an executor or by a Dask client."""
     if executor is None:
-        return [found for part in blocks for found in _block(oscillator, verb, names, part, options)]
+        return [work(part) for part in parts]
     if hasattr(executor, "get_executor"):
-        work = functools.partial(_block, oscillator, verb, names, options=options)
-        return [found for part in _on_dask(executor, work, blocks) for found in part]
-    futures = [executor.submit(_block, oscillator, verb, names, part, options) for part in blocks]
-    return [found for future in futures for found in future.result()]
+        return _on_dask(executor, work, parts)
+    futures = [executor.submit(work, part) for part in parts]
+    return [future.result() for future in futures]
 
 
 def _on_dask(client: Any, work: Callable[[Any], Any], parts: list[Any]) -> list[Any]:

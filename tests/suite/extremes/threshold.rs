@@ -4,6 +4,7 @@ use super::support::{Grid, rational};
 use lindstedt::Exact;
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt_melnikov::StickSlip;
+use lindstedt_paper::section_three;
 use rug::Float;
 use rug::float::Constant;
 
@@ -42,7 +43,7 @@ fn truth(p: &StickSlip, bits: u32) -> Option<Float> {
 fn grid_of(precisions: &[u32]) -> Grid {
     let mut grid = Grid::default();
     let values = ["1e-300", "1e-10", "1/3", "1", "10", "1e10", "1e300"];
-    let paper = StickSlip::paper();
+    let paper = section_three();
     let mut points = vec![paper.clone()];
     for value in values {
         let value = || Exact::Rational(rational(value));

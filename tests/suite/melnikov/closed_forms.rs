@@ -5,6 +5,7 @@ use lindstedt::Exact;
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt::unstable::number::digits::{certify, decimal};
 use lindstedt_melnikov::{Branch, Friction, PolynomialFriction, StickSlip, quadrature_dissipation};
+use lindstedt_paper::section_three;
 use rug::Rational;
 use serde_json::Value;
 
@@ -12,7 +13,7 @@ const BALLS: u32 = 220;
 
 #[test]
 fn paper_point_to_forty_digits() {
-    let paper = StickSlip::paper();
+    let paper = section_three();
     let (digits, error) = certify(40, 4000, |balls| paper.signed_threshold(balls)).unwrap();
     assert_eq!(digits, "0.6370713428481635829717089604409953683799");
     assert!(error.ends_with("e-41") || error.ends_with("e-42"), "{error}");
@@ -27,7 +28,7 @@ fn paper_point_to_forty_digits() {
 
 #[test]
 fn zeros_at_b_five() {
-    let five = StickSlip { b: Exact::from(5), ..StickSlip::paper() };
+    let five = StickSlip { b: Exact::from(5), ..section_three() };
     let table = &oracle("thresholds.json")["zeros_b5"];
     let zeros = five.zeros(Balls::new(BALLS)).unwrap();
     assert_eq!(zeros.len(), 2);
@@ -57,9 +58,9 @@ fn zeros_at_b_five() {
 #[test]
 fn cusp_touches_zero() {
     let row = &oracle("thresholds.json")["cusp_touches_zero"];
-    let b = StickSlip::paper().touching_b().unwrap();
+    let b = section_three().touching_b().unwrap();
     assert_eq!(b.to_string(), row["b_star"].as_str().unwrap());
-    let touching = StickSlip { b: Exact::Rational(b), ..StickSlip::paper() };
+    let touching = StickSlip { b: Exact::Rational(b), ..section_three() };
     let speed = touching.loop_speed(Balls::new(BALLS)).unwrap();
     assert_agrees(&speed, &row["vstar"], 44, "cusp at zero");
     // G at v* = V is 0 there: v*^2 = 35/129 exactly, so G/V = (172/35) beta V^2 - (4/3) alpha.
@@ -69,7 +70,7 @@ fn cusp_touches_zero() {
     let value = touching.threshold_at_cusp(Balls::new(BALLS)).unwrap();
     assert!(value.is_exact() && value.contains_zero());
     // A little above b* there are two zeros v1 < V < v2, a little below none.
-    let near = |n: i32| StickSlip { b: Exact::from((129_000 + n, 70_000)), ..StickSlip::paper() };
+    let near = |n: i32| StickSlip { b: Exact::from((129_000 + n, 70_000)), ..section_three() };
     assert_eq!(near(1).zeros(Balls::new(BALLS)).unwrap().len(), 2);
     assert_eq!(near(-1).zeros(Balls::new(BALLS)).unwrap().len(), 0);
 }
@@ -152,7 +153,7 @@ fn dissipation_by_quadrature() {
             a: q(0.3, 3.0),
             b: q(0.3, 6.0),
             belt_speed: q(-1.5, 1.5),
-            ..StickSlip::paper()
+            ..section_three()
         };
         let potential = point.potential();
         let exact = lindstedt_melnikov::polynomial_dissipation(
@@ -183,7 +184,7 @@ fn no_panic_and_typed_refusals() {
             a: Exact::from(a),
             b: Exact::from(b),
             omega: Exact::from(omega),
-            ..StickSlip::paper()
+            ..section_three()
         };
         assert!(point.check().is_err() && point.system().is_err() && point.zeros(balls).is_err());
         let _ = point.signed_threshold(balls);
@@ -195,7 +196,7 @@ fn no_panic_and_typed_refusals() {
         a: Exact::from(2),
         b: Exact::from(2),
         belt_speed: Exact::from(1),
-        ..StickSlip::paper()
+        ..section_three()
     };
     let g = tangent.g(Balls::new(200)).unwrap();
     let expected = number(&serde_json::json!({"g": "0.3"}), "g") * Rational::from((172, 35))
@@ -208,7 +209,7 @@ fn no_panic_and_typed_refusals() {
 fn zeros_in_any_parameter() {
     use lindstedt_melnikov::Axis;
     let balls = Balls::new(200);
-    let five = StickSlip { b: Exact::from(5), ..StickSlip::paper() };
+    let five = StickSlip { b: Exact::from(5), ..section_three() };
     let both = five.zeros_in(balls, Axis::BeltSpeed, &Exact::from(-1), &Exact::from(1)).unwrap();
     assert!(both.complete && both.zeros.len() == 4);
     let right =

@@ -9,7 +9,7 @@ use lindstedt_melnikov::{
 
 fn law() -> PolynomialFriction {
     let t = || Exact::from((3, 10));
-    PolynomialFriction::paper(t(), &t(), t())
+    PolynomialFriction::cubic(t(), &t(), t())
 }
 
 fn cycles(b: i32, belt: &str, region: Region) -> Vec<BeltCycle> {

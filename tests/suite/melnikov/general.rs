@@ -4,8 +4,8 @@ use super::support::{Random, assert_agrees, decimal, number, oracle, real};
 use lindstedt::Exact;
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt_melnikov::{
-    Branch, Class, Forcing, Friction, Harmonic, MelnikovError, Monomial, PolynomialFriction,
-    Potential, System, polynomial_dissipation, quadrature_dissipation,
+    Branch, Class, Factor, Forcing, Friction, Harmonic, MelnikovError, Monomial,
+    PolynomialFriction, Potential, System, polynomial_dissipation, quadrature_dissipation,
 };
 use serde_json::Value;
 
@@ -74,9 +74,10 @@ fn several_harmonics() {
             order: h["k"].as_u64().unwrap() as u32,
             weight: real(h, "g"),
             phase: real(h, "phase"),
+            factor: Factor::ONE,
         });
         let friction =
-            PolynomialFriction::paper(real(row, "T0"), &real(row, "alpha"), real(row, "beta"));
+            PolynomialFriction::cubic(real(row, "T0"), &real(row, "alpha"), real(row, "beta"));
         let forcing =
             Forcing::Harmonics { omega: real(row, "omega"), harmonics: harmonics.collect() };
         let system = System::new(
@@ -117,7 +118,7 @@ fn potentials() {
         };
         potential.check().unwrap();
         let omega = real(row, "omega").ball(balls);
-        let (c, s) = potential.velocity_transform(balls, &omega).unwrap();
+        let (c, s) = potential.transform(balls, &Factor::ONE, &omega).unwrap();
         let size = balls.sqrt(&balls.add(&balls.square(&c), &balls.square(&s))).unwrap();
         if row["kappa"].is_null() {
             assert_agrees(&size, &row["F"], 29, "F");
@@ -193,7 +194,7 @@ fn incommensurate_and_parametric() {
         |forcing| System::new(potential.clone(), law(), forcing, Exact::from((1, 5))).unwrap();
     let omega = || Exact::from((13, 10));
     // Amplitude pi omega^2/b csch(pi omega/(2 sqrt a)), the same sign on both loops.
-    let parametric = system(Forcing::Parametric { omega: omega() });
+    let parametric = system(Forcing::multiplied(omega(), Factor::Power(1)));
     let right = parametric.threshold(balls, Branch::Positive).unwrap();
     let w = omega().ball(balls);
     let pi_w = balls.mul(&balls.pi(), &w);
@@ -211,15 +212,21 @@ fn incommensurate_and_parametric() {
         .unwrap();
     assert!(m.overlaps(&n) && m.relative_accuracy_bits() > 100);
     let pendulum = Potential::Pendulum { a: Exact::from(1) };
-    let forcing = Forcing::Parametric { omega: omega() };
+    let forcing = Forcing::multiplied(omega(), Factor::Power(1));
     let refused = System::new(pendulum, law(), forcing, Exact::from((1, 5))).unwrap();
     let refused = refused.threshold(balls, Branch::Positive);
     assert!(matches!(refused, Err(MelnikovError::NoClosedForm)));
     // Two incommensurate frequencies: the amplitudes add.
     let one = system(Forcing::single(omega())).threshold(balls, Branch::Positive).unwrap();
     let other = system(Forcing::single(Exact::from(2))).threshold(balls, Branch::Positive).unwrap();
-    let both =
-        Forcing::Incommensurate(vec![(omega(), Exact::from(1)), (Exact::from(2), Exact::from(-1))]);
+    let part = |omega, weight| {
+        let phase = Exact::from(0);
+        (omega, vec![Harmonic { order: 1, weight, phase, factor: Factor::ONE }])
+    };
+    let both = Forcing::Incommensurate(vec![
+        part(omega(), Exact::from(1)),
+        part(Exact::from(2), Exact::from(-1)),
+    ]);
     let both = system(both).threshold(balls, Branch::Negative).unwrap();
     assert!(both.forcing.overlaps(&balls.add(&one.forcing, &other.forcing)));
 }

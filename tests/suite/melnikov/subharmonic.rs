@@ -6,6 +6,7 @@ use lindstedt::unstable::number::ball::Balls;
 use lindstedt_melnikov::{
     Elliptic, MelnikovError, PolynomialFriction, Region, StickSlip, Subharmonic, subharmonic,
 };
+use lindstedt_paper::section_three;
 
 fn solve(
     bits: u32,
@@ -13,7 +14,7 @@ fn solve(
     region: Region,
     m: u32,
 ) -> Result<Subharmonic, MelnikovError> {
-    let friction = PolynomialFriction::paper(point.dry.clone(), &point.alpha, point.beta.clone());
+    let friction = PolynomialFriction::cubic(point.dry.clone(), &point.alpha, point.beta.clone());
     subharmonic(
         Balls::new(bits),
         &point.a,
@@ -45,7 +46,7 @@ fn table() {
 #[test]
 fn converges_to_the_homoclinic_threshold() {
     let balls = Balls::new(300);
-    let point = StickSlip::paper();
+    let point = section_three();
     let limit = point.signed_threshold(balls).unwrap();
     let mut last = f64::INFINITY;
     for m in [2, 4, 8, 16, 24] {
@@ -62,7 +63,7 @@ fn converges_to_the_homoclinic_threshold() {
 
 #[test]
 fn refusals() {
-    let fast = StickSlip { omega: Exact::from(3), ..StickSlip::paper() };
+    let fast = StickSlip { omega: Exact::from(3), ..section_three() };
     assert!(matches!(
         solve(100, &fast, Region::Inside, 1),
         Err(MelnikovError::NoResonance { m: 1 })

@@ -43,6 +43,19 @@ fn page() -> Result<String, Box<dyn Error>> {
     Ok(std::fs::read_to_string(folder()?.join("report.html"))?)
 }
 
+/// The counts and what fails of every section stand before the first section; the page is dark where its reader wants that.
+#[test]
+fn the_first_screen() -> Outcome {
+    let html = page()?;
+    let (first, _) = html.split_once("id=\"trust\"").ok_or("no findings")?;
+    assert!(first.contains("138 statements: ") && first.contains("names no journal and no year"));
+    let (_, fails) = first.split_once("id=\"fails\"").ok_or("nothing fails")?;
+    let (fails, _) = fails.split_once("</section>").ok_or("no end")?;
+    assert_eq!(fails.matches("<li>").count(), 3, "{fails}");
+    assert!(html.contains("(prefers-color-scheme: dark)"));
+    Ok(())
+}
+
 /// The text of the page is what the net holds of `lindstedt paper --quick`.
 #[test]
 fn the_report_as_text() -> Outcome {

@@ -31,7 +31,7 @@ fn run(line: &str) -> Output {
 }
 
 /// Exit code, code, line; what the hint says of the way on; the line it leads to.
-const TABLE: [(i32, &str, &str, &str, &str); 67] = [
+const TABLE: &[(i32, &str, &str, &str, &str)] = &[
     (2, "usage", "derive duffing --order x", "--help", "--help"),
     (2, "set", "derive duffing --set a", "--set", "derive duffing --order 1 --set amplitude=1/2"),
     (
@@ -63,6 +63,14 @@ const TABLE: [(i32, &str, &str, &str, &str); 67] = [
         "without --prove",
         "evaluate docs/examples/sign-power.toml --set delta=1/10 --order 8",
     ),
+    (
+        3,
+        "first-order",
+        "simulate \"x' + alpha*x(t-1)*(1+x) = 0\"",
+        "--unknown",
+        "derive \"x' + alpha*x(t-1)*(1+x) = 0\" --unknown alpha",
+    ),
+    (3, "no-hopf-point", "derive \"x' + a*x^2 + x = 0\" --unknown a", "--set NAME=VALUE", ""),
     (
         2,
         "second-unknown",
@@ -215,7 +223,7 @@ const TABLE: [(i32, &str, &str, &str, &str); 67] = [
     ),
     (
         3,
-        "no-expansion",
+        "no-method",
         "derive \"x'' + x + x(t - 1) + eps*x^3\"",
         "eps*x(t - T)",
         "derive \"x'' + x + eps*x(t - 1) + eps*x^3\" --order 1",
@@ -291,6 +299,13 @@ const TABLE: [(i32, &str, &str, &str, &str); 67] = [
         "derive \"x'' + 5*x - 4*y + eps*q_1*x^2; y'' + 5*y - 4*x\" --order 1",
         "another name",
         "derive \"x'' + 5*x - 4*y + eps*c*x^2; y'' + 5*y - 4*x\" --order 1",
+    ),
+    (
+        3,
+        "near-miss",
+        "derive \"x'' + x + eps*x^3 = F*cos(1000001/1000000*t)\" --order 1",
+        "eps*sigma*x",
+        "derive \"x'' + x + eps*(sigma*x + x^3) = eps*F*cos(t)\" --order 1",
     ),
     (
         3,
@@ -432,7 +447,7 @@ const ELSEWHERE: [(&str, &str); 24] = [
 #[test]
 fn every_error_leads_on() {
     let mut wrong = Vec::new();
-    for (exit, code, line, way, next) in TABLE {
+    for &(exit, code, line, way, next) in TABLE {
         let output = run(line);
         let shown = String::from_utf8_lossy(&output.stdout).into_owned();
         let found = refusal(&shown);

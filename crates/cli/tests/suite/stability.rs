@@ -122,7 +122,7 @@ fn the_printed_file_is_the_built_in_problem() {
 /// delayed force; and one with a constant force, a sine and a delay in seconds.
 #[test]
 fn other_words_for_the_impact_oscillator() {
-    let own = ["problem", "equation", "at", "canonical", "seconds"];
+    let own = ["problem", "equation", "at", "units", "canonical", "seconds"];
     let expected = without(json(&["--set", "A=-0.05"]), &own);
     let spring = of_file(&example("impact-spring"), &[]);
     assert_eq!(spring["canonical"]["A"], "-1/20");

@@ -229,7 +229,7 @@ fn the_printed_file_and_the_example_are_the_built_in_problem() {
     // its file does not list the small parameter.
     let mut other = without(example("stick-slip", &arguments), &["seconds"]);
     other["at"]["eps"] = "1".into();
-    let own = ["problem", "equation"];
+    let own = ["problem", "equation", "units"];
     assert_eq!(without(other, &own), without(built_in, &own));
 }
 
@@ -375,7 +375,8 @@ fn terms_that_do_not_fit_are_named() {
     let cases = [
         ("x'' + sin x = gamma cos(omega t) - eps delta x'", ":2:27:", "no factor"),
         ("x'' - x + x^3 + delta x' = eps gamma cos(omega t)", ":2:29:", "delta*x' has no factor"),
-        ("x'' - x + x^3 = eps (gamma cos(omega t) - delta x^2 x')", ":2:", "depends on x"),
+        ("x'' - x + x^3 = eps (gamma cos(omega t) - delta exp(x) x')", ":2:", "depends on x"),
+        ("x'' - x + x^3 = eps (gamma x sin(x) cos(omega t) - delta x')", ":2:", "factor of x"),
         ("x'' - x + x^3 = eps (gamma cos(omega t)^2 - delta x')", ":2:", "no harmonic force"),
         ("x'' - x + x^3 = eps (gamma cos(omega t) - delta x'(t - v))", ":2:", "is a delay"),
         ("x'' - x + x^3 + eps^2 x' = eps gamma cos(omega t)", ":2:", "first order"),

@@ -43,6 +43,7 @@ use crate::error::DerivationError as Error;
 use crate::limits::{refuse_above, refuse_taken, unknown_parameter};
 use crate::values::value;
 use crate::work::Progress;
+use lindstedt_algebra::NEAR_MISS;
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Problem};
 use lindstedt_expand::OrderWork;
@@ -272,9 +273,6 @@ impl Room {
         self.checked.is_ok()
     }
 }
-
-/// A divisor below this says that a resonance was missed by a little.
-const NEAR_MISS: (i32, i32) = (1, 1000);
 
 fn refuse_near_miss(nearest: &[Nearest], forces: usize) -> Result<(), ResonanceError> {
     let least = Rational::from(NEAR_MISS);

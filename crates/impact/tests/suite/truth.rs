@@ -414,6 +414,7 @@ fn a_chart_equals_its_points() {
         predictor: Some((Predictor::Kbm(Variant::E), 2)),
         exact: Some(Kick::Mean),
         radius: true,
+        part: None,
     };
     let rows = AtomicUsize::new(0);
     let observer = |_: usize| {
@@ -440,6 +441,18 @@ fn a_chart_equals_its_points() {
                 assert!((point.predicted_radius - radius).abs() < 1e-12);
             }
         }
+    }
+    // In parts it is the same, bit by bit.
+    let parts = [(0, 3), (3, 1), (4, 100)].map(|part| {
+        let plan = Plan { part: Some(part), ..plan };
+        chart(&base, &plan, &|_| true).unwrap()
+    });
+    assert!(parts[1].point(2, 3).is_some() && parts[1].point(2, 2).is_none());
+    let points = parts.iter().flat_map(|part| &part.points);
+    assert_eq!(points.clone().count(), 63);
+    for (point, whole) in points.zip(&found.points) {
+        assert_eq!((point.predicted, point.exact), (whole.predicted, whole.exact));
+        assert_eq!(point.exact_radius.to_bits(), whole.exact_radius.to_bits());
     }
     let agreement = found.agreement();
     let wrong = agreement.false_stable + agreement.false_unstable;

@@ -177,14 +177,6 @@ fn c(note: &str, omega: f64, terms: &[Term]) -> String {
 }
 
 fn latex(note: &str, omega: f64, terms: &[Term]) -> String {
-    let number = |x: f64| {
-        let text = format!("{x:e}");
-        match text.split_once('e') {
-            Some((mantissa, "0")) => mantissa.to_owned(),
-            Some((mantissa, exponent)) => format!(r"{mantissa}\cdot 10^{{{exponent}}}"),
-            None => text,
-        }
-    };
     let mut parts = Vec::new();
     for &(k, c, s) in terms {
         let angle = |name: &str| match k {
@@ -200,7 +192,21 @@ fn latex(note: &str, omega: f64, terms: &[Term]) -> String {
     }
     let sum = parts.join(" + ").replace("+ -", "- ");
     let omega = number(omega);
-    // The name of the problem is anybody's.
+    format!("\\[ x(t) = {sum}, \\qquad \\omega = {omega} \\]\n{}.\n", escaped(note))
+}
+
+/// A double as LaTeX.
+pub(super) fn number(x: f64) -> String {
+    let text = format!("{x:e}");
+    match text.split_once('e') {
+        Some((mantissa, "0")) => mantissa.to_owned(),
+        Some((mantissa, exponent)) => format!(r"{mantissa}\cdot 10^{{{exponent}}}"),
+        None => text,
+    }
+}
+
+/// Words as LaTeX: the name of the problem is anybody's.
+pub(super) fn escaped(note: &str) -> String {
     let mut words = String::new();
     for c in note.chars() {
         match c {
@@ -209,5 +215,5 @@ fn latex(note: &str, omega: f64, terms: &[Term]) -> String {
             c => words.push(c),
         }
     }
-    format!("\\[ x(t) = {sum}, \\qquad \\omega = {omega} \\]\n{words}.\n")
+    words
 }

@@ -1,7 +1,7 @@
 //! Derived once, evaluated often: the frequency at a million parameters, x(t) at a million times.
 
 use super::code::no_value;
-use super::{Evaluate, Fourier, PeriodicSolution, SolutionFunction, Trajectory};
+use super::{Evaluate, Fourier, PeriodicSolution, Question, SolutionFunction, Trajectory};
 use crate::{Answer, DerivationError, Error, Exact, Oscillator, Remark, Standing, Work};
 use lindstedt_equation::AmplitudeRole;
 use lindstedt_evaluation::EvaluationError;
@@ -45,7 +45,7 @@ impl Oscillator {
             let order = question.order.unwrap_or_else(|| default_order(&varied.setting.form));
             FrequencyFunction::new(varied, order, question.method, work)
         };
-        self.function(make, |frequency| frequency)
+        self.function(make, varying)
     }
 
     /// x(t) as a function of the small parameter, and of the amplitude where a scaling of the equation carries it: the
@@ -81,14 +81,15 @@ impl Oscillator {
             let order = question.order.unwrap_or_else(|| default_solution_order(form));
             SolutionFunction::new(varied, (order, harmonics), question.method, work)
         };
-        self.function(make, |solution| &solution.frequency)
+        self.function(make, |solution| varying(&solution.frequency))
     }
 
-    /// A function of what varies, with the values of all that does not.
-    fn function<F>(
+    /// A function of what varies, with the values of all that does not; it tells the name of the small parameter, whether
+    /// the amplitude varies, and the order.
+    pub(super) fn function<F>(
         &self,
         make: impl FnOnce(&Varied<'_>) -> Result<F, EvaluationError>,
-        frequency: impl Fn(&F) -> &FrequencyFunction,
+        varying: impl Fn(&F) -> (String, bool, usize),
     ) -> Result<Answer<F>, Error> {
         let start = Instant::now();
         self.without_pi()?;
@@ -97,11 +98,11 @@ impl Oscillator {
         let (setting, small, weight) = case.varied()?;
         let varied = Varied { setting: &setting, small, weight };
         let value = make(&varied).map_err(|error| case.unevaluated(error.into()))?;
-        let FrequencyFunction { small, has_amplitude, order, .. } = frequency(&value);
-        let varies = |name: &str| name == small || *has_amplitude && name == AMPLITUDE;
+        let (small, has_amplitude, order) = varying(&value);
+        let varies = |name: &str| name == small || has_amplitude && name == AMPLITUDE;
         let at = setting.at.iter().filter(|(name, _)| !varies(name));
         let at = at.map(|(name, value)| (name.clone(), value.to_string())).collect();
-        let header = self.header(at, Some(*order), "resummation", start);
+        let header = self.header(at, Some(order), "resummation", start);
         let remarks = self.remarks().to_vec();
         Ok(Answer { header, value, standing: Standing::Complete, remarks })
     }
@@ -144,8 +145,8 @@ impl Oscillator {
     /// x(t) by its first harmonics in omega t, for any number of times, with its estimated error.
     ///
     /// Taken once from the solution that [`Oscillator::evaluate`] finds for the same question: its series summed
-    /// phase by phase, or Newton's orbit in Fourier space. Cost: as for a table of four times as many times as
-    /// harmonics; then some 2 ns per harmonic and time.
+    /// phase by phase, or Newton's orbit in Fourier space. Cost: as for a table of as many times as harmonics for a motion
+    /// with both symmetries, four times as many for one without; then some 2 ns per harmonic and time.
     ///
     /// # Errors
     /// As [`Oscillator::solution_code`].
@@ -191,13 +192,19 @@ impl Oscillator {
         let (way, order) = match by_newton {
             Some((series, frequency)) => (Way::Newton(series, frequency), found.order),
             None => {
-                let path = case.trajectory(&found, question, work)?;
+                let make = |asked: Question<'_>| Trajectory::without_error(asked, work);
+                let path = case.path(&found, question, make)?;
                 let order = path.order();
                 (Way::Sum(Box::new(path)), order)
             }
         };
         Ok(Solved { at: found.at, order, way, remarks })
     }
+}
+
+/// What varies, and the order.
+fn varying(frequency: &FrequencyFunction) -> (String, bool, usize) {
+    (frequency.small.clone(), frequency.has_amplitude, frequency.order)
 }
 
 /// A solution that harmonics can be taken of.

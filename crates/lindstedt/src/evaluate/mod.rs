@@ -4,6 +4,7 @@
 pub mod averaged;
 mod code;
 mod compiled;
+mod functions;
 mod improve;
 mod one_phase;
 mod prove;
@@ -17,6 +18,7 @@ use crate::start::Taken;
 use crate::{Answer, Error, Exact, Kind, Oscillator, Refusal, Remark, Standing, Work};
 pub use code::{Language, SolutionCode};
 use compiled::Way;
+pub use functions::ExpansionCode;
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_evaluation::setting::Setting;
 pub use lindstedt_evaluation::{
@@ -191,6 +193,17 @@ impl Oscillator {
         question: &Evaluate,
         work: &Work,
     ) -> Result<Trajectory, Error> {
+        let make = |asked: Question<'_>| Trajectory::new(asked, work);
+        self.path(found, question, make)
+    }
+
+    /// The same made by a function.
+    fn path(
+        &self,
+        found: &Evaluation,
+        question: &Evaluate,
+        make: impl FnOnce(Question<'_>) -> Result<Trajectory, lindstedt_evaluation::EvaluationError>,
+    ) -> Result<Trajectory, Error> {
         let summed = found.improved.as_ref().map_or(&found.period, |improved| &improved.sum);
         if summed.is_none() && found.exact_period.is_none() {
             return Err(Refused::undecided(
@@ -203,7 +216,7 @@ impl Oscillator {
         let in_doubles = question.times.as_ref().is_none_or(|times| times.range.is_none());
         let (setting, order, phase) = (self.setting()?, question.order, &question.phase);
         let asked = Question { setting, order, phase, evaluation: found, in_doubles };
-        Trajectory::new(asked, work).map_err(|error| self.unevaluated(error.into()))
+        make(asked).map_err(|error| self.unevaluated(error.into()))
     }
 
     /// The period of a settled case.

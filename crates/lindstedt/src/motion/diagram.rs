@@ -3,7 +3,7 @@
 use super::set_up;
 use super::setup::Setup;
 use super::{Section, Start, answer, increasing, precomputed, section};
-use crate::grid::Axis;
+use crate::grid::{Axis, Part};
 use crate::refusal::Refused;
 use crate::{Answer, Error, Oscillator, Progress, Remark, Standing, Status, Work};
 use lindstedt_equation::Expression;
@@ -39,6 +39,8 @@ pub struct Bifurcation {
     pub kept: u32,
     /// Whether every value but the first starts from the last point of the one before, upwards and then down again.
     pub follow: bool,
+    /// Only these of the values; of none that follow each other.
+    pub part: Option<Part>,
 }
 
 impl Bifurcation {
@@ -46,7 +48,7 @@ impl Bifurcation {
     #[must_use]
     pub fn over(sweep: &str) -> Self {
         let (start, sweep) = (Start::default(), sweep.to_owned());
-        Self { start, sweep, section: None, skipped: 200, kept: 100, follow: false }
+        Self { start, sweep, section: None, skipped: 200, kept: 100, follow: false, part: None }
     }
 }
 
@@ -188,8 +190,13 @@ impl Oscillator {
         if question.kept == 0 {
             return Err(Refused::usage("sweep", "no points to keep", "--periods 100").into());
         }
+        if question.follow && question.part.is_some() {
+            let message = "values that follow each other have no parts";
+            return Err(Refused::usage("sweep", message, "without --follow").into());
+        }
         let section = section(question.section, true, &setup)?.unwrap_or(Section::Velocity);
-        let mut values: Vec<Quantity> = axis.values.into_iter().map(Quantity::from).collect();
+        let mut values: Vec<Quantity> =
+            axis.part(question.part).values.into_iter().map(Quantity::from).collect();
         let count = values.len();
         if question.follow {
             values.extend_from_within(..);

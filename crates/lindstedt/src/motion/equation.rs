@@ -63,7 +63,7 @@ pub(super) fn values(
 }
 
 /// What determines a parameter that has no value of its own because it contains pi.
-pub(super) fn meaning(oscillator: &Oscillator, e: &Expression) -> Option<Expression> {
+pub(crate) fn meaning(oscillator: &Oscillator, e: &Expression) -> Option<Expression> {
     match e {
         Expression::Parameter(name) => oscillator.problem_file().determined().get(&**name).cloned(),
         _ => None,

@@ -10,7 +10,7 @@
 pub(crate) mod answer;
 mod chaos;
 mod diagram;
-mod equation;
+pub(crate) mod equation;
 mod follow;
 pub(crate) mod growth;
 mod history;
@@ -197,6 +197,7 @@ impl Oscillator {
     /// # Ok::<(), lindstedt::Error>(())
     /// ```
     pub fn motion(&self, question: &Simulate, work: &Work) -> Result<Answer<Motion>, Error> {
+        self.second_order()?;
         let begin = Instant::now();
         let setup = set_up(self, &question.start, false, precomputed(work))?;
         let mut plan = plan(question, setup)?;

@@ -12,12 +12,19 @@ use lindstedt_impact::ImpactError;
 use lindstedt_melnikov::MelnikovError;
 use lindstedt_simulate::SimulateError;
 
+/// What to do where a divisor is almost zero.
+const AT_RESONANCE: &str =
+    "write the frequency at the resonance and the difference as a detuning: eps*sigma*x";
+
 impl Refusal for ExpandError {
     fn parts(&self) -> (Kind, &'static str, String) {
         let (kind, code, hint) = match self {
             Self::Interrupted { .. } => (Stopped, "interrupted", ""),
             Self::Phase { source: PhaseError::Resonance { .. }, .. } => {
                 (NoAnswer, "resonance", "averaging needs a force off resonance")
+            }
+            Self::Phase { source: PhaseError::NearMiss { .. }, .. } => {
+                (NoAnswer, "near-miss", AT_RESONANCE)
             }
             Self::NotOneClock { .. } => (NoAnswer, "no-such-route", "use --route driver"),
             Self::Phase { .. } => {
@@ -95,11 +102,7 @@ impl Refusal for ResonanceError {
             ),
             Self::NoOscillation { .. } => (NoAnswer, "no-expansion", ""),
             Self::NotDiagonalisable => (NoAnswer, "not-diagonalisable", ""),
-            Self::NearMiss { .. } => (
-                NoAnswer,
-                "near-miss",
-                "write the frequency at the resonance and the difference as a detuning: eps*sigma*x",
-            ),
+            Self::NearMiss { .. } => (NoAnswer, "near-miss", AT_RESONANCE),
             Self::TooManySymbols { .. } => (NoAnswer, "too-many-symbols", "--set some of them"),
             Self::TooHigh { .. } | Self::TooManyTerms { .. } => {
                 (Undecided, "too-large", "lower --order")
@@ -267,22 +270,38 @@ impl Refusal for lindstedt_orbit::Failure {
     }
 }
 
+/// What is left of a series of homoclinic orbits that is refused.
+const FIRST_ORDER: &str = "without --order the first order is found by Melnikov's integral; `lindstedt simulate` follows it in time";
+
 impl Refusal for lindstedt_recognise::Refusal {
     fn parts(&self) -> (Kind, &'static str, String) {
-        use lindstedt_recognise::Refusal;
+        use lindstedt_recognise::{Refusal, Why};
         let (kind, code, hint) = match self {
             Refusal::MissingValues { .. } => {
                 (Usage, "no-value-set", "give it under [parameters] or with --set NAME=VALUE")
             }
             Refusal::Periods { .. } => (Usage, "parameter", "k = 1, 2, ..."),
             Refusal::TooManyTerms { .. } => (Undecided, "too-large", ""),
-            Refusal::NoSaddleForm
-            | Refusal::MovesSaddle { .. }
-            | Refusal::NoPeriod
-            | Refusal::Tangent
-            | Refusal::NoSpring => {
+            Refusal::NoSaddleForm | Refusal::MovesSaddle { .. } => {
+                (NoAnswer, "no-method", FIRST_ORDER)
+            }
+            Refusal::NoPeriod | Refusal::Tangent | Refusal::NoSpring => {
                 (NoAnswer, "no-method", "`lindstedt simulate` follows it in time")
             }
+            Refusal::NoForce => (
+                NoAnswer,
+                "no-method",
+                "--unknown NAME finds the value of a parameter for which the orbit persists",
+            ),
+            Refusal::Term {
+                why: Why::DependsOnPosition | Why::NotHarmonic | Why::PositionFactor,
+                ..
+            } => (
+                NoAnswer,
+                "no-method",
+                "`lindstedt simulate --section stroboscopic` shows where chaos begins",
+            ),
+            Refusal::NoOrbit => (NoAnswer, "no-method", "`lindstedt simulate` takes it"),
             Refusal::Melnikov(error) => return error.parts(),
             _ => (NoAnswer, "no-method", "`lindstedt problems --show FILE` lists the methods"),
         };
@@ -302,9 +321,7 @@ impl Refusal for MelnikovError {
             Self::NotSquare { .. } => {
                 (NoAnswer, "irrational", "another unit of time, t = s*c, makes it a square")
             }
-            Self::LeavesRing { .. } => {
-                (NoAnswer, "no-method", "`lindstedt simulate` follows it in time")
-            }
+            Self::LeavesRing { .. } => (NoAnswer, "no-method", FIRST_ORDER),
             _ => (NoAnswer, "no-answer", ""),
         };
         (kind, code, hint.to_owned())

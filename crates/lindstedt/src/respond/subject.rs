@@ -2,7 +2,7 @@
 
 use super::answer::{Estimate, Response};
 use super::frequency::forcing_frequency;
-use super::{ORDER, Respond, SEARCHES};
+use super::{ORDER, Respond, SEARCHES, STEPS};
 use crate::grid::Axis;
 use crate::motion::Harmonics;
 use crate::refusal::Refused;
@@ -40,6 +40,7 @@ impl<'a> Subject<'a> {
         question: &Respond,
         work: &'a Work,
     ) -> Result<Self, Error> {
+        oscillator.second_order()?;
         let problem = oscillator.problem();
         if problem.impact.is_some() {
             let message = "a wall: the flow between two impacts is no slow flow";
@@ -316,7 +317,8 @@ impl<'a> Subject<'a> {
         let at_rest = all_zeros(&System::new(&flow.rows, &given), &range, &Limits::default());
         let starts = at_rest.into_iter().flat_map(|found| found.zeros);
         let system = flow.system(values);
-        let step = course.step / (1.0 + 2.0 * BESIDE);
+        // A curve to look at: no finer than that.
+        let step = course.step.max(1.0 / STEPS as f64) / (1.0 + 2.0 * BESIDE);
         let course = Course { parameter: 1, unknowns: 1, range: wide, step, ..course.clone() };
         let branches =
             starts.filter_map(|zero| follow(&system, &[0.0, zero.enclosure[0].middle()], &course));

@@ -70,11 +70,12 @@ pub(super) fn compute(
 ) -> Result<Option<Chart>, Error> {
     let Some(first) = sweep.first() else { return Ok(None) };
     let second = sweep.get(1);
-    let height = second.map_or(1, |second| second.axis.values.len());
+    let height = second.map_or(1, |second| second.axis.part(subject.question.part).values.len());
     let points = first.axis.values.len().saturating_mul(height);
     let bytes = size_of::<Option<Point>>();
     check_room(points, bytes, work)?;
     let plan = plan(subject, sweep);
+    let part = plan.part;
     let fast = sweep.iter().all(|range| range.known.is_some() && range.axis.is_equidistant());
     let grid = if fast {
         kernel(subject, sweep, &plan, work)?
@@ -92,7 +93,11 @@ pub(super) fn compute(
         point: sweep.iter().map(|range| range.base).collect(),
         asked: [plan.predictor.is_some(), plan.exact.is_some()],
         agreement: LeftOutAndAgreement { agreement, left_out },
-        flip: if fast && finished { flip(subject, &plan, work) } else { Vec::new() },
+        flip: if fast && finished && part.is_none() {
+            flip(subject, &plan, work)
+        } else {
+            Vec::new()
+        },
         finished,
     }))
 }
@@ -125,6 +130,7 @@ fn plan(subject: &Subject<'_>, sweep: &[Range]) -> Plan {
         predictor: question.predict.then_some((predictor, question.order)),
         exact: question.exact.then_some(question.kick),
         radius: question.radius,
+        part: question.part.filter(|_| sweep.len() > 1),
     }
 }
 
@@ -139,13 +145,13 @@ fn kernel(
     plan: &Plan,
     work: &Work,
 ) -> Result<Grid<Point>, Error> {
-    let rows = plan.rows.count;
+    let rows = plan.computed().len();
     let observer = |done: usize| work.goes_on(Progress::Parts(done, rows));
     let found = chart(&subject.found.parameters.nearest(), plan, &observer)?;
     let points = found.points.into_iter().map(Some).collect();
     let axis = |n: usize| sweep.get(n).map(|range| range.axis.clone());
     let columns = axis(0).unwrap_or(Axis { name: String::new(), values: Vec::new() });
-    Ok(Grid { columns, rows: axis(1), points })
+    Ok(Grid { columns, rows: axis(1).map(|rows| rows.part(plan.part)), points })
 }
 
 /// Over parameters that the canonical ones are computed from: point by point.
@@ -162,13 +168,13 @@ fn general(
         let Some(parameters) = subject.changed(&changes) else { return Ok(Point::EMPTY) };
         let columns = single(Swept::DisplacementGain, parameters.displacement_gain);
         let rows = single(Swept::VelocityGain, parameters.velocity_gain);
-        let one = Plan { columns, rows, ..*plan };
+        let one = Plan { columns, rows, part: None, ..*plan };
         let found = chart(&parameters, &one, &|_| !work.stop.asked())?;
         found.points.first().copied().ok_or(ImpactError::Cancelled)
     };
     let axis = |n: usize| sweep.get(n).map(|range| range.axis.clone());
     let columns = axis(0).unwrap_or(Axis { name: String::new(), values: Vec::new() });
-    let found = Grid::compute(columns, axis(1), work, point);
+    let found = Grid::compute(columns, axis(1).map(|rows| rows.part(plan.part)), work, point);
     let refused = |point: &Result<Point, ImpactError>| match point {
         Err(ImpactError::Cancelled) | Ok(_) => None,
         Err(error) => Some(error.clone()),

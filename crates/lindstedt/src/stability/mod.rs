@@ -9,7 +9,7 @@ mod point;
 mod reading;
 mod subject;
 
-use crate::grid::Axis;
+use crate::grid::{Axis, Part};
 use crate::refusal::Refused;
 use crate::{Answer, Error, Number, Oscillator, Remark, Standing, Work};
 use lindstedt_impact::ImpactError;
@@ -59,6 +59,8 @@ pub struct Stability {
     pub sweep: Vec<Axis>,
     /// Whether the points of a sweep have the largest multipliers beside the verdicts, which cost more than these.
     pub radius: bool,
+    /// Of the rows of a chart only these.
+    pub part: Option<Part>,
 }
 
 impl Default for Stability {
@@ -74,6 +76,7 @@ impl Default for Stability {
             branch: None,
             sweep: Vec::new(),
             radius: false,
+            part: None,
         }
     }
 }

@@ -112,7 +112,7 @@ impl Oscillator {
     }
 
     /// That a parameter that is sought occurs, and has no value.
-    fn check_sought(&self, name: &str) -> Result<(), Error> {
+    pub(super) fn check_sought(&self, name: &str) -> Result<(), Error> {
         let refused =
             |message, hint| Err(Refused::usage("unknown-parameter", message, hint).into());
         if !self.problem().equation.parameters().iter().any(|known| known == name) {

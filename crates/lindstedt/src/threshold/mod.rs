@@ -11,13 +11,14 @@
 
 mod homoclinic;
 mod orbits;
+mod persistence;
 mod resonances;
 mod splitting;
 mod subject;
 mod sweep;
 mod zeros;
 
-use crate::grid::Axis;
+use crate::grid::{Axis, Part};
 use crate::refusal::{Refusal, Refused};
 use crate::{Answer, Error, Exact, Kind, Number, Oscillator, Remark, Standing, Work};
 use lindstedt_equation::print::Style;
@@ -27,6 +28,7 @@ use std::time::Instant;
 use subject::Subject;
 
 pub use homoclinic::{HomoclinicResidual, HomoclinicSeries};
+pub use persistence::{Persistence, PersistentOrbit};
 pub use splitting::{ManifoldPoint, Manifolds, SecondOrderThreshold};
 pub use sweep::{Blank, Marks, Sweep};
 
@@ -52,6 +54,8 @@ pub struct Threshold {
     /// The threshold to second order in the small parameter, gamma_c + slope eps, on every orbit, loops held against
     /// their manifolds: some seconds.
     pub second_order: bool,
+    /// Of the rows of a surface only these.
+    pub part: Option<Part>,
 }
 
 /// The threshold of an oscillator. Closed forms are certified; orbits that are followed
@@ -246,16 +250,7 @@ impl Oscillator {
         let subject = Subject::new(self, work)?;
         let swept = subject.swept(&question.sweep)?;
         let zeros = question.zeros.as_ref().map(|ends| subject.range(ends)).transpose()?;
-        let mut value = orbits::measure(&subject).map_err(|error| {
-            // An orbit that was not followed to its end looks undecided.
-            let stopped = error.kind() == Kind::Undecided && work.stop.asked();
-            if stopped {
-                let message = "stopped before the threshold was found";
-                Refused::stopped(message, "fewer --digits take less time").into()
-            } else {
-                error
-            }
-        })?;
+        let mut value = orbits::measure(&subject).map_err(|error| stopped(error, work))?;
         if let Some(range) = zeros {
             let zeros::Zeros { list, intervals, complete } = zeros::list(&subject, &range)?;
             value.zeros = list;
@@ -267,7 +262,7 @@ impl Oscillator {
         if question.second_order {
             value.second_order = splitting::list(&subject)?;
         }
-        value.sweep = sweep::compute(&subject, swept)?;
+        value.sweep = sweep::compute(&subject, swept, question.part)?;
         value.remarks = subject.remarks(&value);
         let mut remarks = self.remarks().to_vec();
         let mut standing = Standing::Complete;
@@ -296,6 +291,15 @@ impl Oscillator {
         let header = self.header(at.collect(), None, tier, start);
         Ok(Answer { header, value, standing, remarks })
     }
+}
+
+/// An orbit that was not followed to its end looks undecided.
+fn stopped(error: Error, work: &Work) -> Error {
+    if error.kind() == Kind::Undecided && work.stop.asked() {
+        let message = "stopped before the threshold was found";
+        return Refused::stopped(message, "fewer --digits take less time").into();
+    }
+    error
 }
 
 impl Subject<'_> {

@@ -5,14 +5,14 @@ use super::{Crossing, Cusp, Harmonic, HomoclinicThreshold, Orbit, Validity};
 use crate::{Error, Exact, Number, Status};
 use lindstedt_equation::Expression;
 use lindstedt_equation::print::Style;
-use lindstedt_melnikov::{Class, MelnikovError, Potential, Verdict};
+use lindstedt_melnikov::{Class, MelnikovError, Potential, Threshold, Verdict};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::certified;
 use lindstedt_recognise::Unperturbed;
-use lindstedt_recognise::{OrbitCheck, OrbitThreshold};
+use lindstedt_recognise::{MelnikovProblem, OrbitCheck, OrbitValue};
 
 /// Bits that order the thresholds of several orbits.
-const ORDERING_BITS: u32 = 200;
+pub(super) const ORDERING_BITS: u32 = 200;
 /// What is undecided with so many bits is said to be: a threshold beyond all exponents.
 const FEW_OR_NEVER: u32 = 8000;
 /// Bits that decide whether gamma exceeds its threshold.
@@ -24,19 +24,19 @@ struct Measured<'a> {
     digits: usize,
     balls: Balls,
     estimated: bool,
-    orbits: Vec<OrbitThreshold>,
+    orbits: Vec<OrbitValue<Threshold>>,
     /// The orbit of the least threshold.
     first: usize,
 }
 
 /// A part of the threshold of an orbit.
-type Part = fn(&OrbitThreshold) -> &Ball;
+type Part = fn(&OrbitValue<Threshold>) -> &Ball;
 
 impl<'a> Measured<'a> {
     fn new(subject: &'a Subject<'a>) -> Result<Self, Error> {
         let digits = subject.work.printed_digits();
         let estimated = subject.found.class() == Class::Estimated;
-        let bits = if estimated { (digits as f64 * 3.33) as u32 + 48 } else { ORDERING_BITS };
+        let bits = if estimated { estimating_bits(digits) } else { ORDERING_BITS };
         let balls = Balls::new(bits);
         let orbits = match subject.found.thresholds(balls) {
             Err(MelnikovError::Undecided { .. }) if !estimated => {
@@ -44,7 +44,7 @@ impl<'a> Measured<'a> {
             }
             other => other?,
         };
-        let size = |orbit: &OrbitThreshold| orbit.threshold.gamma.midpoint().clone();
+        let size = |orbit: &OrbitValue<Threshold>| orbit.value.gamma.midpoint().clone();
         let least = orbits.iter().enumerate().min_by(|a, b| size(a.1).total_cmp(&size(b.1)));
         let first = least.ok_or(MelnikovError::NoClosedForm)?.0;
         Ok(Self { subject, digits, balls, estimated, orbits, first })
@@ -61,14 +61,14 @@ impl<'a> Measured<'a> {
     fn signed(&self, balls: Balls) -> Option<Ball> {
         match &self.subject.point {
             Some(point) => point.signed_threshold(balls),
-            None => self.orbit(balls, self.first, |o| &o.threshold.signed),
+            None => self.orbit(balls, self.first, |o| &o.value.signed),
         }
     }
 
     fn gamma(&self, balls: Balls) -> Option<Ball> {
         match &self.subject.point {
             Some(_) => Some(balls.abs(&self.signed(balls)?)),
-            None => self.orbit(balls, self.first, |o| &o.threshold.gamma),
+            None => self.orbit(balls, self.first, |o| &o.value.gamma),
         }
     }
 
@@ -118,26 +118,18 @@ impl<'a> Measured<'a> {
         if self.subject.point.is_some() {
             return Ok(Vec::new());
         }
-        let checks = match &self.subject.found.unperturbed {
-            Unperturbed::Numeric(orbit) => orbit.check((self.digits as f64 * 3.33) as u32 + 20),
-            Unperturbed::Closed { .. } => Vec::new(),
-        };
-        let saddle = self.orbits.first().and_then(|orbit| orbit.saddle);
-        let several = self.orbits.iter().any(|orbit| orbit.saddle != saddle);
-        let one = |(n, orbit): (usize, &OrbitThreshold)| {
-            let name = match orbit.saddle {
-                Some(x) if several => format!("{} at x = {}", orbit.name, few_digits(x)),
-                _ => orbit.name.to_owned(),
-            };
+        let checks = checks(&self.subject.found.unperturbed, self.digits);
+        let several = several(&self.orbits);
+        let one = |(n, name): (usize, String)| {
             Ok(Orbit {
                 name,
-                gamma_c: self.part(n, |o| &o.threshold.gamma)?,
-                signed: self.part(n, |o| &o.threshold.signed)?,
+                gamma_c: self.part(n, |o| &o.value.gamma)?,
+                signed: self.part(n, |o| &o.value.signed)?,
                 check: check(&self.subject.found.unperturbed, checks.get(n)),
                 least: several.then_some(n == self.first),
             })
         };
-        self.orbits.iter().enumerate().map(one).collect()
+        names(&self.orbits).into_iter().enumerate().map(one).collect()
     }
 
     fn cusp(&self, speed: &Number) -> Result<Option<Cusp>, Error> {
@@ -170,7 +162,7 @@ impl<'a> Measured<'a> {
             self.number(None, few, |balls| found.distances(balls).map(pick))
         };
         Ok(Validity {
-            verdict: verdict(self.subject),
+            verdict: verdict(&self.subject.found, &self.subject.eps()),
             distance_to_saddle: distance(|(belt, _, _)| belt)?,
             distance_to_tangency: distance(|(_, tangency, _)| tangency)?,
         })
@@ -187,8 +179,8 @@ pub(super) fn measure(subject: &Subject<'_>) -> Result<HomoclinicThreshold, Erro
         measured.number(None, digits, |balls| subject.found.largest_speed(balls))?;
     Ok(HomoclinicThreshold {
         signed: measured.number(None, digits, |balls| measured.signed(balls))?,
-        dissipation: measured.part(first, |o| &o.threshold.dissipation)?,
-        forcing: measured.part(first, |o| &o.threshold.forcing)?,
+        dissipation: measured.part(first, |o| &o.value.dissipation)?,
+        forcing: measured.part(first, |o| &o.value.forcing)?,
         amplitude: subject.found.amplitude.clone(),
         harmonic: measured.harmonic(&gamma_c)?,
         remarks: Vec::new(),
@@ -213,8 +205,37 @@ fn few_digits(x: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
+/// Bits of a number that is estimated.
+pub(super) fn estimating_bits(digits: usize) -> u32 {
+    (digits as f64 * 3.33) as u32 + 48
+}
+
+/// The checks of numeric orbits.
+pub(super) fn checks(unperturbed: &Unperturbed, digits: usize) -> Vec<OrbitCheck> {
+    match unperturbed {
+        Unperturbed::Numeric(orbit) => orbit.check((digits as f64 * 3.33) as u32 + 20),
+        Unperturbed::Closed { .. } => Vec::new(),
+    }
+}
+
+/// Whether the orbits have several saddles.
+fn several<T>(orbits: &[OrbitValue<T>]) -> bool {
+    let saddle = orbits.first().and_then(|orbit| orbit.saddle);
+    orbits.iter().any(|orbit| orbit.saddle != saddle)
+}
+
+/// Which orbits; with their saddles where there are several.
+pub(super) fn names<T>(orbits: &[OrbitValue<T>]) -> Vec<String> {
+    let several = several(orbits);
+    let name = |orbit: &OrbitValue<T>| match orbit.saddle {
+        Some(x) if several => format!("{} at x = {}", orbit.name, few_digits(x)),
+        _ => orbit.name.to_owned(),
+    };
+    orbits.iter().map(name).collect()
+}
+
 /// How the orbit was checked.
-fn check(unperturbed: &Unperturbed, check: Option<&OrbitCheck>) -> Option<String> {
+pub(super) fn check(unperturbed: &Unperturbed, check: Option<&OrbitCheck>) -> Option<String> {
     let Unperturbed::Closed { potential, .. } = unperturbed else {
         return check.map(|c| {
             let (kind, end) = if c.homoclinic {
@@ -248,8 +269,7 @@ fn check(unperturbed: &Unperturbed, check: Option<&OrbitCheck>) -> Option<String
 /// What first order in eps is worth: without a jump there is nothing to be far from, and where the
 /// slope of friction is bounded, what it does on the perturbed orbit differs by O(eps) from what it
 /// does on the unperturbed one.
-fn verdict(subject: &Subject<'_>) -> &'static str {
-    let (found, eps) = (&subject.found, subject.eps());
+pub(super) fn verdict(found: &MelnikovProblem, eps: &Exact) -> &'static str {
     if eps.sign().is_eq() {
         return "no statement: at eps = 0 nothing is perturbed, the stable and unstable manifolds \
                 coincide";

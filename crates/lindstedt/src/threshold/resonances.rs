@@ -19,7 +19,7 @@ pub(super) fn list(subject: &Subject<'_>, largest: u32) -> Result<Vec<Resonance>
                        and friction T0 sgn(w) + t_1 w + t_3 w^3";
         return Err(Refused::no_answer("no-answer", message, "").into());
     };
-    let law = PolynomialFriction::paper(point.dry.clone(), &point.alpha, point.beta.clone());
+    let law = PolynomialFriction::cubic(point.dry.clone(), &point.alpha, point.beta.clone());
     let digits = subject.work.printed_digits();
     let mut found = Vec::new();
     for m in 1..=largest {

@@ -3,9 +3,10 @@
 use crate::grid::Axis;
 use crate::refusal::Refused;
 use crate::{Error, Exact, Oscillator, Work};
+use lindstedt_equation::Expression;
 use lindstedt_melnikov::{self as melnikov, StickSlip};
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_recognise::{LowestHarmonic, MelnikovProblem, SplittingProblem};
+use lindstedt_recognise::{LowestHarmonic, MelnikovProblem, Refusal, SplittingProblem};
 use std::collections::BTreeMap;
 
 /// The oscillator with what was found in its equation.
@@ -36,7 +37,7 @@ impl<'a> Subject<'a> {
         let values = oscillator.form_values(&[])?;
         let problem = oscillator.problem();
         let found = MelnikovProblem::new(problem, &values);
-        let found = found.map_err(|refusal| oscillator.unfit(refusal))?.watched(&work.stop);
+        let found = found.map_err(|why| unfit(oscillator, why))?.watched(&work.stop);
         let (point, lowest) = (found.stick_slip(), LowestHarmonic::find(problem, &values));
         Ok(Self { oscillator, work, values, found, point, lowest })
     }
@@ -115,7 +116,29 @@ impl<'a> Subject<'a> {
         let orbits = found.watched(&self.work.stop).thresholds(balls);
         let orbits = orbits.map_err(|error| error.to_string())?;
         let least = |a: &Ball, b: &Ball| a.midpoint().total_cmp(b.midpoint());
-        let least = orbits.iter().min_by(|a, b| least(&a.threshold.gamma, &b.threshold.gamma));
-        least.map(|orbit| orbit.threshold.signed.clone()).ok_or_else(undecided)
+        let least = orbits.iter().min_by(|a, b| least(&a.value.gamma, &b.value.gamma));
+        least.map(|orbit| orbit.value.signed.clone()).ok_or_else(undecided)
+    }
+}
+
+/// A refusal; of an equation without a force and without a value, that the value may be what is sought.
+fn unfit(oscillator: &Oscillator, why: Refusal) -> Error {
+    let sought = match &why {
+        Refusal::MissingValues { names }
+            if !oscillator.problem().equation.contains(&Expression::Time) =>
+        {
+            names.first().cloned()
+        }
+        _ => None,
+    };
+    match (oscillator.unfit(why), sought) {
+        (Error::Refused(refused), Some(name)) => {
+            let hint = format!(
+                "{}; --unknown {name} finds the value for which the orbit persists",
+                refused.hint
+            );
+            Refused { hint, ..refused }.into()
+        }
+        (error, _) => error,
     }
 }

@@ -1,7 +1,7 @@
 //! Curves and surfaces of the signed threshold.
 
 use super::subject::{Changes, Range, Subject};
-use crate::grid::{Axis, Grid, check_room};
+use crate::grid::{Axis, Grid, Part, check_room};
 use crate::{Error, Exact};
 use lindstedt_melnikov::{self as melnikov, Class, FastPoint, StickSlip, surface};
 use lindstedt_number::ball::Balls;
@@ -53,30 +53,53 @@ pub struct Marks {
     pub cusps: Vec<(f64, f64)>,
 }
 
-/// A point, or why it has no value; nothing where it was not reached.
-type Found = Grid<Result<f64, String>>;
+/// The points, and those without a value by reason.
+struct Found {
+    grid: Grid<f64>,
+    reasons: BTreeMap<String, Vec<usize>>,
+}
 
-pub(super) fn compute(subject: &Subject<'_>, swept: Vec<Range>) -> Result<Option<Sweep>, Error> {
+impl Found {
+    /// From points and reasons; nothing where a point was not reached.
+    fn of(grid: Grid<Result<f64, String>>) -> Self {
+        let mut reasons: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for (index, point) in grid.points.iter().enumerate() {
+            let reason = match point {
+                Some(Ok(_)) => continue,
+                Some(Err(reason)) => reason.clone(),
+                None => "not reached".to_owned(),
+            };
+            reasons.entry(reason).or_default().push(index);
+        }
+        Self { grid: grid.map(Result::ok), reasons }
+    }
+}
+
+pub(super) fn compute(
+    subject: &Subject<'_>,
+    mut swept: Vec<Range>,
+    part: Option<Part>,
+) -> Result<Option<Sweep>, Error> {
     let Some(first) = swept.first() else { return Ok(None) };
     let height = swept.get(1).map_or(1, |second| second.axis.values.len());
     let points = first.axis.values.len().saturating_mul(height);
-    check_room(points, size_of::<Result<f64, String>>(), subject.work)?;
     let fast = (subject.work.doubles || points > CERTIFIED_POINTS)
         && subject.point.is_some()
         && swept.iter().all(stays);
-    let found = if fast { doubles(subject, &swept)? } else { certify(subject, &swept) };
-    let mut reasons: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-    for (index, point) in found.points.iter().enumerate() {
-        match point {
-            Some(Ok(_)) => {}
-            Some(Err(reason)) => reasons.entry(reason.clone()).or_default().push(index),
-            None => reasons.entry("not reached".to_owned()).or_default().push(index),
-        }
+    // How a point is computed is asked of the whole.
+    if let (Some(_), Some(rows)) = (part, swept.get_mut(1)) {
+        rows.axis = rows.axis.part(part);
     }
-    let blanks = reasons.into_iter().map(|(reason, points)| Blank { reason, points }).collect();
+    let bytes = if fast { size_of::<Option<f64>>() } else { size_of::<Result<f64, String>>() };
+    let points = swept.iter().map(|range| range.axis.values.len()).product();
+    check_room(points, bytes, subject.work)?;
+    let found = if fast { doubles(subject, &swept)? } else { certify(subject, &swept) };
+    let blanks =
+        found.reasons.into_iter().map(|(reason, points)| Blank { reason, points }).collect();
     let certified = !fast && subject.found.class() == Class::Certified;
-    let marks = if height <= MOST_CURVES { marks(subject, &swept) } else { Vec::new() };
-    Ok(Some(Sweep { grid: found.map(Result::ok), blanks, certified, marks }))
+    let marks =
+        if height <= MOST_CURVES && part.is_none() { marks(subject, &swept) } else { Vec::new() };
+    Ok(Some(Sweep { grid: found.grid, blanks, certified, marks }))
 }
 
 /// Whether every value is one of a parameter of section 3 that leaves the equation of its form.
@@ -103,16 +126,18 @@ fn certify(subject: &Subject<'_>, swept: &[Range]) -> Found {
         }
     };
     let columns = axis(0).unwrap_or(Axis { name: String::new(), values: Vec::new() });
-    Grid::compute(columns, axis(1), subject.work, point)
+    Found::of(Grid::compute(columns, axis(1), subject.work, point))
 }
 
 /// A value that a double holds, or why it is none.
 fn finite(subject: &Subject<'_>, changes: &Changes<'_>, value: f64) -> Result<f64, String> {
-    if value.is_finite() {
-        return Ok(value);
-    }
+    if value.is_finite() { Ok(value) } else { Err(beyond(subject, changes)) }
+}
+
+/// Why a value is not finite.
+fn beyond(subject: &Subject<'_>, changes: &Changes<'_>) -> String {
     let refused = subject.changed(changes).and_then(|point| point.check().err());
-    Err(refused.map_or("beyond the largest double".to_owned(), |error| error.to_string()))
+    refused.map_or("beyond the largest double".to_owned(), |error| error.to_string())
 }
 
 /// The closed form in doubles.
@@ -128,6 +153,7 @@ fn doubles(subject: &Subject<'_>, swept: &[Range]) -> Result<Found, Error> {
     let across = second.and_then(|range| range.known).unwrap_or(along);
     let rows = rows.unwrap_or_else(|| vec![point.get(along).to_f64()]);
     let mut points = Vec::with_capacity(width.saturating_mul(rows.len()));
+    let mut reasons: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     let mut block = vec![f64::NAN; width.saturating_mul(BLOCK)];
     for (number, rows) in rows.chunks(BLOCK).enumerate() {
         if subject.work.stop.asked() {
@@ -135,17 +161,20 @@ fn doubles(subject: &Subject<'_>, swept: &[Range]) -> Result<Found, Error> {
         }
         let block = &mut block[..width * rows.len()];
         surface(&base, (across, rows), (along, &columns), block)?;
-        points.extend(block.iter().enumerate().map(|(index, value)| {
+        points.extend(block.iter().map(|value| value.is_finite().then_some(*value)));
+        let without = block.iter().enumerate().filter(|(_, value)| !value.is_finite());
+        for (index, _) in without {
             let (column, row) = (index % width, number * BLOCK + index / width);
             let values =
                 [first.axis.values.get(column), second.and_then(|s| s.axis.values.get(row))];
             let places = swept.iter().zip(values);
             let changes: Vec<_> = places.filter_map(|(range, v)| Some((range, v?))).collect();
-            Some(finite(subject, &changes, *value))
-        }));
+            let reason = beyond(subject, &changes);
+            reasons.entry(reason).or_default().push(row * width + column);
+        }
     }
     let rows = second.map(|range| range.axis.clone());
-    Ok(Grid { columns: first.axis.clone(), rows, points })
+    Ok(Found { grid: Grid { columns: first.axis.clone(), rows, points }, reasons })
 }
 
 fn in_doubles(point: &StickSlip) -> FastPoint {
@@ -232,8 +261,6 @@ pub(super) fn keys<S: Serializer>(sweep: &Option<Sweep>, serializer: S) -> Resul
     };
     let without = |blank: &'_ Blank| blank.points.iter().map(place).collect();
     let blanks = blanks.iter().map(|b| Without { reason: &b.reason, points: without(b) }).collect();
-    let signed: Vec<(f64, Option<f64>)> =
-        columns.iter().copied().zip(grid.points.iter().copied()).collect();
     let mut keys = Keys {
         curve_status: Some(if *certified { "certified" } else { "estimated" }),
         blanks: Some(blanks),
@@ -241,6 +268,8 @@ pub(super) fn keys<S: Serializer>(sweep: &Option<Sweep>, serializer: S) -> Resul
     };
     match rows {
         None => {
+            let signed: Vec<(f64, Option<f64>)> =
+                columns.iter().copied().zip(grid.points.iter().copied()).collect();
             keys.curve = signed.iter().map(|(x, y)| (*x, y.map(f64::abs))).collect();
             keys.curve_signed = Some(signed);
         }

@@ -74,7 +74,7 @@ impl Bench<'_> {
         let symbolic: usize = all().map(|p| p.terms().len()).sum();
         let size = all().map(largest).max().unwrap_or(0);
         // x, x' and x'' are kept; a term is a fraction and its exponents.
-        let copies = if matches!(result.solution, Solution::FrequencyOnly) { 1 } else { 3 };
+        let copies = if matches!(result.solution, Solution::FrequencyOnly { .. }) { 1 } else { 3 };
         let bytes = (copies * terms + symbolic) as u64 * (96 + u64::from(size) / 8);
         let values = coefficients_of(result, self.source.step, &self.source.ratio)?;
         let wanted = (f64::from(digits) * std::f64::consts::LOG2_10).ceil() as u32 + 8;

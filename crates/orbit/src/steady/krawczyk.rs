@@ -130,6 +130,15 @@ const MOST_STEPS: usize = 30;
 
 /// Newton's method in doubles; nothing where it does not converge.
 pub(crate) fn newton(system: &System, start: &[f64]) -> Option<Vec<f64>> {
+    newton_while(system, start, |_| true)
+}
+
+/// The same, given up at the first step that a condition does not hold for.
+pub(crate) fn newton_while(
+    system: &System,
+    start: &[f64],
+    keeps: impl Fn(&[f64]) -> bool,
+) -> Option<Vec<f64>> {
     let n = start.len();
     let mut at = start.to_vec();
     let mut before = f64::INFINITY;
@@ -139,7 +148,7 @@ pub(crate) fn newton(system: &System, start: &[f64]) -> Option<Vec<f64>> {
         let step = matrix.lu().solve(&DVector::from_vec(values))?;
         at.iter_mut().zip(step.iter()).for_each(|(x, d)| *x -= d);
         let (change, size) = (step.amax(), at.iter().fold(0.0f64, |m, x| m.max(x.abs())));
-        if !change.is_finite() || !size.is_finite() {
+        if !change.is_finite() || !size.is_finite() || !keeps(&at) {
             return None;
         }
         // Steps of the size of the rounding errors do not shrink any more.

@@ -96,7 +96,8 @@ pub(crate) trait Scalar: Copy + Add<Output = Self> + Mul<Output = Self> {
     const ONE: Self;
     fn integer(n: u32) -> Self;
     fn coefficient(term: &Term) -> Self;
-    fn powi(self, n: u32) -> Self;
+    /// The powers 0..=largest, one product or two each.
+    fn powers(self, largest: u32) -> impl Iterator<Item = Self>;
 }
 
 impl Scalar for f64 {
@@ -108,8 +109,8 @@ impl Scalar for f64 {
     fn coefficient(term: &Term) -> Self {
         term.near
     }
-    fn powi(self, n: u32) -> Self {
-        self.powi(n.cast_signed())
+    fn powers(self, largest: u32) -> impl Iterator<Item = Self> {
+        (0..=largest).scan(1.0, move |next, _| Some(std::mem::replace(next, *next * self)))
     }
 }
 
@@ -122,8 +123,8 @@ impl Scalar for Interval {
     fn coefficient(term: &Term) -> Self {
         term.coefficient
     }
-    fn powi(self, n: u32) -> Self {
-        self.powi(n)
+    fn powers(self, largest: u32) -> impl Iterator<Item = Self> {
+        self.powers(largest)
     }
 }
 
@@ -211,8 +212,9 @@ impl System {
 
     /// Powers 0..=largest of every variable, one after the other.
     fn powers<T: Scalar>(&self, at: &[T]) -> Vec<T> {
-        let power = |x: T| (0..=self.largest).map(move |n| x.powi(n));
-        at.iter().flat_map(|x| power(*x)).collect()
+        let mut powers = Vec::with_capacity(at.len() * (self.largest as usize + 1));
+        at.iter().for_each(|x| powers.extend(x.powers(self.largest)));
+        powers
     }
 
     /// The values of the polynomials.
@@ -259,9 +261,9 @@ impl System {
         (values, slopes)
     }
 
-    /// Every row's own highest degree in all variables, its terms of that degree, and an upper bound of the sum of
+    /// Every row's terms of its own highest degree in all variables, and an upper bound of the sum of
     /// |coefficients| for every lower degree.
-    pub(crate) fn leading(&self) -> (Self, Vec<(u32, Vec<f64>)>) {
+    pub(crate) fn leading(&self) -> (Self, Vec<Vec<f64>>) {
         let degree = |term: &Term| term.powers.iter().map(|(_, e)| e).sum::<u32>();
         let mut top = Vec::new();
         let mut sizes = Vec::new();
@@ -273,7 +275,7 @@ impl System {
                 *sum = *sum + Interval::point(term.coefficient.above());
             }
             top.push(row.iter().filter(|term| degree(term) == highest).cloned().collect());
-            sizes.push((highest, below.into_iter().map(Interval::high).collect()));
+            sizes.push(below.into_iter().map(Interval::high).collect());
         }
         (Self { rows: top, ..*self }, sizes)
     }

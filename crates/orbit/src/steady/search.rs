@@ -7,7 +7,7 @@
 
 use super::System;
 use super::krawczyk::{
-    Region, Verdict, Zero, is_in, krawczyk, meet, middle, newton, prove, zero_near,
+    Region, Verdict, Zero, is_in, krawczyk, meet, middle, newton_while, prove, zero_near,
 };
 use lindstedt_algebra::Stop;
 use lindstedt_number::interval::Interval;
@@ -182,7 +182,12 @@ impl Search<'_> {
 
     /// Looks for a zero from the middle of a box, for one on its boundary, which no subdivision isolates.
     fn centre(&mut self, part: &[Interval]) {
-        let Some(at) = newton(self.system, &middle(part)) else { return };
+        // What strays from the box is no zero of it: smaller boxes start nearer.
+        let strays = |at: &[f64]| {
+            let far = |(x, side): (&f64, &Interval)| (x - side.middle()).abs() > 4.0 * side.width();
+            at.iter().zip(part).any(far)
+        };
+        let Some(at) = newton_while(self.system, &middle(part), |at| !strays(at)) else { return };
         // A linear equation alone leaves a side of the width of rounding, within which nothing is proved.
         let rounding = |x: &f64| ROUNDING * (1.0 + x.abs());
         let near = |(x, side): (&f64, &Interval)| {
@@ -264,9 +269,10 @@ pub fn bound(system: &System) -> Option<f64> {
             return None;
         }
         let values = top.values(&part);
-        let outgrown = values.iter().zip(&sizes).filter_map(|(value, (degree, below))| {
-            outgrows(value.below(), *degree, below).filter(|r| *r < 1e6)
-        });
+        let outgrown = values
+            .iter()
+            .zip(&sizes)
+            .filter_map(|(value, below)| outgrows(value.below(), below).filter(|r| *r < 1e6));
         // A much finer cut gives a smaller bound; a few parts are worth it.
         let width = part.iter().map(|x| x.width()).fold(0.0, f64::max);
         let size = modulus(&part).high();
@@ -287,13 +293,17 @@ pub fn bound(system: &System) -> Option<f64> {
     Some(radius)
 }
 
-/// A power of 2^(1/4), rounded up, beyond which c r^d > sum_k below_k r^k.
-fn outgrows(c: f64, degree: u32, below: &[f64]) -> Option<f64> {
-    let rest = |r: f64| -> f64 {
-        let power = |k: usize| Interval::point(r).powi(degree - k as u32).low();
-        below.iter().enumerate().map(|(k, size)| size / power(k)).sum()
-    };
-    // The sum of a few positive doubles is known to a few units.
-    let ladder = (-40..80).map(|k| 2f64.powf(f64::from(k) / 4.0));
-    (c > 0.0).then(|| ladder.into_iter().find(|r| rest(*r) * (1.0 + 1e-12) < c)).flatten()
+/// A power of 2^(1/4), rounded up, beyond which c r^d > sum_(k<d) below_k r^k, d the length of the list.
+fn outgrows(c: f64, below: &[f64]) -> Option<f64> {
+    const POWERS: std::ops::Range<i32> = -40..80;
+    let radius = |k: i32| 2f64.powf(f64::from(k) / 4.0);
+    // Falls with r. A sum of a few positive doubles and their powers is known to a few units.
+    let rest = |r: f64| below.iter().fold(0.0, |sum, size| (sum + size) / r);
+    let holds = |k: i32| rest(radius(k)) * (1.0 + 1e-12) < c;
+    let (mut low, mut high) = (POWERS.start - 1, POWERS.end);
+    while high - low > 1 {
+        let middle = low + (high - low) / 2;
+        if holds(middle) { high = middle } else { low = middle }
+    }
+    (c > 0.0 && high < POWERS.end).then(|| radius(high))
 }

@@ -9,16 +9,15 @@ use lindstedt_report::{Figure, FigureError};
 
 /// Letters stay readable when a page is narrow: the pictures are small and are scaled up.
 const SIZE: (u32, u32) = (640, 420);
-const PALE: Colour = (232, 232, 232);
 /// The band in which a threshold is called right.
 const BAND: f64 = 0.1;
 
 /// How a point of the plane of the gains stands, with its colour.
 const STANDINGS: [(&str, Colour); 4] = [
-    ("predicted stable, is stable", colours::GREEN),
-    ("predicted unstable, is unstable", PALE),
-    ("predicted stable, IS UNSTABLE", colours::VERMILION),
-    ("predicted unstable, is stable", colours::SKY),
+    ("predicted stable, is stable", colours::VERDICTS[0]),
+    ("predicted unstable, is unstable", colours::VERDICTS[1]),
+    ("predicted stable, IS UNSTABLE", colours::VERDICTS[2]),
+    ("predicted unstable, is stable", colours::VERDICTS[3]),
 ];
 
 /// The cases whose truncation is drawn: their name, whether re-expanded, and the colour.

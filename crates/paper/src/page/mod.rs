@@ -84,8 +84,8 @@ fn document(paper: &Paper, figures: Option<&[Drawing]>, linked: bool) -> Documen
     )
     .words(format!(
         "{rows} statements of the paper by J. Awrejcewicz and I. V. Andrianov, \u{201c}Asymptotic approaches to \
-         analysis of strongly non-linear and non-smooth systems\u{201d}: all of its formulas (1) to (51) and \
-         every number in its text, by lindstedt {}. For each: what is printed, what is derived from the \
+         analysis of strongly non-linear and non-smooth systems\u{201d} (the copy that was read, a scan, names no journal \
+         and no year): all of its formulas (1) to (51) and every number in its text, by lindstedt {}. For each: what is printed, what is derived from the \
          equations, what another route says where there is one, and the verdict that follows.",
         env!("CARGO_PKG_VERSION")
     ));
@@ -95,10 +95,21 @@ fn document(paper: &Paper, figures: Option<&[Drawing]>, linked: bool) -> Documen
                 .strong("Unfinished: the work was stopped before its end.", "unfinished"),
         );
     }
-    page = page.lines(rules);
+    page = page.words(Line::default().strong(format!("{}.", tally(paper)), "tally"));
+    let failing =
+        paper.trust.findings.iter().filter_map(|found| Some((found, found.not_trusted.first()?)));
+    let failing: Vec<Line> = failing
+        .map(|(found, first)| {
+            Line::words(format!("Section {}: ", found.section)).then(first.line())
+        })
+        .collect();
+    if !failing.is_empty() {
+        page = page.part(("fails", ""), "What fails", Document::default().list(failing));
+    }
     if linked {
         page = page.words(contents(paper));
     }
+    page = page.part(("verdicts", ""), "The verdicts", Document::default().lines(rules));
     if !paper.trust.findings.is_empty() {
         page = page.part(
             ("trust", ""),

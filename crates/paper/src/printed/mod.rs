@@ -8,6 +8,7 @@ mod point;
 pub(crate) use point::COMPARED_AT;
 
 use crate::Findings;
+use crate::oscillator::section_three;
 use lindstedt_melnikov::{Branch, MelnikovError, StickSlip};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
@@ -266,7 +267,7 @@ const FIRST_BRANCH: &str =
 fn criterion(p: &Point, fast: &Point, balls: Balls) -> Result<[Line; 3], MelnikovError> {
     let root = p.a.sqrt();
     let right_side = |p: &Point| f64_of(p.stick_slip().g(balls)).map(|g| g * root);
-    let at_five = StickSlip { b: Exact::from(5), belt_speed: exact(0.45), ..StickSlip::paper() };
+    let at_five = StickSlip { b: Exact::from(5), belt_speed: exact(0.45), ..section_three() };
     Ok([
         Line {
             equation: "(27)",

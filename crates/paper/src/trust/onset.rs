@@ -2,10 +2,11 @@
 
 use super::super::{Findings, Reader, Row, Section, Table};
 use super::{ESTIMATED, Finding};
+use crate::oscillator::section_three;
 use crate::stick_slip::{model, parameters};
 use crate::text::texts;
 use lindstedt::Error;
-use lindstedt_melnikov::{Branch, StickSlip};
+use lindstedt_melnikov::Branch;
 use lindstedt_simulate::{
     Homoclinic, Loop, Quantity, SimulateError, Tangency, TangencyLine, continue_tangency,
 };
@@ -82,7 +83,7 @@ const NEAR_ZERO: f64 = 0.2;
 /// Both loops by both routes.
 fn slopes(points: &[OnsetPoint]) -> Result<Vec<OnsetSlope>, Error> {
     let one = |name, branch, side: fn(&OnsetPoint) -> Option<(f64, f64)>| {
-        let found = StickSlip::paper().second_order(branch).ok_or(Error::NoValue)?;
+        let found = section_three().second_order(branch).ok_or(Error::NoValue)?;
         let near = points.iter().filter(|point| point.eps <= NEAR_ZERO);
         let near = near.filter_map(|p| side(p).map(|(gamma, error)| [p.eps, gamma, error]));
         let line = TangencyLine::through(near.collect());
@@ -115,7 +116,7 @@ pub(in super::super) fn read(
     section: &mut Section,
 ) -> Result<bool, Error> {
     let balls = reader.balls;
-    let threshold = StickSlip::paper().signed_threshold(balls).ok_or(Error::NoValue)?;
+    let threshold = section_three().signed_threshold(balls).ok_or(Error::NoValue)?;
     let threshold = threshold.midpoint().to_f64().abs();
     let values = if reader.options.quick { QUICK } else { FULL };
     let mut points: Vec<OnsetPoint> =

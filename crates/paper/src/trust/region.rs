@@ -65,6 +65,7 @@ pub(in super::super) fn read(
             predictor: Some((Predictor::Kbm(variant), 1)),
             exact: Some(Kick::Mean),
             radius: false,
+            part: None,
         };
         let chart = chart(&base, &plan, &|_| true).map_err(|_| Error::NoValue)?;
         charts.push(RegionChart { rule, chart });

@@ -9,7 +9,7 @@
 mod print;
 
 use lindstedt_algebra::{
-    Averaged, AveragingAlgebra, ForcedAlgebra, FunctionAlgebra, LinearPart, PhaseError,
+    Averaged, AveragingAlgebra, ForcedAlgebra, FunctionAlgebra, LinearPart, NEAR_MISS, PhaseError,
     RationalAlgebra, Ring, Stop,
 };
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials};
@@ -194,7 +194,7 @@ impl<K: RationalAlgebra> Torus<K> {
     }
 
     /// 1/L(i nu), nu = k omega_0 + m omega. Without damping and delay L(i omega_0) = 0 says that
-    /// L(i nu) = (omega_0 - nu)(omega_0 + nu), which keeps denominators factored.
+    /// L(i nu) = (omega_0 - nu)(omega_0 + nu), which keeps denominators factored; a number that is almost zero is refused.
     fn inverse_response(
         &self,
         linear: &LinearPart<K::Element>,
@@ -214,6 +214,13 @@ impl<K: RationalAlgebra> Torus<K> {
         {
             let below = invert(&ring.sub(&self.frequency, &nu))?;
             let above = invert(&ring.add(&self.frequency, &nu))?;
+            let rational = |c: &K::Element| ring.as_rational(c);
+            if let (Some(rate), Some(frequency)) = (rational(&nu), rational(&self.frequency)) {
+                let size = Rational::from(1) - Rational::from(rate / frequency).square();
+                if *size.as_abs() < Rational::from(NEAR_MISS) {
+                    return Err(PhaseError::NearMiss { free, forced, size });
+                }
+            }
             return Ok([ring.mul(&below, &above), ring.zero()]);
         }
         let mut re = ring.sub(&linear.stiffness, &ring.mul(&nu, &nu));

@@ -107,3 +107,23 @@ fn resonances_are_named() {
     let resonance = PhaseError::Resonance { free: 0, forced: 3 };
     assert_eq!(t.average(&linear, &f).err(), Some(resonance));
 }
+
+/// A force a millionth beside the free frequency, as it stands and as a harmonic; one a twentieth beside it is no miss.
+#[test]
+fn near_misses_are_named() {
+    for (omega, harmonic) in [(q(1_000_001, 1_000_000), (0, 1)), (q(1_000_001, 3_000_000), (0, 3))]
+    {
+        let t = Torus::new(Rationals, q(1, 1), Some(omega), Vec::new());
+        let ring = t.constants();
+        let linear =
+            LinearPart { stiffness: ring.one(), damping: ring.zero(), delayed: Vec::new() };
+        let size = q(1, 1) - q(1_000_001, 1_000_000).square();
+        let near = PhaseError::NearMiss { free: 0, forced: harmonic.1, size };
+        let f = t.harmonic(harmonic, [ring.one(), ring.zero()]);
+        assert_eq!(t.average(&linear, &f).err(), Some(near));
+    }
+    let t = Torus::new(Rationals, q(1, 1), Some(q(21, 20)), Vec::new());
+    let ring = t.constants();
+    let linear = LinearPart { stiffness: ring.one(), damping: ring.zero(), delayed: Vec::new() };
+    assert!(t.average(&linear, &t.harmonic((0, 1), [ring.one(), ring.zero()])).is_ok());
+}

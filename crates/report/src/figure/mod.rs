@@ -32,6 +32,9 @@ pub mod colours {
     pub const VERMILION: Colour = (213, 94, 0);
     /// Purple.
     pub const PURPLE: Colour = (204, 121, 167);
+    /// The plane of a prediction and the truth: both stable, both unstable, predicted stable but unstable, predicted
+    /// unstable but stable. Their lightness alone, 77, 226, 119, 183 of 255, tells them apart in print without colours.
+    pub const VERDICTS: [Colour; 4] = [(0, 114, 84), (226, 226, 226), VERMILION, (130, 200, 240)];
     /// One colour after the other, for curves of a family.
     pub const CYCLE: [Colour; 7] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK];
 }
@@ -223,5 +226,19 @@ impl Figure {
             layer.points.iter().map(move |(x, y)| [name.clone(), x.to_string(), y.to_string()])
         });
         rows.fold(head, Table::row)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::colours::VERDICTS;
+
+    #[test]
+    fn verdicts_differ_in_lightness() {
+        // Rec. 601.
+        let mut all = VERDICTS
+            .map(|(r, g, b)| 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b));
+        all.sort_by(f64::total_cmp);
+        assert!(all.windows(2).all(|pair| pair[1] - pair[0] > 35.0), "{all:?}");
     }
 }

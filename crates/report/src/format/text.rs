@@ -86,7 +86,8 @@ impl Writer for Plain {
         format!("{line}\n")
     }
     fn formula(&self, formula: &Formula) -> String {
-        indented(&harmless(&formula.text))
+        // One that is not for text.
+        if formula.text.is_empty() { String::new() } else { indented(&harmless(&formula.text)) }
     }
     fn lines(&self, list: &[(String, String)]) -> String {
         let widest = list.iter().map(|(name, _)| width(name)).max().unwrap_or(0) + 2;

@@ -3,7 +3,7 @@
 use super::{Present, both, classification, condition_text, equation};
 use crate::{Document, Formula, Text};
 use lindstedt::unstable::coeff::print::{Style, latex_name};
-use lindstedt::unstable::equation::{AmplitudeRole, Condition};
+use lindstedt::unstable::equation::{AmplitudeRole, Condition, Quantity};
 use lindstedt::{Answer, Derivation, Number, Route, Solution};
 
 /// Right sides and solutions with more terms are counted, not printed; JSON has them all.
@@ -34,6 +34,7 @@ impl Present for Answer<Derivation> {
         }
         page = page.heading("Result");
         page = board.result(page);
+        page = board.closing().into_iter().fold(page, Document::formula);
         page.words(board.residual())
     }
 }
@@ -190,6 +191,33 @@ impl Board<'_> {
         page
     }
 
+    /// omega and x(t) in one formula each, to be copied: not in text, whose lines are too short for them. Where the
+    /// amplitude stands in a factor of omega there is none.
+    fn closing(&self) -> Vec<Formula> {
+        let (result, small) = (self.0, self.small(Style::Latex));
+        let series = result.series.iter().find(|series| series.quantity == Quantity::Frequency);
+        let scaled = result.amplitude.as_ref().map(ToString::to_string).filter(|a| a != "1");
+        let in_factor = matches!(result.problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
+        let Some(series) = series.filter(|_| scaled.is_none() || !in_factor) else {
+            return Vec::new();
+        };
+        let count = series.coefficients.len();
+        let omega = (0..count).map(|n| result.print_coefficient(series, n, Style::Latex));
+        let only = |latex: String| Formula::new("", latex);
+        let mut list = vec![only(format!(r"\omega = {}", powers(omega, &small, count)))];
+        let (solved, terms) = (result.solved(), |n| result.terms(n));
+        if solved > 0 && (0..solved).map(terms).sum::<usize>() <= PRINTED_TERMS {
+            let x = (0..solved).map(|n| result.print_solution(n, Style::Latex));
+            let sum = powers(x, &small, solved);
+            let x = match scaled {
+                Some(a) => format!(r"{a}\left({sum}\right)"),
+                None => sum,
+            };
+            list.push(only(format!(r"x(t) = {x}, \qquad \tau = \omega t")));
+        }
+        list
+    }
+
     fn residual(&self) -> String {
         let vanishes = |last: usize| {
             format!(
@@ -207,7 +235,11 @@ impl Board<'_> {
                 vanishes(last)
             ),
             (_, Some(last)) => vanishes(last) + ".",
-            (Solution::FrequencyOnly, None) => {
+            (Solution::FrequencyOnly { primes: Some(primes) }, None) => format!(
+                "Proved modulo {primes} primes of 61 bits, more than its numbers can hold by bounds known in advance;\n\
+                 no solution. One image was substituted into the equation, the others at one phase each."
+            ),
+            (Solution::FrequencyOnly { primes: None }, None) => {
                 "By the energy integral; no solution, so nothing to substitute.".to_owned()
             }
             (_, None) => "Not substituted into the equation: not checked.".to_owned(),
@@ -228,6 +260,35 @@ pub(super) fn coefficient(n: usize, exact: Formula, number: &Number) -> Formula 
 
 pub(super) fn indexed(name: &str, n: usize, style: Style) -> String {
     if style == Style::Text { format!("{name}_{n}") } else { format!("{name}_{{{n}}}") }
+}
+
+/// c_0 + c_1 small + ... + O(small^count), zeros left out.
+fn powers(list: impl Iterator<Item = String>, small: &str, count: usize) -> String {
+    let power = |n: usize| match n {
+        0 => String::new(),
+        1 => small.to_owned(),
+        n => format!("{small}^{{{n}}}"),
+    };
+    let mut sum = String::new();
+    for (n, coefficient) in list.enumerate().filter(|(_, coefficient)| coefficient != "0") {
+        // One that is a sum stands in brackets.
+        let inner = coefficient.trim_start_matches('-');
+        let term = match (n, &*coefficient) {
+            (0, _) => coefficient,
+            (_, "1") => power(n),
+            (_, "-1") => format!("-{}", power(n)),
+            _ if inner.contains(" + ") || inner.contains(" - ") => {
+                format!(r"\left({coefficient}\right){}", power(n))
+            }
+            _ => format!(r"{coefficient}\,{}", power(n)),
+        };
+        sum += &match term.strip_prefix('-') {
+            _ if sum.is_empty() => term,
+            Some(term) => format!(" - {term}"),
+            None => format!(" + {term}"),
+        };
+    }
+    format!(r"{sum} + O\left({}\right)", power(count))
 }
 
 fn counted(terms: usize, style: Style) -> String {

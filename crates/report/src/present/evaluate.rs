@@ -4,7 +4,9 @@ use super::Present;
 use crate::figure::{Axis, Mark, colours};
 use crate::{Block, Document, Figure, Formula, Table, Text};
 use lindstedt::evaluate::averaged::{Moment, Motion, Quantity};
-use lindstedt::evaluate::{Displacement, Displacements, Evaluation, SolutionCode, method_name};
+use lindstedt::evaluate::{
+    Displacement, Displacements, Evaluation, ExpansionCode, SolutionCode, method_name,
+};
 use lindstedt::{Answer, Exact, Header, Number};
 
 /// `problem: name = value, ...`.
@@ -217,6 +219,12 @@ fn moment(m: &Moment) -> [Text; 4] {
     };
     let cells = [time(&m.time), shown(&m.amplitude), shown(&m.phase), shown(&m.displacement)];
     cells.map(Text::words)
+}
+
+impl Present for Answer<ExpansionCode> {
+    fn document(&self) -> Document {
+        Document::default().with(Block::Source(self.value.code.clone()))
+    }
 }
 
 impl Present for Answer<SolutionCode> {

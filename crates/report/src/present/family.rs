@@ -1,6 +1,6 @@
 //! Proved orbits over a parameter.
 
-use super::Present;
+use super::{Present, parameter};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Table};
 use lindstedt::evaluate::{ProvedBranch, ProvedFamily, ProvedMember};
@@ -48,8 +48,11 @@ impl Present for Answer<ProvedFamily> {
             true => ("frequency", |point| point.orbit.frequency.as_ref()),
             false => ("largest x", |point| point.orbit.maximum.as_ref()),
         };
-        let frame =
-            Figure::new(title(self), Axis::linear(&*self.value.parameter), Axis::linear(name));
+        let frame = Figure::new(
+            title(self),
+            parameter(&self.header, &self.value.parameter),
+            Axis::linear(name),
+        );
         let branches = self.value.branches.iter().enumerate();
         Some(branches.fold(frame, |frame, (index, branch)| {
             let colour = colours::CYCLE[index % colours::CYCLE.len()];

@@ -8,8 +8,10 @@ mod estimate;
 mod evaluate;
 mod family;
 mod homoclinic;
+mod hopf;
 mod motion;
 mod one_phase;
+mod persistence;
 mod prove;
 mod resonance;
 mod respond;
@@ -19,12 +21,13 @@ mod threshold;
 mod trade;
 mod verify;
 
+use crate::figure::Axis;
 use crate::format::steers;
 use crate::{Document, Figure, Formula, Table, Text};
 use classification::classification;
 use lindstedt::unstable::coeff::print::Style;
 use lindstedt::unstable::equation::{Condition, Problem, print};
-use lindstedt::{Number, Status};
+use lindstedt::{Header, Number, Status};
 use serde::Serialize;
 
 /// An answer that can be shown.
@@ -93,6 +96,14 @@ impl Text {
             _ => number.decimal.clone(),
         })
     }
+}
+
+/// The axis of a parameter, with its unit where the file of the problem names one.
+fn parameter(header: &Header, name: &str) -> Axis {
+    Axis::linear(match header.units.get(name) {
+        Some(unit) => format!("{name} ({unit})"),
+        None => name.to_owned(),
+    })
 }
 
 /// A formula from what prints it in either notation.

@@ -1,6 +1,6 @@
 //! Motions, their chaos, and bifurcation diagrams.
 
-use super::Present;
+use super::{Present, parameter};
 use crate::figure::{Axis, Colour, Layer, Mark, colours};
 use crate::format::line as csv_line;
 use crate::{Document, Figure, Formula, Table, Text};
@@ -171,8 +171,12 @@ fn rows(value: &Motion) -> impl Iterator<Item = Vec<String>> {
     std::iter::once(head).chain(dots).chain(events).chain(points).chain(samples)
 }
 
-fn axis(words: &str) -> Axis {
-    Axis::linear(format!("{words} (dimensionless)"))
+/// Where the file has units for parameters, those of x and t follow from them.
+fn axis(header: &Header, words: &str) -> Axis {
+    match header.units.is_empty() {
+        true => Axis::linear(format!("{words} (dimensionless)")),
+        false => parameter(header, words),
+    }
 }
 
 /// On a wall or at maxima one coordinate is constant: the points in time tell more.
@@ -193,7 +197,12 @@ fn section_figure(answer: &Answer<Motion>) -> Figure {
     let title = format!("{name}: Poincare section {kind}, {} points", places.len());
     let mark = Mark::Disc(if places.len() > 500 { 1 } else { 3 });
     let points = places.iter().map(|place| (place[pick[0]], place[pick[1]]));
-    Figure::new(title, axis(across), axis(up)).layer(None, mark, colours::BLUE, points)
+    Figure::new(title, axis(&answer.header, across), axis(&answer.header, up)).layer(
+        None,
+        mark,
+        colours::BLUE,
+        points,
+    )
 }
 
 /// Moving and sticking apart; in the phase plane broken where the velocity jumps.
@@ -206,7 +215,7 @@ fn line_figure(answer: &Answer<Motion>, phase: bool) -> Figure {
         ("time series", "time t", "displacement x")
     };
     let title = format!("{}: {what} to t = {end:.4}", answer.header.problem);
-    let mut figure = Figure::new(title, axis(across), axis(up));
+    let mut figure = Figure::new(title, axis(&answer.header, across), axis(&answer.header, up));
     let kinds = [
         ("moving", false, Mark::Line(if phase { 1 } else { 2 }), colours::BLUE),
         ("sticking, or at rest at the wall", true, Mark::Line(4), colours::VERMILION),
@@ -336,7 +345,8 @@ impl Present for Answer<Diagram> {
             sweep.kept,
             sweep.skip
         );
-        let figure = Figure::new(title, axis(&sweep.parameter), axis(up));
+        let figure =
+            Figure::new(title, axis(&self.header, &sweep.parameter), axis(&self.header, up));
         let Some(back) = &sweep.back else {
             return Some(figure.layer(None, Mark::Disc(1), colours::BLUE, points));
         };

@@ -1,6 +1,6 @@
 //! Steady states at resonance: the states, the response curve with its backbone.
 
-use super::Present;
+use super::{Present, parameter};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::respond::{Change, Corner, Estimate, Point, Response, State, States};
@@ -199,8 +199,8 @@ fn decimal(number: &Number) -> f64 {
 }
 
 /// Curves of folds and of Hopf points in the plane of two parameters.
-fn curves(value: &Response, title: String, [first, second]: [&String; 2]) -> Figure {
-    let mut figure = Figure::new(title, Axis::linear(first), Axis::linear(second));
+fn curves(value: &Response, title: String, [across, up]: [Axis; 2]) -> Figure {
+    let mut figure = Figure::new(title, across, up);
     for curve in &value.curves {
         let (name, colour) = match curve.kind {
             "fold" => ("folds", colours::BLUE),
@@ -287,10 +287,11 @@ impl Present for Answer<Response> {
         let value = &self.value;
         let name = value.parameter.as_ref()?;
         if let Some(second) = &value.second {
-            return Some(curves(value, title(self), [name, second]));
+            let axes = [name, second].map(|name| parameter(&self.header, name));
+            return Some(curves(value, title(self), axes));
         }
         let up = Axis::linear(if value.turns.len() == 1 { "amplitude" } else { "amplitudes" });
-        let mut figure = Figure::new(title(self), Axis::linear(name), up);
+        let mut figure = Figure::new(title(self), parameter(&self.header, name), up);
         if !value.backbone.is_empty() {
             let points = value.backbone.iter().map(|[x, a]| (x.value, a.value));
             figure = figure.layer(Some("free motion"), Mark::Line(1), colours::GREY, points);

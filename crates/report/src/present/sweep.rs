@@ -1,6 +1,6 @@
 //! Period and frequency over swept parameters.
 
-use super::Present;
+use super::{Present, parameter};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Table};
 use lindstedt::evaluate::EvaluationSweep;
@@ -28,8 +28,11 @@ impl Present for Answer<EvaluationSweep> {
     /// The period over the first parameter, a curve for every value of the second.
     fn figure(&self) -> Option<Figure> {
         let grid = &self.value.grid;
-        let frame =
-            Figure::new(title(self), Axis::linear(&*grid.columns.name), Axis::linear("period"));
+        let frame = Figure::new(
+            title(self),
+            parameter(&self.header, &grid.columns.name),
+            Axis::linear("period"),
+        );
         let rows = grid.points.chunks(grid.width()).enumerate();
         Some(rows.fold(frame, |frame, (index, row)| {
             let colour = colours::CYCLE[index % colours::CYCLE.len()];

@@ -1,14 +1,15 @@
 //! The threshold of homoclinic chaos: its numbers, its curves, its map.
 
-use super::Present;
+use super::{Present, parameter};
 use crate::figure::{Axis, Colour, Mark, Raster, colours};
 use crate::format::line as csv_line;
 use crate::{Document, Figure, Formula, Table, Text};
 use lindstedt::grid::{self, Grid};
 use lindstedt::threshold::{Harmonic, HomoclinicThreshold, SecondOrderThreshold, Sweep};
 use lindstedt::unstable::coeff::print::latex_name;
-use lindstedt::{Answer, Number, Remark, Standing};
+use lindstedt::{Answer, Header, Number, Remark, Standing};
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 /// The longest table on a page.
 const PRINTED_POINTS: usize = 1000;
@@ -126,7 +127,7 @@ fn second_order(found: &SecondOrderThreshold) -> Vec<Line> {
 }
 
 /// The verdict with its distances as formulas.
-fn verdict(words: &str) -> Text {
+pub(super) fn verdict(words: &str) -> Text {
     let marked = words.replace("||v*| - V|", "$D$").replace("|v*|", "$|v*|$");
     Text::marked(&marked.replace("$|v*|$ = V", "$|v*| = V$").replace("$D$", "$||v*| - V|$"))
 }
@@ -156,10 +157,10 @@ impl Present for Answer<HomoclinicThreshold> {
         let sweep = self.value.sweep.as_ref()?;
         let Grid { columns, rows, .. } = &sweep.grid;
         match rows {
-            Some(rows) if rows.values.len() > MOST_CURVES => {
-                (columns.is_equidistant() && rows.is_equidistant()).then(|| map(sweep, rows))
-            }
-            _ => Some(curves(sweep, &self.header.problem)),
+            Some(rows) if rows.values.len() > MOST_CURVES => (columns.is_equidistant()
+                && rows.is_equidistant())
+            .then(|| map(sweep, rows, &self.header)),
+            _ => Some(curves(sweep, &self.header)),
         }
     }
 
@@ -181,9 +182,32 @@ impl Present for Answer<HomoclinicThreshold> {
     }
 
     fn csv(&self, take: &mut dyn FnMut(&str) -> bool) -> Option<bool> {
-        let mut lines = rows(&self.value.sweep.as_ref()?.grid);
-        Some(lines.all(|cells| take(&csv_line(&cells))))
+        let grid = &self.value.sweep.as_ref()?.grid;
+        let head: Vec<String> = rows(grid).next()?;
+        Some(take(&csv_line(&head)) && csv_points(grid, take))
     }
+}
+
+/// Every point as a line. Of millions each value is printed once, and into the same line.
+fn csv_points(grid: &Grid<f64>, take: &mut dyn FnMut(&str) -> bool) -> bool {
+    let texts = |axis: &grid::Axis| -> Vec<String> {
+        axis.doubles().iter().map(|x| format!("{x:?},")).collect()
+    };
+    let (columns, rows) = (texts(&grid.columns), grid.rows.as_ref().map(texts));
+    let (mut line, mut digits) = (String::new(), String::new());
+    grid.points.chunks(grid.width()).enumerate().all(|(row, points)| {
+        let row = rows.as_ref().and_then(|rows| rows.get(row));
+        points.iter().zip(&columns).all(|(signed, column)| {
+            digits.clear();
+            // Writing into a string cannot fail.
+            let _ = signed.map(|x| write!(digits, "{x:?}"));
+            line.clear();
+            let size = digits.strip_prefix('-').unwrap_or(&digits);
+            let parts = [row.map_or("", String::as_str), column, size, ",", &digits, "\n"];
+            line.extend(parts);
+            take(&line)
+        })
+    })
 }
 
 /// The names of the columns, then every point.
@@ -242,13 +266,13 @@ fn points(sweep: &Sweep) -> Document {
 }
 
 /// A family of curves; circles mark zeros, triangles cusps.
-fn curves(sweep: &Sweep, problem: &str) -> Figure {
+fn curves(sweep: &Sweep, header: &Header) -> Figure {
     let grid = &sweep.grid;
     let columns = grid.columns.doubles();
     let marked = if sweep.marks.is_empty() { "" } else { ": circles zeros, triangles cusps" };
-    let title = format!("Melnikov threshold of {problem}{marked}");
+    let title = format!("Melnikov threshold of {}{marked}", header.problem);
     let up = Axis::linear("gamma_c");
-    let mut figure = Figure::new(title, Axis::linear(&grid.columns.name), up);
+    let mut figure = Figure::new(title, parameter(header, &grid.columns.name), up);
     for (row, signed) in grid.points.chunks(grid.width()).enumerate() {
         let colour = colours::CYCLE[row % colours::CYCLE.len()];
         let name = grid
@@ -271,7 +295,7 @@ fn curves(sweep: &Sweep, problem: &str) -> Figure {
 }
 
 /// A map in shades: blue D > 0, red D < 0, white near 0.
-fn map(sweep: &Sweep, rows: &grid::Axis) -> Figure {
+fn map(sweep: &Sweep, rows: &grid::Axis, header: &Header) -> Figure {
     let grid = &sweep.grid;
     let largest = grid.points.iter().flatten().fold(0.0f64, |m, s| m.max(s.abs()));
     let shade = |signed: &f64| -> Colour {
@@ -282,7 +306,7 @@ fn map(sweep: &Sweep, rows: &grid::Axis) -> Figure {
         (mix(r), mix(g), mix(b))
     };
     let title = format!("signed Melnikov threshold, blue > 0 > red, up to {largest:.3e}");
-    let [across, up] = [&grid.columns, rows].map(|axis| Axis::linear(&axis.name));
+    let [across, up] = [&grid.columns, rows].map(|axis| parameter(header, &axis.name));
     let range = |axis: &grid::Axis| {
         let values = axis.doubles();
         let end = |x: Option<&f64>| x.copied().unwrap_or(f64::NAN);

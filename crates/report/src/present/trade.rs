@@ -48,6 +48,15 @@ fn colour(name: &str) -> Colour {
     }
 }
 
+/// Full marks: methods differ in shape, and those of one shape in lightness.
+fn mark(name: &str) -> Mark {
+    match name {
+        "simulation" | "simulation-f64" => Mark::Triangle(5),
+        "fourier" | "energy" => Mark::Cross(4),
+        _ => Mark::Disc(4),
+    }
+}
+
 /// 1.2 us, 34 ms, 5.6 s.
 fn duration(seconds: f64) -> String {
     match seconds {
@@ -158,14 +167,14 @@ fn title(answer: &Answer<Trade>) -> String {
     format!("{} at {}", answer.header.problem, at.join(", "))
 }
 
-/// The layers of one curve: partial sums hollow, resummations and the integrator full.
+/// The layers of one curve: partial sums are rings, resummations and the integrator have the mark of their method.
 fn curve(figure: Figure, rows: &[Row], at: impl Fn(&Row) -> (f64, f64)) -> Figure {
     let Some(first) = rows.first() else { return figure };
     let (name, colour) = (first.method.name(), colour(first.method.name()));
     let label = |row: &Row| {
         row.order.map_or_else(|| format!("{}d", row.method.digits()), |n| n.to_string())
     };
-    [(true, Mark::Ring(4)), (false, Mark::Disc(4))].into_iter().fold(
+    [(true, Mark::Ring(4)), (false, mark(name))].into_iter().fold(
         figure,
         |figure, (partial, mark)| {
             let is_partial = |row: &&Row| row.summation == Some(Summation::PartialSum);
@@ -206,7 +215,7 @@ impl Present for Answer<Trade> {
         let least = rows.iter().map(|row| row.true_error).filter(|error| *error > 0.0);
         let least = (least.fold(1.0, f64::min) / 10.0).max(LEAST);
         let at = |row: &Row| (row.seconds, row.true_error.clamp(least, 1e3));
-        let words = format!("{}: period (hollow: partial sums, full: resummed)", title(self));
+        let words = format!("{}: period (rings: partial sums, others: resummed)", title(self));
         let across = Axis::logarithmic("time / s");
         let figure = Figure::new(words, across, Axis::logarithmic("true relative error"));
         // The front as a staircase: what a time buys.

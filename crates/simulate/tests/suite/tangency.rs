@@ -218,3 +218,28 @@ fn ticks_break_off() {
         assert_eq!(outcome, Err(SimulateError::Stopped));
     });
 }
+
+/// x'' = x - x^3 + eps (h x cos t - x^2 x'): Melnikov's integral gives h = (16/15) sinh(pi/2)/pi, a force that multiplies x
+/// against friction that depends on x. The first tangency tends to it with eps.
+#[test]
+fn a_parametric_force_against_friction_that_depends_on_x() {
+    let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
+    let force = Expression::parameter("h")
+        * x.clone()
+        * Expression::Time.apply(lindstedt_equation::Function::Cos);
+    let small = Expression::Small * (x.clone().pow(2) * v - force);
+    let model = Model::second_order(&(Expression::ACCELERATION - x.clone() + x.pow(3) + small));
+    let model = model.unwrap().with_small("eps");
+    let threshold = 16.0 / 15.0 * (PI / 2.0).sinh() / PI;
+    let errors = [(1, 20), (1, 40)].map(|eps| {
+        let parameters = Parameters::new().with("eps", rug::Rational::from(eps));
+        let (model, parameters, side) = (&model, &parameters, Loop::Right);
+        let (period, guess) = (2.0 * PI, [0.0, 0.0]);
+        let homoclinic = Homoclinic { model, parameters, name: "h", period, side, guess };
+        let tangency = homoclinic.first_tangency((0.7, 0.87), 24, &go_on).unwrap();
+        tangency.value - threshold
+    });
+    let slope = (errors[0] / errors[1]).log2();
+    println!("{threshold} {errors:?} {slope}");
+    assert!(errors[1].abs() < 1e-2 && (0.9..2.2).contains(&slope), "{errors:?} {slope}");
+}

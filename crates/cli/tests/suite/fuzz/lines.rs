@@ -158,6 +158,7 @@ fn option(g: &mut Generator, verb: &str) -> Vec<String> {
             of("--normalisation", g, &["initial", "fundamental", "free", "x"])
         }
         (4, "derive") => of("--tier", g, &["exact", "collocation", "fourier"]),
+        (6, "derive") => of("--only", g, &["frequency", "frequenzy"]),
         (5, "derive") => of("--route", g, &["auto", "driver", "clock", "energy"]),
         (4, "evaluate") => of(
             "--resum",

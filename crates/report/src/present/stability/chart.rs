@@ -1,6 +1,7 @@
 //! The chart of an impact orbit: in characters, as a figure, as a table.
 
-use crate::figure::{Axis, Colour, Mark, Raster, colours};
+use super::super::parameter;
+use crate::figure::{Colour, Mark, Raster, colours};
 use crate::format::line;
 use crate::{Figure, Table, Text};
 use lindstedt::Answer;
@@ -25,12 +26,12 @@ enum Stands {
     Open,
 }
 
-/// All of them: sign, colour; colours differ in brightness and for colour-blind readers.
+/// All of them: sign, colour.
 const STANDS: [(Stands, char, Option<Colour>); 7] = [
-    (Stands::BothStable, '#', Some(colours::GREEN)),
-    (Stands::BothUnstable, '.', Some((226, 226, 226))),
-    (Stands::FalseStable, '!', Some(colours::VERMILION)),
-    (Stands::FalseUnstable, 'o', Some(colours::SKY)),
+    (Stands::BothStable, '#', Some(colours::VERDICTS[0])),
+    (Stands::BothUnstable, '.', Some(colours::VERDICTS[1])),
+    (Stands::FalseStable, '!', Some(colours::VERDICTS[2])),
+    (Stands::FalseUnstable, 'o', Some(colours::VERDICTS[3])),
     (Stands::OnlyStable, '#', Some((160, 214, 180))),
     (Stands::OnlyUnstable, '.', Some((240, 240, 240))),
     (Stands::Open, '?', None),
@@ -154,7 +155,7 @@ pub(super) fn figure(answer: &Answer<OrbitStability>) -> Option<Figure> {
         (low - half..high + half).contains(&x)
     };
     let shown = inside(x, raster.columns) && inside(y, raster.rows);
-    let [across, up] = [&columns.name, &rows.name].map(Axis::linear);
+    let [across, up] = [&columns.name, &rows.name].map(|name| parameter(&answer.header, name));
     let cross = format!("cross: {} = {x}, {} = {y}", columns.name, rows.name);
     let names = [&columns.name, &rows.name];
     let fixed = answer.header.at.iter().filter(|(name, _)| !names.contains(&name));

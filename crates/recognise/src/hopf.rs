@@ -1,0 +1,140 @@
+//! x' = f or x'' = f with delays, multiplied out about x = 0: sum_t c_t(alpha) prod_f D^n_f x(t - T_f) = 0.
+
+use crate::bound::{bind, missing, multiply_out, named};
+use crate::refusal::{Refusal, Why};
+use lindstedt_equation::monomials::{Monomial, Monomials, expand};
+use lindstedt_equation::{Expression, Problem, Unknown};
+use lindstedt_hopf::{DelayEquation, Factor, Term};
+use lindstedt_number::Exact;
+use rug::Rational;
+use std::collections::BTreeMap;
+
+/// The constants of an equation by powers of the parameter that is sought, and its delays.
+type Delays = Vec<Vec<Expression>>;
+
+/// The equation with the values of its parameters, the small one among them, but for the one that is sought.
+///
+/// # Errors
+/// [`Refusal`], naming the term that does not fit.
+///
+/// ```
+/// use lindstedt_problem_file::ProblemFile;
+/// let file = ProblemFile::parse("equation = \"x' + alpha*x(t - 1)*(1 + x) = 0\"")?;
+/// let found = lindstedt_recognise::delay_equation(&file.problem, &Default::default(), "alpha")?;
+/// assert_eq!((found.order, found.delays.len(), found.terms.len()), (1, 2, 3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn delay_equation(
+    problem: &Problem,
+    values: &BTreeMap<String, Exact>,
+    unknown: &str,
+) -> Result<DelayEquation<Expression>, Refusal> {
+    if problem.impact.is_some() {
+        return Err(Refusal::WallAtHopf);
+    }
+    let mut values = values.clone();
+    values.remove(unknown);
+    let small = problem.small.to_string();
+    let named_small = |e: &Expression| match e {
+        Expression::Small => Some(Expression::parameter(&small)),
+        _ => None,
+    };
+    let whole = problem.equation.substitute(&named_small).canonical();
+    let needed = whole.parameters();
+    let needed = needed.into_iter().filter(|name| name != unknown && name != crate::bound::PI);
+    missing(&needed.collect::<Vec<_>>(), &values)?;
+    let all = multiply_out(&bind(&whole, &values))?;
+    let order = if whole.is_first_order() { 1 } else { 2 };
+    let zero = vec![Expression::integer(0)];
+    let mut found = DelayEquation { order, delays: vec![zero], terms: Vec::new() };
+    for (m, q) in &all.terms {
+        let (factors, power) = read(&all, m, unknown, &mut found.delays).map_err(|why| {
+            let fits = |all: &Monomials, m: &Monomial| {
+                read(all, m, unknown, &mut Vec::new()).err().filter(|own| *own == why)
+            };
+            named(&whole, &values, (all.tree(m, q), why), &fits)
+        })?;
+        let coefficient = coefficient(&all, m, q, unknown);
+        let known = found.terms.iter().position(|term| term.factors == factors);
+        let place = known.unwrap_or_else(|| {
+            found.terms.push(Term { coefficient: Vec::new(), factors });
+            found.terms.len() - 1
+        });
+        let list = &mut found.terms[place].coefficient;
+        list.resize(list.len().max(power + 1), Expression::integer(0));
+        list[power] = (list[power].clone() + coefficient).canonical();
+    }
+    Ok(found)
+}
+
+/// The factors of a term and the power of the parameter that is sought.
+fn read(
+    all: &Monomials,
+    m: &Monomial,
+    unknown: &str,
+    delays: &mut Delays,
+) -> Result<(Vec<Factor>, usize), Why> {
+    let plain =
+        |derivative, n: u32| std::iter::repeat_n(Factor { derivative, delay: 0 }, n as usize);
+    let mut factors: Vec<Factor> = plain(0, m.x).chain(plain(1, m.velocity)).collect();
+    for (key, n) in &m.atoms {
+        let factor = match all.atoms.get(key) {
+            Some(Expression::Unknown(Unknown { index: 0, derivative, delay })) => {
+                let delay = delay.as_deref().map(|by| place(by, unknown, delays));
+                Factor { derivative: *derivative, delay: delay.transpose()?.unwrap_or(0) }
+            }
+            Some(other) if other.contains(&Expression::Time) => return Err(Why::DependsOnTime),
+            _ => return Err(Why::NotPolynomialDelayed),
+        };
+        factors.extend(std::iter::repeat_n(factor, *n as usize));
+    }
+    factors.sort_unstable();
+    if factors.is_empty() {
+        return Err(Why::NotAtRest);
+    }
+    Ok((factors, power_of(all, m, unknown)?))
+}
+
+/// The power of the parameter that is sought in a term.
+fn power_of(all: &Monomials, m: &Monomial, unknown: &str) -> Result<usize, Why> {
+    let inside = m.parameters.keys().filter(|name| *name != unknown);
+    let mut inside = inside.filter_map(|name| all.atoms.get(name));
+    let holds = |e: &Expression| e.contains(&Expression::parameter(unknown));
+    if inside.any(holds) {
+        return Err(Why::UnknownInside);
+    }
+    let power = m.parameters.get(unknown).copied().unwrap_or(0);
+    usize::try_from(power).map_err(|_| Why::UnknownInside)
+}
+
+/// The factor of a term that is a number.
+fn coefficient(all: &Monomials, m: &Monomial, q: &Rational, unknown: &str) -> Expression {
+    let mut parameters = m.parameters.clone();
+    parameters.remove(unknown);
+    all.tree(&Monomial { parameters, ..Monomial::default() }, q)
+}
+
+/// The place of a delay in the list, to which it is added if it is new.
+fn place(by: &Expression, unknown: &str, delays: &mut Delays) -> Result<usize, Why> {
+    let all = expand(by).ok_or(Why::BadDelay)?;
+    let mut powers: Vec<Expression> = Vec::new();
+    for (m, q) in &all.terms {
+        let bare = Monomial { parameters: m.parameters.clone(), ..Monomial::default() };
+        if bare != *m {
+            return Err(Why::BadDelay);
+        }
+        let power = power_of(&all, m, unknown)?;
+        powers.resize(powers.len().max(power + 1), Expression::integer(0));
+        powers[power] = (powers[power].clone() + coefficient(&all, m, q, unknown)).canonical();
+    }
+    // A delay without the parameter must be positive; with it the search looks.
+    let number = |e: &Expression| e.as_number().is_some_and(|q| q <= 0);
+    if powers.is_empty() || powers.len() == 1 && number(&powers[0]) {
+        return Err(Why::BadDelay);
+    }
+    if let Some(known) = delays.iter().position(|known| *known == powers) {
+        return Ok(known);
+    }
+    delays.push(powers);
+    Ok(delays.len() - 1)
+}

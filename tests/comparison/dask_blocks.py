@@ -1,0 +1,58 @@
+"""A chart of 1000 x 1000 points and a diagram of 400 values with 200 points each on Dask: 4 worker processes of one thread, one
+killed in the middle; bit by bit the local arrays? Wall-clock seconds of a local run on one thread and on Dask, whether one was killed, whether the
+arrays are the same; then what 64 blocks cost in which nothing is to be done.
+
+    RAYON_NUM_THREADS=1 python dask_blocks.py
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+
+os.environ.setdefault("RAYON_NUM_THREADS", "1")
+
+import distributed
+import lindstedt
+
+
+def same(one, other) -> bool:
+    def plain(found):
+        return [v.tobytes() if hasattr(v, "tobytes") else v for v in vars(found).values()]
+
+    return plain(one) == plain(other)
+
+
+def main() -> None:
+    impact, belt = lindstedt.Oscillator.builtin("vibro-impact"), lindstedt.Oscillator.builtin("stick-slip")
+    plane = {"A": ("-0.3", "0.3", 1000), "B": ("-0.3", "0.3", 1000)}
+    small = {"A": ("-0.3", "0.3", 2), "B": ("-0.3", "0.3", 64)}
+    questions = [
+        ("chart 1000 x 1000", impact.stability_chart, plane, {}),
+        ("diagram 400 x 200", belt.bifurcation_diagram, {"gamma": ("0.5", "0.8", 400)}, {"skip": 200, "keep": 200}),
+        ("64 blocks of nothing", impact.stability_chart, small, {"predictor": "kbm"}),
+    ]
+    with distributed.LocalCluster(n_workers=4, threads_per_worker=1, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            client.run(lambda: lindstedt.problems())
+            for name, ask, sweep, options in questions:
+                start = time.perf_counter()
+                local = ask(sweep, **options)
+                alone = time.perf_counter() - start
+                doomed = min(client.run(os.getpid).values())
+                # Of what costs nothing none is killed.
+                if alone > 1:
+                    timer = threading.Timer(alone / 4, os.kill, [doomed, signal.SIGKILL])
+                    timer.start()
+                start = time.perf_counter()
+                there = ask(sweep, executor=client, **options)
+                spent = time.perf_counter() - start
+                killed = doomed not in client.run(os.getpid).values()
+                print(f"| {name} | {alone:.2f} s | {spent:.2f} s | {killed} | {same(local, there)} |", flush=True)
+                client.wait_for_workers(4)
+
+
+if __name__ == "__main__":
+    main()
