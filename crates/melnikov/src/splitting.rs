@@ -313,11 +313,10 @@ impl StickSlip {
     /// ```
     /// use lindstedt_melnikov::{Branch, StickSlip};
     /// use lindstedt_number::Exact;
-    /// let [a, b] = [1, 1].map(Exact::from);
-    /// let [dry, alpha, beta] = [(3, 10); 3].map(Exact::from);
-    /// let [omega, belt_speed] = [(2, 1), (2, 5)].map(Exact::from);
-    /// let mass = StickSlip { a, b, dry, alpha, beta, omega, belt_speed };
-    /// let right = mass.second_order(Branch::Positive).expect("v* is neither 0 nor V");
+    /// let (a, b, omega, belt_speed) = (1.into(), 1.into(), 2.into(), Exact::from((2, 5)));
+    /// let [dry, alpha, beta] = [(); 3].map(|()| Exact::from((3, 10)));
+    /// let point = StickSlip { a, b, dry, alpha, beta, omega, belt_speed };
+    /// let right = point.second_order(Branch::Positive).expect("v* is neither 0 nor V");
     /// assert!((right.slope - 0.199_320_25).abs() < 1e-8);
     /// ```
     #[must_use]

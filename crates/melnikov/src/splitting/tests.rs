@@ -7,22 +7,17 @@ use crate::{Branch, StickSlip};
 use lindstedt_number::Exact;
 use std::f64::consts::PI;
 
-/// a = b = 1, alpha = beta = T0 = 3/10, omega = 2, v* = 2/5.
-fn section_three() -> StickSlip {
-    let [a, b] = [1, 1].map(Exact::from);
-    let [dry, alpha, beta] = [(3, 10); 3].map(Exact::from);
-    let [omega, belt_speed] = [(2, 1), (2, 5)].map(Exact::from);
-    StickSlip { a, b, dry, alpha, beta, omega, belt_speed }
-}
-
 /// Tangencies by an independent event code, 7 decimals, at eps = 0.005, 0.01, 0.05: the slope by Neville's scheme.
 #[test]
 fn stick_slip_against_tangencies() {
+    let [dry, alpha, beta] = [(); 3].map(|()| Exact::from((3, 10)));
+    let (a, b, omega, belt_speed) = (1.into(), 1.into(), 2.into(), Exact::from((2, 5)));
+    let point = StickSlip { a, b, dry, alpha, beta, omega, belt_speed };
     let gamma_0 = 0.637_071_342_848_163_6;
     let right = [(0.005, 0.638_071_4), (0.01, 0.639_078_5), (0.05, 0.647_386_2)];
     let left = [(0.005, 0.636_078_2), (0.01, 0.635_092_1), (0.05, 0.627_455_0)];
     for (branch, table) in [(Branch::Positive, right), (Branch::Negative, left)] {
-        let found = section_three().second_order(branch).unwrap();
+        let found = point.second_order(branch).unwrap();
         let quotient = table.map(|(eps, gamma)| (eps, (gamma - gamma_0) / eps));
         let line = |a: (f64, f64), b: (f64, f64)| a.1 - a.0 * (b.1 - a.1) / (b.0 - a.0);
         let (near, far) = (line(quotient[0], quotient[1]), line(quotient[1], quotient[2]));
