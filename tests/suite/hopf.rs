@@ -1,6 +1,6 @@
 //! Hopf points of equations as they are written, against the time domain.
 
-#![allow(clippy::unwrap_used)] // a test fails by panicking
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
 use lindstedt::unstable::equation::{Expression, Function};
 use lindstedt::unstable::hopf::{Coefficient, HopfCycle};

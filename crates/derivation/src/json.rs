@@ -38,7 +38,7 @@ impl Serialize for Derivation {
             }
             // One more is substituted in full.
             Solution::FrequencyOnly { primes: Some(primes) } => {
-                ("multi-modular frequency, proved", Some((*primes, primes + 1)))
+                ("multi-modular frequency, checked at phases", Some((*primes, primes + 1)))
             }
             Solution::FrequencyOnly { primes: None } => ("energy integral", None),
             Solution::Lobachevsky(_) => ("Lobachevsky ring over Q[mu_m]", None),

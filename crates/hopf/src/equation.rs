@@ -3,7 +3,6 @@
 //! L(lambda; alpha) = sum c(alpha) lambda^n e^(-lambda T(alpha)) over the terms with one factor: x = e^(lambda t) solves
 //! the linear equation where L vanishes.
 
-use crate::PI;
 use crate::complex::Pair;
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::print::Print;
@@ -13,6 +12,9 @@ use lindstedt_number::ball::{Ball, Balls, Complex, ComplexBalls};
 use lindstedt_number::{Number, rational};
 use rug::Rational;
 use std::cmp::Ordering;
+
+/// The name that stands for pi among the parameters of a constant expression.
+pub const PI: &str = "pi";
 
 /// D^derivative x(t - T), T by its place in [`DelayEquation::delays`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

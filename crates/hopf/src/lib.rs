@@ -17,8 +17,8 @@ mod winding;
 
 pub use complex::Pair;
 pub use cycle::{Coefficient, HarmonicNumber, HopfCycle, HopfSettings, Law, Step, cycle};
-pub use equation::{DelayEquation, Factor, Field, Term};
+pub use equation::{DelayEquation, Factor, Field, PI, Term};
 pub use error::HopfError;
-pub use pi::{InPi, PI, PiField};
+pub use pi::{InPi, PiField};
 pub use search::{HopfPoint, HopfPoints};
 pub use series::Cycle;

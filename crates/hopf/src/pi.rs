@@ -1,7 +1,7 @@
 //! Q(pi): quotients of polynomials in pi over Q. Pi is transcendental, so they are numbers and equal only where
 //! they are equal as quotients: every question about them is decided.
 
-use crate::Field;
+use crate::equation::{Field, PI};
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::print::{Print, Style, Term, power, print_sum};
 use lindstedt_equation::Expression;
@@ -10,8 +10,6 @@ use lindstedt_number::{Number, certified, rational};
 use rug::{Integer, Rational};
 use std::cmp::Ordering;
 
-/// The name that stands for pi among the parameters of a constant expression.
-pub const PI: &str = "pi";
 /// The largest power of pi, or of a sum with it, in an equation.
 const LARGEST_POWER: u32 = 64;
 

@@ -149,3 +149,59 @@ impl<F: Field> Judge<'_, F> {
         Some(found)
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+    use super::*;
+    use crate::series::expand;
+    use crate::{PI, PiField, Term};
+    use lindstedt_algebra::Ring;
+    use lindstedt_coeff::print::{Print, Style};
+    use lindstedt_equation::Expression;
+
+    /// x' + alpha x(t - 1)(1 + x).
+    pub(crate) fn wright() -> DelayEquation<Expression> {
+        let integer = Expression::integer;
+        let [now, late] = [0, 1].map(|delay| Factor { derivative: 0, delay });
+        let speed = Factor { derivative: 1, delay: 0 };
+        let alpha = || vec![integer(0), integer(1)];
+        let term =
+            |coefficient, factors: &[Factor]| Term { coefficient, factors: factors.to_vec() };
+        DelayEquation {
+            order: 1,
+            delays: vec![vec![integer(0)], vec![integer(1)]],
+            terms: vec![
+                term(vec![integer(1)], &[speed]),
+                term(alpha(), &[late]),
+                term(alpha(), &[now, late]),
+            ],
+        }
+    }
+
+    #[test]
+    fn wright_exactly() {
+        let field = PiField;
+        let equation = wright().over(&field).unwrap();
+        let half = field.constant(&(Expression::parameter(PI) * Expression::Number((1, 2).into())));
+        let half = half.unwrap();
+        let cycle = expand(&field, &equation, (half.clone(), half), 4, &mut |_| true).unwrap();
+        let print =
+            |list: &[_]| list.iter().map(|e| field.print(e, Style::Text)).collect::<Vec<_>>();
+        // The page of the mathematics: alpha_2 = (3 pi - 2)/10, alpha_4 = (71 pi - 84)/250.
+        assert_eq!(
+            print(&cycle.parameter),
+            ["1/2*pi", "0", "3/10*pi - 1/5", "0", "71/250*pi - 42/125"]
+        );
+        assert_eq!(print(&cycle.frequency), ["1/2*pi", "0", "-1/5", "0", "-27/125"]);
+        assert_eq!(cycle.solution.len(), 5);
+        assert_eq!(vanishes(&field, &equation, &cycle, &mut || true), Some(true));
+        // The judge sees a wrong coefficient.
+        let mut wrong = cycle.clone();
+        wrong.solution[3][2][0] =
+            field.add(&wrong.solution[3][2][0], &field.power(&(1, 1000).into(), 0));
+        assert_eq!(vanishes(&field, &equation, &wrong, &mut || true), Some(false));
+        assert_eq!(vanishes(&field, &equation, &cycle, &mut || false), None);
+    }
+}

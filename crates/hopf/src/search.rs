@@ -343,7 +343,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
     use super::*;
-    use crate::series::tests::wright;
+    use crate::residual::tests::wright;
 
     /// alpha = omega = pi/2 + 2 pi m, and -alpha = omega = pi/2 + pi (2 m + 1): |alpha| <= 8 holds three.
     #[test]

@@ -1,7 +1,7 @@
 //! The series against collocation, and enclosures against exact numbers.
 #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
-use crate::series::tests::wright;
+use crate::residual::tests::wright;
 use crate::{DelayEquation, Factor, HopfCycle, HopfError, HopfSettings, Term, cycle};
 use lindstedt_equation::Expression;
 use std::f64::consts::FRAC_PI_2;

@@ -124,8 +124,8 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
     use super::*;
+    use crate::residual::tests::wright;
     use crate::search::points;
-    use crate::series::tests::wright;
 
     /// Of lambda + alpha e^-lambda: none at pi/2, the pair of pi/2 at 5 pi/2, a positive number at -3 pi/2.
     #[test]

@@ -20,9 +20,9 @@ use rug::Rational;
 /// So many images are made on every core between two reports.
 const BATCH: usize = 4;
 
-/// The frequency to some order, proved, and what it took.
+/// The frequency to some order, from images that were checked and bounds that are proved, and what it took.
 #[derive(Clone, Debug)]
-pub struct ProvedFrequency {
+pub struct BoundedFrequency {
     /// kappa.
     pub stiffness: Rational,
     /// W_n of omega^2 = kappa sum W_n eps^n.
@@ -35,7 +35,8 @@ pub struct ProvedFrequency {
     pub primes: usize,
 }
 
-/// Derives and proves the series of the frequency of a polynomial equation over Q, for n = 0, ..., `order`.
+/// Derives the series of the frequency of a polynomial equation over Q, for n = 0, ..., `order`: exact, but for a wrong
+/// image that passes with a chance below 2^-50.
 ///
 /// The same numbers as [`crate::derive`], without the solution: no memory for it, no residual modulo every prime.
 ///
@@ -69,7 +70,7 @@ pub fn frequency(
     order: usize,
     stop: &Stop,
     observer: &mut dyn FnMut(usize) -> bool,
-) -> Result<ProvedFrequency, Error> {
+) -> Result<BoundedFrequency, Error> {
     let setting = Setting::new(equation, binding, condition, order, stop)?;
     let (bound, reaction) = (setting.bound.clone(), setting.reaction.as_ref());
     let amplitude = &setting.job.request.leading_amplitude;
@@ -115,7 +116,7 @@ struct Lifting<'a, P> {
 }
 
 impl<P: Iterator<Item = PrimeField>> Lifting<'_, P> {
-    fn climb(mut self, observer: &mut dyn FnMut(usize) -> bool) -> Result<ProvedFrequency, Error> {
+    fn climb(mut self, observer: &mut dyn FnMut(usize) -> bool) -> Result<BoundedFrequency, Error> {
         let mut series = [const { Vec::new() }; 3];
         series.iter_mut().for_each(|list| list.push(Rational::from(1)));
         let mut remaindering = Remaindering::new(&[]);
@@ -134,7 +135,7 @@ impl<P: Iterator<Item = PrimeField>> Lifting<'_, P> {
         }
         let [squared, frequency, period] = series;
         let stiffness = self.job.stiffness.clone();
-        Ok(ProvedFrequency { stiffness, squared, frequency, period, primes })
+        Ok(BoundedFrequency { stiffness, squared, frequency, period, primes })
     }
 
     /// Primes for so many bits, and not many more.
@@ -180,7 +181,7 @@ mod tests {
 
     use super::*;
     use crate::derive;
-    use crate::image::Place;
+    use crate::place::Place;
     use crate::tests::{NoNames, equations, places, van_der_pol, with_images};
     use lindstedt_algebra::Ring;
 

@@ -1,8 +1,8 @@
 //! The image of an expansion modulo one prime: derived, and substituted into the equation.
 
-use crate::images::Attempt;
 use crate::lifted::Lifted;
 use crate::phase::Phase;
+use crate::place::Place;
 use crate::{Error, Over, RationalBinding};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_equation::Expression;
@@ -36,30 +36,8 @@ pub(crate) struct Image {
     values: Vec<Vec<u64>>,
 }
 
-/// What a number is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Place {
-    /// W_n.
-    Squared,
-    /// omega_n.
-    Frequency,
-    /// T_n of T omega = 1.
-    Period,
-    /// The coefficient of cos k psi.
-    Cosine(usize),
-    /// The coefficient of sin k psi.
-    Sine(usize),
-}
-
-impl Place {
-    /// k.
-    pub(crate) fn harmonic(self) -> Option<usize> {
-        match self {
-            Self::Cosine(k) | Self::Sine(k) => Some(k),
-            Self::Squared | Self::Frequency | Self::Period => None,
-        }
-    }
-}
+/// An image modulo a prime; inside, why there is none modulo this one.
+pub(crate) type Attempt = Result<Result<Image, ExpandError>, Error>;
 
 impl Image {
     pub(crate) fn places(&self, n: usize) -> &[Place] {

@@ -1,13 +1,10 @@
 //! A growing list of images, all of one form.
 
 use crate::Error;
-use crate::image::{Image, Job};
+use crate::image::{Attempt, Image, Job};
 use lindstedt_expand::ExpandError;
 use lindstedt_phase::modular::PrimeField;
 use rayon::prelude::*;
-
-/// An image modulo a prime; inside, why there is none modulo this one.
-pub(crate) type Attempt = Result<Result<Image, ExpandError>, Error>;
 
 /// The images so far, and the primes that are left. The first image judges what the others give.
 pub(crate) struct Images<'a, P> {

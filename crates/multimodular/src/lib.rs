@@ -18,10 +18,11 @@ mod images;
 mod lift;
 mod lifted;
 mod phase;
+mod place;
 #[cfg(test)]
 mod tests;
 
-pub use frequency::{ProvedFrequency, frequency};
+pub use frequency::{BoundedFrequency, frequency};
 use image::Job;
 use images::Images;
 use lift::Remaindering;

@@ -1,6 +1,7 @@
 //! From images modulo primes to numbers over Q.
 
-use crate::image::{Image, Place};
+use crate::image::Image;
+use crate::place::Place;
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_expand::OrderNumbers;
 use rayon::prelude::*;

@@ -1,6 +1,6 @@
 //! What is proved of one order.
 
-use crate::image::Place;
+use crate::place::Place;
 use lindstedt_algebra::Ring;
 use lindstedt_expand::OrderNumbers;
 use lindstedt_phase::modular::PrimeField;

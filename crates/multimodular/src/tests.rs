@@ -1,9 +1,10 @@
 //! The proof finds what is broken; the route agrees with rational arithmetic for any polynomial equation.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
-use crate::image::{Image, Job, Place};
+use crate::image::{Image, Job};
 use crate::lift::Remaindering;
 use crate::lifted::Lifted;
+use crate::place::Place;
 use crate::{Error, RationalAlgebraOfPhase, RationalBinding, derive};
 use lindstedt_algebra::{Rationals, Ring, Stop};
 use lindstedt_equation::{Condition, Expression};

@@ -216,7 +216,7 @@ impl<K: RationalAlgebra> Torus<K> {
             let above = invert(&ring.add(&self.frequency, &nu))?;
             let rational = |c: &K::Element| ring.as_rational(c);
             if let (Some(rate), Some(frequency)) = (rational(&nu), rational(&self.frequency)) {
-                let size = Rational::from(1) - Rational::from(rate / frequency).square();
+                let size = Rational::from(1) - (rate / frequency).square();
                 if *size.as_abs() < Rational::from(NEAR_MISS) {
                     return Err(PhaseError::NearMiss { free, forced, size });
                 }

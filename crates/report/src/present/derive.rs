@@ -236,8 +236,9 @@ impl Board<'_> {
             ),
             (_, Some(last)) => vanishes(last) + ".",
             (Solution::FrequencyOnly { primes: Some(primes) }, None) => format!(
-                "Proved modulo {primes} primes of 61 bits, more than its numbers can hold by bounds known in advance;\n\
-                 no solution. One image was substituted into the equation, the others at one phase each."
+                "From {primes} primes of 61 bits, more than its numbers can hold by bounds proved in advance; no solution.\n\
+                 One image was substituted into the equation, the others at one phase each: a wrong one passes with a\n\
+                 chance below 2^-50."
             ),
             (Solution::FrequencyOnly { primes: None }, None) => {
                 "By the energy integral; no solution, so nothing to substitute.".to_owned()
