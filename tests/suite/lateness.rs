@@ -79,7 +79,7 @@ fn questions() -> Vec<(&'static str, Question)> {
     };
     let power = |work: &Work| {
         let question = Derive { order: 6, route: Route::Automatic };
-        Ok(case("x'' + x + eps*x^1000").derive(question, work)?.standing)
+        Ok(case("x'' + x + eps*x^800").derive(question, work)?.standing)
     };
     let code = |work: &Work| {
         let power = case("power-law");

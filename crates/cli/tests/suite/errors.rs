@@ -263,7 +263,7 @@ const TABLE: &[(i32, &str, &str, &str, &str)] = &[
         "--normalisation free",
         "derive \"x'' + x = eps*x'\" --order 1 --normalisation free",
     ),
-    (3, "no-method", "threshold duffing", "problems --show", "problems --show duffing"),
+    (3, "no-method", "threshold duffing", "lindstedt simulate", "simulate duffing --until 1"),
     (
         3,
         "no-such-route",

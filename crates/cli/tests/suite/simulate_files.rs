@@ -59,7 +59,13 @@ fn every_example_moves() {
     let mut count = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        let found = simulate(&[path.to_str().unwrap(), "--until", "3", "--digits", "10"]);
+        let line = [path.to_str().unwrap(), "--until", "3", "--digits", "10"];
+        if path.ends_with("wright-hopf.toml") {
+            let (exit, said) = refusal(&line);
+            assert!(exit == Some(3) && said.contains("of first order"), "{said}");
+            continue;
+        }
+        let found = simulate(&line);
         assert!((float(&found["final"]["t"]) - 3.0).abs() < 1e-12, "{}", path.display());
         count += 1;
     }

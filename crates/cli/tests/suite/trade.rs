@@ -213,7 +213,7 @@ fn limits_keep_the_finished_rows() {
     // A figure of no rows is no error about drawing.
     let svg = std::env::temp_dir().join(format!("lindstedt-no-rows-{}.svg", std::process::id()));
     let limits =
-        ["trade", "duffing", "--limit-seconds", "0.2", "--orders", "64", "--digits", "1000"];
+        ["trade", "duffing", "--limit-seconds", "0.6", "--orders", "64", "--digits", "1000"];
     let limits = [&limits[..], &["--repeats", "1000", "--plot", svg.to_str().unwrap()]].concat();
     let output = lindstedt(&limits);
     let said = String::from_utf8(output.stderr).unwrap();

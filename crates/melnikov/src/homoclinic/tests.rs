@@ -1,9 +1,11 @@
 //! The homoclinic Bogdanov-Takens orbit and others, against published coefficients and against
 //! invariant manifolds.
 
+#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
 use super::{PerturbationTerm, Saddle};
 use crate::MelnikovError;
-use rug::Rational;
+use rug::{Float, Rational};
 
 fn term(position: u32, velocity: u32, known: i32, unknown: i32) -> PerturbationTerm {
     PerturbationTerm { position, velocity, known: known.into(), unknown: unknown.into() }
@@ -99,6 +101,30 @@ fn the_manifolds_meet_at_the_sum() -> Result<(), MelnikovError> {
         let whole = (sum(&orbit.unknown, eps / 2.0) - judged[1]).abs();
         assert!(whole < 2e-9, "{problem:?}: {whole}");
         assert!(slopes.len() >= 2, "{problem:?}: {slopes:?}");
+    }
+    Ok(())
+}
+
+/// The manifolds of Bogdanov and Takens' saddle meet on u' = 0 at these tau, to 43 digits: power series of both about
+/// the saddle, then Taylor series of order 60 in steps of 1/8, with 55 digits, outside this project.
+#[test]
+fn slopes_tend_to_the_orders() -> Result<(), MelnikovError> {
+    let judged = [
+        (4, "1.436046791019174385664924414585861987177340"),
+        (8, "1.430444340188324922611319972551210367964701"),
+        (16, "1.429039902223595913715662153169897560781231"),
+    ];
+    let orbit = bogdanov_takens().homoclinic(7, &mut |_| true)?;
+    let error = |(eps, truth): (u32, &str), terms: usize| {
+        let sum = orbit.unknown[..terms].iter().rev();
+        let sum = sum.fold(Rational::new(), |sum, c| sum / eps + c);
+        let truth = Float::with_val(150, Float::parse(truth).unwrap());
+        (Float::with_val(150, sum) - truth).abs().to_f64()
+    };
+    for (terms, order) in [(1, 2.0), (3, 4.0), (5, 6.0), (7, 8.0)] {
+        let errors = judged.map(|truth| error(truth, terms));
+        let slopes = [0, 1].map(|k| (errors[k] / errors[k + 1]).log2() - order);
+        assert!(slopes[0].abs() < 0.05 && slopes[1].abs() < 0.3 * slopes[0].abs(), "{slopes:?}");
     }
     Ok(())
 }
