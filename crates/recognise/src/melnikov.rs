@@ -37,7 +37,7 @@ use std::collections::BTreeMap;
 /// )?;
 /// let values = ["gamma", "omega", "delta"].map(|name| (name.to_owned(), Exact::from(1)));
 /// let pendulum = MelnikovProblem::new(&file.problem, &values.into())?;
-/// let gamma = &pendulum.thresholds(Balls::new(120))?[0].threshold.gamma;
+/// let gamma = &pendulum.thresholds(Balls::new(120))?[0].value.gamma;
 /// // 4 delta cosh(pi omega/2)/pi
 /// assert_eq!(decimal(gamma, 12).as_deref(), Some("3.19478526383"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
