@@ -12,8 +12,8 @@ use lindstedt::trade::Plan;
 use lindstedt::unstable::impact::parameters::Branch;
 use lindstedt::unstable::impact::{characteristic::Kick, prediction::Variant};
 use lindstedt::{
-    Condition, Derive, Error, Evaluate, Kind, Oscillator, Refusal, Respond, Route, Simulate, Stability,
-    Threshold, Verify, Work,
+    Condition, Derive, Error, Evaluate, Kind, Oscillator, Refusal, Respond, Route, Simulate,
+    Stability, Threshold, Verify, Work,
 };
 
 /// An answer that can be read in every form.
