@@ -176,9 +176,14 @@ pub fn cycle(
     if let Some(over) = equation.over(&PiField)
         && let Some(start) = exact(&over, &sharp)
     {
-        let found = shape.run(&PiField, &over, start, observer)?;
-        let found = found.ok_or(HopfError::NotEnoughBits { bits: MOST_BITS })?;
-        return Ok(HopfCycle { exact: true, ..found });
+        match shape.run(&PiField, &over, start, observer) {
+            // A delay turns a harmonic by an angle whose cosine is not in Q(pi): enclosed like any other number.
+            Err(HopfError::Field) => {}
+            found => {
+                let found = found?.ok_or(HopfError::NotEnoughBits { bits: MOST_BITS })?;
+                return Ok(HopfCycle { exact: true, ..found });
+            }
+        }
     }
     let digits = u32::try_from(settings.digits).unwrap_or(MOST_BITS);
     let mut bits = digits.saturating_mul(10) / 3 + GUARD;

@@ -228,3 +228,23 @@ fn sides_and_criticality() {
         assert_eq!(beta < 0.0, cubic == 1);
     }
 }
+
+/// x'' + x = alpha x' - x^2 x'(t - 1) at alpha = 0: omega_0 = 1 is rational, but the delay turns by cos 1, sin 1. With
+/// x = 2 eps cos s the first harmonic of x^2 x'(t - 1) has -2 eps^3 cos 1 sin s, so alpha_2 = cos 1.
+#[test]
+fn turns_outside_of_the_field_are_enclosed() {
+    let integer = Expression::integer;
+    let equation = DelayEquation {
+        order: 2,
+        delays: vec![vec![integer(0)], vec![integer(1)]],
+        terms: vec![
+            term(constant((1, 1)), &[(2, 0)]),
+            term(constant((1, 1)), &[(0, 0)]),
+            term(vec![integer(0), integer(-1)], &[(1, 0)]),
+            term(constant((1, 1)), &[(0, 0), (0, 0), (1, 1)]),
+        ],
+    };
+    let cycle = found(&equation, 0.0, 2);
+    assert!(!cycle.exact);
+    assert!((values(&cycle.parameter)[2] - 1f64.cos()).abs() < 1e-12, "{cycle:?}");
+}

@@ -156,7 +156,7 @@ pub enum SimulateError {
     #[error("no saddle orbit near the guess")]
     NoSaddle,
     /// Newton's method found no homoclinic tangency.
-    #[error("no homoclinic tangency near {value}")]
+    #[error("no homoclinic tangency was found near {value}")]
     NoTangency {
         /// The value of the free parameter that was tried.
         value: f64,

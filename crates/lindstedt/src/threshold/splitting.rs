@@ -83,6 +83,11 @@ pub(super) fn list(subject: &Subject<'_>) -> Result<Vec<SecondOrderThreshold>, E
         };
         let followed = follow(subject, &problem, orbit, found)?;
         let (manifolds, not_followed) = match followed {
+            // Of two extremes of the work that are equal each has a tangency, and one is the threshold.
+            Ok(line) if is_another(&line, found) => (
+                None,
+                Some(format!("the tangency met is another one, of the slope {}", line.slope)),
+            ),
             Ok(line) => (Some(manifolds(&line)?), None),
             Err(reason) => (None, Some(reason)),
         };
@@ -105,6 +110,10 @@ pub(super) fn list(subject: &Subject<'_>) -> Result<Vec<SecondOrderThreshold>, E
 
 fn is_loop(orbit: &OrbitSplitting) -> bool {
     orbit.orbit.saddles[0] == orbit.orbit.saddles[1]
+}
+
+fn is_another(line: &TangencyLine, found: &SecondOrder) -> bool {
+    (line.slope - found.slope).abs() > 10.0 * (line.errors[1] + found.error)
 }
 
 fn manifolds(line: &TangencyLine) -> Result<Manifolds, Error> {

@@ -39,7 +39,10 @@ impl Present for Answer<FirstOrder> {
             lines.push(line(Text::words(shift), &cycle.phase_rate));
         }
         if found.cycles.is_empty() {
-            lines.push(("cycles".into(), format!("none up to a = {}", found.amplitude).into()));
+            lines.push((
+                "cycles".into(),
+                format!("no change of sign of a' found up to a = {}", found.amplitude).into(),
+            ));
         }
         if let Some(belt) = &found.belt {
             let name = Text::words(format!("a cycle is as fast as the belt at {belt}"));
