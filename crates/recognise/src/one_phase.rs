@@ -200,9 +200,24 @@ impl OnePhase {
                 *sum = [sum[0] + part[0], sum[1] + part[1]];
             }
         }
+        let unsure = self.touching(&value, a);
+        sums.iter_mut().for_each(|sum| sum[1] += unsure);
         let scaled = |[value, error]: [f64; 2], factor: f64| [value * factor, error * factor];
         let factor = 1.0 / (2.0 * PI * self.frequency);
         Some(Rates { amplitude: scaled(sums[0], factor), phase: scaled(sums[1], factor / a) })
+    }
+
+    /// What the integrals may be wrong by where a jump or bend is touched at a turn of x or of x': cos psi rounds to 1 within
+    /// sqrt(2 u) of it, so that the side is not known there.
+    fn touching(&self, value: &dyn Fn(&Expression, f64) -> Option<f64>, a: f64) -> f64 {
+        let turns = || (0..4).map(|quarter| f64::from(quarter) * PI / 2.0);
+        let rounding = 8.0 * f64::EPSILON * a * self.frequency.max(1.0);
+        let touched = |psi: f64| {
+            self.bends.iter().any(|z| value(z, psi).is_some_and(|z| z.abs() <= rounding))
+        };
+        let sides = turns().filter(|psi| touched(*psi)).flat_map(|psi| [psi - 1e-3, psi + 1e-3]);
+        let sizes = sides.filter_map(|psi| Some(value(&self.law, psi)?.abs()));
+        2.0 * (2.0 * f64::EPSILON).sqrt() * sizes.fold(0.0, f64::max)
     }
 
     /// The cycles of first order with amplitudes up to `largest`: the changes of sign of A_1 on a grid of 256 cells
