@@ -32,7 +32,7 @@ pub fn fails_at_phase<A: PhaseAlgebra>(
     at: AtPhase<Constant<A>>,
 ) -> Option<usize> {
     let AtPhase { functions, squared, frequency, stiffness } = at;
-    let order = squared.len().checked_sub(1)?;
+    let Some(order) = squared.len().checked_sub(1) else { return Some(0) };
     let [x, slope, bend] = functions.map(Series::truncated);
     let times = |a: &Series<_>, b: &Series<_>| a.mul(constants, b, order);
     let velocity = times(&Series::truncated(frequency), &slope);
@@ -52,7 +52,7 @@ pub fn fails_at_phase<A: PhaseAlgebra>(
         values.push(value);
     }
     let inertia = times(&Series::truncated(squared), &bend);
-    let residual =
-        inertia.map(|c| constants.mul(c, &stiffness)).add(constants, values.get(equation.root())?);
+    let Some(force) = values.get(equation.root()) else { return Some(0) };
+    let residual = inertia.map(|c| constants.mul(c, &stiffness)).add(constants, force);
     (0..=order).find(|&n| residual.coefficients.get(n).is_none_or(|c| !constants.is_zero(c)))
 }

@@ -54,6 +54,8 @@ pub struct Connection {
 pub struct SecondOrder {
     /// gamma_0, Melnikov's threshold, with the sign of D.
     pub signed: f64,
+    /// Its estimated error, from two steps of integration.
+    pub signed_error: f64,
     /// gamma_1: the threshold is |gamma_0| + gamma_1 eps.
     pub slope: f64,
     /// The estimated error of the slope, from two steps of integration.
@@ -150,10 +152,16 @@ impl Splitting<'_> {
     pub fn second_order(&self, orbit: &Connection) -> Option<SecondOrder> {
         let coarse = self.with_steps(orbit, STEPS)?;
         let fine = self.with_steps(orbit, 2.0 * STEPS)?;
-        // Of order 6 the finer one has a 63rd of the difference left, less regularly where it is cut at kinks.
-        let error = (fine.1 - coarse.1).abs() / 8.0 + 1e-10 * fine.1.abs().max(fine.0.abs());
-        fine.1.is_finite().then_some(SecondOrder {
+        // Of order 6 the finer one has a 63rd of the difference left, less regularly where it is cut at kinks; a work that
+        // cancels to rounding errors is not better with finer steps.
+        let noise = (fine.0 - coarse.0).abs();
+        let share = if noise > 1e-9 * fine.0.abs() { 4.0 } else { 0.125 };
+        let error = share * (fine.1 - coarse.1).abs() + 1e-10 * fine.1.abs().max(fine.0.abs());
+        let signed_error = 4.0 * noise + 1e-10 * fine.0.abs();
+        let known = fine.1.is_finite() && signed_error < 1e-3 * fine.0.abs();
+        known.then_some(SecondOrder {
             signed: fine.0,
+            signed_error,
             slope: fine.1,
             error,
             strength: fine.2,

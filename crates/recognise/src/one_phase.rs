@@ -211,7 +211,7 @@ impl OnePhase {
     /// sqrt(2 u) of it, so that the side is not known there.
     fn touching(&self, value: &dyn Fn(&Expression, f64) -> Option<f64>, a: f64) -> f64 {
         let turns = || (0..4).map(|quarter| f64::from(quarter) * PI / 2.0);
-        let rounding = 8.0 * f64::EPSILON * a * self.frequency.max(1.0);
+        let rounding = 4.0 * f64::EPSILON * a * self.frequency;
         let touched = |psi: f64| {
             self.bends.iter().any(|z| value(z, psi).is_some_and(|z| z.abs() <= rounding))
         };
@@ -231,7 +231,9 @@ impl OnePhase {
             self.belt_speed.map(|speed| speed.abs() / self.frequency).filter(|a| *a < largest),
         );
         points.sort_by(f64::total_cmp);
-        let roots = roots(&points, &rate, stop).into_iter();
+        // The grid goes on by a cell, for a cycle at its end.
+        let roots =
+            roots(&points, &rate, stop).into_iter().filter(|(a, error)| *a <= largest + error);
         roots.filter_map(|(a, error)| self.cycle(a, error)).collect()
     }
 
@@ -269,6 +271,7 @@ impl OnePhase {
         let slower = 1.0 + 8.0 * f64::EPSILON;
         let rate = |a: f64| Some(self.rates_with(a, parameter(a) * slower)?.amplitude);
         let roots = roots(&grid(largest), &rate, stop).into_iter();
+        let roots = roots.filter(|(a, error)| *a <= largest + error);
         let found = |(a, error): (f64, f64)| Sticking {
             parameter: [parameter(a), parameter(error).abs()],
             amplitude: [a, error],
@@ -329,10 +332,11 @@ fn belt(rest: &Expression) -> Option<(String, f64)> {
 /// Amplitudes up to a largest one.
 fn grid(largest: f64) -> Vec<f64> {
     let at = |n: u32| largest * (f64::from(n) + 0.618) / (f64::from(CELLS) + 0.618);
-    (0..=CELLS).map(at).collect()
+    (0..=CELLS + 1).map(at).collect()
 }
 
-/// The changes of sign of a function between neighbouring points, with an error from that of the function.
+/// The changes of sign of a function between neighbouring points at which its sign is clear, with an error from that of
+/// the function.
 fn roots(points: &[f64], rate: &dyn Fn(f64) -> Option<[f64; 2]>, stop: &Stop) -> Vec<(f64, f64)> {
     let mut found = Vec::new();
     let mut before = None;
@@ -340,11 +344,15 @@ fn roots(points: &[f64], rate: &dyn Fn(f64) -> Option<[f64; 2]>, stop: &Stop) ->
         if stop.asked() {
             break;
         }
-        let here = rate(*a).map(|rate| (*a, rate));
-        if let (Some(left), Some(right)) = (before, here) {
-            found.extend(root(left, right, rate));
+        let Some(here) = rate(*a).map(|rate| (*a, rate)) else {
+            before = None;
+            continue;
+        };
+        // Zero up to rounding errors has no sign: its neighbours have.
+        if here.1[0].abs() > here.1[1] {
+            found.extend(before.and_then(|left| root(left, here, rate)));
+            before = Some(here);
         }
-        before = here;
     }
     found
 }
@@ -355,9 +363,7 @@ fn root(
     rate: &dyn Fn(f64) -> Option<[f64; 2]>,
 ) -> Option<(f64, f64)> {
     let sign = low.1[0] > 0.0;
-    // Zero up to rounding errors is no change of sign.
-    let clear = |[value, error]: [f64; 2]| value.abs() > error;
-    if (high.1[0] > 0.0) == sign || !clear(low.1) || !clear(high.1) {
+    if (high.1[0] > 0.0) == sign {
         return None;
     }
     let (mut low, mut high) = (low.0, high.0);

@@ -109,7 +109,8 @@ impl Terms {
             Some(found) => found,
             None => {
                 let orbit = NumericOrbit::find(&self.force)?;
-                let damping = self.damping_in(&Frame::identity(), &|_| true).unwrap_or_default();
+                let damping = self.damping_in(&Frame::identity(), &|_| true);
+                let damping = damping.ok_or(Refusal::NoOrbit)?;
                 (Unperturbed::Numeric(Box::new(orbit)), Frame::identity(), damping, forcing)
             }
         };

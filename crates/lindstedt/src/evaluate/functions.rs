@@ -16,7 +16,8 @@ const AMPLITUDE: &str = "amplitude";
 /// The order where none is asked for.
 const ORDER: usize = 8;
 /// Names that a language has for something else.
-const TAKEN: [&str; 62] = [
+const TAKEN: &[&str] = &[
+    "None",
     "alignas",
     "alignof",
     "and",
@@ -26,6 +27,7 @@ const TAKEN: [&str; 62] = [
     "await",
     "bool",
     "break",
+    "c",
     "case",
     "char",
     "class",
@@ -63,22 +65,37 @@ const TAKEN: [&str; 62] = [
     "loop",
     "match",
     "mod",
+    "mut",
     "n",
     "not",
     "or",
     "pass",
     "phase",
     "polynomial",
+    "pow",
     "pub",
+    "raise",
     "ref",
     "register",
     "return",
+    "self",
+    "short",
+    "signed",
     "sin",
     "static",
+    "struct",
+    "switch",
     "t",
+    "try",
     "type",
+    "union",
+    "use",
+    "void",
+    "where",
     "while",
+    "with",
     "x",
+    "yield",
 ];
 
 /// A program of functions of time and the parameters.

@@ -260,7 +260,11 @@ impl Oscillator {
             value.subharmonics = Some(resonances::list(&subject, largest)?);
         }
         if question.second_order {
-            value.second_order = splitting::list(&subject)?;
+            let mut first: Vec<&Number> = value.orbits.iter().map(|orbit| &orbit.gamma_c).collect();
+            if first.is_empty() {
+                first.push(&value.gamma_c);
+            }
+            value.second_order = splitting::list(&subject, &first)?;
         }
         value.sweep = sweep::compute(&subject, swept, question.part)?;
         value.remarks = subject.remarks(&value);

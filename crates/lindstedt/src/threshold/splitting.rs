@@ -62,16 +62,28 @@ const SMALL: f64 = 1.0 / 1024.0;
 const AROUND: (f64, f64) = (0.02, 3.0);
 
 /// The threshold to second order on every orbit.
-pub(super) fn list(subject: &Subject<'_>) -> Result<Vec<SecondOrderThreshold>, Error> {
+///
+/// `first` has gamma_c of every orbit by Melnikov's integral of first order, or one for all mirror images.
+pub(super) fn list(
+    subject: &Subject<'_>,
+    first: &[&Number],
+) -> Result<Vec<SecondOrderThreshold>, Error> {
     let problem = subject.splitting()?;
     let orbits = problem.orbits();
     let saddle = |orbit: &OrbitSplitting| orbit.orbit.saddles[0];
     let several = orbits.iter().any(|orbit| is_loop(orbit) && saddle(orbit) != saddle(&orbits[0]));
     let mut list = Vec::new();
-    for orbit in &orbits {
-        let Some(found) = &orbit.found else {
+    for (index, orbit) in orbits.iter().enumerate() {
+        let of_first_order = first.get(index).or(first.first());
+        let of_first_order = of_first_order.and_then(|number| number.decimal.parse::<f64>().ok());
+        // Where the work of the force cancels to rounding errors this integral is not that one.
+        let gap = |found: &SecondOrder| {
+            of_first_order.map_or(f64::INFINITY, |gamma| (found.signed.abs() - gamma).abs())
+        };
+        let known = orbit.found.as_ref().filter(|found| gap(found) < 1e-5 * found.signed.abs());
+        let Some(found) = known else {
             let message = format!(
-                "the second order on the {} was not found: there D = 0, or x' = v* is not passed with a speed",
+                "the second order on the {} was not found: there D = 0, or x' = v* is not passed with a speed, or the force works too little on it for doubles",
                 orbit.name
             );
             return Err(Refused::undecided(
@@ -99,7 +111,7 @@ pub(super) fn list(subject: &Subject<'_>) -> Result<Vec<SecondOrderThreshold>, E
                 orbit.name.to_owned()
             },
             parameter: subject.oscillator.problem().small.to_string(),
-            gamma_c: estimated(gamma, 1e-10 * gamma)?,
+            gamma_c: estimated(gamma, found.signed_error + 2.0 * gap(found))?,
             slope: estimated(found.slope, found.error)?,
             manifolds,
             not_followed,
@@ -113,7 +125,9 @@ fn is_loop(orbit: &OrbitSplitting) -> bool {
 }
 
 fn is_another(line: &TangencyLine, found: &SecondOrder) -> bool {
-    (line.slope - found.slope).abs() > 10.0 * (line.errors[1] + found.error)
+    let gaps = [line.intercept - found.signed.abs(), line.slope - found.slope];
+    let errors = [line.errors[0] + found.signed_error, line.errors[1] + found.error];
+    gaps.iter().zip(errors).any(|(gap, error)| gap.abs() > 3.0 * error)
 }
 
 fn manifolds(line: &TangencyLine) -> Result<Manifolds, Error> {
