@@ -212,9 +212,13 @@ impl OnePhase {
     fn touching(&self, value: &dyn Fn(&Expression, f64) -> Option<f64>, a: f64) -> f64 {
         let turns = || (0..4).map(|quarter| f64::from(quarter) * PI / 2.0);
         let rounding = 4.0 * f64::EPSILON * a * self.frequency;
-        let touched = |psi: f64| {
-            self.bends.iter().any(|z| value(z, psi).is_some_and(|z| z.abs() <= rounding))
+        // Not crossed: the same side before and after.
+        let one_side = |z: &Expression, psi: f64| {
+            let beside = [psi - 1e-3, psi + 1e-3].map(|psi| value(z, psi).is_some_and(|z| z > 0.0));
+            beside[0] == beside[1]
         };
+        let met = |z: &Expression, psi: f64| value(z, psi).is_some_and(|z| z.abs() <= rounding);
+        let touched = |psi: f64| self.bends.iter().any(|z| met(z, psi) && one_side(z, psi));
         let sides = turns().filter(|psi| touched(*psi)).flat_map(|psi| [psi - 1e-3, psi + 1e-3]);
         let sizes = sides.filter_map(|psi| Some(value(&self.law, psi)?.abs()));
         2.0 * (2.0 * f64::EPSILON).sqrt() * sizes.fold(0.0, f64::max)
