@@ -1,6 +1,6 @@
 //! Algebras of polynomials in complex amplitudes.
 
-use crate::{ForcedAlgebra, PhaseError};
+use crate::{ForcedAlgebra, FunctionAlgebra, PhaseError, Ring};
 use rug::Rational;
 
 /// What averaging with resonance asks of an algebra of polynomials in the amplitudes z_1, zbar_1, ...,
@@ -9,8 +9,8 @@ use rug::Rational;
 /// At order zero z_j' = i nu_j z_j and eta_l' = Omega_l, so that D_0 = d/dt multiplies the monomial
 /// z^p zbar^q E^m by i lambda, lambda = sum_j (p_j - q_j) nu_j + sum_l m_l Omega_l. Laws: D_0 and the
 /// derivatives satisfy Leibniz' rule, conjugation is a homomorphism that exchanges z_j with zbar_j and E_l
-/// with 1/E_l.
-pub trait AmplitudeAlgebra: ForcedAlgebra {
+/// with 1/E_l; so does f(t - T) = exp(-T D_0) f for a delay T.
+pub trait AmplitudeAlgebra: ForcedAlgebra + FunctionAlgebra<Constants = Self> + Sized {
     /// M.
     fn unknowns(&self) -> usize;
     /// L.
@@ -31,20 +31,53 @@ pub trait AmplitudeAlgebra: ForcedAlgebra {
     fn by_force(&self, f: &Self::Element, l: usize) -> Self::Element;
     /// D_0 f.
     fn by_time(&self, f: &Self::Element) -> Self::Element;
-    /// Solves (D_0^2 + nu_j^2) u + 2 i nu_j f + conj(2 i nu_j f) = g for a real g: monomials of the
-    /// eigenvalue lambda = nu_j > 0 go to f, those of -nu_j to its conjugate, the others are divided by
-    /// nu_j^2 - lambda^2 and go to u. So u is real and has no monomial with |lambda| = nu_j.
+    /// exp(-T D_0) f for the delay T of that position.
+    fn shift(&self, f: &Self::Element, delay: usize) -> Option<Self::Element>;
+    /// T itself.
+    fn delay(&self, delay: usize) -> Option<Self::Element>;
+    /// Solves L(D_0) u + L'(i nu_j) f + conj(L'(i nu_j) f) = g for a real g, L the characteristic function of the linear
+    /// part of unknown j, of which i nu_j is a root where the unknown has an amplitude: monomials of the eigenvalue
+    /// lambda = nu_j > 0 go to f, those of -nu_j to its conjugate, the others are divided by L(i lambda) and go to u. So
+    /// u is real and has no monomial with |lambda| = nu_j.
     ///
     /// # Errors
-    /// [`PhaseError::Undecided`] for a divisor that cannot be told from zero.
-    fn split(&self, j: usize, g: &Self::Element) -> Result<Split<Self>, PhaseError>;
+    /// [`PhaseError::Undecided`] for a divisor that cannot be told from zero. An algebra that takes all but z_j itself to be
+    /// off resonance refuses what is not: [`PhaseError::Resonance`], [`PhaseError::NearMiss`],
+    /// [`PhaseError::Indivisible`].
+    fn split(
+        &self,
+        j: usize,
+        linear: &LinearPart<Self::Element>,
+        g: &Self::Element,
+    ) -> Result<Split<Self>, PhaseError>;
     /// Whether f has no monomial with |lambda| = nu_j.
     fn is_off_resonance(&self, j: usize, f: &Self::Element) -> bool;
 }
 
+/// The linear part at order zero, x'' + damping x' + stiffness x + sum_j (b_j + c_j d/dt) x(t - T_j),
+/// with the characteristic function L(lambda) = lambda^2 + damping lambda + stiffness
+/// + sum_j (b_j + c_j lambda) e^(-lambda T_j).
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearPart<E> {
+    /// The factor of x.
+    pub stiffness: E,
+    /// The factor of x'.
+    pub damping: E,
+    /// (b_j, c_j) for every delay.
+    pub delayed: Vec<(E, E)>,
+}
+
+impl<E> LinearPart<E> {
+    /// Whether there is neither damping nor delay.
+    pub fn is_free<R: Ring<Element = E>>(&self, ring: &R) -> bool {
+        let vanish = |list: [&E; 2]| list.into_iter().all(|c| ring.is_zero(c));
+        ring.is_zero(&self.damping) && self.delayed.iter().all(|(b, c)| vanish([b, c]))
+    }
+}
+
 /// The result of [`AmplitudeAlgebra::split`].
 #[derive(Clone, Debug)]
-pub struct Split<A: AmplitudeAlgebra + ?Sized> {
+pub struct Split<A: AmplitudeAlgebra> {
     /// f.
     pub flow: A::Element,
     /// u.

@@ -1,6 +1,6 @@
 //! Algebras of functions of an amplitude, a fast phase and a forcing phase.
 
-use crate::{ForcedAlgebra, FunctionAlgebra, PhaseError, Ring};
+use crate::{ForcedAlgebra, FunctionAlgebra, LinearPart, PhaseError, Ring};
 
 /// Shorthand for the functions of the amplitude.
 type Constant<A> = <<A as FunctionAlgebra>::Constants as Ring>::Element;
@@ -39,19 +39,6 @@ pub trait AveragingAlgebra: ForcedAlgebra {
         linear: &LinearPart<Constant<Self>>,
         f: &Self::Element,
     ) -> Result<Averaged<Self>, PhaseError>;
-}
-
-/// The linear part at order zero, x'' + damping x' + stiffness x + sum_j (b_j + c_j d/dt) x(t - T_j),
-/// with the characteristic function L(lambda) = lambda^2 + damping lambda + stiffness
-/// + sum_j (b_j + c_j lambda) e^(-lambda T_j).
-#[derive(Clone, Debug, PartialEq)]
-pub struct LinearPart<E> {
-    /// The factor of x.
-    pub stiffness: E,
-    /// The factor of x'.
-    pub damping: E,
-    /// (b_j, c_j) for every delay.
-    pub delayed: Vec<(E, E)>,
 }
 
 /// The result of [`AveragingAlgebra::average`]: A, B and u of

@@ -14,8 +14,8 @@ mod ring;
 mod stop;
 mod stopping;
 
-pub use amplitudes::{AmplitudeAlgebra, Split};
-pub use averaging::{Averaged, AveragingAlgebra, LinearPart};
+pub use amplitudes::{AmplitudeAlgebra, LinearPart, Split};
+pub use averaging::{Averaged, AveragingAlgebra};
 pub use clock::{ClockAlgebra, StillAndClock};
 pub use phase::{
     Elementary, ForcedAlgebra, FunctionAlgebra, NEAR_MISS, PhaseAlgebra, PhaseError, Resolution,

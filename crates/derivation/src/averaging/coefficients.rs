@@ -5,10 +5,15 @@ use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{PolynomialRing, Symbol};
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
+use lindstedt_phase::amplitudes::scalars::{Integers, Over, Scalars};
 use rug::Rational;
 
 /// What is asked of a ring of coefficients besides its operations.
 pub(super) trait Coefficients: RationalAlgebra + Clone {
+    /// What polynomials in amplitudes compute with.
+    type Scalars: Scalars<Number = Self::Element>;
+    /// The numerators of the ring.
+    fn scalars(&self) -> Self::Scalars;
     /// The positive square root, where the ring has it.
     fn square_root(&self, a: &Self::Element) -> Option<Self::Element>;
     /// cos x, sin x for the angle x = rate * time.
@@ -16,6 +21,11 @@ pub(super) trait Coefficients: RationalAlgebra + Clone {
 }
 
 impl Coefficients for Rationals {
+    type Scalars = Integers;
+
+    fn scalars(&self) -> Integers {
+        Integers
+    }
     fn square_root(&self, a: &Rational) -> Option<Rational> {
         let square =
             a.is_positive() && a.numer().is_perfect_square() && a.denom().is_perfect_square();
@@ -28,6 +38,11 @@ impl Coefficients for Rationals {
 }
 
 impl Coefficients for BallRing {
+    type Scalars = Over<Self>;
+
+    fn scalars(&self) -> Over<Self> {
+        Over::exact(*self)
+    }
     fn square_root(&self, a: &Enclosure) -> Option<Enclosure> {
         a.0.is_positive().then(|| self.balls.sqrt(&a.0).map(Enclosure)).flatten()
     }
@@ -38,6 +53,11 @@ impl Coefficients for BallRing {
 }
 
 impl Coefficients for ParameterField {
+    type Scalars = Over<Self>;
+
+    fn scalars(&self) -> Over<Self> {
+        Over::exact(self.clone())
+    }
     /// Of q s_1^(2 n_1) ...: the parameters are taken to be positive.
     fn square_root(&self, a: &ParameterFraction) -> Option<ParameterFraction> {
         let [(monomial, coefficient)] = a.numerator().terms() else { return None };

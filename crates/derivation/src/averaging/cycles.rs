@@ -13,14 +13,13 @@
 //! the other one is 0, along psi. The frequency is psi' there. At a multiple root of R_k there is no such
 //! series (cycles may meet): it is named.
 
+use super::AveragedExpansion;
 use crate::error::DerivationError as Error;
-use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
+use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePower};
 use lindstedt_coeff::print::{Style, Term, parenthesize, power, print_sum};
-use lindstedt_expand::AveragedExpansion;
 use lindstedt_number::Number;
 use lindstedt_number::ball::{Ball, Balls};
-use lindstedt_phase::Torus;
 use lindstedt_series::Series;
 use lindstedt_series::univariate::{
     Residues, positive_roots, rational_root, refined, simple_and_multiple, trim,
@@ -145,7 +144,7 @@ struct Rates {
 /// a, or the rates are not of that form.
 pub(super) fn cycles(
     frequency: &Rational,
-    expansion: &AveragedExpansion<Torus<Rationals>>,
+    expansion: &AveragedExpansion<Rational>,
     digits: usize,
 ) -> Result<Option<Cycles>, Error> {
     let in_squares = |list: &[AmplitudePolynomial<Rational>], offset| {

@@ -2,6 +2,7 @@
 
 mod coefficients;
 mod cycles;
+mod expansion;
 mod friction;
 mod json;
 pub mod numbers;
@@ -9,18 +10,17 @@ mod task;
 mod values;
 
 pub use cycles::{Algebraic, Cycle, Cycles, print_series};
+pub use expansion::AveragedExpansion;
 
 use crate::error::DerivationError as Error;
 use crate::limits::refuse_above;
 use crate::work::Progress;
 use lindstedt_algebra::Stop;
-use lindstedt_coeff::parameters::ParameterField;
+use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_equation::Problem;
 use lindstedt_equation::description::Description;
-use lindstedt_expand::AveragedExpansion;
 use lindstedt_impact::convergence::Convergence;
 use lindstedt_number::{Exact, Number};
-use lindstedt_phase::Torus;
 use std::collections::BTreeMap;
 use task::Task;
 pub(crate) use values::constant;
@@ -208,7 +208,7 @@ pub fn average(
 pub fn formulas(
     problem: &Problem,
     order: usize,
-) -> Result<(ParameterField, AveragedExpansion<Torus<ParameterField>>), Error> {
+) -> Result<(ParameterField, AveragedExpansion<ParameterFraction>), Error> {
     let settings = AveragingSettings { order, digits: 20, ..AveragingSettings::default() };
     let (field, over) = Task::new(problem, &settings)?.over_parameters(&mut |_| true)?;
     Ok((field, over.expansion))

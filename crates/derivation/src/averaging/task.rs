@@ -3,25 +3,25 @@
 use super::coefficients::{Coefficients, with_angles};
 use super::cycles::cycles;
 use super::values::{Given, constant, enclosed};
-use super::{Averaging, AveragingSettings, Coefficient, RateTerm};
+use super::{AveragedExpansion, Averaging, AveragingSettings, Coefficient, RateTerm};
 use crate::error::DerivationError as Error;
 use crate::limits::{check_delays, refuse_high_powers, refuse_taken, unknown_parameter};
+use crate::resonance::ResonanceError;
 use crate::values::value;
 use crate::work::Progress;
-use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
+use lindstedt_algebra::{RationalAlgebra, Rationals};
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials, AmplitudePower};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_coeff::print::{Print, Style};
 use lindstedt_equation::{Expression, Problem};
-use lindstedt_expand::{
-    AveragedExpansion, Binding, Equation, Excitation, ExpandError, average as expand_average,
-    check_averaged, compile_system, linear_part,
-};
+use lindstedt_expand::resonance::{check_flow, linear_part, resonant};
+use lindstedt_expand::{Binding, Equation, Excitation, ExpandError, compile_system};
 use lindstedt_number::ball::Balls;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::rational;
-use lindstedt_phase::{Delay, Torus};
+use lindstedt_phase::amplitudes::polar::Polar;
+use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Delay, scalars::Scalars};
 use rug::Rational;
 use std::collections::BTreeSet;
 
@@ -34,20 +34,34 @@ pub(super) struct Task<'a> {
 }
 
 /// Values of parameters in a ring of coefficients.
-struct Bound<'a, K: RationalAlgebra> {
-    ring: AmplitudePolynomials<K>,
+struct Bound<'a, K: Coefficients> {
+    ring: &'a K,
+    algebra: &'a Algebra<K>,
     values: &'a dyn Fn(&str) -> Option<K::Element>,
 }
 
-impl<K: RationalAlgebra> Binding<AmplitudePolynomials<K>> for Bound<'_, K> {
-    fn parameter(&self, name: &str) -> Option<AmplitudePolynomial<K::Element>> {
-        (self.values)(name).map(|value| self.ring.embed(value))
+/// The polynomials in the amplitude and the phase of the force.
+type Algebra<K> = Amplitudes<<K as Coefficients>::Scalars>;
+
+type Element<K> = AmplitudeElement<<<K as Coefficients>::Scalars as Scalars>::Element>;
+
+impl<K: Coefficients> Binding<Algebra<K>> for Bound<'_, K> {
+    fn parameter(&self, name: &str) -> Option<Element<K>> {
+        (self.values)(name).map(|value| self.algebra.number(&value))
     }
-    fn formal(&self, _: &str, _: usize) -> Option<AmplitudePolynomial<K::Element>> {
+    fn formal(&self, _: &str, _: usize) -> Option<Element<K>> {
         None
     }
-    fn power(&self, power: &Expression) -> Option<AmplitudePolynomial<K::Element>> {
-        constant(&self.ring.coefficients, power, self.values).map(|value| self.ring.embed(value))
+    fn power(&self, power: &Expression) -> Option<Element<K>> {
+        constant(self.ring, power, self.values).map(|value| self.algebra.number(&value))
+    }
+}
+
+/// That z alone does not solve order zero says of one unknown that its equation is not weakly nonlinear.
+fn weakly(error: ExpandError) -> ExpandError {
+    match error {
+        ExpandError::NotTheFrequency { .. } => ExpandError::NotWeaklyNonlinear,
+        error => error,
     }
 }
 
@@ -57,7 +71,7 @@ const MOST_BITS: u32 = 1 << 18;
 /// The result over K.
 pub(super) struct Over<K: RationalAlgebra> {
     pub(super) frequency: K::Element,
-    pub(super) expansion: AveragedExpansion<Torus<K>>,
+    pub(super) expansion: AveragedExpansion<K::Element>,
     checked_orders: usize,
     solution: Vec<[String; 2]>,
     terms: Vec<usize>,
@@ -115,7 +129,7 @@ impl<'a> Task<'a> {
         ring: &K,
         values: &dyn Fn(&str) -> Option<K::Element>,
         angles: &dyn Fn(&K, &[K::Element]) -> K,
-    ) -> Result<(Torus<K>, K::Element), Error> {
+    ) -> Result<(K, Algebra<K>, K::Element), Error> {
         let evaluate = |expression: &Expression| constant(ring, expression, values);
         let unknown = |e: &Expression| {
             Error::from(ExpandError::UnsupportedTerm {
@@ -133,27 +147,17 @@ impl<'a> Task<'a> {
             .map(|delay| evaluate(delay).ok_or_else(|| unknown(delay)))
             .collect::<Result<_, _>>()?;
         let still = |ring: &K| [ring.one(), ring.zero()];
-        let waiting = |time: &K::Element| Delay {
-            time: time.clone(),
-            free: still(ring),
-            forced: still(ring),
-        };
+        let waiting =
+            |time: &K::Element| Delay { time: time.clone(), turns: vec![still(ring), still(ring)] };
         // The linear part does not depend on the frequency, and gives it.
-        let provisional = Torus::new(
-            ring.clone(),
-            ring.one(),
-            forcing.clone(),
-            times.iter().map(waiting).collect(),
-        )
-        .with_stop(self.settings.stop.clone());
-        let graph = self.compiled(&provisional, values)?;
-        let linear = linear_part(&provisional, &graph)?;
-        let constants = provisional.constants();
-        let zero = |f: &AmplitudePolynomial<K::Element>| constants.is_zero(f);
-        if !zero(&linear.damping) || linear.delayed.iter().any(|(b, c)| !zero(b) || !zero(c)) {
+        let waiting: Vec<_> = times.iter().map(waiting).collect();
+        let provisional = self.amplitudes(ring, &ring.one(), forcing.as_ref(), &waiting)?;
+        let graph = self.compiled(ring, &provisional, values)?;
+        let linear = linear_part(&provisional, &graph).map_err(weakly)?;
+        if !linear.is_free(&provisional) {
             return Err(ExpandError::NotWeaklyNonlinear.into());
         }
-        let stiffness = constants.as_coefficient(&linear.stiffness);
+        let stiffness = provisional.as_number(&linear.stiffness);
         let stiffness = stiffness.ok_or(ExpandError::NotWeaklyNonlinear)?;
         let frequency = ring.square_root(&stiffness).ok_or(ExpandError::StiffnessNotSquare)?;
 
@@ -173,40 +177,61 @@ impl<'a> Task<'a> {
                 Some(forcing) if !self.is_synchronous(delay) => turn(forcing)?,
                 _ => still(&ring),
             };
-            delays.push(Delay { free: turn(&frequency)?, forced, time });
+            delays.push(Delay { turns: vec![turn(&frequency)?, forced], time });
         }
-        let torus = Torus::new(ring, frequency.clone(), forcing, delays);
-        Ok((torus.with_stop(self.settings.stop.clone()), frequency))
+        let algebra = self.amplitudes(&ring, &frequency, forcing.as_ref(), &delays)?;
+        Ok((ring, algebra, frequency))
+    }
+
+    fn amplitudes<K: Coefficients>(
+        &self,
+        ring: &K,
+        frequency: &K::Element,
+        forcing: Option<&K::Element>,
+        delays: &[Delay<K::Element>],
+    ) -> Result<Algebra<K>, Error> {
+        let algebra = Amplitudes::off_resonance(ring.scalars(), frequency, forcing);
+        let algebra = algebra.ok_or(ExpandError::NotWeaklyNonlinear)?;
+        Ok(algebra.with_delays(delays).with_stop(self.settings.stop.clone()))
     }
 
     fn compiled<K: Coefficients>(
         &self,
-        torus: &Torus<K>,
+        ring: &K,
+        algebra: &Algebra<K>,
         values: &dyn Fn(&str) -> Option<K::Element>,
-    ) -> Result<Equation<Torus<K>>, ExpandError> {
-        let bound = Bound { ring: torus.constants().clone(), values };
+    ) -> Result<Equation<Algebra<K>>, ExpandError> {
         let equation = std::slice::from_ref(&self.problem.equation);
-        compile_system(torus, equation, &bound, self.settings.order)
+        compile_system(algebra, equation, &Bound { ring, algebra, values }, self.settings.order)
     }
 
     fn derive<K: Coefficients + Print>(
         &self,
-        (algebra, frequency): (Torus<K>, K::Element),
+        (ring, algebra, frequency): (K, Algebra<K>, K::Element),
         values: &dyn Fn(&str) -> Option<K::Element>,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Over<K>, Error> {
-        let graph = self.compiled(&algebra, values)?;
+        let graph = self.compiled(&ring, &algebra, values)?;
         let mut on_order =
             |work: &lindstedt_expand::OrderWork| observer(Progress::Order(work.order, work.terms));
-        let expansion = expand_average(&algebra, &graph, self.settings.order, &mut on_order)?;
+        let found = resonant(&algebra, &graph, self.settings.order, &[], &mut on_order);
+        let found = found.map_err(weakly)?;
+        if algebra.overflowed() {
+            let (order, largest) = (self.settings.order, algebra.largest_exponent());
+            return Err(ResonanceError::TooHigh { order, largest }.into());
+        }
         observer(Progress::Checking);
         // Order zero was checked before the loop.
-        let checked_orders = match check_averaged(&algebra, &graph, &expansion) {
+        let checked_orders = match check_flow(&algebra, &graph, &found) {
             Err(ExpandError::Interrupted { .. }) => 0,
             other => other?,
         };
-        let terms = expansion.solution.iter().map(|x| algebra.terms(x)).collect();
-        let print = |x| [Style::Text, Style::Latex].map(|style| algebra.print(x, style));
+        let expansion = AveragedExpansion::of(&algebra, &found);
+        let expansion = expansion.ok_or(ExpandError::NotWeaklyNonlinear)?;
+        let terms = expansion.solution.iter().map(Polar::terms).collect();
+        let constants = AmplitudePolynomials::new(ring);
+        let print =
+            |x: &Polar<_>| [Style::Text, Style::Latex].map(|style| x.print(&constants, style));
         let solution = expansion.solution.iter().map(print).collect();
         Ok(Over { frequency, expansion, checked_orders, solution, terms })
     }
@@ -325,7 +350,7 @@ impl<'a> Task<'a> {
             None => Some(plain.parameter(plain.position(name)?)),
         };
         let algebra = self.algebra(&plain, &values, &|field, angles| with_angles(field, angles))?;
-        let field = algebra.0.coefficients().clone();
+        let field = algebra.0.clone();
         let over = self.derive(algebra, &values, observer)?;
         Ok((field, over))
     }

@@ -141,11 +141,13 @@ pub enum ResonanceError {
         /// How many there are.
         count: usize,
     },
-    /// An exponent beyond 127.
-    #[error("order {order} needs an exponent beyond 127")]
+    /// An exponent beyond the largest that monomials hold.
+    #[error("order {order} needs an exponent beyond {largest}")]
     TooHigh {
         /// The order.
         order: usize,
+        /// The largest exponent.
+        largest: i32,
     },
     /// Multiplied out, the linear part is too long.
     #[error("multiplied out, the linear part has more than {limit} terms")]

@@ -122,7 +122,8 @@ impl Job<'_> {
         };
         let found = resonant(&algebra, &graph, settings.order, &detuning, &mut on_order);
         room.checked?;
-        let too_high = || Error::from(ResonanceError::TooHigh { order: settings.order });
+        let (order, largest) = (settings.order, algebra.largest_exponent());
+        let too_high = || Error::from(ResonanceError::TooHigh { order, largest });
         let found = found.map_err(|error| match error {
             ExpandError::Interrupted { .. } if algebra.overflowed() => too_high(),
             ExpandError::Phase { order, source: PhaseError::Undecided { harmonic } } => {

@@ -121,7 +121,8 @@ pub fn normal_mode(
     let graph = compile_system(&algebra, &equations, &binding, settings.order)?;
     let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
     let found = resonant(&algebra, &graph, settings.order, &[], &mut on_order);
-    let too_high = ResonanceError::TooHigh { order: settings.order };
+    let (order, largest) = (settings.order, algebra.largest_exponent());
+    let too_high = ResonanceError::TooHigh { order, largest };
     let found = match found {
         _ if algebra.overflowed() => return Err(too_high.into()),
         found => found?,

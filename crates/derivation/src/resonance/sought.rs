@@ -130,7 +130,7 @@ pub fn sought(
     let frequency = system.frequencies.first().cloned().unwrap_or_default();
     let base = divisor(&frequency, &system.force());
     let whole = |rate: &Rational| {
-        let high = ResonanceError::TooHigh { order: settings.order };
+        let high = ResonanceError::TooHigh { order: settings.order, largest: i32::MAX };
         Rational::from(rate / &base).numer().to_i32().ok_or(high)
     };
     let (harmonic, step) = (whole(&frequency)?, whole(&system.force())?);
@@ -161,7 +161,8 @@ pub fn sought(
     };
     let mut refused = None;
     for sine in [false, true].into_iter().take(if step == 0 { 1 } else { 2 }) {
-        let high = ResonanceError::TooHigh { order: settings.order };
+        let (order, largest) = (settings.order, algebra.largest_exponent());
+        let high = ResonanceError::TooHigh { order, largest };
         let [cos, sin] = algebra.wave(0, harmonic).ok_or(high)?;
         let generating = algebra.scale(if sine { &sin } else { &cos }, &amplitude);
         match task.branch(sine, generating, observer) {
@@ -237,7 +238,8 @@ impl Task<'_> {
         let mut on_order = |work: &OrderWork| observer(Progress::Order(work.order, work.terms));
         let found = periodic(algebra, &graph, order, &detuning, vec![generating], &mut on_order)?;
         if algebra.overflowed() {
-            return Err(ResonanceError::TooHigh { order }.into());
+            let largest = algebra.largest_exponent();
+            return Err(ResonanceError::TooHigh { order, largest }.into());
         }
         observer(Progress::Checking);
         let checked_orders = match check_flow(algebra, &graph, &found) {

@@ -8,7 +8,7 @@
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
 use crate::evaluator::Evaluator;
-use lindstedt_algebra::{AmplitudeAlgebra, Split};
+use lindstedt_algebra::{AmplitudeAlgebra, LinearPart, Split};
 
 pub(super) struct Balance<E> {
     /// p_0, p_1, ...
@@ -21,13 +21,13 @@ pub(super) struct Balance<E> {
     sensitive: Vec<bool>,
 }
 
-impl<E: Clone> Balance<E> {
+impl<E: Clone + PartialEq> Balance<E> {
     /// The reaction to p, at order zero of the motion.
     pub(super) fn new<A: AmplitudeAlgebra<Element = E>>(
         algebra: &A,
         equation: &Equation<A>,
-        x: &[Vec<E>],
-        velocity: &[Vec<E>],
+        linear: &[LinearPart<E>],
+        [x, velocity]: [&[Vec<E>]; 2],
     ) -> Result<Self, ExpandError> {
         let sought = Node::unknown(equation.roots.len(), false, None);
         let tangents = |value: E| {
@@ -48,7 +48,8 @@ impl<E: Clone> Balance<E> {
                 return Err(ExpandError::NotBalanced { order: 1 });
             }
             let phase = |source| ExpandError::Phase { order: 1, source };
-            let Split { flow, response, .. } = algebra.split(j, slope).map_err(phase)?;
+            let Split { flow, response, .. } =
+                algebra.split(j, &linear[j], slope).map_err(phase)?;
             reaction.push([flow, response]);
         }
         let inverse = |(j, [flow, _]): (usize, &[E; 2])| {

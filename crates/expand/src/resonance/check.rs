@@ -3,9 +3,12 @@
 //! Nothing is taken from the derivation but f_{j,n}, u_{j,n} and sigma_{l,n}, and nothing is split: powers and
 //! products are those of truncated series in full, and the time derivative is the vector field
 //! D = sum_j (z_j' d/dz_j + zbar_j' d/dzbar_j) + sum_l eta_l' d/deta_l with z_j' = i nu_j z_j + sum eps^n f_{j,n}
-//! whole, where the derivation has D_0 as eigenvalues.
+//! whole, where the derivation has D_0 as eigenvalues. A delayed value is exp(-T D) x in Horner's form,
+//! 1 - T D' (1 - T D'/2 (1 - ...)) with D' = D - D_0, followed by the shift of the phases. The delayed velocity is
+//! exp(-T D) applied to the velocity, where the derivation differentiates the delayed displacement.
 
 use super::SlowFlow;
+use super::delayed::step_back;
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
 use crate::residual::polynomial_value;
@@ -116,30 +119,34 @@ struct Judge<'a, A: AmplitudeAlgebra> {
     algebra: &'a A,
     order: usize,
     /// z_j' and eta_l'.
-    amplitudes: Vec<Series<A::Element>>,
-    forces: Vec<Series<A::Element>>,
+    whole: Field<A::Element>,
+    /// z_j' - i nu_j z_j and eta_l' - Omega_l.
+    slow: Field<A::Element>,
 }
+
+/// A vector field: its components along z_j and along eta_l.
+type Field<E> = [Vec<Series<E>>; 2];
 
 impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
     fn new(algebra: &'a A, found: &SlowFlow<A::Element>) -> Self {
-        let amplitude = |(j, flow): (usize, &Vec<A::Element>)| {
-            let mut flow = flow.clone();
-            algebra.add_assign(&mut flow[0], &algebra.by_time(&algebra.amplitude(j)));
-            Series::truncated(flow)
-        };
         let order = found.order();
         let force = |l: usize| {
-            let mut rate = vec![algebra.force_rate(l)];
+            let mut rate = vec![algebra.zero()];
             rate.extend(found.detuning.get(l).into_iter().flatten().cloned());
             rate.resize(order + 1, algebra.zero());
             Series::truncated(rate)
         };
-        Self {
-            algebra,
-            order,
-            amplitudes: found.flow.iter().enumerate().map(amplitude).collect(),
-            forces: (0..algebra.forces()).map(force).collect(),
+        let flow = found.flow.iter().map(|flow| Series::truncated(flow.clone())).collect();
+        let slow: Field<_> = [flow, (0..algebra.forces()).map(force).collect()];
+        let [mut amplitudes, mut forces] = slow.clone();
+        for (j, series) in amplitudes.iter_mut().enumerate() {
+            let rate = algebra.by_time(&algebra.amplitude(j));
+            algebra.add_assign(&mut series.coefficients[0], &rate);
         }
+        for (l, series) in forces.iter_mut().enumerate() {
+            algebra.add_assign(&mut series.coefficients[0], &algebra.force_rate(l));
+        }
+        Self { algebra, order, whole: [amplitudes, forces], slow }
     }
 
     /// x_j', and the values of the nodes of a graph.
@@ -162,6 +169,10 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
                     x.get(*index).unwrap_or(&sought).clone()
                 }
                 Node::Unknown { index, velocity: true, delay: None } => velocity[*index].clone(),
+                Node::Unknown { index, velocity: rate, delay: Some(delay) } => {
+                    let list = if *rate { &velocity } else { &x };
+                    self.delayed(list.get(*index).ok_or_else(unsupported)?, *delay)?
+                }
                 &Node::Forcing(index) => Series::polynomial(vec![equation.forcing[index].clone()]),
                 node => {
                     polynomial_value(algebra, node, &values, self.order).ok_or_else(unsupported)?
@@ -174,17 +185,47 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
 
     /// D f for a real series f.
     fn rate(&self, f: &Series<A::Element>) -> Series<A::Element> {
+        self.along(&self.whole, f)
+    }
+
+    /// The derivative of a real series along a field.
+    fn along(
+        &self,
+        [amplitudes, forces]: &Field<A::Element>,
+        f: &Series<A::Element>,
+    ) -> Series<A::Element> {
         let algebra = self.algebra;
         let mut along = Series::polynomial(Vec::new());
-        for (j, amplitude) in self.amplitudes.iter().enumerate() {
+        for (j, amplitude) in amplitudes.iter().enumerate() {
             let slope = f.map(|f| algebra.by_amplitude(f, j));
             along = along.add(algebra, &amplitude.mul(algebra, &slope, self.order));
         }
         let mut along = along.map(|c| algebra.twice_real(c));
-        for (l, force) in self.forces.iter().enumerate() {
+        for (l, force) in forces.iter().enumerate() {
             let turn = f.map(|f| algebra.by_force(f, l));
             along = along.add(algebra, &force.mul(algebra, &turn, self.order));
         }
         Series::truncated(along.coefficients)
+    }
+
+    /// f(t - T). Every application of D' raises the order, so the inner sums are short.
+    fn delayed(
+        &self,
+        f: &Series<A::Element>,
+        delay: usize,
+    ) -> Result<Series<A::Element>, ExpandError> {
+        let algebra = self.algebra;
+        let shortened = |length: usize| {
+            Series::truncated(f.coefficients.iter().take(length).cloned().collect())
+        };
+        let mut sum = shortened(1);
+        for i in (1..=self.order).rev() {
+            let factor = step_back(algebra, delay, i).ok_or_else(unsupported)?;
+            let change = self.along(&self.slow, &sum).map(|c| algebra.mul(c, &factor));
+            sum = shortened(self.order + 2 - i).add(algebra, &change);
+        }
+        let shifted: Option<Vec<_>> =
+            sum.coefficients.iter().map(|c| algebra.shift(c, delay)).collect();
+        Ok(Series::truncated(shifted.ok_or_else(unsupported)?))
     }
 }

@@ -1,34 +1,43 @@
 //! Averaging at resonance, for any number of unknowns and to any order, over an algebra of complex
 //! amplitudes ([`AmplitudeAlgebra`]):
 //!
-//!   x_j'' + nu_j^2 x_j + force_j(eta) + eps F_j(x, x', eta; eps) = 0,   j = 1, ..., M,
+//!   x_j'' + nu_j^2 x_j + force_j(eta) + eps F_j(x, x', x(t - T), eta; eps) = 0,   j = 1, ..., M,
 //!   x_j = z_j + zbar_j + the response to force_j + sum eps^n u_{j,n}(z, zbar, e^{i eta}),
 //!   z_j' = i nu_j z_j + sum eps^n f_{j,n}(z, zbar, e^{i eta}),   eta_l' = Omega_l + sum eps^n sigma_{l,n},
 //!
 //! with the phases eta_1, ..., eta_L of the forces, so that d/dt = D = sum eps^n D_n with D_0 diagonal on
 //! monomials (i lambda) and
-//! D_n f = sum_j (f_{j,n} df/dz_j + conj f_{j,n} df/dzbar_j) + sum_l sigma_{l,n} df/deta_l. Order n reads
+//! D_n f = sum_j (f_{j,n} df/dz_j + conj f_{j,n} df/dzbar_j) + sum_l sigma_{l,n} df/deta_l. With L_j the
+//! characteristic function of the linear part at order zero, lambda^2 + nu_j^2 or one with damping and delays of which
+//! i nu_j is a root, order n reads
 //!
-//!   (D_0^2 + nu_j^2) u_{j,n} + 2 i nu_j f_{j,n} + conj(2 i nu_j f_{j,n}) = g_{j,n},
+//!   L_j(D_0) u_{j,n} + L_j'(i nu_j) f_{j,n} + conj(L_j'(i nu_j) f_{j,n}) = g_{j,n},
 //!
 //! -g_{j,n} being order n of the equation formed with u_n = f_n = 0. **The split**: every monomial of g
-//! with lambda = nu_j goes to f, whatever resonance made it so; all others are divided. The u_{j,n}
+//! with lambda = nu_j goes to f, whatever resonance made it so (an algebra that takes all others to be off resonance
+//! refuses them); all others are divided. Delayed values are exp(-T D) x; since D_0 commutes with all D_n,
+//! exp(-T D) = exp(-T D_0) exp(-T (eps D_1 + eps^2 D_2 + ...)), and the powers of the second exponential are built
+//! order by order, in `delayed`. The u_{j,n}
 //! have no monomial with |lambda| = nu_j, so the solution is unique, and z_j is the complex amplitude of
 //! the harmonic nu_j in x_j. Without force and with M = 1 this is the averaging of Krylov, Bogoliubov
 //! and Mitropolsky in other coordinates: f = z h(|z|^2), a = 2 |z|, a' = a Re h, psi' = nu + Im h.
 
 mod balance;
 mod check;
+mod delayed;
+mod linear;
 
 pub use check::{check_flow, checked_residual, energy};
 
 use balance::Balance;
+use delayed::{Rates, Tower};
+use linear::{Affine, Linear};
 
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
 use crate::driver::{OrderWork, Scheme, run};
 use crate::evaluator::Evaluator;
-use lindstedt_algebra::{AmplitudeAlgebra, Split};
+use lindstedt_algebra::{AmplitudeAlgebra, LinearPart, Split};
 use rug::Rational;
 
 /// The slow flow and the motion, order by order; see [`resonant`].
@@ -73,7 +82,8 @@ impl<E> SlowFlow<E> {
 /// [`crate::expand`], false ends the derivation with the orders found so far.
 ///
 /// Exact over exact coefficients; over balls every coefficient is an enclosure. Cost: O(N^2) products of
-/// polynomials, whose length grows like N^(symbols + 1).
+/// polynomials, whose length grows like N^(symbols + 1), O(N^3) with delays; where one equation is linear, O(N^2)
+/// products of constants (`linear`).
 ///
 /// # Errors
 /// [`ExpandError::NotTheFrequency`] where order zero is not the oscillator of the algebra or the force at
@@ -116,7 +126,29 @@ pub fn resonant<A: AmplitudeAlgebra>(
 ) -> Result<SlowFlow<A::Element>, ExpandError> {
     let generating = |j| algebra.twice_real(&algebra.amplitude(j));
     let generating = (0..algebra.unknowns()).map(generating).collect();
-    Resonant::start(algebra, equation, detuning, generating)?.finish(order, observer)
+    let mut start = Resonant::start(algebra, equation, detuning, generating)?;
+    let Some(affine) =
+        Affine::of(algebra, equation, order).filter(|_| detuning.concat().is_empty())
+    else {
+        return start.finish(order, observer);
+    };
+    let mut linear = Linear::start(&start, affine).ok_or(ExpandError::NotWeaklyNonlinear)?;
+    let work = run(&mut linear, 1..=order, observer)?;
+    (start.flow[0], start.x[0], start.nearest) = linear.finish();
+    Ok(start.finished(work))
+}
+
+/// The linear part at order zero of an equation for one unknown; needs no frequency.
+///
+/// # Errors
+/// [`ExpandError::NotTheFrequency`] when it is not linear with constant factors.
+pub fn linear_part<A: AmplitudeAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+) -> Result<LinearPart<A::Element>, ExpandError> {
+    let generating = [algebra.twice_real(&algebra.amplitude(0))];
+    let (mut parts, _) = linearise(algebra, equation, &generating)?;
+    parts.pop().ok_or(ExpandError::NotWeaklyNonlinear)
 }
 
 /// The motion x_j = `generating[j]` + sum eps^n u_{j,n} without slow change, for functions of the force's
@@ -138,19 +170,23 @@ pub fn periodic<A: AmplitudeAlgebra>(
     observer: &mut dyn FnMut(&OrderWork) -> bool,
 ) -> Result<SlowFlow<A::Element>, ExpandError> {
     let mut loops = Resonant::start(algebra, equation, detuning, generating)?;
-    loops.balance = Some(Balance::new(algebra, equation, &loops.x, &loops.velocity)?);
+    loops.balance =
+        Some(Balance::new(algebra, equation, &loops.linear, [&loops.x, &loops.velocity])?);
     loops.finish(order, observer)
 }
 
 struct Resonant<'a, A: AmplitudeAlgebra> {
     algebra: &'a A,
     evaluator: Evaluator<'a, A>,
+    linear: Vec<LinearPart<A::Element>>,
     detuning: &'a [Vec<A::Element>],
     /// f_{j,n}, x_{j,n} and order n of x_j'.
     flow: Vec<Vec<A::Element>>,
     x: Vec<Vec<A::Element>>,
     velocity: Vec<Vec<A::Element>>,
-    /// Whether coefficient n of a node depends on x_{j,n} or its rate.
+    /// x_j(t - T) for every delay.
+    towers: Vec<Vec<Tower<A::Element>>>,
+    /// Whether coefficient n of a node depends on x_{j,n}, its rate or their delayed values.
     sensitive: Vec<bool>,
     nearest: Vec<Nearest>,
     /// The parameter that is sought, if one is.
@@ -178,27 +214,26 @@ impl<A: AmplitudeAlgebra> Scheme for Resonant<'_, A> {
             let rate = self.rate_of_change(&self.x[j], n);
             self.velocity[j].push(rate);
         }
+        self.extend_delayed(n)?;
         self.assign(n);
         let mut parts = Vec::new();
         for j in 0..self.x.len() {
             let g = self.right_side(j, n)?;
             let phase = |source| ExpandError::Phase { order: n, source };
-            parts.push(algebra.split(j, &g).map_err(phase)?);
+            let split = algebra.split(j, &self.linear[j], &g);
+            if algebra.interrupted() {
+                return Err(ExpandError::Interrupted { order: n });
+            }
+            parts.push(split.map_err(phase)?);
         }
         if let Some(balance) = &mut self.balance {
             balance.settle(&mut self.evaluator, n, &mut parts)?;
         }
         for (j, Split { flow, response, nearest }) in parts.into_iter().enumerate() {
-            let change = algebra.add(&algebra.by_time(&response), &algebra.twice_real(&flow));
-            algebra.add_assign(&mut self.velocity[j][n], &change);
+            self.amend(j, n, &response, &algebra.twice_real(&flow))?;
             self.flow[j][n] = flow;
-            self.x[j][n] = response;
-            self.nearest.extend(nearest.map(|(harmonic, size)| Nearest {
-                order: n,
-                unknown: j,
-                harmonic,
-                size,
-            }));
+            let near = |(harmonic, size)| Nearest { order: n, unknown: j, harmonic, size };
+            self.nearest.extend(nearest.map(near));
         }
         self.assign(n);
         if algebra.interrupted() {
@@ -219,16 +254,28 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
         if unknowns != algebra.unknowns() || unknowns != generating.len() {
             return Err(ExpandError::NotTheFrequency { unknown: unknowns });
         }
-        let x: Vec<_> = generating.into_iter().map(|x| vec![x]).collect();
-        let velocity = x.iter().map(|x| vec![algebra.by_time(&x[0])]).collect();
-        let evaluator = Evaluator::new(algebra, equation);
-        let flow = (0..unknowns).map(|_| vec![algebra.zero()]).collect();
-        let (sensitive, nearest, balance) = (Vec::new(), Vec::new(), None);
-        let mut averaging =
-            Self { algebra, evaluator, detuning, flow, x, velocity, sensitive, nearest, balance };
-        averaging.assign(0);
-        averaging.sensitive = averaging.linearise()?;
-        averaging.evaluator = Evaluator::new(algebra, equation);
+        let (linear, sensitive) = linearise(algebra, equation, &generating)?;
+        for (unknown, part) in linear.iter().enumerate().filter(|(_, part)| part.is_free(algebra)) {
+            let gap = algebra.sub(&part.stiffness, &algebra.frequency_squared(unknown));
+            if !algebra.may_vanish(&gap) {
+                return Err(ExpandError::NotTheFrequency { unknown });
+            }
+        }
+        let towers = || (0..algebra.delays()).map(Tower::new).collect();
+        let mut averaging = Self {
+            algebra,
+            // Anew: coefficients of order 1 that the linear part needed depend on x_0, which a force changes.
+            evaluator: Evaluator::new(algebra, equation),
+            linear,
+            detuning,
+            flow: generating.iter().map(|_| vec![algebra.zero()]).collect(),
+            velocity: generating.iter().map(|x| vec![algebra.by_time(x)]).collect(),
+            towers: generating.iter().map(|_| towers()).collect(),
+            x: generating.into_iter().map(|x| vec![x]).collect(),
+            sensitive,
+            nearest: Vec::new(),
+            balance: None,
+        };
         averaging.order_zero()?;
         Ok(averaging)
     }
@@ -240,7 +287,11 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
         observer: &mut dyn FnMut(&OrderWork) -> bool,
     ) -> Result<SlowFlow<A::Element>, ExpandError> {
         let work = run(&mut self, 1..=order, observer)?;
-        // An order that was interrupted has provisional values.
+        Ok(self.finished(work))
+    }
+
+    /// The orders that are finished: an order that was interrupted has provisional values.
+    fn finished(self, work: Vec<OrderWork>) -> SlowFlow<A::Element> {
         let finished = work.len() + 1;
         let Self { mut flow, mut x, mut nearest, balance, .. } = self;
         flow.iter_mut().chain(&mut x).for_each(|list| list.truncate(finished));
@@ -248,51 +299,22 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
         let mut parameter = balance.map_or_else(Vec::new, |balance| balance.values);
         parameter.truncate(finished - 1);
         let detuning = self.detuning.to_vec();
-        Ok(SlowFlow { flow, solution: x, detuning, parameter, nearest, work })
-    }
-
-    /// Checks that order zero is x_j'' + nu_j^2 x_j + what depends on eta alone; the nodes whose order n
-    /// depends on order n of an unknown.
-    fn linearise(&mut self) -> Result<Vec<bool>, ExpandError> {
-        let algebra = self.algebra;
-        let roots = &self.evaluator.equation.roots;
-        let mut sensitive = vec![false; self.evaluator.equation.nodes.len()];
-        for (index, velocity) in (0..roots.len()).flat_map(|j| [(j, false), (j, true)]) {
-            let variable = Node::unknown(index, velocity, None);
-            let unit =
-                |node: &Node<_>| (*node == variable).then(|| [algebra.one(), algebra.zero()]);
-            let tangents = self.evaluator.tangents(&unit)?;
-            for (flag, tangent) in sensitive.iter_mut().zip(&tangents) {
-                *flag |= !algebra.is_zero(&tangent[0]);
-            }
-            for (j, root) in roots.iter().enumerate() {
-                let expected = match j == index && !velocity {
-                    true => algebra.frequency_squared(j),
-                    false => algebra.zero(),
-                };
-                let gap = algebra.sub(&tangents[*root][0], &expected);
-                if !algebra.may_vanish(&gap) {
-                    return Err(ExpandError::NotTheFrequency { unknown: j });
-                }
-            }
-        }
-        Ok(sensitive)
+        SlowFlow { flow, solution: x, detuning, parameter, nearest, work }
     }
 
     /// Adds the responses to the forces at order zero.
     fn order_zero(&mut self) -> Result<(), ExpandError> {
         let algebra = self.algebra;
+        self.extend_delayed(0)?;
         self.assign(0);
         for j in 0..self.x.len() {
             let force = self.right_side(j, 0)?;
             let phase = |source| ExpandError::Phase { order: 0, source };
-            let Split { flow, response, .. } = algebra.split(j, &force).map_err(phase)?;
-            if !algebra.may_vanish(&flow) {
+            let split = algebra.split(j, &self.linear[j], &force).map_err(phase)?;
+            if !algebra.may_vanish(&split.flow) {
                 return Err(ExpandError::NotTheFrequency { unknown: j });
             }
-            let rate = algebra.by_time(&response);
-            algebra.add_assign(&mut self.velocity[j][0], &rate);
-            algebra.add_assign(&mut self.x[j][0], &response);
+            self.amend(j, 0, &split.response, &algebra.zero())?;
         }
         self.assign(0);
         for unknown in 0..self.x.len() {
@@ -303,30 +325,16 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
         Ok(())
     }
 
+    fn rates(&self) -> Rates<'_, A::Element> {
+        Rates { flow: &self.flow, detuning: self.detuning }
+    }
+
     /// Order n of D f for a real series f.
     fn rate_of_change(&self, f: &[A::Element], n: usize) -> A::Element {
-        let algebra = self.algebra;
-        let mut sum = f.get(n).map_or_else(|| algebra.zero(), |f| algebra.by_time(f));
-        let mut slopes = Vec::new();
-        let mut turns = Vec::new();
-        for (k, f) in (1..=n).filter_map(|k| Some((k, f.get(n - k)?))) {
-            for (j, flow) in self.flow.iter().enumerate() {
-                if let Some(flow) = flow.get(k).filter(|flow| !algebra.is_zero(flow)) {
-                    slopes.push((flow, algebra.by_amplitude(f, j)));
-                }
-            }
-            for (l, sigmas) in self.detuning.iter().enumerate() {
-                if let Some(sigma) = sigmas.get(k - 1) {
-                    turns.push((sigma, algebra.by_force(f, l)));
-                }
-            }
+        let mut sum = self.rates().drift(self.algebra, f, n);
+        if let Some(f) = f.get(n) {
+            self.algebra.add_assign(&mut sum, &self.algebra.by_time(f));
         }
-        let along = |list: &[(&A::Element, A::Element)]| {
-            let pairs: Vec<_> = list.iter().map(|(rate, slope)| (*rate, slope)).collect();
-            algebra.sum_of_products(&pairs)
-        };
-        algebra.add_assign(&mut sum, &algebra.twice_real(&along(&slopes)));
-        algebra.add_assign(&mut sum, &along(&turns));
         sum
     }
 
@@ -338,12 +346,96 @@ impl<'a, A: AmplitudeAlgebra> Resonant<'a, A> {
         Ok(self.algebra.neg(&self.algebra.add(&acceleration, &force)))
     }
 
-    /// Hands order n of the unknowns and their rates to the evaluator.
+    fn extend_delayed(&mut self, n: usize) -> Result<(), ExpandError> {
+        let rates = Rates { flow: &self.flow, detuning: self.detuning };
+        for (towers, x) in self.towers.iter_mut().zip(&self.x) {
+            for tower in towers {
+                tower.extend(self.algebra, &rates, x, n).ok_or(ExpandError::NotWeaklyNonlinear)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds u to x_{j,n}, and D_n x_{j,0} = `drift` to the rate, with what follows for the delayed values.
+    fn amend(
+        &mut self,
+        j: usize,
+        n: usize,
+        u: &A::Element,
+        drift: &A::Element,
+    ) -> Result<(), ExpandError> {
+        let algebra = self.algebra;
+        let rate = algebra.add(&algebra.by_time(u), drift);
+        algebra.add_assign(&mut self.velocity[j][n], &rate);
+        for tower in &mut self.towers[j] {
+            tower.amend(algebra, n, u, drift).ok_or(ExpandError::NotWeaklyNonlinear)?;
+        }
+        algebra.add_assign(&mut self.x[j][n], u);
+        Ok(())
+    }
+
+    /// Hands order n of the unknowns, their rates and delayed values to the evaluator.
     fn assign(&mut self, n: usize) {
+        let algebra = self.algebra;
         self.evaluator.forget_from(n, &self.sensitive);
         for j in 0..self.x.len() {
             self.evaluator.assign(&Node::unknown(j, false, None), n, self.x[j][n].clone());
             self.evaluator.assign(&Node::unknown(j, true, None), n, self.velocity[j][n].clone());
+            for (delay, tower) in self.towers[j].iter().enumerate() {
+                let late = Node::unknown(j, false, Some(delay));
+                self.evaluator.assign(&late, n, tower.values()[n].clone());
+                // exp(-T D) commutes with D: the delayed velocity is the rate of the delayed value.
+                let rates = Rates { flow: &self.flow, detuning: self.detuning };
+                let mut rate = rates.drift(algebra, tower.values(), n);
+                algebra.add_assign(&mut rate, &algebra.by_time(&tower.values()[n]));
+                self.evaluator.assign(&Node::unknown(j, true, Some(delay)), n, rate);
+            }
         }
     }
+}
+
+/// The linear parts at x_j = `generating[j]`, none of which depends on another unknown, and the nodes whose order n
+/// depends on order n of an unknown.
+#[allow(clippy::type_complexity, reason = "two lists")]
+fn linearise<A: AmplitudeAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    generating: &[A::Element],
+) -> Result<(Vec<LinearPart<A::Element>>, Vec<bool>), ExpandError> {
+    let mut evaluator = Evaluator::new(algebra, equation);
+    for (j, x) in generating.iter().enumerate() {
+        let late = (0..algebra.delays()).map(|delay| (Some(delay), algebra.shift(x, delay)));
+        for (delay, x) in std::iter::once((None, Some(x.clone()))).chain(late) {
+            let x = x.ok_or(ExpandError::NotWeaklyNonlinear)?;
+            evaluator.assign(&Node::unknown(j, true, delay), 0, algebra.by_time(&x));
+            evaluator.assign(&Node::unknown(j, false, delay), 0, x);
+        }
+    }
+    let mut sensitive = vec![false; equation.nodes.len()];
+    let mut factor = |index: usize, velocity, delay| {
+        let variable = Node::unknown(index, velocity, delay);
+        let unit = |node: &Node<_>| (*node == variable).then(|| [algebra.one(), algebra.zero()]);
+        let tangents = evaluator.tangents(&unit)?;
+        for (flag, tangent) in sensitive.iter_mut().zip(&tangents) {
+            *flag |= !algebra.is_zero(&tangent[0]);
+        }
+        let other =
+            |(j, root): &(usize, &usize)| *j != index && !algebra.may_vanish(&tangents[**root][0]);
+        let broken = |unknown| ExpandError::NotTheFrequency { unknown };
+        if let Some((unknown, _)) = equation.roots.iter().enumerate().find(other) {
+            return Err(broken(unknown));
+        }
+        algebra.as_constant(&tangents[equation.roots[index]][0]).ok_or(broken(index))
+    };
+    let mut parts = Vec::new();
+    for j in 0..generating.len() {
+        let stiffness = factor(j, false, None)?;
+        let damping = factor(j, true, None)?;
+        let mut delayed = Vec::new();
+        for delay in 0..algebra.delays() {
+            delayed.push((factor(j, false, Some(delay))?, factor(j, true, Some(delay))?));
+        }
+        parts.push(LinearPart { stiffness, damping, delayed });
+    }
+    Ok((parts, sensitive))
 }

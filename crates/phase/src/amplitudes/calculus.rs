@@ -1,9 +1,12 @@
 //! Derivatives, conjugation, and the split at resonance.
 
-use super::words::{Word, exponents, unit};
+use super::words::Word;
 use super::{AmplitudeElement, Amplitudes, Multiples, Scalars};
-use lindstedt_algebra::{AmplitudeAlgebra, PhaseError, Ring, Split};
+use lindstedt_algebra::{
+    AmplitudeAlgebra, LinearPart, NEAR_MISS, PhaseError, RationalAlgebra, Ring, Split,
+};
 use rug::{Integer, Rational};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 impl<S: Scalars> Amplitudes<S> {
     fn conjugated(&self, f: &AmplitudeElement<S::Element>) -> AmplitudeElement<S::Element> {
@@ -17,7 +20,7 @@ impl<S: Scalars> Amplitudes<S> {
         &self,
         f: &AmplitudeElement<S::Element>,
     ) -> AmplitudeElement<S::Element> {
-        self.total(f, &self.conjugated(f), true)
+        self.total(self.conjugated(f), f, true)
     }
 
     /// The terms whose words are kept.
@@ -48,7 +51,11 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         self.single(0, [e, self.scalars.zero()], denominator, true)
     }
     fn amplitude(&self, j: usize) -> Self::Element {
-        if j < self.amplitudes { self.monomial(unit(2 * j), false) } else { self.zero() }
+        if j < self.amplitudes {
+            self.monomial(self.layout.unit(2 * j), false)
+        } else {
+            self.zero()
+        }
     }
     fn conjugate(&self, f: &Self::Element) -> Self::Element {
         self.conjugated(f)
@@ -60,46 +67,66 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         if j >= self.amplitudes {
             return self.zero();
         }
-        let exponent = |word: Word| exponents(word, 2 * j + 1).0[2 * j];
+        let exponent = |word: Word| self.layout.exponents(word, 2 * j + 1).0[2 * j];
         let mut slope = self.weighted(f, false, |word| Rational::from(exponent(word)));
         // The order of the words stays.
-        slope.terms.iter_mut().for_each(|(word, _)| *word -= unit(2 * j));
+        slope.terms.iter_mut().for_each(|(word, _)| *word -= self.layout.unit(2 * j));
         slope.real &= slope.terms.is_empty();
         slope
     }
     fn by_force(&self, f: &Self::Element, l: usize) -> Self::Element {
         let place = 2 * self.amplitudes + l;
-        self.weighted(f, true, |word| Rational::from(exponents(word, place + 1).0[place]))
+        self.weighted(f, true, |word| {
+            Rational::from(self.layout.exponents(word, place + 1).0[place])
+        })
     }
     fn by_time(&self, f: &Self::Element) -> Self::Element {
-        let rates = f.terms.iter().map(|(word, _)| self.value(&self.eigenvalue(*word)));
-        self.times_each(f, true, rates.collect())
+        let rate = |word| Ok(self.turned(&self.rate(word)));
+        // There is no error.
+        self.times_constants(f, f.real, rate).unwrap_or_else(|_| self.zero())
     }
-    fn split(&self, j: usize, g: &Self::Element) -> Result<Split<Self>, PhaseError> {
+    fn shift(&self, f: &Self::Element, delay: usize) -> Option<Self::Element> {
+        let turn = |word| self.turn(delay, word).ok_or_else(|| self.undecided(word));
+        self.times_constants(f, f.real, turn).ok()
+    }
+    fn delay(&self, delay: usize) -> Option<Self::Element> {
+        Some(self.delays.get(delay)?.time.clone())
+    }
+    fn split(
+        &self,
+        j: usize,
+        linear: &LinearPart<Self::Element>,
+        g: &Self::Element,
+    ) -> Result<Split<Self>, PhaseError> {
         let resonant = self.filtered(g, |word| self.resonance(j, word) == Some(true));
-        // 1/(2 i nu) = -i/(2 nu).
-        let half = Rational::from((-1, 2));
-        let mut inverse = self.scalars.fraction(&half);
-        if let Some((word, _)) = resonant.terms.first() {
-            let nu = self.value(&self.eigenvalue(*word));
-            let one_over = self.scalars.inverse(&nu.0, &nu.1);
-            let one_over = one_over.ok_or_else(|| self.undecided(*word))?;
-            inverse = self.product_of(&one_over, &inverse);
-        }
-        let flow = self.times_each(&resonant, true, vec![inverse; resonant.terms.len()]);
+        let slope = |word| {
+            let slope = self.slope(linear, word).ok_or_else(|| self.undecided(word))?;
+            self.reciprocal(&slope).ok_or_else(|| self.refusal(word, &slope))
+        };
+        let flow = self.times_constants(&resonant, false, slope)?;
         let mut rest = self.filtered(g, |word| self.resonance(j, word).is_none());
         rest.real = g.real;
-        let divisors: Vec<_> =
-            rest.terms.iter().map(|(word, _)| self.divisor(j, *word)).collect::<Result<_, _>>()?;
-        let nearest = divisors.iter().zip(&rest.terms).filter_map(|(d, (word, _))| {
-            let size = d.size.clone()?;
-            Some((size.clone().abs(), *word, size))
-        });
-        let nearest = nearest
-            .min_by(|(a, ..), (b, ..)| a.cmp(b))
-            .map(|(_, word, size)| (self.harmonic(&exponents(word, self.phases()).0), size));
-        let inverses = divisors.into_iter().map(|d| d.inverse).collect();
-        let response = self.times_each(&rest, false, inverses);
+        let free = linear.is_free(self);
+        let mut nearest: Option<(Rational, Word, Rational)> = None;
+        let inverse = |word| {
+            let Divisor { inverse, size } = match free {
+                true => self.divisor(j, word)?,
+                false => self.characteristic(linear, word)?,
+            };
+            if let Some(size) = size {
+                let least = size.clone().abs();
+                if self.refuses && least < Rational::from(NEAR_MISS) {
+                    let (free, forced) = self.single_harmonic(word);
+                    return Err(PhaseError::NearMiss { free, forced, size });
+                }
+                if nearest.as_ref().is_none_or(|(known, ..)| least < *known) {
+                    nearest = Some((least, word, size));
+                }
+            }
+            Ok(inverse)
+        };
+        let response = self.times_constants(&rest, g.real, inverse)?;
+        let nearest = nearest.map(|(_, word, size)| (self.harmonic_of(word), size));
         Ok(Split { flow, response, nearest })
     }
     fn is_off_resonance(&self, j: usize, f: &Self::Element) -> bool {
@@ -107,9 +134,9 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
     }
 }
 
-/// 1/(nu^2 - lambda^2), and (nu^2 - lambda^2)/nu^2 where it is a number.
+/// 1/L(i lambda) as a constant; where L(i lambda) = nu^2 - lambda^2 is a number, its ratio to nu^2.
 struct Divisor<E> {
-    inverse: (E, Integer),
+    inverse: AmplitudeElement<E>,
     size: Option<Rational>,
 }
 
@@ -123,43 +150,211 @@ impl<S: Scalars> Amplitudes<S> {
         lambda.iter().zip(nu).all(|(a, b)| *a == -b).then_some(false)
     }
 
-    fn undecided(&self, word: Word) -> PhaseError {
-        let harmonic = self.harmonic(&exponents(word, self.phases()).0);
-        PhaseError::Undecided { harmonic }
+    fn harmonic_of(&self, word: Word) -> Vec<i32> {
+        self.harmonic(&self.layout.exponents(word, self.phases()).0)
     }
 
+    /// k and m of one unknown and one force.
+    fn single_harmonic(&self, word: Word) -> (i32, i32) {
+        match self.harmonic_of(word)[..] {
+            [free, forced, ..] => (free, forced),
+            _ => (0, 0),
+        }
+    }
+
+    fn undecided(&self, word: Word) -> PhaseError {
+        PhaseError::Undecided { harmonic: self.harmonic_of(word) }
+    }
+
+    /// What a divisor that has no inverse says.
+    fn refusal(&self, word: Word, divisor: &AmplitudeElement<S::Element>) -> PhaseError {
+        let (free, forced) = self.single_harmonic(word);
+        match self.refuses {
+            false => self.undecided(word),
+            true if self.is_zero(divisor) => PhaseError::Resonance { free, forced },
+            true => PhaseError::Indivisible { free, forced },
+        }
+    }
+
+    /// e/d as a constant.
+    fn real(&self, (e, d): (S::Element, Integer)) -> AmplitudeElement<S::Element> {
+        self.single(0, [e, self.scalars.zero()], d, true)
+    }
+
+    /// i f.
+    fn turned(&self, f: &AmplitudeElement<S::Element>) -> AmplitudeElement<S::Element> {
+        let mut turned = f.clone();
+        for (_, parts) in &mut turned.terms {
+            parts.swap(0, 1);
+            parts[0] = self.scalars.neg(&parts[0]);
+        }
+        turned.real = f.terms.is_empty();
+        turned
+    }
+
+    /// lambda.
+    fn rate(&self, word: Word) -> AmplitudeElement<S::Element> {
+        self.real(self.value(&self.eigenvalue(word)))
+    }
+
+    /// e^{-i lambda T}.
+    fn turn(&self, delay: usize, word: Word) -> Option<AmplitudeElement<S::Element>> {
+        let late = self.delays.get(delay)?;
+        let mut product = self.one();
+        for (turn, k) in late.turns.iter().zip(self.harmonic_of(word)) {
+            let turn = if k < 0 { &self.conjugated(turn) } else { turn };
+            for _ in 0..k.unsigned_abs() {
+                product = self.mul(&product, turn);
+            }
+        }
+        Some(product)
+    }
+
+    /// L(i lambda) = stiffness - lambda^2 + i lambda damping + sum_j (b_j + i lambda c_j) e^{-i lambda T_j}.
+    fn characteristic(
+        &self,
+        linear: &LinearPart<AmplitudeElement<S::Element>>,
+        word: Word,
+    ) -> Result<Divisor<S::Element>, PhaseError> {
+        let lambda = self.turned(&self.rate(word));
+        let mut sum = linear.stiffness.clone();
+        self.add_assign(
+            &mut sum,
+            &self.sum_of_products(&[(&lambda, &lambda), (&linear.damping, &lambda)]),
+        );
+        for (delay, (b, c)) in linear.delayed.iter().enumerate() {
+            let turn = self.turn(delay, word).ok_or_else(|| self.undecided(word))?;
+            let gain = self.add(b, &self.mul(c, &lambda));
+            self.add_assign(&mut sum, &self.mul(&gain, &turn));
+        }
+        let inverse = self.reciprocal(&sum).ok_or_else(|| self.refusal(word, &sum))?;
+        Ok(Divisor { inverse, size: None })
+    }
+
+    /// L'(i nu), L'(s) = 2 s + damping + sum_j (c_j - T_j (b_j + c_j s)) e^{-s T_j}.
+    fn slope(
+        &self,
+        linear: &LinearPart<AmplitudeElement<S::Element>>,
+        word: Word,
+    ) -> Option<AmplitudeElement<S::Element>> {
+        let root = self.turned(&self.rate(word));
+        let mut sum = self.add(&linear.damping, &self.scale(&root, &Rational::from(2)));
+        for (delay, (b, c)) in linear.delayed.iter().enumerate() {
+            let late = &self.delays.get(delay)?.time;
+            let gain = self.add(b, &self.mul(c, &root));
+            let factor = self.sub(c, &self.mul(late, &gain));
+            self.add_assign(&mut sum, &self.mul(&factor, &self.turn(delay, word)?));
+        }
+        Some(sum)
+    }
+
+    /// nu_j^2 - lambda^2, where nu_j is a frequency in its factors, which are linear in the generators.
     fn divisor(&self, j: usize, word: Word) -> Result<Divisor<S::Element>, PhaseError> {
         let (lambda, unknown) = (self.eigenvalue(word), &self.unknowns[j]);
         let rational = self.rational_rate(&lambda).zip(unknown.rational.as_ref());
         if let Some((lambda, square)) = rational {
             let divisor = square - lambda.square();
             let size = Some(Rational::from(&divisor / square));
-            return Ok(Divisor { inverse: self.scalars.fraction(&divisor.recip()), size });
+            return Ok(Divisor { inverse: self.rational(&divisor.recip()), size });
         }
-        let undecided = || self.undecided(word);
-        let inverse = |(e, d): &(S::Element, Integer)| self.scalars.inverse(e, d);
-        let divisor = match &unknown.rate {
-            // (nu - lambda)(nu + lambda), whose factors are linear in the generators.
-            Some(nu) => {
-                let sum = |sign: i64| -> Multiples {
-                    nu.iter().zip(&lambda).map(|(a, b)| a + sign * b).collect()
-                };
-                [sum(-1), sum(1)].map(|factor| self.value(&factor))
-            }
+        let factors = match &unknown.rate {
+            Some(nu) => [-1, 1].map(|sign: i64| {
+                let sum: Multiples = nu.iter().zip(&lambda).map(|(a, b)| a + sign * b).collect();
+                self.real(self.value(&sum))
+            }),
             None => {
-                let value = self.value(&lambda);
-                let (square, below) = self.product_of(&value, &value);
-                let (own, d) = &unknown.square;
-                let mut gap = self.scalars.times(&self.scalars.neg(&square), d);
-                self.scalars.add(&mut gap, &self.scalars.times(own, &below));
-                [(gap, below * d), self.scalars.fraction(&Rational::from(1))]
+                let value = self.real(self.value(&lambda));
+                let own = self.real(unknown.square.clone());
+                [self.sub(&own, &self.mul(&value, &value)), self.one()]
             }
         };
-        let [a, b] = divisor.each_ref().map(inverse);
-        let whole = self.product_of(&divisor[0], &divisor[1]);
-        let size = self.scalars.middle(&whole.0, &whole.1);
+        let [a, b] = factors
+            .each_ref()
+            .map(|factor| self.reciprocal(factor).ok_or_else(|| self.refusal(word, factor)));
+        let (a, b) = (a?, b?);
+        let middle = |f: &AmplitudeElement<S::Element>| match &f.terms[..] {
+            [(0, [re, _])] => self.scalars.middle(re, &f.denominator),
+            _ => None,
+        };
+        let size = middle(&self.mul(&factors[0], &factors[1]));
         let own = self.scalars.middle(&unknown.square.0, &unknown.square.1);
-        let inverse = a.zip(b).map(|(a, b)| self.product_of(&a, &b)).ok_or_else(undecided)?;
-        Ok(Divisor { inverse, size: size.zip(own).map(|(size, own)| size / own) })
+        let size = size.zip(own).map(|(size, own)| size / own);
+        Ok(Divisor { inverse: self.mul(&a, &b), size })
+    }
+
+    /// The harmonics of f, of two opposite ones one, with a word of each. Where resonances are refused they increase, k > 0
+    /// or k = 0 and m >= 0.
+    fn harmonics_of(&self, f: &AmplitudeElement<S::Element>) -> Vec<(Vec<i32>, Word)> {
+        let mut list: Vec<(Vec<i32>, Word)> = Vec::new();
+        let mut known = FxHashSet::default();
+        for (word, _) in &f.terms {
+            let mut word = *word;
+            let mut harmonic = self.harmonic_of(word);
+            let opposite: Vec<i32> = harmonic.iter().map(|k| -k).collect();
+            if known.contains(&opposite) || known.contains(&harmonic) {
+                continue;
+            }
+            if self.refuses && harmonic < opposite {
+                (word, harmonic) = (self.mirrored(word), opposite);
+            }
+            known.insert(harmonic.clone());
+            list.push((harmonic, word));
+        }
+        if self.refuses {
+            list.sort();
+        }
+        list
+    }
+
+    /// Every term times the constant of its harmonic, which is asked for once; that of the opposite harmonic is its
+    /// conjugate.
+    fn times_constants(
+        &self,
+        f: &AmplitudeElement<S::Element>,
+        real: bool,
+        mut constant: impl FnMut(Word) -> Result<AmplitudeElement<S::Element>, PhaseError>,
+    ) -> Result<AmplitudeElement<S::Element>, PhaseError> {
+        let scalars = &self.scalars;
+        let mut constants = Vec::new();
+        for (harmonic, word) in self.harmonics_of(f) {
+            constants.push((harmonic, constant(word)?));
+        }
+        let common = constants.iter().fold(Integer::from(1), |d, (_, c)| d.lcm(&c.denominator));
+        let mut factors = FxHashMap::default();
+        for (harmonic, c) in constants {
+            let n = Integer::from(&common / &c.denominator);
+            let parts = c.terms.into_iter().next().map(|(_, parts)| parts);
+            let [x, y] = parts.unwrap_or_else(|| [scalars.zero(), scalars.zero()]);
+            let [x, y] = if n == 1 { [x, y] } else { [&x, &y].map(|e| scalars.times(e, &n)) };
+            let minus = scalars.neg(&y);
+            let opposite: Vec<i32> = harmonic.iter().map(|k| -k).collect();
+            factors.insert(opposite, [x.clone(), minus.clone(), y.clone()]);
+            factors.insert(harmonic, [x, y, minus]);
+        }
+        let sum = |pairs: [(&S::Element, &S::Element); 2]| {
+            let nonzero =
+                |(a, b): &(&S::Element, &S::Element)| !scalars.is_zero(a) && !scalars.is_zero(b);
+            match pairs.each_ref().map(nonzero) {
+                [false, false] => scalars.zero(),
+                [true, false] => scalars.product(pairs[0].0, pairs[0].1),
+                [false, true] => scalars.product(pairs[1].0, pairs[1].1),
+                [true, true] => scalars.sum_of_products(&pairs),
+            }
+        };
+        let term = |(word, [re, im]): &(Word, [S::Element; 2])| {
+            let [x, y, minus] = factors.get(&self.harmonic_of(*word))?;
+            Some((*word, [sum([(re, x), (im, minus)]), sum([(re, y), (im, x)])]))
+        };
+        let mut terms: Vec<_> = match f.real && real {
+            true => {
+                let above = |(word, _): &&(Word, _)| *word >= self.mirrored(*word);
+                f.terms.iter().filter(above).filter_map(term).collect()
+            }
+            false => f.terms.iter().filter_map(term).collect(),
+        };
+        if f.real && real {
+            self.complete(&mut terms);
+        }
+        Ok(self.canonical(common * &f.denominator, terms, real))
     }
 }

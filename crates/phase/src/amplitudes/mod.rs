@@ -11,15 +11,20 @@
 //! their conjugates) half of that: the upper half of one of them times the other, and the conjugate.
 
 mod calculus;
+pub mod polar;
 mod ring;
 pub mod scalars;
+#[cfg(test)]
+mod tests;
 pub mod words;
 
+#[cfg(doc)]
+use lindstedt_algebra::NEAR_MISS;
 use lindstedt_algebra::Stop;
 use rug::{Integer, Rational};
 use scalars::Scalars;
 use std::sync::atomic::{AtomicBool, Ordering};
-use words::{DIGITS, Word};
+use words::{DIGITS, Layout, Word};
 
 /// A word with the real and the imaginary numerator of its coefficient.
 type Term<E> = (Word, [E; 2]);
@@ -77,14 +82,31 @@ struct Unknown<E> {
     rate: Option<Multiples>,
 }
 
+/// A delay T with what the phases do meanwhile.
+#[derive(Clone, Debug)]
+pub struct Delay<N> {
+    /// T.
+    pub time: N,
+    /// cos(rate T), sin(rate T) at order zero for psi_1, ..., psi_M (z_j = |z_j| e^{i psi_j}), eta_1, ..., eta_L.
+    pub turns: Vec<[N; 2]>,
+}
+
+/// T and e^{-i rate T} as constants.
+#[derive(Clone, Debug)]
+struct Late<E> {
+    time: AmplitudeElement<E>,
+    turns: Vec<AmplitudeElement<E>>,
+}
+
 /// The algebra over numerators S, with the frequencies nu_j > 0 of the z_j, the frequencies Omega_l of the
 /// forces, and named symbols, for parameters.
 ///
-/// At most sixteen exponents (2 M + L + symbols) of at most 127 each; beyond, products are not formed and
-/// [`Self::overflowed`] says so.
+/// At most sixteen exponents (2 M + L + symbols), of which none exceeds [`Self::largest_exponent`]; beyond, products are
+/// not formed and [`Self::overflowed`] says so.
 #[derive(Debug)]
 pub struct Amplitudes<S: Scalars> {
     scalars: S,
+    layout: Layout,
     symbols: Vec<String>,
     /// M.
     amplitudes: usize,
@@ -93,6 +115,9 @@ pub struct Amplitudes<S: Scalars> {
     common: i64,
     generators: Vec<(S::Element, Integer)>,
     unknowns: Vec<Unknown<S::Element>>,
+    delays: Vec<Late<S::Element>>,
+    /// Whether monomials that meet the frequency without being z are refused.
+    refuses: bool,
     stop: Stop,
     overflow: AtomicBool,
 }
@@ -119,9 +144,10 @@ impl<S: Scalars> Amplitudes<S> {
     pub fn of_rates(scalars: S, rates: Rates<S::Element>, symbols: &[&str]) -> Option<Self> {
         let Rates { amplitudes, forces, generators } = rates;
         let count = amplitudes.len();
-        if count == 0 || forces.is_empty() || 2 * count + forces.len() + symbols.len() > DIGITS {
+        if count == 0 || forces.is_empty() {
             return None;
         }
+        let layout = Layout::of(2 * count + forces.len() + symbols.len())?;
         let all = || amplitudes.iter().chain(&forces);
         let common = all().flatten().fold(Integer::from(1), |q, nu| q.lcm(nu.denom()));
         let whole = |q: &Rational| Rational::from(q * &common).numer().to_i32().map(i64::from);
@@ -136,7 +162,10 @@ impl<S: Scalars> Amplitudes<S> {
             amplitudes: count,
             generators,
             unknowns: Vec::new(),
+            delays: Vec::new(),
+            refuses: false,
             scalars,
+            layout,
             symbols: symbols.iter().map(|name| (*name).to_owned()).collect(),
             stop: Stop::default(),
             overflow: AtomicBool::new(false),
@@ -153,6 +182,55 @@ impl<S: Scalars> Amplitudes<S> {
         let unknowns = algebra.rates[..count].iter().map(unknown).collect();
         algebra.unknowns = unknowns;
         Some(algebra)
+    }
+
+    /// The algebra of one unknown and one force (or none) whose frequencies are numbers or formulas of which no
+    /// combination but the frequency itself is taken to meet it. A monomial that does is refused with its harmonic, also
+    /// one that misses by [`NEAR_MISS`].
+    ///
+    /// ```
+    /// use lindstedt_algebra::{AmplitudeAlgebra, Ring};
+    /// use lindstedt_phase::amplitudes::{Amplitudes, scalars::Integers};
+    /// let algebra = Amplitudes::off_resonance(Integers, &1.into(), None).ok_or("exponents")?;
+    /// let z = algebra.amplitude(0);
+    /// // d/dt (z zbar) = 0.
+    /// assert!(algebra.is_zero(&algebra.by_time(&algebra.mul(&z, &algebra.conjugate(&z)))));
+    /// # Ok::<(), &str>(())
+    /// ```
+    pub fn off_resonance(
+        scalars: S,
+        frequency: &S::Number,
+        force: Option<&S::Number>,
+    ) -> Option<Self> {
+        let generators: Vec<_> = [Some(frequency), force]
+            .into_iter()
+            .flatten()
+            .map(|rate| scalars.numerator(rate))
+            .collect();
+        let multiples = |list: [i32; 3]| list.map(Rational::from).to_vec();
+        let amplitudes = vec![multiples([0, 1, 0])[..=generators.len()].to_vec()];
+        let forces = match force {
+            Some(_) => vec![multiples([0, 0, 1])],
+            None => vec![vec![Rational::new()]],
+        };
+        let algebra = Self::of_rates(scalars, Rates { amplitudes, forces, generators }, &[])?;
+        Some(Self { refuses: true, ..algebra })
+    }
+
+    /// The algebra with delays.
+    #[must_use]
+    pub fn with_delays(mut self, delays: &[Delay<S::Number>]) -> Self {
+        let turn = |[cos, sin]: &[S::Number; 2]| {
+            let sin = self.weighted(&self.number(sin), true, |_| Rational::from(-1));
+            self.total(self.number(cos), &sin, false)
+        };
+        let late = |delay: &Delay<S::Number>| Late {
+            time: self.number(&delay.time),
+            turns: delay.turns.iter().map(turn).collect(),
+        };
+        let delays = delays.iter().map(late).collect();
+        self.delays = delays;
+        self
     }
 
     /// The algebra whose products are broken off when `stop` says so.
@@ -185,8 +263,8 @@ impl<S: Scalars> Amplitudes<S> {
 
     /// (cos m eta_l, sin m eta_l); nothing for exponents that words do not hold.
     pub fn wave(&self, l: usize, m: i32) -> Option<[AmplitudeElement<S::Element>; 2]> {
-        let place = words::unit(2 * self.amplitudes + l);
-        let fits = m.checked_abs().is_some_and(|m| m <= words::LARGEST);
+        let place = self.layout.unit(2 * self.amplitudes + l);
+        let fits = m.checked_abs().is_some_and(|m| m <= self.layout.largest());
         let power = self.monomial(place * Word::from(fits.then_some(m)?), false);
         let half = self.weighted(&power, false, |_| Rational::from((1, 2)));
         // sin = (E - 1/E)/(2 i).
@@ -194,7 +272,12 @@ impl<S: Scalars> Amplitudes<S> {
         Some([half, turned].map(|f| self.with_conjugate(&f)))
     }
 
-    /// Whether an exponent beyond 127 was needed.
+    /// The largest exponent that monomials hold: 127, and far more where there are few.
+    pub fn largest_exponent(&self) -> i32 {
+        self.layout.largest()
+    }
+
+    /// Whether an exponent beyond the largest was needed.
     pub fn overflowed(&self) -> bool {
         self.overflow.load(Ordering::Relaxed)
     }
@@ -207,7 +290,24 @@ impl<S: Scalars> Amplitudes<S> {
     /// A symbol by its name, if there is one.
     pub fn symbol(&self, name: &str) -> Option<AmplitudeElement<S::Element>> {
         let i = self.symbols.iter().position(|known| known == name)?;
-        Some(self.monomial(words::unit(self.phases() + i), true))
+        Some(self.monomial(self.layout.unit(self.phases() + i), true))
+    }
+
+    /// A number as a constant.
+    pub fn number(&self, number: &S::Number) -> AmplitudeElement<S::Element> {
+        let (e, denominator) = self.scalars.numerator(number);
+        self.single(0, [e, self.scalars.zero()], denominator, true)
+    }
+
+    /// The number that f is, if it is a real constant.
+    pub fn as_number(&self, f: &AmplitudeElement<S::Element>) -> Option<S::Number> {
+        match &f.terms[..] {
+            [] => Some(self.scalars.number(&self.scalars.zero(), &f.denominator)),
+            [(0, [re, im])] if self.scalars.is_zero(im) => {
+                Some(self.scalars.number(re, &f.denominator))
+            }
+            _ => None,
+        }
     }
 
     /// An element e of S as a constant e/1.
@@ -233,7 +333,7 @@ impl<S: Scalars> Amplitudes<S> {
     ) -> Vec<(Vec<i32>, [C; 2])> {
         let n = self.phases() + self.symbols.len();
         let term = |(word, c): &Term<S::Element>| {
-            let exponents = words::exponents(*word, n).0[..n].to_vec();
+            let exponents = self.layout.exponents(*word, n).0[..n].to_vec();
             (exponents, c.each_ref().map(|part| read(part, &f.denominator)))
         };
         f.terms.iter().map(term).collect()
@@ -246,7 +346,7 @@ impl<S: Scalars> Amplitudes<S> {
 
     /// q lambda.
     fn eigenvalue(&self, word: Word) -> Multiples {
-        let (digits, _) = words::exponents(word, self.phases());
+        let (digits, _) = self.layout.exponents(word, self.phases());
         let mut sum = vec![0; 1 + self.generators.len()];
         for (k, rate) in self.harmonic(&digits).iter().zip(&self.rates) {
             sum.iter_mut().zip(rate).for_each(|(sum, rate)| *sum += i64::from(*k) * rate);
@@ -268,8 +368,16 @@ impl<S: Scalars> Amplitudes<S> {
             let part = self.scalars.times(e, &Integer::from(*n));
             // n e/(q own).
             let below = Integer::from(own * self.common);
-            let (scale, more) = self.scalars.fraction(&Rational::from((1, below)));
-            let part = self.scalars.product(&part, &scale);
+            let (part, more) = match below == 1 {
+                true => (part, below),
+                false => {
+                    let (scale, more) = self.scalars.fraction(&Rational::from((1, below)));
+                    (self.scalars.product(&part, &scale), more)
+                }
+            };
+            if self.scalars.is_zero(&sum) {
+                return (part, more);
+            }
             let common = d.clone().lcm(&more);
             sum = self.scalars.times(&sum, &Integer::from(&common / &d));
             let part = self.scalars.times(&part, &Integer::from(&common / &more));
@@ -296,11 +404,11 @@ impl<S: Scalars> Amplitudes<S> {
     /// The word of the conjugate.
     fn mirrored(&self, word: Word) -> Word {
         let n = self.phases();
-        let (mut digits, rest) = words::exponents(word, n);
+        let (mut digits, rest) = self.layout.exponents(word, n);
         let (amplitudes, forces) = digits[..n].split_at_mut(2 * self.amplitudes);
         amplitudes.chunks_exact_mut(2).for_each(|pair| pair.swap(0, 1));
         forces.iter_mut().for_each(|m| *m = -*m);
-        words::pack(&digits[..n], rest)
+        self.layout.pack(&digits[..n], rest)
     }
 
     fn single(
@@ -354,6 +462,17 @@ impl<S: Scalars> Amplitudes<S> {
         turn: bool,
         factor: impl Fn(Word) -> Rational,
     ) -> AmplitudeElement<S::Element> {
+        if S::GATHERS {
+            let term = |(word, [re, im]): &Term<S::Element>| {
+                let q = factor(*word);
+                let [re, im] = [re, im].map(|e| match q == 1 {
+                    true => e.clone(),
+                    false => self.scalars.scale(e, &q),
+                });
+                (*word, if turn { [self.scalars.neg(&im), re] } else { [re, im] })
+            };
+            return self.canonical(Integer::from(1), f.terms.iter().map(term).collect(), f.real);
+        }
         let factors = f.terms.iter().map(|(word, _)| self.scalars.fraction(&factor(*word)));
         self.times_each(f, turn, factors.collect())
     }

@@ -1,6 +1,6 @@
 //! Sums and products.
 
-use super::words::{LARGEST, Word, exponents};
+use super::words::Word;
 use super::{AmplitudeElement, Amplitudes, Scalars, Term};
 use lindstedt_algebra::{ForcedAlgebra, FunctionAlgebra, RationalAlgebra, Ring};
 use rug::{Integer, Rational};
@@ -11,6 +11,9 @@ type Terms<E> = Vec<Term<E>>;
 
 type Pair<'a, E> = (&'a AmplitudeElement<E>, &'a AmplitudeElement<E>);
 
+/// The products of which the real and the imaginary part of a coefficient are sums.
+type Factors<'a, E> = [Vec<(&'a E, &'a E)>; 2];
+
 /// Sums of products in progress: places of words in a list.
 struct Sum<E> {
     places: FxHashMap<Word, usize>,
@@ -20,7 +23,9 @@ struct Sum<E> {
 impl<S: Scalars> Amplitudes<S> {
     fn largest(&self, f: &AmplitudeElement<S::Element>) -> i32 {
         let n = self.phases() + self.symbols.len();
-        let of = |word: Word| exponents(word, n).0.iter().map(|e| e.abs()).max().unwrap_or(0);
+        let of = |word: Word| {
+            self.layout.exponents(word, n).0.iter().map(|e| e.abs()).max().unwrap_or(0)
+        };
         f.terms.iter().map(|(word, _)| of(*word)).max().unwrap_or(0)
     }
 
@@ -81,6 +86,17 @@ impl<S: Scalars> Amplitudes<S> {
         f.terms.iter().filter_map(part).collect()
     }
 
+    /// The sorted terms of a real polynomial from those whose words are not below those of their conjugates.
+    pub(super) fn complete(&self, terms: &mut Terms<S::Element>) {
+        let above = |(word, [re, im]): &Term<S::Element>| {
+            let mirrored = self.mirrored(*word);
+            (*word != mirrored).then(|| (mirrored, [re.clone(), self.scalars.neg(im)]))
+        };
+        let below: Terms<_> = terms.iter().filter_map(above).collect();
+        terms.extend(below);
+        terms.sort_unstable_by_key(|(word, _)| *word);
+    }
+
     /// The conjugate of every term, unsorted.
     pub(super) fn mirror(&self, terms: &[Term<S::Element>]) -> Terms<S::Element> {
         let term = |(word, [re, im]): &Term<S::Element>| {
@@ -90,50 +106,102 @@ impl<S: Scalars> Amplitudes<S> {
     }
 
     /// The sum of two sorted lists, with factors.
-    fn merged(&self, [a, b]: [&[Term<S::Element>]; 2], [m, n]: [&Integer; 2]) -> Terms<S::Element> {
+    fn merged(
+        &self,
+        a: Terms<S::Element>,
+        b: &[Term<S::Element>],
+        [m, n]: [&Integer; 2],
+    ) -> Terms<S::Element> {
         let scaled = |c: &[S::Element; 2], n: &Integer| {
             if *n == 1 { c.clone() } else { c.each_ref().map(|e| self.scalars.times(e, n)) }
         };
         let mut list = Vec::with_capacity(a.len() + b.len());
-        let (mut i, mut j) = (0, 0);
-        while let (Some((v, c)), Some((w, d))) = (a.get(i), b.get(j)) {
-            if v < w {
-                list.push((*v, scaled(c, m)));
-            } else if w < v {
+        let mut rest = b.iter().peekable();
+        for (word, c) in a {
+            while let Some((w, d)) = rest.next_if(|(w, _)| *w < word) {
                 list.push((*w, scaled(d, n)));
-            } else {
-                let (mut sum, more) = (scaled(c, m), scaled(d, n));
-                for (x, y) in sum.iter_mut().zip(&more) {
-                    self.scalars.add(x, y);
-                }
-                list.push((*v, sum));
             }
-            (i, j) = (i + usize::from(v <= w), j + usize::from(w <= v));
+            let mut sum = if *m == 1 { c } else { scaled(&c, m) };
+            if let Some((_, d)) = rest.next_if(|(w, _)| *w == word) {
+                for (x, y) in sum.iter_mut().zip(d) {
+                    match *n == 1 {
+                        true => self.scalars.add(x, y),
+                        false => self.scalars.add(x, &self.scalars.times(y, n)),
+                    }
+                }
+            }
+            list.push((word, sum));
         }
-        list.extend(a.iter().skip(i).map(|(v, c)| (*v, scaled(c, m))));
-        list.extend(b.iter().skip(j).map(|(w, d)| (*w, scaled(d, n))));
+        list.extend(rest.map(|(w, d)| (*w, scaled(d, n))));
         list
     }
 
     pub(super) fn total(
         &self,
-        a: &AmplitudeElement<S::Element>,
+        a: AmplitudeElement<S::Element>,
         b: &AmplitudeElement<S::Element>,
         real: bool,
     ) -> AmplitudeElement<S::Element> {
         let denominator = Integer::from(a.denominator.lcm_ref(&b.denominator));
-        let factors = [a, b].map(|f| Integer::from(&denominator / &f.denominator));
-        let terms = self.merged([&a.terms, &b.terms], factors.each_ref());
+        let factors = [&a, b].map(|f| Integer::from(&denominator / &f.denominator));
+        let terms = self.merged(a.terms, &b.terms, factors.each_ref());
         self.canonical(denominator, terms, real)
+    }
+
+    /// The sum of products over scalars without denominators, every coefficient at once. Of a real sum the monomials
+    /// whose words are not below those of their conjugates are formed.
+    fn gathered(&self, pairs: &[Pair<'_, S::Element>], real: bool) -> AmplitudeElement<S::Element> {
+        let scalars = &self.scalars;
+        let minus = |(a, _): &Pair<'_, S::Element>| -> Vec<S::Element> {
+            a.terms.iter().map(|(_, [_, im])| scalars.neg(im)).collect()
+        };
+        let minus: Vec<_> = pairs.iter().map(minus).collect();
+        let mut sums: FxHashMap<Word, Factors<'_, S::Element>> = FxHashMap::default();
+        for ((a, b), minus) in pairs.iter().zip(&minus) {
+            for ((v, [re, im]), minus) in a.terms.iter().zip(minus) {
+                for (w, [x, y]) in &b.terms {
+                    let word = v + w;
+                    let mirrored = if real { self.mirrored(word) } else { Word::MIN };
+                    if word < mirrored {
+                        continue;
+                    }
+                    let all = [(0, re, x), (0, minus, y), (1, re, y), (1, im, x)];
+                    let parts = if word == mirrored { &all[..2] } else { &all };
+                    let nonzero = |(_, c, d): &&(usize, &S::Element, &S::Element)| {
+                        !scalars.is_zero(c) && !scalars.is_zero(d)
+                    };
+                    let lists = sums.entry(word).or_default();
+                    parts.iter().filter(nonzero).for_each(|&(i, c, d)| lists[i].push((c, d)));
+                }
+            }
+        }
+        let sum = |(word, lists): (Word, Factors<'_, S::Element>)| {
+            let sum = |list: Vec<_>| match self.stop.asked() {
+                true => scalars.zero(),
+                false => scalars.sum_of_products(&list),
+            };
+            (word, lists.map(sum))
+        };
+        let mut terms: Terms<S::Element> = sums.into_iter().map(sum).collect();
+        match real {
+            true => self.complete(&mut terms),
+            false => terms.sort_unstable_by_key(|(word, _)| *word),
+        }
+        self.canonical(Integer::from(1), terms, real)
     }
 
     fn products(&self, pairs: &[Pair<'_, S::Element>]) -> AmplitudeElement<S::Element> {
         let pairs = || pairs.iter().filter(|(a, b)| !a.terms.is_empty() && !b.terms.is_empty());
-        if pairs().any(|(a, b)| self.largest(a) + self.largest(b) > LARGEST) {
+        let largest = i64::from(self.layout.largest());
+        if pairs().any(|(a, b)| i64::from(self.largest(a)) + i64::from(self.largest(b)) > largest) {
             self.overflow.store(true, Ordering::Relaxed);
             return self.zero();
         }
         let real = pairs().all(|(a, b)| a.real && b.real);
+        if S::GATHERS {
+            let pairs: Vec<_> = pairs().copied().collect();
+            return self.gathered(&pairs, real);
+        }
         let lcm = |d: Integer, (a, b): &Pair<'_, _>| {
             d.lcm(&Integer::from(&a.denominator * &b.denominator))
         };
@@ -154,7 +222,7 @@ impl<S: Scalars> Amplitudes<S> {
             let mut mirror = self.mirror(&terms);
             mirror.sort_unstable_by_key(|(word, _)| *word);
             let one = Integer::from(1);
-            terms = self.merged([&terms, &mirror], [&one, &one]);
+            terms = self.merged(terms, &mirror, [&one, &one]);
             // h + conj h was twice the factor.
             let (half, two) = self.scalars.fraction(&Rational::from((1, 2)));
             denominator *= two;
@@ -182,7 +250,9 @@ impl<S: Scalars> Ring for Amplitudes<S> {
         f.terms.iter().flat_map(|(_, c)| c).all(|part| self.scalars.may_vanish(part))
     }
     fn add_assign(&self, a: &mut Self::Element, b: &Self::Element) {
-        *a = self.total(a, b, a.real && b.real);
+        let real = a.real && b.real;
+        let own = std::mem::replace(a, self.zero());
+        *a = self.total(own, b, real);
     }
     fn neg(&self, f: &Self::Element) -> Self::Element {
         let term =
@@ -209,9 +279,23 @@ impl<S: Scalars> RationalAlgebra for Amplitudes<S> {
     fn scale(&self, f: &Self::Element, q: &Rational) -> Self::Element {
         if *q == 1 { f.clone() } else { self.weighted(f, false, |_| q.clone()) }
     }
+    /// Of the complex constants that S can divide by: 1/(re + i im) = (re - i im)/(re^2 + im^2).
     fn reciprocal(&self, f: &Self::Element) -> Option<Self::Element> {
-        let q = self.as_rational(f).filter(|q| !q.is_zero())?;
-        Some(self.rational(&q.recip()))
+        let [(0, [re, im])] = &f.terms[..] else { return None };
+        let scalars = &self.scalars;
+        let minus = scalars.neg(im);
+        if scalars.is_zero(im) {
+            let (e, d) = scalars.inverse(re, &f.denominator)?;
+            return Some(self.single(0, [e, scalars.zero()], d, true));
+        }
+        if scalars.is_zero(re) {
+            let (e, d) = scalars.inverse(&minus, &f.denominator)?;
+            return Some(self.single(0, [scalars.zero(), e], d, false));
+        }
+        let square = scalars.sum_of_products(&[(re, re), (im, im)]);
+        let (e, d) = scalars.inverse(&square, &f.denominator)?;
+        let parts = [re, &minus].map(|part| scalars.product(part, &e));
+        Some(self.single(0, parts, d, false))
     }
     fn as_rational(&self, f: &Self::Element) -> Option<Rational> {
         match &f.terms[..] {
@@ -238,7 +322,8 @@ impl<S: Scalars> FunctionAlgebra for Amplitudes<S> {
         self.mul(f, c)
     }
     fn as_constant(&self, f: &Self::Element) -> Option<Self::Element> {
-        let constant = |word: Word| exponents(word, self.phases()).0.iter().all(|e| *e == 0);
+        let constant =
+            |word: Word| self.layout.exponents(word, self.phases()).0.iter().all(|e| *e == 0);
         f.terms.iter().all(|(word, _)| constant(*word)).then(|| f.clone())
     }
     fn log_abs(&self, _: &Self::Element) -> Option<Self::Element> {
@@ -253,6 +338,9 @@ impl<S: Scalars> FunctionAlgebra for Amplitudes<S> {
 }
 
 impl<S: Scalars> ForcedAlgebra for Amplitudes<S> {
+    fn delays(&self) -> usize {
+        self.delays.len()
+    }
     fn forcing(&self, multiple: u32) -> Option<(Self::Element, Self::Element)> {
         let [cos, sin] = self.wave(0, i32::try_from(multiple).ok()?)?;
         Some((cos, sin))

@@ -8,6 +8,14 @@ use std::fmt::Debug;
 pub trait Scalars: Sync {
     /// A numerator.
     type Element: Clone + PartialEq + Debug + Send + Sync;
+    /// e/d.
+    type Number: Clone + PartialEq + Debug + Send + Sync;
+    /// Whether elements cost so much that the products of one monomial are gathered and summed at once; d = 1 then.
+    const GATHERS: bool = false;
+    /// e and d > 0 of a number.
+    fn numerator(&self, number: &Self::Number) -> (Self::Element, Integer);
+    /// e/d.
+    fn number(&self, e: &Self::Element, d: &Integer) -> Self::Number;
     /// e and d > 0 with q = e/d.
     fn fraction(&self, q: &Rational) -> (Self::Element, Integer);
     /// e/d as a rational number, if it is one.
@@ -36,6 +44,16 @@ pub trait Scalars: Sync {
     fn add_product(&self, sum: &mut Self::Element, a: &Self::Element, b: &Self::Element) {
         self.add(sum, &self.product(a, b));
     }
+    /// sum a_k b_k.
+    fn sum_of_products(&self, pairs: &[(&Self::Element, &Self::Element)]) -> Self::Element {
+        let mut sum = self.zero();
+        pairs.iter().for_each(|(a, b)| self.add_product(&mut sum, a, b));
+        sum
+    }
+    /// q e as a numerator, where d = 1 for all; [`Self::GATHERS`].
+    fn scale(&self, e: &Self::Element, q: &Rational) -> Self::Element {
+        self.product(e, &self.fraction(q).0)
+    }
     /// n e.
     fn times(&self, e: &Self::Element, n: &Integer) -> Self::Element;
     /// g <- gcd(g, e); 1 where elements have no divisors.
@@ -50,7 +68,14 @@ pub struct Integers;
 
 impl Scalars for Integers {
     type Element = Integer;
+    type Number = Rational;
 
+    fn numerator(&self, number: &Rational) -> (Integer, Integer) {
+        self.fraction(number)
+    }
+    fn number(&self, e: &Integer, d: &Integer) -> Rational {
+        Rational::from((e, d))
+    }
     fn fraction(&self, q: &Rational) -> (Integer, Integer) {
         (q.numer().clone(), q.denom().clone())
     }
@@ -110,7 +135,18 @@ impl<K: RationalAlgebra> Over<K> {
 
 impl<K: RationalAlgebra> Scalars for Over<K> {
     type Element = K::Element;
+    type Number = K::Element;
+    const GATHERS: bool = true;
 
+    fn numerator(&self, number: &K::Element) -> (K::Element, Integer) {
+        (number.clone(), Integer::from(1))
+    }
+    fn number(&self, e: &K::Element, d: &Integer) -> K::Element {
+        if *d == 1 { e.clone() } else { self.ring.scale(e, &Rational::from((1, d))) }
+    }
+    fn sum_of_products(&self, pairs: &[(&K::Element, &K::Element)]) -> K::Element {
+        self.ring.sum_of_products(pairs)
+    }
     fn fraction(&self, q: &Rational) -> (K::Element, Integer) {
         (self.ring.rational(q), Integer::from(1))
     }
@@ -144,6 +180,9 @@ impl<K: RationalAlgebra> Scalars for Over<K> {
     }
     fn product(&self, a: &K::Element, b: &K::Element) -> K::Element {
         self.ring.mul(a, b)
+    }
+    fn scale(&self, e: &K::Element, q: &Rational) -> K::Element {
+        self.ring.scale(e, q)
     }
     fn times(&self, e: &K::Element, n: &Integer) -> K::Element {
         self.ring.scale(e, &Rational::from(n))

@@ -1,34 +1,55 @@
-//! Monomials as one machine word: sixteen exponents between -127 and 127 as the balanced digits of a
-//! number to the base 256, so that the product of monomials is the sum of their words.
+//! Monomials as one machine word: exponents as the balanced digits of a number, so that the product of monomials is
+//! the sum of their words.
 
-/// sum_i e_i 256^i with |e_i| < 128; unique.
+/// sum_i e_i 2^(b i) with |e_i| < 2^(b - 1); unique.
 pub type Word = i128;
 
-/// The exponents that a word has.
+/// The most exponents that a word has.
 pub const DIGITS: usize = 16;
 
-/// The largest exponent.
-pub const LARGEST: i32 = 127;
-
-/// 256^i.
-pub fn unit(i: usize) -> Word {
-    1 << (8 * i)
+/// How wide a digit is: b bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    bits: u32,
 }
 
-/// The exponents e_0, ..., e_{n-1}, and the word of the others.
-pub fn exponents(mut word: Word, n: usize) -> ([i32; DIGITS], Word) {
-    let mut digits = [0; DIGITS];
-    for digit in &mut digits[..n] {
-        let low = word as i8;
-        *digit = low.into();
-        word = (word - Word::from(low)) >> 8;
+impl Layout {
+    /// The widest digits that so many exponents leave; nothing for more than sixteen.
+    pub fn of(exponents: usize) -> Option<Self> {
+        let bits = match exponents {
+            0..=4 => 32,
+            5..=8 => 16,
+            9..=DIGITS => 8,
+            _ => return None,
+        };
+        Some(Self { bits })
     }
-    (digits, word)
-}
 
-/// The word with the first digits and the word of the others.
-pub fn pack(digits: &[i32], rest: Word) -> Word {
-    digits.iter().rev().fold(rest, |word, digit| (word << 8) + Word::from(*digit))
+    /// The largest exponent: 127 in digits of eight bits.
+    pub fn largest(self) -> i32 {
+        i32::MAX >> (32 - self.bits)
+    }
+
+    /// 2^(b i).
+    pub fn unit(self, i: usize) -> Word {
+        1 << (self.bits as usize * i)
+    }
+
+    /// The exponents e_0, ..., e_{n-1}, and the word of the others.
+    pub fn exponents(self, mut word: Word, n: usize) -> ([i32; DIGITS], Word) {
+        let mut digits = [0; DIGITS];
+        for digit in &mut digits[..n] {
+            let low = (word as i32) << (32 - self.bits) >> (32 - self.bits);
+            *digit = low;
+            word = (word - Word::from(low)) >> self.bits;
+        }
+        (digits, word)
+    }
+
+    /// The word with the first digits and the word of the others.
+    pub fn pack(self, digits: &[i32], rest: Word) -> Word {
+        digits.iter().rev().fold(rest, |word, digit| (word << self.bits) + Word::from(*digit))
+    }
 }
 
 #[cfg(test)]
@@ -38,10 +59,28 @@ mod tests {
     #[test]
     fn products_are_sums() {
         let (a, b) = ([1, -2, 0, 127, -127], [-1, 2, -100, -7, 3]);
-        let sum: Vec<i32> = a.iter().zip(b).map(|(a, b)| a + b).collect();
-        let (digits, rest) = exponents(pack(&a, 0) + pack(&b, 0), 5);
-        assert_eq!((&digits[..5], rest), (&sum[..], 0));
-        assert_eq!(exponents(pack(&[3], 7), 1).1, 7);
-        assert_eq!(exponents(unit(15) * -127, DIGITS).0[15], -127);
+        for count in [5, 12] {
+            let layout = Layout::of(count).unwrap_or(Layout { bits: 8 });
+            let sum: Vec<i32> = a.iter().zip(b).map(|(a, b)| a + b).collect();
+            let words = [&a, &b].map(|digits| layout.pack(digits, 0));
+            let (digits, rest) = layout.exponents(words[0] + words[1], 5);
+            assert_eq!((&digits[..5], rest), (&sum[..], 0));
+            assert_eq!(layout.exponents(layout.pack(&[3], 7), 1).1, 7);
+        }
+    }
+
+    #[test]
+    fn every_width_holds_its_largest() {
+        for (count, largest) in [(3, i32::MAX), (4, i32::MAX), (8, 32767), (9, 127), (16, 127)] {
+            let Some(layout) = Layout::of(count) else { panic!("{count} exponents") };
+            assert_eq!(layout.largest(), largest);
+            let digits = vec![-largest; count];
+            assert_eq!(layout.exponents(layout.pack(&digits, 0), count).0[..count], digits);
+            assert_eq!(
+                layout.exponents(-largest as Word * layout.unit(count - 1), count).0[..count - 1],
+                vec![0; count - 1]
+            );
+        }
+        assert_eq!(Layout::of(17), None);
     }
 }

@@ -1,0 +1,123 @@
+use super::scalars::{Integers, Over};
+use super::*;
+use lindstedt_algebra::{
+    AmplitudeAlgebra, ForcedAlgebra, LinearPart, PhaseError, RationalAlgebra, Rationals, Ring, laws,
+};
+
+type Element = AmplitudeElement<Integer>;
+
+type Derivation = fn(&Amplitudes<Integers>, &Element) -> Element;
+
+fn q(n: i32, d: u32) -> Rational {
+    Rational::from((n, d))
+}
+
+/// A delay in which psi turns by the angle of 3 + 4 i and eta by that of 5 + 12 i.
+fn late() -> [Delay<Rational>; 1] {
+    [Delay { time: q(2, 1), turns: vec![[q(3, 5), q(4, 5)], [q(5, 13), q(12, 13)]] }]
+}
+
+fn algebra<S: Scalars<Number = Rational>>(scalars: S) -> Amplitudes<S> {
+    let Some(algebra) = Amplitudes::off_resonance(scalars, &q(1, 1), Some(&q(3, 7))) else {
+        panic!("two rates")
+    };
+    algebra.with_delays(&late())
+}
+
+/// Real and complex ones.
+fn samples<S: Scalars>(t: &Amplitudes<S>) -> Vec<AmplitudeElement<S::Element>> {
+    let (z, Some((cos, sin))) = (t.amplitude(0), t.forcing(1)) else { panic!("a force") };
+    let x = t.twice_real(&z);
+    let mixed = t.add(&t.mul(&t.mul(&x, &x), &sin), &t.scale(&cos, &q(-2, 3)));
+    let complex = t.add(&t.mul(&z, &sin), &t.scale(&z, &q(1, 9)));
+    vec![t.zero(), t.one(), x, mixed, complex]
+}
+
+#[test]
+fn laws_hold() {
+    let t = algebra(Integers);
+    assert_eq!(laws::rational_algebra(&t, &samples(&t)), Ok(()));
+    // Gathered sums of products, which have no common denominators.
+    let gathered = algebra(Over::exact(Rationals));
+    assert_eq!(laws::rational_algebra(&gathered, &samples(&gathered)), Ok(()));
+    for f in samples(&t) {
+        for g in samples(&t) {
+            let product = t.mul(&f, &g);
+            let derivations: [Derivation; 3] =
+                [|t, f| t.by_amplitude(f, 0), |t, f| t.by_force(f, 0), |t, f| t.by_time(f)];
+            for d in derivations {
+                let leibniz = t.sum_of_products(&[(&d(&t, &f), &g), (&f, &d(&t, &g))]);
+                assert_eq!(d(&t, &product), leibniz, "Leibniz");
+            }
+            let shift = |f| t.shift(f, 0).unwrap_or_else(|| t.zero());
+            assert_eq!(shift(&product), t.mul(&shift(&f), &shift(&g)), "shifts multiply");
+            assert_eq!(t.conjugate(&shift(&f)), shift(&t.conjugate(&f)), "shifts are real");
+        }
+    }
+}
+
+/// The resolved parts put back into the equation give f again.
+#[test]
+fn a_split_rebuilds() {
+    let t = algebra(Integers);
+    let number = |c| t.rational(&c);
+    // Without damping and delay L(i) = 0; then with a damping and a delay, where it is not:
+    // L(D_0) acts on the response, L'(i) on the first harmonic, and both are checked.
+    let free =
+        LinearPart { stiffness: t.one(), damping: t.zero(), delayed: vec![(t.zero(), t.zero())] };
+    let general = LinearPart {
+        stiffness: number(q(2, 3)),
+        damping: number(q(1, 5)),
+        delayed: vec![(number(q(1, 7)), number(q(-1, 2)))],
+    };
+    for linear in [free, general] {
+        for f in samples(&t) {
+            let f = t.twice_real(&f);
+            let Ok(split) = t.split(0, &linear, &f) else { panic!("no resonance") };
+            assert!(t.is_off_resonance(0, &split.response));
+            let (b, c) = &linear.delayed[0];
+            let late = |u: &Element| t.shift(u, 0).unwrap_or_else(|| t.zero());
+            let sum =
+                |terms: &[Element]| terms.iter().fold(t.zero(), |sum, term| t.add(&sum, term));
+            let gain = |u: &Element| t.add(&t.mul(u, b), &t.mul(&t.by_time(u), c));
+            let u = &split.response;
+            let du = t.by_time(u);
+            let applied = sum(&[
+                t.by_time(&du),
+                t.mul(&du, &linear.damping),
+                t.mul(u, &linear.stiffness),
+                gain(&late(u)),
+            ]);
+            let drift = t.twice_real(&split.flow);
+            let slope = sum(&[
+                t.scale(&t.by_time(&drift), &q(2, 1)),
+                t.mul(&drift, &linear.damping),
+                t.mul(&late(&drift), c),
+                t.scale(&gain(&late(&drift)), &q(-2, 1)),
+            ]);
+            assert_eq!(t.add(&applied, &slope), f);
+        }
+    }
+}
+
+/// omega = 1/3: three harmonics of the force meet the free frequency. A force a millionth beside it, as it stands and as
+/// a harmonic, is named too; one a twentieth beside it is no miss.
+#[test]
+fn resonances_and_near_misses_are_named() {
+    let refused = |omega: Rational, forced: u32| {
+        let Some(t) = Amplitudes::off_resonance(Integers, &q(1, 1), Some(&omega)) else {
+            panic!("two rates")
+        };
+        let linear = LinearPart { stiffness: t.one(), damping: t.zero(), delayed: Vec::new() };
+        let Some((cos, _)) = t.forcing(forced) else { panic!("a force") };
+        t.split(0, &linear, &cos).err()
+    };
+    assert_eq!(refused(q(1, 3), 3), Some(PhaseError::Resonance { free: 0, forced: 3 }));
+    let size = q(1, 1) - q(1_000_001, 1_000_000).square();
+    for (omega, forced) in [(q(1_000_001, 1_000_000), 1), (q(1_000_001, 3_000_000), 3)] {
+        let size = size.clone();
+        let near = PhaseError::NearMiss { free: 0, forced: forced as i32, size };
+        assert_eq!(refused(omega, forced), Some(near));
+    }
+    assert_eq!(refused(q(21, 20), 1), None);
+}
