@@ -3,21 +3,21 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test fails by panicking
 
-use lindstedt::unstable::algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
+use lindstedt::unstable::algebra::{AmplitudeAlgebra, RationalAlgebra, Rationals, Ring};
 use lindstedt::unstable::coeff::PolynomialRing;
 use lindstedt::unstable::coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials};
 use lindstedt::unstable::coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt::unstable::coeff::print::{Print, Style};
 use lindstedt::unstable::derivation::averaging::{
-    Averaging, AveragingSettings, Coefficient, average as average_problem,
+    AveragedExpansion, Averaging, AveragingSettings, Coefficient, average as average_problem,
 };
 use lindstedt::unstable::equation::{Condition, Expression, Function, ParameterCard, Problem};
-use lindstedt::unstable::expand::{
-    AveragedExpansion, Binding, average, check_averaged, compile_system,
-};
+use lindstedt::unstable::expand::resonance::{SlowFlow, check_flow, resonant};
+use lindstedt::unstable::expand::{Binding, ExpandError, compile_system};
 use lindstedt::unstable::number::ball::Balls;
 use lindstedt::unstable::number::ball::ring::{BallRing, Enclosure};
-use lindstedt::unstable::phase::{Delay, Torus};
+use lindstedt::unstable::phase::amplitudes::scalars::{Integers, Over as Scalar, Scalars};
+use lindstedt::unstable::phase::amplitudes::{AmplitudeElement, Amplitudes, Delay};
 use lindstedt::{
     DerivationError as Error, Exact, Quantity, unstable::derivation::Settings,
     unstable::derivation::derive as derive_problem, unstable::problems,
@@ -27,28 +27,37 @@ use std::collections::BTreeMap;
 
 struct Nothing;
 
-impl Binding<AmplitudePolynomials<Rationals>> for Nothing {
-    fn parameter(&self, _: &str) -> Option<AmplitudePolynomial<Rational>> {
+impl<S: Scalars> Binding<Amplitudes<S>> for Nothing {
+    fn parameter(&self, _: &str) -> Option<AmplitudeElement<S::Element>> {
         None
     }
-    fn formal(&self, _: &str, _: usize) -> Option<AmplitudePolynomial<Rational>> {
+    fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<S::Element>> {
         None
     }
+}
+
+/// The checked flow of an equation without parameters.
+fn flow<S: Scalars>(
+    algebra: &Amplitudes<S>,
+    equation: &Expression,
+    order: usize,
+) -> Result<SlowFlow<AmplitudeElement<S::Element>>, ExpandError> {
+    let graph = compile_system(algebra, std::slice::from_ref(equation), &Nothing, order)?;
+    let found = resonant(algebra, &graph, order, &[], &mut |_| true)?;
+    assert_eq!(check_flow(algebra, &graph, &found), Ok(order));
+    Ok(found)
 }
 
 fn derive(
-    algebra: &Torus<Rationals>,
+    algebra: &Amplitudes<Integers>,
     equation: &Expression,
     order: usize,
-) -> AveragedExpansion<Torus<Rationals>> {
-    let graph = compile_system(algebra, std::slice::from_ref(equation), &Nothing, order).unwrap();
-    let expansion = average(algebra, &graph, order, &mut |_| true).unwrap();
-    assert_eq!(check_averaged(algebra, &graph, &expansion), Ok(order));
-    expansion
+) -> AveragedExpansion<Rational> {
+    AveragedExpansion::of(algebra, &flow(algebra, equation, order).unwrap()).unwrap()
 }
 
-fn plain() -> Torus<Rationals> {
-    Torus::new(Rationals, Rational::from(1), None, Vec::new())
+fn algebra(force: Option<Rational>) -> Amplitudes<Integers> {
+    Amplitudes::off_resonance(Integers, &Rational::from(1), force.as_ref()).unwrap()
 }
 
 fn shown(list: &[AmplitudePolynomial<Rational>]) -> Vec<String> {
@@ -65,7 +74,7 @@ fn van_der_pol() -> Expression {
 /// classics: A_1, B_2, A_3, B_4 (checked independently there); the others vanish by symmetry.
 #[test]
 fn van_der_pol_rates() {
-    let result = derive(&plain(), &van_der_pol(), 8);
+    let result = derive(&algebra(None), &van_der_pol(), 8);
     let (a, b) = (shown(&result.amplitude_rate), shown(&result.phase_rate));
     assert_eq!(a[1], "1/2*a - 1/8*a^3");
     assert_eq!(b[2], "-1/8 + 1/8*a^2 - 7/256*a^4");
@@ -84,9 +93,7 @@ fn forced_duffing_first_order() {
     let force = (t * ratio).apply(Function::Cos);
     let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3)
         - Expression::integer(2) * force;
-    let algebra =
-        Torus::new(Rationals, Rational::from(1), Some(Rational::from((2, 7))), Vec::new());
-    let result = derive(&algebra, &equation, 3);
+    let result = derive(&algebra(Some(Rational::from((2, 7)))), &equation, 3);
     // p = 2/(1 - 4/49) = 98/45: B_1 = 3/8 a^2 + 3/4 p^2.
     let expected = Rational::from((3, 4)) * Rational::from((9604, 2025));
     assert_eq!(shown(&result.phase_rate)[1], format!("{expected} + 3/8*a^2"));
@@ -101,9 +108,7 @@ fn resonances_are_named_at_their_order() {
         let x = Expression::DISPLACEMENT;
         let force = (Expression::Time * Expression::Number(frequency.clone())).apply(Function::Cos);
         let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3) - force;
-        let algebra = Torus::new(Rationals, Rational::from(1), Some(frequency), Vec::new());
-        let graph = compile_system(&algebra, &[equation], &Nothing, 3).unwrap();
-        average(&algebra, &graph, 3, &mut |_| true).err().map(|error| error.to_string())
+        flow(&algebra(Some(frequency)), &equation, 3).err().map(|error| error.to_string())
     };
     let message = |order, harmonic| {
         let words = "resonance with the harmonic";
@@ -121,7 +126,7 @@ fn resonances_are_named_at_their_order() {
 fn duffing_to_order_20_is_the_fundamental_normalisation() {
     let x = Expression::DISPLACEMENT;
     let equation = Expression::ACCELERATION + x.clone() + Expression::Small * x.pow(3);
-    let result = derive(&plain(), &equation, 20);
+    let result = derive(&algebra(None), &equation, 20);
     let duffing = problems::find("duffing").unwrap();
     let settings = Settings {
         order: 20,
@@ -190,22 +195,26 @@ fn symbolic_rates_of_the_delay_loop() {
         affine: false,
     };
     let [alpha, a, b, c, t, cos, sin] = [0, 1, 2, 3, 4, 5, 6].map(|i| k.parameter(i));
-    let delay =
-        Delay { time: t.clone(), free: [cos.clone(), sin.clone()], forced: [k.one(), k.zero()] };
-    let algebra = Torus::new(k.clone(), alpha.clone(), None, vec![delay]);
-    struct Named<'a>(&'a ParameterField, AmplitudePolynomials<ParameterField>);
-    impl Binding<AmplitudePolynomials<ParameterField>> for Named<'_> {
-        fn parameter(&self, name: &str) -> Option<AmplitudePolynomial<ParameterFraction>> {
-            Some(self.1.embed(self.0.parameter(self.0.position(name)?)))
+    let turns = vec![[cos.clone(), sin.clone()], [k.one(), k.zero()]];
+    let delay = Delay { time: t.clone(), turns };
+    let algebra = Amplitudes::off_resonance(Scalar::exact(k.clone()), &alpha, None).unwrap();
+    let algebra = algebra.with_delays(&[delay]);
+    type Algebra = Amplitudes<Scalar<ParameterField>>;
+    type Element = AmplitudeElement<ParameterFraction>;
+    struct Named<'a>(&'a ParameterField, &'a Algebra);
+    impl Binding<Algebra> for Named<'_> {
+        fn parameter(&self, name: &str) -> Option<Element> {
+            Some(self.1.number(&self.0.parameter(self.0.position(name)?)))
         }
-        fn formal(&self, _: &str, _: usize) -> Option<AmplitudePolynomial<ParameterFraction>> {
+        fn formal(&self, _: &str, _: usize) -> Option<Element> {
             None
         }
     }
-    let named = Named(&k, algebra.constants().clone());
+    let named = Named(&k, &algebra);
     let graph = compile_system(&algebra, &[delay_loop().equation], &named, 3).unwrap();
-    let result = average(&algebra, &graph, 3, &mut |_| true).unwrap();
-    assert_eq!(check_averaged(&algebra, &graph, &result), Ok(3));
+    let found = resonant(&algebra, &graph, 3, &[], &mut |_| true).unwrap();
+    assert_eq!(check_flow(&algebra, &graph, &found), Ok(3));
+    let result = AveragedExpansion::of(&algebra, &found).unwrap();
 
     let z = Over(&k);
     let late = [cos, k.neg(&sin)];
@@ -231,7 +240,7 @@ fn symbolic_rates_of_the_delay_loop() {
     let third = z.add(&z.mul(&g, &g2), &z.scale(&z.mul(&g1, &g1), 2, 1));
     let inner = z.add(&z.add(&first, &second), &z.mul(&z.mul(&i_alpha, &i_alpha), &third));
     let lambda_3 = z.scale(&z.mul(&z.mul(&minus_i, &z.mul(&g, &inner)), &over_alpha(5)), 1, 16);
-    let constants = algebra.constants();
+    let constants = AmplitudePolynomials::new(k);
     for (n, lambda) in [lambda_1, lambda_2, lambda_3].iter().enumerate() {
         let rate = constants.power(1, lambda[0].clone());
         assert_eq!(result.amplitude_rate[n + 1], rate, "R_{}", n + 1);
@@ -382,30 +391,18 @@ fn amplitude_equation_at_hopf_points() {
         let ulp = Float::with_val(53, Float::i_exp(1, -185));
         let ball = |x: &Float| Enclosure(ring.balls.from_parts(x, &ulp));
         let angle = Float::with_val(bits, &omega * &tau);
-        let delay = Delay {
-            time: ball(&tau),
-            free: [ball(&angle.clone().cos()), ball(&angle.sin())],
-            forced: [ring.one(), ring.zero()],
-        };
-        let algebra = Torus::new(ring, ball(&omega), None, vec![delay]);
-        struct Unbound;
-        impl Binding<AmplitudePolynomials<BallRing>> for Unbound {
-            fn parameter(&self, _: &str) -> Option<AmplitudePolynomial<Enclosure>> {
-                None
-            }
-            fn formal(&self, _: &str, _: usize) -> Option<AmplitudePolynomial<Enclosure>> {
-                None
-            }
-        }
+        let turn = [ball(&angle.clone().cos()), ball(&angle.sin())];
+        let delay = Delay { time: ball(&tau), turns: vec![turn, [ring.one(), ring.zero()]] };
+        let algebra = Amplitudes::off_resonance(Scalar::exact(ring), &ball(&omega), None).unwrap();
+        let algebra = algebra.with_delays(&[delay]);
         let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
         let number = |n: i32, d: u32| Expression::Number(Rational::from((n, d)));
         let late = x.clone().delayed(Expression::parameter("tau"));
         let equation = Expression::ACCELERATION + number(1, 20) * v + number(11, 10) * x.clone()
             - number(3, 5) * late
             + Expression::Small * x.pow(3);
-        let graph = compile_system(&algebra, &[equation], &Unbound, 2).unwrap();
-        let result = average(&algebra, &graph, 2, &mut |_| true).unwrap();
-        assert_eq!(check_averaged(&algebra, &graph, &result), Ok(2));
+        let found = flow(&algebra, &equation, 2).unwrap();
+        let result = AveragedExpansion::of(&algebra, &found).unwrap();
         let [(power, c)] = result.amplitude_rate[1].terms() else { panic!("one power") };
         assert_eq!(power.0, 3);
         let c = c.0.midpoint().to_f64();
@@ -429,22 +426,25 @@ fn refusals() {
 /// The residual check sees a wrong rate, a wrong response and a first harmonic too many.
 #[test]
 fn a_wrong_expansion_is_noticed() {
-    let algebra = plain();
+    let algebra = algebra(None);
     let graph = compile_system(&algebra, &[van_der_pol()], &Nothing, 4).unwrap();
-    let right = average(&algebra, &graph, 4, &mut |_| true).unwrap();
-    let ring = algebra.constants();
-    let spoil = |change: &dyn Fn(&mut AveragedExpansion<Torus<Rationals>>)| {
+    let right = resonant(&algebra, &graph, 4, &[], &mut |_| true).unwrap();
+    type Flow = SlowFlow<AmplitudeElement<rug::Integer>>;
+    let spoil = |change: &dyn Fn(&mut Flow)| {
         let mut wrong = right.clone();
         change(&mut wrong);
-        check_averaged(&algebra, &graph, &wrong).err().map(|error| error.to_string())
+        check_flow(&algebra, &graph, &wrong).err().map(|error| error.to_string())
     };
-    let tiny = || ring.power(3, Rational::from((1, 1_000_000)));
+    let z = algebra.amplitude(0);
+    let square = algebra.mul(&z, &algebra.conjugate(&z));
+    let tiny = algebra.scale(&algebra.mul(&z, &square), &Rational::from((1, 1_000_000)));
     let residual = |n: u32| Some(format!("the residual does not vanish at order {n}"));
-    assert_eq!(spoil(&|e| ring.add_assign(&mut e.amplitude_rate[3], &tiny())), residual(3));
-    assert_eq!(spoil(&|e| ring.add_assign(&mut e.phase_rate[4], &tiny())), residual(4));
-    let third = || algebra.harmonic((3, 0), [tiny(), ring.zero()]);
-    assert_eq!(spoil(&|e| algebra.add_assign(&mut e.solution[1], &third())), residual(1));
-    let first = || algebra.harmonic((1, 0), [tiny(), ring.zero()]);
+    assert_eq!(spoil(&|e| algebra.add_assign(&mut e.flow[0][3], &tiny)), residual(3));
+    let turned = algebra.by_time(&tiny);
+    assert_eq!(spoil(&|e| algebra.add_assign(&mut e.flow[0][4], &turned)), residual(4));
+    let third = algebra.twice_real(&algebra.mul(&z, &algebra.mul(&z, &tiny)));
+    assert_eq!(spoil(&|e| algebra.add_assign(&mut e.solution[0][1], &third)), residual(1));
+    let first = algebra.twice_real(&tiny);
     let normalisation = Some("the normalisation does not hold at order 2".to_owned());
-    assert_eq!(spoil(&|e| algebra.add_assign(&mut e.solution[2], &first())), normalisation);
+    assert_eq!(spoil(&|e| algebra.add_assign(&mut e.solution[0][2], &first)), normalisation);
 }

@@ -1,16 +1,13 @@
-//! Slow flows at resonance against formulas by hand, reference numbers, the averaging of Krylov,
-//! Bogoliubov and Mitropolsky, and exact linear responses.
+//! Slow flows at resonance against formulas by hand, reference numbers and exact linear responses.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use lindstedt_algebra::{AmplitudeAlgebra, ForcedAlgebra, RationalAlgebra, Rationals, Ring};
-use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials};
+use lindstedt_algebra::{AmplitudeAlgebra, ForcedAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_expand::resonance::{SlowFlow, check_flow, resonant};
-use lindstedt_expand::{Binding, ExpandError, average, compile, compile_system};
+use lindstedt_expand::{Binding, ExpandError, compile_system};
 use lindstedt_number::ball::Balls;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
-use lindstedt_phase::Torus;
 use lindstedt_phase::amplitudes::scalars::{Integers, Over, Scalars};
 use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes};
 use rug::{Integer, Rational};
@@ -203,44 +200,6 @@ fn henon_heiles() {
     let expected = [im("z1^2 zbar1", -5, 3), im("z1 z2 zbar2", 2, 3), im("zbar1 z2^2", -7, 3)];
     assert_eq!(terms(&a, &found.flow[0][2]), by_hand(&expected));
     assert!([1, 3].into_iter().all(|n| a.is_zero(&found.flow[0][n])));
-}
-
-struct Nothing;
-
-impl Binding<AmplitudePolynomials<Rationals>> for Nothing {
-    fn parameter(&self, _: &str) -> Option<AmplitudePolynomial<Rational>> {
-        None
-    }
-    fn formal(&self, _: &str, _: usize) -> Option<AmplitudePolynomial<Rational>> {
-        None
-    }
-}
-
-/// f = z h(|z|^2), a = 2 |z|: A_n = a Re h, B_n = Im h, orders 1 to 6.
-#[test]
-fn without_force_the_averaging_in_polar_coordinates() {
-    let v = || Expression::VELOCITY;
-    let van_der_pol = oscillator(0, 1, -eps((1 - x(0).pow(2)) * v()));
-    let cubic = oscillator(0, 1, eps(2 * v() + x(0).pow(2) * 3 + x(0).pow(3)));
-    for equation in [van_der_pol, cubic] {
-        let torus = Torus::new(Rationals, q(1, 1), None, Vec::new());
-        let graph = compile(&torus, &equation, &Nothing, 6).unwrap();
-        let polar = average(&torus, &graph, 6, &mut |_| true).unwrap();
-        let a = algebra(&[1], q(0, 1));
-        let found = derive(&a, &[equation], 6, &[]);
-        let ring = AmplitudePolynomials::new(Rationals);
-        for n in 1..=6 {
-            let (mut drift, mut phase) = (ring.zero(), ring.zero());
-            for term in a.rational_terms(&found.flow[0][n]).unwrap() {
-                let [z, zbar] = [term.exponents[0], term.exponents[1]];
-                assert_eq!(z, zbar + 1);
-                let half = Rational::from(1) >> (2 * zbar as u32);
-                drift = ring.add(&drift, &ring.power(z + zbar, term.re * half.clone()));
-                phase = ring.add(&phase, &ring.power(2 * zbar, term.im * half));
-            }
-            assert_eq!((&polar.amplitude_rate[n], &polar.phase_rate[n]), (&drift, &phase), "{n}");
-        }
-    }
 }
 
 /// A complex number.

@@ -27,6 +27,12 @@ pub trait AmplitudeAlgebra: ForcedAlgebra + FunctionAlgebra<Constants = Self> + 
     fn twice_real(&self, f: &Self::Element) -> Self::Element;
     /// df/dz_j.
     fn by_amplitude(&self, f: &Self::Element, j: usize) -> Self::Element;
+    /// sum f dg/dz_j + conj for pairs of any f and a real g: the rates of change of the g where z_j' = f.
+    fn along(&self, j: usize, pairs: &[(&Self::Element, &Self::Element)]) -> Self::Element {
+        let slopes: Vec<_> = pairs.iter().map(|(_, g)| self.by_amplitude(g, j)).collect();
+        let pairs: Vec<_> = pairs.iter().zip(&slopes).map(|((f, _), slope)| (*f, slope)).collect();
+        self.twice_real(&self.sum_of_products(&pairs))
+    }
     /// df/deta_l.
     fn by_force(&self, f: &Self::Element, l: usize) -> Self::Element;
     /// D_0 f.

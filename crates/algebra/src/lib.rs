@@ -6,7 +6,6 @@
 #![warn(missing_docs)]
 
 mod amplitudes;
-mod averaging;
 mod clock;
 pub mod laws;
 mod phase;
@@ -15,7 +14,6 @@ mod stop;
 mod stopping;
 
 pub use amplitudes::{AmplitudeAlgebra, LinearPart, Split};
-pub use averaging::{Averaged, AveragingAlgebra};
 pub use clock::{ClockAlgebra, StillAndClock};
 pub use phase::{
     Elementary, ForcedAlgebra, FunctionAlgebra, NEAR_MISS, PhaseAlgebra, PhaseError, Resolution,

@@ -1,7 +1,6 @@
 //! The driver and its judge within the algebra: expansions to any order, written once over
 //! [`lindstedt_algebra::PhaseAlgebra`], and the residual check that shares no code with it.
 
-mod averaging;
 mod bound;
 mod clock;
 mod compile;
@@ -17,7 +16,6 @@ mod residual_point;
 pub mod resonance;
 mod size;
 
-pub use averaging::{AveragedExpansion, average, check_averaged, linear_part};
 pub use bound::{degrees, equation_denominator};
 pub use clock::{
     ClockExpansion, ClockFrequency, ClockMean, check_clock, clock_variable, expand_clock,

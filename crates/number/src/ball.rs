@@ -20,7 +20,7 @@ pub mod ring;
 pub use complex::{Complex, ComplexBalls};
 
 use rug::float::{Constant, Round, Special};
-use rug::ops::{AssignRound, Pow};
+use rug::ops::{AddAssignRound, AssignRound, MulAssignRound, Pow};
 use rug::{Float, Integer, Rational};
 use std::cmp::Ordering;
 
@@ -316,6 +316,31 @@ impl Balls {
             radius = up(&left + &right);
         }
         self.enclose(&a.midpoint * &b.midpoint, radius)
+    }
+    /// a_1 b_1 + a_2 b_2 + ...: every product is added with one rounding, the radii as in [`Self::mul`].
+    #[must_use]
+    pub fn sum_of_products(self, pairs: &[(&Ball, &Ball)]) -> Ball {
+        let mut midpoint = Float::new(self.bits);
+        let (mut radius, mut part) = (radius_zero(), radius_zero());
+        for (a, b) in pairs {
+            let order = midpoint.add_assign_round(&a.midpoint * &b.midpoint, Round::Nearest);
+            if !midpoint.is_finite() {
+                return self.indeterminate();
+            }
+            if order != Ordering::Equal {
+                radius.add_assign_round(&half_ulp(&midpoint), Round::Up);
+            }
+            if !a.is_exact() || !b.is_exact() {
+                part.assign_round(a.midpoint.abs_ref(), Round::Up);
+                part.mul_assign_round(&b.radius, Round::Up);
+                radius.add_assign_round(&part, Round::Up);
+                part.assign_round(b.midpoint.abs_ref(), Round::Up);
+                part.add_assign_round(&b.radius, Round::Up);
+                part.mul_assign_round(&a.radius, Round::Up);
+                radius.add_assign_round(&part, Round::Up);
+            }
+        }
+        if radius.is_finite() { Ball { midpoint, radius } } else { self.indeterminate() }
     }
     /// a q for a rational number q: the radius is r |q|.
     #[must_use]

@@ -10,12 +10,10 @@ pub mod lobachevsky;
 pub mod lobachevsky_function;
 pub mod modular;
 pub mod print;
-pub mod torus;
 pub mod trigonometric;
 
 pub use amplitudes::Amplitudes;
 pub use collocation::Collocation;
 pub use lobachevsky::Lobachevsky;
 pub use modular::Modular;
-pub use torus::{Delay, Torus};
 pub use trigonometric::Trigonometric;

@@ -18,30 +18,19 @@ impl<E> Rates<'_, E> {
         f: &[E],
         n: usize,
     ) -> E {
-        let mut slopes = Vec::new();
-        let mut turns = Vec::new();
-        for (k, f) in (1..=n).filter_map(|k| Some((k, f.get(n - k)?))) {
-            if algebra.is_zero(f) {
-                continue;
-            }
-            for (j, flow) in self.flow.iter().enumerate() {
-                if let Some(flow) = flow.get(k).filter(|flow| !algebra.is_zero(flow)) {
-                    slopes.push((flow, algebra.by_amplitude(f, j)));
-                }
-            }
-            for (l, sigmas) in self.detuning.iter().enumerate() {
-                if let Some(sigma) = sigmas.get(k - 1) {
-                    turns.push((sigma, algebra.by_force(f, l)));
-                }
-            }
+        let known = || (1..=n).filter_map(|k| Some((k, f.get(n - k)?)));
+        let mut sum = algebra.zero();
+        for (j, flow) in self.flow.iter().enumerate() {
+            let pair = |(k, f)| Some((flow.get(k)?, f));
+            let nonzero = |(flow, f): &(&E, &E)| !algebra.is_zero(flow) && !algebra.is_zero(f);
+            let pairs: Vec<_> = known().filter_map(pair).filter(nonzero).collect();
+            algebra.add_assign(&mut sum, &algebra.along(j, &pairs));
         }
-        let along = |list: &[(&E, E)]| {
-            let pairs: Vec<_> = list.iter().map(|(rate, slope)| (*rate, slope)).collect();
-            algebra.sum_of_products(&pairs)
-        };
-        let mut sum = algebra.twice_real(&along(&slopes));
-        if !turns.is_empty() {
-            algebra.add_assign(&mut sum, &along(&turns));
+        for (l, sigmas) in self.detuning.iter().enumerate() {
+            let turn = |(k, f): (usize, _)| Some((sigmas.get(k - 1)?, algebra.by_force(f, l)));
+            let turns: Vec<_> = known().filter_map(turn).collect();
+            let pairs: Vec<_> = turns.iter().map(|(sigma, turn)| (*sigma, turn)).collect();
+            algebra.add_assign(&mut sum, &algebra.sum_of_products(&pairs));
         }
         sum
     }

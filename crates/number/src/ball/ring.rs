@@ -51,6 +51,10 @@ impl Ring for BallRing {
     fn mul(&self, a: &Enclosure, b: &Enclosure) -> Enclosure {
         Enclosure(self.balls.mul(&a.0, &b.0))
     }
+    fn sum_of_products(&self, pairs: &[(&Enclosure, &Enclosure)]) -> Enclosure {
+        let pairs: Vec<_> = pairs.iter().map(|(a, b)| (&a.0, &b.0)).collect();
+        Enclosure(self.balls.sum_of_products(&pairs))
+    }
 }
 
 impl RationalAlgebra for BallRing {

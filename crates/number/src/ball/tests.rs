@@ -77,6 +77,11 @@ const BINARY: &[Binary] = &[
     ("add", |c, a, b| Some(c.add(a, b)), |x, y| x + y),
     ("sub", |c, a, b| Some(c.sub(a, b)), |x, y| x - y),
     ("mul", |c, a, b| Some(c.mul(a, b)), |x, y| x * y),
+    (
+        "sum of products",
+        |c, a, b| Some(c.sum_of_products(&[(a, b), (b, b), (a, a)])),
+        |x, y| x.clone() * &y + y.square() + x.square(),
+    ),
     ("div", |c, a, b| c.div(a, b), |x, y| x / y),
     ("hull left", |c, a, b| Some(c.hull(a, b)), |x, _| x),
     ("hull right", |c, a, b| Some(c.hull(a, b)), |_, y| y),

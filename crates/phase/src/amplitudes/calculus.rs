@@ -9,7 +9,10 @@ use rug::{Integer, Rational};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 impl<S: Scalars> Amplitudes<S> {
-    fn conjugated(&self, f: &AmplitudeElement<S::Element>) -> AmplitudeElement<S::Element> {
+    pub(super) fn conjugated(
+        &self,
+        f: &AmplitudeElement<S::Element>,
+    ) -> AmplitudeElement<S::Element> {
         let mut terms = self.mirror(&f.terms);
         terms.sort_unstable_by_key(|(word, _)| *word);
         AmplitudeElement { denominator: f.denominator.clone(), terms, real: f.real }
@@ -73,6 +76,14 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         slope.terms.iter_mut().for_each(|(word, _)| *word -= self.layout.unit(2 * j));
         slope.real &= slope.terms.is_empty();
         slope
+    }
+    fn along(&self, j: usize, pairs: &[(&Self::Element, &Self::Element)]) -> Self::Element {
+        if S::GATHERS && pairs.iter().all(|(_, g)| g.real) {
+            return self.gathered_along(j, pairs);
+        }
+        let slopes: Vec<_> = pairs.iter().map(|(_, g)| self.by_amplitude(g, j)).collect();
+        let pairs: Vec<_> = pairs.iter().zip(&slopes).map(|((f, _), slope)| (*f, slope)).collect();
+        self.with_conjugate(&self.sum_of_products(&pairs))
     }
     fn by_force(&self, f: &Self::Element, l: usize) -> Self::Element {
         let place = 2 * self.amplitudes + l;

@@ -11,6 +11,8 @@
 //! their conjugates) half of that: the upper half of one of them times the other, and the conjugate.
 
 mod calculus;
+mod delay;
+mod gather;
 pub mod polar;
 mod ring;
 pub mod scalars;
@@ -18,12 +20,13 @@ pub mod scalars;
 mod tests;
 pub mod words;
 
-#[cfg(doc)]
-use lindstedt_algebra::NEAR_MISS;
+pub use delay::Delay;
 use lindstedt_algebra::Stop;
 use rug::{Integer, Rational};
 use scalars::Scalars;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+use delay::Late;
 use words::{DIGITS, Layout, Word};
 
 /// A word with the real and the imaginary numerator of its coefficient.
@@ -80,22 +83,6 @@ struct Unknown<E> {
     square: (E, Integer),
     /// nu, if it is among the sums of the generators: otherwise no eigenvalue is resonant.
     rate: Option<Multiples>,
-}
-
-/// A delay T with what the phases do meanwhile.
-#[derive(Clone, Debug)]
-pub struct Delay<N> {
-    /// T.
-    pub time: N,
-    /// cos(rate T), sin(rate T) at order zero for psi_1, ..., psi_M (z_j = |z_j| e^{i psi_j}), eta_1, ..., eta_L.
-    pub turns: Vec<[N; 2]>,
-}
-
-/// T and e^{-i rate T} as constants.
-#[derive(Clone, Debug)]
-struct Late<E> {
-    time: AmplitudeElement<E>,
-    turns: Vec<AmplitudeElement<E>>,
 }
 
 /// The algebra over numerators S, with the frequencies nu_j > 0 of the z_j, the frequencies Omega_l of the
@@ -184,55 +171,6 @@ impl<S: Scalars> Amplitudes<S> {
         Some(algebra)
     }
 
-    /// The algebra of one unknown and one force (or none) whose frequencies are numbers or formulas of which no
-    /// combination but the frequency itself is taken to meet it. A monomial that does is refused with its harmonic, also
-    /// one that misses by [`NEAR_MISS`].
-    ///
-    /// ```
-    /// use lindstedt_algebra::{AmplitudeAlgebra, Ring};
-    /// use lindstedt_phase::amplitudes::{Amplitudes, scalars::Integers};
-    /// let algebra = Amplitudes::off_resonance(Integers, &1.into(), None).ok_or("exponents")?;
-    /// let z = algebra.amplitude(0);
-    /// // d/dt (z zbar) = 0.
-    /// assert!(algebra.is_zero(&algebra.by_time(&algebra.mul(&z, &algebra.conjugate(&z)))));
-    /// # Ok::<(), &str>(())
-    /// ```
-    pub fn off_resonance(
-        scalars: S,
-        frequency: &S::Number,
-        force: Option<&S::Number>,
-    ) -> Option<Self> {
-        let generators: Vec<_> = [Some(frequency), force]
-            .into_iter()
-            .flatten()
-            .map(|rate| scalars.numerator(rate))
-            .collect();
-        let multiples = |list: [i32; 3]| list.map(Rational::from).to_vec();
-        let amplitudes = vec![multiples([0, 1, 0])[..=generators.len()].to_vec()];
-        let forces = match force {
-            Some(_) => vec![multiples([0, 0, 1])],
-            None => vec![vec![Rational::new()]],
-        };
-        let algebra = Self::of_rates(scalars, Rates { amplitudes, forces, generators }, &[])?;
-        Some(Self { refuses: true, ..algebra })
-    }
-
-    /// The algebra with delays.
-    #[must_use]
-    pub fn with_delays(mut self, delays: &[Delay<S::Number>]) -> Self {
-        let turn = |[cos, sin]: &[S::Number; 2]| {
-            let sin = self.weighted(&self.number(sin), true, |_| Rational::from(-1));
-            self.total(self.number(cos), &sin, false)
-        };
-        let late = |delay: &Delay<S::Number>| Late {
-            time: self.number(&delay.time),
-            turns: delay.turns.iter().map(turn).collect(),
-        };
-        let delays = delays.iter().map(late).collect();
-        self.delays = delays;
-        self
-    }
-
     /// The algebra whose products are broken off when `stop` says so.
     #[must_use]
     pub fn with_stop(self, stop: Stop) -> Self {
@@ -291,23 +229,6 @@ impl<S: Scalars> Amplitudes<S> {
     pub fn symbol(&self, name: &str) -> Option<AmplitudeElement<S::Element>> {
         let i = self.symbols.iter().position(|known| known == name)?;
         Some(self.monomial(self.layout.unit(self.phases() + i), true))
-    }
-
-    /// A number as a constant.
-    pub fn number(&self, number: &S::Number) -> AmplitudeElement<S::Element> {
-        let (e, denominator) = self.scalars.numerator(number);
-        self.single(0, [e, self.scalars.zero()], denominator, true)
-    }
-
-    /// The number that f is, if it is a real constant.
-    pub fn as_number(&self, f: &AmplitudeElement<S::Element>) -> Option<S::Number> {
-        match &f.terms[..] {
-            [] => Some(self.scalars.number(&self.scalars.zero(), &f.denominator)),
-            [(0, [re, im])] if self.scalars.is_zero(im) => {
-                Some(self.scalars.number(re, &f.denominator))
-            }
-            _ => None,
-        }
     }
 
     /// An element e of S as a constant e/1.

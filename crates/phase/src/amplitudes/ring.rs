@@ -7,12 +7,9 @@ use rug::{Integer, Rational};
 use rustc_hash::FxHashMap;
 use std::sync::atomic::Ordering;
 
-type Terms<E> = Vec<Term<E>>;
+pub(super) type Terms<E> = Vec<Term<E>>;
 
-type Pair<'a, E> = (&'a AmplitudeElement<E>, &'a AmplitudeElement<E>);
-
-/// The products of which the real and the imaginary part of a coefficient are sums.
-type Factors<'a, E> = [Vec<(&'a E, &'a E)>; 2];
+pub(super) type Pair<'a, E> = (&'a AmplitudeElement<E>, &'a AmplitudeElement<E>);
 
 /// Sums of products in progress: places of words in a list.
 struct Sum<E> {
@@ -106,7 +103,7 @@ impl<S: Scalars> Amplitudes<S> {
     }
 
     /// The sum of two sorted lists, with factors.
-    fn merged(
+    pub(super) fn merged(
         &self,
         a: Terms<S::Element>,
         b: &[Term<S::Element>],
@@ -146,48 +143,6 @@ impl<S: Scalars> Amplitudes<S> {
         let factors = [&a, b].map(|f| Integer::from(&denominator / &f.denominator));
         let terms = self.merged(a.terms, &b.terms, factors.each_ref());
         self.canonical(denominator, terms, real)
-    }
-
-    /// The sum of products over scalars without denominators, every coefficient at once. Of a real sum the monomials
-    /// whose words are not below those of their conjugates are formed.
-    fn gathered(&self, pairs: &[Pair<'_, S::Element>], real: bool) -> AmplitudeElement<S::Element> {
-        let scalars = &self.scalars;
-        let minus = |(a, _): &Pair<'_, S::Element>| -> Vec<S::Element> {
-            a.terms.iter().map(|(_, [_, im])| scalars.neg(im)).collect()
-        };
-        let minus: Vec<_> = pairs.iter().map(minus).collect();
-        let mut sums: FxHashMap<Word, Factors<'_, S::Element>> = FxHashMap::default();
-        for ((a, b), minus) in pairs.iter().zip(&minus) {
-            for ((v, [re, im]), minus) in a.terms.iter().zip(minus) {
-                for (w, [x, y]) in &b.terms {
-                    let word = v + w;
-                    let mirrored = if real { self.mirrored(word) } else { Word::MIN };
-                    if word < mirrored {
-                        continue;
-                    }
-                    let all = [(0, re, x), (0, minus, y), (1, re, y), (1, im, x)];
-                    let parts = if word == mirrored { &all[..2] } else { &all };
-                    let nonzero = |(_, c, d): &&(usize, &S::Element, &S::Element)| {
-                        !scalars.is_zero(c) && !scalars.is_zero(d)
-                    };
-                    let lists = sums.entry(word).or_default();
-                    parts.iter().filter(nonzero).for_each(|&(i, c, d)| lists[i].push((c, d)));
-                }
-            }
-        }
-        let sum = |(word, lists): (Word, Factors<'_, S::Element>)| {
-            let sum = |list: Vec<_>| match self.stop.asked() {
-                true => scalars.zero(),
-                false => scalars.sum_of_products(&list),
-            };
-            (word, lists.map(sum))
-        };
-        let mut terms: Terms<S::Element> = sums.into_iter().map(sum).collect();
-        match real {
-            true => self.complete(&mut terms),
-            false => terms.sort_unstable_by_key(|(word, _)| *word),
-        }
-        self.canonical(Integer::from(1), terms, real)
     }
 
     fn products(&self, pairs: &[Pair<'_, S::Element>]) -> AmplitudeElement<S::Element> {

@@ -182,7 +182,7 @@ impl<K: RationalAlgebra> Scalars for Over<K> {
         self.ring.mul(a, b)
     }
     fn scale(&self, e: &K::Element, q: &Rational) -> K::Element {
-        self.ring.scale(e, q)
+        if *q == 1 || self.ring.is_zero(e) { e.clone() } else { self.ring.scale(e, q) }
     }
     fn times(&self, e: &K::Element, n: &Integer) -> K::Element {
         self.ring.scale(e, &Rational::from(n))
