@@ -237,16 +237,22 @@ mod tests {
         let cubic = x.clone() * x.clone() * x.clone() - number(1, 3) * slip.clone() * slip.clone();
         let nested = (x.clone() - number(3, 1) * (v.clone() + x.clone() * v.clone())) - cubic;
         let root = (number(2, 1) + x.clone() * x.clone()).pow(-1) * v.clone();
-        let force = nested.clone() + number(-5, 7) * (nested * wave.clone() - x.clone())
+        let force = nested.clone()
+            + number(-5, 7) * (nested * wave.clone() - x.clone())
             + apply(&slip, Function::Sign) * number(3, 10)
-            + apply(&x, Function::Exp) * number(1, 9) - root;
+            + apply(&x, Function::Exp) * number(1, 9)
+            - root;
         let model = Model::first_order(&[], &[v, force - wave]).unwrap().linearised();
-        let system = model.compile(Doubles, &Parameters::new().with("a", Quantity::from(1))).unwrap();
+        let system =
+            model.compile(Doubles, &Parameters::new().with("a", Quantity::from(1))).unwrap();
         let tape = &system.tape;
         let random = |k: usize| ((k * 7919 % 1013) as f64 - 506.0) / 700.0;
         let mut rows = Rows::new(tape.rows(), 24, &0.0);
         for state in 0..tape.states {
-            rows.row_mut(state).iter_mut().enumerate().for_each(|(n, c)| *c = random(24 * state + n));
+            rows.row_mut(state)
+                .iter_mut()
+                .enumerate()
+                .for_each(|(n, c)| *c = random(24 * state + n));
         }
         let (mut other, modes) = (rows.clone(), vec![1; system.switches.len()]);
         let (mut sum, mut scratch) = (0.0, 0.0);

@@ -310,7 +310,9 @@ mod tests {
                 .wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
-        let mut arguments = vec![0.6, 0.78, 0.935, 1.065, 1.17, 1.255, 1.32, 0.6875, 1.0, 1.2109375, 3.0e6, 2999999.5];
+        let mut arguments = vec![
+            0.6, 0.78, 0.935, 1.065, 1.17, 1.255, 1.32, 0.6875, 1.0, 1.2109375, 3.0e6, 2999999.5,
+        ];
         for n in 1..2000 {
             // The multiples of pi/2, their neighbours, and distances 10^-16 ... 1 from them.
             let near = f64::from(n) * FRAC_PI_2;
