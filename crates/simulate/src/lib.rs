@@ -66,6 +66,7 @@ mod saddle;
 mod second_order;
 mod segment;
 mod series;
+mod sums;
 mod switching;
 mod system;
 mod tangency;
