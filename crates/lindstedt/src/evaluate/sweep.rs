@@ -174,7 +174,8 @@ impl Oscillator {
                 return Err(Refused::stopped("stopped before all orders", "").into());
             }
             let motion = found.value;
-            let ([amplitude, _], [amplitude_rate, phase_rate]) = (motion.start, motion.rate_numbers);
+            let ([amplitude, _], [amplitude_rate, phase_rate]) =
+                (motion.start, motion.rate_numbers);
             let (order, at) = (motion.order, motion.at);
             Ok(SweptRates { amplitude, amplitude_rate, phase_rate, order, at })
         })

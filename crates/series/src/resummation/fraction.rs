@@ -46,18 +46,14 @@ pub(super) fn convergents(
     let work = bits.checked_add(u32::try_from(GUARD[0] + GUARD[1] * order).ok()?)?;
     let exponent = scale_exponent(c);
     let scaled = c.iter().zip(0i32..);
-    let scaled: Vec<Float> = scaled
-        .map(|(x, n)| Float::with_val(work, x) << exponent.saturating_mul(n))
-        .collect();
+    let scaled: Vec<Float> =
+        scaled.map(|(x, n)| Float::with_val(work, x) << exponent.saturating_mul(n)).collect();
     let one = || Float::with_val(work, 1);
     let (head, tail) = scaled.split_first()?;
     let mut before =
         Convergent { numerator: vec![one()], denominator: Vec::new(), rest: vec![-one()] };
-    let mut now = Convergent {
-        numerator: vec![head.clone()],
-        denominator: vec![one()],
-        rest: tail.to_vec(),
-    };
+    let mut now =
+        Convergent { numerator: vec![head.clone()], denominator: vec![one()], rest: tail.to_vec() };
     let pade = |k: usize, found: &Convergent| {
         (k, Pade::of_parts(&found.numerator, &found.denominator, exponent, bits))
     };
