@@ -19,6 +19,8 @@ type Sums = [u64; LANES];
 const ZERO: Residues = [0; LANES];
 /// Products that are added up before their sum is folded: 12 (p - 1)^2 + 2^32 p < 2^64.
 const CHUNK: usize = 12;
+/// Rows that wide vectors take in one pass over the sums.
+const PASS: usize = 4;
 
 /// The product of the fields Z/p of eight primes. It has zero divisors: what vanishes modulo one of the primes is
 /// not zero, and has no reciprocal.
@@ -81,6 +83,12 @@ impl PrimeFields {
     /// Runs a loop as it is compiled for this processor; all that it calls must be inlined.
     pub(super) fn vectorised<L: pulp::NullaryFnOnce>(&self, lanes: L) -> L::Output {
         self.arch.dispatch(lanes)
+    }
+
+    /// Whether loops are compiled for wide vectors, where more of them pays.
+    #[inline(always)]
+    fn is_wide(&self) -> bool {
+        !matches!(self.arch, pulp::Arch::Scalar)
     }
 
     /// t / 2^32 mod p for t < 2^32 p.
@@ -158,12 +166,13 @@ impl PrimeFields {
         pairs: &[(&[Residues], &[Residues])],
         length: usize,
     ) -> Vec<Residues> {
-        self.vectorised(Pointwise { fields: self, pairs, length })
+        self.vectorised(SumOfProducts { fields: self, pairs, length })
     }
 
     /// sum_i c_i a_i\[j\] for every j, as long as the longest row.
     pub(super) fn combination(&self, terms: &[(&[Residues], Residues)]) -> Vec<Residues> {
-        self.vectorised(Combination { fields: self, terms })
+        let length = terms.iter().map(|(row, _)| row.len()).max().unwrap_or(0);
+        self.vectorised(SumOfProducts { fields: self, pairs: terms, length })
     }
 
     /// 1/a for every a, with one inversion; nothing if one of them is no unit.
@@ -235,69 +244,101 @@ impl PrimeFields {
     }
 }
 
-struct Pointwise<'a> {
-    fields: &'a PrimeFields,
-    pairs: &'a [(&'a [Residues], &'a [Residues])],
-    length: usize,
+/// Factors of one product in every place: a row, or one number.
+trait Factor: Copy {
+    /// As far as both reach.
+    fn within(self, length: usize) -> Self;
+    fn at(&self, j: usize) -> &Residues;
 }
 
-impl pulp::NullaryFnOnce for Pointwise<'_> {
-    type Output = Vec<Residues>;
-
+impl Factor for &[Residues] {
     #[inline(always)]
-    fn call(self) -> Vec<Residues> {
-        let mut result = Vec::with_capacity(self.length);
-        for j in 0..self.length {
-            let mut t = [0; LANES];
-            for pairs in self.pairs.chunks(CHUNK) {
-                self.fields.fold(&mut t);
-                for (a, b) in pairs {
-                    accumulate(&mut t, &a[j], &b[j]);
-                }
-            }
-            result.push(self.fields.reduce_any(t));
-        }
-        result
+    fn within(self, length: usize) -> Self {
+        &self[..length]
+    }
+    #[inline(always)]
+    fn at(&self, j: usize) -> &Residues {
+        &self[j]
     }
 }
 
-struct Combination<'a> {
-    fields: &'a PrimeFields,
-    terms: &'a [(&'a [Residues], Residues)],
+impl Factor for Residues {
+    #[inline(always)]
+    fn within(self, _: usize) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn at(&self, _: usize) -> &Residues {
+        self
+    }
 }
 
-impl pulp::NullaryFnOnce for Combination<'_> {
+/// sum_i a_i\[j\] b_i\[j\] for every j below `length`, zero where a row has ended.
+struct SumOfProducts<'a, B> {
+    fields: &'a PrimeFields,
+    pairs: &'a [(&'a [Residues], B)],
+    length: usize,
+}
+
+impl<B: Factor> SumOfProducts<'_, B> {
+    /// Adds the products of some rows, after a fold.
+    #[inline(always)]
+    fn add(&self, sums: &mut [Sums], pairs: &[(&[Residues], B)], folds: bool) {
+        let common = pairs.iter().fold(sums.len(), |least, (row, _)| least.min(row.len()));
+        let (whole, rest) = sums.split_at_mut(common);
+        if let (true, &[a, b, c, d]) = (self.fields.is_wide(), pairs) {
+            let rows = [a, b, c, d].map(|(a, b)| (a.within(common), b.within(common)));
+            for (j, sum) in whole.iter_mut().enumerate() {
+                let mut t = *sum;
+                if folds {
+                    self.fields.fold(&mut t);
+                }
+                for (a, b) in &rows {
+                    accumulate(&mut t, a.at(j), b.at(j));
+                }
+                *sum = t;
+            }
+        } else {
+            for (j, sum) in whole.iter_mut().enumerate() {
+                let mut t = *sum;
+                if folds {
+                    self.fields.fold(&mut t);
+                }
+                for (a, b) in pairs {
+                    accumulate(&mut t, a.at(j), b.at(j));
+                }
+                *sum = t;
+            }
+        }
+        for sum in rest.iter_mut().filter(|_| folds) {
+            self.fields.fold(sum);
+        }
+        for (row, b) in pairs {
+            for (j, (sum, a)) in rest.iter_mut().zip(&row[common..]).enumerate() {
+                accumulate(sum, a, b.at(common + j));
+            }
+        }
+    }
+}
+
+impl<B: Factor> pulp::NullaryFnOnce for SumOfProducts<'_, B> {
     type Output = Vec<Residues>;
 
     #[inline(always)]
     fn call(self) -> Vec<Residues> {
-        let Self { fields, terms } = self;
-        let mut sums: Vec<Sums> = Vec::new();
-        for (row, _) in terms {
-            sums.resize(sums.len().max(row.len()), [0; LANES]);
-        }
-        for terms in terms.chunks(CHUNK) {
-            let common = terms.iter().fold(sums.len(), |least, (row, _)| least.min(row.len()));
-            for (j, sum) in sums[..common].iter_mut().enumerate() {
-                let mut t = *sum;
-                fields.fold(&mut t);
-                for (row, c) in terms {
-                    accumulate(&mut t, &row[j], c);
+        let mut sums = vec![[0; LANES]; self.length];
+        for pairs in self.pairs.chunks(CHUNK) {
+            if self.fields.is_wide() {
+                for (done, pairs) in pairs.chunks(PASS).enumerate() {
+                    self.add(&mut sums, pairs, done == 0);
                 }
-                *sum = t;
-            }
-            for sum in &mut sums[common..] {
-                fields.fold(sum);
-            }
-            for (row, c) in terms {
-                for (sum, a) in sums[common..].iter_mut().zip(&row[common..]) {
-                    accumulate(sum, a, c);
-                }
+            } else {
+                self.add(&mut sums, pairs, true);
             }
         }
         let mut result = Vec::with_capacity(sums.len());
         for sum in sums {
-            result.push(fields.reduce_any(sum));
+            result.push(self.fields.reduce_any(sum));
         }
         result
     }

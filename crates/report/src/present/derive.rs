@@ -237,7 +237,7 @@ impl Board<'_> {
             (_, Some(last)) => vanishes(last) + ".",
             (Solution::FrequencyOnly { primes: Some(primes) }, None) => format!(
                 "From {primes} primes of 30 bits, more than its numbers can hold by bounds proved in advance; no solution.\n\
-                 One image was substituted into the equation, the others at one phase each: a wrong one passes with a\n\
+                 Four images were substituted into the equation, the others at three phases each: a wrong one passes with a\n\
                  chance below 2^-50."
             ),
             (Solution::FrequencyOnly { primes: None }, None) => {
