@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
@@ -99,27 +99,10 @@ class FrequencyFunction(_OfParameters):
     0.2 microseconds per point and core. Doubles, each with its estimated error. An amplitude that is not given is
     the oscillator's; where it does not vary, none is taken."""
 
-    @overload
-    def at(self, small: Value, amplitude: Value | None = None, digits: int = 30) -> Number: ...
-
-    @overload
-    def at(self, small: Sequence[Value], amplitude: Value | None = None, digits: int = 30) -> list[Number | None]: ...
-
-    def at(
-        self, small: Value | Sequence[Value], amplitude: Value | None = None, digits: int = 30
-    ) -> Number | list[Number | None]:
-        """omega to so many digits, with its error, at one point by `evaluate`; at a sequence of points by its sweep, derived
-        once, None where there is not one digit."""
-        if isinstance(small, Sequence) and not isinstance(small, str):
-            if not small:
-                return []
-            values = self._values(small[0], amplitude)
-            name = self.parameters[0]
-            del values[name]
-            found = self._evaluated(digits, {"sweep": {name: list(small)}}, **values)
-            return [point.get("frequency") for point in found["points"]]
-        one: Number = self._evaluated(digits, {}, **self._values(small, amplitude))["frequency"]
-        return one
+    def at(self, small: Value, amplitude: Value | None = None, digits: int = 30) -> Number:
+        """omega at one point to so many digits, with its error: by `evaluate`."""
+        found: Number = self._evaluated(digits, {}, **self._values(small, amplitude))["frequency"]
+        return found
 
     def with_error(self, small: ArrayLike, amplitude: ArrayLike | None = None) -> tuple[Doubles, Doubles]:
         """omega and its estimated errors, infinite where the sum has not one digit."""
