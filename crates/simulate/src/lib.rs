@@ -66,7 +66,6 @@ mod saddle;
 mod second_order;
 mod segment;
 mod series;
-mod sums;
 mod switching;
 mod system;
 mod tangency;

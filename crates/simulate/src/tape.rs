@@ -6,8 +6,10 @@
 //! are those of a = b c, a' = b' a (exponential) and so on (Moore, Interval Analysis, 1966;
 //! Jorba and Zou, Experimental Mathematics 14, 2005, section 2).
 
+mod sums;
+
+use self::sums::{Step, square, steps};
 use crate::integrator::real::Real;
-use crate::sums::{Step, square, steps};
 
 /// One operation; the numbers are rows unless the name says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,8 +10,8 @@
 //! written. Every product and every sum is rounded as the operations round it, in their order, so that the levels are
 //! those of the operations, bit for bit (a zero may have another sign).
 
+use super::{Op, Rows, Tape};
 use crate::integrator::real::Real;
-use crate::tape::{Op, Rows, Tape};
 
 /// u of c u.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
