@@ -224,10 +224,9 @@ fn the_residual_check_reads_constants_inside_exp() {
 fn an_unlucky_prime_is_no_verdict() {
     // The engine's own primes as coefficients: modulo one of them the stiffness vanishes.
     let (_, roots) = lindstedt::unstable::phase::Modular::points_for_degree(5);
-    let fields =
-        lindstedt::unstable::phase::modular::PrimeField::with_roots_of_unity(roots, 1 << 61);
-    for field in fields.take(3) {
-        let stiffness = Expression::Number(Rational::from(field.prime()));
+    let mut groups = lindstedt::unstable::phase::modular::PrimeFields::with_roots_of_unity(roots);
+    for prime in groups.next().unwrap().primes().into_iter().take(3) {
+        let stiffness = Expression::Number(Rational::from(prime));
         let mut problem = problems::find("duffing").unwrap();
         problem.equation = Expression::ACCELERATION
             + stiffness * Expression::DISPLACEMENT

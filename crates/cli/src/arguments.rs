@@ -18,24 +18,59 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// What is built in, with equation, parameters and defaults.
+    #[command(after_help = "\
+        Example:\n\
+        \x20 lindstedt problems --show duffing")]
     Problems(ProblemsOptions),
     /// Derive the expansion of a problem, order by order, and check it.
+    #[command(after_help = "\
+        Examples:\n\
+        \x20 lindstedt derive duffing --order 3\n\
+        \x20 lindstedt derive \"x'' + x = eps*(1 - x^4)*x'\" --normalisation free --order 3")]
     Derive(DeriveOptions),
     /// The period and the solution at given parameters, by resummation of the expansion.
+    #[command(after_help = "\
+        Examples:\n\
+        \x20 lindstedt evaluate duffing --set eps=1/2 --order 12 --digits 12\n\
+        \x20 lindstedt evaluate duffing --order 4 --sweep eps=0..1:3 --digits 8")]
     Evaluate(EvaluateOptions),
     /// The Melnikov threshold of homoclinic chaos: value, zeros, cusps, curves, surfaces.
+    #[command(after_help = "\
+        Examples:\n\
+        \x20 lindstedt threshold stick-slip --digits 10\n\
+        \x20 lindstedt threshold stick-slip --sweep vstar=0..1:5 --digits 8")]
     Threshold(ThresholdOptions),
     /// Steady states at resonance: response curves, folds, stability; all states, their number proved.
+    #[command(after_help = "\
+        Example:\n\
+        \x20 lindstedt respond \"x'' + x + eps*(x'/5 + x^3) = eps*F*cos((1 + eps*sigma)*t)\" --set eps=1/10 --set F=1/2 --sweep sigma=-1..3")]
     Respond(RespondOptions),
     /// Stability of the vibro-impact orbit: the averaged prediction beside the exact truth, charts.
+    #[command(after_help = "\
+        Examples:\n\
+        \x20 lindstedt stability vibro-impact --f64\n\
+        \x20 lindstedt stability vibro-impact --sweep A=-0.3..0.3:5 --sweep B=-0.3..0.3:5 --f64")]
     Stability(StabilityOptions),
     /// Speed against accuracy: every tier at every order and precision, timed, beside the truth.
+    #[command(after_help = "\
+        Example:\n\
+        \x20 lindstedt trade power-law --set n=3/2 --orders 4,16 --digits 30 --harmonics 16 --repeats 1")]
     Trade(TradeOptions),
     /// The motion in the time domain, with impacts, sticking and delay: events, sections, figures.
+    #[command(after_help = "\
+        Examples:\n\
+        \x20 lindstedt simulate duffing --periods 1 --digits 20\n\
+        \x20 lindstedt simulate vibro-impact --impacts 3 --digits 12")]
     Simulate(SimulateOptions),
     /// The expansion against the time domain: observed order of accuracy, verdict.
+    #[command(after_help = "\
+        Example:\n\
+        \x20 lindstedt verify duffing --order 3")]
     Verify(VerifyOptions),
     /// Read the paper: derive it, compare it with the print, tabulate what is true.
+    #[command(after_help = "\
+        Example:\n\
+        \x20 lindstedt paper --quick")]
     Paper(PaperOptions),
     /// A script with which a shell completes commands and options.
     Completions(CompletionsOptions),
@@ -69,6 +104,9 @@ pub struct Common {
     /// Stop before more memory is taken (512M, 8G), with what is finished (exit code 4).
     #[arg(long, global = true, value_name = "SIZE", default_value = "8G", value_parser = memory_size)]
     pub limit_memory: u64,
+    /// Threads for what runs on several cores; by default RAYON_NUM_THREADS, else all cores. The results are the same.
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
 }
 
 #[derive(Debug, Args)]
@@ -158,9 +196,9 @@ pub struct EvaluateOptions {
     /// up to it, the speed of a belt at which they begin to stick.
     #[arg(long, value_name = "AMPLITUDE", conflicts_with_all = ["prove", "sweep", "times", "code", "start", "state", "order", "plot"])]
     pub cycles: Option<String>,
-    /// Period and frequency over NAME=LO..HI:COUNT or NAME=V1,V2,...; at most two, the first along
-    /// the horizontal axis.
-    #[arg(long, value_name = "NAME=LO..HI:COUNT", conflicts_with_all = ["times", "code", "phase", "start", "state"])]
+    /// Period and frequency, of an averaged motion its rates at the start, over NAME=LO..HI:COUNT or NAME=V1,V2,...; at
+    /// most two, the first along the horizontal axis.
+    #[arg(long, value_name = "NAME=LO..HI:COUNT", conflicts_with_all = ["times", "code", "phase"])]
     pub sweep: Vec<String>,
     /// x(t) = X(omega t + PHASE).
     #[arg(long, value_name = "PHASE", default_value = "0", allow_hyphen_values = true)]

@@ -17,7 +17,8 @@ pub fn run(options: &EvaluateOptions, session: &Session<'_>) -> Outcome {
     if let Some(largest) = &options.cycles {
         return session.show(oscillator.first_order(&Exact::parse(largest)?, &work), &[]);
     }
-    let shown = !options.plot.is_empty() || options.code.is_some();
+    let one = options.sweep.is_empty();
+    let shown = one && !options.plot.is_empty() || options.code.is_some();
     let times = options.times.as_deref().map(Times::parse).transpose()?;
     let times = times.or_else(|| shown.then(Times::default));
     let drifts = oscillator.condition() == Some(Condition::FreeAmplitude);
@@ -79,7 +80,6 @@ fn averaged(
         (sums, "--resum", "the averaged series is broken off at --order"),
         (options.code.is_some(), "--code", "an averaged motion is no Fourier series in one phase"),
         (options.phase.trim() != "0", "--phase", "--start A,PSI has the phase"),
-        (!options.sweep.is_empty(), "--sweep", "an averaged motion has no period"),
     ] {
         if asked {
             let message = format!("{what} does not belong to averaged motions");
@@ -91,5 +91,10 @@ fn averaged(
     let start = start.map_err(Error::from)?;
     let order = options.order.map(|order| order as usize);
     let question = AveragedMotion { order, start, times };
+    if !options.sweep.is_empty() {
+        let (columns, rows) = axes(&options.sweep)?;
+        return session
+            .show(oscillator.averaged_sweep(&question, columns, rows, work), &options.plot);
+    }
     session.show(oscillator.averaged_motion(&question, work), &options.plot)
 }

@@ -44,6 +44,13 @@ impl<'a> Session<'a> {
         if let Ok(style) = ProgressStyle::with_template("{spinner} [{elapsed}] {msg}") {
             bar.set_style(style);
         }
+        if let Some(threads) = common.threads {
+            // Nothing has used the pool before, so this is the first and the only time that it is made.
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads));
+            if let Err(error) = pool.build_global() {
+                warn(&format!("--threads {threads}: {error}"));
+            }
+        }
         let limits = Limits::new(common.limit_seconds, common.limit_memory);
         let watch = Watch::start(limits, common.format, bar.clone());
         Self { common, limits, watch, bar }

@@ -26,8 +26,8 @@ pub enum DerivationError {
     /// Averaging at resonance does not take the equations.
     #[error(transparent)]
     Resonance(#[from] crate::resonance::ResonanceError),
-    /// No more primes of 61 bits with the roots of unity that the order needs.
-    #[error("no more 61-bit primes for this order")]
+    /// No more primes of 30 bits with the roots of unity that the order needs.
+    #[error("no more 30-bit primes for this order")]
     OutOfPrimes,
     /// A rational value is needed where the parameter stands.
     #[error(

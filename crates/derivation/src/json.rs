@@ -36,9 +36,9 @@ impl Serialize for Derivation {
             Solution::Rational(proved) => {
                 ("multi-modular, proved", Some((proved.primes, proved.proof_primes)))
             }
-            // One more is substituted in full.
+            // Two more judge what is lifted.
             Solution::FrequencyOnly { primes: Some(primes) } => {
-                ("multi-modular frequency, checked at phases", Some((*primes, primes + 1)))
+                ("multi-modular frequency, checked at phases", Some((*primes, primes + 2)))
             }
             Solution::FrequencyOnly { primes: None } => ("energy integral", None),
             Solution::Lobachevsky(_) => ("Lobachevsky ring over Q[mu_m]", None),

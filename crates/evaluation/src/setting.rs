@@ -14,6 +14,7 @@ use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
 use rug::Rational;
 use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The forms of equations about whose period more is known than its series.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +54,18 @@ pub struct Small {
     pub name: String,
 }
 
+/// What an expansion depends on: the equation that is expanded and the unit of its time, the condition, the order, the
+/// amplitude in the coefficients.
+type Key = (Expression, Rational, Condition, usize, Option<Exact>);
+
+/// At most so many expansions are kept.
+const KEPT: usize = 8;
+
+/// Expansions that were derived: settings that share it derive only once what differs in the value of the small parameter
+/// alone.
+#[derive(Clone, Debug, Default)]
+pub struct Known(Arc<Mutex<Vec<(Key, Derivation)>>>);
+
 /// A problem with a value for everything.
 #[derive(Clone, Debug)]
 pub struct Setting {
@@ -70,6 +83,8 @@ pub struct Setting {
     pub amplitude: Exact,
     /// What [`derive()`] is told.
     parameters: BTreeMap<String, Exact>,
+    /// What was derived before, where it is shared.
+    known: Option<Known>,
 }
 
 /// Refuses a name that is neither on the card nor the small parameter.
@@ -186,7 +201,14 @@ impl Setting {
             .into());
         }
         let at = values.all(&small);
-        Ok(Self { problem: problem.clone(), condition, form, at, small, amplitude, parameters })
+        let (problem, known) = (problem.clone(), None);
+        Ok(Self { problem, condition, form, at, small, amplitude, parameters, known })
+    }
+
+    /// The same, which derives nothing that is known.
+    #[must_use]
+    pub fn sharing(self, known: &Known) -> Self {
+        Self { known: Some(known.clone()), ..self }
     }
 
     /// The value of the small parameter.
@@ -219,7 +241,25 @@ impl Setting {
             stop: stop.clone(),
             ..Settings::default()
         };
-        derive(&self.problem, &settings, observer)
+        let Some(Known(known)) = &self.known else {
+            return derive(&self.problem, &settings, observer);
+        };
+        let amplitude = self.parameters.get("amplitude").cloned();
+        let prepared = prepare(&self.problem, &settings)?;
+        let (equation, unit) = (prepared.problem.equation, prepared.time_scale);
+        let key: Key = (equation, unit, self.condition, order, amplitude);
+        // Nothing is derived under the lock: what is derived runs on the threads that wait for it.
+        let list = || known.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = list().iter().find(|(of, _)| *of == key).map(|(_, found)| found.clone());
+        if let Some(found) = before {
+            return Ok(found);
+        }
+        let found = derive(&self.problem, &settings, observer)?;
+        let mut list = list();
+        if found.order == order && !stop.asked() && list.len() < KEPT {
+            list.push((key, found.clone()));
+        }
+        Ok(found)
     }
 }
 

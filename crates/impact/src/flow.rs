@@ -30,14 +30,17 @@ pub struct Rates<S> {
 ///
 /// ```text
 /// e_0 = exp(-i alpha T)
-/// G_(m-1)  = A (delta_(m,1) - e_(m-1)) + B (lambda_(m-1) - sum_j lambda_j e_(m-1-j)) - c lambda_(m-1)
-/// lambda_m = (G_(m-1) - sum_(j=1..m-1) lambda_j lambda_(m-j))/(2 i alpha)
+/// G_(m-1)  = A (delta_(m,1) - e_(m-1)) + (B - c) lambda_(m-1) - i alpha B e_(m-1)
+/// w_m      = B e_m + lambda_(m+1)
+/// lambda_m = (G_(m-1) - sum_(j=1..m-1) lambda_j w_(m-1-j))/(2 i alpha)
 /// e_m      = -(T/m) sum_(j=1..m) j lambda_j e_(m-j)
 /// ```
 ///
+/// The products with lambda_j of B sum_j lambda_j e_(m-1-j) and of sum_j lambda_j lambda_(m-j) are one, with w.
+///
 /// Cost: order^2 multiplications. Certified for balls; for doubles a few ulp times the order.
 pub fn rates<S: Real>(parameters: &Parameters<S>, order: usize) -> Rates<S> {
-    let mut scratch = Scratch { terms: Vec::new(), delayed: Vec::new() };
+    let mut scratch = Scratch::new(order);
     let time = parameters.period();
     scratch.fill(parameters, &time, &free_delay(parameters, &time), order);
     Rates { terms: scratch.terms }
@@ -51,14 +54,20 @@ pub(crate) fn free_delay<S: Real>(parameters: &Parameters<S>, time: &S) -> Compl
 
 /// Buffers of the recursion, reused along a chart.
 pub(crate) struct Scratch<S> {
+    /// lambda_n.
     pub(crate) terms: Vec<Complex<S>>,
+    /// n lambda_n, from n = 1 on.
+    slopes: Vec<Complex<S>>,
+    /// e_n.
     delayed: Vec<Complex<S>>,
+    /// w_n.
+    coupled: Vec<Complex<S>>,
 }
 
 impl<S: Real> Scratch<S> {
     pub(crate) fn new(order: usize) -> Self {
-        let capacity = order.saturating_add(1);
-        Self { terms: Vec::with_capacity(capacity), delayed: Vec::with_capacity(capacity) }
+        let buffer = || Vec::with_capacity(order.min(1 << 16) + 1);
+        Self { terms: buffer(), slopes: buffer(), delayed: buffer(), coupled: buffer() }
     }
     /// Runs the recursion; allocates only while the buffers grow.
     pub(crate) fn fill(
@@ -69,39 +78,43 @@ impl<S: Real> Scratch<S> {
         order: usize,
     ) {
         let Parameters { alpha, damping, displacement_gain: a, velocity_gain: b, .. } = parameters;
-        let zero = alpha.integer(0);
-        self.terms.clear();
-        self.delayed.clear();
-        self.terms.push(Complex::new(zero.clone(), alpha.clone()));
+        for buffer in [&mut self.terms, &mut self.slopes, &mut self.delayed, &mut self.coupled] {
+            buffer.clear();
+        }
+        self.terms.push(Complex::new(alpha.integer(0), alpha.clone()));
         self.delayed.push(delay.clone());
         let half_inverse = alpha.integer(1) / alpha.doubled();
+        let loss = b.clone() - damping;
         for m in 1..=order {
-            let (lambda, e) = (&self.terms, &self.delayed);
-            let mut displacement = -e[m - 1].clone();
+            let e = &self.delayed[m - 1];
+            let driven = e.scaled(b);
+            let mut g = self.terms[m - 1].scaled(&loss) - e.scaled(a);
             if m == 1 {
-                displacement.re = displacement.re + alpha.integer(1);
+                g.re = g.re + a;
             }
-            let mut velocity = lambda[m - 1].clone();
-            for j in 0..m {
-                velocity = velocity - lambda[j].clone() * &e[m - 1 - j];
-            }
-            let mut g = displacement.scaled(a) + velocity.scaled(b) - lambda[m - 1].scaled(damping);
-            for j in 1..m {
-                g = g - lambda[j].clone() * &lambda[m - j];
+            g.re = g.re + driven.im.clone() * alpha;
+            g.im = g.im - driven.re.clone() * alpha;
+            for (lambda, w) in self.terms[1..].iter().zip(self.coupled.iter().rev()) {
+                g = g - lambda.clone() * w;
             }
             // 1/(2 i alpha)
             let next = Complex::new(g.im * &half_inverse, -(g.re * &half_inverse));
-            self.terms.push(next);
             if m < order {
-                let mut sum = Complex::real(zero.clone());
-                for j in 1..=m {
-                    let weight = alpha.integer(i64::try_from(j).unwrap_or(i64::MAX));
-                    sum = sum + self.terms[j].scaled(&weight) * &self.delayed[m - j];
-                }
-                let factor = -(time.clone() / alpha.integer(i64::try_from(m).unwrap_or(i64::MAX)));
-                self.delayed.push(sum.scaled(&factor));
+                self.continue_with(&next, driven, time);
             }
+            self.terms.push(next);
         }
+    }
+    /// w_(m-1) and e_m from lambda_m and B e_(m-1).
+    fn continue_with(&mut self, next: &Complex<S>, driven: Complex<S>, time: &S) {
+        let m = i64::try_from(self.terms.len()).unwrap_or(i64::MAX);
+        let weight = time.integer(m);
+        self.coupled.push(driven + next);
+        self.slopes.push(next.scaled(&weight));
+        let zero = Complex::real(time.integer(0));
+        let products = self.slopes.iter().zip(self.delayed.iter().rev());
+        let sum = products.fold(zero, |sum, (slope, e)| sum + slope.clone() * e);
+        self.delayed.push(sum.scaled(&-(time.clone() / weight)));
     }
     /// The flow of the sum of all terms (eps = 1).
     pub(crate) fn flow(&self) -> Option<Flow<S>> {

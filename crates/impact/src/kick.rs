@@ -68,12 +68,14 @@ pub struct ReturnMap {
     velocity_gain: f64,
     velocity: f64,
     saltation: f64,
-    /// (y, y') at the nodes from those of the flight before: 2 n x 2 n.
-    memory: DMatrix<f64>,
+    displacement_gain: f64,
+    /// (y, y') at the nodes from a force at the nodes: 2 n x n.
+    force_response: DMatrix<f64>,
     /// (y, y') at the nodes from y(0), y'(0): 2 n x 2.
     entry_response: DMatrix<f64>,
     flight: DVector<f64>,
-    scratch: DVector<f64>,
+    /// -A y - B y' at the nodes of the flight before.
+    force: DVector<f64>,
     entry: DVector<f64>,
     late: f64,
 }
@@ -96,7 +98,7 @@ impl ReturnMap {
         let n = points as usize;
         let d = differentiation(n) * (2.0 / orbit.period);
         let mut system = DMatrix::zeros(2 * n, 2 * n);
-        let mut memory = DMatrix::zeros(2 * n, 2 * n);
+        let mut force = DMatrix::zeros(2 * n, n);
         let mut start = DMatrix::zeros(2 * n, 2);
         system.view_mut((0, 0), (n, n)).copy_from(&d);
         system.view_mut((n, n), (n, n)).copy_from(&d);
@@ -104,29 +106,29 @@ impl ReturnMap {
             system[(j, n + j)] -= 1.0;
             system[(n + j, j)] += alpha * alpha - a;
             system[(n + j, n + j)] += damping - b;
-            memory[(n + j, j)] = -a;
-            memory[(n + j, n + j)] = -b;
+            force[(n + j, j)] = 1.0;
         }
         // Node 0 is t = 0: the start replaces the equation there.
         for (row, column) in [(0, 0), (n, 1)] {
             system.row_mut(row).fill(0.0);
-            memory.row_mut(row).fill(0.0);
+            force.row_mut(row).fill(0.0);
             system[(row, row)] = 1.0;
             start[(row, column)] = 1.0;
         }
         let factors = system.lu();
         let singular = ImpactError::NoConvergence { what: "the flight between two impacts" };
-        let solved = factors.solve(&memory).zip(factors.solve(&start));
-        let (memory, entry_response) = solved.ok_or(singular)?;
+        let solved = factors.solve(&force).zip(factors.solve(&start));
+        let (force_response, entry_response) = solved.ok_or(singular)?;
         Ok(Self {
             restitution: parameters.restitution,
             velocity_gain: b,
             velocity: orbit.velocity,
             saltation: orbit.saltation,
-            memory,
+            displacement_gain: a,
+            force_response,
             entry_response,
             flight: DVector::zeros(2 * n),
-            scratch: DVector::zeros(2 * n),
+            force: DVector::zeros(n),
             entry: DVector::zeros(2),
             late: 0.0,
         })
@@ -140,9 +142,13 @@ impl ReturnMap {
     /// One flight and impact: returns by how much the impact comes late, delta_l.
     pub fn fly(&mut self) -> f64 {
         let n = self.flight.nrows() / 2;
-        self.scratch.gemv(1.0, &self.memory, &self.flight, 0.0);
-        self.scratch.gemv(1.0, &self.entry_response, &self.entry, 1.0);
-        std::mem::swap(&mut self.flight, &mut self.scratch);
+        let (a, b) = (self.displacement_gain, self.velocity_gain);
+        let (y, u) = self.flight.as_slice().split_at(n);
+        for (force, (y, u)) in self.force.iter_mut().zip(y.iter().zip(u)) {
+            *force = -a * y - b * u;
+        }
+        self.flight.gemv(1.0, &self.entry_response, &self.entry, 0.0);
+        self.flight.gemv(1.0, &self.force_response, &self.force, 1.0);
         let (y, y_slope) = (self.flight[n - 1], self.flight[2 * n - 1]);
         let (r, v) = (self.restitution, self.velocity);
         let late = -y / v;

@@ -4,21 +4,21 @@
 //! ([`FrequencyBound`]): D W_n is an integer below B. Modulo each of some primes whose product exceeds 2 D B the
 //! equation has one solution, which is the image; so W_n is the representative of least absolute value, over D. That
 //! a harmonic of x_n vanishes, which shortens the denominators of later orders, follows in the same way. One image is
-//! substituted into the equation in full and takes no part; the others are substituted at a random phase each, where
-//! an image that is wrong passes with a chance of 2^-50.
+//! substituted into the equation in full and takes no part; the others are substituted at three random phases each,
+//! where an image that is wrong passes with a chance of 2^-50.
 
 use crate::image::Job;
 use crate::images::Images;
 use crate::lift::Remaindering;
-use crate::{Error, RationalBinding, Setting};
+use crate::{Error, RationalBinding, Setting, images_for};
 use lindstedt_algebra::{RationalAlgebra, Stop};
 use lindstedt_equation::{Condition, Expression};
 use lindstedt_expand::{ExpandError, Expected, FrequencyBound};
-use lindstedt_phase::modular::PrimeField;
+use lindstedt_phase::modular::{LANES, PrimeFields};
 use rug::Rational;
 
 /// So many images are made on every core between two reports.
-const BATCH: usize = 4;
+const BATCH: usize = LANES / 2;
 
 /// The frequency to some order, from images that were checked and bounds that are proved, and what it took.
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ pub struct BoundedFrequency {
 ///
 /// The same numbers as [`crate::derive`], without the solution: no memory for it, no residual modulo every prime.
 ///
-/// Cost: O(N^3) products modulo every prime, half of those of [`crate::derive`], and B/61 primes where a bound of the
+/// Cost: O(N^3) products modulo every prime, half of those of [`crate::derive`], and B/30 primes where a bound of the
 /// numbers has B bits (for van der Pol's equation 0.7 N^2). Memory: the functions of one prime per core, and N numbers
 /// per prime.
 ///
@@ -80,7 +80,7 @@ pub fn frequency(
     let job = &setting.job;
     images.more(1, &|field| job.image(field, &[]), observer)?;
     let needed = foresee(bound.clone(), &images);
-    let missing = primes_for(needed);
+    let missing = images_for(needed);
     let batch = BATCH * rayon::current_num_threads();
     for done in (0..missing).step_by(batch) {
         images.more(batch.min(missing - done), &|field| job.brief_image(field), observer)?;
@@ -88,13 +88,8 @@ pub fn frequency(
     Lifting { images, bound, job }.climb(observer)
 }
 
-/// Every prime has more than 60.9 bits.
-fn primes_for(bits: u64) -> usize {
-    (bits * 10).div_ceil(609) as usize + 1
-}
-
 /// The bits that the orders will need if the numbers that vanish in the first image do.
-fn foresee<P: Iterator<Item = PrimeField>>(
+fn foresee<P: Iterator<Item = PrimeFields>>(
     mut bound: FrequencyBound,
     images: &Images<'_, P>,
 ) -> u64 {
@@ -115,7 +110,7 @@ struct Lifting<'a, P> {
     job: &'a Job<'a>,
 }
 
-impl<P: Iterator<Item = PrimeField>> Lifting<'_, P> {
+impl<P: Iterator<Item = PrimeFields>> Lifting<'_, P> {
     fn climb(mut self, observer: &mut dyn FnMut(usize) -> bool) -> Result<BoundedFrequency, Error> {
         let mut series = [const { Vec::new() }; 3];
         series.iter_mut().for_each(|list| list.push(Rational::from(1)));
@@ -148,7 +143,7 @@ impl<P: Iterator<Item = PrimeField>> Lifting<'_, P> {
         if (bits..=bits + bits / 16 + 256).contains(&remaindering.bits()) {
             return Ok(());
         }
-        let (own, job) = (primes_for(bits), self.job);
+        let (own, job) = (images_for(bits), self.job);
         let missing = (own + 1).saturating_sub(self.images.list.len());
         self.images.more(missing, &|field| job.brief_image(field), observer)?;
         let last = (1 + own + own / 32).min(self.images.list.len());
@@ -168,7 +163,7 @@ impl<P: Iterator<Item = PrimeField>> Lifting<'_, P> {
             let denominator = &expected.denominators[index];
             let numerator = remaindering.numerator(&self.images.list[1..], n, index, denominator);
             let number = Rational::from((numerator, denominator.clone()));
-            let agrees = judge.field.rational(&number) == judge.values(n)[index];
+            let agrees = judge.ring.rational(&number) == judge.values(n)[index];
             agrees.then_some(number).ok_or(ExpandError::Residual { order: n })
         };
         Ok([number(0)?, number(1)?, number(2)?])
@@ -182,7 +177,7 @@ mod tests {
     use super::*;
     use crate::derive;
     use crate::place::Place;
-    use crate::tests::{NoNames, equations, places, van_der_pol, with_images};
+    use crate::tests::{NoNames, broken, equations, places, van_der_pol, with_groups, with_images};
     use lindstedt_algebra::Ring;
 
     /// Another bound and another proof give the numbers of the whole expansion, for every form of equation.
@@ -245,22 +240,21 @@ mod tests {
             bound.take(expected, numbers, &all);
         }
         let alone = frequency(&equation, &NoNames, cycle, order, &stop, &mut |_| true).unwrap();
-        let least = (longest / 61) as usize;
+        let least = (longest / 30) as usize;
         assert!((least..=2 * least).contains(&alone.primes), "{} {least}", alone.primes);
         // The norms cost some ten bits per order.
         assert!(alone.primes * 3 <= whole.primes * 5, "{} {}", alone.primes, whole.primes);
     }
 
-    /// Every single number of an image, changed by one: one phase is enough to refuse it.
+    /// Every single number of an image, changed modulo a prime: some phases are enough to refuse it.
     #[test]
-    fn a_broken_image_is_refused_at_one_phase() {
-        with_images(1, |job, images| {
-            let (algebra, equation) = job.over(images[0].field).unwrap();
-            assert_eq!(job.check_at_phase(&algebra, &equation, &images[0]), Ok(()));
-            for (n, place) in places(&images[0]) {
-                let mut broken = images[0].clone();
-                let field = broken.field;
-                broken.change(n, place, |value| field.add(&value, &field.one()));
+    fn a_broken_image_is_refused_at_some_phases() {
+        with_groups(1, |job, groups| {
+            let (fields, images) = &groups[0];
+            let (algebra, equation) = job.over(*fields).unwrap();
+            assert_eq!(job.check_at_phase(&algebra, &equation, images), Ok(()));
+            for (variant, (n, place)) in places(&images[0]).into_iter().enumerate() {
+                let broken = broken(images, n, place, variant);
                 let answer = job.check_at_phase(&algebra, &equation, &broken);
                 // The amplitude of the last order shows in the order after it.
                 let last = n == job.request.order && place == Place::Cosine(1);
@@ -273,8 +267,8 @@ mod tests {
     #[test]
     fn the_judge_refuses() {
         with_images(6, |job, mut images| {
-            let field = images[0].field;
-            images[0].change(4, Place::Squared, |value| field.add(&value, &field.one()));
+            let ring = images[0].ring;
+            images[0].change(4, Place::Squared, |value| ring.add(&value, &ring.one()));
             let stop = Stop::default();
             let setting =
                 Setting::new(job.equation, &NoNames, Condition::LimitCycle, 6, &stop).unwrap();

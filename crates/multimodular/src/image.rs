@@ -1,4 +1,5 @@
-//! The image of an expansion modulo one prime: derived, and substituted into the equation.
+//! Images of an expansion modulo primes, eight at once: derived, and substituted into the equation. Numbers are kept
+//! modulo the product of two primes.
 
 use crate::lifted::Lifted;
 use crate::phase::Phase;
@@ -11,10 +12,14 @@ use lindstedt_expand::{
     check_normalisation, compile, extend, fails_at_phase,
 };
 use lindstedt_phase::Modular;
-use lindstedt_phase::modular::PrimeField;
+use lindstedt_phase::modular::{LANES, PrimeFields, PrimePair, Residues};
 use lindstedt_series::Series;
 use rug::Rational;
 use std::sync::Arc;
+
+/// Phases at which an image of the frequency is substituted: of three, each of 30 bits, a wrong one passes all with a
+/// chance below 2^-50 up to degree 2^11.
+const PHASES: u32 = 3;
 
 /// What is derived.
 pub(crate) struct Job<'a> {
@@ -27,17 +32,20 @@ pub(crate) struct Job<'a> {
     pub stop: &'a Stop,
 }
 
-/// The numbers of every order modulo p, in Montgomery form.
+/// The numbers of every order modulo the product of two primes, in Montgomery form.
 #[derive(Clone, Debug)]
 pub(crate) struct Image {
-    pub field: PrimeField,
+    pub ring: PrimePair,
     /// What the numbers are: the same for all primes.
     places: Arc<Vec<Vec<Place>>>,
     values: Vec<Vec<u64>>,
 }
 
-/// An image modulo a prime; inside, why there is none modulo this one.
-pub(crate) type Attempt = Result<Result<Image, ExpandError>, Error>;
+/// The images modulo eight primes.
+pub(crate) type Group = [Image; LANES / 2];
+
+/// Images modulo eight primes; inside, why there are none modulo these.
+pub(crate) type Attempt = Result<Result<Group, ExpandError>, Error>;
 
 impl Image {
     pub(crate) fn places(&self, n: usize) -> &[Place] {
@@ -81,8 +89,8 @@ impl Job<'_> {
         if self.stop.asked() { Err(interrupted.into()) } else { Ok(()) }
     }
 
-    /// The algebra and the equation modulo p.
-    pub(crate) fn over(&self, field: PrimeField) -> Result<(Modular, Equation<Modular>), Error> {
+    /// The algebra and the equation modulo eight primes.
+    pub(crate) fn over(&self, field: PrimeFields) -> Result<(Modular, Equation<Modular>), Error> {
         let algebra = Modular::new(field, self.points).ok_or(Error::OutOfPrimes)?;
         let algebra = algebra.with_stop(self.stop.clone());
         let binding = Over(self.binding, &field);
@@ -90,9 +98,9 @@ impl Job<'_> {
         Ok((algebra, equation))
     }
 
-    /// The image of the expansion modulo p, checked from the orders on that are not proved yet; nothing is kept of
-    /// those. Inside: why there is none modulo this prime.
-    pub(crate) fn image(&self, field: PrimeField, proved: &[Lifted]) -> Attempt {
+    /// The images of the expansion modulo eight primes, checked from the orders on that are not proved yet; nothing is kept of
+    /// those. Inside: why there are none modulo these primes.
+    pub(crate) fn image(&self, field: PrimeFields, proved: &[Lifted]) -> Attempt {
         let (algebra, equation) = self.over(field)?;
         let mut known = (Vec::new(), Vec::new());
         for (order, lifted) in proved.iter().enumerate() {
@@ -103,32 +111,36 @@ impl Job<'_> {
             known.1.push(squared);
         }
         let known = Known { solution: &known.0, squared: &known.1 };
-        let mut image = match self.derived(&algebra, &equation, known)? {
-            Ok(image) => image,
+        let mut images = match self.derived(&algebra, &equation, known)? {
+            Ok(images) => images,
             Err(unlucky) => return Ok(Err(unlucky)),
         };
-        self.check(&algebra, &equation, &image, proved.len())?;
-        (0..proved.len()).for_each(|n| image.forget(n));
-        Ok(Ok(image))
+        self.check(&algebra, &equation, &images, proved.len())?;
+        for image in &mut images {
+            (0..proved.len()).for_each(|n| image.forget(n));
+        }
+        Ok(Ok(images))
     }
 
-    /// W_n, omega_n and T_n modulo p, from an image that is substituted at one phase alone.
-    pub(crate) fn brief_image(&self, field: PrimeField) -> Attempt {
+    /// W_n, omega_n and T_n modulo eight primes, from images that are substituted at one phase alone.
+    pub(crate) fn brief_image(&self, field: PrimeFields) -> Attempt {
         let (algebra, equation) = self.over(field)?;
         let known = Known { solution: &[], squared: &[] };
-        let mut image = match self.derived(&algebra, &equation, known)? {
-            Ok(image) => image,
+        let mut images = match self.derived(&algebra, &equation, known)? {
+            Ok(images) => images,
             Err(unlucky) => return Ok(Err(unlucky)),
         };
-        self.check_at_phase(&algebra, &equation, &image)?;
-        for (places, values) in image.places.iter().zip(&mut image.values) {
-            values.truncate(places.iter().filter(|place| place.harmonic().is_none()).count());
-            values.shrink_to_fit();
+        self.check_at_phase(&algebra, &equation, &images)?;
+        for Image { places, values, .. } in &mut images {
+            for (places, values) in places.iter().zip(values) {
+                values.truncate(places.iter().filter(|place| place.harmonic().is_none()).count());
+                values.shrink_to_fit();
+            }
         }
-        Ok(Ok(image))
+        Ok(Ok(images))
     }
 
-    /// What the driver gives modulo p.
+    /// What the driver gives modulo eight primes: every number that does not vanish modulo all of them.
     fn derived(
         &self,
         algebra: &Modular,
@@ -146,77 +158,92 @@ impl Job<'_> {
         let squared = Series::truncated(expansion.frequency_squared);
         let Some(frequency) = squared.square_root(&field) else { return Err(Error::OutOfPrimes) };
         let Some(period) = frequency.reciprocal(&field) else { return Err(Error::OutOfPrimes) };
-        let (mut places, mut values) = (Vec::new(), Vec::new());
+        let mut places = Vec::new();
+        let mut values = [const { Vec::new() }; LANES / 2];
         for (n, x) in expansion.solution.iter().enumerate() {
             let [cos, sin] = algebra.harmonics(x);
             let cosines = cos.into_iter().enumerate().map(|(k, c)| (Place::Cosine(k), c));
             let sines = sin.into_iter().enumerate().map(|(k, c)| (Place::Sine(k), c));
-            let used = cosines.chain(sines).filter(|(_, value)| *value != 0);
+            let used = cosines.chain(sines).filter(|(_, value)| !field.is_zero(value));
             let numbers = [
                 (Place::Squared, squared.coefficients[n]),
                 (Place::Frequency, frequency.coefficients[n]),
                 (Place::Period, period.coefficients[n]),
             ];
-            let (place, value): (Vec<_>, Vec<_>) = numbers.into_iter().chain(used).unzip();
+            let all = numbers.into_iter().chain(used);
+            let (place, parts): (Vec<_>, Vec<_>) =
+                all.map(|(place, value)| (place, field.parted(&value))).unzip();
             places.push(place);
-            values.push(value);
+            for (i, list) in values.iter_mut().enumerate() {
+                list.push(parts.iter().map(|parts| parts[i]).collect());
+            }
         }
-        Ok(Ok(Image { field, places: Arc::new(places), values }))
+        let places = Arc::new(places);
+        Ok(Ok(std::array::from_fn(|i| Image {
+            ring: field.pairs()[i],
+            places: Arc::clone(&places),
+            values: std::mem::take(&mut values[i]),
+        })))
     }
 
-    /// Substitutes an image into the equation modulo its prime; the orders below `first` are proved. What is checked is
+    /// Substitutes images into the equation modulo their primes; the orders below `first` are proved. What is checked is
     /// what is lifted: its numbers alone enter here, with the amplitude and the stiffness over Q.
     pub(crate) fn check(
         &self,
         algebra: &Modular,
         equation: &Equation<Modular>,
-        image: &Image,
+        images: &Group,
         first: usize,
     ) -> Result<(), Error> {
-        let (expansion, _) = self.stated(algebra, image)?;
+        let (expansion, _) = self.stated(algebra, images)?;
         let checked = check_from(algebra, equation, &expansion, first)?;
         let broken = Error::from(ExpandError::Residual { order: checked });
         if checked == self.request.order { Ok(()) } else { Err(broken) }
     }
 
-    /// Substitutes an image at one phase, which the prime decides: what does not vanish there, does not; what does,
-    /// does not with a chance of twice its degree over p.
+    /// Substitutes images at some phases, which the primes decide: what does not vanish there, does not; what does,
+    /// does not with a chance of twice its degree over p at each of them.
     pub(crate) fn check_at_phase(
         &self,
         algebra: &Modular,
         equation: &Equation<Modular>,
-        image: &Image,
+        images: &Group,
     ) -> Result<(), Error> {
         let field = algebra.field();
-        let (expansion, frequency) = self.stated(algebra, image)?;
+        let (expansion, frequency) = self.stated(algebra, images)?;
         check_normalisation(algebra, &expansion)?;
-        let phase = Phase::new(field, 2 * self.points).ok_or(Error::OutOfPrimes)?;
-        let mut functions = [const { Vec::new() }; 3];
-        for x in &expansion.solution {
-            let values = phase.values(field, algebra.harmonics(x));
-            functions.iter_mut().zip(values).for_each(|(list, value)| list.push(value));
+        let solution: Vec<_> = expansion.solution.iter().map(|x| algebra.harmonics(x)).collect();
+        for number in 0..PHASES {
+            let phase = Phase::new(field, 2 * self.points, number).ok_or(Error::OutOfPrimes)?;
+            let mut functions = [const { Vec::new() }; 3];
+            for harmonics in &solution {
+                let values = phase.values(field, harmonics);
+                functions.iter_mut().zip(values).for_each(|(list, value)| list.push(value));
+            }
+            let (squared, frequency) = (expansion.frequency_squared.clone(), frequency.clone());
+            let at = AtPhase { functions, squared, frequency, stiffness: expansion.stiffness };
+            if let Some(order) = fails_at_phase(field, equation, at) {
+                return Err(ExpandError::Residual { order }.into());
+            }
         }
-        let (squared, stiffness) = (expansion.frequency_squared, expansion.stiffness);
-        let at = AtPhase { functions, squared, frequency, stiffness };
-        match fails_at_phase(field, equation, at) {
-            Some(order) => Err(ExpandError::Residual { order }.into()),
-            None => Ok(()),
-        }
+        Ok(())
     }
 
-    /// The expansion that the numbers of an image state, and omega: its square is W, its product with T is 1.
+    /// The expansion that the numbers of images state, and omega: its square is W, its product with T is 1.
     fn stated(
         &self,
         algebra: &Modular,
-        image: &Image,
-    ) -> Result<(Expansion<Modular>, Vec<u64>), Error> {
+        images: &Group,
+    ) -> Result<(Expansion<Modular>, Vec<Residues>), Error> {
         let field = algebra.field();
         let size = 2 * self.points + 1;
         let mut solution = Vec::new();
         let [mut squared, mut frequency, mut period] = [const { Vec::new() }; 3];
-        for (places, values) in image.places.iter().zip(&image.values) {
-            let mut harmonics = [vec![0; size], vec![0; size]];
-            for (place, &value) in places.iter().zip(values) {
+        for (n, places) in images[0].places.iter().enumerate() {
+            let mut harmonics = [vec![field.zero(); size], vec![field.zero(); size]];
+            let parts = images.each_ref().map(|image| image.values(n));
+            for (i, place) in places.iter().enumerate() {
+                let value = field.joined(&parts.map(|part| part[i]));
                 match *place {
                     Place::Squared => squared.push(value),
                     Place::Frequency => frequency.push(value),
@@ -228,7 +255,7 @@ impl Job<'_> {
             solution.push(algebra.from_harmonics(harmonics));
         }
         let [frequency, period] = [frequency, period].map(Series::truncated);
-        let mut one = vec![0; period.coefficients.len()];
+        let mut one = vec![field.zero(); period.coefficients.len()];
         one[0] = field.one();
         let order = self.request.order;
         let square = frequency.mul(field, &frequency.clone(), order).coefficients;
@@ -258,16 +285,16 @@ impl Job<'_> {
         n: usize,
         numbers: &OrderNumbers,
     ) -> Result<(), Error> {
-        let field = &image.field;
-        let denominator = field.integer(&numbers.denominator);
+        let ring = &image.ring;
+        let denominator = ring.integer(&numbers.denominator);
         let mut numerators = numbers.numerators.iter();
         let same = |(place, &value): (&Place, &u64)| match place {
-            Place::Squared => field.rational(&numbers.squared) == value,
-            Place::Frequency => field.rational(&numbers.frequency) == value,
-            Place::Period => field.rational(&numbers.period) == value,
+            Place::Squared => ring.rational(&numbers.squared) == value,
+            Place::Frequency => ring.rational(&numbers.frequency) == value,
+            Place::Period => ring.rational(&numbers.period) == value,
             Place::Cosine(_) | Place::Sine(_) => numerators
                 .next()
-                .is_some_and(|(_, c)| field.integer(c) == field.mul(&denominator, &value)),
+                .is_some_and(|(_, c)| ring.integer(c) == ring.mul(&denominator, &value)),
         };
         let agrees = image.places(n).iter().zip(image.values(n)).all(same);
         let all = agrees && numerators.next().is_none();

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::image::{Attempt, Image, Job};
 use lindstedt_expand::ExpandError;
-use lindstedt_phase::modular::PrimeField;
+use lindstedt_phase::modular::{LANES, PrimeFields};
 use rayon::prelude::*;
 
 /// The images so far, and the primes that are left. The first image judges what the others give.
@@ -13,22 +13,24 @@ pub(crate) struct Images<'a, P> {
     primes: P,
 }
 
-impl<'a, P: Iterator<Item = PrimeField>> Images<'a, P> {
+impl<'a, P: Iterator<Item = PrimeFields>> Images<'a, P> {
     pub(crate) fn new(job: &'a Job<'a>, primes: P) -> Self {
         Self { job, list: Vec::new(), primes }
     }
 
-    /// Images modulo so many more primes, each made by `image`; `observer` is told how many there are.
+    /// At least so many more images, made by `image` eight primes at a time; `observer` is told how many primes there
+    /// are.
     pub(crate) fn more(
         &mut self,
         count: usize,
-        image: &(dyn Fn(PrimeField) -> Attempt + Sync),
+        image: &(dyn Fn(PrimeFields) -> Attempt + Sync),
         observer: &mut dyn FnMut(usize) -> bool,
     ) -> Result<(), Error> {
         let wanted = self.list.len() + count;
         while self.list.len() < wanted {
             let missing = wanted - self.list.len();
-            let fields: Vec<PrimeField> = self.primes.by_ref().take(missing).collect();
+            let fields: Vec<PrimeFields> =
+                self.primes.by_ref().take(missing.div_ceil(LANES / 2)).collect();
             if fields.is_empty() {
                 return Err(Error::OutOfPrimes);
             }
@@ -38,13 +40,15 @@ impl<'a, P: Iterator<Item = PrimeField>> Images<'a, P> {
             let mut failure = None;
             for image in new {
                 match image? {
-                    Ok(image) => {
-                        let image = match self.list.first() {
-                            // A coefficient vanishes modulo one of two primes and not over Q.
-                            Some(judge) => image.like(judge).ok_or(Error::OutOfPrimes)?,
-                            None => image,
-                        };
-                        self.list.push(image);
+                    Ok(group) => {
+                        for image in group {
+                            let image = match self.list.first() {
+                                // A coefficient vanishes modulo eight primes and not over Q.
+                                Some(judge) => image.like(judge).ok_or(Error::OutOfPrimes)?,
+                                None => image,
+                            };
+                            self.list.push(image);
+                        }
                     }
                     Err(unlucky) => failure = Some(unlucky),
                 }
@@ -53,7 +57,7 @@ impl<'a, P: Iterator<Item = PrimeField>> Images<'a, P> {
                 return Err(error.into());
             }
             let stopped = ExpandError::Interrupted { order: self.job.request.order };
-            observer(self.list.len()).then_some(()).ok_or(stopped)?;
+            observer(2 * self.list.len()).then_some(()).ok_or(stopped)?;
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Expansions over Q by computation modulo many primes, with proof.
 //!
-//! The driver runs unchanged over [`Modular`] for primes p of 61 bits, where a product of phase functions
-//! costs one multiplication per point. Every image is substituted into the equation modulo its own prime
+//! The driver runs unchanged over [`Modular`] for primes p of 30 bits, eight at once, where a product of phase
+//! functions costs one multiplication per point. Every image is substituted into the equation modulo its own prime
 //! (`image`). Chinese remaindering gives the numerators of an order over a denominator that the
 //! recurrence predicts from the orders below (`lift`), with as many primes as that order needs.
 //!
@@ -33,7 +33,7 @@ use lindstedt_expand::{
     Binding, ExpandError, Expansion, Request, ResidualBound, amplitude_reaction, compile, degrees,
     equation_denominator, expand, leading_amplitude,
 };
-use lindstedt_phase::modular::PrimeField;
+use lindstedt_phase::modular::PrimeFields;
 use lindstedt_phase::{Modular, Trigonometric};
 use rug::{Integer, Rational};
 
@@ -47,8 +47,8 @@ pub enum Error {
     /// As the driver over Q would refuse; interrupted; or a residual that does not vanish.
     #[error(transparent)]
     Expand(#[from] ExpandError),
-    /// No more primes of 61 bits with the roots of unity that the order needs.
-    #[error("no more 61-bit primes for this order")]
+    /// No more primes of 30 bits with the roots of unity that the order needs.
+    #[error("no more 30-bit primes for this order")]
     OutOfPrimes,
 }
 
@@ -82,7 +82,7 @@ pub struct Proved {
     /// The number of primes that determined it.
     pub primes: usize,
     /// The number of primes modulo which it was substituted into the equation: those that determined and
-    /// prove it, and one apart that judges the lifting.
+    /// prove it, and two apart that judge the lifting.
     pub proof_primes: usize,
 }
 
@@ -92,7 +92,7 @@ pub struct Proved {
 /// `observer` is told the number of primes done so far; `false` stops. `stop` is asked after every
 /// order modulo every prime, from all threads.
 ///
-/// Cost: O(N^3) products modulo every prime, and B/61 primes where the numbers of order N have B bits (for van
+/// Cost: O(N^3) products modulo every prime, and B/30 primes where the numbers of order N have B bits (for van
 /// der Pol's equation B grows like 0.7 N^2, for Duffing's like 5 N).
 ///
 /// # Errors
@@ -173,10 +173,15 @@ impl<'a> Setting<'a> {
         Ok(Self { job, bound, largest, reaction, roots, numbers })
     }
 
-    fn primes(&self) -> impl Iterator<Item = PrimeField> {
-        let primes = PrimeField::with_roots_of_unity(self.roots, 1 << 61);
-        primes.filter(|field| field.integer(&self.numbers) != 0)
+    fn primes(&self) -> impl Iterator<Item = PrimeFields> {
+        let primes = PrimeFields::with_roots_of_unity(self.roots);
+        primes.filter(|fields| fields.integer(&self.numbers).iter().all(|&residue| residue != 0))
     }
+}
+
+/// Images modulo two primes each, which have more than 59.1 bits together, for so many bits.
+fn images_for(bits: u64) -> usize {
+    (bits * 10).div_ceil(591) as usize + 1
 }
 
 /// The loop over the orders.
@@ -186,13 +191,13 @@ struct Ladder<'a, P> {
     bound: ResidualBound,
     /// The orders that are proved.
     found: Vec<Lifted>,
-    /// The primes that every order needed.
+    /// The images that every order needed.
     needs: Vec<usize>,
     /// The highest harmonic.
     largest: usize,
 }
 
-impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
+impl<P: Iterator<Item = PrimeFields>> Ladder<'_, P> {
     fn climb(mut self, observer: &mut dyn FnMut(usize) -> bool) -> Result<Proved, Error> {
         self.more(3, observer)?;
         let mut remaindering = Remaindering::new(&self.images.list[1..]);
@@ -218,13 +223,13 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
             self.job.judge(&self.images.list[0], n, &numbers)?;
             let lifting = u64::from(lift::MARGIN + lift::longest(&numbers) + 4);
             excess = bits.max(lifting) as i64 - i64::from(numbers.denominator.significant_bits());
-            self.needs.push(remaindering.primes());
+            self.needs.push(remaindering.primes() / 2);
             self.found.push(Lifted::new(numbers, self.images.list[0].places(n)));
             self.images.list.iter_mut().for_each(|image| image.forget(n));
         }
-        let primes = self.images.list.len() - 1;
+        let primes = 2 * (self.images.list.len() - 1);
         let (expansion, [frequency, period]) = self.assemble();
-        Ok(Proved { expansion, frequency, period, primes, proof_primes: primes + 1 })
+        Ok(Proved { expansion, frequency, period, primes, proof_primes: primes + 2 })
     }
 
     /// The expansion over Q, and the series of the frequency and the period.
@@ -263,7 +268,7 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
         if (needed..=needed + needed / 8 + 256).contains(&remaindering.bits()) {
             return Ok(());
         }
-        let own = Self::primes_for(needed);
+        let own = images_for(needed);
         let have = self.images.list.len() - 1;
         if have < own {
             self.more(self.batch(n, own), observer)?;
@@ -274,13 +279,8 @@ impl<P: Iterator<Item = PrimeField>> Ladder<'_, P> {
         Ok(())
     }
 
-    /// Every prime has more than 60.9 bits.
-    fn primes_for(bits: u64) -> usize {
-        (bits * 10).div_ceil(609) as usize + 1
-    }
-
-    /// How many more primes to take at once: those that are needed, and where the growth so far continues,
-    /// nearly those of the last order; few, because the later a prime comes the fewer orders are left to it.
+    /// How many more images to make at once: those that are needed, and where the growth so far continues,
+    /// nearly those of the last order; few, because the later one comes the fewer orders are left to it.
     fn batch(&self, n: usize, own: usize) -> usize {
         let have = self.images.list.len() - 1;
         let half = self.needs.get(n / 2).copied().unwrap_or(own);

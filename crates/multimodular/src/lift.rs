@@ -14,7 +14,7 @@ pub(crate) const MARGIN: u32 = 80;
 /// The Chinese remainder theorem for the primes of a list of images.
 pub(crate) struct Remaindering {
     modulus: Integer,
-    /// M/p_i and its inverse modulo p_i.
+    /// M/m_i and its inverse modulo m_i, products of two primes.
     cofactors: Vec<(Integer, u64)>,
 }
 
@@ -22,12 +22,12 @@ impl Remaindering {
     pub(crate) fn new(images: &[Image]) -> Self {
         let mut modulus = Integer::from(1);
         for image in images {
-            modulus *= image.field.prime();
+            modulus *= image.ring.modulus();
         }
         let cofactor = |image: &Image| {
-            let field = &image.field;
-            let cofactor = Integer::from(modulus.div_exact_ref(&Integer::from(field.prime())));
-            let inverse = field.reciprocal(&field.integer(&cofactor)).unwrap_or(0);
+            let ring = &image.ring;
+            let cofactor = Integer::from(modulus.div_exact_ref(&Integer::from(ring.modulus())));
+            let inverse = ring.reciprocal(&ring.integer(&cofactor)).unwrap_or(0);
             (cofactor, inverse)
         };
         let cofactors = images.par_iter().map(cofactor).collect();
@@ -36,7 +36,7 @@ impl Remaindering {
 
     /// How many primes.
     pub(crate) fn primes(&self) -> usize {
-        self.cofactors.len()
+        2 * self.cofactors.len()
     }
 
     /// M >= 2^this.
@@ -76,7 +76,7 @@ impl Remaindering {
         });
         let denominator = Integer::from(guess * &growing.factor);
         // Numerators over a multiple of p say nothing modulo p.
-        if images.iter().any(|image| image.field.integer(&denominator) == 0) {
+        if images.iter().any(|image| image.ring.integer(&denominator) == 0) {
             return None;
         }
         Some(lowest_terms(places.iter().copied().zip(rescaled).collect(), denominator))
@@ -86,7 +86,7 @@ impl Remaindering {
     fn factors(&self, images: &[Image], number: &Integer) -> Vec<u64> {
         let pairs = images.iter().zip(&self.cofactors);
         let factor = |(image, (_, inverse)): (&Image, &(Integer, u64))| {
-            image.field.mul(inverse, &image.field.integer(number))
+            image.ring.mul(inverse, &image.ring.integer(number))
         };
         pairs.map(factor).collect()
     }
@@ -105,9 +105,9 @@ impl Remaindering {
     fn combined(&self, images: &[Image], n: usize, index: usize, factors: &[u64]) -> Integer {
         let mut sum = Integer::with_capacity(self.modulus.significant_bits() as usize + 128);
         for ((image, (cofactor, _)), factor) in images.iter().zip(&self.cofactors).zip(factors) {
-            let field = &image.field;
-            let digit = field.mul(factor, &image.values(n)[index]);
-            sum += cofactor * field.representative(digit);
+            let ring = &image.ring;
+            let digit = ring.mul(factor, &image.values(n)[index]);
+            sum += cofactor * ring.representative(digit);
         }
         centred(sum, &self.modulus)
     }

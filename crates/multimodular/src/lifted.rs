@@ -3,7 +3,7 @@
 use crate::place::Place;
 use lindstedt_algebra::Ring;
 use lindstedt_expand::OrderNumbers;
-use lindstedt_phase::modular::PrimeField;
+use lindstedt_phase::modular::{PrimeFields, Residues};
 use lindstedt_phase::trigonometric::TrigonometricPolynomial;
 use rayon::prelude::*;
 use rug::{Integer, Rational};
@@ -31,8 +31,8 @@ impl Lifted {
         Self { numbers, places: harmonics.copied().collect() }
     }
 
-    /// W_n and the amplitudes of cosines and sines modulo p; nothing where p divides a denominator.
-    pub(crate) fn modulo(&self, field: &PrimeField) -> Option<(u64, [Vec<u64>; 2])> {
+    /// W_n and the amplitudes of cosines and sines modulo eight primes; nothing where one divides a denominator.
+    pub(crate) fn modulo(&self, field: &PrimeFields) -> Option<(Residues, [Vec<Residues>; 2])> {
         let OrderNumbers { denominator, numerators, squared, .. } = &self.numbers;
         let series = [denominator, squared.denom(), squared.numer()];
         let all = series.into_iter().chain(numerators.iter().map(|(_, c)| c));
@@ -46,7 +46,7 @@ impl Lifted {
                 Place::Sine(k) => (&mut harmonics[1], k),
                 Place::Squared | Place::Frequency | Place::Period => continue,
             };
-            list.resize(k, 0);
+            list.resize(k, field.zero());
             list.push(field.mul(c, &inverses[0]));
         }
         Some((field.mul(square, &inverses[1]), harmonics))

@@ -1,7 +1,7 @@
 //! The proof finds what is broken; the route agrees with rational arithmetic for any polynomial equation.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics has failed")]
 
-use crate::image::{Image, Job};
+use crate::image::{Group, Image, Job};
 use crate::lift::Remaindering;
 use crate::lifted::Lifted;
 use crate::place::Place;
@@ -12,7 +12,7 @@ use lindstedt_expand::{
     Binding, ExpandError, Expansion, Known, OrderNumbers, OrderWork, Request, ResidualBound, check,
     check_from, compile, conservative_period, expand, extend, leading_amplitude,
 };
-use lindstedt_phase::modular::PrimeField;
+use lindstedt_phase::modular::{LANES, PrimeFields};
 use lindstedt_phase::{Modular, Trigonometric};
 use rug::{Integer, Rational};
 
@@ -126,6 +126,13 @@ pub(crate) fn van_der_pol() -> Expression {
 
 /// Some images of van der Pol's equation.
 pub(crate) fn with_images(count: usize, test: impl Fn(&Job<'_>, Vec<Image>)) {
+    with_groups(count.div_ceil(LANES / 2), |job, groups| {
+        test(job, groups.into_iter().flat_map(|(_, group)| group).take(count).collect());
+    });
+}
+
+/// Some of the images of eight primes each.
+pub(crate) fn with_groups(count: usize, test: impl Fn(&Job<'_>, Vec<(PrimeFields, Group)>)) {
     let (equation, stop) = (van_der_pol(), Stop::default());
     let request = Request {
         condition: Condition::LimitCycle,
@@ -136,26 +143,34 @@ pub(crate) fn with_images(count: usize, test: impl Fn(&Job<'_>, Vec<Image>)) {
     let stiffness = Rational::from(1);
     let job =
         Job { equation: &equation, binding: &NoNames, request, stiffness, points, stop: &stop };
-    let fields = PrimeField::with_roots_of_unity(roots, 1 << 61).take(count);
-    let images = fields.map(|field| job.image(field, &[]).unwrap().unwrap()).collect();
-    test(&job, images);
+    let fields = PrimeFields::with_roots_of_unity(roots).take(count);
+    test(&job, fields.map(|field| (field, job.image(field, &[]).unwrap().unwrap())).collect());
 }
 
 pub(crate) fn places(image: &Image) -> Vec<(usize, Place)> {
     (0..=ORDER).flat_map(|n| image.places(n).iter().map(move |place| (n, *place))).collect()
 }
 
-/// Every single number of an image, changed by one: substitution refuses it.
+/// One number of one image, changed modulo one of its two primes or modulo both.
+pub(crate) fn broken(images: &Group, n: usize, place: Place, variant: usize) -> Group {
+    let mut broken = images.clone();
+    let image = &mut broken[variant % (LANES / 2)];
+    let (ring, [p, q]) = (image.ring, image.ring.primes());
+    let factor = [Integer::from(1), Integer::from(p), Integer::from(q)][variant % 3].clone();
+    image.change(n, place, |value| ring.add(&value, &ring.integer(&factor)));
+    broken
+}
+
+/// Every single number of an image, changed modulo a prime: substitution refuses it.
 #[test]
 fn a_broken_image_is_refused() {
-    with_images(1, |job, images| {
-        let (algebra, equation) = job.over(images[0].field).unwrap();
-        assert_eq!(job.check(&algebra, &equation, &images[0], 0), Ok(()));
+    with_groups(1, |job, groups| {
+        let (fields, images) = &groups[0];
+        let (algebra, equation) = job.over(*fields).unwrap();
+        assert_eq!(job.check(&algebra, &equation, images, 0), Ok(()));
         let mut refused = 0;
         for (n, place) in places(&images[0]) {
-            let mut broken = images[0].clone();
-            let field = broken.field;
-            broken.change(n, place, |value| field.add(&value, &field.one()));
+            let broken = broken(images, n, place, refused);
             // Whatever orders below are taken for granted.
             for first in 0..=n {
                 let answer = job.check(&algebra, &equation, &broken, first);
@@ -171,21 +186,23 @@ fn a_broken_image_is_refused() {
 /// something else.
 #[test]
 fn a_late_prime_gives_the_same_image() {
-    with_images(7, |job, mut images| {
-        let late = images.pop().unwrap();
+    with_groups(3, |job, mut groups| {
+        let (fields, late) = groups.pop().unwrap();
+        let images: Vec<Image> = groups.into_iter().flat_map(|(_, group)| group).collect();
         let numbers =
             (0..=ORDER).map(|n| Lifted::new(lifted(&images, n).unwrap(), images[0].places(n)));
         let mut proved: Vec<Lifted> = numbers.collect();
         for m in 1..=ORDER {
-            let found = job.image(late.field, &proved[..m]).unwrap().unwrap();
-            assert!((0..m).all(|n| found.values(n).is_empty()));
-            assert!((m..=ORDER).all(|n| found.values(n) == late.values(n)), "{m}");
+            let found = job.image(fields, &proved[..m]).unwrap().unwrap();
+            for (found, late) in found.iter().zip(&late) {
+                assert!((0..m).all(|n| found.values(n).is_empty()));
+                assert!((m..=ORDER).all(|n| found.values(n) == late.values(n)), "{m}");
+            }
         }
         proved[2].numbers.numerators[0].1 += 1;
-        let found = job.image(late.field, &proved[..4]);
-        assert!(
-            !found.is_ok_and(|image| image.is_ok_and(|found| found.values(4) == late.values(4)))
-        );
+        let found = job.image(fields, &proved[..4]);
+        let same = |found: Group| found.iter().zip(&late).any(|(a, b)| a.values(4) == b.values(4));
+        assert!(!found.is_ok_and(|image| image.is_ok_and(same)));
     });
 }
 
@@ -223,16 +240,16 @@ fn a_broken_residue_is_not_lifted() {
             assert_eq!(job.judge(judge, n, &numbers), Ok(()));
             // One residue: no number of that size has it.
             let mut broken = lifting.to_vec();
-            let field = broken[2].field;
-            broken[2].change(n, place, |value| field.add(&value, &field.one()));
+            let ring = broken[2].ring;
+            broken[2].change(n, place, |value| ring.add(&value, &ring.one()));
             // In Euclid's algorithm the broken prime is a denominator, and what is left is right: it is not
             // taken for congruent to an image that it is not congruent to.
             assert!(lifted(&broken, n).is_none(), "{n} {place:?}");
             // The same mistake modulo every prime: short, and wrong.
             let mut broken = lifting.to_vec();
             for image in &mut broken {
-                let field = image.field;
-                image.change(n, place, |value| field.add(&value, &field.one()));
+                let ring = image.ring;
+                image.change(n, place, |value| ring.add(&value, &ring.one()));
             }
             let numbers = lifted(&broken, n).unwrap();
             assert!(job.judge(judge, n, &numbers).is_err(), "{n} {place:?}");

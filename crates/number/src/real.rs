@@ -84,60 +84,79 @@ pub trait Real:
 }
 
 impl Real for f64 {
+    #[inline]
     fn integer(&self, n: i64) -> Self {
         n as f64
     }
+    #[inline]
     fn number(&self, x: f64) -> Self {
         x
     }
+    #[inline]
     fn pi(&self) -> Self {
         std::f64::consts::PI
     }
+    #[inline]
     fn square(&self) -> Self {
         self * self
     }
+    #[inline]
     fn sqrt(&self) -> Self {
         f64::sqrt(*self)
     }
+    #[inline]
     fn exp(&self) -> Self {
         f64::exp(*self)
     }
+    #[inline]
     fn exp_m1(&self) -> Self {
         f64::exp_m1(*self)
     }
+    #[inline]
     fn sin_cos(&self) -> (Self, Self) {
         f64::sin_cos(*self)
     }
+    #[inline]
     fn atan2(&self, x: &Self) -> Self {
         f64::atan2(*self, *x)
     }
+    #[inline]
     fn sign(&self) -> Option<Ordering> {
         self.partial_cmp(&0.0)
     }
+    #[inline]
     fn to_f64(&self) -> f64 {
         *self
     }
+    #[inline]
     fn magnitude_above(&self) -> f64 {
         self.abs()
     }
+    #[inline]
     fn magnitude_below(&self) -> f64 {
         self.abs()
     }
+    #[inline]
     fn is_finite(&self) -> bool {
         f64::is_finite(*self)
     }
+    #[inline]
     fn centre(&self) -> Self {
         *self
     }
+    #[inline]
     fn widened(&self, _error: &Self) -> Self {
         *self
     }
+    #[inline]
     fn neutral_width(&self) -> f64 {
         1e-10
     }
+    #[inline]
     fn precision(&self) -> u32 {
         f64::MANTISSA_DIGITS
     }
+    #[inline]
     fn halved(&self) -> Self {
         0.5 * self
     }

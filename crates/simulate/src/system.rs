@@ -173,7 +173,7 @@ impl Model {
         for switch in &switches {
             needed.extend(switch.tangents.iter().flatten().copied().chain([switch.row]));
         }
-        tape.restrict(needed);
+        tape.restrict(&real, needed);
         let delays = delays.iter().map(|delay| real.float(delay)).collect();
         let history = self.compile_history(&real, parameters)?;
         Ok(System {
@@ -213,7 +213,7 @@ impl Model {
             return Err(SimulateError::UnexpectedState);
         }
         let mut tape = compiler.tape;
-        tape.restrict(rows.clone());
+        tape.restrict(real, rows.clone());
         Ok(Some(History { tape, rows, derived }))
     }
 }

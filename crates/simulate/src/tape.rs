@@ -6,6 +6,9 @@
 //! are those of a = b c, a' = b' a (exponential) and so on (Moore, Interval Analysis, 1966;
 //! Jorba and Zou, Experimental Mathematics 14, 2005, section 2).
 
+mod sums;
+
+use self::sums::{Step, square, steps};
 use crate::integrator::real::Real;
 
 /// One operation; the numbers are rows unless the name says otherwise.
@@ -88,6 +91,8 @@ pub(crate) struct Tape<E> {
     /// The operations that are needed, and those of them that are needed from level 2 on.
     pub(crate) live: Vec<usize>,
     pub(crate) curved: Vec<usize>,
+    /// These, sums of one degree in one pass.
+    pub(crate) steps: Vec<Step<E>>,
     pub(crate) constants: Vec<E>,
 }
 
@@ -143,15 +148,28 @@ impl<E: Clone> Tape<E> {
         moment: &mut Moment<'_, E>,
     ) {
         // Rows start as zeros: where nothing is written they remain so.
-        for index in if n < 2 { &self.live } else { &self.curved } {
-            self.operation(real, rows, *index, n, moment);
+        if n < 2 {
+            for index in &self.live {
+                self.operation(real, rows, *index, n, moment);
+            }
+            return;
+        }
+        for step in &self.steps {
+            match step {
+                Step::Operation(index) => self.operation(real, rows, *index, n, moment),
+                Step::Sum(row, sum) => {
+                    sum.level(real, rows, n, (&mut *moment.sum, &mut *moment.scratch));
+                    std::mem::swap(rows.at_mut(*row, n), moment.sum);
+                }
+            }
         }
     }
 
     /// Restricts the work to what the given rows need.
-    pub(crate) fn restrict(&mut self, needed: Vec<usize>) {
-        self.live = self.cone(needed);
+    pub(crate) fn restrict<R: Real<Element = E>>(&mut self, real: &R, needed: Vec<usize>) {
+        self.live = self.cone(needed.clone());
         self.curved = self.live.iter().copied().filter(|index| !self.affine[*index]).collect();
+        self.steps = steps(real, self, &needed);
     }
 
     /// The operations that some rows need, in order.
@@ -206,15 +224,7 @@ impl<E: Clone> Tape<E> {
             Op::Subtract(a, b) => real.subtract(sum, rows.at(a, n), rows.at(b, n)),
             Op::Scale(a, c) => real.multiply(sum, rows.at(a, n), &self.constants[c]),
             Op::Multiply(a, b) => real.convolve(sum, &rows.row(a)[..=n], &rows.row(b)[..=n]),
-            Op::Square(a) => {
-                let half = n.div_ceil(2);
-                let row = rows.row(a);
-                real.convolve(sum, &row[..half], &row[n + 1 - half..=n]);
-                real.times_integer(sum, 2);
-                if n.is_multiple_of(2) {
-                    real.accumulate(sum, &row[n / 2], &row[n / 2]);
-                }
-            }
+            Op::Square(a) => square(real, sum, &rows.row(a)[..=n]),
             Op::Divide(_, a) | Op::Power(a, _)
                 if real.sign(rows.at(a, 0)) == 0 && moment.modes.contains(&LEAP) =>
             {

@@ -43,7 +43,7 @@ fn every_documented_command_is_in_the_net() {
 }
 
 /// Options that every command has: the format is the net's own, the others are run once.
-const COMMON: [&str; 5] = ["format", "out", "quiet", "limit-seconds", "limit-memory"];
+const COMMON: [&str; 6] = ["format", "out", "quiet", "limit-seconds", "limit-memory", "threads"];
 
 #[test]
 fn every_option_of_every_command_is_in_the_net() {
@@ -65,6 +65,24 @@ fn every_option_of_every_command_is_in_the_net() {
     }
     assert!(missing.is_empty(), "not in net/commands.txt: {missing:#?}");
     assert!(count > 50, "only {count} options were found");
+}
+
+/// The examples of `--help` are commands of the net, which runs them; every command with a problem has one.
+#[test]
+fn every_example_of_the_help_is_in_the_net() {
+    let page = std::fs::read_to_string(root().join("docs/src/reference/options.md")).unwrap();
+    let known: BTreeSet<String> = lines().into_iter().map(|line| line.command).collect();
+    let (mut verbs, mut verb) = (BTreeSet::new(), "");
+    for line in page.lines() {
+        verb = line.strip_prefix("## ").unwrap_or(verb);
+        let Some(example) = line.strip_prefix("  lindstedt ") else { continue };
+        assert!(known.contains(example), "not in net/commands.txt: {example}");
+        assert!(example.starts_with(verb), "{example} below {verb}");
+        verbs.insert(verb);
+    }
+    let without = page.lines().filter_map(|line| line.strip_prefix("## "));
+    let without: Vec<&str> = without.filter(|verb| !verbs.contains(verb)).collect();
+    assert_eq!(without, ["completions", "man"]);
 }
 
 #[test]

@@ -29,7 +29,8 @@ fn threads_and_language_change_nothing() {
         for (threads, language) in [("1", "C"), ("2", "de_DE.UTF-8"), ("7", "tr_TR.UTF-8")] {
             let mut command = folder.program(line);
             let output = command
-                .env("RAYON_NUM_THREADS", threads)
+                .args(["--threads", threads])
+                .env("RAYON_NUM_THREADS", "3")
                 .envs(["LC_ALL", "LANG", "LANGUAGE"].map(|name| (name, language)))
                 .output()
                 .unwrap();

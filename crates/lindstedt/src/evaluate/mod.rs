@@ -37,7 +37,7 @@ pub use prove::{
 };
 use rug::Rational;
 use std::time::Instant;
-pub use sweep::{EvaluationSweep, SweptPeriod};
+pub use sweep::{EvaluationSweep, RatesSweep, Swept, SweptPeriod, SweptPoint, SweptRates};
 pub use times::Times;
 
 /// What to evaluate.
@@ -221,10 +221,19 @@ impl Oscillator {
 
     /// The period of a settled case.
     fn period(&self, question: &Evaluate, work: &Work) -> Result<Evaluation, Error> {
-        let found = self
-            .setting()
-            .and_then(|case| Ok(period(&case, question.order, question.method, work)?));
-        found.map_err(|error| self.unevaluated(error))
+        let setting = self.setting().map_err(|error| self.unevaluated(error))?;
+        self.period_of(setting, question, work)
+    }
+
+    /// The period of a setting of the case.
+    fn period_of(
+        &self,
+        setting: Setting,
+        question: &Evaluate,
+        work: &Work,
+    ) -> Result<Evaluation, Error> {
+        let found = period(&setting, question.order, question.method, work);
+        found.map_err(|error| self.unevaluated(error.into()))
     }
 
     /// The case as [`Oscillator::placed`] has it; refuses what cannot be expanded exactly.

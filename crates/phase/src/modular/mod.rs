@@ -11,10 +11,13 @@
 //! point at Q multiplications, against Q^2 for coefficient lists. Each form of a part is made from the other
 //! when it is first needed, and kept (`transform`).
 
-mod field;
+mod fields;
+mod pair;
+mod primes;
 mod transform;
 
-pub use field::PrimeField;
+pub use fields::{LANES, PrimeFields, Residues};
+pub use pair::PrimePair;
 
 use lindstedt_algebra::{
     FunctionAlgebra, PhaseAlgebra, PhaseError, RationalAlgebra, Resolution, Ring, Stop,
@@ -68,28 +71,32 @@ struct Part {
 #[derive(Debug, Default)]
 struct Forms {
     /// The last coefficient does not vanish.
-    coefficients: OnceLock<Vec<u64>>,
-    values: OnceLock<Vec<u64>>,
+    coefficients: OnceLock<Vec<Residues>>,
+    values: OnceLock<Vec<Residues>>,
 }
 
 impl Part {
-    fn coefficients(&self) -> &[u64] {
+    fn coefficients(&self) -> &[Residues] {
         self.forms.coefficients.get_or_init(|| {
             let values = self.forms.values.get().map_or(&[][..], Vec::as_slice);
             trimmed(self.transform.coefficients(self.symmetry, values))
         })
     }
 
-    fn values(&self) -> &[u64] {
+    fn values(&self) -> &[Residues] {
         let values = || self.transform.values(self.symmetry, self.coefficients());
         self.forms.values.get_or_init(values)
     }
 
     /// Nothing if it vanishes.
-    fn with_forms(&self, coefficients: Option<Vec<u64>>, values: Option<Vec<u64>>) -> Option<Self> {
+    fn with_forms(
+        &self,
+        coefficients: Option<Vec<Residues>>,
+        values: Option<Vec<Residues>>,
+    ) -> Option<Self> {
         let coefficients = coefficients.map(trimmed);
         let known = coefficients.as_ref().or(values.as_ref())?;
-        if known.iter().all(|&c| c == 0) {
+        if known.iter().all(is_zero) {
             return None;
         }
         Some(Self {
@@ -102,23 +109,23 @@ impl Part {
     }
 
     /// A linear map that multiplies every number by the same.
-    fn map(&self, g: impl Fn(&u64) -> u64) -> Option<Self> {
-        let image = |list: &Vec<u64>| -> Vec<u64> { list.iter().map(&g).collect() };
+    fn map(&self, g: impl Fn(&Residues) -> Residues) -> Option<Self> {
+        let image = |list: &Vec<Residues>| -> Vec<Residues> { list.iter().map(&g).collect() };
         let Forms { coefficients, values } = &*self.forms;
         self.with_forms(coefficients.get().map(image), values.get().map(image))
     }
 
     /// sum_i c_i f_i over parts of one symmetry, in the form that needs the fewest transforms.
-    fn combination(field: &PrimeField, terms: &[(&Self, u64)]) -> Option<Self> {
+    fn combination(field: &PrimeFields, terms: &[(&Self, Residues)]) -> Option<Self> {
         let (first, _) = terms.first()?;
-        let lacking = |form: fn(&Forms) -> &OnceLock<Vec<u64>>| {
+        let lacking = |form: fn(&Forms) -> &OnceLock<Vec<Residues>>| {
             terms.iter().filter(|(part, _)| form(&part.forms).get().is_none()).count()
         };
         let (no_coefficients, no_values) =
             (lacking(|forms| &forms.coefficients), lacking(|forms| &forms.values));
         let by_values = no_values == 0 && terms.len() <= SHORT || no_coefficients > no_values;
         let by_coefficients = no_coefficients == 0 || !by_values;
-        let combine = |form: fn(&Self) -> &[u64]| {
+        let combine = |form: fn(&Self) -> &[Residues]| {
             let lists: Vec<_> = terms.iter().map(|(part, c)| (form(part), *c)).collect();
             field.combination(&lists)
         };
@@ -136,8 +143,12 @@ impl PartialEq for Part {
     }
 }
 
-fn trimmed(mut list: Vec<u64>) -> Vec<u64> {
-    list.truncate(list.iter().rposition(|&c| c != 0).map_or(0, |last| last + 1));
+fn is_zero(c: &Residues) -> bool {
+    *c == Residues::default()
+}
+
+fn trimmed(mut list: Vec<Residues>) -> Vec<Residues> {
+    list.truncate(list.iter().rposition(|c| !is_zero(c)).map_or(0, |last| last + 1));
     list
 }
 
@@ -157,12 +168,12 @@ pub struct ModularElement {
 /// (products beyond it would alias).
 #[derive(Clone, Debug)]
 pub struct Modular {
-    field: PrimeField,
+    field: PrimeFields,
     points: usize,
     transform: Arc<Transform>,
     /// k and 1/(1 - k^2) for every harmonic k (zero for k = 1).
-    multiples: Vec<u64>,
-    inverse_divisors: Vec<u64>,
+    multiples: Vec<Residues>,
+    inverse_divisors: Vec<Residues>,
     stop: Stop,
 }
 
@@ -176,14 +187,14 @@ impl Modular {
 
     /// The algebra with the given number of points per quarter period; nothing when the field
     /// has no root of unity of order 8 `points`.
-    pub fn new(field: PrimeField, points: usize) -> Option<Self> {
+    pub fn new(field: PrimeFields, points: usize) -> Option<Self> {
         let root = field.root_of_unity(8 * points as u64)?;
         let harmonics = 0..=2 * points as i64;
         let integer = |n: i64| field.integer(&Integer::from(n));
         let divisor = |k: i64| if k == 1 { field.one() } else { integer(1 - k * k) };
-        let divisors: Vec<u64> = harmonics.clone().map(divisor).collect();
+        let divisors: Vec<Residues> = harmonics.clone().map(divisor).collect();
         let mut inverse_divisors = field.reciprocals(&divisors)?;
-        inverse_divisors[1] = 0;
+        inverse_divisors[1] = field.zero();
         Some(Self {
             field,
             points,
@@ -201,20 +212,21 @@ impl Modular {
     }
 
     /// The field.
-    pub fn field(&self) -> &PrimeField {
+    pub fn field(&self) -> &PrimeFields {
         &self.field
     }
 
     /// Nothing if it vanishes.
-    fn part(&self, symmetry: Symmetry, coefficients: Vec<u64>) -> Option<Part> {
+    fn part(&self, symmetry: Symmetry, coefficients: Vec<Residues>) -> Option<Part> {
         let transform = Arc::clone(&self.transform);
         let empty = Part { symmetry, forms: Arc::default(), transform };
         empty.with_forms(Some(coefficients), None)
     }
 
     /// The Fourier coefficients (cos_k, sin_k) of an element, up to the highest harmonic.
-    pub fn harmonics(&self, f: &ModularElement) -> [Vec<u64>; 2] {
-        let mut lists = [vec![0; 2 * self.points + 1], vec![0; 2 * self.points + 1]];
+    pub fn harmonics(&self, f: &ModularElement) -> [Vec<Residues>; 2] {
+        let zeros = || vec![self.field.zero(); 2 * self.points + 1];
+        let mut lists = [zeros(), zeros()];
         for symmetry in SYMMETRIES {
             let Some(part) = &f.parts[symmetry.index()] else { continue };
             let list = &mut lists[usize::from(symmetry.sine)];
@@ -226,28 +238,28 @@ impl Modular {
     }
 
     /// The element with given Fourier coefficients.
-    pub fn from_harmonics(&self, harmonics: [Vec<u64>; 2]) -> ModularElement {
+    pub fn from_harmonics(&self, harmonics: [Vec<Residues>; 2]) -> ModularElement {
         let parts = SYMMETRIES.map(|symmetry| {
             let list = harmonics[usize::from(symmetry.sine)].iter();
             let own = list.skip(symmetry.harmonic(0)).step_by(2).take(self.points);
-            let length = own.clone().rposition(|&c| c != 0)? + 1;
+            let length = own.clone().rposition(|c| !is_zero(c))? + 1;
             self.part(symmetry, own.take(length).copied().collect())
         });
         ModularElement { parts }
     }
 
     /// One coefficient, of harmonic k of the symmetry.
-    fn single(&self, symmetry: Symmetry, k: usize, c: u64) -> ModularElement {
+    fn single(&self, symmetry: Symmetry, k: usize, c: Residues) -> ModularElement {
         let mut f = self.zero();
-        let mut coefficients = vec![0; k];
+        let mut coefficients = vec![self.field.zero(); k];
         coefficients.push(c);
         f.parts[symmetry.index()] = self.part(symmetry, coefficients);
         f
     }
 
-    fn coefficient(&self, f: &ModularElement, symmetry: Symmetry, k: usize) -> u64 {
+    fn coefficient(&self, f: &ModularElement, symmetry: Symmetry, k: usize) -> Residues {
         let part = f.parts[symmetry.index()].as_ref();
-        part.and_then(|part| part.coefficients().get(k).copied()).unwrap_or(0)
+        part.and_then(|part| part.coefficients().get(k).copied()).unwrap_or_default()
     }
 
     /// The sum of products and of `doubled` products taken twice, point by point.
@@ -262,7 +274,7 @@ impl Modular {
         let [once, twice] = [pairs, doubled].map(|pairs| self.pointwise(pairs));
         let mut sum = self.zero();
         for (symmetry, (once, twice)) in SYMMETRIES.into_iter().zip(once.into_iter().zip(twice)) {
-            let double = |list: Vec<u64>| -> Vec<u64> {
+            let double = |list: Vec<Residues>| -> Vec<Residues> {
                 list.iter().map(|a| self.field.add(a, a)).collect()
             };
             let twice = twice.map(double);
@@ -284,8 +296,11 @@ impl Modular {
     }
 
     /// The values of a sum of products, by symmetry; nothing where no product has it.
-    fn pointwise(&self, pairs: &[(&ModularElement, &ModularElement)]) -> [Option<Vec<u64>>; 4] {
-        let mut factors: [Vec<(&[u64], &[u64])>; 4] = [const { Vec::new() }; 4];
+    fn pointwise(
+        &self,
+        pairs: &[(&ModularElement, &ModularElement)],
+    ) -> [Option<Vec<Residues>>; 4] {
+        let mut factors: [Vec<(&[Residues], &[Residues])>; 4] = [const { Vec::new() }; 4];
         for (f, g) in pairs {
             for p in SYMMETRIES {
                 for q in SYMMETRIES {
@@ -303,7 +318,7 @@ impl Modular {
     }
 }
 
-fn add_lists(field: &PrimeField, a: &mut [u64], b: &[u64]) {
+fn add_lists(field: &PrimeFields, a: &mut [Residues], b: &[Residues]) {
     for (x, y) in a.iter_mut().zip(b) {
         field.add_assign(x, y);
     }
@@ -333,7 +348,7 @@ impl Ring for Modular {
         }
     }
     fn neg(&self, f: &ModularElement) -> ModularElement {
-        let negative = |x: &u64| self.field.neg(x);
+        let negative = |x: &Residues| self.field.neg(x);
         let parts = f.parts.each_ref();
         ModularElement { parts: parts.map(|part| part.as_ref()?.map(negative)) }
     }
@@ -393,24 +408,24 @@ impl RationalAlgebra for Modular {
 }
 
 impl FunctionAlgebra for Modular {
-    type Constants = PrimeField;
-    fn constants(&self) -> &PrimeField {
+    type Constants = PrimeFields;
+    fn constants(&self) -> &PrimeFields {
         &self.field
     }
     fn interrupted(&self) -> bool {
         self.stop.asked()
     }
-    fn embed(&self, c: &u64) -> ModularElement {
+    fn embed(&self, c: &Residues) -> ModularElement {
         self.single(Symmetry { sine: false, odd: false }, 0, *c)
     }
-    fn scale_by(&self, f: &ModularElement, c: &u64) -> ModularElement {
-        let times = |x: &u64| self.field.mul(x, c);
+    fn scale_by(&self, f: &ModularElement, c: &Residues) -> ModularElement {
+        let times = |x: &Residues| self.field.mul(x, c);
         let parts = f.parts.each_ref();
         ModularElement { parts: parts.map(|part| part.as_ref()?.map(times)) }
     }
-    fn linear_combination(&self, terms: &[(&ModularElement, &u64)]) -> ModularElement {
+    fn linear_combination(&self, terms: &[(&ModularElement, &Residues)]) -> ModularElement {
         let parts = SYMMETRIES.map(|symmetry| {
-            let of_terms: Vec<(&Part, u64)> = terms
+            let of_terms: Vec<(&Part, Residues)> = terms
                 .iter()
                 .filter_map(|(f, c)| Some((f.parts[symmetry.index()].as_ref()?, **c)))
                 .collect();
@@ -418,9 +433,9 @@ impl FunctionAlgebra for Modular {
         });
         ModularElement { parts }
     }
-    fn as_constant(&self, f: &ModularElement) -> Option<u64> {
+    fn as_constant(&self, f: &ModularElement) -> Option<Residues> {
         match &f.parts {
-            [None, None, None, None] => Some(0),
+            [None, None, None, None] => Some(self.field.zero()),
             [Some(part), None, None, None] => {
                 match part.forms.coefficients.get().map(Vec::as_slice) {
                     Some([constant]) => Some(*constant),
@@ -440,7 +455,7 @@ impl FunctionAlgebra for Modular {
     }
     fn terms(&self, f: &ModularElement) -> usize {
         let lists = f.parts.iter().flatten().map(Part::coefficients);
-        lists.flatten().filter(|&&c| c != 0).count()
+        lists.flatten().filter(|c| !is_zero(c)).count()
     }
 }
 
@@ -456,26 +471,27 @@ impl PhaseAlgebra for Modular {
         for symmetry in SYMMETRIES {
             let Some(part) = &f.parts[symmetry.index()] else { continue };
             let image = Symmetry { sine: !symmetry.sine, odd: symmetry.odd };
-            let times = |(k, c): (usize, &u64)| {
+            let times = |(k, c): (usize, &Residues)| {
                 let c = self.field.mul(c, &self.multiples[symmetry.harmonic(k)]);
                 if symmetry.sine { c } else { self.field.neg(&c) }
             };
-            let mut list: Vec<u64> = part.coefficients().iter().enumerate().map(times).collect();
+            let mut list: Vec<Residues> =
+                part.coefficients().iter().enumerate().map(times).collect();
             // cos 2m psi is number m, sin 2m psi number m - 1.
             match (symmetry.sine, symmetry.odd) {
                 (false, false) => drop(list.remove(0)),
-                (true, false) => list.insert(0, 0),
+                (true, false) => list.insert(0, self.field.zero()),
                 _ => {}
             }
             derivative.parts[image.index()] = self.part(image, list);
         }
         derivative
     }
-    fn at_zero(&self, f: &ModularElement) -> Option<u64> {
+    fn at_zero(&self, f: &ModularElement) -> Option<Residues> {
         let cosines = f.parts[..2].iter().flatten().flat_map(Part::coefficients);
-        Some(cosines.fold(0, |sum, c| self.field.add(&sum, c)))
+        Some(cosines.fold(self.field.zero(), |sum, c| self.field.add(&sum, c)))
     }
-    fn first_harmonic(&self, f: &ModularElement) -> Result<(u64, u64), PhaseError> {
+    fn first_harmonic(&self, f: &ModularElement) -> Result<(Residues, Residues), PhaseError> {
         let [cosine, sine] =
             [false, true].map(|sine| self.coefficient(f, Symmetry { sine, odd: true }, 0));
         Ok((cosine, sine))
@@ -483,15 +499,15 @@ impl PhaseAlgebra for Modular {
     fn resolve(&self, f: &ModularElement) -> Result<Resolution<Self>, PhaseError> {
         let (cos_amplitude, sin_amplitude) = self.first_harmonic(f)?;
         let parts = SYMMETRIES.map(|symmetry| {
-            let divide = |(k, c): (usize, &u64)| {
+            let divide = |(k, c): (usize, &Residues)| {
                 self.field.mul(c, &self.inverse_divisors[symmetry.harmonic(k)])
             };
             let list = f.parts[symmetry.index()].as_ref()?.coefficients();
             self.part(symmetry, list.iter().enumerate().map(divide).collect())
         });
         let mut response = ModularElement { parts };
-        let value = self.at_zero(&response).unwrap_or(0);
-        let slope = self.at_zero(&self.derivative(&response)).unwrap_or(0);
+        let value = self.at_zero(&response).unwrap_or_default();
+        let slope = self.at_zero(&self.derivative(&response)).unwrap_or_default();
         for (sine, c) in [(false, value), (true, slope)] {
             let homogeneous = self.single(Symmetry { sine, odd: true }, 0, self.field.neg(&c));
             self.add_assign(&mut response, &homogeneous);
@@ -508,12 +524,12 @@ mod tests {
     #[test]
     fn laws_hold() {
         let (points, modulus) = Modular::points_for_degree(24);
-        let field = PrimeField::with_roots_of_unity(modulus, 1 << 61).next();
+        let field = PrimeFields::with_roots_of_unity(modulus).next();
         let a = field.and_then(|field| Modular::new(field, points)).expect("an algebra");
         let n = |k: i64| a.field.integer(&Integer::from(k));
         let mixed =
-            a.from_harmonics([vec![n(3), n(-1), n(4), 0, n(7)], vec![0, n(5), n(9), n(-2)]]);
-        let odd = a.from_harmonics([vec![0, n(2), 0, n(-6)], Vec::new()]);
+            a.from_harmonics([vec![n(3), n(-1), n(4), n(0), n(7)], vec![n(0), n(5), n(9), n(-2)]]);
+        let odd = a.from_harmonics([vec![n(0), n(2), n(0), n(-6)], Vec::new()]);
         let samples = [a.zero(), a.one(), a.cosine(), a.sine(), mixed, odd];
         // `as_rational` does not apply to a finite field; the other laws do.
         assert_eq!(laws::ring(&a, &samples), Ok(()));

@@ -1,4 +1,4 @@
-//! Cosine and sine transforms of length Q modulo p, by one number-theoretic transform.
+//! Cosine and sine transforms of length Q modulo eight primes, by one number-theoretic transform.
 //!
 //! With theta_j = (2j + 1) pi/(4Q) the sum sum_m a_m cos 2m theta_j is, after the permutation
 //! v_n = g_2n, v_(Q-1-n) = g_(2n+1) (J. Makhoul, IEEE Trans. ASSP 28 (1980) 27), the transform
@@ -13,14 +13,15 @@
 //!
 //! and sin (2k+1) theta is (-1)^k cos (2k+1) (pi/2 - theta), the points in reverse.
 
-use super::{PrimeField, Symmetry};
+use super::Symmetry;
+use super::fields::{PrimeFields, Residues};
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::Rational;
 
-/// The tables of one prime and one number of points.
+/// The tables of eight primes and one number of points.
 #[derive(Clone, Debug)]
 pub(super) struct Transform {
-    field: PrimeField,
+    field: PrimeFields,
     points: usize,
     rows: usize,
     columns: usize,
@@ -28,19 +29,19 @@ pub(super) struct Transform {
     row_matrix: Small,
     column_matrix: Small,
     /// With row and column exchanged.
-    twiddles: Vec<u64>,
+    twiddles: Vec<Residues>,
     /// The place of u_m in the input of [`Self::fourier`], and of y_n in its output.
     place_in: Vec<u32>,
     place_out: Vec<u32>,
     /// The factors of a_m and a_(Q-m) in u_m.
-    entry: [Vec<u64>; 2],
+    entry: [Vec<Residues>; 2],
     /// The factors of v and of its mirror image on the way back, with the normalisation.
-    exit: [Vec<u64>; 2],
+    exit: [Vec<Residues>; 2],
     /// 2 cos theta_j and its reciprocal; tan theta_j and its reciprocal.
-    twice_cosine: Vec<u64>,
-    half_secant: Vec<u64>,
-    tangent: Vec<u64>,
-    cotangent: Vec<u64>,
+    twice_cosine: Vec<Residues>,
+    half_secant: Vec<Residues>,
+    tangent: Vec<Residues>,
+    cotangent: Vec<Residues>,
 }
 
 /// The transform y_k = sum_j v^(jk) x_j of a small length n, v of order n: y_k and y_(n-k) are the sum and the
@@ -49,19 +50,24 @@ pub(super) struct Transform {
 struct Small {
     length: usize,
     /// (v^(jk) + v^(-jk))/2, j, k <= n/2, and (v^(jk) - v^(-jk))/2, 1 <= j, k < n/2.
-    cosines: Vec<u64>,
-    sines: Vec<u64>,
+    cosines: Vec<Residues>,
+    sines: Vec<Residues>,
 }
 
 impl Small {
     /// From the powers v^m, m < n, and 1/2.
-    fn new(field: &PrimeField, length: usize, power: impl Fn(usize) -> u64, half: u64) -> Self {
+    fn new(
+        field: &PrimeFields,
+        length: usize,
+        power: impl Fn(usize) -> Residues,
+        half: Residues,
+    ) -> Self {
         let (even, odd) = (length / 2 + 1, length.div_ceil(2) - 1);
         let entry = |j: usize, k: usize, minus: bool| {
             let m = j * k % length;
             let (plus, other) = (power(m), power((length - m) % length));
             let other = if minus { field.neg(&other) } else { other };
-            field.mul(&half, &field.add(&plus, &other))
+            field.product(&half, &field.sum(&plus, &other))
         };
         let mut cosines = Vec::with_capacity(even * even);
         for k in 0..even {
@@ -76,7 +82,13 @@ impl Small {
 
     /// `scratch` has room for n + 1 numbers.
     #[inline(always)]
-    fn apply(&self, field: &PrimeField, x: &[u64], y: &mut [u64], scratch: &mut [u64]) {
+    fn apply(
+        &self,
+        field: &PrimeFields,
+        x: &[Residues],
+        y: &mut [Residues],
+        scratch: &mut [Residues],
+    ) {
         let n = self.length;
         let (even, odd) = (n / 2 + 1, n.div_ceil(2) - 1);
         let (sums, differences) = scratch.split_at_mut(even);
@@ -86,8 +98,8 @@ impl Small {
         for ((sum, difference), (a, b)) in
             sums[1..].iter_mut().zip(differences.iter_mut()).zip(pairs)
         {
-            *sum = field.add(a, b);
-            *difference = field.sub(a, b);
+            *sum = field.sum(a, b);
+            *difference = field.difference(a, b);
         }
         if n.is_multiple_of(2) {
             sums[n / 2] = x[n / 2];
@@ -97,8 +109,8 @@ impl Small {
         }
         for (k, weights) in self.sines.chunks_exact(odd.max(1)).enumerate() {
             let (cosine, sine) = (y[k + 1], field.dot(weights, differences));
-            y[n - 1 - k] = field.sub(&cosine, &sine);
-            y[k + 1] = field.add(&cosine, &sine);
+            y[n - 1 - k] = field.difference(&cosine, &sine);
+            y[k + 1] = field.sum(&cosine, &sine);
         }
     }
 }
@@ -119,7 +131,7 @@ pub(super) fn size(least: usize) -> (usize, usize) {
 
 impl Transform {
     /// The tables from a root of unity of order 8Q; nothing if that is none.
-    pub(super) fn new(field: PrimeField, points: usize, root: u64) -> Option<Self> {
+    pub(super) fn new(field: PrimeFields, points: usize, root: Residues) -> Option<Self> {
         let (rows, columns) = size(points);
         // A number of points that `size` did not choose is as good, only slower.
         let (rows, columns) = if rows * columns == points { (rows, columns) } else { (1, points) };
@@ -134,25 +146,26 @@ impl Transform {
         // i = z^(2Q).
         let minus_half_i = field.mul(&minus_half, &z(2 * points));
         let over_points = number((1, points));
-        let times = |factor: u64, k: usize| field.mul(&factor, &z(k));
+        let times = |factor: Residues, k: usize| field.mul(&factor, &z(k));
         let mut entry = [half, minus_half_i]
-            .map(|factor| (0..points).map(|m| times(factor, 2 * m)).collect::<Vec<u64>>());
+            .map(|factor| (0..points).map(|m| times(factor, 2 * m)).collect::<Vec<Residues>>());
         // a_0 stands alone.
-        (entry[0][0], entry[1][0]) = (field.one(), 0);
-        let mut exit = [order - 2, 2]
-            .map(|step| (0..points).map(|k| times(over_points, step * k)).collect::<Vec<u64>>());
-        (exit[0][0], exit[1][0]) = (over_points, 0);
+        (entry[0][0], entry[1][0]) = (field.one(), field.zero());
+        let mut exit = [order - 2, 2].map(|step| {
+            (0..points).map(|k| times(over_points, step * k)).collect::<Vec<Residues>>()
+        });
+        (exit[0][0], exit[1][0]) = (over_points, field.zero());
         let pair = |k: usize| (z(k), z(order - k));
         let odd = (0..points).map(|j| 2 * j + 1);
-        let twice_cosine: Vec<u64> =
+        let twice_cosine: Vec<Residues> =
             odd.clone().map(pair).map(|(a, b)| field.add(&a, &b)).collect();
         // 2 sin = (z - 1/z)/i = -i (z - 1/z).
         let minus_i = field.neg(&z(2 * points));
-        let twice_sine: Vec<u64> =
+        let twice_sine: Vec<Residues> =
             odd.map(pair).map(|(a, b)| field.mul(&minus_i, &field.sub(&a, &b))).collect();
         let half_secant = field.reciprocals(&twice_cosine)?;
         let half_cosecant = field.reciprocals(&twice_sine)?;
-        let product = |a: &[u64], b: &[u64]| -> Vec<u64> {
+        let product = |a: &[Residues], b: &[Residues]| -> Vec<Residues> {
             a.iter().zip(b).map(|(x, y)| field.mul(x, y)).collect()
         };
         Some(Self {
@@ -175,9 +188,10 @@ impl Transform {
     }
 
     /// y_n = sum_m w^(mn) u_m in place: u_m stands at (m mod s) r + m/s, and then y_n at (n mod r) s + n/r.
-    fn fourier(&self, list: &mut [u64]) {
+    #[inline(always)]
+    fn fourier(&self, list: &mut [Residues]) {
         let (r, s) = (self.rows, self.columns);
-        let mut room = vec![0; self.points + r + 2 * s.max(r) + 2];
+        let mut room = vec![self.field.zero(); self.points + r + 2 * s.max(r) + 2];
         let (middle, rest) = room.split_at_mut(self.points);
         let (row, scratch) = rest.split_at_mut(r);
         let parts = list.chunks(r).zip(self.twiddles.chunks(r));
@@ -185,7 +199,7 @@ impl Transform {
             self.row_matrix.apply(&self.field, u, row, scratch);
             let places = middle[column..].iter_mut().step_by(s);
             for ((place, value), twiddle) in places.zip(&*row).zip(twiddles) {
-                *place = self.field.mul(value, twiddle);
+                *place = self.field.product(value, twiddle);
             }
         }
         for (u, out) in middle.chunks(s).zip(list.chunks_mut(s)) {
@@ -194,12 +208,13 @@ impl Transform {
     }
 
     /// sum_m a_m cos 2m theta_j, m < Q, for every j.
-    fn even_cosines(&self, a: &[u64]) -> Vec<u64> {
+    #[inline(always)]
+    fn even_cosines(&self, a: &[Residues]) -> Vec<Residues> {
         let q = self.points;
-        let at = |m: usize| a.get(m).copied().unwrap_or(0);
-        let mut u = vec![0; q];
+        let at = |m: usize| a.get(m).copied().unwrap_or_default();
+        let mut u = vec![self.field.zero(); q];
         for m in 0..q {
-            let value = self.field.two(at(m), self.entry[0][m], at(q - m), self.entry[1][m]);
+            let value = self.field.two(&at(m), &self.entry[0][m], &at(q - m), &self.entry[1][m]);
             u[self.place_in[m] as usize] = value;
         }
         self.fourier(&mut u);
@@ -208,9 +223,10 @@ impl Transform {
     }
 
     /// The a_m of the values: a_m = (z^-m V_(Q-m) + z^m V_m)/Q with V the transform of v.
-    fn even_cosine_coefficients(&self, values: &[u64]) -> Vec<u64> {
+    #[inline(always)]
+    fn even_cosine_coefficients(&self, values: &[Residues]) -> Vec<Residues> {
         let q = self.points;
-        let mut v = vec![0; q];
+        let mut v = vec![self.field.zero(); q];
         for (j, &value) in values.iter().enumerate() {
             let n = if j.is_multiple_of(2) { j / 2 } else { q - 1 - j / 2 };
             v[self.place_in[n] as usize] = value;
@@ -218,18 +234,24 @@ impl Transform {
         self.fourier(&mut v);
         let at = |n: usize| v[self.place_out[if n == q { 0 } else { n }] as usize];
         let each =
-            (0..q).map(|m| self.field.two(at(q - m), self.exit[0][m], at(m), self.exit[1][m]));
+            (0..q).map(|m| self.field.two(&at(q - m), &self.exit[0][m], &at(m), &self.exit[1][m]));
         each.collect()
     }
 
-    fn times(&self, values: &mut [u64], factors: &[u64]) {
+    #[inline(always)]
+    fn times(&self, values: &mut [Residues], factors: &[Residues]) {
         for (value, factor) in values.iter_mut().zip(factors) {
-            *value = self.field.mul(value, factor);
+            *value = self.field.product(value, factor);
         }
     }
 
     /// The values at the points of a function of that symmetry from its coefficients, at most Q.
-    pub(super) fn values(&self, symmetry: Symmetry, coefficients: &[u64]) -> Vec<u64> {
+    pub(super) fn values(&self, symmetry: Symmetry, coefficients: &[Residues]) -> Vec<Residues> {
+        self.field.vectorised(Values(self, symmetry, coefficients))
+    }
+
+    #[inline(always)]
+    fn values_of(&self, symmetry: Symmetry, coefficients: &[Residues]) -> Vec<Residues> {
         let (field, q) = (&self.field, self.points);
         if let (Symmetry { sine: false, odd: false }, [constant]) = (symmetry, coefficients) {
             return vec![*constant; q];
@@ -239,18 +261,18 @@ impl Transform {
         }
         // Coefficients of odd cosines first, then of 2 cos theta times their sum.
         let mut a = coefficients.to_vec();
-        a.resize(q, 0);
+        a.resize(q, field.zero());
         match (symmetry.sine, symmetry.odd) {
             (true, true) => negate_odd(field, &mut a),
             (true, false) => {
                 for k in (0..q - 1).rev() {
-                    a[k] = field.add(&a[k], &a[k + 1]);
+                    a[k] = field.sum(&a[k], &a[k + 1]);
                 }
             }
             _ => {}
         }
         for m in (1..q).rev() {
-            a[m] = field.add(&a[m], &a[m - 1]);
+            a[m] = field.sum(&a[m], &a[m - 1]);
         }
         let mut values = self.even_cosines(&a);
         let tangent = symmetry.sine && !symmetry.odd;
@@ -262,7 +284,12 @@ impl Transform {
     }
 
     /// The Q coefficients of a function of that symmetry from its values at the points.
-    pub(super) fn coefficients(&self, symmetry: Symmetry, values: &[u64]) -> Vec<u64> {
+    pub(super) fn coefficients(&self, symmetry: Symmetry, values: &[Residues]) -> Vec<Residues> {
+        self.field.vectorised(Coefficients(self, symmetry, values))
+    }
+
+    #[inline(always)]
+    fn coefficients_of(&self, symmetry: Symmetry, values: &[Residues]) -> Vec<Residues> {
         let (field, q) = (&self.field, self.points);
         if symmetry == (Symmetry { sine: false, odd: false }) {
             return self.even_cosine_coefficients(values);
@@ -275,13 +302,13 @@ impl Transform {
         self.times(&mut values, if cotangent { &self.cotangent } else { &self.twice_cosine });
         let mut a = self.even_cosine_coefficients(&values);
         for m in 1..q {
-            a[m] = field.sub(&a[m], &a[m - 1]);
+            a[m] = field.difference(&a[m], &a[m - 1]);
         }
         match (symmetry.sine, symmetry.odd) {
             (true, true) => negate_odd(field, &mut a),
             (true, false) => {
                 for k in 0..q - 1 {
-                    a[k] = field.sub(&a[k], &a[k + 1]);
+                    a[k] = field.difference(&a[k], &a[k + 1]);
                 }
             }
             _ => {}
@@ -290,9 +317,32 @@ impl Transform {
     }
 }
 
-fn negate_odd(field: &PrimeField, list: &mut [u64]) {
+struct Values<'a>(&'a Transform, Symmetry, &'a [Residues]);
+
+impl pulp::NullaryFnOnce for Values<'_> {
+    type Output = Vec<Residues>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<Residues> {
+        self.0.values_of(self.1, self.2)
+    }
+}
+
+struct Coefficients<'a>(&'a Transform, Symmetry, &'a [Residues]);
+
+impl pulp::NullaryFnOnce for Coefficients<'_> {
+    type Output = Vec<Residues>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<Residues> {
+        self.0.coefficients_of(self.1, self.2)
+    }
+}
+
+#[inline(always)]
+fn negate_odd(field: &PrimeFields, list: &mut [Residues]) {
     for value in list.iter_mut().skip(1).step_by(2) {
-        *value = field.neg(value);
+        *value = field.difference(&field.zero(), value);
     }
 }
 
@@ -306,10 +356,10 @@ mod tests {
     fn every_basis_function_is_itself() {
         for points in [1usize, 2, 3, 4, 6, 7, 12, 15, 30, 49] {
             let order = 8 * points as u64;
-            let field = PrimeField::with_roots_of_unity(order, 1 << 61).next().expect("a prime");
+            let field = PrimeFields::with_roots_of_unity(order).next().expect("primes");
             let root = field.root_of_unity(order).expect("a root");
             let transform = Transform::new(field, points, root).expect("tables");
-            let z = |k: usize| field.power(root, k as u64 % order);
+            let z = |k: usize| field.power(&root, (k as u64 % order) as u32);
             let half = field.rational(&Rational::from((1, 2)));
             let half_over_i = field.neg(&field.mul(&half, &z(2 * points)));
             for symmetry in SYMMETRIES {
@@ -323,9 +373,9 @@ mod tests {
                             field.mul(&half, &field.add(&plus, &minus))
                         }
                     };
-                    let mut unit = vec![0; points];
+                    let mut unit = vec![field.zero(); points];
                     unit[k] = field.one();
-                    let values: Vec<u64> = (0..points).map(value).collect();
+                    let values: Vec<Residues> = (0..points).map(value).collect();
                     assert_eq!(
                         transform.values(symmetry, &unit),
                         values,

@@ -226,7 +226,7 @@ impl Board<'_> {
         };
         match (&self.0.solution, self.0.checked_orders) {
             (Solution::Rational(proved), Some(last)) => format!(
-                "{}\n(proved modulo {} primes of 61 bits, more than its numbers can hold).",
+                "{}\n(proved modulo {} primes of 30 bits, more than its numbers can hold).",
                 vanishes(last),
                 proved.proof_primes
             ),
@@ -236,8 +236,8 @@ impl Board<'_> {
             ),
             (_, Some(last)) => vanishes(last) + ".",
             (Solution::FrequencyOnly { primes: Some(primes) }, None) => format!(
-                "From {primes} primes of 61 bits, more than its numbers can hold by bounds proved in advance; no solution.\n\
-                 One image was substituted into the equation, the others at one phase each: a wrong one passes with a\n\
+                "From {primes} primes of 30 bits, more than its numbers can hold by bounds proved in advance; no solution.\n\
+                 Four images were substituted into the equation, the others at three phases each: a wrong one passes with a\n\
                  chance below 2^-50."
             ),
             (Solution::FrequencyOnly { primes: None }, None) => {

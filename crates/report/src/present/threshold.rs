@@ -17,6 +17,10 @@ const PRINTED_POINTS: usize = 1000;
 const MOST_CURVES: usize = 12;
 /// Shades of a map.
 const SHADES: f64 = 64.0;
+/// The colours of the largest negative value, of zero, and of the largest value.
+const DARK: Colour = (110, 35, 0);
+const MIDDLE: Colour = (170, 170, 170);
+const LIGHT: Colour = (205, 235, 255);
 
 type Line = (Text, Text);
 
@@ -294,18 +298,23 @@ fn curves(sweep: &Sweep, header: &Header) -> Figure {
     figure
 }
 
-/// A map in shades: blue D > 0, red D < 0, white near 0.
+/// The colour of a signed value over the largest: from dark vermilion, -1, through grey, 0, to light blue, 1, so that the
+/// lightness alone tells all of it; small values are spread.
+fn shade(share: f64) -> Colour {
+    let depth = (share.abs().powf(0.4) * SHADES).round() / SHADES;
+    let (r, g, b) = if share > 0.0 { LIGHT } else { DARK };
+    let mix = |part: u8, end: u8| {
+        (f64::from(part) + depth * (f64::from(end) - f64::from(part))).round() as u8
+    };
+    (mix(MIDDLE.0, r), mix(MIDDLE.1, g), mix(MIDDLE.2, b))
+}
+
+/// A map in shades of the signed threshold.
 fn map(sweep: &Sweep, rows: &grid::Axis, header: &Header) -> Figure {
     let grid = &sweep.grid;
     let largest = grid.points.iter().flatten().fold(0.0f64, |m, s| m.max(s.abs()));
-    let shade = |signed: &f64| -> Colour {
-        let depth = (signed.abs() / largest.max(f64::MIN_POSITIVE)).powf(0.4);
-        let depth = (depth * SHADES).round() / SHADES;
-        let (r, g, b) = if *signed > 0.0 { colours::BLUE } else { colours::VERMILION };
-        let mix = |part: u8| (255.0 - depth * (255.0 - f64::from(part))) as u8;
-        (mix(r), mix(g), mix(b))
-    };
-    let title = format!("signed Melnikov threshold, blue > 0 > red, up to {largest:.3e}");
+    let shade = |signed: &f64| shade(signed / largest.max(f64::MIN_POSITIVE));
+    let title = format!("signed Melnikov threshold of {}", header.problem);
     let [across, up] = [&grid.columns, rows].map(|axis| parameter(header, &axis.name));
     let range = |axis: &grid::Axis| {
         let values = axis.doubles();
@@ -315,6 +324,25 @@ fn map(sweep: &Sweep, rows: &grid::Axis, header: &Header) -> Figure {
     let (columns, rows) = (range(&grid.columns), range(rows));
     let at = |index: usize| grid.points.get(index)?.as_ref().map(shade);
     let cells = Raster::cells((columns.2, rows.2), at);
-    let raster = Some(Raster { columns, rows, cells, legend: Vec::new() });
+    let legend = [(1.0, largest), (0.0, 0.0), (-1.0, -largest)];
+    let legend = legend.map(|(share, value)| (format!("{value:.3e}"), Some(self::shade(share))));
+    let raster = Some(Raster { columns, rows, cells, legend: legend.into() });
     Figure { raster, ..Figure::new(title, across, up) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shade;
+
+    /// Rec. 601: in print without colours the sign and the size are still told.
+    #[test]
+    fn the_lightness_of_a_shade_rises_with_the_value() {
+        let lightness = |n: i32| {
+            let (r, g, b) = shade(f64::from(n) / 20.0);
+            0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b)
+        };
+        let all: Vec<f64> = (-20..=20).map(lightness).collect();
+        assert!(all.windows(2).all(|pair| pair[0] < pair[1]), "{all:?}");
+        assert!(all[0] < 60.0 && (all[20] - 170.0).abs() < 1.0 && all[40] > 220.0, "{all:?}");
+    }
 }

@@ -11,6 +11,7 @@ pub mod complex;
 mod error;
 mod estimate;
 mod formula;
+mod fraction;
 mod growth;
 mod linear;
 mod maps;

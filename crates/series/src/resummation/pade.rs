@@ -166,6 +166,16 @@ impl Pade {
         Some(Self { numerator, denominator, exponent, bits })
     }
 
+    /// p and q in y = x 2^-exponent, q(0) = 1, to so many bits.
+    pub(super) fn of_parts(p: &[Float], q: &[Float], exponent: i32, bits: u32) -> Self {
+        let rounded = |list: &[Float]| {
+            let mut list: Vec<Float> = list.iter().map(|x| Float::with_val(bits, x)).collect();
+            trim(&mut list, bits);
+            list
+        };
+        Self { numerator: rounded(p), denominator: rounded(q), exponent, bits }
+    }
+
     /// Whether the series of p/q begins with the coefficients c: not inside a block of the table,
     /// where the approximant next to it stands for one that does not exist.
     pub(super) fn begins_with(&self, c: &[Float]) -> bool {

@@ -1,6 +1,7 @@
 //! Diagonal Pade approximants, the last of them judged by those before.
 
 use super::estimate::{distance, settle, tentative};
+use super::fraction::convergents;
 use super::{Estimate, Outcome, Pade, ResummationError};
 use lindstedt_algebra::Stop;
 use rug::Float;
@@ -24,11 +25,16 @@ fn degrees(k: usize) -> (usize, usize) {
 }
 
 impl Staircase {
-    /// Builds them: O(N^3) products each.
+    /// Builds them: O(N^2) products together, as convergents of one continued fraction; O(N^3) each where the table has a
+    /// block.
     pub fn new(c: &[Float], bits: u32, stop: &Stop) -> Result<Self, ResummationError> {
         let order = c.len().saturating_sub(1);
+        let first = order.saturating_sub(APPROXIMANTS);
+        if let Some(steps) = convergents(c, first, bits, stop) {
+            return Ok(Self { coefficients: c.to_vec(), bits, steps, repairs: true });
+        }
         let mut steps = Vec::new();
-        for k in order.saturating_sub(APPROXIMANTS)..=order {
+        for k in first..=order {
             let (l, m) = degrees(k);
             if stop.asked() {
                 return Err(ResummationError::Stopped);

@@ -1,0 +1,494 @@
+//! Z/p_1 x ... x Z/p_8 for primes just below 2^30: one prime per lane of a vector, in Montgomery form.
+//!
+//! What is done modulo one prime is done modulo all eight by the same instructions. Sums of products are added up in
+//! 64 bits, twelve products between two folds, and reduced once; long loops are compiled for plain and for wide
+//! vectors, and the processor decides (`pulp`).
+
+use super::pair::PrimePair;
+use super::primes;
+use lindstedt_algebra::{RationalAlgebra, Ring};
+use rug::{Integer, Rational};
+
+/// How many primes.
+pub const LANES: usize = 8;
+/// One number per prime: x 2^32 mod p.
+pub type Residues = [u32; LANES];
+/// Sums not yet reduced.
+type Sums = [u64; LANES];
+
+const ZERO: Residues = [0; LANES];
+/// Products that are added up before their sum is folded: 12 (p - 1)^2 + 2^32 p < 2^64.
+const CHUNK: usize = 12;
+/// Rows that wide vectors take in one pass over the sums.
+const PASS: usize = 4;
+
+/// The product of the fields Z/p of eight primes. It has zero divisors: what vanishes modulo one of the primes is
+/// not zero, and has no reciprocal.
+#[derive(Clone, Copy, Debug)]
+pub struct PrimeFields {
+    primes: Residues,
+    /// -1/p mod 2^32.
+    negative_inverses: Residues,
+    /// 2^32 mod p and 2^64 mod p.
+    ones: Residues,
+    squares: Residues,
+    pairs: [PrimePair; LANES / 2],
+    arch: pulp::Arch,
+}
+
+/// f of every lane.
+#[inline(always)]
+fn each(f: impl Fn(usize) -> u32) -> Residues {
+    std::array::from_fn(f)
+}
+
+impl PrimeFields {
+    /// The next eight of a list of odd primes below 2^30; nothing when there are not so many.
+    fn new(list: &mut impl Iterator<Item = u32>) -> Option<Self> {
+        let mut primes = ZERO;
+        for slot in &mut primes {
+            *slot = list.next()?;
+        }
+        // Newton's iteration doubles the correct bits of 1/p mod 2^32.
+        let inverse =
+            |p: u32| (0..5).fold(p, |q, _| q.wrapping_mul(2u32.wrapping_sub(p.wrapping_mul(q))));
+        let power = |p: u32, bits: u32| ((1u128 << bits) % u128::from(p)) as u32;
+        let pairs = std::array::from_fn(|i| PrimePair::new(primes[2 * i], primes[2 * i + 1]));
+        Some(Self {
+            primes,
+            negative_inverses: primes.map(|p| inverse(p).wrapping_neg()),
+            ones: primes.map(|p| power(p, 32)),
+            squares: primes.map(|p| power(p, 64)),
+            pairs,
+            arch: pulp::Arch::new(),
+        })
+    }
+
+    /// The largest primes below 2^30 that are 1 modulo `modulus`, eight at a time, descending.
+    pub fn with_roots_of_unity(modulus: u64) -> impl Iterator<Item = Self> {
+        let mut list = primes::one_modulo(modulus);
+        std::iter::from_fn(move || Self::new(&mut list))
+    }
+
+    /// The primes.
+    pub fn primes(&self) -> [u32; LANES] {
+        self.primes
+    }
+
+    /// The same primes as moduli of 60 bits, by which numbers leave and enter.
+    pub fn pairs(&self) -> &[PrimePair; LANES / 2] {
+        &self.pairs
+    }
+
+    /// Runs a loop as it is compiled for this processor; all that it calls must be inlined.
+    pub(super) fn vectorised<L: pulp::NullaryFnOnce>(&self, lanes: L) -> L::Output {
+        self.arch.dispatch(lanes)
+    }
+
+    /// Whether loops are compiled for wide vectors, where more of them pays.
+    #[inline(always)]
+    fn is_wide(&self) -> bool {
+        !matches!(self.arch, pulp::Arch::Scalar)
+    }
+
+    /// t / 2^32 mod p for t < 2^32 p.
+    #[inline(always)]
+    fn reduce(&self, t: &Sums) -> Residues {
+        each(|l| {
+            let m = (t[l] as u32).wrapping_mul(self.negative_inverses[l]);
+            let sum = ((t[l] + u64::from(m) * u64::from(self.primes[l])) >> 32) as u32;
+            // A difference that wraps around is the larger number.
+            sum.min(sum.wrapping_sub(self.primes[l]))
+        })
+    }
+
+    /// A congruent number below 2^32 p.
+    #[inline(always)]
+    fn fold(&self, t: &mut Sums) {
+        for (t, one) in t.iter_mut().zip(&self.ones) {
+            *t = (*t >> 32) * u64::from(*one) + (*t & 0xffff_ffff);
+        }
+    }
+
+    #[inline(always)]
+    fn reduce_any(&self, mut t: Sums) -> Residues {
+        self.fold(&mut t);
+        self.fold(&mut t);
+        self.reduce(&t)
+    }
+
+    #[inline(always)]
+    pub(super) fn product(&self, a: &Residues, b: &Residues) -> Residues {
+        self.reduce(&std::array::from_fn(|l| u64::from(a[l]) * u64::from(b[l])))
+    }
+
+    #[inline(always)]
+    pub(super) fn sum(&self, a: &Residues, b: &Residues) -> Residues {
+        each(|l| {
+            let sum = a[l] + b[l];
+            sum.min(sum.wrapping_sub(self.primes[l]))
+        })
+    }
+
+    #[inline(always)]
+    pub(super) fn difference(&self, a: &Residues, b: &Residues) -> Residues {
+        each(|l| {
+            let difference = a[l].wrapping_sub(b[l]);
+            difference.min(difference.wrapping_add(self.primes[l]))
+        })
+    }
+
+    /// sum_i a_i b_i with one reduction.
+    #[inline(always)]
+    pub(super) fn dot(&self, a: &[Residues], b: &[Residues]) -> Residues {
+        let mut t = [0; LANES];
+        for (a, b) in a.chunks(CHUNK).zip(b.chunks(CHUNK)) {
+            self.fold(&mut t);
+            for (a, b) in a.iter().zip(b) {
+                accumulate(&mut t, a, b);
+            }
+        }
+        self.reduce_any(t)
+    }
+
+    /// a b + c d.
+    #[inline(always)]
+    pub(super) fn two(&self, a: &Residues, b: &Residues, c: &Residues, d: &Residues) -> Residues {
+        let mut t = [0; LANES];
+        accumulate(&mut t, a, b);
+        accumulate(&mut t, c, d);
+        self.reduce(&t)
+    }
+
+    /// sum_i a_i\[j\] b_i\[j\] for every j < `length`, the length of every row.
+    pub(super) fn pointwise(
+        &self,
+        pairs: &[(&[Residues], &[Residues])],
+        length: usize,
+    ) -> Vec<Residues> {
+        self.vectorised(SumOfProducts { fields: self, pairs, length })
+    }
+
+    /// sum_i c_i a_i\[j\] for every j, as long as the longest row.
+    pub(super) fn combination(&self, terms: &[(&[Residues], Residues)]) -> Vec<Residues> {
+        let length = terms.iter().map(|(row, _)| row.len()).max().unwrap_or(0);
+        self.vectorised(SumOfProducts { fields: self, pairs: terms, length })
+    }
+
+    /// 1/a for every a, with one inversion; nothing if one of them is no unit.
+    pub fn reciprocals(&self, list: &[Residues]) -> Option<Vec<Residues>> {
+        let mut before = Vec::with_capacity(list.len());
+        let mut product = self.one();
+        for a in list {
+            before.push(product);
+            product = self.product(&product, a);
+        }
+        let mut inverse = self.reciprocal(&product)?;
+        for (slot, a) in before.iter_mut().zip(list).rev() {
+            *slot = self.product(slot, &inverse);
+            inverse = self.product(&inverse, a);
+        }
+        Some(before)
+    }
+
+    /// The image of an integer.
+    pub fn integer(&self, n: &Integer) -> Residues {
+        self.joined(&self.pairs.map(|pair| pair.integer(n)))
+    }
+
+    /// The images of integers, which share what belongs to the primes.
+    pub fn integers<'a>(&self, list: impl Iterator<Item = &'a Integer> + Clone) -> Vec<Residues> {
+        let parts = self.pairs.map(|pair| pair.integers(list.clone()));
+        let join = |i: usize| self.joined(&parts.each_ref().map(|part| part[i]));
+        (0..parts[0].len()).map(join).collect()
+    }
+
+    /// The number with those residues modulo the pairs.
+    pub fn joined(&self, parts: &[u64; LANES / 2]) -> Residues {
+        let plain: [u64; LANES / 2] =
+            std::array::from_fn(|i| self.pairs[i].representative(parts[i]));
+        let lanes = each(|l| (plain[l / 2] % u64::from(self.primes[l])) as u32);
+        self.product(&lanes, &self.squares)
+    }
+
+    /// The residues of a number modulo the pairs.
+    pub fn parted(&self, a: &Residues) -> [u64; LANES / 2] {
+        let plain = self.reduce(&a.map(u64::from));
+        std::array::from_fn(|i| self.pairs[i].joined(plain[2 * i], plain[2 * i + 1]))
+    }
+
+    /// a^n, another n in every lane.
+    fn powers(&self, a: &Residues, mut exponents: Residues) -> Residues {
+        let (mut result, mut square) = (self.ones, *a);
+        while exponents != ZERO {
+            let next = self.product(&result, &square);
+            result = each(|l| if exponents[l] & 1 == 1 { next[l] } else { result[l] });
+            square = self.product(&square, &square);
+            exponents = exponents.map(|n| n >> 1);
+        }
+        result
+    }
+
+    /// a^n.
+    pub fn power(&self, a: &Residues, exponent: u32) -> Residues {
+        self.powers(a, [exponent; LANES])
+    }
+
+    /// An element of exact multiplicative order n modulo every prime, for n that divides every p - 1.
+    pub fn root_of_unity(&self, n: u64) -> Option<Residues> {
+        let mut roots = ZERO;
+        for (root, &p) in roots.iter_mut().zip(&self.primes) {
+            *root = primes::root_of_unity(p, n)?;
+        }
+        Some(self.product(&roots, &self.squares))
+    }
+}
+
+/// Factors of one product in every place: a row, or one number.
+trait Factor: Copy {
+    /// As far as both reach.
+    fn within(self, length: usize) -> Self;
+    fn at(&self, j: usize) -> &Residues;
+}
+
+impl Factor for &[Residues] {
+    #[inline(always)]
+    fn within(self, length: usize) -> Self {
+        &self[..length]
+    }
+    #[inline(always)]
+    fn at(&self, j: usize) -> &Residues {
+        &self[j]
+    }
+}
+
+impl Factor for Residues {
+    #[inline(always)]
+    fn within(self, _: usize) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn at(&self, _: usize) -> &Residues {
+        self
+    }
+}
+
+/// sum_i a_i\[j\] b_i\[j\] for every j below `length`, zero where a row has ended.
+struct SumOfProducts<'a, B> {
+    fields: &'a PrimeFields,
+    pairs: &'a [(&'a [Residues], B)],
+    length: usize,
+}
+
+impl<B: Factor> SumOfProducts<'_, B> {
+    /// Adds the products of some rows, after a fold.
+    #[inline(always)]
+    fn add(&self, sums: &mut [Sums], pairs: &[(&[Residues], B)], folds: bool) {
+        let common = pairs.iter().fold(sums.len(), |least, (row, _)| least.min(row.len()));
+        let (whole, rest) = sums.split_at_mut(common);
+        if let (true, &[a, b, c, d]) = (self.fields.is_wide(), pairs) {
+            let rows = [a, b, c, d].map(|(a, b)| (a.within(common), b.within(common)));
+            for (j, sum) in whole.iter_mut().enumerate() {
+                let mut t = *sum;
+                if folds {
+                    self.fields.fold(&mut t);
+                }
+                for (a, b) in &rows {
+                    accumulate(&mut t, a.at(j), b.at(j));
+                }
+                *sum = t;
+            }
+        } else {
+            for (j, sum) in whole.iter_mut().enumerate() {
+                let mut t = *sum;
+                if folds {
+                    self.fields.fold(&mut t);
+                }
+                for (a, b) in pairs {
+                    accumulate(&mut t, a.at(j), b.at(j));
+                }
+                *sum = t;
+            }
+        }
+        for sum in rest.iter_mut().filter(|_| folds) {
+            self.fields.fold(sum);
+        }
+        for (row, b) in pairs {
+            for (j, (sum, a)) in rest.iter_mut().zip(&row[common..]).enumerate() {
+                accumulate(sum, a, b.at(common + j));
+            }
+        }
+    }
+}
+
+impl<B: Factor> pulp::NullaryFnOnce for SumOfProducts<'_, B> {
+    type Output = Vec<Residues>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<Residues> {
+        let mut sums = vec![[0; LANES]; self.length];
+        for pairs in self.pairs.chunks(CHUNK) {
+            if self.fields.is_wide() {
+                for (done, pairs) in pairs.chunks(PASS).enumerate() {
+                    self.add(&mut sums, pairs, done == 0);
+                }
+            } else {
+                self.add(&mut sums, pairs, true);
+            }
+        }
+        let mut result = Vec::with_capacity(sums.len());
+        for sum in sums {
+            result.push(self.fields.reduce_any(sum));
+        }
+        result
+    }
+}
+
+/// t + a b.
+#[inline(always)]
+fn accumulate(t: &mut Sums, a: &Residues, b: &Residues) {
+    for l in 0..LANES {
+        t[l] += u64::from(a[l]) * u64::from(b[l]);
+    }
+}
+
+impl Ring for PrimeFields {
+    type Element = Residues;
+
+    fn zero(&self) -> Residues {
+        ZERO
+    }
+    fn one(&self) -> Residues {
+        self.ones
+    }
+    fn is_zero(&self, a: &Residues) -> bool {
+        *a == ZERO
+    }
+    fn add_assign(&self, a: &mut Residues, b: &Residues) {
+        *a = self.sum(a, b);
+    }
+    fn neg(&self, a: &Residues) -> Residues {
+        self.difference(&ZERO, a)
+    }
+    fn sub(&self, a: &Residues, b: &Residues) -> Residues {
+        self.difference(a, b)
+    }
+    fn mul(&self, a: &Residues, b: &Residues) -> Residues {
+        self.product(a, b)
+    }
+    fn sum_of_products(&self, pairs: &[(&Residues, &Residues)]) -> Residues {
+        let mut t = [0; LANES];
+        for pairs in pairs.chunks(CHUNK) {
+            self.fold(&mut t);
+            for (a, b) in pairs {
+                accumulate(&mut t, a, b);
+            }
+        }
+        self.reduce_any(t)
+    }
+}
+
+impl RationalAlgebra for PrimeFields {
+    /// A denominator that one of the primes divides has no image; zero is returned. A result computed with it
+    /// is wrong, which the proof of the reconstructed expansion detects.
+    fn rational(&self, q: &Rational) -> Residues {
+        let numerator = self.integer(q.numer());
+        if *q.denom() == 1 {
+            return numerator;
+        }
+        let denominator = self.reciprocal(&self.integer(q.denom())).unwrap_or(ZERO);
+        self.product(&numerator, &denominator)
+    }
+    fn scale(&self, a: &Residues, q: &Rational) -> Residues {
+        self.product(a, &self.rational(q))
+    }
+    fn reciprocal(&self, a: &Residues) -> Option<Residues> {
+        let is_unit = a.iter().all(|&a| a != 0);
+        is_unit.then(|| self.powers(a, self.primes.map(|p| p - 2)))
+    }
+    /// An element belongs to many rational numbers.
+    fn as_rational(&self, _: &Residues) -> Option<Rational> {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn first(modulus: u64) -> PrimeFields {
+        PrimeFields::with_roots_of_unity(modulus).next().expect("primes")
+    }
+
+    fn small(fields: &PrimeFields, n: u32) -> Residues {
+        fields.integer(&Integer::from(n))
+    }
+
+    /// Of every length, all bits set and others, of either sign; by pairs there and back.
+    #[test]
+    fn agrees_with_integers() {
+        let fields = first(24);
+        let mut list = vec![Integer::new(), Integer::from(-1), Integer::from(i64::MIN)];
+        list.extend(fields.primes().map(Integer::from));
+        for bits in (20..9000).step_by(37) {
+            let ones = (Integer::from(1) << bits) - 1u32;
+            list.push(Integer::from(-&ones) / 3u32);
+            list.push(ones);
+        }
+        let plain = |a: &Residues| fields.reduce(&a.map(u64::from));
+        let modulo = |n: &Integer| fields.primes().map(|p| n.mod_u(p));
+        let images = fields.integers(list.iter());
+        for (n, image) in list.iter().zip(&images) {
+            assert_eq!(plain(image), modulo(n), "{n}");
+            assert_eq!(fields.integer(n), *image);
+            assert_eq!(fields.joined(&fields.parted(image)), *image);
+        }
+        for (n, m) in list.iter().zip(list.iter().rev()) {
+            let (a, b) = (fields.integer(n), fields.integer(m));
+            assert_eq!(plain(&fields.mul(&a, &b)), modulo(&Integer::from(n * m)));
+            assert_eq!(plain(&fields.add(&a, &b)), modulo(&Integer::from(n + m)));
+            assert_eq!(plain(&fields.sub(&a, &b)), modulo(&Integer::from(n - m)));
+        }
+        let third = fields.rational(&Rational::from((-2, 3)));
+        assert_eq!(fields.scale(&third, &Rational::from((-3, 2))), fields.one());
+        let root = fields.root_of_unity(24).expect("a root");
+        assert_eq!(fields.power(&root, 24), fields.one());
+        for n in [8, 12] {
+            assert!(fields.power(&root, n).iter().zip(fields.one()).all(|(a, b)| *a != b));
+        }
+    }
+
+    /// The largest residues there are, in every number of rows, against products one by one.
+    #[test]
+    fn long_sums_do_not_overflow() {
+        let fields = first(8);
+        let largest = fields.primes().map(|p| p - 1);
+        let (row, shorter) = (vec![largest; 20], vec![largest; 13]);
+        let square = fields.mul(&largest, &largest);
+        for count in 1..50u32 {
+            let sum = fields.mul(&square, &small(&fields, count));
+            let pairs = vec![(&row[..], &row[..]); count as usize];
+            assert_eq!(fields.pointwise(&pairs, 20), vec![sum; 20], "{count}");
+            let mut terms = vec![(&row[..], largest); count as usize];
+            assert_eq!(fields.combination(&terms), vec![sum; 20], "{count}");
+            terms.push((&shorter[..], largest));
+            let more = fields.add(&sum, &square);
+            let expected: Vec<_> = (0..20).map(|j| if j < 13 { more } else { sum }).collect();
+            assert_eq!(fields.combination(&terms), expected, "{count}");
+            let list = vec![largest; count as usize];
+            assert_eq!(fields.dot(&list, &list), sum, "{count}");
+            let pairs = vec![(&largest, &largest); count as usize];
+            assert_eq!(fields.sum_of_products(&pairs), sum, "{count}");
+        }
+        assert_eq!(
+            fields.two(&largest, &largest, &largest, &largest),
+            fields.add(&square, &square)
+        );
+        let list: Vec<Residues> = (1..20).map(|n| small(&fields, n)).collect();
+        let inverses = fields.reciprocals(&list).expect("units");
+        assert!(list.iter().zip(&inverses).all(|(a, b)| fields.mul(a, b) == fields.one()));
+        let mut vanishes = fields.one();
+        vanishes[3] = 0;
+        assert_eq!(fields.reciprocals(&[fields.one(), vanishes]), None);
+    }
+}
