@@ -268,18 +268,24 @@ impl Ring for ParameterField {
         }
         self.canonical(numerator, denominator)
     }
-    /// Products without denominators are reduced once, in their sum.
+    /// Products over the same denominator are reduced once, in their sum.
     fn sum_of_products(
         &self,
         pairs: &[(&ParameterFraction, &ParameterFraction)],
     ) -> ParameterFraction {
-        let whole = |f: &ParameterFraction| f.denominator.is_empty();
-        let (plain, others): (Vec<_>, Vec<_>) =
-            pairs.iter().partition(|(a, b)| whole(a) && whole(b));
-        let plain: Vec<_> = plain.iter().map(|(a, b)| (&a.numerator, &b.numerator)).collect();
-        let mut sum = polynomial(self.reduce(self.ring.sum_of_products(&plain)));
-        for (a, b) in others {
-            self.add_assign(&mut sum, &self.mul(a, b));
+        let mut groups: BTreeMap<BTreeMap<&LinearForm, u32>, Vec<_>> = BTreeMap::new();
+        for (a, b) in pairs {
+            let mut denominator: BTreeMap<_, u32> = BTreeMap::new();
+            for (form, exponent) in a.denominator.iter().chain(&b.denominator) {
+                *denominator.entry(form).or_default() += exponent;
+            }
+            groups.entry(denominator).or_default().push((&a.numerator, &b.numerator));
+        }
+        let mut sum = self.zero();
+        for (denominator, list) in groups {
+            let denominator = denominator.into_iter().map(|(form, n)| (form.clone(), n)).collect();
+            let part = self.canonical(self.ring.sum_of_products(&list), denominator);
+            self.add_assign(&mut sum, &part);
         }
         sum
     }

@@ -40,6 +40,19 @@ pub fn checked_residual<A: AmplitudeAlgebra>(
     equation: &Equation<A>,
     found: &SlowFlow<A::Element>,
 ) -> Result<Vec<A::Element>, ExpandError> {
+    let residual = substituted(algebra, equation, found);
+    // What was multiplied after the work was stopped means nothing, for better or worse.
+    if algebra.interrupted() {
+        return Err(ExpandError::Interrupted { order: found.order() });
+    }
+    residual
+}
+
+fn substituted<A: AmplitudeAlgebra>(
+    algebra: &A,
+    equation: &Equation<A>,
+    found: &SlowFlow<A::Element>,
+) -> Result<Vec<A::Element>, ExpandError> {
     let order = found.order();
     let mut all = Vec::new();
     normalisation(algebra, found)?;
@@ -55,9 +68,6 @@ pub fn checked_residual<A: AmplitudeAlgebra>(
             return Err(ExpandError::Residual { order: residual.known() });
         }
         all.extend(residual.coefficients);
-    }
-    if algebra.interrupted() {
-        return Err(ExpandError::Interrupted { order });
     }
     Ok(all)
 }
