@@ -8,7 +8,6 @@
 //! powers order by order. The delayed velocity is D of the delayed value.
 
 use super::SlowFlow;
-use super::delayed::step_back;
 use crate::ExpandError;
 use crate::compile::{Equation, Node};
 use crate::residual::polynomial_value;
@@ -237,9 +236,11 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
             Series::truncated(f.coefficients.iter().take(length).cloned().collect())
         };
         let mut sum = shortened(1);
+        let time = algebra.delay(delay).ok_or_else(unsupported)?;
         for i in (1..=self.order).rev() {
-            let factor = step_back(algebra, delay, i).ok_or_else(unsupported)?;
-            let change = self.along(&self.slow, &sum).map(|c| algebra.mul(c, &factor));
+            let over = Rational::from((-1, i));
+            let change = self.along(&self.slow, &sum);
+            let change = change.map(|c| algebra.scale(&algebra.mul(c, &time), &over));
             sum = shortened(self.order + 2 - i).add(algebra, &change);
         }
         let shifted: Option<Vec<_>> =

@@ -40,6 +40,12 @@ fn laws_hold() {
     // Gathered sums of products, which have no common denominators.
     let gathered = algebra(Over::exact(Rationals));
     assert_eq!(laws::rational_algebra(&gathered, &samples(&gathered)), Ok(()));
+    for f in samples(&gathered) {
+        for g in samples(&gathered).iter().map(|g| gathered.twice_real(g)) {
+            let slope = gathered.twice_real(&gathered.mul(&f, &gathered.by_amplitude(&g, 0)));
+            assert_eq!(gathered.along(0, &[(&f, &g)]), slope);
+        }
+    }
     for f in samples(&t) {
         for g in samples(&t) {
             let product = t.mul(&f, &g);
