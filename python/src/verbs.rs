@@ -141,6 +141,12 @@ fn evaluated(case: &Oscillator, options: &Options, work: &Work) -> Asked {
     }
     let prove = options.flag("prove")?;
     if !prove && case.condition() == Some(Condition::FreeAmplitude) {
+        let mut axes = options.axes(case)?.into_iter();
+        if let Some(columns) = axes.next() {
+            let question = averaged(options)?;
+            options.finish()?;
+            return boxed(case.averaged_sweep(&question, columns, axes.next(), work));
+        }
         let times = options.read("times", Times::parse)?;
         let question = AveragedMotion { times, ..averaged(options)? };
         options.finish()?;

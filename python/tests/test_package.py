@@ -251,6 +251,9 @@ def test_functions_to_many_digits(duffing: Oscillator) -> None:
     omega, x = duffing.frequency_function(order=16), duffing.solution_function(order=16)
     with pytest.raises(lindstedt.UsageError):
         Oscillator.builtin("van-der-pol").frequency_function(order=4).at("1/10", amplitude=2)
+    many = omega.at_each(["1/4", "1/2"], 1, digits=25)
+    single = omega.at("1/2", 1, digits=25)
+    assert len(many) == 2 and many[1] is not None and many[1] == single and many[0] != single
     number = omega.at("1/2", 1, digits=40)
     assert abs(float(number) - float(omega(0.5, 1.0))) <= float(number.error or 0) + omega.with_error(0.5, 1.0)[1] < 1e-6
     (far,) = x.at([10.0], "1/4", 2)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -103,6 +103,19 @@ class FrequencyFunction(_OfParameters):
         """omega at one point to so many digits, with its error: by `evaluate`."""
         found: Number = self._evaluated(digits, {}, **self._values(small, amplitude))["frequency"]
         return found
+
+    def at_each(
+        self, small: Sequence[Value], amplitude: Value | None = None, digits: int = 30
+    ) -> list[Number | None]:
+        """omega at many values of the small parameter to so many digits, each with its error, derived once: by the sweep of
+        `evaluate`. None where the sum has not one digit."""
+        if not small:
+            return []
+        values = self._values(small[0], amplitude)
+        name = self.parameters[0]
+        del values[name]
+        found = self._evaluated(digits, {"sweep": {name: list(small)}}, **values)
+        return [point.get("frequency") for point in found["points"]]
 
     def with_error(self, small: ArrayLike, amplitude: ArrayLike | None = None) -> tuple[Doubles, Doubles]:
         """omega and its estimated errors, infinite where the sum has not one digit."""

@@ -196,7 +196,8 @@ class Oscillator:
 
     def evaluate(self, sweep: Sweep | None = None, **options: Any) -> Answer:
         """Period and frequency at the values set, by resummation; `times="0..10:101"`, `order`, `resum`,
-        `phase`, `code="python"` with `harmonics`; with a sweep at every point of it, without times, phase and code.
+        `phase`, `code="python"` with `harmonics`; with a sweep at every point of it, without times, phase and code,
+        derived once where only the small parameter varies. Of an averaged motion the rates at its start.
 
         With `cycles=2` alone: first-order averaging of any law, the cycles up to that amplitude.
         """
