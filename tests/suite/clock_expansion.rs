@@ -99,7 +99,7 @@ fn every_order_is_that_of_the_driver() {
             assert_eq!(clock_of.check(p, &functions), Some(Ok(())));
             let pace = &clock.still.frequency_squared;
             let mean = ClockMean::new(&ring, clock_of.mean_pace()).unwrap();
-            let frequency = mean.frequency(&ring, pace, None).unwrap();
+            let frequency = mean.frequency(&ring, pace).unwrap();
             assert_eq!(frequency.squared, driver.frequency_squared);
         });
     }

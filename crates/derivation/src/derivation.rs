@@ -1,5 +1,6 @@
 //! A derivation: its series, its solution, printed and as numbers.
 
+use crate::clock::ClockSolution;
 use crate::constants::Constants;
 use crate::error::DerivationError;
 use crate::series::NamedSeries;
@@ -41,6 +42,8 @@ pub enum Solution {
         /// The number of primes that prove it; nothing by the energy integral.
         primes: Option<usize>,
     },
+    /// In the Lobachevsky ring, by the parts of its clock.
+    Clock(Box<ClockSolution>),
     /// In the Lobachevsky ring.
     Lobachevsky(Box<Expansion<Lobachevsky<PolynomialRing>>>),
     /// Trigonometric polynomials over Q.
@@ -201,6 +204,7 @@ impl Derivation {
         }
         match &self.solution {
             Solution::FrequencyOnly { .. } => String::new(),
+            Solution::Clock(solution) => self.ring.print(&solution.frequency_squared()[n], style),
             Solution::Lobachevsky(expansion) => {
                 self.ring.print(&expansion.frequency_squared[n], style)
             }
@@ -217,6 +221,7 @@ impl Derivation {
         }
         match &self.solution {
             Solution::FrequencyOnly { .. } => String::new(),
+            Solution::Clock(solution) => self.ring.print(&solution.amplitude()[n], style),
             Solution::Lobachevsky(expansion) => self.ring.print(&expansion.amplitude[n], style),
             Solution::Rational(proved) => Rationals.print(&proved.expansion.amplitude[n], style),
         }
@@ -279,6 +284,10 @@ impl Derivation {
         }
         match &self.solution {
             Solution::FrequencyOnly { .. } => String::new(),
+            Solution::Clock(solution) => {
+                let algebra = Lobachevsky::new(self.ring.clone());
+                solution.function(n).map_or_else(String::new, |x| algebra.print(&x, "tau", style))
+            }
             Solution::Lobachevsky(expansion) => {
                 Lobachevsky::new(self.ring.clone()).print(&expansion.solution[n], "tau", style)
             }
@@ -301,6 +310,12 @@ impl Derivation {
             return Some(Default::default());
         }
         match &self.solution {
+            Solution::Clock(solution) => {
+                let algebra = Lobachevsky::new(self.ring.clone());
+                let formed = solution.terms()[n] <= 2 * most;
+                let f = formed.then(|| solution.right_side(&algebra, n)).flatten()?;
+                Some(print_few(&algebra, &f, styles, most))
+            }
             Solution::Lobachevsky(expansion) => {
                 let algebra = Lobachevsky::new(self.ring.clone());
                 let formed = expansion.solution[n].len() <= 2 * most;
@@ -323,6 +338,7 @@ impl Derivation {
         }
         match &self.solution {
             Solution::FrequencyOnly { .. } => 0,
+            Solution::Clock(solution) => solution.terms()[n],
             Solution::Lobachevsky(expansion) => expansion.solution[n].len(),
             Solution::Rational(proved) => {
                 Trigonometric::new(Rationals).terms(&proved.expansion.solution[n])

@@ -43,6 +43,13 @@ impl PrimePair {
         }
     }
 
+    /// Z/M for the two largest primes below 2^30.
+    #[must_use]
+    pub fn largest() -> Self {
+        // 2^30 - 35 and 2^30 - 41 (OEIS A013603).
+        Self::new((1 << 30) - 35, (1 << 30) - 41)
+    }
+
     /// M.
     pub fn modulus(&self) -> u64 {
         self.modulus

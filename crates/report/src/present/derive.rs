@@ -26,7 +26,7 @@ impl Present for Answer<Derivation> {
         for words in board.scalings() {
             page = page.words(words);
         }
-        if matches!(self.value.solution, Solution::Lobachevsky(_)) {
+        if matches!(self.value.solution, Solution::Clock(_) | Solution::Lobachevsky(_)) {
             page = page.words(Formula::new(RING_TEXT, RING).into_sentence());
         }
         for n in 0..self.value.solved() {

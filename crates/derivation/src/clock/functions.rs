@@ -1,0 +1,145 @@
+//! The solution that a clock gives, kept unexpanded.
+
+use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
+use lindstedt_coeff::{Polynomial, PolynomialRing};
+use lindstedt_equation::Condition;
+use lindstedt_expand::{Expansion, OrderWork};
+use lindstedt_phase::Lobachevsky;
+use lindstedt_phase::lobachevsky::{LobachevskyElement, Unfolding};
+use std::fmt;
+use std::sync::Arc;
+
+type Function = LobachevskyElement<Polynomial>;
+
+/// Constants of a clock as polynomials in named constants.
+pub(super) type Lift<E> = Arc<dyn Fn(&E) -> Polynomial + Send + Sync>;
+
+/// Functions x_0, x_1, ... that are formed one by one.
+trait Functions: Send + Sync {
+    /// x_n; nothing beyond the order, or when stopped.
+    fn function(&self, n: usize, stop: &Stop) -> Option<Function>;
+}
+
+struct Lifted<C: RationalAlgebra> {
+    parts: Unfolding<C::Element>,
+    constants: C,
+    lift: Lift<C::Element>,
+}
+
+impl<C: RationalAlgebra + Send + Sync> Functions for Lifted<C> {
+    fn function(&self, n: usize, stop: &Stop) -> Option<Function> {
+        self.parts.function(n, &self.constants, &*self.lift, stop)
+    }
+}
+
+/// A solution x = sum x_n eps^n by the parts of its clock (`docs/src/concepts/clock.md`): x_n is formed when it is asked
+/// for, and counted without being formed.
+///
+/// ```
+/// use lindstedt_derivation::{Settings, Solution, derive};
+/// let problem = lindstedt_problems::find("power-law").ok_or("no such problem")?;
+/// let settings = Settings { order: 4, ..Settings::default() };
+/// let law = derive(&problem, &settings, &mut |_| true)?;
+/// let Solution::Clock(solution) = &law.solution else { panic!("by the clock") };
+/// assert_eq!(solution.terms(), [1, 2, 5, 10, 19]);
+/// assert_eq!(solution.function(4).map(|x| x.len()), Some(19));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct ClockSolution {
+    functions: Arc<dyn Functions>,
+    terms: Vec<usize>,
+    /// What the order, the condition and the constants of the expansion are; without its functions.
+    head: Expansion<Lobachevsky<PolynomialRing>>,
+}
+
+impl fmt::Debug for ClockSolution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ClockSolution").field("terms", &self.terms).field("head", &self.head).finish()
+    }
+}
+
+impl ClockSolution {
+    /// The parts with their constants; `head` has no functions. Nothing when stopped, which is asked while terms are
+    /// counted: by `counted` or, where that gives nothing, by forming the functions.
+    pub(super) fn new<C: RationalAlgebra + Send + Sync + 'static>(
+        parts: Unfolding<C::Element>,
+        constants: C,
+        lift: Lift<C::Element>,
+        (head, counted): (Expansion<Lobachevsky<PolynomialRing>>, Option<Vec<usize>>),
+        stop: &Stop,
+    ) -> Option<Self> {
+        let functions = Lifted { parts, constants, lift };
+        let length = |n| functions.function(n, stop).map(|x| x.len());
+        let terms = match counted {
+            Some(terms) => terms,
+            None => (0..head.frequency_squared.len()).map(length).collect::<Option<_>>()?,
+        };
+        Some(Self { functions: Arc::new(functions), terms, head })
+    }
+
+    /// The highest order derived.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.terms.len() - 1
+    }
+
+    /// The number of terms of x_0, x_1, ...
+    #[must_use]
+    pub fn terms(&self) -> &[usize] {
+        &self.terms
+    }
+
+    /// x_n; nothing beyond the order. Cost: a product of numbers per term.
+    #[must_use]
+    pub fn function(&self, n: usize) -> Option<Function> {
+        self.functions.function(n, &Stop::default())
+    }
+
+    /// The normalisation.
+    #[must_use]
+    pub fn condition(&self) -> Condition {
+        self.head.condition
+    }
+
+    /// W_0 = 1, W_1, ... in the moments mu_m: omega^2 = kappa sum W_n eps^n.
+    #[must_use]
+    pub fn frequency_squared(&self) -> &[Polynomial] {
+        &self.head.frequency_squared
+    }
+
+    /// x(0), order by order.
+    #[must_use]
+    pub fn amplitude(&self) -> &[Polynomial] {
+        &self.head.amplitude
+    }
+
+    /// The right side f_n of x_n'' + x_n = f_n - W_n x_0''; nothing beyond the order.
+    #[must_use]
+    pub fn right_side(&self, algebra: &Lobachevsky<PolynomialRing>, n: usize) -> Option<Function> {
+        let mut solution = vec![algebra.zero(); n];
+        solution.push(self.function(n)?);
+        solution[0] = self.function(0)?;
+        let frequency_squared = self.head.frequency_squared.get(..=n)?.to_vec();
+        let (amplitude, stiffness) = (self.head.amplitude.clone(), self.head.stiffness.clone());
+        let expansion = Expansion {
+            condition: self.head.condition,
+            stiffness,
+            frequency_squared,
+            amplitude,
+            solution,
+            work: Vec::new(),
+            certificates: Vec::new(),
+        };
+        Some(expansion.right_side(algebra, n))
+    }
+
+    /// The expansion with all functions formed.
+    #[must_use]
+    pub fn expansion(&self) -> Expansion<Lobachevsky<PolynomialRing>> {
+        let solution: Vec<_> = (0..self.terms.len()).filter_map(|n| self.function(n)).collect();
+        let terms = self.head.work.iter().zip(self.terms.iter().skip(1));
+        let work = terms.map(|(work, terms)| OrderWork { terms: *terms, ..*work }).collect();
+        Expansion { solution, work, ..self.head.clone() }
+    }
+}
