@@ -10,7 +10,7 @@ use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing};
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::description::Description;
-use lindstedt_equation::{Condition, Problem, Quantity};
+use lindstedt_equation::{AmplitudeRole, Condition, Problem, Quantity};
 use lindstedt_expand::Expansion;
 use lindstedt_multimodular as multimodular;
 use lindstedt_number::ball::{Ball, Balls};
@@ -22,6 +22,9 @@ use num_rational::Ratio;
 use rayon::prelude::*;
 use rug::Rational;
 use std::collections::BTreeMap;
+
+/// Coefficients with no more terms are evaluated term by term.
+const FEW_TERMS: usize = 64;
 
 /// The solution, in the algebra that the equation needed.
 ///
@@ -269,12 +272,31 @@ impl Derivation {
     /// Coefficient n of a series as a ball.
     pub fn ball(&self, quantity: Quantity, n: usize, balls: Balls) -> Option<Ball> {
         let series = self.named(quantity)?;
-        let value = self.constants.evaluate(series.coefficients.get(n)?, balls)?;
+        let coefficient = series.coefficients.get(n)?;
+        let value = match self.by_clock(quantity, coefficient) {
+            Some((solution, index)) => {
+                solution.powers(&self.constants, balls)?[index].get(n)?.clone()
+            }
+            None => self.constants.evaluate(coefficient, balls)?,
+        };
         if series.half_power == 0 {
             return Some(value);
         }
         let root = balls.sqrt(&self.constants.evaluate(&self.stiffness, balls)?)?;
         Some(balls.mul(&value, &balls.powi(&root, series.half_power.into())?))
+    }
+
+    /// The clock that knows a long coefficient of a power of its frequency, and the position of the power; nothing
+    /// where the series has a factor besides.
+    fn by_clock(&self, quantity: Quantity, c: &Polynomial) -> Option<(&ClockSolution, usize)> {
+        let Solution::Clock(solution) = &self.solution else { return None };
+        let list = [Quantity::FrequencySquared, Quantity::Frequency, Quantity::Period];
+        let index = list.iter().position(|power| *power == quantity)?;
+        let scales = matches!(self.problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
+        let one = Exact::from(1);
+        let alone = !scales || self.amplitude.as_ref().is_none_or(|a| *a == one);
+        let plain = alone && self.time_scale == 1 && c.terms().len() > FEW_TERMS;
+        plain.then_some((&**solution, index))
     }
 
     /// x_n printed, as a function of the phase `tau` = omega t; empty beyond the orders derived.

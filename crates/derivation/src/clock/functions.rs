@@ -1,13 +1,19 @@
 //! The solution that a clock gives, kept unexpanded.
 
+use crate::constants::Constants;
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
-use lindstedt_coeff::{Polynomial, PolynomialRing};
+use lindstedt_coeff::{Polynomial, PolynomialRing, Symbol};
 use lindstedt_equation::Condition;
 use lindstedt_expand::{Expansion, OrderWork};
+use lindstedt_number::ball::ring::{BallRing, Enclosure};
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::Lobachevsky;
 use lindstedt_phase::lobachevsky::{LobachevskyElement, Unfolding};
+use lindstedt_series::Series;
+use rug::Rational;
+use std::collections::BTreeMap;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 type Function = LobachevskyElement<Polynomial>;
 
@@ -49,6 +55,11 @@ impl<C: RationalAlgebra + Send + Sync> Functions for Lifted<C> {
 pub struct ClockSolution {
     functions: Arc<dyn Functions>,
     terms: Vec<usize>,
+    /// nu_0 = 1, nu_1, ...
+    pace: Vec<Polynomial>,
+    /// c_mn by order n and then m - 1.
+    numbers: Vec<Vec<Polynomial>>,
+    known: Arc<Mutex<BTreeMap<u32, Arc<[Vec<Ball>; 3]>>>>,
     /// What the order, the condition and the constants of the expansion are; without its functions.
     head: Expansion<Lobachevsky<PolynomialRing>>,
 }
@@ -60,22 +71,26 @@ impl fmt::Debug for ClockSolution {
 }
 
 impl ClockSolution {
-    /// The parts with their constants; `head` has no functions. Nothing when stopped, which is asked while terms are
-    /// counted: by `counted` or, where that gives nothing, by forming the functions.
+    /// The parts with their constants, nu and the c_mn; `head` has no functions. Nothing when stopped, which is asked
+    /// while terms are counted: by `counted` or, where that gives nothing, by forming the functions.
     pub(super) fn new<C: RationalAlgebra + Send + Sync + 'static>(
         parts: Unfolding<C::Element>,
         constants: C,
         lift: Lift<C::Element>,
+        (pace, numbers): (&[C::Element], &[Vec<C::Element>]),
         (head, counted): (Expansion<Lobachevsky<PolynomialRing>>, Option<Vec<usize>>),
         stop: &Stop,
     ) -> Option<Self> {
+        let pace = pace.iter().map(|c| lift(c)).collect();
+        let numbers = numbers.iter().map(|list| list.iter().map(|c| lift(c)).collect()).collect();
         let functions = Lifted { parts, constants, lift };
         let length = |n| functions.function(n, stop).map(|x| x.len());
         let terms = match counted {
             Some(terms) => terms,
             None => (0..head.frequency_squared.len()).map(length).collect::<Option<_>>()?,
         };
-        Some(Self { functions: Arc::new(functions), terms, head })
+        let known = Arc::default();
+        Some(Self { functions: Arc::new(functions), terms, pace, numbers, known, head })
     }
 
     /// The highest order derived.
@@ -112,6 +127,40 @@ impl ClockSolution {
     #[must_use]
     pub fn amplitude(&self) -> &[Polynomial] {
         &self.head.amplitude
+    }
+
+    /// omega^2/kappa, its root and the reciprocal of that as balls, order by order: nu/M^2, nu^(1/2)/M and M/nu^(1/2) with
+    /// M = 1 + sum_m mu_m c_m, as series of balls. O(N^2) products, and no cancellation among the terms of a
+    /// coefficient written out. Nothing where a constant has no value.
+    pub(crate) fn powers(&self, constants: &Constants, balls: Balls) -> Option<Arc<[Vec<Ball>; 3]>> {
+        let lock = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = lock().get(&balls.bits()) {
+            return Some(known.clone());
+        }
+        let ring = BallRing { balls };
+        let value = |p: &Polynomial| Some(Enclosure(constants.evaluate(p, balls)?));
+        let largest = u16::try_from(self.order()).ok()?;
+        let moment = |m: u16| value(&PolynomialRing::default().symbol(Symbol::Moment(m)));
+        // The last first: it brings the others.
+        let mut moments: Vec<_> = (1..=largest).rev().map(moment).collect::<Option<_>>()?;
+        moments.reverse();
+        let mean = |(n, numbers): (usize, &Vec<Polynomial>)| {
+            let numbers: Vec<_> = numbers.iter().map(value).collect::<Option<_>>()?;
+            let pairs: Vec<_> = moments.iter().zip(&numbers).collect();
+            Some(if n == 0 { ring.one() } else { ring.sum_of_products(&pairs) })
+        };
+        let mean = self.numbers.iter().enumerate().map(mean).collect::<Option<_>>()?;
+        let mean = Series::truncated(mean);
+        let pace = Series::truncated(self.pace.iter().map(value).collect::<Option<_>>()?);
+        let power = |q: (i32, i32)| pace.power(&ring, &Rational::from(q));
+        let (inverse, order) = (mean.reciprocal(&ring)?, self.order());
+        let first = power((1, 2))?.mul(&ring, &inverse, order);
+        let period = power((-1, 2))?.mul(&ring, &mean, order);
+        let squared = first.mul(&ring, &first.clone(), order);
+        let of_balls = |series: Series<Enclosure>| series.coefficients.into_iter().map(|c| c.0).collect();
+        let powers = Arc::new([squared, first, period].map(of_balls));
+        lock().insert(balls.bits(), Arc::clone(&powers));
+        Some(powers)
     }
 
     /// The right side f_n of x_n'' + x_n = f_n - W_n x_0''; nothing beyond the order.

@@ -142,8 +142,9 @@ fn over<C: RationalAlgebra + Clone + Send + Sync + 'static>(
         certificates: Vec::new(),
     };
     let (amplitudes, stiffness) = (head.amplitude.clone(), head.stiffness.clone());
+    let seen = (&still.frequency_squared[..], &numbers[..]);
     let solution =
-        ClockSolution::new(parts, constants.clone(), lift.clone(), (head, counted), stop);
+        ClockSolution::new(parts, constants.clone(), lift.clone(), seen, (head, counted), stop);
     let solution = Solution::Clock(Box::new(solution.ok_or_else(interrupted)?));
     Ok(Some(Found { powers, amplitudes, stiffness, solution, checked_orders }))
 }
