@@ -19,7 +19,9 @@ impl Derivation {
                 false => solution.to_vec(),
             };
             let table = LambdaTable::new(functions.len(), balls);
-            PhaseFunctions::lobachevsky(&functions, table, |c: &_| self.constants.evaluate(c, balls))
+            PhaseFunctions::lobachevsky(&functions, table, |c: &_| {
+                self.constants.evaluate(c, balls)
+            })
         };
         match &self.solution {
             Solution::Clock(solution) => lobachevsky(&solution.expansion().solution),

@@ -123,7 +123,9 @@ impl<C: RationalAlgebra> Clockwork<'_, C> {
             }
         }
         let increasing = |mut terms: Vec<(i64, PowerProduct, Rational)>| {
-            terms.sort_by(|(v, m, _), (w, n, _)| v.cmp(w).then_with(|| m.factors().cmp(n.factors())));
+            terms.sort_by(|(v, m, _), (w, n, _)| {
+                v.cmp(w).then_with(|| m.factors().cmp(n.factors()))
+            });
             let terms = terms.into_iter().map(|(_, monomial, c)| (monomial, c)).collect();
             Sparse::from_increasing(terms).ok_or(Error::NoValue)
         };
@@ -227,6 +229,7 @@ impl<C: RationalAlgebra> Clockwork<'_, C> {
 
 /// binomial(r, j) j!/prod k_m! = r (r - 1) ... (r - j + 1)/prod k_m!.
 fn ways(r: i32, monomial: &LambdaMonomial) -> Rational {
-    let falling = (0..monomial.degree as i32).fold(Integer::from(1), |product, i| product * (r - i));
+    let falling =
+        (0..monomial.degree as i32).fold(Integer::from(1), |product, i| product * (r - i));
     Rational::from((falling, monomial.factorials.clone()))
 }

@@ -15,6 +15,9 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// Bits for what the products of the series of balls lose.
+const GUARD_BITS: u32 = 32;
+
 type Function = LobachevskyElement<Polynomial>;
 
 /// Constants of a clock as polynomials in named constants.
@@ -66,7 +69,10 @@ pub struct ClockSolution {
 
 impl fmt::Debug for ClockSolution {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("ClockSolution").field("terms", &self.terms).field("head", &self.head).finish()
+        f.debug_struct("ClockSolution")
+            .field("terms", &self.terms)
+            .field("head", &self.head)
+            .finish()
     }
 }
 
@@ -132,11 +138,16 @@ impl ClockSolution {
     /// omega^2/kappa, its root and the reciprocal of that as balls, order by order: nu/M^2, nu^(1/2)/M and M/nu^(1/2) with
     /// M = 1 + sum_m mu_m c_m, as series of balls. O(N^2) products, and no cancellation among the terms of a
     /// coefficient written out. Nothing where a constant has no value.
-    pub(crate) fn powers(&self, constants: &Constants, balls: Balls) -> Option<Arc<[Vec<Ball>; 3]>> {
+    pub(crate) fn powers(
+        &self,
+        constants: &Constants,
+        balls: Balls,
+    ) -> Option<Arc<[Vec<Ball>; 3]>> {
         let lock = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = lock().get(&balls.bits()) {
             return Some(known.clone());
         }
+        let (asked, balls) = (balls.bits(), Balls::new(balls.bits().saturating_add(GUARD_BITS)));
         let ring = BallRing { balls };
         let value = |p: &Polynomial| Some(Enclosure(constants.evaluate(p, balls)?));
         let largest = u16::try_from(self.order()).ok()?;
@@ -157,9 +168,10 @@ impl ClockSolution {
         let first = power((1, 2))?.mul(&ring, &inverse, order);
         let period = power((-1, 2))?.mul(&ring, &mean, order);
         let squared = first.mul(&ring, &first.clone(), order);
-        let of_balls = |series: Series<Enclosure>| series.coefficients.into_iter().map(|c| c.0).collect();
+        let of_balls =
+            |series: Series<Enclosure>| series.coefficients.into_iter().map(|c| c.0).collect();
         let powers = Arc::new([squared, first, period].map(of_balls));
-        lock().insert(balls.bits(), Arc::clone(&powers));
+        lock().insert(asked, Arc::clone(&powers));
         Some(powers)
     }
 

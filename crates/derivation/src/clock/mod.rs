@@ -19,8 +19,8 @@ use lindstedt_coeff::packed::{PackedPolynomial, PackedSums};
 use lindstedt_coeff::{Polynomial, PolynomialRing};
 use lindstedt_equation::{Condition, Expression, Problem};
 use lindstedt_expand::{
-    Binding, ClockExpansion, ExpandError, Expansion, OrderWork, Request, check_clock, clock_variable,
-    compile, expand_clock,
+    Binding, ClockExpansion, ExpandError, Expansion, OrderWork, Request, check_clock,
+    clock_variable, compile, expand_clock,
 };
 use lindstedt_phase::Lobachevsky;
 use lindstedt_phase::lobachevsky::{Formal, Unfolding};

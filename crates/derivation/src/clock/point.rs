@@ -82,8 +82,7 @@ impl Point {
         if exponent < 0 {
             base = self.pair.reciprocal(&base)?;
         }
-        let power =
-            power(&self.pair, &base, u32::from(exponent.unsigned_abs()));
+        let power = power(&self.pair, &base, u32::from(exponent.unsigned_abs()));
         self.powers.borrow_mut().insert((symbol, exponent), power);
         Some(power)
     }

@@ -93,12 +93,7 @@ impl<E: Clone + PartialEq + Debug + Send + Sync> Unfolding<E> {
 
     /// What the order t of a function in v counts for in order n of its product with a series: sum_i
     /// \[eps^n\] v^(i + t) a_i, for t = 0, ..., n.
-    fn weights<C: RationalAlgebra<Element = E>>(
-        &self,
-        constants: &C,
-        a: &[E],
-        n: usize,
-    ) -> Vec<E> {
+    fn weights<C: RationalAlgebra<Element = E>>(&self, constants: &C, a: &[E], n: usize) -> Vec<E> {
         let nonzero: Vec<_> = a.iter().enumerate().filter(|(_, c)| !constants.is_zero(c)).collect();
         let weight = |t: usize| {
             let mut sum = constants.zero();
@@ -193,7 +188,8 @@ impl<E: Clone + PartialEq + Debug + Send + Sync> Unfolding<E> {
             if stop.asked() {
                 return None;
             }
-            let series = self.monomials.products[product].iter().zip(&products[product]).enumerate();
+            let series =
+                self.monomials.products[product].iter().zip(&products[product]).enumerate();
             let series: Vec<_> = series.filter(|(_, (c, _))| !constants.is_zero(c)).collect();
             for (n, counted) in counts.iter_mut().enumerate() {
                 let mut sums: Vec<Option<R::Element>> = vec![None; slots[degree].len()];
@@ -215,7 +211,9 @@ impl<E: Clone + PartialEq + Debug + Send + Sync> Unfolding<E> {
                     found += match sum {
                         None => 0,
                         Some(sum) if !residues.is_zero(sum) => 1,
-                        Some(_) => usize::from(!self.vanishes(constants, degree, product, n, *place)),
+                        Some(_) => {
+                            usize::from(!self.vanishes(constants, degree, product, n, *place))
+                        }
                     };
                 }
                 *counted += count * found;
