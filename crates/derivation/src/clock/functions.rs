@@ -23,6 +23,9 @@ type Function = LobachevskyElement<Polynomial>;
 /// Constants of a clock as polynomials in named constants.
 pub(super) type Lift<E> = Arc<dyn Fn(&E) -> Polynomial + Send + Sync>;
 
+/// omega^2/kappa, its root and the reciprocal of that, order by order.
+type BallPowers = Arc<[Vec<Ball>; 3]>;
+
 /// Functions x_0, x_1, ... that are formed one by one.
 trait Functions: Send + Sync {
     /// x_n; nothing beyond the order, or when stopped.
@@ -62,7 +65,7 @@ pub struct ClockSolution {
     pace: Vec<Polynomial>,
     /// c_mn by order n and then m - 1.
     numbers: Vec<Vec<Polynomial>>,
-    known: Arc<Mutex<BTreeMap<u32, Arc<[Vec<Ball>; 3]>>>>,
+    known: Arc<Mutex<BTreeMap<u32, BallPowers>>>,
     /// What the order, the condition and the constants of the expansion are; without its functions.
     head: Expansion<Lobachevsky<PolynomialRing>>,
 }
@@ -138,11 +141,7 @@ impl ClockSolution {
     /// omega^2/kappa, its root and the reciprocal of that as balls, order by order: nu/M^2, nu^(1/2)/M and M/nu^(1/2) with
     /// M = 1 + sum_m mu_m c_m, as series of balls. O(N^2) products, and no cancellation among the terms of a
     /// coefficient written out. Nothing where a constant has no value.
-    pub(crate) fn powers(
-        &self,
-        constants: &Constants,
-        balls: Balls,
-    ) -> Option<Arc<[Vec<Ball>; 3]>> {
+    pub(crate) fn powers(&self, constants: &Constants, balls: Balls) -> Option<BallPowers> {
         let lock = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = lock().get(&balls.bits()) {
             return Some(known.clone());

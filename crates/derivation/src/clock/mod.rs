@@ -127,11 +127,14 @@ fn over<C: RationalAlgebra + Clone + Send + Sync + 'static>(
         stop,
     };
     let (squared, powers) = clockwork.frequency(closes(problem))?;
+    let point = Point::new();
+    let counted = parts.terms(constants, point.ring(), &|c| point.image(&lift(c)), stop);
+    if stop.asked() {
+        return Err(interrupted().into());
+    }
     observer(Progress::Checking);
     let checked_orders =
         proved(check_clock(&algebra, &equation, &found), || parts.judge(&algebra, numbers, p))?;
-    let point = Point::new();
-    let counted = parts.terms(constants, point.ring(), &|c| point.image(&lift(c)), stop);
     let head: Expansion<Lobachevsky<PolynomialRing>> = Expansion {
         condition,
         stiffness: lift(&still.stiffness),

@@ -275,7 +275,7 @@ mod tests {
             }
             // Integers of every length, whose limbs are all ones, around multiples of M, of either sign.
             for limbs in 1..=9u32 {
-                let ones = (Integer::from(1) << (64 * limbs)) - 1;
+                let ones: Integer = (Integer::from(1) << (64 * limbs)) - 1;
                 let multiple = Integer::from(&ones / &modulus) * &modulus;
                 for n in [ones.clone(), Integer::from(&multiple - 1), multiple + 1] {
                     for n in [Integer::from(-&n), n] {
