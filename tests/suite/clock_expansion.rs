@@ -10,7 +10,7 @@ use lindstedt_expand::{
     clock_variable, compile, expand, expand_clock,
 };
 use lindstedt_phase::Lobachevsky;
-use lindstedt_phase::lobachevsky::{Clock, Formal, LobachevskyElement, Word};
+use lindstedt_phase::lobachevsky::{Clock, Formal, LobachevskyElement, Unfolding, Word};
 use rug::Rational;
 
 type Still = Lobachevsky<Formal<PolynomialRing>>;
@@ -99,7 +99,7 @@ fn every_order_is_that_of_the_driver() {
             assert_eq!(clock_of.check(p, &functions), Some(Ok(())));
             let pace = &clock.still.frequency_squared;
             let mean = ClockMean::new(&ring, clock_of.mean_pace()).unwrap();
-            let frequency = mean.frequency(&ring, pace, None).unwrap();
+            let frequency = mean.frequency(&ring, pace).unwrap();
             assert_eq!(frequency.squared, driver.frequency_squared);
         });
     }
@@ -239,24 +239,59 @@ fn a_wrong_function_is_found() {
 }
 
 #[test]
-fn the_frequency_in_any_variable_is_the_same() {
+fn the_frequency_of_a_mean() {
     let q = |n: i32, d: i32| Rational::from((n, d));
     let series = |c: i32| vec![q(1, 1), q(c, 3), q(c, 1), q(-c, 7)];
     let mean = ClockMean::new(&Rationals, series(5)).unwrap();
-    let frequency = mean.frequency(&Rationals, &series(2), None).unwrap();
+    let frequency = mean.frequency(&Rationals, &series(2)).unwrap();
     assert_eq!(frequency.squared[1], q(2 - 10, 3));
     assert_eq!(frequency.first[1], q(1 - 5, 3));
     assert_eq!(frequency.period[1], q(5 - 1, 3));
-    // M = 1 + 5/3 c + 5 c^2 - 5/7 c^3 in c = eps - 2 eps^2 is 1 + 5/3 eps + 5/3 eps^2 - 145/7 eps^3 in eps.
-    let c = vec![q(0, 1), q(1, 1), q(-2, 1), q(0, 1)];
-    let in_eps = ClockMean::new(&Rationals, vec![q(1, 1), q(5, 3), q(5, 3), q(-145, 7)]).unwrap();
-    let put_in = mean.frequency(&Rationals, &series(2), Some(&c)).unwrap();
-    let direct = in_eps.frequency(&Rationals, &series(2), None).unwrap();
-    assert_eq!(put_in.squared, direct.squared);
-    assert_eq!([put_in.first, put_in.period], [direct.first, direct.period]);
     let zero = vec![Rational::new(); 3];
     assert!(ClockMean::new(&Rationals, zero.clone()).is_err());
-    assert!(mean.frequency(&Rationals, &zero, None).is_err());
+    assert!(mean.frequency(&Rationals, &zero).is_err());
+}
+
+/// The parts, in powers of eps or of the one number that all c_m are powers of.
+#[test]
+fn wrong_parts_are_found() {
+    for (equation, order) in [(power_law(), 6), (formal(), 5)] {
+        let Case { algebra, clock, .. } = still(&equation, order).unwrap();
+        let (ring, stop) = (PolynomialRing::default(), Stop::default());
+        let (numbers, p) = (&clock.numbers, &clock.still.solution);
+        let rational = |list: &Vec<Polynomial>| list.iter().map(|c| ring.as_rational(c)).collect();
+        let rational: Option<Vec<Vec<Rational>>> = numbers.iter().map(rational).collect();
+        let variable = rational.and_then(|numbers| clock_variable(&numbers));
+        assert_eq!(variable.is_some(), equation == power_law());
+        let of = |variable: Option<&[Rational]>, numbers: &[_], p: &[_]| {
+            Unfolding::new(&ring, numbers, variable, p, &stop).unwrap()
+        };
+        let direct = of(None, numbers, p);
+        for variable in [None, variable.as_deref()] {
+            let parts = of(variable, numbers, p);
+            assert_eq!(parts.judge(&algebra, numbers, p), Some(Ok(())));
+            for n in 0..=order {
+                let function =
+                    |parts: &Unfolding<_>| parts.function(n, &ring, &Clone::clone, &stop);
+                assert_eq!(function(&parts), function(&direct));
+            }
+            let parts_of = |n: usize| {
+                let mut other = p.clone();
+                let log = algebra.term(1, false, Word::log(1), ring.one());
+                algebra.add_assign(&mut other[n], &log);
+                let mut faster = numbers.clone();
+                faster[n][0] = ring.add(&faster[n][0], &ring.one());
+                (other, faster)
+            };
+            for n in 1..=order {
+                let (other, faster) = parts_of(n);
+                // Of another still part, and of another clock.
+                assert_eq!(of(variable, numbers, &other).judge(&algebra, numbers, p), Some(Err(n)));
+                assert_eq!(parts.judge(&algebra, &faster, p), Some(Err(n)));
+            }
+            assert_eq!(parts.judge(&algebra, numbers, &p[1..]), Some(Err(0)));
+        }
+    }
 }
 
 #[test]

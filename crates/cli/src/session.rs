@@ -250,7 +250,7 @@ impl<'a> Session<'a> {
                 message: error.to_string(),
                 hint: String::new(),
             })?,
-            Format::Text => Written::Text.write(&answer.document()),
+            Format::Text => Written::Text.write(&answer.plain_document()),
             Format::Latex => Written::Latex.write(&answer.document()),
             Format::Markdown => Written::Markdown.write(&answer.document()),
         })

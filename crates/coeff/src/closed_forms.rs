@@ -44,6 +44,8 @@ use rug::{Integer, Rational};
 /// ```
 #[derive(Clone, Debug)]
 pub struct ClosedForms {
+    /// eta(1), eta(2), ...
+    eta: Vec<Polynomial>,
     moments: Vec<Polynomial>,
 }
 
@@ -55,13 +57,22 @@ impl ClosedForms {
         let ring = PolynomialRing::default();
         let bernoulli = bernoulli_numbers(order);
         let eta: Vec<Polynomial> = (1..=order).map(|k| eta(&ring, k, &bernoulli)).collect();
-        let mut moments = vec![ring.one()];
-        for m in 1..=order {
-            let pairs: Vec<_> = eta.iter().zip(moments.iter().rev()).collect();
-            let sum = ring.sum_of_products(&pairs);
-            moments.push(ring.scale(&sum, &Rational::from((1, m))));
-        }
-        Self { moments }
+        let moments = exponential(&eta, 1);
+        Self { eta, moments }
+    }
+
+    /// The coefficients of (sum_m mu_m s^m)^r = exp(r sum_k eta(k) s^k/k) up to the order of the table; that of s^w has
+    /// weight w. Costs O(order^2) products of a monomial with a polynomial.
+    ///
+    /// ```
+    /// use lindstedt_coeff::closed_forms::ClosedForms;
+    /// let forms = ClosedForms::new(6);
+    /// assert_eq!(forms.power(1).get(6), forms.moment(6));
+    /// assert_eq!(forms.power(0).iter().filter(|p| !p.is_zero()).count(), 1);
+    /// ```
+    #[must_use]
+    pub fn power(&self, r: i32) -> Vec<Polynomial> {
+        exponential(&self.eta, r)
     }
 
     /// The largest m of the table.
@@ -139,6 +150,18 @@ impl ClosedForms {
         }
         sum
     }
+}
+
+/// y = exp(r sum_k eta(k) s^k/k) by m y_m = r sum_{k=1}^m eta(k) y_{m-k}.
+fn exponential(eta: &[Polynomial], r: i32) -> Vec<Polynomial> {
+    let ring = PolynomialRing::default();
+    let mut list = vec![ring.one()];
+    for m in 1..=eta.len() {
+        let pairs: Vec<_> = eta.iter().zip(list.iter().rev()).collect();
+        let sum = ring.sum_of_products(&pairs);
+        list.push(ring.scale(&sum, &Rational::from((r, m as u32))));
+    }
+    list
 }
 
 /// A term of a polynomial: the mu_m with m >= 2 by decreasing m, and everything else.

@@ -22,8 +22,8 @@ use lindstedt_algebra::{Rationals, Ring};
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::digits::decimal;
 use rug::Rational;
+use rustc_hash::FxHashMap;
 use std::cmp::{Ordering, Reverse};
-use std::collections::BTreeMap;
 
 /// How to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -159,15 +159,46 @@ impl Print for Rationals {
 
 impl Print for PolynomialRing {
     fn print_terms(&self, a: &Polynomial, style: Style) -> Vec<Term> {
-        let mut terms: Vec<_> = a.terms().iter().map(|t| (weight_and_degree(&t.0), t)).collect();
-        terms.sort_by(|(k, (m, _)), (l, (n, _))| k.cmp(l).then_with(|| by_powers(m, n)));
-        let mut written = BTreeMap::new();
-        let print = |(_, (monomial, coefficient)): (_, &(PowerProduct, Rational))| Term {
+        let mut written = Powers::default();
+        let print = |(monomial, coefficient): &(PowerProduct, Rational)| Term {
             coefficient: coefficient.clone(),
             factors: self.factors(monomial, style, &mut written),
         };
-        terms.into_iter().map(print).collect()
+        in_order(a).into_iter().map(print).collect()
     }
+
+    /// As [`print_sum`] writes its terms; in text, where there are millions of them, none is built first.
+    fn print(&self, a: &Polynomial, style: Style) -> String {
+        if style == Style::Latex || a.is_zero() {
+            return print_sum(&self.print_terms(a, style), style);
+        }
+        let mut written = Powers::default();
+        let mut line = String::new();
+        for (monomial, coefficient) in in_order(a) {
+            let negative = coefficient.cmp0() == Ordering::Less;
+            line.push_str(match (line.is_empty(), negative) {
+                (true, true) => "-",
+                (true, false) => "",
+                (false, true) => " - ",
+                (false, false) => " + ",
+            });
+            let is_unit = *coefficient.denom() == 1 && *coefficient.numer().as_abs() == 1;
+            let shown = monomial.factors().is_empty() || !is_unit;
+            if shown {
+                let number = coefficient.to_string();
+                line.push_str(number.trim_start_matches('-'));
+            }
+            self.write_factors(monomial, shown, &mut written, &mut line);
+        }
+        line
+    }
+}
+
+/// The terms of a polynomial in the order of printing.
+fn in_order(a: &Polynomial) -> Vec<&(PowerProduct, Rational)> {
+    let mut terms: Vec<_> = a.terms().iter().map(|t| (weight_and_degree(&t.0), t)).collect();
+    terms.sort_by(|(k, (m, _)), (l, (n, _))| k.cmp(l).then_with(|| by_powers(m, n)));
+    terms.into_iter().map(|(_, term)| term).collect()
 }
 
 /// Weight and degree in the parameters.
@@ -185,29 +216,49 @@ fn by_powers(left: &PowerProduct, right: &PowerProduct) -> Ordering {
 }
 
 /// The powers of symbols that occurred, written, and whether each stands last.
-type Powers = BTreeMap<(Symbol, i16), (bool, String)>;
+type Powers = FxHashMap<(Symbol, i16), (bool, String)>;
 
 impl PolynomialRing {
     /// The factors of a monomial: parameters, S_n, mu_m, pi, zeta(k), then the logarithms; in text as one
-    /// factor, since coefficients have millions of terms, and every power once.
+    /// factor.
     fn factors(&self, monomial: &PowerProduct, style: Style, written: &mut Powers) -> Vec<String> {
-        let mut factors: Vec<&(bool, String)> = Vec::new();
-        for &(symbol, exponent) in monomial.factors() {
-            written.entry((symbol, exponent)).or_insert_with(|| {
-                let last =
-                    symbol == Symbol::LogTwo || self.name(symbol, Style::Text).starts_with("ln(");
-                (last, self.power_of(symbol, exponent, style))
-            });
+        if style == Style::Text {
+            let mut line = String::new();
+            self.write_factors(monomial, false, written, &mut line);
+            return if line.is_empty() { Vec::new() } else { vec![line] };
         }
-        factors.extend(monomial.factors().iter().filter_map(|power| written.get(power)));
+        let power = |&(symbol, exponent): &(Symbol, i16)| {
+            (self.stands_last(symbol), self.power_of(symbol, exponent, style))
+        };
+        let mut factors: Vec<_> = monomial.factors().iter().map(power).collect();
         factors.sort_by_key(|(last, _)| *last);
-        let mut factors = factors.into_iter().map(|(_, power)| power.as_str());
-        if style == Style::Latex {
-            return factors.map(str::to_owned).collect();
+        factors.into_iter().map(|(_, power)| power).collect()
+    }
+
+    /// Writes the factors in text, every power of a symbol once; `*` before the first where `behind` something.
+    fn write_factors(
+        &self,
+        monomial: &PowerProduct,
+        mut behind: bool,
+        written: &mut Powers,
+        line: &mut String,
+    ) {
+        for logarithms in [false, true] {
+            for &(symbol, exponent) in monomial.factors() {
+                let (last, power) = written.entry((symbol, exponent)).or_insert_with(|| {
+                    (self.stands_last(symbol), self.power_of(symbol, exponent, Style::Text))
+                });
+                if *last == logarithms {
+                    line.push_str(if behind { "*" } else { "" });
+                    line.push_str(power);
+                    behind = true;
+                }
+            }
         }
-        let Some(first) = factors.next() else { return Vec::new() };
-        let join = |line: String, power| line + "*" + power;
-        vec![factors.fold(first.to_owned(), join)]
+    }
+
+    fn stands_last(&self, symbol: Symbol) -> bool {
+        symbol == Symbol::LogTwo || self.name(symbol, Style::Text).starts_with("ln(")
     }
 
     /// The name of a symbol; a parameter without a name is `parameter_n`.

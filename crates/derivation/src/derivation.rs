@@ -1,5 +1,6 @@
 //! A derivation: its series, its solution, printed and as numbers.
 
+use crate::clock::ClockSolution;
 use crate::constants::Constants;
 use crate::error::DerivationError;
 use crate::series::NamedSeries;
@@ -9,7 +10,7 @@ use lindstedt_coeff::print::{Print, Style};
 use lindstedt_coeff::{Polynomial, PolynomialRing};
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::description::Description;
-use lindstedt_equation::{Condition, Problem, Quantity};
+use lindstedt_equation::{AmplitudeRole, Condition, Problem, Quantity};
 use lindstedt_expand::Expansion;
 use lindstedt_multimodular as multimodular;
 use lindstedt_number::ball::{Ball, Balls};
@@ -21,6 +22,9 @@ use num_rational::Ratio;
 use rayon::prelude::*;
 use rug::Rational;
 use std::collections::BTreeMap;
+
+/// Coefficients with no more terms are evaluated term by term.
+const FEW_TERMS: usize = 64;
 
 /// The solution, in the algebra that the equation needed.
 ///
@@ -41,6 +45,8 @@ pub enum Solution {
         /// The number of primes that prove it; nothing by the energy integral.
         primes: Option<usize>,
     },
+    /// In the Lobachevsky ring, by the parts of its clock.
+    Clock(Box<ClockSolution>),
     /// In the Lobachevsky ring.
     Lobachevsky(Box<Expansion<Lobachevsky<PolynomialRing>>>),
     /// Trigonometric polynomials over Q.
@@ -201,6 +207,7 @@ impl Derivation {
         }
         match &self.solution {
             Solution::FrequencyOnly { .. } => String::new(),
+            Solution::Clock(solution) => self.ring.print(&solution.frequency_squared()[n], style),
             Solution::Lobachevsky(expansion) => {
                 self.ring.print(&expansion.frequency_squared[n], style)
             }
@@ -217,6 +224,7 @@ impl Derivation {
         }
         match &self.solution {
             Solution::FrequencyOnly { .. } => String::new(),
+            Solution::Clock(solution) => self.ring.print(&solution.amplitude()[n], style),
             Solution::Lobachevsky(expansion) => self.ring.print(&expansion.amplitude[n], style),
             Solution::Rational(proved) => Rationals.print(&proved.expansion.amplitude[n], style),
         }
@@ -264,12 +272,31 @@ impl Derivation {
     /// Coefficient n of a series as a ball.
     pub fn ball(&self, quantity: Quantity, n: usize, balls: Balls) -> Option<Ball> {
         let series = self.named(quantity)?;
-        let value = self.constants.evaluate(series.coefficients.get(n)?, balls)?;
+        let coefficient = series.coefficients.get(n)?;
+        let value = match self.by_clock(quantity, coefficient) {
+            Some((solution, index)) => {
+                solution.powers(&self.constants, balls)?[index].get(n)?.clone()
+            }
+            None => self.constants.evaluate(coefficient, balls)?,
+        };
         if series.half_power == 0 {
             return Some(value);
         }
         let root = balls.sqrt(&self.constants.evaluate(&self.stiffness, balls)?)?;
         Some(balls.mul(&value, &balls.powi(&root, series.half_power.into())?))
+    }
+
+    /// The clock that knows a long coefficient of a power of its frequency, and the position of the power; nothing
+    /// where the series has a factor besides.
+    fn by_clock(&self, quantity: Quantity, c: &Polynomial) -> Option<(&ClockSolution, usize)> {
+        let Solution::Clock(solution) = &self.solution else { return None };
+        let list = [Quantity::FrequencySquared, Quantity::Frequency, Quantity::Period];
+        let index = list.iter().position(|power| *power == quantity)?;
+        let scales = matches!(self.problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
+        let one = Exact::from(1);
+        let alone = !scales || self.amplitude.as_ref().is_none_or(|a| *a == one);
+        let plain = alone && self.time_scale == 1 && c.terms().len() > FEW_TERMS;
+        plain.then_some((&**solution, index))
     }
 
     /// x_n printed, as a function of the phase `tau` = omega t; empty beyond the orders derived.
@@ -279,6 +306,10 @@ impl Derivation {
         }
         match &self.solution {
             Solution::FrequencyOnly { .. } => String::new(),
+            Solution::Clock(solution) => {
+                let algebra = Lobachevsky::new(self.ring.clone());
+                solution.function(n).map_or_else(String::new, |x| algebra.print(&x, "tau", style))
+            }
             Solution::Lobachevsky(expansion) => {
                 Lobachevsky::new(self.ring.clone()).print(&expansion.solution[n], "tau", style)
             }
@@ -301,6 +332,12 @@ impl Derivation {
             return Some(Default::default());
         }
         match &self.solution {
+            Solution::Clock(solution) => {
+                let algebra = Lobachevsky::new(self.ring.clone());
+                let formed = solution.terms()[n] <= 2 * most;
+                let f = formed.then(|| solution.right_side(&algebra, n)).flatten()?;
+                Some(print_few(&algebra, &f, styles, most))
+            }
             Solution::Lobachevsky(expansion) => {
                 let algebra = Lobachevsky::new(self.ring.clone());
                 let formed = expansion.solution[n].len() <= 2 * most;
@@ -323,6 +360,7 @@ impl Derivation {
         }
         match &self.solution {
             Solution::FrequencyOnly { .. } => 0,
+            Solution::Clock(solution) => solution.terms()[n],
             Solution::Lobachevsky(expansion) => expansion.solution[n].len(),
             Solution::Rational(proved) => {
                 Trigonometric::new(Rationals).terms(&proved.expansion.solution[n])

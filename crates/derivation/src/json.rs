@@ -41,7 +41,9 @@ impl Serialize for Derivation {
                 ("multi-modular frequency, checked at phases", Some((*primes, primes + 2)))
             }
             Solution::FrequencyOnly { primes: None } => ("energy integral", None),
-            Solution::Lobachevsky(_) => ("Lobachevsky ring over Q[mu_m]", None),
+            Solution::Clock(_) | Solution::Lobachevsky(_) => {
+                ("Lobachevsky ring over Q[mu_m]", None)
+            }
         };
         let method = Method {
             name,

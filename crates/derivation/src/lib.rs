@@ -33,6 +33,7 @@ mod values;
 mod work;
 
 pub use binding::FORMAL;
+pub use clock::ClockSolution;
 pub use derivation::{Derivation, Solution};
 pub use derive::derive;
 pub use error::DerivationError;

@@ -197,12 +197,13 @@ fn over_q(order: usize, bytes: &dyn Fn(usize) -> Option<f64>) -> f64 {
     f64::log2(base + 8.0 * whole * (order as f64 / PROBE as f64).powf(rate))
 }
 
-/// log2 of the bytes that the functions of a clock take, as JSON beside them: their terms grow with the partitions of
-/// the order, like exp(2.9 N^(1/2)), and their coefficients do again where they are polynomials in the sums.
+/// log2 of the bytes that an expansion by a clock takes, between what it is as text, which counts long functions, and as
+/// JSON, which has them all: monomials grow with the partitions of the order, like exp(2.5 N^(1/2)), and their
+/// coefficients do again where they are polynomials in the sums.
 fn by_clock(order: f64, sums: bool) -> f64 {
-    let (bytes, at, rate) = if sums { (0.9e9, 16.0f64, 4.65) } else { (0.7e9, 30.0f64, 2.9) };
+    let (bytes, at, rate) = if sums { (0.45e9, 16.0f64, 4.28) } else { (0.18e9, 30.0f64, 2.47) };
     let growing = f64::log2(bytes) + rate * (order.sqrt() - at.sqrt()) / std::f64::consts::LN_2;
-    let base = f64::log2(10e6);
+    let base = f64::log2(13e6);
     let (less, more) = (base.min(growing), base.max(growing));
     more + (less - more).exp2().ln_1p() / std::f64::consts::LN_2
 }

@@ -12,17 +12,20 @@ impl Derivation {
     /// the solution was not kept.
     #[must_use]
     pub fn phase_functions(&self, derivative: bool, balls: Balls) -> Option<PhaseFunctions> {
+        let lobachevsky = |solution: &[_]| {
+            let algebra = Lobachevsky::new(self.ring.clone());
+            let functions: Vec<_> = match derivative {
+                true => solution.iter().map(|x| algebra.derivative(x)).collect(),
+                false => solution.to_vec(),
+            };
+            let table = LambdaTable::new(functions.len(), balls);
+            PhaseFunctions::lobachevsky(&functions, table, |c: &_| {
+                self.constants.evaluate(c, balls)
+            })
+        };
         match &self.solution {
-            Solution::Lobachevsky(expansion) => {
-                let algebra = Lobachevsky::new(self.ring.clone());
-                let functions: Vec<_> = match derivative {
-                    true => expansion.solution.iter().map(|x| algebra.derivative(x)).collect(),
-                    false => expansion.solution.clone(),
-                };
-                let table = LambdaTable::new(functions.len(), balls);
-                let value = |c: &_| self.constants.evaluate(c, balls);
-                PhaseFunctions::lobachevsky(&functions, table, value)
-            }
+            Solution::Clock(solution) => lobachevsky(&solution.expansion().solution),
+            Solution::Lobachevsky(expansion) => lobachevsky(&expansion.solution),
             Solution::Rational(proved) => {
                 let algebra = Trigonometric::new(Rationals);
                 let solution = &proved.expansion.solution;

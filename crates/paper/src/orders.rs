@@ -62,10 +62,8 @@ impl Case {
             _ => true,
         };
         let derivation = derive(&problem, &settings, &mut observer)?;
-        let Solution::Lobachevsky(expansion) = &derivation.solution else {
-            return Err(Error::NoValue);
-        };
-        let expansion = (**expansion).clone();
+        let Solution::Clock(solution) = &derivation.solution else { return Err(Error::NoValue) };
+        let expansion = solution.expansion();
         if expansion.order() < 2 {
             return Ok(None);
         }

@@ -7,11 +7,14 @@ use lindstedt_derivation::{DerivationError, Settings, Solution, derive};
 /// within a factor of two of them both ways.
 #[test]
 fn memory_is_predicted_within_a_factor_of_two() {
-    let peaks: [(&str, &[(usize, f64)]); 4] = [
+    let peaks: [(&str, &[(usize, f64)]); 6] = [
         ("duffing", &[(200, 21.6), (400, 108.6)]),
         ("van-der-pol", &[(120, 26.4)]),
-        ("power-law", &[(8, 11.0), (12, 13.0), (16, 21.0), (20, 48.0), (30, 713.0)]),
-        ("pendulum", &[(8, 15.0), (10, 29.0), (12, 83.0), (16, 905.0)]),
+        ("power-law", &[(8, 15.5), (12, 16.5), (16, 20.4), (20, 32.7), (30, 317.0)]),
+        ("pendulum", &[(8, 18.9), (10, 26.8), (12, 58.3), (16, 486.3)]),
+        // As text, which counts long functions.
+        ("power-law", &[(8, 15.6), (12, 16.8), (16, 19.0), (20, 25.8), (30, 114.0)]),
+        ("pendulum", &[(8, 20.0), (10, 27.8), (12, 59.3), (16, 460.1)]),
     ];
     for (name, list) in peaks {
         let problem = lindstedt_problems::find(name).expect("a built-in problem");
@@ -34,7 +37,7 @@ fn long_right_sides_are_not_formed() -> Result<(), DerivationError> {
     let Some(problem) = lindstedt_problems::find("power-law") else { return Ok(()) };
     let settings = Settings { order: 5, ..Settings::default() };
     let derivation = derive(&problem, &settings, &mut |_| true)?;
-    assert!(matches!(derivation.solution, Solution::Lobachevsky(_)));
+    assert!(matches!(derivation.solution, Solution::Clock(_)));
     let styles = [Style::Text, Style::Latex];
     for n in 0..=5 {
         let [short, long] = [5, 100].map(|most| derivation.print_right_side(n, styles, most));

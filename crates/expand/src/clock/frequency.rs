@@ -1,7 +1,4 @@
 //! The frequency of a clock: omega^2 = kappa nu/M^2 with M = 1 + sum_m mu_m c_m, and its judge.
-//!
-//! Where all c_m are powers of one rational series c (the power law: c = delta/(1 + delta)), M = sum_m mu_m c^m is
-//! inverted in powers of c, where its coefficients are homogeneous and have fewest terms, and c put in at the end.
 
 use crate::ExpandError;
 use lindstedt_algebra::{RationalAlgebra, Rationals};
@@ -19,7 +16,7 @@ pub struct ClockFrequency<E> {
     pub period: Vec<E>,
 }
 
-/// M, 1/M and 1/M^2 as series in the small parameter or in a variable c.
+/// M, 1/M and 1/M^2 as series in the small parameter.
 #[derive(Clone, Debug)]
 pub struct ClockMean<E> {
     powers: [Series<E>; 3],
@@ -55,16 +52,7 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> ClockMean<E> {
         self.powers[0].coefficients.len().saturating_sub(1)
     }
 
-    /// The same with other names for its coefficients: the image of a homomorphism, where it has one.
-    pub fn map(&self, f: impl Fn(&E) -> Option<E> + Sync) -> Option<Self> {
-        let image = |series: &Series<E>| -> Option<Series<E>> {
-            Some(Series::truncated(series.coefficients.iter().map(&f).collect::<Option<_>>()?))
-        };
-        let [m, inverse, square] = &self.powers;
-        Some(Self { powers: [image(m)?, image(inverse)?, image(square)?] })
-    }
-
-    /// The powers of the frequency for nu and, where M is given in powers of c, for c.
+    /// The powers of the frequency for nu.
     ///
     /// Checked: nu^(1/2) nu^(1/2) = nu and nu^(1/2) nu^(-1/2) = 1, multiplied out.
     ///
@@ -74,7 +62,6 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> ClockMean<E> {
         &self,
         ring: &R,
         pace: &[E],
-        variable: Option<&[Rational]>,
     ) -> Result<ClockFrequency<E>, ExpandError> {
         let order = pace.len().saturating_sub(1);
         let nu = Series::truncated(pace.to_vec());
@@ -84,15 +71,11 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> ClockMean<E> {
         let over_root = nu.power(ring, &Rational::from((-1, 2))).ok_or_else(broken)?;
         must_agree(&product(&root, &root.clone()), &nu)?;
         must_agree(&product(&product(&root, &over_root), &nu), &nu)?;
-        let put_in = |series: &Series<E>| match variable {
-            Some(c) => substituted(ring, series, c, order),
-            None => series.clone(),
-        };
-        let [m, inverse, square] = self.powers.each_ref().map(put_in);
+        let [m, inverse, square] = &self.powers;
         Ok(ClockFrequency {
-            squared: product(&nu, &square).coefficients,
-            first: product(&root, &inverse).coefficients,
-            period: product(&over_root, &m).coefficients,
+            squared: product(&nu, square).coefficients,
+            first: product(&root, inverse).coefficients,
+            period: product(&over_root, m).coefficients,
         })
     }
 }
@@ -105,27 +88,6 @@ fn must_agree<E: PartialEq>(a: &Series<E>, b: &Series<E>) -> Result<(), ExpandEr
         None if a.len() != b.len() => Err(ExpandError::Residual { order: a.len().min(b.len()) }),
         None => Ok(()),
     }
-}
-
-/// y(c(eps)) for a rational series c without a term of order zero.
-fn substituted<R: RationalAlgebra>(
-    ring: &R,
-    y: &Series<R::Element>,
-    c: &[Rational],
-    order: usize,
-) -> Series<R::Element> {
-    let c = Series::truncated(c.to_vec());
-    let mut one = vec![Rational::new(); order + 1];
-    one[0] += 1;
-    let mut power = Series::truncated(one);
-    let mut sum = vec![ring.zero(); order + 1];
-    for coefficient in &y.coefficients {
-        for (target, q) in sum.iter_mut().zip(&power.coefficients).filter(|(_, q)| !q.is_zero()) {
-            ring.add_assign(target, &ring.scale(coefficient, q));
-        }
-        power = power.mul(&Rationals, &c, order);
-    }
-    Series::truncated(sum)
 }
 
 /// The series c with c_m = c^m for all m and orders, if there is one; `numbers[n][m - 1]` = c_mn.

@@ -43,6 +43,13 @@ impl PrimePair {
         }
     }
 
+    /// Z/M for the two largest primes below 2^30.
+    #[must_use]
+    pub fn largest() -> Self {
+        // 2^30 - 35 and 2^30 - 41 (OEIS A013603).
+        Self::new((1 << 30) - 35, (1 << 30) - 41)
+    }
+
     /// M.
     pub fn modulus(&self) -> u64 {
         self.modulus
@@ -226,5 +233,59 @@ mod tests {
         assert_eq!(ring.scale(&third, &Rational::from((-3, 2))), ring.one());
         assert_eq!(ring.reciprocal(&ring.integer(&Integer::from(p))), None);
         assert_eq!(ring.reciprocal(&0), None);
+    }
+
+    #[test]
+    fn agrees_with_integers_at_the_ends() {
+        let mut list = primes::one_modulo(2);
+        let largest: [u32; 2] = std::array::from_fn(|_| list.next().expect("a prime"));
+        assert_eq!(PrimePair::largest().primes(), largest);
+        for ring in [PrimePair::largest(), PrimePair::new(largest[1], largest[0])] {
+            let modulus = Integer::from(ring.modulus());
+            let [p, q] = ring.primes();
+            // 0, 1, -1 and what is next to them, modulo each of the primes.
+            let residues = |p: u32| [0, 1, 2, p / 2, p - 2, p - 1];
+            let mut elements = Vec::new();
+            for a in residues(p) {
+                for b in residues(q) {
+                    let x = ring.joined(a, b);
+                    let n = ring.representative(x);
+                    assert!(x < ring.modulus() && n < ring.modulus());
+                    assert_eq!((n % u64::from(p), n % u64::from(q)), (a.into(), b.into()));
+                    assert_eq!(ring.integer(&Integer::from(n)), x);
+                    let unit = a != 0 && b != 0;
+                    let inverse = ring.reciprocal(&x);
+                    assert_eq!(inverse.map(|y| ring.mul(&x, &y)), unit.then(|| ring.one()));
+                    elements.push((x, Integer::from(n)));
+                }
+            }
+            for (x, m) in &elements {
+                assert_eq!(ring.add(x, &ring.neg(x)), 0);
+                for (y, n) in &elements {
+                    let cases = [
+                        (ring.add(x, y), Integer::from(m + n)),
+                        (ring.sub(x, y), Integer::from(m - n)),
+                        (ring.mul(x, y), Integer::from(m * n)),
+                    ];
+                    for (found, expected) in cases {
+                        assert!(found < ring.modulus());
+                        assert_eq!(ring.representative(found), expected.modulo(&modulus));
+                    }
+                }
+            }
+            // Integers of every length, whose limbs are all ones, around multiples of M, of either sign.
+            for limbs in 1..=9u32 {
+                let ones: Integer = (Integer::from(1) << (64 * limbs)) - 1;
+                let multiple = Integer::from(&ones / &modulus) * &modulus;
+                for n in [ones.clone(), Integer::from(&multiple - 1), multiple + 1] {
+                    for n in [Integer::from(-&n), n] {
+                        let expected = n.clone().modulo(&modulus);
+                        assert_eq!(ring.representative(ring.integer(&n)), expected);
+                        let together = ring.integers([&n, &ones].into_iter());
+                        assert_eq!(ring.representative(together[0]), expected);
+                    }
+                }
+            }
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! A derivation as one would write it on the board, order by order.
 
-use super::{Present, both, classification, condition_text, equation};
+use super::{Present, classification, condition_text, equation};
 use crate::{Document, Formula, Text};
 use lindstedt::unstable::coeff::print::{Style, latex_name};
 use lindstedt::unstable::equation::{AmplitudeRole, Condition, Quantity};
@@ -16,42 +16,59 @@ const RING_TEXT: &str = "l = -ln|cos(tau)|, Lambda_m = integral of l^m/m! - mu_m
 
 impl Present for Answer<Derivation> {
     fn document(&self) -> Document {
-        let board = Board(&self.value);
-        let problem = &self.value.problem;
-        let title = format!("{}: {}", problem.name, problem.title);
-        let mut page = Document::titled(title.trim_end_matches([':', ' ']));
-        page = classification(page, self.value.description.as_ref());
-        page = page.formula(equation(problem)).formula(board.ansatz());
-        page = page.words(format!("Normalisation: {}.", condition_text(self.value.condition)));
-        for words in board.scalings() {
-            page = page.words(words);
-        }
-        if matches!(self.value.solution, Solution::Lobachevsky(_)) {
-            page = page.words(Formula::new(RING_TEXT, RING).into_sentence());
-        }
-        for n in 0..self.value.solved() {
-            page = board.order(page, n);
-        }
-        page = page.heading("Result");
-        page = board.result(page);
-        page = board.closing().into_iter().fold(page, Document::formula);
-        page.words(board.residual())
+        Board { value: &self.value, latex: true }.page()
+    }
+
+    fn plain_document(&self) -> Document {
+        Board { value: &self.value, latex: false }.page()
     }
 }
 
 /// A derivation with what is written of it.
-struct Board<'a>(&'a Derivation);
+struct Board<'a> {
+    value: &'a Derivation,
+    /// Whether formulas have a LaTeX form: their coefficients have millions of terms.
+    latex: bool,
+}
 
 impl Board<'_> {
+    fn page(&self) -> Document {
+        let problem = &self.value.problem;
+        let title = format!("{}: {}", problem.name, problem.title);
+        let mut page = Document::titled(title.trim_end_matches([':', ' ']));
+        page = classification(page, self.value.description.as_ref());
+        page = page.formula(equation(problem)).formula(self.ansatz());
+        page = page.words(format!("Normalisation: {}.", condition_text(self.value.condition)));
+        for words in self.scalings() {
+            page = page.words(words);
+        }
+        if matches!(self.value.solution, Solution::Clock(_) | Solution::Lobachevsky(_)) {
+            page = page.words(Formula::new(RING_TEXT, RING).into_sentence());
+        }
+        for n in 0..self.value.solved() {
+            page = self.order(page, n);
+        }
+        page = page.heading("Result");
+        page = self.result(page);
+        page = self.closing().into_iter().fold(page, Document::formula);
+        page.words(self.residual())
+    }
+
+    /// A formula in the notations that are read.
+    fn both(&self, print: impl Fn(Style) -> String) -> Formula {
+        let latex = if self.latex { print(Style::Latex) } else { String::new() };
+        Formula::new(print(Style::Text), latex)
+    }
+
     fn small(&self, style: Style) -> String {
-        let name = &self.0.problem.small;
+        let name = &self.value.problem.small;
         if style == Style::Latex { latex_name(name) } else { name.to_string() }
     }
 
     /// tau = omega t, omega^2 = kappa (1 + W_1 eps + ...), x = x_0 + x_1 eps + ...
     fn ansatz(&self) -> Formula {
-        both(|style| {
-            let (small, kappa) = (self.small(style), self.0.ring_print(style));
+        self.both(|style| {
+            let (small, kappa) = (self.small(style), self.value.ring_print(style));
             let (tau, omega, times, gap, dots) = match style {
                 Style::Text => ("tau", "omega", "*", "   ", "..."),
                 Style::Latex => ("\\tau", "\\omega", "\\,", "\\quad ", "\\dots"),
@@ -67,7 +84,7 @@ impl Board<'_> {
 
     /// What x and the symbols stand for where the equation is not the one that was written.
     fn scalings(&self) -> Vec<Text> {
-        let result = self.0;
+        let result = self.value;
         let mut list = Vec::new();
         if let Some(value) = &result.amplitude {
             let small = self.small(Style::Text);
@@ -101,14 +118,14 @@ impl Board<'_> {
     }
 
     fn order(&self, page: Document, n: usize) -> Document {
-        let result = self.0;
+        let result = self.value;
         let mut page = page.heading(format!("Order {n}"));
         if n == 0 {
             page = page.formula(Formula::new("x_0'' + x_0 = 0", "x_0'' + x_0 = 0"));
         } else {
             page = page.formula(self.right_side(n)).formula(self.secular(n));
             if result.condition == Condition::LimitCycle && n > 1 {
-                page = page.formula(both(|style| {
+                page = page.formula(self.both(|style| {
                     let (before, value) = (n - 1, result.amplitude_correction(n - 1, style));
                     match style {
                         Style::Text => format!(
@@ -122,7 +139,7 @@ impl Board<'_> {
                 }));
             }
         }
-        page.formula(both(|style| {
+        page.formula(self.both(|style| {
             let terms = result.terms(n);
             let solution = if terms > PRINTED_TERMS {
                 counted(terms, style)
@@ -136,7 +153,7 @@ impl Board<'_> {
     /// x_n'' + x_n = f_n - W_n x_0'', with f_n by its name where it is too long to be formed.
     fn right_side(&self, n: usize) -> Formula {
         let styles = [Style::Text, Style::Latex];
-        let found = self.0.print_right_side(n, styles, PRINTED_TERMS);
+        let found = self.value.print_right_side(n, styles, PRINTED_TERMS);
         let [text, latex] = styles.map(|style| {
             let right_side = match &found {
                 None => indexed("f", n, style),
@@ -155,10 +172,10 @@ impl Board<'_> {
 
     /// The condition that leaves no secular term, and the W_n that it gives.
     fn secular(&self, n: usize) -> Formula {
-        both(|style| {
+        self.both(|style| {
             let w = indexed("W", n, style);
-            let value = self.0.frequency_correction(n, style);
-            let leading = self.0.amplitude_correction(0, style);
+            let value = self.value.frequency_correction(n, style);
+            let leading = self.value.amplitude_correction(0, style);
             let times = if style == Style::Text { "*" } else { "\\," };
             let factor = if leading == "1" { String::new() } else { format!("{leading}{times}") };
             match style {
@@ -174,8 +191,8 @@ impl Board<'_> {
 
     /// The series, coefficient by coefficient.
     fn result(&self, mut page: Document) -> Document {
-        let result = self.0;
-        let small = both(|style| self.small(style));
+        let result = self.value;
+        let small = self.both(|style| self.small(style));
         for (series, numbers) in result.series.iter().zip(&result.numbers) {
             let name = series.quantity.name().replace('_', " ");
             let line = Text::words(format!("{name} in powers of ")).formula(small.clone()).and(":");
@@ -184,7 +201,8 @@ impl Board<'_> {
                 let print = |style| result.print_coefficient(series, n, style);
                 // A long coefficient is not written once more.
                 let text = number.exact.clone().unwrap_or_else(|| print(Style::Text));
-                let exact = Formula::new(text, print(Style::Latex));
+                let latex = if self.latex { print(Style::Latex) } else { String::new() };
+                let exact = Formula::new(text, latex);
                 page = page.formula(coefficient(n, exact, number));
             }
         }
@@ -194,11 +212,11 @@ impl Board<'_> {
     /// omega and x(t) in one formula each, to be copied: not in text, whose lines are too short for them. Where the
     /// amplitude stands in a factor of omega there is none.
     fn closing(&self) -> Vec<Formula> {
-        let (result, small) = (self.0, self.small(Style::Latex));
+        let (result, small) = (self.value, self.small(Style::Latex));
         let series = result.series.iter().find(|series| series.quantity == Quantity::Frequency);
         let scaled = result.amplitude.as_ref().map(ToString::to_string).filter(|a| a != "1");
         let in_factor = matches!(result.problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
-        let Some(series) = series.filter(|_| scaled.is_none() || !in_factor) else {
+        let Some(series) = series.filter(|_| self.latex && (scaled.is_none() || !in_factor)) else {
             return Vec::new();
         };
         let count = series.coefficients.len();
@@ -224,13 +242,13 @@ impl Board<'_> {
                 "Residual: the expansion substituted into the equation vanishes identically at orders 0 to {last}"
             )
         };
-        match (&self.0.solution, self.0.checked_orders) {
+        match (&self.value.solution, self.value.checked_orders) {
             (Solution::Rational(proved), Some(last)) => format!(
                 "{}\n(proved modulo {} primes of 30 bits, more than its numbers can hold).",
                 vanishes(last),
                 proved.proof_primes
             ),
-            (_, Some(last)) if self.0.route == Route::Clock => format!(
+            (_, Some(last)) if self.value.route == Route::Clock => format!(
                 "{}\n(proved by its one clock: dx/dLambda_m = -c_m D x term by term, then at Lambda = 0).",
                 vanishes(last)
             ),

@@ -34,6 +34,10 @@ use serde::Serialize;
 pub trait Present {
     /// The page.
     fn document(&self) -> Document;
+    /// The page for a reader of plain text alone: its formulas may lack the LaTeX form, which is then not printed.
+    fn plain_document(&self) -> Document {
+        self.document()
+    }
     /// The figure, where there is something to draw.
     fn figure(&self) -> Option<Figure> {
         None

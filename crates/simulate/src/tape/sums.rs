@@ -221,7 +221,7 @@ mod tests {
     use super::*;
     use crate::integrator::real::Doubles;
     use crate::quantity::{Parameters, Quantity};
-    use crate::system::Model;
+    use crate::system::{Model, System};
     use crate::tape::Moment;
     use lindstedt_equation::{Expression, Function};
 
@@ -243,8 +243,16 @@ mod tests {
             + apply(&x, Function::Exp) * number(1, 9)
             - root;
         let model = Model::first_order(&[], &[v, force - wave]).unwrap().linearised();
-        let system =
-            model.compile(Doubles, &Parameters::new().with("a", Quantity::from(1))).unwrap();
+        let parameters = Parameters::new().with("a", Quantity::from(1));
+        let system = model.compile(Doubles, &parameters).unwrap();
+        let (tape, sums) = (&system.tape, compared(&system));
+        // The work of a level: steps in place of operations.
+        assert_eq!((tape.curved.len(), tape.steps.len(), sums), (104, 35, 26));
+    }
+
+    /// The number of sums, after every level of every written row has been compared with that of the operations, from
+    /// arbitrary levels of the states.
+    fn compared(system: &System<Doubles>) -> usize {
         let tape = &system.tape;
         let random = |k: usize| ((k * 7919 % 1013) as f64 - 506.0) / 700.0;
         let mut rows = Rows::new(tape.rows(), 24, &0.0);
@@ -264,6 +272,8 @@ mod tests {
                 tape.operation(&Doubles, &mut other, *index, n, &mut moment);
             }
         }
+        // The bits; a zero may have another sign.
+        let bits = |row: &[f64]| row.iter().map(|c| (c + 0.0).to_bits()).collect::<Vec<_>>();
         let mut sums = 0;
         for step in &tape.steps {
             let row = match step {
@@ -271,12 +281,55 @@ mod tests {
                 Step::Sum(row, _) => *row,
             };
             sums += usize::from(matches!(step, Step::Sum(..)));
-            assert_eq!(rows.row(row), other.row(row), "row {row}");
+            assert_eq!(bits(rows.row(row)), bits(other.row(row)), "row {row}");
         }
         for row in &system.right_sides {
-            assert_eq!(rows.row(*row), other.row(*row));
+            assert_eq!(bits(rows.row(*row)), bits(other.row(*row)));
         }
-        // The work of a level: steps in place of operations.
-        assert_eq!((tape.curved.len(), tape.steps.len(), sums), (104, 35, 26));
+        sums
+    }
+
+    /// Four hundred random right sides, half of them with their linearisation: sums, differences, multiples, products
+    /// and squares of what came before, so that much is read more than once, and of functions of it.
+    #[test]
+    fn random_tapes_are_their_operations() {
+        // A linear congruential generator (Knuth, MMIX).
+        let mut state = 1u64;
+        let mut below = |n: usize| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 33) as usize % n
+        };
+        let (mut sums, mut terms) = (0, 0);
+        for sample in 0..400 {
+            let (x, v) = (Expression::DISPLACEMENT, Expression::VELOCITY);
+            let mut known = vec![x, v.clone(), Expression::Time];
+            for _ in 0..9 {
+                let (a, b) = (known[below(known.len())].clone(), known[below(known.len())].clone());
+                let q = Expression::Number((below(9) as i64 - 4, below(5) as i64 + 1).into());
+                known.push(match below(10) {
+                    0 | 1 => a + b,
+                    2 | 3 => a - b,
+                    4 => q * a,
+                    5 => a + q * b,
+                    6 | 7 => a * b,
+                    8 => a.clone() * a,
+                    _ if below(2) == 0 => (q * a).apply(Function::Sin),
+                    _ => (a.clone() * a + Expression::Number(2.into())).pow(-1) * b,
+                });
+            }
+            let force = known.split_off(known.len() - 3).into_iter().reduce(|a, b| a - b);
+            let mut model = Model::first_order(&[], &[v, force.unwrap()]).unwrap();
+            if sample % 2 == 0 {
+                model = model.linearised();
+            }
+            let system = model.compile(Doubles, &Parameters::new()).unwrap();
+            sums += compared(&system);
+            let longest = system.tape.steps.iter().map(|step| match step {
+                Step::Sum(_, sum) => sum.terms.len(),
+                Step::Operation(_) => 0,
+            });
+            terms = terms.max(longest.max().unwrap_or(0));
+        }
+        assert!(sums > 2000 && terms > 4, "{sums} sums of up to {terms} terms");
     }
 }

@@ -148,25 +148,29 @@ impl<C: RationalAlgebra> Leaves<'_, C> {
     ) -> Vec<Leaf<C::Element>> {
         let nonzero: Vec<_> = a.iter().enumerate().filter(|(_, c)| !self.0.is_zero(c)).collect();
         let coefficient = |n: usize| {
-            let mut lengths: BTreeMap<Factor, usize> = BTreeMap::new();
-            let known =
-                || nonzero.iter().filter_map(|&(k, c)| Some((c, f.get(n.checked_sub(k)?)?)));
-            for (factor, list) in known().flat_map(|(_, f)| f) {
-                let length = lengths.entry(*factor).or_default();
-                *length = list.len().max(*length);
-            }
-            let of_factor = |(factor, length): (Factor, usize)| {
-                let lists: Vec<_> =
-                    known().filter_map(|(c, f)| Some((c, f.get(&factor)?))).collect();
-                let at = |s: usize| {
-                    let pairs: Vec<_> =
-                        lists.iter().filter_map(|&(c, list)| Some((c, list.get(s)?))).collect();
-                    self.0.sum_of_products(&pairs)
-                };
-                (factor, (0..length).map(at).collect())
-            };
-            self.trimmed(lengths.into_iter().map(of_factor).collect())
+            let known = nonzero.iter().filter_map(|&(k, c)| Some((c, f.get(n.checked_sub(k)?)?)));
+            self.combination(&known.collect::<Vec<_>>())
         };
         (0..=order).map(coefficient).collect()
+    }
+
+    /// sum_i a_i f_i.
+    pub fn combination(&self, terms: &[(&C::Element, &Leaf<C::Element>)]) -> Leaf<C::Element> {
+        let mut lengths: BTreeMap<Factor, usize> = BTreeMap::new();
+        for (factor, list) in terms.iter().flat_map(|(_, f)| *f) {
+            let length = lengths.entry(*factor).or_default();
+            *length = list.len().max(*length);
+        }
+        let of_factor = |(factor, length): (Factor, usize)| {
+            let lists: Vec<_> =
+                terms.iter().filter_map(|(a, f)| Some((*a, f.get(&factor)?))).collect();
+            let at = |s: usize| {
+                let pairs: Vec<_> =
+                    lists.iter().filter_map(|&(a, list)| Some((a, list.get(s)?))).collect();
+                self.0.sum_of_products(&pairs)
+            };
+            (factor, (0..length).map(at).collect())
+        };
+        self.trimmed(lengths.into_iter().map(of_factor).collect())
     }
 }

@@ -12,14 +12,16 @@
 mod check;
 mod leaf;
 mod monomials;
+mod unfolding;
 
 use super::{Factor, Lobachevsky, LobachevskyElement, LogPolynomial, Moments, Word};
-use leaf::{Leaf, Leaves, factorial};
+use leaf::factorial;
 use lindstedt_algebra::{ClockAlgebra, RationalAlgebra, Ring, StillAndClock, Stop};
-use lindstedt_coeff::sparse::{Monomial, Sparse};
-use monomials::Monomials;
+use lindstedt_coeff::sparse::Sparse;
 use rug::Rational;
-use std::collections::{BTreeMap, BTreeSet};
+
+pub use monomials::LambdaMonomial;
+pub use unfolding::Unfolding;
 
 impl<C: Moments> ClockAlgebra for Lobachevsky<C> {
     fn pace(&self, numbers: &[C::Element]) -> Self::Element {
@@ -79,15 +81,6 @@ pub struct Clock<'a, C: RationalAlgebra, T: Moments> {
 /// An element of the Lobachevsky ring over the formal constants of a clock.
 pub type Still<C> = LobachevskyElement<<C as Ring>::Element>;
 
-/// (-1)^j C_k order by order: the coefficients of l^s/s! by the position of the factor.
-type Shared<E> = Vec<Vec<(usize, Vec<E>)>>;
-
-/// The same by degree and product.
-type SharedByKey<E> = BTreeMap<(usize, usize), Shared<E>>;
-
-/// One block per factor and order, in increasing order of words.
-type Blocks<E> = Vec<Vec<Vec<(Word, E)>>>;
-
 impl<C: RationalAlgebra, T: Moments> Clock<'_, C, T> {
     fn order(&self) -> usize {
         self.numbers.len().saturating_sub(1)
@@ -98,25 +91,8 @@ impl<C: RationalAlgebra, T: Moments> Clock<'_, C, T> {
     ///
     /// Cost: a product of rational numbers per term of the result, beside O(N^3) small products.
     pub fn unfold(&self, still: &[Still<C>]) -> Option<Vec<LobachevskyElement<T::Element>>> {
-        let leaves = Leaves(self.constants);
-        let p: Vec<_> = still.iter().map(|f| leaves.of(f)).collect::<Option<_>>()?;
-        if p.is_empty() || p.len() != self.numbers.len() {
-            return None;
-        }
-        let monomials = Monomials::new(self.constants, self.numbers);
-        let images = self.images(p, monomials.degree())?;
-        let factors: BTreeSet<Factor> =
-            images.iter().flatten().flat_map(|leaf| leaf.keys().copied()).collect();
-        let factors: Vec<Factor> = factors.into_iter().collect();
-        let shared = self.shared(&monomials, &images, &factors)?;
-        let blocks = self.scatter(&monomials, &shared, factors.len())?;
-        let element = |of_order: Vec<Vec<(Word, T::Element)>>| {
-            let polynomials = of_order.into_iter().map(Sparse::from_increasing);
-            let blocks = factors.iter().copied().zip(polynomials.collect::<Option<Vec<_>>>()?);
-            let blocks = blocks.filter(|(_, polynomial)| !polynomial.is_zero()).collect();
-            Some(LobachevskyElement { blocks })
-        };
-        blocks.into_iter().map(element).collect()
+        let parts = Unfolding::new(self.constants, self.numbers, None, still, &self.stop)?;
+        (0..still.len()).map(|n| parts.function(n, self.constants, self.lift, &self.stop)).collect()
     }
 
     /// M = 1 + sum_m mu_m c_m, order by order: the mean of g. Where c_m = c^m its coefficients in powers of c are the
@@ -131,97 +107,5 @@ impl<C: RationalAlgebra, T: Moments> Clock<'_, C, T> {
             sum
         };
         self.numbers.iter().enumerate().map(coefficient).collect()
-    }
-
-    /// D^j p for j = 0, 1, ..., up to the order N - j: g D f = f'.
-    fn images(
-        &self,
-        p: Vec<Leaf<C::Element>>,
-        degree: usize,
-    ) -> Option<Vec<Vec<Leaf<C::Element>>>> {
-        let leaves = Leaves(self.constants);
-        let mut images = vec![p];
-        for j in 0..degree {
-            let mut next = Vec::new();
-            let (_, but_last) = images[j].split_last()?;
-            for (n, image) in but_last.iter().enumerate() {
-                if self.stop.asked() {
-                    return None;
-                }
-                let slope = leaves.derivative(image);
-                let paced = leaves.paced(self.numbers, &next, n);
-                next.push(leaves.difference(slope, &paced));
-            }
-            images.push(next);
-        }
-        Some(images)
-    }
-
-    /// (-1)^j C_k for every pair of a degree j and a product of the c_m.
-    fn shared(
-        &self,
-        monomials: &Monomials<C::Element>,
-        images: &[Vec<Leaf<C::Element>>],
-        factors: &[Factor],
-    ) -> Option<SharedByKey<C::Element>> {
-        let leaves = Leaves(self.constants);
-        let mut shared = BTreeMap::new();
-        for monomial in &monomials.list {
-            let key = (monomial.degree, monomial.product);
-            if shared.contains_key(&key) {
-                continue;
-            }
-            if self.stop.asked() {
-                return None;
-            }
-            let orders = leaves.times(&monomials.products[key.1], &images[key.0], self.order());
-            let indexed = |leaf: Leaf<C::Element>| {
-                let position = |factor: &Factor| factors.binary_search(factor).ok();
-                leaf.into_iter().filter_map(|(f, list)| Some((position(&f)?, list))).collect()
-            };
-            shared.insert(key, orders.into_iter().map(indexed).collect());
-        }
-        Some(shared)
-    }
-
-    /// Every C_k to its words l^s Lambda^k with the factor (-1)^j/(s! prod k_m!), in the order of the words.
-    fn scatter(
-        &self,
-        monomials: &Monomials<C::Element>,
-        shared: &SharedByKey<C::Element>,
-        factors: usize,
-    ) -> Option<Blocks<T::Element>> {
-        let mut words = Vec::new();
-        for monomial in &monomials.list {
-            let orders = shared.get(&(monomial.degree, monomial.product))?;
-            let lengths = orders.iter().flatten().map(|(_, list)| list.len());
-            let length = lengths.max().unwrap_or(0);
-            words.extend(
-                (0..length).map(|s| (monomial.word.times(&Word::log(s as u16)), s, monomial)),
-            );
-        }
-        words.sort_unstable_by(|a, b| a.0.cmp(&b.0));
-        let mut blocks: Blocks<T::Element> =
-            (0..=self.order()).map(|_| (0..factors).map(|_| Vec::new()).collect()).collect();
-        for (word, s, monomial) in words {
-            if self.stop.asked() {
-                return None;
-            }
-            let mut factor = Rational::from((1, factorial(s) * &monomial.factorials));
-            if monomial.degree % 2 == 1 {
-                factor = -factor;
-            }
-            let orders = shared.get(&(monomial.degree, monomial.product))?;
-            for (of_order, target) in orders.iter().zip(&mut blocks) {
-                for (position, list) in of_order {
-                    let c = list.get(s).filter(|c| !self.constants.is_zero(c));
-                    if let Some(c) = c {
-                        let value = (self.lift)(&self.constants.scale(c, &factor));
-                        target[*position].push((word.clone(), value));
-                    }
-                }
-            }
-        }
-        Some(blocks)
     }
 }

@@ -7,18 +7,20 @@ use rug::Integer;
 use std::collections::BTreeMap;
 
 /// prod_m Lambda_m^k_m.
-pub(super) struct LambdaMonomial {
+#[derive(Clone, Debug)]
+pub struct LambdaMonomial {
     /// As a word without l.
     pub word: Word,
     /// sum_m k_m.
     pub degree: usize,
     /// prod_m k_m!.
     pub factorials: Integer,
-    /// prod_m c_m^k_m, by its position in [`Monomials::products`].
+    /// prod_m c_m^k_m, by its position among the different ones.
     pub product: usize,
 }
 
 /// All monomials whose product of the c_m does not vanish up to the order.
+#[derive(Clone, Debug)]
 pub(super) struct Monomials<E> {
     pub list: Vec<LambdaMonomial>,
     /// Series in the small parameter, no two of them equal.
