@@ -45,13 +45,11 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         self.rates.len() - self.amplitudes
     }
     fn frequency_squared(&self, j: usize) -> Self::Element {
-        let (e, denominator) = self.unknowns[j].square.clone();
-        self.single(0, [e, self.scalars.zero()], denominator, true)
+        self.unknowns[j].square.clone()
     }
     fn force_rate(&self, l: usize) -> Self::Element {
         let Some(rate) = self.rates.get(self.amplitudes + l) else { return self.zero() };
-        let (e, denominator) = self.value(rate);
-        self.single(0, [e, self.scalars.zero()], denominator, true)
+        self.value(rate)
     }
     fn amplitude(&self, j: usize) -> Self::Element {
         if j < self.amplitudes {
@@ -187,11 +185,6 @@ impl<S: Scalars> Amplitudes<S> {
         }
     }
 
-    /// e/d as a constant.
-    fn real(&self, (e, d): (S::Element, Integer)) -> AmplitudeElement<S::Element> {
-        self.single(0, [e, self.scalars.zero()], d, true)
-    }
-
     /// i f.
     fn turned(&self, f: &AmplitudeElement<S::Element>) -> AmplitudeElement<S::Element> {
         let mut turned = f.clone();
@@ -205,7 +198,7 @@ impl<S: Scalars> Amplitudes<S> {
 
     /// lambda.
     fn rate(&self, word: Word) -> AmplitudeElement<S::Element> {
-        self.real(self.value(&self.eigenvalue(word)))
+        self.value(&self.eigenvalue(word))
     }
 
     /// e^{-i lambda T}.
@@ -271,14 +264,17 @@ impl<S: Scalars> Amplitudes<S> {
         let factors = match &unknown.rate {
             Some(nu) => [-1, 1].map(|sign: i64| {
                 let sum: Multiples = nu.iter().zip(&lambda).map(|(a, b)| a + sign * b).collect();
-                self.real(self.value(&sum))
+                self.value(&sum)
             }),
             None => {
-                let value = self.real(self.value(&lambda));
-                let own = self.real(unknown.square.clone());
-                [self.sub(&own, &self.mul(&value, &value)), self.one()]
+                let value = self.value(&lambda);
+                [self.sub(&unknown.square, &self.mul(&value, &value)), self.one()]
             }
         };
+        let divided = self.divided.as_ref().map(|_| self.mul(&factors[0], &factors[1]));
+        if let Some(inverse) = divided.and_then(|product| self.reciprocal(&product)) {
+            return Ok(Divisor { inverse, size: None });
+        }
         let [a, b] = factors
             .each_ref()
             .map(|factor| self.reciprocal(factor).ok_or_else(|| self.refusal(word, factor)));
@@ -288,8 +284,7 @@ impl<S: Scalars> Amplitudes<S> {
             _ => None,
         };
         let size = middle(&self.mul(&factors[0], &factors[1]));
-        let own = self.scalars.middle(&unknown.square.0, &unknown.square.1);
-        let size = size.zip(own).map(|(size, own)| size / own);
+        let size = size.zip(middle(&unknown.square)).map(|(size, own)| size / own);
         Ok(Divisor { inverse: self.mul(&a, &b), size })
     }
 
@@ -330,31 +325,31 @@ impl<S: Scalars> Amplitudes<S> {
         for (harmonic, word) in self.harmonics_of(f) {
             constants.push((harmonic, constant(word)?));
         }
+        if constants.iter().any(|(_, c)| c.terms.len() > 1) {
+            return Ok(self.times_sums(f, real, &constants));
+        }
+        let largest = constants.iter().map(|(_, c)| self.largest(c)).max().unwrap_or(0);
+        if largest > 0 && self.overflows(self.largest(f), largest) {
+            return Ok(self.zero());
+        }
         let common = constants.iter().fold(Integer::from(1), |d, (_, c)| d.lcm(&c.denominator));
         let mut factors = FxHashMap::default();
+        let mut moved = false;
         for (harmonic, c) in constants {
             let n = Integer::from(&common / &c.denominator);
-            let parts = c.terms.into_iter().next().map(|(_, parts)| parts);
-            let [x, y] = parts.unwrap_or_else(|| [scalars.zero(), scalars.zero()]);
+            let single = c.terms.into_iter().next();
+            let (word, [x, y]) = single.unwrap_or_else(|| (0, [scalars.zero(), scalars.zero()]));
             let [x, y] = if n == 1 { [x, y] } else { [&x, &y].map(|e| scalars.times(e, &n)) };
             let minus = scalars.neg(&y);
             let opposite: Vec<i32> = harmonic.iter().map(|k| -k).collect();
-            factors.insert(opposite, [x.clone(), minus.clone(), y.clone()]);
-            factors.insert(harmonic, [x, y, minus]);
+            moved |= word != 0;
+            let mirrored = if word == 0 { 0 } else { self.mirrored(word) };
+            factors.insert(opposite, (mirrored, [x.clone(), minus.clone(), y.clone()]));
+            factors.insert(harmonic, (word, [x, y, minus]));
         }
-        let sum = |pairs: [(&S::Element, &S::Element); 2]| {
-            let nonzero =
-                |(a, b): &(&S::Element, &S::Element)| !scalars.is_zero(a) && !scalars.is_zero(b);
-            match pairs.each_ref().map(nonzero) {
-                [false, false] => scalars.zero(),
-                [true, false] => scalars.product(pairs[0].0, pairs[0].1),
-                [false, true] => scalars.product(pairs[1].0, pairs[1].1),
-                [true, true] => scalars.sum_of_products(&pairs),
-            }
-        };
         let term = |(word, [re, im]): &(Word, [S::Element; 2])| {
-            let [x, y, minus] = factors.get(&self.harmonic_of(*word))?;
-            Some((*word, [sum([(re, x), (im, minus)]), sum([(re, y), (im, x)])]))
+            let (by, [x, y, minus]) = factors.get(&self.harmonic_of(*word))?;
+            Some((word + by, [self.sum([(re, x), (im, minus)]), self.sum([(re, y), (im, x)])]))
         };
         let mut terms: Vec<_> = match f.real && real {
             true => {
@@ -363,9 +358,31 @@ impl<S: Scalars> Amplitudes<S> {
             }
             false => f.terms.iter().filter_map(term).collect(),
         };
-        if f.real && real {
-            self.complete(&mut terms);
+        match f.real && real {
+            true => self.complete(&mut terms),
+            false if moved => terms.sort_unstable_by_key(|(word, _)| *word),
+            false => {}
         }
-        Ok(self.canonical(common * &f.denominator, terms, real))
+        Ok(self.reduced(self.canonical(common * &f.denominator, terms, real)))
+    }
+
+    /// Every term times the sum of its harmonic.
+    fn times_sums(
+        &self,
+        f: &AmplitudeElement<S::Element>,
+        real: bool,
+        constants: &[(Vec<i32>, AmplitudeElement<S::Element>)],
+    ) -> AmplitudeElement<S::Element> {
+        let mut parts = Vec::new();
+        for (harmonic, c) in constants {
+            let opposite: Vec<i32> = harmonic.iter().map(|k| -k).collect();
+            parts.push((self.filtered(f, |word| self.harmonic_of(word) == *harmonic), c.clone()));
+            if opposite != *harmonic {
+                let part = self.filtered(f, |word| self.harmonic_of(word) == opposite);
+                parts.push((part, self.conjugated(c)));
+            }
+        }
+        let pairs: Vec<_> = parts.iter().map(|(part, c)| (part, c)).collect();
+        AmplitudeElement { real, ..self.sum_of_products(&pairs) }
     }
 }

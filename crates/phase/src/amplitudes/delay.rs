@@ -40,18 +40,9 @@ impl<S: Scalars> Amplitudes<S> {
         frequency: &S::Number,
         force: Option<&S::Number>,
     ) -> Option<Self> {
-        let generators: Vec<_> = [Some(frequency), force]
-            .into_iter()
-            .flatten()
-            .map(|rate| scalars.numerator(rate))
-            .collect();
-        let multiples = |list: [i32; 3]| list.map(Rational::from).to_vec();
-        let amplitudes = vec![multiples([0, 1, 0])[..=generators.len()].to_vec()];
-        let forces = match force {
-            Some(_) => vec![multiples([0, 0, 1])],
-            None => vec![vec![Rational::new()]],
-        };
-        let algebra = Self::of_rates(scalars, Rates { amplitudes, forces, generators }, &[])?;
+        let rates = [Some(frequency), force].into_iter().flatten();
+        let rates = Rates::single(rates.map(|rate| scalars.numerator(rate)).collect());
+        let algebra = Self::of_rates(scalars, rates, &[])?;
         Some(Self { refuses: true, ..algebra })
     }
 
