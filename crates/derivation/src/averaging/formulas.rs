@@ -4,12 +4,13 @@ use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_coeff::sparse::{Monomial, Sparse};
 use lindstedt_coeff::{Polynomial, PowerProduct, Symbol};
-use lindstedt_phase::amplitudes::scalars::{Integers, Scalars};
+use lindstedt_number::Whole;
+use lindstedt_phase::amplitudes::scalars::Integers;
 use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Delay};
 use rug::Rational;
 use std::collections::BTreeMap;
 
-pub(super) type Element = AmplitudeElement<<Integers as Scalars>::Element>;
+pub(super) type Element = AmplitudeElement<Whole>;
 
 /// The name of 1/(nu^2 - Omega^2) among the symbols; no parameter is called so.
 const DIVISOR: &str = "1/(nu^2 - Omega^2)";

@@ -3,8 +3,9 @@ use super::*;
 use lindstedt_algebra::{
     AmplitudeAlgebra, ForcedAlgebra, LinearPart, PhaseError, RationalAlgebra, Rationals, Ring, laws,
 };
+use lindstedt_number::Whole;
 
-type Element = AmplitudeElement<Integer>;
+type Element = AmplitudeElement<Whole>;
 
 type Derivation = fn(&Amplitudes<Integers>, &Element) -> Element;
 
