@@ -113,7 +113,12 @@ impl Whole {
     /// gcd(g, self) for g >= 0.
     pub fn gcd(&self, g: &mut Integer) {
         match (&self.0, g.to_u64()) {
-            (Word(n), Some(m)) => *g = Integer::from(gcd(n.unsigned_abs(), m)),
+            (Word(n), Some(m)) => {
+                let common = gcd(n.unsigned_abs(), m);
+                if common != m {
+                    *g = Integer::from(common);
+                }
+            }
             (Word(n), None) => g.gcd_mut(&Integer::from(*n)),
             (Long(n), _) => g.gcd_mut(n),
         }
@@ -145,6 +150,9 @@ impl Whole {
 fn gcd(mut a: u64, mut b: u64) -> u64 {
     if a == 0 || b == 0 {
         return a | b;
+    }
+    if b.is_power_of_two() {
+        return b.min(1 << a.trailing_zeros());
     }
     let shift = (a | b).trailing_zeros();
     a >>= a.trailing_zeros();

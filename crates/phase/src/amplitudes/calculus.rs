@@ -69,7 +69,7 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
             return self.zero();
         }
         let exponent = |word: Word| self.layout.exponents(word, 2 * j + 1).0[2 * j];
-        let mut slope = self.weighted(f, false, |word| Rational::from(exponent(word)));
+        let mut slope = self.weighted(f, exponent);
         // The order of the words stays.
         slope.terms.iter_mut().for_each(|(word, _)| *word -= self.layout.unit(2 * j));
         slope.real &= slope.terms.is_empty();
@@ -85,9 +85,8 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
     }
     fn by_force(&self, f: &Self::Element, l: usize) -> Self::Element {
         let place = 2 * self.amplitudes + l;
-        self.weighted(f, true, |word| {
-            Rational::from(self.layout.exponents(word, place + 1).0[place])
-        })
+        let slope = self.weighted(f, |word| self.layout.exponents(word, place + 1).0[place]);
+        AmplitudeElement { real: f.real, ..self.turned(&slope) }
     }
     fn by_time(&self, f: &Self::Element) -> Self::Element {
         let rate = |word| Ok(self.turned(&self.rate(word)));
@@ -186,7 +185,7 @@ impl<S: Scalars> Amplitudes<S> {
     }
 
     /// i f.
-    fn turned(&self, f: &AmplitudeElement<S::Element>) -> AmplitudeElement<S::Element> {
+    pub(super) fn turned(&self, f: &AmplitudeElement<S::Element>) -> AmplitudeElement<S::Element> {
         let mut turned = f.clone();
         for (_, parts) in &mut turned.terms {
             parts.swap(0, 1);

@@ -3,7 +3,7 @@
 use super::{AmplitudeElement, Amplitudes, Rates, Scalars};
 #[cfg(doc)]
 use lindstedt_algebra::NEAR_MISS;
-use rug::Rational;
+use lindstedt_algebra::Ring;
 
 /// A delay T with what the phases do meanwhile.
 #[derive(Clone, Debug)]
@@ -50,7 +50,7 @@ impl<S: Scalars> Amplitudes<S> {
     #[must_use]
     pub fn with_delays(mut self, delays: &[Delay<S::Number>]) -> Self {
         let turn = |[cos, sin]: &[S::Number; 2]| {
-            let sin = self.weighted(&self.number(sin), true, |_| Rational::from(-1));
+            let sin = self.turned(&self.neg(&self.number(sin)));
             self.total(self.number(cos), &sin, false)
         };
         let late = |delay: &Delay<S::Number>| Late {

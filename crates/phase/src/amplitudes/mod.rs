@@ -234,9 +234,9 @@ impl<S: Scalars> Amplitudes<S> {
         let place = self.layout.unit(2 * self.amplitudes + l);
         let fits = m.checked_abs().is_some_and(|m| m <= self.layout.largest());
         let power = self.monomial(place * Word::from(fits.then_some(m)?), false);
-        let half = self.weighted(&power, false, |_| Rational::from((1, 2)));
+        let half = self.scaled(&power, &Rational::from((1, 2)));
         // sin = (E - 1/E)/(2 i).
-        let turned = self.weighted(&power, true, |_| Rational::from((-1, 2)));
+        let turned = self.turned(&self.scaled(&power, &Rational::from((-1, 2))));
         Some([half, turned].map(|f| self.with_conjugate(&f)))
     }
 
@@ -369,6 +369,18 @@ impl<S: Scalars> Amplitudes<S> {
     /// Zeros left out, the denominator reduced. The words are sorted.
     fn canonical(
         &self,
+        denominator: Integer,
+        terms: Vec<Term<S::Element>>,
+        real: bool,
+    ) -> AmplitudeElement<S::Element> {
+        let within = denominator.clone();
+        self.canonical_within(within, denominator, terms, real)
+    }
+
+    /// The same where a multiple of all that can be cancelled is known.
+    fn canonical_within(
+        &self,
+        mut content: Integer,
         mut denominator: Integer,
         mut terms: Vec<Term<S::Element>>,
         real: bool,
@@ -378,7 +390,6 @@ impl<S: Scalars> Amplitudes<S> {
         if terms.is_empty() {
             return AmplitudeElement { denominator: Integer::from(1), terms, real: true };
         }
-        let mut content = denominator.clone();
         for part in terms.iter().flat_map(|(_, c)| c) {
             if content == 1 {
                 break;
@@ -394,46 +405,41 @@ impl<S: Scalars> Amplitudes<S> {
         AmplitudeElement { denominator, terms, real }
     }
 
-    /// Every term with its coefficient times a rational number of its word, all of them over one
-    /// denominator; nothing stays of a term whose factor is zero. `turn` multiplies by i.
+    /// Every term with its coefficient times an integer of its word; nothing stays of a term whose factor is zero.
     fn weighted(
         &self,
         f: &AmplitudeElement<S::Element>,
-        turn: bool,
-        factor: impl Fn(Word) -> Rational,
+        factor: impl Fn(Word) -> i32,
+    ) -> AmplitudeElement<S::Element> {
+        let term = |(word, c): &Term<S::Element>| match factor(*word) {
+            0 => None,
+            1 => Some((*word, c.clone())),
+            n => Some((*word, c.each_ref().map(|e| self.scalars.multiple(e, n)))),
+        };
+        let terms = f.terms.iter().filter_map(term).collect();
+        self.canonical(f.denominator.clone(), terms, f.real)
+    }
+
+    /// q f.
+    fn scaled(
+        &self,
+        f: &AmplitudeElement<S::Element>,
+        q: &Rational,
     ) -> AmplitudeElement<S::Element> {
         if S::GATHERS {
-            let term = |(word, [re, im]): &Term<S::Element>| {
-                let q = factor(*word);
-                let [re, im] = [re, im].map(|e| match q == 1 {
-                    true => e.clone(),
-                    false => self.scalars.scale(e, &q),
-                });
-                (*word, if turn { [self.scalars.neg(&im), re] } else { [re, im] })
+            let term = |(word, c): &Term<S::Element>| {
+                (*word, c.each_ref().map(|e| self.scalars.scale(e, q)))
             };
             return self.canonical(Integer::from(1), f.terms.iter().map(term).collect(), f.real);
         }
-        let factors = f.terms.iter().map(|(word, _)| self.scalars.fraction(&factor(*word)));
-        self.times_each(f, turn, factors.collect())
-    }
-
-    /// Every term with its coefficient times its own number e/d, d > 0.
-    fn times_each(
-        &self,
-        f: &AmplitudeElement<S::Element>,
-        turn: bool,
-        factors: Vec<(S::Element, Integer)>,
-    ) -> AmplitudeElement<S::Element> {
-        let common = factors.iter().fold(Integer::from(1), |d, (_, own)| d.lcm(own));
-        let term = |((word, [re, im]), (e, own)): (&Term<_>, (S::Element, _))| {
-            let e = match Integer::from(&common / &own) {
-                one if one == 1 => e,
-                n => self.scalars.times(&e, &n),
-            };
-            let [re, im] = [re, im].map(|part| self.scalars.product(part, &e));
-            (*word, if turn { [self.scalars.neg(&im), re] } else { [re, im] })
-        };
-        let terms = f.terms.iter().zip(factors).map(term).collect();
-        self.canonical(common * &f.denominator, terms, f.real)
+        // What the numerator of q and the denominator of f share is cancelled first; what is left of one divides the other
+        // no more.
+        let common = Integer::from(q.numer().gcd_ref(&f.denominator));
+        let n = Integer::from(q.numer().div_exact_ref(&common));
+        let denominator = Integer::from(f.denominator.div_exact_ref(&common)) * q.denom();
+        let term =
+            |(word, c): &Term<S::Element>| (*word, c.each_ref().map(|e| self.scalars.times(e, &n)));
+        let terms = if n == 1 { f.terms.clone() } else { f.terms.iter().map(term).collect() };
+        self.canonical_within(q.denom().clone(), denominator, terms, f.real)
     }
 }

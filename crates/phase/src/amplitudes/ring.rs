@@ -146,7 +146,10 @@ impl<S: Scalars> Amplitudes<S> {
 
     fn products(&self, pairs: &[Pair<'_, S::Element>]) -> AmplitudeElement<S::Element> {
         let pairs = || pairs.iter().filter(|(a, b)| !a.terms.is_empty() && !b.terms.is_empty());
-        if pairs().any(|(a, b)| self.overflows(self.largest(a), self.largest(b))) {
+        let small =
+            |f: &AmplitudeElement<_>| f.terms.iter().all(|(word, _)| self.layout.is_small(*word));
+        let beyond = |a, b| self.overflows(self.largest(a), self.largest(b));
+        if pairs().any(|(a, b)| !(small(a) && small(b)) && beyond(a, b)) {
             return self.zero();
         }
         let real = pairs().all(|(a, b)| a.real && b.real);
@@ -199,12 +202,22 @@ impl<S: Scalars> Amplitudes<S> {
     ) -> Option<AmplitudeElement<S::Element>> {
         let [(v, [x, y])] = &a.terms[..] else { return None };
         let minus = self.scalars.neg(y);
+        let mut content = Integer::from(&a.denominator * &b.denominator);
+        if let Some(e) = [(x, y), (y, x)]
+            .into_iter()
+            .find_map(|(e, other)| self.scalars.is_zero(other).then_some(e))
+        {
+            // What e and the denominator of b share, and that of a with b.
+            content.clone_from(&b.denominator);
+            self.scalars.content(&mut content, e);
+            content *= &a.denominator;
+        }
         let term = |(w, [re, im]): &Term<S::Element>| {
             (v + w, [[(re, x), (im, &minus)], [(re, y), (im, x)]].map(|pairs| self.sum(pairs)))
         };
         let terms = b.terms.iter().map(term).collect();
         let denominator = Integer::from(&a.denominator * &b.denominator);
-        Some(self.canonical(denominator, terms, a.real && b.real))
+        Some(self.canonical_within(content, denominator, terms, a.real && b.real))
     }
 
     /// a b + c d, of which zeros cost nothing.
@@ -264,7 +277,7 @@ impl<S: Scalars> RationalAlgebra for Amplitudes<S> {
         self.single(0, [e, self.scalars.zero()], denominator, true)
     }
     fn scale(&self, f: &Self::Element, q: &Rational) -> Self::Element {
-        if *q == 1 { f.clone() } else { self.weighted(f, false, |_| q.clone()) }
+        if *q == 1 { f.clone() } else { self.scaled(f, q) }
     }
     /// Of the complex constants that S can divide by, 1/(re + i im) = (re - i im)/(re^2 + im^2), times symbols that have
     /// inverses.

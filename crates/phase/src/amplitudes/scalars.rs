@@ -55,6 +55,10 @@ pub trait Scalars: Sync {
     fn scale(&self, e: &Self::Element, q: &Rational) -> Self::Element {
         self.product(e, &self.fraction(q).0)
     }
+    /// n e for a small n.
+    fn multiple(&self, e: &Self::Element, n: i32) -> Self::Element {
+        self.times(e, &Integer::from(n))
+    }
     /// n e.
     fn times(&self, e: &Self::Element, n: &Integer) -> Self::Element;
     /// g <- gcd(g, e); 1 where elements have no divisors.
@@ -106,6 +110,9 @@ impl Scalars for Integers {
     #[inline]
     fn add_product(&self, sum: &mut Whole, a: &Whole, b: &Whole) {
         sum.add_product(a, b);
+    }
+    fn multiple(&self, e: &Whole, n: i32) -> Whole {
+        e.mul(&Whole::from(i64::from(n)))
     }
     fn times(&self, e: &Whole, n: &Integer) -> Whole {
         e.mul(&Whole::from(n))

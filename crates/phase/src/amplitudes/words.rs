@@ -30,6 +30,19 @@ impl Layout {
         i32::MAX >> (32 - self.bits)
     }
 
+    /// Whether all exponents are in [-2^(b - 3), 2^(b - 3)), so that two such words can be added: with 2^(b - 3) added to
+    /// each they are digits of b - 2 bits.
+    pub fn is_small(self, word: Word) -> bool {
+        // 1 in every digit: a constant for each width, known to the compiler.
+        let ones = match self.bits {
+            8 => u128::MAX / 0xff,
+            16 => u128::MAX / 0xffff,
+            _ => u128::MAX / 0xffff_ffff,
+        };
+        let raised = word.cast_unsigned().wrapping_add(ones << (self.bits - 3));
+        raised & (ones * 3 << (self.bits - 2)) == 0
+    }
+
     /// 2^(b i).
     pub fn unit(self, i: usize) -> Word {
         1 << (self.bits as usize * i)
@@ -82,5 +95,23 @@ mod tests {
             );
         }
         assert_eq!(Layout::of(17), None);
+    }
+
+    #[test]
+    fn small_words_can_be_added() {
+        for count in [4, 8, 16] {
+            let Some(layout) = Layout::of(count) else { panic!("{count} exponents") };
+            let most = layout.largest() / 4;
+            for i in 0..count {
+                let of = |e: i32| {
+                    let mut digits = vec![-1; count];
+                    digits[i] = e;
+                    layout.pack(&digits, 0)
+                };
+                assert!([-most - 1, -1, 0, 1, most].into_iter().all(|e| layout.is_small(of(e))));
+                let beyond = [most + 1, -most - 2, layout.largest(), -layout.largest()];
+                assert!(!beyond.into_iter().any(|e| layout.is_small(of(e))));
+            }
+        }
     }
 }
