@@ -229,11 +229,12 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
             Series::truncated(f.coefficients.iter().take(length).cloned().collect())
         };
         let mut sum = shortened(1);
-        let time = algebra.delay(delay).ok_or_else(unsupported)?;
+        let time = algebra.neg(&algebra.delay(delay).ok_or_else(unsupported)?);
+        // -T D'.
+        let back = |rate: &Series<_>| rate.map(|c| algebra.mul(c, &time));
+        let back = self.slow.each_ref().map(|rates| rates.iter().map(back).collect());
         for i in (1..=self.order).rev() {
-            let over = Rational::from((-1, i));
-            let change = self.along(&self.slow, &sum);
-            let change = change.map(|c| algebra.scale(&algebra.mul(c, &time), &over));
+            let change = self.along(&back, &sum).map(|c| algebra.scale(c, &Rational::from((1, i))));
             sum = shortened(self.order + 2 - i).add(algebra, &change);
         }
         let shifted: Option<Vec<_>> =

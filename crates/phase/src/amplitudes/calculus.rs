@@ -68,7 +68,7 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         if j >= self.amplitudes {
             return self.zero();
         }
-        let exponent = |word: Word| self.layout.exponents(word, 2 * j + 1).0[2 * j];
+        let exponent = |word: Word| self.layout.exponent(word, 2 * j);
         let mut slope = self.weighted(f, exponent);
         // The order of the words stays.
         slope.terms.iter_mut().for_each(|(word, _)| *word -= self.layout.unit(2 * j));
@@ -85,7 +85,7 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
     }
     fn by_force(&self, f: &Self::Element, l: usize) -> Self::Element {
         let place = 2 * self.amplitudes + l;
-        let slope = self.weighted(f, |word| self.layout.exponents(word, place + 1).0[place]);
+        let slope = self.weighted(f, |word| self.layout.exponent(word, place));
         AmplitudeElement { real: f.real, ..self.turned(&slope) }
     }
     fn by_time(&self, f: &Self::Element) -> Self::Element {
@@ -291,9 +291,12 @@ impl<S: Scalars> Amplitudes<S> {
     /// or k = 0 and m >= 0.
     fn harmonics_of(&self, f: &AmplitudeElement<S::Element>) -> Vec<(Vec<i32>, Word)> {
         let mut list: Vec<(Vec<i32>, Word)> = Vec::new();
-        let mut known = FxHashSet::default();
+        let (mut known, mut seen) = (FxHashSet::default(), FxHashSet::default());
         for (word, _) in &f.terms {
             let mut word = *word;
+            if !seen.insert(self.layout.lowest(word, self.moving())) {
+                continue;
+            }
             let mut harmonic = self.harmonic_of(word);
             let opposite: Vec<i32> = harmonic.iter().map(|k| -k).collect();
             if known.contains(&opposite) || known.contains(&harmonic) {
@@ -327,13 +330,14 @@ impl<S: Scalars> Amplitudes<S> {
         if constants.iter().any(|(_, c)| c.terms.len() > 1) {
             return Ok(self.times_sums(f, real, &constants));
         }
-        let largest = constants.iter().map(|(_, c)| self.largest(c)).max().unwrap_or(0);
-        if largest > 0 && self.overflows(self.largest(f), largest) {
+        let all = || constants.iter().map(|(_, c)| c);
+        let largest = || all().map(|c| self.largest(c)).max().unwrap_or(0);
+        let small = self.is_small(f) && all().all(|c| self.is_small(c));
+        if !small && self.overflows(self.largest(f), largest()) {
             return Ok(self.zero());
         }
         let common = constants.iter().fold(Integer::from(1), |d, (_, c)| d.lcm(&c.denominator));
-        let mut factors = FxHashMap::default();
-        let mut moved = false;
+        let (mut factors, mut moved) = (FxHashMap::default(), false);
         for (harmonic, c) in constants {
             let n = Integer::from(&common / &c.denominator);
             let single = c.terms.into_iter().next();
@@ -346,8 +350,14 @@ impl<S: Scalars> Amplitudes<S> {
             factors.insert(opposite, (mirrored, [x.clone(), minus.clone(), y.clone()]));
             factors.insert(harmonic, (word, [x, y, minus]));
         }
+        let mut by_digits = FxHashMap::default();
+        for (word, _) in &f.terms {
+            let factor = || factors.get(&self.harmonic_of(*word));
+            by_digits.entry(self.layout.lowest(*word, self.moving())).or_insert_with(factor);
+        }
         let term = |(word, [re, im]): &(Word, [S::Element; 2])| {
-            let (by, [x, y, minus]) = factors.get(&self.harmonic_of(*word))?;
+            let digits = self.layout.lowest(*word, self.moving());
+            let (by, [x, y, minus]) = by_digits.get(&digits).copied().flatten()?;
             Some((word + by, [self.sum([(re, x), (im, minus)]), self.sum([(re, y), (im, x)])]))
         };
         let mut terms: Vec<_> = match f.real && real {

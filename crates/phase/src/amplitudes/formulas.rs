@@ -118,7 +118,7 @@ impl<S: Scalars> Amplitudes<S> {
     /// Omega^2 = nu^2 - 1/D put in.
     pub(super) fn reduced(&self, f: AmplitudeElement<S::Element>) -> AmplitudeElement<S::Element> {
         let Some(Divided { omega, square }) = &self.divided else { return f };
-        let pairs = |word: Word| self.layout.exponents(word, omega + 1).0[*omega].div_euclid(2);
+        let pairs = |word: Word| self.layout.exponent(word, *omega).div_euclid(2);
         let highest = f.terms.iter().map(|(word, _)| pairs(*word)).max().unwrap_or(0);
         if highest <= 0 {
             return f;

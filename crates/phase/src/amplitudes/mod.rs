@@ -343,12 +343,21 @@ impl<S: Scalars> Amplitudes<S> {
 
     /// The word of the conjugate.
     fn mirrored(&self, word: Word) -> Word {
-        let n = self.phases();
-        let (mut digits, rest) = self.layout.exponents(word, n);
-        let (amplitudes, forces) = digits[..n].split_at_mut(2 * self.amplitudes);
-        amplitudes.chunks_exact_mut(2).for_each(|pair| pair.swap(0, 1));
-        forces.iter_mut().for_each(|m| *m = -*m);
-        self.layout.pack(&digits[..n], rest)
+        let mut mirrored = word;
+        for j in 0..self.amplitudes {
+            let turn = self.layout.exponent(word, 2 * j) - self.layout.exponent(word, 2 * j + 1);
+            if turn != 0 {
+                let pair = self.layout.unit(2 * j + 1) - self.layout.unit(2 * j);
+                mirrored += Word::from(turn) * pair;
+            }
+        }
+        for i in 2 * self.amplitudes..self.phases() {
+            let m = self.layout.exponent(word, i);
+            if m != 0 {
+                mirrored -= 2 * Word::from(m) * self.layout.unit(i);
+            }
+        }
+        mirrored
     }
 
     fn single(

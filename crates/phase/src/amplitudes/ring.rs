@@ -25,6 +25,10 @@ impl<S: Scalars> Amplitudes<S> {
         f.terms.iter().map(|(word, _)| of(*word)).max().unwrap_or(0)
     }
 
+    pub(super) fn is_small(&self, f: &AmplitudeElement<S::Element>) -> bool {
+        f.terms.iter().all(|(word, _)| self.layout.is_small(*word))
+    }
+
     /// sum <- sum + n a b for terms a and a polynomial b.
     fn accumulate(
         &self,
@@ -146,10 +150,8 @@ impl<S: Scalars> Amplitudes<S> {
 
     fn products(&self, pairs: &[Pair<'_, S::Element>]) -> AmplitudeElement<S::Element> {
         let pairs = || pairs.iter().filter(|(a, b)| !a.terms.is_empty() && !b.terms.is_empty());
-        let small =
-            |f: &AmplitudeElement<_>| f.terms.iter().all(|(word, _)| self.layout.is_small(*word));
         let beyond = |a, b| self.overflows(self.largest(a), self.largest(b));
-        if pairs().any(|(a, b)| !(small(a) && small(b)) && beyond(a, b)) {
+        if pairs().any(|(a, b)| !(self.is_small(a) && self.is_small(b)) && beyond(a, b)) {
             return self.zero();
         }
         let real = pairs().all(|(a, b)| a.real && b.real);

@@ -48,6 +48,21 @@ impl Layout {
         1 << (self.bits as usize * i)
     }
 
+    /// e_i.
+    pub fn exponent(self, word: Word, i: usize) -> i32 {
+        let start = self.bits as usize * i;
+        // The digits below are less than half of 2^(b i) in size.
+        let half = if start == 0 { 0 } else { 1 << (start - 1) };
+        let above = word.wrapping_add(half) >> start;
+        (above as i32) << (32 - self.bits) >> (32 - self.bits)
+    }
+
+    /// What the first n exponents are told from others by.
+    pub fn lowest(self, word: Word, n: usize) -> Word {
+        let end = self.bits as usize * n;
+        if end >= 128 { word } else { word & ((1 << end) - 1) }
+    }
+
     /// The exponents e_0, ..., e_{n-1}, and the word of the others.
     pub fn exponents(self, mut word: Word, n: usize) -> ([i32; DIGITS], Word) {
         let mut digits = [0; DIGITS];
@@ -77,6 +92,10 @@ mod tests {
             let sum: Vec<i32> = a.iter().zip(b).map(|(a, b)| a + b).collect();
             let words = [&a, &b].map(|digits| layout.pack(digits, 0));
             let (digits, rest) = layout.exponents(words[0] + words[1], 5);
+            let single: Vec<i32> =
+                (0..5).map(|i| layout.exponent(words[0] + words[1], i)).collect();
+            assert_eq!(single, sum);
+            assert_eq!(layout.lowest(words[0], 2), layout.lowest(layout.pack(&a[..2], 3), 2));
             assert_eq!((&digits[..5], rest), (&sum[..], 0));
             assert_eq!(layout.exponents(layout.pack(&[3], 7), 1).1, 7);
         }
