@@ -1,16 +1,22 @@
 //! Averaging over symbols: the parameters in the words of the algebra, with what makes its constants formulas again.
 
-use lindstedt_algebra::{RationalAlgebra, Rationals, Ring};
+use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_coeff::sparse::{Monomial, Sparse};
-use lindstedt_coeff::{Polynomial, PowerProduct, Symbol};
+use lindstedt_coeff::{PowerProduct, Symbol};
 use lindstedt_number::Whole;
 use lindstedt_phase::amplitudes::scalars::Integers;
 use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Delay};
-use rug::Rational;
+use rug::{Integer, Rational};
 use std::collections::BTreeMap;
 
 pub(super) type Element = AmplitudeElement<Whole>;
+
+/// A polynomial in cosines and sines.
+type Wave = Vec<(PowerProduct, Whole)>;
+
+/// The terms of a polynomial, in any order.
+type Terms = Vec<(PowerProduct, Rational)>;
 
 /// The name of 1/(nu^2 - Omega^2) among the symbols; no parameter is called so.
 const DIVISOR: &str = "1/(nu^2 - Omega^2)";
@@ -110,44 +116,61 @@ impl<'a> Formulas<'a> {
 
     /// The real and the imaginary part of a constant as formulas.
     pub(super) fn read(&self, c: &Element) -> Option<[Option<ParameterFraction>; 2]> {
-        let (field, turns) = (self.field, self.field.pairs.len());
-        let mut waves: BTreeMap<Vec<i32>, [Polynomial; 2]> = BTreeMap::new();
-        // Re and Im of the terms by the power of 1/(nu^2 - Omega^2).
-        let mut parts: BTreeMap<i32, [Vec<(PowerProduct, Rational)>; 2]> = BTreeMap::new();
-        for term in self.algebra.rational_terms(c)? {
-            let (phases, symbols) = term.exponents.split_at_checked(3 + turns)?;
-            let wave = match waves.get(&phases[3..]) {
-                Some(wave) => wave,
-                None => waves.entry(phases[3..].to_vec()).or_insert(self.wave(&phases[3..])),
-            };
-            let (own, divided) = symbols.split_at_checked(self.symbols.len())?;
-            let mut monomial = PowerProduct::unit();
-            for (index, exponent) in self.symbols.iter().zip(own).filter(|(_, e)| **e != 0) {
-                let exponent = i16::try_from(*exponent).ok()?;
-                let power = PowerProduct::power(Symbol::Parameter(*index), exponent);
-                monomial = monomial.times(&power);
+        let first = 3 + self.field.pairs.len();
+        let mut denominator = Integer::from(1);
+        let terms = self.algebra.terms_as(c, &|e: &Whole, _: &Integer| e.clone());
+        if let Some((_, [_, own])) = self.algebra.terms_as(c, &|_, d: &Integer| d.clone()).pop() {
+            denominator = own;
+        }
+        let mut waves: BTreeMap<&[i32], [Wave; 2]> = BTreeMap::new();
+        // Re and Im by the power of 1/(nu^2 - Omega^2).
+        let mut parts: BTreeMap<i32, [Terms; 2]> = BTreeMap::new();
+        // Words are sorted: what differs in the phases alone is side by side.
+        for group in terms.chunk_by(|(a, _), (b, _)| a[first..] == b[first..]) {
+            let mut sums: BTreeMap<PowerProduct, [Whole; 2]> = BTreeMap::new();
+            for (exponents, [re, im]) in group {
+                let turns = &exponents[3..first];
+                let wave = waves.entry(turns).or_insert_with(|| self.wave(turns));
+                // (re + i im)(cos + i sin).
+                let minus = im.neg();
+                for (part, c, wave) in
+                    [(0, re, &wave[0]), (0, &minus, &wave[1]), (1, re, &wave[1]), (1, im, &wave[0])]
+                {
+                    for (monomial, n) in wave.iter().filter(|_| !c.is_zero()) {
+                        let sum = match sums.get_mut(monomial) {
+                            Some(sum) => sum,
+                            None => sums.entry(monomial.clone()).or_insert([Whole::ZERO; 2]),
+                        };
+                        sum[part].add_product(c, n);
+                    }
+                }
             }
+            let (own, divided) = group.first()?.0[first..].split_at_checked(self.symbols.len())?;
+            let factors = self.symbols.iter().zip(own).filter(|(_, e)| **e != 0);
+            let power = |(index, exponent): (&u16, &i32)| {
+                let exponent = i16::try_from(*exponent).ok()?;
+                Some(PowerProduct::power(Symbol::Parameter(*index), exponent))
+            };
+            let powers = factors.map(power).collect::<Option<Vec<_>>>()?;
+            let monomial = powers.iter().fold(PowerProduct::unit(), |m, power| m.times(power));
             let lists = parts.entry(divided.first().copied().unwrap_or(0)).or_default();
-            let minus = Rational::from(-&term.im);
-            // (re + i im)(cos + i sin).
-            for (part, q, wave) in [
-                (0, &term.re, &wave[0]),
-                (0, &minus, &wave[1]),
-                (1, &term.re, &wave[1]),
-                (1, &term.im, &wave[0]),
-            ] {
-                if !q.is_zero() {
-                    let of = |(m, c): &(PowerProduct, Rational)| {
-                        (m.times(&monomial), Rational::from(c * q))
-                    };
-                    lists[part].extend(wave.terms().iter().map(of));
+            for (wave, sum) in sums {
+                for (list, c) in lists.iter_mut().zip(sum).filter(|(_, c)| !c.is_zero()) {
+                    list.push((wave.times(&monomial), c.over(&denominator)));
                 }
             }
         }
+        self.formulas(parts)
+    }
+
+    /// sum_k parts_k/(nu^2 - Omega^2)^k.
+    fn formulas(&self, parts: BTreeMap<i32, [Terms; 2]>) -> Option<[Option<ParameterFraction>; 2]> {
+        let field = self.field;
         let mut sums = [field.zero(), field.zero()];
         for (power, lists) in parts {
-            for (sum, list) in sums.iter_mut().zip(lists) {
-                let mut part = field.polynomial(Sparse::collect(&Rationals, list));
+            for (sum, mut list) in sums.iter_mut().zip(lists) {
+                list.sort_unstable_by(|(m, _), (n, _)| m.cmp(n));
+                let mut part = field.polynomial(Sparse::from_increasing(list)?);
                 let factor = match (power, &self.inverse) {
                     (0, _) => None,
                     (_, None) => return None,
@@ -164,7 +187,7 @@ impl<'a> Formulas<'a> {
     }
 
     /// cos and sin of sum_j k_j theta_j in those of the theta_j.
-    fn wave(&self, multiples: &[i32]) -> [Polynomial; 2] {
+    fn wave(&self, multiples: &[i32]) -> [Wave; 2] {
         let ring = &self.field.ring;
         let mut wave = [ring.one(), ring.zero()];
         for (&(cos, sin), k) in self.field.pairs.iter().zip(multiples) {
@@ -180,6 +203,8 @@ impl<'a> Formulas<'a> {
                 wave = next.map(|p| self.field.polynomial(p).numerator().clone());
             }
         }
-        wave
+        // Chebyshev's polynomials: the coefficients are integers.
+        let of = |(m, c): &(PowerProduct, Rational)| (m.clone(), Whole::from(c.numer()));
+        wave.map(|p| p.terms().iter().map(of).collect())
     }
 }

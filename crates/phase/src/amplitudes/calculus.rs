@@ -106,13 +106,15 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         linear: &LinearPart<Self::Element>,
         g: &Self::Element,
     ) -> Result<Split<Self>, PhaseError> {
-        let resonant = self.filtered(g, |word| self.resonance(j, word) == Some(true));
+        let resonances = self.resonances(j, g);
+        let of = |word| resonances.get(&self.layout.lowest(word, self.moving())).copied().flatten();
+        let resonant = self.filtered(g, |word| of(word) == Some(true));
         let slope = |word| {
             let slope = self.slope(linear, word).ok_or_else(|| self.undecided(word))?;
             self.reciprocal(&slope).ok_or_else(|| self.refusal(word, &slope))
         };
         let flow = self.times_constants(&resonant, false, slope)?;
-        let mut rest = self.filtered(g, |word| self.resonance(j, word).is_none());
+        let mut rest = self.filtered(g, |word| of(word).is_none());
         rest.real = g.real;
         let free = linear.is_free(self);
         let mut nearest: Option<(Rational, Word, Rational)> = None;
@@ -138,7 +140,7 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         Ok(Split { flow, response, nearest })
     }
     fn is_off_resonance(&self, j: usize, f: &Self::Element) -> bool {
-        f.terms.iter().all(|(word, _)| self.resonance(j, *word).is_none())
+        self.resonances(j, f).values().all(Option::is_none)
     }
 }
 
@@ -156,6 +158,20 @@ impl<S: Scalars> Amplitudes<S> {
             return Some(true);
         }
         lambda.iter().zip(nu).all(|(a, b)| *a == -b).then_some(false)
+    }
+
+    /// [`Self::resonance`] of the terms by the exponents that turn.
+    fn resonances(
+        &self,
+        j: usize,
+        f: &AmplitudeElement<S::Element>,
+    ) -> FxHashMap<Word, Option<bool>> {
+        let mut known = FxHashMap::default();
+        for (word, _) in &f.terms {
+            let digits = self.layout.lowest(*word, self.moving());
+            known.entry(digits).or_insert_with(|| self.resonance(j, *word));
+        }
+        known
     }
 
     fn harmonic_of(&self, word: Word) -> Vec<i32> {
