@@ -205,13 +205,15 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         f: &Series<A::Element>,
     ) -> Series<A::Element> {
         let algebra = self.algebra;
-        let mut along = Series::polynomial(Vec::new());
-        for (j, amplitude) in amplitudes.iter().enumerate() {
+        let moves = |rate: &&Series<_>| !rate.coefficients.iter().all(|c| algebra.is_zero(c));
+        // Zero where nothing moves.
+        let mut along = Series::polynomial(vec![algebra.zero(); self.order + 1]);
+        for (j, amplitude) in amplitudes.iter().enumerate().filter(|(_, rate)| moves(rate)) {
             let slope = f.map(|f| algebra.by_amplitude(f, j));
             along = along.add(algebra, &amplitude.mul(algebra, &slope, self.order));
         }
         let mut along = along.map(|c| algebra.twice_real(c));
-        for (l, force) in forces.iter().enumerate() {
+        for (l, force) in forces.iter().enumerate().filter(|(_, rate)| moves(rate)) {
             let turn = f.map(|f| algebra.by_force(f, l));
             along = along.add(algebra, &force.mul(algebra, &turn, self.order));
         }

@@ -252,6 +252,13 @@ impl<S: Scalars> Ring for Amplitudes<S> {
         f.terms.iter().flat_map(|(_, c)| c).all(|part| self.scalars.may_vanish(part))
     }
     fn add_assign(&self, a: &mut Self::Element, b: &Self::Element) {
+        if b.terms.is_empty() {
+            return;
+        }
+        if a.terms.is_empty() {
+            a.clone_from(b);
+            return;
+        }
         let real = a.real && b.real;
         let own = std::mem::replace(a, self.zero());
         *a = self.total(own, b, real);
