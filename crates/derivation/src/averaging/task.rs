@@ -371,11 +371,41 @@ impl<'a> Task<'a> {
         Ok(Some(Averaging { cycles, ..self.finish(&over, true, &number)? }))
     }
 
-    /// Over the field of the parameters without a value.
+    /// Over the field of the parameters without a value: in words where these have room.
     pub(super) fn over_parameters(
         &self,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<(ParameterField, Over<ParameterField>), Error> {
+        let general = self.over_field()?;
+        let Setting { ring: field, frequency, forcing, delays, .. } = &general;
+        if let Some(formulas) = Formulas::new(field, frequency, forcing.as_ref(), delays)
+            && let Some((expansion, checked)) = self.over_words(field, &formulas, observer)?
+        {
+            let over = Over::new(field.clone(), frequency.clone(), expansion, checked);
+            return Ok((field.clone(), over));
+        }
+        let field = field.clone();
+        Ok((field, self.derive_over_field(general, observer)?))
+    }
+
+    /// The values of the parameters in a field.
+    fn in_field(&self, field: &ParameterField, name: &str) -> Option<ParameterFraction> {
+        match self.settings.parameters.get(name) {
+            Some(value) => Some(field.rational(value.as_rational()?)),
+            None => Some(field.parameter(field.position(name)?)),
+        }
+    }
+
+    fn derive_over_field(
+        &self,
+        general: Setting<ParameterField>,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Over<ParameterField>, Error> {
+        let field = general.ring.clone();
+        self.derive(general, &|name| self.in_field(&field, name), observer)
+    }
+
+    fn over_field(&self) -> Result<Setting<ParameterField>, Error> {
         let given = |name: &str| match self.value(name)? {
             Given::Value(value) => value.as_rational().cloned(),
             Given::Period(..) => None,
@@ -413,20 +443,8 @@ impl<'a> Task<'a> {
         let affine = rates.into_iter().any(|name| !known(&name));
         let plain =
             ParameterField { ring: PolynomialRing { parameters }, pairs: Vec::new(), affine };
-        let values = |name: &str| match given(name) {
-            Some(q) => Some(plain.rational(&q)),
-            None => Some(plain.parameter(plain.position(name)?)),
-        };
-        let general = self.algebra(&plain, &values, &|field, angles| with_angles(field, angles))?;
-        let Setting { ring: field, frequency, forcing, delays, .. } = &general;
-        if let Some(formulas) = Formulas::new(field, frequency, forcing.as_ref(), delays)
-            && let Some((expansion, checked)) = self.over_words(field, &formulas, observer)?
-        {
-            let over = Over::new(field.clone(), frequency.clone(), expansion, checked);
-            return Ok((field.clone(), over));
-        }
-        let field = field.clone();
-        Ok((field, self.derive(general, &values, observer)?))
+        let values = |name: &str| self.in_field(&plain, name);
+        self.algebra(&plain, &values, &|field, angles| with_angles(field, angles))
     }
 
     pub(super) fn symbolic(
@@ -477,6 +495,63 @@ impl<'a> Task<'a> {
                 }
                 other => return other,
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::averaging::AveragingSettings;
+
+    fn problem(equation: &str) -> Problem {
+        let text = format!("equation = \"{equation}\"\n");
+        match lindstedt_problem_file::ProblemFile::parse(&text) {
+            Ok(file) => file.problem,
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    /// Words against the field of the parameters, whose cosines and sines are reduced in every product: the same flow and
+    /// the same solution. Whether words were taken is said by the last column.
+    #[test]
+    fn words_derive_what_the_field_derives() {
+        let linear =
+            "x'' + alpha^2*x = P*cos(omega*t) + eps*(A*(x - x(t - T)) + B*(x' - x'(t - T)))";
+        let two = "x'' + alpha^2*x + eps*(A*x(t - T) + B*x(t - S) - x') = P*cos(omega*t)";
+        for (equation, values, order, words) in [
+            (linear, &[][..], 4, true),
+            (linear, &[("B", "-2/3"), ("alpha", "3/2")], 4, true),
+            (two, &[], 3, true),
+            ("x'' + alpha^2*x + eps*(k*x'/m + x^3/m^2) = 0", &[], 4, true),
+            ("x'' + x + eps*(k*x(t - T)^3 + x') = 0", &[], 3, true),
+            ("x'' + p^2*q^4*x + eps*(k*x^2*x' - x') = P*cos(5*p*q^2*t)", &[], 1, true),
+            // Divisors that are sums of frequencies.
+            ("x'' + alpha^2*x + eps*k*x^3 = P*cos(omega*t)", &[], 2, false),
+            ("x'' + alpha^2*x + eps*k*x' = P*cos(2*omega*t)", &[], 2, false),
+        ] {
+            let problem = problem(equation);
+            let parameters =
+                values.iter().filter_map(|(n, v)| Some(((*n).to_owned(), v.parse().ok()?)));
+            let parameters = parameters.collect();
+            let settings = AveragingSettings { order, parameters, ..AveragingSettings::default() };
+            let result = (|| {
+                let task = Task::new(&problem, &settings)?;
+                let setting = task.over_field()?;
+                let Setting { ring: field, frequency, forcing, delays, .. } = &setting;
+                let found = match Formulas::new(field, frequency, forcing.as_ref(), delays) {
+                    Some(formulas) => task.over_words(field, &formulas, &mut |_| true)?,
+                    None => None,
+                };
+                Ok::<_, Error>((found, task.derive_over_field(setting, &mut |_| true)?))
+            })();
+            let (found, general) = result.unwrap_or_else(|error| panic!("{equation}: {error}"));
+            assert_eq!(found.is_some(), words, "{equation}");
+            let Some((expansion, checked)) = found else { continue };
+            assert_eq!(checked, order);
+            assert_eq!(expansion.amplitude_rate, general.expansion.amplitude_rate, "{equation}");
+            assert_eq!(expansion.phase_rate, general.expansion.phase_rate, "{equation}");
+            assert_eq!(expansion.solution, general.expansion.solution, "{equation}");
         }
     }
 }
