@@ -430,7 +430,7 @@ fn a_wrong_expansion_is_noticed() {
     let algebra = algebra(None);
     let graph = compile_system(&algebra, &[van_der_pol()], &Nothing, 4).unwrap();
     let right = resonant(&algebra, &graph, 4, &[], &mut |_| true).unwrap();
-    type Flow = SlowFlow<AmplitudeElement<rug::Integer>>;
+    type Flow = SlowFlow<AmplitudeElement<lindstedt_number::Whole>>;
     let spoil = |change: &dyn Fn(&mut Flow)| {
         let mut wrong = right.clone();
         change(&mut wrong);
