@@ -40,7 +40,7 @@ impl Layout {
             _ => u128::MAX / 0xffff_ffff,
         };
         let raised = word.cast_unsigned().wrapping_add(ones << (self.bits - 3));
-        raised & (ones * 3 << (self.bits - 2)) == 0
+        raised & ((ones * 3) << (self.bits - 2)) == 0
     }
 
     /// 2^(b i).
