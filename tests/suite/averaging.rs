@@ -53,7 +53,8 @@ fn derive(
     equation: &Expression,
     order: usize,
 ) -> AveragedExpansion<Rational> {
-    AveragedExpansion::of(algebra, &flow(algebra, equation, order).unwrap()).unwrap()
+    AveragedExpansion::of(algebra, &flow(algebra, equation, order).unwrap(), &|c| algebra.parts(c))
+        .unwrap()
 }
 
 fn algebra(force: Option<Rational>) -> Amplitudes<Integers> {
@@ -214,7 +215,7 @@ fn symbolic_rates_of_the_delay_loop() {
     let graph = compile_system(&algebra, &[delay_loop().equation], &named, 3).unwrap();
     let found = resonant(&algebra, &graph, 3, &[], &mut |_| true).unwrap();
     assert_eq!(check_flow(&algebra, &graph, &found), Ok(3));
-    let result = AveragedExpansion::of(&algebra, &found).unwrap();
+    let result = AveragedExpansion::of(&algebra, &found, &|c| algebra.parts(c)).unwrap();
 
     let z = Over(&k);
     let late = [cos, k.neg(&sin)];
@@ -402,7 +403,7 @@ fn amplitude_equation_at_hopf_points() {
             - number(3, 5) * late
             + Expression::Small * x.pow(3);
         let found = flow(&algebra, &equation, 2).unwrap();
-        let result = AveragedExpansion::of(&algebra, &found).unwrap();
+        let result = AveragedExpansion::of(&algebra, &found, &|c| algebra.parts(c)).unwrap();
         let [(power, c)] = result.amplitude_rate[1].terms() else { panic!("one power") };
         assert_eq!(power.0, 3);
         let c = c.0.midpoint().to_f64();
@@ -429,7 +430,7 @@ fn a_wrong_expansion_is_noticed() {
     let algebra = algebra(None);
     let graph = compile_system(&algebra, &[van_der_pol()], &Nothing, 4).unwrap();
     let right = resonant(&algebra, &graph, 4, &[], &mut |_| true).unwrap();
-    type Flow = SlowFlow<AmplitudeElement<rug::Integer>>;
+    type Flow = SlowFlow<AmplitudeElement<lindstedt_number::Whole>>;
     let spoil = |change: &dyn Fn(&mut Flow)| {
         let mut wrong = right.clone();
         change(&mut wrong);

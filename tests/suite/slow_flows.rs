@@ -6,11 +6,12 @@ use lindstedt_algebra::{AmplitudeAlgebra, ForcedAlgebra, RationalAlgebra, Ring};
 use lindstedt_equation::{Expression, Function};
 use lindstedt_expand::resonance::{SlowFlow, check_flow, resonant};
 use lindstedt_expand::{Binding, ExpandError, compile_system};
+use lindstedt_number::Whole;
 use lindstedt_number::ball::Balls;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_phase::amplitudes::scalars::{Integers, Over, Scalars};
 use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes};
-use rug::{Integer, Rational};
+use rug::Rational;
 use std::collections::BTreeMap;
 
 type Powers = BTreeMap<String, i32>;
@@ -78,7 +79,7 @@ fn derive<S: Scalars>(
     found
 }
 
-fn terms(algebra: &Amplitudes<Integers>, f: &AmplitudeElement<Integer>) -> Terms {
+fn terms(algebra: &Amplitudes<Integers>, f: &AmplitudeElement<Whole>) -> Terms {
     let unknowns = algebra.unknowns();
     let phases = (1..=unknowns).flat_map(|j| [format!("z{j}"), format!("zbar{j}")]);
     let names: Vec<String> =
@@ -333,12 +334,12 @@ fn the_check_can_fail() {
 fn volume_shrinks_as_the_damping_says() {
     let (a, order) = (algebra(&[1], q(1, 1)), 3);
     let found = derive(&a, &[primary()], order, &[]);
-    type Series = lindstedt_series::Series<AmplitudeElement<Integer>>;
+    type Series = lindstedt_series::Series<AmplitudeElement<Whole>>;
     let mut flow = found.flow[0].clone();
     a.add_assign(&mut flow[0], &a.by_time(&a.amplitude(0)));
     let flow = Series::truncated(flow);
     let by_conjugate =
-        |f: &AmplitudeElement<Integer>| a.conjugate(&a.by_amplitude(&a.conjugate(f), 0));
+        |f: &AmplitudeElement<Whole>| a.conjugate(&a.by_amplitude(&a.conjugate(f), 0));
     // Not only of real f.
     let along = |f: &Series| {
         let parts = [
@@ -357,7 +358,7 @@ fn volume_shrinks_as_the_damping_says() {
     let rho = product(&x, &velocity).add(&a, &minus(&product(&velocity, &x)));
     let divergence = flow.map(|f| a.twice_real(&a.by_amplitude(f, 0)));
     let change = along(&rho).add(&a, &divergence.mul(&a, &rho, order));
-    let damped = |mu: AmplitudeElement<Integer>| {
+    let damped = |mu: AmplitudeElement<Whole>| {
         let rate = Series::polynomial(vec![a.zero(), a.scale(&mu, &q(2, 1))]);
         let rest = change.add(&a, &rate.mul(&a, &rho, order));
         (0..=order).all(|n| a.is_zero(&rest.coefficients[n]))

@@ -55,6 +55,11 @@ impl ParameterField {
         polynomial(self.ring.symbol(Symbol::Parameter(index)))
     }
 
+    /// A polynomial.
+    pub fn polynomial(&self, p: Polynomial) -> ParameterFraction {
+        polynomial(self.reduce(p))
+    }
+
     /// The position of a name.
     pub fn position(&self, name: &str) -> Option<u16> {
         let position = self.ring.parameters.iter().position(|known| known == name)?;

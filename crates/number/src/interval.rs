@@ -34,6 +34,7 @@ impl Interval {
 
     /// [low, high]; the whole line where that is none.
     #[must_use]
+    #[inline]
     pub fn new(low: f64, high: f64) -> Self {
         if low <= high { Self { low, high } } else { Self::LINE }
     }
@@ -160,6 +161,7 @@ impl Interval {
 
 impl Add for Interval {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         // Adding zero is exact.
         if self == Self::ZERO {
@@ -174,6 +176,7 @@ impl Add for Interval {
 
 impl Neg for Interval {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         Self { low: -self.high, high: -self.low }
     }
@@ -188,6 +191,7 @@ impl Sub for Interval {
 
 impl Mul for Interval {
     type Output = Self;
+    #[inline]
     fn mul(self, other: Self) -> Self {
         if self == Self::ONE {
             return other;

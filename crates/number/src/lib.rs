@@ -21,9 +21,11 @@ mod named;
 mod number;
 mod ratio;
 pub mod real;
+mod whole;
 
 pub use error::NumberError;
 pub use exact::{Exact, decimal};
 pub use named::{Object, as_map};
 pub use number::{Number, Status, certified, rational};
 pub use ratio::{from_ratio, to_ratio};
+pub use whole::Whole;

@@ -60,10 +60,9 @@ impl<E: Clone + PartialEq + std::fmt::Debug + Send + Sync> Series<E> {
     pub fn add<R: Ring<Element = E>>(&self, ring: &R, other: &Self) -> Self {
         let known = self.known().min(other.known());
         let length = self.coefficients.len().max(other.coefficients.len()).min(known);
-        let get = |s: &Self, n: usize| s.coefficients.get(n).cloned();
-        let coefficient = |n| match (get(self, n), get(other, n)) {
-            (Some(a), Some(b)) => ring.add(&a, &b),
-            (Some(a), None) | (None, Some(a)) => a,
+        let coefficient = |n| match (self.coefficients.get(n), other.coefficients.get(n)) {
+            (Some(a), Some(b)) => ring.add(a, b),
+            (Some(a), None) | (None, Some(a)) => a.clone(),
             (None, None) => ring.zero(),
         };
         Self {

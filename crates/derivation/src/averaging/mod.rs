@@ -3,6 +3,7 @@
 mod coefficients;
 mod cycles;
 mod expansion;
+mod formulas;
 mod friction;
 mod json;
 pub mod numbers;

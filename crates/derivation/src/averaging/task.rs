@@ -2,6 +2,7 @@
 
 use super::coefficients::{Coefficients, with_angles};
 use super::cycles::cycles;
+use super::formulas::Formulas;
 use super::values::{Given, constant, enclosed};
 use super::{AveragedExpansion, Averaging, AveragingSettings, Coefficient, RateTerm};
 use crate::error::DerivationError as Error;
@@ -9,7 +10,7 @@ use crate::limits::{check_delays, refuse_high_powers, refuse_taken, unknown_para
 use crate::resonance::ResonanceError;
 use crate::values::value;
 use crate::work::Progress;
-use lindstedt_algebra::{RationalAlgebra, Rationals};
+use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals};
 use lindstedt_coeff::PolynomialRing;
 use lindstedt_coeff::amplitude::{AmplitudePolynomial, AmplitudePolynomials, AmplitudePower};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
@@ -20,10 +21,11 @@ use lindstedt_expand::{Binding, Equation, Excitation, ExpandError, compile_syste
 use lindstedt_number::ball::Balls;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::rational;
-use lindstedt_phase::amplitudes::polar::Polar;
+use lindstedt_phase::amplitudes::polar::{Polar, Read};
 use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Delay, scalars::Scalars};
 use rug::Rational;
 use std::collections::BTreeSet;
+use std::fmt::Debug;
 
 pub(super) struct Task<'a> {
     problem: &'a Problem,
@@ -33,28 +35,32 @@ pub(super) struct Task<'a> {
     pub(super) names: BTreeSet<String>,
 }
 
-/// Values of parameters in a ring of coefficients.
-struct Bound<'a, K: Coefficients> {
-    ring: &'a K,
-    algebra: &'a Algebra<K>,
-    values: &'a dyn Fn(&str) -> Option<K::Element>,
-}
+/// The values of constant expressions.
+struct Bound<'a, E>(&'a dyn Fn(&Expression) -> Option<E>);
 
 /// The polynomials in the amplitude and the phase of the force.
 type Algebra<K> = Amplitudes<<K as Coefficients>::Scalars>;
 
-type Element<K> = AmplitudeElement<<<K as Coefficients>::Scalars as Scalars>::Element>;
-
-impl<K: Coefficients> Binding<Algebra<K>> for Bound<'_, K> {
-    fn parameter(&self, name: &str) -> Option<Element<K>> {
-        (self.values)(name).map(|value| self.algebra.number(&value))
+impl<A: FunctionAlgebra> Binding<A> for Bound<'_, A::Element> {
+    fn parameter(&self, name: &str) -> Option<A::Element> {
+        (self.0)(&Expression::parameter(name))
     }
-    fn formal(&self, _: &str, _: usize) -> Option<Element<K>> {
+    fn formal(&self, _: &str, _: usize) -> Option<A::Element> {
         None
     }
-    fn power(&self, power: &Expression) -> Option<Element<K>> {
-        constant(self.ring, power, self.values).map(|value| self.algebra.number(&value))
+    fn power(&self, power: &Expression) -> Option<A::Element> {
+        (self.0)(power)
     }
+}
+
+/// What an equation is averaged over.
+struct Setting<K: Coefficients> {
+    ring: K,
+    algebra: Algebra<K>,
+    /// omega_0, and the frequency of the force.
+    frequency: K::Element,
+    forcing: Option<K::Element>,
+    delays: Vec<Delay<K::Element>>,
 }
 
 /// That z alone does not solve order zero says of one unknown that its equation is not weakly nonlinear.
@@ -75,6 +81,22 @@ pub(super) struct Over<K: RationalAlgebra> {
     checked_orders: usize,
     solution: Vec<[String; 2]>,
     terms: Vec<usize>,
+}
+
+impl<K: RationalAlgebra + Print> Over<K> {
+    fn new(
+        ring: K,
+        frequency: K::Element,
+        expansion: AveragedExpansion<K::Element>,
+        checked_orders: usize,
+    ) -> Self {
+        let terms = expansion.solution.iter().map(Polar::terms).collect();
+        let constants = AmplitudePolynomials::new(ring);
+        let print =
+            |x: &Polar<_>| [Style::Text, Style::Latex].map(|style| x.print(&constants, style));
+        let solution = expansion.solution.iter().map(print).collect();
+        Self { frequency, expansion, checked_orders, solution, terms }
+    }
 }
 
 impl<'a> Task<'a> {
@@ -129,7 +151,7 @@ impl<'a> Task<'a> {
         ring: &K,
         values: &dyn Fn(&str) -> Option<K::Element>,
         angles: &dyn Fn(&K, &[K::Element]) -> K,
-    ) -> Result<(K, Algebra<K>, K::Element), Error> {
+    ) -> Result<Setting<K>, Error> {
         let evaluate = |expression: &Expression| constant(ring, expression, values);
         let unknown = |e: &Expression| {
             Error::from(ExpandError::UnsupportedTerm {
@@ -180,7 +202,7 @@ impl<'a> Task<'a> {
             delays.push(Delay { turns: vec![turn(&frequency)?, forced], time });
         }
         let algebra = self.amplitudes(&ring, &frequency, forcing.as_ref(), &delays)?;
-        Ok((ring, algebra, frequency))
+        Ok(Setting { ring, algebra, frequency, forcing, delays })
     }
 
     fn amplitudes<K: Coefficients>(
@@ -201,39 +223,85 @@ impl<'a> Task<'a> {
         algebra: &Algebra<K>,
         values: &dyn Fn(&str) -> Option<K::Element>,
     ) -> Result<Equation<Algebra<K>>, ExpandError> {
+        let number = |e: &Expression| Some(algebra.number(&constant(ring, e, values)?));
+        self.graph(algebra, &number)
+    }
+
+    fn graph<S: Scalars>(
+        &self,
+        algebra: &Amplitudes<S>,
+        constant: &dyn Fn(&Expression) -> Option<AmplitudeElement<S::Element>>,
+    ) -> Result<Equation<Amplitudes<S>>, ExpandError> {
         let equation = std::slice::from_ref(&self.problem.equation);
-        compile_system(algebra, equation, &Bound { ring, algebra, values }, self.settings.order)
+        compile_system(algebra, equation, &Bound(constant), self.settings.order)
     }
 
     fn derive<K: Coefficients + Print>(
         &self,
-        (ring, algebra, frequency): (K, Algebra<K>, K::Element),
+        Setting { ring, algebra, frequency, .. }: Setting<K>,
         values: &dyn Fn(&str) -> Option<K::Element>,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Over<K>, Error> {
         let graph = self.compiled(&ring, &algebra, values)?;
+        let (expansion, checked_orders) =
+            self.expanded(&algebra, &graph, &|c| algebra.parts(c), observer)?;
+        Ok(Over::new(ring, frequency, expansion, checked_orders))
+    }
+
+    /// The expansion, its constants read as numbers, and how many orders were checked.
+    fn expanded<S: Scalars, N: Clone + PartialEq + Debug + Send + Sync>(
+        &self,
+        algebra: &Amplitudes<S>,
+        graph: &Equation<Amplitudes<S>>,
+        read: Read<'_, S::Element, N>,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<(AveragedExpansion<N>, usize), Error> {
         let mut on_order =
             |work: &lindstedt_expand::OrderWork| observer(Progress::Order(work.order, work.terms));
-        let found = resonant(&algebra, &graph, self.settings.order, &[], &mut on_order);
-        let found = found.map_err(weakly)?;
-        if algebra.overflowed() {
+        let found = resonant(algebra, graph, self.settings.order, &[], &mut on_order);
+        let overflowed = || {
             let (order, largest) = (self.settings.order, algebra.largest_exponent());
-            return Err(ResonanceError::TooHigh { order, largest }.into());
+            Err(ResonanceError::TooHigh { order, largest }.into())
+        };
+        if algebra.overflowed() {
+            return overflowed();
         }
+        let found = found.map_err(weakly)?;
         observer(Progress::Checking);
         // Order zero was checked before the loop.
-        let checked_orders = match check_flow(&algebra, &graph, &found) {
+        let checked_orders = match check_flow(algebra, graph, &found) {
+            _ if algebra.overflowed() => return overflowed(),
             Err(ExpandError::Interrupted { .. }) => 0,
             other => other?,
         };
-        let expansion = AveragedExpansion::of(&algebra, &found);
-        let expansion = expansion.ok_or(ExpandError::NotWeaklyNonlinear)?;
-        let terms = expansion.solution.iter().map(Polar::terms).collect();
-        let constants = AmplitudePolynomials::new(ring);
-        let print =
-            |x: &Polar<_>| [Style::Text, Style::Latex].map(|style| x.print(&constants, style));
-        let solution = expansion.solution.iter().map(print).collect();
-        Ok(Over { frequency, expansion, checked_orders, solution, terms })
+        let expansion = AveragedExpansion::of(algebra, &found, read);
+        Ok((expansion.ok_or(ExpandError::NotWeaklyNonlinear)?, checked_orders))
+    }
+
+    /// Over symbols in the words of the algebra; nothing where that has no room or cannot divide, which the field of the
+    /// parameters does or refuses.
+    fn over_words(
+        &self,
+        field: &ParameterField,
+        formulas: &Formulas<'_>,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Option<(AveragedExpansion<ParameterFraction>, usize)>, Error> {
+        let algebra = &formulas.algebra;
+        let value = |name: &str| match self.settings.parameters.get(name) {
+            Some(value) => Some(algebra.rational(value.as_rational()?)),
+            None => formulas.element(&field.parameter(field.position(name)?)),
+        };
+        let graph = self.graph(algebra, &|e| constant(algebra, e, &value));
+        let found = graph
+            .map_err(Error::from)
+            .and_then(|graph| self.expanded(algebra, &graph, &|c| formulas.read(c), observer));
+        match found {
+            Ok(found) => Ok(Some(found)),
+            Err(Error::Expand(
+                error @ (ExpandError::Residual { .. } | ExpandError::Normalisation { .. }),
+            )) => Err(error.into()),
+            Err(_) => Ok(None),
+        }
     }
 
     fn finish<K: RationalAlgebra>(
@@ -303,11 +371,41 @@ impl<'a> Task<'a> {
         Ok(Some(Averaging { cycles, ..self.finish(&over, true, &number)? }))
     }
 
-    /// Over the field of the parameters without a value.
+    /// Over the field of the parameters without a value: in words where these have room.
     pub(super) fn over_parameters(
         &self,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<(ParameterField, Over<ParameterField>), Error> {
+        let general = self.over_field()?;
+        let Setting { ring: field, frequency, forcing, delays, .. } = &general;
+        if let Some(formulas) = Formulas::new(field, frequency, forcing.as_ref(), delays)
+            && let Some((expansion, checked)) = self.over_words(field, &formulas, observer)?
+        {
+            let over = Over::new(field.clone(), frequency.clone(), expansion, checked);
+            return Ok((field.clone(), over));
+        }
+        let field = field.clone();
+        Ok((field, self.derive_over_field(general, observer)?))
+    }
+
+    /// The values of the parameters in a field.
+    fn in_field(&self, field: &ParameterField, name: &str) -> Option<ParameterFraction> {
+        match self.settings.parameters.get(name) {
+            Some(value) => Some(field.rational(value.as_rational()?)),
+            None => Some(field.parameter(field.position(name)?)),
+        }
+    }
+
+    fn derive_over_field(
+        &self,
+        general: Setting<ParameterField>,
+        observer: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Over<ParameterField>, Error> {
+        let field = general.ring.clone();
+        self.derive(general, &|name| self.in_field(&field, name), observer)
+    }
+
+    fn over_field(&self) -> Result<Setting<ParameterField>, Error> {
         let given = |name: &str| match self.value(name)? {
             Given::Value(value) => value.as_rational().cloned(),
             Given::Period(..) => None,
@@ -345,14 +443,8 @@ impl<'a> Task<'a> {
         let affine = rates.into_iter().any(|name| !known(&name));
         let plain =
             ParameterField { ring: PolynomialRing { parameters }, pairs: Vec::new(), affine };
-        let values = |name: &str| match given(name) {
-            Some(q) => Some(plain.rational(&q)),
-            None => Some(plain.parameter(plain.position(name)?)),
-        };
-        let algebra = self.algebra(&plain, &values, &|field, angles| with_angles(field, angles))?;
-        let field = algebra.0.clone();
-        let over = self.derive(algebra, &values, observer)?;
-        Ok((field, over))
+        let values = |name: &str| self.in_field(&plain, name);
+        self.algebra(&plain, &values, &|field, angles| with_angles(field, angles))
     }
 
     pub(super) fn symbolic(
@@ -403,6 +495,63 @@ impl<'a> Task<'a> {
                 }
                 other => return other,
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::averaging::AveragingSettings;
+
+    fn problem(equation: &str) -> Problem {
+        let text = format!("equation = \"{equation}\"\n");
+        match lindstedt_problem_file::ProblemFile::parse(&text) {
+            Ok(file) => file.problem,
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    /// Words against the field of the parameters, whose cosines and sines are reduced in every product: the same flow and
+    /// the same solution. Whether words were taken is said by the last column.
+    #[test]
+    fn words_derive_what_the_field_derives() {
+        let linear =
+            "x'' + alpha^2*x = P*cos(omega*t) + eps*(A*(x - x(t - T)) + B*(x' - x'(t - T)))";
+        let two = "x'' + alpha^2*x + eps*(A*x(t - T) + B*x(t - S) - x') = P*cos(omega*t)";
+        for (equation, values, order, words) in [
+            (linear, &[][..], 4, true),
+            (linear, &[("B", "-2/3"), ("alpha", "3/2")], 4, true),
+            (two, &[], 3, true),
+            ("x'' + alpha^2*x + eps*(k*x'/m + x^3/m^2) = 0", &[], 4, true),
+            ("x'' + x + eps*(k*x(t - T)^3 + x') = 0", &[], 3, true),
+            ("x'' + p^2*q^4*x + eps*(k*x^2*x' - x') = P*cos(5*p*q^2*t)", &[], 1, true),
+            // Divisors that are sums of frequencies.
+            ("x'' + alpha^2*x + eps*k*x^3 = P*cos(omega*t)", &[], 2, false),
+            ("x'' + alpha^2*x + eps*k*x' = P*cos(2*omega*t)", &[], 2, false),
+        ] {
+            let problem = problem(equation);
+            let parameters =
+                values.iter().filter_map(|(n, v)| Some(((*n).to_owned(), v.parse().ok()?)));
+            let parameters = parameters.collect();
+            let settings = AveragingSettings { order, parameters, ..AveragingSettings::default() };
+            let result = (|| {
+                let task = Task::new(&problem, &settings)?;
+                let setting = task.over_field()?;
+                let Setting { ring: field, frequency, forcing, delays, .. } = &setting;
+                let found = match Formulas::new(field, frequency, forcing.as_ref(), delays) {
+                    Some(formulas) => task.over_words(field, &formulas, &mut |_| true)?,
+                    None => None,
+                };
+                Ok::<_, Error>((found, task.derive_over_field(setting, &mut |_| true)?))
+            })();
+            let (found, general) = result.unwrap_or_else(|error| panic!("{equation}: {error}"));
+            assert_eq!(found.is_some(), words, "{equation}");
+            let Some((expansion, checked)) = found else { continue };
+            assert_eq!(checked, order);
+            assert_eq!(expansion.amplitude_rate, general.expansion.amplitude_rate, "{equation}");
+            assert_eq!(expansion.phase_rate, general.expansion.phase_rate, "{equation}");
+            assert_eq!(expansion.solution, general.expansion.solution, "{equation}");
         }
     }
 }

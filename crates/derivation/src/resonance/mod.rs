@@ -49,11 +49,12 @@ use lindstedt_equation::{Expression, Problem};
 use lindstedt_expand::OrderWork;
 use lindstedt_expand::resonance::Nearest;
 use lindstedt_number::Exact;
+use lindstedt_number::Whole;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm};
-use rug::{Integer, Rational};
+use rug::Rational;
 use std::collections::BTreeMap;
 
-type Element = AmplitudeElement<Integer>;
+type Element = AmplitudeElement<Whole>;
 
 /// A polynomial in z_1, zbar_1, ..., z_M, zbar_M, E_1, ..., E_L (one E = e^{i eta} where there is no force, too)
 /// and the symbols, in this order of exponents; those of E_l may be negative, and those of the symbols that are

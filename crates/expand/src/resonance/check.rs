@@ -5,7 +5,8 @@
 //! D = sum_j (z_j' d/dz_j + zbar_j' d/dzbar_j) + sum_l eta_l' d/deta_l with z_j' = i nu_j z_j + sum eps^n f_{j,n}
 //! whole, where the derivation has D_0 as eigenvalues. A delayed value is exp(-T D) x in Horner's form,
 //! 1 - T D' (1 - T D'/2 (1 - ...)) with D' = D - D_0, followed by the shift of the phases, where the derivation builds the
-//! powers order by order. The delayed velocity is D of the delayed value.
+//! powers order by order. The delayed velocity is the velocity shifted so, where the derivation has the rate of change of
+//! the delayed value.
 
 use super::SlowFlow;
 use crate::ExpandError;
@@ -170,7 +171,6 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         let velocity: Vec<_> = x.iter().map(|x| self.rate(x)).collect();
         let mut values: Vec<Series<A::Element>> = Vec::new();
         let sought = Series::truncated(found.parameter.clone());
-        let mut late: Vec<((usize, usize), Series<A::Element>)> = Vec::new();
         for node in &equation.nodes {
             let value = match node {
                 Node::Displacement => x[0].clone(),
@@ -179,16 +179,9 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
                     x.get(*index).unwrap_or(&sought).clone()
                 }
                 Node::Unknown { index, velocity: true, delay: None } => velocity[*index].clone(),
-                Node::Unknown { index, velocity, delay: Some(delay) } => {
-                    let known = late.iter().find(|(key, _)| *key == (*index, *delay));
-                    let value = match known {
-                        Some((_, value)) => value.clone(),
-                        None => self.delayed(x.get(*index).ok_or_else(unsupported)?, *delay)?,
-                    };
-                    if known.is_none() {
-                        late.push(((*index, *delay), value.clone()));
-                    }
-                    if *velocity { self.rate(&value) } else { value }
+                Node::Unknown { index, velocity: late, delay: Some(delay) } => {
+                    let now = if *late { &velocity } else { &x };
+                    self.delayed(now.get(*index).ok_or_else(unsupported)?, *delay)?
                 }
                 &Node::Forcing(index) => Series::polynomial(vec![equation.forcing[index].clone()]),
                 node => {
@@ -212,13 +205,15 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
         f: &Series<A::Element>,
     ) -> Series<A::Element> {
         let algebra = self.algebra;
-        let mut along = Series::polynomial(Vec::new());
-        for (j, amplitude) in amplitudes.iter().enumerate() {
+        let moves = |rate: &&Series<_>| !rate.coefficients.iter().all(|c| algebra.is_zero(c));
+        // Zero where nothing moves.
+        let mut along = Series::polynomial(vec![algebra.zero(); self.order + 1]);
+        for (j, amplitude) in amplitudes.iter().enumerate().filter(|(_, rate)| moves(rate)) {
             let slope = f.map(|f| algebra.by_amplitude(f, j));
             along = along.add(algebra, &amplitude.mul(algebra, &slope, self.order));
         }
         let mut along = along.map(|c| algebra.twice_real(c));
-        for (l, force) in forces.iter().enumerate() {
+        for (l, force) in forces.iter().enumerate().filter(|(_, rate)| moves(rate)) {
             let turn = f.map(|f| algebra.by_force(f, l));
             along = along.add(algebra, &force.mul(algebra, &turn, self.order));
         }
@@ -236,11 +231,12 @@ impl<'a, A: AmplitudeAlgebra> Judge<'a, A> {
             Series::truncated(f.coefficients.iter().take(length).cloned().collect())
         };
         let mut sum = shortened(1);
-        let time = algebra.delay(delay).ok_or_else(unsupported)?;
+        let time = algebra.neg(&algebra.delay(delay).ok_or_else(unsupported)?);
+        // -T D'.
+        let back = |rate: &Series<_>| rate.map(|c| algebra.mul(c, &time));
+        let back = self.slow.each_ref().map(|rates| rates.iter().map(back).collect());
         for i in (1..=self.order).rev() {
-            let over = Rational::from((-1, i));
-            let change = self.along(&self.slow, &sum);
-            let change = change.map(|c| algebra.scale(&algebra.mul(c, &time), &over));
+            let change = self.along(&back, &sum).map(|c| algebra.scale(c, &Rational::from((1, i))));
             sum = shortened(self.order + 2 - i).add(algebra, &change);
         }
         let shifted: Option<Vec<_>> =

@@ -194,6 +194,17 @@ impl<'a, A: AmplitudeAlgebra> Linear<'a, A> {
         self.algebra.sum_of_products(&pairs)
     }
 
+    /// Order n of lambda^2 with lambda_n = 0, its products but the square once.
+    fn square(&self, n: usize) -> A::Element {
+        let twice = self.convolution(&self.root, &self.root, 1..=(n - 1) / 2, n);
+        let mut sum = self.algebra.scale(&twice, &Rational::from(2));
+        if n.is_multiple_of(2) {
+            let square = self.convolution(&self.root, &self.root, n / 2..=n / 2, n);
+            self.algebra.add_assign(&mut sum, &square);
+        }
+        sum
+    }
+
     /// Order n of the factor of z that an unknown is.
     fn value(&self, (delay, velocity): Unknown, n: usize) -> A::Element {
         let one = [self.algebra.one()];
@@ -227,7 +238,7 @@ impl<'a, A: AmplitudeAlgebra> Linear<'a, A> {
     /// Order n of what remains of the equation with lambda_n = p_n = 0: the factor of z, and a function of eta.
     fn rest(&self, n: usize) -> Option<[A::Element; 2]> {
         let algebra = self.algebra;
-        let mut free = self.convolution(&self.root, &self.root, 1..=n - 1, n);
+        let mut free = self.square(n);
         let mut forced = self.equation.source.get(n).cloned().unwrap_or_else(|| algebra.zero());
         for (&unknown, factors) in &self.equation.factors {
             for (k, factor) in factors.iter().enumerate().take(n + 1) {

@@ -100,12 +100,13 @@ impl<E> SlowFlow<E> {
 /// use lindstedt_equation::{Expression, Function};
 /// use lindstedt_expand::{Binding, compile_system, resonance::{check_flow, resonant}};
 /// use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, scalars::Integers};
-/// use rug::{Integer, Rational};
+/// use lindstedt_number::Whole;
+/// use rug::Rational;
 ///
 /// struct Symbols<'a>(&'a Amplitudes<Integers>);
 /// impl Binding<Amplitudes<Integers>> for Symbols<'_> {
-///     fn parameter(&self, name: &str) -> Option<AmplitudeElement<Integer>> { self.0.symbol(name) }
-///     fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<Integer>> { None }
+///     fn parameter(&self, name: &str) -> Option<AmplitudeElement<Whole>> { self.0.symbol(name) }
+///     fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<Whole>> { None }
 /// }
 /// let one = Rational::from(1);
 /// let algebra = Amplitudes::new(Integers, &[one.clone()], &one, &["F"]).ok_or("frequencies")?;

@@ -45,13 +45,11 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         self.rates.len() - self.amplitudes
     }
     fn frequency_squared(&self, j: usize) -> Self::Element {
-        let (e, denominator) = self.unknowns[j].square.clone();
-        self.single(0, [e, self.scalars.zero()], denominator, true)
+        self.unknowns[j].square.clone()
     }
     fn force_rate(&self, l: usize) -> Self::Element {
         let Some(rate) = self.rates.get(self.amplitudes + l) else { return self.zero() };
-        let (e, denominator) = self.value(rate);
-        self.single(0, [e, self.scalars.zero()], denominator, true)
+        self.value(rate)
     }
     fn amplitude(&self, j: usize) -> Self::Element {
         if j < self.amplitudes {
@@ -70,8 +68,8 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         if j >= self.amplitudes {
             return self.zero();
         }
-        let exponent = |word: Word| self.layout.exponents(word, 2 * j + 1).0[2 * j];
-        let mut slope = self.weighted(f, false, |word| Rational::from(exponent(word)));
+        let exponent = |word: Word| self.layout.exponent(word, 2 * j);
+        let mut slope = self.weighted(f, exponent);
         // The order of the words stays.
         slope.terms.iter_mut().for_each(|(word, _)| *word -= self.layout.unit(2 * j));
         slope.real &= slope.terms.is_empty();
@@ -87,9 +85,8 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
     }
     fn by_force(&self, f: &Self::Element, l: usize) -> Self::Element {
         let place = 2 * self.amplitudes + l;
-        self.weighted(f, true, |word| {
-            Rational::from(self.layout.exponents(word, place + 1).0[place])
-        })
+        let slope = self.weighted(f, |word| self.layout.exponent(word, place));
+        AmplitudeElement { real: f.real, ..self.turned(&slope) }
     }
     fn by_time(&self, f: &Self::Element) -> Self::Element {
         let rate = |word| Ok(self.turned(&self.rate(word)));
@@ -109,13 +106,15 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         linear: &LinearPart<Self::Element>,
         g: &Self::Element,
     ) -> Result<Split<Self>, PhaseError> {
-        let resonant = self.filtered(g, |word| self.resonance(j, word) == Some(true));
+        let resonances = self.resonances(j, g);
+        let of = |word| resonances.get(&self.layout.lowest(word, self.moving())).copied().flatten();
+        let resonant = self.filtered(g, |word| of(word) == Some(true));
         let slope = |word| {
             let slope = self.slope(linear, word).ok_or_else(|| self.undecided(word))?;
             self.reciprocal(&slope).ok_or_else(|| self.refusal(word, &slope))
         };
         let flow = self.times_constants(&resonant, false, slope)?;
-        let mut rest = self.filtered(g, |word| self.resonance(j, word).is_none());
+        let mut rest = self.filtered(g, |word| of(word).is_none());
         rest.real = g.real;
         let free = linear.is_free(self);
         let mut nearest: Option<(Rational, Word, Rational)> = None;
@@ -141,7 +140,7 @@ impl<S: Scalars> AmplitudeAlgebra for Amplitudes<S> {
         Ok(Split { flow, response, nearest })
     }
     fn is_off_resonance(&self, j: usize, f: &Self::Element) -> bool {
-        f.terms.iter().all(|(word, _)| self.resonance(j, *word).is_none())
+        self.resonances(j, f).values().all(Option::is_none)
     }
 }
 
@@ -159,6 +158,20 @@ impl<S: Scalars> Amplitudes<S> {
             return Some(true);
         }
         lambda.iter().zip(nu).all(|(a, b)| *a == -b).then_some(false)
+    }
+
+    /// [`Self::resonance`] of the terms by the exponents that turn.
+    fn resonances(
+        &self,
+        j: usize,
+        f: &AmplitudeElement<S::Element>,
+    ) -> FxHashMap<Word, Option<bool>> {
+        let mut known = FxHashMap::default();
+        for (word, _) in &f.terms {
+            let digits = self.layout.lowest(*word, self.moving());
+            known.entry(digits).or_insert_with(|| self.resonance(j, *word));
+        }
+        known
     }
 
     fn harmonic_of(&self, word: Word) -> Vec<i32> {
@@ -187,13 +200,8 @@ impl<S: Scalars> Amplitudes<S> {
         }
     }
 
-    /// e/d as a constant.
-    fn real(&self, (e, d): (S::Element, Integer)) -> AmplitudeElement<S::Element> {
-        self.single(0, [e, self.scalars.zero()], d, true)
-    }
-
     /// i f.
-    fn turned(&self, f: &AmplitudeElement<S::Element>) -> AmplitudeElement<S::Element> {
+    pub(super) fn turned(&self, f: &AmplitudeElement<S::Element>) -> AmplitudeElement<S::Element> {
         let mut turned = f.clone();
         for (_, parts) in &mut turned.terms {
             parts.swap(0, 1);
@@ -205,7 +213,7 @@ impl<S: Scalars> Amplitudes<S> {
 
     /// lambda.
     fn rate(&self, word: Word) -> AmplitudeElement<S::Element> {
-        self.real(self.value(&self.eigenvalue(word)))
+        self.value(&self.eigenvalue(word))
     }
 
     /// e^{-i lambda T}.
@@ -271,14 +279,17 @@ impl<S: Scalars> Amplitudes<S> {
         let factors = match &unknown.rate {
             Some(nu) => [-1, 1].map(|sign: i64| {
                 let sum: Multiples = nu.iter().zip(&lambda).map(|(a, b)| a + sign * b).collect();
-                self.real(self.value(&sum))
+                self.value(&sum)
             }),
             None => {
-                let value = self.real(self.value(&lambda));
-                let own = self.real(unknown.square.clone());
-                [self.sub(&own, &self.mul(&value, &value)), self.one()]
+                let value = self.value(&lambda);
+                [self.sub(&unknown.square, &self.mul(&value, &value)), self.one()]
             }
         };
+        let divided = self.divided.as_ref().map(|_| self.mul(&factors[0], &factors[1]));
+        if let Some(inverse) = divided.and_then(|product| self.reciprocal(&product)) {
+            return Ok(Divisor { inverse, size: None });
+        }
         let [a, b] = factors
             .each_ref()
             .map(|factor| self.reciprocal(factor).ok_or_else(|| self.refusal(word, factor)));
@@ -288,8 +299,7 @@ impl<S: Scalars> Amplitudes<S> {
             _ => None,
         };
         let size = middle(&self.mul(&factors[0], &factors[1]));
-        let own = self.scalars.middle(&unknown.square.0, &unknown.square.1);
-        let size = size.zip(own).map(|(size, own)| size / own);
+        let size = size.zip(middle(&unknown.square)).map(|(size, own)| size / own);
         Ok(Divisor { inverse: self.mul(&a, &b), size })
     }
 
@@ -297,9 +307,12 @@ impl<S: Scalars> Amplitudes<S> {
     /// or k = 0 and m >= 0.
     fn harmonics_of(&self, f: &AmplitudeElement<S::Element>) -> Vec<(Vec<i32>, Word)> {
         let mut list: Vec<(Vec<i32>, Word)> = Vec::new();
-        let mut known = FxHashSet::default();
+        let (mut known, mut seen) = (FxHashSet::default(), FxHashSet::default());
         for (word, _) in &f.terms {
             let mut word = *word;
+            if !seen.insert(self.layout.lowest(word, self.moving())) {
+                continue;
+            }
             let mut harmonic = self.harmonic_of(word);
             let opposite: Vec<i32> = harmonic.iter().map(|k| -k).collect();
             if known.contains(&opposite) || known.contains(&harmonic) {
@@ -330,31 +343,38 @@ impl<S: Scalars> Amplitudes<S> {
         for (harmonic, word) in self.harmonics_of(f) {
             constants.push((harmonic, constant(word)?));
         }
+        if constants.iter().any(|(_, c)| c.terms.len() > 1) {
+            return Ok(self.times_sums(f, real, &constants));
+        }
+        let all = || constants.iter().map(|(_, c)| c);
+        let largest = || all().map(|c| self.largest(c)).max().unwrap_or(0);
+        let small = self.is_small(f) && all().all(|c| self.is_small(c));
+        if !small && self.overflows(self.largest(f), largest()) {
+            return Ok(self.zero());
+        }
         let common = constants.iter().fold(Integer::from(1), |d, (_, c)| d.lcm(&c.denominator));
-        let mut factors = FxHashMap::default();
+        let (mut factors, mut moved) = (FxHashMap::default(), false);
         for (harmonic, c) in constants {
             let n = Integer::from(&common / &c.denominator);
-            let parts = c.terms.into_iter().next().map(|(_, parts)| parts);
-            let [x, y] = parts.unwrap_or_else(|| [scalars.zero(), scalars.zero()]);
+            let single = c.terms.into_iter().next();
+            let (word, [x, y]) = single.unwrap_or_else(|| (0, [scalars.zero(), scalars.zero()]));
             let [x, y] = if n == 1 { [x, y] } else { [&x, &y].map(|e| scalars.times(e, &n)) };
             let minus = scalars.neg(&y);
             let opposite: Vec<i32> = harmonic.iter().map(|k| -k).collect();
-            factors.insert(opposite, [x.clone(), minus.clone(), y.clone()]);
-            factors.insert(harmonic, [x, y, minus]);
+            moved |= word != 0;
+            let mirrored = if word == 0 { 0 } else { self.mirrored(word) };
+            factors.insert(opposite, (mirrored, [x.clone(), minus.clone(), y.clone()]));
+            factors.insert(harmonic, (word, [x, y, minus]));
         }
-        let sum = |pairs: [(&S::Element, &S::Element); 2]| {
-            let nonzero =
-                |(a, b): &(&S::Element, &S::Element)| !scalars.is_zero(a) && !scalars.is_zero(b);
-            match pairs.each_ref().map(nonzero) {
-                [false, false] => scalars.zero(),
-                [true, false] => scalars.product(pairs[0].0, pairs[0].1),
-                [false, true] => scalars.product(pairs[1].0, pairs[1].1),
-                [true, true] => scalars.sum_of_products(&pairs),
-            }
-        };
+        let mut by_digits = FxHashMap::default();
+        for (word, _) in &f.terms {
+            let factor = || factors.get(&self.harmonic_of(*word));
+            by_digits.entry(self.layout.lowest(*word, self.moving())).or_insert_with(factor);
+        }
         let term = |(word, [re, im]): &(Word, [S::Element; 2])| {
-            let [x, y, minus] = factors.get(&self.harmonic_of(*word))?;
-            Some((*word, [sum([(re, x), (im, minus)]), sum([(re, y), (im, x)])]))
+            let digits = self.layout.lowest(*word, self.moving());
+            let (by, [x, y, minus]) = by_digits.get(&digits).copied().flatten()?;
+            Some((word + by, [self.sum([(re, x), (im, minus)]), self.sum([(re, y), (im, x)])]))
         };
         let mut terms: Vec<_> = match f.real && real {
             true => {
@@ -363,9 +383,31 @@ impl<S: Scalars> Amplitudes<S> {
             }
             false => f.terms.iter().filter_map(term).collect(),
         };
-        if f.real && real {
-            self.complete(&mut terms);
+        match f.real && real {
+            true => self.complete(&mut terms),
+            false if moved => terms.sort_unstable_by_key(|(word, _)| *word),
+            false => {}
         }
-        Ok(self.canonical(common * &f.denominator, terms, real))
+        Ok(self.reduced(self.canonical(common * &f.denominator, terms, real)))
+    }
+
+    /// Every term times the sum of its harmonic.
+    fn times_sums(
+        &self,
+        f: &AmplitudeElement<S::Element>,
+        real: bool,
+        constants: &[(Vec<i32>, AmplitudeElement<S::Element>)],
+    ) -> AmplitudeElement<S::Element> {
+        let mut parts = Vec::new();
+        for (harmonic, c) in constants {
+            let opposite: Vec<i32> = harmonic.iter().map(|k| -k).collect();
+            parts.push((self.filtered(f, |word| self.harmonic_of(word) == *harmonic), c.clone()));
+            if opposite != *harmonic {
+                let part = self.filtered(f, |word| self.harmonic_of(word) == opposite);
+                parts.push((part, self.conjugated(c)));
+            }
+        }
+        let pairs: Vec<_> = parts.iter().map(|(part, c)| (part, c)).collect();
+        AmplitudeElement { real, ..self.sum_of_products(&pairs) }
     }
 }

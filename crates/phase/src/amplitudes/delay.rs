@@ -3,7 +3,7 @@
 use super::{AmplitudeElement, Amplitudes, Rates, Scalars};
 #[cfg(doc)]
 use lindstedt_algebra::NEAR_MISS;
-use rug::Rational;
+use lindstedt_algebra::Ring;
 
 /// A delay T with what the phases do meanwhile.
 #[derive(Clone, Debug)]
@@ -40,18 +40,9 @@ impl<S: Scalars> Amplitudes<S> {
         frequency: &S::Number,
         force: Option<&S::Number>,
     ) -> Option<Self> {
-        let generators: Vec<_> = [Some(frequency), force]
-            .into_iter()
-            .flatten()
-            .map(|rate| scalars.numerator(rate))
-            .collect();
-        let multiples = |list: [i32; 3]| list.map(Rational::from).to_vec();
-        let amplitudes = vec![multiples([0, 1, 0])[..=generators.len()].to_vec()];
-        let forces = match force {
-            Some(_) => vec![multiples([0, 0, 1])],
-            None => vec![vec![Rational::new()]],
-        };
-        let algebra = Self::of_rates(scalars, Rates { amplitudes, forces, generators }, &[])?;
+        let rates = [Some(frequency), force].into_iter().flatten();
+        let rates = Rates::single(rates.map(|rate| scalars.numerator(rate)).collect());
+        let algebra = Self::of_rates(scalars, rates, &[])?;
         Some(Self { refuses: true, ..algebra })
     }
 
@@ -59,7 +50,7 @@ impl<S: Scalars> Amplitudes<S> {
     #[must_use]
     pub fn with_delays(mut self, delays: &[Delay<S::Number>]) -> Self {
         let turn = |[cos, sin]: &[S::Number; 2]| {
-            let sin = self.weighted(&self.number(sin), true, |_| Rational::from(-1));
+            let sin = self.turned(&self.neg(&self.number(sin)));
             self.total(self.number(cos), &sin, false)
         };
         let late = |delay: &Delay<S::Number>| Late {

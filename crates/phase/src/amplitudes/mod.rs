@@ -9,9 +9,13 @@
 //!
 //! A product costs one product of coefficients per pair of terms; of two real elements (which are equal to
 //! their conjugates) half of that: the upper half of one of them times the other, and the conjugate.
+//!
+//! Where frequencies are formulas ([`Amplitudes::of_formulas`]) the parameters are symbols of the words, and what a delay
+//! turns the phases by is a phase of its own that stands still.
 
 mod calculus;
 mod delay;
+mod formulas;
 mod gather;
 pub mod polar;
 mod ring;
@@ -21,12 +25,13 @@ mod tests;
 pub mod words;
 
 pub use delay::Delay;
-use lindstedt_algebra::Stop;
+use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use rug::{Integer, Rational};
 use scalars::Scalars;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use delay::Late;
+use formulas::Divided;
 use words::{DIGITS, Layout, Word};
 
 /// A word with the real and the imaginary numerator of its coefficient.
@@ -72,6 +77,16 @@ pub struct Rates<E> {
     pub generators: Vec<(E, Integer)>,
 }
 
+impl<E> Rates<E> {
+    /// Of one amplitude and one force: the first generator or 1, and the second or 0.
+    pub fn single(generators: Vec<(E, Integer)>) -> Self {
+        let unit = |k: usize| (0..=k).map(|i| u32::from(i == k).into()).collect();
+        let amplitudes = vec![unit(generators.len().min(1))];
+        let forces = vec![if generators.len() > 1 { unit(2) } else { vec![Rational::new()] }];
+        Self { amplitudes, forces, generators }
+    }
+}
+
 /// The multiples of 1, g_1, ... in a rate, times the common denominator.
 type Multiples = Vec<i64>;
 
@@ -80,7 +95,7 @@ type Multiples = Vec<i64>;
 struct Unknown<E> {
     /// nu^2 where it is a rational number, and as a number in any case.
     rational: Option<Rational>,
-    square: (E, Integer),
+    square: AmplitudeElement<E>,
     /// nu, if it is among the sums of the generators: otherwise no eigenvalue is resonant.
     rate: Option<Multiples>,
 }
@@ -100,7 +115,12 @@ pub struct Amplitudes<S: Scalars> {
     /// q nu_j of the amplitudes and q Omega_l with the common denominator q.
     rates: Vec<Multiples>,
     common: i64,
-    generators: Vec<(S::Element, Integer)>,
+    generators: Vec<AmplitudeElement<S::Element>>,
+    /// How many constant phases e^{i theta} follow those of the forces.
+    turns: usize,
+    /// Whether symbols have inverses.
+    units: bool,
+    divided: Option<Divided<S::Element>>,
     unknowns: Vec<Unknown<S::Element>>,
     delays: Vec<Late<S::Element>>,
     /// Whether monomials that meet the frequency without being z are refused.
@@ -147,7 +167,10 @@ impl<S: Scalars> Amplitudes<S> {
             rates: all().map(multiples).collect::<Option<_>>()?,
             common: i64::from(common.to_i32()?),
             amplitudes: count,
-            generators,
+            generators: Vec::new(),
+            turns: 0,
+            units: false,
+            divided: None,
             unknowns: Vec::new(),
             delays: Vec::new(),
             refuses: false,
@@ -157,18 +180,26 @@ impl<S: Scalars> Amplitudes<S> {
             stop: Stop::default(),
             overflow: AtomicBool::new(false),
         };
+        let own = |(e, d)| algebra.single(0, [e, algebra.scalars.zero()], d, true);
+        algebra.generators = generators.into_iter().map(own).collect();
+        algebra.unknowns = algebra.of_own_rates();
+        Some(algebra)
+    }
+
+    /// The unknowns that have amplitudes.
+    fn of_own_rates(&self) -> Vec<Unknown<S::Element>> {
         let unknown = |rate: &Multiples| {
-            let rational = algebra.rational_rate(rate).map(|nu| nu.square());
-            let nu = algebra.value(rate);
+            let rational = self.rational_rate(rate).map(|nu| nu.square());
             let square = match &rational {
-                Some(square) => algebra.scalars.fraction(square),
-                None => algebra.product_of(&nu, &nu),
+                Some(square) => self.rational(square),
+                None => {
+                    let nu = self.value(rate);
+                    self.mul(&nu, &nu)
+                }
             };
             Unknown { rational, square, rate: Some(rate.clone()) }
         };
-        let unknowns = algebra.rates[..count].iter().map(unknown).collect();
-        algebra.unknowns = unknowns;
-        Some(algebra)
+        self.rates[..self.amplitudes].iter().map(unknown).collect()
     }
 
     /// The algebra whose products are broken off when `stop` says so.
@@ -190,8 +221,7 @@ impl<S: Scalars> Amplitudes<S> {
                 rate[0] = nu;
                 rate
             });
-            let fraction = self.scalars.fraction(square);
-            Unknown { rational: Some(square.clone()), square: fraction, rate }
+            Unknown { rational: Some(square.clone()), square: self.rational(square), rate }
         });
         let behind: Vec<_> = behind.collect();
         self.unknowns.truncate(self.amplitudes);
@@ -204,9 +234,9 @@ impl<S: Scalars> Amplitudes<S> {
         let place = self.layout.unit(2 * self.amplitudes + l);
         let fits = m.checked_abs().is_some_and(|m| m <= self.layout.largest());
         let power = self.monomial(place * Word::from(fits.then_some(m)?), false);
-        let half = self.weighted(&power, false, |_| Rational::from((1, 2)));
+        let half = self.scaled(&power, &Rational::from((1, 2)));
         // sin = (E - 1/E)/(2 i).
-        let turned = self.weighted(&power, true, |_| Rational::from((-1, 2)));
+        let turned = self.turned(&self.scaled(&power, &Rational::from((-1, 2))));
         Some([half, turned].map(|f| self.with_conjugate(&f)))
     }
 
@@ -227,8 +257,11 @@ impl<S: Scalars> Amplitudes<S> {
 
     /// A symbol by its name, if there is one.
     pub fn symbol(&self, name: &str) -> Option<AmplitudeElement<S::Element>> {
-        let i = self.symbols.iter().position(|known| known == name)?;
-        Some(self.monomial(self.layout.unit(self.phases() + i), true))
+        Some(self.monomial(self.layout.unit(self.phases() + self.position(name)?), true))
+    }
+
+    fn position(&self, name: &str) -> Option<usize> {
+        self.symbols.iter().position(|known| known == name)
     }
 
     /// An element e of S as a constant e/1.
@@ -252,7 +285,7 @@ impl<S: Scalars> Amplitudes<S> {
         f: &AmplitudeElement<S::Element>,
         read: &dyn Fn(&S::Element, &Integer) -> C,
     ) -> Vec<(Vec<i32>, [C; 2])> {
-        let n = self.phases() + self.symbols.len();
+        let n = self.exponents();
         let term = |(word, c): &Term<S::Element>| {
             let exponents = self.layout.exponents(*word, n).0[..n].to_vec();
             (exponents, c.each_ref().map(|part| read(part, &f.denominator)))
@@ -260,14 +293,23 @@ impl<S: Scalars> Amplitudes<S> {
         f.terms.iter().map(term).collect()
     }
 
-    /// 2 M + L: the exponents that D_0 and conjugation know.
-    fn phases(&self) -> usize {
+    /// 2 M + L: the exponents that D_0 knows.
+    fn moving(&self) -> usize {
         self.amplitudes + self.rates.len()
+    }
+
+    /// The exponents that conjugation knows: those of constant phases, too.
+    fn phases(&self) -> usize {
+        self.moving() + self.turns
+    }
+
+    fn exponents(&self) -> usize {
+        self.phases() + self.symbols.len()
     }
 
     /// q lambda.
     fn eigenvalue(&self, word: Word) -> Multiples {
-        let (digits, _) = self.layout.exponents(word, self.phases());
+        let (digits, _) = self.layout.exponents(word, self.moving());
         let mut sum = vec![0; 1 + self.generators.len()];
         for (k, rate) in self.harmonic(&digits).iter().zip(&self.rates) {
             sum.iter_mut().zip(rate).for_each(|(sum, rate)| *sum += i64::from(*k) * rate);
@@ -281,55 +323,41 @@ impl<S: Scalars> Amplitudes<S> {
         alone.then(|| Rational::from((rate[0], self.common)))
     }
 
-    /// A rate as a number of the coefficients.
-    fn value(&self, rate: &[i64]) -> (S::Element, Integer) {
-        let start = self.scalars.fraction(&Rational::from((rate[0], self.common)));
+    /// A rate as a constant.
+    fn value(&self, rate: &[i64]) -> AmplitudeElement<S::Element> {
+        let over = |n: i64| Rational::from((n, self.common));
+        let start = self.rational(&over(rate[0]));
         let parts = rate[1..].iter().zip(&self.generators).filter(|(n, _)| **n != 0);
-        parts.fold(start, |(mut sum, d), (n, (e, own))| {
-            let part = self.scalars.times(e, &Integer::from(*n));
-            // n e/(q own).
-            let below = Integer::from(own * self.common);
-            let (part, more) = match below == 1 {
-                true => (part, below),
-                false => {
-                    let (scale, more) = self.scalars.fraction(&Rational::from((1, below)));
-                    (self.scalars.product(&part, &scale), more)
-                }
-            };
-            if self.scalars.is_zero(&sum) {
-                return (part, more);
-            }
-            let common = d.clone().lcm(&more);
-            sum = self.scalars.times(&sum, &Integer::from(&common / &d));
-            let part = self.scalars.times(&part, &Integer::from(&common / &more));
-            self.scalars.add(&mut sum, &part);
-            (sum, common)
+        parts.fold(start, |sum, (n, generator)| {
+            let part = self.scale(generator, &over(*n));
+            if sum.terms.is_empty() { part } else { self.total(sum, &part, true) }
         })
-    }
-
-    fn product_of(
-        &self,
-        (a, c): &(S::Element, Integer),
-        (b, d): &(S::Element, Integer),
-    ) -> (S::Element, Integer) {
-        (self.scalars.product(a, b), Integer::from(c * d))
     }
 
     /// p_1 - q_1, ..., p_M - q_M, m_1, ..., m_L.
     fn harmonic(&self, digits: &[i32; DIGITS]) -> Vec<i32> {
         let m = self.amplitudes;
         let turns = (0..m).map(|j| digits[2 * j] - digits[2 * j + 1]);
-        turns.chain(digits[2 * m..self.phases()].iter().copied()).collect()
+        turns.chain(digits[2 * m..self.moving()].iter().copied()).collect()
     }
 
     /// The word of the conjugate.
     fn mirrored(&self, word: Word) -> Word {
-        let n = self.phases();
-        let (mut digits, rest) = self.layout.exponents(word, n);
-        let (amplitudes, forces) = digits[..n].split_at_mut(2 * self.amplitudes);
-        amplitudes.chunks_exact_mut(2).for_each(|pair| pair.swap(0, 1));
-        forces.iter_mut().for_each(|m| *m = -*m);
-        self.layout.pack(&digits[..n], rest)
+        let mut mirrored = word;
+        for j in 0..self.amplitudes {
+            let turn = self.layout.exponent(word, 2 * j) - self.layout.exponent(word, 2 * j + 1);
+            if turn != 0 {
+                let pair = self.layout.unit(2 * j + 1) - self.layout.unit(2 * j);
+                mirrored += Word::from(turn) * pair;
+            }
+        }
+        for i in 2 * self.amplitudes..self.phases() {
+            let m = self.layout.exponent(word, i);
+            if m != 0 {
+                mirrored -= 2 * Word::from(m) * self.layout.unit(i);
+            }
+        }
+        mirrored
     }
 
     fn single(
@@ -350,6 +378,18 @@ impl<S: Scalars> Amplitudes<S> {
     /// Zeros left out, the denominator reduced. The words are sorted.
     fn canonical(
         &self,
+        denominator: Integer,
+        terms: Vec<Term<S::Element>>,
+        real: bool,
+    ) -> AmplitudeElement<S::Element> {
+        let within = denominator.clone();
+        self.canonical_within(within, denominator, terms, real)
+    }
+
+    /// The same where a multiple of all that can be cancelled is known.
+    fn canonical_within(
+        &self,
+        mut content: Integer,
         mut denominator: Integer,
         mut terms: Vec<Term<S::Element>>,
         real: bool,
@@ -359,7 +399,6 @@ impl<S: Scalars> Amplitudes<S> {
         if terms.is_empty() {
             return AmplitudeElement { denominator: Integer::from(1), terms, real: true };
         }
-        let mut content = denominator.clone();
         for part in terms.iter().flat_map(|(_, c)| c) {
             if content == 1 {
                 break;
@@ -375,46 +414,41 @@ impl<S: Scalars> Amplitudes<S> {
         AmplitudeElement { denominator, terms, real }
     }
 
-    /// Every term with its coefficient times a rational number of its word, all of them over one
-    /// denominator; nothing stays of a term whose factor is zero. `turn` multiplies by i.
+    /// Every term with its coefficient times an integer of its word; nothing stays of a term whose factor is zero.
     fn weighted(
         &self,
         f: &AmplitudeElement<S::Element>,
-        turn: bool,
-        factor: impl Fn(Word) -> Rational,
+        factor: impl Fn(Word) -> i32,
+    ) -> AmplitudeElement<S::Element> {
+        let term = |(word, c): &Term<S::Element>| match factor(*word) {
+            0 => None,
+            1 => Some((*word, c.clone())),
+            n => Some((*word, c.each_ref().map(|e| self.scalars.multiple(e, n)))),
+        };
+        let terms = f.terms.iter().filter_map(term).collect();
+        self.canonical(f.denominator.clone(), terms, f.real)
+    }
+
+    /// q f.
+    fn scaled(
+        &self,
+        f: &AmplitudeElement<S::Element>,
+        q: &Rational,
     ) -> AmplitudeElement<S::Element> {
         if S::GATHERS {
-            let term = |(word, [re, im]): &Term<S::Element>| {
-                let q = factor(*word);
-                let [re, im] = [re, im].map(|e| match q == 1 {
-                    true => e.clone(),
-                    false => self.scalars.scale(e, &q),
-                });
-                (*word, if turn { [self.scalars.neg(&im), re] } else { [re, im] })
+            let term = |(word, c): &Term<S::Element>| {
+                (*word, c.each_ref().map(|e| self.scalars.scale(e, q)))
             };
             return self.canonical(Integer::from(1), f.terms.iter().map(term).collect(), f.real);
         }
-        let factors = f.terms.iter().map(|(word, _)| self.scalars.fraction(&factor(*word)));
-        self.times_each(f, turn, factors.collect())
-    }
-
-    /// Every term with its coefficient times its own number e/d, d > 0.
-    fn times_each(
-        &self,
-        f: &AmplitudeElement<S::Element>,
-        turn: bool,
-        factors: Vec<(S::Element, Integer)>,
-    ) -> AmplitudeElement<S::Element> {
-        let common = factors.iter().fold(Integer::from(1), |d, (_, own)| d.lcm(own));
-        let term = |((word, [re, im]), (e, own)): (&Term<_>, (S::Element, _))| {
-            let e = match Integer::from(&common / &own) {
-                one if one == 1 => e,
-                n => self.scalars.times(&e, &n),
-            };
-            let [re, im] = [re, im].map(|part| self.scalars.product(part, &e));
-            (*word, if turn { [self.scalars.neg(&im), re] } else { [re, im] })
-        };
-        let terms = f.terms.iter().zip(factors).map(term).collect();
-        self.canonical(common * &f.denominator, terms, f.real)
+        // What the numerator of q and the denominator of f share is cancelled first; what is left of one divides the other
+        // no more.
+        let common = Integer::from(q.numer().gcd_ref(&f.denominator));
+        let n = Integer::from(q.numer().div_exact_ref(&common));
+        let denominator = Integer::from(f.denominator.div_exact_ref(&common)) * q.denom();
+        let term =
+            |(word, c): &Term<S::Element>| (*word, c.each_ref().map(|e| self.scalars.times(e, &n)));
+        let terms = if n == 1 { f.terms.clone() } else { f.terms.iter().map(term).collect() };
+        self.canonical_within(q.denom().clone(), denominator, terms, f.real)
     }
 }

@@ -5,7 +5,6 @@ use super::{AmplitudeElement, Amplitudes, Scalars, Term};
 use lindstedt_algebra::{ForcedAlgebra, FunctionAlgebra, RationalAlgebra, Ring};
 use rug::{Integer, Rational};
 use rustc_hash::FxHashMap;
-use std::sync::atomic::Ordering;
 
 pub(super) type Terms<E> = Vec<Term<E>>;
 
@@ -18,12 +17,16 @@ struct Sum<E> {
 }
 
 impl<S: Scalars> Amplitudes<S> {
-    fn largest(&self, f: &AmplitudeElement<S::Element>) -> i32 {
-        let n = self.phases() + self.symbols.len();
+    pub(super) fn largest(&self, f: &AmplitudeElement<S::Element>) -> i32 {
+        let n = self.exponents();
         let of = |word: Word| {
             self.layout.exponents(word, n).0.iter().map(|e| e.abs()).max().unwrap_or(0)
         };
         f.terms.iter().map(|(word, _)| of(*word)).max().unwrap_or(0)
+    }
+
+    pub(super) fn is_small(&self, f: &AmplitudeElement<S::Element>) -> bool {
+        f.terms.iter().all(|(word, _)| self.layout.is_small(*word))
     }
 
     /// sum <- sum + n a b for terms a and a polynomial b.
@@ -147,12 +150,17 @@ impl<S: Scalars> Amplitudes<S> {
 
     fn products(&self, pairs: &[Pair<'_, S::Element>]) -> AmplitudeElement<S::Element> {
         let pairs = || pairs.iter().filter(|(a, b)| !a.terms.is_empty() && !b.terms.is_empty());
-        let largest = i64::from(self.layout.largest());
-        if pairs().any(|(a, b)| i64::from(self.largest(a)) + i64::from(self.largest(b)) > largest) {
-            self.overflow.store(true, Ordering::Relaxed);
+        let beyond = |a, b| self.overflows(self.largest(a), self.largest(b));
+        if pairs().any(|(a, b)| !(self.is_small(a) && self.is_small(b)) && beyond(a, b)) {
             return self.zero();
         }
         let real = pairs().all(|(a, b)| a.real && b.real);
+        let mut known = pairs();
+        if let (Some((a, b)), None) = (known.next(), known.next())
+            && let Some(product) = self.of_single(a, b).or_else(|| self.of_single(b, a))
+        {
+            return self.reduced(product);
+        }
         if S::GATHERS {
             let pairs: Vec<_> = pairs().copied().collect();
             return self.gathered(&pairs, real);
@@ -185,7 +193,46 @@ impl<S: Scalars> Amplitudes<S> {
                 *part = self.scalars.product(part, &half);
             }
         }
-        self.canonical(denominator, terms, real)
+        self.reduced(self.canonical(denominator, terms, real))
+    }
+
+    /// The product with a single term, which keeps the order of the words.
+    fn of_single(
+        &self,
+        a: &AmplitudeElement<S::Element>,
+        b: &AmplitudeElement<S::Element>,
+    ) -> Option<AmplitudeElement<S::Element>> {
+        let [(v, [x, y])] = &a.terms[..] else { return None };
+        let minus = self.scalars.neg(y);
+        let mut content = Integer::from(&a.denominator * &b.denominator);
+        if let Some(e) = [(x, y), (y, x)]
+            .into_iter()
+            .find_map(|(e, other)| self.scalars.is_zero(other).then_some(e))
+        {
+            // What e and the denominator of b share, and that of a with b.
+            content.clone_from(&b.denominator);
+            self.scalars.content(&mut content, e);
+            content *= &a.denominator;
+        }
+        let term = |(w, [re, im]): &Term<S::Element>| {
+            (v + w, [[(re, x), (im, &minus)], [(re, y), (im, x)]].map(|pairs| self.sum(pairs)))
+        };
+        let terms = b.terms.iter().map(term).collect();
+        let denominator = Integer::from(&a.denominator * &b.denominator);
+        Some(self.canonical_within(content, denominator, terms, a.real && b.real))
+    }
+
+    /// a b + c d, of which zeros cost nothing.
+    pub(super) fn sum(&self, pairs: [(&S::Element, &S::Element); 2]) -> S::Element {
+        let scalars = &self.scalars;
+        let nonzero =
+            |(a, b): &(&S::Element, &S::Element)| !scalars.is_zero(a) && !scalars.is_zero(b);
+        match pairs.each_ref().map(nonzero) {
+            [false, false] => scalars.zero(),
+            [true, false] => scalars.product(pairs[0].0, pairs[0].1),
+            [false, true] => scalars.product(pairs[1].0, pairs[1].1),
+            [true, true] => scalars.sum_of_products(&pairs),
+        }
     }
 }
 
@@ -205,6 +252,13 @@ impl<S: Scalars> Ring for Amplitudes<S> {
         f.terms.iter().flat_map(|(_, c)| c).all(|part| self.scalars.may_vanish(part))
     }
     fn add_assign(&self, a: &mut Self::Element, b: &Self::Element) {
+        if b.terms.is_empty() {
+            return;
+        }
+        if a.terms.is_empty() {
+            a.clone_from(b);
+            return;
+        }
         let real = a.real && b.real;
         let own = std::mem::replace(a, self.zero());
         *a = self.total(own, b, real);
@@ -232,25 +286,27 @@ impl<S: Scalars> RationalAlgebra for Amplitudes<S> {
         self.single(0, [e, self.scalars.zero()], denominator, true)
     }
     fn scale(&self, f: &Self::Element, q: &Rational) -> Self::Element {
-        if *q == 1 { f.clone() } else { self.weighted(f, false, |_| q.clone()) }
+        if *q == 1 { f.clone() } else { self.scaled(f, q) }
     }
-    /// Of the complex constants that S can divide by: 1/(re + i im) = (re - i im)/(re^2 + im^2).
+    /// Of the complex constants that S can divide by, 1/(re + i im) = (re - i im)/(re^2 + im^2), times symbols that have
+    /// inverses.
     fn reciprocal(&self, f: &Self::Element) -> Option<Self::Element> {
-        let [(0, [re, im])] = &f.terms[..] else { return None };
+        let [(word, [re, im])] = &f.terms[..] else { return None };
+        let word = self.inverse_of(*word)?;
         let scalars = &self.scalars;
         let minus = scalars.neg(im);
         if scalars.is_zero(im) {
             let (e, d) = scalars.inverse(re, &f.denominator)?;
-            return Some(self.single(0, [e, scalars.zero()], d, true));
+            return Some(self.single(word, [e, scalars.zero()], d, f.real));
         }
         if scalars.is_zero(re) {
             let (e, d) = scalars.inverse(&minus, &f.denominator)?;
-            return Some(self.single(0, [scalars.zero(), e], d, false));
+            return Some(self.single(word, [scalars.zero(), e], d, false));
         }
         let square = scalars.sum_of_products(&[(re, re), (im, im)]);
         let (e, d) = scalars.inverse(&square, &f.denominator)?;
         let parts = [re, &minus].map(|part| scalars.product(part, &e));
-        Some(self.single(0, parts, d, false))
+        Some(self.single(word, parts, d, false))
     }
     fn as_rational(&self, f: &Self::Element) -> Option<Rational> {
         match &f.terms[..] {
@@ -278,7 +334,7 @@ impl<S: Scalars> FunctionAlgebra for Amplitudes<S> {
     }
     fn as_constant(&self, f: &Self::Element) -> Option<Self::Element> {
         let constant =
-            |word: Word| self.layout.exponents(word, self.phases()).0.iter().all(|e| *e == 0);
+            |word: Word| self.layout.exponents(word, self.moving()).0.iter().all(|e| *e == 0);
         f.terms.iter().all(|(word, _)| constant(*word)).then(|| f.clone())
     }
     fn log_abs(&self, _: &Self::Element) -> Option<Self::Element> {

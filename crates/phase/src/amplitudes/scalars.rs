@@ -1,6 +1,7 @@
 //! Coefficients of amplitude polynomials: numerators over one common denominator where they are exact.
 
 use lindstedt_algebra::RationalAlgebra;
+use lindstedt_number::Whole;
 use rug::{Integer, Rational};
 use std::fmt::Debug;
 
@@ -54,6 +55,10 @@ pub trait Scalars: Sync {
     fn scale(&self, e: &Self::Element, q: &Rational) -> Self::Element {
         self.product(e, &self.fraction(q).0)
     }
+    /// n e for a small n.
+    fn multiple(&self, e: &Self::Element, n: i32) -> Self::Element {
+        self.times(e, &Integer::from(n))
+    }
     /// n e.
     fn times(&self, e: &Self::Element, n: &Integer) -> Self::Element;
     /// g <- gcd(g, e); 1 where elements have no divisors.
@@ -67,50 +72,56 @@ pub trait Scalars: Sync {
 pub struct Integers;
 
 impl Scalars for Integers {
-    type Element = Integer;
+    type Element = Whole;
     type Number = Rational;
 
-    fn numerator(&self, number: &Rational) -> (Integer, Integer) {
+    fn numerator(&self, number: &Rational) -> (Whole, Integer) {
         self.fraction(number)
     }
-    fn number(&self, e: &Integer, d: &Integer) -> Rational {
-        Rational::from((e, d))
+    fn number(&self, e: &Whole, d: &Integer) -> Rational {
+        e.over(d)
     }
-    fn fraction(&self, q: &Rational) -> (Integer, Integer) {
-        (q.numer().clone(), q.denom().clone())
+    fn fraction(&self, q: &Rational) -> (Whole, Integer) {
+        (Whole::from(q.numer()), q.denom().clone())
     }
-    fn quotient(&self, e: &Integer, d: &Integer) -> Option<Rational> {
-        Some(Rational::from((e, d)))
+    fn quotient(&self, e: &Whole, d: &Integer) -> Option<Rational> {
+        Some(e.over(d))
     }
-    fn inverse(&self, e: &Integer, d: &Integer) -> Option<(Integer, Integer)> {
-        (!e.is_zero()).then(|| self.fraction(&Rational::from((d, e))))
+    fn inverse(&self, e: &Whole, d: &Integer) -> Option<(Whole, Integer)> {
+        (!e.is_zero()).then(|| self.fraction(&e.over(d).recip()))
     }
-    fn zero(&self) -> Integer {
-        Integer::new()
+    fn zero(&self) -> Whole {
+        Whole::ZERO
     }
-    fn is_zero(&self, e: &Integer) -> bool {
+    #[inline]
+    fn is_zero(&self, e: &Whole) -> bool {
         e.is_zero()
     }
-    fn add(&self, sum: &mut Integer, e: &Integer) {
-        *sum += e;
+    #[inline]
+    fn add(&self, sum: &mut Whole, e: &Whole) {
+        sum.add(e);
     }
-    fn neg(&self, e: &Integer) -> Integer {
-        Integer::from(-e)
+    fn neg(&self, e: &Whole) -> Whole {
+        e.neg()
     }
-    fn product(&self, a: &Integer, b: &Integer) -> Integer {
-        Integer::from(a * b)
+    fn product(&self, a: &Whole, b: &Whole) -> Whole {
+        a.mul(b)
     }
-    fn add_product(&self, sum: &mut Integer, a: &Integer, b: &Integer) {
-        *sum += a * b;
+    #[inline]
+    fn add_product(&self, sum: &mut Whole, a: &Whole, b: &Whole) {
+        sum.add_product(a, b);
     }
-    fn times(&self, e: &Integer, n: &Integer) -> Integer {
-        Integer::from(e * n)
+    fn multiple(&self, e: &Whole, n: i32) -> Whole {
+        e.mul(&Whole::from(i64::from(n)))
     }
-    fn content(&self, g: &mut Integer, e: &Integer) {
-        g.gcd_mut(e);
+    fn times(&self, e: &Whole, n: &Integer) -> Whole {
+        e.mul(&Whole::from(n))
     }
-    fn divide(&self, e: &mut Integer, n: &Integer) {
-        e.div_exact_mut(n);
+    fn content(&self, g: &mut Integer, e: &Whole) {
+        e.gcd(g);
+    }
+    fn divide(&self, e: &mut Whole, n: &Integer) {
+        e.divide(n);
     }
 }
 

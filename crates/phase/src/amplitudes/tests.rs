@@ -1,10 +1,12 @@
 use super::scalars::{Integers, Over};
 use super::*;
 use lindstedt_algebra::{
-    AmplitudeAlgebra, ForcedAlgebra, LinearPart, PhaseError, RationalAlgebra, Rationals, Ring, laws,
+    AmplitudeAlgebra, ForcedAlgebra, FunctionAlgebra, LinearPart, PhaseError, RationalAlgebra,
+    Rationals, Ring, laws,
 };
+use lindstedt_number::Whole;
 
-type Element = AmplitudeElement<Integer>;
+type Element = AmplitudeElement<Whole>;
 
 type Derivation = fn(&Amplitudes<Integers>, &Element) -> Element;
 
@@ -60,6 +62,63 @@ fn laws_hold() {
             assert_eq!(t.conjugate(&shift(&f)), shift(&t.conjugate(&f)), "shifts are real");
         }
     }
+}
+
+/// nu = alpha, a force of the symbolic rate omega, and a delay that turns the phases by constant ones: with
+/// 1/(alpha^2 - omega^2) as a symbol.
+fn of_formulas() -> Option<Amplitudes<Integers>> {
+    let t = Amplitudes::of_formulas(Integers, &["alpha", "omega", "T", "D"], 2)?;
+    let [alpha, omega, time] = ["alpha", "omega", "T"].map(|name| t.symbol(name));
+    let (alpha, omega) = alpha.zip(omega)?;
+    let late = [time?, t.constant_phase(0, -1)?, t.constant_phase(1, -1)?];
+    t.with_rates(&alpha, Some(&omega)).with_late(vec![late]).with_divisor("omega", "D")
+}
+
+#[test]
+fn laws_hold_over_formulas() {
+    let Some(t) = of_formulas() else { panic!("room for four symbols") };
+    let symbol = |name| t.symbol(name).unwrap_or_else(|| t.zero());
+    let [alpha, omega, divided] = ["alpha", "omega", "D"].map(symbol);
+    let Some(turn) = t.constant_phase(0, 3) else { panic!("a phase") };
+    let square = |f: &Element| t.mul(f, f);
+    // D (alpha^2 - omega^2) = 1 and, of powers of omega, the first alone.
+    let difference = t.sub(&square(&alpha), &square(&omega));
+    assert_eq!(t.mul(&difference, &divided), t.one());
+    assert_eq!(t.reciprocal(&difference), Some(divided.clone()));
+    assert_eq!(t.reciprocal(&omega), None);
+    assert_eq!(t.mul(&turn, &t.conjugate(&turn)), t.one());
+    assert_eq!(t.as_constant(&turn), Some(turn.clone()));
+    let mixed = t.add(&t.mul(&square(&omega), &t.mul(&omega, &turn)), &t.scale(&divided, &q(2, 3)));
+    let mut all = samples(&t);
+    all.extend([alpha, t.mul(&turn, &t.amplitude(0)), mixed]);
+    assert_eq!(laws::rational_algebra(&t, &all), Ok(()));
+    let shift = |f: &Element| t.shift(f, 0).unwrap_or_else(|| t.zero());
+    for f in &all {
+        for g in &all {
+            let product = t.mul(f, g);
+            let leibniz = t.sum_of_products(&[(&t.by_time(f), g), (f, &t.by_time(g))]);
+            assert_eq!(t.by_time(&product), leibniz, "Leibniz");
+            assert_eq!(shift(&product), t.mul(&shift(f), &shift(g)), "shifts multiply");
+        }
+        assert_eq!(t.conjugate(&shift(f)), shift(&t.conjugate(f)), "shifts are real");
+        assert_eq!(t.by_time(&shift(f)), shift(&t.by_time(f)), "shifts do not change");
+    }
+    // (D_0^2 + alpha^2) u + 2 i alpha f + conj = g.
+    let linear =
+        LinearPart { stiffness: square(&symbol("alpha")), damping: t.zero(), delayed: Vec::new() };
+    let Some((cos, _)) = t.forcing(1) else { panic!("a force") };
+    let g = t.twice_real(&t.add(&t.mul(&turn, &t.amplitude(0)), &cos));
+    let Ok(split) = t.split(0, &linear, &g) else { panic!("off resonance") };
+    assert_eq!(split.response, t.scale(&t.mul(&cos, &divided), &q(2, 1)));
+    let drift = t.twice_real(&split.flow);
+    let u = &split.response;
+    let twice = t.by_time(&t.by_time(u));
+    let applied = t.add(&twice, &t.mul(&linear.stiffness, u));
+    assert_eq!(t.add(&applied, &t.scale(&t.by_time(&drift), &q(2, 1))), g);
+    // Beyond the exponents of words nothing is formed, and it is said.
+    let power = |n| lindstedt_coeff::polynomial::power(&t, &turn, n);
+    assert!(!t.is_zero(&power(42)) && !t.overflowed());
+    assert!(t.is_zero(&power(43)) && t.overflowed());
 }
 
 /// The resolved parts put back into the equation give f again.

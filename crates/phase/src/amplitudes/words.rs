@@ -30,9 +30,37 @@ impl Layout {
         i32::MAX >> (32 - self.bits)
     }
 
+    /// Whether all exponents are in [-2^(b - 3), 2^(b - 3)), so that two such words can be added: with 2^(b - 3) added to
+    /// each they are digits of b - 2 bits.
+    pub fn is_small(self, word: Word) -> bool {
+        // 1 in every digit: a constant for each width, known to the compiler.
+        let ones = match self.bits {
+            8 => u128::MAX / 0xff,
+            16 => u128::MAX / 0xffff,
+            _ => u128::MAX / 0xffff_ffff,
+        };
+        let raised = word.cast_unsigned().wrapping_add(ones << (self.bits - 3));
+        raised & ((ones * 3) << (self.bits - 2)) == 0
+    }
+
     /// 2^(b i).
     pub fn unit(self, i: usize) -> Word {
         1 << (self.bits as usize * i)
+    }
+
+    /// e_i.
+    pub fn exponent(self, word: Word, i: usize) -> i32 {
+        let start = self.bits as usize * i;
+        // The digits below are less than half of 2^(b i) in size.
+        let half = if start == 0 { 0 } else { 1 << (start - 1) };
+        let above = word.wrapping_add(half) >> start;
+        (above as i32) << (32 - self.bits) >> (32 - self.bits)
+    }
+
+    /// What the first n exponents are told from others by.
+    pub fn lowest(self, word: Word, n: usize) -> Word {
+        let end = self.bits as usize * n;
+        if end >= 128 { word } else { word & ((1 << end) - 1) }
     }
 
     /// The exponents e_0, ..., e_{n-1}, and the word of the others.
@@ -64,6 +92,10 @@ mod tests {
             let sum: Vec<i32> = a.iter().zip(b).map(|(a, b)| a + b).collect();
             let words = [&a, &b].map(|digits| layout.pack(digits, 0));
             let (digits, rest) = layout.exponents(words[0] + words[1], 5);
+            let single: Vec<i32> =
+                (0..5).map(|i| layout.exponent(words[0] + words[1], i)).collect();
+            assert_eq!(single, sum);
+            assert_eq!(layout.lowest(words[0], 2), layout.lowest(layout.pack(&a[..2], 3), 2));
             assert_eq!((&digits[..5], rest), (&sum[..], 0));
             assert_eq!(layout.exponents(layout.pack(&[3], 7), 1).1, 7);
         }
@@ -82,5 +114,23 @@ mod tests {
             );
         }
         assert_eq!(Layout::of(17), None);
+    }
+
+    #[test]
+    fn small_words_can_be_added() {
+        for count in [4, 8, 16] {
+            let Some(layout) = Layout::of(count) else { panic!("{count} exponents") };
+            let most = layout.largest() / 4;
+            for i in 0..count {
+                let of = |e: i32| {
+                    let mut digits = vec![-1; count];
+                    digits[i] = e;
+                    layout.pack(&digits, 0)
+                };
+                assert!([-most - 1, -1, 0, 1, most].into_iter().all(|e| layout.is_small(of(e))));
+                let beyond = [most + 1, -most - 2, layout.largest(), -layout.largest()];
+                assert!(!beyond.into_iter().any(|e| layout.is_small(of(e))));
+            }
+        }
     }
 }
