@@ -23,8 +23,10 @@ use rayon::prelude::*;
 use rug::Rational;
 use std::collections::BTreeMap;
 
-/// Coefficients with no more terms are evaluated term by term.
+/// Coefficients with no more terms are evaluated term by term, and so are all of a series that has not more than
+/// [`FEW_OF_ALL`].
 const FEW_TERMS: usize = 64;
+const FEW_OF_ALL: usize = 1000;
 
 /// The solution, in the algebra that the equation needed.
 ///
@@ -273,7 +275,7 @@ impl Derivation {
     pub fn ball(&self, quantity: Quantity, n: usize, balls: Balls) -> Option<Ball> {
         let series = self.named(quantity)?;
         let coefficient = series.coefficients.get(n)?;
-        let value = match self.by_clock(quantity, coefficient) {
+        let value = match self.by_clock(series, coefficient) {
             Some((solution, index)) => {
                 solution.powers(&self.constants, balls)?[index].get(n)?.clone()
             }
@@ -288,14 +290,16 @@ impl Derivation {
 
     /// The clock that knows a long coefficient of a power of its frequency, and the position of the power; nothing
     /// where the series has a factor besides.
-    fn by_clock(&self, quantity: Quantity, c: &Polynomial) -> Option<(&ClockSolution, usize)> {
+    fn by_clock(&self, series: &NamedSeries, c: &Polynomial) -> Option<(&ClockSolution, usize)> {
         let Solution::Clock(solution) = &self.solution else { return None };
         let list = [Quantity::FrequencySquared, Quantity::Frequency, Quantity::Period];
-        let index = list.iter().position(|power| *power == quantity)?;
+        let index = list.iter().position(|power| *power == series.quantity)?;
+        let all: usize = series.coefficients.iter().map(|c| c.terms().len()).sum();
         let scales = matches!(self.problem.amplitude, AmplitudeRole::ScalesFrequency { .. });
         let one = Exact::from(1);
         let alone = !scales || self.amplitude.as_ref().is_none_or(|a| *a == one);
-        let plain = alone && self.time_scale == 1 && c.terms().len() > FEW_TERMS;
+        let long = c.terms().len() > FEW_TERMS && all > FEW_OF_ALL;
+        let plain = alone && self.time_scale == 1 && long;
         plain.then_some((&**solution, index))
     }
 
