@@ -7,11 +7,11 @@ use rug::{Integer, Rational};
 /// ```
 /// use lindstedt_number::Whole;
 /// use rug::Integer;
-/// let mut sum = Whole::from(5);
-/// sum.add_product(&Whole::from(i64::MAX), &Whole::from(2));
+/// let mut sum = Whole::from(5i64);
+/// sum.add_product(&Whole::from(i64::MAX), &Whole::from(2i64));
 /// assert_eq!(sum.to_integer(), Integer::from(i64::MAX) * 2 + 5);
-/// sum.add_product(&Whole::from(i64::MAX), &Whole::from(-2));
-/// assert_eq!(sum, Whole::from(5));
+/// sum.add_product(&Whole::from(i64::MAX), &Whole::from(-2i64));
+/// assert_eq!(sum, Whole::from(5i64));
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Whole(Digits);

@@ -99,14 +99,14 @@ impl<E> SlowFlow<E> {
 /// ```
 /// use lindstedt_equation::{Expression, Function};
 /// use lindstedt_expand::{Binding, compile_system, resonance::{check_flow, resonant}};
-/// use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, scalars::Integers};
-/// use lindstedt_number::Whole;
+/// use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes};
+/// use lindstedt_phase::amplitudes::scalars::{Integers, Scalars};
 /// use rug::Rational;
 ///
 /// struct Symbols<'a>(&'a Amplitudes<Integers>);
 /// impl Binding<Amplitudes<Integers>> for Symbols<'_> {
-///     fn parameter(&self, name: &str) -> Option<AmplitudeElement<Whole>> { self.0.symbol(name) }
-///     fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<Whole>> { None }
+///     fn parameter(&self, name: &str) -> Option<AmplitudeElement<<Integers as Scalars>::Element>> { self.0.symbol(name) }
+///     fn formal(&self, _: &str, _: usize) -> Option<AmplitudeElement<<Integers as Scalars>::Element>> { None }
 /// }
 /// let one = Rational::from(1);
 /// let algebra = Amplitudes::new(Integers, &[one.clone()], &one, &["F"]).ok_or("frequencies")?;
