@@ -161,11 +161,11 @@ fn predictions_of_memory_refuse_what_is_far_beyond() {
         error
     };
     assert!(asked("350M").contains("time limit"));
-    let refused = asked("80M");
-    assert!(refused.contains("is predicted to need") && refused.contains("80 MiB"), "{refused}");
+    let refused = asked("40M");
+    assert!(refused.contains("is predicted to need") && refused.contains("40 MiB"), "{refused}");
     let (code, error) = folder.run(&["derive", "pendulum", "--order", "100000"]);
     assert_eq!(code, Some(4));
-    assert!(error.contains("need 10^633 MiB, the limit is 8192 MiB"), "{error}");
+    assert!(error.contains("need 10^583 MiB, the limit is 8192 MiB"), "{error}");
 }
 
 /// The most resident memory of a program while it ran, in MiB, and how it ended.

@@ -249,7 +249,8 @@ impl Board<'_> {
                 proved.proof_primes
             ),
             (_, Some(last)) if self.value.route == Route::Clock => format!(
-                "{}\n(proved by its one clock: dx/dLambda_m = -c_m D x term by term, then at Lambda = 0).",
+                "{}\n(proved by its one clock: dx/dLambda_m = -c_m D x term by term, then at Lambda = 0;\n\
+                 of W, omega and T multiplied out at one point modulo two primes, a wrong one passes with a chance below 2^-48).",
                 vanishes(last)
             ),
             (_, Some(last)) => vanishes(last) + ".",
