@@ -62,7 +62,7 @@ fn a_polynomial_law_on_a_belt() {
     let cycle = &found.cycles[0];
     assert_is(&cycle.amplitude, 0.76f64.sqrt());
     assert_is(&cycle.exponent, -0.19);
-    assert!(cycle.stable && cycle.belt == Some(Belt::Slower));
+    assert!(cycle.stable == Some(true) && cycle.belt == Some(Belt::Slower));
     assert!(found.belt.is_none() && found.sticking.is_empty());
     let case = Oscillator::parse(&law("vstar")).unwrap().set("vstar", "1/2").unwrap();
     let found = case.first_order(&Exact::from(2), &Work::default()).unwrap().value;
@@ -176,4 +176,75 @@ fn what_it_does_not_take_is_named() {
         case.first_order(&Exact::from(0), &Work::default()).unwrap_err().kind(),
         Kind::Usage
     );
+}
+
+/// The means of sin^2, sin^4, sin^6 are 1/2, 3/8, 5/16: w (8 w^4/5 - 8 w^2/3 + 1 + d), w = x', has the rate
+/// A_1 = -(a/2) ((a^2 - 1)^2 + d).
+#[test]
+fn touching_zeros_are_said() {
+    let law = |last: &str| format!("x'' + x + eps*x'*(8/5*x'^4 - 8/3*x'^2 + {last}) = 0");
+    let found = first_order(&law("1"), "2");
+    assert!(found.cycles.is_empty() && found.steady.is_empty(), "{found:?}");
+    assert_eq!(found.touching.len(), 1);
+    let error: f64 = found.touching[0].error.as_ref().unwrap().parse().unwrap();
+    assert!((value(&found.touching[0]) - 1.0).abs() <= error && error < 1e-6, "{found:?}");
+    // Two cycles much closer than the grid: a^2 = 1 +- 10^-4.
+    let found = first_order(&law("(1 - 1/100000000)"), "2");
+    assert!(found.cycles.len() == 2 && found.touching.is_empty(), "{found:?}");
+    for (cycle, square) in found.cycles.iter().zip([1.0 - 1e-4, 1.0 + 1e-4]) {
+        assert_is(&cycle.amplitude, f64::sqrt(square));
+    }
+    assert_eq!([found.cycles[0].stable, found.cycles[1].stable], [Some(false), Some(true)]);
+    // None.
+    let found = first_order(&law("(1 + 1/1000000)"), "2");
+    assert!(found.cycles.is_empty() && found.touching.is_empty(), "{found:?}");
+}
+
+/// A conservative law, and a clearance: |x'| <= 1 feels nothing.
+#[test]
+fn steady_states_are_said() {
+    let found = first_order("x'' + x + eps*x^3 = 0", "2");
+    assert!(found.cycles.is_empty() && found.unresolved.is_empty());
+    assert!(found.steady.len() == 1 && found.steady[0][0] < 0.01 && found.steady[0][1] >= 2.0);
+    let found = first_order("x'' + x + eps*x'*(abs(x' - 1) + abs(x' + 1) - 2) = 0", "2");
+    assert!(found.cycles.is_empty() && found.steady.len() == 1, "{found:?}");
+    assert!((found.steady[0][1] - 1.0).abs() < 0.01, "{found:?}");
+}
+
+/// The law sgn w - w + w^3/3 at v^2 = 4/5 has its cycle as fast as the belt.
+#[test]
+fn a_cycle_as_fast_as_the_belt_is_undecided() {
+    let law = "x'' + x + eps*(sign(x' - vstar) - (x' - vstar) + (x' - vstar)^3/3) = 0";
+    let v = format!("{:.18}", 0.8f64.sqrt());
+    let case = Oscillator::parse(law).unwrap().set("vstar", &*v).unwrap();
+    let found = case.first_order(&Exact::from(2), &Work::default()).unwrap().value;
+    let near =
+        found.cycles.iter().find(|cycle| (value(&cycle.amplitude) - 0.8f64.sqrt()).abs() < 1e-9);
+    let near = near.unwrap_or_else(|| panic!("{found:?}"));
+    assert_eq!((near.belt, near.stable), (Some(Belt::Undecided), None), "{found:?}");
+}
+
+/// A pole that is met is refused, and said where it is met further on; fast laws are resolved or said.
+#[test]
+fn integrals_that_do_not_converge_are_said() {
+    let refused = |law: &str, largest: &str| {
+        let case = Oscillator::parse(law).unwrap();
+        case.first_order(&Exact::parse(largest).unwrap(), &Work::default()).unwrap_err()
+    };
+    for law in ["x'' + x + eps/(x' - 1/2) = 0", "x'' + x + eps*x/(x' - 1/2)^2 = 0"] {
+        let found = refused(law, "3");
+        assert!(found.code() == "no-value" && found.to_string().contains("converge"), "{found}");
+        // Smaller amplitudes do not meet it.
+        let found = first_order(law, "2/5");
+        assert!(found.unresolved.is_empty(), "{found:?}");
+    }
+    assert_eq!(refused("x'' + x + eps*cos(1000000*x')*x' = 0", "3").code(), "no-value");
+    // A_1 = -(J_1(z) - z J_2(z))/50, z = 50 a, by parts: its zeros are about pi/50 apart.
+    let found = first_order("x'' + x + eps*cos(50*x')*x' = 0", "1/2");
+    assert!(found.unresolved.is_empty());
+    let places: Vec<f64> = found.cycles.iter().map(|cycle| value(&cycle.amplitude)).collect();
+    assert!(places.len() == 8, "{places:?}");
+    for pair in places.windows(2) {
+        assert!((pair[1] - pair[0] - PI / 50.0).abs() < 0.01, "{pair:?}");
+    }
 }

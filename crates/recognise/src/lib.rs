@@ -35,7 +35,7 @@ pub use impact::{ImpactProblem, linear_in_time};
 pub use lowest::LowestHarmonic;
 pub use melnikov::MelnikovProblem;
 pub use numeric::{NumericOrbit, OrbitCheck};
-pub use one_phase::{OnePhase, PhaseCycle, Rates, Sticking};
+pub use one_phase::{OnePhase, PhaseCycle, PhaseCycles, Rates, Sticking};
 pub use persistence::{PersistenceProblem, Persistent};
 pub use reading::Unperturbed;
 pub use refusal::{Refusal, Why};

@@ -9,7 +9,7 @@ use lindstedt_impact::chart::{Axis, Plan, Point, Predictor, Swept, chart};
 use lindstedt_impact::flight::clearance;
 use lindstedt_impact::flip::flip_boundary;
 use lindstedt_impact::flow::{Flow, characteristic_root, rates};
-use lindstedt_impact::kick::ReturnMap;
+use lindstedt_impact::kick::{ReturnMap, piecewise_growth};
 use lindstedt_impact::map::Verdict;
 use lindstedt_impact::orbit::orbit;
 use lindstedt_impact::parameters::{Branch, ExactParameters, Parameters};
@@ -40,6 +40,26 @@ fn orbit_number(n: usize) -> ExactParameters {
         velocity_gain: exact("0"),
         branch: Branch::Plus,
     }
+}
+
+/// For B = 0 the return map is linear, and its growth the modulus of the largest multiplier, which zeros
+/// of G enclose: the stated error covers the difference, and in the median is not 20 times as large.
+#[test]
+fn the_error_of_the_growth_covers_the_largest_multiplier() {
+    let mut ratios = Vec::new();
+    for (n, k) in [2, 3, 5].into_iter().flat_map(|n| (-10..11).map(move |k| (n, k))) {
+        let gain = exact(&format!("{}", 0.013 * f64::from(k)));
+        let p = ExactParameters { displacement_gain: gain, ..orbit_number(n) };
+        let (nearest, balls) = (p.nearest(), p.certified(160));
+        let g = Characteristic::new(&balls, &orbit(&balls).unwrap(), Kick::None);
+        let truth = multipliers(&g, 0.2).unwrap().values[0].modulus().to_f64();
+        let found = piecewise_growth(&nearest, &orbit(&nearest).unwrap(), 200).unwrap();
+        let ratio = found.error / (found.rate - truth).abs();
+        assert!(ratio > 1.0, "O{n} A {k}: {found:?} {truth}");
+        ratios.push(ratio);
+    }
+    ratios.sort_by(f64::total_cmp);
+    assert!(ratios[ratios.len() / 2] < 20.0, "{ratios:?}");
 }
 
 #[test]

@@ -27,6 +27,14 @@ pub struct FirstOrder {
     pub belt_speed: Option<f64>,
     /// By rising amplitude.
     pub cycles: Vec<FirstOrderCycle>,
+    /// a, where a' has an extremum that is not told from zero: one semistable cycle, two close ones or none.
+    pub touching: Vec<Number>,
+    /// From a to a, where a' is zero within its error at every amplitude tried: every amplitude is a steady state.
+    pub steady: Vec<[f64; 2]>,
+    /// From a to a, where the integral over the phase does not converge: cycles there are not found.
+    pub unresolved: Vec<[f64; 2]>,
+    /// The distance of the amplitudes that were tried: cycles that are closer may be missed.
+    pub cell: f64,
     /// The parameter that v* is a multiple of.
     pub belt: Option<String>,
     /// Where cycles are as fast as the belt, by rising speed.
@@ -43,8 +51,8 @@ pub struct FirstOrderCycle {
     pub exponent: Number,
     /// psi' - omega over the small parameter.
     pub phase_rate: Number,
-    /// Whether the exponent is negative where the small parameter is positive.
-    pub stable: bool,
+    /// Whether the exponent is negative where the small parameter is positive; nothing within its error of zero.
+    pub stable: Option<bool>,
     /// Its way past the belt.
     pub belt: Option<Belt>,
 }
@@ -59,6 +67,8 @@ pub enum Belt {
     Overtakes,
     /// It meets the belt where the spring is weaker than friction: it sticks, and averaging does not hold.
     Sticks,
+    /// Its amplitude is not known well enough to say.
+    Undecided,
 }
 
 impl Belt {
@@ -71,6 +81,9 @@ impl Belt {
                 "overtakes the belt without sticking as the small parameter goes to 0"
             }
             Self::Sticks => "sticks to the belt: averaging does not hold",
+            Self::Undecided => {
+                "undecided whether it is slower than the belt: as fast within its error"
+            }
         }
     }
 }
@@ -97,8 +110,9 @@ impl FirstOrder {
         stop: &Stop,
     ) -> Result<Self, Error> {
         let top = largest.to_f64();
-        let message = "the law has no finite value at this amplitude";
-        let undefined = || Refused::no_answer("no-value", message, "");
+        let message = "the integral of the law over the phase does not converge at this amplitude: it has no \
+                       finite value on the way, a pole that is not integrable, or oscillates too fast";
+        let undefined = || Refused::no_answer("no-value", message, "a smaller --cycles");
         let rates = law.rates(top).ok_or_else(undefined)?;
         let cycle = |cycle| FirstOrderCycle::new(law, &cycle, eps);
         let sticking = law.sticking(top, stop).into_iter().map(|found| {
@@ -107,6 +121,7 @@ impl FirstOrder {
                 amplitude: number(found.amplitude)?,
             })
         });
+        let found = law.cycles(top, stop);
         Ok(Self {
             parameter: small.to_owned(),
             frequency: law.frequency,
@@ -114,7 +129,11 @@ impl FirstOrder {
             amplitude_rate: number(rates.amplitude)?,
             phase_rate: number(rates.phase)?,
             belt_speed: law.belt_speed,
-            cycles: law.cycles(top, stop).into_iter().map(cycle).collect::<Result<_, Error>>()?,
+            cycles: found.cycles.into_iter().map(cycle).collect::<Result<_, Error>>()?,
+            touching: found.touching.into_iter().map(number).collect::<Result<_, Error>>()?,
+            steady: found.steady,
+            unresolved: found.unresolved,
+            cell: found.cell,
             belt: law.belt.clone(),
             sticking: sticking.collect::<Result<_, Error>>()?,
         })
@@ -123,17 +142,23 @@ impl FirstOrder {
 
 impl FirstOrderCycle {
     fn new(law: &OnePhase, cycle: &PhaseCycle, eps: Option<f64>) -> Result<Self, Error> {
-        let a = cycle.amplitude[0];
-        let belt = law.belt_speed.map(|speed| match eps {
-            _ if a * law.frequency < speed.abs() => Belt::Slower,
-            Some(eps) if law.sticks(a, eps) => Belt::Sticks,
-            _ => Belt::Overtakes,
+        let a = cycle.amplitude;
+        let belt = law.belt_speed.map(|_| match (law.is_slower(a), eps) {
+            (None, _) => Belt::Undecided,
+            (Some(true), _) => Belt::Slower,
+            (Some(false), None) => Belt::Overtakes,
+            (Some(false), Some(eps)) => match law.sticks(a, eps) {
+                Some(true) => Belt::Sticks,
+                Some(false) => Belt::Overtakes,
+                None => Belt::Undecided,
+            },
         });
+        let [exponent, error] = cycle.exponent;
         Ok(Self {
             amplitude: number(cycle.amplitude)?,
             exponent: number(cycle.exponent)?,
             phase_rate: number(cycle.phase)?,
-            stable: cycle.exponent[0] < 0.0,
+            stable: (exponent.abs() > error).then_some(exponent < 0.0),
             belt,
         })
     }

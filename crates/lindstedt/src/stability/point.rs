@@ -185,9 +185,9 @@ pub struct Truth {
 pub struct ReturnMap {
     /// The factor per impact.
     pub growth_per_impact: f64,
-    /// The difference between two starts.
+    /// Its difference between the two halves of the run.
     pub spread: f64,
-    /// The same.
+    /// What the run has not settled, the points of a flight and rounding; never 0.
     pub error: f64,
     /// Estimated.
     pub status: Status,

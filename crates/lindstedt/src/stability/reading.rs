@@ -144,7 +144,7 @@ impl<S: Real> Writer<'_, S> {
             return_map: growth.map(|growth| ReturnMap {
                 growth_per_impact: growth.rate,
                 spread: growth.spread,
-                error: growth.spread,
+                error: growth.error,
                 status: Status::Estimated,
                 verdict: word(growth.verdict()),
             }),

@@ -25,7 +25,11 @@ impl Present for Answer<FirstOrder> {
             line(rate("(psi' - omega)", r"(\dot\psi - \omega)"), &found.phase_rate),
         ];
         for cycle in &found.cycles {
-            let stable = if cycle.stable { "stable" } else { "unstable" };
+            let stable = match cycle.stable {
+                Some(true) => "stable",
+                Some(false) => "unstable",
+                None => "stability undecided (its exponent is zero within its error)",
+            };
             let words = match cycle.belt {
                 Some(belt) => format!("cycle, {stable}, {}, a", belt.word()),
                 None => format!("cycle, {stable}, a"),
@@ -38,7 +42,15 @@ impl Present for Answer<FirstOrder> {
             let shift = format!("its frequency less omega, over {}", found.parameter);
             lines.push(line(Text::words(shift), &cycle.phase_rate));
         }
-        if found.cycles.is_empty() {
+        let touches =
+            "a' touches zero within its error (one semistable cycle, two close ones or none), a";
+        lines.extend(found.touching.iter().map(|a| line(touches.into(), a)));
+        let from_to = |[from, to]: &[f64; 2]| Text::words(format!("a = {from:.6} to {to:.6}"));
+        let steady = "a' is zero within its error: every amplitude is a steady state";
+        lines.extend(found.steady.iter().map(|ends| (steady.into(), from_to(ends))));
+        let lost = "not resolved (the integral over the phase does not converge)";
+        lines.extend(found.unresolved.iter().map(|ends| (lost.into(), from_to(ends))));
+        if found.cycles.is_empty() && found.touching.is_empty() && found.steady.is_empty() {
             lines.push((
                 "cycles".into(),
                 format!("no change of sign of a' found up to a = {}", found.amplitude).into(),
@@ -53,8 +65,9 @@ impl Present for Answer<FirstOrder> {
         }
         Document::titled(format!("{}{between}{}", self.header.problem, at.join(", ")))
             .words(format!(
-                "First order in {}, x = a cos psi, omega = {}; estimated, changes of sign of a' on a grid.",
-                found.parameter, found.frequency
+                "First order in {}, x = a cos psi, omega = {}; estimated. Changes of sign of a' are sought at \
+                 amplitudes {:.5} apart: cycles that are closer are not excluded.",
+                found.parameter, found.frequency, found.cell
             ))
             .lines(lines)
     }
@@ -66,7 +79,7 @@ impl Present for Answer<FirstOrder> {
                 cycle.amplitude.decimal.clone(),
                 cycle.exponent.decimal.clone(),
                 cycle.phase_rate.decimal.clone(),
-                cycle.stable.to_string(),
+                cycle.stable.map_or("undecided".to_owned(), |stable| stable.to_string()),
             ])
         }))
     }

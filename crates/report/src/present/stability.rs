@@ -140,13 +140,11 @@ fn truth(exact: &Truth) -> Vec<Option<Line>> {
     let missing = exact.multipliers_missing.as_ref();
     let zeros = exact.zeros_in_unit_disc.map_or("-".to_owned(), |n| n.to_string());
     let growth = exact.return_map.as_ref().and_then(|map| {
-        // A difference of two doubles that agree says nothing of digits.
-        let spread = match map.spread {
-            0.0 => String::new(),
-            spread => format!(", spread {}", double(spread)),
-        };
-        let rate = double(map.growth_per_impact);
-        line("return map", format!("growth per impact {rate}{spread} (estimated), {}", map.verdict))
+        let (rate, error) = (map.growth_per_impact, map.error);
+        // One digit more than the error knows.
+        let places = (1.0 - error.log10()).ceil().clamp(1.0, 17.0) as usize;
+        let words = format!("growth per impact {rate:.places$} +- {error:.1e} (estimated)");
+        line("return map", format!("{words}, {}", map.verdict))
     });
     lines.extend([
         missing.and_then(|reason| line("no multipliers", reason.as_str())),
