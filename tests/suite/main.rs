@@ -27,4 +27,5 @@ mod respond;
 mod slow_flows;
 mod small_delta;
 mod threads;
+mod traps;
 mod vibro_impact;

@@ -114,6 +114,10 @@ pub enum Reason {
     NoForce,
     /// A force with a phase, or of another frequency than one before it.
     Frequency(Expression),
+    /// A force whose frequency is an irrational number.
+    IrrationalRatio(Expression),
+    /// A force whose frequency is a number and a detuning that is not small.
+    LargeDetuning(Expression),
     /// A formal function, and no equation for integration in time.
     Formal(Expression),
     /// A value outside its domain, with the domain; found by who knows the values.
@@ -184,6 +188,8 @@ impl Reason {
             | Self::NotReal(e)
             | Self::Formal(e)
             | Self::Frequency(e)
+            | Self::IrrationalRatio(e)
+            | Self::LargeDetuning(e)
             | Self::Drift(e) => Some(e),
             _ => None,
         }

@@ -1,6 +1,7 @@
 //! Which methods take an equation, and what is against the others.
 
-use crate::classification::{Algebra, Classification, Method, Reason};
+use crate::classification::{Algebra, Classification, Forcing, Method, Reason};
+use crate::classify::evaluate;
 use crate::monomials::expand;
 use crate::saddle::has_saddle;
 use crate::symmetry::{Parity, parity, parity_in_x};
@@ -20,7 +21,7 @@ pub(crate) fn decide(
     let time = terms_in_time(problem, rest);
     let weak = weakly_nonlinear(parts, rest, stiffness.as_ref());
     let lindstedt = lindstedt(problem, rest, stiffness.as_ref(), parts, &weak);
-    let averaging = averaging(problem, rest, parts, &weak);
+    let averaging = averaging(problem, rest, parts, (values, &weak));
     let logarithms = rest.find(&is_logarithmic).is_some();
     let unbound = rest.parameters().iter().any(|name| !values.contains_key(name));
     parts.algebra = match (lindstedt.is_empty(), averaging.is_empty()) {
@@ -176,7 +177,7 @@ fn averaging(
     problem: &Problem,
     rest: &Expression,
     parts: &Classification,
-    weak: &[Reason],
+    (values, weak): (&BTreeMap<String, Rational>, &[Reason]),
 ) -> Vec<Reason> {
     let mut against = weak.to_vec();
     // A constant force of order zero moves the centre: the response to it is no expansion's first term, but
@@ -210,11 +211,23 @@ fn averaging(
             _ => {}
         }
     }
+    let of_frequency = |force: &Forcing| {
+        let frequency = force.frequency.as_ref()?;
+        if frequency.find(&is_irrational).is_some() {
+            return Some(Reason::IrrationalRatio(force.term.clone()));
+        }
+        let detuned = is_detuned(frequency) && evaluate(frequency, values).is_none();
+        detuned.then(|| Reason::LargeDetuning(force.term.clone()))
+    };
+    let angle = |force: &Forcing| angle(force, values);
+    if let Some(reason) = parts.forcing.iter().find_map(of_frequency) {
+        against.push(reason);
+        return against;
+    }
     // Forces are harmonics of one omega t.
-    let mut angles = parts.forcing.iter().map(|force| (force, angle(&force.term)));
-    let first = angles.next().map(|(_, angle)| angle);
+    let first = parts.forcing.first().map(angle);
     let other = parts.forcing.iter().find(|force| {
-        let own = angle(&force.term);
+        let own = angle(force);
         own.is_none() || first.as_ref() != Some(&own)
     });
     if let Some(force) = other.filter(|force| force.frequency.is_some()) {
@@ -230,7 +243,11 @@ fn averaging(
 }
 
 /// The factors of t, numbers apart, in the angle of a force; nothing for an angle with a phase.
-fn angle(force: &Expression) -> Option<BTreeMap<String, i32>> {
+fn angle(force: &Forcing, values: &BTreeMap<String, Rational>) -> Option<BTreeMap<String, i32>> {
+    if force.frequency.as_ref().is_some_and(|f| is_detuned(f) && evaluate(f, values).is_some()) {
+        return Some(BTreeMap::new());
+    }
+    let force = &force.term;
     let harmonic = |e: &Expression| {
         matches!(e, Expression::Function(Function::Sin | Function::Cos, z)
             if z.contains(&Expression::Time))
@@ -240,6 +257,18 @@ fn angle(force: &Expression) -> Option<BTreeMap<String, i32>> {
     let mut leading = all.terms.keys().filter(|monomial| monomial.order == 0);
     let (Some(monomial), None) = (leading.next(), leading.next()) else { return None };
     Some(monomial.parameters.clone())
+}
+
+/// A root or a function of numbers.
+fn is_irrational(e: &Expression) -> bool {
+    let root = |n: &Expression| n.as_number().is_none_or(|n| !n.is_integer());
+    matches!(e, Expression::Power(_, n) if root(n)) || matches!(e, Expression::Function(..))
+}
+
+/// A number and a parameter: 1 + sigma.
+fn is_detuned(frequency: &Expression) -> bool {
+    let Some(all) = expand(frequency) else { return false };
+    all.terms.len() > 1 && all.terms.keys().any(|m| m.parameters.is_empty())
 }
 
 /// The equations of the energy integral: x (x^2)^small and x S(small ln x^2).

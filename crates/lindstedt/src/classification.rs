@@ -41,6 +41,12 @@ pub fn of(
 /// What to do with frequencies that have no common measure,
 const FORCES: &str = "forces are averaged together where their frequencies are rational multiples of one: approximate the \
      ratio by a fraction; `lindstedt simulate` takes them as they are";
+/// with one that is irrational,
+const RATIO: &str = "a parameter without a value, cos(omega*t), counts as independent (`lindstedt derive`), a fraction near it \
+     as itself; `lindstedt simulate` takes it as it is";
+/// with a detuning that is not small,
+const DETUNING: &str = "write cos((1 + eps*sigma)*t), or give the parameter a value (--set NAME=VALUE); `lindstedt simulate` takes \
+     it as it is";
 /// with x = 0 as a saddle,
 const SADDLE: &str = "x = 0 is a saddle: put x = c + y with a centre c, or `lindstedt simulate`";
 /// and with terms that are not small.
@@ -54,7 +60,7 @@ const AVERAGES: &str =
     "averaging takes it: condition = \"free-amplitude\" in the file, or --normalisation free";
 
 /// The path of a file with the place of a term of its equation, or of the equation.
-fn place(file: &ProblemFile, path: &str, term: Option<&Expression>) -> String {
+pub(crate) fn place(file: &ProblemFile, path: &str, term: Option<&Expression>) -> String {
     let place = term.and_then(|term| file.locate(term)).or_else(|| file.locate_equation());
     let place = place.map_or(String::new(), |(line, column)| format!(":{line}:{column}"));
     format!("{path}{place}")
@@ -91,6 +97,9 @@ pub fn check(
         let message = format!("{at}: {what}");
         Err(Refused::no_answer("no-method", message, hint))
     };
+    if !parts.takes(Method::Melnikov) {
+        check_frequencies(parts, |e| place(file, path, Some(e)), small)?;
+    }
     let Some(reason) = against(Method::LindstedtPoincare).next() else {
         if condition.is_some() {
             return Ok(());
@@ -129,6 +138,26 @@ pub fn check(
     let hint = next_best(parts, reason, nothing_small, averages);
     let hint = hint.map_or(marks, ToOwned::to_owned);
     refused(at, reason_text(reason, small), hint)
+}
+
+/// Refuses forces with frequencies that no averaging takes, each for its own reason.
+///
+/// # Errors
+/// [`Refused`], with the codes `ratio-not-rational` and `detuning-not-small`.
+pub fn check_frequencies(
+    parts: &Classification,
+    place: impl Fn(&Expression) -> String,
+    small: &str,
+) -> Result<(), Refused> {
+    let averaging = parts.methods.iter().filter(|(method, _)| *method == Method::Averaging);
+    let refused = averaging.flat_map(|(_, against)| against).find_map(|reason| match reason {
+        Reason::IrrationalRatio(e) => Some(("ratio-not-rational", e, reason, RATIO)),
+        Reason::LargeDetuning(e) => Some(("detuning-not-small", e, reason, DETUNING)),
+        _ => None,
+    });
+    let Some((code, term, reason, hint)) = refused else { return Ok(()) };
+    let message = format!("{}: {}", place(term), reason_text(reason, small));
+    Err(Refused::no_answer(code, message, hint))
 }
 
 /// What takes an equation that the expansion does not; nothing where a small parameter would make it one

@@ -5,7 +5,7 @@ use crate::refusal::Refused;
 use crate::{Error, Exact, Remark, classification};
 use lindstedt_equation::classify::Classification;
 use lindstedt_equation::print::Style;
-use lindstedt_equation::{AmplitudeRole, Condition, ParameterCard, Problem};
+use lindstedt_equation::{AmplitudeRole, Condition, Expression, ParameterCard, Problem};
 use lindstedt_problem_file::{Names, PI, ProblemFile, canonical_name, parse_equation};
 use rug::Rational;
 use std::collections::BTreeMap;
@@ -83,6 +83,13 @@ impl Oscillator {
         let second = file.problem.parameters.iter().find(|card| is_unknown(&card.name));
         if let Some(card) = second.filter(|_| !file.declares) {
             let name = &card.name;
+            if is_frequency(&file.problem.equation, name) {
+                let message =
+                    format!("{name} stands for a frequency and is an undeclared parameter");
+                let hint = "another name (omega) needs no declaration: this one is that of an unknown \
+                            where no [parameters] of a problem file declare it";
+                return Err(Refused::usage("undeclared-parameter", message, hint).into());
+            }
             let message =
                 format!("{name} is the name of an unknown, and it has no equation of its own");
             let hint = "its equation stands behind a `;`, or among the `equations` of a file; a problem file \
@@ -349,6 +356,13 @@ impl Oscillator {
         Ok(classification::check(parts, &self.file, self.condition, &self.origin)?)
     }
 
+    /// Refuses forces with frequencies that no averaging takes.
+    pub(crate) fn check_frequencies(&self) -> Result<(), Error> {
+        let Ok(parts) = self.classify() else { return Ok(()) };
+        let place = |term: &Expression| classification::place(&self.file, &self.origin, Some(term));
+        Ok(classification::check_frequencies(&parts, place, &self.problem.small)?)
+    }
+
     /// An error of the engine with the place in the file that it is about; an equation alone is its own
     /// place.
     pub(crate) fn refusal(&self, error: Error) -> Error {
@@ -445,6 +459,18 @@ impl FromStr for Oscillator {
     fn from_str(equation: &str) -> Result<Self, Error> {
         Self::parse(equation)
     }
+}
+
+/// Whether a name occurs as a factor of t and nowhere else.
+fn is_frequency(equation: &Expression, name: &str) -> bool {
+    let own = Expression::parameter(name);
+    let times_t = |e: &Expression| {
+        matches!(e, Expression::Product(factors)
+            if factors.contains(&Expression::Time) && factors.iter().any(|f| f.contains(&own)))
+    };
+    let count = |e: &Expression| e.nodes().filter(|node| **node == own).count();
+    let beside_t: usize = equation.nodes().filter(|e| times_t(e)).map(count).sum();
+    beside_t > 0 && beside_t == count(equation)
 }
 
 /// Whether a name is that of an unknown by the custom of the field, so that taking it for a constant

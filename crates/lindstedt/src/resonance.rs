@@ -123,6 +123,7 @@ impl Oscillator {
 
     /// The slow flow for those who do not print it: its symbols may have any names.
     pub(crate) fn flow(&self, order: usize, work: &Work) -> Result<Answer<SlowFlow>, Error> {
+        self.check_frequencies()?;
         let start = Instant::now();
         self.values_without_pi()?;
         let settings = self.averaging(order, work);

@@ -145,6 +145,7 @@ impl Oscillator {
         question.check_small()?;
         self.values_without_pi()?;
         self.check_free()?;
+        self.check_frequencies()?;
         let flows = self.has_flow_alone();
         if !flows {
             self.check()?;

@@ -307,7 +307,11 @@ impl OnePhase {
         let (coarse, fine) = ((4.0 * two - one) / 3.0, (4.0 * three - two) / 3.0);
         let last = (16.0 * fine - coarse) / 15.0;
         let noise = 8.0 * self.rates(a)?.amplitude[1] / h;
-        let exponent = [last, (last - fine).abs() + noise];
+        let mut exponent = [last, (last - fine).abs() + noise];
+        if self.belt_speed.is_some() && self.is_slower([a, error]).is_none() {
+            // As fast as the belt A_1 has two slopes, and the symmetric difference is neither.
+            exponent[1] += last.abs();
+        }
         Some(PhaseCycle { amplitude: [a, error], exponent, phase: self.rates(a)?.phase })
     }
 

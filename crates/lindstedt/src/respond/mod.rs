@@ -112,6 +112,7 @@ impl Oscillator {
     pub fn respond(&self, question: &Respond, work: &Work) -> Result<Answer<Response>, Error> {
         let start = Instant::now();
         self.second_order()?;
+        self.check_frequencies()?;
         let subject = Subject::new(self, question, work)?;
         let mut value = match (&question.sweep, &question.second) {
             (None, _) => subject.states()?,
