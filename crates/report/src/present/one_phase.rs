@@ -2,9 +2,33 @@
 
 use super::Present;
 use crate::{Document, Formula, Table, Text};
-use lindstedt::evaluate::FirstOrder;
+use lindstedt::evaluate::{FirstOrder, FirstOrderCycle};
 use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::{Answer, Number};
+
+fn line(name: Text, number: &Number) -> (Text, Text) {
+    (name, Text::number(number))
+}
+
+/// Its amplitude, exponent and frequency.
+fn of_cycle(cycle: &FirstOrderCycle, parameter: &str) -> [(Text, Text); 3] {
+    let stable = match cycle.stable {
+        Some(true) => "stable",
+        Some(false) => "unstable",
+        None => "stability undecided (its exponent is zero within its error)",
+    };
+    let words = match cycle.belt {
+        Some(belt) => format!("cycle, {stable}, {}, a", belt.word()),
+        None => format!("cycle, {stable}, a"),
+    };
+    let exponent = Text::words(format!("its exponent over {parameter}"));
+    let shift = Text::words(format!("its frequency less omega, over {parameter}"));
+    [
+        line(words.as_str().into(), &cycle.amplitude),
+        line(exponent, &cycle.exponent),
+        line(shift, &cycle.phase_rate),
+    ]
+}
 
 impl Present for Answer<FirstOrder> {
     fn document(&self) -> Document {
@@ -19,29 +43,11 @@ impl Present for Answer<FirstOrder> {
                 format!(r"{latex}/{small},\quad a = {}", found.amplitude),
             ))
         };
-        let line = |name: Text, number: &Number| (name, Text::number(number));
         let mut lines = vec![
             line(rate("a'", r"\dot a"), &found.amplitude_rate),
             line(rate("(psi' - omega)", r"(\dot\psi - \omega)"), &found.phase_rate),
         ];
-        for cycle in &found.cycles {
-            let stable = match cycle.stable {
-                Some(true) => "stable",
-                Some(false) => "unstable",
-                None => "stability undecided (its exponent is zero within its error)",
-            };
-            let words = match cycle.belt {
-                Some(belt) => format!("cycle, {stable}, {}, a", belt.word()),
-                None => format!("cycle, {stable}, a"),
-            };
-            lines.push(line(words.as_str().into(), &cycle.amplitude));
-            lines.push(line(
-                Text::words(format!("its exponent over {}", found.parameter)),
-                &cycle.exponent,
-            ));
-            let shift = format!("its frequency less omega, over {}", found.parameter);
-            lines.push(line(Text::words(shift), &cycle.phase_rate));
-        }
+        lines.extend(found.cycles.iter().flat_map(|cycle| of_cycle(cycle, &found.parameter)));
         let touches =
             "a' touches zero within its error (one semistable cycle, two close ones or none), a";
         lines.extend(found.touching.iter().map(|a| line(touches.into(), a)));
