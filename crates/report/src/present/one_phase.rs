@@ -6,6 +6,20 @@ use lindstedt::evaluate::FirstOrder;
 use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::{Answer, Number};
 
+/// What the grid shows beside cycles.
+fn beside_cycles(found: &FirstOrder) -> Vec<(Text, Text)> {
+    let touches =
+        "a' touches zero within its error (one semistable cycle, two close ones or none), a";
+    let steady = "a' is zero within its error: every amplitude is a steady state";
+    let lost = "not resolved (the integral over the phase does not converge)";
+    let touching = found.touching.iter().map(|a| (touches.into(), Text::number(a)));
+    let from_to = |name: &'static str| {
+        move |[from, to]: &[f64; 2]| (name.into(), Text::words(format!("a = {from:.6} to {to:.6}")))
+    };
+    let steady = found.steady.iter().map(from_to(steady));
+    touching.chain(steady).chain(found.unresolved.iter().map(from_to(lost))).collect()
+}
+
 impl Present for Answer<FirstOrder> {
     fn document(&self) -> Document {
         let found = &self.value;
@@ -42,14 +56,7 @@ impl Present for Answer<FirstOrder> {
             let shift = format!("its frequency less omega, over {}", found.parameter);
             lines.push(line(Text::words(shift), &cycle.phase_rate));
         }
-        let touches =
-            "a' touches zero within its error (one semistable cycle, two close ones or none), a";
-        lines.extend(found.touching.iter().map(|a| line(touches.into(), a)));
-        let from_to = |[from, to]: &[f64; 2]| Text::words(format!("a = {from:.6} to {to:.6}"));
-        let steady = "a' is zero within its error: every amplitude is a steady state";
-        lines.extend(found.steady.iter().map(|ends| (steady.into(), from_to(ends))));
-        let lost = "not resolved (the integral over the phase does not converge)";
-        lines.extend(found.unresolved.iter().map(|ends| (lost.into(), from_to(ends))));
+        lines.extend(beside_cycles(found));
         if found.cycles.is_empty() && found.touching.is_empty() && found.steady.is_empty() {
             lines.push((
                 "cycles".into(),
