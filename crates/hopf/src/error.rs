@@ -35,7 +35,39 @@ pub enum HopfError {
         /// The upper end.
         high: String,
     },
-    /// The search was not finished.
+    /// A root at zero, which is no pair i omega, -i omega, is not told from one.
+    #[error(
+        "a root of the characteristic function at 0 near {unknown} = {at} is not told from a pair i*omega, -i*omega with a small omega"
+    )]
+    ZeroRoot {
+        /// The parameter.
+        unknown: String,
+        /// Where.
+        at: String,
+    },
+    /// A delay is not told from zero at a Hopf point.
+    #[error("the sign of a delay is not decided at the Hopf point near {unknown} = {at}")]
+    UndecidedDelay {
+        /// The parameter.
+        unknown: String,
+        /// Where.
+        at: String,
+    },
+    /// The boxes that may be looked at are used up.
+    #[error(
+        "the search for Hopf points between {unknown} = {low} and {high} is not finished after {boxes} boxes"
+    )]
+    TooManyBoxes {
+        /// The parameter.
+        unknown: String,
+        /// The lower end.
+        low: String,
+        /// The upper end.
+        high: String,
+        /// The boxes.
+        boxes: usize,
+    },
+    /// The smallest box of the search is not decided.
     #[error(
         "the search for Hopf points is not decided near {unknown} = {at}: a double root, or roots too close to tell apart"
     )]

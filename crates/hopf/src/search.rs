@@ -60,7 +60,8 @@ struct Search<'a> {
 /// which there is one.
 ///
 /// # Errors
-/// [`HopfError::NoPoint`], [`HopfError::Undecided`], [`HopfError::Unbounded`]; [`HopfError::Stopped`] when `goes_on` said so.
+/// [`HopfError::NoPoint`], [`HopfError::Undecided`], [`HopfError::ZeroRoot`], [`HopfError::UndecidedDelay`],
+/// [`HopfError::TooManyBoxes`], [`HopfError::Unbounded`]; [`HopfError::Stopped`] when `goes_on` said so.
 pub(crate) fn points(
     equation: &DelayEquation<Expression>,
     unknown: &str,
@@ -261,7 +262,9 @@ impl Search<'_> {
             let next = self.krawczyk(&wide).filter(|_| positive);
             if let Some(next) = &next {
                 if is_inside(next, &wide) {
-                    self.note(&mut found, wide, next, ends);
+                    self.note(&mut found, wide, next, ends).map_err(|at| {
+                        HopfError::UndecidedDelay { unknown: unknown.to_owned(), at }
+                    })?;
                     continue;
                 }
                 if next.iter().zip(&region).any(|(a, b)| !a.overlaps(b)) {
@@ -269,10 +272,23 @@ impl Search<'_> {
                 }
             }
             let sizes = region.each_ref().map(|part| part.radius().to_f64());
-            let undecided = sizes.iter().all(|size| *size < SMALLEST) || looked > MOST_BOXES;
-            if undecided {
-                let at = format!("{:.6}", region[0].midpoint().to_f64());
-                return Err(HopfError::Undecided { unknown: unknown.to_owned(), at });
+            let unknown = || unknown.to_owned();
+            if sizes.iter().all(|size| *size < SMALLEST) {
+                let at = place(&region[0]);
+                return Err(if region[1].contains_zero() {
+                    HopfError::ZeroRoot { unknown: unknown(), at }
+                } else {
+                    HopfError::Undecided { unknown: unknown(), at }
+                });
+            }
+            if looked > MOST_BOXES {
+                let [low, high] = ends.map(|end| end.to_string());
+                return Err(HopfError::TooManyBoxes {
+                    unknown: unknown(),
+                    low,
+                    high,
+                    boxes: looked,
+                });
             }
             open.extend(halves(region, sizes, balls));
         }
@@ -280,7 +296,16 @@ impl Search<'_> {
     }
 
     /// Notes a zero that was not found in another box, and lies in the interval.
-    fn note(&self, found: &mut Vec<(Box2, HopfPoint)>, wide: Box2, next: &Box2, ends: [f64; 2]) {
+    ///
+    /// # Errors
+    /// Where it is, if the sign of a delay is not decided there.
+    fn note(
+        &self,
+        found: &mut Vec<(Box2, HopfPoint)>,
+        wide: Box2,
+        next: &Box2,
+        ends: [f64; 2],
+    ) -> Result<(), String> {
         let mut at = next.clone();
         for _ in 0..6 {
             at = self.krawczyk(&at).filter(|next| is_inside(next, &at)).unwrap_or(at);
@@ -290,12 +315,20 @@ impl Search<'_> {
             let same = [&point.parameter, &point.frequency].into_iter().zip(&at);
             is_inside(&at, other) && same.clone().all(|(a, b)| a.overlaps(b))
         });
-        let late = delays_positive(self.equation, self.ring, &at[0]) == Some(true);
-        if !outside && !known && late {
+        if outside || known {
+            return Ok(());
+        }
+        let late = delays_positive(self.equation, self.ring, &at[0]);
+        if late.ok_or_else(|| place(&at[0]))? {
             let [parameter, frequency] = at;
             found.push((wide, HopfPoint { parameter, frequency }));
         }
+        Ok(())
     }
+}
+
+fn place(alpha: &Ball) -> String {
+    format!("{:.6}", alpha.midpoint().to_f64())
 }
 
 /// sin y/y: near 1 for small y, at least -0.2173 anywhere.

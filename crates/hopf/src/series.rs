@@ -246,7 +246,8 @@ impl<'a, F: Field> Recursion<'a, F> {
         let omega = field.mul(&plane.crossed(&r, &two.by_alpha), &two.inverse);
         let alpha = field.mul(&plane.crossed(&two.by_omega, &r), &two.inverse);
         let mut x = vec![plane.zero(); m + 1];
-        for (k, r) in rest.iter().enumerate().filter(|(k, r)| *k != 1 && !plane.is_zero(r)) {
+        // Where L(i k omega_0) = 0 and r = 0 any x_k would do: no solution is the one.
+        for (k, r) in rest.iter().enumerate().filter(|(k, _)| *k != 1) {
             let inverse = plane.reciprocal(&self.harmonics[k].linear[0]);
             let inverse = inverse.ok_or(HopfError::Resonant { harmonic: k })?;
             x[k] = plane.neg(&plane.mul(r, &inverse));

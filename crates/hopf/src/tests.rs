@@ -206,6 +206,34 @@ fn what_has_no_answer() {
         ],
     };
     assert!(matches!(cycle_of(&stays), Err(HopfError::Undecided { .. })));
+    // x'' + alpha x'(t - 1) + x'^3: L(0) = 0 for every alpha, twice at alpha = 0, and the cycle at pi/2 has any mean.
+    let translated = DelayEquation {
+        order: 2,
+        delays: vec![constant((0, 1)), constant((1, 1))],
+        terms: vec![
+            term(constant((1, 1)), &[(2, 0)]),
+            term([0, 1].map(Expression::integer).to_vec(), &[(1, 1)]),
+            term(constant((1, 1)), &[(1, 0); 3]),
+        ],
+    };
+    let at = |near| {
+        let settings = HopfSettings { unknown: "alpha".into(), near, order: 2, digits: 20 };
+        cycle(&translated, &settings, &mut |_| true).err()
+    };
+    assert!(matches!(at(0.0), Some(HopfError::ZeroRoot { .. })), "{:?}", at(0.0));
+    assert_eq!(at(1.6), Some(HopfError::Resonant { harmonic: 0 }));
+    // x'' + x - alpha (x' - x'^3) with a delay alpha in a term of third degree: the point alpha = 0 has no sign of it.
+    let meets = DelayEquation {
+        order: 2,
+        delays: vec![constant((0, 1)), [0, 1].map(Expression::integer).to_vec()],
+        terms: vec![
+            term(constant((1, 1)), &[(2, 0)]),
+            term(constant((1, 1)), &[(0, 0)]),
+            term([0, -1].map(Expression::integer).to_vec(), &[(1, 0)]),
+            term(constant((1, 1)), &[(0, 0), (0, 0), (1, 1)]),
+        ],
+    };
+    assert!(matches!(cycle_of(&meets), Err(HopfError::UndecidedDelay { .. })));
     // x'(t - 1) as heavy as x'.
     let mut neutral = wright();
     neutral.terms.push(term(constant((1, 1)), &[(1, 1)]));

@@ -5,7 +5,7 @@
 //! equation has one solution, which is the image; so W_n is the representative of least absolute value, over D. That
 //! a harmonic of x_n vanishes, which shortens the denominators of later orders, follows in the same way. One image is
 //! substituted into the equation in full and takes no part; the others are substituted at three random phases each,
-//! where an image that is wrong passes with a chance of 2^-50.
+//! where an image that is wrong passes with a chance below 2^-50: one of M images with a chance below M 2^-50.
 
 use crate::image::Job;
 use crate::images::Images;
@@ -36,7 +36,7 @@ pub struct BoundedFrequency {
 }
 
 /// Derives the series of the frequency of a polynomial equation over Q, for n = 0, ..., `order`: exact, but for a wrong
-/// image that passes with a chance below 2^-50.
+/// image that passes with a chance below 2^-50, of M primes with a chance below M 2^-50.
 ///
 /// The same numbers as [`crate::derive`], without the solution: no memory for it, no residual modulo every prime.
 ///

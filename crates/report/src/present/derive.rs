@@ -257,7 +257,8 @@ impl Board<'_> {
             (Solution::FrequencyOnly { primes: Some(primes) }, None) => format!(
                 "From {primes} primes of 30 bits, more than its numbers can hold by bounds proved in advance; no solution.\n\
                  Four images were substituted into the equation, the others at three phases each: a wrong one passes with a\n\
-                 chance below 2^-50."
+                 chance below 2^-50, one of {primes} with a chance below {primes}*2^-50 = {:.1e}.",
+                *primes as f64 * 2f64.powi(-50)
             ),
             (Solution::FrequencyOnly { primes: None }, None) => {
                 "By the energy integral; no solution, so nothing to substitute.".to_owned()

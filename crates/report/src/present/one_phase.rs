@@ -2,32 +2,22 @@
 
 use super::Present;
 use crate::{Document, Formula, Table, Text};
-use lindstedt::evaluate::{FirstOrder, FirstOrderCycle};
+use lindstedt::evaluate::FirstOrder;
 use lindstedt::unstable::coeff::print::latex_name;
 use lindstedt::{Answer, Number};
 
-fn line(name: Text, number: &Number) -> (Text, Text) {
-    (name, Text::number(number))
-}
-
-/// Its amplitude, exponent and frequency.
-fn of_cycle(cycle: &FirstOrderCycle, parameter: &str) -> [(Text, Text); 3] {
-    let stable = match cycle.stable {
-        Some(true) => "stable",
-        Some(false) => "unstable",
-        None => "stability undecided (its exponent is zero within its error)",
+/// What the grid shows beside cycles.
+fn beside_cycles(found: &FirstOrder) -> Vec<(Text, Text)> {
+    let touches =
+        "a' touches zero within its error (one semistable cycle, two close ones or none), a";
+    let steady = "a' is zero within its error: every amplitude is a steady state";
+    let lost = "not resolved (the integral over the phase does not converge)";
+    let touching = found.touching.iter().map(|a| (touches.into(), Text::number(a)));
+    let from_to = |name: &'static str| {
+        move |[from, to]: &[f64; 2]| (name.into(), Text::words(format!("a = {from:.6} to {to:.6}")))
     };
-    let words = match cycle.belt {
-        Some(belt) => format!("cycle, {stable}, {}, a", belt.word()),
-        None => format!("cycle, {stable}, a"),
-    };
-    let exponent = Text::words(format!("its exponent over {parameter}"));
-    let shift = Text::words(format!("its frequency less omega, over {parameter}"));
-    [
-        line(words.as_str().into(), &cycle.amplitude),
-        line(exponent, &cycle.exponent),
-        line(shift, &cycle.phase_rate),
-    ]
+    let steady = found.steady.iter().map(from_to(steady));
+    touching.chain(steady).chain(found.unresolved.iter().map(from_to(lost))).collect()
 }
 
 impl Present for Answer<FirstOrder> {
@@ -43,19 +33,30 @@ impl Present for Answer<FirstOrder> {
                 format!(r"{latex}/{small},\quad a = {}", found.amplitude),
             ))
         };
+        let line = |name: Text, number: &Number| (name, Text::number(number));
         let mut lines = vec![
             line(rate("a'", r"\dot a"), &found.amplitude_rate),
             line(rate("(psi' - omega)", r"(\dot\psi - \omega)"), &found.phase_rate),
         ];
-        lines.extend(found.cycles.iter().flat_map(|cycle| of_cycle(cycle, &found.parameter)));
-        let touches =
-            "a' touches zero within its error (one semistable cycle, two close ones or none), a";
-        lines.extend(found.touching.iter().map(|a| line(touches.into(), a)));
-        let from_to = |[from, to]: &[f64; 2]| Text::words(format!("a = {from:.6} to {to:.6}"));
-        let steady = "a' is zero within its error: every amplitude is a steady state";
-        lines.extend(found.steady.iter().map(|ends| (steady.into(), from_to(ends))));
-        let lost = "not resolved (the integral over the phase does not converge)";
-        lines.extend(found.unresolved.iter().map(|ends| (lost.into(), from_to(ends))));
+        for cycle in &found.cycles {
+            let stable = match cycle.stable {
+                Some(true) => "stable",
+                Some(false) => "unstable",
+                None => "stability undecided (its exponent is zero within its error)",
+            };
+            let words = match cycle.belt {
+                Some(belt) => format!("cycle, {stable}, {}, a", belt.word()),
+                None => format!("cycle, {stable}, a"),
+            };
+            lines.push(line(words.as_str().into(), &cycle.amplitude));
+            lines.push(line(
+                Text::words(format!("its exponent over {}", found.parameter)),
+                &cycle.exponent,
+            ));
+            let shift = format!("its frequency less omega, over {}", found.parameter);
+            lines.push(line(Text::words(shift), &cycle.phase_rate));
+        }
+        lines.extend(beside_cycles(found));
         if found.cycles.is_empty() && found.touching.is_empty() && found.steady.is_empty() {
             lines.push((
                 "cycles".into(),
