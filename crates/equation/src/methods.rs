@@ -216,7 +216,14 @@ fn averaging(
         if frequency.find(&is_irrational).is_some() {
             return Some(Reason::IrrationalRatio(force.term.clone()));
         }
-        let detuned = is_detuned(frequency) && evaluate(frequency, values).is_none();
+        // omega_1 in 2 - omega_1 is no detuning, but the frequency of another force.
+        let is_another = |e: &Expression| {
+            let mut others = parts.forcing.iter().filter_map(|force| force.frequency.as_ref());
+            e != frequency && e.as_number().is_none() && others.any(|other| other == e)
+        };
+        let detuned = is_detuned(frequency)
+            && evaluate(frequency, values).is_none()
+            && frequency.find(&is_another).is_none();
         detuned.then(|| Reason::LargeDetuning(force.term.clone()))
     };
     let angle = |force: &Forcing| angle(force, values);
