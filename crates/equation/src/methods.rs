@@ -216,7 +216,13 @@ fn averaging(
         if frequency.find(&is_irrational).is_some() {
             return Some(Reason::IrrationalRatio(force.term.clone()));
         }
-        let detuned = is_detuned(frequency) && evaluate(frequency, values).is_none();
+        // 2 - omega_1 beside a force of omega_1 is a combination of independent frequencies.
+        let names = frequency.parameters();
+        let others = parts.forcing.iter().filter(|other| other.term != force.term);
+        let mut others = others.filter_map(|other| other.frequency.as_ref());
+        let combined =
+            others.any(|other| other.parameters().iter().any(|name| names.contains(name)));
+        let detuned = is_detuned(frequency) && !combined && evaluate(frequency, values).is_none();
         detuned.then(|| Reason::LargeDetuning(force.term.clone()))
     };
     let angle = |force: &Forcing| angle(force, values);
