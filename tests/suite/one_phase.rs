@@ -216,7 +216,7 @@ fn steady_states_are_said() {
 fn a_cycle_as_fast_as_the_belt_is_undecided() {
     let law = "x'' + x + eps*(sign(x' - vstar) - (x' - vstar) + (x' - vstar)^3/3) = 0";
     let v = format!("{:.18}", 0.8f64.sqrt());
-    let case = Oscillator::parse(law).unwrap().set("vstar", &*v).unwrap();
+    let case = Oscillator::parse(law).unwrap().set("vstar", &v).unwrap();
     let found = case.first_order(&Exact::from(2), &Work::default()).unwrap().value;
     let near =
         found.cycles.iter().find(|cycle| (value(&cycle.amplitude) - 0.8f64.sqrt()).abs() < 1e-9);

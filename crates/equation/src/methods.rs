@@ -1,7 +1,6 @@
 //! Which methods take an equation, and what is against the others.
 
-use crate::classification::{Algebra, Classification, Forcing, Method, Reason};
-use crate::classify::evaluate;
+use crate::classification::{Algebra, Classification, Forcing, Method, Reason, evaluate};
 use crate::monomials::expand;
 use crate::saddle::has_saddle;
 use crate::symmetry::{Parity, parity, parity_in_x};
