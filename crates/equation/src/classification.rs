@@ -1,6 +1,8 @@
 //! What an equation is made of, and which methods take it: the data.
 
 use crate::Expression;
+use rug::Rational;
+use std::collections::BTreeMap;
 
 /// A term with its order in the small parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -194,4 +196,13 @@ impl Reason {
             _ => None,
         }
     }
+}
+
+/// The value of a constant expression, exactly, if the parameters have values.
+pub fn evaluate(e: &Expression, values: &BTreeMap<String, Rational>) -> Option<Rational> {
+    let value = |e: &Expression| match e {
+        Expression::Parameter(name) => values.get(name).cloned().map(Expression::Number),
+        _ => None,
+    };
+    e.substitute(&value).as_number()
 }

@@ -8,7 +8,9 @@ use rug::Rational;
 use std::collections::BTreeMap;
 use thiserror::Error;
 
-pub use crate::classification::{Algebra, Classification, Forcing, Method, Reason, Symmetry, Term};
+pub use crate::classification::{
+    Algebra, Classification, Forcing, Method, Reason, Symmetry, Term, evaluate,
+};
 pub use crate::roots::rational_root;
 
 /// Ratios of the frequencies of force and oscillator are recognised up to these numbers.
@@ -181,15 +183,6 @@ fn ratio(q: &Rational) -> Option<(u32, u32)> {
     let k = root.numer().to_u32().filter(|k| *k <= LARGEST_RESONANCE)?;
     let m = root.denom().to_u32().filter(|m| *m <= LARGEST_RESONANCE)?;
     Some((k, m))
-}
-
-/// The value of a constant expression, exactly, if the parameters have values.
-pub fn evaluate(e: &Expression, values: &BTreeMap<String, Rational>) -> Option<Rational> {
-    let value = |e: &Expression| match e {
-        Expression::Parameter(name) => values.get(name).cloned().map(Expression::Number),
-        _ => None,
-    };
-    e.substitute(&value).as_number()
 }
 
 /// The subexpressions of a kind, each once.

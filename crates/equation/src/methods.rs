@@ -1,7 +1,6 @@
 //! Which methods take an equation, and what is against the others.
 
-use crate::classification::{Algebra, Classification, Forcing, Method, Reason};
-use crate::classify::evaluate;
+use crate::classification::{Algebra, Classification, Forcing, Method, Reason, evaluate};
 use crate::monomials::expand;
 use crate::saddle::has_saddle;
 use crate::symmetry::{Parity, parity, parity_in_x};
@@ -216,14 +215,13 @@ fn averaging(
         if frequency.find(&is_irrational).is_some() {
             return Some(Reason::IrrationalRatio(force.term.clone()));
         }
-        // omega_1 in 2 - omega_1 is no detuning, but the frequency of another force.
-        let is_another = |e: &Expression| {
-            let mut others = parts.forcing.iter().filter_map(|force| force.frequency.as_ref());
-            e != frequency && e.as_number().is_none() && others.any(|other| other == e)
-        };
-        let detuned = is_detuned(frequency)
-            && evaluate(frequency, values).is_none()
-            && frequency.find(&is_another).is_none();
+        // 2 - omega_1 beside a force of omega_1 is a combination of independent frequencies.
+        let names = frequency.parameters();
+        let others = parts.forcing.iter().filter(|other| other.term != force.term);
+        let mut others = others.filter_map(|other| other.frequency.as_ref());
+        let combined =
+            others.any(|other| other.parameters().iter().any(|name| names.contains(name)));
+        let detuned = is_detuned(frequency) && !combined && evaluate(frequency, values).is_none();
         detuned.then(|| Reason::LargeDetuning(force.term.clone()))
     };
     let angle = |force: &Forcing| angle(force, values);

@@ -236,7 +236,8 @@ impl Shape<'_> {
         };
         let crossing = list(&cycle.crossing)?.try_into().ok()?;
         let styles = [Style::Text, Style::Latex];
-        let print = |x: &Vec<[F::Element; 2]>| styles.map(|style| printed(field, x, style));
+        let digits = self.settings.digits;
+        let print = |x: &Vec<[F::Element; 2]>| styles.map(|style| printed(field, x, digits, style));
         let harmonics = cycle.solution.iter().map(|x| self.harmonics(field, x));
         Some(HopfCycle {
             exact: false,
@@ -304,11 +305,28 @@ fn waves<F: Field>(field: &F, x: &[[F::Element; 2]]) -> Vec<(usize, [F::Element;
     there.map(wave).collect()
 }
 
+/// The digits that an enclosure holds; with its radius where it holds zero.
+fn enclosed(number: &Number, style: Style) -> Term {
+    let (sign, size) = match number.decimal.strip_prefix('-') {
+        Some(size) => (-1, size),
+        None => (1, &*number.decimal),
+    };
+    let zero = size.parse::<f64>().is_ok_and(|size| size == 0.0);
+    let factor = match (&number.error, style) {
+        (Some(error), Style::Text) if zero => format!("(0 +- {error})"),
+        (Some(error), Style::Latex) if zero => format!(r"(0 \pm {error})"),
+        _ => size.to_owned(),
+    };
+    Term { coefficient: Rational::from(sign), factors: vec![factor] }
+}
+
 /// x_n as a sum of cosines and sines.
-fn printed<F: Field>(field: &F, x: &[[F::Element; 2]], style: Style) -> String {
+fn printed<F: Field>(field: &F, x: &[[F::Element; 2]], digits: usize, style: Style) -> String {
     let mut sum: Vec<Term> = Vec::new();
     for (k, parts) in waves(field, x) {
-        for (function, e) in ["cos", "sin"].iter().zip(&parts).filter(|(_, e)| !field.is_zero(e)) {
+        // sin 0 = 0, whatever encloses its factor.
+        let functions = ["cos", "sin"].iter().take(if k == 0 { 1 } else { 2 });
+        for (function, e) in functions.zip(&parts).filter(|(_, e)| !field.is_zero(e)) {
             let angle = match (k, style) {
                 (1, _) => "s".to_owned(),
                 (k, Style::Text) => format!("{k}*s"),
@@ -320,9 +338,10 @@ fn printed<F: Field>(field: &F, x: &[[F::Element; 2]], style: Style) -> String {
             };
             // The 2 of x_1 in enclosures.
             let whole = field.as_rational(e).filter(Rational::is_integer);
-            let own = match whole {
-                Some(coefficient) => Term { coefficient, factors: Vec::new() },
-                None => field.factor(e, style),
+            let own = match (whole, field.number(e, digits)) {
+                (Some(coefficient), _) => Term { coefficient, factors: Vec::new() },
+                (None, Some(number)) if number.exact.is_none() => enclosed(&number, style),
+                _ => field.factor(e, style),
             };
             sum.push(own.times((k > 0).then_some(wave)));
         }

@@ -275,4 +275,7 @@ fn turns_outside_of_the_field_are_enclosed() {
     let cycle = found(&equation, 0.0, 2);
     assert!(!cycle.exact);
     assert!((values(&cycle.parameter)[2] - 1f64.cos()).abs() < 1e-12, "{cycle:?}");
+    // All digits of x_3 = (sin 1 cos 3s)/4 - (cos 1 sin 3s)/4.
+    let printed = "0.21036774620197412666*cos(3*s) - 0.13507557646703492935*sin(3*s)";
+    assert_eq!(cycle.solution[2][0], printed);
 }
