@@ -150,14 +150,19 @@ pub fn check_frequencies(
     small: &str,
 ) -> Result<(), Refused> {
     let averaging = parts.methods.iter().filter(|(method, _)| *method == Method::Averaging);
-    let refused = averaging.flat_map(|(_, against)| against).find_map(|reason| match reason {
-        Reason::IrrationalRatio(e) => Some(("ratio-not-rational", e, reason, RATIO)),
-        Reason::LargeDetuning(e) => Some(("detuning-not-small", e, reason, DETUNING)),
-        _ => None,
-    });
-    let Some((code, term, reason, hint)) = refused else { return Ok(()) };
-    let message = format!("{}: {}", place(term), reason_text(reason, small));
-    Err(Refused::no_answer(code, message, hint))
+    for reason in averaging.flat_map(|(_, against)| against) {
+        let message = |term| format!("{}: {}", place(term), reason_text(reason, small));
+        return Err(match reason {
+            Reason::IrrationalRatio(e) => {
+                Refused::no_answer("ratio-not-rational", message(e), RATIO)
+            }
+            Reason::LargeDetuning(e) => {
+                Refused::no_answer("detuning-not-small", message(e), DETUNING)
+            }
+            _ => continue,
+        });
+    }
+    Ok(())
 }
 
 /// What takes an equation that the expansion does not; nothing where a small parameter would make it one
