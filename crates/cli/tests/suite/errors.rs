@@ -302,6 +302,27 @@ const TABLE: &[(i32, &str, &str, &str, &str)] = &[
     ),
     (
         3,
+        "ratio-not-rational",
+        "derive \"x'' + x + eps*x^3 = eps*cos(sqrt(2)*t)\" --order 1",
+        "cos(omega*t)",
+        "derive \"x'' + x + eps*x^3 = eps*cos(omega*t)\" --order 1",
+    ),
+    (
+        3,
+        "detuning-not-small",
+        "derive \"x'' + x + eps*x^3 = eps*cos((1 + sigma)*t)\" --order 1",
+        "cos((1 + eps*sigma)*t)",
+        "derive \"x'' + x + eps*x^3 = eps*cos((1 + eps*sigma)*t)\" --order 1",
+    ),
+    (
+        2,
+        "undeclared-parameter",
+        "derive \"x'' + x + eps*x^3 = eps*cos(w*t)\" --order 1",
+        "omega",
+        "derive \"x'' + x + eps*x^3 = eps*cos(omega*t)\" --order 1",
+    ),
+    (
+        3,
         "near-miss",
         "derive \"x'' + x + eps*x^3 = F*cos(1000001/1000000*t)\" --order 1",
         "eps*sigma*x",
