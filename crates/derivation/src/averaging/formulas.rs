@@ -1,6 +1,6 @@
 //! Averaging over symbols: the parameters in the words of the algebra, with what makes its constants formulas again.
 
-use lindstedt_algebra::{RationalAlgebra, Ring};
+use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_coeff::parameters::{ParameterField, ParameterFraction};
 use lindstedt_coeff::sparse::{Monomial, Sparse};
 use lindstedt_coeff::{PowerProduct, Symbol};
@@ -76,6 +76,11 @@ impl<'a> Formulas<'a> {
         }
         formulas = Self { field, algebra, symbols: formulas.symbols, inverse };
         Some(formulas)
+    }
+
+    /// The same with products that are broken off when `stop` says so.
+    pub(super) fn with_stop(self, stop: Stop) -> Self {
+        Self { algebra: self.algebra.with_stop(stop), ..self }
     }
 
     /// A polynomial without cosines and sines as a constant.

@@ -298,7 +298,9 @@ impl<'a> Task<'a> {
         match found {
             Ok(found) => Ok(Some(found)),
             Err(Error::Expand(
-                error @ (ExpandError::Residual { .. } | ExpandError::Normalisation { .. }),
+                error @ (ExpandError::Residual { .. }
+                | ExpandError::Normalisation { .. }
+                | ExpandError::Interrupted { .. }),
             )) => Err(error.into()),
             Err(_) => Ok(None),
         }
@@ -379,7 +381,8 @@ impl<'a> Task<'a> {
         let general = self.over_field()?;
         let Setting { ring: field, frequency, forcing, delays, .. } = &general;
         if let Some(formulas) = Formulas::new(field, frequency, forcing.as_ref(), delays)
-            && let Some((expansion, checked)) = self.over_words(field, &formulas, observer)?
+            && let Some((expansion, checked)) =
+                self.over_words(field, &formulas.with_stop(self.settings.stop.clone()), observer)?
         {
             let over = Over::new(field.clone(), frequency.clone(), expansion, checked);
             return Ok((field.clone(), over));
