@@ -349,7 +349,7 @@ def test_other_threads_run_meanwhile_and_limits_hold() -> None:
     other = threading.Thread(target=tick)
     other.start()
     try:
-        answer = law.derive(30, seconds=0.5, progress=lambda *words: told.append(words))
+        answer = law.derive(40, seconds=0.5, progress=lambda *words: told.append(words))
         assert not answer.is_complete
     except lindstedt.StoppedError:
         pass

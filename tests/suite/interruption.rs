@@ -184,7 +184,7 @@ fn averaged_rates() {
         let list = list.iter().filter(|_| values);
         let parameters = list.map(|(n, v)| ((*n).to_owned(), Exact::parse(v).unwrap())).collect();
         let settings =
-            AveragingSettings { order: 3, parameters, stop, ..AveragingSettings::default() };
+            AveragingSettings { order: 8, parameters, stop, ..AveragingSettings::default() };
         average(&problem, &settings, &mut |_| true)
     };
     for values in [true, false] {
