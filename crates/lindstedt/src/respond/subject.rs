@@ -58,7 +58,7 @@ impl<'a> Subject<'a> {
                 case = case.with(&known, value);
             }
         }
-        let asked = |case: &Oscillator| Ok::<_, Error>(case.flow(order, work)?.value);
+        let asked = |case: &Oscillator| whole(case.flow(order, work)?.value, order);
         let mut slow = asked(&case);
         let mut factor = None;
         let independent = |slow: &SlowFlow, name: &String| slow.system.independent.contains(name);
@@ -329,6 +329,15 @@ impl<'a> Subject<'a> {
         };
         points.filter(inside).map(shown).collect()
     }
+}
+
+/// A slow flow that was stopped at a lower order is that of other states.
+fn whole(slow: SlowFlow, order: usize) -> Result<SlowFlow, Error> {
+    if slow.order < order {
+        let message = format!("stopped at order {} of the slow flow of order {order}", slow.order);
+        return Err(Refused::stopped(message, "raise --limit-seconds or lower --order").into());
+    }
+    Ok(slow)
 }
 
 /// Whether an error says that this name has no value.
