@@ -6,9 +6,9 @@ use lindstedt_algebra::RationalAlgebra;
 pub type Pair<E> = [E; 2];
 
 /// The complex numbers over a real field.
-pub(crate) struct Plane<'a, R>(pub &'a R);
+pub(crate) struct ComplexNumbers<'a, R>(pub &'a R);
 
-impl<R: RationalAlgebra> Plane<'_, R> {
+impl<R: RationalAlgebra> ComplexNumbers<'_, R> {
     pub fn zero(&self) -> Pair<R::Element> {
         [self.0.zero(), self.0.zero()]
     }

@@ -6,7 +6,7 @@
 use crate::complex::Pair;
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::print::Print;
-use lindstedt_equation::{Expression, Function};
+use lindstedt_equation::{Expression, Function, Operations};
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::ball::{Ball, Balls, Complex, ComplexBalls};
 use lindstedt_number::{Number, rational};
@@ -104,7 +104,7 @@ impl Field for BallRing {
     }
 
     fn constant(&self, e: &Expression) -> Option<Enclosure> {
-        constant(e, self.balls).filter(Ball::is_finite).map(Enclosure)
+        e.evaluate(&mut Constants(self.balls)).filter(Ball::is_finite).map(Enclosure)
     }
 
     fn number(&self, a: &Enclosure, digits: usize) -> Option<Number> {
@@ -121,41 +121,52 @@ impl Field for BallRing {
     }
 }
 
-fn constant(e: &Expression, balls: Balls) -> Option<Ball> {
-    Some(match e {
-        Expression::Number(q) => balls.from_rational(q),
-        Expression::Parameter(name) if name == PI => balls.pi(),
-        Expression::Sum(list) => list
-            .iter()
-            .try_fold(balls.zero(), |sum, e| Some(balls.add(&sum, &constant(e, balls)?)))?,
-        Expression::Product(list) => list
-            .iter()
-            .try_fold(balls.one(), |all, e| Some(balls.mul(&all, &constant(e, balls)?)))?,
-        Expression::Power(base, exponent) => {
-            let (base, n) = (constant(base, balls)?, exponent.as_number());
-            match n.as_ref().filter(|n| n.is_integer()).and_then(|n| n.numer().to_i64()) {
-                Some(n) => balls.powi(&base, n)?,
-                None if n.is_some_and(|n| n == 0.5) => balls.sqrt(&base)?,
-                None => balls.exp(&balls.mul(&constant(exponent, balls)?, &balls.ln(&base)?)),
+/// Balls, as what a constant expression is evaluated over.
+struct Constants(Balls);
+
+impl Operations for Constants {
+    type Value = Ball;
+
+    fn number(&mut self, q: &Rational) -> Option<Ball> {
+        Some(self.0.from_rational(q))
+    }
+
+    fn leaf(&mut self, leaf: &Expression) -> Option<Ball> {
+        matches!(leaf, Expression::Parameter(name) if name == PI).then(|| self.0.pi())
+    }
+
+    fn add(&mut self, a: Ball, b: Ball) -> Option<Ball> {
+        Some(self.0.add(&a, &b))
+    }
+
+    fn multiply(&mut self, a: Ball, b: Ball) -> Option<Ball> {
+        Some(self.0.mul(&a, &b))
+    }
+
+    fn power(&mut self, base: &Expression, exponent: &Expression) -> Option<Ball> {
+        let (base, n) = (base.evaluate(self)?, exponent.as_number());
+        match n.as_ref().filter(|n| n.is_integer()).and_then(|n| n.numer().to_i64()) {
+            Some(n) => self.0.powi(&base, n),
+            None if n.is_some_and(|n| n == 0.5) => self.0.sqrt(&base),
+            None => {
+                let exponent = exponent.evaluate(self)?;
+                Some(self.0.exp(&self.0.mul(&exponent, &self.0.ln(&base)?)))
             }
         }
-        Expression::Function(function, argument) => {
-            let z = constant(argument, balls)?;
-            match function {
-                Function::Ln => balls.ln(&z)?,
-                Function::Exp => balls.exp(&z),
-                Function::Sin => balls.sin(&z),
-                Function::Cos => balls.cos(&z),
-                Function::Abs => balls.abs(&z),
-                Function::Sign => match (z.is_positive(), z.is_negative()) {
-                    (true, _) => balls.one(),
-                    (_, true) => balls.from_i64(-1),
-                    _ => return None,
-                },
-            }
+    }
+
+    fn function(&mut self, function: Function, argument: &Expression) -> Option<Ball> {
+        let z = argument.evaluate(self)?;
+        match function {
+            Function::Ln => self.0.ln(&z),
+            Function::Exp => Some(self.0.exp(&z)),
+            Function::Sin => Some(self.0.sin(&z)),
+            Function::Cos => Some(self.0.cos(&z)),
+            Function::Abs => Some(self.0.abs(&z)),
+            Function::Sign if z.is_positive() => Some(self.0.one()),
+            Function::Sign => z.is_negative().then(|| self.0.from_i64(-1)),
         }
-        _ => return None,
-    })
+    }
 }
 
 /// L and what Newton's method, the transversality and the count of roots need of it, at lambda.

@@ -1,6 +1,6 @@
 //! Hopf points in Q(pi): guessed from their digits, proved by L(i omega_0; alpha_0) = 0.
 
-use crate::complex::{Pair, Plane};
+use crate::complex::{ComplexNumbers, Pair};
 use crate::equation::{DelayEquation, Field, value};
 use crate::pi::{InPi, PiField};
 use crate::search::HopfPoint;
@@ -24,7 +24,8 @@ pub(crate) fn exact(equation: &DelayEquation<InPi>, point: &HopfPoint) -> Option
         let fits = |alpha: &InPi| {
             let enclosed = PiField.ball(alpha, Balls::new(BITS));
             enclosed.is_some_and(|ball| ball.overlaps(&point.parameter))
-                && root(equation, &omega, alpha).is_some_and(|z| Plane(&PiField).is_zero(&z))
+                && root(equation, &omega, alpha)
+                    .is_some_and(|z| ComplexNumbers(&PiField).is_zero(&z))
         };
         all.into_iter().find(fits).map(|alpha| (alpha, omega.clone()))
     })
@@ -79,7 +80,7 @@ fn solved(equation: &DelayEquation<InPi>, omega: &InPi) -> Option<InPi> {
     let of = |c: &[InPi], k: usize| c.get(k).cloned().unwrap_or_else(|| PiField.zero());
     let both = |c: &[InPi]| vec![of(c, 0), of(c, 1)];
     let [a, b] = parts(equation, omega, &|c| of(c, 0), &both)?.try_into().ok()?;
-    let plane = Plane(&PiField);
+    let plane = ComplexNumbers(&PiField);
     let [alpha, none] = plane.neg(&plane.mul(&a, &plane.reciprocal(&b)?));
     PiField.is_zero(&none).then_some(alpha)
 }
@@ -91,7 +92,7 @@ fn parts(
     delay: &dyn Fn(&[InPi]) -> InPi,
     of: &dyn Fn(&[InPi]) -> Vec<InPi>,
 ) -> Option<Vec<Pair<InPi>>> {
-    let plane = Plane(&PiField);
+    let plane = ComplexNumbers(&PiField);
     let mut sums: Vec<Pair<InPi>> = Vec::new();
     for (term, factor) in equation.linear() {
         let later = delay(&equation.delays[factor.delay]);

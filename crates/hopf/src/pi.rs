@@ -4,9 +4,10 @@
 use crate::equation::{Field, PI};
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use lindstedt_coeff::print::{Print, Style, Term, power, print_sum};
-use lindstedt_equation::Expression;
+use lindstedt_equation::{Expression, Function, Operations};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{Number, certified, rational};
+use lindstedt_series::univariate::{common_divisor, divided, plus, product, scaled};
 use rug::{Integer, Rational};
 use std::cmp::Ordering;
 
@@ -50,67 +51,6 @@ impl PiField {
     }
 }
 
-fn trimmed(mut p: Polynomial) -> Polynomial {
-    while p.last().is_some_and(Rational::is_zero) {
-        p.pop();
-    }
-    p
-}
-
-fn scaled(p: &Polynomial, q: &Rational) -> Polynomial {
-    trimmed(p.iter().map(|c| Rational::from(c * q)).collect())
-}
-
-fn plus(p: &Polynomial, q: &Polynomial) -> Polynomial {
-    let mut sum = p.clone();
-    sum.resize(p.len().max(q.len()), Rational::new());
-    sum.iter_mut().zip(q).for_each(|(a, b)| *a += b);
-    trimmed(sum)
-}
-
-fn product(p: &Polynomial, q: &Polynomial) -> Polynomial {
-    let mut all = vec![Rational::new(); (p.len() + q.len()).saturating_sub(1)];
-    for (i, a) in p.iter().enumerate().filter(|(_, a)| !a.is_zero()) {
-        for (j, b) in q.iter().enumerate() {
-            all[i + j] += Rational::from(a * b);
-        }
-    }
-    trimmed(all)
-}
-
-/// Quotient and remainder; q is not zero.
-fn divided(p: &Polynomial, q: &Polynomial) -> (Polynomial, Polynomial) {
-    let mut rest = p.clone();
-    let mut found = vec![Rational::new(); (p.len() + 1).saturating_sub(q.len())];
-    let Some(leading) = q.last() else { return (found, rest) };
-    for place in (0..found.len()).rev() {
-        let factor = Rational::from(&rest[place + q.len() - 1] / leading);
-        for (k, c) in q.iter().enumerate().filter(|_| !factor.is_zero()) {
-            rest[place + k] -= Rational::from(&factor * c);
-        }
-        found[place] = factor;
-    }
-    (trimmed(found), trimmed(rest))
-}
-
-/// The greatest common divisor by Euclid's algorithm, remainders made monic.
-fn common_divisor(p: &Polynomial, q: &Polynomial) -> Polynomial {
-    let (mut a, mut b) = (p.clone(), q.clone());
-    while !b.is_empty() {
-        let (_, rest) = divided(&a, &b);
-        a = b;
-        b = monic(rest);
-    }
-    monic(a)
-}
-
-fn monic(p: Polynomial) -> Polynomial {
-    match p.last().map(|leading| Rational::from(leading.recip_ref())) {
-        Some(inverse) => scaled(&p, &inverse),
-        None => p,
-    }
-}
-
 /// p/q in lowest terms; q is not zero.
 fn quotient(p: Polynomial, q: Polynomial) -> InPi {
     if p.is_empty() {
@@ -122,7 +62,10 @@ fn quotient(p: Polynomial, q: Polynomial) -> InPi {
     let (mut p, mut q) = (p[low..].to_vec(), q[low..].to_vec());
     if q.len() > zeros(&q) + 1 {
         let divisor = common_divisor(&p, &q);
-        (p, q) = (divided(&p, &divisor).0, divided(&q, &divisor).0);
+        [p, q] = [p, q].map(|all| {
+            let [over, _] = divided(&all, &divisor);
+            over
+        });
     }
     let inverse = q.last().map_or_else(|| 1.into(), |leading| Rational::from(leading.recip_ref()));
     InPi { numerator: scaled(&p, &inverse), denominator: scaled(&q, &inverse) }
@@ -145,11 +88,11 @@ impl Ring for PiField {
             return;
         }
         let over = if a.denominator == b.denominator {
-            (plus(&a.numerator, &b.numerator), a.denominator.clone())
+            (plus(a.numerator.clone(), &b.numerator), a.denominator.clone())
         } else {
-            let crossed =
-                [product(&a.numerator, &b.denominator), product(&b.numerator, &a.denominator)];
-            (plus(&crossed[0], &crossed[1]), product(&a.denominator, &b.denominator))
+            let crossed = product(&a.numerator, &b.denominator);
+            let over = plus(crossed, &product(&b.numerator, &a.denominator));
+            (over, product(&a.denominator, &b.denominator))
         };
         *a = quotient(over.0, over.1);
     }
@@ -199,24 +142,7 @@ impl Field for PiField {
     }
 
     fn constant(&self, e: &Expression) -> Option<InPi> {
-        match e {
-            Expression::Number(q) => Some(self.rational(q)),
-            Expression::Parameter(name) if name == PI => Some(self.power(&1.into(), 1)),
-            Expression::Sum(list) => {
-                list.iter().try_fold(self.zero(), |sum, e| Some(self.add(&sum, &self.constant(e)?)))
-            }
-            Expression::Product(list) => {
-                list.iter().try_fold(self.one(), |all, e| Some(self.mul(&all, &self.constant(e)?)))
-            }
-            Expression::Power(base, n) => {
-                let n = n.as_number().filter(Rational::is_integer)?.numer().to_i32()?;
-                let base = self.constant(base)?;
-                let base = if n < 0 { self.reciprocal(&base)? } else { base };
-                let count = Some(n.unsigned_abs()).filter(|n| *n <= LARGEST_POWER)?;
-                Some((0..count).fold(self.one(), |all, _| self.mul(&all, &base)))
-            }
-            _ => None,
-        }
+        e.evaluate(&mut { *self })
     }
 
     fn number(&self, a: &InPi, digits: usize) -> Option<Number> {
@@ -236,6 +162,39 @@ impl Field for PiField {
             (!ball.contains_zero()).then_some(sign)
         };
         (7..=16).find_map(|k| decided(1 << k))
+    }
+}
+
+impl Operations for PiField {
+    type Value = InPi;
+
+    fn number(&mut self, q: &Rational) -> Option<InPi> {
+        Some(self.rational(q))
+    }
+
+    fn leaf(&mut self, leaf: &Expression) -> Option<InPi> {
+        let pi = matches!(leaf, Expression::Parameter(name) if name == PI);
+        pi.then(|| (*self).power(&1.into(), 1))
+    }
+
+    fn add(&mut self, a: InPi, b: InPi) -> Option<InPi> {
+        Some(Ring::add(self, &a, &b))
+    }
+
+    fn multiply(&mut self, a: InPi, b: InPi) -> Option<InPi> {
+        Some(self.mul(&a, &b))
+    }
+
+    fn power(&mut self, base: &Expression, exponent: &Expression) -> Option<InPi> {
+        let n = exponent.as_number().filter(Rational::is_integer)?.numer().to_i32()?;
+        let base = base.evaluate(self)?;
+        let base = if n < 0 { self.reciprocal(&base)? } else { base };
+        let count = Some(n.unsigned_abs()).filter(|n| *n <= LARGEST_POWER)?;
+        Some(lindstedt_coeff::polynomial::power(self, &base, count))
+    }
+
+    fn function(&mut self, _: Function, _: &Expression) -> Option<InPi> {
+        None
     }
 }
 

@@ -1,6 +1,6 @@
 //! The judge of [`expand`](crate::series::expand): the complete series put into the equation.
 
-use crate::complex::{Pair, Plane};
+use crate::complex::{ComplexNumbers, Pair};
 use crate::equation::{DelayEquation, Factor, Field};
 use crate::series::Cycle;
 use rug::Rational;
@@ -29,10 +29,10 @@ pub(crate) fn vanishes<F: Field>(
         }
         for (k, series) in product {
             let sum = total.entry(k).or_insert_with(|| judge.zeros());
-            sum.iter_mut().zip(&series).for_each(|(a, b)| Plane(field).add_assign(a, b));
+            sum.iter_mut().zip(&series).for_each(|(a, b)| ComplexNumbers(field).add_assign(a, b));
         }
     }
-    Some(total.values().flatten().all(|z| Plane(field).may_vanish(z)))
+    Some(total.values().flatten().all(|z| ComplexNumbers(field).may_vanish(z)))
 }
 
 /// By harmonic, from -k to k: the coefficients of 1, eps, ..., eps^N.
@@ -46,12 +46,12 @@ struct Judge<'a, F> {
 
 impl<F: Field> Judge<'_, F> {
     fn zeros(&self) -> Vec<Pair<F::Element>> {
-        vec![Plane(self.field).zero(); self.length + 1]
+        vec![ComplexNumbers(self.field).zero(); self.length + 1]
     }
 
     /// The product of two series.
     fn times(&self, a: &[Pair<F::Element>], b: &[Pair<F::Element>]) -> Vec<Pair<F::Element>> {
-        let plane = Plane(self.field);
+        let plane = ComplexNumbers(self.field);
         let mut sum = self.zeros();
         for (i, z) in a.iter().enumerate().filter(|(_, z)| !plane.is_zero(z)) {
             for (w, total) in b.iter().zip(&mut sum[i..]) {
@@ -75,7 +75,9 @@ impl<F: Field> Judge<'_, F> {
                 }
                 let sum = all.entry(k + l).or_insert_with(|| self.zeros());
                 let own = self.times(a, b);
-                sum.iter_mut().zip(&own).for_each(|(a, b)| Plane(self.field).add_assign(a, b));
+                sum.iter_mut()
+                    .zip(&own)
+                    .for_each(|(a, b)| ComplexNumbers(self.field).add_assign(a, b));
             }
         }
         Some(all)
@@ -90,7 +92,7 @@ impl<F: Field> Judge<'_, F> {
 
     /// p(alpha) by powers of alpha.
     fn polynomial(&self, p: &[F::Element], alpha: &[F::Element]) -> Vec<Pair<F::Element>> {
-        let (plane, alpha) = (Plane(self.field), self.whole(alpha));
+        let (plane, alpha) = (ComplexNumbers(self.field), self.whole(alpha));
         let (mut power, mut sum) = (self.whole(&[self.field.one()]), self.zeros());
         for c in p {
             for (total, z) in sum.iter_mut().zip(&power) {
@@ -108,7 +110,7 @@ impl<F: Field> Judge<'_, F> {
         cycle: &Cycle<F::Element>,
         factor: Factor,
     ) -> Option<Whole<F::Element>> {
-        let (field, plane) = (self.field, Plane(self.field));
+        let (field, plane) = (self.field, ComplexNumbers(self.field));
         let omega = self.whole(&cycle.frequency);
         let later = self.polynomial(&equation.delays[factor.delay], &cycle.parameter);
         let mut angle = self.times(&omega, &later);

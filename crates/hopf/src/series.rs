@@ -15,7 +15,7 @@
 //! the root crosses the imaginary axis with a speed. Nothing else is divided by: the series is complete.
 
 use crate::HopfError;
-use crate::complex::{Pair, Plane};
+use crate::complex::{ComplexNumbers, Pair};
 use crate::equation::{DelayEquation, Factor, Field, derivative, value};
 use rug::Rational;
 
@@ -112,7 +112,7 @@ pub(crate) fn expand<F: Field>(
         run.order(n, &solvability)?;
     }
     // L_omega = i L_lambda, dlambda/dalpha = -L_alpha/L_lambda = -i L_alpha/L_omega.
-    let plane = Plane(field);
+    let plane = ComplexNumbers(field);
     let slope = plane.reciprocal(&solvability.by_omega).ok_or(HopfError::NoSpeed)?;
     let ratio = plane.mul(&solvability.by_alpha, &slope);
     Ok(Cycle {
@@ -129,7 +129,7 @@ impl<'a, F: Field> Recursion<'a, F> {
         equation: &'a DelayEquation<F::Element>,
         (alpha, omega): (F::Element, F::Element),
     ) -> Result<Self, HopfError> {
-        let plane = Plane(field);
+        let plane = ComplexNumbers(field);
         let mut factors: Vec<Factor> =
             equation.terms.iter().flat_map(|term| term.factors.clone()).collect();
         factors.sort_unstable();
@@ -171,7 +171,7 @@ impl<'a, F: Field> Recursion<'a, F> {
 
     /// What multiplies the harmonics up to k.
     fn prepare(&mut self, k: usize) -> Result<(), HopfError> {
-        let (field, plane) = (self.field, Plane(self.field));
+        let (field, plane) = (self.field, ComplexNumbers(self.field));
         for k in self.harmonics.len()..=k {
             let first = |angle: &Vec<F::Element>| {
                 let turn = field.turn(&field.scale(&angle[0], &Rational::from(k)));
@@ -191,7 +191,7 @@ impl<'a, F: Field> Recursion<'a, F> {
 
     /// L_omega and L_alpha at the harmonic 1.
     fn solvability(&self) -> Result<Solvability<F::Element>, HopfError> {
-        let (field, plane, scalars) = (self.field, Plane(self.field), &self.scalars);
+        let (field, plane, scalars) = (self.field, ComplexNumbers(self.field), &self.scalars);
         let [alpha, omega] = [&scalars.alpha[0], &scalars.omega[0]];
         let (mut by_omega, mut by_alpha) = (plane.zero(), plane.zero());
         for (term, factor) in self.equation.linear() {
@@ -223,7 +223,7 @@ impl<'a, F: Field> Recursion<'a, F> {
 
     /// x_(n+1), alpha_n and omega_n.
     fn order(&mut self, n: usize, two: &Solvability<F::Element>) -> Result<(), HopfError> {
-        let (field, plane, m) = (self.field, Plane(self.field), n + 1);
+        let (field, plane, m) = (self.field, ComplexNumbers(self.field), n + 1);
         self.prepare(m)?;
         for place in 0..self.products.len() {
             let next = self.product(place, m);
@@ -264,14 +264,14 @@ impl<'a, F: Field> Recursion<'a, F> {
     /// The harmonic k of x_(m - i), with i: those that are there.
     fn known(&self, k: usize, m: usize) -> impl Iterator<Item = (usize, &Pair<F::Element>)> {
         self.solution.iter().enumerate().filter_map(move |(j, x)| {
-            let x = x.get(k).filter(|x| !Plane(self.field).is_zero(x))?;
+            let x = x.get(k).filter(|x| !ComplexNumbers(self.field).is_zero(x))?;
             Some((m.checked_sub(j)?, x))
         })
     }
 
     /// D^n x(t - T) at eps^m, for every factor.
     fn extend(&mut self, m: usize) {
-        let plane = Plane(self.field);
+        let plane = ComplexNumbers(self.field);
         for place in 0..self.factors.len() {
             let mut all = vec![plane.zero(); m + 1];
             for (k, sum) in all.iter_mut().enumerate() {
@@ -290,7 +290,7 @@ impl<'a, F: Field> Recursion<'a, F> {
 
     /// The coefficient of eps^m of a product of two factors or more: what is known of them begins with eps.
     fn product(&self, place: usize, m: usize) -> Harmonics<F::Element> {
-        let plane = Plane(self.field);
+        let plane = ComplexNumbers(self.field);
         let product = &self.products[place];
         let Some(before) = product.before.map(|place| &self.products[place].series) else {
             return Vec::new();
@@ -305,7 +305,7 @@ impl<'a, F: Field> Recursion<'a, F> {
 
     /// What the terms with several factors give at eps^m.
     fn nonlinear(&self, m: usize) -> Harmonics<F::Element> {
-        let plane = Plane(self.field);
+        let plane = ComplexNumbers(self.field);
         let mut sum = vec![plane.zero(); m + 1];
         for &(term, place) in &self.nonlinear {
             for (i, c) in self.scalars.coefficients[term].iter().enumerate().take(m - 1) {
@@ -320,7 +320,7 @@ impl<'a, F: Field> Recursion<'a, F> {
 
 /// sum += f g.
 fn add_product<R: Field>(
-    plane: &Plane<'_, R>,
+    plane: &ComplexNumbers<'_, R>,
     sum: &mut Harmonics<R::Element>,
     f: &Harmonics<R::Element>,
     g: &Harmonics<R::Element>,
@@ -349,7 +349,7 @@ impl<E: Clone + PartialEq> Harmonic<E> {
         factors: &[Factor],
         scalars: &Scalars<E>,
     ) {
-        let (plane, m) = (Plane(field), self.linear.len());
+        let (plane, m) = (ComplexNumbers(field), self.linear.len());
         for (angle, shift) in scalars.angles.iter().zip(&mut self.shifts) {
             // m E_m = -i k sum_j j theta_j E_(m-j); the first is there.
             if m > 0 {

@@ -49,7 +49,7 @@ pub fn guesses(field: &Field, kind: &Kind, stop: &Stop) -> Result<Vec<Start>, Fa
     let forced = matches!(kind, Kind::Forced(_));
     let phases = if forced { PHASES } else { 1 };
     let mut found: Vec<Start> = Vec::new();
-    let plane = Plane { field, doubles: InDoubles::new(field) };
+    let plane = PhasePlane { field, doubles: InDoubles::new(field) };
     let middles = plane.equilibria();
     let singles = middles.iter().flat_map(|middle| {
         let radii = plane.radii(kind, *middle).into_iter();
@@ -80,12 +80,12 @@ pub fn guesses(field: &Field, kind: &Kind, stop: &Stop) -> Result<Vec<Start>, Fa
 }
 
 /// A field of one unknown with its numbers in doubles.
-struct Plane<'a> {
+struct PhasePlane<'a> {
     field: &'a Field,
     doubles: InDoubles,
 }
 
-impl Plane<'_> {
+impl PhasePlane<'_> {
     /// The amplitudes of the single harmonics about a middle.
     fn radii(&self, kind: &Kind, middle: f64) -> Vec<f64> {
         let list = match kind {

@@ -30,6 +30,32 @@ pub fn derivative(polynomial: &[Rational]) -> Vec<Rational> {
     (1u32..).zip(polynomial.iter().skip(1)).map(|(k, c)| Rational::from(c * k)).collect()
 }
 
+/// q p.
+#[must_use]
+pub fn scaled(polynomial: &[Rational], q: &Rational) -> Vec<Rational> {
+    trim(polynomial.iter().map(|c| Rational::from(c * q)).collect())
+}
+
+/// a + b.
+#[must_use]
+pub fn plus(mut a: Vec<Rational>, b: &[Rational]) -> Vec<Rational> {
+    a.resize(a.len().max(b.len()), Rational::new());
+    a.iter_mut().zip(b).for_each(|(x, y)| *x += y);
+    trim(a)
+}
+
+/// a b; of degree n and m in O(n m) operations.
+#[must_use]
+pub fn product(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+    let mut all = vec![Rational::new(); (a.len() + b.len()).saturating_sub(1)];
+    for (i, x) in a.iter().enumerate().filter(|(_, x)| !x.is_zero()) {
+        for (j, y) in b.iter().enumerate() {
+            all[i + j] += Rational::from(x * y);
+        }
+    }
+    trim(all)
+}
+
 /// Quotient and remainder of the division by b; of a itself by the zero polynomial, 0 and a.
 #[must_use]
 pub fn divided(a: &[Rational], b: &[Rational]) -> [Vec<Rational>; 2] {
@@ -55,7 +81,8 @@ pub fn common_divisor(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     let (mut a, mut b) = (trim(a.to_vec()), trim(b.to_vec()));
     while !b.is_empty() {
         let [_, rest] = divided(&a, &b);
-        a = std::mem::replace(&mut b, rest);
+        // Monic remainders: their coefficients do not grow with the factors of the division.
+        a = std::mem::replace(&mut b, monic(rest));
     }
     monic(a)
 }

@@ -1,6 +1,6 @@
 //! Q[r]/m: sums of powers of a root r of m.
 
-use super::{common_divisor, divided, trim};
+use super::{common_divisor, divided, plus, product, scaled};
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::Rational;
 
@@ -48,16 +48,6 @@ impl Residues {
     }
 }
 
-fn product(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
-    let mut sum = vec![Rational::new(); (a.len() + b.len()).saturating_sub(1)];
-    for (i, x) in a.iter().enumerate() {
-        for (j, y) in b.iter().enumerate() {
-            sum[i + j] += Rational::from(x * y);
-        }
-    }
-    sum
-}
-
 impl Ring for Residues {
     type Element = Vec<Rational>;
 
@@ -71,9 +61,7 @@ impl Ring for Residues {
         a.is_empty()
     }
     fn add_assign(&self, a: &mut Vec<Rational>, b: &Vec<Rational>) {
-        a.resize(a.len().max(b.len()), Rational::new());
-        a.iter_mut().zip(b).for_each(|(x, y)| *x += y);
-        *a = trim(std::mem::take(a));
+        *a = plus(std::mem::take(a), b);
     }
     fn neg(&self, a: &Vec<Rational>) -> Vec<Rational> {
         a.iter().map(|x| Rational::from(-x)).collect()
@@ -85,10 +73,10 @@ impl Ring for Residues {
 
 impl RationalAlgebra for Residues {
     fn rational(&self, q: &Rational) -> Vec<Rational> {
-        trim(vec![q.clone()])
+        scaled(&self.one(), q)
     }
     fn scale(&self, a: &Vec<Rational>, q: &Rational) -> Vec<Rational> {
-        trim(a.iter().map(|x| Rational::from(x * q)).collect())
+        scaled(a, q)
     }
     /// By Euclid's algorithm: s a + t m = 1.
     fn reciprocal(&self, a: &Vec<Rational>) -> Option<Vec<Rational>> {
