@@ -193,7 +193,8 @@ impl ReturnMap {
 /// found is returned. ln rho is a weighted mean of s_l = ln(|state_(l+1)|/|state_l|) over the last three
 /// quarters of the flights, and the error of rho the sum of
 ///
-/// * the run: twice the largest difference to the means over its first, middle and last two thirds;
+/// * the run: twice the largest difference to the means over its first, middle and last two thirds, of all four starts
+///   (a cone that one of them leaves late the others may have left), and the distance to the next largest rate;
 /// * the flight: the largest difference to the rates of the same start with 5 and with 11 points more;
 /// * rounding, with u = 2^-51: in a flight of n points u n^2, the size of the elements of the
 ///   differentiation matrix, independently in N flights: u n^2/sqrt N, and u n that all flights share.
@@ -219,13 +220,19 @@ pub(crate) fn watched_growth(
     let starts = [[1.0, 0.3], [-1.0, -0.3], [0.2, 1.0], [-0.2, -1.0]];
     let starts = starts.map(|start| start.map(|part| part * orbit.velocity));
     let mut largest = (starts[0], Growth { rate: 0.0, spread: 0.0, error: 0.0 });
+    let (mut next, mut unsettled): (f64, f64) = (0.0, 0.0);
     for start in starts {
         let found = growth_of_run(&mut map, start, flights, stop)?;
+        unsettled = unsettled.max(found.error);
         if found.rate >= largest.1.rate {
+            next = largest.1.rate;
             largest = (start, found);
+        } else {
+            next = next.max(found.rate);
         }
     }
     let (start, mut growth) = largest;
+    growth.error = unsettled + (growth.rate - next);
     let mut change: f64 = 0.0;
     for more in MORE_POINTS {
         let mut map = ReturnMap::finer(parameters, orbit, more)?;
