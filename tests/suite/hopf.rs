@@ -182,6 +182,7 @@ fn what_is_refused() {
         ("x' + a*x(t - 1) + sin(x)", "no-method", "sin(x)"),
         ("x' + a*x(t - 1) = cos(t)", "no-method", "cos(t)"),
         ("x' + a*x(t - 1) + 1", "no-method", "1 does not vanish"),
+        ("x' + a*(exp(x(t - 1)) - 1)", "no-method", "exp(x(t - 1))"),
         ("x' + x(t - 1)/a + x", "no-method", "x(t - 1)"),
         ("x' + x(t - 1)*(1 + x)", "unknown-parameter", "a"),
         ("x' + a*x(t - 1) + eps*x^2", "no-value-set", "eps"),

@@ -47,13 +47,23 @@ pub fn delay_equation(
     let order = if whole.is_first_order() { 1 } else { 2 };
     let zero = vec![Expression::integer(0)];
     let mut found = DelayEquation { order, delays: vec![zero], terms: Vec::new() };
+    let mut not_at_rest = None;
     for (m, q) in &all.terms {
-        let (factors, power) = read(&all, m, unknown, &mut found.delays).map_err(|why| {
+        let refused = |why: Why| {
             let fits = |all: &Monomials, m: &Monomial| {
                 read(all, m, unknown, &mut Vec::new()).err().filter(|own| *own == why)
             };
             named(&whole, &values, (all.tree(m, q), why), &fits)
-        })?;
+        };
+        let (factors, power) = match read(&all, m, unknown, &mut found.delays) {
+            Ok(read) => read,
+            // A constant may be what a function that is no polynomial has at 0.
+            Err(Why::NotAtRest) => {
+                not_at_rest.get_or_insert_with(|| refused(Why::NotAtRest));
+                continue;
+            }
+            Err(why) => return Err(refused(why)),
+        };
         let coefficient = coefficient(&all, m, q, unknown);
         let known = found.terms.iter().position(|term| term.factors == factors);
         let place = known.unwrap_or_else(|| {
@@ -64,7 +74,7 @@ pub fn delay_equation(
         list.resize(list.len().max(power + 1), Expression::integer(0));
         list[power] = (list[power].clone() + coefficient).canonical();
     }
-    Ok(found)
+    not_at_rest.map_or(Ok(found), Err)
 }
 
 /// The factors of a term and the power of the parameter that is sought.
