@@ -637,12 +637,28 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 fn memory_size(text: &str) -> Result<u64, String> {
-    let (number, shift) = match text.trim_end_matches(['b', 'B']).split_at_checked(text.len() - 1) {
+    let size = text.trim_end_matches(['b', 'B']);
+    let (number, shift) = match size.split_at_checked(size.len().saturating_sub(1)) {
         Some((number, "K" | "k")) => (number, 10),
         Some((number, "M" | "m")) => (number, 20),
         Some((number, "G" | "g")) => (number, 30),
-        _ => (text, 0),
+        _ => (size, 0),
     };
     let value: u64 = number.trim().parse().map_err(|_| format!("not a size: {text}"))?;
     value.checked_shl(shift).filter(|v| v >> shift == value).ok_or_else(|| "too large".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::memory_size;
+
+    #[test]
+    fn sizes_of_memory() {
+        for (text, size) in [("8G", 8 << 30), ("5GB", 5 << 30), ("3kb", 3 << 10), ("70", 70)] {
+            assert_eq!(memory_size(text), Ok(size), "{text}");
+        }
+        for text in ["", "G", "many", "99999999999999G"] {
+            assert!(memory_size(text).is_err(), "{text}");
+        }
+    }
 }
