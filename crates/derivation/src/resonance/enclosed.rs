@@ -9,6 +9,8 @@ use super::flow::Job;
 use super::{Enclosed, ResonanceError, SlowFlow, Terms};
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
+use lindstedt_algebra::AmplitudeAlgebra;
+use lindstedt_equation::Expression;
 use lindstedt_equation::classify::rational_root;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::ball::{Ball, Balls};
@@ -59,14 +61,19 @@ pub(super) fn derived(
         .as_ref()
         .map(|modes| modes.enclosed(ring.balls).ok_or(ResonanceError::NoRationalForm));
     let modes = modes.transpose()?;
-    let (amplitudes, squares) = match &modes {
+    let (amplitudes, squares, named_roots): (_, Vec<Ball>, Vec<Expression>) = match &modes {
         Some(modes) => {
             let unit = |j: usize| (0..=j + 1).map(|k| u32::from(k == j + 1).into()).collect();
-            ((0..modes.squares.len()).map(unit).collect(), modes.squares.clone())
+            let count = modes.squares.len();
+            let name = |j: usize| Expression::parameter(&format!("nu_{}", j + 1));
+            ((0..count).map(unit).collect(), modes.squares.clone(), (0..count).map(name).collect())
         }
         None => {
             let (amplitudes, roots) = classes(&job.system.squares);
-            (amplitudes, roots.iter().map(|square| ring.balls.from_rational(square)).collect())
+            let half = || Expression::Number((1, 2).into());
+            let root = |square: &Rational| Expression::Number(square.clone()).pow(half());
+            let balls = roots.iter().map(|square| ring.balls.from_rational(square)).collect();
+            (amplitudes, balls, roots.iter().map(root).collect())
         }
     };
     let roots: Vec<Ball> = squares.iter().filter_map(|square| ring.balls.sqrt(square)).collect();
@@ -75,10 +82,17 @@ pub(super) fn derived(
     let scalars = Over::enclosures(ring, middle);
     let named = modes.as_ref().map(Modes::named).unwrap_or_default();
     let other = |name: &str| named.get(name).map(|ball| Enclosure((*ball).clone()));
-    let run = job.run(scalars, rates, &other, observer)?;
+    let run = job.run(scalars, (rates, &named_roots), &other, observer)?;
     let radius = Cell::new(0.0);
-    let terms = |f: &Element| read(&run.algebra, f, &radius);
+    let growth = Cell::new(1.0f64);
+    let moving = 2 * run.algebra.unknowns() + run.algebra.forces();
+    let terms = |f: &Element| {
+        let terms = read(&run.algebra, f, &radius);
+        growth.set(growth.get().max(run.delays.growth(&terms, moving)));
+        terms
+    };
     let mut flow = job.finished(&run, &terms);
+    radius.set(radius.get() * growth.get());
     let largest = run.residual.iter().flat_map(|f| parts(&run.algebra, f));
     let residual = largest.map(|ball| upward(&ball.abs_upper())).fold(0.0, f64::max);
     // With the digits of the other coefficients, and within their radius.
