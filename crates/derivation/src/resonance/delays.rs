@@ -6,12 +6,16 @@
 //! cos(q g T_0) and sin(q g T_0) are symbols, with 1 - cos^2 in the place of sin^2, so that equal polynomials are
 //! equal as data; where q g T_0 is a number of quarters of a turn they are numbers.
 
-use super::Terms;
 use super::forces::{divisor, quarters, wave_names};
+use super::{System, Terms};
+use crate::averaging::constant;
 use lindstedt_algebra::Ring;
 use lindstedt_equation::Expression;
 use lindstedt_equation::monomials::{Monomials, expand};
 use lindstedt_expand::{Excitation, ExpandError};
+use lindstedt_number::Exact;
+use lindstedt_number::ball::ring::{BallRing, Enclosure};
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_phase::amplitudes::scalars::Scalars;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes, Late, Rates};
 use rug::{Integer, Rational};
@@ -186,6 +190,39 @@ impl Delays {
             turns.map(|k| 3f64.powi(k.abs().min(300))).product()
         };
         if phases == 0 { 1.0 } else { terms.iter().map(size).sum::<f64>().max(1.0) }
+    }
+}
+
+impl System {
+    /// The angle phi of a symbol cos(phi) or sin(phi) and whether it is the sine; nothing for another symbol.
+    #[must_use]
+    pub fn angle(&self, symbol: &str) -> Option<(&Expression, bool)> {
+        self.angles.iter().find_map(|angle| {
+            let [cos, sin] = wave_names(angle);
+            (symbol == cos || symbol == sin).then_some((angle, symbol == sin))
+        })
+    }
+
+    /// The value of a symbol cos(phi) or sin(phi); nothing for another symbol, or where a name in phi has no value.
+    #[must_use]
+    pub fn wave(
+        &self,
+        symbol: &str,
+        values: &dyn Fn(&str) -> Option<Exact>,
+        balls: Balls,
+    ) -> Option<Ball> {
+        let (angle, sine) = self.angle(symbol)?;
+        let root = |name: &str| {
+            let j: usize = name.strip_prefix("nu_")?.parse().ok()?;
+            balls.sqrt(&balls.from_rational(self.squares.get(j.checked_sub(1)?)?))
+        };
+        let value = |name: &str| match name {
+            "pi" => Some(balls.pi()),
+            _ => values(name).map(|value| value.ball(balls)).or_else(|| root(name)),
+        };
+        let ring = BallRing { balls };
+        let angle = constant(&ring, angle, &|name| value(name).map(Enclosure))?.0;
+        Some(if sine { balls.sin(&angle) } else { balls.cos(&angle) })
     }
 }
 

@@ -22,24 +22,24 @@ use std::cell::Cell;
 
 type Element = AmplitudeElement<Enclosure>;
 
-/// The square roots as multiples of 1 and of the roots of the second list.
-fn classes(squares: &[Rational]) -> (Vec<Vec<Rational>>, Vec<Rational>) {
-    let mut roots: Vec<Rational> = Vec::new();
-    let rate = |square: &Rational| {
+/// The square roots as multiples of 1 and of the roots of the second list, which has the place of each, too.
+fn classes(squares: &[Rational]) -> (Vec<Vec<Rational>>, Vec<(usize, Rational)>) {
+    let mut roots: Vec<(usize, Rational)> = Vec::new();
+    let rate = |(j, square): (usize, &Rational)| {
         if let Some(root) = rational_root(square) {
             return vec![root];
         }
         let of = |known: &Rational| rational_root(&Rational::from(square / known));
-        let found = roots.iter().enumerate().find_map(|(k, known)| Some((k, of(known)?)));
+        let found = roots.iter().enumerate().find_map(|(k, (_, known))| Some((k, of(known)?)));
         let (k, multiple) = found.unwrap_or_else(|| {
-            roots.push(square.clone());
+            roots.push((j, square.clone()));
             (roots.len() - 1, 1.into())
         });
         let mut rate = vec![Rational::new(); k + 1];
         rate.push(multiple);
         rate
     };
-    let rates = squares.iter().map(rate).collect();
+    let rates = squares.iter().enumerate().map(rate).collect();
     (rates, roots)
 }
 
@@ -61,21 +61,20 @@ pub(super) fn derived(
         .as_ref()
         .map(|modes| modes.enclosed(ring.balls).ok_or(ResonanceError::NoRationalForm));
     let modes = modes.transpose()?;
-    let (amplitudes, squares, named_roots): (_, Vec<Ball>, Vec<Expression>) = match &modes {
+    let (amplitudes, squares, first): (_, Vec<Ball>, Vec<usize>) = match &modes {
         Some(modes) => {
             let unit = |j: usize| (0..=j + 1).map(|k| u32::from(k == j + 1).into()).collect();
-            let count = modes.squares.len();
-            let name = |j: usize| Expression::parameter(&format!("nu_{}", j + 1));
-            ((0..count).map(unit).collect(), modes.squares.clone(), (0..count).map(name).collect())
+            let all = 0..modes.squares.len();
+            (all.clone().map(unit).collect(), modes.squares.clone(), all.collect())
         }
         None => {
             let (amplitudes, roots) = classes(&job.system.squares);
-            let half = || Expression::Number((1, 2).into());
-            let root = |square: &Rational| Expression::Number(square.clone()).pow(half());
-            let balls = roots.iter().map(|square| ring.balls.from_rational(square)).collect();
-            (amplitudes, balls, roots.iter().map(root).collect())
+            let ball = |(_, square): &(usize, Rational)| ring.balls.from_rational(square);
+            (amplitudes, roots.iter().map(ball).collect(), roots.iter().map(|(j, _)| *j).collect())
         }
     };
+    let name = |j: &usize| Expression::parameter(&format!("nu_{}", j + 1));
+    let named_roots: Vec<_> = first.iter().map(name).collect();
     let roots: Vec<Ball> = squares.iter().filter_map(|square| ring.balls.sqrt(square)).collect();
     let generators = roots.into_iter().map(|ball| (Enclosure(ball), Integer::from(1))).collect();
     let rates = Rates { amplitudes, ..job.rates(generators) };
