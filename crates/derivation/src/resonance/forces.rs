@@ -97,12 +97,6 @@ fn parts(angle: &Expression) -> Option<Angle> {
     known.then(|| Angle { rate: (0..=highest).map(order).collect(), start })
 }
 
-/// An angle of numbers, later by `delay`.
-pub(super) fn delayed(angle: &Expression, delay: &Expression) -> Option<Expression> {
-    let rate = parts(angle)?.rate.swap_remove(0);
-    (angle.clone() - rate * delay.clone()).multiplied_out().map(|e| e.canonical())
-}
-
 /// The rates at order zero of all angles: what must have a value.
 pub(super) fn leading_rates(
     equations: &[Expression],

@@ -164,10 +164,17 @@ impl Prepared {
         let mut bound = BTreeMap::new();
         let mentioned: BTreeSet<String> =
             equations.iter().flat_map(Expression::parameters).collect();
-        for (name, value) in given.iter().filter(|(name, _)| mentioned.contains(*name)) {
+        // A delay may be a multiple of pi.
+        let turns = |name: &String| match given.get(name) {
+            Some(Exact::PiTimes(q)) if is_only_late(equations, name) => Some(q.clone()),
+            _ => None,
+        };
+        let equations: Vec<_> = equations.iter().map(|e| with_turns(e, &turns)).collect();
+        let given = given.iter().filter(|(name, _)| turns(name).is_none());
+        for (name, value) in given.filter(|(name, _)| mentioned.contains(*name)) {
             bound.insert(name.clone(), rational(name, value)?);
         }
-        let equations = put_in(equations, &bound);
+        let equations = put_in(&equations, &bound);
         // What the frequencies depend on has its value, too.
         let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
         let entries = parts.iter().flat_map(|p| p.mass.values().chain(p.stiffness.values()));
@@ -307,6 +314,24 @@ pub(super) fn symbols<'a>(
     let unlisted: Vec<_> = used.into_iter().filter(|name| !symbols.contains(name)).collect();
     symbols.extend(unlisted);
     symbols
+}
+
+/// Whether a parameter occurs in delays alone.
+fn is_only_late(equations: &[Expression], name: &str) -> bool {
+    let now = |e: &Expression| match e {
+        Expression::Unknown(x) if x.delay.is_some() => Some(Expression::unknown(x.index, 0)),
+        _ => None,
+    };
+    let occurs = |e: &Expression| e.parameters().iter().any(|known| known == name);
+    equations.iter().any(occurs) && !equations.iter().any(|e| occurs(&e.map(&now)))
+}
+
+/// q pi in the place of every parameter for which there is a q.
+fn with_turns(e: &Expression, q: &dyn Fn(&String) -> Option<Rational>) -> Expression {
+    e.substitute(&|e| {
+        let Expression::Parameter(name) = e else { return None };
+        Some(Expression::Number(q(name)?) * Expression::parameter("pi"))
+    })
 }
 
 /// Refuses a delay where one is not taken.
