@@ -12,7 +12,6 @@
 use lindstedt_derivation::resonance::{Phase, SlowFlow, Terms};
 use lindstedt_orbit::steady::{ComplexTerm, Flow, FreePhase, Polynomial};
 use rug::Rational;
-use rug::ops::Pow;
 use std::collections::BTreeSet;
 
 /// The autonomous slow flow.
@@ -236,19 +235,18 @@ fn backbone(slow: &SlowFlow, turn: &[Rational], names: &[&str], order: usize) ->
 /// The response to the forces at order zero of a single unknown and its rate at eta_l = 0, where the symbols have these
 /// values.
 #[must_use]
-pub fn forced_part(slow: &SlowFlow, values: &[Rational]) -> [f64; 2] {
+pub fn forced_part(slow: &SlowFlow, values: &[f64]) -> [f64; 2] {
     let unknowns = slow.unknowns();
     let mut sums = [0.0, 0.0];
     let terms: &[_] = slow.solution.first().and_then(|x| x.first()).map_or(&[], Terms::as_slice);
     for term in terms.iter().filter(|t| t.exponents[..2 * unknowns].iter().all(|e| *e == 0)) {
         let symbols = term.exponents.iter().skip(slow.first_symbol()).zip(values);
-        let scale: Rational =
-            symbols.fold(Rational::from(1), |product, (e, q)| product * q.clone().pow(*e));
+        let scale: f64 = symbols.fold(1.0, |product, (e, x)| product * x.powi(*e));
         let turns = slow.system.forces.iter().zip(&term.exponents[2 * unknowns..]);
         let rate = |phase: &Phase| phase.number().unwrap_or_default().to_f64();
         let rate: f64 = turns.map(|(phase, m)| rate(phase) * f64::from(*m)).sum();
-        sums[0] += Rational::from(&scale * &term.re).to_f64();
-        sums[1] -= rate * Rational::from(&scale * &term.im).to_f64();
+        sums[0] += scale * term.re.to_f64();
+        sums[1] -= rate * scale * term.im.to_f64();
     }
     sums
 }

@@ -6,7 +6,7 @@ use lindstedt_coeff::sparse::{Monomial, Sparse};
 use lindstedt_coeff::{PowerProduct, Symbol};
 use lindstedt_number::Whole;
 use lindstedt_phase::amplitudes::scalars::Integers;
-use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Delay};
+use lindstedt_phase::amplitudes::{AmplitudeElement, Amplitudes, Delay, Late};
 use rug::{Integer, Rational};
 use std::collections::BTreeMap;
 
@@ -66,7 +66,8 @@ impl<'a> Formulas<'a> {
         let late = |delay: &Delay<ParameterFraction>| {
             let [free, forced] = &delay.turns[..] else { return None };
             let turn = |turn| formulas.turned_back(turn);
-            Some([formulas.element(&delay.time)?, turn(free)?, turn(forced)?])
+            let turns = vec![turn(free)?, turn(forced)?];
+            Some(Late { time: formulas.element(&delay.time)?, turns })
         };
         let late = delays.iter().map(late).collect::<Option<Vec<_>>>()?;
         let Self { algebra, inverse, .. } = formulas;

@@ -9,6 +9,8 @@ use super::flow::Job;
 use super::{Enclosed, ResonanceError, SlowFlow, Terms};
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
+use lindstedt_algebra::AmplitudeAlgebra;
+use lindstedt_equation::Expression;
 use lindstedt_equation::classify::rational_root;
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::ball::{Ball, Balls};
@@ -20,24 +22,24 @@ use std::cell::Cell;
 
 type Element = AmplitudeElement<Enclosure>;
 
-/// The square roots as multiples of 1 and of the roots of the second list.
-fn classes(squares: &[Rational]) -> (Vec<Vec<Rational>>, Vec<Rational>) {
-    let mut roots: Vec<Rational> = Vec::new();
-    let rate = |square: &Rational| {
+/// The square roots as multiples of 1 and of the roots of the second list, which has the place of each, too.
+fn classes(squares: &[Rational]) -> (Vec<Vec<Rational>>, Vec<(usize, Rational)>) {
+    let mut roots: Vec<(usize, Rational)> = Vec::new();
+    let rate = |(j, square): (usize, &Rational)| {
         if let Some(root) = rational_root(square) {
             return vec![root];
         }
         let of = |known: &Rational| rational_root(&Rational::from(square / known));
-        let found = roots.iter().enumerate().find_map(|(k, known)| Some((k, of(known)?)));
+        let found = roots.iter().enumerate().find_map(|(k, (_, known))| Some((k, of(known)?)));
         let (k, multiple) = found.unwrap_or_else(|| {
-            roots.push(square.clone());
+            roots.push((j, square.clone()));
             (roots.len() - 1, 1.into())
         });
         let mut rate = vec![Rational::new(); k + 1];
         rate.push(multiple);
         rate
     };
-    let rates = squares.iter().map(rate).collect();
+    let rates = squares.iter().enumerate().map(rate).collect();
     (rates, roots)
 }
 
@@ -59,26 +61,37 @@ pub(super) fn derived(
         .as_ref()
         .map(|modes| modes.enclosed(ring.balls).ok_or(ResonanceError::NoRationalForm));
     let modes = modes.transpose()?;
-    let (amplitudes, squares) = match &modes {
+    let (amplitudes, squares, first): (_, Vec<Ball>, Vec<usize>) = match &modes {
         Some(modes) => {
             let unit = |j: usize| (0..=j + 1).map(|k| u32::from(k == j + 1).into()).collect();
-            ((0..modes.squares.len()).map(unit).collect(), modes.squares.clone())
+            let all = 0..modes.squares.len();
+            (all.clone().map(unit).collect(), modes.squares.clone(), all.collect())
         }
         None => {
             let (amplitudes, roots) = classes(&job.system.squares);
-            (amplitudes, roots.iter().map(|square| ring.balls.from_rational(square)).collect())
+            let ball = |(_, square): &(usize, Rational)| ring.balls.from_rational(square);
+            (amplitudes, roots.iter().map(ball).collect(), roots.iter().map(|(j, _)| *j).collect())
         }
     };
+    let name = |j: &usize| Expression::parameter(&format!("nu_{}", j + 1));
+    let named_roots: Vec<_> = first.iter().map(name).collect();
     let roots: Vec<Ball> = squares.iter().filter_map(|square| ring.balls.sqrt(square)).collect();
     let generators = roots.into_iter().map(|ball| (Enclosure(ball), Integer::from(1))).collect();
     let rates = Rates { amplitudes, ..job.rates(generators) };
     let scalars = Over::enclosures(ring, middle);
     let named = modes.as_ref().map(Modes::named).unwrap_or_default();
     let other = |name: &str| named.get(name).map(|ball| Enclosure((*ball).clone()));
-    let run = job.run(scalars, rates, &other, observer)?;
+    let run = job.run(scalars, (rates, &named_roots), &other, observer)?;
     let radius = Cell::new(0.0);
-    let terms = |f: &Element| read(&run.algebra, f, &radius);
+    let growth = Cell::new(1.0f64);
+    let moving = 2 * run.algebra.unknowns() + run.algebra.forces();
+    let terms = |f: &Element| {
+        let terms = read(&run.algebra, f, &radius);
+        growth.set(growth.get().max(run.delays.growth(&terms, moving)));
+        terms
+    };
     let mut flow = job.finished(&run, &terms);
+    radius.set(radius.get() * growth.get());
     let largest = run.residual.iter().flat_map(|f| parts(&run.algebra, f));
     let residual = largest.map(|ball| upward(&ball.abs_upper())).fold(0.0, f64::max);
     // With the digits of the other coefficients, and within their radius.

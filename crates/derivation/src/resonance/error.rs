@@ -40,8 +40,8 @@ pub enum ResonanceError {
         /// The term.
         term: String,
     },
-    /// A delay.
-    #[error("{term} is a delay, which averaging at resonance does not take")]
+    /// A delay, where a normal mode or a parameter is asked for, or one that is tied to the period of a force.
+    #[error("{term} is a delay, which is not taken here")]
     Delay {
         /// The term.
         term: String,

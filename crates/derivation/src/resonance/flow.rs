@@ -1,6 +1,8 @@
 //! The slow flow of a system over any coefficients: derived, checked, with its energy; and over rational numbers.
 
+use super::delays::Delays;
 use super::potential::potential;
+use super::system::refuse_delays;
 use super::{
     Names, ResonanceError, Room, SlowFlow, System, Terms, refuse_near_miss, sum_of_harmonics,
 };
@@ -57,6 +59,7 @@ pub(super) type Found<S> = lindstedt_expand::resonance::SlowFlow<Element<S>>;
 /// A flow that was derived.
 pub(super) struct Run<S: Scalars> {
     pub algebra: Amplitudes<S>,
+    pub delays: Delays,
     pub found: Found<S>,
     /// The orders that were checked.
     pub checked: Option<usize>,
@@ -89,26 +92,35 @@ impl Job<'_> {
         &self,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<SlowFlow, Error> {
-        let run = self.run(Integers, self.rates(Vec::new()), &|_| None, observer)?;
+        let run = self.run(Integers, (self.rates(Vec::new()), &[]), &|_| None, observer)?;
         let terms = |f: &_| run.algebra.rational_terms(f).unwrap_or_default();
         Ok(self.finished(&run, &terms))
     }
 
-    /// Derives and checks, over some coefficients, with `other` for names that are none of the symbols.
+    /// Derives and checks, over some coefficients, with `other` for names that are none of the symbols; the generators of the
+    /// rates as expressions.
     pub(super) fn run<S: Scalars>(
         &self,
         scalars: S,
-        rates: Rates<S::Element>,
+        (rates, generators): (Rates<S::Element>, &[Expression]),
         other: &dyn Fn(&str) -> Option<S::Element>,
         observer: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Run<S>, Error> {
         let (system, settings) = (&self.system, self.settings);
         let names: Vec<&str> = system.symbols.iter().map(String::as_str).collect();
-        let algebra = Amplitudes::of_rates(scalars, rates, &names);
-        let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count: names.len() })?;
-        let algebra = algebra.with_stop(settings.stop.clone());
+        let equations = compiled_form(system);
+        let delays = Delays::of(&equations, &rates, generators)?;
+        let algebra = Amplitudes::turning(scalars, rates.clone(), &names, delays.phases());
+        let count = names.len() + delays.phases();
+        let algebra = algebra.ok_or(ResonanceError::TooManySymbols { count })?;
+        let time = |algebra: &Amplitudes<S>, e: &Expression| {
+            let binding = Symbols { algebra, step: 1, other };
+            constant(algebra, e, &|name| binding.parameter(name))
+        };
+        let late = || delays.put_in(algebra, &rates, &time);
+        let algebra = late().ok_or_else(|| self.refused_delay())?.with_stop(settings.stop.clone());
         let binding = Symbols { algebra: &algebra, step: 1, other };
-        let graph = compile_system(&algebra, &compiled_form(system), &binding, settings.order)?;
+        let graph = compile_system(&algebra, &equations, &binding, settings.order)?;
         let sigma = |e: &Expression| {
             let term = Names(self.problem).shown(e);
             let refused = || ResonanceError::NotAForce { term };
@@ -143,7 +155,8 @@ impl Job<'_> {
             Err(ExpandError::Interrupted { .. }) => (None, Vec::new()),
             other => (Some(found.order()), other?),
         };
-        let conserved = checked.and_then(|_| potential(&system.equations));
+        let conserved =
+            checked.filter(|_| !delays.any()).and_then(|_| potential(&system.equations));
         let energy = match conserved.filter(|_| system.forces.is_empty()) {
             None => Vec::new(),
             Some((weights, potential)) => {
@@ -158,7 +171,15 @@ impl Job<'_> {
                 }
             }
         };
-        Ok(Run { algebra, found, checked, residual, energy })
+        Ok(Run { algebra, delays, found, checked, residual, energy })
+    }
+
+    /// A delay that is no polynomial in parameters.
+    fn refused_delay(&self) -> Error {
+        match refuse_delays(&self.system.equations, Names(self.problem)) {
+            Err(error) => error.into(),
+            Ok(()) => ExpandError::NotWeaklyNonlinear.into(),
+        }
     }
 
     pub(super) fn finished<S: Scalars>(
@@ -166,9 +187,14 @@ impl Job<'_> {
         run: &Run<S>,
         terms: &dyn Fn(&Element<S>) -> Terms,
     ) -> SlowFlow {
-        let Run { algebra, found, checked, energy, .. } = run;
+        let Run { algebra, delays, found, checked, energy, .. } = run;
+        let mut system = self.system.clone();
+        let (moving, own) = (algebra.unknowns() * 2 + algebra.forces(), system.symbols.len());
+        let terms = |f: &Element<S>| delays.unfolded(terms(f), moving, own);
+        system.symbols.extend(delays.names());
+        system.angles.extend(delays.angles());
         let lists = |lists: &[Vec<Element<S>>]| -> Vec<Vec<Terms>> {
-            lists.iter().map(|list| list.iter().map(terms).collect()).collect()
+            lists.iter().map(|list| list.iter().map(&terms).collect()).collect()
         };
         let mut flow = lists(&found.flow);
         for (j, list) in flow.iter_mut().enumerate() {
@@ -176,14 +202,14 @@ impl Job<'_> {
         }
         SlowFlow {
             problem: self.problem.clone(),
-            system: self.system.clone(),
+            system,
             order: found.order(),
             checked_orders: *checked,
             flow,
             solution: lists(&found.solution),
             detuning: lists(&found.detuning),
             nearest: found.nearest.clone(),
-            energy: energy.iter().map(terms).collect(),
+            energy: energy.iter().map(&terms).collect(),
             enclosed: None,
         }
     }

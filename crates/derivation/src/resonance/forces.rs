@@ -7,6 +7,7 @@ use lindstedt_equation::monomials::{Monomial, expand};
 use lindstedt_equation::print::Style;
 use lindstedt_equation::{Expression, Function};
 use rug::{Integer, Rational};
+use std::cell::RefCell;
 
 /// The rate of an angle, order by order in the small parameter.
 type Rate = Vec<Expression>;
@@ -96,12 +97,6 @@ fn parts(angle: &Expression) -> Option<Angle> {
     known.then(|| Angle { rate: (0..=highest).map(order).collect(), start })
 }
 
-/// An angle of numbers, later by `delay`.
-pub(super) fn delayed(angle: &Expression, delay: &Expression) -> Option<Expression> {
-    let rate = parts(angle)?.rate.swap_remove(0);
-    (angle.clone() - rate * delay.clone()).multiplied_out().map(|e| e.canonical())
-}
-
 /// The rates at order zero of all angles: what must have a value.
 pub(super) fn leading_rates(
     equations: &[Expression],
@@ -179,12 +174,12 @@ impl Class {
 }
 
 /// The phases of the forces, and the equations with functions of m eta_l in the place of every force. What
-/// a force is ahead of its phase stays, as constants cos(phi) and sin(phi).
+/// a force is ahead of its phase stays, as constants cos(phi) and sin(phi); the phi come last.
 pub(super) fn phases(
     equations: &[Expression],
     independent: &[String],
     names: Names<'_>,
-) -> Result<(Vec<Phase>, Vec<Expression>), ResonanceError> {
+) -> Result<(Vec<Phase>, Vec<Expression>, Vec<Expression>), ResonanceError> {
     let read = |wave: &Expression| {
         let mut angle = angle_of(wave, names)?;
         let slow = || ResonanceError::NotAForce { term: names.shown(wave) };
@@ -202,18 +197,20 @@ pub(super) fn phases(
         }
     }
     let phases: Vec<Phase> = classes.iter().map(Class::phase).collect();
+    let angles = RefCell::new(Vec::new());
     let rewritten = |e: &Expression| {
         let (Expression::Function(function, _), true) = (e, is_wave(e)) else { return None };
         let (leading, angle) = read(e).ok()?;
         let l = classes.iter().position(|class| class.ratio(&leading, &angle).is_some())?;
         let m = ratio(&leading, &phases[l].rate)?;
         let ahead = gap(&angle.start, &m, &phases[l].start);
+        angles.borrow_mut().extend(ahead.iter().filter(|e| quarters(e).is_none()).cloned());
         let eta = Expression::parameter(&format!("{PHASE}{l}"));
         let angle = if m == 1 { eta } else { Expression::Number(m) * eta };
         Some(ahead_of(*function, angle, ahead))
     };
     let equations = equations.iter().map(|e| e.map(&rewritten)).collect();
-    Ok((phases, equations))
+    Ok((phases, equations, angles.into_inner()))
 }
 
 /// A function of angle + ahead: cos(angle) cos(ahead) - sin(angle) sin(ahead), or the sine.
@@ -228,21 +225,28 @@ fn ahead_of(function: Function, angle: Expression, ahead: Option<Expression>) ->
 
 /// Cosine and sine of a constant: numbers at whole quarters of a turn, else constants of that name.
 fn turned(ahead: &Expression) -> [Expression; 2] {
-    let quarters = ahead.clone() * Expression::integer(2) * Expression::parameter("pi").pow(-1);
-    let quarters = quarters.multiplied_out().and_then(|e| e.canonical().as_number());
-    let whole = quarters.filter(Rational::is_integer).map(|q| q.numer().mod_u(4));
-    match whole {
+    match quarters(ahead).map(|n| n.mod_u(4)) {
         Some(n) => {
             let cos = [1, 0, -1, 0];
             let at = |n: u32| Expression::integer(cos[n as usize % 4]);
             // sin of n quarters is the cosine of n - 1.
             [at(n), at(n + 3)]
         }
-        None => [Function::Cos, Function::Sin].map(|function| {
-            let text = ahead.clone().apply(function).print("eps", Style::Text);
-            Expression::parameter(&text)
-        }),
+        None => wave_names(ahead).map(|name| Expression::parameter(&name)),
     }
+}
+
+/// The names of the cosine and the sine of a constant angle.
+pub(super) fn wave_names(angle: &Expression) -> [String; 2] {
+    [Function::Cos, Function::Sin]
+        .map(|function| angle.clone().apply(function).print("eps", Style::Text))
+}
+
+/// So many quarters of a turn, where a constant angle is a whole number of them.
+pub(super) fn quarters(angle: &Expression) -> Option<Integer> {
+    let quarters = angle.clone() * Expression::integer(2) * Expression::parameter("pi").pow(-1);
+    let quarters = quarters.multiplied_out().and_then(|e| e.canonical().as_number());
+    quarters.filter(Rational::is_integer).map(|q| q.numer().clone())
 }
 
 /// The largest rational number of which both are whole multiples; of 0 and q, |q|.

@@ -13,6 +13,7 @@
 //! symbol sigma = (omega - Omega)/eps.
 
 mod algebraic;
+mod delays;
 mod enclosed;
 mod error;
 mod flow;
@@ -40,7 +41,7 @@ pub use system::{Beside, System};
 
 use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
-use crate::limits::{refuse_above, refuse_taken, unknown_parameter};
+use crate::limits::{check_delays, refuse_above, refuse_taken, unknown_parameter};
 use crate::values::value;
 use crate::work::Progress;
 use lindstedt_algebra::NEAR_MISS;
@@ -53,6 +54,7 @@ use lindstedt_number::Whole;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm};
 use rug::Rational;
 use std::collections::BTreeMap;
+use system::refuse_delays;
 
 type Element = AmplitudeElement<Whole>;
 
@@ -231,6 +233,11 @@ pub fn slow_flow(
         return Err(unknown_parameter(problem, name));
     }
     let equations: Vec<Expression> = problem.equations().cloned().collect();
+    let tied = problem.synchronous.as_ref().map(|tie| tie.delay.to_string());
+    if tied.is_some_and(|name| equations.iter().any(|e| e.parameters().contains(&name))) {
+        refuse_delays(&equations, Names(problem))?;
+    }
+    equations.iter().try_for_each(|e| check_delays(e, &settings.parameters))?;
     let cards = |name: &str| value(problem, &settings.parameters, name);
     let system = System::of(&equations, &settings.parameters, &cards, Names(problem), true)?;
     let job = flow::Job { problem, system, settings };

@@ -3,9 +3,13 @@
 //! At one value of the small parameter, z_j = u_j + i v_j: u_j', v_j' from z_j' = i nu_j z_j + sum eps^n f_{j,n},
 //! and x_j by its rate D x_j along that flow, D as in [`lindstedt_expand::resonance`].
 
-use super::forces::{delayed, is_wave, with_phases};
+use super::forces::with_phases;
 use super::{AlgebraicModes, Phase, SlowFlow, Terms};
+use crate::averaging::constant;
 use lindstedt_equation::{Expression, Function, Unknown};
+use lindstedt_number::Exact;
+use lindstedt_number::ball::ring::{BallRing, Enclosure};
+use lindstedt_number::ball::{Ball, Balls};
 use rug::{Rational, ops::Pow};
 use std::collections::BTreeMap;
 
@@ -17,7 +21,7 @@ type Polynomial = BTreeMap<Vec<i32>, [Rational; 2]>;
 pub struct Motion {
     /// The names of the states.
     pub names: Vec<String>,
-    /// Their rates in these names and t.
+    /// Their rates in these names and t; none where there are delays.
     pub rates: Vec<Expression>,
     /// Their values at t = 0.
     pub start: Vec<Rational>,
@@ -28,6 +32,17 @@ struct At<'a> {
     flow: &'a SlowFlow,
     small: &'a Rational,
     symbols: Vec<Rational>,
+    /// eta_l(0) where one is not 0.
+    starts: Option<Vec<Ball>>,
+}
+
+/// Bits of constants that are irrational: they are rational numbers within 2^-200 here.
+fn balls() -> Balls {
+    Balls::new(320)
+}
+
+fn nearby(ball: &Ball) -> Option<Rational> {
+    ball.midpoint().to_rational()
 }
 
 fn add(sum: &mut Polynomial, key: Vec<i32>, [re, im]: [Rational; 2]) {
@@ -51,7 +66,17 @@ fn product(f: &Polynomial, g: &Polynomial) -> Polynomial {
 }
 
 impl At<'_> {
-    /// sum eps^n of a list of orders.
+    /// e^{i sum m_l eta_l(0)}.
+    fn turned(&self, turns: &[i32]) -> Option<[Rational; 2]> {
+        let starts = self.starts.as_ref()?;
+        let add = |sum: Ball, (m, start): (&i32, &Ball)| {
+            balls().add(&sum, &balls().mul_i64(start, i64::from(*m)))
+        };
+        let angle = turns.iter().zip(starts).fold(balls().from_rational(&Rational::new()), add);
+        Some([nearby(&balls().cos(&angle))?, nearby(&balls().sin(&angle))?])
+    }
+
+    /// sum eps^n of a list of orders, E_l being e^{i (eta_l - eta_l(0))}.
     fn sum(&self, orders: &[Terms], first: u32) -> Polynomial {
         let phases = self.flow.first_symbol();
         let mut sum = Polynomial::new();
@@ -64,6 +89,8 @@ impl At<'_> {
                 size *= Rational::from(value.pow(*n));
             }
             let parts = [&term.re, &term.im].map(|c| Rational::from(c * &size));
+            let turned = self.turned(&phase[2 * self.flow.unknowns()..]);
+            let parts = turned.map_or(parts.clone(), |turned| times(&parts, &turned));
             add(&mut sum, phase.to_vec(), parts);
         }
         sum
@@ -153,7 +180,7 @@ fn tree(f: &Polynomial, part: usize, names: &[String], rates: &[Rational]) -> Ex
 impl SlowFlow {
     /// The truncated slow flow from z_j = amplitude/2 as a system in u_1, v_1, ..., x_1, ..., and the equations
     /// themselves from the same x_j(0) and x_j'(0) as one in x_1, w_1 = x_1', ...; of the modes where there are
-    /// shapes. Nothing where a symbol has no value, or several forces have phases at t = 0.
+    /// shapes. Nothing where a symbol has no value.
     #[must_use]
     pub fn motions(
         &self,
@@ -164,10 +191,13 @@ impl SlowFlow {
         let beside = self.system.beside.as_ref();
         let symbol = |name: &String| match beside.filter(|beside| beside.symbol == *name) {
             Some(beside) => Some((&beside.rate - self.system.force()) / small),
-            None => values(name),
+            None => self.constant(name, values),
         };
         let symbols: Vec<_> = self.system.symbols.iter().map(symbol).collect::<Option<_>>()?;
-        let at = At { flow: self, small, symbols };
+        let starts = self.system.forces.iter().map(|phase| self.angle(&phase.start, values));
+        let starts = starts.collect::<Option<Vec<_>>>()?;
+        let starts = Some(starts).filter(|all| all.iter().any(|start| !start.contains_zero()));
+        let at = At { flow: self, small, symbols, starts };
         let unknowns = self.unknowns();
         let mut names: Vec<String> =
             (1..=unknowns).flat_map(|j| [format!("u_{j}"), format!("v_{j}")]).collect();
@@ -206,7 +236,32 @@ impl SlowFlow {
         Some([Motion { names, rates, start }, full])
     }
 
-    /// x_j' = w_j, w_j' = ... from the equations, with numbers for all names.
+    /// The longest delay, from above.
+    #[must_use]
+    pub fn longest_delay(&self, values: &dyn Fn(&str) -> Option<Rational>) -> Option<Rational> {
+        let nodes = self.system.equations.iter().flat_map(Expression::nodes);
+        let delays = nodes.filter_map(Expression::delay);
+        delays.filter_map(|delay| self.angle(delay, values)?.upper().to_rational()).max()
+    }
+
+    /// A constant by its name.
+    fn constant(&self, name: &str, values: &dyn Fn(&str) -> Option<Rational>) -> Option<Rational> {
+        let exact = |name: &str| values(name).map(Exact::Rational);
+        let pi = || (name == "pi").then(|| balls().pi());
+        let wave = || self.system.wave(name, &exact, balls()).or_else(pi);
+        values(name).or_else(|| nearby(&wave()?))
+    }
+
+    /// A constant angle.
+    fn angle(&self, angle: &Expression, values: &dyn Fn(&str) -> Option<Rational>) -> Option<Ball> {
+        let value = |name: &str| {
+            let pi = (name == "pi").then(|| balls().pi());
+            Some(Enclosure(pi.or_else(|| Some(balls().from_rational(&values(name)?)))?))
+        };
+        Some(constant(&BallRing { balls: balls() }, angle, &value)?.0)
+    }
+
+    /// x_j' = w_j, w_j' = ... from the equations, with numbers for all names; none where there are delays.
     fn in_time(
         &self,
         at: &At<'_>,
@@ -215,13 +270,17 @@ impl SlowFlow {
         // One unknown: as it was written, with its own force.
         let single = self.unknowns() == 1;
         let written = [self.problem.equation.clone()];
+        let late = |e: &Expression| matches!(e, Expression::Unknown(x) if x.delay.is_some());
+        if self.system.equations.iter().any(|e| e.nodes().any(late)) {
+            return Some(Vec::new());
+        }
         let equations = if single { &written[..] } else { &self.system.equations };
         let modes = self.system.algebraic.as_ref().map(AlgebraicModes::nearby);
         let of_modes = |name: &str| modes.as_ref()?.get(name).cloned();
         let change = |e: &Expression| match e {
             Expression::Small => Some(Expression::Number(at.small.clone())),
             Expression::Parameter(name) => {
-                values(name).or_else(|| of_modes(name)).map(Expression::Number)
+                self.constant(name, values).or_else(|| of_modes(name)).map(Expression::Number)
             }
             Expression::Unknown(Unknown { index, derivative, delay: None }) => {
                 let letter = if *derivative == 0 { "x" } else { "w" };
@@ -229,21 +288,9 @@ impl SlowFlow {
             }
             _ => None,
         };
-        let in_time = |l: usize| Some(Expression::Number(at.force_rate(l)) * Expression::Time);
-        let started = |phase: &Phase| phase.start.as_number().is_none_or(|q| !q.is_zero());
-        // In the time from eta = 0 on.
-        let delay = match &self.system.forces[..] {
-            [only] if single => {
-                only.start.map(&change) * Expression::Number(at.force_rate(0).recip())
-            }
-            [_, _, ..] if self.system.forces.iter().any(started) => return None,
-            _ => Expression::integer(0),
-        };
-        let later = |e: &Expression| match e {
-            Expression::Function(function, angle) if is_wave(e) => {
-                Some(delayed(angle, &delay)?.apply(*function))
-            }
-            _ => None,
+        let in_time = |l: usize| {
+            let start = self.system.forces.get(l)?.start.map(&change);
+            Some(Expression::Number(at.force_rate(l)) * Expression::Time + start)
         };
         let mut rates = Vec::new();
         for (j, equation) in equations.iter().enumerate() {
@@ -251,7 +298,7 @@ impl SlowFlow {
             let rest: Vec<_> =
                 equation.terms().iter().filter(|term| **term != acceleration).cloned().collect();
             let right = (-Expression::Sum(rest)).map(&change);
-            let right = with_phases(&right, &in_time).map(&later).canonical();
+            let right = with_phases(&right, &in_time).canonical();
             let unset = |name: &String| !name.starts_with("x_") && !name.starts_with("w_");
             if right.parameters().iter().any(unset) {
                 return None;

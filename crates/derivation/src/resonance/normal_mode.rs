@@ -12,7 +12,7 @@
 use super::flow::Symbols;
 use super::modes::{Matrix, Spectrum, spectrum};
 use super::print::print_powers;
-use super::system::{Prepared, separated, symbols};
+use super::system::{Prepared, refuse_delays, separated, symbols};
 use super::{Element, Names, ResonanceError, Terms, refuse_near_miss};
 use crate::averaging::AveragingSettings;
 use crate::error::DerivationError as Error;
@@ -87,6 +87,7 @@ pub fn normal_mode(
     let equations: Vec<Expression> = problem.equations().cloned().collect();
     let cards = |name: &str| value(problem, &settings.parameters, name);
     let names = Names(problem);
+    refuse_delays(&equations, names)?;
     let prepared = Prepared::of(&equations, &settings.parameters, &cards, names)?;
     if !prepared.forces.is_empty() {
         return Err(ResonanceError::ForcedMode.into());

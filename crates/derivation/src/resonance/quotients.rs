@@ -7,6 +7,7 @@ use crate::work::Progress;
 use lindstedt_coeff::parameters::{LinearForm, ParameterField, ParameterFraction};
 use lindstedt_coeff::polynomial::{PolynomialRing, Symbol};
 use lindstedt_coeff::print::{Style, Term, print_sum};
+use lindstedt_equation::Expression;
 use lindstedt_phase::amplitudes::scalars::Over;
 use lindstedt_phase::amplitudes::{AmplitudeElement, AmplitudeTerm, Amplitudes};
 use rug::{Integer, Rational};
@@ -26,8 +27,9 @@ pub(super) fn derived(
     let parameter = |i: usize| Some(field.parameter(u16::try_from(i).ok()?));
     let generators = (0..names.len()).filter_map(parameter).map(|e| (e, Integer::from(1)));
     let rates = job.rates(generators.collect());
+    let named: Vec<_> = names.iter().map(|name| Expression::parameter(name)).collect();
     let known = |name: &str| parameter(names.iter().position(|known| known == name)?);
-    let run = job.run(Over::exact(field.clone()), rates, &known, observer)?;
+    let run = job.run(Over::exact(field.clone()), (rates, &named), &known, observer)?;
     let all = run.found.flow.iter().chain(&run.found.solution).flatten();
     let quotients = Quotients::of(&run.algebra, all, &field);
     let terms = |f: &_| quotients.terms(&run.algebra, f);

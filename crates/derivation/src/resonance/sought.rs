@@ -11,6 +11,7 @@ use super::flow::{Symbols, compiled_form};
 use super::forces::divisor;
 use super::modes::modes_refused;
 use super::print::print_powers;
+use super::system::refuse_delays;
 use super::{Element, Names, ResonanceError, System, Terms};
 use crate::averaging::{AveragingSettings, constant};
 use crate::error::DerivationError as Error;
@@ -117,7 +118,9 @@ pub fn sought(
     let amplitude = given.remove("amplitude");
     let amplitude = amplitude.and_then(|a| a.as_rational().cloned()).unwrap_or_else(|| 1.into());
     let cards = |known: &str| value(problem, &given, known).filter(|_| known != name);
-    let system = System::of(&[equation], &given, &cards, Names(problem), false)?;
+    let equations = [equation];
+    refuse_delays(&equations, Names(problem))?;
+    let system = System::of(&equations, &given, &cards, Names(problem), false)?;
     if let Some(name) = system.independent.first() {
         return Err(ResonanceError::Unset { name: name.clone() }.into());
     }

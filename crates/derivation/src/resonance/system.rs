@@ -32,6 +32,9 @@ pub struct System {
     pub shapes: Option<Matrix>,
     /// Where squares or shapes are irrational: what their numbers here are beside.
     pub algebraic: Option<AlgebraicModes>,
+    /// Constant angles whose cosines and sines are among the symbols: what forces are ahead of their phase, and what
+    /// delays turn phases by.
+    pub angles: Vec<Expression>,
     /// The values that were put in.
     pub bound: BTreeMap<String, Rational>,
     /// The frequency that was given where it lies beside a resonance, and the name of its detuning.
@@ -53,11 +56,13 @@ fn stand_in(unknown: &Unknown) -> Expression {
 }
 
 const WAVE: &str = "'t";
+const LATE: &str = "'late";
 
 /// The equation at eps = 0, multiplied out, unknowns and forces as parameters.
 fn at_zero(equation: &Expression) -> Result<Monomials, ResonanceError> {
     let change = |e: &Expression| match e {
         Expression::Small => Some(Expression::integer(0)),
+        Expression::Unknown(Unknown { delay: Some(_), .. }) => Some(Expression::parameter(LATE)),
         Expression::Unknown(unknown) => Some(stand_in(unknown)),
         wave if is_wave(wave) => Some(Expression::parameter(WAVE)),
         _ => None,
@@ -89,7 +94,7 @@ fn linear(equation: &Expression, names: Names<'_>) -> Result<Linear, ResonanceEr
         let mut found = unknowns_of(m);
         let (first, second) = (found.next(), found.next());
         let force = m.parameters.contains_key(WAVE);
-        if !m.atoms.is_empty() {
+        if !m.atoms.is_empty() || m.parameters.contains_key(LATE) {
             return Err(refused());
         }
         let list = match (first, second) {
@@ -111,8 +116,10 @@ fn linear(equation: &Expression, names: Names<'_>) -> Result<Linear, ResonanceEr
 fn written(e: &Expression) -> Expression {
     e.map(&|e| {
         let Expression::Parameter(name) = e else { return None };
-        if name == WAVE {
-            return Some(Expression::parameter("cos(...*t)"));
+        match name.as_str() {
+            WAVE => return Some(Expression::parameter("cos(...*t)")),
+            LATE => return Some(Expression::parameter("x(t - ...)")),
+            _ => {}
         }
         let (index, derivative) = name.split_once('\'')?;
         Some(Expression::unknown(index.parse().ok()?, derivative.parse().ok()?))
@@ -129,6 +136,7 @@ pub(super) struct Prepared {
     pub equations: Vec<Expression>,
     pub forces: Vec<Phase>,
     pub independent: Vec<String>,
+    pub angles: Vec<Expression>,
     pub mass: Matrix,
     pub stiffness: Matrix,
     pub bound: BTreeMap<String, Rational>,
@@ -145,9 +153,6 @@ impl Prepared {
     ) -> Result<Self, Error> {
         for e in equations.iter().flat_map(Expression::nodes) {
             match e {
-                Expression::Unknown(unknown) if unknown.delay.is_some() => {
-                    return Err(ResonanceError::Delay { term: names.shown(e) }.into());
-                }
                 Expression::Unknown(unknown) if unknown.index >= equations.len() => {
                     let count = unknown.index + 1;
                     let equations = equations.len();
@@ -159,10 +164,17 @@ impl Prepared {
         let mut bound = BTreeMap::new();
         let mentioned: BTreeSet<String> =
             equations.iter().flat_map(Expression::parameters).collect();
-        for (name, value) in given.iter().filter(|(name, _)| mentioned.contains(*name)) {
+        // A delay may be a multiple of pi.
+        let turns = |name: &String| match given.get(name) {
+            Some(Exact::PiTimes(q)) if is_only_late(equations, name) => Some(q.clone()),
+            _ => None,
+        };
+        let equations: Vec<_> = equations.iter().map(|e| with_turns(e, &turns)).collect();
+        let given = given.iter().filter(|(name, _)| turns(name).is_none());
+        for (name, value) in given.filter(|(name, _)| mentioned.contains(*name)) {
             bound.insert(name.clone(), rational(name, value)?);
         }
-        let equations = put_in(equations, &bound);
+        let equations = put_in(&equations, &bound);
         // What the frequencies depend on has its value, too.
         let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
         let entries = parts.iter().flat_map(|p| p.mass.values().chain(p.stiffness.values()));
@@ -180,7 +192,7 @@ impl Prepared {
             }
         }
         let equations = put_in(&equations, &bound);
-        let (forces, equations) = phases(&equations, &independent, names)?;
+        let (forces, equations, angles) = phases(&equations, &independent, names)?;
         let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
         let matrix = |of: &dyn Fn(&Linear) -> &BTreeMap<usize, Expression>| -> Matrix {
             let entry = |p: &Linear, j| of(p).get(&j).and_then(Expression::as_number);
@@ -188,7 +200,7 @@ impl Prepared {
             parts.iter().map(row).collect()
         };
         let (mass, stiffness) = (matrix(&|p| &p.mass), matrix(&|p| &p.stiffness));
-        Ok(Self { equations, forces, independent, mass, stiffness, bound })
+        Ok(Self { equations, forces, independent, angles, mass, stiffness, bound })
     }
 }
 
@@ -223,6 +235,7 @@ impl System {
             squares,
             forces: prepared.forces,
             independent: prepared.independent,
+            angles: prepared.angles,
             symbols,
             shapes: modes.shapes,
             algebraic,
@@ -303,6 +316,36 @@ pub(super) fn symbols<'a>(
     symbols
 }
 
+/// Whether a parameter occurs in delays alone.
+fn is_only_late(equations: &[Expression], name: &str) -> bool {
+    let now = |e: &Expression| match e {
+        Expression::Unknown(x) if x.delay.is_some() => Some(Expression::unknown(x.index, 0)),
+        _ => None,
+    };
+    let occurs = |e: &Expression| e.parameters().iter().any(|known| known == name);
+    equations.iter().any(occurs) && !equations.iter().any(|e| occurs(&e.map(&now)))
+}
+
+/// q pi in the place of every parameter for which there is a q.
+fn with_turns(e: &Expression, q: &dyn Fn(&String) -> Option<Rational>) -> Expression {
+    e.substitute(&|e| {
+        let Expression::Parameter(name) = e else { return None };
+        Some(Expression::Number(q(name)?) * Expression::parameter("pi"))
+    })
+}
+
+/// Refuses a delay where one is not taken.
+pub(super) fn refuse_delays(
+    equations: &[Expression],
+    names: Names<'_>,
+) -> Result<(), ResonanceError> {
+    let late = |e: &&Expression| matches!(e, Expression::Unknown(x) if x.delay.is_some());
+    match equations.iter().flat_map(Expression::nodes).find(late) {
+        None => Ok(()),
+        Some(e) => Err(ResonanceError::Delay { term: names.shown(e) }),
+    }
+}
+
 fn put_in(equations: &[Expression], values: &BTreeMap<String, Rational>) -> Vec<Expression> {
     let change = |e: &Expression| match e {
         Expression::Parameter(name) => values.get(name).cloned().map(Expression::Number),
@@ -331,9 +374,8 @@ pub(super) fn separated(
     };
     let shape = |e: &Expression| {
         let (Some(shapes), Expression::Unknown(unknown)) = (&modes.shapes, e) else { return None };
-        let part = |(j, p): (usize, &Rational)| {
-            factor(p, Entry::Shape(unknown.index, j)) * Expression::unknown(j, unknown.derivative)
-        };
+        let mode = |index| Expression::Unknown(Unknown { index, ..unknown.clone() });
+        let part = |(j, p): (usize, &Rational)| factor(p, Entry::Shape(unknown.index, j)) * mode(j);
         Some(Expression::Sum(shapes[unknown.index].iter().enumerate().map(part).collect()))
     };
     let without: Vec<Expression> = without.iter().map(|e| e.map(&shape)).collect();

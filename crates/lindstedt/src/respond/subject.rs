@@ -9,16 +9,19 @@ use crate::refusal::Refused;
 use crate::{DerivationError, Error, Exact, Oscillator, SlowFlow, Work};
 use lindstedt_equation::Expression;
 use lindstedt_evaluation::rotating::{NoFrame, Rotating, forced_part, rotating};
+use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::interval::Interval;
-use lindstedt_orbit::steady::{self, Course, Limits, System, all_zeros, bound, follow};
+use lindstedt_orbit::steady::{self, Course, Limits, System, Value, all_zeros, bound, follow};
 use rug::Rational;
 
 /// The box is so many times as large as that of order one, for higher orders.
 const ROOM: f64 = 1.25;
+/// Bits of the constants that are enclosed.
+const BITS: u32 = 80;
 /// How far beside the range a backbone may begin, in widths of it.
 const BESIDE: f64 = 4.0;
 
-type Values = Vec<Option<Exact>>;
+type Values = Vec<Option<Value>>;
 
 pub(super) struct Subject<'a> {
     oscillator: &'a Oscillator,
@@ -115,7 +118,14 @@ impl<'a> Subject<'a> {
         });
         let problem = self.oscillator.problem().name.to_string();
         let beside = self.slow.system.beside.as_ref();
+        let swept = |(name, _): &(&String, Option<Value>)| {
+            let names = self.slow.system.angle(name)?.0.parameters();
+            names.into_iter().find(|name| self.swept.iter().flatten().any(|it| it == name))
+        };
         match unset {
+            Some(ref pair) if swept(pair).is_some() => {
+                Err(no_polynomial(pair.0, &swept(pair).unwrap_or_default()))
+            }
             // A detuning that follows from the frequency and the small parameter, which has no value.
             Some((name, _)) if beside.is_some_and(|it| it.symbol == *name) => {
                 let name = self.oscillator.problem().small.to_string();
@@ -130,19 +140,30 @@ impl<'a> Subject<'a> {
         }
     }
 
+    /// The value of a symbol cos(phi) or sin(phi).
+    fn wave(&self, name: &str) -> Option<Ball> {
+        let swept = |name: &str| self.swept.iter().flatten().any(|it| it == name);
+        let value = |name: &str| self.oscillator.value(name).filter(|_| !swept(name));
+        self.slow.system.wave(name, &value, Balls::new(BITS))
+    }
+
     /// The values of the flow's parameters, those of what varies as given.
     pub(super) fn values(&self, varying: [Option<&Exact>; 2]) -> Values {
         let small = &self.oscillator.problem().small;
         let detuning = |name: &str| {
             let beside = self.slow.system.beside.as_ref().filter(|it| it.symbol == name)?;
             let away = &beside.rate - self.slow.system.force();
-            Some(Exact::Rational(away / self.small.as_ref()?))
+            Some(Value::Rational(away / self.small.as_ref()?))
+        };
+        let known = |name: &str| match self.oscillator.value(name) {
+            Some(value) => Some(Value::from(&value)),
+            None => self.wave(name).map(|ball| Value::from(&ball)),
         };
         let place = |name: &String| self.swept.iter().position(|it| it.as_ref() == Some(name));
         let value = |name: &String| match place(name) {
-            Some(place) => varying[place].cloned(),
-            None if **name == **small => self.small.clone().map(Exact::Rational),
-            None => detuning(name).or_else(|| self.oscillator.value(name)),
+            Some(place) => varying[place].map(Value::from),
+            None if **name == **small => self.small.clone().map(Value::Rational),
+            None => detuning(name).or_else(|| known(name)),
         };
         self.rotating.flow.parameters.iter().map(value).collect()
     }
@@ -256,9 +277,9 @@ impl<'a> Subject<'a> {
 
     /// w of a start state: z to leading order.
     pub(super) fn start(&self, [x, velocity]: [f64; 2]) -> [f64; 2] {
-        let values: Vec<Rational> = (self.values([None, None]).iter())
-            .map(|value| value.as_ref().and_then(Exact::as_rational).cloned().unwrap_or_default())
-            .collect();
+        let number =
+            |value: &Option<Value>| value.as_ref().map_or(f64::NAN, |it| it.interval().middle());
+        let values: Vec<f64> = self.values([None, None]).iter().map(number).collect();
         let [forced, rate] = forced_part(&self.slow, &values);
         let nu = self.slow.system.frequencies[0].to_f64();
         [0.5 * (x - forced), -0.5 * (velocity - rate) / nu]
@@ -310,7 +331,7 @@ impl<'a> Subject<'a> {
         let Some(flow) = &self.rotating.backbone else { return Vec::new() };
         let [low, high] = course.range;
         let wide = [low - BESIDE * (high - low), high + BESIDE * (high - low)];
-        let still = std::iter::once(Some(Exact::Rational(Rational::new())));
+        let still = std::iter::once(Some(Value::Rational(Rational::new())));
         let given: Values = still.chain(values.iter().cloned()).collect();
         let range = [Interval::new(wide[0], wide[1])];
         let at_rest = all_zeros(&System::new(&flow.rows, &given), &range, &Limits::default());
@@ -389,6 +410,12 @@ fn no_resonance(name: &str) -> Error {
 /// k_1, k_2, ...
 fn listed(turn: &[Rational]) -> String {
     turn.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+}
+
+fn no_polynomial(symbol: &str, name: &str) -> Error {
+    let message = format!("the slow flow contains {symbol}: over {name} it is no polynomial");
+    let hint = format!("--set {name}=VALUE, and another parameter varies");
+    Refused::no_answer("no-response", message, hint).into()
 }
 
 fn no_part(name: &str) -> Error {

@@ -8,7 +8,7 @@
 use super::System;
 use super::flow::Change;
 use lindstedt_algebra::Stop;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 
 /// Where a branch is followed.
 #[derive(Clone, Debug)]
@@ -148,28 +148,33 @@ impl Tracer<'_> {
         self.system.derivatives(&at)
     }
 
-    /// The derivative in units with a row below it.
-    fn bordered(&self, slopes: &[f64], below: &[f64]) -> DMatrix<f64> {
+    /// The derivative in units with a row below it: the solution for a right side, and its determinant.
+    fn bordered(&self, slopes: &[f64], below: &[f64], right: &mut [f64]) -> Option<f64> {
         let n = below.len();
-        DMatrix::from_fn(n, n, |i, j| {
-            if i + 1 == n { below[j] } else { slopes[i * n + j] * self.units[j] }
-        })
+        let units = slopes.chunks_exact(n).flat_map(|row| row.iter().zip(&self.units));
+        let mut matrix = Vec::with_capacity(n * n);
+        matrix.extend(units.map(|(slope, unit)| slope * unit));
+        matrix.extend(below);
+        solve(&mut matrix, right)
     }
 
     fn state(&self, scaled: Vec<f64>, previous: &[f64]) -> Option<State> {
         let n = scaled.len();
         let (_, slopes) = self.derivatives(&scaled);
-        let mut right = DVector::zeros(n);
-        right[n - 1] = 1.0;
-        let tangent = self.bordered(&slopes, previous).lu().solve(&right)?;
-        let tangent: Vec<f64> = tangent.normalize().iter().copied().collect();
+        let mut tangent = vec![0.0; n];
+        tangent[n - 1] = 1.0;
+        let determinant = self.bordered(&slopes, previous, &mut tangent)?;
+        let length = tangent.iter().map(|t| t * t).sum::<f64>().sqrt();
+        tangent.iter_mut().for_each(|t| *t /= length);
         if tangent.iter().any(|t| !t.is_finite()) {
             return None;
         }
-        let orientation = self.bordered(&slopes, &tangent).determinant();
+        // A determinant is linear in its last row, and the solution is tau = |tau| t with J tau = 0: with t in the place of
+        // the row below it is the one here times t tau.
+        let orientation = determinant * length;
         let m = self.course.unknowns;
-        let rows: Vec<f64> =
-            (0..m).flat_map(|i| slopes[i * n..i * n + m].iter().copied()).collect();
+        let mut rows = Vec::with_capacity(m * m);
+        slopes.chunks_exact(n).take(m).for_each(|row| rows.extend_from_slice(&row[..m]));
         let at = scaled.iter().zip(&self.units).map(|(y, unit)| y * unit).collect();
         let point = Point { at, exponents: eigenvalues(m, &rows), change: None };
         Some(State { scaled, tangent, orientation, point })
@@ -177,20 +182,20 @@ impl Tracer<'_> {
 
     /// Newton's method across a direction; with the number of steps.
     fn correct(&self, guess: &[f64], across: &[f64]) -> Option<(Vec<f64>, usize)> {
-        let n = guess.len();
         let mut at = guess.to_vec();
         let mut before = f64::INFINITY;
         for steps in 1..=12 {
-            let (values, slopes) = self.derivatives(&at);
-            let off: f64 = across.iter().zip(&at).zip(guess).map(|((t, y), g)| t * (y - g)).sum();
-            let right = DVector::from_iterator(n, values.into_iter().chain([off]));
-            let step = self.bordered(&slopes, across).lu().solve(&right)?;
-            at.iter_mut().zip(step.iter()).for_each(|(y, d)| *y -= d);
-            let change = step.amax();
+            let (mut step, slopes) = self.derivatives(&at);
+            step.push(across.iter().zip(&at).zip(guess).map(|((t, y), g)| t * (y - g)).sum());
+            self.bordered(&slopes, across, &mut step)?;
+            at.iter_mut().zip(&step).for_each(|(y, d)| *y -= d);
+            let change = step.iter().fold(0.0f64, |m, d| m.max(d.abs()));
             if !change.is_finite() || change > 10.0 {
                 return None;
             }
-            if change < 1e-13 || (change < 1e-9 && change > 0.2 * before) {
+            // Errors are squared: what is left of a step that small is of the size of rounding.
+            let squared = change < 1e-8 && change < 1e-3 * before && before < f64::INFINITY;
+            if squared || change < 1e-13 || (change < 1e-9 && change > 0.2 * before) {
                 return Some((at, steps));
             }
             before = change;
@@ -258,7 +263,7 @@ impl Tracer<'_> {
             points.extend(self.changes(&from, length, &to));
             points.push(to.point.clone());
             from = to;
-            if steps <= 3 {
+            if steps <= 2 {
                 length = (1.5 * length).min(longest);
             }
         }
@@ -379,6 +384,38 @@ impl Tracer<'_> {
         }
         last
     }
+}
+
+/// Elimination with row pivots: the right side becomes the solution; with the determinant. Nothing where that is zero.
+fn solve(matrix: &mut [f64], right: &mut [f64]) -> Option<f64> {
+    let n = right.len();
+    let mut determinant = 1.0;
+    for k in 0..n {
+        let size = |i: &usize| matrix[i * n + k].abs();
+        let pivot = (k..n).max_by(|i, j| size(i).total_cmp(&size(j)))?;
+        if pivot != k {
+            (0..n).for_each(|j| matrix.swap(k * n + j, pivot * n + j));
+            right.swap(k, pivot);
+            determinant = -determinant;
+        }
+        let (above, below) = matrix.split_at_mut((k + 1) * n);
+        let row = &above[k * n..];
+        if row[k] == 0.0 {
+            return None;
+        }
+        determinant *= row[k];
+        for (i, other) in (k + 1..n).zip(below.chunks_exact_mut(n)) {
+            let factor = other[k] / row[k];
+            other[k + 1..].iter_mut().zip(&row[k + 1..]).for_each(|(x, y)| *x -= factor * y);
+            right[i] -= factor * right[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let row = &matrix[k * n..(k + 1) * n];
+        let known: f64 = row[k + 1..].iter().zip(&right[k + 1..]).map(|(x, y)| x * y).sum();
+        right[k] = (right[k] - known) / row[k];
+    }
+    Some(determinant)
 }
 
 /// Whether the pair of exponents with the smallest sum is complex.

@@ -4,7 +4,7 @@
 use super::branch::Branch;
 use super::flow::{Change, Flow};
 use super::krawczyk::{Zero, zero_near};
-use lindstedt_number::Exact;
+use super::value::Value;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// The parts of a unit within which a point is looked for.
@@ -17,7 +17,7 @@ impl Flow {
     pub fn change_near(
         &self,
         change: Change,
-        values: &[Option<Exact>],
+        values: &[Option<Value>],
         at: &[f64],
     ) -> Option<Zero> {
         let n = self.unknowns();
@@ -69,7 +69,7 @@ impl Flow {
 
     /// Whether a point at which the parameter turns back is one where branches cross: G_p lies in the range of G_w, within
     /// rounding.
-    pub(crate) fn is_crossing(&self, values: &[Option<Exact>], at: &[f64]) -> bool {
+    pub(crate) fn is_crossing(&self, values: &[Option<Value>], at: &[f64]) -> bool {
         let n = self.unknowns();
         let system = self.system(values);
         if system.variables() != n + 1 || at.len() != n + 1 {
@@ -85,7 +85,7 @@ impl Flow {
     }
 
     /// G_w.
-    fn jacobian(&self, values: &[Option<Exact>], at: &[f64]) -> Option<DMatrix<f64>> {
+    fn jacobian(&self, values: &[Option<Value>], at: &[f64]) -> Option<DMatrix<f64>> {
         let n = self.unknowns();
         let system = self.system(values);
         if system.variables() != at.len() {
@@ -98,7 +98,7 @@ impl Flow {
     /// G_ww(v, v), by a difference: a guess.
     fn curvature(
         &self,
-        values: &[Option<Exact>],
+        values: &[Option<Value>],
         at: &[f64],
         v: &DVector<f64>,
     ) -> Option<DVector<f64>> {
@@ -113,7 +113,7 @@ impl Flow {
     /// Cusps and Bogdanov-Takens points on a curve of folds over two free parameters, each proved: the curve turns back
     /// in both parameters at once, or a second exponent changes its sign.
     #[must_use]
-    pub fn on_folds(&self, values: &[Option<Exact>], folds: &Branch) -> Vec<(Change, Zero)> {
+    pub fn on_folds(&self, values: &[Option<Value>], folds: &Branch) -> Vec<(Change, Zero)> {
         let n = self.unknowns();
         let mut found: Vec<(Change, Zero)> = Vec::new();
         let mut keep = |change: Change, at: &[f64]| {

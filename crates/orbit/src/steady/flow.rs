@@ -1,8 +1,8 @@
 //! Autonomous polynomial vector fields w' = G(w; p), and the points at which steady states change, as zeros of larger
 //! polynomial systems.
 
+use super::value::Value;
 use super::{Polynomial, System};
-use lindstedt_number::Exact;
 use rug::Rational;
 
 /// w' = G(w; p): the variables 0, ..., n - 1 of the polynomials are w, those that follow are the parameters.
@@ -80,11 +80,11 @@ impl Flow {
 
     /// G as functions of w and of the parameters without a value; `values` in the order of the parameters.
     #[must_use]
-    pub fn system(&self, values: &[Option<Exact>]) -> System {
+    pub fn system(&self, values: &[Option<Value>]) -> System {
         System::new(&self.rows, &self.given(values))
     }
 
-    fn given(&self, values: &[Option<Exact>]) -> Vec<Option<Exact>> {
+    fn given(&self, values: &[Option<Value>]) -> Vec<Option<Value>> {
         std::iter::repeat_n(None, self.unknowns()).chain(values.iter().cloned()).collect()
     }
 
@@ -104,7 +104,7 @@ impl Flow {
     pub fn conditions(
         &self,
         change: Change,
-        values: &[Option<Exact>],
+        values: &[Option<Value>],
         l: &[f64],
     ) -> Option<System> {
         let n = self.unknowns();

@@ -42,6 +42,7 @@ mod settle;
 mod survey;
 #[cfg(test)]
 mod tests;
+mod value;
 
 pub use branch::{Branch, Course, Point, follow, state_at};
 pub use flow::{Change, ComplexTerm, Flow};
@@ -52,3 +53,4 @@ pub use relative::FreePhase;
 pub use search::{Found, Limits, all_zeros, bound};
 pub use settle::{Fate, settle};
 pub use survey::{Located, Response, Survey};
+pub use value::Value;

@@ -5,6 +5,7 @@ use super::flow::{Change, Flow};
 use super::krawczyk::Zero;
 use super::search::Limits;
 use super::survey::{Located, Survey};
+use super::value::Value;
 use lindstedt_number::Exact;
 
 /// What is asked.
@@ -13,7 +14,7 @@ pub struct Plane<'a> {
     /// The vector field.
     pub flow: &'a Flow,
     /// The values of its parameters; nothing for two.
-    pub values: Vec<Option<Exact>>,
+    pub values: Vec<Option<Value>>,
     /// The indices of these two: along the branches, and across.
     pub open: [usize; 2],
     /// The values of the first at which states are looked for, and those of the second at which branches are followed.
@@ -52,7 +53,7 @@ impl Plane<'_> {
         let mut diagram = Diagram::default();
         for sample in &self.samples[1] {
             let mut values = self.values.clone();
-            values[self.open[1]] = Some(sample.clone());
+            values[self.open[1]] = Some(sample.into());
             let survey = Survey {
                 flow: self.flow,
                 values,

@@ -1,15 +1,11 @@
 //! Polynomials with rational coefficients in numbered variables, and systems of them as functions of doubles and of
 //! intervals.
 
-use lindstedt_number::Exact;
-use lindstedt_number::ball::Balls;
+use super::value::Value;
 use lindstedt_number::interval::Interval;
 use rug::Rational;
 use std::collections::BTreeMap;
 use std::ops::{Add, Mul};
-
-/// Bits of the constants that are given.
-const BITS: u32 = 80;
 
 /// A polynomial: exponents of the variables (missing ones are 0) with coefficients, none of which is zero.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -151,14 +147,11 @@ impl System {
     ///
     /// Coefficients are enclosures: values like pi/4 take part in what is proved.
     #[must_use]
-    pub fn new(rows: &[Polynomial], values: &[Option<Exact>]) -> Self {
-        let balls = Balls::new(BITS);
-        let given: Vec<_> = values
-            .iter()
-            .map(|value| value.as_ref().map(|value| Interval::of_ball(&value.ball(balls))))
-            .collect();
+    pub fn new(rows: &[Polynomial], values: &[Option<Value>]) -> Self {
+        let given: Vec<_> =
+            values.iter().map(|value| value.as_ref().map(Value::interval)).collect();
         let exact: Vec<_> =
-            values.iter().map(|value| value.as_ref().and_then(Exact::as_rational)).collect();
+            values.iter().map(|value| value.as_ref().and_then(Value::as_rational)).collect();
         let mut place = Vec::new();
         let mut variables = 0;
         let named = rows.iter().flat_map(|row| row.terms.keys().map(Vec::len)).max();

@@ -7,6 +7,7 @@ use super::branch::{Branch, Course, follow};
 use super::flow::{Change, Flow};
 use super::krawczyk::{Zero, newton};
 use super::search::{Found, Limits, all_zeros};
+use super::value::Value;
 use lindstedt_number::Exact;
 use lindstedt_number::interval::Interval;
 
@@ -16,7 +17,7 @@ pub struct Survey<'a> {
     /// The vector field.
     pub flow: &'a Flow,
     /// The values of its parameters, in order; nothing for the one that varies, [`Course::parameter`].
-    pub values: Vec<Option<Exact>>,
+    pub values: Vec<Option<Value>>,
     /// The values at which all states are looked for.
     pub samples: Vec<Exact>,
     /// The range, the reach (the half sides of the box) and the step.
@@ -65,7 +66,7 @@ impl Survey<'_> {
             Response { branches: Vec::new(), changes: Vec::new(), searches: Vec::new() };
         for sample in &self.samples {
             let mut values = self.values.clone();
-            values[open] = Some(sample.clone());
+            values[open] = Some(sample.into());
             let fixed = self.flow.system(&values);
             let found = all_zeros(&fixed, &region, &self.limits)?;
             let value = sample.to_f64();

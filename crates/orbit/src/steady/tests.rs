@@ -66,8 +66,12 @@ fn van_der_pol() -> Flow {
     Flow::of_complex(&[equation], &["s", "F"])
 }
 
-fn at(values: &[&str]) -> Vec<Option<Exact>> {
-    values.iter().map(|text| Exact::parse(text).ok()).collect()
+fn value(text: &str) -> Option<Value> {
+    Exact::parse(text).ok().map(|value| Value::from(&value))
+}
+
+fn at(values: &[&str]) -> Vec<Option<Value>> {
+    values.iter().map(|text| value(text)).collect()
 }
 
 fn amplitude(w: &[f64]) -> f64 {
@@ -90,7 +94,7 @@ fn primary_resonance_states() {
         let found = all_zeros(&system, &square(radius), &Limits::default()).unwrap();
         assert!(found.is_proved() && found.boxes < 5000, "{} boxes", found.boxes);
         assert_eq!(found.zeros.len(), count, "s = {s}, mu = {mu}");
-        let number = |k: usize| values[k].as_ref().unwrap().to_f64();
+        let number = |k: usize| values[k].as_ref().unwrap().interval().middle();
         for zero in &found.zeros {
             let a = amplitude(&zero.middle());
             let left = (number(1).powi(2) + (number(0) - 0.375 * a * a).powi(2)) * a * a;
@@ -154,7 +158,7 @@ fn primary_resonance_cusp() {
     let cusp = [0.1 * root, (256.0 * 1e-3 / (9.0 * root)).sqrt()];
     // From a fold at F = 1/2 along the curve of folds.
     let mut one = values.clone();
-    one[3] = Exact::parse("1/2").ok();
+    one[3] = value("1/2");
     let branch = follow(&flow.system(&one), &[1e-2, -0.06, -2.0], &course(2, [-2.0, 4.0], 0.01));
     let branch = branch.unwrap();
     let fold = branch.points.iter().find(|p| p.change == Some(Change::Fold)).unwrap();
@@ -181,7 +185,7 @@ fn van_der_pol_lock_in() {
     let double = flow.change_near(Change::BogdanovTakens, &free, &[-0.48, 0.52, 0.24, 0.98]);
     let double = double.unwrap().middle();
     assert!((double[2] - 0.25).abs() < 1e-13 && (double[3] - 1.0).abs() < 1e-13);
-    let at = [None, Exact::parse("6/5").ok()];
+    let at = [None, value("6/5")];
     let branch =
         follow(&flow.system(&at), &[0.0, -1.2, 0.0], &course(2, [-1.0, 1.0], 5e-3)).unwrap();
     let hopf: Vec<_> = branch.points.iter().filter(|p| p.change == Some(Change::Hopf)).collect();
@@ -194,7 +198,7 @@ fn van_der_pol_lock_in() {
         assert!((0.5 * (0.0625 + place[2].powi(2)) - 0.09).abs() < 1e-13);
         assert!((place[2] - point.at[2]).abs() < 1e-9);
     }
-    let low = [None, Exact::parse("1/2").ok()];
+    let low = [None, value("1/2")];
     let branch =
         follow(&flow.system(&low), &[0.0, -1.1, 0.0], &course(2, [-1.0, 1.0], 5e-3)).unwrap();
     // Below the cusp the locked states are a closed curve beside the one near zero.
@@ -214,7 +218,7 @@ fn crossings_are_no_folds() {
         term(&[2, 1], &[0, 0, 0], (0, 1), (3, 2)),
     ];
     let flow = Flow::of_complex(&[equation], &["s", "mu", "h"]);
-    let values = [None, Exact::parse("1/10").ok(), Exact::parse("1").ok()];
+    let values = [None, value("1/10"), value("1")];
     let branch =
         follow(&flow.system(&values), &[0.0, 0.0, -1.0], &course(2, [-1.0, 1.0], 0.01)).unwrap();
     let changes: Vec<_> = branch.points.iter().filter(|p| p.change.is_some()).collect();
@@ -285,7 +289,7 @@ fn starts_settle_on_different_branches() {
 fn a_closed_branch_is_found_once() {
     let flow = van_der_pol();
     let samples = ["-1/10", "0", "1/10"].map(|text| Exact::parse(text).unwrap());
-    let values = vec![None, Exact::parse("1/2").ok()];
+    let values = vec![None, value("1/2")];
     let course = course(2, [-1.0, 1.0], 0.01);
     let limits = Limits::default();
     let survey = Survey { flow: &flow, values, samples: samples.to_vec(), course, limits };

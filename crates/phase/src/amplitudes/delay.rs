@@ -14,11 +14,13 @@ pub struct Delay<N> {
     pub turns: Vec<[N; 2]>,
 }
 
-/// T and e^{-i rate T} as constants.
+/// A delay as constants of the algebra.
 #[derive(Clone, Debug)]
-pub(super) struct Late<E> {
-    pub(super) time: AmplitudeElement<E>,
-    pub(super) turns: Vec<AmplitudeElement<E>>,
+pub struct Late<E> {
+    /// T.
+    pub time: AmplitudeElement<E>,
+    /// e^{-i rate T} of the amplitudes and of the forces.
+    pub turns: Vec<AmplitudeElement<E>>,
 }
 
 impl<S: Scalars> Amplitudes<S> {
@@ -44,6 +46,26 @@ impl<S: Scalars> Amplitudes<S> {
         let rates = Rates::single(rates.map(|rate| scalars.numerator(rate)).collect());
         let algebra = Self::of_rates(scalars, rates, &[])?;
         Some(Self { refuses: true, ..algebra })
+    }
+
+    /// The algebra of any frequencies, as [`Self::of_rates`], with so many constant phases e^{i theta}.
+    pub fn turning(
+        scalars: S,
+        rates: Rates<S::Element>,
+        symbols: &[&str],
+        turns: usize,
+    ) -> Option<Self> {
+        let all: Vec<&str> =
+            std::iter::repeat_n("", turns).chain(symbols.iter().copied()).collect();
+        let algebra = Self::of_rates(scalars, rates, &all)?;
+        let symbols = algebra.symbols[turns..].to_vec();
+        Some(Self { turns, symbols, ..algebra })
+    }
+
+    /// i^n.
+    pub fn quarter_turns(&self, n: i64) -> AmplitudeElement<S::Element> {
+        let turn = |f: AmplitudeElement<_>| self.turned(&f);
+        (0..n.rem_euclid(4)).fold(self.one(), |f, _| turn(f))
     }
 
     /// The algebra with delays.

@@ -9,7 +9,7 @@
 //! are a basis and elements stay canonical.
 
 use super::words::{DIGITS, Word};
-use super::{AmplitudeElement, Amplitudes, Rates, Scalars};
+use super::{AmplitudeElement, Amplitudes, Late, Rates, Scalars};
 use lindstedt_algebra::Ring;
 use std::sync::atomic::Ordering;
 
@@ -42,11 +42,8 @@ impl<S: Scalars> Amplitudes<S> {
     /// # Ok::<(), &str>(())
     /// ```
     pub fn of_formulas(scalars: S, symbols: &[&str], turns: usize) -> Option<Self> {
-        let (rates, rest) = (Rates::single(Vec::new()), vec![""; turns]);
-        let all: Vec<&str> = rest.into_iter().chain(symbols.iter().copied()).collect();
-        let algebra = Self::of_rates(scalars, rates, &all)?;
-        let symbols = algebra.symbols[turns..].to_vec();
-        Some(Self { turns, units: true, refuses: true, symbols, ..algebra })
+        let algebra = Self::turning(scalars, Rates::single(Vec::new()), symbols, turns)?;
+        Some(Self { units: true, refuses: true, ..algebra })
     }
 
     /// The algebra with the rates of the amplitude and the force: formulas of which no combination but nu itself is taken
@@ -95,11 +92,10 @@ impl<S: Scalars> Amplitudes<S> {
         (j < self.turns).then(|| self.monomial(word, word == 0))
     }
 
-    /// The algebra with delays given as elements: T, and the factors e^{-i rate T} of the amplitude and the force.
+    /// The algebra with delays given as elements: T, and the factors e^{-i rate T} of the amplitudes and the forces.
     #[must_use]
-    pub fn with_late(mut self, delays: Vec<[AmplitudeElement<S::Element>; 3]>) -> Self {
-        let late = |[time, free, forced]: [_; 3]| super::Late { time, turns: vec![free, forced] };
-        self.delays = delays.into_iter().map(late).collect();
+    pub fn with_late(mut self, delays: Vec<Late<S::Element>>) -> Self {
+        self.delays = delays;
         self
     }
 

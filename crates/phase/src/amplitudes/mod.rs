@@ -24,13 +24,12 @@ pub mod scalars;
 mod tests;
 pub mod words;
 
-pub use delay::Delay;
+pub use delay::{Delay, Late};
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use rug::{Integer, Rational};
 use scalars::Scalars;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use delay::Late;
 use formulas::Divided;
 use words::{DIGITS, Layout, Word};
 
