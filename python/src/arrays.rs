@@ -82,16 +82,15 @@ impl Motions {
     ) -> PyResult<Pair<'py>> {
         let (times, small) = (times.as_slice()?, small.as_slice()?);
         let amplitude = amplitude.as_slice()?;
-        let found = py.detach(|| {
-            let solutions = self.0.value.list(small, amplitude, &Stop::default());
-            let all = solutions.iter().flat_map(|x| {
-                let values = x.list(times, &Stop::default());
-                let error = |(value, time): (f64, &f64)| Estimated { value, error: x.error(*time) };
-                values.into_iter().zip(times).map(error).collect::<Vec<_>>()
-            });
-            all.collect()
+        let (values, errors) = py.detach(|| {
+            let (mut values, mut errors) = (Vec::new(), Vec::new());
+            for x in self.0.value.list(small, amplitude, &Stop::default()) {
+                values.append(&mut x.list(times, &Stop::default()));
+                errors.append(&mut x.errors(times));
+            }
+            (values, errors)
         });
-        Ok(pair(py, found))
+        Ok((values.into_pyarray(py), errors.into_pyarray(py)))
     }
 }
 
@@ -123,7 +122,8 @@ impl Motion {
         py: Python<'py>,
         times: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let errors: Vec<f64> = times.as_slice()?.iter().map(|t| self.0.value.error(*t)).collect();
+        let times = times.as_slice()?;
+        let errors = py.detach(|| self.0.value.errors(times));
         Ok(errors.into_pyarray(py))
     }
 }

@@ -8,12 +8,11 @@ use crate::few;
 use crate::names::short;
 use crate::setting::{Form, Setting};
 use crate::source::{self, Source, remembered};
-use lindstedt_algebra::Stop;
 use lindstedt_derivation::{DerivationError, Progress, Work};
 use lindstedt_expand::ExpandError;
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{Exact, Number, Status, certified};
-use lindstedt_series::resummation::{Method, Pade, Picture, Resummed, Sample, resum_until};
+use lindstedt_series::resummation::{Method, Picture, Resummed, Sample, resum_with};
 use rug::Float;
 use serde::Serialize;
 
@@ -132,7 +131,8 @@ pub fn period(
     goes_on()?;
     let sample = remembered(|bits| if stop.asked() { None } else { source.sample(bits) });
     let few = few::partial_sum(&sample, source.known, method, accuracy);
-    let resummed = few.unwrap_or_else(|| resum_until(&sample, method, accuracy, stop));
+    let shared = setting.sums();
+    let resummed = few.unwrap_or_else(|| resum_with(&sample, method, accuracy, stop, &shared));
     goes_on()?;
     let problem = || setting.problem.name.to_string();
     let resummed = resummed.map_err(|reason| Error::Resummation { problem: problem(), reason })?;
@@ -142,7 +142,8 @@ pub fn period(
     let exact_period = exact_period.transpose()?;
     let sum = Sum::new(&source, &resummed)?;
     let best_truncation = best_truncation(&sample, &resummed, &sum.scale, digits);
-    let picture = picture(&sample, resummed.bits, stop);
+    let last = sample(resummed.bits);
+    let picture = last.and_then(|sample| shared.picture(&sample, accuracy, stop));
     goes_on()?;
     let (period, frequency) = (sum.number(&sum.period, digits), sum.frequency(digits));
     let mut result = Evaluation {
@@ -247,12 +248,4 @@ fn best_truncation(
     let balls = Balls::new(resummed.bits);
     let ball = balls.from_parts(&outcome.estimate.value, &outcome.estimate.error);
     Some((order, Number::estimated(&balls.mul(&ball, scale), digits)))
-}
-
-/// The poles and zeros of the diagonal approximant.
-fn picture(sample: &dyn Fn(u32) -> Option<Sample>, bits: u32, stop: &Stop) -> Option<Picture> {
-    let sample = sample(bits)?;
-    let order = sample.coefficients.len().checked_sub(1).filter(|order| *order > 1)?;
-    let half = order / 2;
-    Pade::until(stop, &sample.coefficients, order - half, half, bits)?.picture_until(stop)
 }

@@ -27,6 +27,9 @@ pub struct PeriodicSolution {
     pub slope: f64,
     /// What was summed: `expansion` or `newton`.
     pub by: &'static str,
+    /// sum_k (k + 1)(|c_k| + |s_k|).
+    #[serde(skip)]
+    weighted: f64,
 }
 
 impl PeriodicSolution {
@@ -36,9 +39,11 @@ impl PeriodicSolution {
         let Fourier { coefficients: harmonics, deviation, largest_error, .. } = fourier;
         let sizes = harmonics.iter().map(|(c, s)| c.hypot(*s));
         let slope = sizes.enumerate().map(|(k, size)| k as f64 * size).sum();
+        let sizes = harmonics.iter().map(|(c, s)| c.abs() + s.abs());
+        let weighted = sizes.zip(1u32..).map(|(size, k)| f64::from(k) * size).sum();
         let deviation = deviation + largest_error;
         let Estimated { value: frequency, error: frequency_error } = frequency;
-        Self { frequency, frequency_error, harmonics, deviation, slope, by }
+        Self { frequency, frequency_error, harmonics, deviation, slope, by, weighted }
     }
 
     /// x at a time, with its estimated error,
@@ -56,13 +61,17 @@ impl PeriodicSolution {
     /// The error at a time.
     #[must_use]
     pub fn error(&self, time: f64) -> f64 {
-        let sizes = self.harmonics.iter().map(|(c, s)| c.abs() + s.abs());
-        let turned: f64 = sizes.zip(1u32..).map(|(size, k)| 3.0 * f64::from(k) * size).sum();
         let unknown = self.frequency_error + f64::EPSILON * self.frequency;
         // At 0 the phase is known whatever omega is.
         let phase = if time == 0.0 { 0.0 } else { time.abs() * unknown };
-        let error = self.deviation + self.slope * phase + f64::EPSILON * turned;
+        let error = self.deviation + self.slope * phase + 3.0 * f64::EPSILON * self.weighted;
         if error.is_nan() { f64::INFINITY } else { error }
+    }
+
+    /// The errors at many times.
+    #[must_use]
+    pub fn errors(&self, times: &[f64]) -> Vec<f64> {
+        times.par_iter().with_min_len(BLOCK).map(|time| self.error(*time)).collect()
     }
 
     /// x at many times, on all cores; those that stopped work did not reach are no numbers.

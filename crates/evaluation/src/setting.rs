@@ -12,6 +12,7 @@ use lindstedt_equation::classify::polynomial;
 use lindstedt_equation::{AmplitudeRole, Condition, Expression, Problem};
 use lindstedt_number::Exact;
 use lindstedt_number::ball::{Ball, Balls};
+use lindstedt_series::resummation::Shared;
 use rug::Rational;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -61,10 +62,14 @@ type Key = (Expression, Rational, Condition, usize, Option<Exact>);
 /// At most so many expansions are kept.
 const KEPT: usize = 8;
 
-/// Expansions that were derived: settings that share it derive only once what differs in the value of the small parameter
-/// alone.
+/// Expansions that were derived and what their sums have in common: settings that share it derive and prepare only once
+/// what differs in the value of the small parameter alone.
 #[derive(Clone, Debug, Default)]
-pub struct Known(Arc<Mutex<Vec<(Key, Derivation)>>>);
+pub struct Known {
+    derived: Arc<Mutex<Vec<(Key, Derivation)>>>,
+    /// What sums of one series share.
+    sums: Shared,
+}
 
 /// A problem with a value for everything.
 #[derive(Clone, Debug)]
@@ -211,6 +216,11 @@ impl Setting {
         Self { known: Some(known.clone()), ..self }
     }
 
+    /// What sums share.
+    pub(crate) fn sums(&self) -> Shared {
+        self.known.as_ref().map_or_else(Shared::default, |known| known.sums.clone())
+    }
+
     /// The value of the small parameter.
     pub fn small(&self, balls: Balls) -> Ball {
         let power = balls.powi(&self.amplitude.ball(balls), i64::from(self.small.power));
@@ -241,7 +251,7 @@ impl Setting {
             stop: stop.clone(),
             ..Settings::default()
         };
-        let Some(Known(known)) = &self.known else {
+        let Some(Known { derived: known, .. }) = &self.known else {
             return derive(&self.problem, &settings, observer);
         };
         let amplitude = self.parameters.get("amplitude").cloned();

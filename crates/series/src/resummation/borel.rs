@@ -6,8 +6,7 @@ use super::{Pade, ResummationError};
 use lindstedt_algebra::Stop;
 use rug::Float;
 use rug::float::Constant;
-use std::cell::RefCell;
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Halvings of the step before the integral is given up.
 const LEVELS: i32 = 9;
@@ -37,13 +36,13 @@ pub(super) struct Nodes {
     accuracy: u32,
     bits: u32,
     stop: Stop,
-    levels: RefCell<Vec<Rc<Vec<Node>>>>,
+    levels: Mutex<Vec<Arc<Vec<Node>>>>,
 }
 
 impl Nodes {
     /// For integrals to about 2^-`accuracy` relative, as long as `stop` does not say so.
     pub fn new(accuracy: u32, bits: u32, stop: &Stop) -> Self {
-        Self { accuracy, bits, stop: stop.clone(), levels: RefCell::default() }
+        Self { accuracy, bits, stop: stop.clone(), levels: Mutex::default() }
     }
 
     /// The step of a level.
@@ -52,10 +51,11 @@ impl Nodes {
     }
 
     /// The nodes that a level adds to those before it.
-    fn level(&self, level: i32) -> Rc<Vec<Node>> {
+    fn level(&self, level: i32) -> Arc<Vec<Node>> {
         let index = usize::try_from(level).unwrap_or(0);
-        if let Some(known) = self.levels.borrow().get(index) {
-            return Rc::clone(known);
+        let levels = || self.levels.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = levels().get(index) {
+            return Arc::clone(known);
         }
         let bits = self.bits;
         let half_pi = Float::with_val(bits, Constant::Pi) >> 1u32;
@@ -76,13 +76,17 @@ impl Nodes {
         let goes_on = |_: &i64| !self.stop.asked();
         let indices = (first..=end).filter(|k| level == 0 || k % 2 != 0);
         let new = indices.take_while(goes_on).map(node).collect();
-        let new = Rc::new(new);
-        self.levels.borrow_mut().push(Rc::clone(&new));
+        let new = Arc::new(new);
+        let mut levels = levels();
+        // Another thread may have been as fast; what was broken off is not kept.
+        if levels.len() == index && !self.stop.asked() {
+            levels.push(Arc::clone(&new));
+        }
         new
     }
 }
 
-/// int_0^infinity e^-s B(s) ds for a Pade approximant B.
+/// int_0^infinity e^-s B(x s) ds for a Pade approximant B.
 ///
 /// The exp-sinh rule is exponentially convergent for an integrand that is analytic near the
 /// positive axis; a simple zero of the denominator there is met as a change of its sign.
@@ -90,7 +94,7 @@ impl Nodes {
 /// # Errors
 /// [`ResummationError::PoleOnPath`], [`ResummationError::NotSettled`] after nine halvings,
 /// [`ResummationError::Stopped`].
-pub(super) fn laplace(pade: &Pade, nodes: &Nodes) -> Result<Float, ResummationError> {
+pub(super) fn laplace(pade: &Pade, x: &Float, nodes: &Nodes) -> Result<Float, ResummationError> {
     let bits = nodes.bits;
     let mut sum = Float::new(bits);
     let mut last: Option<Float> = None;
@@ -100,7 +104,7 @@ pub(super) fn laplace(pade: &Pade, nodes: &Nodes) -> Result<Float, ResummationEr
             if nodes.stop.asked() {
                 return Err(ResummationError::Stopped);
             }
-            let (top, bottom) = pade.parts(&node.s);
+            let (top, bottom) = pade.parts(&Float::with_val(bits, x * &node.s));
             if bottom <= 0 {
                 return Err(ResummationError::PoleOnPath);
             }
@@ -139,7 +143,11 @@ mod tests {
         let one = Float::with_val(bits, 1);
         let sum = |sign: i32| {
             let b = borel_transform(&c(sign), &one, bits);
-            laplace(&Pade::new(&b, 10, 10, bits).unwrap(), &Nodes::new(200, bits, &Stop::default()))
+            laplace(
+                &Pade::new(&b, 10, 10, bits).unwrap(),
+                &one,
+                &Nodes::new(200, bits, &Stop::default()),
+            )
         };
         let gompertz =
             Float::parse("0.596347362323194074341078499369279376074177860152548781573485").unwrap();

@@ -1,9 +1,11 @@
 //! One method or the best of all, with the rounding measured and kept below the rest.
 
 use super::estimate::distance;
-use super::{Growth, Method, Outcome, ResummationError, Sample, Singularity, growth};
+use super::made::Made;
+use super::{Growth, Method, Outcome, ResummationError, Sample, Shared, Singularity, growth};
 use lindstedt_algebra::Stop;
 use rug::Float;
+use std::sync::Arc;
 
 /// What was found.
 #[derive(Clone, Debug)]
@@ -81,26 +83,45 @@ pub fn resum_until(
     accuracy: u32,
     stop: &Stop,
 ) -> Result<Resummed, ResummationError> {
+    resum_with(source, method, accuracy, stop, &Shared::default())
+}
+
+/// As [`resum_until`] at one of many points: what does not depend on the point is made once.
+///
+/// # Errors
+/// As [`resum`].
+pub fn resum_with(
+    source: &dyn Fn(u32) -> Option<Sample>,
+    method: Option<Method>,
+    accuracy: u32,
+    stop: &Stop,
+    shared: &Shared,
+) -> Result<Resummed, ResummationError> {
     // Once it was yes the answer stays yes: nothing broken off passes this question.
-    let found = chosen(source, method, accuracy, stop);
+    let found = chosen(source, method, (accuracy, stop), shared);
     if stop.asked() { Err(ResummationError::Stopped) } else { found }
 }
 
 fn chosen(
     source: &dyn Fn(u32) -> Option<Sample>,
     method: Option<Method>,
-    accuracy: u32,
-    stop: &Stop,
+    (accuracy, stop): (u32, &Stop),
+    shared: &Shared,
 ) -> Result<Resummed, ResummationError> {
     let sample = |bits: u32| source(bits).ok_or(ResummationError::NoCoefficients { bits });
+    let with = |sample: Sample| {
+        let made = shared.of(&sample, accuracy);
+        (sample, made)
+    };
     let first = sample(accuracy.saturating_add(128))?;
     // Pade approximants of order N lose a few bits per order.
     let loss = u32::try_from(first.coefficients.len()).unwrap_or(u32::MAX).saturating_mul(4);
     let bits = accuracy.saturating_add(64).saturating_add(loss);
     let low = if first.bits >= bits { first } else { sample(bits)? };
-    let high = sample(low.bits.saturating_mul(2))?;
-    let growth = growth(&low.coefficients);
-    let singularity = high.singularity_until(stop);
+    let high = with(sample(low.bits.saturating_mul(2))?);
+    let low = with(low);
+    let growth = growth(&low.0.coefficients);
+    let singularity = high.1.singularity(stop);
     let methods = method.map_or_else(|| Method::ALL.to_vec(), |method| vec![method]);
     let mut tried = Vec::new();
     let mut values: Vec<(Method, Outcome)> = Vec::new();
@@ -110,6 +131,7 @@ fn chosen(
             return Err(ResummationError::Stopped);
         }
         let limits = (accuracy, stop);
+        let sample = |bits| sample(bits).map(with);
         let found = settled(&sample, [&low, &high], method, singularity.as_ref(), limits);
         if let Ok((outcome, at)) = &found {
             values.push((method, outcome.clone()));
@@ -117,7 +139,7 @@ fn chosen(
         }
         tried.push((method, found.map(|(outcome, _)| outcome.estimate.error)));
     }
-    match low.selected(&values, accuracy, tried.len() > 1) {
+    match low.0.selected(&values, accuracy, tried.len() > 1) {
         Some((index, outcome)) => {
             let (method, bits) = (values[index].0, bits[index]);
             Ok(Resummed { method, outcome, growth, singularity, tried, bits })
@@ -184,18 +206,22 @@ impl Sample {
     }
 }
 
+/// A sample with what was made of its series.
+type With = (Sample, Arc<Made>);
+
 /// One method at p and 2p bits, until the rounding does not matter.
 fn settled(
-    sample: &dyn Fn(u32) -> Result<Sample, ResummationError>,
-    first: [&Sample; 2],
+    sample: &dyn Fn(u32) -> Result<With, ResummationError>,
+    first: [&With; 2],
     method: Method,
     singularity: Option<&Singularity>,
     (accuracy, stop): (u32, &Stop),
 ) -> Result<(Outcome, u32), ResummationError> {
     let [low, high] = first;
-    let mut before = low.sum_until(method, singularity, accuracy, stop)?;
-    let mut bits = high.bits;
-    let mut after = high.sum_until(method, singularity, accuracy, stop)?;
+    let sum = |(sample, made): &With| sample.sum_made(made, (method, singularity), accuracy, stop);
+    let mut before = sum(low)?;
+    let mut bits = high.0.bits;
+    let mut after = sum(high)?;
     for _ in 0..DOUBLINGS {
         let rounding = distance(&before.estimate.value, &after.estimate.value);
         let size = Float::with_val(53, after.estimate.value.abs_ref()) >> accuracy;
@@ -204,7 +230,7 @@ fn settled(
         }
         bits = bits.saturating_mul(2);
         before = after;
-        after = sample(bits)?.sum_until(method, singularity, accuracy, stop)?;
+        after = sum(&sample(bits)?)?;
     }
     let rounding = distance(&before.estimate.value, &after.estimate.value);
     // An error of exactly 0 is a rational function, known to the rounding.

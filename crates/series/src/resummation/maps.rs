@@ -53,6 +53,17 @@ pub(super) fn multiply(a: &[Float], b: &[Float], bits: u32) -> Vec<Float> {
     (0..a.len()).map(coefficient).collect()
 }
 
+/// The product with s w/(1 - w), truncated to the same length: s times the sum of all lower coefficients.
+fn shifted_sums(a: &[Float], scale: &Float, bits: u32) -> Vec<Float> {
+    let mut sum = Float::new(bits);
+    let next = |c: &Float| {
+        let value = Float::with_val(bits, &sum * scale);
+        sum += c;
+        value
+    };
+    a.iter().map(next).collect()
+}
+
 /// C of the wedge.
 pub(super) fn wedge_constant(modulus: &Float, fraction: &Float, bits: u32) -> Float {
     let rest = Float::with_val(bits, 1 - fraction);
@@ -172,7 +183,7 @@ impl Map {
     }
 
     /// The coefficients in w of (x'(0) w/x)^p sum c_n x(w)^n, bounded for f ~ x^p: the same order,
-    /// O(N^3) products. The first factor is (1 - w)^p for the rational map.
+    /// O(N^3) products, O(N^2) for the rational map. The first factor is (1 - w)^p for the rational map.
     #[must_use]
     pub fn expand(&self, c: &[Float], prefactor: &Float, bits: u32) -> Vec<Float> {
         self.expand_until(c, prefactor, bits, &Stop::default())
@@ -205,7 +216,10 @@ impl Map {
             for (total, p) in sum.iter_mut().zip(&power) {
                 *total += Float::with_val(bits, coefficient * p);
             }
-            power = multiply(&power, &x, bits);
+            power = match self {
+                Self::Rational { scale } => shifted_sums(&power, scale, bits),
+                Self::Wedge { .. } => multiply(&power, &x, bits),
+            };
         }
         sum
     }

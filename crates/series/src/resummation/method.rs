@@ -76,7 +76,7 @@ impl Method {
 }
 
 /// What is known of the function beyond its coefficients.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct UniformMap {
     /// s in u = x/(s + x).
     pub scale: Float,

@@ -1,11 +1,9 @@
 //! What a method makes of the coefficients alone, whatever the point: the series in its variable and
 //! the approximants. The rest is a value at a point.
 
-use super::borel::{Nodes, borel_transform, laplace};
-use super::estimate::widest;
 use super::partial::{convergent, disc, partial_sum};
 use super::staircase::Staircase;
-use super::{Estimate, Map, Method, Outcome, Pade, ResummationError, Sample, Singularity};
+use super::{Map, Method, Outcome, ResummationError, Sample, Singularity};
 use lindstedt_algebra::Stop;
 use rug::Float;
 use rug::float::Special;
@@ -29,59 +27,6 @@ pub(super) enum Way {
 }
 
 impl Sample {
-    /// The value by `method`.
-    ///
-    /// `singularity` is needed for [`Method::ConformalPade`] (see [`Self::singularity`]).
-    /// `accuracy` is the number of bits beyond which a Laplace integral need not go.
-    ///
-    /// # Errors
-    /// [`ResummationError`] where the method does not apply or gives no value.
-    pub fn sum(
-        &self,
-        method: Method,
-        singularity: Option<&Singularity>,
-        accuracy: u32,
-    ) -> Result<Outcome, ResummationError> {
-        self.sum_until(method, singularity, accuracy, &Stop::default())
-    }
-
-    /// As [`Self::sum`], or [`ResummationError::Stopped`] once `stop` said so: it is asked in all
-    /// long loops, and nothing that was computed with one broken off is returned.
-    ///
-    /// # Errors
-    /// As [`Self::sum`].
-    pub fn sum_until(
-        &self,
-        method: Method,
-        singularity: Option<&Singularity>,
-        accuracy: u32,
-        stop: &Stop,
-    ) -> Result<Outcome, ResummationError> {
-        let found = self.judged(method, singularity, accuracy, stop);
-        if stop.asked() { Err(ResummationError::Stopped) } else { found }
-    }
-
-    fn judged(
-        &self,
-        method: Method,
-        singularity: Option<&Singularity>,
-        accuracy: u32,
-        stop: &Stop,
-    ) -> Result<Outcome, ResummationError> {
-        let known = self.coefficients.len();
-        if known < 3 {
-            return Err(ResummationError::TooFewCoefficients { known, needed: 3 });
-        }
-        if self.point.is_zero() {
-            let value = Float::with_val(self.bits, &self.coefficients[0]);
-            let estimate = Estimate { value, error: Float::new(53) };
-            let (degrees, tentative, smallest_term) = (None, None, None);
-            return Ok(Outcome { estimate, order: 0, degrees, tentative, smallest_term });
-        }
-        let outcome = self.by(method, singularity, accuracy, stop)?;
-        Ok(self.resolved(outcome))
-    }
-
     /// A value that has a digit, or one without an estimate.
     pub(super) fn resolved(&self, mut outcome: Outcome) -> Outcome {
         // An error as large as half the value leaves not one digit, and is no estimate.
@@ -91,37 +36,6 @@ impl Sample {
             outcome.tentative = None;
         }
         outcome
-    }
-
-    fn by(
-        &self,
-        method: Method,
-        singularity: Option<&Singularity>,
-        accuracy: u32,
-        stop: &Stop,
-    ) -> Result<Outcome, ResummationError> {
-        if method != Method::BorelPade {
-            return self.prepared(method, singularity, stop)?.outcome(self, stop);
-        }
-        let b = borel_transform(&self.coefficients, &self.point, self.bits);
-        // The integral is no better than the approximants: many digits only where they
-        // agree to as many.
-        let mut asked = accuracy.min(128);
-        loop {
-            let nodes = Nodes::new(asked, self.bits, stop);
-            let value = |pade: &Pade| Ok((laplace(pade, &nodes)?, None));
-            let mut outcome = Staircase::new(&b, self.bits, stop)?.judged(&widest, value, stop)?;
-            outcome.tentative = None;
-            let size = Float::with_val(53, outcome.estimate.value.abs_ref());
-            // What the integral was not asked for.
-            let rest = size >> asked;
-            let limited = outcome.estimate.error < Float::with_val(53, &rest << 16);
-            outcome.estimate.error += rest;
-            if !limited || asked >= accuracy {
-                return Ok(outcome);
-            }
-            asked = asked.saturating_mul(4).min(accuracy);
-        }
     }
 
     /// A method without its point.

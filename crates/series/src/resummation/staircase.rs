@@ -2,9 +2,11 @@
 
 use super::estimate::{distance, settle, tentative};
 use super::fraction::convergents;
+use super::once::Once;
 use super::{Estimate, Outcome, Pade, ResummationError};
 use lindstedt_algebra::Stop;
 use rug::Float;
+use std::sync::Arc;
 
 /// Approximants before the last one that enter the error estimate.
 pub(super) const APPROXIMANTS: usize = 9;
@@ -18,6 +20,8 @@ pub(super) struct Staircase {
     steps: Vec<(usize, Pade)>,
     /// Whether a spurious pole is taken out of an approximant that it spoils.
     repairs: bool,
+    /// Those that were repaired.
+    repaired: Once<(usize, usize), Option<Arc<Pade>>>,
 }
 
 fn degrees(k: usize) -> (usize, usize) {
@@ -31,7 +35,13 @@ impl Staircase {
         let order = c.len().saturating_sub(1);
         let first = order.saturating_sub(APPROXIMANTS);
         if let Some(steps) = convergents(c, first, bits, stop) {
-            return Ok(Self { coefficients: c.to_vec(), bits, steps, repairs: true });
+            return Ok(Self {
+                coefficients: c.to_vec(),
+                bits,
+                steps,
+                repairs: true,
+                repaired: Once::new(),
+            });
         }
         let mut steps = Vec::new();
         for k in first..=order {
@@ -45,7 +55,7 @@ impl Staircase {
                 steps.push((k, pade));
             }
         }
-        Ok(Self { coefficients: c.to_vec(), bits, steps, repairs: true })
+        Ok(Self { coefficients: c.to_vec(), bits, steps, repairs: true, repaired: Once::new() })
     }
 
     /// The approximants, the last one last.
@@ -90,6 +100,7 @@ impl Staircase {
         let order = self.coefficients.len().saturating_sub(1);
         let robust = |(l, m)| {
             let pade = || Pade::robust_until(stop, &self.coefficients, l, m, self.bits);
+            let pade = || self.repaired.get((l, m), stop, || pade().map(Arc::new));
             self.repairs.then(pade)?
         };
         let mut values = Vec::new();
