@@ -21,7 +21,7 @@ use crate::polynomial::{Polynomial, PolynomialRing, PowerProduct, Symbol};
 use lindstedt_algebra::{Rationals, Ring};
 use lindstedt_number::ball::ring::{BallRing, Enclosure};
 use lindstedt_number::digits::decimal;
-use rug::Rational;
+use rug::{Integer, Rational};
 use rustc_hash::FxHashMap;
 use std::cmp::{Ordering, Reverse};
 
@@ -49,6 +49,22 @@ impl Term {
     pub fn times(mut self, factors: impl IntoIterator<Item = String>) -> Self {
         self.factors.extend(factors);
         self
+    }
+
+    /// A fraction in lowest terms, not zero, whose parts are nowhere put together: long ones are only written.
+    #[must_use]
+    pub fn of_fraction(numerator: &Integer, denominator: &Integer, style: Style) -> Self {
+        let sign = if numerator.is_negative() { -1 } else { 1 };
+        let magnitude = numerator.as_abs();
+        let is_whole = *denominator == 1;
+        let number = match style {
+            _ if is_whole => magnitude.to_string(),
+            Style::Text => format!("{}/{denominator}", *magnitude),
+            Style::Latex => format!(r"\frac{{{}}}{{{denominator}}}", *magnitude),
+        };
+        let is_one = is_whole && *magnitude == 1;
+        let factors = if is_one { Vec::new() } else { vec![number] };
+        Self { coefficient: Rational::from(sign), factors }
     }
 
     /// Writes the term without its sign.

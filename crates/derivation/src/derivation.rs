@@ -6,17 +6,17 @@ use crate::error::DerivationError;
 use crate::series::NamedSeries;
 use crate::settings::Route;
 use lindstedt_algebra::{FunctionAlgebra, RationalAlgebra, Rationals, Ring};
-use lindstedt_coeff::print::{Print, Style};
+use lindstedt_coeff::print::{Print, Style, Term, print_sum};
 use lindstedt_coeff::{Polynomial, PolynomialRing};
 use lindstedt_equation::classify::rational_root;
 use lindstedt_equation::description::Description;
 use lindstedt_equation::{AmplitudeRole, Condition, Problem, Quantity};
 use lindstedt_expand::Expansion;
-use lindstedt_multimodular as multimodular;
+use lindstedt_multimodular::{self as multimodular, Fraction};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::{Exact, Number, certified, to_ratio};
-use lindstedt_phase::print::PrintPhase;
-use lindstedt_phase::{Lobachevsky, Trigonometric};
+use lindstedt_phase::Lobachevsky;
+use lindstedt_phase::print::{PrintPhase, times_harmonic};
 use num_bigint::BigInt;
 use num_rational::Ratio;
 use rayon::prelude::*;
@@ -36,7 +36,7 @@ const FEW_OF_ALL: usize = 1000;
 /// let settings = Settings { order: 1, ..Settings::default() };
 /// let duffing = derive(&problem, &settings, &mut |_| true)?;
 /// let Solution::Rational(proved) = &duffing.solution else { panic!("over Q") };
-/// assert_eq!(proved.expansion.order(), 1);
+/// assert_eq!(proved.order(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -213,9 +213,7 @@ impl Derivation {
             Solution::Lobachevsky(expansion) => {
                 self.ring.print(&expansion.frequency_squared[n], style)
             }
-            Solution::Rational(proved) => {
-                Rationals.print(&proved.expansion.frequency_squared[n], style)
-            }
+            Solution::Rational(proved) => Rationals.print(&proved.squared[n], style),
         }
     }
 
@@ -228,7 +226,7 @@ impl Derivation {
             Solution::FrequencyOnly { .. } => String::new(),
             Solution::Clock(solution) => self.ring.print(&solution.amplitude()[n], style),
             Solution::Lobachevsky(expansion) => self.ring.print(&expansion.amplitude[n], style),
-            Solution::Rational(proved) => Rationals.print(&proved.expansion.amplitude[n], style),
+            Solution::Rational(proved) => Rationals.print(&proved.amplitude[n], style),
         }
     }
 
@@ -317,23 +315,22 @@ impl Derivation {
             Solution::Lobachevsky(expansion) => {
                 Lobachevsky::new(self.ring.clone()).print(&expansion.solution[n], "tau", style)
             }
-            Solution::Rational(proved) => {
-                Trigonometric::new(Rationals).print(&proved.expansion.solution[n], "tau", style)
-            }
+            Solution::Rational(proved) => print_fractions(&proved.solution[n].fractions(), style),
         }
     }
 
     /// The right side f_n of x_n'' + x_n = f_n - W_n x_0'' in every style, printed where it has at most `most`
     /// terms, and their number; empty beyond the orders derived. Nothing where f_n is not formed, as it would
     /// cost more than all the rest: in the Lobachevsky ring where x_n has more than twice `most` terms.
-    pub fn print_right_side(
+    pub fn print_right_side<const N: usize>(
         &self,
         n: usize,
-        styles: [Style; 2],
+        styles: [Style; N],
         most: usize,
-    ) -> Option<([String; 2], usize)> {
+    ) -> Option<([String; N], usize)> {
+        let nothing = || Some(([const { String::new() }; N], 0));
         if n > self.order {
-            return Some(Default::default());
+            return nothing();
         }
         match &self.solution {
             Solution::Clock(solution) => {
@@ -348,11 +345,13 @@ impl Derivation {
                 formed
                     .then(|| print_few(&algebra, &expansion.right_side(&algebra, n), styles, most))
             }
-            Solution::FrequencyOnly { .. } => Some(Default::default()),
+            Solution::FrequencyOnly { .. } => nothing(),
             Solution::Rational(proved) => {
-                let algebra = Trigonometric::new(Rationals);
-                let f = proved.expansion.right_side(&algebra, n);
-                Some(print_few(&algebra, &f, styles, most))
+                let terms = proved.right_side_terms(n);
+                let f = if terms > most { Vec::new() } else { proved.right_side(n) };
+                let print =
+                    |style| if terms > most { String::new() } else { print_fractions(&f, style) };
+                Some((styles.map(print), terms))
             }
         }
     }
@@ -366,21 +365,28 @@ impl Derivation {
             Solution::FrequencyOnly { .. } => 0,
             Solution::Clock(solution) => solution.terms()[n],
             Solution::Lobachevsky(expansion) => expansion.solution[n].len(),
-            Solution::Rational(proved) => {
-                Trigonometric::new(Rationals).terms(&proved.expansion.solution[n])
-            }
+            Solution::Rational(proved) => proved.solution[n].terms(),
         }
     }
 }
 
 /// A function in every style, where it has at most so many terms, and their number.
-fn print_few<A: PrintPhase + FunctionAlgebra>(
+fn print_few<A: PrintPhase + FunctionAlgebra, const N: usize>(
     algebra: &A,
     f: &A::Element,
-    styles: [Style; 2],
+    styles: [Style; N],
     most: usize,
-) -> ([String; 2], usize) {
+) -> ([String; N], usize) {
     let terms = algebra.terms(f);
     let print = |style| if terms > most { String::new() } else { algebra.print(f, "tau", style) };
     (styles.map(print), terms)
+}
+
+/// A sum of cosines and sines; the empty one is 0.
+fn print_fractions(list: &[Fraction], style: Style) -> String {
+    let print = |f: &Fraction| {
+        let term = Term::of_fraction(&f.numerator, &f.denominator, style);
+        times_harmonic(term, if f.sine { "sin" } else { "cos" }, f.harmonic, "tau", style)
+    };
+    print_sum(&list.iter().map(print).collect::<Vec<_>>(), style)
 }

@@ -6,7 +6,7 @@ use crate::constants::Constants;
 use crate::derivation::{Derivation, Solution};
 use crate::error::DerivationError;
 use crate::found::Found;
-use crate::limits::{bytes_of, check_parameters, has_logarithms, limit_memory};
+use crate::limits::{Bytes, bytes_of, check_parameters, has_logarithms, limit_memory};
 use crate::prepare::{Prepared, prepare};
 use crate::series::{Powers, energy_integral, series, undo_time_scale};
 use crate::settings::{Route, Settings, condition};
@@ -74,12 +74,13 @@ pub fn derive(
     let given = Given { ring: &ring, parameters: &settings.parameters };
     let task = Task { problem, settings, condition, ring: &ring, given };
     let bytes = |order| task.proved(order, &mut |_| true).ok().map(|proved| bytes_of(&proved));
-    limit_memory(problem, settings, &bytes)?;
+    let bytes: &Bytes<'_> = &bytes;
+    limit_memory(problem, settings, bytes)?;
     let logarithms = has_logarithms(&problem.equation);
     let (route, found) = match settings.route {
         Route::EnergyIntegral => (Route::EnergyIntegral, task.by_energy(observer)?),
         Route::Frequency => task.frequency_alone(logarithms, observer)?,
-        Route::Automatic | Route::Clock if logarithms => task.by_clock(&bytes, observer)?,
+        Route::Automatic | Route::Clock if logarithms => task.by_clock(bytes, observer)?,
         Route::Clock => return Err(ExpandError::NotOneClock { order: 0 }.into()),
         _ if logarithms => (Route::Driver, task.over_moments(observer)?),
         _ => (Route::Driver, task.over_rationals(observer)?),
@@ -173,7 +174,7 @@ impl Task<'_> {
     /// By the clock, or by the driver where that is not asked for and does not apply.
     fn by_clock(
         &self,
-        bytes: &dyn Fn(usize) -> Option<f64>,
+        bytes: &Bytes<'_>,
         observer: &mut Observer<'_>,
     ) -> Result<(Route, Found), DerivationError> {
         let Self { problem, settings, condition, given, .. } = self;
@@ -219,12 +220,12 @@ impl Task<'_> {
         let mut on_primes = |primes| observer(Progress::Primes(primes));
         let proved = self.proved(self.settings.order, &mut on_primes)?;
         let constants = |list: &[Rational]| list.iter().map(|q| ring.rational(q)).collect();
-        let lists = [&proved.expansion.frequency_squared, &proved.frequency, &proved.period];
+        let lists = [&proved.squared, &proved.frequency, &proved.period];
         Ok(Found {
             powers: Powers::rational(ring, lists.map(Vec::as_slice)),
-            amplitudes: constants(&proved.expansion.amplitude),
-            stiffness: ring.rational(&proved.expansion.stiffness),
-            checked_orders: Some(proved.expansion.order()),
+            amplitudes: constants(&proved.amplitude),
+            stiffness: ring.rational(&proved.stiffness),
+            checked_orders: Some(proved.order()),
             solution: Solution::Rational(Box::new(proved)),
         })
     }

@@ -3,6 +3,7 @@
 use crate::derivation::{Derivation, Solution};
 use lindstedt_coeff::print::Style;
 use lindstedt_number::Object;
+use rayon::prelude::*;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
@@ -30,7 +31,7 @@ impl Serialize for Derivation {
         let series = Object(series.collect());
         let orders = 0..self.solved();
         let solution: Vec<String> =
-            orders.clone().map(|n| self.print_solution(n, Style::Text)).collect();
+            orders.clone().into_par_iter().map(|n| self.print_solution(n, Style::Text)).collect();
         let terms: Vec<usize> = orders.map(|n| self.terms(n)).collect();
         let (name, proved) = match &self.solution {
             Solution::Rational(proved) => {

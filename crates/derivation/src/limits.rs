@@ -176,23 +176,25 @@ pub fn has_logarithms(expression: &Expression) -> bool {
 /// The order up to which an expansion over Q is derived to see how its numbers grow.
 const PROBE: usize = 24;
 
-/// The bytes of the Fourier coefficients of an expansion.
-pub(crate) fn bytes_of(proved: &Proved) -> f64 {
-    let lists = proved.expansion.solution.iter().flat_map(|x| [&x.cos, &x.sin]);
-    let bits =
-        |q: &Rational| f64::from(q.numer().significant_bits() + q.denom().significant_bits());
-    lists.flatten().map(bits).sum::<f64>() / 8.0
+/// The bytes of every order of an expansion up to one.
+pub(crate) type Bytes<'a> = dyn Fn(usize) -> Option<Vec<f64>> + 'a;
+
+/// The bytes of the Fourier coefficients of an expansion, order by order.
+pub(crate) fn bytes_of(proved: &Proved) -> Vec<f64> {
+    proved.solution.iter().map(|x| x.bits() as f64 / 8.0).collect()
 }
 
 /// log2 of the bytes that an expansion over Q takes. The numbers grow like a power of the order (measured: Duffing
 /// 3.0, van der Pol 3.9; all numbers of an order N have N^3 or N^4 bits), which two low orders show; at the peak
 /// residues, numerators and the printed form stand beside them: 4 to 7 times as much in the engine,
 /// some more in what prints.
-fn over_q(order: usize, bytes: &dyn Fn(usize) -> Option<f64>) -> f64 {
+fn over_q(order: usize, bytes: &Bytes<'_>) -> f64 {
     let base = 6e6;
-    let probes = (order > PROBE).then(|| bytes(PROBE / 2).zip(bytes(PROBE))).flatten();
     // What cannot be derived says so itself.
-    let Some((half, whole)) = probes else { return f64::log2(base) };
+    let Some(probe) = (order > PROBE).then(|| bytes(PROBE)).flatten() else {
+        return f64::log2(base);
+    };
+    let [half, whole] = [PROBE / 2, PROBE].map(|n| probe.iter().take(n + 1).sum::<f64>());
     let rate = (whole / half).log2().clamp(2.5, 4.0);
     f64::log2(base + 8.0 * whole * (order as f64 / PROBE as f64).powf(rate))
 }
@@ -223,7 +225,7 @@ fn by_primes(problem: &Problem, settings: &Settings) -> bool {
 pub(crate) fn limit_memory(
     problem: &Problem,
     settings: &Settings,
-    bytes: &dyn Fn(usize) -> Option<f64>,
+    bytes: &Bytes<'_>,
 ) -> Result<(), Error> {
     let order = settings.order as f64;
     let sums = matches!(problem.amplitude, AmplitudeRole::InSums);

@@ -28,10 +28,10 @@ impl Derivation {
             Solution::Lobachevsky(expansion) => lobachevsky(&expansion.solution),
             Solution::Rational(proved) => {
                 let algebra = Trigonometric::new(Rationals);
-                let solution = &proved.expansion.solution;
+                let solution = proved.expansion().solution;
                 let functions: Vec<_> = match derivative {
                     true => solution.iter().map(|x| algebra.derivative(x)).collect(),
-                    false => solution.clone(),
+                    false => solution,
                 };
                 PhaseFunctions::trigonometric(&functions, balls, of_rational(balls))
             }

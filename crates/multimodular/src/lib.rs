@@ -12,7 +12,9 @@
 //! order n is divisible by all the primes and smaller than their product: zero.
 //! A prime that is first needed at order m begins there, from the orders below as they are modulo p.
 
+mod denominator;
 mod frequency;
+mod function;
 mod image;
 mod images;
 mod lift;
@@ -23,6 +25,7 @@ mod place;
 mod tests;
 
 pub use frequency::{BoundedFrequency, frequency};
+pub use function::{Fraction, Function};
 use image::Job;
 use images::Images;
 use lift::Remaindering;
@@ -35,6 +38,7 @@ use lindstedt_expand::{
 };
 use lindstedt_phase::modular::PrimeFields;
 use lindstedt_phase::{Modular, Trigonometric};
+use rayon::prelude::*;
 use rug::{Integer, Rational};
 
 /// The plain algebra over Q, in which results are stated.
@@ -73,8 +77,16 @@ impl<C: RationalAlgebra> Binding<C> for Over<'_, C> {
 /// A proved expansion and what it took.
 #[derive(Clone, Debug)]
 pub struct Proved {
-    /// The expansion over Q.
-    pub expansion: Expansion<RationalAlgebraOfPhase>,
+    /// What fixes the amplitude.
+    pub condition: Condition,
+    /// kappa, the factor of x at order zero.
+    pub stiffness: Rational,
+    /// W_n.
+    pub squared: Vec<Rational>,
+    /// x_n.
+    pub solution: Vec<Function>,
+    /// x_n(0).
+    pub amplitude: Vec<Rational>,
     /// omega_n of omega/sqrt(kappa) = sum omega_n eps^n, whose square is W.
     pub frequency: Vec<Rational>,
     /// T_n of sqrt(kappa) T/2pi, the reciprocal of that.
@@ -84,6 +96,52 @@ pub struct Proved {
     /// The number of primes modulo which it was substituted into the equation: those that determined and
     /// prove it, and two apart that judge the lifting.
     pub proof_primes: usize,
+}
+
+impl Proved {
+    /// The highest order.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.solution.len() - 1
+    }
+
+    /// f_n of x_n'' + x_n = f_n - W_n x_0'', by harmonics; nothing beyond the orders derived and at order zero.
+    #[must_use]
+    pub fn right_side(&self, n: usize) -> Vec<Fraction> {
+        let (Some(x), Some(w)) = (self.solution.get(n), self.squared.get(n)) else {
+            return Vec::new();
+        };
+        let mut list = x.force();
+        if n > 0 && !w.is_zero() {
+            // x_0'' = -a_0 cos psi, and x'' + x has no first harmonic.
+            let (numerator, denominator) =
+                (-Rational::from(w * &self.amplitude[0])).into_numer_denom();
+            let place = list.partition_point(|f| f.harmonic == 0);
+            list.insert(place, Fraction { harmonic: 1, sine: false, numerator, denominator });
+        }
+        list
+    }
+
+    /// The number of its terms.
+    #[must_use]
+    pub fn right_side_terms(&self, n: usize) -> usize {
+        let resonant = |n: usize| n > 0 && self.squared.get(n).is_some_and(|w| !w.is_zero());
+        self.solution.get(n).map_or(0, Function::force_terms) + usize::from(resonant(n))
+    }
+
+    /// The expansion over Q, of numbers that are ready for arithmetic.
+    #[must_use]
+    pub fn expansion(&self) -> Expansion<RationalAlgebraOfPhase> {
+        Expansion {
+            condition: self.condition,
+            stiffness: self.stiffness.clone(),
+            frequency_squared: self.squared.clone(),
+            amplitude: self.amplitude.clone(),
+            solution: self.solution.par_iter().map(Function::polynomial).collect(),
+            work: Vec::new(),
+            certificates: Vec::new(),
+        }
+    }
 }
 
 /// Derives and proves the expansion of a polynomial equation over Q: x_n and W_n of
@@ -227,34 +285,32 @@ impl<P: Iterator<Item = PrimeFields>> Ladder<'_, P> {
             self.found.push(Lifted::new(numbers, self.images.list[0].places(n)));
             self.images.list.iter_mut().for_each(|image| image.forget(n));
         }
-        let primes = 2 * (self.images.list.len() - 1);
-        let (expansion, [frequency, period]) = self.assemble();
-        Ok(Proved { expansion, frequency, period, primes, proof_primes: primes + 2 })
+        Ok(self.assemble())
     }
 
-    /// The expansion over Q, and the series of the frequency and the period.
-    fn assemble(self) -> (Expansion<RationalAlgebraOfPhase>, [Vec<Rational>; 2]) {
-        let mut expansion = Expansion {
+    fn assemble(self) -> Proved {
+        let primes = 2 * (self.images.list.len() - 1);
+        let mut proved = Proved {
             condition: self.job.request.condition,
             stiffness: self.job.stiffness.clone(),
-            frequency_squared: Vec::new(),
-            amplitude: Vec::new(),
+            squared: Vec::new(),
             solution: Vec::new(),
-            work: Vec::new(),
-            certificates: Vec::new(),
+            amplitude: Vec::new(),
+            frequency: Vec::new(),
+            period: Vec::new(),
+            primes,
+            proof_primes: primes + 2,
         };
-        let mut series = [Vec::new(), Vec::new()];
         let largest = u32::try_from(self.largest + 1).unwrap_or(u32::MAX);
         for order in self.found {
-            let order = order.order(largest);
-            let [squared, frequency, period] = order.series;
-            expansion.frequency_squared.push(squared);
-            expansion.amplitude.push(order.amplitude);
-            expansion.solution.push(order.solution);
-            series[0].push(frequency);
-            series[1].push(period);
+            let ([squared, frequency, period], x) = order.order(largest);
+            proved.squared.push(squared);
+            proved.frequency.push(frequency);
+            proved.period.push(period);
+            proved.amplitude.push(x.at_zero());
+            proved.solution.push(x);
         }
-        (expansion, series)
+        proved
     }
 
     /// Enough primes for so many bits, and not many more than enough.

@@ -1,11 +1,12 @@
 //! From images modulo primes to numbers over Q.
 
+use crate::denominator::{Denominator, over};
 use crate::image::Image;
 use crate::place::Place;
 use lindstedt_algebra::{RationalAlgebra, Ring, Stop};
 use lindstedt_expand::OrderNumbers;
 use rayon::prelude::*;
-use rug::{Integer, Rational};
+use rug::Integer;
 
 /// A candidate is accepted when it is shorter than the modulus by so many bits, which happens by chance
 /// once in 2^80. It is proved afterwards.
@@ -162,20 +163,15 @@ impl Growing<'_> {
 }
 
 /// Divides by what the denominator and all numerators have in common.
-fn lowest_terms(mut numerators: Vec<(Place, Integer)>, mut denominator: Integer) -> OrderNumbers {
-    let mut common = denominator.clone();
-    for (_, numerator) in &numerators {
-        common.gcd_mut(numerator);
-        if common == 1 {
-            break;
-        }
-    }
-    if common != 1 {
-        denominator.div_exact_mut(&common);
-        numerators.iter_mut().for_each(|(_, numerator)| numerator.div_exact_mut(&common));
-    }
+fn lowest_terms(mut numerators: Vec<(Place, Integer)>, denominator: Integer) -> OrderNumbers {
+    // Denominators come from the divisors 1 - k^2.
+    let harmonics = numerators.iter().filter_map(|(place, _)| place.harmonic());
+    let largest = harmonics.max().map_or(2, |k| k as u32 + 1);
+    let mut denominator = Denominator::new(denominator, largest);
+    denominator.divide_by_common(numerators.iter_mut().map(|(_, c)| c));
+    let factors = denominator.factors();
     let [mut squared, mut frequency, mut period] = [const { None }; 3];
-    let over = |numerator: Integer| Some(Rational::from((numerator, denominator.clone())));
+    let over = |numerator: Integer| Some(over(numerator, &factors));
     let mut coefficients = Vec::with_capacity(numerators.len());
     for (place, numerator) in numerators {
         match place {
@@ -186,6 +182,7 @@ fn lowest_terms(mut numerators: Vec<(Place, Integer)>, mut denominator: Integer)
         }
     }
     let [squared, frequency, period] = [squared, frequency, period].map(Option::unwrap_or_default);
+    let denominator = denominator.number().clone();
     OrderNumbers { denominator, numerators: coefficients, squared, frequency, period }
 }
 

@@ -59,13 +59,19 @@ impl<C: RationalAlgebra + Print> PrintPhase for Trigonometric<C> {
             }
             for (coefficient, function) in [(c, "cos"), (s, "sin")] {
                 if !constants.is_zero(&coefficient) {
-                    let value = function_value(function, 1, k, phase, style);
-                    terms.push(constants.factor(&coefficient, style).times([value]));
+                    let factor = constants.factor(&coefficient, style);
+                    terms.push(times_harmonic(factor, function, k, phase, style));
                 }
             }
         }
         terms
     }
+}
+
+/// A term times cos or sin of a multiple of the phase; cos 0 is not written.
+#[must_use]
+pub fn times_harmonic(term: Term, function: &str, k: usize, phase: &str, style: Style) -> Term {
+    if k == 0 { term } else { term.times([function_value(function, 1, k, phase, style)]) }
 }
 
 impl<C: Moments + Print> PrintPhase for Lobachevsky<C> {

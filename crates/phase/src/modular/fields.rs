@@ -1,11 +1,12 @@
 //! Z/p_1 x ... x Z/p_8 for primes just below 2^30: one prime per lane of a vector, in Montgomery form.
 //!
 //! What is done modulo one prime is done modulo all eight by the same instructions. Sums of products are added up in
-//! 64 bits, twelve products between two folds, and reduced once; long loops are compiled for plain and for wide
-//! vectors, and the processor decides (`pulp`).
+//! 64 bits, twelve products between two folds, and reduced once; long loops are written for the vectors that there are,
+//! and the processor decides (`words`).
 
 use super::pair::PrimePair;
 use super::primes;
+use super::words::{Plain, Words, padded};
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::{Integer, Rational};
 
@@ -19,8 +20,6 @@ type Sums = [u64; LANES];
 const ZERO: Residues = [0; LANES];
 /// Products that are added up before their sum is folded: 12 (p - 1)^2 + 2^32 p < 2^64.
 const CHUNK: usize = 12;
-/// Rows that wide vectors take in one pass over the sums.
-const PASS: usize = 4;
 
 /// The product of the fields Z/p of eight primes. It has zero divisors: what vanishes modulo one of the primes is
 /// not zero, and has no reciprocal.
@@ -80,15 +79,28 @@ impl PrimeFields {
         &self.pairs
     }
 
-    /// Runs a loop as it is compiled for this processor; all that it calls must be inlined.
-    pub(super) fn vectorised<L: pulp::NullaryFnOnce>(&self, lanes: L) -> L::Output {
-        self.arch.dispatch(lanes)
+    #[cfg(test)]
+    pub(super) fn on_every_processor(self) -> Vec<Self> {
+        let mut list = Vec::new();
+        for arch in tests::arches() {
+            list.push(Self { arch, ..self });
+        }
+        list
     }
 
-    /// Whether loops are compiled for wide vectors, where more of them pays.
-    #[inline(always)]
-    fn is_wide(&self) -> bool {
-        !matches!(self.arch, pulp::Arch::Scalar)
+    /// Runs a kernel on the vectors of this processor.
+    pub(super) fn vectorised<K: Kernel>(&self, kernel: K) -> K::Output {
+        #[cfg(target_arch = "x86_64")]
+        match self.arch {
+            pulp::Arch::V4(words) => return pulp::Simd::vectorize(words, On(kernel, words)),
+            pulp::Arch::V3(words) => return pulp::Simd::vectorize(words, On(kernel, words)),
+            _ => {
+                if let Some(words) = pulp::x86::V1::try_new() {
+                    return kernel.run(words);
+                }
+            }
+        }
+        kernel.run(Plain)
     }
 
     /// t / 2^32 mod p for t < 2^32 p.
@@ -136,28 +148,6 @@ impl PrimeFields {
             let difference = a[l].wrapping_sub(b[l]);
             difference.min(difference.wrapping_add(self.primes[l]))
         })
-    }
-
-    /// sum_i a_i b_i with one reduction.
-    #[inline(always)]
-    pub(super) fn dot(&self, a: &[Residues], b: &[Residues]) -> Residues {
-        let mut t = [0; LANES];
-        for (a, b) in a.chunks(CHUNK).zip(b.chunks(CHUNK)) {
-            self.fold(&mut t);
-            for (a, b) in a.iter().zip(b) {
-                accumulate(&mut t, a, b);
-            }
-        }
-        self.reduce_any(t)
-    }
-
-    /// a b + c d.
-    #[inline(always)]
-    pub(super) fn two(&self, a: &Residues, b: &Residues, c: &Residues, d: &Residues) -> Residues {
-        let mut t = [0; LANES];
-        accumulate(&mut t, a, b);
-        accumulate(&mut t, c, d);
-        self.reduce(&t)
     }
 
     /// sum_i a_i\[j\] b_i\[j\] for every j < `length`, the length of every row.
@@ -244,103 +234,191 @@ impl PrimeFields {
     }
 }
 
+/// What is written once for all vectors; all that it calls must be inlined.
+pub(super) trait Kernel {
+    type Output;
+    fn run<W: Words>(self, words: W) -> Self::Output;
+}
+
+/// A kernel compiled for certain vectors.
+struct On<K, W>(K, W);
+
+impl<K: Kernel, W: Words> pulp::NullaryFnOnce for On<K, W> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn call(self) -> K::Output {
+        self.0.run(self.1)
+    }
+}
+
+/// The primes as they are needed at even and at odd places.
+#[derive(Clone, Copy)]
+pub(super) struct Moduli<W: Words> {
+    words: W,
+    primes: [W::Word; 2],
+    negative_inverses: [W::Word; 2],
+    ones: [W::Word; 2],
+}
+
+/// A number at all points, as it is and with its odd places shifted to the even ones.
+#[inline(always)]
+fn halves<W: Words>(words: W, row: &Residues) -> [W::Word; 2] {
+    let word = words.same(row);
+    [word, words.high(word)]
+}
+
+impl<W: Words> Moduli<W> {
+    #[inline(always)]
+    pub(super) fn new(words: W, fields: &PrimeFields) -> Self {
+        Self {
+            words,
+            primes: halves(words, &fields.primes),
+            negative_inverses: halves(words, &fields.negative_inverses),
+            ones: halves(words, &fields.ones),
+        }
+    }
+
+    #[inline(always)]
+    fn zero(&self) -> [W::Word; 2] {
+        [self.words.same(&ZERO); 2]
+    }
+
+    /// t + a b.
+    #[inline(always)]
+    fn accumulate(&self, [even, odd]: [W::Word; 2], a: W::Word, b: W::Word) -> [W::Word; 2] {
+        let words = self.words;
+        [words.accumulate(even, a, b), words.accumulate(odd, words.high(a), words.high(b))]
+    }
+
+    #[inline(always)]
+    fn fold(&self, t: [W::Word; 2]) -> [W::Word; 2] {
+        [self.words.fold(t[0], self.ones[0]), self.words.fold(t[1], self.ones[1])]
+    }
+
+    /// t / 2^32 mod p for t < 2^32 p.
+    #[inline(always)]
+    fn reduce(&self, t: [W::Word; 2]) -> W::Word {
+        self.words.join(self.reduce_half(t[0], 0), self.reduce_half(t[1], 1), self.primes[0])
+    }
+
+    /// The multiple of 2^32 that t becomes with a multiple of p.
+    #[inline(always)]
+    fn reduce_half(&self, t: W::Word, i: usize) -> W::Word {
+        let multiple = self.words.product(t, self.negative_inverses[i]);
+        self.words.accumulate(t, multiple, self.primes[i])
+    }
+
+    /// sum_i a_i\[j\] b_i\[j\] for every j of `sums`, zero where a row has ended.
+    #[inline(always)]
+    pub(super) fn sum_of_products<B: Factor>(
+        &self,
+        pairs: &[(&[Residues], B)],
+        sums: &mut [Residues],
+    ) {
+        if pairs.len() <= CHUNK {
+            for (tile, sums) in sums.chunks_mut(W::ROWS).enumerate() {
+                let t = self.add_products(self.zero(), pairs, tile * W::ROWS);
+                self.words.store(self.reduce(self.fold(self.fold(t))), sums);
+            }
+            return;
+        }
+        let mut list = vec![self.zero(); sums.len().div_ceil(W::ROWS)];
+        // A few rows from end to end, so that the processor foresees what is read next.
+        for pairs in pairs.chunks(CHUNK) {
+            for (tile, t) in list.iter_mut().enumerate() {
+                *t = self.add_products(self.fold(*t), pairs, tile * W::ROWS);
+            }
+        }
+        for (t, sums) in list.into_iter().zip(sums.chunks_mut(W::ROWS)) {
+            self.words.store(self.reduce(self.fold(self.fold(t))), sums);
+        }
+    }
+
+    /// t + sum_i a_i b_i at the points of one word.
+    #[inline(always)]
+    fn add_products<B: Factor>(
+        &self,
+        mut t: [W::Word; 2],
+        pairs: &[(&[Residues], B)],
+        start: usize,
+    ) -> [W::Word; 2] {
+        for (a, b) in pairs {
+            if a.len() > start {
+                let a = padded(self.words, a, start);
+                t = self.accumulate(t, a, b.word(self.words, start));
+            }
+        }
+        t
+    }
+
+    /// sum_j m\[j\]\[k\] x_j for every k of `sums`; the rows of the matrix are `stride` apart and as long, a multiple of
+    /// the points in a word.
+    #[inline(always)]
+    pub(super) fn matrix(
+        &self,
+        matrix: &[Residues],
+        stride: usize,
+        x: &[Residues],
+        sums: &mut [Residues],
+    ) {
+        for (tile, sums) in sums.chunks_mut(W::ROWS).enumerate() {
+            let mut t = self.zero();
+            for (rows, x) in matrix.chunks(CHUNK * stride).zip(x.chunks(CHUNK)) {
+                t = self.fold(t);
+                for (row, x) in rows.chunks_exact(stride).zip(x) {
+                    let row = self.words.load(&row[tile * W::ROWS..][..W::ROWS]);
+                    t = self.accumulate(t, row, self.words.same(x));
+                }
+            }
+            self.words.store(self.reduce(self.fold(self.fold(t))), sums);
+        }
+    }
+
+    /// a_j b_j in place of a_j.
+    #[inline(always)]
+    pub(super) fn multiply(&self, a: &mut [Residues], b: &[Residues]) {
+        for (tile, a) in a.chunks_mut(W::ROWS).enumerate() {
+            let word = padded(self.words, a, 0);
+            let t = self.accumulate(self.zero(), word, padded(self.words, b, tile * W::ROWS));
+            self.words.store(self.reduce(t), a);
+        }
+    }
+}
+
 /// Factors of one product in every place: a row, or one number.
-trait Factor: Copy {
-    /// As far as both reach.
-    fn within(self, length: usize) -> Self;
-    fn at(&self, j: usize) -> &Residues;
+pub(super) trait Factor: Copy {
+    fn word<W: Words>(self, words: W, start: usize) -> W::Word;
 }
 
 impl Factor for &[Residues] {
     #[inline(always)]
-    fn within(self, length: usize) -> Self {
-        &self[..length]
-    }
-    #[inline(always)]
-    fn at(&self, j: usize) -> &Residues {
-        &self[j]
+    fn word<W: Words>(self, words: W, start: usize) -> W::Word {
+        padded(words, self, start)
     }
 }
 
 impl Factor for Residues {
     #[inline(always)]
-    fn within(self, _: usize) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn at(&self, _: usize) -> &Residues {
-        self
+    fn word<W: Words>(self, words: W, _: usize) -> W::Word {
+        words.same(&self)
     }
 }
 
-/// sum_i a_i\[j\] b_i\[j\] for every j below `length`, zero where a row has ended.
 struct SumOfProducts<'a, B> {
     fields: &'a PrimeFields,
     pairs: &'a [(&'a [Residues], B)],
     length: usize,
 }
 
-impl<B: Factor> SumOfProducts<'_, B> {
-    /// Adds the products of some rows, after a fold.
-    #[inline(always)]
-    fn add(&self, sums: &mut [Sums], pairs: &[(&[Residues], B)], folds: bool) {
-        let common = pairs.iter().fold(sums.len(), |least, (row, _)| least.min(row.len()));
-        let (whole, rest) = sums.split_at_mut(common);
-        if let (true, &[a, b, c, d]) = (self.fields.is_wide(), pairs) {
-            let rows = [a, b, c, d].map(|(a, b)| (a.within(common), b.within(common)));
-            for (j, sum) in whole.iter_mut().enumerate() {
-                let mut t = *sum;
-                if folds {
-                    self.fields.fold(&mut t);
-                }
-                for (a, b) in &rows {
-                    accumulate(&mut t, a.at(j), b.at(j));
-                }
-                *sum = t;
-            }
-        } else {
-            for (j, sum) in whole.iter_mut().enumerate() {
-                let mut t = *sum;
-                if folds {
-                    self.fields.fold(&mut t);
-                }
-                for (a, b) in pairs {
-                    accumulate(&mut t, a.at(j), b.at(j));
-                }
-                *sum = t;
-            }
-        }
-        for sum in rest.iter_mut().filter(|_| folds) {
-            self.fields.fold(sum);
-        }
-        for (row, b) in pairs {
-            for (j, (sum, a)) in rest.iter_mut().zip(&row[common..]).enumerate() {
-                accumulate(sum, a, b.at(common + j));
-            }
-        }
-    }
-}
-
-impl<B: Factor> pulp::NullaryFnOnce for SumOfProducts<'_, B> {
+impl<B: Factor> Kernel for SumOfProducts<'_, B> {
     type Output = Vec<Residues>;
 
     #[inline(always)]
-    fn call(self) -> Vec<Residues> {
-        let mut sums = vec![[0; LANES]; self.length];
-        for pairs in self.pairs.chunks(CHUNK) {
-            if self.fields.is_wide() {
-                for (done, pairs) in pairs.chunks(PASS).enumerate() {
-                    self.add(&mut sums, pairs, done == 0);
-                }
-            } else {
-                self.add(&mut sums, pairs, true);
-            }
-        }
-        let mut result = Vec::with_capacity(sums.len());
-        for sum in sums {
-            result.push(self.fields.reduce_any(sum));
-        }
-        result
+    fn run<W: Words>(self, words: W) -> Vec<Residues> {
+        let mut sums = vec![ZERO; self.length];
+        Moduli::new(words, self.fields).sum_of_products(self.pairs, &mut sums);
+        sums
     }
 }
 
@@ -475,20 +553,64 @@ mod tests {
             let more = fields.add(&sum, &square);
             let expected: Vec<_> = (0..20).map(|j| if j < 13 { more } else { sum }).collect();
             assert_eq!(fields.combination(&terms), expected, "{count}");
-            let list = vec![largest; count as usize];
-            assert_eq!(fields.dot(&list, &list), sum, "{count}");
             let pairs = vec![(&largest, &largest); count as usize];
             assert_eq!(fields.sum_of_products(&pairs), sum, "{count}");
         }
-        assert_eq!(
-            fields.two(&largest, &largest, &largest, &largest),
-            fields.add(&square, &square)
-        );
         let list: Vec<Residues> = (1..20).map(|n| small(&fields, n)).collect();
         let inverses = fields.reciprocals(&list).expect("units");
         assert!(list.iter().zip(&inverses).all(|(a, b)| fields.mul(a, b) == fields.one()));
         let mut vanishes = fields.one();
         vanishes[3] = 0;
         assert_eq!(fields.reciprocals(&[fields.one(), vanishes]), None);
+    }
+
+    /// All kinds of vectors do the same, also where rows end before a word does.
+    #[test]
+    fn every_kind_of_vector_agrees() {
+        let fields = first(8);
+        let rows: Vec<Vec<Residues>> = (0..40u32)
+            .map(|i| (0..23).map(|j| fields.power(&small(&fields, i + 2), 7 * j + i)).collect())
+            .collect();
+        let largest = vec![fields.primes().map(|p| p - 1); 23];
+        for length in [1, 3, 4, 5, 16, 23] {
+            let mut pairs: Vec<(&[Residues], &[Residues])> =
+                rows.iter().zip(&rows[7..]).map(|(a, b)| (&a[..length], &b[..length])).collect();
+            pairs.push((&largest[..length], &largest[..length]));
+            pairs.push((&rows[3][..length / 2], &rows[5][..length / 2]));
+            let terms: Vec<(&[Residues], Residues)> =
+                pairs.iter().map(|(a, b)| (*a, b.first().copied().unwrap_or(ZERO))).collect();
+            let one_by_one = |at: &dyn Fn(usize, usize) -> Residues| -> Vec<Residues> {
+                let sum = |j: usize| {
+                    let product = |(i, (a, _)): (usize, &(&[Residues], &[Residues]))| {
+                        a.get(j).map_or(ZERO, |a| fields.mul(a, &at(i, j)))
+                    };
+                    let products = pairs.iter().enumerate().map(product);
+                    products.fold(ZERO, |sum, product| fields.add(&sum, &product))
+                };
+                (0..length).map(sum).collect()
+            };
+            let products = one_by_one(&|i, j| pairs[i].1[j]);
+            let combination = one_by_one(&|i, _| terms[i].1);
+            let plain = SumOfProducts { fields: &fields, pairs: &pairs, length }.run(Plain);
+            assert_eq!(plain, products);
+            for fields in fields.on_every_processor() {
+                assert_eq!(fields.pointwise(&pairs, length), products, "{length} {fields:?}");
+                assert_eq!(fields.combination(&terms), combination, "{length} {fields:?}");
+            }
+        }
+    }
+
+    /// Those of this processor.
+    pub(super) fn arches() -> Vec<pulp::Arch> {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let wide = [
+                pulp::x86::V3::try_new().map(pulp::Arch::V3),
+                pulp::x86::V4::try_new().map(pulp::Arch::V4),
+            ];
+            wide.into_iter().flatten().chain([pulp::Arch::Scalar]).collect()
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        vec![pulp::Arch::Scalar]
     }
 }

@@ -15,6 +15,7 @@ mod fields;
 mod pair;
 mod primes;
 mod transform;
+mod words;
 
 pub use fields::{LANES, PrimeFields, Residues};
 pub use pair::PrimePair;
@@ -108,9 +109,8 @@ impl Part {
         })
     }
 
-    /// A linear map that multiplies every number by the same.
-    fn map(&self, g: impl Fn(&Residues) -> Residues) -> Option<Self> {
-        let image = |list: &Vec<Residues>| -> Vec<Residues> { list.iter().map(&g).collect() };
+    fn times(&self, field: &PrimeFields, c: &Residues) -> Option<Self> {
+        let image = |list: &Vec<Residues>| field.combination(&[(list, *c)]);
         let Forms { coefficients, values } = &*self.forms;
         self.with_forms(coefficients.get().map(image), values.get().map(image))
     }
@@ -171,9 +171,9 @@ pub struct Modular {
     field: PrimeFields,
     points: usize,
     transform: Arc<Transform>,
-    /// k and 1/(1 - k^2) for every harmonic k (zero for k = 1).
-    multiples: Vec<Residues>,
-    inverse_divisors: Vec<Residues>,
+    /// By symmetry: k for sines and -k for cosines, and 1/(1 - k^2) for every harmonic k (zero for k = 1).
+    slopes: [Vec<Residues>; 4],
+    inverse_divisors: [Vec<Residues>; 4],
     stop: Stop,
 }
 
@@ -192,15 +192,24 @@ impl Modular {
         let harmonics = 0..=2 * points as i64;
         let integer = |n: i64| field.integer(&Integer::from(n));
         let divisor = |k: i64| if k == 1 { field.one() } else { integer(1 - k * k) };
-        let divisors: Vec<Residues> = harmonics.clone().map(divisor).collect();
+        let divisors: Vec<Residues> = harmonics.map(divisor).collect();
         let mut inverse_divisors = field.reciprocals(&divisors)?;
         inverse_divisors[1] = field.zero();
+        let by_symmetry = |value: &dyn Fn(Symmetry, usize) -> Residues| {
+            let of = |symmetry: Symmetry| {
+                (0..points).map(|k| value(symmetry, symmetry.harmonic(k))).collect()
+            };
+            SYMMETRIES.map(of)
+        };
+        let slope = |symmetry: Symmetry, k: usize| {
+            integer(if symmetry.sine { k as i64 } else { -(k as i64) })
+        };
         Some(Self {
             field,
             points,
             transform: Arc::new(Transform::new(field, points, root)?),
-            multiples: harmonics.map(integer).collect(),
-            inverse_divisors,
+            slopes: by_symmetry(&slope),
+            inverse_divisors: by_symmetry(&|_, k| inverse_divisors[k]),
             stop: Stop::default(),
         })
     }
@@ -348,9 +357,7 @@ impl Ring for Modular {
         }
     }
     fn neg(&self, f: &ModularElement) -> ModularElement {
-        let negative = |x: &Residues| self.field.neg(x);
-        let parts = f.parts.each_ref();
-        ModularElement { parts: parts.map(|part| part.as_ref()?.map(negative)) }
+        self.scale_by(f, &self.field.neg(&self.field.one()))
     }
     fn mul(&self, f: &ModularElement, g: &ModularElement) -> ModularElement {
         self.sum_of_products(&[(f, g)])
@@ -419,9 +426,8 @@ impl FunctionAlgebra for Modular {
         self.single(Symmetry { sine: false, odd: false }, 0, *c)
     }
     fn scale_by(&self, f: &ModularElement, c: &Residues) -> ModularElement {
-        let times = |x: &Residues| self.field.mul(x, c);
         let parts = f.parts.each_ref();
-        ModularElement { parts: parts.map(|part| part.as_ref()?.map(times)) }
+        ModularElement { parts: parts.map(|part| part.as_ref()?.times(&self.field, c)) }
     }
     fn linear_combination(&self, terms: &[(&ModularElement, &Residues)]) -> ModularElement {
         let parts = SYMMETRIES.map(|symmetry| {
@@ -471,12 +477,9 @@ impl PhaseAlgebra for Modular {
         for symmetry in SYMMETRIES {
             let Some(part) = &f.parts[symmetry.index()] else { continue };
             let image = Symmetry { sine: !symmetry.sine, odd: symmetry.odd };
-            let times = |(k, c): (usize, &Residues)| {
-                let c = self.field.mul(c, &self.multiples[symmetry.harmonic(k)]);
-                if symmetry.sine { c } else { self.field.neg(&c) }
-            };
-            let mut list: Vec<Residues> =
-                part.coefficients().iter().enumerate().map(times).collect();
+            let coefficients = part.coefficients();
+            let factors = &*self.slopes[symmetry.index()];
+            let mut list = self.field.pointwise(&[(coefficients, factors)], coefficients.len());
             // cos 2m psi is number m, sin 2m psi number m - 1.
             match (symmetry.sine, symmetry.odd) {
                 (false, false) => drop(list.remove(0)),
@@ -499,11 +502,10 @@ impl PhaseAlgebra for Modular {
     fn resolve(&self, f: &ModularElement) -> Result<Resolution<Self>, PhaseError> {
         let (cos_amplitude, sin_amplitude) = self.first_harmonic(f)?;
         let parts = SYMMETRIES.map(|symmetry| {
-            let divide = |(k, c): (usize, &Residues)| {
-                self.field.mul(c, &self.inverse_divisors[symmetry.harmonic(k)])
-            };
-            let list = f.parts[symmetry.index()].as_ref()?.coefficients();
-            self.part(symmetry, list.iter().enumerate().map(divide).collect())
+            let coefficients = f.parts[symmetry.index()].as_ref()?.coefficients();
+            let factors = &*self.inverse_divisors[symmetry.index()];
+            let list = self.field.pointwise(&[(coefficients, factors)], coefficients.len());
+            self.part(symmetry, list)
         });
         let mut response = ModularElement { parts };
         let value = self.at_zero(&response).unwrap_or_default();

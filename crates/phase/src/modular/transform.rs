@@ -14,7 +14,8 @@
 //! and sin (2k+1) theta is (-1)^k cos (2k+1) (pi/2 - theta), the points in reverse.
 
 use super::Symmetry;
-use super::fields::{PrimeFields, Residues};
+use super::fields::{Kernel, Moduli, PrimeFields, Residues};
+use super::words::Words;
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::Rational;
 
@@ -49,7 +50,7 @@ pub(super) struct Transform {
 #[derive(Clone, Debug)]
 struct Small {
     length: usize,
-    /// (v^(jk) + v^(-jk))/2, j, k <= n/2, and (v^(jk) - v^(-jk))/2, 1 <= j, k < n/2.
+    /// (v^(jk) + v^(-jk))/2, j, k <= n/2, and (v^(jk) - v^(-jk))/2, 1 <= j, k < n/2; rows filled up to full words.
     cosines: Vec<Residues>,
     sines: Vec<Residues>,
 }
@@ -69,30 +70,30 @@ impl Small {
             let other = if minus { field.neg(&other) } else { other };
             field.product(&half, &field.sum(&plus, &other))
         };
-        let mut cosines = Vec::with_capacity(even * even);
-        for k in 0..even {
-            cosines.extend((0..even).map(|j| entry(j, k, false)));
-        }
-        let mut sines = Vec::with_capacity(odd * odd);
-        for k in 1..=odd {
-            sines.extend((1..=odd).map(|j| entry(j, k, true)));
-        }
+        let matrix = |range: std::ops::Range<usize>, minus: bool| -> Vec<Residues> {
+            let mut list = Vec::with_capacity(range.len() * stride(range.len()));
+            for k in range.clone() {
+                list.extend(range.clone().map(|j| entry(j, k, minus)));
+                list.resize(list.len().next_multiple_of(stride(range.len())), field.zero());
+            }
+            list
+        };
+        let (cosines, sines) = (matrix(0..even, false), matrix(1..odd + 1, true));
         Self { length, cosines, sines }
     }
 
-    /// `scratch` has room for n + 1 numbers.
+    /// `scratch` has room for 2 n numbers.
     #[inline(always)]
-    fn apply(
+    fn apply<W: Words>(
         &self,
         field: &PrimeFields,
-        x: &[Residues],
-        y: &mut [Residues],
-        scratch: &mut [Residues],
+        moduli: &Moduli<W>,
+        [x, y, scratch]: [&mut [Residues]; 3],
     ) {
         let n = self.length;
         let (even, odd) = (n / 2 + 1, n.div_ceil(2) - 1);
-        let (sums, differences) = scratch.split_at_mut(even);
-        let differences = &mut differences[..odd];
+        let (sums, rest) = scratch.split_at_mut(even);
+        let (differences, rest) = rest.split_at_mut(odd);
         sums[0] = x[0];
         let pairs = x[1..].iter().zip(x[1..].iter().rev());
         for ((sum, difference), (a, b)) in
@@ -104,15 +105,21 @@ impl Small {
         if n.is_multiple_of(2) {
             sums[n / 2] = x[n / 2];
         }
-        for (k, weights) in self.cosines.chunks_exact(even).enumerate() {
-            y[k] = field.dot(weights, sums);
-        }
-        for (k, weights) in self.sines.chunks_exact(odd.max(1)).enumerate() {
-            let (cosine, sine) = (y[k + 1], field.dot(weights, differences));
-            y[n - 1 - k] = field.difference(&cosine, &sine);
-            y[k + 1] = field.sum(&cosine, &sine);
+        let sines = &mut rest[..odd];
+        // Both matrices are symmetric.
+        moduli.matrix(&self.cosines, stride(even), sums, &mut y[..even]);
+        moduli.matrix(&self.sines, stride(odd), differences, sines);
+        for (k, sine) in sines.iter().enumerate() {
+            let cosine = y[k + 1];
+            y[n - 1 - k] = field.difference(&cosine, sine);
+            y[k + 1] = field.sum(&cosine, sine);
         }
     }
+}
+
+/// The distance of rows of so many numbers, in full words of four points.
+fn stride(length: usize) -> usize {
+    length.next_multiple_of(4).max(4)
 }
 
 /// Q = r s, not below `least`, for which the work of an expansion of that degree is least: per point some
@@ -189,60 +196,66 @@ impl Transform {
 
     /// y_n = sum_m w^(mn) u_m in place: u_m stands at (m mod s) r + m/s, and then y_n at (n mod r) s + n/r.
     #[inline(always)]
-    fn fourier(&self, list: &mut [Residues]) {
+    fn fourier<W: Words>(&self, moduli: &Moduli<W>, list: &mut [Residues]) {
         let (r, s) = (self.rows, self.columns);
         let mut room = vec![self.field.zero(); self.points + r + 2 * s.max(r) + 2];
         let (middle, rest) = room.split_at_mut(self.points);
         let (row, scratch) = rest.split_at_mut(r);
-        let parts = list.chunks(r).zip(self.twiddles.chunks(r));
+        let parts = list.chunks_mut(r).zip(self.twiddles.chunks(r));
         for (column, (u, twiddles)) in parts.enumerate() {
-            self.row_matrix.apply(&self.field, u, row, scratch);
+            self.row_matrix.apply(&self.field, moduli, [u, &mut *row, &mut *scratch]);
+            moduli.multiply(row, twiddles);
             let places = middle[column..].iter_mut().step_by(s);
-            for ((place, value), twiddle) in places.zip(&*row).zip(twiddles) {
-                *place = self.field.product(value, twiddle);
-            }
+            places.zip(&*row).for_each(|(place, value)| *place = *value);
         }
-        for (u, out) in middle.chunks(s).zip(list.chunks_mut(s)) {
-            self.column_matrix.apply(&self.field, u, out, scratch);
+        for (u, out) in middle.chunks_mut(s).zip(list.chunks_mut(s)) {
+            self.column_matrix.apply(&self.field, moduli, [u, out, &mut *scratch]);
         }
     }
 
     /// sum_m a_m cos 2m theta_j, m < Q, for every j.
     #[inline(always)]
-    fn even_cosines(&self, a: &[Residues]) -> Vec<Residues> {
+    fn even_cosines<W: Words>(&self, moduli: &Moduli<W>, a: &[Residues]) -> Vec<Residues> {
         let q = self.points;
-        let at = |m: usize| a.get(m).copied().unwrap_or_default();
-        let mut u = vec![self.field.zero(); q];
-        for m in 0..q {
-            let value = self.field.two(&at(m), &self.entry[0][m], &at(q - m), &self.entry[1][m]);
-            u[self.place_in[m] as usize] = value;
+        let mut mirrored = vec![self.field.zero(); q];
+        for (m, value) in a.iter().enumerate().skip(1) {
+            mirrored[q - m] = *value;
         }
-        self.fourier(&mut u);
+        let mut sums = vec![self.field.zero(); q];
+        let pairs = [(&*mirrored, &*self.entry[1]), (a, &*self.entry[0])];
+        moduli.sum_of_products(&pairs, &mut sums);
+        let mut u = mirrored;
+        for (place, value) in self.place_in.iter().zip(&sums) {
+            u[*place as usize] = *value;
+        }
+        self.fourier(moduli, &mut u);
         let source = |j: usize| if j.is_multiple_of(2) { j / 2 } else { q - 1 - j / 2 };
-        (0..q).map(|j| u[self.place_out[source(j)] as usize]).collect()
+        for (j, value) in sums.iter_mut().enumerate() {
+            *value = u[self.place_out[source(j)] as usize];
+        }
+        sums
     }
 
     /// The a_m of the values: a_m = (z^-m V_(Q-m) + z^m V_m)/Q with V the transform of v.
     #[inline(always)]
-    fn even_cosine_coefficients(&self, values: &[Residues]) -> Vec<Residues> {
+    fn even_cosine_coefficients<W: Words>(
+        &self,
+        moduli: &Moduli<W>,
+        values: &[Residues],
+    ) -> Vec<Residues> {
         let q = self.points;
         let mut v = vec![self.field.zero(); q];
         for (j, &value) in values.iter().enumerate() {
             let n = if j.is_multiple_of(2) { j / 2 } else { q - 1 - j / 2 };
             v[self.place_in[n] as usize] = value;
         }
-        self.fourier(&mut v);
-        let at = |n: usize| v[self.place_out[if n == q { 0 } else { n }] as usize];
-        let each =
-            (0..q).map(|m| self.field.two(&at(q - m), &self.exit[0][m], &at(m), &self.exit[1][m]));
-        each.collect()
-    }
-
-    #[inline(always)]
-    fn times(&self, values: &mut [Residues], factors: &[Residues]) {
-        for (value, factor) in values.iter_mut().zip(factors) {
-            *value = self.field.product(value, factor);
-        }
+        self.fourier(moduli, &mut v);
+        let at = |n: usize| v[self.place_out[n] as usize];
+        let plain: Vec<Residues> = (0..q).map(at).collect();
+        let mirrored: Vec<Residues> = (0..q).map(|m| at((q - m) % q)).collect();
+        let pairs = [(&*mirrored, &*self.exit[0]), (&*plain, &*self.exit[1])];
+        moduli.sum_of_products(&pairs, &mut v);
+        v
     }
 
     /// The values at the points of a function of that symmetry from its coefficients, at most Q.
@@ -251,13 +264,18 @@ impl Transform {
     }
 
     #[inline(always)]
-    fn values_of(&self, symmetry: Symmetry, coefficients: &[Residues]) -> Vec<Residues> {
+    fn values_of<W: Words>(
+        &self,
+        moduli: &Moduli<W>,
+        symmetry: Symmetry,
+        coefficients: &[Residues],
+    ) -> Vec<Residues> {
         let (field, q) = (&self.field, self.points);
         if let (Symmetry { sine: false, odd: false }, [constant]) = (symmetry, coefficients) {
             return vec![*constant; q];
         }
         if symmetry == (Symmetry { sine: false, odd: false }) {
-            return self.even_cosines(coefficients);
+            return self.even_cosines(moduli, coefficients);
         }
         // Coefficients of odd cosines first, then of 2 cos theta times their sum.
         let mut a = coefficients.to_vec();
@@ -274,9 +292,9 @@ impl Transform {
         for m in (1..q).rev() {
             a[m] = field.sum(&a[m], &a[m - 1]);
         }
-        let mut values = self.even_cosines(&a);
+        let mut values = self.even_cosines(moduli, &a);
         let tangent = symmetry.sine && !symmetry.odd;
-        self.times(&mut values, if tangent { &self.tangent } else { &self.half_secant });
+        moduli.multiply(&mut values, if tangent { &self.tangent } else { &self.half_secant });
         if symmetry.sine && symmetry.odd {
             values.reverse();
         }
@@ -289,18 +307,23 @@ impl Transform {
     }
 
     #[inline(always)]
-    fn coefficients_of(&self, symmetry: Symmetry, values: &[Residues]) -> Vec<Residues> {
+    fn coefficients_of<W: Words>(
+        &self,
+        moduli: &Moduli<W>,
+        symmetry: Symmetry,
+        values: &[Residues],
+    ) -> Vec<Residues> {
         let (field, q) = (&self.field, self.points);
         if symmetry == (Symmetry { sine: false, odd: false }) {
-            return self.even_cosine_coefficients(values);
+            return self.even_cosine_coefficients(moduli, values);
         }
         let mut values = values.to_vec();
         if symmetry.sine && symmetry.odd {
             values.reverse();
         }
         let cotangent = symmetry.sine && !symmetry.odd;
-        self.times(&mut values, if cotangent { &self.cotangent } else { &self.twice_cosine });
-        let mut a = self.even_cosine_coefficients(&values);
+        moduli.multiply(&mut values, if cotangent { &self.cotangent } else { &self.twice_cosine });
+        let mut a = self.even_cosine_coefficients(moduli, &values);
         for m in 1..q {
             a[m] = field.difference(&a[m], &a[m - 1]);
         }
@@ -319,23 +342,23 @@ impl Transform {
 
 struct Values<'a>(&'a Transform, Symmetry, &'a [Residues]);
 
-impl pulp::NullaryFnOnce for Values<'_> {
+impl Kernel for Values<'_> {
     type Output = Vec<Residues>;
 
     #[inline(always)]
-    fn call(self) -> Vec<Residues> {
-        self.0.values_of(self.1, self.2)
+    fn run<W: Words>(self, words: W) -> Vec<Residues> {
+        self.0.values_of(&Moduli::new(words, &self.0.field), self.1, self.2)
     }
 }
 
 struct Coefficients<'a>(&'a Transform, Symmetry, &'a [Residues]);
 
-impl pulp::NullaryFnOnce for Coefficients<'_> {
+impl Kernel for Coefficients<'_> {
     type Output = Vec<Residues>;
 
     #[inline(always)]
-    fn call(self) -> Vec<Residues> {
-        self.0.coefficients_of(self.1, self.2)
+    fn run<W: Words>(self, words: W) -> Vec<Residues> {
+        self.0.coefficients_of(&Moduli::new(words, &self.0.field), self.1, self.2)
     }
 }
 
@@ -358,7 +381,11 @@ mod tests {
             let order = 8 * points as u64;
             let field = PrimeFields::with_roots_of_unity(order).next().expect("primes");
             let root = field.root_of_unity(order).expect("a root");
-            let transform = Transform::new(field, points, root).expect("tables");
+            let transforms: Vec<Transform> = field
+                .on_every_processor()
+                .into_iter()
+                .map(|field| Transform::new(field, points, root).expect("tables"))
+                .collect();
             let z = |k: usize| field.power(&root, (k as u64 % order) as u32);
             let half = field.rational(&Rational::from((1, 2)));
             let half_over_i = field.neg(&field.mul(&half, &z(2 * points)));
@@ -376,13 +403,12 @@ mod tests {
                     let mut unit = vec![field.zero(); points];
                     unit[k] = field.one();
                     let values: Vec<Residues> = (0..points).map(value).collect();
-                    assert_eq!(
-                        transform.values(symmetry, &unit),
-                        values,
-                        "{points} {symmetry:?} {k}"
-                    );
-                    assert_eq!(transform.values(symmetry, &unit[..=k]), values);
-                    assert_eq!(transform.coefficients(symmetry, &values), unit);
+                    for transform in &transforms {
+                        let of = |unit: &[Residues]| transform.values(symmetry, unit);
+                        assert_eq!(of(&unit), values, "{points} {symmetry:?} {k}");
+                        assert_eq!(of(&unit[..=k]), values);
+                        assert_eq!(transform.coefficients(symmetry, &values), unit);
+                    }
                 }
             }
         }

@@ -152,22 +152,27 @@ impl Board<'_> {
 
     /// x_n'' + x_n = f_n - W_n x_0'', with f_n by its name where it is too long to be formed.
     fn right_side(&self, n: usize) -> Formula {
-        let styles = [Style::Text, Style::Latex];
-        let found = self.value.print_right_side(n, styles, PRINTED_TERMS);
-        let [text, latex] = styles.map(|style| {
-            let right_side = match &found {
-                None => indexed("f", n, style),
-                Some((_, 0)) => String::new(),
-                Some((printed, 1..=PRINTED_TERMS)) => {
-                    printed[usize::from(style == Style::Latex)].clone()
-                }
-                Some((_, terms)) => counted(*terms, style),
+        let (value, most) = (self.value, PRINTED_TERMS);
+        // It is formed once for both.
+        let (printed, latex) = if self.latex {
+            let found = value.print_right_side(n, [Style::Text, Style::Latex], most);
+            found.map(|([text, latex], terms)| ((text, terms), latex)).unzip()
+        } else {
+            let found = value.print_right_side(n, [Style::Text], most);
+            (found.map(|([text], terms)| (text, terms)), None)
+        };
+        self.both(|style| {
+            let right_side = match (&printed, style) {
+                (None, _) => indexed("f", n, style),
+                (Some((_, 0)), _) => String::new(),
+                (Some((text, 1..=PRINTED_TERMS)), Style::Text) => text.clone(),
+                (Some((_, 1..=PRINTED_TERMS)), Style::Latex) => latex.clone().unwrap_or_default(),
+                (Some((_, terms)), _) => counted(*terms, style),
             };
             let (x, w) = (indexed("x", n, style), indexed("W", n, style));
             let times = if style == Style::Text { "*" } else { "\\," };
             format!("{x}'' + {x} = {right_side} - {w}{times}x_0''").replace("=  -", "= -")
-        });
-        Formula::new(text, latex)
+        })
     }
 
     /// The condition that leaves no secular term, and the W_n that it gives.

@@ -1,0 +1,201 @@
+//! Lowest terms over a denominator whose primes are known, without greatest common divisors.
+//!
+//! Of a number c and q = p_1^e_1 ... p_m^e_m r the greatest common divisor is prod p_i^min(e_i, v_i), v_i the exponent of
+//! p_i in c, times gcd(c, r). What divides c is seen of one residue, modulo a product of powers of the p_i.
+
+use rug::ops::Pow;
+use rug::{Integer, Rational};
+
+/// Bits of the factors by which a fraction is divided one after the other.
+const FACTOR_BITS: u32 = 1024;
+
+/// A positive number with its small primes.
+#[derive(Clone, Debug)]
+pub(crate) struct Denominator {
+    number: Integer,
+    powers: Vec<Power>,
+    /// The product of the probes.
+    probes: Integer,
+    /// What the primes leave.
+    rest: Integer,
+}
+
+#[derive(Clone, Debug)]
+struct Power {
+    prime: u32,
+    exponent: u32,
+    number: Integer,
+    /// The highest power of the prime in 16 bits, or the prime.
+    probe: u32,
+}
+
+impl Power {
+    fn new(prime: u32, exponent: u32) -> Self {
+        let powers = std::iter::successors(Some(prime), |power| power.checked_mul(prime));
+        let probe = powers.take_while(|power| *power < 1 << 16).last().unwrap_or(prime);
+        Self { prime, exponent, number: Integer::from(prime).pow(exponent), probe }
+    }
+
+    /// The exponent in c, or that in the denominator if it is smaller; from a residue of c modulo a multiple of the probe.
+    fn common(&self, c: &Integer, residue: &Integer) -> u32 {
+        if self.prime == 2 {
+            return c.find_one(0).unwrap_or(0).min(self.exponent);
+        }
+        let (mut last, mut exponent) = (residue.mod_u(self.probe), 0);
+        if last == 0 {
+            // The common power can be long, but no longer than the one in the denominator.
+            let mut rest = Integer::from(c % &self.number);
+            if rest.is_zero() {
+                return self.exponent;
+            }
+            while last == 0 {
+                rest.div_exact_u_mut(self.probe);
+                exponent += self.probe.ilog(self.prime);
+                last = rest.mod_u(self.probe);
+            }
+        }
+        while last.is_multiple_of(self.prime) {
+            last /= self.prime;
+            exponent += 1;
+        }
+        exponent.min(self.exponent)
+    }
+}
+
+impl Denominator {
+    /// `largest` bounds the primes that are looked for.
+    pub(crate) fn new(number: Integer, largest: u32) -> Self {
+        Self::of_primes(number, 2..=largest)
+    }
+
+    /// By divisors in ascending order: what divides when its own divisors are taken out is a prime.
+    fn of_primes(number: Integer, divisors: impl Iterator<Item = u32>) -> Self {
+        let (mut rest, mut powers) = (number.clone(), Vec::new());
+        for d in divisors.filter(|d| *d > 1) {
+            if rest.is_divisible_u(d) {
+                powers.push(Power::new(d, rest.remove_factor_mut(&Integer::from(d))));
+            }
+        }
+        let probes = powers.iter().map(|power| Integer::from(power.probe)).product();
+        Self { number, powers, probes, rest }
+    }
+
+    pub(crate) fn number(&self) -> &Integer {
+        &self.number
+    }
+
+    /// The greatest common divisor with c, which is not zero.
+    fn common(&self, c: &Integer) -> Integer {
+        let residue = Integer::from(c.modulo_ref(&self.probes));
+        let mut common = Integer::from(1);
+        for power in &self.powers {
+            let exponent = power.common(c, &residue);
+            if exponent > 0 {
+                common *= Integer::from(Integer::u_pow_u(power.prime, exponent));
+            }
+        }
+        if self.rest != 1 {
+            common *= Integer::from(self.rest.gcd_ref(c));
+        }
+        common
+    }
+
+    /// Divides both by what the denominator and all of the numbers have in common.
+    pub(crate) fn divide_by_common<'a>(&mut self, numbers: impl Iterator<Item = &'a mut Integer>) {
+        let numbers: Vec<&mut Integer> = numbers.collect();
+        let mut common = self.number.clone();
+        let mut left = self.clone();
+        for c in numbers.iter().filter(|c| !c.is_zero()) {
+            common = left.common(c);
+            left = left.divisor(common.clone());
+            if left.number == 1 {
+                return;
+            }
+        }
+        numbers.into_iter().for_each(|c| c.div_exact_mut(&common));
+        *self = self.divisor(Integer::from(self.number.div_exact_ref(&common)));
+    }
+
+    /// A divisor of the number, with its primes.
+    fn divisor(&self, number: Integer) -> Self {
+        Self::of_primes(number, self.powers.iter().map(|power| power.prime))
+    }
+
+    /// c over the number as numerator and denominator in lowest terms; nothing for zero.
+    pub(crate) fn lowest(&self, c: Integer) -> Option<(Integer, Integer)> {
+        if c.is_zero() {
+            return None;
+        }
+        let common = self.common(&c);
+        if common == 1 {
+            return Some((c, self.number.clone()));
+        }
+        Some((c.div_exact(&common), Integer::from(self.number.div_exact_ref(&common))))
+    }
+
+    /// Coprime factors of the number, each of some words, and what is left.
+    pub(crate) fn factors(&self) -> Vec<Integer> {
+        let (mut factors, mut last) = (Vec::new(), Integer::from(1));
+        for power in &self.powers {
+            last *= &power.number;
+            if last.significant_bits() > FACTOR_BITS {
+                factors.push(std::mem::replace(&mut last, Integer::from(1)));
+            }
+        }
+        factors.extend([last, self.rest.clone()]);
+        factors.retain(|factor| *factor != 1);
+        factors
+    }
+}
+
+/// c over a product of coprime factors. A divisor common with a short factor costs a division; with a number as long as
+/// c it costs many.
+pub(crate) fn over(c: Integer, factors: &[Integer]) -> Rational {
+    factors.iter().fold(Rational::from(c), |value, q| value / q)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fractions_are_in_lowest_terms() {
+        let number = Integer::from(Integer::u_pow_u(2, 3000))
+            * Integer::from(Integer::u_pow_u(6, 40))
+            * Integer::from(Integer::u_pow_u(1_000_003, 3));
+        for largest in [2, 3, 60] {
+            let denominator = Denominator::new(number.clone(), largest);
+            let factors = denominator.factors();
+            assert_eq!(factors.iter().product::<Integer>(), number);
+            for c in [0, -1, 12, 1_000_003 * 18, 5, -(1i64 << 40), 59_049, 3i64.pow(25)] {
+                let c = Integer::from(c);
+                let expected = Rational::from((c.clone(), number.clone()));
+                assert_eq!(over(c.clone(), &factors), expected, "{largest} {c}");
+                let lowest = denominator.lowest(c.clone());
+                let expected = (!c.is_zero()).then(|| expected.into_numer_denom());
+                assert_eq!(lowest, expected, "{largest} {c}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_all_have_in_common_is_divided_out() {
+        let number = Integer::from(36 * 1_000_003);
+        for (numbers, common) in [
+            (vec![0, 24, -36], 12),
+            (vec![9, 4], 1),
+            (vec![2 * 1_000_003, 0, 1_000_003 * 1_000_003], 1_000_003),
+            (vec![0], 36 * 1_000_003),
+        ] {
+            let numbers: Vec<Integer> =
+                numbers.into_iter().map(|n: i64| Integer::from(n)).collect();
+            let mut denominator = Denominator::new(number.clone(), 5);
+            let mut divided = numbers.clone();
+            denominator.divide_by_common(divided.iter_mut());
+            assert_eq!(denominator.number().clone() * common, number);
+            for (small, large) in divided.iter().zip(&numbers) {
+                assert_eq!(Integer::from(small * common), *large);
+            }
+        }
+    }
+}
