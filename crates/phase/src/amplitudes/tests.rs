@@ -70,7 +70,8 @@ fn of_formulas() -> Option<Amplitudes<Integers>> {
     let t = Amplitudes::of_formulas(Integers, &["alpha", "omega", "T", "D"], 2)?;
     let [alpha, omega, time] = ["alpha", "omega", "T"].map(|name| t.symbol(name));
     let (alpha, omega) = alpha.zip(omega)?;
-    let late = [time?, t.constant_phase(0, -1)?, t.constant_phase(1, -1)?];
+    let turns = vec![t.constant_phase(0, -1)?, t.constant_phase(1, -1)?];
+    let late = Late { time: time?, turns };
     t.with_rates(&alpha, Some(&omega)).with_late(vec![late]).with_divisor("omega", "D")
 }
 
