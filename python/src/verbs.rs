@@ -8,12 +8,13 @@ use lindstedt::evaluate::{Language, Times};
 use lindstedt::grid::Axis;
 use lindstedt::motion::{Bifurcation, Chaos, End, Section, Start, View};
 use lindstedt::numeric::Tier;
+use lindstedt::threshold::Persisting;
 use lindstedt::trade::Plan;
 use lindstedt::unstable::impact::parameters::Branch;
 use lindstedt::unstable::impact::{characteristic::Kick, prediction::Variant};
 use lindstedt::{
-    Condition, Derive, Error, Evaluate, Kind, Oscillator, Refusal, Respond, Route, Simulate,
-    Stability, Threshold, Verify, Work,
+    Condition, Derive, Error, Evaluate, Oscillator, Respond, Route, Simulate, Stability, Threshold,
+    Verify, Work,
 };
 
 /// An answer that can be read in every form.
@@ -45,14 +46,10 @@ pub fn ask(case: &Oscillator, verb: &str, options: &Options, work: &Work) -> Ask
             if let Some(name) = options.text("unknown").as_deref().or(case.unknown()) {
                 let order: Option<usize> = options.parsed("order")?;
                 options.finish()?;
-                let series = case.homoclinic(name, order.unwrap_or(2), work);
-                let first = order.unwrap_or(0) == 0;
-                return match series {
-                    Err(error) if first && error.kind() == Kind::NoAnswer => {
-                        boxed(case.persistence(name, work))
-                    }
-                    other => boxed(other),
-                };
+                return Ok(match case.persisting(name, order, work)? {
+                    Persisting::Series(answer) => answer,
+                    Persisting::First(answer) => answer,
+                });
             }
             let question = threshold(case, options)?;
             boxed(case.threshold(&question, work))

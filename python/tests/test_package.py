@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ast
+import dataclasses
+import io
 import math
 import multiprocessing
 import pickle
@@ -286,6 +289,12 @@ def test_every_question() -> None:
     assert float(belt.threshold(digits=12).gamma_c) == pytest.approx(0.105347876877)
     saddle = Oscillator("x'' = x**2 - 4 + eps*x'*(x + tau)").threshold(unknown="tau", order=2)
     assert [number.fraction for number in saddle["series"]["tau"]] == [Fraction(10, 7), 0, Fraction(288, 2401)]
+    # First order where no series is asked for and there is none: 4 delta/pi.
+    pendulum = Oscillator("x'' + sin(x) = eps*(torque - x'/5)")
+    first = pendulum.threshold(unknown="torque")["orbits"][0]["value"]
+    assert float(first) == pytest.approx(0.8 / math.pi, rel=1e-12)
+    with pytest.raises(lindstedt.NoAnswerError):
+        pendulum.threshold(unknown="torque", order=2)
     plan = {"orders": [2, 4], "digits": [16], "harmonics": [], "repeats": 1}
     assert Oscillator.builtin("duffing", eps="1/10").trade(**plan)["rows"]
     assert {"duffing", "stick-slip"} <= {problem["name"] for problem in lindstedt.problems()}
@@ -303,6 +312,11 @@ def test_charts_are_arrays() -> None:
     assert np.isnan(radius[chart.exact == 2]).all()
     surface = Oscillator.builtin("stick-slip").threshold_surface({"vstar": (0, 1, 5), "omega": [1, 2]})
     assert surface.signed.shape == (2, 5) and surface.names == ["vstar", "omega"]
+    for made in (chart, surface):
+        again = pickle.loads(pickle.dumps(made))
+        assert dataclasses.is_dataclass(again) and np.array_equal(again.x, made.x)
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            made.complete = False  # type: ignore[misc]
     one = Oscillator.builtin("stick-slip", vstar=0.5, omega=2).threshold(doubles=True)
     assert surface.signed[1, 2] == pytest.approx(float(one.signed), rel=1e-12)
     diagram = Oscillator.builtin("stick-slip").bifurcation_diagram("gamma=0.5..0.6:2", skip=20, keep=4)
@@ -320,9 +334,13 @@ def test_figures_and_tables(duffing: Oscillator, tmp_path: Path) -> None:
     assert isinstance(answer.to_pandas(), pandas.DataFrame)
     again = pickle.loads(pickle.dumps(answer))
     assert again.to_dict() == answer.to_dict() and str(again) == str(answer)
+    # Values like 1/3 are numbers there, and the curve is over them.
+    swept = duffing.evaluate({"eps": [0, "1/3", "1/2"]}, order=8, digits=8)
+    assert swept.table()["eps"] == [0, 1 / 3, 0.5]
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("agg")
     assert answer.plot().get_xlabel() == next(iter(table))
+    assert swept.plot().get_xlabel() == "eps"
 
 
 def test_ctrl_c_stops_long_work() -> None:
@@ -357,6 +375,37 @@ def test_other_threads_run_meanwhile_and_limits_hold() -> None:
         done.set()
         other.join()
     assert told and len(ticks) > 10
+
+
+def test_a_bar_where_tqdm_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    tqdm = pytest.importorskip("tqdm.auto")
+    bars: list[Any] = []
+
+    class Bar(tqdm.tqdm):  # type: ignore[misc, name-defined]
+        def __init__(self, **options: Any) -> None:
+            super().__init__(disable=False, file=io.StringIO(), **options)
+            bars.append(self)
+
+    monkeypatch.setattr(tqdm, "tqdm", Bar)
+    Oscillator.builtin("power-law").derive(12, progress=True)
+    assert len(bars) == 1 and bars[0].n > 0 and bars[0].desc
+
+
+def test_the_stub_names_what_there_is() -> None:
+    native = lindstedt._native
+    stub = ast.parse(Path(str(native.__file__)).with_name("_native.pyi").read_text())
+    written: set[str] = set()
+    for item in stub.body:
+        if isinstance(item, (ast.ClassDef, ast.FunctionDef)):
+            written.add(item.name)
+            assert hasattr(native, item.name), item.name
+        if isinstance(item, ast.ClassDef):
+            own = getattr(native, item.name)
+            methods = {part.name for part in item.body if isinstance(part, ast.FunctionDef)}
+            assert all(hasattr(own, method) for method in methods), item.name
+            assert {name for name in vars(own) if not name.startswith("_")} <= methods, item.name
+    assert {name for name in vars(native) if not name.startswith("_")} <= written
+    assert all(hasattr(lindstedt, name) for name in lindstedt.__all__)
 
 
 def test_a_grid_is_the_same_on_other_processes(duffing: Oscillator) -> None:

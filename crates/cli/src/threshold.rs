@@ -4,24 +4,21 @@ use crate::Outcome;
 use crate::arguments::ThresholdOptions;
 use crate::failure::Failure;
 use crate::session::Session;
+use lindstedt::Threshold;
 use lindstedt::grid::Axis;
-use lindstedt::{Kind, Refusal, Threshold};
-
-/// The order of a series that is not asked for.
-const ORDER: u32 = 2;
+use lindstedt::threshold::{Persistence, Persisting};
 
 pub fn run(options: &ThresholdOptions, session: &Session<'_>) -> Outcome {
     let work = session.precise_work(&options.precision)?;
     let oscillator = session.oscillator(&options.problem, &options.set, None)?;
     if let Some(name) = options.unknown.as_deref().or(oscillator.unknown()) {
         session.check_writable(&options.problem, &options.plot, None)?;
-        let order = options.order.unwrap_or(ORDER) as usize;
-        let series = oscillator.homoclinic(name, order, &work);
-        let first = options.order.unwrap_or(0) == 0;
-        if first && series.as_ref().is_err_and(|error| error.kind() == Kind::NoAnswer) {
-            return session.show(oscillator.persistence(name, &work), &options.plot);
-        }
-        return session.show(series, &options.plot);
+        let order = options.order.map(|order| order as usize);
+        return match oscillator.persisting(name, order, &work) {
+            Ok(Persisting::Series(answer)) => session.show(Ok(*answer), &options.plot),
+            Ok(Persisting::First(answer)) => session.show(Ok(*answer), &options.plot),
+            Err(error) => session.show::<Persistence>(Err(error), &options.plot),
+        };
     }
     if options.order.is_some() {
         let message = "--order belongs to --unknown".to_owned();

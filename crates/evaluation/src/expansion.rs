@@ -8,7 +8,7 @@
 
 use crate::compiled::Varied;
 use crate::error::EvaluationError as Error;
-use crate::phases::Phases;
+use crate::phases::{Phases, left_out};
 use crate::source::Source;
 use lindstedt_derivation::{DerivationError, Work};
 use lindstedt_equation::AmplitudeRole;
@@ -17,6 +17,8 @@ use lindstedt_series::resummation::ResummationError;
 
 /// Harmonics of which a fourth of the phases is one more, at least.
 const FEWEST: usize = 32;
+/// Times that the number of phases is doubled.
+const DOUBLINGS: usize = 2;
 /// Bits of the coefficients before they are rounded to doubles.
 const BITS: u32 = 192;
 /// Coefficients below this share of the largest of their order are sums that cancel.
@@ -52,15 +54,17 @@ pub struct Expansion {
     pub harmonics: Vec<(usize, Vec<f64>, Vec<f64>)>,
     /// Of every order the sum of the sizes of its coefficients, harmonics that are left out included.
     pub sizes: Vec<f64>,
-    /// The same of what is left out.
+    /// The same of what is left out, and of what harmonics beyond half of the phases add to those below; infinite where these
+    /// fall so slowly that they do not tell.
     pub left_out: Vec<f64>,
 }
 
 impl Expansion {
     /// Derives the expansion to an order, with so many harmonics.
     ///
-    /// The coefficients c_kn, s_kn are those of x_n at 4 (harmonics + 1) phases, 128 at least, by the trapezoidal rule: exact
-    /// to rounding where x_n has no harmonics beyond half of these.
+    /// The coefficients c_kn, s_kn are those of x_n at 4 (harmonics + 1) phases, 128 at least, by the trapezoidal rule, and at
+    /// twice as many, up to four times, as long as the harmonics next to half of these are not lost in the rounding: those
+    /// beyond fold onto the ones that are taken.
     ///
     /// # Errors
     /// Those of [`crate::compiled::FrequencyFunction::new`] and [`lindstedt_derivation::derive()`].
@@ -84,17 +88,24 @@ impl Expansion {
             false => DerivationError::NoValue.into(),
         };
         let functions = derivation.phase_functions(false, balls).ok_or_else(no_value)?;
-        let count = 4 * (harmonics + 1).max(FEWEST);
         let at = |point: &_| if work.stop.asked() { None } else { functions.at(point) };
-        let phases = Phases::new(count, balls, at);
-        let phases = phases.ok_or_else(no_value)?;
-        let [cosines, sines] = polynomials(&phases, balls);
+        let fewest = 4 * (harmonics + 1).max(FEWEST);
+        let mut phases = Phases::new(fewest, balls, at).ok_or_else(no_value)?;
+        let [mut cosines, mut sines] = polynomials(&phases, balls);
+        for count in (1..=DOUBLINGS).map(|k| fewest << k) {
+            if folded(&cosines, &sines, order).iter().all(|error| *error == 0.0) {
+                break;
+            }
+            phases = Phases::new(count, balls, at).ok_or_else(no_value)?;
+            [cosines, sines] = polynomials(&phases, balls);
+        }
+        let folded = folded(&cosines, &sines, order);
         let size = |n: usize, from: usize| -> f64 {
             let all = cosines.iter().skip(from).chain(sines.iter().skip(from));
             all.filter_map(|c| c.get(n)).map(|c| c.abs()).sum()
         };
         let sizes: Vec<f64> = (0..=order).map(|n| size(n, 0)).collect();
-        let left_out = (0..=order).map(|n| size(n, harmonics + 1)).collect();
+        let left_out = (0..=order).map(|n| size(n, harmonics + 1) + folded[n]).collect();
         let cleared = |list: Vec<f64>| -> Vec<f64> {
             let clear = |(c, size): (f64, &f64)| if c.abs() < ROUNDING * size { 0.0 } else { c };
             trimmed(list.into_iter().zip(&sizes).map(clear).collect())
@@ -149,6 +160,19 @@ fn polynomials(phases: &Phases, balls: Balls) -> [Vec<Vec<f64>>; 2] {
         };
         rows.iter().map(|row| (0..orders).map(|n| at(row, n)).collect()).collect()
     })
+}
+
+/// Of every order a bound of what harmonics beyond those that the phases tell fold onto them; zero where the last ones are
+/// lost in the rounding.
+fn folded(cosines: &[Vec<f64>], sines: &[Vec<f64>], order: usize) -> Vec<f64> {
+    let of = |n: usize| {
+        let at = |list: &Vec<f64>| list.get(n).copied().unwrap_or(0.0);
+        let pairs: Vec<(f64, f64)> =
+            cosines.iter().zip(sines).map(|(c, s)| (at(c), at(s))).collect();
+        let size: f64 = pairs.iter().map(|(c, s)| c.hypot(*s)).sum();
+        left_out(&pairs, pairs.len(), ROUNDING * size)
+    };
+    (0..=order).map(of).collect()
 }
 
 /// Without zeros at the end.

@@ -1,8 +1,13 @@
 //! Functions of many points against the values of single ones, which are summed with many digits by
 //! other code.
 
+use lindstedt::unstable::evaluation::Expansion;
+use lindstedt::unstable::evaluation::compiled::Varied;
+use lindstedt::unstable::evaluation::setting::Setting;
+use lindstedt::unstable::problems;
 use lindstedt::unstable::series::resummation::Method;
-use lindstedt::{Evaluate, Oscillator, Work};
+use lindstedt::{Evaluate, Exact, Oscillator, Work};
+use std::collections::BTreeMap;
 
 /// omega at one point, and its error.
 fn single(oscillator: &Oscillator, order: usize, values: &[(&str, &str)]) -> Option<(f64, f64)> {
@@ -31,7 +36,7 @@ fn frequencies_of_many_points_are_those_of_single_ones() {
         for [small, amplitude] in points {
             let mut set = vec![(&*function.small, *small)];
             set.extend(function.has_amplitude.then_some(("amplitude", *amplitude)));
-            let double = |text: &str| lindstedt::Exact::parse(text).unwrap().to_f64();
+            let double = |text: &str| Exact::parse(text).unwrap().to_f64();
             let (omega, error) = single(&oscillator, order, &set).unwrap();
             let found = function.at(double(small), double(amplitude));
             let gap = (found.value - omega).abs();
@@ -165,4 +170,23 @@ fn solutions_at_many_parameters_are_the_true_ones() {
     let (found, other) = (x.at(0.1, 1.0).at(20.0), one.at(20.0));
     let gap = (found.value - other.value).abs();
     assert!(gap <= found.error + other.error && found.error < 1e-9, "{gap:e} {found:?} {other:?}");
+}
+
+/// x_1 of x'' + x (x^2)^delta: by the Fourier series of ln |cos tau|, its harmonics are c_1 = ln 2 - 3/4, c_3 = 1/16,
+/// ..., which fall like a power of k and fold onto the lower ones where the phases are few: at 128 of them c_3 was wrong by 3e-9.
+#[test]
+fn harmonics_beyond_half_of_the_phases_hardly_fold() {
+    let problem = problems::find("power-law").unwrap();
+    let given = BTreeMap::from([("amplitude".to_owned(), Exact::from(1))]);
+    let setting = Setting::new(&problem, None, &given).unwrap();
+    let varied = Varied { setting: &setting, small: problem.small.to_string(), weight: None };
+    let found = Expansion::new(&varied, 1, 3, &Work::default()).unwrap();
+    let exact = [(1, std::f64::consts::LN_2 - 0.75), (3, 0.0625)];
+    for (k, exact) in exact {
+        let (_, cosines, _) = found.harmonics.iter().find(|(other, ..)| *other == k).unwrap();
+        let distance = (cosines[1] - exact).abs();
+        assert!(distance < 1e-11, "c_{k}: {distance:e}");
+        assert!(distance <= found.left_out[1], "c_{k}: {distance:e}");
+    }
+    assert!(found.left_out[1] < 0.1, "{:e}", found.left_out[1]);
 }

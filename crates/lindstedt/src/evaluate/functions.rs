@@ -141,7 +141,9 @@ impl Oscillator {
         let varies = |it: &Expansion| (it.small.clone(), it.carried != Carried::Not, it.order);
         let found = self.function(make, varies)?;
         let value = Program::new(&self.problem().name, &found.value).write(language);
-        let Answer { header, standing, remarks, .. } = found;
+        let Answer { mut header, standing, remarks, .. } = found;
+        // Nothing is summed: what is printed is cut off.
+        header.tier = "truncation";
         Ok(Answer { header, value, standing, remarks })
     }
 }
@@ -180,6 +182,10 @@ impl<'a> Program<'a> {
             (expansion.order, expansion.harmonics.last().map_or(0, |(k, ..)| *k));
         let left: f64 = expansion.left_out.iter().sum();
         let beyond = match left > 1e-12 * expansion.sizes.iter().sum::<f64>() {
+            _ if left.is_infinite() => {
+                " (the others are left out and fall so slowly that nothing bounds what they add)"
+                    .to_owned()
+            }
             true => format!(" (the others, {left:.1e} in all at z = 1, are left out)"),
             false => String::new(),
         };

@@ -28,7 +28,7 @@ use std::time::Instant;
 use subject::Subject;
 
 pub use homoclinic::{HomoclinicResidual, HomoclinicSeries};
-pub use persistence::{Persistence, PersistentOrbit};
+pub use persistence::{Persistence, PersistentOrbit, Persisting};
 pub use splitting::{ManifoldPoint, Manifolds, SecondOrderThreshold};
 pub use sweep::{Blank, Marks, Sweep};
 

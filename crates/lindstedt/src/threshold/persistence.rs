@@ -1,7 +1,8 @@
 //! The question `threshold --unknown` to first order: the zero of Melnikov's integral in a parameter.
 
+use super::HomoclinicSeries;
 use super::orbits::{self, ORDERING_BITS};
-use crate::{Answer, Error, Exact, Number, Oscillator, Status, Work};
+use crate::{Answer, Error, Exact, Kind, Number, Oscillator, Refusal, Status, Work};
 use lindstedt_equation::Problem;
 use lindstedt_melnikov::{Class, MelnikovError};
 use lindstedt_number::ball::{Ball, Balls};
@@ -9,6 +10,9 @@ use lindstedt_number::certified;
 use lindstedt_recognise::{PersistenceProblem, Persistent};
 use serde::Serialize;
 use std::time::Instant;
+
+/// The order of a series that is not asked for.
+const ORDER: usize = 2;
 
 /// The value of a parameter mu for which an orbit between saddles persists, to first order in the small parameter:
 /// the work of the perturbation along the unperturbed orbit, D_0 + mu D_1, vanishes at mu = -D_0/D_1.
@@ -92,6 +96,48 @@ impl Oscillator {
         let header = self.header(at, None, tier, start);
         let remarks = self.remarks().to_vec();
         Ok(Answer { header, value, standing: crate::Standing::Complete, remarks })
+    }
+}
+
+/// The answer to `threshold --unknown`.
+#[derive(Clone, Debug)]
+pub enum Persisting {
+    /// Every order.
+    Series(Box<Answer<HomoclinicSeries>>),
+    /// First order.
+    First(Box<Answer<Persistence>>),
+}
+
+impl Oscillator {
+    /// [`Oscillator::homoclinic`] to an order, or to second order where none is asked for; where there is no such series,
+    /// and none or order zero was asked for, [`Oscillator::persistence`].
+    ///
+    /// # Errors
+    /// Those of the one or the other.
+    ///
+    /// ```
+    /// use lindstedt::threshold::Persisting;
+    /// use lindstedt::{Oscillator, Work};
+    /// // sin x is no polynomial: first order.
+    /// let pendulum = Oscillator::parse("x'' + sin(x) = eps*(torque - x'/5)")?;
+    /// let found = pendulum.persisting("torque", None, &Work::default())?;
+    /// assert!(matches!(found, Persisting::First(_)));
+    /// assert!(pendulum.persisting("torque", Some(2), &Work::default()).is_err());
+    /// # Ok::<(), lindstedt::Error>(())
+    /// ```
+    pub fn persisting(
+        &self,
+        name: &str,
+        order: Option<usize>,
+        work: &Work,
+    ) -> Result<Persisting, Error> {
+        let boxed = |answer| Persisting::First(Box::new(answer));
+        match self.homoclinic(name, order.unwrap_or(ORDER), work) {
+            Err(error) if order.unwrap_or(0) == 0 && error.kind() == Kind::NoAnswer => {
+                self.persistence(name, work).map(boxed)
+            }
+            series => series.map(|answer| Persisting::Series(Box::new(answer))),
+        }
     }
 }
 

@@ -148,11 +148,15 @@ fn standing(point: &Point) -> Option<usize> {
     }
 }
 
+/// Marks of the curves in their order: they are told apart without colours.
+const MARKS: [Mark; 4] = [Mark::Disc(4), Mark::Triangle(5), Mark::Cross(4), Mark::Ring(4)];
+
 /// The figure with points that are joined by a line.
 fn curve(figure: Figure, name: &str, colour: Colour, points: &[(f64, f64)]) -> Figure {
     let points = || points.iter().copied();
-    let figure = figure.layer(Some(name), Mark::Line(2), colour, points());
-    figure.layer(None, Mark::Disc(4), colour, points())
+    let mark = MARKS[(figure.layers.len() / 2) % MARKS.len()];
+    let figure = figure.layer(None, Mark::Line(2), colour, points());
+    figure.layer(Some(name), mark, colour, points())
 }
 
 /// The first tangency of both loops as eps grows, beside Melnikov's threshold.

@@ -13,6 +13,10 @@ const FINE: u32 = 10;
 /// Cells per axis at most: finer ones are not told apart.
 const CELLS: usize = 240;
 
+/// Lengths of a dashed line.
+const DASH: u32 = 5 * FINE;
+const GAP: u32 = 4 * FINE;
+
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
@@ -110,7 +114,7 @@ fn chart(area: &Area<'_>, figure: &Figure, [xs, ys]: &[Range<f64>; 2]) -> Drawn 
         .label_style(font(13))
         .set_all_tick_mark_size(units(5))
         .axis_style(stroke(colours::BLACK, 1))
-        .light_line_style(WHITE)
+        .light_line_style(TRANSPARENT)
         .bold_line_style(stroke((232, 232, 232), 1));
     if !up.names.is_empty() {
         mesh.y_labels(up.names.len());
@@ -147,7 +151,7 @@ fn points(chart: &mut Chart<'_, '_>, layer: &Layer, places: &[(f64, f64)]) -> Dr
         Mark::Dashed(width) => {
             for piece in pieces() {
                 let (line, style) = (piece.iter().copied(), stroke(colour, width));
-                chart.draw_series(DashedLineSeries::new(line, 5 * FINE, 4 * FINE, style))?;
+                chart.draw_series(DashedLineSeries::new(line, DASH, GAP, style))?;
             }
         }
         Mark::Disc(r) => drop(chart.draw_series(dots().map(|p| Circle::new(p, units(r), filled)))?),
@@ -239,9 +243,14 @@ fn legend(area: &Area<'_>, entries: &[Entry], per_row: usize) -> Drawn {
         };
         let middle = (x + units(12), y + units(10));
         match mark {
-            Mark::Line(width) | Mark::Dashed(width) => {
+            Mark::Line(width) => {
                 let ends = vec![(x, middle.1), (x + units(24), middle.1)];
                 area.draw(&PathElement::new(ends, stroke(colour, width)))?;
+            }
+            Mark::Dashed(width) => {
+                let (ends, style) =
+                    ([(x, middle.1), (x + units(24), middle.1)], stroke(colour, width));
+                area.draw(&plotters::element::DashedPathElement::new(ends, DASH, GAP, style))?;
             }
             Mark::Disc(_) => area.draw(&Circle::new(middle, units(4), rgb(colour).filled()))?,
             Mark::Ring(_) => area.draw(&Circle::new(middle, units(4), stroke(colour, 2)))?,

@@ -85,7 +85,7 @@ impl Present for Answer<ProvedFamily> {
         let branches = self.value.branches.iter().enumerate();
         let rows = branches.flat_map(|(i, branch)| branch.points.iter().map(move |p| (i, p)));
         Some(rows.fold(table, |table, (index, point)| {
-            let head = [(index + 1).to_string(), point.value.to_string()];
+            let head = [(index + 1).to_string(), point.value.to_f64().to_string()];
             let numbers = COLUMNS.iter().flat_map(|(_, quantity)| {
                 let number = quantity(point);
                 let decimal = number.map_or_else(String::new, |number| number.decimal.clone());

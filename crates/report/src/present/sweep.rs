@@ -4,7 +4,8 @@ use super::{Present, parameter};
 use crate::figure::{Axis, Mark, colours};
 use crate::{Document, Figure, Table};
 use lindstedt::evaluate::{Swept, SweptPeriod, SweptPoint, SweptRates};
-use lindstedt::{Answer, Number};
+use lindstedt::grid::Grid;
+use lindstedt::{Answer, Error, Exact, Number};
 
 /// The numbers of a point as columns.
 trait Columns: SweptPoint {
@@ -86,7 +87,8 @@ fn title<P: Columns>(answer: &Answer<Swept<P>>) -> String {
 
 impl<P: Columns> Present for Answer<Swept<P>> {
     fn document(&self) -> Document {
-        let page = self.table().into_iter().fold(Document::titled(title(self)), Document::table);
+        let table = listed(&self.value.grid, ToString::to_string);
+        let page = Document::titled(title(self)).table(table);
         let points = self.value.grid.points.iter().flatten().flatten();
         page.words(P::standing(points))
     }
@@ -113,21 +115,25 @@ impl<P: Columns> Present for Answer<Swept<P>> {
         }))
     }
 
-    /// The parameters, then the numbers; of a point without them the reason, last.
+    /// As on the page, the parameters in decimals, as programs read them.
     fn table(&self) -> Option<Table> {
-        let grid = &self.value.grid;
-        let names = P::NAMES.iter().copied().chain(["refused"]);
-        let table = Table::new(grid.axes().map(|axis| axis.name.as_str()).chain(names));
-        Some(grid.iter().fold(table, |table, (x, y, found)| {
-            let reason = match found {
-                None => "not reached".to_owned(),
-                Some(Err(error)) => error.to_string(),
-                Some(Ok(found)) if !found.has_value() => "not one digit".to_owned(),
-                Some(Ok(_)) => String::new(),
-            };
-            let found = found.and_then(|found| found.as_ref().ok());
-            let values = [x].into_iter().chain(y).map(ToString::to_string);
-            table.row(values.chain(P::fields(found)).chain([reason]))
-        }))
+        Some(listed(&self.value.grid, |value| value.to_f64().to_string()))
     }
+}
+
+/// The parameters, then the numbers; of a point without them the reason, last.
+fn listed<P: Columns>(grid: &Grid<Result<P, Error>>, value: fn(&Exact) -> String) -> Table {
+    let names = P::NAMES.iter().copied().chain(["refused"]);
+    let table = Table::new(grid.axes().map(|axis| axis.name.as_str()).chain(names));
+    grid.iter().fold(table, |table, (x, y, found)| {
+        let reason = match found {
+            None => "not reached".to_owned(),
+            Some(Err(error)) => error.to_string(),
+            Some(Ok(found)) if !found.has_value() => "not one digit".to_owned(),
+            Some(Ok(_)) => String::new(),
+        };
+        let found = found.and_then(|found| found.as_ref().ok());
+        let values = [x].into_iter().chain(y).map(value);
+        table.row(values.chain(P::fields(found)).chain([reason]))
+    })
 }
