@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 
 class LindstedtError(Exception):
     """A refusal: `code` does not change between versions, `hint` says what to do about it."""
@@ -43,6 +45,16 @@ _KINDS: dict[str, type[LindstedtError]] = {
 }
 
 
+# Options of the command line that are called otherwise here.
+_NAMES = {"limit-seconds": "seconds", "limit-memory": "memory", "f64": "doubles", "normalisation": "under"}
+
+
+def _as_python(hint: str) -> str:
+    """A hint in the words of this package: `set(NAME=VALUE)`, keywords without dashes."""
+    hint = re.sub(r"--set ([A-Za-z_]\w*)=([^\s,;`]+)", r"set(\1=\2)", hint)
+    return re.sub(r"--([a-z][a-z0-9-]*)", lambda found: _NAMES.get(found[1], found[1]).replace("-", "_"), hint)
+
+
 def refusal(kind: str, code: str, message: str, hint: str) -> LindstedtError:
     """The exception for a refusal of that kind."""
-    return _KINDS.get(kind, LindstedtError)(message, code, hint)
+    return _KINDS.get(kind, LindstedtError)(message, code, _as_python(hint))

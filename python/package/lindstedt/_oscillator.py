@@ -173,8 +173,14 @@ class Oscillator:
 
     def _ask(self, verb: str, options: dict[str, Any], means: dict[str, Any]) -> Answer:
         kind = Derivation if verb == "derive" else Answer
-        with _work(means) as work:
-            answer = kind(self._case.ask(verb, _options(options), work))
+        try:
+            with _work(means) as work:
+                answer = kind(self._case.ask(verb, _options(options), work))
+        except UsageError as error:
+            for name in options.keys() & {*self.parameters, self._case.small}:
+                if f"option {name}" in error.message:
+                    error.hint = f"set({name}=...) before"
+            raise
         for remark in answer.remarks if not answer.is_complete else []:
             warnings.warn(remark, stacklevel=3)
         return answer

@@ -2,7 +2,7 @@
 
 use super::{PageError, WIDTH, document, figures, json, standalone, table_of, write};
 use crate::{Paper, Row, Section, Table, Trust};
-use lindstedt_report::{Format, Table as Sheet};
+use lindstedt_report::{Format, Table as Sheet, Text};
 
 /// The file in which one begins to read.
 pub const PAGE: &str = "report.html";
@@ -22,7 +22,7 @@ pub fn files(paper: &Paper, seconds: f64) -> Result<Vec<(String, String)>, PageE
     ];
     for section in &paper.sections {
         files.push((rows_name(section), rows(section).csv()));
-        let table = |table: &Table| (table_name(section, table), table_of(table).csv());
+        let table = |table: &Table| (table_name(section, table), numeric(table_of(table)).csv());
         files.extend(section.tables.iter().map(table));
     }
     let sheets = [("region.csv", region(&paper.trust)), ("orders.csv", orders(&paper.trust))];
@@ -30,6 +30,14 @@ pub fn files(paper: &Paper, seconds: f64) -> Result<Vec<(String, String)>, PageE
     files.extend(some.map(|(name, sheet)| (name.to_owned(), sheet.csv())));
     files.extend(drawn.into_iter().map(|figure| (format!("{}.svg", figure.name), figure.svg)));
     Ok(files)
+}
+
+/// Cells that say in words that there is no number are empty: programs then read the column as numbers.
+fn numeric(mut sheet: Sheet) -> Sheet {
+    let nothing = ["none", "-"].map(Text::from);
+    let cells = sheet.rows.iter_mut().flatten();
+    cells.filter(|cell| nothing.contains(cell)).for_each(|cell| *cell = Text::default());
+    sheet
 }
 
 /// The name of the file with the rows of a section.
@@ -84,4 +92,16 @@ fn orders(trust: &Trust) -> Sheet {
         }
     }
     sheet
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Sheet, numeric};
+
+    #[test]
+    fn what_is_no_number_is_an_empty_cell() {
+        let sheet =
+            Sheet::new(["order", "T", "error %"]).row(["1", "none", "-"]).row(["2", "-3", "-0.1"]);
+        assert_eq!(numeric(sheet).csv(), "order,T,error %\n1,,\n2,-3,-0.1\n");
+    }
 }
