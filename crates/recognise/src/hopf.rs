@@ -47,7 +47,10 @@ pub fn delay_equation(
     let order = if whole.is_first_order() { 1 } else { 2 };
     let zero = vec![Expression::integer(0)];
     let mut found = DelayEquation { order, delays: vec![zero], terms: Vec::new() };
-    for (m, q) in &all.terms {
+    // That x = 0 is no equilibrium is said where nothing else is wrong.
+    let (still, moving): (Vec<_>, Vec<_>) =
+        all.terms.iter().partition(|(m, _)| m.atoms.is_empty() && m.x == 0 && m.velocity == 0);
+    for (m, q) in moving.into_iter().chain(still) {
         let (factors, power) = read(&all, m, unknown, &mut found.delays).map_err(|why| {
             let fits = |all: &Monomials, m: &Monomial| {
                 read(all, m, unknown, &mut Vec::new()).err().filter(|own| *own == why)
