@@ -179,10 +179,9 @@ fn wright_in_the_time_domain() {
 fn what_is_refused() {
     let table = [
         ("x' + b*x + a*x(t - 1)", "no-value-set", "b"),
-        ("x' + a*x(t - 1) + sin(x)", "no-method", "sin(x)"),
+        ("x' + a*x(t - 1) + abs(x)", "no-method", "abs(x)"),
         ("x' + a*x(t - 1) = cos(t)", "no-method", "cos(t)"),
         ("x' + a*x(t - 1) + 1", "no-method", "1 does not vanish"),
-        ("x' + a*(exp(x(t - 1)) - 1)", "no-method", "exp(x(t - 1))"),
         ("x' + x(t - 1)/a + x", "no-method", "x(t - 1)"),
         ("x' + x(t - 1)*(1 + x)", "unknown-parameter", "a"),
         ("x' + a*x(t - 1) + eps*x^2", "no-value-set", "eps"),
@@ -231,4 +230,34 @@ fn several_delays_and_another_point() {
     let exact = |n: usize| found.cycle.parameter[n].number.exact.clone();
     assert_eq!((exact(0).as_deref(), found.cycle.unstable_roots), (Some("5/2*pi"), Some(2)));
     assert_eq!(found.cycle.is_stable(), Some(false));
+}
+
+/// With y = e^x - 1 the equation x' + alpha (e^(x(t - 1)) - 1) = 0 is Wright's, y' + alpha y(t - 1) (1 + y) = 0: amplitudes differ,
+/// the frequency as a function of alpha does not. Its functions are expanded as far as the order needs.
+#[test]
+fn functions_are_expanded_about_rest() {
+    let curve = |equation: &str| {
+        let found = found(&Oscillator::parse(equation).unwrap(), "alpha", 4).cycle;
+        assert_eq!(found.checked_orders, Some(5));
+        let [a, w] = [&found.parameter, &found.frequency].map(|list| {
+            let value = |n: usize| list[n].number.decimal.parse::<f64>().unwrap();
+            [2, 4].map(value)
+        });
+        // omega_0 + slope (alpha - alpha_0) + bend (alpha - alpha_0)^2.
+        let slope = w[0] / a[0];
+        [slope, (w[1] - slope * a[1]) / (a[0] * a[0])]
+    };
+    let wright = curve("x' + alpha*x(t - 1)*(1 + x) = 0");
+    // y = x/(1 - x), too: y' = x'/(1 - x)^2.
+    for other in
+        ["x' + alpha*(exp(x(t - 1)) - 1) = 0", "x' + alpha*x(t - 1)*(1 - x)/(1 - x(t - 1)) = 0"]
+    {
+        for (a, b) in curve(other).into_iter().zip(wright) {
+            assert!((a - b).abs() < 1e-13, "{other}: {a} {b}");
+        }
+    }
+    // What is no equilibrium is refused after what is no polynomial.
+    let other = Oscillator::parse("x' + alpha*(exp(x(t - 1) + 1) - 1) = 0").unwrap();
+    let error = other.hopf("alpha", 2, &Work::default()).err().unwrap().to_string();
+    assert!(error.contains("exp"), "{error}");
 }

@@ -5,6 +5,7 @@ mod classics;
 mod clock;
 mod clock_expansion;
 mod closed_forms;
+mod delays;
 mod estimates;
 mod evaluate;
 mod extremes;

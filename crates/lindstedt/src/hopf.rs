@@ -2,7 +2,7 @@
 
 use crate::motion::equation::meaning;
 use crate::refusal::{Kind, Refusal, Refused};
-use crate::{Answer, Error, Exact, Number, Oscillator, Progress, Work};
+use crate::{Answer, Error, Exact, Number, Oscillator, Progress, Remark, Work};
 use lindstedt_derivation::resonance::Sought;
 use lindstedt_equation::classify::Reason;
 use lindstedt_equation::{Expression, Problem};
@@ -10,7 +10,7 @@ use lindstedt_hopf::{
     Coefficient, HarmonicNumber, HopfCycle, HopfError, HopfPoint, HopfSettings, Law, Step,
 };
 use lindstedt_number::ball::Ball;
-use lindstedt_recognise::delay_equation;
+use lindstedt_recognise::{about_rest, delay_equation};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::time::Instant;
@@ -134,6 +134,11 @@ impl Oscillator {
         let values = self.form_values(&[])?;
         let mut problem = self.problem().clone();
         problem.equation = problem.equation.substitute(&|e| meaning(self, e));
+        // Order n of the parameter follows from order n + 1 of the equation.
+        let degree = u32::try_from(order).unwrap_or(u32::MAX).saturating_add(1);
+        let written = problem.equation.clone();
+        problem.equation = about_rest(&written, degree);
+        let expanded = problem.equation != written;
         let equation = delay_equation(&problem, &values, name);
         let equation = equation.map_err(|refusal| self.no_hopf_form(&refusal))?;
         let near = values.get(name).cloned().unwrap_or_else(|| Exact::from(0));
@@ -155,6 +160,10 @@ impl Oscillator {
         let cycle = lindstedt_hopf::cycle(&equation, &settings, &mut goes_on)?;
         let done = cycle.parameter.len() - 1;
         let mut remarks = self.remarks().to_vec();
+        if expanded {
+            let text = format!("functions of x are their Taylor polynomials of degree {degree}");
+            remarks.push(Remark(text));
+        }
         let checked = cycle.checked_orders.is_some();
         let standing = self.standing(done < order || !checked, done, checked, &mut remarks);
         let at = values.into_iter().filter(|(other, _)| other != name);

@@ -127,9 +127,9 @@ impl Term {
         let others = m.atoms.iter().filter(|(other, _)| *other != key);
         let others = others.map(|(key, n)| (key.clone(), *n)).collect();
         let place = (m.x, others, key.clone());
+        let (frequency, phase) = angle(atom).ok_or(Why::NotHarmonic)?;
+        let omega = sum(&frequency).and_then(|sum| sum.value()).ok_or(Why::IrrationalFrequency)?;
         let known = || {
-            let (frequency, phase) = angle(atom)?;
-            let omega = sum(&frequency)?.value()?;
             let mut phase = sum(&phase)?;
             // cos(-z) = cos z.
             if omega.sign().is_lt() {
@@ -142,10 +142,10 @@ impl Term {
             }
             let mut size = InPi::default();
             size.add(m, q)?;
-            Some((omega.abs(), phase.value(), size.value()?))
+            Some((phase.value(), size.value()?))
         };
-        let (omega, phase, size) = known().ok_or(Why::Irrational)?;
-        Ok(Self { omega, place, phase, size, factors })
+        let (phase, size) = known().ok_or(Why::Irrational)?;
+        Ok(Self { omega: omega.abs(), place, phase, size, factors })
     }
 
     /// By frequency, then by place.

@@ -47,23 +47,16 @@ pub fn delay_equation(
     let order = if whole.is_first_order() { 1 } else { 2 };
     let zero = vec![Expression::integer(0)];
     let mut found = DelayEquation { order, delays: vec![zero], terms: Vec::new() };
-    let mut not_at_rest = None;
-    for (m, q) in &all.terms {
-        let refused = |why: Why| {
+    // That x = 0 is no equilibrium is said where nothing else is wrong.
+    let (still, moving): (Vec<_>, Vec<_>) =
+        all.terms.iter().partition(|(m, _)| m.atoms.is_empty() && m.x == 0 && m.velocity == 0);
+    for (m, q) in moving.into_iter().chain(still) {
+        let (factors, power) = read(&all, m, unknown, &mut found.delays).map_err(|why| {
             let fits = |all: &Monomials, m: &Monomial| {
                 read(all, m, unknown, &mut Vec::new()).err().filter(|own| *own == why)
             };
             named(&whole, &values, (all.tree(m, q), why), &fits)
-        };
-        let (factors, power) = match read(&all, m, unknown, &mut found.delays) {
-            Ok(read) => read,
-            // A constant may be what a function that is no polynomial has at 0.
-            Err(Why::NotAtRest) => {
-                not_at_rest.get_or_insert_with(|| refused(Why::NotAtRest));
-                continue;
-            }
-            Err(why) => return Err(refused(why)),
-        };
+        })?;
         let coefficient = coefficient(&all, m, q, unknown);
         let known = found.terms.iter().position(|term| term.factors == factors);
         let place = known.unwrap_or_else(|| {
@@ -74,7 +67,7 @@ pub fn delay_equation(
         list.resize(list.len().max(power + 1), Expression::integer(0));
         list[power] = (list[power].clone() + coefficient).canonical();
     }
-    not_at_rest.map_or(Ok(found), Err)
+    Ok(found)
 }
 
 /// The factors of a term and the power of the parameter that is sought.

@@ -37,6 +37,8 @@ pub enum Why {
     NegativeForce,
     /// It jumps at another speed than the jump before.
     OtherSpeed,
+    /// A frequency that is neither rational nor a rational multiple of pi.
+    IrrationalFrequency,
     /// A coefficient that is neither rational nor a rational multiple of pi.
     Irrational,
     /// It is not linear in x, x' and their delayed values.
@@ -81,7 +83,8 @@ impl fmt::Display for Why {
                                      with phases in quarter turns",
             Self::NegativeForce => "has a negative coefficient beside other harmonics; shift the time so that the lowest one is positive",
             Self::OtherSpeed => "jumps or bends elsewhere than at one speed x' = v*, the same for all terms",
-            Self::Irrational => "has a coefficient or a frequency that is neither rational nor a rational multiple of pi",
+            Self::IrrationalFrequency => "has a frequency that is neither rational nor a rational multiple of pi",
+            Self::Irrational => "has a coefficient that is neither rational nor a rational multiple of pi",
             Self::NotLinear => "is not linear in x, x', x(t - T), x'(t - T)",
             Self::OtherFrequency => "is a second force",
             Self::OtherDelay => "has a delay that is no period 2*pi*k/omega of the force, k = 1, 2, ...",

@@ -383,6 +383,11 @@ fn terms_that_do_not_fit_are_named() {
         ("x'' - x + x^3 = eps (gamma cos(omega t) - sign(x' - v) - sign(x'))", ":2:", "jumps"),
         ("x'' + x + x^3 = eps (gamma cos(omega t) - delta x')", "", "no homoclinic"),
         ("x'' - x + x^3 = -eps delta x'", "", "no harmonic force"),
+        (
+            "x'' - x + x^3 = eps (gamma cos(sqrt(2) t) - delta x')",
+            ":2:",
+            "has a frequency that is neither rational",
+        ),
         // Its threshold is another than with the opposite sign.
         (
             "x'' - x - x^2/2 + x^3 = eps (-gamma cos(omega t) - gamma sin(2 omega t) - delta x')",

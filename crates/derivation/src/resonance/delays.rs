@@ -277,25 +277,3 @@ fn wave(k: i32) -> [Vec<Integer>; 2] {
     }
     [even, odd]
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// cos 5 theta + i sin 5 theta, and products, against doubles.
-    #[test]
-    fn waves_are_powers() {
-        for turns in [[5, 0], [-3, 2], [1, -4], [0, 0]] {
-            let (a, b) = (0.7f64, 1.9f64);
-            let values = [a.cos(), a.sin(), b.cos(), b.sin()];
-            let mut sum = [0.0, 0.0];
-            for (exponents, parts) in product_of_waves(&turns) {
-                assert!(exponents.iter().skip(1).step_by(2).all(|n| *n < 2));
-                let size: f64 = values.iter().zip(&exponents).map(|(x, n)| x.powi(*n)).product();
-                sum.iter_mut().zip(&parts).for_each(|(sum, c)| *sum += size * c.to_f64());
-            }
-            let angle = f64::from(turns[0]) * a + f64::from(turns[1]) * b;
-            assert!((sum[0] - angle.cos()).abs() < 1e-12 && (sum[1] - angle.sin()).abs() < 1e-12);
-        }
-    }
-}

@@ -6,6 +6,7 @@
 
 use super::algebraic::{Enclosed as Modes, middles};
 use super::flow::Job;
+use super::print::is_short;
 use super::{Enclosed, ResonanceError, SlowFlow, Terms};
 use crate::error::DerivationError as Error;
 use crate::work::Progress;
@@ -127,6 +128,12 @@ fn read(algebra: &Amplitudes<Over<BallRing>>, f: &Element, radius: &Cell<f64>) -
         let (size, value) = match e.0.contains_zero() {
             true => (e.0.abs_upper(), Rational::new()),
             false => (e.0.radius().clone(), e.0.midpoint().to_rational().unwrap_or_default()),
+        };
+        // A short number would be taken for an exact one.
+        let tiny = Rational::from((1, Integer::from(1) << e.0.midpoint().prec()));
+        let (size, value) = match !size.is_zero() && is_short(&value) && !value.is_zero() {
+            true => (Float::with_val_round(64, size + &tiny, Round::Up).0, value + tiny),
+            false => (size, value),
         };
         radius.set(radius.get().max(upward(&size)));
         value

@@ -11,6 +11,11 @@ use std::collections::BTreeMap;
 /// What a number of which no digit is known begins with: its bound follows.
 const UNKNOWN: &str = "0 +- ";
 
+/// Whether a number in the middle of an enclosure is exact: no other is so short.
+pub(super) fn is_short(q: &Rational) -> bool {
+    q.numer().significant_bits() <= 32 && q.denom().significant_bits() <= 32
+}
+
 /// A name of a factor or an unknown: in LaTeX z_1, \bar z_1, \mu.
 #[must_use]
 pub fn print_name(name: &str, style: Style) -> String {
@@ -75,7 +80,7 @@ impl SlowFlow {
 
     /// A coefficient and the factor beside it: of enclosures the sign and the decimal digits.
     fn coefficient(&self, q: &Rational, style: Style) -> (Rational, Option<String>) {
-        if self.enclosed.is_none() {
+        if self.enclosed.is_none() || is_short(q) {
             return (q.clone(), None);
         }
         let digits = self.number(&q.clone().abs());
@@ -92,10 +97,14 @@ impl SlowFlow {
         }
     }
 
-    /// A coefficient: a rational number as it is, of enclosures the digits that are certain, at most those asked
+    /// A coefficient: a rational number as it is (of enclosures, a short one), else the digits that are certain, at most those asked
     /// for, or `0 +- 2.2e-55` where none is.
     #[must_use]
     pub fn number(&self, q: &Rational) -> String {
+        if is_short(q) { q.to_string() } else { self.digits(q) }
+    }
+
+    fn digits(&self, q: &Rational) -> String {
         let Some(Enclosed { radius, digits, .. }) = self.enclosed else { return q.to_string() };
         let balls = Balls::new(u32::try_from(4 * digits).unwrap_or(u32::MAX / 4) + 64);
         let error = Float::with_val(64, radius);
@@ -112,7 +121,7 @@ impl SlowFlow {
     /// nu_j^2 or an entry of the shapes: a rational number as it is, otherwise as [`Self::number`].
     #[must_use]
     pub fn number_of_modes(&self, q: &Rational) -> String {
-        if self.system.algebraic.is_none() || *q == 1 { q.to_string() } else { self.number(q) }
+        if self.system.algebraic.is_none() || *q == 1 { q.to_string() } else { self.digits(q) }
     }
 
     /// A polynomial in the amplitudes, its terms collected by amplitudes and phase.

@@ -1,0 +1,78 @@
+//! Delays at resonance and between several unknowns, and several phases, against the time domain.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use lindstedt::grid::Axis;
+use lindstedt::verify::Verdict;
+use lindstedt::{Oscillator, Respond, Verify, Work};
+
+fn case(equation: &str, values: &[(&str, &str)]) -> Oscillator {
+    let set = |case: Oscillator, (name, value): &(&str, &str)| case.set(name, value).unwrap();
+    values.iter().fold(Oscillator::parse(equation).unwrap(), set)
+}
+
+fn slope(case: &Oscillator, order: usize) -> f64 {
+    let small = Verify::read_small("1/100,1/200,1/400").unwrap();
+    let question = Verify { order, small, ..Verify::default() };
+    let found = case.verify(&question, &Work::default()).unwrap().value;
+    assert_eq!(found.verdict, Verdict::Agrees);
+    found.observed_order.unwrap()
+}
+
+/// x_N along the truncated flow, the past included, misses the solution by O(eps^(N + 1)).
+#[test]
+fn motions() {
+    let primary = "x'' + x + eps*(x'/5 + x^3 + k*x(t - T)) = eps*F*cos((1 + eps*sigma)*t)";
+    let values = [("k", "1/5"), ("F", "1/2"), ("sigma", "1")];
+    let forced = |delay| case(primary, &[&values[..], &[("T", delay)]].concat());
+    for order in 1..=3 {
+        let found = slope(&forced("1"), order);
+        assert!((found - order as f64 - 1.0).abs() < 0.05, "order {order}: {found}");
+    }
+    for equation in [
+        // Internal resonance 1:2 through delayed values.
+        "x'' + x + eps*(y(t - 1)*x + x'/10); y'' + 4*y + eps*x(t - 2)^2 = 0",
+        // Modes with the frequencies 1 and sqrt 3; a delayed velocity.
+        "x'' + 2*x - y + eps*(x^3/2 + y'(t - 1)); y'' + 2*y - x",
+        "x'' + x + eps*(x'/5 + y(t - 1)); y'' + 2*y + eps*x^2 = 0",
+        // Phases at t = 0 of one force and of several, with detunings of their own.
+        "x'' + x + eps*(x'/5 + x^3) = eps*cos(t + 1/2)",
+        "x'' + x + eps*(x'/5 + x^3) = eps*(cos(t + 1/2) + x*cos(2*t + 1/3))",
+        "x'' + x + eps*(x'/5 + x^3) = eps*(cos((1 + eps)*t + 1/2) + x*cos((2 + 3*eps)*t + 1/3))",
+    ] {
+        let found = slope(&case(equation, &[]), 2);
+        assert!((found - 3.0).abs() < 0.05, "{equation}: {found}");
+    }
+    let found = slope(&forced("pi"), 2);
+    assert!((found - 3.0).abs() < 0.05, "T = pi: {found}");
+}
+
+/// N orders of the slow flow give the steady amplitude to O(eps^N): against the equation integrated over 400 periods.
+#[test]
+fn steady_amplitudes() {
+    let equation = "x'' + x + eps*(x' + x^3 + x(t - 1)/5) = eps*cos((1 + eps*sigma)*t)";
+    let near = ["49999997/100000000", "49999998/100000000", "49999999/100000000", "1/2"].join(",");
+    let ask = |small: &str, order: usize| {
+        let sweep = Some(Axis::parse(&format!("sigma={near}")).unwrap());
+        let question =
+            Respond { sweep, follow: order == 1, order: Some(order), ..Respond::default() };
+        case(equation, &[("eps", small)]).respond(&question, &Work::default()).unwrap().value
+    };
+    let mut errors = [[0.0; 3]; 3];
+    for (k, small) in ["1/5", "1/10", "1/20"].into_iter().enumerate() {
+        let mut truth = None;
+        for order in 1..=3 {
+            let found = ask(small, order);
+            let read = || found.followed.as_ref()?[0].last()?.amplitudes.as_ref()?.first().copied();
+            let truth = *truth.get_or_insert_with(|| read().unwrap().value);
+            let state = &found.states.last().unwrap().list[0];
+            assert!(found.states.last().unwrap().count_proved);
+            let amplitude: f64 = state.amplitudes[0].decimal.parse().unwrap();
+            errors[order - 1][k] = (amplitude - truth).abs();
+        }
+    }
+    for (order, [_, b, c]) in (1..).zip(errors) {
+        let slope = (b / c).log2();
+        assert!((slope - f64::from(order)).abs() < 0.25, "order {order}: {errors:?}");
+    }
+}
