@@ -1,4 +1,4 @@
-//! Delays at resonance and between several unknowns, and several phases, against the time domain.
+//! Delays at resonance and between several unknowns, several phases, irrational modes, against the time domain.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -75,4 +75,22 @@ fn steady_amplitudes() {
         let slope = (b / c).log2();
         assert!((slope - f64::from(order)).abs() < 0.25, "order {order}: {errors:?}");
     }
+}
+
+/// A mode of the frequency sqrt 2 that the force does not meet and the other one drives: the states are near those of 99/70.
+#[test]
+fn irrational_modes() {
+    let amplitude = |square: &str| {
+        let equation = format!(
+            "x'' + x + eps*(x' + x^3 + x*y) = eps*cos((1 + eps*sigma)*t); y'' + {square}*y + eps*(y' + 4*x^2 + y^3)"
+        );
+        let case = case(&equation, &[("eps", "1/10"), ("sigma", "1/2")]);
+        let found = case.respond(&Respond::default(), &Work::default()).unwrap();
+        let states = &found.value.states[0];
+        assert_eq!((states.count, states.count_proved), (1, true));
+        (states.list[0].amplitudes[0].decimal.parse::<f64>().unwrap(), found.header.tier)
+    };
+    let ((found, tier), (near, exact)) = (amplitude("2"), amplitude("9801/4900"));
+    assert_eq!((tier, exact), ("certified", "exact"));
+    assert!(found != near && (found - near).abs() < 1e-4, "{found} {near}");
 }

@@ -17,7 +17,8 @@ use std::collections::BTreeSet;
 /// The autonomous slow flow.
 #[derive(Clone, Debug)]
 pub struct Rotating {
-    /// w'/eps; its parameters are the symbols of the slow flow, then the small parameter.
+    /// w'/eps; its parameters are the symbols of the slow flow, then the small parameter, then, where coefficients are
+    /// enclosed, what each may be off its middle by ([`is_error`]).
     pub flow: Flow,
     /// k_{j,1}, k_{j,2}, ...
     pub turns: Vec<Vec<Rational>>,
@@ -63,9 +64,15 @@ pub fn rotating(slow: &SlowFlow, small: &str, order: usize) -> Result<Rotating, 
     };
     let turns = relations.solved(system.frequencies.iter().map(free).collect());
     let turns = turns.ok_or(NoFrame::SeveralRates)?;
-    let names: Vec<&str> = system.symbols.iter().map(String::as_str).chain([small]).collect();
-    let equations: Vec<Vec<ComplexTerm>> =
+    let mut equations: Vec<Vec<ComplexTerm>> =
         (0..turns.len()).map(|j| equation(slow, j, &turns[j], order)).collect();
+    let errors = match slow.enclosed {
+        Some(_) => with_errors(&mut equations, system.symbols.len() + 1),
+        None => 0,
+    };
+    let errors: Vec<String> = (0..errors).map(|k| format!("{ERROR}{k}")).collect();
+    let symbols = system.symbols.iter().map(String::as_str).chain([small]);
+    let names: Vec<&str> = symbols.chain(errors.iter().map(String::as_str)).collect();
     let backbone = (turns.len() == 1).then(|| backbone(slow, &turns[0], &names, order));
     let (fixed, combination) = (relations.fixed(), relations.combination());
     let flow = Flow::of_complex(&equations, &names);
@@ -211,6 +218,35 @@ fn equation(slow: &SlowFlow, j: usize, turn: &[Rational], order: usize) -> Vec<C
         }
     }
     terms
+}
+
+/// What the names of errors begin with: no parameter is called so.
+const ERROR: &str = "'error";
+
+/// Whether a parameter of the flow stands for what a coefficient may be off its middle by.
+#[must_use]
+pub fn is_error(name: &str) -> bool {
+    name.starts_with(ERROR)
+}
+
+/// Adds to every coefficient, real and imaginary part, a parameter of its own behind the first so many; their number.
+fn with_errors(equations: &mut [Vec<ComplexTerm>], first: usize) -> usize {
+    let mut count = 0;
+    for equation in equations {
+        let exact = equation.clone();
+        for term in exact {
+            for parts in [[1, 0], [0, 1]] {
+                let mut parameters = term.parameters.clone();
+                parameters.resize(first + count, 0);
+                parameters.push(1);
+                let [re, im] = parts.map(Rational::from);
+                let amplitudes = term.amplitudes.clone();
+                equation.push(ComplexTerm { amplitudes, parameters, re, im });
+                count += 1;
+            }
+        }
+    }
+    count
 }
 
 /// The terms z^(q + 1) zbar^q of f, which do not know the phase of the force, divided by z; their imaginary part.

@@ -156,6 +156,7 @@ impl Oscillator {
                         rotating frame is none of these states";
             remarks.push(Remark(text.to_owned()));
         }
+        remarks.extend(subject.enclosed());
         let broken = value.branches.iter().filter(|branch| !branch.complete).count();
         if broken > 0 {
             remarks.push(Remark(format!("{broken} branches were not followed to their ends")));
@@ -165,7 +166,8 @@ impl Oscillator {
             None if undecided > 0 || (combination.is_some() && !counted) => Standing::Undecided,
             _ => Standing::Complete,
         };
-        let header = self.header(subject.shown_values(), Some(subject.order), "exact", start);
+        let header =
+            self.header(subject.shown_values(), Some(subject.order), subject.tier(), start);
         Ok(Answer { header, value, standing, remarks })
     }
 }

@@ -6,9 +6,9 @@ use super::{ORDER, Respond, SEARCHES, STEPS};
 use crate::grid::Axis;
 use crate::motion::Harmonics;
 use crate::refusal::Refused;
-use crate::{DerivationError, Error, Exact, Oscillator, SlowFlow, Work};
+use crate::{DerivationError, Error, Exact, Oscillator, Remark, SlowFlow, Work};
 use lindstedt_equation::Expression;
-use lindstedt_evaluation::rotating::{NoFrame, Rotating, forced_part, rotating};
+use lindstedt_evaluation::rotating::{NoFrame, Rotating, forced_part, is_error, rotating};
 use lindstedt_number::ball::{Ball, Balls};
 use lindstedt_number::interval::Interval;
 use lindstedt_orbit::steady::{self, Course, Limits, System, Value, all_zeros, bound, follow};
@@ -91,7 +91,7 @@ impl<'a> Subject<'a> {
         {
             return Err(no_part(name));
         }
-        has_numbers(oscillator, &slow)?;
+        has_numbers(oscillator, &slow, question)?;
         let rotating = rotating(&slow, &small, order).map_err(no_frame)?;
         if rotating.fixed == 0 {
             return Err(uncoupled(order));
@@ -140,6 +140,25 @@ impl<'a> Subject<'a> {
         }
     }
 
+    /// What is said of coefficients that are enclosed.
+    pub(super) fn enclosed(&self) -> Option<Remark> {
+        let radius = self.slow.enclosed.as_ref()?.radius;
+        Some(Remark(format!(
+            "a frequency is irrational: the states are those of all coefficients within {radius:.1e}, but for those that \
+             cannot be told from zero, which are left out"
+        )))
+    }
+
+    pub(super) fn tier(&self) -> &'static str {
+        if self.slow.enclosed.is_some() { "certified" } else { "exact" }
+    }
+
+    /// What a coefficient may be off its middle by.
+    fn error(&self) -> Value {
+        let radius = self.slow.enclosed.as_ref().map_or(0.0, |enclosed| enclosed.radius);
+        Value::Within(Interval::new(-radius, radius))
+    }
+
     /// The value of a symbol cos(phi) or sin(phi).
     fn wave(&self, name: &str) -> Option<Ball> {
         let swept = |name: &str| self.swept.iter().flatten().any(|it| it == name);
@@ -163,6 +182,7 @@ impl<'a> Subject<'a> {
         let value = |name: &String| match place(name) {
             Some(place) => varying[place].map(Value::from),
             None if **name == **small => self.small.clone().map(Value::Rational),
+            None if is_error(name) => Some(self.error()),
             None => detuning(name).or_else(|| known(name)),
         };
         self.rotating.flow.parameters.iter().map(value).collect()
@@ -381,12 +401,11 @@ fn no_frame(why: NoFrame) -> Error {
     Refused::no_answer("no-response", message, hint).into()
 }
 
-/// Refuses a slow flow whose frequencies are no rational numbers.
-fn has_numbers(oscillator: &Oscillator, slow: &SlowFlow) -> Result<(), Error> {
-    if slow.enclosed.is_some() {
-        let message =
-            "a frequency is irrational: states are proved of slow flows with exact coefficients";
-        let hint = "`derive` has the flow, `lindstedt simulate` the motion";
+/// Refuses a slow flow that depends on frequencies without a value, and a sweep of one whose frequencies are irrational.
+fn has_numbers(oscillator: &Oscillator, slow: &SlowFlow, question: &Respond) -> Result<(), Error> {
+    if slow.enclosed.is_some() && question.sweep.is_some() {
+        let message = "a frequency is irrational: branches are followed of slow flows with exact coefficients";
+        let hint = "without --sweep: the states at one value";
         return Err(Refused::no_answer("no-rational-modes", message, hint).into());
     }
     let Some(name) = slow.system.independent.first() else { return Ok(()) };
