@@ -186,7 +186,7 @@ pub(crate) fn bytes_of(proved: &Proved) -> Vec<f64> {
 
 /// log2 of the bytes that an expansion over Q takes. The numbers grow like a power of the order (measured: Duffing
 /// 3.0, van der Pol 3.9; all numbers of an order N have N^3 or N^4 bits), which two low orders show; at the peak
-/// residues, numerators and the printed form stand beside them: 4 to 7 times as much in the engine,
+/// residues and the printed form, with its denominators, stand beside the numerators: 6 to 10 times as much,
 /// some more in what prints.
 fn over_q(order: usize, bytes: &Bytes<'_>) -> f64 {
     let base = 6e6;
@@ -196,7 +196,7 @@ fn over_q(order: usize, bytes: &Bytes<'_>) -> f64 {
     };
     let [half, whole] = [PROBE / 2, PROBE].map(|n| probe.iter().take(n + 1).sum::<f64>());
     let rate = (whole / half).log2().clamp(2.5, 4.0);
-    f64::log2(base + 8.0 * whole * (order as f64 / PROBE as f64).powf(rate))
+    f64::log2(base + 11.0 * whole * (order as f64 / PROBE as f64).powf(rate))
 }
 
 /// log2 of the bytes that an expansion by a clock takes, between what it is as text, which counts long functions, and as

@@ -38,11 +38,11 @@ impl Function {
         self.terms.iter().filter(|(_, c)| !c.is_zero()).count()
     }
 
-    /// The bits of all numerators, each with the denominator that it stands over.
+    /// The bits of all numerators and of the denominator.
     #[must_use]
     pub fn bits(&self) -> u64 {
-        let own = self.terms.iter().map(|(_, c)| u64::from(c.significant_bits())).sum::<u64>();
-        own + self.terms.len() as u64 * u64::from(self.denominator.number().significant_bits())
+        let numerators = self.terms.iter().map(|(_, c)| u64::from(c.significant_bits()));
+        numerators.sum::<u64>() + u64::from(self.denominator.number().significant_bits())
     }
 
     /// The value at zero.
