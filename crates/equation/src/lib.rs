@@ -17,6 +17,7 @@ mod roots;
 mod saddle;
 mod smooth;
 pub mod symmetry;
+pub mod taylor;
 mod unknown;
 mod walk;
 

@@ -2,6 +2,7 @@
 
 use crate::error::{ParseErrorKind, excerpt};
 use lindstedt_equation::print::Style;
+use lindstedt_equation::taylor::{binomial, of_function, parity};
 use lindstedt_equation::{Expression, Function};
 use rug::Rational;
 
@@ -19,15 +20,15 @@ pub(crate) fn taylor(
             let no = || ParseErrorKind::NoTaylor { function: excerpt(name) };
             (named(name, order).ok_or_else(no)?, argument.clone())
         }
-        (None, Expression::Function(Function::Sin, z)) => (parity(order, 1, -1), (**z).clone()),
-        (None, Expression::Function(Function::Cos, z)) => (parity(order, 0, -1), (**z).clone()),
-        (None, Expression::Function(Function::Exp, z)) => (exponential(order), (**z).clone()),
         (None, Expression::Function(Function::Ln, z)) => {
             let log = |n: usize| match n {
                 0 => Rational::new(),
                 n => Rational::from((if n % 2 == 1 { 1 } else { -1 }, n)),
             };
             ((0..=order).map(log).collect(), without_one(z).ok_or_else(unknown)?)
+        }
+        (None, Expression::Function(function, z)) => {
+            (of_function(*function, order).ok_or_else(unknown)?, (**z).clone())
         }
         (None, Expression::Power(base, exponent)) => {
             let q = exponent.as_number().ok_or_else(unknown)?;
@@ -73,34 +74,6 @@ fn vanishes_at_rest(e: &Expression) -> bool {
         Expression::Function(Function::Sin | Function::Abs, _) => below[0],
         _ => false,
     })
-}
-
-fn factorial_inverse(n: usize) -> Rational {
-    (1..=n).fold(Rational::from(1), |product, k| product / Rational::from(k))
-}
-
-fn exponential(order: usize) -> Vec<Rational> {
-    (0..=order).map(factorial_inverse).collect()
-}
-
-/// The part of exp z of one parity, with (sign)^k on its k-th term: sin, cos, sinh, cosh.
-fn parity(order: usize, parity: usize, sign: i32) -> Vec<Rational> {
-    let coefficient = |n: usize| match (n % 2 == parity, sign < 0 && n % 4 > 1) {
-        (false, _) => Rational::new(),
-        (true, false) => factorial_inverse(n),
-        (true, true) => -factorial_inverse(n),
-    };
-    (0..=order).map(coefficient).collect()
-}
-
-fn binomial(q: &Rational, order: usize) -> Vec<Rational> {
-    let mut list = vec![Rational::from(1)];
-    for n in 1..=order {
-        let factor = (q - Rational::from(n) + 1u32) / Rational::from(n);
-        let next = list.last().map(|c| Rational::from(c * &factor));
-        list.extend(next);
-    }
-    list
 }
 
 /// Functions that are known only by their polynomials.

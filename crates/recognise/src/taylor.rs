@@ -1,6 +1,6 @@
 //! Analytic functions of the unknown about its rest at zero, as Taylor polynomials.
 
-use lindstedt_equation::{Expression, Function};
+use lindstedt_equation::{Expression, Function, taylor};
 use rug::Rational;
 
 /// The equation with Taylor polynomials of a degree about x = 0 in the place of exp, sin, cos of what vanishes there, and of
@@ -11,7 +11,7 @@ use rug::Rational;
 /// use lindstedt_equation::{Expression, Function, print::Style};
 /// let growth = Expression::DISPLACEMENT.apply(Function::Exp) - 1;
 /// let near = lindstedt_recognise::about_rest(&growth, 2).multiplied_out().ok_or("terms")?;
-/// assert_eq!(near.print("eps", Style::Text), "x + x^2*1/2");
+/// assert_eq!(near.print("eps", Style::Text), "x + 1/2*x^2");
 /// # Ok::<(), &str>(())
 /// ```
 #[must_use]
@@ -44,30 +44,19 @@ fn of_function(function: Function, u: &Expression, degree: u32) -> Option<Expres
     if !at_rest(u)?.is_zero() {
         return None;
     }
-    let kept = |k: u32| match function {
-        Function::Exp => Some(1),
-        Function::Cos => Some([1, 0, -1, 0][k as usize % 4]),
-        Function::Sin => Some([0, 1, 0, -1][k as usize % 4]),
-        _ => None,
-    };
-    let mut factorial = Rational::from(1);
-    let mut coefficients = Vec::new();
-    for k in 0..=degree {
-        factorial /= k.max(1);
-        coefficients.push(Rational::from(&factorial * kept(k)?));
-    }
-    Some(polynomial(u, &coefficients))
+    Some(polynomial(u, &taylor::of_function(function, degree as usize)?))
 }
 
 /// (c + u)^n = c^n sum binomial(n, k) (u/c)^k.
 fn of_power(base: &Expression, exponent: &Expression, degree: u32) -> Option<Expression> {
     let n = exponent.as_number().filter(|n| n.is_integer() && *n < 0)?.numer().to_i32()?;
     let c = at_rest(base).filter(|c| !c.is_zero())?;
-    let mut next = (0..n.unsigned_abs()).fold(Rational::from(1), |power, _| power / &c);
-    let mut coefficients = Vec::new();
-    for k in 0..=degree {
-        coefficients.push(next.clone());
-        next = next * (i64::from(n) - i64::from(k)) / (Rational::from(k + 1) * &c);
-    }
+    let mut scale = (0..n.unsigned_abs()).fold(Rational::from(1), |power, _| power / &c);
+    let coefficients = taylor::binomial(&n.into(), degree as usize).into_iter().map(|binomial| {
+        let next = Rational::from(&scale * &binomial);
+        scale /= &c;
+        next
+    });
+    let coefficients: Vec<Rational> = coefficients.collect();
     Some(polynomial(&(base.clone() - Expression::Number(c)), &coefficients))
 }

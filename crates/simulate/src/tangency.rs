@@ -242,7 +242,7 @@ impl Homoclinic<'_> {
             self.newton((value, phase), periods, None, tick)?;
         let mut error = f64::INFINITY;
         for _ in 0..3 {
-            let next = match self.newton((value, phase), periods + 1, Some(change.later()), tick) {
+            let next = match self.newton_near((value, phase), periods + 1, change.later(), tick) {
                 Err(SimulateError::Stopped) => return Err(SimulateError::Stopped),
                 Err(failure) if error == f64::INFINITY => return Err(failure),
                 Err(_) => break,
@@ -260,7 +260,7 @@ impl Homoclinic<'_> {
         let nearer =
             saddle.multipliers[0] > ORDINARY && self.amount(&saddle, phase - 1.0).abs() > NEAREST;
         let begun = if nearer { (phase - 1.0, periods + 1) } else { (phase + 1.0, periods - 1) };
-        let (other, ..) = self.newton((value, begun.0), begun.1, Some(change), tick)?;
+        let (other, ..) = self.newton_near((value, begun.0), begun.1, change, tick)?;
         Ok(Tangency { value, error: error + (other - value).abs(), phase, periods })
     }
 
@@ -367,6 +367,21 @@ impl Homoclinic<'_> {
             moved = dv.abs();
         }
         Err(SimulateError::NoTangency { value: start.0 })
+    }
+
+    /// [`Self::newton`] with derivatives from nearby; where they lead away, with its own.
+    fn newton_near(
+        &self,
+        start: (f64, f64),
+        periods: u32,
+        change: Change,
+        tick: &Tick<'_>,
+    ) -> Result<(f64, f64, Change), SimulateError> {
+        match self.newton(start, periods, Some(change), tick) {
+            Err(SimulateError::Stopped) => Err(SimulateError::Stopped),
+            Err(_) => self.newton(start, periods, None, tick),
+            found => found,
+        }
     }
 
     /// The derivatives of (G, dG/dsigma) by differences; nothing where the steps were too long, and they are shortened.

@@ -6,14 +6,11 @@
 
 use super::pair::PrimePair;
 use super::primes;
+pub use super::words::{LANES, Residues};
 use super::words::{Plain, Words, padded};
 use lindstedt_algebra::{RationalAlgebra, Ring};
 use rug::{Integer, Rational};
 
-/// How many primes.
-pub const LANES: usize = 8;
-/// One number per prime: x 2^32 mod p.
-pub type Residues = [u32; LANES];
 /// Sums not yet reduced.
 type Sums = [u64; LANES];
 

@@ -5,7 +5,10 @@
 //! unpacked or shuffled on the way. Written out for SSE2, AVX2 and AVX-512, which compilers do not find by themselves (measured:
 //! half the speed, and a quarter for the last); the instructions are safe to use through `pulp`, which asks the processor.
 
-use super::fields::{LANES, Residues};
+/// How many primes.
+pub const LANES: usize = 8;
+/// One number per prime: x 2^32 mod p.
+pub type Residues = [u32; LANES];
 
 /// What the kernels need of a processor. A word holds the residues of [`Self::ROWS`] points.
 pub(super) trait Words: Copy {
