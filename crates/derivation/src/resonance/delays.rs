@@ -53,6 +53,10 @@ fn ratio(a: &Monomials, b: &Monomials) -> Option<Rational> {
     (a.terms.len() == b.terms.len() && a.terms.iter().all(holds)).then_some(ratio)
 }
 
+/// The value of a constant expression in an algebra.
+type Constant<'a, S> =
+    dyn Fn(&Amplitudes<S>, &Expression) -> Option<AmplitudeElement<<S as Scalars>::Element>> + 'a;
+
 impl Delays {
     /// Of equations, with the generators of rates as expressions, 1 left out.
     pub(super) fn of<E>(
@@ -123,7 +127,7 @@ impl Delays {
         &self,
         algebra: Amplitudes<S>,
         rates: &Rates<S::Element>,
-        time: &dyn Fn(&Amplitudes<S>, &Expression) -> Option<AmplitudeElement<S::Element>>,
+        time: &Constant<'_, S>,
     ) -> Option<Amplitudes<S>> {
         let late = |delay: &Delay| {
             let turn = |rate: &Vec<Rational>| self.turned_back(&algebra, delay, rate);

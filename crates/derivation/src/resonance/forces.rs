@@ -173,13 +173,20 @@ impl Class {
     }
 }
 
-/// The phases of the forces, and the equations with functions of m eta_l in the place of every force. What
-/// a force is ahead of its phase stays, as constants cos(phi) and sin(phi); the phi come last.
+/// Equations with functions of m eta_l in the place of every force.
+pub(super) struct InPhases {
+    pub phases: Vec<Phase>,
+    pub equations: Vec<Expression>,
+    /// The phi by which forces are ahead of their phase, which stay as constants cos(phi) and sin(phi).
+    pub angles: Vec<Expression>,
+}
+
+/// The phases of the forces, and the equations in them.
 pub(super) fn phases(
     equations: &[Expression],
     independent: &[String],
     names: Names<'_>,
-) -> Result<(Vec<Phase>, Vec<Expression>, Vec<Expression>), ResonanceError> {
+) -> Result<InPhases, ResonanceError> {
     let read = |wave: &Expression| {
         let mut angle = angle_of(wave, names)?;
         let slow = || ResonanceError::NotAForce { term: names.shown(wave) };
@@ -210,7 +217,7 @@ pub(super) fn phases(
         Some(ahead_of(*function, angle, ahead))
     };
     let equations = equations.iter().map(|e| e.map(&rewritten)).collect();
-    Ok((phases, equations, angles.into_inner()))
+    Ok(InPhases { phases, equations, angles: angles.into_inner() })
 }
 
 /// A function of angle + ahead: cos(angle) cos(ahead) - sin(angle) sin(ahead), or the sine.

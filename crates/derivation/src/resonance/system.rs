@@ -1,7 +1,7 @@
 //! From the equations of a problem to what is averaged: values put in, modes, the phase of the forces.
 
 use super::algebraic::{AlgebraicModes, Entry};
-use super::forces::{Phase, harmonic, is_internal, is_wave, leading_rates, near, phases};
+use super::forces::{InPhases, Phase, harmonic, is_internal, is_wave, leading_rates, near, phases};
 use super::modes::{Matrix, Spectrum, inverted, modes_refused, spectrum};
 use super::{Names, ResonanceError};
 use crate::error::DerivationError as Error;
@@ -192,7 +192,8 @@ impl Prepared {
             }
         }
         let equations = put_in(&equations, &bound);
-        let (forces, equations, angles) = phases(&equations, &independent, names)?;
+        let InPhases { phases: forces, equations, angles } =
+            phases(&equations, &independent, names)?;
         let parts = equations.iter().map(|e| linear(e, names)).collect::<Result<Vec<_>, _>>()?;
         let matrix = |of: &dyn Fn(&Linear) -> &BTreeMap<usize, Expression>| -> Matrix {
             let entry = |p: &Linear, j| of(p).get(&j).and_then(Expression::as_number);
