@@ -238,29 +238,28 @@ impl Homoclinic<'_> {
         tick: &Tick<'_>,
     ) -> Result<Tangency, SimulateError> {
         let mut periods = self.arrival(value, phase, tick)?;
-        let (mut value, mut phase, mut change) =
-            self.newton((value, phase), periods, None, tick)?;
+        let (mut value, mut phase) = self.newton((value, phase), periods, tick)?;
         let mut error = f64::INFINITY;
         for _ in 0..3 {
-            let next = match self.newton_near((value, phase), periods + 1, change.later(), tick) {
+            let next = match self.newton((value, phase), periods + 1, tick) {
                 Err(SimulateError::Stopped) => return Err(SimulateError::Stopped),
                 Err(failure) if error == f64::INFINITY => return Err(failure),
                 Err(_) => break,
                 Ok(next) => next,
             };
-            let moved = (next.0 - value).abs();
-            if moved > error {
+            let change = (next.0 - value).abs();
+            if change > error {
                 break;
             }
-            (value, phase, change) = next;
-            (error, periods) = (moved, periods + 1);
+            (value, phase) = next;
+            (error, periods) = (change, periods + 1);
         }
         // The same orbit, begun one period farther out, or nearer where that is far: how straight the manifold is.
         let saddle = self.saddle(value, tick)?;
         let nearer =
             saddle.multipliers[0] > ORDINARY && self.amount(&saddle, phase - 1.0).abs() > NEAREST;
         let begun = if nearer { (phase - 1.0, periods + 1) } else { (phase + 1.0, periods - 1) };
-        let (other, ..) = self.newton_near((value, begun.0), begun.1, change, tick)?;
+        let (other, _) = self.newton((value, begun.0), begun.1, tick)?;
         Ok(Tangency { value, error: error + (other - value).abs(), phase, periods })
     }
 
@@ -323,30 +322,33 @@ impl Homoclinic<'_> {
         &self,
         start: (f64, f64),
         periods: u32,
-        mut kept: Option<Change>,
         tick: &Tick<'_>,
-    ) -> Result<(f64, f64, Change), SimulateError> {
+    ) -> Result<(f64, f64), SimulateError> {
         let (mut value, mut phase) = start;
         let mut moved = f64::INFINITY;
-        let mut steps = (1e-6, 1e-5);
+        let (mut step, mut turn) = (1e-6, 1e-5);
         // The saddles of one step lie near those of the step before.
         let mut guess = self.guess;
         for _ in 0..30 {
             let here = self.at(value, guess, tick)?;
             guess = here.1.state;
-            let [g, slope] = self.unstable_component(&here, phase, periods, tick)?;
-            let is_new = kept.is_none();
-            let change = match kept.take() {
-                Some(change) => change,
-                None => {
-                    let at = (value, phase, periods);
-                    match self.change(&here, at, g, &mut steps, tick)? {
-                        Some(change) => change,
-                        None => continue,
-                    }
-                }
-            };
-            let Change { by_value, curvature, .. } = change;
+            let component =
+                |place: &Place, phase| self.unstable_component(place, phase, periods, tick);
+            let [g, slope] = component(&here, phase)?;
+            let more = component(&self.at(value + step, guess, tick)?, phase)?;
+            let less = component(&self.at(value - step, guess, tick)?, phase)?;
+            let (later, sooner) =
+                (component(&here, phase + turn)?, component(&here, phase - turn)?);
+            // The differences stay where G is nearly linear in the value, quadratic in the phase.
+            let (change, bend) =
+                ((more[0] - less[0]).abs(), (later[0] + sooner[0] - 2.0 * g).abs());
+            if change > 1e-3 || bend > 1e-3 {
+                step *= (1e-4 / change).min(1.0);
+                turn *= (1e-4 / bend).sqrt().min(1.0);
+                continue;
+            }
+            let by_value = [0, 1].map(|k| (more[k] - less[k]) / (2.0 * step));
+            let curvature = (later[1] - sooner[1]) / (2.0 * turn);
             let determinant = by_value[0] * curvature - by_value[1] * slope;
             let dv = (slope * slope - g * curvature) / determinant;
             let dp = (g * by_value[1] - slope * by_value[0]) / determinant;
@@ -358,80 +360,15 @@ impl Homoclinic<'_> {
             value += damping * dv;
             phase += damping * dp;
             // Far below the change from one number of periods to the next, or rounding errors.
-            let is_slow = dv.abs() >= 0.25 * moved;
-            if dv.abs() < 1e-12 || is_new && dv.abs() < 1e-8 && is_slow {
-                return Ok((value, phase, change));
+            if dv.abs() < 1e-12 || dv.abs() < 1e-8 && dv.abs() >= 0.25 * moved {
+                return Ok((value, phase));
             }
-            // Where steps are small G changes as before; its derivatives cost four times as much as G.
-            kept = (!is_slow && dv.abs() < SMALL_STEP && dp.abs() < SMALL_STEP).then_some(change);
             moved = dv.abs();
         }
         Err(SimulateError::NoTangency { value: start.0 })
     }
-
-    /// [`Self::newton`] with derivatives from nearby; where they lead away, with its own.
-    fn newton_near(
-        &self,
-        start: (f64, f64),
-        periods: u32,
-        change: Change,
-        tick: &Tick<'_>,
-    ) -> Result<(f64, f64, Change), SimulateError> {
-        match self.newton(start, periods, Some(change), tick) {
-            Err(SimulateError::Stopped) => Err(SimulateError::Stopped),
-            Err(_) => self.newton(start, periods, None, tick),
-            found => found,
-        }
-    }
-
-    /// The derivatives of (G, dG/dsigma) by differences; nothing where the steps were too long, and they are shortened.
-    fn change(
-        &self,
-        here: &Place,
-        (value, phase, periods): (f64, f64, u32),
-        g: f64,
-        (step, turn): &mut (f64, f64),
-        tick: &Tick<'_>,
-    ) -> Result<Option<Change>, SimulateError> {
-        let component = |place: &Place, phase| self.unstable_component(place, phase, periods, tick);
-        let guess = here.1.state;
-        let more = component(&self.at(value + *step, guess, tick)?, phase)?;
-        let less = component(&self.at(value - *step, guess, tick)?, phase)?;
-        let (later, sooner) = (component(here, phase + *turn)?, component(here, phase - *turn)?);
-        // The differences stay where G is nearly linear in the value, quadratic in the phase.
-        let (change, bend) = ((more[0] - less[0]).abs(), (later[0] + sooner[0] - 2.0 * g).abs());
-        if change > 1e-3 || bend > 1e-3 {
-            *step *= (1e-4 / change).min(1.0);
-            *turn *= (1e-4 / bend).sqrt().min(1.0);
-            return Ok(None);
-        }
-        Ok(Some(Change {
-            by_value: [0, 1].map(|k| (more[k] - less[k]) / (2.0 * *step)),
-            curvature: (later[1] - sooner[1]) / (2.0 * *turn),
-            multiplier: here.1.multipliers[0],
-        }))
-    }
 }
 
-/// The derivatives of G and dG/dsigma by the value, and of dG/dsigma by sigma.
-#[derive(Clone, Copy)]
-struct Change {
-    by_value: [f64; 2],
-    curvature: f64,
-    /// Of the saddle.
-    multiplier: f64,
-}
-
-impl Change {
-    /// A period later: near the saddle G grows by its multiplier.
-    fn later(self) -> Self {
-        let times = |x: f64| x * self.multiplier;
-        Self { by_value: self.by_value.map(times), curvature: times(self.curvature), ..self }
-    }
-}
-
-/// Steps below this leave the derivatives of G as they are.
-const SMALL_STEP: f64 = 1e-2;
 /// Farther than this from the saddle the coordinates tell nothing.
 const AWAY: f64 = 0.4;
 /// Near enough to begin with.
