@@ -564,6 +564,36 @@ mod tests {
         assert_eq!(fields.reciprocals(&[fields.one(), vanishes]), None);
     }
 
+    struct Columns<'a>(&'a PrimeFields, &'a [Residues], &'a [Residues]);
+
+    impl Kernel for Columns<'_> {
+        type Output = Vec<Residues>;
+
+        #[inline(always)]
+        fn run<W: Words>(self, words: W) -> Vec<Residues> {
+            let Self(fields, matrix, x) = self;
+            let mut sums = vec![ZERO; x.len()];
+            Moduli::new(words, fields).matrix(matrix, matrix.len() / x.len(), x, &mut sums);
+            sums
+        }
+    }
+
+    /// The largest residues in matrices longer than those of small transforms.
+    #[test]
+    fn long_columns_do_not_overflow() {
+        let fields = first(8);
+        let largest = fields.primes().map(|p| p - 1);
+        let square = fields.mul(&largest, &largest);
+        for length in 1..60usize {
+            let matrix = vec![largest; length * length.next_multiple_of(4)];
+            let sum = fields.mul(&square, &small(&fields, length as u32));
+            for fields in fields.on_every_processor() {
+                let sums = fields.vectorised(Columns(&fields, &matrix, &vec![largest; length]));
+                assert_eq!(sums, vec![sum; length], "{fields:?}");
+            }
+        }
+    }
+
     /// All kinds of vectors do the same, also where rows end before a word does.
     #[test]
     fn every_kind_of_vector_agrees() {
