@@ -114,7 +114,7 @@ impl PrimeFields {
         })
     }
 
-    /// A congruent number below 2^32 p.
+    /// A congruent number below 2^32 p: at most (2^32 - 1) (p - 1) + 2^32 - 1.
     #[inline(always)]
     fn fold(&self, t: &mut Sums) {
         for (t, one) in t.iter_mut().zip(&self.ones) {
@@ -124,7 +124,6 @@ impl PrimeFields {
 
     #[inline(always)]
     fn reduce_any(&self, mut t: Sums) -> Residues {
-        self.fold(&mut t);
         self.fold(&mut t);
         self.reduce(&t)
     }
@@ -319,7 +318,7 @@ impl<W: Words> Moduli<W> {
         if pairs.len() <= CHUNK {
             for (tile, sums) in sums.chunks_mut(W::ROWS).enumerate() {
                 let t = self.add_products(self.zero(), pairs, tile * W::ROWS);
-                self.words.store(self.reduce(self.fold(self.fold(t))), sums);
+                self.words.store(self.reduce(self.fold(t)), sums);
             }
             return;
         }
@@ -331,7 +330,7 @@ impl<W: Words> Moduli<W> {
             }
         }
         for (t, sums) in list.into_iter().zip(sums.chunks_mut(W::ROWS)) {
-            self.words.store(self.reduce(self.fold(self.fold(t))), sums);
+            self.words.store(self.reduce(self.fold(t)), sums);
         }
     }
 
@@ -371,7 +370,7 @@ impl<W: Words> Moduli<W> {
                     t = self.accumulate(t, row, self.words.same(x));
                 }
             }
-            self.words.store(self.reduce(self.fold(self.fold(t))), sums);
+            self.words.store(self.reduce(self.fold(t)), sums);
         }
     }
 
@@ -623,8 +622,15 @@ mod tests {
             let combination = one_by_one(&|i, _| terms[i].1);
             let plain = SumOfProducts { fields: &fields, pairs: &pairs, length }.run(Plain);
             assert_eq!(plain, products);
+            // What vanishes is reduced from p itself.
+            let minus: Vec<Residues> = rows[3].iter().map(|a| fields.neg(a)).collect();
+            let vanishes: [(&[Residues], &[Residues]); 2] =
+                [(&rows[3][..length], &rows[5][..length]), (&minus[..length], &rows[5][..length])];
+            let plain = SumOfProducts { fields: &fields, pairs: &vanishes, length }.run(Plain);
+            assert_eq!(plain, vec![ZERO; length]);
             for fields in fields.on_every_processor() {
                 assert_eq!(fields.pointwise(&pairs, length), products, "{length} {fields:?}");
+                assert_eq!(fields.pointwise(&vanishes, length), vec![ZERO; length], "{fields:?}");
                 assert_eq!(fields.combination(&terms), combination, "{length} {fields:?}");
             }
         }
